@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace obscura::draw {
+
+/// sRGB, 8 bits a channel, alpha not multiplied in. Pictures are blended in these encoded values, as browsers
+/// and Cairo do: alpha over, per channel.
+struct Color {
+  std::uint8_t r = 0, g = 0, b = 0, a = 255;
+
+  bool operator==(const Color&) const = default;
+};
+
+/// `a` part of the way to `b`, in encoded values; t in [0, 1].
+Color mix(Color a, Color b, double t);
+
+/// A name of the palette (orange sky green blue vermilion purple yellow grey black white) or #rgb, #rrggbb.
+std::optional<Color> color(std::string_view name);
+
+}  // namespace obscura::draw

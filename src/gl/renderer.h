@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "draw/list.h"
+#include "gl/context.h"
+#include "media/image.h"
+
+namespace obscura::gl {
+
+/// Puts pictures down as pixels, in a context of its own, used from one thread.
+class Renderer {
+ public:
+  /// Throws gl::Error where there is no context or the size is beyond its limit.
+  Renderer(int width, int height, const ContextOptions& options = {});
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+
+  /// Draws into `out` (made the right size). The still list is drawn anew only when it is another one than last time.
+  void draw(const draw::Picture& picture, media::Image& out);
+
+  /// GL_VERSION, GL_RENDERER, and the back end, for the origin.
+  std::string version() const;
+  std::string device() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace obscura::gl

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "draw/depict.h"
+#include "draw/look.h"
+#include "sim/rational.h"
+#include "sim/state.h"
+
+namespace obscura::scene {
+
+/// How the scene asks to be filmed. Flags of the command line override it.
+struct Film {
+  int width = 1920, height = 1080;
+  sim::Rational fps{60, 1};
+  std::optional<double> crf;
+  std::string preset, codec;
+};
+
+/// A scene, read, checked and built: what happens, what it looks like, how it is filmed.
+struct Scene {
+  std::string file;                // as given
+  std::string name;                // the file's stem
+  std::string text;                // the file's bytes, for its hash and the origin
+  std::vector<std::string> sets;   // the --set overrides, as given
+  sim::Rational duration{10, 1};   // s
+  std::uint64_t seed = 0;
+  sim::World<2> world;
+  draw::Look look;
+  draw::Camera camera;
+  draw::Extent extent;             // what the camera fits
+  Film film;
+};
+
+/// Reads, validates and builds the scene in `file` ("-": standard input), with `sets` ("crate.elasticity=0.5") over its keys. Throws
+/// scene::Error with everything that is wrong, each with its place.
+Scene read(const std::string& file, const std::vector<std::string>& sets = {});
+
+/// The same from text; `file` names it in complaints.
+Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets = {});
+
+}  // namespace obscura::scene

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "sim/snapshot.h"
+#include "sim/state.h"
+#include "sim/trouble.h"
+
+namespace obscura::sim {
+
+/// The one loop: steps a world along its own clock and hands out instants. A frame between two steps is a
+/// partial step on a copy; the trajectory never notices.
+class Run {
+ public:
+  virtual ~Run() = default;
+
+  virtual const Cast& cast() const = 0;
+  virtual Rational rate() const = 0;
+
+  /// Goes on to the instant t (s, >= 0 and not before the last one asked for). Trouble ends the run: the
+  /// answer to every later call is the same trouble.
+  virtual std::variant<Snapshot, Trouble> at(Rational t) = 0;
+
+  /// The words of the state that the last snapshot shows (sim/state.h).
+  virtual std::vector<std::uint64_t> words() const = 0;
+
+  /// From now on, keep the ways of these bodies. Requires: before the first at().
+  virtual void track(std::vector<int> bodies) = 0;
+
+  /// The ways since the last call (or since t = 0), up to the last whole step.
+  virtual Track take_track() = 0;
+};
+
+/// A run of a world from its state.
+std::unique_ptr<Run> run(World<2> world);
+
+/// What is known to go wrong before it does: the first spring group whose step is longer than the integrator's
+/// limit, as the Trouble it would end in; empty where nothing is.
+std::vector<Trouble> forebodings(const Model<2>& model);
+
+}  // namespace obscura::sim

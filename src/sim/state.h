@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/model.h"
+
+namespace obscura::sim {
+
+/// The turn of a rigid body: in the plane an angle (rad, not wrapped), in space a unit quaternion (x, y, z, w).
+template <int D>
+using Turn = Eigen::Matrix<double, D == 2 ? 1 : 4, 1>;
+
+/// What a pressed mouse holds.
+template <int D>
+struct Grip {
+  int body = -1;                              // -1: nothing
+  Vec<D> local = Vec<D>::Zero();
+
+  bool operator==(const Grip&) const = default;
+};
+
+/// A touch in the last step: where, and the impulse (N s) that the wall gave.
+template <int D>
+struct Touch {
+  int body = -1;
+  int wall = -1;
+  Vec<D> point = Vec<D>::Zero();              // world frame, after displacement
+  Vec<D> impulse = Vec<D>::Zero();
+
+  bool operator==(const Touch&) const = default;
+};
+
+/// What the displacement and the impulses of `handout` did to the energy since t = 0, J.
+struct Ledger {
+  double displacement = 0;                    // gained (+) or lost by putting bodies back on the wall
+  double impacts = 0;                         // lost (-) in impacts
+
+  bool operator==(const Ledger&) const = default;
+};
+
+/// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
+/// step / rate, plus `beyond` in the copy that a frame between two steps shows.
+template <int D>
+struct State {
+  std::int64_t step = 0;
+  double beyond = 0;                          // s; 0 on the trajectory
+  std::vector<Vec<D>> x;                      // centres of mass, m, one a body
+  std::vector<Vec<D>> v;                      // m/s
+  std::vector<Turn<D>> turn;                  // one a body that turns, in their order
+  std::vector<Spin<D>> spin;                  // rad/s (in space: world frame)
+  std::vector<Grip<D>> grips;                 // one a mouse
+  std::vector<Touch<D>> touches;
+  Ledger ledger;
+
+  bool operator==(const State&) const = default;
+};
+
+/// The state as 64-bit words in a fixed order, -0 as 0: what a state hash is taken of.
+template <int D>
+std::vector<std::uint64_t> words(const State<D>& state);
+
+template <int D>
+struct World {
+  Model<D> model;
+  State<D> state;
+};
+
+}  // namespace obscura::sim
