@@ -22,7 +22,7 @@ struct Disc {
   Point center;
   double radius = 0;               // to the outer rim
   double line = 0;                 // outline width, 0: none
-  Color fill, outline;
+  Color fill{}, outline{};
 };
 
 /// A rectangle turned about its centre, with an outline drawn inside its edges, and the two axes of its own frame.
@@ -33,14 +33,14 @@ struct Box {
   double line = 0;                 // outline width
   double axis = 0;                 // length of the frame's two axes, 0: none
   double axis_line = 0;            // their width
-  Color fill, outline, axis_color;
+  Color fill{}, outline{}, axis_color{};
 };
 
 /// A vertex of a stroke.
 struct Node {
   Point at;
   double width = 1;
-  Color color;
+  Color color{};
 };
 
 enum class Cap : std::uint8_t { butt, round };
@@ -61,7 +61,7 @@ struct Stroke {
 /// (arrow heads, pointers, wall grounds): every point is visible from their mean.
 struct Polygon {
   int begin = 0, end = 0;
-  Color fill;
+  Color fill{};
 };
 
 enum class Face : std::uint8_t { regular, medium, bold, math, math_italic, math_bold_italic };
@@ -72,7 +72,7 @@ struct Span {
   std::string text;                // UTF-8
   Face face = Face::regular;
   double size = 24;                // em, page units
-  Color color;
+  Color color{};
   double rise = 0;                 // page units up from the baseline
   double lead = 0;                 // space before it, page units
   bool tabular = false;            // figures of equal width
