@@ -1,0 +1,120 @@
+#include "architecture/arrows.h"
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace obscura::architecture {
+namespace {
+
+using Names = std::set<std::string>;
+
+// the picture (docs/design.md): a room includes itself and what its arrows point at
+const std::map<std::string, Names> kArrows = {
+    {"app", {"scene", "draw", "gl", "media", "sim", "page"}},
+    {"scene", {"draw", "sim"}},
+    {"gl", {"draw", "media"}},
+    {"page", {"draw"}},
+    {"draw", {"sim"}},
+    {"media", {}},
+    {"sim", {}},
+};
+
+// whose headers are whose: the beginning of a name in angle brackets, and the rooms that may say it
+const std::map<std::string, Names> kLibraries = {
+    {"GL/", {"gl"}},
+    {"EGL/", {"gl"}},
+    {"KHR/", {"gl"}},
+    {"glad/", {"gl"}},
+    {"epoxy/", {"gl"}},
+    {"png.h", {"media"}},
+    {"zlib.h", {"media"}},
+    {"libav", {"media"}},
+    {"libsw", {"media"}},
+    {"toml++/", {"scene"}},
+    {"toml.hpp", {"scene"}},
+    {"CLI/", {"app"}},
+    {"cairo", {"page"}},
+    {"ft2build.h", {"draw", "gl", "page"}},
+    {"freetype", {"draw", "gl", "page"}},
+    {"hb", {"draw", "gl", "page"}},
+};
+
+// the physics knows Eigen, the standard library, and the processor
+bool known_to_sim(const std::string& header) {
+  return header.rfind("Eigen/", 0) == 0 || header == "immintrin.h" ||
+         header.find_first_of("/.") == std::string::npos;
+}
+
+bool may(const std::string& from, const std::string& to) {
+  const auto room = kArrows.find(from);
+  return from == to || (room != kArrows.end() && room->second.contains(to));
+}
+
+}  // namespace
+
+Complaints wrong_includes(const std::filesystem::path& src) {
+  static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(src))
+    if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+
+  Complaints wrong;
+  for (const auto& file : files) {
+    const auto name = file.lexically_relative(src);
+    const std::string room = name.begin()->string();
+    if (!kArrows.contains(room)) wrong.push_back(name.string() + ": " + room + " is no room of the picture");
+
+    std::ifstream in(file);
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+      std::smatch match;
+      if (!std::regex_search(line, match, include)) continue;
+      const std::string header = match[2];
+      const auto complain = [&](const std::string& why) {
+        wrong.push_back(name.string() + ":" + std::to_string(number) + ": " + why);
+      };
+      if (match[1] == "\"") {
+        const std::string to = header.substr(0, header.find('/'));
+        if (!kArrows.contains(to))
+          complain("\"" + header + "\" does not say its room");
+        else if (!may(room, to))
+          complain(room + " may not include " + header);
+        continue;
+      }
+      for (const auto& [prefix, rooms] : kLibraries)
+        if (header.rfind(prefix, 0) == 0 && !rooms.contains(room))
+          complain(room + " may not include <" + header + ">");
+      if (room == "sim" && !known_to_sim(header))
+        complain("sim knows only Eigen and std, not <" + header + ">");
+    }
+  }
+  return wrong;
+}
+
+Complaints wrong_links(const std::filesystem::path& cmake_lists) {
+  std::ifstream in(cmake_lists);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  static const std::regex call(R"(obscura_room\((\w+)([^)]*)\))");
+
+  Complaints wrong;
+  for (std::sregex_iterator it(text.begin(), text.end(), call), end; it != end; ++it) {
+    const std::string room = (*it)[1];
+    if (room == "name") continue;  // the function's own definition
+    std::istringstream words((*it)[2]);
+    bool rooms = false;
+    for (std::string word; words >> word;) {
+      if (word == "ROOMS" || word == "LIBRARIES")
+        rooms = word == "ROOMS";
+      else if (rooms && !may(room, word))
+        wrong.push_back(room + " may not link " + word);
+    }
+  }
+  return wrong;
+}
+
+}  // namespace obscura::architecture

@@ -1,0 +1,71 @@
+// Linking does not see a header include: these tests do. The picture is in docs/design.md.
+
+#include "architecture/arrows.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace obscura::architecture {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+const std::filesystem::path kTop = OBSCURA_SOURCE_DIR;
+
+// A tree of sources of the test's own.
+class Planted : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(src_); }
+  void TearDown() override { std::filesystem::remove_all(src_); }
+
+  void plant(const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((src_ / name).parent_path());
+    std::ofstream(src_ / name) << text;
+  }
+
+  const std::filesystem::path src_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("obscura_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST(Arrows, EveryIncludeFollowsThem) { EXPECT_THAT(wrong_includes(kTop / "src"), IsEmpty()); }
+
+TEST(Arrows, EveryLinkFollowsThem) { EXPECT_THAT(wrong_links(kTop / "src" / "CMakeLists.txt"), IsEmpty()); }
+
+TEST_F(Planted, AnIncludeAgainstAnArrowIsFound) {
+  plant("sim/step.cpp", "#include \"sim/step.h\"\n#include <cmath>\n  #  include \"draw/list.h\"\n");
+  plant("draw/deep/list.h", "#include \"sim/snapshot.h\"\n#include \"media/image.h\"\n");
+  EXPECT_THAT(wrong_includes(src_), ElementsAre("draw/deep/list.h:2: draw may not include media/image.h",
+                                                "sim/step.cpp:3: sim may not include draw/list.h"));
+}
+
+TEST_F(Planted, ALibraryInTheWrongRoomIsFound) {
+  plant("app/render.cpp", "#include <CLI/CLI.hpp>\n#include <GL/gl.h>\n#include <libavutil/frame.h>\n");
+  plant("media/png.cpp", "#include <png.h>\n#include <toml++/toml.h>\n");
+  plant("sim/world.h", "#include <Eigen/Core>\n#include <vector>\n#include <fmt/core.h>\n");
+  EXPECT_THAT(wrong_includes(src_),
+              ElementsAre("app/render.cpp:2: app may not include <GL/gl.h>",
+                          "app/render.cpp:3: app may not include <libavutil/frame.h>",
+                          "media/png.cpp:2: media may not include <toml++/toml.h>",
+                          "sim/world.h:3: sim knows only Eigen and std, not <fmt/core.h>"));
+}
+
+TEST_F(Planted, AnIncludeWithoutItsRoomAndAFolderThatIsNoRoomAreFound) {
+  plant("gl/renderer.cpp", "#include \"renderer.h\"\n#include \"../draw/list.h\"\n");
+  plant("utils/strings.h", "#pragma once\n");
+  EXPECT_THAT(wrong_includes(src_), ElementsAre("gl/renderer.cpp:1: \"renderer.h\" does not say its room",
+                                                "gl/renderer.cpp:2: \"../draw/list.h\" does not say its room",
+                                                "utils/strings.h: utils is no room of the picture"));
+}
+
+TEST_F(Planted, ALinkAgainstAnArrowIsFound) {
+  plant("CMakeLists.txt", "obscura_room(sim)\nobscura_room(draw ROOMS sim media\n  LIBRARIES fmt::fmt)\n");
+  EXPECT_THAT(wrong_links(src_ / "CMakeLists.txt"), ElementsAre("draw may not link media"));
+}
+
+}  // namespace
+}  // namespace obscura::architecture
