@@ -11,7 +11,7 @@ namespace obscura::media {
 /// RGBA8, sRGB, row 0 at the top, rows without gaps, alpha not multiplied in.
 struct Image {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> pixels;      // 4 * width * height
+  std::vector<std::uint8_t> pixels;  // 4 * width * height
 
   std::uint8_t* row(int y) { return pixels.data() + std::size_t(4) * width * y; }
   const std::uint8_t* row(int y) const { return pixels.data() + std::size_t(4) * width * y; }

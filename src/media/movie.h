@@ -15,14 +15,15 @@ namespace obscura::media {
 struct MovieSpec {
   int width = 0, height = 0;
   std::int64_t fps_num = 60, fps_den = 1;
-  std::string codec;                     // libav's name of an encoder; empty: the container's default (h264, vp9, gif)
-  std::optional<double> crf;             // none: 18 for H.264, its like for others
-  std::string preset;                    // x264's; empty: our default, see docs
-  Tags tags;
+  std::string codec{};          // libav's name of an encoder; empty: the container's default (h264, vp9, gif)
+  std::optional<double> crf{};  // none: 18 for H.264, its like for others
+  std::string preset{};         // x264's; empty: our default, see docs
+  Tags tags{};
 };
 
-/// Throws media::Error where this file could not be made here: no such container, codec, preset; odd sizes (the
-/// message names the nearest even size). Called before anything is simulated. Opens an encoder, writes nothing.
+/// Throws media::Error where this file could not be made here: no such container, codec, preset; odd sizes
+/// (the message names the nearest even size). Called before anything is simulated. Opens an encoder, writes
+/// nothing.
 void check(const std::string& path, const MovieSpec& spec);
 
 /// The codec that `check` accepted, as libav names it, for messages.
@@ -35,11 +36,11 @@ int segment_frames(const MovieSpec& spec);
 struct Segment {
   struct Packet {
     std::vector<std::uint8_t> bytes;
-    std::int64_t pts = 0, dts = 0, duration = 1;       // in frames
+    std::int64_t pts = 0, dts = 0, duration = 1;  // in frames
     bool key = false;
   };
   std::vector<Packet> packets;
-  std::vector<std::uint8_t> extradata;                 // the codec's header, equal for all segments of a spec
+  std::vector<std::uint8_t> extradata;  // the codec's header, equal for all segments of a spec
   int frames = 0;
 };
 
@@ -60,8 +61,8 @@ class SegmentEncoder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Joins segments by stream copy into a movie under a temporary name beside `path`; close() renames it into place.
-/// Destroyed before close(), it removes what it wrote.
+/// Joins segments by stream copy into a movie under a temporary name beside `path`; close() renames it into
+/// place. Destroyed before close(), it removes what it wrote.
 class MovieWriter {
  public:
   MovieWriter(const std::string& path, const MovieSpec& spec);
@@ -69,8 +70,8 @@ class MovieWriter {
   MovieWriter(MovieWriter&&) noexcept;
 
   void add(const Segment& segment);
-  /// Finishes the file, checks that every byte was written, and renames it to `path`, or to `instead` where given
-  /// (a partial movie). Throws media::Error.
+  /// Finishes the file, checks that every byte was written, and renames it to `path`, or to `instead` where
+  /// given (a partial movie). Throws media::Error.
   void close(const std::optional<std::string>& instead = {});
   std::int64_t frames() const;
 

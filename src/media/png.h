@@ -9,8 +9,8 @@
 namespace obscura::media {
 
 struct PngOptions {
-  bool alpha = false;                    // keep the alpha channel; else opaque RGB
-  Tags tags;
+  bool alpha = false;  // keep the alpha channel; else opaque RGB
+  Tags tags{};
 };
 
 /// A PNG file as bytes: 8-bit, sRGB chunk, tags as iTXt. The same bytes for the same image and tags.
@@ -21,7 +21,7 @@ void write_png(const std::string& path, const Image& image, const PngOptions& op
 
 struct Png {
   Image image;
-  Tags tags;
+  Tags tags{};
 };
 
 /// Reads a PNG as RGBA8. Throws media::Error naming the path.

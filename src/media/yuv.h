@@ -15,8 +15,8 @@ struct Yuv420 {
   int y_stride = 0, u_stride = 0, v_stride = 0;
 };
 
-/// Converts an image of even size, alpha ignored. Integer arithmetic: the same bytes on every processor, whichever
-/// instructions it runs by.
+/// Converts an image of even size, alpha ignored. Integer arithmetic: the same bytes on every processor,
+/// whichever instructions it runs by.
 void convert(const Image& image, const Yuv420& out);
 
 }  // namespace obscura::media
