@@ -1,0 +1,78 @@
+// obscura check: reads, validates and builds scenes without opening GL; says what a render would do.
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/exit.h"
+#include "app/film.h"
+#include "app/options.h"
+#include "app/shots.h"
+#include "media/error.h"
+#include "scene/error.h"
+#include "sim/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+std::string count(std::size_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+// what our pictures take on average: flat grounds with little that moves
+double movie_bytes(const scene::Film& film, std::int64_t frames) {
+  return double(frames) * film.width * film.height * 0.0028;
+}
+
+void report(const scene::Scene& scene) {
+  const auto& model = scene.world.model;
+  const std::size_t particles = std::size_t(model.particles());
+  const Shots shots = Shots::film(scene.duration, scene.film.fps);
+  fmt::print("{}: good\n", scene.file);
+  fmt::print("  bodies   {}, {}, {}, {}, {}\n", count(particles, "particle", "particles"),
+             count(model.bodies.size() - particles, "box", "boxes"),
+             count(model.springs.size(), "spring", "springs"), count(model.walls.size(), "wall", "walls"),
+             count(model.mice.size(), "mouse", "mice"));
+  fmt::print("  time     {:g} s in {} steps of 1/{} s\n", sim::value(scene.duration),
+             sim::ceil(scene.duration * model.rate), sim::text(model.rate));
+  fmt::print("  film     {} frames at {} fps, {}x{}\n", shots.size(), sim::text(scene.film.fps),
+             scene.film.width, scene.film.height);
+  fmt::print("  disk     about {:.1f} MB as a movie\n", movie_bytes(scene.film, shots.size()) / 1e6);
+  for (const sim::Trouble& ahead : sim::forebodings(model)) fmt::print("  warning  {}\n", ahead.likely);
+}
+
+int check(const std::vector<std::string>& files, const std::vector<std::string>& sets) {
+  int exit = kDone;
+  for (const std::string& file : files) {
+    try {
+      const scene::Scene scene = scene::read(file, sets);
+      report(scene);
+      media::check("movie.mp4", movie_spec(scene));
+    } catch (const scene::Error& error) {
+      std::fflush(stdout);
+      fmt::print(stderr, "{}\n", error.what());
+      exit = kScene;
+    } catch (const media::Error& error) {
+      fmt::print("  warning  {}\n", error.what());
+    }
+  }
+  return exit;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, int& exit) {
+  CLI::App* command =
+      program.add_subcommand("check", "Read scenes and say what would be filmed, without drawing");
+  auto files = std::make_shared<std::vector<std::string>>();
+  auto sets = std::make_shared<std::vector<std::string>>();
+  command->add_option("SCENE", *files, "Scenes to read")->required();
+  add_sets(*command, *sets);
+  command->footer("Examples:\n  obscura check scenes/room.toml\n  obscura check scenes/*.toml");
+  command->callback([=, &exit] { exit = check(*files, *sets); });
+}
+
+}  // namespace obscura::app

@@ -1,0 +1,298 @@
+#include "app/film.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <deque>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "app/conduct.h"
+#include "app/exit.h"
+#include "app/interrupt.h"
+#include "app/origin.h"
+#include "app/trouble.h"
+#include "draw/depict.h"
+#include "gl/renderer.h"
+#include "media/error.h"
+#include "media/png.h"
+#include "sim/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+using Ways = std::vector<std::shared_ptr<const sim::Track>>;
+
+// a closed piece of the film, simulated and not yet drawn
+struct Take {
+  std::vector<Shot> shots;
+  std::vector<sim::Snapshot> moments;
+  std::vector<std::string> states;  // hashes, one a moment (a movie: of the first alone)
+  Ways ways;
+};
+
+// the same, drawn
+struct Print {
+  int frames = 0;
+  bool whole = true;                      // false: an interrupt cut it short
+  std::optional<media::Segment> segment;  // of a movie
+  std::vector<media::Image> images;       // of a pipe
+  Origin origin;                          // of its first frame
+};
+
+std::string size_text(std::uintmax_t bytes) {
+  if (bytes < 1'000'000) return fmt::format("{:.0f} kB", double(bytes) / 1e3);
+  if (bytes < 1'000'000'000) return fmt::format("{:.1f} MB", double(bytes) / 1e6);
+  return fmt::format("{:.2f} GB", double(bytes) / 1e9);
+}
+
+int take_frames(const Output& output, const media::MovieSpec& spec) {
+  switch (output.form) {
+    case Output::Form::movie:
+      return media::segment_frames(spec);
+    case Output::Form::frames:
+      return 4;
+    case Output::Form::pipe:
+      return 2;
+    case Output::Form::still:
+      return 1;
+  }
+  return 1;
+}
+
+// simulates takes one after the other, keeping the ways that trails need
+class Simulation {
+ public:
+  Simulation(const scene::Scene& scene, const Shots& shots, int frames, bool hash_each)
+      : shots_(shots),
+        frames_(frames),
+        hash_each_(hash_each),
+        run_(sim::run(scene.world)),
+        trail_(depictor(scene).longest_trail()) {
+    run_->track(depictor(scene).trailed());
+  }
+
+  static draw::Depictor depictor(const scene::Scene& scene) {
+    const auto run = sim::run(scene.world);
+    return draw::Depictor(run->cast(), scene.look, scene.camera, scene.extent,
+                          double(scene.film.width) / scene.film.height);
+  }
+
+  std::optional<Take> next() {
+    if (trouble_ || next_ >= shots_.size() || interrupted()) return {};
+    approach(shots_[next_].time);
+    Take take;
+    while (int(take.shots.size()) < frames_ && next_ < shots_.size() && !interrupted()) {
+      const Shot shot = shots_[next_];
+      auto moment = run_->at(shot.time);
+      if (auto* trouble = std::get_if<sim::Trouble>(&moment)) {
+        trouble_ = *trouble;
+        break;
+      }
+      take.shots.push_back(shot);
+      take.moments.push_back(std::move(std::get<sim::Snapshot>(moment)));
+      if (hash_each_ || take.states.empty()) take.states.push_back(state_hash(run_->words()));
+      ++next_;
+    }
+    keep_ways();
+    take.ways.assign(ways_.begin(), ways_.end());
+    if (take.shots.empty()) return {};
+    return take;
+  }
+
+  const std::optional<sim::Trouble>& trouble() const { return trouble_; }
+
+ private:
+  // goes on to just before t in strides, so that the ways of a long beginning are not all kept
+  void approach(sim::Rational t) {
+    const sim::Rational stride{1, 1};
+    while (at_ + stride < t && !trouble_ && !interrupted()) {
+      at_ = at_ + stride;
+      auto moment = run_->at(at_);
+      if (auto* trouble = std::get_if<sim::Trouble>(&moment)) trouble_ = *trouble;
+      keep_ways();
+    }
+    at_ = t;
+  }
+
+  void keep_ways() {
+    if (trail_ <= 0) return;
+    ways_.push_back(std::make_shared<const sim::Track>(run_->take_track()));
+    // a way is let go when its last point is older than the longest trail before the next frame
+    const double now = next_ > 0 ? sim::value(shots_[next_ - 1].time) : sim::value(at_);
+    while (ways_.size() > 1 && last_time(*ways_.front()) < std::min(now, sim::value(at_)) - trail_)
+      ways_.pop_front();
+  }
+
+  static double last_time(const sim::Track& track) {
+    double t = 0;
+    for (const auto& way : track.points) {
+      if (!way.empty()) t = std::max(t, way.back().time);
+    }
+    return t;
+  }
+
+  Shots shots_;
+  int frames_;
+  bool hash_each_;
+  std::unique_ptr<sim::Run> run_;
+  double trail_;
+  std::deque<std::shared_ptr<const sim::Track>> ways_;
+  std::int64_t next_ = 0;
+  sim::Rational at_;
+  std::optional<sim::Trouble> trouble_;
+};
+
+}  // namespace
+
+media::MovieSpec movie_spec(const scene::Scene& scene) {
+  media::MovieSpec spec;
+  spec.width = scene.film.width, spec.height = scene.film.height;
+  spec.fps_num = scene.film.fps.num, spec.fps_den = scene.film.fps.den;
+  spec.codec = scene.film.codec, spec.preset = scene.film.preset, spec.crf = scene.film.crf;
+  return spec;
+}
+
+int film(const scene::Scene& scene, const Shots& shots, const Output& output, const FilmOptions& options) {
+  media::MovieSpec spec = movie_spec(scene);
+  if (output.form == Output::Form::movie) media::check(output.path, spec);
+  if (output.form == Output::Form::pipe && options.pipe == media::PipeFormat::y4m)
+    media::check("pipe.y4m", spec);
+
+  // what stands in the way of the files is told before anything is simulated
+  namespace fs = std::filesystem;
+  if (output.form != Output::Form::pipe) {
+    const std::string first = output.form == Output::Form::movie ? output.path : output.file(shots[0].frame);
+    if (!options.overwrite && fs::exists(first)) {
+      throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", first));
+    }
+    const fs::path folder = fs::path(first).parent_path();
+    std::error_code error;
+    if (!folder.empty()) fs::create_directories(folder, error);
+    if (error)
+      throw media::Error(fmt::format("{}: cannot make this folder: {}", folder.string(), error.message()));
+  }
+
+  Origin origin;
+  origin.scene_hash = hash(scene.text), origin.scene_file = fs::path(scene.file).filename().string();
+  origin.scene_text = scene.text, origin.sets = scene.sets;
+  origin.width = spec.width, origin.height = spec.height;
+  origin.theme = scene.look.theme == draw::Theme::paper ? "paper" : "screen";
+  origin.fps = sim::text(scene.film.fps), origin.native = options.context.native;
+
+  const bool pictures = output.form == Output::Form::frames || output.form == Output::Form::still;
+  const int workers =
+      options.workers > 0 ? options.workers : std::max(1, int(std::thread::hardware_concurrency()));
+  const int needed = int(std::min<std::int64_t>(
+      workers, (shots.size() + take_frames(output, spec) - 1) / take_frames(output, spec)));
+  Simulation simulation(scene, shots, take_frames(output, spec), pictures);
+  Progress progress(options.progress, output.path == "-" ? "standard output" : output.path, shots.size(),
+                    1 / sim::value(scene.film.fps));
+  std::atomic<std::int64_t> drawn = 0;
+
+  Conduct<Take, Print> parts;
+  parts.produce = [&] { return simulation.next(); };
+  parts.wait = [&] { progress.at(drawn); };
+
+  // a worker: a context of its own, and for each take a closed piece of film
+  parts.hire = [&] {
+    auto renderer = std::make_shared<gl::Renderer>(spec.width, spec.height, options.context);
+    auto depictor = std::make_shared<const draw::Depictor>(Simulation::depictor(scene));
+    auto image = std::make_shared<media::Image>();
+    return [&, renderer, depictor, image](Take take) {
+      Print print;
+      print.origin = origin;
+      print.origin.gl_version = renderer->version(), print.origin.gl_renderer = renderer->device();
+      print.origin.shot = take.shots[0], print.origin.state = take.states[0];
+      std::optional<media::SegmentEncoder> encoder;
+      if (output.form == Output::Form::movie) encoder.emplace(output.path, spec);
+      for (std::size_t i = 0; i < take.shots.size(); ++i) {
+        if (interrupted() && i > 0) {
+          print.whole = false;
+          break;
+        }
+        draw::Picture picture = depictor->depict(take.moments[i], take.ways);
+        picture.transparent = pictures && options.transparent;
+        renderer->draw(picture, *image);
+        if (encoder) encoder->add(*image);
+        if (output.form == Output::Form::pipe) print.images.push_back(*image);
+        if (pictures) {
+          Origin of_frame = print.origin;
+          of_frame.shot = take.shots[i], of_frame.state = take.states[i];
+          media::write_png(output.file(take.shots[i].frame), *image,
+                           {.alpha = options.transparent, .tags = of_frame.tags(scene.look.title)});
+        }
+        ++print.frames;
+        ++drawn;
+      }
+      if (encoder) print.segment = encoder->finish();
+      return print;
+    };
+  };
+
+  // the joiner: segments into the movie, frames into the pipe, in order
+  std::optional<media::MovieWriter> movie;
+  std::optional<media::PipeWriter> pipe;
+  if (output.form == Output::Form::pipe) pipe.emplace(STDOUT_FILENO, options.pipe, spec);
+  std::int64_t done = 0;
+  bool open = true, whole = true;
+  parts.consume = [&](Print print) {
+    if (print.segment) {
+      if (!movie) {
+        print.origin.frames = shots.size();
+        spec.tags = print.origin.tags(scene.look.title);
+        movie.emplace(output.path, spec);
+      }
+      movie->add(*print.segment);
+    }
+    for (const media::Image& image : print.images) {
+      if (open && !pipe->write(image)) open = false;
+    }
+    done += print.frames;
+    whole = print.whole;
+    return whole && open;
+  };
+  conduct(parts, needed);
+
+  // a film that ended early stands under a name that says so
+  const bool cut = interrupted() || simulation.trouble();
+  std::string made = output.path;
+  if (movie) {
+    if (cut) made = output.partial();
+    movie->close(cut ? std::optional(made) : std::nullopt);
+  }
+  if (simulation.trouble()) {
+    progress.finish(done, "", false);
+    throw TroubleError(scene.file, *simulation.trouble(),
+                       done > 0 && output.form != Output::Form::pipe
+                           ? fmt::format("{} frames up to then are in {}", done, made)
+                           : "");
+  }
+  if (interrupted()) {
+    progress.finish(done,
+                    done > 0 ? fmt::format("interrupted: {} of {} frames are in {}", done, shots.size(), made)
+                             : "interrupted: nothing was written",
+                    false);
+    return kInterrupted;
+  }
+  std::string summary;
+  std::error_code error;
+  if (output.form == Output::Form::still) {
+    summary = fmt::format("{}: {}x{} at t = {:g} s", output.file(shots[0].frame), spec.width, spec.height,
+                          sim::value(shots[0].time));
+  } else if (open) {
+    const double seconds = double(done) / sim::value(scene.film.fps);
+    summary =
+        fmt::format("{}: {} frame{}, {:g} s at {:g} fps, {}x{}{}, made in {:.1f} s", made, done,
+                    done == 1 ? "" : "s", seconds, sim::value(scene.film.fps), spec.width, spec.height,
+                    output.form == Output::Form::movie ? ", " + size_text(fs::file_size(made, error)) : "",
+                    progress.seconds());
+  }
+  if (!summary.empty()) progress.finish(done, summary, output.form != Output::Form::pipe);
+  return kDone;
+}
+
+}  // namespace obscura::app

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace obscura::app {
+
+/// From now on SIGINT, SIGTERM and SIGHUP ask for an end instead of ending; the second one ends at once.
+/// SIGPIPE is left to the writer that meets it.
+void heed_interrupts();
+
+/// Somebody has asked for an end. Safe from every thread.
+bool interrupted();
+
+}  // namespace obscura::app

@@ -1,0 +1,44 @@
+// obscura new: a short commented scene to start from.
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/exit.h"
+#include "media/error.h"
+#include "scene/keys.h"
+
+namespace obscura::app {
+
+namespace {
+
+int make(const std::string& name) {
+  namespace fs = std::filesystem;
+  fs::path path(name);
+  if (path.extension() != ".toml") path += ".toml";
+  if (path.stem().empty()) throw UsageError("new needs a name");
+  if (fs::exists(path)) throw media::Error(fmt::format("{}: is there already", path.string()));
+  std::ofstream file(path, std::ios::binary);
+  file << scene::new_scene(path.stem().string());
+  file.close();
+  if (!file) throw media::Error(fmt::format("{}: cannot be written", path.string()));
+  fmt::print("{} is written. Film it: obscura render {}\n", path.string(), path.string());
+  return kDone;
+}
+
+}  // namespace
+
+void add_new(CLI::App& program, int& exit) {
+  CLI::App* command = program.add_subcommand("new", "Write a short commented scene to start from");
+  auto name = std::make_shared<std::string>();
+  command->add_option("NAME", *name, "The scene's name: NAME.toml is written, never over another")
+      ->required();
+  command->footer("Examples:\n  obscura new ball\n  obscura new lectures/pendulum.toml");
+  command->callback([name, &exit] { exit = make(*name); });
+}
+
+}  // namespace obscura::app

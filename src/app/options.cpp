@@ -1,0 +1,32 @@
+#include "app/options.h"
+
+#include <charconv>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/exit.h"
+
+namespace obscura::app {
+
+void add_sets(CLI::App& command, std::vector<std::string>& sets) {
+  command
+      .add_option("--set", sets,
+                  "Change a key of the scene, as in --set crate.elasticity=0.5; may be given again")
+      ->type_name("PATH=VALUE")
+      ->expected(1)
+      ->take_all();
+}
+
+std::pair<int, int> parse_size(const std::string& text) {
+  int width = 0, height = 0;
+  const char* end = text.data() + text.size();
+  const auto w = std::from_chars(text.data(), end, width);
+  if (w.ec == std::errc() && w.ptr != end && (*w.ptr == 'x' || *w.ptr == 'X')) {
+    const auto h = std::from_chars(w.ptr + 1, end, height);
+    if (h.ec == std::errc() && h.ptr == end && width > 0 && height > 0) return {width, height};
+  }
+  throw UsageError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, as in 1920x1080", text));
+}
+
+}  // namespace obscura::app

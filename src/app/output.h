@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace obscura::app {
+
+/// Where a film goes. The form of the name chooses it: a movie, a sequence of PNGs, one PNG, a pipe.
+struct Output {
+  enum class Form { movie, frames, still, pipe };
+  Form form = Form::movie;
+  std::string path;  // of frames: with its pattern, {frame:04} or %04d
+
+  /// The file of frame n. Requires: frames or still.
+  std::string file(std::int64_t n) const;
+  /// What stands beside `path` when the film ended early: room.partial.mp4.
+  std::string partial() const;
+};
+
+/// Reads OUT. None: render_out/<name>.mp4, or .png for a still. A folder's name with its slash takes
+/// {frame:04}.png. Throws UsageError: a sequence without a pattern, an ending that is not known, a pattern
+/// for one still.
+Output output(const std::optional<std::string>& out, const std::string& name, bool still,
+              std::int64_t frames);
+
+}  // namespace obscura::app

@@ -1,0 +1,87 @@
+#include <cstdio>
+#include <new>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/exit.h"
+#include "app/interrupt.h"
+#include "app/trouble.h"
+#include "draw/error.h"
+#include "gl/error.h"
+#include "gl/renderer.h"
+#include "media/error.h"
+#include "media/movie.h"
+#include "scene/error.h"
+
+namespace obscura::app {
+
+namespace {
+
+// the version, and those of what draws and encodes here
+std::string version() {
+  std::string gl;
+  try {
+    const gl::Renderer renderer(16, 16);
+    gl = fmt::format("OpenGL {}, {}", renderer.version(), renderer.device());
+  } catch (const std::exception& error) {
+    gl = fmt::format("OpenGL: {}", error.what());
+  }
+  return fmt::format("obscura {}\n{}\n{}", OBSCURA_VERSION, gl, media::libraries());
+}
+
+int complain(int code, const std::string& what) {
+  fmt::print(stderr, "obscura: {}\n", what);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, const char* const* argv) {
+  heed_interrupts();
+  CLI::App program("Simulates a room of particles, boxes and springs, and films it without a window.",
+                   "obscura");
+  program.footer(
+      "Examples:\n"
+      "  obscura new ball                        write ball.toml to start from\n"
+      "  obscura render ball.toml                film it: render_out/ball.mp4\n"
+      "  obscura render ball.toml --at 1.5       one picture of it\n"
+      "  obscura states ball.toml --every 0.1    where everything is, as data\n\n"
+      "Exit codes: 0 done, 2 usage, 3 scene, 4 files or codec, 5 OpenGL, 6 the simulation diverged, 130 "
+      "interrupted.");
+  program.require_subcommand(1);
+  program.set_version_flag("--version", version, "Show the versions of obscura, OpenGL, FFmpeg and libpng");
+  program.get_formatter()->column_width(34);
+  int exit = kDone;
+  add_render(program, exit);
+  add_new(program, exit);
+  add_check(program, exit);
+  add_states(program, exit);
+  add_docs(program, exit);
+  try {
+    program.parse(argc, argv);
+    return exit;
+  } catch (const CLI::Success& success) {
+    return program.exit(success);
+  } catch (const CLI::ParseError& error) {
+    return complain(kUsage, fmt::format("{}; see obscura --help", error.what()));
+  } catch (const UsageError& error) {
+    return complain(kUsage, error.what());
+  } catch (const scene::Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kScene;
+  } catch (const TroubleError& error) {
+    return complain(kDiverged, error.what());
+  } catch (const gl::Error& error) {
+    return complain(kGl, error.what());
+  } catch (const media::Error& error) {
+    return complain(kFiles, error.what());
+  } catch (const draw::Error& error) {
+    return complain(kFiles, error.what());
+  } catch (const std::bad_alloc&) {
+    return complain(kFiles, "out of memory");
+  }
+}
+
+}  // namespace obscura::app

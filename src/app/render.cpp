@@ -1,0 +1,165 @@
+// obscura render: a scene goes in, a movie, pictures, one picture or a stream comes out.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/exit.h"
+#include "app/film.h"
+#include "app/options.h"
+#include "app/trouble.h"
+#include "sim/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+struct Flags {
+  std::string scene;
+  std::vector<std::string> sets;
+  std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec;
+  std::optional<double> crf;
+  bool draft = false, no_overwrite = false;
+  FilmOptions film;
+};
+
+sim::Rational seconds(const std::string& flag, const std::string& text) {
+  const auto time = sim::parse_rational(text);
+  if (!time || *time < sim::Rational{0, 1})
+    throw UsageError(fmt::format("{} {}: expected seconds from 0", flag, text));
+  return *time;
+}
+
+// small and quick, where no flag says otherwise: 480 lines, at most 30 frames a second, the quickest encoder
+void make_draft(const Flags& flags, scene::Film& film) {
+  if (!flags.size && film.height > 480) {
+    film.width = std::max(2, int(std::lround(480.0 * film.width / film.height / 2)) * 2);
+    film.height = 480;
+  }
+  while (!flags.fps && 30 < sim::value(film.fps)) film.fps = film.fps / sim::rational(2);
+  if (!flags.preset) film.preset = "ultrafast";
+}
+
+// flags override the scene
+void override_film(const Flags& flags, scene::Scene& scene) {
+  if (flags.draft) make_draft(flags, scene.film);
+  if (flags.size) std::tie(scene.film.width, scene.film.height) = parse_size(*flags.size);
+  if (flags.fps) {
+    const auto fps = sim::parse_rational(*flags.fps);
+    if (!fps || fps->num <= 0 || sim::value(*fps) > 1000) {
+      throw UsageError(
+          fmt::format("--fps {}: expected frames per second up to 1000, as in 60 or 30000/1001", *flags.fps));
+    }
+    scene.film.fps = *fps;
+  }
+  if (flags.theme) scene.look.theme = *flags.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
+  if (flags.crf) scene.film.crf = flags.crf;
+  if (flags.preset) scene.film.preset = *flags.preset;
+  if (flags.codec) scene.film.codec = *flags.codec;
+}
+
+Shots shots_of(const Flags& flags, const scene::Scene& scene) {
+  if (flags.at) {
+    if (flags.frames || flags.from || flags.to)
+      throw UsageError("--at names one instant: leave out --frames, --from and --to");
+    return Shots::still(seconds("--at", *flags.at), scene.film.fps);
+  }
+  Shots shots = Shots::film(scene.duration, scene.film.fps);
+  if (shots.size() == 0) throw UsageError(fmt::format("{}: a film of 0 s has no frames", scene.file));
+  if (flags.from || flags.to) {
+    shots.between(flags.from ? seconds("--from", *flags.from) : sim::Rational{0, 1},
+                  flags.to ? seconds("--to", *flags.to) : scene.duration);
+  }
+  if (flags.frames) shots.only(*flags.frames);
+  return shots;
+}
+
+int render(Flags flags) {
+  flags.film.overwrite = !flags.no_overwrite;
+  scene::Scene scene = scene::read(flags.scene, flags.sets);
+  override_film(flags, scene);
+  const Shots shots = shots_of(flags, scene);
+  const Output out = output(flags.out, scene.name, flags.at.has_value(), shots.size());
+  for (const sim::Trouble& ahead : sim::forebodings(scene.world.model)) {
+    fmt::print(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
+  }
+  return film(scene, shots, out, flags.film);
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, int& exit) {
+  CLI::App* command =
+      program.add_subcommand("render", "Film a scene: a movie, a sequence of PNGs, one PNG or a stream");
+  auto flags = std::make_shared<Flags>();
+  command->add_option("SCENE", flags->scene, "The scene, a TOML file; - for standard input")->required();
+  command
+      ->add_option(
+          "-o,--output", flags->out,
+          "Where to: its form chooses the output. movie.mp4 (.mkv .mov .webm .gif), frames/{frame:04}.png or "
+          "frames/%04d.png, one picture.png with --at, - for a stream. Left out: render_out/SCENE.mp4")
+      ->type_name("OUT");
+  add_sets(*command, flags->sets);
+  command->add_option("--at", flags->at, "One picture, of this instant (s)")->type_name("SECONDS");
+  command->add_option("--from", flags->from, "The first instant (s) that is filmed")->type_name("SECONDS");
+  command->add_option("--to", flags->to, "Where the film stops (s), not itself filmed")->type_name("SECONDS");
+  command->add_option("--frames", flags->frames, "Only these frames, counted from 0, as in 1,3,5..9")
+      ->type_name("LIST");
+  command->add_option("--size", flags->size, "Pixels, as in 1280x720; even for movies")->type_name("WxH");
+  command->add_option("--fps", flags->fps, "Frames per second, as in 60 or 30000/1001")->type_name("RATE");
+  command->add_option("--theme", flags->theme, "paper (white, for print) or screen (dark, for projectors)")
+      ->check(CLI::IsMember({"paper", "screen"}));
+  command->add_flag("--draft", flags->draft,
+                    "Small and quick: 480 lines, at most 30 frames per second, ultrafast");
+  command->add_flag("--transparent", flags->film.transparent, "PNG: leave the ground out");
+  command->add_flag("--no-overwrite", flags->no_overwrite, "Refuse to write over an earlier render");
+  command->add_option("--crf", flags->crf, "Quality of the movie, lower is better [18]")
+      ->check(CLI::Range(0.0, 63.0));
+  command->add_option("--preset", flags->preset,
+                      "x264's preset; left out: quick settings of medium's quality");
+  command->add_option("--codec", flags->codec,
+                      "An encoder by libavcodec's name, as in libx264 or libvpx-vp9");
+  command->add_option("--pipe", flags->film.pipe, "With -o -: y4m or rgba, raw frames [y4m]")
+      ->type_name("FORM")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, media::PipeFormat>{{"y4m", media::PipeFormat::y4m},
+                                                                           {"rgba", media::PipeFormat::rgba}})
+              .description(""));
+  command
+      ->add_option("-j,--jobs", flags->film.workers, "Workers that draw and encode side by side [one a core]")
+      ->check(CLI::Range(1, 256));
+  command
+      ->add_option("--backend", flags->film.context.backend,
+                   "auto, osmesa or egl: who draws, never a GPU unless named [auto]")
+      ->type_name("NAME")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, gl::Backend>{{"auto", gl::Backend::automatic},
+                                                                             {"osmesa", gl::Backend::osmesa},
+                                                                             {"egl", gl::Backend::egl}})
+                      .description(""));
+  command->add_flag("--native", flags->film.context.native,
+                    "Draw with all of this processor's instructions: a tenth quicker, pixels may differ by a "
+                    "level elsewhere");
+  command
+      ->add_option("--progress", flags->film.progress, "auto, plain, json (a line an event) or none [auto]")
+      ->type_name("KIND")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, ProgressKind>{{"auto", ProgressKind::automatic},
+                                                                      {"plain", ProgressKind::plain},
+                                                                      {"json", ProgressKind::json},
+                                                                      {"none", ProgressKind::none}})
+              .description(""));
+  command->footer(
+      "Examples:\n"
+      "  obscura render scenes/room.toml\n"
+      "  obscura render scenes/room.toml -o room.mp4 --size 1280x720 --fps 30\n"
+      "  obscura render scenes/room.toml --at 2.5 -o room.png --theme screen\n"
+      "  obscura render scenes/room.toml -o 'frames/{frame:04}.png' --from 2 --to 3\n"
+      "  obscura render scenes/room.toml --draft --set ball.elasticity=1\n"
+      "  obscura render scenes/room.toml -o - | ffplay -");
+  command->callback([flags, &exit] { exit = render(*flags); });
+}
+
+}  // namespace obscura::app

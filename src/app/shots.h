@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/rational.h"
+
+namespace obscura::app {
+
+/// One frame to be made: its number in the whole film, and the exact instant it shows.
+struct Shot {
+  std::int64_t frame = 0;
+  sim::Rational time;  // s
+};
+
+/// Which frames of a film are wanted, without listing them: frame n is at exactly n / fps.
+class Shots {
+ public:
+  /// Every frame of a film of `duration` seconds: ceil(duration * fps) of them.
+  static Shots film(sim::Rational duration, sim::Rational fps);
+  /// The one instant `time`, whichever frame it would be nearest to.
+  static Shots still(sim::Rational time, sim::Rational fps);
+
+  /// Only those in [from, to), s. Throws UsageError where none is left.
+  void between(sim::Rational from, sim::Rational to);
+  /// Only the numbers that `list` names: "1,3,5..9". Throws UsageError where it cannot be read or names a
+  /// frame that is not there.
+  void only(const std::string& list);
+
+  std::int64_t size() const { return size_; }
+  Shot operator[](std::int64_t i) const;
+  sim::Rational fps() const { return fps_; }
+  /// The largest frame number, for the width of a name.
+  std::int64_t last_frame() const;
+
+ private:
+  sim::Rational fps_{60, 1};
+  std::vector<std::pair<std::int64_t, std::int64_t>> ranges_;  // [first, last]
+  std::int64_t size_ = 0;
+  bool still_ = false;
+  sim::Rational instant_;
+};
+
+/// Instants as a person lists them: "0,0.5,2" or a range "0:1:0.1" (both ends). Throws UsageError.
+std::vector<sim::Rational> instants(const std::string& list);
+
+}  // namespace obscura::app

@@ -1,0 +1,182 @@
+// obscura states: where everything is, as data, without GL. 17 significant digits, so that every double reads
+// back.
+
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/exit.h"
+#include "app/interrupt.h"
+#include "app/options.h"
+#include "app/origin.h"
+#include "app/shots.h"
+#include "app/trouble.h"
+#include "media/error.h"
+#include "scene/scene.h"
+#include "sim/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+std::string number(double x) { return fmt::format("{:.17g}", x == 0 ? 0.0 : x); }
+
+std::string vector(const sim::Vec3& v, int dimension) {
+  std::string text = "[" + number(v.x()) + ", " + number(v.y());
+  if (dimension == 3) text += ", " + number(v.z());
+  return text + "]";
+}
+
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+void put(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+    throw media::Error("standard output cannot be written");
+}
+
+// one instant as a JSON object
+std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::string& hash) {
+  const int d = cast.dimension;
+  const sim::Energies& e = now.energies;
+  std::string text = fmt::format(
+      "    {{\"time\": {}, \"step\": {}, \"hash\": \"{}\",\n"
+      "     \"energy\": {{\"kinetic\": {}, \"potential\": {}, \"gravity\": {}, \"springs\": {}, \"total\": "
+      "{}, "
+      "\"displacement\": {}, \"impacts\": {}}},\n"
+      "     \"momentum\": {}, \"angular_momentum\": {},\n     \"bodies\": [",
+      number(now.time), now.step, hash, number(e.kinetic), number(e.potential()), number(e.gravity),
+      number(e.springs), number(e.total()), number(e.displacement), number(e.impacts),
+      vector(now.momentum, d), number(now.angular_momentum.z()));
+  for (std::size_t i = 0; i < now.bodies.size(); ++i) {
+    const auto& body = now.bodies[i];
+    text += fmt::format(
+        "{}\n       {{\"name\": {}, \"position\": {}, \"angle\": {}, \"velocity\": {}, \"spin\": {}}}",
+        i ? "," : "", quoted(cast.bodies[i].name), vector(body.position, d), number(body.angle),
+        vector(body.velocity, d), number(body.spin.z()));
+  }
+  text += "],\n     \"contacts\": [";
+  for (std::size_t i = 0; i < now.contacts.size(); ++i) {
+    const auto& contact = now.contacts[i];
+    text += fmt::format(
+        "{}\n       {{\"body\": {}, \"wall\": {}, \"point\": {}, \"normal\": {}, \"gap\": {}, \"impulse\": "
+        "{}}}",
+        i ? "," : "", quoted(cast.bodies[std::size_t(contact.body)].name), contact.wall,
+        vector(contact.point, d), vector(contact.normal, d), number(contact.gap), vector(contact.impulse, d));
+  }
+  return text + "]}";
+}
+
+// the columns are the paths that --set and --measure know, one row an instant
+std::string csv_header(const sim::Cast& cast) {
+  std::string line =
+      "time,step,hash,energy.kinetic,energy.potential,energy.total,energy.displacement,energy.impacts,"
+      "momentum.x,momentum.y,"
+      "angular_momentum,contacts";
+  for (const auto& body : cast.bodies) {
+    for (const char* part : {"position.x", "position.y", "angle", "velocity.x", "velocity.y", "spin"}) {
+      line += fmt::format(",{}.{}", body.name, part);
+    }
+  }
+  return line + "\n";
+}
+
+std::string csv_row(const sim::Snapshot& now, const std::string& hash) {
+  const sim::Energies& e = now.energies;
+  std::string line = fmt::format("{},{},{}", number(now.time), now.step, hash);
+  for (const double x : {e.kinetic, e.potential(), e.total(), e.displacement, e.impacts, now.momentum.x(),
+                         now.momentum.y(), now.angular_momentum.z()}) {
+    line += "," + number(x);
+  }
+  line += fmt::format(",{}", now.contacts.size());
+  for (const auto& body : now.bodies) {
+    for (const double x : {body.position.x(), body.position.y(), body.angle, body.velocity.x(),
+                           body.velocity.y(), body.spin.z()}) {
+      line += "," + number(x);
+    }
+  }
+  return line + "\n";
+}
+
+struct Flags {
+  std::string scene, format = "json";
+  std::optional<std::string> at, every;
+  std::vector<std::string> sets;
+};
+
+std::vector<sim::Rational> times_of(const Flags& flags, const scene::Scene& scene) {
+  if (flags.at && flags.every) throw UsageError("--at and --every exclude each other");
+  if (flags.at) return instants(*flags.at);
+  const sim::Rational every =
+      flags.every ? sim::parse_rational(*flags.every).value_or(sim::Rational{0, 1}) : sim::rational(1);
+  if (!(sim::Rational{0, 1} < every))
+    throw UsageError(fmt::format("--every {}: expected seconds above 0", *flags.every));
+  return instants(fmt::format("0:{}:{}", sim::text(scene.duration), sim::text(every)));
+}
+
+int states(const Flags& flags) {
+  const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  const auto times = times_of(flags, scene);
+  const auto run = sim::run(scene.world);
+  const bool as_json = flags.format == "json";
+  if (as_json) {
+    put(
+        fmt::format("{{\"version\": \"{}\", \"scene\": {}, \"scene_hash\": \"{}\", \"dimension\": {},\n"
+                    " \"units\": {{\"length\": \"m\", \"time\": \"s\", \"angle\": \"rad\", \"energy\": "
+                    "\"J\", \"impulse\": \"N s\"}},\n"
+                    " \"states\": [\n",
+                    OBSCURA_VERSION, quoted(scene.file), hash(scene.text), run->cast().dimension));
+  } else {
+    put(csv_header(run->cast()));
+  }
+  std::optional<sim::Trouble> trouble;
+  bool first = true;
+  for (const sim::Rational t : times) {
+    if (interrupted()) return kInterrupted;
+    const auto outcome = run->at(t);
+    if (const auto* bad = std::get_if<sim::Trouble>(&outcome)) {
+      trouble = *bad;
+      break;
+    }
+    const auto& now = std::get<sim::Snapshot>(outcome);
+    const std::string state = state_hash(run->words());
+    if (as_json)
+      put((first ? "" : ",\n") + json(now, run->cast(), state));
+    else
+      put(csv_row(now, state));
+    first = false;
+  }
+  if (as_json) put("\n ]}\n");
+  if (std::fflush(stdout) != 0) throw media::Error("standard output cannot be written");
+  if (trouble) throw TroubleError(scene.file, *trouble, "");
+  return kDone;
+}
+
+}  // namespace
+
+void add_states(CLI::App& program, int& exit) {
+  CLI::App* command =
+      program.add_subcommand("states", "Print the state at given instants as data, without drawing");
+  auto flags = std::make_shared<Flags>();
+  command->add_option("SCENE", flags->scene, "The scene, a TOML file; - for standard input")->required();
+  command->add_option("--at", flags->at, "Instants (s), as in 0,0.5,2 or 0:10:0.5")->type_name("LIST");
+  command->add_option("--every", flags->every, "Instants from 0 to the duration, this far apart (s) [1]")
+      ->type_name("SECONDS");
+  command->add_option("--format", flags->format, "json or csv [json]")->check(CLI::IsMember({"json", "csv"}));
+  add_sets(*command, flags->sets);
+  command->footer(
+      "SI units; angles in radians, counter-clockwise. Numbers have 17 significant digits: they read back to "
+      "the bit.\n"
+      "energy.displacement and energy.impacts are what collision = \"handout\" gained and lost since the "
+      "start.\n\n"
+      "Examples:\n"
+      "  obscura states scenes/room.toml --at 0,0.5,2\n"
+      "  obscura states scenes/room.toml --every 0.1 --format csv > room.csv\n"
+      "  obscura states scenes/room.toml --at 5 --set physics.rate=1200");
+  command->callback([flags, &exit] { exit = states(*flags); });
+}
+
+}  // namespace obscura::app
