@@ -12,28 +12,34 @@ namespace obscura::draw {
 
 /// How the world lies on the page at one instant: page = origin + scale * (x, -y).
 struct View {
-  Point origin;                    // page units: where the world's origin lies
-  double scale = 1;                // page units a metre
-  Rect window;                     // the part of the page that shows the world
+  Point origin;      // page units: where the world's origin lies
+  double scale = 1;  // page units a metre
+  Rect window;       // the part of the page that shows the world
 
-  Point page(const sim::Vec3& world) const { return {origin.x() + scale * world.x(), origin.y() - scale * world.y()}; }
+  Point page(const sim::Vec3& world) const {
+    return {origin.x() + scale * world.x(), origin.y() - scale * world.y()};
+  }
 };
 
-/// The corners of what the camera fits when no key says otherwise: the room, or where there is none the bodies at the start.
+/// The corners of what the camera fits when no key says otherwise: the room, or where there is none the
+/// bodies at the start.
 struct Extent {
   sim::Vec3 low = sim::Vec3::Zero(), high = sim::Vec3::Zero();
 };
 
-/// Draws instants of one run. Holds what does not change: the look's colours, the room's walls as polygons, the still list.
+/// Draws instants of one run. Holds what does not change: the look's colours, the room's walls as polygons,
+/// the still list.
 class Depictor {
  public:
   /// `extent` is what the camera fits; `aspect` the picture's width over its height.
-  Depictor(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent, double aspect);
+  Depictor(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
+           double aspect);
 
   /// Where the world lies on the page at time t (s).
   View view(double t) const;
 
-  /// The picture of one instant. `ways`: the tracks that hold the last `trail` seconds before it, oldest first.
+  /// The picture of one instant. `ways`: the tracks that hold the last `trail` seconds before it, oldest
+  /// first.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways) const;
 
   /// The longest trail, s: how far back depict's `ways` must reach.

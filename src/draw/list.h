@@ -20,19 +20,20 @@ using Point = Eigen::Vector2d;
 /// A disc with an outline drawn inside its rim.
 struct Disc {
   Point center;
-  double radius = 0;               // to the outer rim
-  double line = 0;                 // outline width, 0: none
+  double radius = 0;  // to the outer rim
+  double line = 0;    // outline width, 0: none
   Color fill{}, outline{};
 };
 
-/// A rectangle turned about its centre, with an outline drawn inside its edges, and the two axes of its own frame.
+/// A rectangle turned about its centre, with an outline drawn inside its edges, and the two axes of its own
+/// frame.
 struct Box {
   Point center;
-  Point x_axis;                    // unit, page frame: the body's x
-  Point half;                      // to the outer edges
-  double line = 0;                 // outline width
-  double axis = 0;                 // length of the frame's two axes, 0: none
-  double axis_line = 0;            // their width
+  Point x_axis;          // unit, page frame: the body's x
+  Point half;            // to the outer edges
+  double line = 0;       // outline width
+  double axis = 0;       // length of the frame's two axes, 0: none
+  double axis_line = 0;  // their width
   Color fill{}, outline{}, axis_color{};
 };
 
@@ -45,11 +46,13 @@ struct Node {
 
 enum class Cap : std::uint8_t { butt, round };
 enum class Blend : std::uint8_t {
-  over,                            // alpha over
-  darken, lighten,                 // per-channel minimum, maximum with what lies below: overlapping pieces leave no beads
+  over,  // alpha over
+  darken,
+  lighten,  // per-channel minimum, maximum with what lies below: overlapping pieces leave no beads
 };
 
-/// An open or closed line through nodes [begin, end) of List::nodes, width and colour linear in between, joints mitred.
+/// An open or closed line through nodes [begin, end) of List::nodes, width and colour linear in between,
+/// joints mitred.
 struct Stroke {
   int begin = 0, end = 0;
   bool closed = false;
@@ -57,8 +60,8 @@ struct Stroke {
   Blend blend = Blend::over;
 };
 
-/// A filled polygon through points [begin, end) of List::points, star-shaped about its first point's neighbourhood
-/// (arrow heads, pointers, wall grounds): every point is visible from their mean.
+/// A filled polygon through points [begin, end) of List::points, star-shaped about its first point's
+/// neighbourhood (arrow heads, pointers, wall grounds): every point is visible from their mean.
 struct Polygon {
   int begin = 0, end = 0;
   Color fill{};
@@ -69,13 +72,13 @@ enum class Align : std::uint8_t { left, center, right };
 
 /// A piece of a line of type in one face.
 struct Span {
-  std::string text;                // UTF-8
+  std::string text;  // UTF-8
   Face face = Face::regular;
-  double size = 24;                // em, page units
+  double size = 24;  // em, page units
   Color color{};
-  double rise = 0;                 // page units up from the baseline
-  double lead = 0;                 // space before it, page units
-  bool tabular = false;            // figures of equal width
+  double rise = 0;       // page units up from the baseline
+  double lead = 0;       // space before it, page units
+  bool tabular = false;  // figures of equal width
 };
 
 /// A line of type on a baseline.
@@ -90,16 +93,16 @@ enum class Kind : std::uint8_t { disc, box, stroke, polygon, text };
 /// Consecutive things of one kind: what is drawn in one go.
 struct Batch {
   Kind kind;
-  int begin = 0, end = 0;          // into the list of that kind
-  int clip = -1;                   // index into List::clips, -1: the page
+  int begin = 0, end = 0;  // into the list of that kind
+  int clip = -1;           // index into List::clips, -1: the page
 };
 
 struct Rect {
-  double x = 0, y = 0, width = 0, height = 0;      // page units
+  double x = 0, y = 0, width = 0, height = 0;  // page units
 };
 
 struct List {
-  std::vector<Batch> batches;      // in painter's order
+  std::vector<Batch> batches;  // in painter's order
   std::vector<Disc> discs;
   std::vector<Box> boxes;
   std::vector<Stroke> strokes;
@@ -113,7 +116,8 @@ struct List {
   void add(const Box& box);
   void add(const Text& text);
   /// A stroke through `line`.
-  void add(const std::vector<Node>& line, Cap cap = Cap::round, Blend blend = Blend::over, bool closed = false);
+  void add(const std::vector<Node>& line, Cap cap = Cap::round, Blend blend = Blend::over,
+           bool closed = false);
   /// A filled polygon.
   void add(const std::vector<Point>& outline, Color fill);
   /// What follows is clipped to `rect` until the next call of clip or unclip.
@@ -125,11 +129,12 @@ struct List {
   void mark(Kind kind, int end);
 };
 
-/// One frame: a ground, what stands still (shared by all frames that have it, so that it is drawn once), what moves.
+/// One frame: a ground, what stands still (shared by all frames that have it, so that it is drawn once), what
+/// moves.
 struct Picture {
-  double aspect = 16.0 / 9;                       // width over height
+  double aspect = 16.0 / 9;  // width over height
   Color ground;
-  bool transparent = false;                       // leave the ground out
+  bool transparent = false;  // leave the ground out
   std::shared_ptr<const List> still;
   List moving;
 };

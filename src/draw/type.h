@@ -17,7 +17,7 @@ struct Glyph {
 /// A span of type, shaped: kerned, with equal-width figures where asked.
 struct Shaped {
   Face face = Face::regular;
-  double size = 0;                 // em, page units
+  double size = 0;  // em, page units
   Color color;
   std::vector<Glyph> glyphs;
 };
@@ -28,11 +28,12 @@ struct Line {
   double width = 0;
 };
 
-/// Shapes a line by its fonts' own metrics, unhinted, so that it scales. Throws draw::Error where a font is missing.
+/// Shapes a line by its fonts' own metrics, unhinted, so that it scales. Throws draw::Error where a font is
+/// missing.
 Line shape(const Text& text);
 
-/// The file of a face: Inter for words, STIX for mathematics. Looked for in $OBSCURA_FONTS and the system's font
-/// folders. Throws draw::Error naming the package.
+/// The file of a face: Inter for words, STIX for mathematics. Looked for in $OBSCURA_FONTS and the system's
+/// font folders. Throws draw::Error naming the package.
 const std::string& font_file(Face face);
 
 }  // namespace obscura::draw

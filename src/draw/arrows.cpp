@@ -1,0 +1,55 @@
+// An arrow: a shaft of even width and a head with swept barbs, all heads of one size; an arrow shorter than
+// its head shrinks as a whole.
+
+#include <algorithm>
+
+#include "draw/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kHead = 24, kHeadHalf = 8.6, kNotch = 17;  // tip to barbs, half across, tip to notch
+constexpr double kHalo = 2.4;
+constexpr double kWhole = 1.5;  // heads long: from here on the head is full
+
+struct Arrow {
+  Point tail, tip;
+  double grow = 1;  // of its head and shaft
+};
+
+/// The head, larger by `halo` all around.
+std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
+  const Point u = (arrow.tip - arrow.tail).normalized(), v(-u.y(), u.x());
+  const double g = arrow.grow * weight, slant = halo * kHead / kHeadHalf;
+  const double tip = std::min(slant, 2.2 * halo), back = kHead * g + halo, side = kHeadHalf * g + halo;
+  return {arrow.tip + u * tip, arrow.tip - u * back + v * side, arrow.tip - u * (kNotch * g + halo),
+          arrow.tip - u * back - v * side};
+}
+
+}  // namespace
+
+void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  std::vector<Arrow> arrows;
+  for (int i : stage.arrows) {
+    const sim::Snapshot::Body& body = now.bodies[i];
+    const Point tail = view.page(body.position);
+    const Point tip = view.page(body.position + stage.look.velocity_scale * body.velocity);
+    const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
+    if (grow > 0.12) arrows.push_back({tail, tip, grow});
+  }
+
+  // halos of all below all arrows, one kind after another: few batches
+  auto shaft = [&](const Arrow& a, double halo, Color color) {
+    const Point u = (a.tip - a.tail).normalized();
+    const double width = kArrowLine * weight * a.grow + 2 * halo;
+    list.add({{a.tail - u * halo, width, color}, {a.tip - u * (kNotch - 1) * weight * a.grow, width, color}},
+             Cap::butt);
+  };
+  for (const Arrow& a : arrows) shaft(a, kHalo * weight * a.grow, stage.colours.room);
+  for (const Arrow& a : arrows) list.add(head(a, weight, kHalo * weight * a.grow), stage.colours.room);
+  for (const Arrow& a : arrows) shaft(a, 0, stage.colours.velocity);
+  for (const Arrow& a : arrows) list.add(head(a, weight, 0), stage.colours.velocity);
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,61 @@
+#include <algorithm>
+#include <cmath>
+
+#include "draw/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kLeast = 1.6;  // radius of what is too small to see
+
+bool outside(const Rect& r, const Point& p, double reach) {
+  return p.x() + reach < r.x || p.x() - reach > r.x + r.width || p.y() + reach < r.y ||
+         p.y() - reach > r.y + r.height;
+}
+
+}  // namespace
+
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  list.boxes.reserve(stage.boxes.size());
+  for (int i : stage.boxes) {
+    const sim::Snapshot::Body& body = now.bodies[i];
+    const Point half = view.scale * stage.cast.bodies[i].half.head<2>();
+    const Point center = view.page(body.position);
+    if (outside(view.window, center, half.norm())) continue;
+    const double shorter = half.minCoeff();
+    Box box;
+    box.center = center;
+    box.x_axis = {std::cos(body.angle), -std::sin(body.angle)};
+    box.half = half.cwiseMax(0.8 * weight);
+    box.line = std::min(kOutline * weight, 0.35 * shorter);
+    if (stage.look.axes && shorter > 6 * weight) {
+      box.axis = std::min(0.56 * shorter, 44 * weight);
+      box.axis_line = std::min(kAxisLine * weight, 0.16 * box.axis);
+    }
+    box.fill = stage.paints[i].fill;
+    box.outline = stage.paints[i].outline;
+    box.axis_color = stage.paints[i].axis;
+    list.add(box);
+  }
+}
+
+void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  list.discs.reserve(list.discs.size() + stage.rounds.size());
+  for (int i : stage.rounds) {
+    const Point center = view.page(now.bodies[i].position);
+    const double own = stage.dots[i] > 0 ? stage.dots[i] : view.scale * stage.cast.bodies[i].radius;
+    const double radius = std::max(own, kLeast * weight);
+    if (outside(view.window, center, radius)) continue;
+    const Paint& paint = stage.paints[i];
+    // small ones are all outline: a pale fill would be lost
+    if (radius < 3.2 * weight) {
+      list.add(Disc{center, radius, 0, paint.outline, paint.outline});
+    } else {
+      list.add(Disc{center, radius, std::min(kOutline * weight, 0.32 * radius), paint.fill, paint.outline});
+    }
+  }
+}
+
+}  // namespace obscura::draw

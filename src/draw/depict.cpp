@@ -1,0 +1,153 @@
+#include "draw/depict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "draw/camera.h"
+#include "draw/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr int kNet = 12;  // more springs than these are a net
+
+bool is_point(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::point; }
+bool is_box(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::box; }
+
+/// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on one.
+std::vector<char> knots(const sim::Cast& cast) {
+  std::vector<int> count(cast.bodies.size(), 0);
+  for (const sim::Cast::Spring& spring : cast.springs) {
+    for (int body : {spring.a, spring.b}) {
+      if (body >= 0 && !is_box(cast.bodies[body])) ++count[body];
+    }
+  }
+  std::vector<char> knot(cast.bodies.size(), 0);
+  for (const sim::Cast::Spring& spring : cast.springs) {
+    for (auto [body, other] : {std::pair(spring.a, spring.b), std::pair(spring.b, spring.a)}) {
+      if (body >= 0 && (count[body] >= 3 || (count[body] == 2 && other >= 0 && count[other] >= 3))) knot[body] = 1;
+    }
+  }
+  return knot;
+}
+
+}  // namespace
+
+Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, const Extent& extent,
+             double aspect)
+    : cast(who),
+      look(looks_),
+      camera(camera_),
+      colours(palette(looks_.theme)),
+      layout(lay_out(who, looks_, camera_, extent, aspect)) {
+  const std::vector<char> net = knots(cast);
+  auto knot = [&](int body) { return body >= 0 && net[body]; };
+
+  // springs: coils, or lines where they make a net
+  const bool many = int(cast.springs.size()) > kNet;
+  std::vector<double> shortest(cast.bodies.size(), 1e300);  // spring of a net at each body, page units
+  for (const sim::Cast::Spring& spring : cast.springs) {
+    const bool line = look.springs == Look::Springs::lines || (look.springs == Look::Springs::automatic &&
+                                                               (many || knot(spring.a) || knot(spring.b)));
+    const double rest = spring.rest_length * layout.scale;
+    // a spring without a rest length still needs turns
+    Coil form = coil(std::max(rest, 0.12 * cast.scale * layout.scale), layout.weight);
+    if (line) form.turns = 0, form.rest = rest;
+    coils.push_back(form);
+    for (int body : {spring.a, spring.b}) {
+      if (line && body >= 0 && rest > 0) shortest[body] = std::min(shortest[body], rest);
+    }
+  }
+  for (const sim::Cast::Mouse& mouse : cast.mice) {
+    // the hand's rest length is short and its pull long: turns for a pull across a part of the room
+    const double rest = std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale;
+    hands.push_back(coil(rest, 0.82 * layout.weight));
+    hands.back().line = kSpringLine * layout.weight;
+  }
+
+  // bodies: the scene's colour, grey for what is held or knots a net, else the next of the palette
+  const auto points = std::count_if(cast.bodies.begin(), cast.bodies.end(), is_point);
+  const double dot =
+      kDot * layout.weight * std::min(1.0, std::cbrt(60.0 / double(std::max<std::ptrdiff_t>(points, 1))));
+  int taken = 0;
+  for (int i = 0; i < int(cast.bodies.size()); ++i) {
+    const sim::Cast::Body& body = cast.bodies[i];
+    const BodyLook own = looks(i);
+    const bool quiet = body.fixed || knot(i);
+    paints.push_back(paint(own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++), look.theme));
+    dots.push_back(is_point(body) ? std::max(std::min(dot, 0.2 * shortest[i]), 1.6 * layout.weight) : 0);
+    (is_box(body) ? boxes : rounds).push_back(i);
+    if (own.velocity) arrows.push_back(i);
+  }
+}
+
+struct Depictor::Plan {
+  Stage stage;
+  // the last still list, and the view it is of
+  mutable std::mutex mutex;
+  mutable View seen;
+  mutable std::shared_ptr<const List> still;
+
+  std::shared_ptr<const List> still_of(const View& view) const {
+    const std::lock_guard lock(mutex);
+    if (!still || seen.origin != view.origin || seen.scale != view.scale) {
+      auto list = std::make_shared<List>();
+      draw_still(stage, view, *list);
+      still = std::move(list);
+      seen = view;
+    }
+    return still;
+  }
+};
+
+Depictor::Depictor(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
+                   double aspect)
+    : plan_(new Plan{Stage(cast, look, camera, extent, aspect), {}, {}, {}}) {}
+
+View Depictor::view(double t) const { return view_at(plan_->stage.camera, plan_->stage.layout, t); }
+
+Picture Depictor::depict(const sim::Snapshot& now,
+                         std::span<const std::shared_ptr<const sim::Track>> ways) const {
+  const Stage& stage = plan_->stage;
+  const View view = view_at(stage.camera, stage.layout, now.time);
+  Picture picture;
+  picture.aspect = stage.layout.width / 1080;
+  picture.ground = stage.colours.ground;
+  picture.still = plan_->still_of(view);
+
+  List& list = picture.moving;
+  if (stage.layout.clipped) list.clip(view.window);
+  draw_trails(stage, view, now, ways, list);
+  draw_springs(stage, view, now, false, list);
+  draw_boxes(stage, view, now, list);
+  draw_springs(stage, view, now, true, list);
+  draw_rounds(stage, view, now, list);
+  draw_joints(stage, view, now, list);
+  draw_velocities(stage, view, now, list);
+  draw_hands(stage, view, now, list);
+  list.unclip();
+  if (stage.layout.caption && stage.look.clock) {
+    Text clock = stage.layout.clock;
+    clock.spans[0].text = clock_text(now.time);
+    list.add(clock);
+  }
+  return picture;
+}
+
+double Depictor::longest_trail() const {
+  double longest = 0;
+  for (const BodyLook& body : plan_->stage.look.bodies) longest = std::max(longest, body.trail);
+  return longest;
+}
+
+std::vector<int> Depictor::trailed() const {
+  std::vector<int> bodies;
+  for (std::size_t i = 0; i < plan_->stage.look.bodies.size(); ++i) {
+    if (plan_->stage.look.bodies[i].trail > 0) bodies.push_back(int(i));
+  }
+  return bodies;
+}
+
+}  // namespace obscura::draw

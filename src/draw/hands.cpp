@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+
+#include "draw/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kAppear = 0.4, kLeave = 0.4;  // s before the press and after the release
+constexpr double kStep = 14, kWayDot = 2.1;    // of the dotted path, page units
+constexpr double kEdge = 2.4;                  // the pointer's outline
+
+Color faded(Color c, double alpha) {
+  c.a = std::uint8_t(std::lround(c.a * std::clamp(alpha, 0.0, 1.0)));
+  return c;
+}
+
+// The pointer, its tip at the origin, in page units: a wedge and a stem, and the line around both.
+const std::vector<Point> kWedge{{0, 0}, {0, 29}, {7, 22.4}, {12, 20.8}, {21, 20.8}};
+const std::vector<Point> kStem{{5.2, 20.4}, {10.6, 18.0}, {16.4, 31.4}, {11.4, 33.6}};
+const std::vector<Point> kAround{{0, 0},       {0, 29},       {6.55, 22.9}, {11.4, 33.6},
+                                 {16.4, 31.4}, {11.75, 20.8}, {21, 20.8}};
+
+std::vector<Point> placed(const std::vector<Point>& form, const Point& at, double scale) {
+  std::vector<Point> points;
+  for (const Point& p : form) points.push_back(at + scale * p);
+  return points;
+}
+
+/// Dots at equal distances along the hand's way; what it has gone is stronger than what it will go.
+void dot_way(const sim::Cast::Mouse& mouse, const Stage& stage, const View& view, double time, double alpha,
+             List& list) {
+  const double step = kStep * stage.layout.weight, radius = kWayDot * stage.layout.weight;
+  const double lasts = mouse.release - mouse.press;
+  const std::size_t n = mouse.path.size();
+  double gone = 0, next = 0;
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const Point a = view.page(mouse.path[i]), b = view.page(mouse.path[i + 1]);
+    const double length = (b - a).norm();
+    for (; next <= gone + length && length > 0; next += step) {
+      const double part = (next - gone) / length;
+      const double when = mouse.press + lasts * (double(i) + part) / double(n - 1);
+      const double strength = when <= time ? 1 : 0.5;
+      const Color color = faded(stage.colours.way, alpha * strength);
+      list.add(Disc{a + part * (b - a), radius, 0, color, color});
+    }
+    gone += length;
+  }
+}
+
+}  // namespace
+
+void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  if (!stage.look.pointer) return;
+  const double weight = stage.layout.weight, zoom = view.scale / stage.layout.scale;
+  struct Hand {
+    std::size_t mouse;
+    Point at;
+    double alpha;
+  };
+  std::vector<Hand> hands;
+  for (std::size_t i = 0; i < now.mice.size() && i < stage.cast.mice.size(); ++i) {
+    const sim::Cast::Mouse& mouse = stage.cast.mice[i];
+    if (mouse.path.empty()) continue;
+    const double before = mouse.press - now.time, after = now.time - mouse.release;
+    const double alpha = std::clamp(std::min(1 - before / kAppear, 1 - after / kLeave), 0.0, 1.0);
+    if (alpha <= 0) continue;
+    const sim::Vec3 place = before > 0  ? mouse.path.front()
+                            : after > 0 ? mouse.path.back()
+                                        : now.mice[i].pointer;
+    hands.push_back({i, view.page(place), alpha});
+  }
+
+  for (const Hand& hand : hands)
+    dot_way(stage.cast.mice[hand.mouse], stage, view, now.time, hand.alpha, list);
+  for (const Hand& hand : hands) {
+    const sim::Snapshot::Mouse& mouse = now.mice[hand.mouse];
+    if (!mouse.pressed || mouse.body < 0) continue;
+    const Coil& form = stage.hands[hand.mouse];
+    const Point held = view.page(mouse.held);
+    const double width = line_width(form, (hand.at - held).norm(), zoom);
+    std::vector<Node> nodes;
+    for (const Point& p : coil_line(form, held, hand.at, zoom))
+      nodes.push_back({p, width, stage.colours.spring});
+    list.add(nodes, Cap::round);
+    list.add(Disc{held, kJoint * weight, 0, stage.colours.spring, stage.colours.spring});
+  }
+  for (const Hand& hand : hands) {
+    std::vector<Node> around;
+    for (const Point& p : placed(kAround, hand.at, weight)) {
+      around.push_back({p, 2 * kEdge * weight, faded(stage.colours.room, hand.alpha)});
+    }
+    const Color ink = faded(stage.colours.ink, hand.alpha);
+    list.add(around, Cap::round, Blend::over, true);
+    list.add(placed(kWedge, hand.at, weight), ink);
+    list.add(placed(kStem, hand.at, weight), ink);
+  }
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "draw/convex.h"
+#include "draw/depict.h"
+#include "draw/theme.h"
+
+namespace obscura::draw {
+
+/// Where things lie on the page, once for a whole run: the caption strip, the window below it that shows the
+/// world, and how large the world is where the camera fits it.
+struct Layout {
+  double width = 1920;   // of the page; its height is 1080
+  double weight = 1;     // of lines and type: 1 on a landscape page, less where the page is narrow
+  Rect window;           // shows the world
+  bool clipped = false;  // the world may reach over the window's edge
+  double scale = 1;      // page units a metre, where the camera fits
+  Point middle;          // where the centre of what is fitted lies
+  sim::Vec3 center = sim::Vec3::Zero();  // and which place of the world it is
+  bool closed = false;                   // the walls close
+  bool caption = false;
+  std::vector<Text> words;  // title and subtitle
+  Text clock;               // its span's text is the instant's
+};
+
+/// Lays the page out: the caption above, aligned to the room's edges, the room centred and as large as
+/// caption and hatching allow. Throws draw::Error where a font is missing.
+Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
+               double aspect);
+
+/// "t = 3.42 s"
+std::string clock_text(double time);
+
+/// The walls as half planes of the page, as `view` shows them.
+std::vector<HalfPlane> half_planes(const sim::Cast& cast, const View& view);
+
+/// As much of `words` as fits `width`, with an ellipsis where something is left out.
+std::string fitted(const std::string& words, Face face, double size, double width);
+
+}  // namespace obscura::draw
