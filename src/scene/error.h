@@ -9,8 +9,8 @@ namespace obscura::scene {
 /// One thing wrong with a scene.
 struct Complaint {
   std::string file;
-  int line = 0, column = 0;        // from 1; 0: the file as a whole
-  std::string message;             // "mass must be positive, got -1"; with a hint where there is one
+  int line = 0, column = 0;  // from 1; 0: the file as a whole
+  std::string message;       // "mass must be positive, got -1"; with a hint where there is one
 
   /// "scenes/a.toml:12:8: mass must be positive, got -1"
   std::string text() const;

@@ -4,7 +4,8 @@
 
 namespace obscura::scene {
 
-/// The language's JSON Schema (draft 7), and the page that documents every key: both from the one table of keys.
+/// The language's JSON Schema (draft 7), and the page that documents every key: both from the one table of
+/// keys.
 std::string json_schema();
 std::string keys_page();
 

@@ -24,21 +24,22 @@ struct Film {
 
 /// A scene, read, checked and built: what happens, what it looks like, how it is filmed.
 struct Scene {
-  std::string file;                // as given
-  std::string name;                // the file's stem
-  std::string text;                // the file's bytes, for its hash and the origin
-  std::vector<std::string> sets;   // the --set overrides, as given
-  sim::Rational duration{10, 1};   // s
+  std::string file;               // as given
+  std::string name;               // the file's stem
+  std::string text;               // the file's bytes, for its hash and the origin
+  std::vector<std::string> sets;  // the --set overrides, as given
+  sim::Rational duration{10, 1};  // s
   std::uint64_t seed = 0;
   sim::World<2> world;
   draw::Look look;
   draw::Camera camera;
-  draw::Extent extent;             // what the camera fits
+  draw::Extent extent;  // what the camera fits
   Film film;
 };
 
-/// Reads, validates and builds the scene in `file` ("-": standard input), with `sets` ("crate.elasticity=0.5") over its keys. Throws
-/// scene::Error with everything that is wrong, each with its place.
+/// Reads, validates and builds the scene in `file` ("-": standard input), with `sets`
+/// ("crate.elasticity=0.5") over its keys. Throws scene::Error with everything that is wrong, each with its
+/// place.
 Scene read(const std::string& file, const std::vector<std::string>& sets = {});
 
 /// The same from text; `file` names it in complaints.

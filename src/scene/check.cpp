@@ -1,0 +1,472 @@
+#include "scene/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "draw/color.h"
+#include "sim/rational.h"
+
+namespace obscura::scene {
+
+namespace {
+
+constexpr double kLargest = 1e100;  // beyond it squares overflow
+constexpr int kDimensions = 2;
+
+constexpr const char* kColors[] = {"orange", "sky",    "green", "blue",  "vermilion",
+                                   "purple", "yellow", "grey",  "black", "white"};
+
+bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool digit(char c) { return c >= '0' && c <= '9'; }
+
+// a string that is a number: what was meant, but said otherwise
+bool looks_like_a_number(const std::string& text) { return sim::parse_rational(text).has_value(); }
+
+std::string owner_text(const std::string& owner) {
+  if (owner.empty()) return "a scene";
+  const Key* it = key(owner);
+  if (owner.find('.') != std::string::npos) return "'" + std::string(it->last()) + "'";
+  return it->form == Form::tables ? "[[" + owner + "]]" : "[" + owner + "]";
+}
+
+// where else a key of this name lives
+std::string elsewhere(std::string_view last) {
+  for (const Key& each : keys())
+    if (each.last() == last && each.owner().find('.') == std::string_view::npos)
+      return each.owner().empty() ? "it belongs at the top, before the first [table]"
+                                  : "it belongs in " + owner_text(std::string(each.owner()));
+  return "";
+}
+
+// a place or direction somewhere in the document, and how many numbers it was given
+struct Written {
+  Place place;
+  std::string key;
+  std::size_t numbers;
+};
+
+class Checker {
+ public:
+  explicit Checker(Complaints& complaints) : complaints_(complaints) {}
+
+  // takes out of a table what is wrong with it
+  void table(Node& node, const std::string& owner) {
+    std::vector<std::string_view> met;
+    std::erase_if(node.table(), [&](Entry& entry) {
+      const std::string path = owner.empty() ? entry.key : owner + '.' + entry.key;
+      const Key* known = key(path);
+      if (!known) {
+        met.push_back(unknown(entry, owner, path));
+        return true;
+      }
+      met.push_back(known->last());
+      return !value(entry.node, *known);
+    });
+    for (const Key* each : keys_of(owner))
+      if (each->required && std::find(met.begin(), met.end(), each->last()) == met.end())
+        complaints_.add(node.place,
+                        fmt::format("{} needs '{}': {}", owner_text(owner), each->last(), expected(*each)));
+  }
+
+  // a scene is planar or in space, not both, and this version knows the plane
+  void dimensions() {
+    const auto room =
+        std::find_if(written_.begin(), written_.end(), [](const Written& w) { return w.key == "room.size"; });
+    if (written_.empty()) return;
+    const Written first = room == written_.end() ? written_.front() : *room;
+    if (first.numbers > kDimensions)
+      complaints_.add(first.place, fmt::format("'{}' has three numbers: rooms in space are not in this "
+                                               "version of obscura yet, expected two [x, y]",
+                                               last(first.key)));
+    for (const Written& each : written_)
+      if (each.numbers != first.numbers)
+        complaints_.add(
+            each.place,
+            fmt::format("'{}' has {} numbers and '{}' at {} has {}: a scene is planar or in space, not both",
+                        last(each.key), each.numbers, last(first.key), complaints_.text(first.place),
+                        first.numbers));
+  }
+
+ private:
+  static std::string last(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+  bool wrong(const Node& node, std::string message) {
+    complaints_.add(node.place, std::move(message));
+    return false;
+  }
+
+  bool mistyped(const Node& node, const Key& key, const std::string& what) {
+    std::string hint;
+    const bool wants_number = key.form == Form::number || key.form == Form::integer ||
+                              key.form == Form::vector || key.form == Form::pixels ||
+                              key.form == Form::count || key.form == Form::path;
+    if (wants_number && node.is_text() && looks_like_a_number(node.text()))
+      hint = "; write it without the quotes";
+    return wrong(node, fmt::format("'{}': expected {}, got {}{}", key.last(), what, described(node), hint));
+  }
+
+  // complains of a key nobody knows, and says which of the table's keys was probably meant
+  std::string_view unknown(const Entry& entry, const std::string& owner, const std::string& path) {
+    const bool several = entry.node.is_list() && entry.node.header;
+    const std::string shown = several                                      ? "[[" + entry.key + "]]"
+                              : entry.node.is_table() && entry.node.header ? "[" + entry.key + "]"
+                                                                           : "'" + entry.key + "'";
+    const auto later = later_keys();
+    if (std::find(later.begin(), later.end(), path) != later.end()) {
+      complaints_.add(entry.place, shown + " is not in this version of obscura yet");
+      return {};
+    }
+    std::vector<std::string_view> words;
+    for (const Key* each : keys_of(owner)) words.push_back(each->last());
+    const std::string_view near = nearest(entry.key, words);
+    std::string hint;
+    if (!near.empty()) {
+      hint = fmt::format("; did you mean '{}'?", near);
+    } else if (const std::string other = elsewhere(entry.key); !other.empty()) {
+      hint = "; " + other;
+    } else if (words.size() <= 8) {
+      hint = fmt::format("; it has {}", fmt::join(words, ", "));
+    }
+    complaints_.add(entry.place, fmt::format("unknown key {}{}{}", quoted(entry.key),
+                                             owner.empty() ? "" : " in " + owner_text(owner), hint));
+    return near;
+  }
+
+  bool value(Node& node, const Key& key) {
+    switch (key.form) {
+      case Form::table:
+        return node.is_table() ? (table(node, key.path), true) : mistyped(node, key, expected(key));
+      case Form::tables:
+        return tables(node, key);
+      case Form::number:
+        return key.varies && !node.is_number() ? varied(node, key) : number(node, key);
+      case Form::integer:
+        return integer(node, key);
+      case Form::boolean:
+        return std::holds_alternative<bool>(node.value) || mistyped(node, key, expected(key));
+      case Form::text:
+        return node.is_text() || mistyped(node, key, expected(key));
+      case Form::thing:
+        return node.is_text() || mistyped(node, key, expected(key));
+      case Form::name:
+        return name(node, key);
+      case Form::rational:
+        return rational(node, key);
+      case Form::choice:
+        return choice(node, key);
+      case Form::choices:
+        return choices(node, key);
+      case Form::color:
+        return color(node, key);
+      case Form::vector:
+        return key.varies && node.is_table() ? varied(node, key) : vector(node, key);
+      case Form::pixels:
+        return pixels(node, key);
+      case Form::count:
+        return count(node, key);
+      case Form::offset:
+        return offset(node, key);
+      case Form::which:
+        return std::holds_alternative<bool>(node.value) || node.is_text() ||
+               mistyped(node, key, expected(key));
+      case Form::ends:
+        return ends(node, key);
+      case Form::path:
+        return path(node, key);
+      case Form::trails:
+        return trails(node, key);
+    }
+    return false;
+  }
+
+  bool tables(Node& node, const Key& key) {
+    const bool list = node.is_list() && std::all_of(node.list().begin(), node.list().end(),
+                                                    [](const Node& n) { return n.is_table(); });
+    if (!list) {
+      if (node.is_table() && node.header && key.owner().empty())
+        return wrong(node, fmt::format("[{}] stands for one of many; write [[{}]]", key.path, key.path));
+      return mistyped(node, key, expected(key));
+    }
+    for (Node& each : node.list()) table(each, key.path);
+    return true;
+  }
+
+  bool number(const Node& node, const Key& key) {
+    if (!node.is_number()) return mistyped(node, key, expected(key));
+    const double x = node.number();
+    if (!std::isfinite(x)) return wrong(node, fmt::format("'{}' must be finite, got {}", key.last(), x));
+    if (!key.range.has(x))
+      return wrong(node,
+                   fmt::format("'{}' {}, got {}", key.last(), bounds(key.range, key.unit), described(node)));
+    if (std::abs(x) > kLargest) return wrong(node, fmt::format("'{}' is too large, got {}", key.last(), x));
+    return true;
+  }
+
+  bool integer(const Node& node, const Key& key) {
+    if (!node.is_integer()) return mistyped(node, key, expected(key));
+    if (key.path == "version" && !key.range.has(node.number()))
+      return wrong(node,
+                   fmt::format("version {} of the language is newer than this obscura, which reads version 1",
+                               described(node)));
+    return key.range.has(node.number()) ||
+           wrong(node,
+                 fmt::format("'{}' {}, got {}", key.last(), bounds(key.range, key.unit), described(node)));
+  }
+
+  bool name(const Node& node, const Key& key) {
+    if (!node.is_text()) return mistyped(node, key, expected(key));
+    const std::string& text = node.text();
+    const bool good =
+        !text.empty() && text.size() <= 100 && letter(text[0]) &&
+        std::all_of(text.begin(), text.end(), [](char c) { return letter(c) || digit(c) || c == '-'; });
+    if (!good)
+      return wrong(node, fmt::format("'{}': expected letters, digits, _ and -, a letter first, got {}",
+                                     key.last(), quoted(text)));
+    const auto taken = keys_of("");
+    if (std::any_of(taken.begin(), taken.end(), [&](const Key* each) { return each->path == text; }))
+      return wrong(
+          node, fmt::format("'{}': {} is a word of the language; choose another", key.last(), quoted(text)));
+    return true;
+  }
+
+  bool rational(const Node& node, const Key& key) {
+    std::optional<sim::Rational> exact;
+    if (node.is_text()) {
+      exact = sim::parse_rational(node.text());
+      if (!exact)
+        return wrong(
+            node, fmt::format("'{}': expected {}, got {}", key.last(), expected(key), quoted(node.text())));
+    } else {
+      if (!number(node, key)) return false;
+      exact = node.is_integer() ? sim::Rational{std::get<std::int64_t>(node.value), 1}
+                                : sim::from_double(node.number());
+      if (!exact || exact->den > 1'000'000'000)
+        return wrong(
+            node, fmt::format("'{}': {} has too many digits for an exact time", key.last(), described(node)));
+    }
+    return key.range.has(sim::value(*exact)) ||
+           wrong(node,
+                 fmt::format("'{}' {}, got {}", key.last(), bounds(key.range, key.unit), sim::text(*exact)));
+  }
+
+  bool word(const Node& node, const Key& key) {
+    const std::string& text = node.text();
+    if (std::find(key.choices.begin(), key.choices.end(), text) != key.choices.end()) return true;
+    const std::string known = fmt::format("{}", fmt::join(key.choices, ", "));
+    if (std::find(key.later.begin(), key.later.end(), text) != key.later.end())
+      return wrong(node, fmt::format("'{}': '{}' is not in this version of obscura yet, which has {}",
+                                     key.last(), text, known));
+    return wrong(node, fmt::format("'{}': expected one of {}, got {}{}", key.last(), known, quoted(text),
+                                   did_you_mean(text, {key.choices.begin(), key.choices.end()})));
+  }
+
+  bool choice(const Node& node, const Key& key) {
+    return node.is_text() ? word(node, key) : mistyped(node, key, expected(key));
+  }
+
+  bool choices(const Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key, expected(key));
+    bool good = true;
+    for (const Node& each : node.list())
+      good = (each.is_text() ? word(each, key) : mistyped(each, key, "a string")) && good;
+    return good;
+  }
+
+  bool color(const Node& node, const Key& key) {
+    if (node.is_list()) {
+      if (node.list().empty())
+        return wrong(node, fmt::format("'{}': expected a colour at least", key.last()));
+      bool good = true;
+      for (const Node& each : node.list()) good = one_color(each, key) && good;
+      return good;
+    }
+    return one_color(node, key);
+  }
+
+  bool one_color(const Node& node, const Key& key) {
+    if (!node.is_text()) return mistyped(node, key, expected(key));
+    if (draw::color(node.text())) return true;
+    const std::string hint = did_you_mean(node.text(), {std::begin(kColors), std::end(kColors)});
+    return wrong(node, fmt::format("'{}': {} is no colour{}", key.last(), quoted(node.text()),
+                                   hint.empty() ? fmt::format("; expected \"#rrggbb\" or one of {}",
+                                                              fmt::join(kColors, ", "))
+                                                : hint));
+  }
+
+  // every component of a list of numbers
+  bool components(const Node& node, const Key& key) {
+    bool good = true;
+    for (const Node& each : node.list())
+      good = (each.is_number() ? number(each, key) : mistyped(each, key, "numbers")) && good;
+    return good;
+  }
+
+  bool vector(const Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (!components(node, key)) return false;
+    const std::size_t n = node.list().size();
+    if (n != 2 && n != 3)
+      return wrong(node, fmt::format("'{}': expected {}, got {} of them", key.last(), expected(key), n));
+    written_.push_back({node.place, key.path, n});
+    if (n != kDimensions) return false;
+    if (key.last() == "normal" &&
+        std::all_of(node.list().begin(), node.list().end(), [](const Node& c) { return c.number() == 0; }))
+      return wrong(node, "'normal' is zero: expected the direction into the room, such as [0, 1]");
+    return true;
+  }
+
+  // over copies: { from = a, to = b }, or a list with one for each
+  bool varied(Node& node, const Key& key) {
+    if (node.is_list()) return components(node, key);
+    if (!node.is_table()) return mistyped(node, key, expected(key));
+    bool good = true;
+    for (const Entry& entry : node.table()) {
+      if (entry.key == "from" || entry.key == "to") continue;
+      complaints_.add(entry.place,
+                      fmt::format("unknown key {} in '{}': expected {{ from, to }} over copies, or {}",
+                                  quoted(entry.key), key.last(), expected(key)));
+      good = false;
+    }
+    for (const char* end : {"from", "to"}) {
+      const Node* value = node.find(end);
+      if (value) {
+        good = (key.form == Form::vector ? vector(*value, key) : number(*value, key)) && good;
+      } else if (good) {
+        good = wrong(node, fmt::format("'{}': expected {{ from, to }}, got no '{}'", key.last(), end));
+      }
+    }
+    return good;
+  }
+
+  bool pixels(const Node& node, const Key& key) {
+    if (!node.is_list() || node.list().size() != 2) return mistyped(node, key, expected(key));
+    bool good = true;
+    for (const Node& each : node.list()) good = integer(each, key) && good;
+    return good;
+  }
+
+  bool count(const Node& node, const Key& key) {
+    if (!node.is_list()) return node.is_number() ? integer(node, key) : mistyped(node, key, expected(key));
+    if (node.list().empty() || node.list().size() > kDimensions)
+      return wrong(node, fmt::format("'{}': expected {}, got {} numbers", key.last(), expected(key),
+                                     node.list().size()));
+    bool good = true;
+    for (const Node& each : node.list()) good = integer(each, key) && good;
+    return good;
+  }
+
+  bool offset(const Node& node, const Key& key) {
+    if (!node.is_list() || node.list().empty()) return mistyped(node, key, expected(key));
+    if (!node.list().front().is_list()) return vector(node, key);
+    bool good = true;
+    for (const Node& each : node.list()) good = vector(each, key) && good;
+    return good;
+  }
+
+  bool ends(Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (node.list().size() != 2)
+      return wrong(node, fmt::format("'{}': expected {}, got {} of them", key.last(), expected(key),
+                                     node.list().size()));
+    bool good = true;
+    for (Node& each : node.list()) good = end(each, key) && good;
+    return good;
+  }
+
+  bool end(Node& node, const Key& key) {
+    if (node.is_text()) return true;
+    if (node.is_list()) return vector(node, key);
+    const std::string what = "a body's name, { body = \"name\", local = [x, y] } or a place [x, y]";
+    if (!node.is_table()) return mistyped(node, key, what);
+    bool good = true;
+    for (Entry& entry : node.table()) {
+      if (entry.key == "body" || entry.key == "at") {
+        if (!entry.node.is_text())
+          good = mistyped(entry.node, {.path = entry.key, .form = Form::text}, "a string");
+      } else if (entry.key == "local") {
+        good = vector(entry.node, {.path = "local", .form = Form::vector, .unit = "m"}) && good;
+      } else {
+        complaints_.add(entry.place, fmt::format("unknown key {} in an end of a spring{}", quoted(entry.key),
+                                                 did_you_mean(entry.key, {"body", "local", "at"})));
+        good = false;
+      }
+    }
+    if (!node.find("body"))
+      return wrong(node, fmt::format("'{}': expected {}, got a table without 'body'", key.last(), what));
+    if (node.find("local") && node.find("at"))
+      return wrong(node, "'local' and 'at' both say where on the body; leave one out");
+    return good;
+  }
+
+  bool path(const Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (node.list().size() < 2)
+      return wrong(node,
+                   fmt::format("'{}': expected {}, got {}", key.last(), expected(key), node.list().size()));
+    bool good = true;
+    const Node* before = nullptr;
+    for (const Node& knot : node.list()) {
+      if (!knot.is_list() || knot.list().empty()) {
+        good = mistyped(knot, key, "a point in time [t, x, y]");
+        continue;
+      }
+      if (!components(knot, key)) {
+        good = false;
+        continue;
+      }
+      const std::size_t n = knot.list().size() - 1;
+      if (n != 2 && n != 3) {
+        good = wrong(knot, fmt::format("'{}': expected three numbers [t, x, y], got {}", key.last(), n + 1));
+        continue;
+      }
+      written_.push_back({knot.place, "place after the time in path", n});
+      if (n != kDimensions) {
+        good = false;
+        continue;
+      }
+      const Node& time = knot.list().front();
+      good = rational(time, {.path = "time", .form = Form::rational, .unit = "s", .range = {0, 1e6}}) && good;
+      if (before && time.number() <= before->number())
+        good = wrong(time, fmt::format("times must increase along the path, got {} after {}", described(time),
+                                       described(*before)));
+      before = &time;
+    }
+    return good;
+  }
+
+  bool trails(const Node& node, const Key& key) {
+    const Key seconds{.path = "trails", .form = Form::number, .unit = "s", .range = {0, 1e6}};
+    if (node.is_number()) return number(node, seconds);
+    if (!node.is_table()) return mistyped(node, key, expected(key));
+    bool good = true;
+    for (const Entry& entry : node.table()) good = number(entry.node, seconds) && good;
+    return good;
+  }
+
+  Complaints& complaints_;
+  std::vector<Written> written_;
+};
+
+}  // namespace
+
+void check(Node& top, Complaints& complaints) {
+  Checker checker(complaints);
+  checker.table(top, "");
+  checker.dimensions();
+}
+
+void check(Node& table, const std::string& owner, Complaints& complaints) {
+  Checker checker(complaints);
+  checker.table(table, owner);
+  checker.dimensions();
+}
+
+std::string quoted(std::string_view word) {
+  std::string text = "'";
+  for (const char c : word.substr(0, 64)) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return text + (word.size() > 64 ? "...'" : "'");
+}
+
+}  // namespace obscura::scene

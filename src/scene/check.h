@@ -1,0 +1,20 @@
+#pragma once
+
+#include "scene/complaints.h"
+#include "scene/document.h"
+#include "scene/table.h"
+
+namespace obscura::scene {
+
+/// Holds a document against the table of keys: what it does not know, what has the wrong type or is out of
+/// range is complained about and taken out, so that what is left may be read without asking.
+void check(Node& top, Complaints& complaints);
+
+/// The same for one table ("box") of a document. `dimensions`: numbers of a place, as the rest of the
+/// document has them.
+void check(Node& table, const std::string& owner, Complaints& complaints);
+
+/// "'ball'", cut where it is long: a word of the scene as a complaint quotes it.
+std::string quoted(std::string_view word);
+
+}  // namespace obscura::scene

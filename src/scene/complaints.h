@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "scene/document.h"
+#include "scene/error.h"
+
+namespace obscura::scene {
+
+/// What is wrong with one scene, as it is found.
+class Complaints {
+ public:
+  Complaints(std::string file, std::vector<std::string> sets)
+      : file_(std::move(file)), sets_(std::move(sets)) {}
+
+  void add(Place place, std::string message) { found_.emplace_back(place, std::move(message)); }
+  bool none() const { return found_.empty(); }
+  std::size_t count() const { return found_.size(); }
+
+  /// "scenes/a.toml:12:8", "--set crate.mass=-1": for a complaint that names two places.
+  std::string text(Place place) const;
+
+  /// Throws Error with all of them in the order of the file, the overrides after it; the first hundred, and
+  /// how many more. Requires one.
+  [[noreturn]] void raise() const;
+
+ private:
+  Complaint complaint(Place place, std::string message) const;
+
+  std::string file_;
+  std::vector<std::string> sets_;
+  std::vector<std::pair<Place, std::string>> found_;
+};
+
+/// The word of `words` that was probably meant; empty where none is near.
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& words);
+
+/// "; did you mean 'mass'?", or nothing.
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& words);
+
+}  // namespace obscura::scene

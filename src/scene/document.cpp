@@ -1,0 +1,221 @@
+#include "scene/document.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+namespace obscura::scene {
+
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t(16) << 20;
+constexpr int kDeepest =
+    64;  // nested lists and tables, and parts of a dotted key: the parser recurses over both
+
+[[noreturn]] void refuse(const std::string& file, int line, int column, std::string message) {
+  throw Error({Complaint{file, line, column, std::move(message)}});
+}
+
+// the place of a byte, counted as the parser does: lines by \n, columns by code points
+struct Cursor {
+  int line = 1, column = 1;
+  void pass(unsigned char c) {
+    if (c == '\n') {
+      ++line, column = 1;
+    } else if ((c & 0xC0) != 0x80) {
+      ++column;
+    }
+  }
+};
+
+// how many bytes the code point at the front takes, 0 where it is not UTF-8
+std::size_t code_point(std::string_view s) {
+  const auto at = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
+  const auto tail = [&](std::size_t i) { return (at(i) & 0xC0u) == 0x80u; };
+  const unsigned c = at(0);
+  if (c < 0x80) return 1;
+  if (c >= 0xC2 && c <= 0xDF) return tail(1) ? 2 : 0;
+  if (c >= 0xE0 && c <= 0xEF) {
+    if (!tail(1) || !tail(2)) return 0;
+    const unsigned point = (c & 0x0Fu) << 12 | (at(1) & 0x3Fu) << 6 | (at(2) & 0x3Fu);
+    return point >= 0x800 && (point < 0xD800 || point > 0xDFFF) ? 3 : 0;
+  }
+  if (c >= 0xF0 && c <= 0xF4) {
+    if (!tail(1) || !tail(2) || !tail(3)) return 0;
+    const unsigned point = (c & 0x07u) << 18 | (at(1) & 0x3Fu) << 12 | (at(2) & 0x3Fu) << 6 | (at(3) & 0x3Fu);
+    return point >= 0x10000 && point <= 0x10FFFF ? 4 : 0;
+  }
+  return 0;
+}
+
+void refuse_what_is_not_text(std::string_view text, const std::string& file) {
+  Cursor here;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if ((c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F)
+      refuse(file, here.line, here.column,
+             fmt::format("a control byte (0x{:02X}) has no place in a scene; is this a text file?", c));
+    const std::size_t bytes = code_point(text.substr(i));
+    if (bytes == 0)
+      refuse(file, here.line, here.column,
+             fmt::format("the byte 0x{:02X} is not UTF-8; save the file as UTF-8", c));
+    here.pass(c);
+    i += bytes;
+  }
+}
+
+// what the parser would recurse over: brackets open at once, and dots in one key
+void refuse_what_is_too_deep(std::string_view text, const std::string& file) {
+  Cursor here;
+  int depth = 0, dots = 0;
+  char quote = 0;        // in a string: its quote
+  bool tripled = false;  // ... one of three
+  const auto starts = [&](std::size_t i, char c) { return text.substr(i, 3) == std::string(3, c); };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const auto skip = [&](int n) {
+      for (; n > 0 && i + 1 < text.size(); --n) here.pass(static_cast<unsigned char>(text[i])), ++i;
+    };
+    if (quote) {
+      if (c == '\\' && quote == '"') {
+        skip(1);
+      } else if (tripled ? starts(i, quote) : c == quote || c == '\n') {
+        if (tripled) skip(2);
+        // up to two more quotes belong to the string
+        for (int more = 0; tripled && more < 2 && i + 1 < text.size() && text[i + 1] == quote; ++more)
+          skip(1);
+        quote = 0;
+      }
+    } else if (c == '"' || c == '\'') {
+      quote = c, tripled = starts(i, c);
+      if (tripled) skip(2);
+    } else if (c == '#') {
+      while (i + 1 < text.size() && text[i + 1] != '\n') skip(1);
+    } else if (c == '[' || c == '{') {
+      if (++depth > kDeepest)
+        refuse(file, here.line, here.column,
+               fmt::format("lists and tables are nested more than {} deep here", kDeepest));
+      dots = 0;
+    } else if (c == ']' || c == '}') {
+      depth = std::max(0, depth - 1), dots = 0;
+    } else if (c == '\n' || c == '=' || c == ',') {
+      dots = 0;
+    } else if (c == '.') {
+      if (++dots >= kDeepest)
+        refuse(file, here.line, here.column, fmt::format("a dotted key of more than {} parts", kDeepest));
+    }
+    here.pass(static_cast<unsigned char>(text[i]));
+  }
+}
+
+Place place_of(const toml::source_region& region) {
+  return {0, int(region.begin.line), int(region.begin.column)};
+}
+
+Node copied(const toml::node& from) {
+  Node node;
+  node.place = place_of(from.source());
+  if (const auto* table = from.as_table()) {
+    Node::Table entries;
+    for (auto&& [key, value] : *table)
+      entries.push_back({std::string(key.str()), place_of(key.source()), copied(value)});
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+      return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+    });
+    node.header = !table->is_inline();
+    node.value = std::move(entries);
+  } else if (const auto* array = from.as_array()) {
+    Node::List list;
+    for (auto&& value : *array) list.push_back(copied(value));
+    node.header = !list.empty() && list.front().is_table() && list.front().header;
+    node.value = std::move(list);
+  } else if (const auto* integer = from.as_integer()) {
+    node.value = integer->get();
+  } else if (const auto* real = from.as_floating_point()) {
+    node.value = real->get();
+  } else if (const auto* flag = from.as_boolean()) {
+    node.value = flag->get();
+  } else if (const auto* text = from.as_string()) {
+    node.value = text->get();
+  } else {
+    node.value = Node::Date{};
+  }
+  return node;
+}
+
+// the parser's first sentence says where it was, its second what it met
+std::string lowered(std::string_view description) {
+  std::string text(description);
+  if (!text.empty() && text[0] >= 'A' && text[0] <= 'Z') text[0] = char(text[0] - 'A' + 'a');
+  return text;
+}
+
+std::string slurp(std::istream& in, const std::string& file) {
+  std::string text(kMostBytes + 1, '\0');
+  in.read(text.data(), std::streamsize(text.size()));
+  text.resize(std::size_t(in.gcount()));
+  if (in.bad()) refuse(file, 0, 0, "cannot be read");
+  if (text.size() > kMostBytes)
+    refuse(file, 0, 0,
+           fmt::format("is longer than {} MiB; copies say many bodies in one line", kMostBytes >> 20));
+  return text;
+}
+
+}  // namespace
+
+double Node::number() const {
+  return is_integer() ? double(std::get<std::int64_t>(value)) : std::get<double>(value);
+}
+
+const Node* Node::find(std::string_view key) const {
+  if (!is_table()) return nullptr;
+  for (const Entry& entry : table())
+    if (entry.key == key) return &entry.node;
+  return nullptr;
+}
+
+Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
+
+std::string described(const Node& node) {
+  if (node.is_integer()) return fmt::format("{}", std::get<std::int64_t>(node.value));
+  if (node.is_number()) return fmt::format("{}", node.number());
+  if (const bool* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
+  if (node.is_text()) return "a string";
+  if (node.is_list()) return "a list";
+  if (node.is_table()) return "a table";
+  return "a date or time";
+}
+
+Node document(std::string_view text, const std::string& file) {
+  if (text.size() > kMostBytes)
+    refuse(file, 0, 0,
+           fmt::format("is longer than {} MiB; copies say many bodies in one line", kMostBytes >> 20));
+  refuse_what_is_not_text(text, file);
+  refuse_what_is_too_deep(text, file);
+  try {
+    return copied(toml::parse(text));
+  } catch (const toml::parse_error& error) {
+    const Place place = place_of(error.source());
+    refuse(file, place.line, place.column, "not TOML: " + lowered(error.description()));
+  }
+}
+
+std::string contents(const std::string& file) {
+  if (file == "-") return slurp(std::cin, file);
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found) refuse(file, 0, 0, "no such file");
+  if (std::filesystem::is_directory(status)) refuse(file, 0, 0, "is a folder, not a scene");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) refuse(file, 0, 0, "cannot be opened");
+  return slurp(in, file);
+}
+
+}  // namespace obscura::scene

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "scene/document.h"
+#include "scene/table.h"
+#include "sim/rational.h"
+#include "sim/vec.h"
+
+namespace obscura::scene {
+
+/// A checked table read by the names of its keys; what it leaves out has the default of the table of keys.
+class Fields {
+ public:
+  Fields(const Node& table, std::string owner) : table_(&table), owner_(std::move(owner)) {}
+  /// The table under a key of the top, or an empty one.
+  static Fields of(const Node& top, const std::string& owner);
+
+  Place place() const { return table_->place; }
+  /// Where a value was written, or where its table begins.
+  Place place(std::string_view key) const;
+  const Node* given(std::string_view key) const { return table_->find(key); }
+  const Node& node(std::string_view key) const;
+  const Node& table() const { return *table_; }
+
+  double number(std::string_view key) const { return node(key).number(); }
+  sim::Vec<2> vector(std::string_view key) const;
+  sim::Rational rational(std::string_view key) const;
+  bool flag(std::string_view key) const { return std::get<bool>(node(key).value); }
+  const std::string& text(std::string_view key) const { return node(key).text(); }
+
+ private:
+  const Node* table_;
+  std::string owner_;
+};
+
+/// Two numbers. Requires a checked list of two.
+sim::Vec<2> vector(const Node& node);
+
+/// The exact time of a checked number or fraction.
+sim::Rational exact(const Node& node);
+
+/// The number that the i-th of n has: itself, one of a list, or on the way { from, to }.
+double number(const Node& node, int i, int n);
+sim::Vec<2> vector(const Node& node, int i, int n);
+
+}  // namespace obscura::scene

@@ -1,0 +1,209 @@
+#include "scene/overrides.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "scene/check.h"
+#include "scene/table.h"
+
+namespace obscura::scene {
+
+namespace {
+
+constexpr const char* kNamed[] = {"particle", "box", "spring", "net", "mouse"};
+
+void settle(Node& node, Place place) {
+  node.place = place;
+  node.header = false;
+  if (node.is_list())
+    for (Node& each : node.list()) settle(each, place);
+  if (node.is_table())
+    for (Entry& each : node.table()) each.place = place, settle(each.node, place);
+}
+
+// the value as TOML; a bare word is a string
+std::optional<Node> read_value(std::string_view text, Place place, Complaints& complaints) {
+  std::string reason;
+  try {
+    Node top = document("value = " + std::string(text), "");
+    if (top.table().size() == 1 && top.table().front().key == "value" &&
+        text.find('\n') == std::string_view::npos) {
+      Node value = std::move(top.table().front().node);
+      settle(value, place);
+      return value;
+    }
+  } catch (const Error& error) {
+    reason = error.complaints.front().message;
+  }
+  // brackets and quotes were meant as TOML; the rest are words
+  if (text.empty() || std::string_view("[{\"'").find(text.front()) != std::string_view::npos ||
+      text.find('\n') != std::string_view::npos) {
+    complaints.add(place, reason.empty() ? "expected one value after =" : reason);
+    return {};
+  }
+  Node word;
+  word.value = std::string(text);
+  settle(word, place);
+  return word;
+}
+
+// x, y, z of a vector
+std::optional<std::size_t> component(const std::string& name) {
+  if (name == "x") return 0;
+  if (name == "y") return 1;
+  if (name == "z") return 2;
+  return {};
+}
+
+struct Found {
+  std::string kind;
+  int table = 0;
+};
+
+std::optional<Found> named(const Node& top, const std::string& name) {
+  for (const char* kind : kNamed) {
+    const Node* all = top.find(kind);
+    if (!all || !all->is_list()) continue;
+    for (std::size_t i = 0; i < all->list().size(); ++i) {
+      const Node* its = all->list()[i].find("name");
+      if (its && its->is_text() && its->text() == name) return Found{kind, int(i)};
+    }
+  }
+  return {};
+}
+
+// the first words that a path may have
+std::string starts(const Node& top, const std::string& word) {
+  std::vector<std::string_view> words;
+  for (const Key* each : keys_of("")) words.push_back(each->last());
+  for (const char* kind : kNamed)
+    if (const Node* all = top.find(kind); all && all->is_list())
+      for (const Node& each : all->list())
+        if (const Node* its = each.find("name"); its && its->is_text()) words.push_back(its->text());
+  return did_you_mean(word, words);
+}
+
+}  // namespace
+
+void write(Node& table, const std::string& owner, const std::vector<Step>& path, Node value, Place place,
+           Complaints& complaints) {
+  Node* here = &table;
+  std::string at = owner;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Step& step = path[i];
+    const bool last = i + 1 == path.size();
+
+    // into a table by key, into a list of numbers by component
+    if (here->is_list()) {
+      const auto n = component(step.name);
+      if (!n || !step.indices.empty() || *n >= here->list().size())
+        return complaints.add(place, fmt::format("a list has no {}; expected x or y", quoted(step.name)));
+      here = &here->list()[*n];
+    } else if (here->is_table()) {
+      at += (at.empty() ? "" : ".") + step.name;
+      Node* next = here->find(step.name);
+      if (!next) {
+        const Key* known = key(at);
+        const bool part_of_vector = known && known->form == Form::vector && !(last && step.indices.empty());
+        if (part_of_vector && known->fallback.empty())
+          return complaints.add(
+              place, fmt::format("'{}' is not set; give the whole, {}=[x, y]", step.name, step.name));
+        Node fresh = part_of_vector ? fallback(at) : Node{place, Node::Table{}};
+        settle(fresh, place);
+        here->table().push_back({step.name, place, std::move(fresh)});
+        next = &here->table().back().node;
+      }
+      if (last && step.indices.empty())
+        for (Entry& each : here->table())
+          if (each.key == step.name) each.place = place;
+      here = next;
+    } else {
+      return complaints.add(
+          place, fmt::format("{} is asked of {}, which is no table", quoted(step.name), described(*here)));
+    }
+
+    // into a list by index
+    for (const std::int64_t index : step.indices) {
+      if (!here->is_list()) return complaints.add(place, fmt::format("{} is no list", quoted(step.name)));
+      if (index >= std::int64_t(here->list().size()))
+        return complaints.add(place, fmt::format("{}[{}]: there are {}, numbered from 0", step.name, index,
+                                                 here->list().size()));
+      here = &here->list()[std::size_t(index)];
+    }
+  }
+  *here = std::move(value);
+}
+
+std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Complaints& complaints) {
+  std::vector<CopySet> later;
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    const Place place{int(k) + 1, 0, 0};
+    const std::size_t equals = sets[k].find('=');
+    if (equals == std::string::npos) {
+      complaints.add(place, "expected KEY=VALUE, such as crate.elasticity=0.5");
+      continue;
+    }
+    const auto steps = path(std::string_view(sets[k]).substr(0, equals));
+    if (!steps) {
+      complaints.add(
+          place, "is not a path; expected one such as crate.elasticity, room.gravity or ball[3].position.y");
+      continue;
+    }
+    std::string_view text = std::string_view(sets[k]).substr(equals + 1);
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    auto value = read_value(text, place, complaints);
+    if (!value) continue;
+
+    const Step& first = steps->front();
+    const std::vector<Step> rest(steps->begin() + 1, steps->end());
+    const Key* known = key(first.name);
+    if (known && known->form != Form::tables) {
+      write(top, "", *steps, std::move(*value), place, complaints);
+      continue;
+    }
+
+    // a thing: by the place of its table in the file, or by its name
+    Found found;
+    std::optional<std::int64_t> copy;
+    if (known) {
+      const Node* all = top.find(first.name);
+      const std::size_t n = all && all->is_list() ? all->list().size() : 0;
+      if (first.indices.empty() || first.indices[0] >= std::int64_t(n)) {
+        complaints.add(
+            place, n == 0
+                       ? fmt::format("the scene has no [[{}]]", first.name)
+                       : fmt::format("which of them? The scene has {} [[{}]]: {}[0]{}", n, first.name,
+                                     first.name, n > 1 ? fmt::format(" .. {}[{}]", first.name, n - 1) : ""));
+        continue;
+      }
+      found = {first.name, int(first.indices[0])};
+      if (first.indices.size() > 1) copy = first.indices[1];
+    } else if (const auto it = named(top, first.name)) {
+      found = *it;
+      if (!first.indices.empty()) copy = first.indices[0];
+    } else {
+      complaints.add(place,
+                     fmt::format("nothing here is called {}{}", quoted(first.name), starts(top, first.name)));
+      continue;
+    }
+    if (rest.empty()) {
+      complaints.add(place, fmt::format("expected a key of {}, such as {}.{}=...", quoted(first.name),
+                                        first.name, keys_of(found.kind)[1]->last()));
+      continue;
+    }
+    Node& table = top.find(found.kind)->list()[std::size_t(found.table)];
+    if (!table.is_table()) continue;
+    if (copy) {
+      later.push_back({found.kind, found.table, int(std::min<std::int64_t>(*copy, 1'000'000'000)), rest,
+                       std::move(*value), place});
+    } else {
+      write(table, found.kind, rest, std::move(*value), place, complaints);
+    }
+  }
+  return later;
+}
+
+}  // namespace obscura::scene

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/complaints.h"
+#include "scene/document.h"
+#include "scene/path.h"
+
+namespace obscura::scene {
+
+/// A value set from outside on one of several copies: it waits until the copies are made.
+struct CopySet {
+  std::string kind;  // "particle", "box"
+  int table = 0;     // which [[particle]] of the file
+  int copy = 0;
+  std::vector<Step> path;  // under the copy
+  Node value;
+  Place place;
+};
+
+/// Writes the overrides ("crate.elasticity=0.5") into a document, before it is checked: what is wrong with
+/// them is found where all else is. What means one copy ("ball[3].mass=2") is handed back.
+std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Complaints& complaints);
+
+/// Writes a value under a table of the language ("box", "room") along a path.
+void write(Node& table, const std::string& owner, const std::vector<Step>& path, Node value, Place place,
+           Complaints& complaints);
+
+}  // namespace obscura::scene

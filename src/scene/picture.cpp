@@ -1,0 +1,124 @@
+#include "scene/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/fields.h"
+
+namespace obscura::scene {
+
+namespace {
+
+using Vec = sim::Vec<2>;
+
+sim::Vec3 in_space(const Vec& v) { return {v.x(), v.y(), 0}; }
+
+draw::CameraKey::Ease ease(const std::string& word) {
+  using enum draw::CameraKey::Ease;
+  return word == "linear" ? linear : word == "in" ? in : word == "out" ? out : word == "hold" ? hold : in_out;
+}
+
+draw::CameraKey camera_key(const Fields& fields) {
+  draw::CameraKey key;
+  if (const Node* center = fields.given("center")) key.center = in_space(vector(*center));
+  if (const Node* width = fields.given("width")) key.width = width->number();
+  return key;
+}
+
+}  // namespace
+
+void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& complaints) {
+  const Fields words = Fields(top, ""), fields = Fields::of(top, "look");
+  look.title = words.text("title");
+  look.subtitle = words.text("subtitle");
+  look.theme = fields.text("theme") == "screen" ? draw::Theme::screen : draw::Theme::paper;
+  look.velocity_scale = fields.number("velocity_scale");
+  look.caption = fields.flag("caption");
+  look.clock = fields.flag("clock");
+  look.hatching = fields.flag("hatching");
+  look.axes = fields.flag("axes");
+  look.pointer = fields.flag("pointer");
+  const std::string& springs = fields.text("springs");
+  look.springs = springs == "coils"   ? draw::Look::Springs::coils
+                 : springs == "lines" ? draw::Look::Springs::lines
+                                      : draw::Look::Springs::automatic;
+
+  // trails by name: of a body, or of all its copies
+  const Node& trails = fields.node("trails");
+  if (!trails.is_table()) return;
+  for (const Entry& entry : trails.table()) {
+    const auto whole = roster.index.find(entry.key);
+    std::vector<int> bodies;
+    if (whole != roster.index.end()) {
+      const Group& group = roster.groups[std::size_t(whole->second)];
+      for (int i = 0; i < group.count; ++i) bodies.push_back(group.first + i);
+    } else {
+      bodies = roster.bodies(entry.key, entry.place, complaints);
+    }
+    for (const int body : bodies)
+      if (std::size_t(body) < look.bodies.size()) look.bodies[std::size_t(body)].trail = entry.node.number();
+  }
+}
+
+draw::Camera camera(const Node& top, Complaints& complaints) {
+  const Fields fields = Fields::of(top, "camera");
+  draw::Camera camera;
+  const Node* keys = fields.given("keys");
+  const bool stands = fields.given("center") || fields.given("width");
+  if (keys && stands) {
+    complaints.add(fields.place(fields.given("center") ? "center" : "width"),
+                   "the camera stands, or moves by 'keys'; leave one out");
+    return camera;
+  }
+  if (stands) camera.keys.push_back(camera_key(fields));
+  for (std::size_t i = 0; keys && i < keys->list().size(); ++i) {
+    const Fields its(keys->list()[i], "camera.keys");
+    if (!its.given("time")) continue;
+    draw::CameraKey key = camera_key(its);
+    key.time = its.number("time");
+    key.ease = ease(its.text("ease"));
+    if (!camera.keys.empty() && key.time <= camera.keys.back().time)
+      complaints.add(its.place("time"), fmt::format("times must increase from key to key, got {} after {}",
+                                                    key.time, camera.keys.back().time));
+    camera.keys.push_back(key);
+  }
+  return camera;
+}
+
+Film film(const Node& top) {
+  const Fields fields = Fields::of(top, "film");
+  Film film;
+  const Vec size = fields.vector("size");
+  film.width = int(size.x()), film.height = int(size.y());
+  film.fps = fields.rational("fps");
+  if (const Node* crf = fields.given("crf")) film.crf = crf->number();
+  film.preset = fields.text("preset");
+  film.codec = fields.text("codec");
+  return film;
+}
+
+draw::Extent extent(const Room& room, const sim::World<2>& world) {
+  if (room.bounds) return {in_space(room.bounds->low), in_space(room.bounds->high)};
+  std::vector<Vec> points;
+  for (std::size_t i = 0; i < world.state.x.size(); ++i) {
+    const sim::Shape<2>& shape = world.model.bodies[i].shape;
+    const double reach = shape.kind == sim::ShapeKind::box ? shape.half.norm() : shape.radius;
+    points.push_back(world.state.x[i] - Vec(reach, reach));
+    points.push_back(world.state.x[i] + Vec(reach, reach));
+  }
+  for (const sim::Wall<2>& wall : room.walls) points.push_back(wall.point);
+  for (const sim::Spring<2>& spring : world.model.springs)
+    for (const sim::End<2>& end : {spring.a, spring.b})
+      if (end.body < 0) points.push_back(end.local);
+  for (const sim::Mouse<2>& mouse : world.model.mice)
+    for (const sim::Knot<2>& knot : mouse.path) points.push_back(knot.place);
+  if (points.empty()) points = {Vec(0, 0)};
+  Vec low = points.front(), high = points.front();
+  for (const Vec& point : points) low = low.cwiseMin(point), high = high.cwiseMax(point);
+  // a tenth around, and a metre at least
+  const Vec size = ((high - low) * 1.2).cwiseMax(1.0), middle = (low + high) / 2;
+  return {in_space(middle - size / 2), in_space(middle + size / 2)};
+}
+
+}  // namespace obscura::scene

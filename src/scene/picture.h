@@ -1,0 +1,23 @@
+#pragma once
+
+#include "scene/bodies.h"
+#include "scene/complaints.h"
+#include "scene/document.h"
+#include "scene/room.h"
+#include "scene/scene.h"
+
+namespace obscura::scene {
+
+/// How the scene is to look; the bodies have theirs already, and trails by name are added to them.
+void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& complaints);
+
+/// The camera of a scene: none, one that stands, or keys.
+draw::Camera camera(const Node& top, Complaints& complaints);
+
+/// How the scene asks to be filmed.
+Film film(const Node& top);
+
+/// What the camera fits: the room, or where it is open all that is in it at the start, with a margin.
+draw::Extent extent(const Room& room, const sim::World<2>& world);
+
+}  // namespace obscura::scene

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/document.h"
+
+namespace obscura::scene {
+
+/// What may stand behind a key.
+enum class Form {
+  table,   // [room]
+  tables,  // [[box]]
+  number,
+  integer,
+  boolean,
+  text,
+  name,      // of a thing: letters, digits, _ and -
+  rational,  // a number, or "30000/1001": where time is exact
+  choice,
+  choices,  // one word, a list of words
+  color,
+  vector,  // [x, y]
+  pixels,  // [width, height], whole
+  count,   // 12, or [6, 2]
+  offset,  // [x, y], or one a direction of the grid
+  which,   // true, or "0..4": all, or those of the copies
+  ends,    // the two ends of a spring
+  thing,   // the name of a body with copies
+  path,    // [[t, x, y], ...]
+  trails,  // seconds, or a table of them by body
+};
+
+struct Range {
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  bool above = false;  // low itself is out
+
+  bool has(double x) const { return (above ? x > low : x >= low) && x <= high; }
+};
+
+/// One key of the language: all that its check, its line in the schema and its line on the page of keys are
+/// made of.
+struct Key {
+  std::string path{};  // "room.size", "box.copies.count"
+  Form form = Form::number;
+  std::string unit{};      // "m", "kg", "deg"; empty: none
+  std::string fallback{};  // the default, as TOML; empty: see `absent`
+  std::string absent{};    // the default, in words, where it is no constant
+  Range range{};
+  bool varies = false;  // over copies: { from, to } or a list as well
+  bool required = false;
+  std::vector<std::string> choices{}, later{};  // words of today, words that a later version will have
+  std::string doc{};                            // one line
+  std::string example{};                        // as TOML
+
+  std::string_view last() const { return std::string_view(path).substr(path.rfind('.') + 1); }
+  std::string_view owner() const {
+    return path.rfind('.') == std::string::npos ? std::string_view()
+                                                : std::string_view(path).substr(0, path.rfind('.'));
+  }
+};
+
+/// The language: every key, in the order of the page.
+std::span<const Key> keys();
+
+/// The key of a path; none where the language has no such key.
+const Key* key(std::string_view path);
+
+/// The keys right under a table, "" for the top.
+std::vector<const Key*> keys_of(std::string_view owner);
+
+/// The default of a key as a value. Requires a key with a constant default.
+const Node& fallback(std::string_view path);
+
+/// Keys of the language's next versions, which this one refuses by name.
+std::span<const std::string_view> later_keys();
+
+/// What a key takes, in words: "a number of kilograms", "two numbers [x, y] in metres".
+std::string expected(const Key& key);
+
+/// "kg" as "kilograms"; the unit itself where it has no better word.
+std::string unit_words(std::string_view unit);
+
+/// "must be positive", "must be between 0 and 1".
+std::string bounds(const Range& range, const std::string& unit);
+
+}  // namespace obscura::scene
