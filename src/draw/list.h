@@ -26,7 +26,7 @@ struct Disc {
 };
 
 /// A rectangle turned about its centre, with an outline drawn inside its edges, and the two axes of its own
-/// frame.
+/// frame, which leave its centre of mass in a dot three times as wide as they are.
 struct Box {
   Point center;
   Point x_axis;          // unit, page frame: the body's x
@@ -47,8 +47,10 @@ struct Node {
 enum class Cap : std::uint8_t { butt, round };
 enum class Blend : std::uint8_t {
   over,  // alpha over
+  // Per-channel minimum, maximum with what lies below: overlapping pieces leave no beads. A colour's alpha
+  // says how far it is from Picture::ground; in a transparent picture, the most opaque wins.
   darken,
-  lighten,  // per-channel minimum, maximum with what lies below: overlapping pieces leave no beads
+  lighten,
 };
 
 /// An open or closed line through nodes [begin, end) of List::nodes, width and colour linear in between,

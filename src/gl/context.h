@@ -7,23 +7,27 @@ namespace obscura::gl {
 
 enum class Backend { automatic, osmesa, egl };
 
-/// An off-screen OpenGL 4.5 core context. Each thread that draws has its own.
+/// An off-screen OpenGL core context, 4.5 where there is one and 3.3 at least. Each thread that draws has its
+/// own.
 class Context {
  public:
   virtual ~Context() = default;
-  /// Makes it this thread's current context.
+  /// Makes it this thread's current context. No other thread may have it current.
   virtual void make_current() = 0;
+  /// Leaves this thread without a current context, so that another may take it.
+  virtual void release() = 0;
   /// The address of a GL function, or null.
   virtual void* function(const char* name) const = 0;
-  virtual std::string backend() const = 0;          // "OSMesa", "EGL (surfaceless)"
+  virtual std::string backend() const = 0;  // "OSMesa", "EGL (surfaceless)"
 };
 
 struct ContextOptions {
-  Backend backend = Backend::automatic;             // OSMesa where it is, then software EGL; never a GPU
-  bool native = false;                              // leave out GALLIUM_OVERRIDE_CPU_CAPS=sse2
+  Backend backend = Backend::automatic;  // OSMesa where it is, then software EGL; never a GPU
+  bool native = false;  // leave out GALLIUM_OVERRIDE_CPU_CAPS=sse2; the process's first context decides
 };
 
 /// Creates a context and makes it current. Throws gl::Error saying what was tried and which package has it.
+/// The first call sets Mesa's environment variables for the process, those that the user has not set.
 std::unique_ptr<Context> create(const ContextOptions& options);
 
 }  // namespace obscura::gl

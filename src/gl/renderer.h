@@ -9,7 +9,8 @@
 
 namespace obscura::gl {
 
-/// Puts pictures down as pixels, in a context of its own, used from one thread.
+/// Puts pictures down as pixels, in a context of its own. Used from one thread at a time, not always the same: it is
+/// current to a thread only while it draws. Several draw side by side.
 class Renderer {
  public:
   /// Throws gl::Error where there is no context or the size is beyond its limit.
@@ -17,7 +18,8 @@ class Renderer {
   ~Renderer();
   Renderer(Renderer&&) noexcept;
 
-  /// Draws into `out` (made the right size). The still list is drawn anew only when it is another one than last time.
+  /// Draws into `out` (made the right size). The still list is drawn anew only when it is another one than
+  /// last time.
   void draw(const draw::Picture& picture, media::Image& out);
 
   /// GL_VERSION, GL_RENDERER, and the back end, for the origin.

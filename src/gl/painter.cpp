@@ -1,0 +1,308 @@
+#include "gl/painter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace obscura::gl {
+namespace {
+
+constexpr float kMargin = 0.75f;  // px beyond an edge where a pixel may still be covered: sqrt(1/2)
+constexpr double kDot = 3;        // px radius under which a disc's area is summed in chords
+
+constexpr GLsizei kCorners = 4;  // of a quad, as a triangle strip
+
+}  // namespace
+
+Painter::Painter(const Functions& gl, int width, int height)
+    : gl_(gl),
+      width_(width),
+      height_(height),
+      scale_(height / 1080.0),
+      disc_program_(gl, "disc.vert", "disc.frag"),
+      dot_program_(gl, "disc.vert", "dot.frag"),
+      box_program_(gl, "box.vert", "box.frag"),
+      stroke_program_(gl, "stroke.vert", "stroke.frag"),
+      polygon_program_(gl, "polygon.vert", "polygon.frag"),
+      glyph_program_(gl, "glyph.vert", "glyph.frag"),
+      ground_uniform_(stroke_program_.uniform("ground")),
+      disc_array_(gl, sizeof(Disc), 1,
+                  {{4, GL_FLOAT, offsetof(Disc, x)},
+                   {4, GL_UNSIGNED_BYTE, offsetof(Disc, fill)},
+                   {4, GL_UNSIGNED_BYTE, offsetof(Disc, outline)}}),
+      box_array_(gl, sizeof(Box), 1,
+                 {{4, GL_FLOAT, offsetof(Box, x)},
+                  {4, GL_FLOAT, offsetof(Box, axis_x)},
+                  {4, GL_UNSIGNED_BYTE, offsetof(Box, fill)},
+                  {4, GL_UNSIGNED_BYTE, offsetof(Box, outline)},
+                  {4, GL_UNSIGNED_BYTE, offsetof(Box, middle)}}),
+      strip_array_(gl, sizeof(StripVertex), 0,
+                   {{2, GL_FLOAT, offsetof(StripVertex, x)},
+                    {3, GL_FLOAT, offsetof(StripVertex, lateral)},
+                    {4, GL_UNSIGNED_BYTE, offsetof(StripVertex, color)},
+                    {4, GL_FLOAT, offsetof(StripVertex, tangent_x)},
+                    {4, GL_FLOAT, offsetof(StripVertex, cut_x)}}),
+      polygon_array_(gl, sizeof(Polygon), 1,
+                     {{4, GL_FLOAT, offsetof(Polygon, x0)},
+                      {2, GL_FLOAT, offsetof(Polygon, first)},
+                      {4, GL_UNSIGNED_BYTE, offsetof(Polygon, fill)}}),
+      glyph_array_(gl, sizeof(Glyph), 1,
+                   {{4, GL_FLOAT, offsetof(Glyph, x)},
+                    {2, GL_FLOAT, offsetof(Glyph, u)},
+                    {4, GL_UNSIGNED_BYTE, offsetof(Glyph, ink)}}),
+      index_buffer_(gl, GL_ELEMENT_ARRAY_BUFFER),
+      edge_buffer_(gl, GL_TEXTURE_BUFFER),
+      glyph_pictures_(gl) {
+  for (const Program* program :
+       {&disc_program_, &dot_program_, &box_program_, &stroke_program_, &polygon_program_, &glyph_program_}) {
+    program->use();
+    gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
+  }
+  gl.GenTextures(1, &edge_texture_);
+}
+
+Painter::~Painter() { gl_.DeleteTextures(1, &edge_texture_); }
+
+void Painter::paint(const draw::List& list, draw::Color ground, bool transparent, Damage& damage) {
+  runs_.clear();
+  discs_.clear();
+  boxes_.clear();
+  strip_.clear();
+  polygons_.clear();
+  edges_.clear();
+  glyphs_.clear();
+  for (const draw::Batch& batch : list.batches) encode(list, batch, damage);
+
+  upload();
+
+  gl_.Enable(GL_SCISSOR_TEST);
+  gl_.Enable(GL_BLEND);
+  gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  for (const Run& run : runs_) draw(run, ground, transparent);
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.Disable(GL_BLEND);
+}
+
+void Painter::encode(const draw::List& list, const draw::Batch& batch, Damage& damage) {
+  // a clip is widened to whole pixels
+  clip_ = {0, 0, float(width_), float(height_)};
+  if (batch.clip >= 0) {
+    const draw::Rect& r = list.clips[std::size_t(batch.clip)];
+    clip_ = clip_ & Bounds{float(std::floor(r.x * scale_ + 1e-6)), float(std::floor(r.y * scale_ + 1e-6)),
+                           float(std::ceil((r.x + r.width) * scale_ - 1e-6)),
+                           float(std::ceil((r.y + r.height) * scale_ - 1e-6))};
+  }
+  if (!any(clip_)) return;
+  scissor_ = {int(clip_.x0), int(clip_.y0), int(clip_.x1 - clip_.x0), int(clip_.y1 - clip_.y0)};
+
+  for (int i = batch.begin; i < batch.end; ++i) {
+    const auto at = std::size_t(i);
+    switch (batch.kind) {
+      case draw::Kind::disc:
+        add(list.discs[at], damage);
+        break;
+      case draw::Kind::box:
+        add(list.boxes[at], damage);
+        break;
+      case draw::Kind::stroke:
+        add(list, list.strokes[at], damage);
+        break;
+      case draw::Kind::polygon:
+        add(list, list.polygons[at], damage);
+        break;
+      case draw::Kind::text:
+        add(list.texts[at], damage);
+        break;
+    }
+  }
+}
+
+bool Painter::touches(const Bounds& bounds, Damage& damage) const {
+  const Bounds seen = bounds & clip_;
+  if (!any(seen)) return false;
+  damage.mark(seen);
+  return true;
+}
+
+void Painter::run(Shape shape, int first, int end) {
+  const auto same = [](const Damage::Rect& a, const Damage::Rect& b) {
+    return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
+  };
+  if (!runs_.empty() && runs_.back().shape == shape && same(runs_.back().scissor, scissor_)) {
+    runs_.back().end = end;
+  } else {
+    runs_.push_back({shape, first, end, scissor_});
+  }
+}
+
+void Painter::add(const draw::Disc& disc, Damage& damage) {
+  const auto x = float(disc.center.x() * scale_), y = float(disc.center.y() * scale_);
+  const auto outer = float(disc.radius * scale_);
+  const auto inner = float(std::max(disc.radius - disc.line, 0.0) * scale_);
+  const float reach = outer + kMargin;
+  if (!(outer > 0) || !touches({x - reach, y - reach, x + reach, y + reach}, damage)) return;
+  discs_.push_back({x, y, outer, inner, disc.fill, disc.outline});
+  const int end = int(discs_.size());
+  run(inner < kDot ? Shape::dot : Shape::disc, end - 1, end);
+}
+
+void Painter::add(const draw::Box& box, Damage& damage) {
+  const draw::Point center = box.center * scale_, half = box.half * scale_;
+  const draw::Point u = box.x_axis, v(-u.y(), u.x());
+  const auto push = [&](const draw::Point& middle, const draw::Point& extent, double line, double dot,
+                        draw::Color fill, draw::Color outline, draw::Color spot) {
+    boxes_.push_back({float(middle.x()), float(middle.y()), float(extent.x()), float(extent.y()),
+                      float(u.x()), float(u.y()), float(line), float(dot), fill, outline, spot});
+  };
+  const double rx = std::abs(u.x()) * half.x() + std::abs(v.x()) * half.y() + kMargin;
+  const double ry = std::abs(u.y()) * half.x() + std::abs(v.y()) * half.y() + kMargin;
+  if (!touches(
+          {float(center.x() - rx), float(center.y() - ry), float(center.x() + rx), float(center.y() + ry)},
+          damage)) {
+    return;
+  }
+  const int first = int(boxes_.size());
+
+  // the frame's axes are thin boxes of the same frame; the body's y is up where the page's is down
+  const bool framed = box.axis > 0 && box.axis_line > 0;
+  const draw::Color axes = framed ? box.axis_color : draw::Color{0, 0, 0, 0};
+  push(center, half, box.line * scale_, framed ? 1.5 * box.axis_line * scale_ : -1, box.fill, box.outline,
+       axes);
+  if (framed) {
+    const double length = box.axis * scale_, width = box.axis_line * scale_;
+    push(center + u * (length / 2), {length / 2, width / 2}, 0, -1, axes, axes, axes);
+    push(center - v * (length / 2), {width / 2, length / 2}, 0, -1, axes, axes, axes);
+  }
+  run(Shape::box, first, int(boxes_.size()));
+}
+
+void Painter::add(const draw::List& list, const draw::Stroke& stroke, Damage& damage) {
+  const std::span nodes(list.nodes.data() + stroke.begin, std::size_t(stroke.end - stroke.begin));
+  const std::size_t vertices = strip_.vertices.size(), first = strip_.indices.size();
+  if (!touches(add_stroke(nodes, stroke, scale_, strip_), damage)) {
+    strip_.vertices.resize(vertices);
+    strip_.indices.resize(first);
+    return;
+  }
+  run(stroke.blend == draw::Blend::darken    ? Shape::darken
+      : stroke.blend == draw::Blend::lighten ? Shape::lighten
+                                             : Shape::stroke,
+      int(first), int(strip_.indices.size()));
+}
+
+void Painter::add(const draw::List& list, const draw::Polygon& polygon, Damage& damage) {
+  constexpr float far = std::numeric_limits<float>::infinity();
+  Bounds bounds{far, far, -far, -far};
+  const std::size_t first = edges_.size();
+  const int count = polygon.end - polygon.begin;
+  for (int i = 0; i < count; ++i) {
+    const draw::Point p = list.points[std::size_t(polygon.begin + i)] * scale_;
+    const draw::Point q = list.points[std::size_t(polygon.begin + (i + 1) % count)] * scale_;
+    const float edge[] = {float(p.x()), float(p.y()), float(q.x()), float(q.y())};
+    edges_.insert(edges_.end(), std::begin(edge), std::end(edge));
+    bounds = {std::min(bounds.x0, edge[0]), std::min(bounds.y0, edge[1]), std::max(bounds.x1, edge[0]),
+              std::max(bounds.y1, edge[1])};
+  }
+  bounds = {bounds.x0 - 0.5f, bounds.y0 - 0.5f, bounds.x1 + 0.5f, bounds.y1 + 0.5f};
+  if (!touches(bounds, damage)) {
+    edges_.resize(first);
+    return;
+  }
+  const Bounds page = bounds & Bounds{-1, -1, float(width_ + 1), float(height_ + 1)};
+  polygons_.push_back({page.x0, page.y0, page.x1, page.y1, float(first / 4), float(count), polygon.fill});
+  const int end = int(polygons_.size());
+  run(Shape::polygon, end - 1, end);
+}
+
+void Painter::add(const draw::Text& text, Damage& damage) {
+  const draw::Line line = draw::shape(text);
+  double start = text.at.x();
+  if (text.align == draw::Align::center) start -= line.width / 2;
+  if (text.align == draw::Align::right) start -= line.width;
+
+  const int first = int(glyphs_.size());
+  for (const draw::Shaped& span : line.spans) {
+    for (const draw::Glyph& glyph : span.glyphs) {
+      // a quarter of a pixel across, whole pixels down
+      const double x = std::floor((start + glyph.at.x()) * scale_ * Glyphs::kQuarters + 0.5);
+      const double pen = std::floor(x / Glyphs::kQuarters);
+      const double baseline = std::floor((text.at.y() + glyph.at.y()) * scale_ + 0.5);
+      if (!(std::abs(pen) < 1e6 && std::abs(baseline) < 1e6)) continue;
+      const GlyphPicture& picture = glyph_pictures_.picture(span.face, glyph.index, span.size * scale_,
+                                                            int(x - pen * Glyphs::kQuarters));
+      const auto left = float(pen + picture.left), top = float(baseline + picture.top);
+      const auto width = float(picture.width), height = float(picture.height);
+      if (picture.width == 0 || !touches({left, top, left + width, top + height}, damage)) continue;
+      glyphs_.push_back({left, top, width, height, float(picture.u), float(picture.v), span.color});
+    }
+  }
+  const int end = int(glyphs_.size());
+  if (end > first) run(Shape::glyph, first, end);
+}
+
+void Painter::upload() {
+  if (!discs_.empty()) disc_array_.upload(discs_);
+  if (!boxes_.empty()) box_array_.upload(boxes_);
+  if (!polygons_.empty()) {
+    polygon_array_.upload(polygons_);
+    edge_buffer_.upload(edges_);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.BindTexture(GL_TEXTURE_BUFFER, edge_texture_);
+    gl_.TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, edge_buffer_.name());
+  }
+  if (!glyphs_.empty()) {
+    glyph_array_.upload(glyphs_);
+    glyph_pictures_.bind();
+  }
+  if (!strip_.indices.empty()) {
+    strip_array_.upload(strip_.vertices);
+    strip_array_.bind();
+    index_buffer_.upload(strip_.indices);
+  }
+}
+
+void Painter::draw(const Run& run, draw::Color ground, bool transparent) {
+  gl_.Scissor(run.scissor.x, run.scissor.y, run.scissor.width, run.scissor.height);
+  const int count = run.end - run.first;
+  const auto quads = [&](const Program& program, VertexArray& array) {
+    program.use();
+    array.bind(run.first);
+    gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, kCorners, count);
+  };
+  switch (run.shape) {
+    case Shape::disc:
+      quads(disc_program_, disc_array_);
+      break;
+    case Shape::dot:
+      quads(dot_program_, disc_array_);
+      break;
+    case Shape::box:
+      quads(box_program_, box_array_);
+      break;
+    case Shape::polygon:
+      quads(polygon_program_, polygon_array_);
+      break;
+    case Shape::glyph:
+      quads(glyph_program_, glyph_array_);
+      break;
+    case Shape::stroke:
+    case Shape::darken:
+    case Shape::lighten: {
+      stroke_program_.use();
+      strip_array_.bind();
+      // where there is no ground to mix with, more of a colour is more of its ink on either theme
+      const bool mixed = run.shape != Shape::stroke && !transparent;
+      const auto level = [&](std::uint8_t c) { return mixed ? float(c) / 255.0f : 0.0f; };
+      gl_.Uniform4f(ground_uniform_, level(ground.r), level(ground.g), level(ground.b), level(255));
+      if (run.shape != Shape::stroke)
+        gl_.BlendEquation(mixed && run.shape == Shape::darken ? GL_MIN : GL_MAX);
+      gl_.DrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(sizeof(std::uint32_t) * std::size_t(run.first)));
+      if (run.shape != Shape::stroke) gl_.BlendEquation(GL_FUNC_ADD);
+      break;
+    }
+  }
+}
+
+}  // namespace obscura::gl

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <vector>
+
+#include "draw/list.h"
+#include "gl/buffer.h"
+#include "gl/damage.h"
+#include "gl/glyphs.h"
+#include "gl/program.h"
+#include "gl/strip.h"
+
+namespace obscura::gl {
+
+/// Puts lists down on the bound framebuffer: encodes every batch, uploads once, draws in painter's order.
+class Painter {
+ public:
+  Painter(const Functions& gl, int width, int height);
+
+  /// `ground`: what darkened and lightened strokes are mixed with; the colours are premultiplied on the way,
+  /// and so is the framebuffer. Marks what it draws on.
+  void paint(const draw::List& list, draw::Color ground, bool transparent, Damage& damage);
+
+ private:
+  // instances, as the shaders read them
+  struct Disc {
+    float x, y, outer, inner;
+    draw::Color fill, outline;
+  };
+  struct Box {
+    float x, y, half_x, half_y;
+    float axis_x, axis_y, line, dot;
+    draw::Color fill, outline, middle;
+  };
+  struct Polygon {
+    float x0, y0, x1, y1;
+    float first, count;
+    draw::Color fill;
+  };
+  struct Glyph {
+    float x, y, width, height;
+    float u, v;
+    draw::Color ink;
+  };
+  enum class Shape { disc, dot, box, stroke, darken, lighten, polygon, glyph };
+  /// What is drawn in one call.
+  struct Run {
+    Shape shape;
+    int first = 0, end = 0;  // instances; of strokes, indices
+    Damage::Rect scissor;
+  };
+
+  void encode(const draw::List& list, const draw::Batch& batch, Damage& damage);
+  void add(const draw::Disc& disc, Damage& damage);
+  void add(const draw::Box& box, Damage& damage);
+  void add(const draw::List& list, const draw::Stroke& stroke, Damage& damage);
+  void add(const draw::List& list, const draw::Polygon& polygon, Damage& damage);
+  void add(const draw::Text& text, Damage& damage);
+  bool touches(const Bounds& bounds, Damage& damage) const;
+  void run(Shape shape, int first, int end);
+  void upload();
+  void draw(const Run& run, draw::Color ground, bool transparent);
+
+  const Functions& gl_;
+  int width_, height_;
+  double scale_;  // px a page unit
+  Program disc_program_, dot_program_, box_program_, stroke_program_, polygon_program_, glyph_program_;
+  int ground_uniform_;
+  VertexArray disc_array_, box_array_, strip_array_, polygon_array_, glyph_array_;
+  Buffer index_buffer_, edge_buffer_;
+  GLuint edge_texture_ = 0;
+  Glyphs glyph_pictures_;
+
+  Bounds clip_;  // of the batch at hand
+  Damage::Rect scissor_;
+  std::vector<Run> runs_;
+  std::vector<Disc> discs_;
+  std::vector<Box> boxes_;
+  Strip strip_;
+  std::vector<Polygon> polygons_;
+  std::vector<float> edges_;  // four an edge
+  std::vector<Glyph> glyphs_;
+
+ public:
+  ~Painter();
+  Painter(const Painter&) = delete;
+  Painter& operator=(const Painter&) = delete;
+};
+
+}  // namespace obscura::gl

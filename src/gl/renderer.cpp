@@ -1,0 +1,211 @@
+#include "gl/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "gl/damage.h"
+#include "gl/error.h"
+#include "gl/functions.h"
+#include "gl/painter.h"
+
+namespace obscura::gl {
+namespace {
+
+/// A framebuffer over one texture, RGBA8.
+class Canvas {
+ public:
+  Canvas(const Functions& gl, int width, int height) : gl_(gl) {
+    gl.GenTextures(1, &texture_);
+    gl.BindTexture(GL_TEXTURE_2D, texture_);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    gl.GenFramebuffers(1, &framebuffer_);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
+    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw Error("a framebuffer of " + std::to_string(width) + " x " + std::to_string(height) +
+                  " cannot be made");
+    }
+  }
+  ~Canvas() {
+    gl_.DeleteFramebuffers(1, &framebuffer_);
+    gl_.DeleteTextures(1, &texture_);
+  }
+  Canvas(const Canvas&) = delete;
+  Canvas& operator=(const Canvas&) = delete;
+
+  void bind() const { gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_); }
+  GLuint texture() const { return texture_; }
+  GLuint framebuffer() const { return framebuffer_; }
+
+ private:
+  const Functions& gl_;
+  GLuint texture_ = 0, framebuffer_ = 0;
+};
+
+void check_size(const Functions& gl, int width, int height) {
+  std::array<GLint, 2> viewport{};
+  gl.GetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+  const int limit = std::min(
+      {gl.integer(GL_MAX_TEXTURE_SIZE), gl.integer(GL_MAX_RENDERBUFFER_SIZE), viewport[0], viewport[1]});
+  if (width >= 1 && height >= 1 && width <= limit && height <= limit) return;
+  throw Error("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
+              " cannot be drawn: this OpenGL's limit is " + std::to_string(limit) + " px a side");
+}
+
+// premultiplied to plain, to the nearest level
+void unpremultiply(media::Image& image) {
+  std::uint8_t* p = image.pixels.data();
+  for (const std::uint8_t* end = p + image.pixels.size(); p < end; p += 4) {
+    const int a = p[3];
+    if (a == 255) continue;
+    for (int c = 0; c < 3; ++c) p[c] = std::uint8_t(a == 0 ? 0 : std::min((p[c] * 255 + a / 2) / a, 255));
+  }
+}
+
+/// Holds a context current while it draws, and leaves the thread free of it after.
+class Current {
+ public:
+  explicit Current(Context& context) : context_(context) { context.make_current(); }
+  ~Current() { context_.release(); }
+  Current(const Current&) = delete;
+  Current& operator=(const Current&) = delete;
+
+ private:
+  Context& context_;
+};
+
+}  // namespace
+
+struct Renderer::Impl {
+  int width, height;
+  std::unique_ptr<Context> context;
+  // what follows lives in the context, and goes before it
+  Functions gl;
+  std::string version, device;
+  std::string trouble;     // the last GL error of a debug build
+  Canvas backdrop, frame;  // ground and still list; the picture
+  Painter painter;
+  Damage damage;  // what the last picture drew over the backdrop
+  bool drawn = false;
+  draw::Color ground;
+  bool transparent = false;
+  std::shared_ptr<const draw::List> still;
+
+  Impl(int w, int h, const ContextOptions& options)
+      : width(w),
+        height(h),
+        context(create(options)),
+        gl((checked(*context, w, h))),
+        backdrop(gl, w, h),
+        frame(gl, w, h),
+        painter(gl, w, h),
+        damage(w, h) {
+    version = gl.string(GL_VERSION);
+    device = gl.string(GL_RENDERER) + ", " + context->backend();
+#ifndef NDEBUG
+    if (gl.DebugMessageCallback) {
+      gl.Enable(GL_DEBUG_OUTPUT);
+      gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+      gl.DebugMessageCallback(
+          [](GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* text, const void* impl) {
+            // no exception may cross the callback
+            if (type == GL_DEBUG_TYPE_ERROR) static_cast<Impl*>(const_cast<void*>(impl))->trouble = text;
+          },
+          this);
+    }
+#endif
+  }
+
+  static Functions checked(const Context& context, int w, int h) {
+    Functions functions(context);
+    check_size(functions, w, h);
+    return functions;
+  }
+
+  void draw_backdrop(const draw::Picture& picture);
+  void restore();
+};
+
+void Renderer::Impl::draw_backdrop(const draw::Picture& picture) {
+  ground = picture.ground;
+  transparent = picture.transparent;
+  still = picture.still;
+  backdrop.bind();
+  const auto level = [&](std::uint8_t c) { return transparent ? 0.0f : float(c) / 255.0f; };
+  gl.ClearColor(level(ground.r), level(ground.g), level(ground.b), level(255));
+  gl.Clear(GL_COLOR_BUFFER_BIT);
+  Damage none(width, height);
+  if (still) painter.paint(*still, ground, transparent, none);
+}
+
+void Renderer::Impl::restore() {
+  const auto copy = [&](const Damage::Rect& r) {
+    if (gl.CopyImageSubData) {
+      gl.CopyImageSubData(backdrop.texture(), GL_TEXTURE_2D, 0, r.x, r.y, 0, frame.texture(), GL_TEXTURE_2D,
+                          0, r.x, r.y, 0, r.width, r.height, 1);
+    } else {
+      gl.BindFramebuffer(GL_READ_FRAMEBUFFER, backdrop.framebuffer());
+      gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame.framebuffer());
+      gl.BlitFramebuffer(r.x, r.y, r.x + r.width, r.y + r.height, r.x, r.y, r.x + r.width, r.y + r.height,
+                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
+  };
+  if (drawn) {
+    for (const Damage::Rect& rect : damage.rects()) copy(rect);
+  } else {
+    copy({0, 0, width, height});
+  }
+  damage.clear();
+  drawn = true;
+}
+
+Renderer::Renderer(int width, int height, const ContextOptions& options)
+    : impl_(std::make_unique<Impl>(width, height, options)) {
+  impl_->context->release();
+}
+
+Renderer::~Renderer() {
+  // what is in the context is deleted in it
+  if (impl_) impl_->context->make_current();
+}
+
+Renderer::Renderer(Renderer&&) noexcept = default;
+
+void Renderer::draw(const draw::Picture& picture, media::Image& out) {
+  Impl& my = *impl_;
+  const Current current(*my.context);
+  my.gl.Viewport(0, 0, my.width, my.height);
+
+  // ground and still list, when they are others than last time
+  if (!my.drawn || my.still != picture.still || my.ground != picture.ground ||
+      my.transparent != picture.transparent) {
+    my.drawn = false;
+    my.draw_backdrop(picture);
+  }
+
+  // what moves, on what the last picture left of the backdrop
+  my.restore();
+  my.frame.bind();
+  my.painter.paint(picture.moving, picture.ground, picture.transparent, my.damage);
+
+  out.width = my.width;
+  out.height = my.height;
+  out.pixels.resize(std::size_t(4) * my.width * my.height);
+  my.gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+  my.gl.ReadPixels(0, 0, my.width, my.height, GL_RGBA, GL_UNSIGNED_BYTE, out.pixels.data());
+  if (picture.transparent) unpremultiply(out);
+
+  const GLenum error = my.gl.GetError();
+  if (error != GL_NO_ERROR || !my.trouble.empty()) {
+    my.drawn = false;
+    throw Error("OpenGL error " + std::to_string(error) + " while drawing" +
+                (my.trouble.empty() ? "" : ": " + std::exchange(my.trouble, "")));
+  }
+}
+
+std::string Renderer::version() const { return impl_->version; }
+std::string Renderer::device() const { return impl_->device; }
+
+}  // namespace obscura::gl
