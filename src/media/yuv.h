@@ -15,8 +15,15 @@ struct Yuv420 {
   int y_stride = 0, u_stride = 0, v_stride = 0;
 };
 
-/// Converts an image of even size, alpha ignored. Integer arithmetic: the same bytes on every processor,
-/// whichever instructions it runs by.
+/// The instructions a conversion runs by. The bytes are the same.
+enum class Lanes { scalar, sse2, avx2 };
+
+/// Whether this processor has them.
+bool available(Lanes lanes);
+
+/// Converts an image of even size, alpha ignored: every sample is the exact value of ITU-R BT.709, rounded to
+/// the nearest integer (halves up). The widest lanes this processor has, unless told.
 void convert(const Image& image, const Yuv420& out);
+void convert(const Image& image, const Yuv420& out, Lanes lanes);
 
 }  // namespace obscura::media
