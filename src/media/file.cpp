@@ -1,6 +1,7 @@
 #include "media/file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -38,6 +39,10 @@ int write_all(int descriptor, std::span<const std::uint8_t> bytes) noexcept {
     const ssize_t n = ::write(descriptor, bytes.data(), bytes.size());
     if (n >= 0) {
       bytes = bytes.subspan(std::size_t(n));
+    } else if (errno == EAGAIN) {
+      // the other end set the pipe not to block: wait for room
+      pollfd room{descriptor, POLLOUT, 0};
+      ::poll(&room, 1, -1);
     } else if (errno != EINTR) {
       return errno;
     }

@@ -14,7 +14,8 @@ class PipeWriter {
  public:
   PipeWriter(int descriptor, PipeFormat format, const MovieSpec& spec);
 
-  /// False when the reader has closed the pipe: end quietly. Throws media::Error on any other failure.
+  /// False when the reader has closed the pipe: end quietly (SIGPIPE must be ignored by then). Throws
+  /// media::Error on any other failure.
   bool write(const Image& frame);
 
  private:

@@ -1,0 +1,197 @@
+// Which encoder makes a movie, and with which settings.
+//
+// The settings of x264 when no preset is asked for: `veryfast` without B-frames, look-ahead and macroblock
+// tree. On our pictures, flat with sharp edges, those cost time and buy bytes only: see kQuick below, and the
+// figures there.
+
+#include "media/codec.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "media/error.h"
+
+namespace obscura::media {
+
+namespace {
+
+using Options = std::vector<std::pair<std::string, std::string>>;
+
+const std::vector<Container>& containers() {
+  static const std::vector<std::string> h264 = {"libx264", "libopenh264"};
+  static const std::vector<Container> all = {
+      {"mp4", "mp4", h264, "H.264"},
+      {"mkv", "matroska", h264, "H.264"},
+      {"mov", "mov", h264, "H.264"},
+      {"webm", "webm", {"libvpx-vp9", "libsvtav1", "libaom-av1"}, "VP9 or AV1"},
+      {"gif", "gif", {"gif"}, "GIF"},
+      {"y4m", "y4m", {"yuv4mpeg"}, "raw 4:2:0"},
+  };
+  return all;
+}
+
+struct Family {
+  std::string name;
+  std::vector<std::string> encoders;
+};
+
+const std::vector<Family>& families() {
+  static const std::vector<Family> all = {
+      {"h264", {"libx264", "libopenh264"}},
+      {"hevc", {"libx265"}},
+      {"h265", {"libx265"}},
+      {"vp9", {"libvpx-vp9"}},
+      {"av1", {"libsvtav1", "libaom-av1"}},
+  };
+  return all;
+}
+
+const std::vector<std::string> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
+                                           "medium",    "slow",      "slower",   "veryslow", "placebo"};
+
+// frames that the slow presets of x264 refer to; the others need at most 3
+int references(const std::string& preset) {
+  if (preset == "slow") return 5;
+  if (preset == "slower") return 8;
+  return preset == "veryslow" || preset == "placebo" ? 16 : 3;
+}
+
+// Level 4.2 (ITU-T H.264 table A-1), the highest that every player takes: 8,704 macroblocks a frame, 522,240
+// a second, 34,816 in the frames referred to. Where the picture fits, the references are kept to what fits
+// too.
+std::string within_level(const MovieSpec& spec) {
+  const std::int64_t blocks = std::int64_t((spec.width + 15) / 16) * ((spec.height + 15) / 16);
+  if (blocks > 8704 || double(blocks) * double(spec.fps_num) > 522240.0 * double(spec.fps_den)) return "";
+  const std::int64_t most = 34816 / blocks;
+  return references(spec.preset) > most ? fmt::format(":ref={}", most) : "";
+}
+
+double crf_of(const std::string& path, const MovieSpec& spec, double usual, double most) {
+  const double crf = spec.crf.value_or(usual);
+  if (!(crf >= 1 && crf <= most))
+    throw Error(fmt::format("{}: crf is from 1 to {}, got {}", path, most, crf));
+  return crf;
+}
+
+Options x264(const std::string& path, const MovieSpec& spec) {
+  // bytes that depend on frames and settings alone: one thread, no processor's own way of rounding
+  std::string parameters = "threads=1:cpu-independent=1:scenecut=0:open-gop=0";
+  constexpr const char* kQuick = ":bframes=0:rc-lookahead=0:mbtree=0";
+  parameters += spec.preset.empty() ? kQuick : within_level(spec);
+  return {{"preset", spec.preset.empty() ? "veryfast" : spec.preset},
+          {"profile", "high"},
+          {"crf", fmt::format("{}", crf_of(path, spec, 18, 51))},
+          {"x264-params", parameters}};
+}
+
+Options x265(const std::string& path, const MovieSpec& spec) {
+  return {{"preset", spec.preset.empty() ? "fast" : spec.preset},
+          {"crf", fmt::format("{}", crf_of(path, spec, 18, 51))},
+          {"x265-params", "pools=none:frame-threads=1:scenecut=0:open-gop=0:chromaloc=1:log-level=error"}};
+}
+
+}  // namespace
+
+const Container& container(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  if (!ending.empty()) ending.erase(0, 1);
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  for (const Container& one : containers()) {
+    if (one.ending == ending) return one;
+  }
+  throw Error(
+      fmt::format("{}: {}: movies end in .mp4 .mkv .mov .webm .gif", path,
+                  ending.empty() ? "a movie's name needs an ending" : "no movie format '." + ending + "'"));
+}
+
+std::string encoder_name(const std::string& path, const MovieSpec& spec,
+                         const std::function<bool(const std::string&)>& present) {
+  const Container& kind = container(path);
+  if (kind.ending == "gif" || kind.ending == "y4m") {
+    if (!spec.codec.empty() && spec.codec != kind.encoders[0]) {
+      throw Error(fmt::format("{}: no codec '{}' in a .{} file", path, spec.codec, kind.ending));
+    }
+    return kind.encoders[0];
+  }
+  const auto first_of = [&](const std::vector<std::string>& names) {
+    const auto found = std::find_if(names.begin(), names.end(), present);
+    return found == names.end() ? std::string() : *found;
+  };
+
+  if (spec.codec.empty()) {
+    const std::string name = first_of(kind.encoders);
+    if (!name.empty()) return name;
+    // what else could be written here
+    std::string hint = "install an FFmpeg that has one";
+    const std::string other = kind.ending == "webm" ? "mp4" : "webm";
+    if (!first_of(container("a." + other).encoders).empty()) {
+      hint += fmt::format(", or write {}",
+                          std::filesystem::path(path).filename().replace_extension(other).string());
+      hint += other == "webm" ? " (VP9)" : " (H.264)";
+    }
+    throw Error(fmt::format("{}: the FFmpeg in use has no encoder of {} ({}): {}", path, kind.video,
+                            fmt::join(kind.encoders, ", "), hint));
+  }
+
+  std::string name = spec.codec;
+  for (const Family& family : families()) {
+    if (family.name == spec.codec) name = first_of(family.encoders);
+  }
+  if (!name.empty() && present(name)) return name;
+  std::vector<std::string> known;
+  for (const char* one : {"libx264", "libopenh264", "libx265", "libvpx-vp9", "libsvtav1", "libaom-av1"}) {
+    if (present(one)) known.push_back(one);
+  }
+  throw Error(
+      fmt::format("{}: the FFmpeg in use has no encoder '{}': it has {}", path, spec.codec,
+                  known.empty() ? "none of those obscura knows" : fmt::format("{}", fmt::join(known, ", "))));
+}
+
+Options encoder_options(const std::string& path, const MovieSpec& spec, const std::string& encoder) {
+  const bool x26 = encoder == "libx264" || encoder == "libx265";
+  if (!spec.preset.empty()) {
+    if (!x26)
+      throw Error(
+          fmt::format("{}: presets are those of libx264 and libx265, and {} has none", path, encoder));
+    if (std::find(kPresets.begin(), kPresets.end(), spec.preset) == kPresets.end()) {
+      throw Error(
+          fmt::format("{}: no preset '{}': they are {}", path, spec.preset, fmt::join(kPresets, " ")));
+    }
+  }
+  if (encoder == "libx264") return x264(path, spec);
+  if (encoder == "libx265") return x265(path, spec);
+  if (encoder == "libvpx-vp9") {
+    return {{"crf", fmt::format("{}", std::lround(crf_of(path, spec, 24, 63)))},
+            {"deadline", "good"},
+            {"cpu-used", "4"},
+            {"row-mt", "0"}};
+  }
+  if (encoder == "libaom-av1") {
+    return {{"crf", fmt::format("{}", std::lround(crf_of(path, spec, 24, 63)))},
+            {"cpu-used", "6"},
+            {"row-mt", "0"}};
+  }
+  if (encoder == "libsvtav1") {
+    return {{"crf", fmt::format("{}", std::lround(crf_of(path, spec, 24, 63)))},
+            {"preset", "8"},
+            {"svtav1-params", "lp=1"}};
+  }
+  if (spec.crf) throw Error(fmt::format("{}: {} has no crf", path, encoder));
+  if (encoder == "libopenh264") {
+    // it aims at a bit rate, not a quality: an eighth of a bit a pixel is ample for pictures like ours
+    const double rate = double(spec.width) * spec.height * double(spec.fps_num) / double(spec.fps_den) / 8;
+    return {{"b", fmt::format("{:.0f}", rate)},
+            {"profile", "high"},
+            {"rc_mode", "quality"},
+            {"allow_skip_frames", "0"}};
+  }
+  return {{"flags", "+qscale"}, {"global_quality", "236"}};  // quantiser 2
+}
+
+}  // namespace obscura::media

@@ -1,0 +1,165 @@
+#include "media/mux.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <system_error>
+
+extern "C" {
+#include <libavutil/dict.h>
+#include <libavutil/mathematics.h>
+#include <libavutil/mem.h>
+}
+
+#include "media/codec.h"
+#include "media/encoder.h"
+#include "media/error.h"
+#include "media/tags.h"
+
+namespace obscura::media {
+
+namespace {
+
+// QuickTime counts the bytes of a comment in 16 bits: what does not fit is left out, the longest first, in
+// words
+std::string fitting_comment(Tags tags, const Container& kind) {
+  std::string text = comment(tags);
+  while (kind.ending == "mov" && text.size() > 65000 && !tags.empty()) {
+    const auto longest = std::max_element(tags.begin(), tags.end(), [](const auto& a, const auto& b) {
+      return a.second.size() < b.second.size();
+    });
+    longest->second = "(too long for .mov)";
+    text = comment(tags);
+  }
+  return text;
+}
+
+}  // namespace
+
+// libav's own file protocol buffers errors away in places; ours keeps errno, and the descriptor to sync
+int Muxer::on_write(void* self, const std::uint8_t* bytes, int size) {
+  Muxer& muxer = *static_cast<Muxer*>(self);
+  const int code = write_all(muxer.file_.descriptor(), {bytes, std::size_t(size)});
+  if (code == 0) return size;
+  if (muxer.failure_ == 0) muxer.failure_ = code;
+  return AVERROR(code);
+}
+
+std::int64_t Muxer::on_seek(void* self, std::int64_t offset, int whence) {
+  const int descriptor = static_cast<Muxer*>(self)->file_.descriptor();
+  if (whence & AVSEEK_SIZE) return AVERROR(ENOSYS);
+  const off_t at = ::lseek(descriptor, offset, whence & ~AVSEEK_FORCE);
+  return at < 0 ? AVERROR(errno) : at;
+}
+
+void Muxer::require(int code, const char* doing) const {
+  if (code >= 0 && format_->pb && format_->pb->error < 0) code = format_->pb->error;
+  if (code >= 0 && failure_ == 0) return;
+  throw Error(fmt::format("{}: cannot {}: {}", path_, doing,
+                          failure_ != 0 ? std::generic_category().message(failure_) : complaint(code)));
+}
+
+Muxer::Muxer(const std::string& path, const MovieSpec& spec)
+    : path_(path),
+      spec_(spec),
+      file_(path),
+      packet_(make_packet()),
+      last_dts_(std::numeric_limits<std::int64_t>::min()) {
+  listen();
+  const Container& kind = container(path);
+  const CodecContext encoder = open_encoder(path, spec);
+
+  if (avformat_alloc_output_context2(&format_, nullptr, kind.muxer.c_str(), nullptr) < 0)
+    throw std::bad_alloc();
+  constexpr int kBuffer = 1 << 16;
+  auto* buffer = static_cast<unsigned char*>(av_malloc(kBuffer));
+#if LIBAVFORMAT_VERSION_MAJOR >= 61
+  format_->pb = avio_alloc_context(buffer, kBuffer, 1, this, nullptr, on_write, on_seek);
+#else
+  constexpr auto write = [](void* self, std::uint8_t* bytes, int size) {
+    return on_write(self, bytes, size);
+  };
+  format_->pb = avio_alloc_context(buffer, kBuffer, 1, this, nullptr, write, on_seek);
+#endif
+  // +faststart reads the file again, by this name
+  format_->url = av_strdup(("file:" + file_.temporary()).c_str());
+  stream_ = avformat_new_stream(format_, nullptr);
+  if (!format_->pb || !format_->url || !stream_) throw std::bad_alloc();
+  if (::lseek(file_.descriptor(), 0, SEEK_CUR) < 0) format_->pb->seekable = 0;
+  // no name of the library's version, no random identities
+  format_->flags |= AVFMT_FLAG_CUSTOM_IO | AVFMT_FLAG_BITEXACT;
+
+  if (avcodec_parameters_from_context(stream_->codecpar, encoder.get()) < 0) throw std::bad_alloc();
+  stream_->time_base = encoder->time_base;
+  stream_->avg_frame_rate = stream_->r_frame_rate = encoder->framerate;
+  stream_->sample_aspect_ratio = {1, 1};
+  const bool quicktime = kind.muxer == "mp4" || kind.muxer == "mov";
+  // Apple's players ask for parameter sets outside the stream
+  if (quicktime && encoder->codec_id == AV_CODEC_ID_HEVC)
+    stream_->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');
+  if (const auto title = spec.tags.find("Title"); title != spec.tags.end()) {
+    av_dict_set(&format_->metadata, "title", title->second.c_str(), 0);
+  }
+  if (!spec.tags.empty())
+    av_dict_set(&format_->metadata, "comment", fitting_comment(spec.tags, kind).c_str(), 0);
+
+  AVDictionary* options = nullptr;
+  if (quicktime) av_dict_set(&options, "movflags", "+faststart", 0);
+  const int code = avformat_write_header(format_, &options);
+  av_dict_free(&options);
+  require(code, "begin this movie");
+}
+
+Muxer::~Muxer() {
+  if (!format_) return;
+  if (format_->pb) {
+    // what is not written yet is not wanted
+    av_freep(&format_->pb->buffer);
+    avio_context_free(&format_->pb);
+  }
+  avformat_free_context(format_);
+}
+
+void Muxer::add(const Segment& segment) {
+  listen();
+  const AVCodecParameters& codec = *stream_->codecpar;
+  if (segment.extradata.size() != std::size_t(codec.extradata_size) ||
+      !std::equal(segment.extradata.begin(), segment.extradata.end(), codec.extradata)) {
+    throw Error(path_ + ": a segment of other settings than the movie's");
+  }
+  const AVRational frame{int(spec_.fps_den), int(spec_.fps_num)};
+  for (const Segment::Packet& one : segment.packets) {
+    if (av_new_packet(packet_.get(), int(one.bytes.size())) < 0) throw std::bad_alloc();
+    std::memcpy(packet_->data, one.bytes.data(), one.bytes.size());
+    packet_->stream_index = stream_->index;
+    packet_->flags = one.key ? AV_PKT_FLAG_KEY : 0;
+    // frames shown out of the order of decoding have dts before the segment's first pts; every segment's lag
+    // the same, so they go on where those of the segment before ended
+    const std::int64_t dts = one.dts + frames_;
+    if (dts <= last_dts_) throw Error(path_ + ": segments whose packets do not follow each other");
+    last_dts_ = dts;
+    packet_->pts = av_rescale_q(one.pts + frames_, frame, stream_->time_base);
+    packet_->dts = av_rescale_q(dts, frame, stream_->time_base);
+    packet_->duration =
+        av_rescale_q(one.pts + frames_ + one.duration, frame, stream_->time_base) - packet_->pts;
+    const int code = av_write_frame(format_, packet_.get());
+    av_packet_unref(packet_.get());
+    require(code, "write");
+  }
+  frames_ += segment.frames;
+}
+
+void Muxer::close(const std::string& instead) {
+  listen();
+  require(av_write_trailer(format_), "finish");
+  avio_flush(format_->pb);
+  require(0, "finish");
+  file_.place(true, instead);
+}
+
+}  // namespace obscura::media

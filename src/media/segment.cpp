@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <new>
+#include <utility>
+#include <variant>
+
+#include "media/codec.h"
+#include "media/encoder.h"
+#include "media/error.h"
+#include "media/gif.h"
+#include "media/movie.h"
+
+namespace obscura::media {
+
+namespace {
+
+// a segment by one of libav's encoders
+class LibavEncoder {
+ public:
+  LibavEncoder(const std::string& path, const MovieSpec& spec)
+      : path_(path), context_(open_encoder(path, spec)), frame_(make_frame()), packet_(make_packet()) {
+    frame_->format = context_->pix_fmt;
+    frame_->width = spec.width;
+    frame_->height = spec.height;
+    frame_->color_primaries = context_->color_primaries;
+    frame_->color_trc = context_->color_trc;
+    frame_->colorspace = context_->colorspace;
+    frame_->color_range = context_->color_range;
+    frame_->chroma_location = context_->chroma_sample_location;
+    if (av_frame_get_buffer(frame_.get(), 0) < 0) throw std::bad_alloc();
+    segment_.extradata.assign(context_->extradata, context_->extradata + context_->extradata_size);
+  }
+
+  void add(const Image& image) {
+    listen();
+    // the encoder may still hold the planes of the frame before
+    if (av_frame_make_writable(frame_.get()) < 0) throw std::bad_alloc();
+    convert(image, {frame_->data[0], frame_->data[1], frame_->data[2], frame_->linesize[0],
+                    frame_->linesize[1], frame_->linesize[2]});
+    frame_->pts = segment_.frames++;
+    send(frame_.get());
+  }
+
+  Segment finish() {
+    listen();
+    if (segment_.frames > 0) send(nullptr);
+    if (int(segment_.packets.size()) != segment_.frames) {
+      throw Error(fmt::format("{}: {} made {} packets of {} frames", path_, context_->codec->name,
+                              segment_.packets.size(), segment_.frames));
+    }
+    return std::move(segment_);
+  }
+
+ private:
+  // hands over a frame, or the end, and takes what packets come back
+  void send(const AVFrame* frame) {
+    int code = avcodec_send_frame(context_.get(), frame);
+    if (code < 0) fail(code);
+    while ((code = avcodec_receive_packet(context_.get(), packet_.get())) >= 0) {
+      const AVPacket& p = *packet_;
+      segment_.packets.push_back(
+          {{p.data, p.data + p.size}, p.pts, p.dts, 1, (p.flags & AV_PKT_FLAG_KEY) != 0});
+      av_packet_unref(packet_.get());
+    }
+    if (code != AVERROR(EAGAIN) && code != AVERROR_EOF) fail(code);
+  }
+
+  [[noreturn]] void fail(int code) const {
+    throw Error(fmt::format("{}: {} failed: {}", path_, context_->codec->name, complaint(code)));
+  }
+
+  std::string path_;
+  CodecContext context_;
+  Frame frame_;
+  Packet packet_;
+  Segment segment_;
+};
+
+}  // namespace
+
+struct SegmentEncoder::Impl {
+  template <typename Encoder>
+  Impl(std::in_place_type_t<Encoder> type, const std::string& path, const MovieSpec& spec)
+      : encoder(type, path, spec) {}
+  std::variant<LibavEncoder, GifEncoder> encoder;
+};
+
+SegmentEncoder::SegmentEncoder(const std::string& path, const MovieSpec& spec)
+    : impl_(container(path).ending == "gif" ? new Impl(std::in_place_type<GifEncoder>, path, spec)
+                                            : new Impl(std::in_place_type<LibavEncoder>, path, spec)) {}
+
+SegmentEncoder::~SegmentEncoder() = default;
+SegmentEncoder::SegmentEncoder(SegmentEncoder&&) noexcept = default;
+
+void SegmentEncoder::add(const Image& frame) {
+  std::visit([&](auto& encoder) { encoder.add(frame); }, impl_->encoder);
+}
+
+Segment SegmentEncoder::finish() {
+  return std::visit([](auto& encoder) { return encoder.finish(); }, impl_->encoder);
+}
+
+}  // namespace obscura::media
