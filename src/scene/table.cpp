@@ -134,7 +134,7 @@ std::vector<Key> written() {
       {.path = "box", .form = tables, .doc = "A rectangular rigid body."},
       {.path = "body.name",
        .form = name,
-       .absent = "`particle[0]`, `box[0]`, ... in the order of the file",
+       .absent = "`KIND[0]`, `KIND[1]`, ... in the order of the file",
        .doc = "What springs, trails and `--set` call it.",
        .example = "\"ball\""},
       {.path = "body.position",
@@ -556,6 +556,7 @@ std::vector<Key> built() {
       for (std::size_t k = i; k < end; ++k) {
         Key key = rows[k];
         if (key.path.starts_with("body.")) key.path = kind + key.path.substr(4);
+        for (std::size_t at; (at = key.absent.find("KIND")) != std::string::npos;) key.absent.replace(at, 4, kind);
         if (key.path == kind || key.path.starts_with(kind + ".")) all.push_back(key);
       }
     }

@@ -1,0 +1,222 @@
+// The page that documents the language: a few words on each part, and under them its rows of the table of
+// keys.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scene/keys.h"
+#include "scene/table.h"
+
+namespace obscura::scene {
+
+namespace {
+
+constexpr const char* kOpening = R"(# The scene language
+
+A scene is a [TOML](https://toml.io) file that says what is in a room, what it looks like and how it is filmed. Everything has a
+default; this is a whole scene:
+
+```toml
+title    = "A bouncing box"
+duration = 20
+[room]
+size = [4, 3]
+[[box]]
+size       = [0.6, 0.4]
+position   = [1, 2]
+velocity   = [1.5, 0]
+angle      = 20
+elasticity = 0.8
+[look]
+trails = 1.0
+```
+
+`obscura new NAME` writes a commented one to start from, `obscura check SCENE` says what is wrong with one. A first line
+`#:schema ../docs/scene.schema.json` lets editors complete keys and check values.
+
+Metres, kilograms, seconds; angles are degrees, counter-clockwise. x goes to the right, y up, and the origin is the left end of the
+floor, unless `room.corner` moves it. Numbers may be written `2` or `2.0`. Times are exact: `duration = 0.1` is one tenth.
+
+This page is written by the program from the table that it checks scenes with.
+
+## Names and references
+
+A body may have a `name`; springs, trails and `--set` use it. Without one it is called after its place in the file, `box[0]`,
+`particle[2]`. Copies are numbered from 0: `ball[0]`, `ball[1]`, ... Where several may be meant, `ball[*]` is all of them, `ball[0..4]` the
+first five, `ball[0,5]` two.
+
+`--set` uses the same names as paths to any key:
+
+    --set crate.elasticity=0.5      --set film.fps=30              --set ball[3].position.y=2
+    --set room.gravity=[0,-1.62]    --set mouse[0].stiffness=20    --set look.theme=screen
+
+## Copies
+
+`copies` makes a row, a grid or a ring of a particle or a box:
+
+```toml
+[[particle]]
+name       = "ball"
+position   = [1, 4]
+elasticity = { from = 0, to = 1 }                           # evenly from the first copy to the last
+color      = ["blue", "orange"]                             # again and again
+copies     = { count = 6, offset = [0.5, 0] }               # a row
+# copies   = { count = [6, 2], offset = [[0.5, 0], [0, 0.5]] }   # a grid
+# copies   = { count = 12, turn = 30, around = [4, 2] }     # a ring
+```
+
+Where the table below says *varies*, a number may also be a list with one for each copy, or `{ from, to }`; a place or velocity may be
+`{ from, to }`. In a grid the copies are counted along the first direction, then the next row. `jitter` moves each a little; it depends on
+`seed` and on the copy alone, so that it stays when other things in the scene change.
+
+## Springs and nets
+
+An end of a spring is a body (its centre), a point of a box, or a place in the room:
+
+```toml
+between = ["ball", "crate"]
+between = ["ball", { body = "crate", at = "top right" }]         # a corner, the middle of a side, or the center
+between = [[4, 4.5], { body = "crate", local = [0.2, 0] }]       # metres in the box's own frame, from its centre
+between = ["peg[*]", "ball[*]"]                                  # each with its own: as many springs as there are copies
+```
+
+The numbers of a spring that is many may vary over them as those of copies do. A `[[net]]` joins the copies of one body to their
+neighbours; hold some of them with `fixed`:
+
+```toml
+[[particle]]
+name     = "knot"
+position = [2, 4.5]
+mass     = 0.05
+fixed    = "0..4"                                                # the first row
+copies   = { count = [5, 4], offset = [[0.3, 0], [0, -0.3]] }
+
+[[net]]
+of        = "knot"
+stiffness = 60
+```
+
+)";
+
+const char* const kNotes[][2] = {
+    {"room",
+     "Without `[room]`, or with one that says nothing of `size` or `walls`, the room is 8 m by 4.5 m. With "
+     "`walls` alone it has only "
+     "those, and may be open. Where there is no size, the reference pixel of the mouse is 1/480 of the "
+     "height that the camera fits."},
+    {"mouse",
+     "The reference pixel is 1/480 of the room's height, so that a larger picture shows the same motion."},
+    {"camera",
+     "`center` and `width` stand for one view; with `keys` the camera moves from each to the next, and rests "
+     "before the first and after the last."},
+};
+
+std::string cell(std::string text) {
+  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
+  return text;
+}
+
+// what may stand there, in a word or two
+std::string type(const Key& key) {
+  switch (key.form) {
+    case Form::table:
+      return "table";
+    case Form::tables:
+      return "tables";
+    case Form::number:
+      return "number";
+    case Form::integer:
+      return "whole number";
+    case Form::boolean:
+      return "true, false";
+    case Form::text:
+      return "string";
+    case Form::name:
+    case Form::thing:
+      return "name";
+    case Form::rational:
+      return "number or fraction";
+    case Form::choice:
+      return fmt::format("`{}`", fmt::join(key.choices, "`, `"));
+    case Form::choices:
+      return fmt::format("list of `{}`", fmt::join(key.choices, "`, `"));
+    case Form::color:
+      return "colour";
+    case Form::vector:
+      return "[x, y]";
+    case Form::pixels:
+      return "[width, height]";
+    case Form::count:
+      return "whole number, or two";
+    case Form::offset:
+      return "[x, y], or a list of them";
+    case Form::which:
+      return "true, false, or which copies";
+    case Form::ends:
+      return "two ends";
+    case Form::path:
+      return "[[t, x, y], ...]";
+    case Form::trails:
+      return "number, or table of them";
+  }
+  return "";
+}
+
+std::string range(const Key& key) {
+  const bool worth = key.form != Form::integer || key.path != "version";
+  if (!worth || (!std::isfinite(key.range.low) && !std::isfinite(key.range.high))) return "";
+  if (key.range.low == 0 && (!std::isfinite(key.range.high) || key.range.high >= 1e6))
+    return key.range.above ? "> 0" : ">= 0";
+  return fmt::format(
+      "{} {}",
+      key.range.above ? fmt::format("more than {} to", key.range.low) : fmt::format("{} to", key.range.low),
+      key.range.high);
+}
+
+std::string row(const Key& key, const std::string& section) {
+  std::string name = key.path;
+  if (!section.empty()) name = name.substr(section.size() + 1);
+  std::string kind = type(key);
+  if (!key.unit.empty()) kind += ", " + key.unit;
+  if (const std::string r = range(key); !r.empty()) kind += ", " + r;
+  if (key.varies) kind += key.form == Form::color ? "; or a list" : "; *varies*";
+  const std::string absent = key.required           ? "needed"
+                             : !key.absent.empty()  ? key.absent
+                             : key.fallback.empty() ? ""
+                                                    : "`" + key.fallback + "`";
+  const std::string example =
+      key.example.empty() ? "" : "`" + std::string(key.last()) + " = " + key.example + "`";
+  return fmt::format("| `{}` | {} | {} | {} | {} |\n", name, cell(kind), cell(absent), cell(key.doc),
+                     cell(example));
+}
+
+constexpr const char* kHead = "| key | takes | left out | what it is | example |\n|---|---|---|---|---|\n";
+
+void rows_under(std::string& page, const std::string& owner, const std::string& section) {
+  for (const Key* each : keys_of(owner)) {
+    page += row(*each, section);
+    if (each->form == Form::table || each->form == Form::tables) rows_under(page, each->path, section);
+  }
+}
+
+}  // namespace
+
+std::string keys_page() {
+  std::string page = std::string(kOpening) + "## The keys\n\n### At the top\n\n" + kHead;
+  for (const Key* each : keys_of(""))
+    if (each->form != Form::table && each->form != Form::tables) page += row(*each, "");
+  for (const Key* each : keys_of("")) {
+    if (each->form != Form::table && each->form != Form::tables) continue;
+    page +=
+        fmt::format("\n### {}\n\n{}\n\n",
+                    each->form == Form::table ? "[" + each->path + "]" : "[[" + each->path + "]]", each->doc);
+    for (const auto& note : kNotes)
+      if (each->path == note[0]) page += std::string(note[1]) + "\n\n";
+    page += kHead;
+    rows_under(page, each->path, each->path);
+  }
+  return page;
+}
+
+}  // namespace obscura::scene

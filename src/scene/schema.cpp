@@ -1,0 +1,146 @@
+// The language as a JSON Schema (draft 7), for completion and checks in editors: one property for each row of
+// the table of keys.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "scene/keys.h"
+#include "scene/table.h"
+
+namespace obscura::scene {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json object(const std::string& owner);
+
+Json literal(const Node& node) {
+  if (node.is_integer()) return std::get<std::int64_t>(node.value);
+  if (node.is_number()) return node.number();
+  if (const bool* flag = std::get_if<bool>(&node.value)) return *flag;
+  if (node.is_text()) return node.text();
+  Json list = Json::array();
+  if (node.is_list())
+    for (const Node& each : node.list()) list.push_back(literal(each));
+  return list;
+}
+
+// a bound as the language has it: 1 rather than 1.0
+Json bound(double x) { return x == std::floor(x) && std::abs(x) < 1e15 ? Json(std::int64_t(x)) : Json(x); }
+
+Json ranged(Json type, const Range& range) {
+  if (std::isfinite(range.low)) type[range.above ? "exclusiveMinimum" : "minimum"] = bound(range.low);
+  if (std::isfinite(range.high)) type["maximum"] = bound(range.high);
+  return type;
+}
+
+Json list_of(Json items, int least, int most) {
+  Json list = {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}};
+  if (most > 0) list["maxItems"] = most;
+  return list;
+}
+
+Json any_of(std::vector<Json> ways) { return {{"anyOf", std::move(ways)}}; }
+
+Json vector(const Range& range = {}) { return list_of(ranged({{"type", "number"}}, range), 2, 2); }
+
+Json words(const std::vector<std::string>& choices) { return {{"type", "string"}, {"enum", choices}}; }
+
+// over copies: { from, to } as well
+Json between(const Json& one) {
+  return {{"type", "object"},
+          {"properties", {{"from", one}, {"to", one}}},
+          {"required", {"from", "to"}},
+          {"additionalProperties", false}};
+}
+
+Json value(const Key& key) {
+  const Json string = {{"type", "string"}}, whole = ranged({{"type", "integer"}}, key.range);
+  const Json number = ranged({{"type", "number"}}, key.range);
+  switch (key.form) {
+    case Form::table:
+      return object(key.path);
+    case Form::tables:
+      return list_of(object(key.path), 0, 0);
+    case Form::number:
+      return key.varies ? any_of({number, list_of(number, 1, 0), between(number)}) : number;
+    case Form::integer:
+      return whole;
+    case Form::boolean:
+      return {{"type", "boolean"}};
+    case Form::text:
+    case Form::thing:
+      return string;
+    case Form::name:
+      return {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_-]*$"}};
+    case Form::rational:
+      return any_of({number, {{"type", "string"}, {"pattern", "^[0-9.]+(/[0-9.]+)?$"}}});
+    case Form::choice:
+      return words(key.choices);
+    case Form::choices:
+      return list_of(words(key.choices), 0, 0);
+    case Form::color:
+      return any_of({string, list_of(string, 1, 0)});
+    case Form::vector:
+      return key.varies ? any_of({vector(key.range), between(vector(key.range))}) : vector(key.range);
+    case Form::pixels:
+      return list_of(whole, 2, 2);
+    case Form::count:
+      return any_of({whole, list_of(whole, 1, 2)});
+    case Form::offset:
+      return any_of({vector(), list_of(vector(), 1, 2)});
+    case Form::which:
+      return any_of({{{"type", "boolean"}}, string});
+    case Form::ends: {
+      const Json point = {{"type", "object"},
+                          {"properties", {{"body", string}, {"local", vector()}, {"at", string}}},
+                          {"required", {"body"}},
+                          {"additionalProperties", false}};
+      return list_of(any_of({string, vector(), point}), 2, 2);
+    }
+    case Form::path:
+      return list_of(list_of({{"type", "number"}}, 3, 3), 2, 0);
+    case Form::trails:
+      return any_of(
+          {number, {{"type", "object"}, {"additionalProperties", {{"type", "number"}, {"minimum", 0}}}}});
+  }
+  return {};
+}
+
+// a key with its line for the reader
+Json property(const Key& key) {
+  Json it = value(key);
+  std::string text = key.doc;
+  if (!key.unit.empty()) text += fmt::format(" [{}]", key.unit);
+  if (!key.absent.empty()) text += fmt::format(" Left out: {}.", key.absent);
+  it["description"] = text;
+  if (!key.fallback.empty() && key.absent.empty()) it["default"] = literal(fallback(key.path));
+  return it;
+}
+
+Json object(const std::string& owner) {
+  Json properties = Json::object(), required = Json::array();
+  for (const Key* each : keys_of(owner)) {
+    properties[std::string(each->last())] = property(*each);
+    if (each->required) required.push_back(each->last());
+  }
+  Json it = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+  if (!required.empty()) it["required"] = std::move(required);
+  return it;
+}
+
+}  // namespace
+
+std::string json_schema() {
+  Json top = {
+      {"$schema", "http://json-schema.org/draft-07/schema#"},
+      {"title", "A scene of obscura"},
+      {"description", "What happens in a room, what it looks like and how it is filmed. See docs/scene.md."}};
+  top.update(object(""));
+  return top.dump(1) + '\n';
+}
+
+}  // namespace obscura::scene
