@@ -54,7 +54,10 @@ std::optional<Rational> parse_decimal(std::string_view s) {
     if (error != std::errc() || end != s.data() + s.size() || exponent > 18 || exponent < -36) return {};
     for (; exponent > 0; --exponent) num *= 10;
     for (; exponent < 0; ++exponent) {
-      if (num % 10 == 0) num /= 10; else den *= 10;
+      if (num % 10 == 0)
+        num /= 10;
+      else
+        den *= 10;
       if (den > kMost) return {};
     }
     i = s.size();

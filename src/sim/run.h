@@ -37,8 +37,8 @@ class Run {
 /// A run of a world from its state.
 std::unique_ptr<Run> run(World<2> world);
 
-/// What is known to go wrong before it does: the first spring group whose step is longer than the integrator's
-/// limit, as the Trouble it would end in; empty where nothing is.
+/// What is known to go wrong before it does: the first spring group whose step is longer than the
+/// integrator's limit, as the Trouble it would end in; empty where nothing is.
 std::vector<Trouble> forebodings(const Model<2>& model);
 
 }  // namespace obscura::sim

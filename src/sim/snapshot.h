@@ -17,26 +17,26 @@ struct Cast {
   struct Body {
     std::string name;
     ShapeKind kind = ShapeKind::point;
-    double radius = 0;                        // m
-    Vec3 half = Vec3::Zero();                 // m
-    double mass = 0;                          // kg
+    double radius = 0;         // m
+    Vec3 half = Vec3::Zero();  // m
+    double mass = 0;           // kg
     bool fixed = false;
   };
   struct Wall {
     Vec3 point, normal;
   };
   struct Spring {
-    int a = -1, b = -1;                       // bodies; -1: the room
+    int a = -1, b = -1;  // bodies; -1: the room
     double rest_length = 0, stiffness = 0;
   };
   struct Mouse {
-    double press = 0, release = 0;            // s
+    double press = 0, release = 0;  // s
     double rest_length = 0;
-    std::vector<Vec3> path;                   // the whole way of the hand, finely sampled, equal times
+    std::vector<Vec3> path;  // the whole way of the hand, finely sampled, equal times
   };
 
   int dimension = 2;
-  double scale = 1;                           // the room's height, m
+  double scale = 1;  // the room's height, m
   std::vector<Body> bodies;
   std::vector<Wall> walls;
   std::vector<Spring> springs;
@@ -44,8 +44,8 @@ struct Cast {
 };
 
 struct Energies {
-  double kinetic = 0, gravity = 0, springs = 0;    // J; springs: those of the scene and of pressed mice
-  double displacement = 0, impacts = 0;            // the ledger of `handout`, J since t = 0
+  double kinetic = 0, gravity = 0, springs = 0;  // J; springs: those of the scene and of pressed mice
+  double displacement = 0, impacts = 0;          // the ledger of `handout`, J since t = 0
   double potential() const { return gravity + springs; }
   double total() const { return kinetic + potential(); }
 };
@@ -54,9 +54,9 @@ struct Snapshot {
   struct Body {
     Vec3 position = Vec3::Zero();
     Vec3 velocity = Vec3::Zero();
-    Vec3 spin = Vec3::Zero();                 // rad/s; in the plane (0, 0, w)
+    Vec3 spin = Vec3::Zero();  // rad/s; in the plane (0, 0, w)
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-    double angle = 0;                         // plane: rad, not wrapped
+    double angle = 0;  // plane: rad, not wrapped
   };
   struct Spring {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
@@ -64,25 +64,25 @@ struct Snapshot {
   struct Mouse {
     bool pressed = false;
     Vec3 pointer = Vec3::Zero();
-    int body = -1;                            // what it holds
-    Vec3 held = Vec3::Zero();                 // the point of the body it holds
+    int body = -1;             // what it holds
+    Vec3 held = Vec3::Zero();  // the point of the body it holds
   };
   struct Contact {
     int body = -1, wall = -1;
     Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
-    Vec3 impulse = Vec3::Zero();              // N s, in the last step
-    double gap = 0;                           // m, negative when inside
+    Vec3 impulse = Vec3::Zero();  // N s, in the last step
+    double gap = 0;               // m, negative when inside
   };
 
-  double time = 0;                            // s
-  std::int64_t step = 0;                      // whole steps done
-  std::vector<Body> bodies;                   // as in the Cast
+  double time = 0;           // s
+  std::int64_t step = 0;     // whole steps done
+  std::vector<Body> bodies;  // as in the Cast
   std::vector<Spring> springs;
   std::vector<Mouse> mice;
   std::vector<Contact> contacts;
   Energies energies;
-  Vec3 momentum = Vec3::Zero();               // kg m/s
-  Vec3 angular_momentum = Vec3::Zero();       // about the origin, kg m^2/s; in the plane (0, 0, L)
+  Vec3 momentum = Vec3::Zero();          // kg m/s
+  Vec3 angular_momentum = Vec3::Zero();  // about the origin, kg m^2/s; in the plane (0, 0, L)
 };
 
 /// The ways of chosen bodies on the physics clock, the same for every frame rate: what a trail is drawn from.
@@ -93,7 +93,7 @@ struct Track {
     Vec3 place = Vec3::Zero();
   };
   std::vector<int> bodies;
-  std::vector<std::vector<Point>> points;     // one list a body of `bodies`, times increasing
+  std::vector<std::vector<Point>> points;  // one list a body of `bodies`, times increasing
 };
 
 }  // namespace obscura::sim

@@ -7,14 +7,15 @@
 
 namespace obscura::sim {
 
-/// The turn of a rigid body: in the plane an angle (rad, not wrapped), in space a unit quaternion (x, y, z, w).
+/// The turn of a rigid body: in the plane an angle (rad, not wrapped), in space a unit quaternion (x, y, z,
+/// w).
 template <int D>
 using Turn = Eigen::Matrix<double, D == 2 ? 1 : 4, 1>;
 
 /// What a pressed mouse holds.
 template <int D>
 struct Grip {
-  int body = -1;                              // -1: nothing
+  int body = -1;  // -1: nothing
   Vec<D> local = Vec<D>::Zero();
 
   bool operator==(const Grip&) const = default;
@@ -25,7 +26,7 @@ template <int D>
 struct Touch {
   int body = -1;
   int wall = -1;
-  Vec<D> point = Vec<D>::Zero();              // world frame, after displacement
+  Vec<D> point = Vec<D>::Zero();  // world frame, after displacement
   Vec<D> impulse = Vec<D>::Zero();
 
   bool operator==(const Touch&) const = default;
@@ -33,8 +34,8 @@ struct Touch {
 
 /// What the displacement and the impulses of `handout` did to the energy since t = 0, J.
 struct Ledger {
-  double displacement = 0;                    // gained (+) or lost by putting bodies back on the wall
-  double impacts = 0;                         // lost (-) in impacts
+  double displacement = 0;  // gained (+) or lost by putting bodies back on the wall
+  double impacts = 0;       // lost (-) in impacts
 
   bool operator==(const Ledger&) const = default;
 };
@@ -44,12 +45,12 @@ struct Ledger {
 template <int D>
 struct State {
   std::int64_t step = 0;
-  double beyond = 0;                          // s; 0 on the trajectory
-  std::vector<Vec<D>> x;                      // centres of mass, m, one a body
-  std::vector<Vec<D>> v;                      // m/s
-  std::vector<Turn<D>> turn;                  // one a body that turns, in their order
-  std::vector<Spin<D>> spin;                  // rad/s (in space: world frame)
-  std::vector<Grip<D>> grips;                 // one a mouse
+  double beyond = 0;           // s; 0 on the trajectory
+  std::vector<Vec<D>> x;       // centres of mass, m, one a body
+  std::vector<Vec<D>> v;       // m/s
+  std::vector<Turn<D>> turn;   // one a body that turns, in their order
+  std::vector<Spin<D>> spin;   // rad/s (in space: world frame)
+  std::vector<Grip<D>> grips;  // one a mouse
   std::vector<Touch<D>> touches;
   Ledger ledger;
 

@@ -11,7 +11,7 @@ using Vec = Eigen::Matrix<double, D, 1>;
 
 /// Components of spin: one in the plane, three in space.
 template <int D>
-inline constexpr int kSpins = D * (D - 1) / 2;
+inline constexpr int kSpins = D*(D - 1) / 2;
 
 /// Angular velocity (rad/s) or torque (N m). In the plane positive is counter-clockwise.
 template <int D>

@@ -1,0 +1,36 @@
+#include "sim/grip.h"
+
+#include <limits>
+
+#include "sim/shape.h"
+#include "sim/turning.h"
+
+namespace obscura::sim {
+
+template <int D>
+Grip<D> closest(const Model<D>& model, const State<D>& state, const Vec<D>& place) {
+  Grip<D> grip;
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto offer = [&](int body, const Vec<D>& local, const Vec<D>& at) {
+    const double distance = (at - place).squaredNorm();
+    if (distance < nearest) nearest = distance, grip = {body, local};
+  };
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    const Body<D>& b = model.bodies[body];
+    if (b.fixed) continue;
+    if (b.shape.kind != ShapeKind::box) {
+      offer(body, Vec<D>::Zero(), state.x[body]);
+      continue;
+    }
+    const Stance<D> at = stance(state, body);
+    for (int i = 0; i < kCorners<D>; ++i) {
+      const Vec<D> local = corner(b.shape, i);
+      offer(body, local, at.x + at.arm(local));
+    }
+  }
+  return grip;
+}
+
+template Grip<2> closest<2>(const Model<2>&, const State<2>&, const Vec<2>&);
+
+}  // namespace obscura::sim

@@ -1,0 +1,91 @@
+#include "sim/run.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+#include "sim/show.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kTrackRate = 120;  // points a second of a way, about
+
+template <int D>
+class RunOf final : public Run {
+ public:
+  explicit RunOf(World<D> world)
+      : model_(std::move(world.model)), state_(std::move(world.state)), stepper_(model_) {
+    stepper_.begin(state_);
+    cast_ = sim::cast(model_, stepper_.paths());
+    stride_ = std::max<std::int64_t>(1, std::llround(value(model_.rate) / kTrackRate));
+  }
+
+  const Cast& cast() const override { return cast_; }
+  Rational rate() const override { return model_.rate; }
+
+  std::variant<Snapshot, Trouble> at(Rational t) override {
+    if (trouble_) return *trouble_;
+    const Beat to = beat(t, model_.rate);
+    assert(to.step >= state_.step);
+    while (state_.step < to.step) {
+      trouble_ = stepper_.step(state_);
+      if (trouble_) return *trouble_;
+      keep_ways();
+    }
+    between_ = to.fraction > 0;
+    if (!between_) return snapshot(model_, state_, stepper_, to, value(t));
+    copy_ = state_;
+    trouble_ = stepper_.part(copy_, to.fraction);
+    if (trouble_) return *trouble_;
+    return snapshot(model_, copy_, stepper_, to, value(t));
+  }
+
+  std::vector<std::uint64_t> words() const override { return sim::words(between_ ? copy_ : state_); }
+
+  void track(std::vector<int> bodies) override {
+    track_.bodies = std::move(bodies);
+    track_.points.assign(track_.bodies.size(), {});
+    touched_.assign(model_.bodies.size(), false);
+    keep_ways();
+  }
+
+  Track take_track() override {
+    Track taken{track_.bodies, std::vector<std::vector<Track::Point>>(track_.bodies.size())};
+    taken.points.swap(track_.points);
+    return taken;
+  }
+
+ private:
+  // a point of every way that this step belongs to: all at equal steps, and who has just touched a wall
+  void keep_ways() {
+    if (track_.bodies.empty()) return;
+    const bool all = state_.step % stride_ == 0;
+    if (!all && state_.touches.empty()) return;
+    for (const Touch<D>& touch : state_.touches) touched_[touch.body] = true;
+    const double t = time({state_.step, 0}, model_.rate);
+    for (std::size_t i = 0; i < track_.bodies.size(); ++i) {
+      const int body = track_.bodies[i];
+      if (all || touched_[body]) track_.points[i].push_back({t, lifted<D>(state_.x[body])});
+    }
+    for (const Touch<D>& touch : state_.touches) touched_[touch.body] = false;
+  }
+
+  Model<D> model_;
+  State<D> state_, copy_;
+  Stepper<D> stepper_;
+  Cast cast_;
+  std::optional<Trouble> trouble_;
+  bool between_ = false;  // the last instant lay between two steps: copy_ shows it
+  Track track_;
+  std::vector<char> touched_;  // all false between two calls
+  std::int64_t stride_ = 1;    // steps
+};
+
+}  // namespace
+
+std::unique_ptr<Run> run(World<2> world) { return std::make_unique<RunOf<2>>(std::move(world)); }
+
+}  // namespace obscura::sim

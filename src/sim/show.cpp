@@ -1,0 +1,101 @@
+#include "sim/show.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kPathRate = 60;  // places a second of a mouse's way
+constexpr int kPathMost = 600;
+
+// in the plane (0, 0, w)
+template <int D>
+Vec3 spinning(const Spin<D>& w) {
+  if constexpr (D == 2) {
+    return {0, 0, w[0]};
+  } else {
+    return w;
+  }
+}
+
+}  // namespace
+
+template <int D>
+Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
+  Cast cast;
+  cast.dimension = D;
+  cast.scale = model.scale;
+  for (const Body<D>& body : model.bodies) {
+    cast.bodies.push_back(
+        {body.name, body.shape.kind, body.shape.radius, lifted<D>(body.shape.half), body.mass, body.fixed});
+  }
+  for (const Wall<D>& wall : model.walls)
+    cast.walls.push_back({lifted<D>(wall.point), lifted<D>(wall.normal)});
+  for (const Spring<D>& s : model.springs)
+    cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness});
+  for (std::size_t i = 0; i < model.mice.size(); ++i) {
+    const Path<D>& path = paths[i];
+    Cast::Mouse mouse{path.start(), path.end(), model.mice[i].rest_length, {}};
+    const double span = path.end() - path.start();
+    const int pieces = std::clamp(int(std::ceil(std::min(span, 1e6) * kPathRate)), 1, kPathMost);
+    for (int k = 0; k <= pieces; ++k) {
+      mouse.path.push_back(
+          lifted<D>(path.place(k == pieces ? path.end() : path.start() + span * k / pieces)));
+    }
+    cast.mice.push_back(std::move(mouse));
+  }
+  return cast;
+}
+
+template <int D>
+Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, Beat at,
+                  double t) {
+  static_assert(D == 2, "in space an orientation is no angle");
+  Snapshot now;
+  now.time = t;
+  now.step = state.step;
+  now.bodies.resize(model.bodies.size());
+  for (int i = 0; i < int(model.bodies.size()); ++i) {
+    Snapshot::Body& body = now.bodies[i];
+    body.position = lifted<D>(state.x[i]);
+    body.velocity = lifted<D>(state.v[i]);
+    if (const int k = turning(state, i); k >= 0) {
+      body.spin = spinning<D>(state.spin[k]);
+      body.angle = state.turn[k][0];
+      const auto [s, c] = sin_cos(0.5 * body.angle);
+      body.orientation = Eigen::Quaterniond(c, 0, 0, s);
+    }
+  }
+  for (const Spring<D>& s : model.springs) {
+    now.springs.push_back({lifted<D>(place(state, s.a)), lifted<D>(place(state, s.b))});
+  }
+  for (int i = 0; i < int(model.mice.size()); ++i) {
+    Snapshot::Mouse mouse;
+    mouse.pressed = stepper.pressed(i, at);
+    mouse.pointer = lifted<D>(stepper.paths()[i].place(t));
+    mouse.held = mouse.pointer;
+    if (const Grip<D>& grip = state.grips[i]; grip.body >= 0) {
+      mouse.body = grip.body;
+      mouse.held = lifted<D>(place(state, End<D>{grip.body, grip.local}));
+    }
+    now.mice.push_back(mouse);
+  }
+  for (const Touch<D>& touch : state.touches) {
+    const Wall<D>& wall = model.walls[touch.wall];
+    now.contacts.push_back({touch.body, touch.wall, lifted<D>(touch.point), lifted<D>(wall.normal),
+                            lifted<D>(touch.impulse), (touch.point - wall.point).dot(wall.normal)});
+  }
+  now.energies = energies(model, state, stepper.paths(), t);
+  now.momentum = lifted<D>(momentum(model, state));
+  now.angular_momentum = spinning<D>(angular_momentum(model, state));
+  return now;
+}
+
+template Cast cast<2>(const Model<2>&, const std::vector<Path<2>>&);
+template Snapshot snapshot<2>(const Model<2>&, const State<2>&, const Stepper<2>&, Beat, double);
+
+}  // namespace obscura::sim

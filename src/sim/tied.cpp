@@ -1,0 +1,159 @@
+// Bodies under springs, handout §2.2, §3.2.
+//   dv/dt = g - (c/m) v + sum f / m
+//   dw/dt = I^-1 sum r x f
+
+#include "sim/tied.h"
+
+#include <algorithm>
+
+#include "sim/flight.h"
+
+namespace obscura::sim {
+
+template <int D>
+Tied<D>::Tied(const Model<D>& model, const std::vector<Path<D>>& paths) : model_(model), paths_(paths) {
+  member_.assign(model.bodies.size(), -1);
+}
+
+template <int D>
+typename Tied<D>::Hold Tied<D>::hold(const State<D>& state, const End<D>& end) const {
+  if (end.body < 0) return {-1, -1, end.local};
+  if (member_[end.body] >= 0) return {member_[end.body], -1, end.local};
+  const Stance<D> at = stance(state, end.body);  // a fixed body: its point stays
+  return {-1, -1, at.x + at.arm(end.local)};
+}
+
+template <int D>
+void Tied<D>::gather(const State<D>& state) {
+  // who: bodies with a spring, and those in a hand
+  std::fill(member_.begin(), member_.end(), -1);
+  const auto mark = [&](int body) {
+    if (body >= 0 && !model_.bodies[body].fixed) member_[body] = 0;
+  };
+  for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
+  for (const Grip<D>& grip : state.grips) mark(grip.body);
+  bodies_.clear();
+  for (int body = 0; body < int(member_.size()); ++body) {
+    if (member_[body] < 0) continue;
+    member_[body] = int(bodies_.size());
+    bodies_.push_back(body);
+  }
+  turning_ = 0;
+  for (const int body : bodies_) turning_ += turning(state, body) >= 0;
+
+  // by what
+  ties_.clear();
+  for (const Spring<D>& spring : model_.springs) {
+    const Tie tie{hold(state, spring.a), hold(state, spring.b), law(spring)};
+    if (tie.a.member >= 0 || tie.b.member >= 0) ties_.push_back(tie);
+  }
+  for (int mouse = 0; mouse < int(state.grips.size()); ++mouse) {
+    const Grip<D>& grip = state.grips[mouse];
+    if (grip.body < 0) continue;
+    ties_.push_back(
+        {hold(state, {grip.body, grip.local}), {-1, mouse, Vec<D>::Zero()}, law(model_.mice[mouse])});
+  }
+
+  // under what
+  gravity_.clear(), drag_.clear();
+  bool drag = false;
+  for (const int body : bodies_) {
+    const Body<D>& b = model_.bodies[body];
+    for (int axis = 0; axis < D; ++axis) {
+      gravity_.push_back(model_.gravity[axis]);
+      drag_.push_back(b.drag / b.mass);
+    }
+    drag = drag || b.drag != 0;
+  }
+  if (!drag) drag_.clear();
+
+  const std::size_t n = D * bodies_.size() + kSpins<D> * turning_;
+  x_.resize(bodies_.size()), stances_.assign(bodies_.size(), {}), turn_.resize(turning_);
+  d_.resize(n), v_.resize(n);
+}
+
+template <int D>
+void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages) {
+  const int n = int(bodies_.size()), still = n - turning_;
+  if (n == 0) return;
+  for (int i = 0; i < n; ++i) {
+    x_[i] = state.x[bodies_[i]];
+    std::copy_n(state.v[bodies_[i]].data(), D, v_.data() + D * i);
+  }
+  for (int i = 0; i < turning_; ++i) {
+    const int k = turning(state, bodies_[still + i]);
+    turn_[i] = state.turn[k];
+    std::copy_n(state.spin[k].data(), kSpins<D>, v_.data() + D * n + kSpins<D> * i);
+  }
+  std::fill(d_.begin(), d_.end(), 0.0);
+
+  integrate(*this, t, h, d_, v_, stages);
+
+  for (int i = 0; i < n; ++i) {
+    state.x[bodies_[i]] += Eigen::Map<const Vec<D>>(d_.data() + D * i);
+    state.v[bodies_[i]] = Eigen::Map<const Vec<D>>(v_.data() + D * i);
+  }
+  for (int i = 0; i < turning_; ++i) {
+    const int k = turning(state, bodies_[still + i]), at = D * n + kSpins<D> * i;
+    state.turn[k] = turned<D>(turn_[i], Eigen::Map<const Spin<D>>(d_.data() + at));
+    state.spin[k] = Eigen::Map<const Spin<D>>(v_.data() + at);
+  }
+}
+
+template <int D>
+typename Tied<D>::Moving Tied<D>::moving(const Hold& hold, double t) const {
+  if (hold.mouse >= 0) {
+    const auto hand = paths_[hold.mouse].at(t);
+    return {Vec<D>::Zero(), hand.place, hand.velocity};
+  }
+  if (hold.member < 0) return {Vec<D>::Zero(), hold.at, Vec<D>::Zero()};
+  const Stance<D>& at = stances_[hold.member];
+  const Vec<D> arm = at.arm(hold.at);
+  return {arm, at.x + arm, at.velocity(arm)};
+}
+
+template <int D>
+void Tied<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) const {
+  if (hold.member < 0) return;
+  const int n = int(bodies_.size()), spinning = hold.member - (n - turning_);
+  const Body<D>& body = model_.bodies[bodies_[hold.member]];
+  Eigen::Map<Vec<D>>(v_rate.data() + D * hold.member) += force / body.mass;
+  if (spinning < 0) return;
+  Eigen::Map<Spin<D>>(v_rate.data() + D * n + kSpins<D> * spinning) +=
+      spun<D>(body.inertia, stances_[hold.member].room_from_body, moment<D>(arm, force));
+}
+
+template <int D>
+void Tied<D>::rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
+                    std::span<double> v_rate) {
+  static_assert(D == 2, "in space the turn's rate bends with the turn, and a free spin wobbles");
+  const int n = int(bodies_.size()), still = n - turning_;
+
+  // what needs no spring: x' = v, turn' = w, v' = g - (c/m) v, w' = 0
+  std::copy(v.begin(), v.end(), d_rate.begin());
+  fall(gravity_, drag_, v.first(D * n), v_rate.first(D * n));
+  std::fill(v_rate.begin() + D * n, v_rate.end(), 0.0);
+
+  // where everyone is at this stage
+  for (int i = 0; i < n; ++i) {
+    stances_[i].x = x_[i] + Eigen::Map<const Vec<D>>(d.data() + D * i);
+    stances_[i].v = Eigen::Map<const Vec<D>>(v.data() + D * i);
+  }
+  for (int i = 0; i < turning_; ++i) {
+    const int at = D * n + kSpins<D> * i;
+    stances_[still + i].room_from_body =
+        rotation<D>(turned<D>(turn_[i], Eigen::Map<const Spin<D>>(d.data() + at)));
+    stances_[still + i].w = Eigen::Map<const Spin<D>>(v.data() + at);
+  }
+
+  for (const Tie& tie : ties_) {
+    const Moving a = moving(tie.a, t), b = moving(tie.b, t);
+    const Vec<D> force = pull<D>(tie.law, a.place, a.velocity, b.place, b.velocity);
+    push(tie.a, a.arm, force, v_rate);
+    push(tie.b, b.arm, -force, v_rate);
+  }
+}
+
+template class Tied<2>;
+
+}  // namespace obscura::sim

@@ -1,0 +1,105 @@
+#pragma once
+
+// The algebra of turning: the one place where plane and space differ.
+//   v_P = v + w x r          handout §3.3.1
+//   tau = r x f              handout §3.2
+//   dw = I^-1 (r x J)        handout §3.4
+
+#include "sim/state.h"
+#include "sim/trig.h"
+
+namespace obscura::sim {
+
+template <int D>
+using Rotation = Eigen::Matrix<double, D, D>;
+
+/// w x r: the velocity (m/s) that spin w gives to a point at arm r.
+template <int D>
+Vec<D> swing(const Spin<D>& w, const Vec<D>& r) {
+  if constexpr (D == 2) {
+    return {-w[0] * r[1], w[0] * r[0]};
+  } else {
+    return w.cross(r);
+  }
+}
+
+/// r x f: the torque (N m) of a force f at arm r, or the turn of an impulse.
+template <int D>
+Spin<D> moment(const Vec<D>& r, const Vec<D>& f) {
+  if constexpr (D == 2) {
+    return Spin<D>(r[0] * f[1] - r[1] * f[0]);
+  } else {
+    return r.cross(f);
+  }
+}
+
+/// Columns are the axes of the body, seen from the room.
+template <int D>
+Rotation<D> rotation(const Turn<D>& turn) {
+  static_assert(D == 2, "space comes with its own turns");
+  const auto [s, c] = sin_cos(turn[0]);
+  Rotation<D> room_from_body;
+  room_from_body << c, -s, s, c;
+  return room_from_body;
+}
+
+/// Where a body comes to that turns by `by` (rad) from `turn`.
+template <int D>
+Turn<D> turned(const Turn<D>& turn, const Spin<D>& by) {
+  static_assert(D == 2, "space comes with its own turns");
+  return turn + by;
+}
+
+/// I^-1 tau: the spin (or its rate) that a torque (room's frame) gives to a body of these principal moments.
+template <int D>
+Spin<D> spun(const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& room_from_body,
+             const Spin<D>& torque) {
+  if constexpr (D == 2) {
+    return Spin<D>(torque[0] / inertia[0]);
+  } else {
+    return room_from_body * (room_from_body.transpose() * torque).cwiseQuotient(inertia);
+  }
+}
+
+/// Kinetic energy of the spin, J.
+template <int D>
+double spin_energy(const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& room_from_body,
+                   const Spin<D>& w) {
+  if constexpr (D == 2) {
+    return 0.5 * inertia[0] * w[0] * w[0];
+  } else {
+    const Spin<D> own = room_from_body.transpose() * w;
+    return 0.5 * own.dot(inertia.cwiseProduct(own));
+  }
+}
+
+/// How a body stands and moves, and from it how its points do. A body that does not turn has no spin.
+template <int D>
+struct Stance {
+  Vec<D> x = Vec<D>::Zero(), v = Vec<D>::Zero();
+  Rotation<D> room_from_body = Rotation<D>::Identity();
+  Spin<D> w = Spin<D>::Zero();
+
+  Vec<D> arm(const Vec<D>& local) const { return room_from_body * local; }
+  Vec<D> velocity(const Vec<D>& arm) const { return v + swing<D>(w, arm); }
+};
+
+/// Index of a body among those that turn; negative for one that does not.
+template <int D>
+int turning(const State<D>& state, int body) {
+  return body - int(state.x.size() - state.turn.size());
+}
+
+template <int D>
+Stance<D> stance(const State<D>& state, int body) {
+  Stance<D> at;
+  at.x = state.x[body];
+  at.v = state.v[body];
+  if (const int k = turning(state, body); k >= 0) {
+    at.room_from_body = rotation<D>(state.turn[k]);
+    at.w = state.spin[k];
+  }
+  return at;
+}
+
+}  // namespace obscura::sim

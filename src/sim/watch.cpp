@@ -1,0 +1,151 @@
+// Energy out of nowhere. Kinetic energy, springs, and gravity's potential above its start stay below
+//   fund = what they were + sum m g L + sum over the hands of k (4 L + way)^2 / 2 + what displacing gave L
+//   room's height
+// unless the step feeds them. A hundred times the fund is proof; four times, where the step is longer than
+// the integrator stands.
+
+#include "sim/watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy.h"
+#include "sim/run.h"
+#include "sim/runaway.h"
+#include "sim/shape.h"
+#include "sim/stability.h"
+#include "sim/turning.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kProof = 100, kSuspect = 4;
+
+template <int D>
+bool apart(const Eigen::Matrix<double, D, 1>& numbers, double limit) {
+  return within(numbers.data(), D, limit) < 0;
+}
+
+template <int D>
+std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit) {
+  for (int i = 0; i < D; ++i) {
+    if (std::isnan(numbers[i])) return "is not a number";
+  }
+  for (int i = 0; i < D; ++i) {
+    if (std::isinf(numbers[i])) return "is infinite";
+  }
+  return std::string("grew past ") + limit;
+}
+
+template <int D>
+std::string named(const Model<D>& model, int body) {
+  const std::string& name = model.bodies[body].name;
+  return name.empty() ? "body " + std::to_string(body) : name;
+}
+
+}  // namespace
+
+template <int D>
+Watch<D>::Watch(const Model<D>& model, const std::vector<Path<D>>& paths) : model_(model), paths_(paths) {}
+
+template <int D>
+std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const {
+  const double limit = kFarthest * model_.scale;
+  for (int body = 0; body < int(model_.bodies.size()); ++body) {
+    const auto trouble = [&](const char* quantity, std::string what) {
+      return Trouble{t, named(model_, body), quantity, std::move(what), likely(state, body)};
+    };
+    if (apart<D>(state.x[body], limit))
+      return trouble("position", fate<D>(state.x[body], "1e6 room heights"));
+    if (apart<D>(state.v[body], limit))
+      return trouble("velocity", fate<D>(state.v[body], "1e6 room heights a second"));
+    const int k = turning(state, body);
+    if (k < 0) continue;
+    const double fastest = limit / reach(model_.bodies[body].shape);
+    constexpr int kSpin = kSpins<D>;
+    if (apart<kSpin>(state.spin[k], fastest)) {
+      return trouble("spin", fate<kSpin>(state.spin[k], "1e6 room heights a second at a corner"));
+    }
+    constexpr int kTurn = Turn<D>::RowsAtCompileTime;
+    if (apart<kTurn>(state.turn[k], kFarthest * kFarthest)) {
+      return trouble("angle", fate<kTurn>(state.turn[k], "1e12 radians"));
+    }
+  }
+  return {};
+}
+
+template <int D>
+void Watch<D>::start(const State<D>& state, double t) {
+  const Energies e = energies(model_, state, paths_, t);
+  level_ = e.gravity + state.ledger.displacement;
+  fund_ = e.kinetic + e.springs;
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  for (const Body<D>& body : model_.bodies) {
+    if (!body.fixed) fund_ += body.mass * g * model_.scale;
+  }
+  for (const Mouse<D>& mouse : model_.mice) {
+    double way = 4 * model_.scale;
+    for (const Knot<D>& knot : mouse.path) {
+      way =
+          std::max(way, 4 * model_.scale + std::sqrt((knot.place - mouse.path.front().place).squaredNorm()));
+    }
+    fund_ += 0.5 * mouse.stiffness * way * way;
+  }
+}
+
+template <int D>
+std::optional<Trouble> Watch<D>::energy(const State<D>& state, double t) const {
+  const Energies e = energies(model_, state, paths_, t);
+  const double fund = fund_ + std::max(0.0, state.ledger.displacement);
+  const double now = e.kinetic + e.springs + e.gravity - level_;
+  if (now <= kSuspect * fund) return {};
+  const Tightness worst = tightest(model_, state.grips);
+  if (now <= kProof * fund && worst.body < 0) return {};
+
+  // whose it is: the one that moves most
+  int body = 0;
+  double most = -1;
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    if (model_.bodies[i].fixed) continue;
+    const double moving = kinetic(model_, state, i);
+    if (moving > most) most = moving, body = i;
+  }
+  return Trouble{t, named(model_, body), "energy", "grew far beyond what was put in", likely(state, body)};
+}
+
+template <int D>
+std::string Watch<D>::likely(const State<D>& state, int body) const {
+  if (const Tightness worst = tightest(model_, state.grips); worst.body >= 0) return too_long(model_, worst);
+  bool tied = false;
+  for (const Spring<D>& s : model_.springs) tied = tied || s.a.body == body || s.b.body == body;
+  for (const Grip<D>& grip : state.grips) tied = tied || grip.body == body;
+  if (tied) return "a spring feeds it: raise physics.rate";
+  if (model_.walls.empty()) return "nothing stops it: the room has no walls";
+  return "nothing stops it: no wall lies on its way, or it started too fast";
+}
+
+template class Watch<2>;
+
+std::vector<Trouble> forebodings(const Model<2>& model) {
+  // a hand may take any body: it is tried on the one that yields most
+  std::vector<Grip<2>> none(model.mice.size());
+  Tightness worst = tightest(model, none);
+  const double h = 1 / value(model.rate);
+  double shortest = worst.body >= 0 ? longest_step(model.integrator, worst, h) : h;
+  for (int mouse = 0; mouse < int(model.mice.size()); ++mouse) {
+    for (int body = 0; body < int(model.bodies.size()); ++body) {
+      const Body<2>& b = model.bodies[body];
+      if (b.fixed) continue;
+      auto grips = none;
+      grips[mouse] = {body, b.turns() ? b.shape.half : Vec<2>::Zero().eval()};
+      const Tightness here = tightness(model, grips)[body];
+      const double limit = longest_step(model.integrator, here, h);
+      if (limit < shortest) shortest = limit, worst = here;
+    }
+  }
+  if (worst.body < 0) return {};
+  return {{0, named(model, worst.body), "energy", "will grow from nowhere", too_long(model, worst)}};
+}
+
+}  // namespace obscura::sim

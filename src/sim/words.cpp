@@ -1,0 +1,55 @@
+#include <bit>
+
+#include "sim/state.h"
+
+namespace obscura::sim {
+
+namespace {
+
+struct Words {
+  std::vector<std::uint64_t> all;
+
+  void integer(std::int64_t n) { all.push_back(std::uint64_t(n)); }
+  void number(double x) { all.push_back(x == 0 ? 0 : std::bit_cast<std::uint64_t>(x)); }
+  template <int N>
+  void numbers(const Eigen::Matrix<double, N, 1>& v) {
+    for (int i = 0; i < N; ++i) number(v[i]);
+  }
+  template <int N>
+  void list(const std::vector<Eigen::Matrix<double, N, 1>>& vectors) {
+    integer(std::int64_t(vectors.size()));
+    for (const auto& v : vectors) numbers<N>(v);
+  }
+};
+
+}  // namespace
+
+template <int D>
+std::vector<std::uint64_t> words(const State<D>& state) {
+  Words w;
+  w.integer(state.step);
+  w.number(state.beyond);
+  w.list(state.x);
+  w.list(state.v);
+  w.list(state.turn);
+  w.list(state.spin);
+  w.integer(std::int64_t(state.grips.size()));
+  for (const Grip<D>& grip : state.grips) {
+    w.integer(grip.body);
+    w.template numbers<D>(grip.local);
+  }
+  w.integer(std::int64_t(state.touches.size()));
+  for (const Touch<D>& touch : state.touches) {
+    w.integer(touch.body);
+    w.integer(touch.wall);
+    w.template numbers<D>(touch.point);
+    w.template numbers<D>(touch.impulse);
+  }
+  w.number(state.ledger.displacement);
+  w.number(state.ledger.impacts);
+  return w.all;
+}
+
+template std::vector<std::uint64_t> words<2>(const State<2>&);
+
+}  // namespace obscura::sim

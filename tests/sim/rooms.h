@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "sim/run.h"
+#include "sim/shape.h"
+#include "sim/state.h"
+#include "sim/stepper.h"
+
+namespace obscura::sim {
+
+// Worlds by hand, one thing at a time. Bodies that do not turn go in before those that do.
+
+using Vec2 = Vec<2>;
+
+inline World<2> room(Vec2 gravity = {0, -9.81}) {
+  World<2> world;
+  world.model.gravity = gravity;
+  world.model.rate = {1000, 1};
+  return world;
+}
+
+inline int add_particle(World<2>& world, Vec2 x, Vec2 v = {0, 0}, double mass = 1, double elasticity = 1,
+                        double radius = 0) {
+  Body<2> body;
+  body.name = "particle[" + std::to_string(world.model.bodies.size()) + "]";
+  body.shape.kind = radius > 0 ? ShapeKind::ball : ShapeKind::point;
+  body.shape.radius = radius;
+  body.mass = mass, body.elasticity = elasticity;
+  world.model.bodies.push_back(body);
+  world.state.x.push_back(x), world.state.v.push_back(v);
+  return int(world.model.bodies.size()) - 1;
+}
+
+inline int add_box(World<2>& world, Vec2 size, double mass, Vec2 x, Vec2 v = {0, 0}, double angle = 0,
+                   double spin = 0, double elasticity = 1) {
+  Body<2> body;
+  body.name = "box[" + std::to_string(world.model.bodies.size()) + "]";
+  body.shape.kind = ShapeKind::box;
+  body.shape.half = size / 2;
+  body.mass = mass, body.elasticity = elasticity;
+  body.inertia = inertia(body.shape, mass);
+  world.model.bodies.push_back(body);
+  world.state.x.push_back(x), world.state.v.push_back(v);
+  world.state.turn.push_back(Turn<2>(angle)), world.state.spin.push_back(Spin<2>(spin));
+  return int(world.model.bodies.size()) - 1;
+}
+
+inline void add_wall(World<2>& world, Vec2 point, Vec2 normal) {
+  world.model.walls.push_back({point, normal / normal.norm(), {}});
+}
+
+/// Floor, ceiling and two walls around (0, 0) .. (w, h).
+inline void add_walls(World<2>& world, double w, double h) {
+  add_wall(world, {0, 0}, {0, 1}), add_wall(world, {0, h}, {0, -1});
+  add_wall(world, {0, 0}, {1, 0}), add_wall(world, {w, 0}, {-1, 0});
+  world.model.scale = h;
+}
+
+inline void add_spring(World<2>& world, End<2> a, End<2> b, double k, double rest, double c = 0) {
+  world.model.springs.push_back({a, b, rest, k, c});
+}
+
+inline Snapshot shown(Run& run, Rational t) {
+  auto answer = run.at(t);
+  if (const auto* trouble = std::get_if<Trouble>(&answer)) throw *trouble;
+  return std::get<Snapshot>(std::move(answer));
+}
+
+/// The state after whole steps, without a Run around it.
+inline State<2> stepped(const World<2>& world, int steps) {
+  State<2> state = world.state;
+  Stepper<2> stepper(world.model);
+  stepper.begin(state);
+  for (int i = 0; i < steps; ++i) {
+    if (auto trouble = stepper.step(state)) throw *trouble;
+  }
+  return state;
+}
+
+}  // namespace obscura::sim
