@@ -36,7 +36,7 @@ void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& 
     const Point tail = view.page(body.position);
     const Point tip = view.page(body.position + stage.look.velocity_scale * body.velocity);
     const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
-    if (grow > 0.12) arrows.push_back({tail, tip, grow});
+    if (grow > 0.2) arrows.push_back({tail, tip, grow});
   }
 
   // halos of all below all arrows, one kind after another: few batches

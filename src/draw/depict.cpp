@@ -11,12 +11,13 @@
 namespace obscura::draw {
 namespace {
 
-constexpr int kNet = 12;  // more springs than these are a net
+constexpr int kMany = 12;  // more springs than these, nets apart, are drawn as lines
 
 bool is_point(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::point; }
 bool is_box(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::box; }
 
-/// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on one.
+/// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on
+/// one.
 std::vector<char> knots(const sim::Cast& cast) {
   std::vector<int> count(cast.bodies.size(), 0);
   for (const sim::Cast::Spring& spring : cast.springs) {
@@ -27,7 +28,8 @@ std::vector<char> knots(const sim::Cast& cast) {
   std::vector<char> knot(cast.bodies.size(), 0);
   for (const sim::Cast::Spring& spring : cast.springs) {
     for (auto [body, other] : {std::pair(spring.a, spring.b), std::pair(spring.b, spring.a)}) {
-      if (body >= 0 && (count[body] >= 3 || (count[body] == 2 && other >= 0 && count[other] >= 3))) knot[body] = 1;
+      if (body >= 0 && (count[body] >= 3 || (count[body] == 2 && other >= 0 && count[other] >= 3)))
+        knot[body] = 1;
     }
   }
   return knot;
@@ -45,12 +47,14 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
   const std::vector<char> net = knots(cast);
   auto knot = [&](int body) { return body >= 0 && net[body]; };
 
-  // springs: coils, or lines where they make a net
-  const bool many = int(cast.springs.size()) > kNet;
+  // springs: coils, or lines where they make a net or are many
+  auto in_net = [&](const sim::Cast::Spring& spring) { return knot(spring.a) || knot(spring.b); };
+  const auto loose =
+      std::count_if(cast.springs.begin(), cast.springs.end(), [&](const auto& s) { return !in_net(s); });
   std::vector<double> shortest(cast.bodies.size(), 1e300);  // spring of a net at each body, page units
   for (const sim::Cast::Spring& spring : cast.springs) {
-    const bool line = look.springs == Look::Springs::lines || (look.springs == Look::Springs::automatic &&
-                                                               (many || knot(spring.a) || knot(spring.b)));
+    const bool line = look.springs == Look::Springs::lines ||
+                      (look.springs == Look::Springs::automatic && (loose > kMany || in_net(spring)));
     const double rest = spring.rest_length * layout.scale;
     // a spring without a rest length still needs turns
     Coil form = coil(std::max(rest, 0.12 * cast.scale * layout.scale), layout.weight);
@@ -124,7 +128,6 @@ Picture Depictor::depict(const sim::Snapshot& now,
   draw_boxes(stage, view, now, list);
   draw_springs(stage, view, now, true, list);
   draw_rounds(stage, view, now, list);
-  draw_joints(stage, view, now, list);
   draw_velocities(stage, view, now, list);
   draw_hands(stage, view, now, list);
   list.unclip();

@@ -13,7 +13,7 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kTitle = 34, kSubtitle = 27, kClock = 29;       // em
+constexpr double kTitle = 34, kSubtitle = 26.5, kClock = 28.5;   // em
 constexpr double kStrip = 76, kSecondLine = 36, kBaseline = 50;  // heights
 constexpr double kMargin = 36, kTitleGap = 18, kClockGap = 44;
 constexpr double kSmallestType = 0.82;  // before the caption takes another line
@@ -76,8 +76,8 @@ struct Setting {
 
 Setting set_words(const Look& look, double weight, double room, double page) {
   const double title = width_of(look.title, Face::bold, kTitle * weight);
-  const double subtitle = width_of(look.subtitle, Face::regular, kSubtitle * weight);
-  const double clock = look.clock ? width_of(clock_text(88.88), Face::regular, kClock * weight, true) : 0;
+  const double subtitle = width_of(look.subtitle, Face::medium, kSubtitle * weight);
+  const double clock = look.clock ? width_of(clock_text(88.88), Face::medium, kClock * weight, true) : 0;
   const double gap = weight * kClockGap;
   const double top = title + (title > 0 && clock > 0 ? gap : 0) + clock;
   const double all =
@@ -101,11 +101,11 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
 
   double clock = 0;
   if (look.clock) {
-    clock = width_of(clock_text(88.88), Face::regular, kClock * unit, true) + kClockGap * unit;
+    clock = width_of(clock_text(88.88), Face::medium, kClock * unit, true) + kClockGap * unit;
     layout.clock = {
         {right, baseline},
         Align::right,
-        {{.text = "", .face = Face::regular, .size = kClock * unit, .color = colours.ink, .tabular = true}}};
+        {{.text = "", .face = Face::medium, .size = kClock * unit, .color = colours.ink, .tabular = true}}};
   }
 
   const std::string title = fitted(look.title, Face::bold, kTitle * unit, span - clock);
@@ -117,11 +117,11 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
   }
   if (look.subtitle.empty()) return;
   const Span quiet{
-      .text = look.subtitle, .face = Face::regular, .size = kSubtitle * unit, .color = colours.quiet};
+      .text = look.subtitle, .face = Face::medium, .size = kSubtitle * unit, .color = colours.quiet};
   const bool beside = setting.lines == 1;
   const double taken = title.empty() ? 0 : width_of(title, Face::bold, kTitle * unit) + kTitleGap * unit;
   Text line{beside ? Point{left + taken, baseline} : Point{left, below}, Align::left, {quiet}};
-  line.spans[0].text = fitted(look.subtitle, Face::regular, quiet.size, beside ? span - clock - taken : span);
+  line.spans[0].text = fitted(look.subtitle, Face::medium, quiet.size, beside ? span - clock - taken : span);
   if (!line.spans[0].text.empty()) layout.words.push_back(line);
 }
 

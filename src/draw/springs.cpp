@@ -15,10 +15,10 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kPitch = 25, kAmplitude = 12.5;  // at rest, page units
-constexpr double kCrest = 0.35;                   // k
-constexpr double kRise = 0.62;                    // turns over which the amplitude rises
-constexpr int kNodes = 22;                        // a turn
+constexpr double kPitch = 20, kAmplitude = 13;  // at rest, page units
+constexpr double kCrest = 0.22;                 // k
+constexpr double kRise = 0.62;                  // turns over which the amplitude rises
+constexpr int kNodes = 22;                      // a turn
 
 double smooth(double u) {
   u = std::clamp(u, 0.0, 1.0);
@@ -29,16 +29,19 @@ double lead(const Coil& coil, double length) {
   return std::min(std::clamp(0.085 * length, 2.2 * coil.line, 12 * coil.line), 0.2 * length);
 }
 
+bool is_box(const Stage& stage, int body) {
+  return body >= 0 && stage.cast.bodies[body].kind == sim::ShapeKind::box;
+}
+
 bool holds_box(const Stage& stage, const sim::Cast::Spring& spring) {
-  auto box = [&](int body) { return body >= 0 && stage.cast.bodies[body].kind == sim::ShapeKind::box; };
-  return box(spring.a) || box(spring.b);
+  return is_box(stage, spring.a) || is_box(stage, spring.b);
 }
 
 }  // namespace
 
 Coil coil(double rest, double weight) {
   const double pitch = kPitch * weight;
-  const int turns = std::clamp(int(std::lround(0.83 * rest / pitch)), 4, 24);
+  const int turns = std::clamp(int(std::lround(0.85 * rest / pitch)), 4, 24);
   // a short spring is a slender one too
   const double slender = std::min(1.0, std::sqrt(rest / (6 * pitch)));
   return {turns, rest, kAmplitude * weight * std::max(0.5, slender), kSpringLine * weight};
@@ -96,18 +99,18 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
     }
     list.add(nodes, Cap::round);
   }
-}
 
-void draw_joints(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
-  const double weight = stage.layout.weight;
+  // made fast to the room or a box; a particle covers the end itself
   auto joint = [&](int body, const Point& at, const Coil& form) {
-    if (body >= 0 && stage.cast.bodies[body].kind != sim::ShapeKind::box) return;
+    if (body >= 0 && !is_box(stage, body)) return;
     const double radius = (form.turns == 0 ? 0.75 : 1) * kJoint * weight;
     list.add(Disc{at, radius, 0, stage.colours.spring, stage.colours.spring});
   };
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
-    joint(stage.cast.springs[i].a, view.page(now.springs[i].a), stage.coils[i]);
-    joint(stage.cast.springs[i].b, view.page(now.springs[i].b), stage.coils[i]);
+    const sim::Cast::Spring& spring = stage.cast.springs[i];
+    if (holds_box(stage, spring) != boxes) continue;
+    joint(spring.a, view.page(now.springs[i].a), stage.coils[i]);
+    joint(spring.b, view.page(now.springs[i].b), stage.coils[i]);
   }
 }
 

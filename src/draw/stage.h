@@ -37,11 +37,9 @@ void draw_still(const Stage& stage, const View& view, List& list);
 
 void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now, Ways ways, List& list);
 
-/// Springs that no box holds, behind the bodies; and those that one does, in front of the boxes.
+/// Springs that no box holds, drawn behind the bodies, or those that one does, in front of the boxes; with a
+/// dot where they are made fast.
 void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool boxes, List& list);
-
-/// Where springs are made fast to boxes and the room.
-void draw_joints(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);

@@ -23,7 +23,7 @@ Convex cut_all(const Rect& rect, const std::vector<HalfPlane>& walls, double dis
 
 /// Along the hatching: at 45 degrees, unless a wall runs so too.
 Point hatch_direction(const std::vector<HalfPlane>& walls) {
-  constexpr std::array<double, 6> angles{45, 135, 60, 120, 30, 150};
+  constexpr std::array<double, 8> angles{45, 135, 60, 120, 30, 150, 90, 0};
   Point best = {std::numbers::sqrt2 / 2, -std::numbers::sqrt2 / 2};
   double widest = 0;
   for (double angle : angles) {

@@ -31,7 +31,8 @@ Palette palette(Theme theme) {
           .spring = {0xB3, 0xBD, 0xC7},
           .way = {0x72, 0x7E, 0x8A},
           .hatch = {0x5A, 0x67, 0x74},
-          .velocity = green};
+          // lighter, to be seen on a green body
+          .velocity = mix(green, kWhite, 0.4)};
 }
 
 Paint paint(Color own, Theme theme) {

@@ -28,8 +28,8 @@ inline constexpr double kWallLine = 3.2, kOutline = 2.8, kAxisLine = 2.4, kSprin
                         kThinSpring = 2.2, kNetLine = 2.0, kArrowLine = 4.0, kHatchLine = 1.6,
                         kTrailLine = 6.4;
 inline constexpr double kHatchStep = 14,
-                        kBand = 24;              // along an upright wall; from the wall to the band's edge
-inline constexpr double kDot = 7.5, kJoint = 5;  // radius of a point, of where a spring is made fast
+                        kBand = 24;            // along an upright wall; from the wall to the band's edge
+inline constexpr double kDot = 8, kJoint = 5;  // radius of a point, of where a spring is made fast
 
 /// The colours of the paper or of the screen.
 Palette palette(Theme theme);
