@@ -43,8 +43,7 @@ void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& 
   auto shaft = [&](const Arrow& a, double halo, Color color) {
     const Point u = (a.tip - a.tail).normalized();
     const double width = kArrowLine * weight * a.grow + 2 * halo;
-    list.add({{a.tail - u * halo, width, color}, {a.tip - u * (kNotch - 1) * weight * a.grow, width, color}},
-             Cap::butt);
+    list.add({{a.tail, width, color}, {a.tip - u * (kNotch - 1) * weight * a.grow, width, color}}, Cap::butt);
   };
   for (const Arrow& a : arrows) shaft(a, kHalo * weight * a.grow, stage.colours.room);
   for (const Arrow& a : arrows) list.add(head(a, weight, kHalo * weight * a.grow), stage.colours.room);

@@ -51,7 +51,8 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
   auto in_net = [&](const sim::Cast::Spring& spring) { return knot(spring.a) || knot(spring.b); };
   const auto loose =
       std::count_if(cast.springs.begin(), cast.springs.end(), [&](const auto& s) { return !in_net(s); });
-  std::vector<double> shortest(cast.bodies.size(), 1e300);  // spring of a net at each body, page units
+  double mesh = 1e300;  // a net's shortest spring, page units
+  std::vector<char> tied(cast.bodies.size(), 0);
   for (const sim::Cast::Spring& spring : cast.springs) {
     const bool line = look.springs == Look::Springs::lines ||
                       (look.springs == Look::Springs::automatic && (loose > kMany || in_net(spring)));
@@ -60,15 +61,17 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
     Coil form = coil(std::max(rest, 0.12 * cast.scale * layout.scale), layout.weight);
     if (line) form.turns = 0, form.rest = rest;
     coils.push_back(form);
+    if (!line) continue;
+    if (rest > 0) mesh = std::min(mesh, rest);
     for (int body : {spring.a, spring.b}) {
-      if (line && body >= 0 && rest > 0) shortest[body] = std::min(shortest[body], rest);
+      if (body >= 0) tied[body] = 1;
     }
   }
   for (const sim::Cast::Mouse& mouse : cast.mice) {
     // the hand's rest length is short and its pull long: turns for a pull across a part of the room
     const double rest = std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale;
     hands.push_back(coil(rest, 0.82 * layout.weight));
-    hands.back().line = kSpringLine * layout.weight;
+    hands.back().line = 0.86 * kSpringLine * layout.weight;
   }
 
   // bodies: the scene's colour, grey for what is held or knots a net, else the next of the palette
@@ -81,7 +84,8 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
     const BodyLook own = looks(i);
     const bool quiet = body.fixed || knot(i);
     paints.push_back(paint(own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++), look.theme));
-    dots.push_back(is_point(body) ? std::max(std::min(dot, 0.2 * shortest[i]), 1.6 * layout.weight) : 0);
+    dots.push_back(is_point(body) ? std::max(tied[i] ? std::min(dot, 0.2 * mesh) : dot, 1.6 * layout.weight)
+                                  : 0);
     (is_box(body) ? boxes : rounds).push_back(i);
     if (own.velocity) arrows.push_back(i);
   }

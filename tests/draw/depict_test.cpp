@@ -1,0 +1,246 @@
+#include "draw/depict.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "draw/made.h"
+
+namespace obscura::draw {
+namespace {
+
+using sim::ShapeKind;
+
+/// A way at `rate` points a second, thrown and bouncing once.
+std::shared_ptr<const sim::Track> thrown(int body, double until, double rate) {
+  auto track = std::make_shared<sim::Track>();
+  track->bodies = {body};
+  track->points.emplace_back();
+  for (int i = 0; i <= int(until * rate); ++i) {
+    const double t = i / rate, bounce = 0.6, u = t < bounce ? t - bounce : t - bounce;
+    track->points[0].push_back({t, {1 + 2 * t, 0.1 + 2.5 * std::abs(u) - 1.5 * u * u, 0}});
+  }
+  return track;
+}
+
+Made with_trail(double rate = 600, double until = 1.2, double lasting = 1) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {0, 0, 0}, 0.1);
+  made.look.bodies[0].trail = lasting;
+  made.ways = {thrown(0, until, rate)};
+  made.now.time = until;
+  made.now.bodies[0].position = made.ways[0]->points[0].back().place;
+  return made;
+}
+
+TEST(Trails, EndAtTheBodyAndUnderIt) {
+  const Made made = with_trail();
+  const Picture picture = made.picture();
+  const List& list = picture.moving;
+  ASSERT_FALSE(list.strokes.empty());
+  const Point body = made.depictor().view(0).page(made.now.bodies[0].position);
+  EXPECT_NEAR((list.nodes[list.strokes.back().end - 1].at - body).norm(), 0, 1e-9);
+  EXPECT_EQ(list.batches.front().kind, Kind::stroke) << "drawn before the body";
+  EXPECT_EQ(list.batches[1].kind, Kind::disc);
+}
+
+TEST(Trails, TaperAndFadeIntoTheRoom) {
+  for (Theme theme : {Theme::paper, Theme::screen}) {
+    Made made = with_trail();
+    made.look.theme = theme;
+    const Picture picture = made.picture();
+    const std::vector<Node>& nodes = picture.moving.nodes;
+    for (std::size_t i = 1; i < nodes.size(); ++i) EXPECT_GE(nodes[i].width, nodes[i - 1].width - 1e-12);
+    EXPECT_LT(nodes.front().width, 0.3 * nodes.back().width);
+    EXPECT_EQ(nodes.front().color,
+              theme == Theme::paper ? (Color{255, 255, 255}) : (Color{0x13, 0x1A, 0x21}));
+    for (const Stroke& stroke : picture.moving.strokes) {
+      EXPECT_EQ(stroke.blend, theme == Theme::paper ? Blend::darken : Blend::lighten);
+    }
+  }
+}
+
+TEST(Trails, KeepTheCuspOfABounce) {
+  const Made made = with_trail();
+  const Picture picture = made.picture();
+  ASSERT_EQ(picture.moving.strokes.size(), 2u) << "broken at the bounce";
+  const Point cusp = made.depictor().view(0).page({1 + 2 * 0.6, 0.1, 0});
+  EXPECT_NEAR((picture.moving.nodes[picture.moving.strokes[1].begin].at - cusp).norm(), 0, 1e-6);
+  EXPECT_NEAR((picture.moving.nodes[picture.moving.strokes[0].end - 1].at - cusp).norm(), 0, 1e-6);
+}
+
+TEST(Trails, AreAFewHundredNodesHoweverFineTheWay) {
+  EXPECT_LT(with_trail(600).picture().moving.nodes.size(), 260u);
+  EXPECT_LT(with_trail(24000).picture().moving.nodes.size(), 260u);
+  EXPECT_GT(with_trail(600).picture().moving.nodes.size(), 150u);
+}
+
+TEST(Trails, DoNotWanderFromFrameToFrame) {
+  // a frame later the nodes inside are the same places
+  const Made before = with_trail(600, 1.2), after = with_trail(600, 1.2 + 1.0 / 60);
+  const Picture a = before.picture(), b = after.picture();
+  int same = 0, looked = 0;
+  for (std::size_t i = 20; i + 1 < a.moving.nodes.size(); ++i) {
+    ++looked;
+    for (const Node& node : b.moving.nodes) {
+      if ((node.at - a.moving.nodes[i].at).norm() < 1e-9) {
+        ++same;
+        break;
+      }
+    }
+  }
+  // all but the last, which was where the body was
+  EXPECT_GE(same, looked - 1);
+}
+
+TEST(Trails, JoinOverSeveralTracksAndBeginOnTime) {
+  Made whole = with_trail(600, 1.2, 0.9);
+  Made parts = whole;
+  auto first = std::make_shared<sim::Track>(), second = std::make_shared<sim::Track>();
+  first->bodies = second->bodies = {0};
+  first->points.resize(1), second->points.resize(1);
+  for (const auto& p : whole.ways[0]->points[0]) (p.time < 0.7 ? first : second)->points[0].push_back(p);
+  parts.ways = {first, second};
+  const Picture a = whole.picture(), b = parts.picture();
+  ASSERT_EQ(a.moving.nodes.size(), b.moving.nodes.size());
+  for (std::size_t i = 0; i < a.moving.nodes.size(); ++i) {
+    EXPECT_EQ(a.moving.nodes[i].at, b.moving.nodes[i].at);
+  }
+  // it begins 0.9 s ago, at x = 1 + 2 (1.2 - 0.9)
+  EXPECT_NEAR(a.moving.nodes[0].at.x(), whole.depictor().view(0).page({1.6, 0, 0}).x(), 1e-6);
+}
+
+TEST(Trails, OfABodyAtRestAreNoTrouble) {
+  Made made = with_trail();
+  auto track = std::make_shared<sim::Track>();
+  track->bodies = {0};
+  track->points.resize(1);
+  for (int i = 0; i < 600; ++i) track->points[0].push_back({i / 600.0, {1, 1, 0}});
+  made.ways = {track};
+  made.now.bodies[0].position = {1, 1, 0};
+  EXPECT_TRUE(made.picture().moving.strokes.empty());
+}
+
+TEST(Depict, SaysWhatToTrack) {
+  Made made = room(8, 4.5);
+  for (int i = 0; i < 3; ++i) made.body(ShapeKind::ball, {1, 1, 0}, 0.1);
+  made.look.bodies[1].trail = 1.5;
+  made.look.bodies[2].trail = 0.5;
+  EXPECT_EQ(made.depictor().trailed(), (std::vector<int>{1, 2}));
+  EXPECT_EQ(made.depictor().longest_trail(), 1.5);
+}
+
+TEST(Depict, BodiesAreWhereAndAsLargeAsTheyAre) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {3, 2, 0}, 0.25);
+  const int box = made.body(ShapeKind::box, {5, 1, 0}, 0.5);
+  made.now.bodies[box].angle = std::numbers::pi / 6;
+  const View view = made.depictor().view(0);
+  const Picture picture = made.picture();
+  ASSERT_EQ(picture.moving.discs.size(), 1u);
+  EXPECT_NEAR(picture.moving.discs[0].radius, 0.25 * view.scale, 1e-9);
+  EXPECT_NEAR((picture.moving.discs[0].center - view.page({3, 2, 0})).norm(), 0, 1e-9);
+  ASSERT_EQ(picture.moving.boxes.size(), 1u);
+  const Box& drawn = picture.moving.boxes[0];
+  EXPECT_NEAR((drawn.half - Point(0.5, 0.5) * view.scale).norm(), 0, 1e-9);
+  // counter-clockwise in the world is counter-clockwise on the page, where y runs down
+  const Point corner = drawn.center + drawn.x_axis * drawn.half.x();
+  EXPECT_NEAR((corner - view.page({5 + 0.5 * std::cos(std::numbers::pi / 6), 1.25, 0})).norm(), 0, 1e-9);
+  EXPECT_EQ(picture.moving.batches[0].kind, Kind::box) << "boxes below balls";
+}
+
+TEST(Depict, PointsAreDotsOfOneSizeThatShrinkInACrowd) {
+  auto radius = [](int count) {
+    Made made = room(8, 4.5);
+    for (int i = 0; i < count; ++i) made.body(ShapeKind::point, {0.01 + 7.9 * i / count, 1, 0});
+    return made.picture().moving.discs[0].radius;
+  };
+  EXPECT_EQ(radius(1), 8);
+  EXPECT_EQ(radius(50), 8);
+  EXPECT_LT(radius(1000), 4);
+  EXPECT_GE(radius(20000), 1.6);
+}
+
+TEST(Depict, AxesReadOnTheFill) {
+  // the contrast of WCAG 2: 3 is enough for graphics
+  auto luminance = [](Color c) {
+    auto decode = [](double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); };
+    return 0.2126 * decode(c.r / 255.0) + 0.7152 * decode(c.g / 255.0) + 0.0722 * decode(c.b / 255.0);
+  };
+  for (Theme theme : {Theme::paper, Theme::screen}) {
+    for (const char* name : {"orange", "sky", "green", "blue", "vermilion", "purple", "yellow", "grey"}) {
+      Made made = room(8, 4.5);
+      made.look.theme = theme;
+      made.body(ShapeKind::box, {3, 2, 0}, 0.5);
+      made.look.bodies[0].color = color(name);
+      const Picture picture = made.picture();
+      const Box& box = picture.moving.boxes[0];
+      const double a = luminance(box.fill), b = luminance(box.axis_color);
+      EXPECT_GT((std::max(a, b) + 0.05) / (std::min(a, b) + 0.05), 2.4) << name << " " << int(theme);
+    }
+  }
+}
+
+TEST(Depict, VelocityArrowEndsWhereItsScaleSays) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {3, 2, 0}, 0.1);
+  made.now.bodies[0].velocity = {4, 3, 0};
+  made.look.bodies[0].velocity = true;
+  const Picture picture = made.picture();
+  ASSERT_EQ(picture.moving.polygons.size(), 2u) << "halo and head";
+  const Point tip = picture.moving.points[picture.moving.polygons[1].begin];
+  EXPECT_NEAR((tip - made.depictor().view(0).page({3.4, 2.3, 0})).norm(), 0, 1e-9);
+
+  made.now.bodies[0].velocity = {0.01, 0, 0};
+  EXPECT_TRUE(made.picture().moving.polygons.empty()) << "too short to have a head";
+}
+
+TEST(Depict, HandIsShownFromJustBeforeThePressToJustAfterTheRelease) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::box, {3, 2, 0}, 0.3);
+  sim::Cast::Mouse mouse;
+  mouse.press = 1, mouse.release = 2, mouse.rest_length = 0.2;
+  for (int i = 0; i <= 100; ++i) mouse.path.push_back({2 + 0.03 * i, 3, 0});
+  made.cast.mice = {mouse};
+  made.now.mice = {{true, {3.5, 3, 0}, 0, {3.3, 2.3, 0}}};
+  auto pointers = [&](double t, bool pressed) {
+    made.now.time = t;
+    made.now.mice[0].pressed = pressed;
+    return made.picture().moving.polygons.size();
+  };
+  EXPECT_EQ(pointers(0.5, false), 0u);
+  EXPECT_GT(pointers(0.9, false), 0u);
+  EXPECT_GT(pointers(1.5, true), 0u);
+  EXPECT_GT(pointers(2.2, false), 0u);
+  EXPECT_EQ(pointers(2.5, false), 0u);
+
+  // its spring is there while it holds, from the point held to the pointer
+  made.now.time = 1.5;
+  made.now.mice[0].pressed = true;
+  const Picture picture = made.picture();
+  const View view = made.depictor().view(0);
+  const Stroke& coil = picture.moving.strokes.front();
+  EXPECT_NEAR((picture.moving.nodes[coil.begin].at - view.page({3.3, 2.3, 0})).norm(), 0, 1e-9);
+  EXPECT_NEAR((picture.moving.nodes[coil.end - 1].at - view.page({3.5, 3, 0})).norm(), 0, 1e-9);
+  made.look.pointer = false;
+  EXPECT_TRUE(made.picture().moving.strokes.empty());
+}
+
+TEST(Depict, ManyParticlesAreOneBatch) {
+  Made made = room(8, 4.5);
+  for (int i = 0; i < 20000; ++i) made.body(ShapeKind::point, {4, 2, 0});
+  const Picture picture = made.picture();
+  EXPECT_EQ(picture.moving.discs.size(), 20000u);
+  EXPECT_EQ(picture.moving.batches.size(), 2u) << "discs and the time";
+}
+
+TEST(Depict, LooksMayBeLeftOut) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {3, 2, 0}, 0.1);
+  made.look.bodies.clear();
+  EXPECT_EQ(made.picture().moving.discs.size(), 1u);
+}
+
+}  // namespace
+}  // namespace obscura::draw
