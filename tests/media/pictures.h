@@ -54,24 +54,31 @@ inline Image random_image(int width, int height, unsigned seed) {
 /// with time t (s), hatching.
 inline Image moving_picture(int width, int height, double t, bool gradient = false) {
   Image image{width, height, std::vector<std::uint8_t>(std::size_t(4) * width * height)};
-  constexpr int kColours[5][3] = {
-      {230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {213, 94, 0}, {204, 121, 167}};
   const double s = height / 360.0;
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      double c[3] = {250, 250, 252};
-      if (gradient) c[0] -= 30.0 * y / height, c[1] -= 30.0 * y / height, c[2] -= 20.0 * x / width;
-      if (y < 20 * s && std::fmod(x + y, 14 * s) < 1.6 * s) c[0] = c[1] = c[2] = 120;
-      for (int i = 0; i < 5; ++i) {
-        const double px = width * (0.5 + 0.38 * std::sin(t * (1.1 + 0.3 * i) + i));
-        const double py = height * (0.5 + 0.36 * std::cos(t * (1.7 - 0.2 * i) + 2 * i));
-        const double r = (18 + 6 * i) * s, d = std::hypot(x + 0.5 - px, y + 0.5 - py) - r;
-        const double cover = std::clamp(0.5 - d, 0.0, 1.0), edge = std::clamp(0.5 + d + 2.8 * s, 0.0, 1.0);
-        for (int k = 0; k < 3; ++k) c[k] += cover * (kColours[i][k] * (1 - 0.3 * edge) - c[k]);
-      }
-      std::uint8_t* p = image.row(y) + 4 * x;
-      for (int k = 0; k < 3; ++k) p[k] = std::uint8_t(std::lround(c[k]));
+    std::uint8_t* p = image.row(y);
+    for (int x = 0; x < width; ++x, p += 4) {
+      p[0] = p[1] = std::uint8_t(gradient ? 250 - 30 * y / height : 250);
+      p[2] = std::uint8_t(gradient ? 252 - 20 * x / width : 252);
       p[3] = 255;
+      if (y < 20 * s && (x + y) % int(14 * s + 1) < 1.6 * s) p[0] = p[1] = p[2] = 120;
+    }
+  }
+  constexpr int kColours[5][3] = {
+      {230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {213, 94, 0}, {204, 121, 167}};
+  for (int i = 0; i < 5; ++i) {
+    const double px = width * (0.5 + 0.38 * std::sin(t * (1.1 + 0.3 * i) + i));
+    const double py = height * (0.5 + 0.36 * std::cos(t * (1.7 - 0.2 * i) + 2 * i));
+    const double r = (18 + 6 * i) * s;
+    for (int y = std::max(0, int(py - r - 1)); y < std::min<double>(height, py + r + 2); ++y) {
+      for (int x = std::max(0, int(px - r - 1)); x < std::min<double>(width, px + r + 2); ++x) {
+        const double d = std::hypot(x + 0.5 - px, y + 0.5 - py) - r;
+        const double cover = std::clamp(0.5 - d, 0.0, 1.0), edge = std::clamp(0.5 + d + 2.8 * s, 0.0, 1.0);
+        std::uint8_t* p = image.row(y) + 4 * x;
+        for (int k = 0; k < 3; ++k) {
+          p[k] = std::uint8_t(std::lround(p[k] + cover * (kColours[i][k] * (1 - 0.3 * edge) - p[k])));
+        }
+      }
     }
   }
   return image;
