@@ -1,0 +1,97 @@
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace obscura::app {
+
+struct Outcome {
+  int exit = -1;
+  std::string out;  // what it wrote to standard output
+  std::string err;  // and to standard error
+};
+
+inline std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A folder of its own for each test, and the program run in it through a shell.
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() /
+              ("obscura_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Any shell command, run in the folder.
+  Outcome shell(const std::string& command) const {
+    Outcome outcome;
+    const std::string err = path(".stderr");
+    const std::string line = "cd '" + folder_.string() + "' && { " + command + " ; } 2> '" + err + "'";
+    std::FILE* pipe = ::popen(line.c_str(), "r");
+    char buffer[65536];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.out.append(buffer, n);
+    const int status = ::pclose(pipe);
+    outcome.exit = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    outcome.err = contents(err);
+    return outcome;
+  }
+  Outcome obscura(const std::string& arguments) const { return shell(OBSCURA_BINARY " " + arguments); }
+
+  /// Writes a scene of `text` and returns its name.
+  std::string scene(const std::string& text, const std::string& name = "scene.toml") const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return name;
+  }
+
+  std::filesystem::path folder_;
+};
+
+/// A room where everything of the language's first version moves.
+inline const char* const kRoom = R"(
+title    = "A room"
+subtitle = "everything moves"
+duration = 10
+[room]
+size     = [8, 4.5]
+[[particle]]
+name     = "ball"
+position = [1, 3]
+velocity = [1.2, 0]
+radius   = 0.1
+elasticity = 0.9
+[[box]]
+name     = "crate"
+size     = [1.0, 0.5]
+position = [5, 2]
+angle    = 30
+spin     = 90
+elasticity = 0.7
+[[spring]]
+between = ["ball", [2, 4.4]]
+stiffness = 20
+rest_length = 1
+[[mouse]]
+path = [[1.0, 4, 3], [2.0, 5.5, 3.8], [3.0, 7, 3.5]]
+stiffness = 60
+[look]
+trails = 0.5
+arrows = ["velocity"]
+)";
+
+}  // namespace obscura::app

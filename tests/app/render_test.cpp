@@ -1,0 +1,254 @@
+// The path from scene to movie, run as a user runs it and read back by other programs.
+
+#include <unistd.h>
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "media/png.h"
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Render = Program;
+
+nlohmann::json origin(const std::string& png) {
+  return nlohmann::json::parse(media::read_png(png).tags.at("obscura"));
+}
+
+TEST_F(Render, TenSecondsHaveTheFramesThatEveryRateAsks) {
+  scene(kRoom);
+  const std::pair<const char*, int> rates[] = {{"24", 240}, {"25", 250}, {"30", 300},
+                                               {"50", 500}, {"60", 600}, {"30000/1001", 300}};
+  for (const auto& [fps, frames] : rates) {
+    const Outcome run =
+        obscura(std::string("render scene.toml -o a.mp4 --size 96x54 --progress none --fps ") + fps);
+    ASSERT_EQ(run.exit, 0) << run.err;
+    const Outcome probe = shell(
+        "ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames,r_frame_rate "
+        "-of csv=p=0 a.mp4");
+    const std::string rate = std::string(fps).find('/') == std::string::npos ? std::string(fps) + "/1" : fps;
+    EXPECT_EQ(probe.out, rate + "," + std::to_string(frames) + "\n");
+  }
+}
+
+TEST_F(Render, TheStateAtFiveSecondsIsOneForAllRatesSizesAndCameras) {
+  scene(kRoom);
+  std::string hash;
+  const auto expect_same = [&](const std::string& png) {
+    const auto json = origin(path(png));
+    EXPECT_EQ(json["time"], "5") << png;
+    if (hash.empty()) hash = json["state"];
+    EXPECT_EQ(json["state"], hash) << png;
+  };
+  for (const int fps : {24, 25, 30, 50, 60}) {
+    const std::string n = std::to_string(5 * fps);
+    const Outcome run = obscura("render scene.toml --size 96x54 --progress none --fps " +
+                                std::to_string(fps) + " --frames 0.." + n + " -o 'f/{frame}.png'");
+    ASSERT_EQ(run.exit, 0) << run.err;
+    expect_same("f/" + n + ".png");
+  }
+  // at 30000/1001 no frame falls on it: a still does, after frames that lie between steps
+  ASSERT_EQ(
+      obscura("render scene.toml --size 100x80 --fps 30000/1001 --at 5 -o s.png -j 1 --theme screen").exit,
+      0);
+  expect_same("s.png");
+  const auto states = nlohmann::json::parse(obscura("states scene.toml --at 0.0333333,1.7,5").out);
+  EXPECT_EQ(states["states"][2]["hash"], hash);
+}
+
+TEST_F(Render, TwiceGivesTheSameBytesOnOneWorkerAndThree) {
+  scene(kRoom);
+  for (const char* flags : {"a.mp4 -j 1", "b.mp4 -j 3", "c.mp4 -j 3"}) {
+    ASSERT_EQ(
+        obscura(std::string("render scene.toml --to 3 --size 320x180 --fps 30 --progress none -o ") + flags)
+            .exit,
+        0);
+  }
+  EXPECT_GT(contents(path("a.mp4")).size(), 1000u);
+  EXPECT_EQ(contents(path("a.mp4")), contents(path("b.mp4")));
+  EXPECT_EQ(contents(path("b.mp4")), contents(path("c.mp4")));
+  for (const char* flags : {"p/%04d.png -j 1", "q/%04d.png -j 3"}) {
+    ASSERT_EQ(
+        obscura(std::string("render scene.toml --from 2 --to 3 --size 320x180 --fps 30 --progress none -o ") +
+                flags)
+            .exit,
+        0);
+  }
+  int pictures = 0;
+  for (const auto& entry : fs::directory_iterator(path("p"))) {
+    EXPECT_EQ(contents(entry.path().string()), contents(path("q/" + entry.path().filename().string())));
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 30);
+}
+
+TEST_F(Render, DecodedFramesAgreeWithThePictures) {
+  // luma PSNR at least 45 dB and mean bias under half a level: the bars, at CRF 18
+  scene(kRoom);
+  ASSERT_EQ(
+      obscura("render scene.toml --from 1 --to 2 --size 640x360 --fps 10 --progress none -o m.mp4").exit, 0);
+  ASSERT_EQ(
+      obscura(
+          "render scene.toml --from 1 --to 2 --size 640x360 --fps 10 --progress none -o 'f/{frame:02}.png'")
+          .exit,
+      0);
+  ASSERT_EQ(
+      shell("mkdir d && ffmpeg -v error -i m.mp4 -sws_flags accurate_rnd+full_chroma_int+bitexact "
+            "-vf scale=in_color_matrix=bt709:in_range=limited -pix_fmt rgb24 -start_number 10 d/%02d.png")
+          .exit,
+      0);
+  for (int n = 10; n < 20; ++n) {
+    const std::string name = std::to_string(n) + ".png";
+    const media::Image a = media::read_png(path("f/" + name)).image,
+                       b = media::read_png(path("d/" + name)).image;
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    double squares = 0, bias[3] = {0, 0, 0};
+    const double luma[3] = {0.2126, 0.7152, 0.0722};
+    const std::size_t pixels = a.pixels.size() / 4;
+    for (std::size_t i = 0; i < pixels; ++i) {
+      double y = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double d = double(b.pixels[4 * i + c]) - a.pixels[4 * i + c];
+        bias[c] += d;
+        y += luma[c] * d;
+      }
+      squares += y * y;
+    }
+    EXPECT_GE(10 * std::log10(255 * 255 / (squares / double(pixels))), 45) << name;
+    for (const double sum : bias) EXPECT_LT(std::abs(sum / double(pixels)), 0.5) << name;
+  }
+}
+
+TEST_F(Render, APictureAndAMovieCarryTheirOrigin) {
+  scene(kRoom);
+  ASSERT_EQ(obscura("render scene.toml --at 1.25 --size 160x90 -o s.png --set ball.elasticity=0.5").exit, 0);
+  const auto json = origin(path("s.png"));
+  EXPECT_EQ(json["scene"]["text"], kRoom);
+  EXPECT_EQ(json["scene"]["set"][0], "ball.elasticity=0.5");
+  EXPECT_EQ(json["time"], "5/4");
+  EXPECT_EQ(json["frame"], 75);
+  EXPECT_EQ(json["state"].get<std::string>().size(), 32u);
+  EXPECT_NE(json["gl"]["version"].get<std::string>().find("Mesa"), std::string::npos);
+  ASSERT_EQ(obscura("render scene.toml --to 1 --size 160x90 -o m.mp4 --progress none").exit, 0);
+  const Outcome probe = shell("ffprobe -v error -show_entries format_tags=comment -of json m.mp4");
+  EXPECT_NE(probe.out.find("scene_hash") != std::string::npos || probe.out.find("hash") != std::string::npos,
+            false);
+  EXPECT_NE(probe.out.find("everything moves"), std::string::npos);
+}
+
+TEST_F(Render, AStreamGoesThroughAPipeAndAClosedPipeEndsItQuietly) {
+  scene(kRoom);
+  const std::string binary = OBSCURA_BINARY;
+  const Outcome frames =
+      shell(binary +
+            " render scene.toml -o - --to 1 --size 96x54 --fps 30 --progress none | "
+            "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 -");
+  EXPECT_EQ(frames.out, "30\n") << frames.err;
+  const Outcome raw = shell(
+      binary + " render scene.toml -o - --pipe rgba --to 1 --size 96x54 --fps 30 --progress none | wc -c");
+  EXPECT_EQ(std::stol(raw.out), 30L * 96 * 54 * 4);
+  const Outcome closed =
+      shell("{ " + binary +
+            " render scene.toml -o - --size 640x360 ; echo $? > code ; } | head -c 100 > /dev/null");
+  EXPECT_EQ(contents(path("code")), "0\n");
+  EXPECT_EQ(closed.err, "");
+}
+
+TEST_F(Render, AnInterruptLeavesAPlayablePartialMovie) {
+  scene(kRoom);
+  const std::string binary = OBSCURA_BINARY;
+  // the interrupt comes once progress has been seen, however slow the machine; a shell's background jobs ignore
+  // SIGINT, and what a parent ignores stays ignored, hence env
+  const Outcome run =
+      shell("env --default-signal=INT " + binary +
+            " render scene.toml -o m.mp4 --set duration=200 --size 640x360 --progress json 2> log & pid=$!; "
+            "for i in $(seq 600); do grep -q progress log 2> /dev/null && break; sleep 0.1; done; sleep 0.5; "
+            "kill -INT $pid; wait $pid");
+  EXPECT_EQ(run.exit, 130);
+  EXPECT_FALSE(fs::exists(path("m.mp4")));
+  ASSERT_TRUE(fs::exists(path("m.partial.mp4"))) << contents(path("log"));
+  EXPECT_EQ(shell("ffmpeg -v error -i m.partial.mp4 -f null -").err, "");
+  int others = 0;
+  for (const auto& entry : fs::directory_iterator(folder_))
+    others += entry.path().filename().string().find(".mp4") != std::string::npos;
+  EXPECT_EQ(others, 1);
+}
+
+TEST_F(Render, TroubleKeepsTheFramesSoFarAndExitsWithSix) {
+  // k far above the limit of RK4 at this step: the spring tears itself apart
+  scene(
+      "duration = 5\n[physics]\nrate = 60\n[[particle]]\nname = \"ball\"\nposition = [4, 2]\nmass = 1\n"
+      "[[spring]]\nbetween = [\"ball\", [4, 4]]\nstiffness = 40000\nrest_length = 1.9\n");
+  const Outcome run = obscura("render scene.toml -o m.mp4 --size 96x54 --progress none");
+  EXPECT_EQ(run.exit, 6);
+  EXPECT_NE(run.err.find("2.828"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("ball"), std::string::npos) << run.err;
+  EXPECT_FALSE(fs::exists(path("m.mp4")));
+}
+
+TEST_F(Render, WritesOverAnEarlierRenderUnlessToldNot) {
+  scene(kRoom);
+  ASSERT_EQ(obscura("render scene.toml --at 0 --size 96x54 -o s.png").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --at 1 --size 96x54 -o s.png").exit, 0);
+  const Outcome refused = obscura("render scene.toml --at 2 --size 96x54 -o s.png --no-overwrite");
+  EXPECT_EQ(refused.exit, 4);
+  EXPECT_NE(refused.err.find("s.png"), std::string::npos);
+  EXPECT_EQ(origin(path("s.png"))["time"], "1");
+}
+
+TEST_F(Render, WithoutAnOutputItIsUnderRenderOut) {
+  scene(kRoom);
+  const Outcome run = obscura("render scene.toml --to 0.2 --size 96x54");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_TRUE(fs::exists(path("render_out/scene.mp4")));
+  EXPECT_NE(run.out.find("render_out/scene.mp4"), std::string::npos);
+}
+
+TEST_F(Render, BadInputGetsOneLineAndItsCodeAndWritesNothing) {
+  scene(kRoom);
+  const std::pair<const char*, int> cases[] = {
+      {"render", 2},
+      {"render scene.toml --size 10", 2},
+      {"render scene.toml --fps 0", 2},
+      {"render scene.toml --frames 9999 -o x.mp4", 2},
+      {"render scene.toml -o x.png", 2},
+      {"render scene.toml --nonsense", 2},
+      {"render scene.toml --at -1", 2},
+      {"render missing.toml", 3},
+      {"render scene.toml --set nonsense.key=1", 3},
+      {"render scene.toml -o x.xyz", 4},
+      {"render scene.toml --size 101x75 -o x.mp4", 4},
+      {"render scene.toml --codec nonsense -o x.mp4", 4},
+      {"render scene.toml -o /proc/x/y.mp4", 4},
+      {"render scene.toml --size 20000x16 --at 0 -o x.png", 5},
+  };
+  for (const auto& [arguments, code] : cases) {
+    const Outcome run = obscura(arguments);
+    EXPECT_EQ(run.exit, code) << arguments << "\n" << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << arguments << "\n" << run.err;
+    EXPECT_EQ(run.out, "") << arguments;
+  }
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_TRUE(name == "scene.toml" || name == ".stderr") << name;
+  }
+}
+
+TEST_F(Render, ProgressForProgramsIsJsonLines) {
+  scene(kRoom);
+  const Outcome run = obscura("render scene.toml --to 0.5 --size 96x54 --progress json");
+  ASSERT_EQ(run.exit, 0);
+  EXPECT_EQ(run.out, "");
+  std::istringstream lines(run.err);
+  nlohmann::json last;
+  for (std::string line; std::getline(lines, line);) last = nlohmann::json::parse(line);
+  EXPECT_EQ(last["event"], "done");
+  EXPECT_EQ(last["frames"], 30);
+}
+
+}  // namespace
+}  // namespace obscura::app

@@ -1,0 +1,138 @@
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+using States = Program;
+
+const char* const kFlight = R"(
+duration = 3
+[room]
+size = [100, 100]
+[[particle]]
+name = "ball"
+position = [10, 51]
+velocity = [3, 4]
+)";
+
+TEST_F(States, AThrownBallIsWhereTheParabolaSays) {
+  // RK4 is exact for a parabola; 1e-12 is a few roundings of numbers near 50
+  scene(kFlight);
+  const Outcome run = obscura("states scene.toml --at 0,0.5,1");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  ASSERT_EQ(json["states"].size(), 3u);
+  for (const auto& state : json["states"]) {
+    const double t = state["time"];
+    const auto& ball = state["bodies"][0];
+    EXPECT_EQ(ball["name"], "ball");
+    EXPECT_NEAR(ball["position"][0], 10 + 3 * t, 1e-12);
+    EXPECT_NEAR(ball["position"][1], 51 + 4 * t - 9.81 * t * t / 2, 1e-12);
+    EXPECT_NEAR(ball["velocity"][1], 4 - 9.81 * t, 1e-12);
+    EXPECT_NEAR(state["energy"]["total"], json["states"][0]["energy"]["total"], 1e-10);
+  }
+}
+
+TEST_F(States, NumbersReadBackToTheBit) {
+  scene(kFlight);
+  const Outcome once = obscura("states scene.toml --at 0.7");
+  const auto json = nlohmann::json::parse(once.out);
+  const double x = json["states"][0]["bodies"][0]["position"][1];
+  const Outcome csv = obscura("states scene.toml --at 0.7 --format csv");
+  const std::string row = csv.out.substr(csv.out.find('\n') + 1);
+  std::vector<std::string> cells;
+  std::istringstream stream(row);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  ASSERT_EQ(cells.size(), 12u + 6u);
+  EXPECT_EQ(std::strtod(cells[13].c_str(), nullptr), x);
+}
+
+TEST_F(States, CsvHasOneRowAnInstantUnderThePathsOfTheLanguage) {
+  scene(kFlight);
+  const Outcome run = obscura("states scene.toml --every 0.1 --format csv");
+  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 1 + 31);
+  EXPECT_NE(
+      run.out.find(",ball.position.x,ball.position.y,ball.angle,ball.velocity.x,ball.velocity.y,ball.spin\n"),
+      std::string::npos);
+}
+
+TEST_F(States, SetChangesAKeyFromOutside) {
+  scene(kFlight);
+  const auto json = nlohmann::json::parse(
+      obscura("states scene.toml --at 0 --set ball.position.y=60 --set ball.mass=3").out);
+  EXPECT_EQ(json["states"][0]["bodies"][0]["position"][1], 60.0);
+}
+
+TEST_F(States, TroubleExitsWithSixAfterWhatWasGood) {
+  scene(
+      "duration = 5\n[physics]\nrate = 60\n[[particle]]\nname = \"ball\"\nposition = [4, 2]\nmass = 1\n"
+      "[[spring]]\nbetween = [\"ball\", [4, 4]]\nstiffness = 40000\nrest_length = 1.9\n");
+  const Outcome run = obscura("states scene.toml --at 0,5");
+  EXPECT_EQ(run.exit, 6);
+  EXPECT_EQ(nlohmann::json::parse(run.out)["states"].size(), 1u);
+}
+
+TEST_F(States, OpenNoGl) {
+  scene(kFlight);
+  const Outcome run = shell("LD_DEBUG=files " OBSCURA_BINARY " states scene.toml --at 0");
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_EQ(run.err.find("OSMesa"), std::string::npos);
+  EXPECT_EQ(run.err.find("libEGL"), std::string::npos);
+}
+
+using Check = Program;
+
+TEST_F(Check, SaysWhatWouldBeDone) {
+  scene(kRoom);
+  const Outcome run = obscura("check scene.toml");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  for (const char* fact : {"1 particle", "1 box", "1 spring", "4 walls", "1 mouse", "6000 steps",
+                           "600 frames", "1920x1080", "MB"}) {
+    EXPECT_NE(run.out.find(fact), std::string::npos) << fact << "\n" << run.out;
+  }
+}
+
+TEST_F(Check, ReadsAllScenesAndFailsIfOneIsBad) {
+  scene(kRoom);
+  scene("duration = -1\n", "bad.toml");
+  const Outcome run = obscura("check bad.toml scene.toml");
+  EXPECT_EQ(run.exit, 3);
+  EXPECT_NE(run.out.find("scene.toml: good"), std::string::npos);
+  EXPECT_NE(run.err.find("bad.toml:1:"), std::string::npos);
+}
+
+using New = Program;
+
+TEST_F(New, WritesASceneThatCanBeFilmedAndNeverOverAnother) {
+  ASSERT_EQ(obscura("new ball").exit, 0);
+  EXPECT_EQ(obscura("check ball.toml").exit, 0);
+  EXPECT_EQ(obscura("render ball.toml --at 1 --size 160x90").exit, 0);
+  EXPECT_EQ(obscura("new ball.toml").exit, 4);
+}
+
+using Help = Program;
+
+TEST_F(Help, OfEachCommandShowsExamples) {
+  EXPECT_EQ(obscura("--help").exit, 0);
+  for (const char* command : {"render", "new", "check", "states", "docs"}) {
+    const Outcome run = obscura(std::string(command) + " --help");
+    EXPECT_EQ(run.exit, 0);
+    EXPECT_NE(run.out.find("Examples:"), std::string::npos) << command;
+    EXPECT_NE(run.out.find(std::string("obscura ") + command), std::string::npos) << command;
+  }
+}
+
+TEST_F(Help, VersionNamesWhatDrawsAndEncodes) {
+  const Outcome run = obscura("--version");
+  EXPECT_EQ(run.exit, 0);
+  for (const char* part : {"obscura ", "OpenGL ", "Mesa", "libavcodec", "libpng"}) {
+    EXPECT_NE(run.out.find(part), std::string::npos) << part << "\n" << run.out;
+  }
+}
+
+}  // namespace
+}  // namespace obscura::app
