@@ -128,6 +128,7 @@ Picture Depictor::depict(const sim::Snapshot& now,
   List& list = picture.moving;
   if (stage.layout.clipped) list.clip(view.window);
   draw_trails(stage, view, now, ways, list);
+  draw_ways(stage, view, now, list);
   draw_springs(stage, view, now, false, list);
   draw_boxes(stage, view, now, list);
   draw_springs(stage, view, now, true, list);

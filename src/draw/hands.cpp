@@ -15,11 +15,11 @@ Color faded(Color c, double alpha) {
   return c;
 }
 
-// The pointer, its tip at the origin, in page units: a wedge and a stem, and the line around both.
-const std::vector<Point> kWedge{{0, 0}, {0, 29}, {7, 22.4}, {12, 20.8}, {21, 20.8}};
-const std::vector<Point> kStem{{5.2, 20.4}, {10.6, 18.0}, {16.4, 31.4}, {11.4, 33.6}};
-const std::vector<Point> kAround{{0, 0},       {0, 29},       {6.55, 22.9}, {11.4, 33.6},
-                                 {16.4, 31.4}, {11.75, 20.8}, {21, 20.8}};
+// The pointer, its tip at the origin, in page units. The points within its long edges draw the mean up to
+// where it sees every other.
+const std::vector<Point> kPointer{{0, 0},       {0, 10},      {0, 20},      {0, 29},
+                                  {6.55, 22.9}, {11.4, 33.6}, {16.4, 31.4}, {11.75, 20.8},
+                                  {21, 20.8},   {14, 13.87},  {7, 6.93}};
 
 std::vector<Point> placed(const std::vector<Point>& form, const Point& at, double scale) {
   std::vector<Point> points;
@@ -48,17 +48,17 @@ void dot_way(const sim::Cast::Mouse& mouse, const Stage& stage, const View& view
   }
 }
 
-}  // namespace
+/// A mouse that is shown, where its pointer is, and how strongly: it appears before the press and leaves
+/// after the release.
+struct Hand {
+  std::size_t mouse;
+  Point at;
+  double alpha;
+};
 
-void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
-  if (!stage.look.pointer) return;
-  const double weight = stage.layout.weight, zoom = view.scale / stage.layout.scale;
-  struct Hand {
-    std::size_t mouse;
-    Point at;
-    double alpha;
-  };
-  std::vector<Hand> hands;
+std::vector<Hand> hands(const Stage& stage, const View& view, const sim::Snapshot& now) {
+  std::vector<Hand> shown;
+  if (!stage.look.pointer) return shown;
   for (std::size_t i = 0; i < now.mice.size() && i < stage.cast.mice.size(); ++i) {
     const sim::Cast::Mouse& mouse = stage.cast.mice[i];
     if (mouse.path.empty()) continue;
@@ -68,32 +68,42 @@ void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, 
     const sim::Vec3 place = before > 0  ? mouse.path.front()
                             : after > 0 ? mouse.path.back()
                                         : now.mice[i].pointer;
-    hands.push_back({i, view.page(place), alpha});
+    shown.push_back({i, view.page(place), alpha});
   }
+  return shown;
+}
 
-  for (const Hand& hand : hands)
+}  // namespace
+
+void draw_ways(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  for (const Hand& hand : hands(stage, view, now)) {
     dot_way(stage.cast.mice[hand.mouse], stage, view, now.time, hand.alpha, list);
-  for (const Hand& hand : hands) {
+  }
+}
+
+void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight, zoom = view.scale / stage.layout.scale;
+  const std::vector<Hand> shown = hands(stage, view, now);
+  for (const Hand& hand : shown) {
     const sim::Snapshot::Mouse& mouse = now.mice[hand.mouse];
     if (!mouse.pressed || mouse.body < 0) continue;
     const Coil& form = stage.hands[hand.mouse];
     const Point held = view.page(mouse.held);
     const double width = line_width(form, (hand.at - held).norm(), zoom);
     std::vector<Node> nodes;
-    for (const Point& p : coil_line(form, held, hand.at, zoom))
+    for (const Point& p : coil_line(form, held, hand.at, zoom)) {
       nodes.push_back({p, width, stage.colours.spring});
+    }
     list.add(nodes, Cap::round);
     list.add(Disc{held, kJoint * weight, 0, stage.colours.spring, stage.colours.spring});
   }
-  for (const Hand& hand : hands) {
+  for (const Hand& hand : shown) {
     std::vector<Node> around;
-    for (const Point& p : placed(kAround, hand.at, weight)) {
+    for (const Point& p : placed(kPointer, hand.at, weight)) {
       around.push_back({p, 2 * kEdge * weight, faded(stage.colours.room, hand.alpha)});
     }
-    const Color ink = faded(stage.colours.ink, hand.alpha);
     list.add(around, Cap::round, Blend::over, true);
-    list.add(placed(kWedge, hand.at, weight), ink);
-    list.add(placed(kStem, hand.at, weight), ink);
+    list.add(placed(kPointer, hand.at, weight), faded(stage.colours.ink, hand.alpha));
   }
 }
 

@@ -45,7 +45,8 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
-/// The path, springs and pointers of the mice.
+/// The dotted paths of the mice, and, in front of everything, their springs and pointers.
+void draw_ways(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 }  // namespace obscura::draw
