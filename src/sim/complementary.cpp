@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kDependent = 1e-11;  // a pivot this small beside its diagonal is rounding
 constexpr double kSlack = 1e-12;      // of the largest term that went into a sum
+constexpr double kLoosest = 1e-5;     // where rows all but depend on one another, their p is no better known
 
 struct Active {
   int rows[kMostRows];
@@ -62,15 +63,15 @@ bool balance(const Square& A, const Rows& b, const Active& active, Rows& p) {
 }
 
 // p >= 0 and w >= 0 to rounding; what is negative by rounding becomes zero
-bool feasible(const Square& A, const Rows& b, Rows& p) {
+bool feasible(const Square& A, const Rows& b, double slack, Rows& p) {
   const double most = p.cwiseAbs().maxCoeff();
   for (int i = 0; i < p.size(); ++i) {
-    if (p[i] < -kSlack * most) return false;
+    if (p[i] < -slack * most) return false;
   }
   p = p.cwiseMax(0.0);
   for (int i = 0; i < p.size(); ++i) {
     const double scale = A.row(i).cwiseAbs().dot(p) + std::fabs(b[i]);
-    if (A.row(i).dot(p) + b[i] < -kSlack * scale) return false;
+    if (A.row(i).dot(p) + b[i] < -slack * scale) return false;
   }
   return true;
 }
@@ -108,7 +109,7 @@ void spread(const Square& A, const Rows& b, Rows& p) {
   const Rows least = factors.solve(right);
   Rows all = Rows::Zero(p.size());
   for (int i = 0; i < k; ++i) all[active.rows[i]] = least[i];
-  if (feasible(A, b, all)) p = all;
+  if (feasible(A, b, kSlack, all)) p = all;
 }
 
 }  // namespace
@@ -116,16 +117,18 @@ void spread(const Square& A, const Rows& b, Rows& p) {
 bool complementary(const Square& A, const Rows& b, int rank, Rows& p) {
   const int n = int(b.size());
   p = Rows::Zero(n);
-  for (int size = std::min(n, rank); size >= 0; --size) {
-    Active active;
-    active.count = size;
-    for (int i = 0; i < size; ++i) active.rows[i] = i;
-    do {
-      if (balance(A, b, active, p) && feasible(A, b, p)) {
-        if (n > size) spread(A, b, p);
-        return true;
-      }
-    } while (next(active, n));
+  for (double slack = kSlack; slack <= kLoosest; slack *= 1e3) {
+    for (int size = std::min(n, rank); size >= 0; --size) {
+      Active active;
+      active.count = size;
+      for (int i = 0; i < size; ++i) active.rows[i] = i;
+      do {
+        if (balance(A, b, active, p) && feasible(A, b, slack, p)) {
+          if (n > size) spread(A, b, p);
+          return true;
+        }
+      } while (next(active, n));
+    }
   }
   p.setZero();
   return false;

@@ -1,6 +1,8 @@
-// Energy out of nowhere. Kinetic energy, springs, and gravity's potential above its start stay below
-//   fund = what they were + sum m g L + sum over the hands of k (4 L + way)^2 / 2 + what displacing gave L
-//   room's height
+// Energy out of nowhere. Kinetic energy, springs, and gravity's potential above its start stay below what
+// could be there,
+//   fund = what they were + what displacing gave + sum over bodies of m g L + m u^2
+//        + sum over springs of k (L/10)^2 / 2 + sum over hands of k (4 L + way)^2 / 2
+//     L  room's height, u  speed of the fastest hand, but L/10 a second at least
 // unless the step feeds them. A hundred times the fund is proof; four times, where the step is longer than
 // the integrator stands.
 
@@ -80,17 +82,22 @@ void Watch<D>::start(const State<D>& state, double t) {
   const Energies e = energies(model_, state, paths_, t);
   level_ = e.gravity + state.ledger.displacement;
   fund_ = e.kinetic + e.springs;
-  const double g = std::sqrt(model_.gravity.squaredNorm());
-  for (const Body<D>& body : model_.bodies) {
-    if (!body.fixed) fund_ += body.mass * g * model_.scale;
-  }
+  const double little = 0.1 * model_.scale;
+  double fastest = little;
   for (const Mouse<D>& mouse : model_.mice) {
     double way = 4 * model_.scale;
-    for (const Knot<D>& knot : mouse.path) {
-      way =
-          std::max(way, 4 * model_.scale + std::sqrt((knot.place - mouse.path.front().place).squaredNorm()));
+    for (std::size_t i = 1; i < mouse.path.size(); ++i) {
+      const Knot<D>&from = mouse.path[i - 1], &to = mouse.path[i];
+      const double piece = std::sqrt((to.place - from.place).squaredNorm());
+      way += piece;
+      fastest = std::max(fastest, piece / (value(to.time) - value(from.time)));
     }
     fund_ += 0.5 * mouse.stiffness * way * way;
+  }
+  for (const Spring<D>& spring : model_.springs) fund_ += 0.5 * spring.stiffness * little * little;
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  for (const Body<D>& body : model_.bodies) {
+    if (!body.fixed) fund_ += body.mass * (g * model_.scale + fastest * fastest);
   }
 }
 
