@@ -8,11 +8,6 @@ namespace {
 
 constexpr double kLeast = 1.6;  // radius of what is too small to see
 
-bool outside(const Rect& r, const Point& p, double reach) {
-  return p.x() + reach < r.x || p.x() - reach > r.x + r.width || p.y() + reach < r.y ||
-         p.y() - reach > r.y + r.height;
-}
-
 }  // namespace
 
 void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "draw/stage.h"
 
@@ -27,22 +29,41 @@ std::vector<Point> placed(const std::vector<Point>& form, const Point& at, doubl
   return points;
 }
 
-/// Dots at equal distances along the hand's way; what it has gone is stronger than what it will go.
+/// Dots at equal distances along the hand's way; what it has gone is stronger than what it will go. A way
+/// that comes back over itself is dotted once.
 void dot_way(const sim::Cast::Mouse& mouse, const Stage& stage, const View& view, double time, double alpha,
              List& list) {
   const double step = kStep * stage.layout.weight, radius = kWayDot * stage.layout.weight;
   const double lasts = mouse.release - mouse.press;
   const std::size_t n = mouse.path.size();
+  // which dots lie in a square of the page, a step wide
+  std::map<std::pair<int, int>, std::vector<Point>> dotted;
+  auto square = [&](double x) { return int(std::floor(x / step)); };
+  auto taken = [&](const Point& p) {
+    for (int i = -1; i <= 1; ++i) {
+      for (int j = -1; j <= 1; ++j) {
+        const auto there = dotted.find({square(p.x()) + i, square(p.y()) + j});
+        if (there == dotted.end()) continue;
+        for (const Point& q : there->second) {
+          if ((q - p).norm() < 0.8 * step) return true;
+        }
+      }
+    }
+    return false;
+  };
   double gone = 0, next = 0;
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const Point a = view.page(mouse.path[i]), b = view.page(mouse.path[i + 1]);
     const double length = (b - a).norm();
     for (; next <= gone + length && length > 0; next += step) {
       const double part = (next - gone) / length;
+      const Point at = a + part * (b - a);
+      if (outside(view.window, at, step) || taken(at)) continue;
+      dotted[{square(at.x()), square(at.y())}].push_back(at);
       const double when = mouse.press + lasts * (double(i) + part) / double(n - 1);
       const double strength = when <= time ? 1 : 0.5;
       const Color color = faded(stage.colours.way, alpha * strength);
-      list.add(Disc{a + part * (b - a), radius, 0, color, color});
+      list.add(Disc{at, radius, 0, color, color});
     }
     gone += length;
   }

@@ -140,6 +140,11 @@ std::vector<HalfPlane> half_planes(const sim::Cast& cast, const View& view) {
   return halves;
 }
 
+bool outside(const Rect& r, const Point& p, double reach) {
+  return p.x() + reach < r.x || p.x() - reach > r.x + r.width || p.y() + reach < r.y ||
+         p.y() - reach > r.y + r.height;
+}
+
 std::string fitted(const std::string& words, Face face, double size, double width) {
   if (words.empty() || width_of(words, face, size) <= width) return words;
   // the ends of its characters

@@ -36,6 +36,9 @@ std::string clock_text(double time);
 /// The walls as half planes of the page, as `view` shows them.
 std::vector<HalfPlane> half_planes(const sim::Cast& cast, const View& view);
 
+/// Nothing within `reach` of p lies in the rectangle.
+bool outside(const Rect& rect, const Point& p, double reach);
+
 /// As much of `words` as fits `width`, with an ellipsis where something is left out.
 std::string fitted(const std::string& words, Face face, double size, double width);
 

@@ -227,6 +227,21 @@ TEST(Depict, HandIsShownFromJustBeforeThePressToJustAfterTheRelease) {
   EXPECT_TRUE(made.picture().moving.strokes.empty());
 }
 
+TEST(Depict, WayThatComesBackIsDottedOnce) {
+  Made made = room(8, 4.5);
+  sim::Cast::Mouse there, back;
+  there.press = back.press = 0, there.release = back.release = 1;
+  for (int i = 0; i <= 100; ++i) there.path.push_back({2 + 0.0317 * i, 3, 0});
+  back.path = there.path;
+  for (int i = 100; i >= 0; --i) back.path.push_back({2 + 0.0317 * i, 3, 0});
+  made.now.mice.resize(1);
+  made.cast.mice = {there};
+  const std::size_t once = made.picture().moving.discs.size();
+  made.cast.mice = {back};
+  EXPECT_EQ(made.picture().moving.discs.size(), once);
+  EXPECT_NEAR(double(once), 3.17 * made.depictor().view(0).scale / 14, 1.5);
+}
+
 TEST(Depict, ManyParticlesAreOneBatch) {
   Made made = room(8, 4.5);
   for (int i = 0; i < 20000; ++i) made.body(ShapeKind::point, {4, 2, 0});
