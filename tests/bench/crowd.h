@@ -13,7 +13,7 @@ namespace crowd {
 
 inline constexpr double kRoomWidth = 8, kRoomHeight = 4.5;  // m
 inline constexpr double kBallRadius = 0.03, kBoxWidth = 0.24, kBoxHeight = 0.14;
-inline constexpr double kElasticity = 0.7, kGravity = -9.81;
+inline constexpr double kElasticity = 0.95, kGravity = -1.62;
 inline constexpr int kWidth = 1920, kHeight = 1080, kFps = 60;  // the picture
 inline constexpr double kScale = 202, kLeft = 152,
                         kTop = 96;                    // px a metre; where the room lies in the picture
@@ -46,27 +46,30 @@ class Jitter {
   std::uint64_t state_ = 1;
 };
 
+inline double mix(double a, double b, double t) { return a + (b - a) * t; }
+
 inline std::vector<Start> balls() {
-  static constexpr double v[7][2] = {{1.5, 2}, {-2, 1}, {0.5, -1}, {-1, 3}, {2.5, 0}, {-0.5, -2}, {-3, 2.5}};
   static constexpr Rgb colors[5] = {
       {0, .447, .698}, {.835, .369, 0}, {0, .620, .451}, {.941, .894, .259}, {.5, .5, .5}};
   std::vector<Start> all;
   Jitter jitter;
-  for (int i = 0; i < 500; ++i)
+  for (int i = 0; i < 500; ++i) {
+    const double t = i / 499.0;
     all.push_back({0.4 + 0.3 * (i % 25) + 0.05 * jitter(), 0.4 + 0.19 * (i / 25) + 0.05 * jitter(),
-                   v[i % 7][0], v[i % 7][1], 0, colors[i % 5]});
+                   mix(-1.5, 1.5, t), mix(2.0, -1.0, t), 0, colors[i % 5]});
+  }
   return all;
 }
 
 inline std::vector<Start> boxes() {
-  static constexpr double v[5][2] = {{-1, 1}, {2, 2}, {-2.5, 0.5}, {1, -1}, {0.5, 3}};
-  static constexpr double spin[3] = {45, -90, 120};
   static constexpr Rgb colors[4] = {{.902, .624, 0}, {.337, .706, .914}, {.8, .475, .655}, {0, .620, .451}};
   std::vector<Start> all;
   Jitter jitter;
-  for (int i = 0; i < 200; ++i)
+  for (int i = 0; i < 200; ++i) {
+    const double t = i / 199.0, turns = 2 * 3.14159265358979 / 360;
     all.push_back({0.48 + 0.37 * (i % 20) + 0.05 * jitter(), 0.5 + 0.38 * (i / 20) + 0.05 * jitter(),
-                   v[i % 5][0], v[i % 5][1], spin[i % 3] * 3.14159265358979 / 180, colors[i % 4]});
+                   mix(1.0, -1.0, t), mix(2.0, 0.0, t), mix(-120.0, 120.0, t) * turns, colors[i % 4]});
+  }
   return all;
 }
 
