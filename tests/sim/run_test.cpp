@@ -168,7 +168,8 @@ TEST(Track, KeepsTheCuspOfABounce) {
   all->track({0});
   shown(*all, {1, 1});
   double lowest = 1;
-  for (const auto& point : all->take_track().points[0]) lowest = std::min(lowest, point.place.y());
+  const auto track = all->take_track();
+  for (const auto& point : track.points[0]) lowest = std::min(lowest, point.place.y());
   EXPECT_NEAR(lowest, 0, 1e-15);
 }
 
