@@ -1,8 +1,14 @@
 // Which encoder makes a movie, and with which settings.
 //
-// The settings of x264 when no preset is asked for: `veryfast` without B-frames, look-ahead and macroblock
-// tree. On our pictures, flat with sharp edges, those cost time and buy bytes only: see kQuick below, and the
-// figures there.
+// Where no preset is asked for, x264 runs `veryfast` without B-frames, look-ahead, macroblock tree and
+// weighted prediction. Those spend time to save bytes on camera pictures; ours are flat, with sharp edges,
+// and nothing fades. 1080p60 at CRF 18, luma PSNR, bytes and CPU against x264's `medium`:
+//
+//   200 boxes and 500 discs tumbling    42.3 against 41.7 dB    1.2 times the bytes    a quarter of the time
+//   20 boxes and 40 discs               52.8 against 50.0 dB    1.65                   a third
+//
+// Adaptive quantisation stays on: without it, a CRF 3 higher gives the same bytes and PSNR. `superfast`
+// takes 1.7 times the bytes of `medium`, and a fifth less time than this.
 
 #include "media/codec.h"
 
@@ -81,7 +87,7 @@ double crf_of(const std::string& path, const MovieSpec& spec, double usual, doub
 Options x264(const std::string& path, const MovieSpec& spec) {
   // bytes that depend on frames and settings alone: one thread, no processor's own way of rounding
   std::string parameters = "threads=1:cpu-independent=1:scenecut=0:open-gop=0";
-  constexpr const char* kQuick = ":bframes=0:rc-lookahead=0:mbtree=0";
+  constexpr const char* kQuick = ":bframes=0:rc-lookahead=0:mbtree=0:weightp=0";
   parameters += spec.preset.empty() ? kQuick : within_level(spec);
   return {{"preset", spec.preset.empty() ? "veryfast" : spec.preset},
           {"profile", "high"},
