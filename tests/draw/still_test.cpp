@@ -62,6 +62,26 @@ TEST(Still, HatchingLiesOutsideTheWallsWithinItsBand) {
   }
 }
 
+TEST(Still, HatchingIsAt45DegreesFourteenApartAndAsWideAsItShould) {
+  const Made made = room(8, 4.5);
+  const Picture picture = made.picture();
+  const Point v = Point(1, 1) / std::sqrt(2.0), origin = made.depictor().view(0).origin;
+  int whole = 0;
+  for (const Polygon& polygon : picture.still->polygons) {
+    double low = 1e9, high = -1e9;
+    for (int i = polygon.begin; i < polygon.end; ++i) {
+      low = std::min(low, (picture.still->points[i] - origin).dot(v));
+      high = std::max(high, (picture.still->points[i] - origin).dot(v));
+    }
+    EXPECT_LE(high - low, 1.6 + 1e-9);
+    if (high - low < 1.6 - 1e-9) continue;  // cut by a corner of the band
+    ++whole;
+    const double step = (low + high) / 2 / (14 / std::sqrt(2.0));
+    EXPECT_NEAR(step, std::round(step), 1e-9);
+  }
+  EXPECT_GT(whole, 300);
+}
+
 TEST(Still, HatchingIsEverywhereAlongEveryWall) {
   for (const Made& made : {room(8, 4.5), slanted(), wedge(), ground(), valley()}) {
     const Picture picture = made.picture();
