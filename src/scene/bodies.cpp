@@ -6,11 +6,13 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "scene/check.h"
 #include "scene/fields.h"
 #include "scene/path.h"
 #include "scene/random.h"
+#include "sim/trig.h"
 
 namespace obscura::scene {
 
@@ -33,7 +35,8 @@ struct Making {
   double drag = 0;   // the room's
   double trail = 0;  // the look's
   bool velocity = false;
-  int declared = 0;  // groups so far: which colour is next
+  int declared = 0;    // groups so far: which colour is next
+  bool knots = false;  // the group at hand is joined by a net: draw has a colour for those
 };
 
 // copies.offset: one step in each direction of the grid
@@ -162,7 +165,7 @@ void add(Making& making, const Fields& fields, const std::string& kind, const st
   if (const Node* color = fields.given("color")) {
     look.color = draw::color(color->is_list() ? color->list()[std::size_t(i) % color->list().size()].text()
                                               : color->text());
-  } else {
+  } else if (!fixed && !making.knots) {
     look.color = draw::color(kPalette[std::size_t(making.declared) % std::size(kPalette)]);
   }
   const Node* trail = fields.given("trail");
@@ -198,11 +201,12 @@ void refuse_outside(const Making& making, const Group& group, Place place) {
     }
     const double rounding = 1e-9 * (1 + making.world.state.x[std::size_t(body)].cwiseAbs().maxCoeff());
     if (most <= rounding) continue;
-    if (outside++ == 0)
-      message = fmt::format("'{}' is outside the room: {:.3g} m beyond {} ({})",
-                            making.world.model.bodies[std::size_t(body)].name, most, making.room.names[worst],
-                            making.room.places[worst].line ? making.complaints.text(making.room.places[worst])
-                                                           : "as long as [room] has no size");
+    if (outside++ > 0) continue;
+    const Place wall = making.room.places[worst];
+    message = fmt::format(
+        "'{}' is outside the room: {:.3g} m beyond {} ({})",
+        making.world.model.bodies[std::size_t(body)].name, most, making.room.names[worst],
+        wall == Place{} ? "8 m by 4.5 m where room.size is left out" : making.complaints.text(wall));
   }
   if (outside > 1) message += fmt::format(", and so are {} more of its copies", outside - 1);
   if (outside > 0) making.complaints.add(place, message);
@@ -217,9 +221,11 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
   group.place = fields.place("name");
   group.first = int(making.world.model.bodies.size());
   if (const auto before = roster.index.find(group.name); before != roster.index.end()) {
-    complaints.add(group.place,
-                   fmt::format("the name '{}' is taken by another body at {}", group.name,
-                               complaints.text(roster.groups[std::size_t(before->second)].place)));
+    // said at the second in the file
+    Place first = roster.groups[std::size_t(before->second)].place, second = group.place;
+    if (std::tie(second.line, second.column) < std::tie(first.line, first.column)) std::swap(first, second);
+    complaints.add(second, fmt::format("the name '{}' is taken by another body at {}", group.name,
+                                       complaints.text(first)));
     return;
   }
   if (kind == "box" && fields.given("mass") && fields.given("density"))
@@ -263,6 +269,11 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
     complaints.add(fields.place(), fmt::format("[[{}]] needs 'position': an open room has no middle", kind));
     return;
   }
+  const Node* nets = making.top.find("net");
+  making.knots = nets && std::any_of(nets->list().begin(), nets->list().end(), [&](const Node& net) {
+                   const Node* of = net.find("of");
+                   return of && of->text() == group.name;
+                 });
   const Node* about = copies.given("around");
   const double turn = copies.number("turn"), jitter = copies.number("jitter");
   for (int i = 0; i < group.count; ++i) {
@@ -318,7 +329,7 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
                                                      group.count, group.name, group.name, group.count - 1)
                                        : fmt::format("'{}' has no copies", group.name));
   refuse_outside(making, group, fields.place("position"));
-  ++making.declared;
+  if (!making.knots && !fields.given("color")) ++making.declared;
   roster.index.emplace(group.name, int(roster.groups.size()));
   roster.groups.push_back(std::move(group));
 }
@@ -328,7 +339,7 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
 double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
 
 Vec turned(const Vec& v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const auto [s, c] = sim::sin_cos(angle);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 

@@ -12,7 +12,8 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr double kLargest = 1e100;  // beyond it squares overflow
+constexpr std::int64_t kFinest = 1'000'000;  // of exact times: sums and differences of them fit 64 bits
+constexpr double kLargest = 1e100;           // beyond it squares overflow
 constexpr int kDimensions = 2;
 
 constexpr const char* kColors[] = {"orange", "sky",    "green", "blue",  "vermilion",
@@ -27,7 +28,8 @@ bool looks_like_a_number(const std::string& text) { return sim::parse_rational(t
 std::string owner_text(const std::string& owner) {
   if (owner.empty()) return "a scene";
   const Key* it = key(owner);
-  if (owner.find('.') != std::string::npos) return "'" + std::string(it->last()) + "'";
+  if (owner.find('.') != std::string::npos)
+    return (it->form == Form::tables ? "each of '" : "'") + std::string(it->last()) + "'";
   return it->form == Form::tables ? "[[" + owner + "]]" : "[" + owner + "]";
 }
 
@@ -198,8 +200,8 @@ class Checker {
     const double x = node.number();
     if (!std::isfinite(x)) return wrong(node, fmt::format("'{}' must be finite, got {}", key.last(), x));
     if (!key.range.has(x))
-      return wrong(node,
-                   fmt::format("'{}' {}, got {}", key.last(), bounds(key.range, key.unit), described(node)));
+      return wrong(node, fmt::format("'{}' {}, got {}", key.last(),
+                                     bounds(key.range, key.unit, node.number()), described(node)));
     if (std::abs(x) > kLargest) return wrong(node, fmt::format("'{}' is too large, got {}", key.last(), x));
     return true;
   }
@@ -211,8 +213,8 @@ class Checker {
                    fmt::format("version {} of the language is newer than this obscura, which reads version 1",
                                described(node)));
     return key.range.has(node.number()) ||
-           wrong(node,
-                 fmt::format("'{}' {}, got {}", key.last(), bounds(key.range, key.unit), described(node)));
+           wrong(node, fmt::format("'{}' {}, got {}", key.last(), bounds(key.range, key.unit, node.number()),
+                                   described(node)));
   }
 
   bool name(const Node& node, const Key& key) {
@@ -242,13 +244,18 @@ class Checker {
       if (!number(node, key)) return false;
       exact = node.is_integer() ? sim::Rational{std::get<std::int64_t>(node.value), 1}
                                 : sim::from_double(node.number());
-      if (!exact || exact->den > 1'000'000'000)
-        return wrong(
-            node, fmt::format("'{}': {} has too many digits for an exact time", key.last(), described(node)));
     }
-    return key.range.has(sim::value(*exact)) ||
-           wrong(node,
-                 fmt::format("'{}' {}, got {}", key.last(), bounds(key.range, key.unit), sim::text(*exact)));
+    const std::string got = node.is_text() ? quoted(node.text()) : described(node);
+    if (exact && !key.range.has(sim::value(*exact)))
+      return wrong(node, fmt::format("'{}' {}, got {}", key.last(),
+                                     bounds(key.range, key.unit, sim::value(*exact)), got));
+    const bool fits = exact && exact->den <= kFinest && (key.unit == "s" || exact->num <= kFinest);
+    if (!fits)
+      return wrong(
+          node, fmt::format("'{}' is kept exactly and {} has too many digits: expected {}", key.last(), got,
+                            key.unit == "s" ? "microseconds at the finest"
+                                            : "a fraction of whole numbers up to a million"));
+    return true;
   }
 
   bool word(const Node& node, const Key& key) {
@@ -464,9 +471,12 @@ void check(Node& table, const std::string& owner, Complaints& complaints) {
 }
 
 std::string quoted(std::string_view word) {
+  // cut where a code point ends
+  std::size_t most = std::min<std::size_t>(word.size(), 64);
+  while (most > 0 && most < word.size() && (static_cast<unsigned char>(word[most]) & 0xC0) == 0x80) --most;
   std::string text = "'";
-  for (const char c : word.substr(0, 64)) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  return text + (word.size() > 64 ? "...'" : "'");
+  for (const char c : word.substr(0, most)) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return text + (word.size() > most ? "...'" : "'");
 }
 
 }  // namespace obscura::scene

@@ -183,11 +183,27 @@ const Node* Node::find(std::string_view key) const {
 
 Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
 
+namespace {
+
+// on one line
+std::string lined(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  return text;
+}
+
+}  // namespace
+
 std::string described(const Node& node) {
   if (node.is_integer()) return fmt::format("{}", std::get<std::int64_t>(node.value));
-  if (node.is_number()) return fmt::format("{}", node.number());
+  if (node.is_number())
+    return std::isfinite(node.number()) && node.number() == std::floor(node.number()) &&
+                   std::abs(node.number()) < 1e15
+               ? fmt::format("{:.1f}", node.number())
+               : fmt::format("{}", node.number());
   if (const bool* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
-  if (node.is_text()) return "a string";
+  if (node.is_text())
+    return node.text().size() <= 40 ? fmt::format("the string \"{}\"", lined(node.text())) : "a string";
   if (node.is_list()) return "a list";
   if (node.is_table()) return "a table";
   return "a date or time";
@@ -200,10 +216,12 @@ Node document(std::string_view text, const std::string& file) {
   refuse_what_is_not_text(text, file);
   refuse_what_is_too_deep(text, file);
   try {
-    return copied(toml::parse(text));
+    Node top = copied(toml::parse(text));
+    top.place = {};
+    return top;
   } catch (const toml::parse_error& error) {
     const Place place = place_of(error.source());
-    refuse(file, place.line, place.column, "not TOML: " + lowered(error.description()));
+    refuse(file, place.line, place.column, "not TOML: " + lined(lowered(error.description())));
   }
 }
 

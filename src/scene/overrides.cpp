@@ -26,6 +26,10 @@ void settle(Node& node, Place place) {
 // the value as TOML; a bare word is a string
 std::optional<Node> read_value(std::string_view text, Place place, Complaints& complaints) {
   std::string reason;
+  if (text.empty()) {
+    complaints.add(place, "expected a value after =");
+    return {};
+  }
   try {
     Node top = document("value = " + std::string(text), "");
     if (top.table().size() == 1 && top.table().front().key == "value" &&
@@ -38,7 +42,7 @@ std::optional<Node> read_value(std::string_view text, Place place, Complaints& c
     reason = error.complaints.front().message;
   }
   // brackets and quotes were meant as TOML; the rest are words
-  if (text.empty() || std::string_view("[{\"'").find(text.front()) != std::string_view::npos ||
+  if (std::string_view("[{\"'").find(text.front()) != std::string_view::npos ||
       text.find('\n') != std::string_view::npos) {
     complaints.add(place, reason.empty() ? "expected one value after =" : reason);
     return {};
@@ -106,11 +110,11 @@ void write(Node& table, const std::string& owner, const std::vector<Step>& path,
       Node* next = here->find(step.name);
       if (!next) {
         const Key* known = key(at);
-        const bool part_of_vector = known && known->form == Form::vector && !(last && step.indices.empty());
-        if (part_of_vector && known->fallback.empty())
+        const bool part = !(last && step.indices.empty());
+        if (part && known && known->form == Form::vector && known->fallback.empty())
           return complaints.add(
               place, fmt::format("'{}' is not set; give the whole, {}=[x, y]", step.name, step.name));
-        Node fresh = part_of_vector ? fallback(at) : Node{place, Node::Table{}};
+        Node fresh = part && known && !known->fallback.empty() ? fallback(at) : Node{place, Node::Table{}};
         settle(fresh, place);
         here->table().push_back({step.name, place, std::move(fresh)});
         next = &here->table().back().node;

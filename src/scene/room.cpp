@@ -15,15 +15,37 @@ using Vec = sim::Vec<2>;
 
 constexpr double kFar = 1e7;  // m: a side of a room that goes on to here is open
 
-// what is left of a convex polygon on the right side of a wall
-std::vector<Vec> clipped(const std::vector<Vec>& polygon, const sim::Wall<2>& wall) {
-  std::vector<Vec> left;
+// a corner of what the walls leave, and the wall along the side from it to the next
+struct Corner {
+  Vec at;
+  sim::Wall<2> side;
+};
+
+// where the side from a corner meets a wall; the corner itself where they are one line but for rounding
+Vec meeting(const Corner& corner, const sim::Wall<2>& b) {
+  const sim::Wall<2>& a = corner.side;
+  const double ca = a.normal.dot(a.point), cb = b.normal.dot(b.point);
+  const double det = a.normal.x() * b.normal.y() - a.normal.y() * b.normal.x();
+  if (std::abs(det) < 1e-12) return corner.at;
+  return {(ca * b.normal.y() - cb * a.normal.y()) / det, (cb * a.normal.x() - ca * b.normal.x()) / det};
+}
+
+// what a wall leaves of a convex polygon
+std::vector<Corner> clipped(const std::vector<Corner>& polygon, const sim::Wall<2>& wall) {
+  std::vector<Corner> left;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec& a = polygon[i];
-    const Vec& b = polygon[(i + 1) % polygon.size()];
-    const double da = -beyond(wall, a), db = -beyond(wall, b);
-    if (da >= 0) left.push_back(a);
-    if ((da > 0 && db < 0) || (da < 0 && db > 0)) left.push_back(a + (b - a) * (da / (da - db)));
+    const Corner& a = polygon[i];
+    const Corner& b = polygon[(i + 1) % polygon.size()];
+    const double da = beyond(wall, a.at), db = beyond(wall, b.at);
+    if (da <= 0) left.push_back(a);
+    // the wall takes over where the polygon leaves the room, and hands back where it comes in again
+    if (da <= 0 && db > 0) {
+      if (da < 0)
+        left.push_back({meeting(a, wall), wall});
+      else
+        left.back().side = wall;
+    }
+    if (da > 0 && db < 0) left.push_back({meeting(a, wall), a.side});
   }
   return left;
 }
@@ -46,7 +68,7 @@ Room room(const Node& top, Complaints& complaints) {
     const auto wall = [&](const char* name, const Vec& point, const Vec& normal) {
       room.walls.push_back({point, normal, elasticity});
       room.names.push_back(name);
-      room.places.push_back(fields.place("size"));
+      room.places.push_back(fields.given("size") ? fields.place("size") : Place{});
     };
     wall("the floor", low, {0, 1});
     wall("the left wall", low, {1, 0});
@@ -68,7 +90,10 @@ Room room(const Node& top, Complaints& complaints) {
   }
 
   // what the walls leave
-  std::vector<Vec> inside = {{-kFar, -kFar}, {kFar, -kFar}, {kFar, kFar}, {-kFar, kFar}};
+  std::vector<Corner> inside = {{{-kFar, -kFar}, {{0, -kFar}, {0, 1}, {}}},
+                                {{kFar, -kFar}, {{kFar, 0}, {-1, 0}, {}}},
+                                {{kFar, kFar}, {{0, kFar}, {0, -1}, {}}},
+                                {{-kFar, kFar}, {{-kFar, 0}, {1, 0}, {}}}};
   for (std::size_t i = 0; i < room.walls.size(); ++i) {
     inside = clipped(inside, room.walls[i]);
     if (inside.size() < 3) {
@@ -78,8 +103,9 @@ Room room(const Node& top, Complaints& complaints) {
       return room;
     }
   }
-  Room::Bounds bounds{inside.front(), inside.front()};
-  for (const Vec& corner : inside) bounds = {bounds.low.cwiseMin(corner), bounds.high.cwiseMax(corner)};
+  Room::Bounds bounds{inside.front().at, inside.front().at};
+  for (const Corner& corner : inside)
+    bounds = {bounds.low.cwiseMin(corner.at), bounds.high.cwiseMax(corner.at)};
   if (bounds.low.minCoeff() > -kFar && bounds.high.maxCoeff() < kFar) room.bounds = bounds;
   return room;
 }

@@ -49,6 +49,8 @@ void refuse_taken_names(const Node& top, const Roster& roster, Complaints& compl
 Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets) {
   Complaints complaints(file, sets);
   Node top = document(text, file);
+  if (top.table().empty())
+    throw Error({{file, 0, 0, "has no keys at all; `obscura new NAME` writes a scene to start from"}});
   const std::vector<CopySet> copy_sets = apply(sets, top, complaints);
   check(top, complaints);
 

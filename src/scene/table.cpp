@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace obscura::scene {
@@ -556,7 +557,8 @@ std::vector<Key> built() {
       for (std::size_t k = i; k < end; ++k) {
         Key key = rows[k];
         if (key.path.starts_with("body.")) key.path = kind + key.path.substr(4);
-        for (std::size_t at; (at = key.absent.find("KIND")) != std::string::npos;) key.absent.replace(at, 4, kind);
+        for (std::size_t at; (at = key.absent.find("KIND")) != std::string::npos;)
+          key.absent.replace(at, 4, kind);
         if (key.path == kind || key.path.starts_with(kind + ".")) all.push_back(key);
       }
     }
@@ -631,13 +633,13 @@ std::string unit_words(std::string_view unit) {
                                                                      {"N/m", "newtons per metre"},
                                                                      {"N s/m", "newton seconds per metre"},
                                                                      {"kg/m^2", "kilograms per square metre"},
-                                                                     {"1/s", "times per second"}};
+                                                                     {"1/s", "per second"}};
   const auto found = words.find(unit);
   return std::string(found == words.end() ? unit : found->second);
 }
 
 std::string expected(const Key& key) {
-  const std::string of = key.unit.empty() ? "" : " of " + unit_words(key.unit);
+  const std::string of = key.unit.empty() ? "" : (key.unit == "1/s" ? " " : " of ") + unit_words(key.unit);
   const std::string in = key.unit.empty() ? "" : " in " + unit_words(key.unit);
   switch (key.form) {
     case Form::table:
@@ -684,17 +686,14 @@ std::string expected(const Key& key) {
   return "";
 }
 
-std::string bounds(const Range& range, const std::string& unit) {
-  const std::string of = unit.empty() ? "" : " " + unit;
-  const bool low = range.low > -std::numeric_limits<double>::infinity();
-  const bool high = range.high < std::numeric_limits<double>::infinity();
-  if (low && high && range.low == range.high) return fmt::format("must be {}{}", range.low, of);
-  if (low && high && range.above)
-    return fmt::format("must be more than {} and at most {}{}", range.low, range.high, of);
-  if (low && high) return fmt::format("must be between {} and {}{}", range.low, range.high, of);
-  if (low && range.low == 0) return range.above ? "must be positive" : "must not be negative";
-  if (low) return fmt::format("must be at least {}{}", range.low, of);
-  return fmt::format("must be at most {}{}", range.high, of);
+std::string bounds(const Range& range, const std::string& unit, double x) {
+  const std::string of = unit.empty() ? "" : " " + (unit == "1/s" ? unit_words(unit) : unit);
+  const bool low = std::isfinite(range.low), high = std::isfinite(range.high);
+  if (low && high && range.high <= 100 && !range.above)
+    return fmt::format("must be between {} and {}{}", range.low, range.high, of);
+  if (high && x > range.high) return fmt::format("must be at most {}{}", std::int64_t(range.high), of);
+  if (range.low == 0) return range.above ? "must be positive" : "must not be negative";
+  return fmt::format("must be at least {}{}", range.low, of);
 }
 
 }  // namespace obscura::scene

@@ -85,7 +85,7 @@ std::string expected(const Key& key);
 /// "kg" as "kilograms"; the unit itself where it has no better word.
 std::string unit_words(std::string_view unit);
 
-/// "must be positive", "must be between 0 and 1".
-std::string bounds(const Range& range, const std::string& unit);
+/// What a number outside a range must be: "must be positive", "must be between 0 and 1".
+std::string bounds(const Range& range, const std::string& unit, double x);
 
 }  // namespace obscura::scene

@@ -1,0 +1,320 @@
+// Everything that can be wrong with a scene, each with its line: place, what was expected, what was probably
+// meant.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "scene/error.h"
+#include "scene/scene.h"
+
+namespace obscura::scene {
+namespace {
+
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+// the complaints of a scene, one line each
+std::vector<std::string> wrong(const std::string& text, const std::vector<std::string>& sets = {}) {
+  try {
+    parse(text, "a.toml", sets);
+  } catch (const Error& error) {
+    std::vector<std::string> lines;
+    for (const Complaint& complaint : error.complaints) lines.push_back(complaint.text());
+    return lines;
+  }
+  return {};
+}
+
+// `text` is refused in one line and no other
+void refused(const std::string& text, const std::string& line) {
+  EXPECT_THAT(wrong(text), ElementsAre(line)) << text;
+}
+
+TEST(Complaints, UnknownKeysSayWhatWasMeant) {
+  refused("duratoin = 3", "a.toml:1:1: unknown key 'duratoin'; did you mean 'duration'?");
+  refused("[[box]]\nelastcity = 1",
+          "a.toml:2:1: unknown key 'elastcity' in [[box]]; did you mean 'elasticity'?");
+  refused("[[spring]]\nlength = 1\nbetween = [\"particle[0]\", [1, 1]]\n[[particle]]",
+          "a.toml:2:1: unknown key 'length' in [[spring]]; did you mean 'rest_length'?");
+  refused("[sprng]\n", "a.toml:1:2: unknown key 'sprng'; did you mean 'spring'?");
+  refused("[[box]]\ncopies = { count = 2, jiter = 1 }",
+          "a.toml:2:23: unknown key 'jiter' in 'copies'; did you mean 'jitter'?");
+}
+
+TEST(Complaints, AKeyInTheWrongTableIsSentHome) {
+  refused("gravity = [0, -1]", "a.toml:1:1: unknown key 'gravity'; it belongs in [room]");
+  refused("[room]\nfps = 30", "a.toml:2:1: unknown key 'fps' in [room]; it belongs in [film]");
+  refused("[film]\nduration = 30",
+          "a.toml:2:1: unknown key 'duration' in [film]; it belongs at the top, before the first [table]");
+}
+
+TEST(Complaints, WhatComesLaterIsNamedAsSuch) {
+  refused("[[joint]]\ntype = \"pin\"", "a.toml:1:3: [[joint]] is not in this version of obscura yet");
+  refused("[golden]\nat = [0]", "a.toml:1:2: [golden] is not in this version of obscura yet");
+  refused("[room]\nfriction = 1", "a.toml:2:1: 'friction' is not in this version of obscura yet");
+  refused("[physics]\ncollision = \"contact\"",
+          "a.toml:2:13: 'collision': 'contact' is not in this version of obscura yet, which has handout");
+  refused("version = 2",
+          "a.toml:1:11: version 2 of the language is newer than this obscura, which reads version 1");
+  refused("[room]\nsize = [4, 3, 4]",
+          "a.toml:2:8: 'size' has three numbers: rooms in space are not in this version of obscura yet, "
+          "expected two [x, y]");
+  for (const char* table : {"polygon", "chain", "bond", "explosion"})
+    EXPECT_THAT(wrong("[[" + std::string(table) + "]]"),
+                ElementsAre(EndsWith("is not in this version of obscura yet")))
+        << table;
+}
+
+TEST(Complaints, TypesAreNeverGuessed) {
+  refused("[[particle]]\nmass = \"heavy\"",
+          "a.toml:2:8: 'mass': expected a number of kilograms, got the string \"heavy\"");
+  refused("[[particle]]\nmass = \"0.5\"",
+          "a.toml:2:8: 'mass': expected a number of kilograms, got the string \"0.5\"; write it without the "
+          "quotes");
+  refused("title = 5", "a.toml:1:9: 'title': expected a string, got 5");
+  refused("seed = 1.5", "a.toml:1:8: 'seed': expected a whole number, got 1.5");
+  refused("seed = 2.0", "a.toml:1:8: 'seed': expected a whole number, got 2.0");
+  refused("[look]\ncaption = 1", "a.toml:2:11: 'caption': expected true or false, got 1");
+  refused("[room]\nsize = 4", "a.toml:2:8: 'size': expected two numbers [x, y] in metres, got 4");
+  refused("[room]\nsize = [4]", "a.toml:2:8: 'size': expected two numbers [x, y] in metres, got 1 of them");
+  refused("[room]\nsize = [4, true]", "a.toml:2:12: 'size': expected numbers, got true");
+  refused("[[particle]]\nposition = 1979-05-27",
+          "a.toml:2:12: 'position': expected two numbers [x, y] in metres, got a date or time");
+  refused("room = 3", "a.toml:1:8: 'room': expected a table, got 3");
+  refused("[box]\nmass = 3", "a.toml:1:1: [box] stands for one of many; write [[box]]");
+  refused("box = 3", "a.toml:1:7: 'box': expected a list of tables, got 3");
+  refused("[film]\nsize = [1920, 1080.5]",
+          "a.toml:2:15: 'size': expected two whole numbers [width, height], got 1080.5");
+  refused(
+      "[physics]\nrate = \"fast\"",
+      "a.toml:2:8: 'rate': expected a number per second, or a fraction such as \"30000/1001\", got 'fast'");
+}
+
+TEST(Complaints, IntegersAreNumbers) {
+  EXPECT_THAT(wrong("duration = 3\n[[particle]]\nmass = 2\nposition = [1, 2]"), ElementsAre());
+}
+
+TEST(Complaints, NumbersKeepTheirRanges) {
+  refused("duration = 0", "a.toml:1:12: 'duration' must be positive, got 0");
+  refused("[[particle]]\nmass = -1", "a.toml:2:8: 'mass' must be positive, got -1");
+  refused("[[particle]]\nmass = 0", "a.toml:2:8: 'mass' must be positive, got 0");
+  refused("[[particle]]\ndrag = -0.5", "a.toml:2:8: 'drag' must not be negative, got -0.5");
+  refused("[[particle]]\nelasticity = 1.5", "a.toml:2:14: 'elasticity' must be between 0 and 1, got 1.5");
+  refused("[[box]]\nsize = [1, 0]", "a.toml:2:12: 'size' must be positive, got 0");
+  refused("[film]\nfps = 2000", "a.toml:2:7: 'fps' must be at most 1000 per second, got 2000");
+  refused("[film]\nsize = [1920, 4]", "a.toml:2:15: 'size' must be at least 16 pixels, got 4");
+  refused("[[particle]]\nmass = inf", "a.toml:2:8: 'mass' must be finite, got inf");
+  refused("[[particle]]\nposition = [nan, 1]", "a.toml:2:13: 'position' must be finite, got nan");
+  refused("duration = nan", "a.toml:1:12: 'duration' must be finite, got nan");
+  refused("[[mouse]]\npath = [[0, 1, 1], [1, -inf, 2]]\n[[particle]]",
+          "a.toml:2:24: 'path' must be finite, got -inf");
+  refused("[[particle]]\nmass = 1e200", "a.toml:2:8: 'mass' is too large, got 1e+200");
+}
+
+TEST(Complaints, TimesAreExactOrRefused) {
+  refused("duration = 0.12345678",
+          "a.toml:1:12: 'duration' is kept exactly and 0.12345678 has too many digits: expected microseconds "
+          "at the finest");
+  refused("[film]\nfps = \"30000000/1001001\"",
+          "a.toml:2:7: 'fps' is kept exactly and '30000000/1001001' has too many digits: expected a fraction "
+          "of whole numbers up to a million");
+}
+
+TEST(Complaints, WordsComeFromTheirList) {
+  refused("[look]\ntheme = \"papr\"",
+          "a.toml:2:9: 'theme': expected one of paper, screen, got 'papr'; did you mean 'paper'?");
+  refused("[physics]\nintegrator = \"verlet\"",
+          "a.toml:2:14: 'integrator': expected one of rk4, midpoint, euler, semi-implicit, got 'verlet'");
+  refused("[[particle]]\ncolor = \"bleu\"", "a.toml:2:9: 'color': 'bleu' is no colour; did you mean 'blue'?");
+  refused("[[particle]]\ncolor = \"#12\"",
+          "a.toml:2:9: 'color': '#12' is no colour; expected \"#rrggbb\" or one of orange, sky, green, blue, "
+          "vermilion, purple, yellow, grey, black, white");
+  refused("[look]\narrows = [\"contact\"]",
+          "a.toml:2:11: 'arrows': 'contact' is not in this version of obscura yet, which has velocity");
+}
+
+TEST(Complaints, NamesAreOneEach) {
+  refused("[[box]]\nname = \"a\"\n[[particle]]\nname = \"a\"",
+          "a.toml:4:8: the name 'a' is taken by another body at a.toml:2:8");
+  refused("[[box]]\nname = \"a\"\n[[spring]]\nname = \"a\"\nbetween = [\"a\", [1, 1]]",
+          "a.toml:4:8: the name 'a' is taken at a.toml:2:8");
+  refused("[[box]]\nname = \"room\"", "a.toml:2:8: 'name': 'room' is a word of the language; choose another");
+  refused("[[box]]\nname = \"a b\"",
+          "a.toml:2:8: 'name': expected letters, digits, _ and -, a letter first, got 'a b'");
+  refused("[[box]]\nname = \"\"",
+          "a.toml:2:8: 'name': expected letters, digits, _ and -, a letter first, got ''");
+}
+
+TEST(Complaints, ReferencesMustMeanSomething) {
+  const std::string things =
+      "[[particle]]\nname = \"ball\"\ncopies = { count = 3, offset = [0.5, 0] }\n[[box]]\nname = "
+      "\"crate\"\n[[spring]]\n";
+  refused(things + "between = [\"bal[1]\", \"crate\"]",
+          "a.toml:7:12: no body is called 'bal'; did you mean 'ball'?");
+  refused(things + "between = [\"ball[3]\", \"crate\"]",
+          "a.toml:7:12: 'ball[3]': 'ball' has 3 copies, ball[0] .. ball[2]");
+  refused(things + "between = [\"ball\", \"crate\"]",
+          "a.toml:7:12: 'ball' is 3 copies; say which: ball[0] .. ball[2], or all, ball[*]");
+  refused(things + "between = [\"crate[0]\", [1, 1]]",
+          "a.toml:7:12: 'crate' has no copies; write it without brackets");
+  refused(things + "between = [\"ball[0..1]\", \"ball[*]\"]",
+          "a.toml:7:11: 'between' has 2 ends on one side and 3 on the other: expected as many, or one");
+  refused(things + "between = [[1, 1], [2, 2]]",
+          "a.toml:7:11: 'between' has two places: spring[0] would move nothing");
+  refused(things + "between = [\"crate\", \"crate\"]",
+          "a.toml:7:11: both ends of spring[0] are one point of 'crate'");
+  refused(things + "between = [\"crate\", { body = \"ball[1]\", local = [0, 1] }]",
+          "a.toml:7:49: 'ball[1]' is a particle, which has no point but its centre");
+  refused(things + "between = [\"ball[0]\", { body = \"crate\", at = \"topleft\" }]",
+          "a.toml:7:46: 'at': expected a corner or side such as \"top right\" or \"left\", got 'topleft'; "
+          "did you mean 'top left'?");
+  refused(things + "between = [\"ball[0]\", { body = \"crate\", at = \"top\", local = [0, 0] }]",
+          "a.toml:7:23: 'local' and 'at' both say where on the body; leave one out");
+  refused(things + "between = [\"ball[0]\", { local = [0, 0] }]",
+          "a.toml:7:23: 'between': expected a body's name, { body = \"name\", local = [x, y] } or a place "
+          "[x, y], got a table without 'body'");
+  refused(things + "between = [\"crate\"]",
+          "a.toml:7:11: 'between': expected two ends, each a body's name, { body = \"name\", local = [x, y] "
+          "} or a place [x, y], got 1 of them");
+  refused(things + "stiffness = 3",
+          "a.toml:6:1: [[spring]] needs 'between': two ends, each a body's name, { body = \"name\", local = "
+          "[x, y] } or a place [x, y]");
+  refused("[[particle]]\n[look]\ntrails = { bal = 1 }", "a.toml:3:12: no body is called 'bal'");
+  refused("[[particle]]\nname = \"a\"\n[[net]]\nof = \"a\"",
+          "a.toml:4:6: 'a' has no copies to join: give it copies = { count = [5, 4], ... }");
+  refused("[[net]]\nof = \"a\"", "a.toml:2:6: no body is called 'a'");
+}
+
+TEST(Complaints, BodiesLieInTheRoom) {
+  refused("[room]\nsize = [4, 3]\n[[particle]]\nposition = [4.25, 1]",
+          "a.toml:4:12: 'particle[0]' is outside the room: 0.25 m beyond the right wall (a.toml:2:8)");
+  refused("[room]\nsize = [4, 3]\n[[particle]]\nposition = [1, 0.25]\nradius = 0.5",
+          "a.toml:4:12: 'particle[0]' is outside the room: 0.25 m beyond the floor (a.toml:2:8)");
+  refused("[[box]]\nsize = [1, 1]\nangle = 45\nposition = [0.5, 2]",
+          "a.toml:4:12: 'box[0]' is outside the room: 0.207 m beyond the left wall (8 m by 4.5 m where "
+          "room.size is left out)");
+  refused(
+      "[room]\nsize = [4, 3]\nwalls = [{ point = [2, 1], normal = [0, 2] }]\n[[particle]]\nposition = [1, "
+      "0.5]",
+      "a.toml:5:12: 'particle[0]' is outside the room: 0.5 m beyond room.walls[0] (a.toml:3:10)");
+  refused("[[particle]]\nname = \"ball\"\nposition = [7, 4]\ncopies = { count = 4, offset = [0.5, 0.25] }",
+          "a.toml:3:12: 'ball[3]' is outside the room: 0.5 m beyond the right wall (8 m by 4.5 m where "
+          "room.size is left out)");
+  refused("[[particle]]\nposition = [7, 1]\nname = \"b\"\ncopies = { count = 5, offset = [0.5, 0] }",
+          "a.toml:2:12: 'b[3]' is outside the room: 0.5 m beyond the right wall (8 m by 4.5 m where "
+          "room.size is left out), and so are 1 more of its copies");
+}
+
+TEST(Complaints, OnAWallIsInTheRoom) {
+  EXPECT_THAT(wrong("[[particle]]\nposition = [8, 4.5]"), ElementsAre());
+  EXPECT_THAT(wrong("[[particle]]\nradius = 0.1\nposition = [0.1, 0.1]"), ElementsAre());
+  EXPECT_THAT(wrong("[[box]]\nsize = [0.6, 0.4]\nposition = [0.3, 0.2]"), ElementsAre());
+  EXPECT_THAT(wrong("[[box]]\nsize = [0.6, 0.4]\nangle = 90\nposition = [0.2, 0.3]"), ElementsAre());
+}
+
+TEST(Complaints, WhatIsHeldCountsByItsCentre) {
+  EXPECT_THAT(wrong("[[particle]]\nradius = 0.1\nfixed = true\nposition = [4, 4.5]"), ElementsAre());
+  EXPECT_THAT(wrong("[[particle]]\nradius = 0.1\nfixed = true\nposition = [4, 4.6]"),
+              ElementsAre(HasSubstr("0.1 m beyond the ceiling")));
+}
+
+TEST(Complaints, RoomsMustBeRooms) {
+  refused("[room]\nwalls = [{ point = [0, 0], normal = [0, 0] }]",
+          "a.toml:2:37: 'normal' is zero: expected the direction into the room, such as [0, 1]");
+  refused("[room]\nwalls = [{ point = [0, 0] }]",
+          "a.toml:2:10: each of 'walls' needs 'normal': two numbers [x, y]");
+  refused("[room]\nsize = [4, 3]\nwalls = [{ point = [0, 9], normal = [0, 1] }]",
+          "a.toml:3:10: room.walls[0] leaves no room: it lies on the outside of the walls before it");
+  refused("[room]\nwalls = [{ point = [0, 0], normal = [0, 1] }]\n[[particle]]",
+          "a.toml:3:1: [[particle]] needs 'position': an open room has no middle");
+  refused("[room]\ncorner = [1, 1]\nwalls = [{ point = [0, 0], normal = [0, 1] }]",
+          "a.toml:2:10: 'corner' is that of 'size', and there is none");
+}
+
+TEST(Complaints, PlaneAndSpaceDoNotMix) {
+  refused("[room]\nsize = [4, 3]\n[[particle]]\nposition = [1, 1, 1]",
+          "a.toml:4:12: 'position' has 3 numbers and 'size' at a.toml:2:8 has 2: a scene is planar or in "
+          "space, not both");
+  refused("[[particle]]\nposition = [1, 1]\n[[mouse]]\npath = [[0, 1, 1], [1, 2, 2, 2]]",
+          "a.toml:4:20: 'place after the time in path' has 3 numbers and 'position' at a.toml:2:12 has 2: a "
+          "scene is planar or in space, not both");
+}
+
+TEST(Complaints, MouseTimesIncrease) {
+  const std::string ball = "[[particle]]\n[[mouse]]\n";
+  refused(ball + "path = [[1, 4, 3], [1, 5, 3]]",
+          "a.toml:3:21: times must increase along the path, got 1 after 1");
+  refused(ball + "path = [[1, 4, 3]]",
+          "a.toml:3:8: 'path': expected points in time [[t, x, y], ...], two at least, got 1");
+  refused(ball + "path = [[-1, 4, 3], [1, 2, 2]]", "a.toml:3:10: 'time' must not be negative, got -1");
+  refused(ball + "path = [[1, 4], [2, 2, 2]]", "a.toml:3:9: 'path': expected three numbers [t, x, y], got 2");
+  refused("[[mouse]]\npath = [[0, 1, 1], [1, 2, 2]]",
+          "a.toml:1:1: the mouse has nothing to take: no body of the scene can move");
+}
+
+TEST(Complaints, CopiesAreCountedAndBounded) {
+  refused("[[particle]]\ncopies = { count = [2000, 2000] }",
+          "a.toml:2:20: 'count': 4000000 bodies in all are more than 1000000, the most a scene may have");
+  refused("[[particle]]\ncopies = { count = 0 }", "a.toml:2:20: 'count' must be at least 1, got 0");
+  refused("[[particle]]\ncopies = { offset = [1, 0] }",
+          "a.toml:2:10: 'copies' needs 'count': a whole number, or two [columns, rows]");
+  refused("[[particle]]\ncopies = { count = [3, 2], offset = [0.1, 0] }",
+          "a.toml:2:37: 'offset': a grid needs one for each direction, such as [[0.3, 0], [0, 0.3]]");
+  refused("[[particle]]\ncopies = { count = 3, offset = [[0.1, 0], [0, 1]] }",
+          "a.toml:2:32: 'offset': expected 1 for a count in 1 direction, got 2");
+  refused("[[particle]]\nmass = [1, 2]\ncopies = { count = 3 }",
+          "a.toml:2:8: 'mass': expected one for each of the 3 copies, got 2");
+  refused("[[particle]]\nmass = [1, 2]",
+          "a.toml:2:8: 'mass' varies over copies, and there are none: expected a number of kilograms");
+  refused("[[particle]]\nmass = { from = 1, too = 2 }\ncopies = { count = 3 }",
+          "a.toml:2:20: unknown key 'too' in 'mass': expected { from, to } over copies, or a number of "
+          "kilograms");
+  refused("[[particle]]\nmass = { from = 1 }\ncopies = { count = 3 }",
+          "a.toml:2:8: 'mass': expected { from, to }, got no 'to'");
+  refused("[[particle]]\nmass = { from = 1, to = -2 }\ncopies = { count = 3 }",
+          "a.toml:2:25: 'mass' must be positive, got -2");
+  refused("[[particle]]\nfixed = \"0..3\"\ncopies = { count = 3 }",
+          "a.toml:2:9: 'fixed': expected which of the 3 copies, such as \"0..2\" or \"0,2\", got '0..3'");
+  refused("[[particle]]\nfixed = \"0\"",
+          "a.toml:2:9: 'fixed': expected true or false; a list of copies needs copies");
+}
+
+TEST(Complaints, OneThingIsSaidOnce) {
+  refused("[[box]]\nmass = 1\ndensity = 2",
+          "a.toml:3:11: 'mass' and 'density' both say how heavy it is; leave one out");
+  refused("[camera]\nwidth = 3\nkeys = [{ time = 0 }]",
+          "a.toml:2:9: the camera stands, or moves by 'keys'; leave one out");
+  refused("[camera]\nkeys = [{ time = 1 }, { time = 1 }]",
+          "a.toml:2:32: times must increase from key to key, got 1 after 1");
+}
+
+TEST(Complaints, AllComeInOneGoInTheOrderOfTheFile) {
+  EXPECT_THAT(
+      wrong("[[spring]]\nbetween = [\"a\", \"b\"]\n[room]\nsize = [-1, 2]\n[[box]]\nmas = 2\ntitle = 2\n"),
+      ElementsAre(
+          "a.toml:2:12: no body is called 'a'", "a.toml:2:17: no body is called 'b'",
+          "a.toml:4:9: 'size' must be positive, got -1",
+          "a.toml:6:1: unknown key 'mas' in [[box]]; did you mean 'mass'?",
+          "a.toml:7:1: unknown key 'title' in [[box]]; it belongs at the top, before the first [table]"));
+}
+
+TEST(Complaints, AHundredAreEnough) {
+  std::string text;
+  for (int i = 0; i < 250; ++i) text += "zzzzz" + std::to_string(i) + " = 1\n";
+  const auto lines = wrong(text);
+  ASSERT_EQ(lines.size(), 101u);
+  EXPECT_EQ(lines.back(), "a.toml: and 150 more");
+}
+
+TEST(Complaints, ColumnsCountCodePoints) {
+  EXPECT_THAT(wrong("[[box]]\nangle = [1, \"åå\", \"b\"]"),
+              ElementsAre(StartsWith("a.toml:2:13: "), StartsWith("a.toml:2:19: ")));
+}
+
+}  // namespace
+}  // namespace obscura::scene

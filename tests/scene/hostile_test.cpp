@@ -1,0 +1,264 @@
+// Files that mean harm, or none at all: each ends in a scene or in complaints, quickly.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "scene/document.h"
+#include "scene/error.h"
+#include "scene/scene.h"
+
+namespace obscura::scene {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string complaint(const std::string& text) {
+  try {
+    parse(text, "a.toml");
+    return "";
+  } catch (const Error& error) {
+    return error.complaints.front().text();
+  }
+}
+
+std::string repeated(const std::string& part, int n) {
+  std::string all;
+  for (int i = 0; i < n; ++i) all += part;
+  return all;
+}
+
+TEST(Hostile, DeepKeysAreRefusedBeforeTheParserSeesThem) {
+  EXPECT_EQ(complaint("a" + repeated(".a", 100'000) + " = 1"),
+            "a.toml:1:128: a dotted key of more than 64 parts");
+  EXPECT_EQ(complaint("[a" + repeated(".a", 100'000) + "]"),
+            "a.toml:1:129: a dotted key of more than 64 parts");
+  EXPECT_EQ(complaint("b = {a" + repeated(" . a", 100'000) + " = 1}"),
+            "a.toml:1:260: a dotted key of more than 64 parts");
+  EXPECT_EQ(complaint("a = " + std::string(100'000, '[')),
+            "a.toml:1:69: lists and tables are nested more than 64 deep here");
+  EXPECT_EQ(complaint("a = " + repeated("{a=", 100'000)),
+            "a.toml:1:197: lists and tables are nested more than 64 deep here");
+}
+
+TEST(Hostile, WhatIsDeepInAStringOrACommentIsNot) {
+  EXPECT_EQ(
+      complaint("# " + std::string(1000, '[') + "\ntitle = \"" + std::string(1000, '[') + "." + "\" # {{{"),
+      "");
+  EXPECT_EQ(complaint("title = '''" + std::string(1000, '{') + "'' ''''\nseed = 1"), "");
+  EXPECT_EQ(complaint("title = \"\\\"" + std::string(1000, '[') + "\""), "");
+  // a string that ends in two quotes of its own hides nothing
+  EXPECT_THAT(complaint("title = [\"\"\"a\"\"\"\"\", " + std::string(100'000, '[')), HasSubstr("nested"));
+}
+
+TEST(Hostile, BytesThatAreNoTextAreNamed) {
+  EXPECT_EQ(complaint("title = \"a\x01\""),
+            "a.toml:1:11: a control byte (0x01) has no place in a scene; is this a text file?");
+  EXPECT_EQ(complaint(std::string("title\0 = 1", 10)),
+            "a.toml:1:6: a control byte (0x00) has no place in a scene; is this a text file?");
+  EXPECT_EQ(complaint("\ntitle = \"\xff\""),
+            "a.toml:2:10: the byte 0xFF is not UTF-8; save the file as UTF-8");
+  EXPECT_EQ(complaint("title = \"\xed\xa0\x80\""),
+            "a.toml:1:10: the byte 0xED is not UTF-8; save the file as UTF-8");  // a lone surrogate
+  EXPECT_EQ(complaint("title = \"\xc0\xaf\""),
+            "a.toml:1:10: the byte 0xC0 is not UTF-8; save the file as UTF-8");  // overlong
+  EXPECT_EQ(complaint("title = \"\xe2\x82"),
+            "a.toml:1:10: the byte 0xE2 is not UTF-8; save the file as UTF-8");  // cut
+  EXPECT_EQ(complaint("title = \"Ångström\"\r\nseed = 1\r\n"), "");
+}
+
+TEST(Hostile, WhatIsNotTomlIsOneLine) {
+  EXPECT_THAT(complaint("title == 1"), StartsWith("a.toml:1:8: not TOML: "));
+  EXPECT_THAT(complaint("[room"), StartsWith("a.toml:1:6: not TOML: "));
+  EXPECT_THAT(complaint("[room]\n[room]"), StartsWith("a.toml:2:1: not TOML: "));
+  for (const std::string text : {"title = 1\ntitle = 2", "a = [1, 2", "a = \"b",
+                                 "seed = 99999999999999999999", "= 1", "a = 1 b = 2"}) {
+    const std::string line = complaint(text);
+    EXPECT_THAT(line, HasSubstr("not TOML")) << text;
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+  }
+}
+
+TEST(Hostile, NothingIsNoScene) {
+  EXPECT_EQ(complaint(""), "a.toml: has no keys at all; `obscura new NAME` writes a scene to start from");
+  EXPECT_EQ(complaint("# only a comment\n"),
+            "a.toml: has no keys at all; `obscura new NAME` writes a scene to start from");
+}
+
+TEST(Hostile, FilesThatAreNone) {
+  const fs::path folder = fs::temp_directory_path() / "obscura_scene_hostile_test";
+  fs::create_directories(folder);
+  EXPECT_THROW(
+      {
+        try {
+          read((folder / "none.toml").string());
+        } catch (const Error& error) {
+          EXPECT_EQ(error.what(), (folder / "none.toml").string() + ": no such file");
+          throw;
+        }
+      },
+      Error);
+  EXPECT_THROW(
+      {
+        try {
+          read(folder.string());
+        } catch (const Error& error) {
+          EXPECT_EQ(error.what(), folder.string() + ": is a folder, not a scene");
+          throw;
+        }
+      },
+      Error);
+  std::ofstream(folder / "long.toml") << "title = \"a\"\n" << std::string(17 << 20, '#');
+  EXPECT_THROW(
+      {
+        try {
+          read((folder / "long.toml").string());
+        } catch (const Error& error) {
+          EXPECT_EQ(error.what(), (folder / "long.toml").string() +
+                                      ": is longer than 16 MiB; copies say many bodies in one line");
+          throw;
+        }
+      },
+      Error);
+  fs::remove_all(folder);
+}
+
+// a scene with one of everything: what mutations start from
+constexpr const char* kWhole = R"(version = 1
+title = "a"
+duration = 2.5
+seed = 3
+[room]
+size = [8, 4.5]
+corner = [0, 0]
+walls = [{ point = [0, 0], normal = [0.2, 1], elasticity = 0.5 }]
+[physics]
+rate = "600/1"
+[[particle]]
+name = "ball"
+position = [4, 3]
+elasticity = { from = 0, to = 1 }
+fixed = "0,2..3"
+copies = { count = [3, 2], offset = [[0.3, 0], [0, 0.3]], jitter = 0.02, turn = 3, around = [4, 2] }
+[[box]]
+name = "crate"
+size = [1.0, 0.5]
+position = [5, 3]
+angle = 30
+[[spring]]
+between = ["ball[3]", { body = "crate", local = [0.5, 0.25] }]
+[[spring]]
+between = ["ball[*]", [1, 1]]
+stiffness = [1, 2, 3, 4, 5, 6]
+[[net]]
+of = "ball"
+[[mouse]]
+path = [[1.0, 4, 3], [1.6, 5.5, 3.8]]
+[camera]
+keys = [{ time = 0, center = [4, 2], width = 9 }, { time = 4, ease = "in" }]
+[look]
+trails = { ball = 1 }
+)";
+
+TEST(Hostile, MutationsEndInASceneOrInComplaints) {
+  ASSERT_EQ(complaint(kWhole), "");
+  std::mt19937 random(7);
+  const auto below = [&](std::size_t n) { return std::size_t(random()) % n; };
+  const std::vector<std::string> pieces = {"[",          "]",    "{",       "}",     "\"",
+                                           "'",          ".",    ",",       "=",     "\n",
+                                           "#",          "-",    "0",       "1e308", "nan",
+                                           "inf",        "-1",   "\"\"\"",  "[*]",   "[[",
+                                           "]]",         "0..4", "true",    "name",  "copies",
+                                           "\xff",       "\x01", "é",       "ball",  "9223372036854775807",
+                                           "1979-05-27", "from", "[room]\n"};
+  const std::string whole = kWhole;
+  int good = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::string text = whole;
+    for (std::size_t edits = 1 + below(4); edits > 0; --edits) {
+      const std::size_t at = below(text.size());
+      switch (below(6)) {
+        case 0:
+          text.erase(at, 1 + below(8));
+          break;
+        case 1:
+          text.insert(at, pieces[below(pieces.size())]);
+          break;
+        case 2:
+          text[at] = char(below(256));
+          break;
+        case 3: {  // a line somewhere else
+          const std::size_t end = std::min(text.find('\n', at), text.size() - 1);
+          const std::string part = text.substr(at, end - at + 1);
+          text.insert(below(text.size()), part);
+          break;
+        }
+        case 4:
+          text.insert(at, " ");
+          break;
+        default: {  // a number for another
+          const std::size_t digit = text.find_first_of("0123456789", at);
+          if (digit != std::string::npos)
+            text.replace(digit, 1, below(2) ? std::to_string(below(10)) : pieces[below(pieces.size())]);
+        }
+      }
+      if (text.empty()) text = " ";
+    }
+    try {
+      parse(text, "a.toml");
+      ++good;
+    } catch (const Error& error) {
+      for (const Complaint& each : error.complaints)
+        ASSERT_EQ(each.text().find('\n'), std::string::npos) << each.text();
+    }
+  }
+  EXPECT_GT(good, 30);    // some are harmless
+  EXPECT_LT(good, 2000);  // most are not
+}
+
+TEST(Hostile, NoiseEndsInComplaints) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 2000; ++round) {
+    std::string text;
+    for (int n = int(random() % 200); n > 0; --n)
+      text += round % 2 ? char(random() % 256) : char(32 + random() % 96);
+    try {
+      parse(text, "a.toml");
+    } catch (const Error&) {
+    }
+  }
+}
+
+TEST(Hostile, OverridesOfNoise) {
+  std::mt19937 random(13);
+  const std::vector<std::string> words = {
+      "ball",  "crate",  "[0]",   "[3]",      ".",     "position", "x",
+      "=",     "copies", "count", "path",     "-1",    "[",        "]",
+      "mouse", "room",   "walls", "1",        "{a=1}", "title",    "keys",
+      "look",  "trails", "fixed", "\"0..1\"", "[1,2]", "between",  "[99999999999999999999]",
+      "name"};
+  for (int round = 0; round < 3000; ++round) {
+    std::vector<std::string> sets(1 + random() % 3);
+    for (std::string& set : sets)
+      for (int n = 1 + int(random() % 7); n > 0; --n) set += words[random() % words.size()];
+    try {
+      parse(kWhole, "a.toml", sets);
+    } catch (const Error&) {
+    }
+  }
+}
+
+TEST(Hostile, AHundredThousandBodiesAreRead) {
+  const Scene it = parse(
+      "[[particle]]\nposition = [1, 1]\ncopies = { count = [400, 250], offset = [[0.01, 0], [0, 0.01]] }",
+      "a.toml");
+  EXPECT_EQ(it.world.model.bodies.size(), 100'000u);
+}
+
+}  // namespace
+}  // namespace obscura::scene
