@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "media/encoder.h"
+#include "media/error.h"
 
 namespace {
 
