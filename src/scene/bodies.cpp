@@ -353,7 +353,8 @@ Vec place(const sim::World<2>& world, int body, const Vec& local) {
 const Group* Roster::group(const std::string& name, Place place, Complaints& complaints) const {
   if (const auto found = index.find(name); found != index.end()) return &groups[std::size_t(found->second)];
   std::vector<std::string_view> names;
-  for (const Group& each : groups) names.push_back(each.name);
+  if (!complaints.enough())
+    for (const Group& each : groups) names.push_back(each.name);
   complaints.add(place, fmt::format("no body is called {}{}", quoted(name), did_you_mean(name, names)));
   return nullptr;
 }

@@ -120,6 +120,10 @@ class Checker {
       complaints_.add(entry.place, shown + " is not in this version of obscura yet");
       return {};
     }
+    if (complaints_.enough()) {
+      complaints_.add(entry.place, "unknown key " + quoted(entry.key));
+      return {};
+    }
     std::vector<std::string_view> words;
     for (const Key* each : keys_of(owner)) words.push_back(each->last());
     const std::string_view near = nearest(entry.key, words);

@@ -10,8 +10,7 @@ namespace obscura::scene {
 /// range is complained about and taken out, so that what is left may be read without asking.
 void check(Node& top, Complaints& complaints);
 
-/// The same for one table ("box") of a document. `dimensions`: numbers of a place, as the rest of the
-/// document has them.
+/// The same for one table ("box") of a document.
 void check(Node& table, const std::string& owner, Complaints& complaints);
 
 /// "'ball'", cut where it is long: a word of the scene as a complaint quotes it.

@@ -36,7 +36,9 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
   std::string_view best;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string_view each : words) {
-    if (each.size() > kLongestWord) continue;
+    const std::size_t apart = std::max(each.size(), word.size()) - std::min(each.size(), word.size());
+    if (each.size() > kLongestWord || (apart >= least && !each.starts_with(word) && !each.ends_with(word)))
+      continue;
     std::size_t d = distance(word, each);
     // the front or the back of a longer word: "elastic", "length"
     if (word.size() >= 3 && (each.starts_with(word) || each.ends_with(word))) d = std::min<std::size_t>(d, 1);

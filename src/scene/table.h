@@ -64,6 +64,9 @@ struct Key {
   }
 };
 
+/// The rows of the language as they are written; those of body.* stand for both particle.* and box.*.
+std::vector<Key> rows();
+
 /// The language: every key, in the order of the page.
 std::span<const Key> keys();
 
