@@ -32,6 +32,7 @@ const std::map<std::string, Names> kLibraries = {
     {"epoxy/", {"gl"}},
     {"png.h", {"media"}},
     {"zlib.h", {"media"}},
+    {"libdeflate", {"media"}},
     {"libav", {"media"}},
     {"libsw", {"media"}},
     {"toml++/", {"scene"}},
