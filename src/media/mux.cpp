@@ -74,8 +74,10 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
   const Container& kind = container(path);
   const CodecContext encoder = open_encoder(path, spec);
 
-  if (avformat_alloc_output_context2(&format_, nullptr, kind.muxer.c_str(), nullptr) < 0)
+  AVFormatContext* format = nullptr;
+  if (avformat_alloc_output_context2(&format, nullptr, kind.muxer.c_str(), nullptr) < 0)
     throw std::bad_alloc();
+  format_.reset(format);
   constexpr int kBuffer = 1 << 16;
   auto* buffer = static_cast<unsigned char*>(av_malloc(kBuffer));
 #if LIBAVFORMAT_VERSION_MAJOR >= 61
@@ -88,7 +90,7 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
 #endif
   // +faststart reads the file again, by this name
   format_->url = av_strdup(("file:" + file_.temporary()).c_str());
-  stream_ = avformat_new_stream(format_, nullptr);
+  stream_ = avformat_new_stream(format, nullptr);
   if (!format_->pb || !format_->url || !stream_) throw std::bad_alloc();
   if (::lseek(file_.descriptor(), 0, SEEK_CUR) < 0) format_->pb->seekable = 0;
   // no name of the library's version, no random identities
@@ -110,19 +112,17 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
 
   AVDictionary* options = nullptr;
   if (quicktime) av_dict_set(&options, "movflags", "+faststart", 0);
-  const int code = avformat_write_header(format_, &options);
+  const int code = avformat_write_header(format, &options);
   av_dict_free(&options);
   require(code, "begin this movie");
 }
 
-Muxer::~Muxer() {
-  if (!format_) return;
-  if (format_->pb) {
-    // what is not written yet is not wanted
-    av_freep(&format_->pb->buffer);
-    avio_context_free(&format_->pb);
+void Muxer::Close::operator()(AVFormatContext* format) const {
+  if (format->pb) {
+    av_freep(&format->pb->buffer);
+    avio_context_free(&format->pb);
   }
-  avformat_free_context(format_);
+  avformat_free_context(format);
 }
 
 void Muxer::add(const Segment& segment) {
@@ -147,7 +147,7 @@ void Muxer::add(const Segment& segment) {
     packet_->dts = av_rescale_q(dts, frame, stream_->time_base);
     packet_->duration =
         av_rescale_q(one.pts + frames_ + one.duration, frame, stream_->time_base) - packet_->pts;
-    const int code = av_write_frame(format_, packet_.get());
+    const int code = av_write_frame(format_.get(), packet_.get());
     av_packet_unref(packet_.get());
     require(code, "write");
   }
@@ -156,7 +156,7 @@ void Muxer::add(const Segment& segment) {
 
 void Muxer::close(const std::string& instead) {
   listen();
-  require(av_write_trailer(format_), "finish");
+  require(av_write_trailer(format_.get()), "finish");
   avio_flush(format_->pb);
   require(0, "finish");
   file_.place(true, instead);

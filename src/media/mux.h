@@ -15,7 +15,6 @@ namespace obscura::media {
 class Muxer {
  public:
   Muxer(const std::string& path, const MovieSpec& spec);
-  ~Muxer();
   Muxer(const Muxer&) = delete;
   Muxer& operator=(const Muxer&) = delete;
 
@@ -24,6 +23,10 @@ class Muxer {
   std::int64_t frames() const { return frames_; }
 
  private:
+  // drops what is not written yet
+  struct Close {
+    void operator()(AVFormatContext* format) const;
+  };
   static int on_write(void* self, const std::uint8_t* bytes, int size);
   static std::int64_t on_seek(void* self, std::int64_t offset, int whence);
   /// Throws where libav or the disk refused.
@@ -33,7 +36,7 @@ class Muxer {
   MovieSpec spec_;
   File file_;
   int failure_ = 0;  // errno of the first write that failed
-  AVFormatContext* format_ = nullptr;
+  std::unique_ptr<AVFormatContext, Close> format_;
   AVStream* stream_ = nullptr;
   Packet packet_;
   std::int64_t frames_ = 0, last_dts_;
