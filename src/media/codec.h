@@ -13,13 +13,14 @@ struct Container {
   std::string ending;                 // "mp4"
   std::string muxer;                  // libav's name; gif and y4m are written by ourselves
   std::vector<std::string> encoders;  // the first that libav has is taken
-  std::string video;                  // what those encode, for messages: "H.264"
+  std::vector<std::string> others;    // taken where the spec asks for them
+  std::string video;                  // what `encoders` make, for messages: "H.264"
 };
 
 /// The container of `path`. Throws media::Error naming the endings there are.
 const Container& container(const std::string& path);
 
-/// The encoder for `path`: the spec's, by libav's name or by its family (h264, hevc, vp9, av1), or the
+/// The encoder for `path`: the spec's, by libav's name or by its family (h264, hevc, vp9), or the
 /// container's first. `present` says which names libav has. Throws media::Error saying what to do instead.
 std::string encoder_name(const std::string& path, const MovieSpec& spec,
                          const std::function<bool(const std::string&)>& present);

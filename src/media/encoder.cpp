@@ -25,8 +25,6 @@ std::string words(const AVCodec& codec) {
       return "HEVC";
     case AV_CODEC_ID_VP9:
       return "VP9";
-    case AV_CODEC_ID_AV1:
-      return "AV1";
     default:
       return codec.name;
   }
@@ -55,13 +53,10 @@ CodecContext open_encoder(const std::string& path, const MovieSpec& spec) {
     return avcodec_find_encoder_by_name(one.c_str()) != nullptr;
   });
   const AVCodec* codec = avcodec_find_encoder_by_name(name.c_str());
-  const Container& kind = container(path);
-  const AVOutputFormat* muxer = av_guess_format(kind.muxer.c_str(), nullptr, nullptr);
-  if (!muxer) throw Error(fmt::format("{}: the FFmpeg in use writes no .{}", path, kind.ending));
-  if (codec->type != AVMEDIA_TYPE_VIDEO ||
-      avformat_query_codec(muxer, codec->id, FF_COMPLIANCE_NORMAL) != 1) {
-    throw Error(fmt::format("{}: a .{} file cannot hold {} ({}): leave the codec out, or write .mkv", path,
-                            kind.ending, words(*codec), name));
+  const AVOutputFormat* muxer = av_guess_format(container(path).muxer.c_str(), nullptr, nullptr);
+  if (!muxer || avformat_query_codec(muxer, codec->id, FF_COMPLIANCE_NORMAL) != 1) {
+    throw Error(
+        fmt::format("{}: the FFmpeg in use writes no .{} with {}", path, container(path).ending, name));
   }
   check_frame(path, spec, words(*codec));
   const auto options = encoder_options(path, spec, name);

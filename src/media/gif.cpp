@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -161,6 +162,7 @@ GifEncoder::GifEncoder(const std::string& path, const MovieSpec& spec)
 }
 
 void GifEncoder::add(const Image& frame) {
+  assert(frame.width == width_ && frame.height == height_);
   // count the colours, run by run
   const std::size_t pixels = std::size_t(width_) * height_;
   const std::uint8_t* p = frame.pixels.data();

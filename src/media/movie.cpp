@@ -71,7 +71,7 @@ std::int64_t MovieWriter::frames() const {
 std::string libraries() {
   const unsigned v = avcodec_version();
   std::vector<std::string> encoders;
-  for (const char* name : {"libx264", "libopenh264", "libx265", "libvpx-vp9", "libsvtav1", "libaom-av1"}) {
+  for (const char* name : {"libx264", "libopenh264", "libx265", "libvpx-vp9"}) {
     if (present(name)) encoders.push_back(name);
   }
   return fmt::format(

@@ -15,15 +15,15 @@ namespace obscura::media {
 struct MovieSpec {
   int width = 0, height = 0;
   std::int64_t fps_num = 60, fps_den = 1;
-  std::string codec{};          // libav's name of an encoder; empty: the container's default (h264, vp9, gif)
-  std::optional<double> crf{};  // none: 18 for H.264, its like for others
-  std::string preset{};         // x264's; empty: our default, see docs
-  Tags tags{};
+  std::string codec{};  // libav's name of an encoder, or h264 hevc vp9; empty: the container's default
+  std::optional<double> crf{};  // none: 18 for H.264 and HEVC, 24 for VP9
+  std::string preset{};  // x264's or x265's; empty: quick settings that reach `medium`'s likeness (codec.cpp)
+  Tags tags{};           // "Title" is the movie's title too
 };
 
 /// Throws media::Error where this file could not be made here: no such container, codec, preset; odd sizes
-/// (the message names the nearest even size). Called before anything is simulated. Opens an encoder, writes
-/// nothing.
+/// (the message names the nearest even size); a GIF of more than 50 frames a second. Called before anything
+/// is simulated. Opens an encoder, writes nothing. A name that ends in .y4m stands for a pipe of that form.
 void check(const std::string& path, const MovieSpec& spec);
 
 /// The codec that `check` accepted, as libav names it, for messages.
@@ -32,7 +32,7 @@ std::string codec_name(const std::string& path, const MovieSpec& spec);
 /// How many frames a closed segment holds: those of one second.
 int segment_frames(const MovieSpec& spec);
 
-/// An encoded segment: closed, decodable alone, its frames numbered from 0.
+/// An encoded segment: closed, decodable alone, its frames numbered from 0. (Of a GIF: changed rectangles.)
 struct Segment {
   struct Packet {
     std::vector<std::uint8_t> bytes;
@@ -40,7 +40,7 @@ struct Segment {
     bool key = false;
   };
   std::vector<Packet> packets;
-  std::vector<std::uint8_t> extradata;  // the codec's header, equal for all segments of a spec
+  std::vector<std::uint8_t> extradata;  // the codec's header, the same for a whole movie; a GIF's palette
   int frames = 0;
 };
 
@@ -61,8 +61,9 @@ class SegmentEncoder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Joins segments by stream copy into a movie under a temporary name beside `path`; close() renames it into
-/// place. Destroyed before close(), it removes what it wrote.
+/// Joins segments, in order, by stream copy into a movie under a temporary name beside `path`; close()
+/// renames it into place. Destroyed before close(), it removes what it wrote. Frame n begins at n / fps,
+/// which mp4 and mov say exactly, mkv and webm to the millisecond, gif to the hundredth.
 class MovieWriter {
  public:
   MovieWriter(const std::string& path, const MovieSpec& spec);
@@ -80,7 +81,8 @@ class MovieWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// "libavcodec 59.37.100 (GPL version 3 or later), libx264 present".
+/// The libraries in use, a line each: "libavcodec 59.37.100 (GPL version 2 or later), encoders: libx264,
+/// libvpx-vp9", "libpng 1.6.39".
 std::string libraries();
 
 }  // namespace obscura::media

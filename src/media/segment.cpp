@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cassert>
 #include <new>
 #include <utility>
 #include <variant>
@@ -32,6 +33,7 @@ class LibavEncoder {
   }
 
   void add(const Image& image) {
+    assert(image.width == frame_->width && image.height == frame_->height);
     listen();
     // the encoder may still hold the planes of the frame before
     if (av_frame_make_writable(frame_.get()) < 0) throw std::bad_alloc();

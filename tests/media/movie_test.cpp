@@ -20,7 +20,6 @@
 namespace obscura::media {
 namespace {
 
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -82,9 +81,9 @@ TEST(MovieCheck, ListsTheEndingsItKnows) {
 TEST(MovieCheck, RefusesUnknownCodecsPresetsAndQualities) {
   MovieSpec spec = spec_of(64, 64, 60);
   spec.codec = "divx";
-  EXPECT_THAT(refusal("a.mp4", spec), HasSubstr("no encoder 'divx': it has lib"));
+  EXPECT_THAT(refusal("a.mp4", spec), HasSubstr("a.mp4: no codec 'divx' for a .mp4 file: there is lib"));
   spec.codec = "libx264";
-  EXPECT_THAT(refusal("a.webm", spec), HasSubstr("a .webm file cannot hold H.264"));
+  EXPECT_THAT(refusal("a.webm", spec), HasSubstr("no codec 'libx264' for a .webm file: there is libvpx-vp9"));
   spec.codec = "";
   spec.preset = "quick";
   EXPECT_THAT(refusal("a.mp4", spec), HasSubstr("no preset 'quick': they are ultrafast superfast"));

@@ -1,1 +1,0 @@
-#include "media/image.h"
