@@ -27,7 +27,8 @@ Vec meeting(const Corner& corner, const sim::Wall<2>& b) {
   const double ca = a.normal.dot(a.point), cb = b.normal.dot(b.point);
   const double det = a.normal.x() * b.normal.y() - a.normal.y() * b.normal.x();
   if (std::abs(det) < 1e-12) return corner.at;
-  return {(ca * b.normal.y() - cb * a.normal.y()) / det, (cb * a.normal.x() - ca * b.normal.x()) / det};
+  const Vec at{(ca * b.normal.y() - cb * a.normal.y()) / det, (cb * a.normal.x() - ca * b.normal.x()) / det};
+  return at + Vec::Zero();  // -0 is 0
 }
 
 // what a wall leaves of a convex polygon

@@ -51,6 +51,7 @@ TEST(Values, ABareParticleHasEveryDefault) {
   EXPECT_EQ(it.look.theme, draw::Theme::paper);
   EXPECT_EQ(it.name, "a");
   EXPECT_EQ(it.extent.high, sim::Vec3(8, 4.5, 0));
+  EXPECT_FALSE(std::signbit(it.extent.low.x()));
 }
 
 TEST(Values, TypedDecimalsAreExactTimes) {
