@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <thread>
+
+#include "gl/error.h"
+#include "gl/renderer.h"
+
+namespace obscura::gl {
+namespace {
+
+using draw::Color;
+
+const Color kRed{213, 94, 0}, kBlue{0, 114, 178}, kGround{255, 255, 255};
+
+// one of everything, 108 px high
+draw::Picture everything() {
+  draw::Picture picture;
+  picture.aspect = 2;
+  picture.ground = kGround;
+  auto still = std::make_shared<draw::List>();
+  still->add({{{100, 900}, 30, kBlue}, {{2000, 900}, 30, kBlue}});
+  still->add(draw::Text{{300, 200}, draw::Align::left, {{"A room", draw::Face::bold, 150, {31, 35, 40}}}});
+  picture.still = still;
+  draw::Box box;
+  box.center = {1200, 500}, box.x_axis = {0.8, 0.6}, box.half = {300, 150}, box.line = 30, box.axis = 80,
+  box.axis_line = 12;
+  box.fill = {158, 218, 201}, box.outline = {0, 110, 80}, box.axis_color = {0, 110, 80};
+  picture.moving.add(box);
+  picture.moving.add(draw::Disc{{800, 600}, 120, 25, {158, 200, 230}, kBlue});
+  picture.moving.add(
+      {{{300, 300}, 40, kRed}, {{700, 800}, 40, Color{213, 94, 0, 0}}, {{900, 300}, 10, kRed}});
+  picture.moving.add({{1500, 200}, {1700, 300}, {1500, 400}, {1560, 300}}, kRed);
+  return picture;
+}
+
+media::Image drawn(Renderer& renderer, const draw::Picture& picture) {
+  media::Image image;
+  renderer.draw(picture, image);
+  return image;
+}
+
+Color at(const media::Image& image, int x, int y) {
+  const std::uint8_t* p = image.row(y) + 4 * x;
+  return {p[0], p[1], p[2], p[3]};
+}
+
+TEST(Painting, WhatComesLaterLiesAboveAcrossKinds) {
+  Renderer renderer(108, 108);
+  draw::Picture picture;
+  picture.aspect = 1;
+  picture.ground = kGround;
+  draw::Box box;
+  box.center = {500, 500}, box.x_axis = {1, 0}, box.half = {300, 300}, box.fill = box.outline = kBlue;
+  picture.moving.add(box);
+  picture.moving.add(draw::Disc{{500, 500}, 200, 0, kRed, kRed});
+  box.half = {100, 100};
+  picture.moving.add(box);
+  const media::Image image = drawn(renderer, picture);
+  EXPECT_EQ(at(image, 50, 50), kBlue);
+  EXPECT_EQ(at(image, 65, 50), kRed);
+  EXPECT_EQ(at(image, 75, 50), kBlue);
+  EXPECT_EQ(at(image, 95, 50), kGround);
+}
+
+TEST(Painting, ClipsHoldUntilTheyAreLifted) {
+  Renderer renderer(108, 108);
+  draw::Picture picture;
+  picture.aspect = 1;
+  picture.ground = kGround;
+  picture.moving.clip({0, 0, 500, 1080});
+  picture.moving.add(draw::Disc{{500, 300}, 200, 0, kRed, kRed});
+  picture.moving.unclip();
+  picture.moving.add(draw::Disc{{500, 800}, 200, 0, kBlue, kBlue});
+  const media::Image image = drawn(renderer, picture);
+  EXPECT_EQ(at(image, 45, 30), kRed);
+  EXPECT_EQ(at(image, 55, 30), kGround);
+  EXPECT_EQ(at(image, 55, 80), kBlue);
+}
+
+TEST(Painting, ATransparentPictureOverItsGroundIsTheOpaqueOne) {
+  Renderer renderer(216, 108);
+  draw::Picture picture = everything();
+  const media::Image opaque = drawn(renderer, picture);
+  picture.transparent = true;
+  const media::Image clear = drawn(renderer, picture);
+  EXPECT_EQ(at(clear, 2, 2).a, 0);
+  int differing = 0;
+  for (std::size_t i = 0; i < clear.pixels.size(); i += 4) {
+    const double alpha = clear.pixels[i + 3] / 255.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      // two roundings to 8 bits of alpha and colour
+      differing += std::abs(alpha * clear.pixels[i + c] + (1 - alpha) * 255 - opaque.pixels[i + c]) > 2;
+    }
+  }
+  EXPECT_EQ(differing, 0);
+}
+
+TEST(Painting, DoesNotDependOnWhatWasDrawnBefore) {
+  Renderer renderer(216, 108), fresh(216, 108);
+  draw::Picture picture = everything();
+  const media::Image first = drawn(renderer, picture);
+  draw::Picture other;
+  other.aspect = 2;
+  other.ground = kRed;
+  other.moving.add(draw::Disc{{1000, 500}, 400, 10, kBlue, kGround});
+  drawn(renderer, other);
+  EXPECT_EQ(drawn(renderer, picture), first);
+  // things that went away leave nothing behind, whether the still list stayed or not
+  draw::Picture emptied = picture;
+  emptied.moving = {};
+  EXPECT_EQ(drawn(renderer, emptied), drawn(fresh, emptied));
+  emptied.still = nullptr;
+  const media::Image blank = drawn(renderer, emptied);
+  for (int x = 0; x < blank.width; ++x) EXPECT_EQ(at(blank, x, 90), kGround);
+}
+
+TEST(Painting, SeveralThreadsDrawTheSameBytes) {
+  Renderer renderer(216, 108);
+  const media::Image expected = drawn(renderer, everything());
+  std::vector<media::Image> images(3);
+  {
+    std::vector<std::jthread> threads;
+    for (media::Image& image : images) {
+      threads.emplace_back([&image] {
+        Renderer own(216, 108);
+        for (int i = 0; i < 5; ++i) own.draw(everything(), image);
+      });
+    }
+  }
+  for (const media::Image& image : images) EXPECT_EQ(image, expected);
+}
+
+TEST(Painting, BothBackEndsDrawTheSameBytes) {
+  Renderer osmesa(216, 108, {.backend = Backend::osmesa});
+  Renderer egl(216, 108, {.backend = Backend::egl});
+  EXPECT_EQ(drawn(egl, everything()), drawn(osmesa, everything()));
+  EXPECT_NE(egl.device(), osmesa.device());
+}
+
+TEST(Painting, AHundredThousandDiscsAreDrawn) {
+  Renderer renderer(216, 108);
+  draw::Picture picture;
+  picture.aspect = 2;
+  picture.ground = kGround;
+  for (int i = 0; i < 100'000; ++i)
+    picture.moving.add(draw::Disc{{double(i % 500) * 4, double(i / 500) * 5}, 2, 0, kBlue, kBlue});
+  picture.moving.add(draw::Disc{{1000, 500}, 50, 0, kRed, kRed});
+  EXPECT_EQ(at(drawn(renderer, picture), 100, 50), kRed);
+}
+
+}  // namespace
+}  // namespace obscura::gl
