@@ -73,10 +73,10 @@ double Handout<D>::elasticity(const Body<D>& body, const Wall<D>& wall) const {
   return wall.elasticity ? std::sqrt(*wall.elasticity * body.elasticity) : body.elasticity;
 }
 
-// what moving a body without turning or speeding it may change: gravity's potential and its springs
+// what the springs on a body hold, J
 template <int D>
-double Handout<D>::energy(const State<D>& state, int body, double t) const {
-  double sum = lifted(model_, state, body);
+double Handout<D>::springs(const State<D>& state, int body, double t) const {
+  double sum = 0;
   for (const int spring : springs_[body]) sum += stored(model_, state, spring);
   for (int mouse = 0; mouse < int(state.grips.size()); ++mouse) {
     if (state.grips[mouse].body == body) sum += stored(model_, state, paths_, mouse, t);
@@ -88,10 +88,9 @@ template <int D>
 void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double t) {
   for (const int body : suspects) {
     const Body<D>& b = model_.bodies[body];
-    if (b.fixed) continue;
+    if (b.fixed || bounce(state, body)) continue;
     Striker s;
     s.body = &b;
-    s.at.x = state.x[body], s.at.v = state.v[body];
     hits_.clear();
     if (b.turns()) {
       s.at = stance(state, body);
@@ -99,21 +98,57 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
       for (int i = 0; i < s.points; ++i) s.arms[i] = s.at.arm(corner(b.shape, i));
       if (!box(s)) continue;
     } else {
+      s.at.x = state.x[body], s.at.v = state.v[body];
       if (!particle(s)) continue;
     }
     put_inside(s);
 
     // what it did to the energy
-    const double before = energy(state, body, t), moving = kinetic(model_, state, body);
+    const double held = springs(state, body, t), moving = kinetic(model_, state, body);
+    state.ledger.displacement -= b.mass * model_.gravity.dot(s.at.x - state.x[body]);
     state.x[body] = s.at.x, state.v[body] = s.at.v;
     if (b.turns()) state.spin[turning(state, body)] = s.at.w;
-    state.ledger.displacement += energy(state, body, t) - before;
+    state.ledger.displacement += springs(state, body, t) - held;
     state.ledger.impacts += kinetic(model_, state, body) - moving;
 
     for (const Hit& h : hits_) {
       state.touches.push_back({body, h.wall, s.at.x + arm(s, h.point, model_.walls[h.wall]), h.impulse});
     }
   }
+}
+
+// the plain case, and the only one that happens often: a particle that no spring holds meets one wall. False,
+// and nothing done, where it is anything else
+template <int D>
+bool Handout<D>::bounce(State<D>& state, int body) const {
+  const Body<D>& b = model_.bodies[body];
+  if (b.turns() || !springs_[body].empty()) return false;
+  for (const Grip<D>& grip : state.grips) {
+    if (grip.body == body) return false;
+  }
+  Vec<D> x = state.x[body], v = state.v[body];
+  int met = -1;
+  double jump = 0;
+  for (int round = 0; round < 2; ++round) {
+    for (int wall = 0; wall < int(model_.walls.size()); ++wall) {
+      const Wall<D>& w = model_.walls[wall];
+      const double distance = (x - w.point).dot(w.normal) - b.shape.radius;
+      if (!(distance < 0)) continue;
+      const double vn = v.dot(w.normal);
+      if (!strikes(vn, v.squaredNorm())) continue;
+      if (met >= 0) return false;
+      met = wall, jump = -(1 + elasticity(b, w)) * vn;
+      x -= distance * w.normal;
+      v += jump * w.normal;
+    }
+    if (met < 0) return true;
+  }
+  const Wall<D>& w = model_.walls[met];
+  state.ledger.displacement -= b.mass * model_.gravity.dot(x - state.x[body]);
+  state.ledger.impacts += 0.5 * b.mass * (v.squaredNorm() - state.v[body].squaredNorm());
+  state.x[body] = x, state.v[body] = v;
+  state.touches.push_back({body, met, x - b.shape.radius * w.normal, b.mass * jump * w.normal});
+  return true;
 }
 
 // a particle at each wall in turn, §2.5; false where nothing happened

@@ -48,7 +48,8 @@ class Handout {
 
   Vec<D> arm(const Striker& s, int point, const Wall<D>& wall) const;
   double elasticity(const Body<D>& body, const Wall<D>& wall) const;
-  double energy(const State<D>& state, int body, double t) const;
+  double springs(const State<D>& state, int body, double t) const;
+  bool bounce(State<D>& state, int body) const;
   bool particle(Striker& s);
   bool box(Striker& s);
   bool meet(Striker& s, int wall);
