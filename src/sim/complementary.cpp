@@ -96,6 +96,7 @@ void spread(const Square& A, const Rows& b, Rows& p) {
     if (std::fabs(A.row(i).dot(p) + b[i]) <= 1e3 * kSlack * scale) active.rows[active.count++] = i;
   }
   const int k = active.count;
+  if (k < 2) return;
   Square part(k, k);
   Rows right(k);
   for (int i = 0; i < k; ++i) {
@@ -117,6 +118,7 @@ void spread(const Square& A, const Rows& b, Rows& p) {
 bool complementary(const Square& A, const Rows& b, int rank, Rows& p) {
   const int n = int(b.size());
   p = Rows::Zero(n);
+  if (n == 0) return true;
   for (double slack = kSlack; slack <= kLoosest; slack *= 1e3) {
     for (int size = std::min(n, rank); size >= 0; --size) {
       Active active;
