@@ -21,8 +21,8 @@ constexpr double kStill = 1e-26;    // square of the part of a speed that is its
 constexpr double kTogether = 1e-9;  // of a body's reach: points this near the wall touch in the same instant
 constexpr double kOutside = 1e-13;  // of the room's height: a depth that is rounding
 
-// moves the wrong way, by more than the rounding of its speed
-bool strikes(double vn, double speed_squared) { return vn < 0 && vn * vn > kStill * speed_squared; }
+// moves the wrong way, by more than the rounding of the speed it came with (squared)
+bool strikes(double vn, double speed) { return vn < 0 && vn * vn > kStill * speed; }
 
 template <int D>
 void mark(int n, const double* __restrict x, const double* __restrict rims, const Wall<D>& wall,
@@ -96,9 +96,11 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
       s.at = stance(state, body);
       s.points = kCorners<D>;
       for (int i = 0; i < s.points; ++i) s.arms[i] = s.at.arm(corner(b.shape, i));
+      s.speed = s.at.v.squaredNorm() + s.at.w.squaredNorm() * rims_[body] * rims_[body];
       if (!box(s)) continue;
     } else {
       s.at.x = state.x[body], s.at.v = state.v[body];
+      s.speed = s.at.v.squaredNorm();
       if (!particle(s)) continue;
     }
     put_inside(s);
@@ -127,6 +129,7 @@ bool Handout<D>::bounce(State<D>& state, int body) const {
     if (grip.body == body) return false;
   }
   Vec<D> x = state.x[body], v = state.v[body];
+  const double speed = v.squaredNorm();
   int met = -1;
   double jump = 0;
   for (int round = 0; round < 2; ++round) {
@@ -135,7 +138,7 @@ bool Handout<D>::bounce(State<D>& state, int body) const {
       const double distance = (x - w.point).dot(w.normal) - b.shape.radius;
       if (!(distance < 0)) continue;
       const double vn = v.dot(w.normal);
-      if (!strikes(vn, v.squaredNorm())) continue;
+      if (!strikes(vn, speed)) continue;
       if (met >= 0) return false;
       met = wall, jump = -(1 + elasticity(b, w)) * vn;
       x -= distance * w.normal;
@@ -145,7 +148,7 @@ bool Handout<D>::bounce(State<D>& state, int body) const {
   }
   const Wall<D>& w = model_.walls[met];
   state.ledger.displacement -= b.mass * model_.gravity.dot(x - state.x[body]);
-  state.ledger.impacts += 0.5 * b.mass * (v.squaredNorm() - state.v[body].squaredNorm());
+  state.ledger.impacts += 0.5 * b.mass * (v.squaredNorm() - speed);
   state.x[body] = x, state.v[body] = v;
   state.touches.push_back({body, met, x - b.shape.radius * w.normal, b.mass * jump * w.normal});
   return true;
@@ -163,7 +166,7 @@ bool Handout<D>::particle(Striker& s) {
       const double distance = (x - w.point).dot(w.normal) - radius;
       if (!(distance < 0)) continue;
       const double vn = v.dot(w.normal);
-      if (!strikes(vn, v.squaredNorm())) continue;
+      if (!strikes(vn, s.speed)) continue;
       const double jump = -(1 + elasticity(*s.body, w)) * vn;
       x -= distance * w.normal;
       v += jump * w.normal;
@@ -198,7 +201,6 @@ bool Handout<D>::meet(Striker& s, int wall) {
   const double middle = (s.at.x - w.point).dot(w.normal);
   const double span = reach(s.body->shape);
   if (middle > span) return false;
-  const double speed = s.at.v.squaredNorm() + s.at.w.squaredNorm() * span * span;
 
   double distances[kCorners<D>];
   bool striking[kCorners<D>];
@@ -206,7 +208,7 @@ bool Handout<D>::meet(Striker& s, int wall) {
   for (int i = 0; i < s.points; ++i) {
     const Vec<D> r = arm(s, i, w);
     distances[i] = middle + r.dot(w.normal);
-    striking[i] = strikes(s.at.velocity(r).dot(w.normal), speed);
+    striking[i] = strikes(s.at.velocity(r).dot(w.normal), s.speed);
     if (distances[i] < 0 && striking[i]) depth = std::max(depth, -distances[i]);
   }
   if (depth < 0) return false;
@@ -227,7 +229,6 @@ bool Handout<D>::meet(Striker& s, int wall) {
 template <int D>
 void Handout<D>::meet_all(Striker& s) {
   const double span = reach(s.body->shape);
-  const double speed = s.at.v.squaredNorm() + s.at.w.squaredNorm() * span * span;
   const double near = std::max(kTogether * span, kOutside * model_.scale);
   Row rows[kMostRows];
   int n = 0;
@@ -236,7 +237,7 @@ void Handout<D>::meet_all(Striker& s) {
     for (int i = 0; i < s.points && n < kMostRows; ++i) {
       const Vec<D> r = arm(s, i, w);
       if ((s.at.x + r - w.point).dot(w.normal) > near) continue;
-      if (!strikes(s.at.velocity(r).dot(w.normal), speed)) continue;
+      if (!strikes(s.at.velocity(r).dot(w.normal), s.speed)) continue;
       rows[n++] = {wall, i, r, moment<D>(r, w.normal)};
     }
   }

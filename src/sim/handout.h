@@ -31,6 +31,7 @@ class Handout {
   struct Striker {
     const Body<D>* body = nullptr;
     Stance<D> at;
+    double speed = 0;  // square of how fast any of its points came, m^2/s^2
     int points = 1;
     Vec<D> arms[kCorners<D>];  // a box: from its centre to its corners
   };

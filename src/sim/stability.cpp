@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "sim/run.h"
 #include "sim/spring.h"
 
 namespace obscura::sim {
@@ -74,7 +75,15 @@ std::string brief(double x) {
   return {digits, end};
 }
 
-const char* name(Integrator integrator) {
+}  // namespace
+
+template <int D>
+std::string named(const Model<D>& model, int body) {
+  const std::string& name = model.bodies[body].name;
+  return name.empty() ? "body " + std::to_string(body) : name;
+}
+
+const char* spelled(Integrator integrator) {
   switch (integrator) {
     case Integrator::rk4:
       return "rk4";
@@ -87,8 +96,6 @@ const char* name(Integrator integrator) {
   }
   return "";
 }
-
-}  // namespace
 
 template <int D>
 std::vector<Tightness> tightness(const Model<D>& model, const std::vector<Grip<D>>& grips) {
@@ -147,7 +154,7 @@ std::string too_long(const Model<D>& model, const Tightness& oscillator) {
   } else if (model.integrator == Integrator::semi_implicit && undamped) {
     text += "2 sqrt(m/k) = " + brief(limit) + " s";
   } else {
-    text += brief(limit) + " s, what " + std::string(name(model.integrator)) + " stands";
+    text += brief(limit) + " s, what " + std::string(spelled(model.integrator)) + " stands";
   }
   const std::string strongest =
       (oscillator.hand ? "mouse[" : "spring[") + std::to_string(oscillator.strongest) + "]";
@@ -158,7 +165,7 @@ std::string too_long(const Model<D>& model, const Tightness& oscillator) {
   } else {
     text += " of " + std::to_string(oscillator.ties) + " springs, the strongest " + strongest + ",";
   }
-  text += " on " + model.bodies[oscillator.body].name + ": raise physics.rate above " +
+  text += " on " + named(model, oscillator.body) + ": raise physics.rate above " +
           std::to_string(std::int64_t(std::ceil(1 / limit)));
   return text;
 }
@@ -176,6 +183,32 @@ Tightness tightest(const Model<D>& model, const std::vector<Grip<D>>& grips) {
   return worst;
 }
 
+std::vector<Trouble> forebodings(const Model<2>& model) {
+  const std::vector<Grip<2>> none(model.mice.size());
+  const std::vector<Tightness> all = tightness(model, none);
+  Tightness worst = tightest(model, none);
+  const double h = 1 / value(model.rate);
+  double shortest = worst.body >= 0 ? longest_step(model.integrator, worst, h) : h;
+
+  // a hand may take any body
+  for (int mouse = 0; mouse < int(model.mice.size()); ++mouse) {
+    for (const Tightness& free : all) {
+      const Body<2>& body = model.bodies[free.body];
+      if (body.fixed) continue;
+      Tightness held = free;
+      const double yields = yielding(model, End<2>{free.body, body.shape.half});
+      held.stiffness += model.mice[mouse].stiffness * yields,
+          held.damping += model.mice[mouse].damping * yields;
+      ++held.ties, held.hand = true, held.strongest = mouse;
+      const double limit = longest_step(model.integrator, held, h);
+      if (limit < shortest) shortest = limit, worst = held;
+    }
+  }
+  if (worst.body < 0) return {};
+  return {{0, named(model, worst.body), "energy", "will grow from nowhere", too_long(model, worst)}};
+}
+
+template std::string named<2>(const Model<2>&, int);
 template std::vector<Tightness> tightness<2>(const Model<2>&, const std::vector<Grip<2>>&);
 template std::string too_long<2>(const Model<2>&, const Tightness&);
 template Tightness tightest<2>(const Model<2>&, const std::vector<Grip<2>>&);

@@ -37,4 +37,11 @@ std::string too_long(const Model<D>& model, const Tightness& oscillator);
 template <int D>
 Tightness tightest(const Model<D>& model, const std::vector<Grip<D>>& grips);
 
+/// What to call a body: its name, or "body 3".
+template <int D>
+std::string named(const Model<D>& model, int body);
+
+/// "rk4", "explicit Euler".
+const char* spelled(Integrator integrator);
+
 }  // namespace obscura::sim

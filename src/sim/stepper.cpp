@@ -8,6 +8,7 @@
 #include "sim/stepper.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "sim/flight.h"
@@ -41,6 +42,8 @@ Stepper<D>::Stepper(const Model<D>& model)
       watch_(model, paths_),
       tied_(model, paths_),
       springs_(!model.springs.empty() || !model.mice.empty()) {
+  assert(std::is_partitioned(model.bodies.begin(), model.bodies.end(),
+                             [](const auto& b) { return !b.turns(); }));
   for (const Edge& edge : edges_) {
     if (edge.kind == Edge::Kind::press) presses_[edge.mouse] = edge.at;
     if (edge.kind == Edge::Kind::release) releases_[edge.mouse] = edge.at;

@@ -12,7 +12,6 @@
 #include <cmath>
 
 #include "sim/energy.h"
-#include "sim/run.h"
 #include "sim/runaway.h"
 #include "sim/shape.h"
 #include "sim/stability.h"
@@ -38,12 +37,6 @@ std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit) 
     if (std::isinf(numbers[i])) return "is infinite";
   }
   return std::string("grew past ") + limit;
-}
-
-template <int D>
-std::string named(const Model<D>& model, int body) {
-  const std::string& name = model.bodies[body].name;
-  return name.empty() ? "body " + std::to_string(body) : name;
 }
 
 }  // namespace
@@ -127,32 +120,15 @@ std::string Watch<D>::likely(const State<D>& state, int body) const {
   bool tied = false;
   for (const Spring<D>& s : model_.springs) tied = tied || s.a.body == body || s.b.body == body;
   for (const Grip<D>& grip : state.grips) tied = tied || grip.body == body;
-  if (tied) return "a spring feeds it: raise physics.rate";
+  if (tied) {
+    const bool feeds = model_.integrator == Integrator::euler || model_.integrator == Integrator::midpoint;
+    return std::string(feeds ? spelled(model_.integrator) : "the step") +
+           " feeds its springs: raise physics.rate" + (feeds ? ", or take rk4 or semi-implicit" : "");
+  }
   if (model_.walls.empty()) return "nothing stops it: the room has no walls";
   return "nothing stops it: no wall lies on its way, or it started too fast";
 }
 
 template class Watch<2>;
-
-std::vector<Trouble> forebodings(const Model<2>& model) {
-  // a hand may take any body: it is tried on the one that yields most
-  std::vector<Grip<2>> none(model.mice.size());
-  Tightness worst = tightest(model, none);
-  const double h = 1 / value(model.rate);
-  double shortest = worst.body >= 0 ? longest_step(model.integrator, worst, h) : h;
-  for (int mouse = 0; mouse < int(model.mice.size()); ++mouse) {
-    for (int body = 0; body < int(model.bodies.size()); ++body) {
-      const Body<2>& b = model.bodies[body];
-      if (b.fixed) continue;
-      auto grips = none;
-      grips[mouse] = {body, b.turns() ? b.shape.half : Vec<2>::Zero().eval()};
-      const Tightness here = tightness(model, grips)[body];
-      const double limit = longest_step(model.integrator, here, h);
-      if (limit < shortest) shortest = limit, worst = here;
-    }
-  }
-  if (worst.body < 0) return {};
-  return {{0, named(model, worst.body), "energy", "will grow from nowhere", too_long(model, worst)}};
-}
 
 }  // namespace obscura::sim

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "sim/reference.h"
 #include "sim/rooms.h"
@@ -350,6 +351,53 @@ TEST(Bounce, HeightsAreThoseOfTheClosedForm) {
     }
     const double apex = state.x[0].y() + state.v[0].squaredNorm() / (2 * 9.81);
     EXPECT_NEAR(apex, want, n * 4.5e-5);  // v h a bounce
+  }
+}
+
+// what the handout promises, in rooms of random walls: afterwards nobody is on the wrong side and moves the
+// wrong way
+TEST(Bounce, LeavesNobodyOutsideAndMovingOut) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int trial = 0; trial < 60; ++trial) {
+    World<2> world = room(Vec2(2 * unit(random) - 1, -9.81));
+    world.model.rate = {trial % 2 ? 60 : 600, 1};
+    const int walls = 3 + trial % 6;
+    for (int i = 0; i < walls; ++i) {
+      // around a middle of radius 1 to 2
+      const double angle = 2 * std::acos(-1) * (i + 0.4 * unit(random)) / walls, far = 1 + unit(random);
+      const Vec2 out(std::cos(angle), std::sin(angle));
+      add_wall(world, far * out, -out);
+      if (trial % 3 == 0) world.model.walls.back().elasticity = unit(random);
+    }
+    for (int i = 0; i < 5; ++i) {
+      add_particle(world, Vec2(unit(random) - 0.5, unit(random) - 0.5),
+                   Vec2(8 * unit(random) - 4, 8 * unit(random) - 4), 1, unit(random), i % 2 * 0.1);
+    }
+    for (int i = 0; i < 5; ++i) {
+      add_box(world, Vec2(0.1 + 0.5 * unit(random), 0.1 + 0.5 * unit(random)), 1 + unit(random),
+              Vec2(unit(random) - 0.5, unit(random) - 0.5), Vec2(8 * unit(random) - 4, 8 * unit(random) - 4),
+              6 * unit(random), 20 * unit(random) - 10, unit(random));
+    }
+    State<2> state = world.state;
+    Stepper<2> stepper(world.model);
+    stepper.begin(state);
+    for (int i = 0; i < 600; ++i) {
+      ASSERT_FALSE(stepper.step(state));
+      for (int body = 0; body < 10; ++body) {
+        const auto at = stance(state, body);
+        const Shape<2>& shape = world.model.bodies[body].shape;
+        for (const auto& wall : world.model.walls) {
+          for (int k = 0; k < (body < 5 ? 1 : 4); ++k) {
+            const Vec2 arm = body < 5 ? Vec2(-shape.radius * wall.normal) : at.arm(corner(shape, k));
+            const double distance = (at.x + arm - wall.point).dot(wall.normal);
+            const double speed = at.velocity(arm).dot(wall.normal);
+            ASSERT_FALSE(distance < -1e-12 && speed < -1e-10)
+                << trial << ' ' << i << ' ' << body << ' ' << distance << ' ' << speed;
+          }
+        }
+      }
+    }
   }
 }
 
