@@ -24,7 +24,7 @@ std::string count(std::size_t n, const char* one, const char* many) {
 
 // what our pictures take on average: flat grounds with little that moves
 double movie_bytes(const scene::Film& film, std::int64_t frames) {
-  return double(frames) * film.width * film.height * 0.0028;
+  return double(frames) * film.width * film.height * 0.0016;
 }
 
 void report(const scene::Scene& scene) {
@@ -50,7 +50,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
     try {
       const scene::Scene scene = scene::read(file, sets);
       report(scene);
-      media::check("movie.mp4", movie_spec(scene));
+      media::check(scene.name + ".mp4", movie_spec(scene));
     } catch (const scene::Error& error) {
       std::fflush(stdout);
       fmt::print(stderr, "{}\n", error.what());

@@ -268,7 +268,8 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
     progress.finish(done, "", false);
     throw TroubleError(scene.file, *simulation.trouble(),
                        done > 0 && output.form != Output::Form::pipe
-                           ? fmt::format("{} frames up to then are in {}", done, made)
+                           ? fmt::format("{} frame{} up to then {} in {}", done, done == 1 ? "" : "s",
+                                         done == 1 ? "is" : "are", made)
                            : "");
   }
   if (interrupted()) {

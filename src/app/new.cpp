@@ -16,17 +16,24 @@ namespace obscura::app {
 
 namespace {
 
-int make(const std::string& name) {
+int make(const std::string& name, const std::string& program) {
   namespace fs = std::filesystem;
   fs::path path(name);
   if (path.extension() != ".toml") path += ".toml";
   if (path.stem().empty()) throw UsageError("new needs a name");
   if (fs::exists(path)) throw media::Error(fmt::format("{}: is there already", path.string()));
+  std::error_code error;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+  if (error)
+    throw media::Error(
+        fmt::format("{}: cannot make this folder: {}", path.parent_path().string(), error.message()));
   std::ofstream file(path, std::ios::binary);
   file << scene::new_scene(path.stem().string());
   file.close();
   if (!file) throw media::Error(fmt::format("{}: cannot be written", path.string()));
-  fmt::print("{} is written. Film it: obscura render {}\n", path.string(), path.string());
+  const std::string name_in_shell =
+      path.string().find(' ') == std::string::npos ? path.string() : "'" + path.string() + "'";
+  fmt::print("{} is written. Film it: {} render {}\n", path.string(), program, name_in_shell);
   return kDone;
 }
 
@@ -38,7 +45,7 @@ void add_new(CLI::App& program, int& exit) {
   command->add_option("NAME", *name, "The scene's name: NAME.toml is written, never over another")
       ->required();
   command->footer("Examples:\n  obscura new ball\n  obscura new lectures/pendulum.toml");
-  command->callback([name, &exit] { exit = make(*name); });
+  command->callback([name, &exit, &program] { exit = make(*name, program.get_name()); });
 }
 
 }  // namespace obscura::app

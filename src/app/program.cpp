@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <new>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -31,8 +32,19 @@ std::string version() {
   return fmt::format("obscura {}\n{}\n{}", OBSCURA_VERSION, gl, media::libraries());
 }
 
+// CLI11 would only say that a command is missing
+void know_command(const CLI::App& program, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::string known;
+  for (const CLI::App* command : program.get_subcommands({})) {
+    if (command->get_name() == argv[1]) return;
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  }
+  throw UsageError(fmt::format("there is no command '{}'; the commands are {}", argv[1], known));
+}
+
 int complain(int code, const std::string& what) {
-  fmt::print(stderr, "obscura: {}\n", what);
+  std::fputs(fmt::format("obscura: {}\n", what).c_str(), stderr);
   return code;
 }
 
@@ -41,7 +53,7 @@ int complain(int code, const std::string& what) {
 int main(int argc, const char* const* argv) {
   heed_interrupts();
   CLI::App program("Simulates a room of particles, boxes and springs, and films it without a window.",
-                   "obscura");
+                   argc > 0 ? argv[0] : "obscura");
   program.footer(
       "Examples:\n"
       "  obscura new ball                        write ball.toml to start from\n"
@@ -60,6 +72,7 @@ int main(int argc, const char* const* argv) {
   add_states(program, exit);
   add_docs(program, exit);
   try {
+    know_command(program, argc, argv);
     program.parse(argc, argv);
     return exit;
   } catch (const CLI::Success& success) {
@@ -81,6 +94,8 @@ int main(int argc, const char* const* argv) {
     return complain(kFiles, error.what());
   } catch (const std::bad_alloc&) {
     return complain(kFiles, "out of memory");
+  } catch (const std::system_error& error) {
+    return complain(kFiles, error.what());
   }
 }
 

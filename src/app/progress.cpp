@@ -18,6 +18,9 @@ std::string clock(double seconds) {
   return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
 
+// nobody may be reading any more: that is no reason to stop filming
+void put(const std::string& text, std::FILE* to = stderr) { std::fputs(text.c_str(), to); }
+
 }  // namespace
 
 Progress::Progress(ProgressKind kind, std::string what, std::int64_t frames, double frame_seconds)
@@ -65,21 +68,21 @@ void Progress::print(std::int64_t done, bool last) {
                                    {"speed", rate * frame_seconds_},
                                    {"elapsed", now}};
     if (!last) line["left"] = left;
-    fmt::print(stderr, "{}\n", line.dump());
+    put(line.dump() + "\n");
   } else if (done == 0) {
-    if (terminal_) fmt::print(stderr, "\r\033[K{}  starting", what_);
+    if (terminal_) put(fmt::format("\r\033[K{}  starting", what_));
   } else {
     const std::string line = fmt::format("{}  {}/{} frames  {:.0f} %  {:.0f} fps  {:.1f}x real time  {} left",
                                          what_, done, frames_, 100.0 * double(done) / double(frames_), rate,
                                          rate * frame_seconds_, clock(left));
-    fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "", line, terminal_ ? "" : "\n");
+    put(fmt::format("{}{}{}", terminal_ ? "\r\033[K" : "", line, terminal_ ? "" : "\n"));
   }
   shown_ = terminal_;
   std::fflush(stderr);
 }
 
 void Progress::clear() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) put("\r\033[K");
   shown_ = false;
 }
 
@@ -89,7 +92,7 @@ void Progress::finish(std::int64_t done, const std::string& summary, bool to_std
   if (kind_ == ProgressKind::json) {
     print(done, true);
   } else {
-    fmt::print(to_stdout ? stdout : stderr, "{}\n", summary);
+    put(summary + "\n", to_stdout ? stdout : stderr);
   }
 }
 

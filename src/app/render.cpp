@@ -61,6 +61,18 @@ void override_film(const Flags& flags, scene::Scene& scene) {
   if (flags.codec) scene.film.codec = *flags.codec;
 }
 
+// GIF counts in hundredths of a second: a rate that is none of them becomes the next below, and that is said
+void suit_gif(const std::string& out, scene::Film& film) {
+  if (!out.ends_with(".gif")) return;
+  for (const int fps : {50, 25, 20, 10}) {
+    if (sim::floor(film.fps) < fps) continue;
+    if (film.fps == sim::rational(fps)) return;
+    film.fps = sim::rational(fps);
+    fmt::print(stderr, "{}: at {} frames per second, for GIF counts in hundredths of a second\n", out, fps);
+    return;
+  }
+}
+
 Shots shots_of(const Flags& flags, const scene::Scene& scene) {
   if (flags.at) {
     if (flags.frames || flags.from || flags.to)
@@ -81,8 +93,14 @@ int render(Flags flags) {
   flags.film.overwrite = !flags.no_overwrite;
   scene::Scene scene = scene::read(flags.scene, flags.sets);
   override_film(flags, scene);
+  if (flags.out && !flags.fps) suit_gif(*flags.out, scene.film);
   const Shots shots = shots_of(flags, scene);
-  const Output out = output(flags.out, scene.name, flags.at.has_value(), shots.size());
+  // a draft never takes the film's place
+  const Output out =
+      output(flags.out, flags.draft ? scene.name + ".draft" : scene.name, flags.at.has_value(), shots.size());
+  if (flags.film.transparent && out.form != Output::Form::frames && out.form != Output::Form::still) {
+    throw UsageError("--transparent is for PNG: movies and streams have no alpha");
+  }
   for (const sim::Trouble& ahead : sim::forebodings(scene.world.model)) {
     fmt::print(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
   }
@@ -103,7 +121,8 @@ void add_render(CLI::App& program, int& exit) {
           "frames/%04d.png, one picture.png with --at, - for a stream. Left out: render_out/SCENE.mp4")
       ->type_name("OUT");
   add_sets(*command, flags->sets);
-  command->add_option("--at", flags->at, "One picture, of this instant (s)")->type_name("SECONDS");
+  command->add_option("--at", flags->at, "One picture, of this instant (s), be it after the duration")
+      ->type_name("SECONDS");
   command->add_option("--from", flags->from, "The first instant (s) that is filmed")->type_name("SECONDS");
   command->add_option("--to", flags->to, "Where the film stops (s), not itself filmed")->type_name("SECONDS");
   command->add_option("--frames", flags->frames, "Only these frames, counted from 0, as in 1,3,5..9")

@@ -161,8 +161,8 @@ TEST_F(Render, AStreamGoesThroughAPipeAndAClosedPipeEndsItQuietly) {
 TEST_F(Render, AnInterruptLeavesAPlayablePartialMovie) {
   scene(kRoom);
   const std::string binary = OBSCURA_BINARY;
-  // the interrupt comes once progress has been seen, however slow the machine; a shell's background jobs ignore
-  // SIGINT, and what a parent ignores stays ignored, hence env
+  // the interrupt comes once progress has been seen, however slow the machine; a shell's background jobs
+  // ignore SIGINT, and what a parent ignores stays ignored, hence env
   const Outcome run =
       shell("env --default-signal=INT " + binary +
             " render scene.toml -o m.mp4 --set duration=200 --size 640x360 --progress json 2> log & pid=$!; "
@@ -218,6 +218,8 @@ TEST_F(Render, BadInputGetsOneLineAndItsCodeAndWritesNothing) {
       {"render scene.toml -o x.png", 2},
       {"render scene.toml --nonsense", 2},
       {"render scene.toml --at -1", 2},
+      {"rendr scene.toml", 2},
+      {"render scene.toml --transparent -o x.mp4", 2},
       {"render missing.toml", 3},
       {"render scene.toml --set nonsense.key=1", 3},
       {"render scene.toml -o x.xyz", 4},
@@ -236,6 +238,32 @@ TEST_F(Render, BadInputGetsOneLineAndItsCodeAndWritesNothing) {
     const std::string name = entry.path().filename().string();
     EXPECT_TRUE(name == "scene.toml" || name == ".stderr") << name;
   }
+}
+
+TEST_F(Render, GoesOnWhenNobodyReadsItsWordsAnyMore) {
+  scene(kRoom);
+  const std::string binary = OBSCURA_BINARY;
+  shell(
+      "{ " + binary +
+      " render scene.toml --to 0.5 --size 96x54 -o m.mp4 --progress plain 2>&1 ; echo $? > code ; } | true");
+  EXPECT_EQ(contents(path("code")), "0\n");
+  EXPECT_TRUE(fs::exists(path("m.mp4")));
+}
+
+TEST_F(Render, ADraftDoesNotTakeTheFilmsPlace) {
+  scene(kRoom);
+  const Outcome run = obscura("render scene.toml --draft --to 0.2");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_TRUE(fs::exists(path("render_out/scene.draft.mp4")));
+  EXPECT_FALSE(fs::exists(path("render_out/scene.mp4")));
+}
+
+TEST_F(Render, AGifTakesTheNextRateThatGifCanTell) {
+  scene(kRoom);
+  const Outcome run = obscura("render scene.toml --to 0.5 --size 96x54 -o m.gif");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.err.find("50 frames per second"), std::string::npos);
+  EXPECT_EQ(shell("ffprobe -v error -show_entries stream=r_frame_rate -of csv=p=0 m.gif").out, "50/1\n");
 }
 
 TEST_F(Render, ProgressForProgramsIsJsonLines) {
