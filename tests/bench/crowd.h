@@ -13,7 +13,7 @@ namespace crowd {
 
 inline constexpr double kRoomWidth = 8, kRoomHeight = 4.5;  // m
 inline constexpr double kBallRadius = 0.03, kBoxWidth = 0.24, kBoxHeight = 0.14;
-inline constexpr double kElasticity = 0.95, kGravity = -1.62;
+inline constexpr double kElasticity = 0.8, kGravity = -9.81;
 inline constexpr int kWidth = 1920, kHeight = 1080, kFps = 60;  // the picture
 inline constexpr double kScale = 202, kLeft = 152,
                         kTop = 96;                    // px a metre; where the room lies in the picture
