@@ -2,29 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "sim/allocations.h"
 #include "sim/rooms.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// not inlined: the compiler would take malloc and operator delete for a mismatched pair
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* place = std::malloc(size ? size : 1)) return place;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size ? size : 1);
-}
-[[gnu::noinline]] void operator delete(void* place, const std::nothrow_t&) noexcept { std::free(place); }
-[[gnu::noinline]] void operator delete(void* place) noexcept { std::free(place); }
-[[gnu::noinline]] void operator delete(void* place, std::size_t) noexcept { std::free(place); }
 
 namespace obscura::sim {
 namespace {
@@ -46,13 +25,13 @@ TEST(Step, AllocatesNothingOnceWarm) {
     stepper.begin(state);
     for (int i = 0; i < 100; ++i) ASSERT_FALSE(stepper.step(state));
     std::size_t touches = 0;
-    const long before = allocations;
+    const std::size_t before = allocations();
     for (int i = 0; i < 1500; ++i) {
       const auto trouble = stepper.step(state);
       if (trouble) break;
       touches += state.touches.size();
     }
-    EXPECT_EQ(allocations, before) << int(integrator);
+    EXPECT_EQ(allocations(), before) << int(integrator);
     EXPECT_EQ(state.step, 1600);
     EXPECT_GT(touches, 1000u) << "it must have met the walls";
   }
