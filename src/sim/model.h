@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/rational.h"
@@ -10,15 +11,29 @@
 namespace obscura::sim {
 
 enum class Integrator { rk4, midpoint, euler, semi_implicit };
-enum class Collision { handout };
-enum class ShapeKind { point, ball, box };
+
+/// What happens where things touch. `contact` and `event` hold bodies apart by forces, see sim/contact.h;
+/// `event` locates every impact and every change of a contact in time, `contact` a bounded number a step.
+enum class Collision { handout, contact, event };
+
+/// Who finds the forces of `contact`: see sim/contact.h. `automatic` decides from the scene.
+enum class Solver { automatic, direct, iterative };
+
+/// Which law holds for impacts in one instant: solved together, or one pair after another until none
+/// approaches.
+enum class Impacts { simultaneous, sequential };
+
+enum class ShapeKind { point, ball, box, polygon, compound };
 
 /// The form of a body about its centre of mass, in its own frame.
 template <int D>
 struct Shape {
   ShapeKind kind = ShapeKind::point;
-  double radius = 0;             // ball, m
-  Vec<D> half = Vec<D>::Zero();  // box: half its sides, m
+  double radius = 0;               // ball, m
+  Vec<D> half = Vec<D>::Zero();    // box: half its sides, m
+  Vec<D> center = Vec<D>::Zero();  // of a ball or box that is a part, m
+  std::vector<Vec<D>> vertices;    // polygon: convex, counter-clockwise, m
+  std::vector<Shape> parts;        // compound: balls, boxes and polygons, in the body's frame
 };
 
 /// What stays true of a body while the room moves. A particle is a point or a ball that does not turn; a
@@ -30,10 +45,12 @@ struct Body {
   double mass = 1;                    // kg
   Spin<D> inertia = Spin<D>::Zero();  // principal moments, kg m^2; zero: does not turn
   double elasticity = 1;              // the handout's e, 0 <= e <= 1
+  double friction = 0;                // Coulomb's mu >= 0; of a pair, the root of the product
   double drag = 0;                    // c of f = -c v at the centre of mass, N s/m
+  int group = 0;                      // for Model::ignore
   bool fixed = false;                 // held where it starts; as heavy as the room
 
-  bool turns() const { return shape.kind == ShapeKind::box; }
+  bool turns() const { return inertia != Spin<D>::Zero(); }
 };
 
 /// An immobile half space: what has (q - point) . normal < 0 is on the wrong side. Handout §2.3.
@@ -42,6 +59,7 @@ struct Wall {
   Vec<D> point = Vec<D>::Zero();
   Vec<D> normal = Vec<D>::Unit(1);   // unit, into the room
   std::optional<double> elasticity;  // none: the body's own holds
+  std::optional<double> friction;    // none: the body's own holds
 };
 
 /// One end of a spring: a point of a body, or a place in the room.
@@ -58,6 +76,32 @@ struct Spring {
   double rest_length = 0;  // m
   double stiffness = 0;    // k, N/m
   double damping = 0;      // c, N s/m
+};
+
+/// What two ends may not do against each other. Of the rows: weld D + D(D-1)/2, pin D, slider those of a weld
+/// but one, rod and rope one.
+enum class JointKind { pin, weld, slider, rod, rope };
+
+/// A joint between two bodies, or a body and the room, as it stood at the start.
+template <int D>
+struct Joint {
+  struct Motor {
+    double speed = 0;  // rad/s of a pin, m/s of a slider: of a against b
+    double most = 0;   // N m or N
+  };
+
+  std::string name;
+  JointKind kind = JointKind::pin;
+  End<D> a, b;
+  Vec<D> axis = Vec<D>::Unit(0);         // slider: the way of a, unit, in b's frame
+  Spin<D> turn = Spin<D>::Zero();        // weld, slider: the turn of a against b to be kept; pin: where its
+                                         // angle is zero, rad
+  double length = 0;                     // rod: the distance; rope: the largest, m
+  double lower = -1e300, upper = 1e300;  // of a pin's angle (rad) or a slider's way (m)
+  std::optional<Motor> motor;
+  double friction = 0;    // dry: the largest torque (N m) of a pin or force (N) of a slider
+  double breaks = 1e300;  // N: a larger force on the joint breaks it
+  bool touching = false;  // whether the two bodies may touch each other
 };
 
 /// The hand of the scripted mouse: pressed at the first knot, released at the last.
@@ -84,12 +128,16 @@ struct Model {
   Rational rate = {600, 1};  // steps per second
   Integrator integrator = Integrator::rk4;
   Collision collision = Collision::handout;
+  Solver solver = Solver::automatic;
+  Impacts impacts = Impacts::simultaneous;
   Vec<D> gravity = Vec<D>::Unit(1) * -9.81;  // m/s^2
   double scale = 1;                          // the room's height, m: what "far" and "fast" are measured by
   std::vector<Body<D>> bodies;
   std::vector<Wall<D>> walls;
   std::vector<Spring<D>> springs;
   std::vector<Mouse<D>> mice;
+  std::vector<Joint<D>> joints;
+  std::vector<std::pair<int, int>> ignore;  // groups that do not touch each other
 
   int particles() const {  // bodies that do not turn
     int n = 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/contact.h"
 #include "sim/model.h"
 
 namespace obscura::sim {
@@ -45,14 +46,20 @@ struct Ledger {
 template <int D>
 struct State {
   std::int64_t step = 0;
-  double beyond = 0;           // s; 0 on the trajectory
-  std::vector<Vec<D>> x;       // centres of mass, m, one a body
-  std::vector<Vec<D>> v;       // m/s
-  std::vector<Turn<D>> turn;   // one a body that turns, in their order
-  std::vector<Spin<D>> spin;   // rad/s (in space: world frame)
-  std::vector<Grip<D>> grips;  // one a mouse
-  std::vector<Touch<D>> touches;
+  double beyond = 0;              // s; 0 on the trajectory
+  std::vector<Vec<D>> x;          // centres of mass, m, one a body
+  std::vector<Vec<D>> v;          // m/s
+  std::vector<Turn<D>> turn;      // one a body that turns, in their order
+  std::vector<Spin<D>> spin;      // rad/s (in space: world frame)
+  std::vector<Grip<D>> grips;     // one a mouse
+  std::vector<Touch<D>> touches;  // of `handout`
   Ledger ledger;
+
+  // of `contact` and `event`
+  std::vector<Contact<D>> contacts;  // sorted by key
+  std::vector<char> frozen;          // one a body: at rest by proof, steps leave it alone
+  std::vector<double> quiet;         // one a body: how long it has been still, s
+  std::vector<char> broken;          // one a joint
 
   bool operator==(const State&) const = default;
 };
