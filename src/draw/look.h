@@ -17,6 +17,7 @@ struct BodyLook {
   std::optional<Color> color;  // none: the palette's next
   double trail = 0;            // s; 0: none
   bool velocity = false;       // draw its velocity as an arrow
+  bool contact = false;        // draw the forces where it touches as arrows
 };
 
 /// What the scene says about the looks of the picture.
@@ -29,6 +30,7 @@ struct Look {
   bool axes = true;              // the frame of each box
   bool pointer = true;           // mouse, its spring and its path
   double velocity_scale = 0.1;   // s: arrow length in metres a metre per second
+  double force_scale = 0;        // m/N: arrow length in metres a newton; 0: chosen by the bodies' weights
   std::vector<BodyLook> bodies;  // as in the Cast
   enum class Springs { automatic, coils, lines } springs = Springs::automatic;
 };

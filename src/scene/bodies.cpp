@@ -12,6 +12,7 @@
 #include "scene/fields.h"
 #include "scene/path.h"
 #include "scene/random.h"
+#include "scene/solid.h"
 #include "sim/trig.h"
 
 namespace obscura::scene {
@@ -31,11 +32,12 @@ struct Making {
   std::uint64_t seed;
   sim::World<2>& world;
   std::vector<draw::BodyLook>& looks;
+  Roster& roster;
   Complaints& complaints;
-  double drag = 0;   // the room's
-  double trail = 0;  // the look's
-  bool velocity = false;
-  int declared = 0;    // groups so far: which colour is next
+  double drag = 0;                         // the room's
+  double trail = 0;                        // the look's
+  bool velocity = false, contact = false;  // arrows on every body
+  int declared = 0;                        // groups so far: which colour is next
   bool knots = false;  // the group at hand is joined by a net: draw has a colour for those
 };
 
@@ -123,33 +125,46 @@ Node single(const Fields& fields, const std::string& kind, int i, int n, const V
   const Place at = fields.place("position"), moving = fields.place("velocity");
   put("position", Node{at, Node::List{leaf(at, position.x()), leaf(at, position.y())}});
   put("velocity", Node{moving, Node::List{leaf(moving, velocity.x()), leaf(moving, velocity.y())}});
-  if (kind == "box") put("angle", leaf(fields.place("angle"), angle));
+  if (kind != "particle") put("angle", leaf(fields.place("angle"), angle));
   return one;
 }
 
-// adds the i-th of n to the world; angle in degrees
-void add(Making& making, const Fields& fields, const std::string& kind, const std::string& name, int i, int n,
-         const Vec& position, const Vec& velocity, double angle, bool fixed) {
+bool has(const Node& words, std::string_view word) {
+  return std::any_of(words.list().begin(), words.list().end(),
+                     [&](const Node& each) { return each.text() == word; });
+}
+
+// adds the i-th of n to the world, its own origin at `position`; angle in degrees
+void add(Making& making, const Fields& fields, const std::string& kind, const Solid& solid,
+         const std::string& name, int i, int n, const Vec& position, const Vec& velocity, double angle,
+         bool fixed) {
   sim::Body<2> body;
   body.name = name;
   body.elasticity = number(fields.node("elasticity"), i, n);
+  body.friction = number(fields.node("friction"), i, n);
   const Node* drag = fields.given("drag");
   body.drag = drag ? number(*drag, i, n) : making.drag;
   body.fixed = fixed;
+  if (fields.given("group")) {
+    auto& families = making.roster.families;
+    body.group = families.emplace(fields.text("group"), int(families.size()) + 1).first->second;
+  }
   sim::State<2>& state = making.world.state;
-  if (kind == "box") {
-    const Vec size = fields.vector("size");
-    body.shape.kind = sim::ShapeKind::box;
-    body.shape.half = size / 2;
+  const Vec center = kind == "particle" ? Vec(Vec::Zero()) : solid.center;
+  if (kind != "particle") {
+    body.shape = solid.shape;
     const Node* mass = fields.given("mass");
-    body.mass = mass ? number(*mass, i, n) : number(fields.node("density"), i, n) * size.x() * size.y();
-    body.inertia << body.mass * size.squaredNorm() / 12;  // handout §3.1
+    body.mass = mass ? number(*mass, i, n) : number(fields.node("density"), i, n) * solid.area;
+    body.inertia << body.mass * (solid.moment / solid.area);
     if (!(std::isfinite(body.inertia[0]) && body.inertia[0] > 0))
-      making.complaints.add(
-          fields.place("size"),
-          fmt::format("the box's moment of inertia, {} kg m^2, cannot be reckoned with", body.inertia[0]));
+      making.complaints.add(fields.place(kind == "box"       ? "size"
+                                         : kind == "ball"    ? "radius"
+                                         : kind == "polygon" ? "points"
+                                                             : "shapes"),
+                            fmt::format("the {}'s moment of inertia, {} kg m^2, cannot be reckoned with",
+                                        kind, body.inertia[0]));
     state.turn.emplace_back(sim::Turn<2>(radians(angle)));
-    state.spin.emplace_back(sim::Spin<2>(radians(number(fields.node("spin"), i, n))));
+    state.spin.emplace_back(sim::Spin<2>(fixed ? 0.0 : radians(number(fields.node("spin"), i, n))));
   } else {
     body.mass = number(fields.node("mass"), i, n);
     if (const Node* radius = fields.given("radius")) {
@@ -157,9 +172,10 @@ void add(Making& making, const Fields& fields, const std::string& kind, const st
       body.shape.radius = number(*radius, i, n);
     }
   }
-  state.x.push_back(position);
+  state.x.push_back(center.isZero(0) ? position : Vec(position + turned(center, radians(angle))));
   state.v.push_back(fixed ? Vec::Zero() : velocity);
   making.world.model.bodies.push_back(std::move(body));
+  making.roster.centers.push_back(center);
 
   draw::BodyLook look;
   if (const Node* color = fields.given("color")) {
@@ -171,21 +187,29 @@ void add(Making& making, const Fields& fields, const std::string& kind, const st
   const Node* trail = fields.given("trail");
   look.trail = trail ? trail->number() : fixed ? 0 : making.trail;
   const Node* arrows = fields.given("arrows");
-  look.velocity = arrows ? !arrows->list().empty() : making.velocity && !fixed;
+  look.velocity = arrows ? has(*arrows, "velocity") : making.velocity && !fixed;
+  look.contact = arrows ? has(*arrows, "contact") : making.contact && !fixed;
   making.looks.push_back(look);
+}
+
+// how far a shape reaches beyond a wall
+double reach(const sim::World<2>& world, int body, const sim::Shape<2>& shape, const sim::Wall<2>& wall) {
+  const auto at = [&](const Vec& local) { return beyond(wall, place(world, body, local)); };
+  double most = at(shape.center) + shape.radius;
+  if (shape.kind == sim::ShapeKind::box)
+    for (const double sx : {-1.0, 1.0})
+      for (const double sy : {-1.0, 1.0})
+        most = std::max(most, at(shape.center + shape.half.cwiseProduct(Vec(sx, sy))));
+  if (!shape.vertices.empty() || !shape.parts.empty()) most = -std::numeric_limits<double>::infinity();
+  for (const Vec& vertex : shape.vertices) most = std::max(most, at(vertex));
+  for (const sim::Shape<2>& part : shape.parts) most = std::max(most, reach(world, body, part, wall));
+  return most;
 }
 
 // how far the body reaches beyond a wall; one that is held counts by its centre
 double reach(const sim::World<2>& world, int body, const sim::Wall<2>& wall) {
   const sim::Body<2>& it = world.model.bodies[std::size_t(body)];
-  const Vec& x = world.state.x[std::size_t(body)];
-  if (it.fixed || it.shape.kind == sim::ShapeKind::point) return beyond(wall, x);
-  if (it.shape.kind == sim::ShapeKind::ball) return beyond(wall, x) + it.shape.radius;
-  double most = beyond(wall, x);
-  for (const double sx : {-1.0, 1.0})
-    for (const double sy : {-1.0, 1.0})
-      most = std::max(most, beyond(wall, place(world, body, it.shape.half.cwiseProduct(Vec(sx, sy)))));
-  return most;
+  return it.fixed ? beyond(wall, world.state.x[std::size_t(body)]) : reach(world, body, it.shape, wall);
 }
 
 // the first of a group that is outside the room, by which wall and how far
@@ -220,6 +244,16 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
   group.name = fields.given("name") ? fields.text("name") : fmt::format("{}[{}]", kind, ordinal);
   group.place = fields.place("name");
   group.first = int(making.world.model.bodies.size());
+  // nameless ones have the names ball[0], ball[1], ...: another name would mean two things
+  if (const Node* same = fields.given("name") ? making.top.find(group.name) : nullptr;
+      same && same->is_list())
+    for (const Node& each : same->list())
+      if (!each.find("name")) {
+        complaints.add(group.place,
+                       fmt::format("the name '{0}' is what [[{0}]]s without one are called, as at {1}",
+                                   group.name, complaints.text(each.place)));
+        return;
+      }
   if (const auto before = roster.index.find(group.name); before != roster.index.end()) {
     // said at the second in the file
     Place first = roster.groups[std::size_t(before->second)].place, second = group.place;
@@ -228,7 +262,7 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
                                        complaints.text(first)));
     return;
   }
-  if (kind == "box" && fields.given("mass") && fields.given("density"))
+  if (kind != "particle" && fields.given("mass") && fields.given("density"))
     complaints.add(std::max(fields.place("mass"), fields.place("density"),
                             [](Place a, Place b) { return a.line < b.line; }),
                    "'mass' and 'density' both say how heavy it is; leave one out");
@@ -274,13 +308,15 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
                    const Node* of = net.find("of");
                    return of && of->text() == group.name;
                  });
+  const bool turns = kind != "particle";
+  const Solid one_for_all = turns ? solid(fields, kind, 0, group.count, complaints) : Solid{};
   const Node* about = copies.given("around");
   const double turn = copies.number("turn"), jitter = copies.number("jitter");
   for (int i = 0; i < group.count; ++i) {
     Vec position =
         at ? vector(*at, i, group.count) : Vec((making.room.bounds->low + making.room.bounds->high) / 2);
     Vec velocity = vector(fields.node("velocity"), i, group.count);
-    double angle = kind == "box" ? number(fields.node("angle"), i, group.count) : 0;
+    double angle = turns ? number(fields.node("angle"), i, group.count) : 0;
 
     // along the grid, then about a place, then aside
     position += steps[0] * (i % sides->front());
@@ -291,7 +327,11 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
       angle += turn * i;
     }
     if (jitter > 0) {
-      const auto stream = std::uint64_t(ordinal) * 2 + (kind == "box" ? 1 : 0);
+      const auto stream = std::uint64_t(ordinal) * 2 + (kind == "box" ? 1 : 0) +
+                          (kind == "ball"      ? std::uint64_t(1) << 40
+                           : kind == "polygon" ? std::uint64_t(2) << 40
+                           : kind == "body"    ? std::uint64_t(3) << 40
+                                               : 0);
       position += jitter * Vec(even(making.seed, stream, std::uint64_t(i) * 2),
                                even(making.seed, stream, std::uint64_t(i) * 2 + 1));
     }
@@ -301,7 +341,9 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
     for (const CopySet& set : sets)
       if (set.kind == kind && set.table == ordinal && set.copy == i) own.push_back(&set);
     if (own.empty() || !copied) {
-      add(making, fields, kind, name, i, group.count, position, velocity, angle, held[std::size_t(i)]);
+      add(making, fields, kind,
+          kind == "ball" ? solid(fields, kind, i, group.count, complaints) : one_for_all, name, i,
+          group.count, position, velocity, angle, held[std::size_t(i)]);
       continue;
     }
     Node one = single(fields, kind, i, group.count, position, velocity, angle);
@@ -319,9 +361,9 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
       else
         fixed = std::get<bool>(own_fixed->value);
     }
-    add(making, its, kind, name, 0, 1, its.given("position") ? its.vector("position") : position,
-        its.given("velocity") ? its.vector("velocity") : velocity, kind == "box" ? its.number("angle") : 0,
-        fixed);
+    const Solid its_own = turns ? solid(its, kind, 0, 1, complaints) : Solid{};
+    add(making, its, kind, its_own, name, 0, 1, its.given("position") ? its.vector("position") : position,
+        its.given("velocity") ? its.vector("velocity") : velocity, turns ? its.number("angle") : 0, fixed);
   }
   for (const CopySet& set : sets)
     if (set.kind == kind && set.table == ordinal && (set.copy >= group.count || !copied))
@@ -391,16 +433,17 @@ std::vector<int> Roster::bodies(const std::string& text, Place place, Complaints
 
 Roster bodies(const Node& top, const Room& room, std::uint64_t seed, const std::vector<CopySet>& sets,
               sim::World<2>& world, std::vector<draw::BodyLook>& looks, Complaints& complaints) {
-  Making making{top, room, seed, world, looks, complaints};
+  Roster roster;
+  Making making{top, room, seed, world, looks, roster, complaints};
   making.drag = Fields::of(top, "room").number("drag");
   const Fields look = Fields::of(top, "look");
   if (const Node& trails = look.node("trails"); trails.is_number()) making.trail = trails.number();
-  making.velocity = !look.node("arrows").list().empty();
-  Roster roster;
-  for (const std::string kind : {"particle", "box"}) {
+  making.velocity = has(look.node("arrows"), "velocity");
+  making.contact = has(look.node("arrows"), "contact");
+  for (const std::string_view kind : body_kinds()) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i)
-      declaration(making, roster, all->list()[i], kind, int(i), sets);
+      declaration(making, roster, all->list()[i], std::string(kind), int(i), sets);
   }
   return roster;
 }

@@ -14,7 +14,7 @@
 
 namespace obscura::scene {
 
-/// The bodies of one [[particle]] or [[box]]: one, or its copies in a row.
+/// The bodies of one [[particle]], [[box]], ...: one, or its copies in a row.
 struct Group {
   std::string name;          // as given, or "box[0]"
   Place place;               // of its name, or of its table
@@ -26,6 +26,8 @@ struct Group {
 struct Roster {
   std::vector<Group> groups;
   std::map<std::string, int, std::less<>> index;  // name -> group
+  std::vector<sim::Vec<2>> centers;               // one a body: its centre of mass, seen from its own origin
+  std::map<std::string, int, std::less<>> families;  // what `group` says -> Body::group
 
   /// The bodies that a reference means ("ball", "ball[3]", "ball[*]"). Complains at `place` and gives none
   /// where there are none such.

@@ -177,6 +177,12 @@ class Checker {
       case Form::which:
         return std::holds_alternative<bool>(node.value) || node.is_text() ||
                mistyped(node, key, expected(key));
+      case Form::points:
+        return points(node, key);
+      case Form::pairs:
+        return pairs(node, key);
+      case Form::limits:
+        return limits(node, key);
       case Form::ends:
         return ends(node, key);
       case Form::path:
@@ -231,7 +237,9 @@ class Checker {
       return wrong(node, fmt::format("'{}': expected letters, digits, _ and -, a letter first, got {}",
                                      key.last(), quoted(text)));
     const auto taken = keys_of("");
-    if (std::any_of(taken.begin(), taken.end(), [&](const Key* each) { return each->path == text; }))
+    // "ball" may be the name of a [[ball]], and of anything else
+    if (std::any_of(taken.begin(), taken.end(),
+                    [&](const Key* each) { return each->path == text && each->form != Form::tables; }))
       return wrong(
           node, fmt::format("'{}': {} is a word of the language; choose another", key.last(), quoted(text)));
     return true;
@@ -376,6 +384,39 @@ class Checker {
     return good;
   }
 
+  bool points(const Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (node.list().size() < 3)
+      return wrong(node,
+                   fmt::format("'{}': expected {}, got {}", key.last(), expected(key), node.list().size()));
+    bool good = true;
+    for (const Node& each : node.list()) good = vector(each, key) && good;
+    return good;
+  }
+
+  bool pairs(const Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key, expected(key));
+    bool good = true;
+    for (const Node& pair : node.list()) {
+      const bool two =
+          pair.is_list() && pair.list().size() == 2 && pair.list()[0].is_text() && pair.list()[1].is_text();
+      if (!two) good = mistyped(pair, key, "pairs of names such as [\"stones\", \"frame\"]");
+    }
+    return good;
+  }
+
+  bool limits(const Node& node, const Key& key) {
+    if (!node.is_list() || node.list().size() != 2) return mistyped(node, key, expected(key));
+    if (!components(node, key)) return false;
+    const double low = node.list()[0].number(), high = node.list()[1].number();
+    if (low > high)
+      return wrong(node,
+                   fmt::format("'{}': the lowest comes first, got {} before {}", key.last(), low, high));
+    return (low <= 0 && high >= 0) ||
+           wrong(node, fmt::format("'{}' leave out where it starts: expected 0 between {} and {}", key.last(),
+                                   low, high));
+  }
+
   bool ends(Node& node, const Key& key) {
     if (!node.is_list()) return mistyped(node, key, expected(key));
     if (node.list().size() != 2)
@@ -399,7 +440,7 @@ class Checker {
       } else if (entry.key == "local") {
         good = vector(entry.node, {.path = "local", .form = Form::vector, .unit = "m"}) && good;
       } else {
-        complaints_.add(entry.place, fmt::format("unknown key {} in an end of a spring{}", quoted(entry.key),
+        complaints_.add(entry.place, fmt::format("unknown key {} in an end{}", quoted(entry.key),
                                                  did_you_mean(entry.key, {"body", "local", "at"})));
         good = false;
       }

@@ -53,7 +53,7 @@ first five, `ball[0,5]` two.
 
 ## Copies
 
-`copies` makes a row, a grid or a ring of a particle or a box:
+`copies` makes a row, a grid or a ring of a body of any kind:
 
 ```toml
 [[particle]]
@@ -72,12 +72,12 @@ Where the table below says *varies*, a number may also be a list with one for ea
 
 ## Springs and nets
 
-An end of a spring is a body (its centre), a point of a box, or a place in the room:
+An end of a spring is a body (its centre of mass), a point of one that turns, or a place in the room:
 
 ```toml
 between = ["ball", "crate"]
-between = ["ball", { body = "crate", at = "top right" }]         # a corner, the middle of a side, or the center
-between = [[4, 4.5], { body = "crate", local = [0.2, 0] }]       # metres in the box's own frame, from its centre
+between = ["ball", { body = "crate", at = "top right" }]         # of a box: a corner, a side, the center; of a ball: a side
+between = [[4, 4.5], { body = "crate", local = [0.2, 0] }]       # metres in the body's own frame, from its origin
 between = ["peg[*]", "ball[*]"]                                  # each with its own: as many springs as there are copies
 ```
 
@@ -97,6 +97,60 @@ of        = "knot"
 stiffness = 60
 ```
 
+## Bodies of other forms
+
+A box and a ball have their origin at their centre. The `points` of a polygon, and the `shapes` of a body of several, are about an origin of
+their own: `position` is where that origin is, `angle` turns about it, and `local` of a spring or joint counts from it. The centre of mass lies
+where the form says: what moves, what trails follow and what `states` reports is the centre of mass.
+
+```toml
+[[polygon]]                                                      # a stone of an arch, and ten more
+points = [[0.8, 0], [1.2, 0], [1.15, 0.34], [0.767, 0.226]]
+copies = { count = 11, turn = 16.4, around = [4, 0] }
+position = [4, 0]
+group  = "stones"
+
+[[body]]                                                         # a dumb-bell
+shapes = [
+  { size = [0.6, 0.08] },
+  { radius = 0.15, position = [-0.3, 0] },
+  { radius = 0.15, position = [0.3, 0] },
+]
+
+[contact]
+ignore = [["stones", "stones"]]                                  # these do not touch each other
+```
+
+## Joints
+
+A joint is between two bodies, or a body and the `"room"`. A pin, weld or slider is at one place, given as `at`, or as a point of either end; a
+rod or rope goes from one point to another, as a spring does:
+
+```toml
+[[joint]]
+type    = "pin"
+between = ["door", "room"]
+at      = [2, 1.5]
+limits  = [-30, 90]                                              # degrees from how it hangs at the start
+
+[[joint]]                                                        # nine: each plank to the next
+type    = "pin"
+between = [{ body = "plank[0..8]", at = "right" }, { body = "plank[1..9]", at = "left" }]
+
+[[joint]]
+type    = "slider"
+between = ["piston", "room"]
+axis    = [0, 1]
+motor   = { speed = 0.5, most = 20 }
+
+[[joint]]
+type    = "rope"
+between = [[4, 4], { body = "crate", at = "top" }]
+breaks  = 50
+```
+
+Two bodies with a joint between them do not touch each other, unless it says `touching = true`.
+
 )";
 
 const char* const kNotes[][2] = {
@@ -105,6 +159,10 @@ const char* const kNotes[][2] = {
      "`walls` alone it has only "
      "those, and may be open. Where there is no size, the reference pixel of the mouse is 1/480 of the "
      "height that the camera fits."},
+    {"physics",
+     "Balls, polygons, bodies of several shapes and joints need `collision = \"contact\"` or `\"event\"`; so "
+     "do "
+     "friction, and bodies that meet other bodies."},
     {"mouse",
      "The reference pixel is 1/480 of the room's height, so that a larger picture shows the same motion."},
     {"camera",
@@ -153,6 +211,12 @@ std::string type(const Key& key) {
       return "[x, y], or a list of them";
     case Form::which:
       return "true, false, or which copies";
+    case Form::points:
+      return "[[x, y], ...]";
+    case Form::pairs:
+      return "pairs of names";
+    case Form::limits:
+      return "[lowest, highest]";
     case Form::ends:
       return "two ends";
     case Form::path:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "scene/check.h"
 #include "scene/fields.h"
@@ -17,10 +18,6 @@ using End = sim::End<2>;
 
 constexpr std::size_t kMostSprings = 4'000'000;
 
-Vec start(const sim::World<2>& world, const End& end) {
-  return end.body < 0 ? end.local : place(world, end.body, end.local);
-}
-
 // corners and sides of a box in its own frame, in halves of its size
 const std::map<std::string_view, Vec>& spots() {
   static const std::map<std::string_view, Vec> all = {
@@ -30,42 +27,15 @@ const std::map<std::string_view, Vec>& spots() {
   return all;
 }
 
-// the ends that one side of `between` means: a place is one, "ball[*]" is many
-std::vector<End> ends(const Node& node, const Roster& roster, const sim::World<2>& world,
-                      Complaints& complaints) {
-  if (node.is_list()) return {End{-1, vector(node)}};
-  const Node& name = node.is_text() ? node : *node.find("body");
-  std::vector<End> all;
-  for (const int body : roster.bodies(name.text(), name.place, complaints))
-    all.push_back({body, Vec::Zero()});
-  if (node.is_text() || all.empty()) return all;
-
-  // a point of a body that turns
-  const Node* local = node.find("local");
-  const Node* at = node.find("at");
-  const sim::Shape<2>& shape = world.model.bodies[std::size_t(all.front().body)].shape;
-  if ((local || at) && shape.kind != sim::ShapeKind::box) {
-    complaints.add((local ? local : at)->place,
-                   fmt::format("{} is a particle, which has no point but its centre", quoted(name.text())));
-    return {};
-  }
-  Vec point = local ? vector(*local) : Vec::Zero();
-  if (at) {
-    const auto spot = spots().find(at->text());
-    if (spot == spots().end()) {
-      std::vector<std::string_view> words;
-      for (const auto& [word, place] : spots()) words.push_back(word);
-      const std::string hint = did_you_mean(at->text(), words);
-      complaints.add(
-          at->place,
-          fmt::format("'at': expected a corner or side such as \"top right\" or \"left\", got {}{}",
-                      quoted(at->text()), hint));
-      return {};
-    }
-    point = spot->second.cwiseProduct(shape.half);
-  }
-  for (End& end : all) end.local = point;
-  return all;
+// which of the spots a shape has, and where
+std::optional<Vec> spot(const sim::Shape<2>& shape, std::string_view word) {
+  const auto found = spots().find(word);
+  if (found == spots().end()) return {};
+  const Vec& way = found->second;
+  if (shape.kind == sim::ShapeKind::box) return way.cwiseProduct(shape.half);
+  if (shape.kind == sim::ShapeKind::ball && way.cwiseAbs().sum() < 1.5) return way * shape.radius;
+  if (way.isZero(0)) return way;
+  return {};
 }
 
 // what varies over the springs of one table must have as many values as there are springs
@@ -93,6 +63,55 @@ bool too_many(const sim::World<2>& world, std::size_t more, Place place, Complai
 }
 
 }  // namespace
+
+Vec start(const sim::World<2>& world, const End& end) {
+  return end.body < 0 ? end.local : place(world, end.body, end.local);
+}
+
+std::vector<End> ends(const Node& node, const Roster& roster, const sim::World<2>& world,
+                      Complaints& complaints) {
+  if (node.is_list()) return {End{-1, vector(node)}};
+  const Node& name = node.is_text() ? node : *node.find("body");
+  std::vector<End> all;
+  for (const int body : roster.bodies(name.text(), name.place, complaints))
+    all.push_back({body, Vec::Zero()});
+  if (node.is_text() || all.empty()) return all;
+
+  // a point of a body that turns
+  const Node* local = node.find("local");
+  const Node* at = node.find("at");
+  if ((local || at) && !world.model.bodies[std::size_t(all.front().body)].turns()) {
+    complaints.add((local ? local : at)->place,
+                   fmt::format("{} is a particle, which has no point but its centre", quoted(name.text())));
+    return {};
+  }
+  for (End& end : all) {
+    const sim::Shape<2>& its = world.model.bodies[std::size_t(end.body)].shape;
+    if (local) {
+      end.local = vector(*local) - roster.centers[std::size_t(end.body)];
+      continue;
+    }
+    if (!at) continue;
+    const auto place = spot(its, at->text());
+    if (!place) {
+      std::vector<std::string_view> words;
+      for (const auto& [word, way] : spots())
+        if (spot(its, word)) words.push_back(word);
+      complaints.add(
+          at->place,
+          its.kind == sim::ShapeKind::box
+              ? fmt::format("'at': expected a corner or side such as \"top right\" or \"left\", got {}{}",
+                            quoted(at->text()), did_you_mean(at->text(), words))
+              : fmt::format("'at': expected {}, got {}",
+                            words.size() > 1 ? "a side such as \"top\" or \"left\""
+                                             : "\"center\", or a point as 'local'",
+                            quoted(at->text())));
+      return {};
+    }
+    end.local = *place;
+  }
+  return all;
+}
 
 void springs(const Node& top, const Roster& roster, sim::World<2>& world, Complaints& complaints) {
   const Node* all = top.find("spring");

@@ -12,7 +12,8 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr const char* kNamed[] = {"particle", "box", "spring", "net", "mouse"};
+constexpr const char* kNamed[] = {"particle", "ball", "box",   "polygon", "body",
+                                  "spring",   "net",  "joint", "mouse"};
 
 void settle(Node& node, Place place) {
   node.place = place;
@@ -169,10 +170,13 @@ std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Comp
       continue;
     }
 
-    // a thing: by the place of its table in the file, or by its name
+    // a thing: by its name, or by the place of its table in the file
     Found found;
     std::optional<std::int64_t> copy;
-    if (known) {
+    if (const auto it = named(top, first.name)) {
+      found = *it;
+      if (!first.indices.empty()) copy = first.indices[0];
+    } else if (known) {
       const Node* all = top.find(first.name);
       const std::size_t n = all && all->is_list() ? all->list().size() : 0;
       if (first.indices.empty() || first.indices[0] >= std::int64_t(n)) {
@@ -185,9 +189,6 @@ std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Comp
       }
       found = {first.name, int(first.indices[0])};
       if (first.indices.size() > 1) copy = first.indices[1];
-    } else if (const auto it = named(top, first.name)) {
-      found = *it;
-      if (!first.indices.empty()) copy = first.indices[0];
     } else {
       complaints.add(place,
                      fmt::format("nothing here is called {}{}", quoted(first.name), starts(top, first.name)));

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scene/fields.h"
+#include "sim/shape.h"
 
 namespace obscura::scene {
 
@@ -34,6 +35,7 @@ void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& c
   look.subtitle = words.text("subtitle");
   look.theme = fields.text("theme") == "screen" ? draw::Theme::screen : draw::Theme::paper;
   look.velocity_scale = fields.number("velocity_scale");
+  if (const Node* scale = fields.given("force_scale")) look.force_scale = scale->number();
   look.caption = fields.flag("caption");
   look.clock = fields.flag("clock");
   look.hatching = fields.flag("hatching");
@@ -102,8 +104,7 @@ draw::Extent extent(const Room& room, const sim::World<2>& world) {
   if (room.bounds) return {in_space(room.bounds->low), in_space(room.bounds->high)};
   std::vector<Vec> points;
   for (std::size_t i = 0; i < world.state.x.size(); ++i) {
-    const sim::Shape<2>& shape = world.model.bodies[i].shape;
-    const double reach = shape.kind == sim::ShapeKind::box ? shape.half.norm() : shape.radius;
+    const double reach = sim::reach(world.model.bodies[i].shape);
     points.push_back(world.state.x[i] - Vec(reach, reach));
     points.push_back(world.state.x[i] + Vec(reach, reach));
   }

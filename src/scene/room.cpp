@@ -58,8 +58,9 @@ double beyond(const sim::Wall<2>& wall, const Vec& point) { return -(point - wal
 Room room(const Node& top, Complaints& complaints) {
   const Fields fields = Fields::of(top, "room");
   Room room;
-  std::optional<double> elasticity;
+  std::optional<double> elasticity, friction;
   if (const Node* e = fields.given("elasticity")) elasticity = e->number();
+  if (const Node* mu = fields.given("friction")) friction = mu->number();
 
   // four walls about the size
   const Node* slanted = fields.given("walls");
@@ -67,7 +68,7 @@ Room room(const Node& top, Complaints& complaints) {
     const Vec low = fields.vector("corner"), size = fields.vector("size"), high = low + size;
     room.height = size.y();
     const auto wall = [&](const char* name, const Vec& point, const Vec& normal) {
-      room.walls.push_back({point, normal, elasticity});
+      room.walls.push_back({point, normal, elasticity, friction});
       room.names.push_back(name);
       room.places.push_back(fields.given("size") ? fields.place("size") : Place{});
     };
@@ -83,18 +84,19 @@ Room room(const Node& top, Complaints& complaints) {
   for (std::size_t i = 0; slanted && i < slanted->list().size(); ++i) {
     const Fields its(slanted->list()[i], "room.walls");
     if (!its.given("point") || !its.given("normal")) continue;
-    sim::Wall<2> wall{its.vector("point"), its.vector("normal").stableNormalized(), elasticity};
+    sim::Wall<2> wall{its.vector("point"), its.vector("normal").stableNormalized(), elasticity, friction};
     if (const Node* e = its.given("elasticity")) wall.elasticity = e->number();
+    if (const Node* mu = its.given("friction")) wall.friction = mu->number();
     room.walls.push_back(wall);
     room.names.push_back(fmt::format("room.walls[{}]", i));
     room.places.push_back(its.place());
   }
 
   // what the walls leave
-  std::vector<Corner> inside = {{{-kFar, -kFar}, {{0, -kFar}, {0, 1}, {}}},
-                                {{kFar, -kFar}, {{kFar, 0}, {-1, 0}, {}}},
-                                {{kFar, kFar}, {{0, kFar}, {0, -1}, {}}},
-                                {{-kFar, kFar}, {{-kFar, 0}, {1, 0}, {}}}};
+  std::vector<Corner> inside = {{{-kFar, -kFar}, {{0, -kFar}, {0, 1}, {}, {}}},
+                                {{kFar, -kFar}, {{kFar, 0}, {-1, 0}, {}, {}}},
+                                {{kFar, kFar}, {{0, kFar}, {0, -1}, {}, {}}},
+                                {{-kFar, kFar}, {{-kFar, 0}, {1, 0}, {}, {}}}};
   for (std::size_t i = 0; i < room.walls.size(); ++i) {
     inside = clipped(inside, room.walls[i]);
     if (inside.size() < 3) {

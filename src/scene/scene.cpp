@@ -10,6 +10,7 @@
 #include "scene/complaints.h"
 #include "scene/document.h"
 #include "scene/fields.h"
+#include "scene/joints.h"
 #include "scene/links.h"
 #include "scene/overrides.h"
 #include "scene/picture.h"
@@ -27,11 +28,52 @@ sim::Integrator integrator(const std::string& word) {
                                    : rk4;
 }
 
-// springs, nets and mice share the bodies' names, for --set speaks of them all
+sim::Collision collision(const std::string& word) {
+  using enum sim::Collision;
+  return word == "contact" ? contact : word == "event" ? event : handout;
+}
+
+sim::Solver solver(const std::string& word) {
+  using enum sim::Solver;
+  return word == "direct" ? direct : word == "iterative" ? iterative : automatic;
+}
+
+// the handout knows particles and boxes, each alone
+void refuse_beyond_handout(const Node& top, Complaints& complaints) {
+  for (const char* kind : {"ball", "polygon", "body", "joint"}) {
+    const Node* all = top.find(kind);
+    if (!all || all->list().empty()) continue;
+    complaints.add(all->list().front().place,
+                   fmt::format("[[{}]] is not in `collision = \"handout\"`, which knows particles and boxes; "
+                               "[physics] collision = \"contact\" has it",
+                               kind));
+  }
+}
+
+// groups that do not touch, as the bodies number them
+void ignore(const Node& top, const Roster& roster, sim::Model<2>& model, Complaints& complaints) {
+  for (const Node& pair : Fields::of(top, "contact").node("ignore").list()) {
+    int groups[2] = {0, 0};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Node& word = pair.list()[k];
+      if (const auto found = roster.families.find(word.text()); found != roster.families.end()) {
+        groups[k] = found->second;
+        continue;
+      }
+      std::vector<std::string_view> words;
+      for (const auto& [name, number] : roster.families) words.push_back(name);
+      complaints.add(word.place, fmt::format("no body is of the group {}{}", scene::quoted(word.text()),
+                                             did_you_mean(word.text(), words)));
+    }
+    if (groups[0] > 0 && groups[1] > 0) model.ignore.emplace_back(groups[0], groups[1]);
+  }
+}
+
+// springs, nets, joints and mice share the bodies' names, for --set speaks of them all
 void refuse_taken_names(const Node& top, const Roster& roster, Complaints& complaints) {
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
-  for (const char* kind : {"spring", "net", "mouse"}) {
+  for (const char* kind : {"spring", "net", "joint", "mouse"}) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i) {
       const Node* name = all->list()[i].find("name");
@@ -68,12 +110,20 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   const Fields physics = Fields::of(top, "physics");
   model.rate = physics.rational("rate");
   model.integrator = integrator(physics.text("integrator"));
+  model.collision = collision(physics.text("collision"));
+  model.solver = solver(physics.text("solver"));
+  model.impacts =
+      physics.text("impacts") == "sequential" ? sim::Impacts::sequential : sim::Impacts::simultaneous;
+  model.overlap = physics.text("overlap") == "separate" ? sim::Overlap::separate : sim::Overlap::refuse;
   model.gravity = Fields::of(top, "room").vector("gravity");
   const Room walls = room(top, complaints);
   model.walls = walls.walls;
   const Roster roster = bodies(top, walls, scene.seed, copy_sets, scene.world, scene.look.bodies, complaints);
   springs(top, roster, scene.world, complaints);
   nets(top, roster, scene.world, complaints);
+  joints(top, roster, scene.world, complaints);
+  ignore(top, roster, model, complaints);
+  if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, complaints);
   refuse_taken_names(top, roster, complaints);
 
   // what the camera fits, and with it the length of a reference pixel

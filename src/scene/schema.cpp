@@ -94,6 +94,12 @@ Json value(const Key& key) {
       return any_of({vector(), list_of(vector(), 1, 2)});
     case Form::which:
       return any_of({{{"type", "boolean"}}, string});
+    case Form::points:
+      return list_of(vector(), 3, 0);
+    case Form::pairs:
+      return list_of(list_of(string, 2, 2), 0, 0);
+    case Form::limits:
+      return list_of({{"type", "number"}}, 2, 2);
     case Form::ends: {
       const Json point = {{"type", "object"},
                           {"properties", {{"body", string}, {"local", vector()}, {"at", string}}},

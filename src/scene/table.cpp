@@ -10,31 +10,47 @@ namespace obscura::scene {
 
 namespace {
 
+constexpr std::string_view kBodyKinds[] = {"particle", "ball", "box", "polygon", "body"};
+
+// a row for several kinds of body, "any.mass": which kinds
+bool holds(std::string_view prefix, std::string_view kind) {
+  return prefix == kind || prefix == "any" || (prefix == "rigid" && kind != "particle");
+}
+
+bool of_bodies(const Key& row) {
+  const std::string_view prefix = std::string_view(row.path).substr(0, row.path.find('.'));
+  return prefix == "any" || prefix == "rigid" ||
+         std::find(std::begin(kBodyKinds), std::end(kBodyKinds), prefix) != std::end(kBodyKinds);
+}
+
+void replace(std::string& text, std::string_view word, std::string_view by) {
+  for (std::size_t at; (at = text.find(word)) != std::string::npos;) text.replace(at, word.size(), by);
+}
+
 std::vector<Key> built() {
   std::vector<Key> all;
   const std::vector<Key> rows = scene::rows();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const bool of_bodies = rows[i].path.starts_with("body.") || rows[i].path.starts_with("particle") ||
-                           rows[i].path.starts_with("box");
-    if (!of_bodies) {
-      all.push_back(rows[i]);
+  for (std::size_t i = 0; i < rows.size();) {
+    if (!of_bodies(rows[i])) {
+      all.push_back(rows[i++]);
       continue;
     }
     // the run of rows about bodies, once for each kind
     std::size_t end = i;
-    while (end < rows.size() && (rows[end].path.starts_with("body.") ||
-                                 rows[end].path.starts_with("particle") || rows[end].path.starts_with("box")))
-      ++end;
-    for (const std::string kind : {"particle", "box"}) {
+    while (end < rows.size() && of_bodies(rows[end])) ++end;
+    for (const std::string_view kind : kBodyKinds) {
+      const bool own_origin = kind == "polygon" || kind == "body";
       for (std::size_t k = i; k < end; ++k) {
         Key key = rows[k];
-        if (key.path.starts_with("body.")) key.path = kind + key.path.substr(4);
-        for (std::size_t at; (at = key.absent.find("KIND")) != std::string::npos;)
-          key.absent.replace(at, 4, kind);
-        if (key.path == kind || key.path.starts_with(kind + ".")) all.push_back(key);
+        const std::size_t dot = std::min(key.path.find('.'), key.path.size());
+        if (!holds(std::string_view(key.path).substr(0, dot), kind)) continue;
+        key.path.replace(0, dot, kind);
+        replace(key.absent, "KIND", kind);
+        replace(key.doc, "ORIGIN", own_origin ? "own origin" : "centre of mass");
+        all.push_back(std::move(key));
       }
     }
-    i = end - 1;
+    i = end;
   }
   return all;
 }
@@ -58,21 +74,7 @@ const Language& language() {
   return it;
 }
 
-constexpr std::string_view kLater[] = {"joint",
-                                       "polygon",
-                                       "chain",
-                                       "bond",
-                                       "explosion",
-                                       "body",
-                                       "contact",
-                                       "golden",
-                                       "room.friction",
-                                       "room.walls.friction",
-                                       "particle.friction",
-                                       "particle.group",
-                                       "box.friction",
-                                       "box.group",
-                                       "spring.breaks"};
+constexpr std::string_view kLater[] = {"chain", "bond", "explosion", "golden", "spring.breaks"};
 
 }  // namespace
 
@@ -92,6 +94,8 @@ std::vector<const Key*> keys_of(std::string_view owner) {
 
 const Node& fallback(std::string_view path) { return language().fallbacks.find(path)->second; }
 
+std::span<const std::string_view> body_kinds() { return kBodyKinds; }
+
 std::span<const std::string_view> later_keys() { return kLater; }
 
 std::string unit_words(std::string_view unit) {
@@ -105,6 +109,8 @@ std::string unit_words(std::string_view unit) {
                                                                      {"N/m", "newtons per metre"},
                                                                      {"N s/m", "newton seconds per metre"},
                                                                      {"kg/m^2", "kilograms per square metre"},
+                                                                     {"m/N", "metres per newton"},
+                                                                     {"N", "newtons"},
                                                                      {"1/s", "per second"}};
   const auto found = words.find(unit);
   return std::string(found == words.end() ? unit : found->second);
@@ -149,7 +155,13 @@ std::string expected(const Key& key) {
     case Form::ends:
       return "two ends, each a body's name, { body = \"name\", local = [x, y] } or a place [x, y]";
     case Form::thing:
-      return "the name of a body with copies";
+      return "the name of a body";
+    case Form::points:
+      return "three points or more [[x, y], ...]" + in;
+    case Form::pairs:
+      return "pairs of names [[\"a\", \"b\"], ...]";
+    case Form::limits:
+      return "two numbers [lowest, highest]";
     case Form::path:
       return "points in time [[t, x, y], ...], two at least";
     case Form::trails:

@@ -29,8 +29,11 @@ enum class Form {
   count,   // 12, or [6, 2]
   offset,  // [x, y], or one a direction of the grid
   which,   // true, or "0..4": all, or those of the copies
+  points,  // [[x, y], ...], three at least
+  pairs,   // [["a", "b"], ...], names
+  limits,  // [lowest, highest]
   ends,    // the two ends of a spring
-  thing,   // the name of a body with copies
+  thing,   // the name of a body
   path,    // [[t, x, y], ...]
   trails,  // seconds, or a table of them by body
 };
@@ -64,8 +67,12 @@ struct Key {
   }
 };
 
-/// The rows of the language as they are written; those of body.* stand for both particle.* and box.*.
+/// The rows of the language as they are written; those of any.* stand for every kind of body, those of
+/// rigid.* for the kinds that turn.
 std::vector<Key> rows();
+
+/// The kinds of body, "particle", "ball", ...: those that do not turn first, as the model has them.
+std::span<const std::string_view> body_kinds();
 
 /// The language: every key, in the order of the page.
 std::span<const Key> keys();

@@ -23,6 +23,9 @@ enum class Solver { automatic, direct, iterative };
 /// approaches.
 enum class Impacts { simultaneous, sequential };
 
+/// What is done with bodies that overlap at the start: they are refused, or gently pushed apart.
+enum class Overlap { refuse, separate };
+
 enum class ShapeKind { point, ball, box, polygon, compound };
 
 /// The form of a body about its centre of mass, in its own frame.
@@ -130,6 +133,7 @@ struct Model {
   Collision collision = Collision::handout;
   Solver solver = Solver::automatic;
   Impacts impacts = Impacts::simultaneous;
+  Overlap overlap = Overlap::refuse;
   Vec<D> gravity = Vec<D>::Unit(1) * -9.81;  // m/s^2
   double scale = 1;                          // the room's height, m: what "far" and "fast" are measured by
   std::vector<Body<D>> bodies;

@@ -54,17 +54,13 @@ TEST(Complaints, AKeyInTheWrongTableIsSentHome) {
 }
 
 TEST(Complaints, WhatComesLaterIsNamedAsSuch) {
-  refused("[[joint]]\ntype = \"pin\"", "a.toml:1:3: [[joint]] is not in this version of obscura yet");
   refused("[golden]\nat = [0]", "a.toml:1:2: [golden] is not in this version of obscura yet");
-  refused("[room]\nfriction = 1", "a.toml:2:1: 'friction' is not in this version of obscura yet");
-  refused("[physics]\ncollision = \"contact\"",
-          "a.toml:2:13: 'collision': 'contact' is not in this version of obscura yet, which has handout");
   refused("version = 2",
           "a.toml:1:11: version 2 of the language is newer than this obscura, which reads version 1");
   refused("[room]\nsize = [4, 3, 4]",
           "a.toml:2:8: 'size' has three numbers: rooms in space are not in this version of obscura yet, "
           "expected two [x, y]");
-  for (const char* table : {"polygon", "chain", "bond", "explosion"})
+  for (const char* table : {"chain", "bond", "explosion"})
     EXPECT_THAT(wrong("[[" + std::string(table) + "]]"),
                 ElementsAre(EndsWith("is not in this version of obscura yet")))
         << table;
@@ -134,8 +130,88 @@ TEST(Complaints, WordsComeFromTheirList) {
   refused("[[particle]]\ncolor = \"#12\"",
           "a.toml:2:9: 'color': '#12' is no colour; expected \"#rrggbb\" or one of orange, sky, green, blue, "
           "vermilion, purple, yellow, grey, black, white");
-  refused("[look]\narrows = [\"contact\"]",
-          "a.toml:2:11: 'arrows': 'contact' is not in this version of obscura yet, which has velocity");
+  refused(
+      "[look]\narrows = [\"force\"]",
+      "a.toml:2:11: 'arrows': 'force' is not in this version of obscura yet, which has velocity, contact");
+}
+
+const std::string kContact = "[physics]\ncollision = \"contact\"\n";
+
+TEST(Complaints, PolygonsAreConvexAndSayWhereNot) {
+  const auto polygon = [](const std::string& points) { return kContact + "[[polygon]]\npoints = " + points; };
+  refused(polygon("[[0, 0], [1, 0], [0.2, 0.2], [0, 1]]"),
+          "a.toml:4:27: points[2] turns the other way: a polygon must be convex; make a [[body]] of several");
+  refused(polygon("[[0, 1], [0.2, 0.2], [1, 0], [0, 0]]"),
+          "a.toml:4:19: points[1] turns the other way: a polygon must be convex; make a [[body]] of several");
+  refused(polygon("[[0, 0], [0.5, 0], [1, 0], [0, 1]]"),
+          "a.toml:4:19: points[1] lies on the line between its neighbours; leave it out");
+  refused(polygon("[[0, 0], [1, 0], [1, 0], [0, 1]]"), "a.toml:4:27: points[1] and points[2] are one place");
+  refused(polygon("[[0, 1], [-0.59, -0.81], [0.95, 0.31], [-0.95, 0.31], [0.59, -0.81]]"),
+          "a.toml:4:11: the points go around more than once: a polygon must be convex");
+  refused(polygon("[[0, 0], [1, 0]]"),
+          "a.toml:4:10: 'points': expected three points or more [[x, y], ...] in metres, got 2");
+  refused(kContact + "[[polygon]]",
+          "a.toml:3:1: [[polygon]] needs 'points': three points or more [[x, y], ...] in metres");
+}
+
+TEST(Complaints, ShapesOfABodyAreOneOfThree) {
+  refused(kContact + "[[body]]\nshapes = [{ radius = 0.1, size = [1, 1] }]",
+          "a.toml:4:11: a shape is one of three: expected 'radius', 'size' or 'points'");
+  refused(kContact + "[[body]]\nshapes = []", "a.toml:4:10: 'shapes' is empty: expected a part at least");
+  refused(
+      kContact + "[[body]]\nshapes = [{ radius = 0.1, densty = 2 }]",
+      "a.toml:4:27: unknown key 'densty' in each of 'shapes'; it has radius, size, points, position, angle");
+}
+
+TEST(Complaints, JointsSayWhereTheyAre) {
+  const std::string two =
+      kContact +
+      "[[ball]]\nname = \"a\"\nposition = [1, 1]\n[[ball]]\nname = \"b\"\nposition = [2, 1]\n"
+      "[[particle]]\nname = \"p\"\nposition = [3, 1]\n[[joint]]\n";
+  refused(two + "type = \"pin\"\nbetween = [\"a\", \"b\"]",
+          "a.toml:12:1: a pin between two bodies needs 'at', the place in the room where it is, or a point "
+          "of one "
+          "in 'between'");
+  refused(two + "type = \"pin\"\nbetween = [\"a\", \"room\"]\nlength = 2",
+          "a.toml:15:10: 'length' is that of a rod or a rope; a pin has none");
+  refused(two + "type = \"rod\"\nbetween = [\"a\", \"b\"]\nlength = 2",
+          "a.toml:15:10: 'length' is 2 m and its ends are 1 m apart at the start");
+  refused(two + "type = \"rope\"\nbetween = [\"a\", \"b\"]\nlength = 0.9",
+          "a.toml:15:10: 'length' is 0.9 m and its ends are 1 m apart at the start");
+  refused(two + "type = \"rope\"\nbetween = [\"a\", \"room\"]",
+          "a.toml:14:11: where in the room? A rope needs a place [x, y]");
+  refused(two + "type = \"weld\"\nbetween = [\"p\", \"a\"]\nat = [2, 1]",
+          "a.toml:14:11: 'p' is a particle, which does not turn: a weld needs a [[ball]]");
+  refused(two + "type = \"pin\"\nbetween = [\"room\", [1, 1]]",
+          "a.toml:14:11: 'between' names no body: it would hold nothing");
+  refused(
+      two + "type = \"pin\"\nbetween = [{ body = \"a\", at = \"right\" }, { body = \"b\", at = \"left\" }]",
+      "a.toml:14:11: the two points of this pin are 0.6 m apart at the start");
+  refused(two + "type = \"pin\"\nbetween = [\"a\", \"room\"]\nlimits = [10, 20]",
+          "a.toml:15:10: 'limits' leave out where it starts: expected 0 between 10 and 20");
+  refused(two + "type = \"hook\"\nbetween = [\"a\", \"room\"]",
+          "a.toml:13:8: 'type': expected one of pin, weld, slider, rod, rope, got 'hook'");
+}
+
+TEST(Complaints, GroupsAreThoseOfBodies) {
+  refused("[[box]]\ngroup = \"stones\"\n[contact]\nignore = [[\"stones\", \"stone\"]]",
+          "a.toml:4:22: no body is of the group 'stone'; did you mean 'stones'?");
+  refused("[[box]]\n[contact]\nignore = [\"stones\"]",
+          "a.toml:3:11: 'ignore': expected pairs of names such as [\"stones\", \"frame\"], got the string "
+          "\"stones\"");
+}
+
+TEST(Complaints, TheHandoutKnowsParticlesAndBoxes) {
+  refused(
+      "[physics]\ncollision = \"handout\"\n[[ball]]",
+      "a.toml:3:1: [[ball]] is not in `collision = \"handout\"`, which knows particles and boxes; [physics] "
+      "collision = \"contact\" has it");
+}
+
+TEST(Complaints, ANameIsNotWhatNamelessOnesAreCalled) {
+  refused(kContact + "[[ball]]\nposition = [1, 1]\n[[particle]]\nname = \"ball\"",
+          "a.toml:6:8: the name 'ball' is what [[ball]]s without one are called, as at a.toml:3:1");
+  EXPECT_TRUE(wrong(kContact + "[[ball]]\nname = \"ball\"", {"ball.mass=2"}).empty());
 }
 
 TEST(Complaints, NamesAreOneEach) {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "scene/bodies.h"
+#include "scene/complaints.h"
+#include "scene/document.h"
+#include "sim/state.h"
+
+namespace obscura::scene {
+
+/// Puts the joints of a scene into its world. Requires the bodies.
+void joints(const Node& top, const Roster& roster, sim::World<2>& world, Complaints& complaints);
+
+}  // namespace obscura::scene
