@@ -30,9 +30,50 @@ struct Gap {
   double value = 0;                   // g, m
 };
 
+/// A gap at some instant.
+template <int D>
+struct Meeting {
+  double value = 0;                 // g, m; negative: inside
+  Vec<D> point = Vec<D>::Zero();    // world frame, midway between the two surfaces
+  Vec<D> normal = Vec<D>::Unit(0);  // world frame, unit, from b to a
+};
+
+/// What a gap is where its bodies stand so; of a wall, b stands still at the origin. Its rate is the normal's
+/// component of the velocity of a's material at `point` against b's, exactly: both turn about it, and a shift
+/// along the normal changes nothing. Corners that coincide part along x.
+template <int D>
+Meeting<D> evaluate(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b) {
+  const Vec<D> on_a = a.x + a.arm(gap.on_a), on_b = b.x + b.arm(gap.on_b), apart = on_a - on_b;
+  Meeting<D> now;
+  switch (gap.kind) {
+    case Gap<D>::Kind::corner_of_a:
+      now.normal = b.arm(gap.normal);
+      now.value = now.normal.dot(apart) - gap.radius_a - gap.radius_b;
+      now.point = on_a - now.normal * (gap.radius_a + now.value / 2);
+      break;
+    case Gap<D>::Kind::corner_of_b:
+      now.normal = -a.arm(gap.normal);
+      now.value = now.normal.dot(apart) - gap.radius_a - gap.radius_b;
+      now.point = on_b + now.normal * (gap.radius_b + now.value / 2);
+      break;
+    case Gap<D>::Kind::corners: {
+      const double length = apart.norm();
+      if (length > 0) now.normal = apart / length;
+      now.value = length - gap.radius_a - gap.radius_b;
+      now.point = on_b + now.normal * (gap.radius_b + now.value / 2);
+      break;
+    }
+  }
+  return now;
+}
+
 /// The gaps below `margin` (m) between two shapes, nearest features only: two for faces that lie on each
 /// other, one otherwise, none where they are farther apart; of compounds, those of all their parts. Appends
 /// to `out`, with a and b for the key. A corner that lies deep inside is told by the face it is nearest to.
+/// In the plane, the two are the corners that bound what the touching faces share, be they a's or b's; where
+/// corners of both lie at one place (within 1e-6 of the face) a's is taken. Corner at corner only where no
+/// face is nearer: where a ball takes part, or shapes are apart. Two points never touch. Depends on nothing
+/// but the two poses; `feature` counts kind, parts, and the corner or face of each.
 template <int D>
 void gaps(int a, const Shape<D>& shape_a, const Stance<D>& at_a, int b, const Shape<D>& shape_b,
           const Stance<D>& at_b, double margin, std::vector<Gap<D>>& out);

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "sim/shape.h"
+
+namespace obscura::sim {
+
+inline Shape<2> ball_shape(double radius) {
+  Shape<2> shape;
+  shape.kind = radius > 0 ? ShapeKind::ball : ShapeKind::point;
+  shape.radius = radius;
+  return shape;
+}
+
+/// A box by its sides, m.
+inline Shape<2> box_shape(double x, double y) {
+  Shape<2> shape;
+  shape.kind = ShapeKind::box;
+  shape.half = Vec<2>(x, y) / 2;
+  return shape;
+}
+
+inline Shape<2> polygon_shape(std::vector<Vec<2>> vertices) {
+  Shape<2> shape;
+  shape.kind = ShapeKind::polygon;
+  shape.vertices = std::move(vertices);
+  return shape;
+}
+
+inline Shape<2> compound_shape(std::vector<Shape<2>> parts) {
+  Shape<2> shape;
+  shape.kind = ShapeKind::compound;
+  shape.parts = std::move(parts);
+  return shape;
+}
+
+/// The corners of a box as a polygon.
+inline Shape<2> as_polygon(const Shape<2>& box) {
+  std::vector<Vec<2>> around;
+  for (const int i : {0, 1, 3, 2}) around.push_back(box.center + corner(box, i));
+  return polygon_shape(around);
+}
+
+inline Stance<2> standing(const Vec<2>& x, double angle = 0) {
+  Stance<2> at;
+  at.x = x;
+  at.room_from_body = rotation<2>(Turn<2>(angle));
+  return at;
+}
+
+/// Numbers that are the same on every machine.
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : bits_(seed) {}
+
+  double within(double from, double to) { return from + (to - from) * (double(bits_()) / 4294967296.0); }
+  int below(int n) { return int(bits_() % unsigned(n)); }
+
+  /// Corners on an ellipse, so convex; its centre near the origin.
+  Shape<2> polygon(double size) {
+    const int n = 3 + below(6);
+    const double a = size * within(0.3, 1), b = size * within(0.3, 1), tilt = within(0, 6.3);
+    const Vec<2> off = size * Vec<2>(within(-0.2, 0.2), within(-0.2, 0.2));
+    std::vector<Vec<2>> around;
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + within(0, 0.8)) / n;
+      const double x = a * std::cos(angle), y = b * std::sin(angle);
+      around.push_back(
+          off + Vec<2>(std::cos(tilt) * x - std::sin(tilt) * y, std::sin(tilt) * x + std::cos(tilt) * y));
+    }
+    return polygon_shape(around);
+  }
+
+  /// Any kind that has an outline.
+  Shape<2> simple(double size) {
+    switch (below(4)) {
+      case 0:
+        return ball_shape(size * within(0.2, 1));
+      case 1:
+        return ball_shape(0);
+      case 2:
+        return box_shape(size * within(0.3, 2), size * within(0.3, 2));
+      default:
+        return polygon(size);
+    }
+  }
+
+  Stance<2> stance(double room) {
+    return standing({within(-room, room), within(-room, room)}, within(-4, 4));
+  }
+
+ private:
+  std::mt19937 bits_;
+};
+
+}  // namespace obscura::sim
