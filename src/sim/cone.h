@@ -1,58 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
-#include "sim/vec.h"
+#include "sim/cone_factors.h"
+#include "sim/cone_guess.h"
+#include "sim/cone_law.h"
 
 namespace obscura::sim {
-
-/// The tangential part of a contact: one component in the plane, two in space.
-template <int D>
-using Tangent = Eigen::Matrix<double, D - 1, 1>;
-
-/// What a block of rows asks of its force f and of what it answers, w = K f + b.
-enum class Law : std::uint8_t {
-  equal,    // one row: w = 0, f free. Joints
-  bounded,  // one row: lower <= f <= upper; w = 0 inside, w >= 0 at lower, w <= 0 at upper. Motors, limits
-  contact   // D rows, normal first: f_n >= 0, w_n >= 0, f_n w_n = 0, and Coulomb's cone |f_t| <= mu f_n
-};
-
-/// How a block obeys its law.
-enum class Hold : std::uint8_t {
-  free,      // w = 0: equal, or bounded between its bounds
-  at_lower,  // bounded: f = lower
-  at_upper,  // bounded: f = upper
-  open,      // contact: f = 0
-  stick,     // contact: w = 0, f inside the cone
-  brink,     // contact: on the cone's surface, f_t = -mu f_n d, and w = 0 all the same, as others hold it
-  slide      // contact: w_n = 0, f_t = -mu f_n d
-};
-
-/// One block of rows. A block's rows follow those of the block before it.
-template <int D>
-struct ConeBlock {
-  Law law = Law::contact;
-  double lower = -std::numeric_limits<double>::infinity();  // bounded
-  double upper = std::numeric_limits<double>::infinity();   // bounded
-  double mu = 0;                                            // contact
-  bool sliding = false;                       // contact: moves already, so f_t = -mu f_n d whatever w_t
-  Tangent<D> direction = Tangent<D>::Zero();  // d where it is sliding: unit, of its tangential velocity
-
-  int rows() const { return law == Law::contact ? D : 1; }
-};
-
-/// What a block does: its mode, and d of a contact on the cone's surface.
-template <int D>
-struct ConeMode {
-  Hold hold = Hold::stick;
-  Tangent<D> along = Tangent<D>::Zero();  // unit where hold is brink or slide: where it (would) slip to
-
-  bool operator==(const ConeMode&) const = default;
-};
 
 /// What came of a solve.
 struct ConeReport {
@@ -95,6 +51,47 @@ class Cone {
   /// own response; of least squares where the rows contradict one another, and then found is false.
   ConeReport least(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& r,
                    std::span<const int> rows, Eigen::Ref<Eigen::VectorXd> x);
+
+ private:
+  using Modes = std::vector<ConeMode<D>>;
+
+  // one unknown of the equalities: a force on a row, along a contact's slide, or a turn of that slide
+  struct Unknown {
+    enum class Kind : char { row, cone, turn } kind;
+    int row, block;
+  };
+
+  void scale(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
+             std::span<const ConeBlock<D>> blocks);
+  bool attempt(std::span<const ConeBlock<D>> blocks, int switches);
+  bool enumerate(std::span<const ConeBlock<D>> blocks);
+
+  // cone_balance.cpp: modes as equalities
+  void balance(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
+  bool turn(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
+  void start(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);
+  void gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes, bool turning);
+  void refine(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
+  void answer();
+  double misfit() const;
+
+  // cone_check.cpp: the laws looked at
+  double check(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);
+  double check(const ConeBlock<D>& block, const ConeMode<D>& mode, int row, ConeMode<D>& better) const;
+
+  int n_ = 0, tries_ = 0;
+  std::vector<int> first_;             // row of each block
+  std::vector<double> sigma_, K_, b_;  // K_ = sigma K sigma, b_ = sigma b: no K_ii over 1
+  std::vector<double> g_, w_, size_;   // f = sigma g; w = K_ g + b_; the largest terms of w
+  FullRank factors_;
+  std::vector<Unknown> unknowns_;
+  std::vector<double> A_, x_;  // of the equalities
+  Modes trial_, better_, best_;
+  std::vector<double> wrong_;  // violation, one a block
+  std::vector<double> best_g_;
+  double best_residual_ = 0;
+  std::vector<std::uint64_t> seen_;  // sets of modes tried
+  ConeGuess<D> guess_;
 };
 
 }  // namespace obscura::sim

@@ -1,0 +1,232 @@
+// Pseudo-inverse by factors of full rank.
+//   A = F d G        F: n x r with independent columns, G: r x n with independent rows, d diagonal
+//   A^+ = G^T (G G^T)^-1 d^-1 (F^T F)^-1 F^T
+// Pivots are the largest entry left, so entries of F and G stay within 1, and d carries all of A's condition.
+
+#include "sim/cone_factors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obscura::sim {
+
+namespace {
+
+// y += a x
+void add(int n, double a, const double* __restrict x, double* __restrict y) {
+  for (int i = 0; i < n; ++i) y[i] += a * x[i];
+}
+
+// y += X a for the columns of X where a is not zero, four at a time
+void add_columns(int n, int count, const double* X, const double* a, int* some, double* __restrict y) {
+  int k = 0;
+  for (int j = 0; j < count; ++j) {
+    if (a[j] != 0) some[k++] = j;
+  }
+  int j = 0;
+  for (; j + 4 <= k; j += 4) {
+    const double* __restrict x0 = X + std::size_t(some[j]) * n;
+    const double* __restrict x1 = X + std::size_t(some[j + 1]) * n;
+    const double* __restrict x2 = X + std::size_t(some[j + 2]) * n;
+    const double* __restrict x3 = X + std::size_t(some[j + 3]) * n;
+    const double a0 = a[some[j]], a1 = a[some[j + 1]], a2 = a[some[j + 2]], a3 = a[some[j + 3]];
+    for (int i = 0; i < n; ++i) y[i] += (a0 * x0[i] + a1 * x1[i]) + (a2 * x2[i] + a3 * x3[i]);
+  }
+  for (; j < k; ++j) add(n, a[some[j]], X + std::size_t(some[j]) * n, y);
+}
+
+double dot(int n, const double* x, const double* y) {
+  double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+  int i = 0;
+  for (; i + 4 <= n; i += 4) {
+    s0 += x[i] * y[i], s1 += x[i + 1] * y[i + 1], s2 += x[i + 2] * y[i + 2], s3 += x[i + 3] * y[i + 3];
+  }
+  for (; i < n; ++i) s0 += x[i] * y[i];
+  return (s0 + s1) + (s2 + s3);
+}
+
+// the lower Cholesky factor of X^T X, r x r; X: n x r
+void factor_gram(int n, int r, const double* X, std::vector<double>& out) {
+  out.resize(std::size_t(r) * r);
+  double* const c = out.data();
+  for (int k = 0; k < r; ++k) {
+    const double* xk = X + std::size_t(k) * n;
+    int j = k;
+    for (; j + 4 <= r; j += 4) {
+      const double *x0 = X + std::size_t(j) * n, *x1 = x0 + n, *x2 = x1 + n, *x3 = x2 + n;
+      double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+      for (int i = 0; i < n; ++i) {
+        const double x = xk[i];
+        s0 += x * x0[i], s1 += x * x1[i], s2 += x * x2[i], s3 += x * x3[i];
+      }
+      double* to = c + std::size_t(k) * r + j;
+      to[0] = s0, to[1] = s1, to[2] = s2, to[3] = s3;
+    }
+    for (; j < r; ++j) c[std::size_t(k) * r + j] = dot(n, xk, X + std::size_t(j) * n);
+  }
+  for (int k = 0; k < r; ++k) {
+    double* ck = c + std::size_t(k) * r;
+    for (int j = 0; j < k; ++j) {
+      const double* cj = c + std::size_t(j) * r;
+      if (cj[k] != 0) add(r - k, -cj[k], cj + k, ck + k);
+    }
+    const double root = std::sqrt(ck[k]);
+    for (int i = k; i < r; ++i) ck[i] /= root;
+  }
+}
+
+// x = (C C^T)^-1 x
+void solve_gram(int r, const std::vector<double>& C, double* x) {
+  for (int k = 0; k < r; ++k) {
+    const double* c = C.data() + std::size_t(k) * r;
+    x[k] /= c[k];
+    add(r - k - 1, -x[k], c + k + 1, x + k + 1);
+  }
+  for (int k = r - 1; k >= 0; --k) {
+    const double* c = C.data() + std::size_t(k) * r;
+    x[k] = (x[k] - dot(r - k - 1, c + k + 1, x + k + 1)) / c[k];
+  }
+}
+
+}  // namespace
+
+void FullRank::symmetric(std::span<const double> A, int n, double tolerance) {
+  n_ = n, rank_ = 0, symmetric_ = true;
+  f_.resize(std::size_t(n) * n), d_.resize(n), rows_.resize(n), left_.resize(n), t_.resize(2 * n);
+  open_.resize(n);
+  for (int i = 0; i < n; ++i) left_[i] = A[std::size_t(i) * n + i];
+
+  double least = 0;
+  for (int k = 0; k < n; ++k) {
+    // the largest pivot left; the first of equals
+    int p = 0;
+    for (int i = 1; i < n; ++i) {
+      if (left_[i] > left_[p]) p = i;
+    }
+    if (k == 0) least = tolerance * left_[p];
+    if (!(left_[p] > least)) break;
+
+    // its column, less what the columns before it explain
+    double* const c = f_.data() + std::size_t(k) * n;
+    std::copy_n(A.data() + std::size_t(p) * n, n, c);
+    for (int j = 0; j < k; ++j) t_[j] = -d_[j] * f_[std::size_t(j) * n + p];
+    add_columns(n, k, f_.data(), t_.data(), open_.data(), c);
+    const double pivot = c[p];
+    if (!(pivot > least)) {
+      left_[p] = 0, --k;  // its diagonal had drifted by rounding
+      continue;
+    }
+    for (int j = 0; j < k; ++j) c[rows_[j]] = 0;
+    for (int i = 0; i < n; ++i) c[i] /= pivot;
+    c[p] = 1;
+    for (int i = 0; i < n; ++i) left_[i] -= pivot * c[i] * c[i];
+    left_[p] = 0;
+    d_[k] = pivot, rows_[k] = p, rank_ = k + 1;
+  }
+  finish();
+}
+
+void FullRank::general(std::span<double> A, int n, double tolerance) {
+  n_ = n, rank_ = 0, symmetric_ = false;
+  f_.resize(std::size_t(n) * n), g_.resize(std::size_t(n) * n);
+  d_.resize(n), rows_.resize(n), cols_.resize(n), t_.resize(2 * n), open_.resize(n), top_.resize(n);
+  const auto at = [&](int row, int col) -> double& { return A[std::size_t(col) * n + row]; };
+  const auto climb = [&](int col) {
+    int top = 0;
+    for (int i = 1; i < n; ++i) {
+      if (std::fabs(at(i, col)) > std::fabs(at(top, col))) top = i;
+    }
+    top_[col] = top;
+  };
+  for (int j = 0; j < n; ++j) open_[j] = j, climb(j);
+
+  double least = 0;
+  for (int k = 0; k < n; ++k) {
+    // the largest entry left; the first of equals
+    int q = 0;
+    for (int j = 1; j < n - k; ++j) {
+      if (std::fabs(at(top_[open_[j]], open_[j])) > std::fabs(at(top_[open_[q]], open_[q]))) q = j;
+    }
+    const int col = open_[q], row = top_[col];
+    const double pivot = at(row, col);
+    if (k == 0) least = tolerance * std::fabs(pivot);
+    if (!(std::fabs(pivot) > least)) break;
+
+    double* const f = f_.data() + std::size_t(k) * n;
+    double* const g = g_.data() + std::size_t(k) * n;
+    for (int i = 0; i < n; ++i) f[i] = at(i, col) / pivot;
+    std::fill_n(g, n, 0.0);
+    for (int j = 0; j < n - k; ++j) g[open_[j]] = at(row, open_[j]) / pivot;
+    f[row] = 1, g[col] = 1;
+    open_.erase(open_.begin() + q);
+    open_.push_back(col);
+    for (int j = 0; j < n - k - 1; ++j) {
+      const int c = open_[j];
+      if (g[c] == 0) continue;
+      add(n, -pivot * g[c], f, A.data() + std::size_t(c) * n);
+      at(row, c) = 0;
+      climb(c);
+    }
+    d_[k] = pivot, rows_[k] = row, cols_[k] = col, rank_ = k + 1;
+  }
+  finish();
+}
+
+void FullRank::finish() {
+  if (rank_ == n_ || rank_ == 0) return;
+  factor_gram(n_, rank_, f_.data(), ff_);
+  if (!symmetric_) factor_gram(n_, rank_, g_.data(), gg_);
+}
+
+void FullRank::solve(std::span<const double> r, std::span<double> x) {
+  const int n = n_;
+  const std::vector<double>& g = symmetric_ ? f_ : g_;
+  double* const t = t_.data();
+  if (rank_ == n) {
+    // both factors are triangular
+    const std::vector<int>& cols = symmetric_ ? rows_ : cols_;
+    double* const left = t + n;
+    std::copy_n(r.data(), n, left);
+    for (int k = 0; k < n; ++k) {
+      const double y = left[rows_[k]];
+      add(n, -y, f_.data() + std::size_t(k) * n, left);
+      t[k] = y / d_[k];
+    }
+    std::fill_n(x.data(), n, 0.0);
+    for (int k = n - 1; k >= 0; --k) x[cols[k]] = t[k] - dot(n, g.data() + std::size_t(k) * n, x.data());
+    return;
+  }
+  for (int k = 0; k < rank_; ++k) t[k] = dot(n, f_.data() + std::size_t(k) * n, r.data());
+  if (rank_ > 0) solve_gram(rank_, ff_, t);
+  for (int k = 0; k < rank_; ++k) t[k] /= d_[k];
+  if (rank_ > 0) solve_gram(rank_, symmetric_ ? ff_ : gg_, t);
+  std::fill_n(x.data(), n, 0.0);
+  for (int k = 0; k < rank_; ++k) add(n, t[k], g.data() + std::size_t(k) * n, x.data());
+}
+
+bool eliminate(std::span<double> A, int n, std::span<double> x) {
+  const auto at = [&](int row, int col) -> double& { return A[std::size_t(col) * n + row]; };
+  for (int k = 0; k < n; ++k) {
+    int p = k;
+    for (int i = k + 1; i < n; ++i) {
+      if (std::fabs(at(i, k)) > std::fabs(at(p, k))) p = i;
+    }
+    if (at(p, k) == 0 || !std::isfinite(at(p, k))) return false;
+    if (p != k) std::swap(x[p], x[k]);
+    double* const c = A.data() + std::size_t(k) * n;
+    std::swap(c[p], c[k]);
+    for (int i = k + 1; i < n; ++i) c[i] /= c[k];
+    for (int j = k + 1; j < n; ++j) {
+      if (p != k) std::swap(at(p, j), at(k, j));
+      if (at(k, j) != 0) add(n - k - 1, -at(k, j), c + k + 1, A.data() + std::size_t(j) * n + k + 1);
+    }
+    add(n - k - 1, -x[k], c + k + 1, x.data() + k + 1);
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    x[k] /= at(k, k);
+    add(k, -x[k], A.data() + std::size_t(k) * n, x.data());
+  }
+  return true;
+}
+
+}  // namespace obscura::sim

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace obscura::sim {
+
+/// A square matrix as a product of factors of full rank, A = F diag(d) G, where rows may depend on one
+/// another, and its pseudo-inverse. Matrices lie column by column. Grows only: a warm one allocates nothing.
+class FullRank {
+ public:
+  /// A: n x n, symmetric, positive semidefinite; G = F^T. By Cholesky's method with diagonal pivots; what is
+  /// left once no pivot exceeds `tolerance` of the first counts as zero.
+  void symmetric(std::span<const double> A, int n, double tolerance);
+
+  /// A: n x n, any; overwritten. By elimination with complete pivoting; tolerance as above.
+  void general(std::span<double> A, int n, double tolerance);
+
+  int rank() const { return rank_; }
+
+  /// Column k of F, n numbers: 1 in the row of pivot k, no number larger.
+  std::span<const double> column(int k) const { return {f_.data() + std::size_t(k) * n_, std::size_t(n_)}; }
+
+  /// Pivot k.
+  double pivot(int k) const { return d_[k]; }
+
+  /// x = A^+ r: of least norm among those of least squares. n numbers each; `x` may be `r`.
+  void solve(std::span<const double> r, std::span<double> x);
+
+ private:
+  void finish();
+
+  int n_ = 0, rank_ = 0;
+  bool symmetric_ = true;
+  std::vector<double> f_, g_;     // n x rank, G^T in the second
+  std::vector<double> d_;         // pivots
+  std::vector<int> rows_, cols_;  // of the pivots
+  std::vector<double> ff_, gg_;   // Cholesky factors of F^T F and G G^T, where rank < n
+  std::vector<double> left_, t_;  // scratch
+  std::vector<int> open_;         // columns without a pivot
+  std::vector<int> top_;          // in each column, the row of its largest
+};
+
+/// Solves A x = r for a small dense nonsingular A by elimination with row pivoting. A: n x n, column by
+/// column, overwritten; x: r going in. False where a pivot is zero.
+bool eliminate(std::span<double> A, int n, std::span<double> x);
+
+}  // namespace obscura::sim
