@@ -1,0 +1,185 @@
+// A sweep along x over horizontal bands. Bodies enter in the order of their lower ends; each looks only at
+// those in its own bands that the sweep has not yet left. Bands are as high as two bodies and wrap around, as
+// a hash would, so that one body far away does not spoil them; a pair is told in the first band that both
+// share. The order along x is nearly that of the last step, so that sorting it by insertion is linear.
+
+#include "sim/pairs.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr std::int64_t kBands = 256;  // a power of two
+constexpr double kFarthest = 1e15;    // bands; beyond, all share one
+
+// sorts as the number does, and NaN somewhere
+std::int64_t sortable(double x) {
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  return bits >= 0 ? bits : bits ^ 0x7fffffffffffffff;
+}
+
+std::int64_t band(double y) {
+  if (!(y > -kFarthest)) return -std::int64_t(kFarthest);
+  return std::int64_t(std::floor(std::min(y, kFarthest)));
+}
+
+// mean height, without those that are far above it
+template <int D>
+double usual_height(std::span<const Bounds<D>> bounds) {
+  double limit = 1e300, mean = 0;
+  for (int round = 0; round < 3; ++round) {
+    double sum = 0;
+    int n = 0;
+    for (const Bounds<D>& one : bounds) {
+      const double height = one.upper[1] - one.lower[1];
+      if (!(height <= limit)) continue;
+      sum += height;
+      ++n;
+    }
+    mean = n > 0 ? sum / n : 0;
+    limit = 4 * mean;
+  }
+  return mean;
+}
+
+}  // namespace
+
+template <int D>
+MayTouch<D>::MayTouch(const Model<D>& model) : jointed_(model.bodies.size()) {
+  std::vector<int> names;
+  for (const Body<D>& body : model.bodies) names.push_back(body.group);
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  const auto number = [&](int name) {
+    return std::size_t(std::lower_bound(names.begin(), names.end(), name) - names.begin());
+  };
+  groups_ = names.size();
+  for (const Body<D>& body : model.bodies) group_.push_back(int(number(body.group)));
+  ignored_.assign(groups_ * groups_, 0);
+  for (const auto& [one, other] : model.ignore) {
+    const std::size_t i = number(one), k = number(other);
+    if (i == groups_ || k == groups_ || names[i] != one || names[k] != other) continue;
+    ignored_[i * groups_ + k] = ignored_[k * groups_ + i] = 1;
+  }
+
+  for (const Joint<D>& joint : model.joints) {
+    if (joint.touching || joint.a.body < 0 || joint.b.body < 0) continue;
+    held_.push_back(std::minmax(joint.a.body, joint.b.body));
+    jointed_[joint.a.body] = jointed_[joint.b.body] = 1;
+  }
+  std::sort(held_.begin(), held_.end());
+}
+
+template <int D>
+bool MayTouch<D>::operator()(int a, int b) const {
+  if (ignored_[group_[a] * groups_ + group_[b]]) return false;
+  if (!jointed_[a] || !jointed_[b]) return true;
+  return !std::binary_search(held_.begin(), held_.end(), std::pair<int, int>(std::minmax(a, b)));
+}
+
+template <int D>
+const std::vector<std::pair<int, int>>& BroadPhase<D>::find(std::span<const Bounds<D>> bounds,
+                                                            std::span<const char> still,
+                                                            const std::function<bool(int, int)>& wanted) {
+  assert(bounds.size() == still.size());
+  found_.clear();
+  pairs_.clear();
+  if (std::find(still.begin(), still.end(), 0) == still.end()) return pairs_;
+  sort_along_x(bounds);
+  lay_bands(bounds);
+  sweep(bounds, still, wanted);
+  sort_pairs(int(bounds.size()));
+  return pairs_;
+}
+
+template <int D>
+void BroadPhase<D>::sort_along_x(std::span<const Bounds<D>> bounds) {
+  if (order_.size() != bounds.size()) {
+    order_.resize(bounds.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) order_[i].body = int(i);
+  }
+  for (Place& place : order_) place.key = sortable(bounds[place.body].lower[0]);
+
+  // by insertion, unless it is far from sorted
+  std::size_t moves = 0;
+  for (std::size_t i = 1; i < order_.size(); ++i) {
+    const Place place = order_[i];
+    std::size_t k = i;
+    for (; k > 0 && place < order_[k - 1]; --k) order_[k] = order_[k - 1];
+    order_[k] = place;
+    moves += i - k;
+    if (moves > 8 * order_.size()) {
+      std::sort(order_.begin(), order_.end());
+      return;
+    }
+  }
+}
+
+template <int D>
+void BroadPhase<D>::lay_bands(std::span<const Bounds<D>> bounds) {
+  const double usual = usual_height<D>(bounds);
+  const double bands_per_metre = usual > 0 ? 0.5 / usual : 1;
+  spans_.resize(bounds.size());
+  starts_.assign(kBands + 1, 0);
+  lengths_.assign(kBands, 0);
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const std::int64_t first = band(bounds[i].lower[1] * bands_per_metre);
+    const std::int64_t last = std::min(band(bounds[i].upper[1] * bands_per_metre), first + kBands - 1);
+    spans_[i] = {first, last};
+    for (std::int64_t k = first; k <= last; ++k) ++starts_[(k & (kBands - 1)) + 1];
+  }
+  for (std::int64_t k = 0; k < kBands; ++k) starts_[k + 1] += starts_[k];
+  if (active_.size() < std::size_t(starts_[kBands])) active_.resize(starts_[kBands] + starts_[kBands] / 2);
+}
+
+template <int D>
+void BroadPhase<D>::sweep(std::span<const Bounds<D>> bounds, std::span<const char> still,
+                          const std::function<bool(int, int)>& wanted) {
+  for (const Place& place : order_) {
+    const Entry entry{bounds[place.body], spans_[place.body].first, place.body, still[place.body] != 0};
+    for (std::int64_t k = entry.first; k <= spans_[place.body].last; ++k) {
+      Entry* const in_band = active_.data() + starts_[k & (kBands - 1)];
+      int& length = lengths_[k & (kBands - 1)];
+      for (int i = 0; i < length;) {
+        const Entry& other = in_band[i];
+        if (other.bounds.upper[0] < entry.bounds.lower[0]) {
+          in_band[i] = in_band[--length];
+          continue;
+        }
+        ++i;
+        if (entry.still && other.still) continue;
+        if (!entry.bounds.meets(other.bounds)) continue;
+        if (((std::max(entry.first, other.first) - k) & (kBands - 1)) != 0) continue;
+        const auto [a, b] = std::minmax(entry.body, other.body);
+        if (!wanted || wanted(a, b)) found_.emplace_back(a, b);
+      }
+      in_band[length++] = entry;
+    }
+  }
+}
+
+// by counting on a, then by b
+template <int D>
+void BroadPhase<D>::sort_pairs(int bodies) {
+  offsets_.assign(bodies + 1, 0);
+  for (const auto& pair : found_) ++offsets_[pair.first + 1];
+  for (int a = 0; a < bodies; ++a) offsets_[a + 1] += offsets_[a];
+  pairs_.resize(found_.size());
+  for (const auto& pair : found_) pairs_[offsets_[pair.first]++] = pair;
+  auto from = pairs_.begin();
+  for (int a = 0; a < bodies; ++a) {
+    const auto to = pairs_.begin() + offsets_[a];
+    if (to - from > 1) std::sort(from, to);
+    from = to;
+  }
+}
+
+template class MayTouch<2>;
+template class BroadPhase<2>;
+
+}  // namespace obscura::sim

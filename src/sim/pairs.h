@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/model.h"
+#include "sim/shape.h"
+
+namespace obscura::sim {
+
+/// Which bodies may touch: not those of groups that ignore each other, nor two on one joint that does not
+/// let them, be it broken or whole.
+template <int D>
+class MayTouch {
+ public:
+  explicit MayTouch(const Model<D>& model);
+
+  bool operator()(int a, int b) const;
+
+ private:
+  std::vector<int> group_;                 // one a body, numbered from 0 as they come
+  std::vector<char> ignored_;              // one a couple of groups
+  std::vector<std::pair<int, int>> held_;  // bodies on joints, a < b, sorted
+  std::vector<char> jointed_;              // one a body: whether it is in held_
+  std::size_t groups_ = 0;
+};
+
+/// Finds which bodies are near each other. Keeps the order it found for the next time, which only makes that
+/// time faster: what it finds depends on nothing but the arguments.
+template <int D>
+class BroadPhase {
+ public:
+  /// All (a, b), a < b, sorted, whose bounds meet, not both still, and for which `wanted` holds (empty: all).
+  /// Bounds with a NaN meet nothing. Nearly linear for bodies of like size wherever they are; those much
+  /// taller or wider than most cost more. Allocates nothing once warm. Valid until the next call.
+  const std::vector<std::pair<int, int>>& find(std::span<const Bounds<D>> bounds, std::span<const char> still,
+                                               const std::function<bool(int, int)>& wanted = {});
+
+ private:
+  struct Place {
+    std::int64_t key = 0;  // sorts as the bounds' lower end along x
+    int body = 0;
+
+    bool operator<(const Place& other) const {
+      return key < other.key || (key == other.key && body < other.body);
+    }
+  };
+  struct Span {
+    std::int64_t first = 0, last = 0;  // bands, not wrapped
+  };
+  struct Entry {
+    Bounds<D> bounds;
+    std::int64_t first = 0;
+    int body = 0;
+    bool still = false;
+  };
+
+  void sort_along_x(std::span<const Bounds<D>> bounds);
+  void lay_bands(std::span<const Bounds<D>> bounds);
+  void sweep(std::span<const Bounds<D>> bounds, std::span<const char> still,
+             const std::function<bool(int, int)>& wanted);
+  void sort_pairs(int bodies);
+
+  std::vector<Place> order_;           // the memory of the last call
+  std::vector<Span> spans_;            // one a body
+  std::vector<int> starts_, lengths_;  // of each band in active_
+  std::vector<Entry> active_;          // band by band, those the sweep has entered and not left
+  std::vector<std::pair<int, int>> found_, pairs_;
+  std::vector<int> offsets_;  // of each a in pairs_
+};
+
+}  // namespace obscura::sim

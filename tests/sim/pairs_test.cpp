@@ -1,0 +1,120 @@
+// Pairs against all pairs.
+
+#include "sim/pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "sim/allocations.h"
+#include "sim/shapes.h"
+
+namespace obscura::sim {
+namespace {
+
+using Found = std::vector<std::pair<int, int>>;
+
+Found all_pairs(const std::vector<Bounds<2>>& bounds, const std::vector<char>& still) {
+  Found out;
+  for (int a = 0; a < int(bounds.size()); ++a) {
+    for (int b = a + 1; b < int(bounds.size()); ++b) {
+      if (bounds[a].meets(bounds[b]) && !(still[a] && still[b])) out.emplace_back(a, b);
+    }
+  }
+  return out;
+}
+
+struct Crowd {
+  std::vector<Bounds<2>> bounds;
+  std::vector<char> still;
+};
+
+// bodies of like size, some of them floors, towers, points, and one far away
+Crowd crowd(Dice& dice, int n, double room) {
+  Crowd all;
+  for (int i = 0; i < n; ++i) {
+    const Vec<2> x(dice.within(-room, room), dice.within(-room, room));
+    Vec<2> half(dice.within(0.1, 1), dice.within(0.1, 1));
+    const int odd = dice.below(40);
+    if (odd == 0) half[0] *= 50;
+    if (odd == 1) half[1] *= 2000;
+    if (odd == 2) half = Vec<2>::Zero();
+    all.bounds.push_back({x - half, x + half});
+    all.still.push_back(dice.below(4) == 0);
+  }
+  all.bounds[0].lower = {1e20, -3e200};
+  all.bounds[0].upper = {1e21, 2};
+  return all;
+}
+
+TEST(BroadPhase, FindsAllPairsAndNoOther) {
+  Dice dice(1);
+  for (int n = 0; n < 60; ++n) {
+    const Crowd all = crowd(dice, 1 + dice.below(300), dice.within(1, 60));
+    BroadPhase<2> phase;
+    EXPECT_EQ(phase.find(all.bounds, all.still), all_pairs(all.bounds, all.still)) << n;
+  }
+}
+
+TEST(BroadPhase, FindsTheSameWhateverCameBefore) {
+  Dice dice(2);
+  BroadPhase<2> phase;
+  Crowd all = crowd(dice, 400, 10);
+  for (int n = 0; n < 60; ++n) {
+    // drift, now and then a jump
+    const double far = n % 10 == 9 ? 20 : 0.1;
+    for (Bounds<2>& one : all.bounds) {
+      const Vec<2> by(dice.within(-far, far), dice.within(-far, far));
+      one.lower += by;
+      one.upper += by;
+    }
+    EXPECT_EQ(phase.find(all.bounds, all.still), all_pairs(all.bounds, all.still)) << n;
+  }
+}
+
+TEST(BroadPhase, TellsTouchingBoundsAndNeverNaN) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Bounds<2>> bounds = {
+      {{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}, {{nan, nan}, {nan, nan}}, {{2.5, 0}, {3, 1}}};
+  const std::vector<char> moving(4, 0), still(4, 1);
+  BroadPhase<2> phase;
+  EXPECT_EQ(phase.find(bounds, moving), (Found{{0, 1}}));
+  EXPECT_TRUE(phase.find(bounds, still).empty());
+  EXPECT_TRUE(phase.find(bounds, moving, [](int, int) { return false; }).empty());
+}
+
+TEST(BroadPhase, AllocatesNothingOnceWarm) {
+  Dice dice(3);
+  Crowd all = crowd(dice, 500, 10);
+  BroadPhase<2> phase;
+  for (int n = 0; n < 3; ++n) phase.find(all.bounds, all.still);
+  const auto before = allocations();
+  phase.find(all.bounds, all.still);
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST(MayTouch, IsNotOfGroupsThatIgnoreEachOtherNorOfAJoint) {
+  Model<2> model;
+  for (const int group : {7, -2, 7, 5}) {
+    model.bodies.emplace_back();
+    model.bodies.back().group = group;
+  }
+  model.ignore = {{-2, 7}, {5, 5}, {99, 7}};
+  Joint<2> joint;
+  joint.a.body = 3;
+  joint.b.body = 2;
+  model.joints = {joint};
+  const MayTouch<2> may(model);
+  EXPECT_FALSE(may(0, 1));
+  EXPECT_FALSE(may(1, 2));
+  EXPECT_TRUE(may(0, 2));
+  EXPECT_TRUE(may(1, 3));
+  EXPECT_TRUE(may(0, 3));
+  EXPECT_FALSE(may(2, 3));
+  model.joints[0].touching = true;
+  EXPECT_TRUE(MayTouch<2>(model)(2, 3));
+}
+
+}  // namespace
+}  // namespace obscura::sim
