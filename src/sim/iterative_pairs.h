@@ -1,0 +1,70 @@
+#pragma once
+
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "sim/iterative_cores.h"
+#include "sim/iterative_grid.h"
+#include "sim/iterative_rows.h"
+#include "sim/state.h"
+
+namespace obscura::sim::sweep {
+
+/// Two cores, or a core and a wall, that may touch before pairs are looked for again. Its touches are entries
+/// `first` and the next of State::contacts.
+struct Pair {
+  int a = -1, b = -1;            // bodies; b = -1 - wall
+  int core_a = -1, core_b = -1;  // -1: a wall
+  int first = 0, touches = 1;
+  int slot = -1;  // lane + kLanes * group; -1: asleep
+  double friction = 0, elasticity = 0;
+};
+
+/// What is the same for all pairs of a model: who may touch whom.
+class Pairs {
+ public:
+  explicit Pairs(const Model<2>& model, const Cores& cores);
+
+  /// Finds the pairs nearer than their bodies can come within `span` s, and writes their touches into
+  /// state.contacts; forces of the same touches stay.
+  void find(State<2>& state, const std::vector<Pose>& poses, double span);
+
+  /// Makes the pairs those of state.contacts, where they are not already.
+  void adopt(const State<2>& state);
+
+  /// Features of a pair anew; its forces move with their keys or, failing that, their places.
+  void renew(const Pair& pair, State<2>& state, const std::vector<Pose>& poses);
+
+  const std::vector<Pair>& all() const { return pairs_; }
+  std::vector<Pair>& all() { return pairs_; }
+
+  /// Grows whenever the pairs change.
+  long version() const { return version_; }
+
+  Place place(const Pair& pair, const std::vector<Pose>& poses, Feature feature) const;
+
+  /// How far a body may come within `span` s by itself, m.
+  double room_to_move(const State<2>& state, int body, double span) const;
+
+ private:
+  bool may_touch(int a, int b) const;
+  void inherit(const Pair& pair, const std::vector<Pose>& poses, const Contact<2>* old, int count,
+               Contact<2>* now) const;
+  Pair pair(int a, int b, int core_a, int core_b) const;
+
+  const Model<2>& model_;
+  const Cores& cores_;
+  std::vector<Pair> pairs_, found_;
+  long version_ = 0;
+
+  Grid grid_;
+  std::vector<Bounds> bounds_;  // of cores
+  std::vector<double> margin_;  // of bodies, m
+  std::vector<int> near_;
+  std::vector<Contact<2>> contacts_;
+  std::vector<std::pair<int, int>> joined_;  // sorted
+  bool compounds_ = false;
+};
+
+}  // namespace obscura::sim::sweep
