@@ -14,8 +14,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr std::int64_t kBands = 256;  // a power of two
-constexpr double kFarthest = 1e15;    // bands; beyond, all share one
+constexpr int kBands = 256;        // a power of two
+constexpr double kFarthest = 1e9;  // bands; beyond, all share one
 
 // sorts as the number does, and NaN somewhere
 std::int64_t sortable(double x) {
@@ -23,16 +23,17 @@ std::int64_t sortable(double x) {
   return bits >= 0 ? bits : bits ^ 0x7fffffffffffffff;
 }
 
-std::int64_t band(double y) {
-  if (!(y > -kFarthest)) return -std::int64_t(kFarthest);
-  return std::int64_t(std::floor(std::min(y, kFarthest)));
+int band(double y) {
+  if (!(y > -kFarthest)) return -int(kFarthest);
+  const auto toward_zero = int(std::min(y, kFarthest));
+  return toward_zero - (double(toward_zero) > y);
 }
 
 // mean height, without those that are far above it
 template <int D>
 double usual_height(std::span<const Bounds<D>> bounds) {
   double limit = 1e300, mean = 0;
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < 2; ++round) {
     double sum = 0;
     int n = 0;
     for (const Bounds<D>& one : bounds) {
@@ -128,37 +129,56 @@ void BroadPhase<D>::lay_bands(std::span<const Bounds<D>> bounds) {
   starts_.assign(kBands + 1, 0);
   lengths_.assign(kBands, 0);
   for (std::size_t i = 0; i < bounds.size(); ++i) {
-    const std::int64_t first = band(bounds[i].lower[1] * bands_per_metre);
-    const std::int64_t last = std::min(band(bounds[i].upper[1] * bands_per_metre), first + kBands - 1);
+    const int first = band(bounds[i].lower[1] * bands_per_metre);
+    const int last = std::min(band(bounds[i].upper[1] * bands_per_metre), first + kBands - 1);
     spans_[i] = {first, last};
-    for (std::int64_t k = first; k <= last; ++k) ++starts_[(k & (kBands - 1)) + 1];
+    for (int k = first; k <= last; ++k) ++starts_[(k & (kBands - 1)) + 1];
   }
-  for (std::int64_t k = 0; k < kBands; ++k) starts_[k + 1] += starts_[k];
+  for (int k = 0; k < kBands; ++k) starts_[k + 1] += starts_[k];
+  near_.resize(bounds.size());
   if (active_.size() < std::size_t(starts_[kBands])) active_.resize(starts_[kBands] + starts_[kBands] / 2);
 }
 
 template <int D>
 void BroadPhase<D>::sweep(std::span<const Bounds<D>> bounds, std::span<const char> still,
                           const std::function<bool(int, int)>& wanted) {
+  Entry* const active = active_.data();
+  const int* const starts = starts_.data();
+  const Span* const spans = spans_.data();
+  int *const lengths = lengths_.data(), *const near_bodies = near_.data();
   for (const Place& place : order_) {
-    const Entry entry{bounds[place.body], spans_[place.body].first, place.body, still[place.body] != 0};
-    for (std::int64_t k = entry.first; k <= spans_[place.body].last; ++k) {
-      Entry* const in_band = active_.data() + starts_[k & (kBands - 1)];
-      int& length = lengths_[k & (kBands - 1)];
-      for (int i = 0; i < length;) {
-        const Entry& other = in_band[i];
-        if (other.bounds.upper[0] < entry.bounds.lower[0]) {
-          in_band[i] = in_band[--length];
-          continue;
+    const int body = place.body;
+    const Bounds<D>& own = bounds[body];
+    const Span span = spans[body];
+    const double left = own.lower[0], low = own.lower[1], high = own.upper[1];
+    for (int k = span.first; k <= span.last; ++k) {
+      const int wrapped = k & (kBands - 1);
+      Entry* const in_band = active + starts[wrapped];
+      const int length = lengths[wrapped];
+
+      // forgets those that the sweep has left, and collects the near, without a branch to guess
+      int kept = 0, near = 0;
+      for (int i = 0; i < length; ++i) {
+        const Entry other = in_band[i];
+        const bool entered = other.right >= left;
+        in_band[kept] = other;
+        kept += entered;
+        near_bodies[near] = other.body;
+        near += entered & (low <= other.high) & (other.low <= high);
+      }
+      in_band[kept] = {own.upper[0], low, high, body};
+      lengths[wrapped] = kept + 1;
+
+      for (int i = 0; i < near; ++i) {
+        const int other = near_bodies[i];
+        if (still[body] && still[other]) continue;
+        if (((std::max(span.first, spans[other].first) - k) & (kBands - 1)) != 0) continue;
+        if constexpr (D > 2) {
+          if (!own.meets(bounds[other])) continue;
         }
-        ++i;
-        if (entry.still && other.still) continue;
-        if (!entry.bounds.meets(other.bounds)) continue;
-        if (((std::max(entry.first, other.first) - k) & (kBands - 1)) != 0) continue;
-        const auto [a, b] = std::minmax(entry.body, other.body);
+        const auto [a, b] = std::minmax(body, other);
         if (!wanted || wanted(a, b)) found_.emplace_back(a, b);
       }
-      in_band[length++] = entry;
     }
   }
 }

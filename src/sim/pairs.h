@@ -49,13 +49,11 @@ class BroadPhase {
     }
   };
   struct Span {
-    std::int64_t first = 0, last = 0;  // bands, not wrapped
+    int first = 0, last = 0;  // bands, not wrapped
   };
-  struct Entry {
-    Bounds<D> bounds;
-    std::int64_t first = 0;
+  struct Entry {  // of an active body: where along x it ends, where along y it lies, m
+    double right = 0, low = 0, high = 0;
     int body = 0;
-    bool still = false;
   };
 
   void sort_along_x(std::span<const Bounds<D>> bounds);
@@ -68,6 +66,7 @@ class BroadPhase {
   std::vector<Span> spans_;            // one a body
   std::vector<int> starts_, lengths_;  // of each band in active_
   std::vector<Entry> active_;          // band by band, those the sweep has entered and not left
+  std::vector<int> near_;              // those in one band that one body's bounds may meet
   std::vector<std::pair<int, int>> found_, pairs_;
   std::vector<int> offsets_;  // of each a in pairs_
 };
