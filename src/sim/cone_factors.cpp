@@ -12,8 +12,6 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kAlike = 1e-10;  // of a column's square, what others may leave of it at least
-
 // y += a x
 void add(int n, double a, const double* __restrict x, double* __restrict y) {
   for (int i = 0; i < n; ++i) y[i] += a * x[i];
@@ -47,8 +45,8 @@ double dot(int n, const double* x, const double* y) {
   return (s0 + s1) + (s2 + s3);
 }
 
-// the lower Cholesky factor of X^T X, r x r; X: n x r. False where columns all but depend on one another.
-bool factor_gram(int n, int r, const double* X, std::vector<double>& out) {
+// the lower Cholesky factor of X^T X, r x r; X: n x r
+void factor_gram(int n, int r, const double* X, std::vector<double>& out) {
   out.resize(std::size_t(r) * r);
   double* const c = out.data();
   for (int k = 0; k < r; ++k) {
@@ -72,12 +70,9 @@ bool factor_gram(int n, int r, const double* X, std::vector<double>& out) {
       const double* cj = c + std::size_t(j) * r;
       if (cj[k] != 0) add(r - k, -cj[k], cj + k, ck + k);
     }
-    const double* xk = X + std::size_t(k) * n;
-    if (!(ck[k] > kAlike * dot(n, xk, xk))) return false;
     const double root = std::sqrt(ck[k]);
     for (int i = k; i < r; ++i) ck[i] /= root;
   }
-  return true;
 }
 
 // x = (C C^T)^-1 x
@@ -96,17 +91,10 @@ void solve_gram(int r, const std::vector<double>& C, double* x) {
 }  // namespace
 
 void FullRank::symmetric(std::span<const double> A, int n, double tolerance) {
-  kind_ = Kind::symmetric;
-  factor(A, n, n, tolerance);
-  if (rank_ < n) factor_gram(n, rank_, f_.data(), ff_);
-}
-
-// the first n rows hold the pivots
-void FullRank::factor(std::span<const double> B, int all, int n, double tolerance) {
-  n_ = n, rank_ = 0;
-  f_.resize(std::size_t(all) * n), d_.resize(n), rows_.resize(n), left_.resize(n), t_.resize(2 * n);
+  n_ = n, rank_ = 0, symmetric_ = true;
+  f_.resize(std::size_t(n) * n), d_.resize(n), rows_.resize(n), left_.resize(n), t_.resize(2 * n);
   open_.resize(n);
-  for (int i = 0; i < n; ++i) left_[i] = B[std::size_t(i) * all + i];
+  for (int i = 0; i < n; ++i) left_[i] = A[std::size_t(i) * n + i];
 
   double least = 0;
   for (int k = 0; k < n; ++k) {
@@ -119,26 +107,27 @@ void FullRank::factor(std::span<const double> B, int all, int n, double toleranc
     if (!(left_[p] > least)) break;
 
     // its column, less what the columns before it explain
-    double* const c = f_.data() + std::size_t(k) * all;
-    std::copy_n(B.data() + std::size_t(p) * all, all, c);
-    for (int j = 0; j < k; ++j) t_[j] = -d_[j] * f_[std::size_t(j) * all + p];
-    add_columns(all, k, f_.data(), t_.data(), open_.data(), c);
+    double* const c = f_.data() + std::size_t(k) * n;
+    std::copy_n(A.data() + std::size_t(p) * n, n, c);
+    for (int j = 0; j < k; ++j) t_[j] = -d_[j] * f_[std::size_t(j) * n + p];
+    add_columns(n, k, f_.data(), t_.data(), open_.data(), c);
     const double pivot = c[p];
     if (!(pivot > least)) {
       left_[p] = 0, --k;  // its diagonal had drifted by rounding
       continue;
     }
     for (int j = 0; j < k; ++j) c[rows_[j]] = 0;
-    for (int i = 0; i < all; ++i) c[i] /= pivot;
+    for (int i = 0; i < n; ++i) c[i] /= pivot;
     c[p] = 1;
     for (int i = 0; i < n; ++i) left_[i] -= pivot * c[i] * c[i];
     left_[p] = 0;
     d_[k] = pivot, rows_[k] = p, rank_ = k + 1;
   }
+  finish();
 }
 
 void FullRank::general(std::span<double> A, int n, double tolerance) {
-  n_ = n, rank_ = 0, kind_ = Kind::general;
+  n_ = n, rank_ = 0, symmetric_ = false;
   f_.resize(std::size_t(n) * n), g_.resize(std::size_t(n) * n);
   d_.resize(n), rows_.resize(n), cols_.resize(n), t_.resize(2 * n), open_.resize(n), top_.resize(n);
   const auto at = [&](int row, int col) -> double& { return A[std::size_t(col) * n + row]; };
@@ -180,56 +169,39 @@ void FullRank::general(std::span<double> A, int n, double tolerance) {
     }
     d_[k] = pivot, rows_[k] = row, cols_[k] = col, rank_ = k + 1;
   }
-  if (rank_ == n_) return;
-  factor_gram(n_, rank_, f_.data(), ff_);
-  factor_gram(n_, rank_, g_.data(), gg_);
+  finish();
 }
 
-bool FullRank::leaning(std::span<const double> B, int all, int n, std::span<const int> to,
-                       std::span<const double> share, std::span<const double> part, double tolerance) {
-  kind_ = Kind::leaning;
-  factor(B, all, n, tolerance);
-  g_.resize(std::size_t(n) * n);
-  for (int k = 0; k < rank_; ++k) {
-    const double* const b = f_.data() + std::size_t(k) * all;
-    double* const f = f_.data() + std::size_t(k) * n;
-    double* const g = g_.data() + std::size_t(k) * n;
-    std::copy_n(b, n, g);
-    for (int j = n; j < all; ++j) g[to[j - n]] += share[j - n] * b[j];
-    for (int i = 0; i < n; ++i) g[i] *= part[i];
-    std::copy(b, b + n, f);  // closer together, front to back
-  }
-  if (rank_ < n && !factor_gram(n, rank_, f_.data(), ff_)) return false;
-  return factor_gram(n, rank_, g_.data(), gg_);
+void FullRank::finish() {
+  if (rank_ == n_ || rank_ == 0) return;
+  factor_gram(n_, rank_, f_.data(), ff_);
+  if (!symmetric_) factor_gram(n_, rank_, g_.data(), gg_);
 }
 
 void FullRank::solve(std::span<const double> r, std::span<double> x) {
-  // F's part
   const int n = n_;
+  const std::vector<double>& g = symmetric_ ? f_ : g_;
   double* const t = t_.data();
   if (rank_ == n) {
+    // both factors are triangular
+    const std::vector<int>& cols = symmetric_ ? rows_ : cols_;
     double* const left = t + n;
     std::copy_n(r.data(), n, left);
     for (int k = 0; k < n; ++k) {
-      t[k] = left[rows_[k]];
-      add(n, -t[k], f_.data() + std::size_t(k) * n, left);
+      const double y = left[rows_[k]];
+      add(n, -y, f_.data() + std::size_t(k) * n, left);
+      t[k] = y / d_[k];
     }
-  } else {
-    for (int k = 0; k < rank_; ++k) t[k] = dot(n, f_.data() + std::size_t(k) * n, r.data());
-    solve_gram(rank_, ff_, t);
-  }
-  for (int k = 0; k < rank_; ++k) t[k] /= d_[k];
-
-  // G's part
-  const std::vector<double>& g = kind_ == Kind::symmetric ? f_ : g_;
-  std::fill_n(x.data(), n, 0.0);
-  if (rank_ == n && kind_ != Kind::leaning) {
-    const std::vector<int>& cols = kind_ == Kind::symmetric ? rows_ : cols_;
+    std::fill_n(x.data(), n, 0.0);
     for (int k = n - 1; k >= 0; --k) x[cols[k]] = t[k] - dot(n, g.data() + std::size_t(k) * n, x.data());
-  } else {
-    solve_gram(rank_, kind_ == Kind::symmetric ? ff_ : gg_, t);
-    for (int k = 0; k < rank_; ++k) add(n, t[k], g.data() + std::size_t(k) * n, x.data());
+    return;
   }
+  for (int k = 0; k < rank_; ++k) t[k] = dot(n, f_.data() + std::size_t(k) * n, r.data());
+  if (rank_ > 0) solve_gram(rank_, ff_, t);
+  for (int k = 0; k < rank_; ++k) t[k] /= d_[k];
+  if (rank_ > 0) solve_gram(rank_, symmetric_ ? ff_ : gg_, t);
+  std::fill_n(x.data(), n, 0.0);
+  for (int k = 0; k < rank_; ++k) add(n, t[k], g.data() + std::size_t(k) * n, x.data());
 }
 
 bool eliminate(std::span<double> A, int n, std::span<double> x) {

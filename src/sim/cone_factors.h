@@ -16,12 +16,6 @@ class FullRank {
   /// A: n x n, any; overwritten. By elimination with complete pivoting; tolerance as above.
   void general(std::span<double> A, int n, double tolerance);
 
-  /// A = E B (E + T share)^T part, where forces on n rows lean on others: B: all x all, symmetric, positive
-  /// semidefinite; E its first n rows, T the others; T's row j adds `share[j]` times to E's row `to[j]`; row
-  /// i is then multiplied by `part[i]`. False, and nothing else, where general() must be asked.
-  bool leaning(std::span<const double> B, int all, int n, std::span<const int> to,
-               std::span<const double> share, std::span<const double> part, double tolerance);
-
   int rank() const { return rank_; }
 
   /// Column k of F, n numbers: 1 in the row of pivot k, no number larger.
@@ -34,16 +28,14 @@ class FullRank {
   void solve(std::span<const double> r, std::span<double> x);
 
  private:
-  enum class Kind : char { symmetric, general, leaning };
-
-  void factor(std::span<const double> B, int all, int n, double tolerance);
+  void finish();
 
   int n_ = 0, rank_ = 0;
-  Kind kind_ = Kind::symmetric;
+  bool symmetric_ = true;
   std::vector<double> f_, g_;     // n x rank, G^T in the second
   std::vector<double> d_;         // pivots
   std::vector<int> rows_, cols_;  // of the pivots
-  std::vector<double> ff_, gg_;   // Cholesky factors of F^T F and G G^T, where they are not triangular
+  std::vector<double> ff_, gg_;   // Cholesky factors of F^T F and G G^T, where rank < n
   std::vector<double> left_, t_;  // scratch
   std::vector<int> open_;         // columns without a pivot
   std::vector<int> top_;          // in each column, the row of its largest

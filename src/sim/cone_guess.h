@@ -31,7 +31,7 @@ class ConeGuess {
   bool newton(double softness, Friction friction, int iterations);
   double evaluate(double softness, Friction friction, std::span<const double> u);
   double law(int block, double softness, Friction friction, const double* w, VecD& f, SquareD& slope) const;
-  bool stiffen(double softness);
+  void shift();
   bool step(double softness);
   void modes(double softness, std::span<ConeMode<D>> modes) const;
 

@@ -274,7 +274,7 @@ double separation(const Shape<D>& a, const Stance<D>& at_a, const Shape<D>& b, c
     const Outline of_a(part(a, i));
     for (int k = 0; k < parts(b); ++k) {
       const Outline of_b(part(b, k));
-      least = std::min(least, widest_axis(of_a, of_b, a_in_b).value - of_a.radius() - of_b.radius());
+      least = std::min(least, core_separation(of_a, of_b, a_in_b) - of_a.radius() - of_b.radius());
     }
   }
   return least;

@@ -14,20 +14,18 @@ namespace obscura::sim {
 
 namespace {
 
-// from the segment of face i to p
-Vec<2> reach_out(const Outline& outline, int i, const Vec<2>& p) {
+// distance from p to the segment of face i
+double distance(const Outline& outline, int i, const Vec<2>& p) {
   const Vec<2> from = outline.corner(i), along = outline.corner(outline.next(i)) - from;
   const double s = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return p - from - s * along;
+  return (p - from - s * along).norm();
 }
 
-// the shortest way from a face to a corner of the other
-Vec<2> shortest(const Outline& outline, const Outline& other, const Lie& lies) {
-  Vec<2> least = Vec<2>::Constant(1e150);
+double nearest(const Outline& outline, const Outline& other, const Lie& lies) {
+  double least = 1e300;
   for (int i = 0; i < outline.faces(); ++i) {
     for (int k = 0; k < other.corners(); ++k) {
-      const Vec<2> way = reach_out(outline, i, lies * other.corner(k));
-      if (way.squaredNorm() < least.squaredNorm()) least = way;
+      least = std::min(least, distance(outline, i, lies * other.corner(k)));
     }
   }
   return least;
@@ -118,33 +116,14 @@ Separation greatest_separation(const Outline& of, const Outline& other, const Li
   return best;
 }
 
-Axis widest_axis(const Outline& a, const Outline& b, const Lie& a_in_b) {
-  Vec<2> way = a_in_b * a.corner(0) - b.corner(0);
-  Axis axis{-1e300, -1, true, Vec<2>::Unit(0)};
-  if (a.faces() + b.faces() > 0) {
-    const Lie b_in_a = inverse(a_in_b);
-    if (b.faces()) {
-      const Separation by_b = greatest_separation(b, a, a_in_b, 1e300);
-      axis.value = by_b.value;
-      axis.face = by_b.face;
-    }
-    if (a.faces()) {
-      const Separation by_a = greatest_separation(a, b, b_in_a, 1e300);
-      if (by_a.value > axis.value) axis = {by_a.value, by_a.face, false, Vec<2>::Unit(0)};
-    }
-    if (axis.value <= 0) return axis;
-    const Vec<2> to_a = shortest(b, a, a_in_b), to_b = shortest(a, b, b_in_a);
-    way = to_a.squaredNorm() <= to_b.squaredNorm() ? to_a : Vec<2>(-(a_in_b.turn * to_b));
-  }
-
-  // a face that falls short of the distance is not what keeps them apart
-  const double length = way.norm();
-  if (length > axis.value * (1 + 1e-9)) {
-    axis.face = -1;
-    if (length > 0) axis.normal = way / length;
-  }
-  axis.value = length;
-  return axis;
+double core_separation(const Outline& a, const Outline& b, const Lie& a_in_b) {
+  if (a.faces() + b.faces() == 0) return (a_in_b * a.corner(0) - b.corner(0)).norm();
+  const Lie b_in_a = inverse(a_in_b);
+  double s = -1e300;
+  if (b.faces()) s = std::max(s, greatest_separation(b, a, a_in_b, 1e300).value);
+  if (a.faces()) s = std::max(s, greatest_separation(a, b, b_in_a, 1e300).value);
+  if (s <= 0) return s;
+  return std::min(nearest(b, a, a_in_b), nearest(a, b, b_in_a));
 }
 
 }  // namespace obscura::sim

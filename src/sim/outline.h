@@ -64,16 +64,8 @@ struct Separation {
 /// first of equals. Stops at the first face beyond `enough`. Requires faces.
 Separation greatest_separation(const Outline& of, const Outline& other, const Lie& lies, double enough);
 
-/// What keeps two outlines apart without their radii: a face of one, or, where no face does, the line from
-/// the nearest point of b to that of a.
-struct Axis {
-  double value = 0;  // distance, m; where they overlap minus the depth
-  int face = -1;     // none: the line
-  bool of_b = false;
-  Vec<2> normal = Vec<2>::Unit(0);  // of the line, in b's frame, from b to a
-};
-
-/// a lies so in b's frame.
-Axis widest_axis(const Outline& a, const Outline& b, const Lie& a_in_b);
+/// Distance (m) between two outlines without their radii, a lying so in b's frame; where they overlap minus
+/// the depth.
+double core_separation(const Outline& a, const Outline& b, const Lie& a_in_b);
 
 }  // namespace obscura::sim

@@ -60,6 +60,7 @@ Stepper<D>::Stepper(const Model<D>& model)
   }
   if (!drag) drag_.clear();
   d_.resize(std::max(D, kSpins<D>) * kBlock);
+  if (model.collision != Collision::handout) direct_ = std::make_unique<Direct<D>>(model, paths_);
   suspects_.reserve(model.bodies.size());
   watch_every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / 60));
 }
@@ -73,6 +74,10 @@ void Stepper<D>::begin(State<D>& state) {
     if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
   }
   state.grips.resize(model_.mice.size());
+  if (direct_) {
+    state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
+    state.broken.resize(model_.joints.size());
+  }
   state.touches.reserve(2 * model_.bodies.size() + 16);
   touch_script(state, {state.step, 0});
   watch_.start(state, time({state.step, 0}, model_.rate));
@@ -103,11 +108,16 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
     const bool cut = edge != edges_.end() && edge->at.step == state.step && edge->at.fraction <= fraction;
     const double to = cut ? edge->at.fraction : fraction;
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
-    plan(state);
-    suspects_.clear();
-    if (!integrate(state, begun, (to - from) * h)) return watch_.ran_away(state, ended);
-    if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
-    handout_.collide(state, suspects_, ended);
+    if (direct_) {
+      direct_->step(state, begun, (to - from) * h);
+      if (!sound(state)) return watch_.ran_away(state, ended);
+    } else {
+      plan(state);
+      suspects_.clear();
+      if (!integrate(state, begun, (to - from) * h)) return watch_.ran_away(state, ended);
+      if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
+      handout_.collide(state, suspects_, ended);
+    }
     if (cut) touch_script(state, edge->at);
     while (cut && edge != edges_.end() && edge->at == Beat{state.step, to}) ++edge;
     from = to;
@@ -179,6 +189,19 @@ bool Stepper<D>::integrate(State<D>& state, double t, double h) {
   for (const Block& block : flying_) sound = fly(state, block, t, h) && sound;
   for (const Block& block : spinning_) sound = spin(state, block, t, h) && sound;
   return tied(state, t, h) && sound;
+}
+
+// whether every number is one, and none ran away
+template <int D>
+bool Stepper<D>::sound(const State<D>& state) const {
+  const double limit = kFarthest * model_.scale;
+  std::int64_t sound = within(state.x[0].data(), D * int(state.x.size()), limit) |
+                       within(state.v[0].data(), D * int(state.v.size()), limit);
+  for (std::size_t k = 0; k < state.turn.size(); ++k) {
+    sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
+    sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
+  }
+  return sound >= 0;
 }
 
 template <int D>

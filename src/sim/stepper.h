@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "sim/direct.h"
 #include "sim/handout.h"
 #include "sim/integrator.h"
 #include "sim/script.h"
@@ -43,6 +45,7 @@ class Stepper {
   void touch_script(State<D>& state, Beat at);
   void plan(const State<D>& state);
   bool integrate(State<D>& state, double t, double h);
+  bool sound(const State<D>& state) const;
   bool fly(State<D>& state, Block block, double t, double h);
   bool spin(State<D>& state, Block block, double t, double h);
   bool tied(State<D>& state, double t, double h);
@@ -53,6 +56,7 @@ class Stepper {
   std::vector<Beat> presses_, releases_;  // one a mouse
   Integrate* integrate_;
   Handout<D> handout_;
+  std::unique_ptr<Direct<D>> direct_;  // of `contact` and `event`
   Watch<D> watch_;
   Tied<D> tied_;
   std::vector<int> gripped_;  // by each mouse, as the plan knows

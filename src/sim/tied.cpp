@@ -24,14 +24,20 @@ typename Tied<D>::Hold Tied<D>::hold(const State<D>& state, const End<D>& end) c
 }
 
 template <int D>
-void Tied<D>::gather(const State<D>& state) {
+void Tied<D>::gather(const State<D>& state, bool everyone) {
   // who: bodies with a spring, and those in a hand
   std::fill(member_.begin(), member_.end(), -1);
   const auto mark = [&](int body) {
     if (body >= 0 && !model_.bodies[body].fixed) member_[body] = 0;
   };
-  for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
-  for (const Grip<D>& grip : state.grips) mark(grip.body);
+  if (everyone) {
+    for (int body = 0; body < int(member_.size()); ++body) {
+      if (state.frozen.empty() || !state.frozen[body]) mark(body);
+    }
+  } else {
+    for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
+    for (const Grip<D>& grip : state.grips) mark(grip.body);
+  }
   bodies_.clear();
   for (int body = 0; body < int(member_.size()); ++body) {
     if (member_[body] < 0) continue;
@@ -69,13 +75,13 @@ void Tied<D>::gather(const State<D>& state) {
 
   const std::size_t n = D * bodies_.size() + kSpins<D> * turning_;
   x_.resize(bodies_.size()), stances_.assign(bodies_.size(), {}), turn_.resize(turning_);
-  d_.resize(n), v_.resize(n);
+  d_.resize(n), v_.resize(n), d_rate_.resize(n), v_rate_.resize(n);
 }
 
+// the tied bodies of a state as d = 0 and v
 template <int D>
-void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages) {
+void Tied<D>::load(const State<D>& state) {
   const int n = int(bodies_.size()), still = n - turning_;
-  if (n == 0) return;
   for (int i = 0; i < n; ++i) {
     x_[i] = state.x[bodies_[i]];
     std::copy_n(state.v[bodies_[i]].data(), D, v_.data() + D * i);
@@ -86,8 +92,21 @@ void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, St
     std::copy_n(state.spin[k].data(), kSpins<D>, v_.data() + D * n + kSpins<D> * i);
   }
   std::fill(d_.begin(), d_.end(), 0.0);
+}
 
-  integrate(*this, t, h, d_, v_, stages);
+template <int D>
+std::span<const double> Tied<D>::accelerations(const State<D>& state, double t) {
+  load(state);
+  rates(t, d_, v_, d_rate_, v_rate_);
+  return v_rate_;
+}
+
+template <int D>
+void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System* with) {
+  const int n = int(bodies_.size()), still = n - turning_;
+  if (n == 0) return;
+  load(state);
+  integrate(with ? *with : *this, t, h, d_, v_, stages);
 
   for (int i = 0; i < n; ++i) {
     state.x[bodies_[i]] += Eigen::Map<const Vec<D>>(d_.data() + D * i);

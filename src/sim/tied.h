@@ -17,14 +17,32 @@ class Tied final : public System {
   /// `paths`: the way of each mouse. Both are kept by reference.
   Tied(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// Who is tied under the grips of `state`. To be called whenever a grip changes.
-  void gather(const State<D>& state);
+  /// Who is tied under the grips of `state`; or everyone who can move and is not frozen. To be called
+  /// whenever a grip changes, or who is frozen.
+  void gather(const State<D>& state, bool everyone = false);
 
   bool has(int body) const { return member_[body] >= 0; }
   const std::vector<int>& bodies() const { return bodies_; }
 
-  /// Moves the tied bodies of `state` from t to t + h.
-  void step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages);
+  /// Moves the tied bodies of `state` from t to t + h; under more forces than those of springs, `with` has
+  /// the rates.
+  void step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
+            System* with = nullptr);
+
+  /// v' of the tied bodies as they are at time t, in the order of d and v. Allocates nothing once gathered.
+  std::span<const double> accelerations(const State<D>& state, double t);
+
+  /// How the tied bodies stand and move at the stage that rates() saw last, in the order of bodies().
+  const std::vector<Stance<D>>& stances() const { return stances_; }
+
+  /// How many numbers d and v have: D of each body, then the spins of those that turn.
+  int size() const { return int(v_.size()); }
+  /// Where the spin of the body at `place` in bodies() starts; below zero: it does not turn.
+  int spin_start(int place) const {
+    const int spinning = place - (int(bodies_.size()) - turning_);
+    return spinning < 0 ? -1 : D * int(bodies_.size()) + kSpins<D> * spinning;
+  }
+  int place(int body) const { return member_[body]; }
 
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
@@ -45,6 +63,7 @@ class Tied final : public System {
   };
 
   Hold hold(const State<D>& state, const End<D>& end) const;
+  void load(const State<D>& state);
   Moving moving(const Hold& hold, double t) const;
   void push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) const;
 
@@ -59,7 +78,7 @@ class Tied final : public System {
   std::vector<Vec<D>> x_;  // where the step began
   std::vector<Turn<D>> turn_;
   std::vector<Stance<D>> stances_;  // at the stage at hand
-  std::vector<double> d_, v_;
+  std::vector<double> d_, v_, d_rate_, v_rate_;
 };
 
 }  // namespace obscura::sim

@@ -45,6 +45,22 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     w.template numbers<D>(touch.point);
     w.template numbers<D>(touch.impulse);
   }
+  w.integer(std::int64_t(state.contacts.size()));
+  for (const Contact<D>& contact : state.contacts) {
+    w.integer(contact.key.a);
+    w.integer(contact.key.b);
+    w.integer(contact.key.feature);
+    w.integer(std::int64_t(contact.touching));
+    w.template numbers<D>(contact.force);
+    w.template numbers<D>(contact.impulse);
+  }
+  w.integer(std::int64_t(state.frozen.size()));
+  for (std::size_t i = 0; i < state.frozen.size(); ++i) {
+    w.integer(state.frozen[i]);
+    w.number(state.quiet[i]);
+  }
+  w.integer(std::int64_t(state.broken.size()));
+  for (const char broken : state.broken) w.integer(broken);
   w.number(state.ledger.displacement);
   w.number(state.ledger.impacts);
   return w.all;

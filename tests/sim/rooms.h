@@ -51,7 +51,7 @@ inline int add_box(World<2>& world, Vec2 size, double mass, Vec2 x, Vec2 v = {0,
 }
 
 inline void add_wall(World<2>& world, Vec2 point, Vec2 normal) {
-  world.model.walls.push_back({point, normal / normal.norm(), {}});
+  world.model.walls.push_back({point, normal / normal.norm(), {}, {}});
 }
 
 /// Floor, ceiling and two walls around (0, 0) .. (w, h).

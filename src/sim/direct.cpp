@@ -1,0 +1,257 @@
+// One step with contact forces inside the stages.
+//   1. impacts of this instant
+//   2. who holds whom, and with what force: at this instant exactly
+//   3. smooth motion, in which what holds goes on holding, up to the next event or the end
+//   4. places and velocities back onto what holds; again from 1
+// After too many events the rest of the step is done at once, by impulses.
+
+#include "sim/direct.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kShort = 1.0 / 64;  // of a step
+
+// the least thickness of a shape, m
+template <int D>
+double thickness(const Shape<D>& shape) {
+  switch (shape.kind) {
+    case ShapeKind::point:
+      return 0;
+    case ShapeKind::ball:
+      return shape.radius;
+    case ShapeKind::box:
+      return shape.half.minCoeff();
+    case ShapeKind::polygon: {
+      // the least half width across an edge
+      double least = 1e300;
+      const std::size_t n = shape.vertices.size();
+      for (std::size_t i = 0; i < n; ++i) {
+        const Vec<D> edge = shape.vertices[(i + 1) % n] - shape.vertices[i];
+        double most = 0;
+        for (const Vec<D>& v : shape.vertices) {
+          const Vec<D> d = v - shape.vertices[i];
+          most = std::max(most, std::abs(edge[0] * d[1] - edge[1] * d[0]) / edge.norm());
+        }
+        least = std::min(least, 0.5 * most);
+      }
+      return least;
+    }
+    case ShapeKind::compound: {
+      double least = 1e300;
+      for (const Shape<D>& part : shape.parts) least = std::min(least, thickness(part));
+      return least;
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+template <int D>
+Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model), integrate_(sim::integrate(model.integrator)), free_(model, paths) {
+  const double g = std::sqrt(model.gravity.squaredNorm()), h = 1 / value(model.rate);
+  const bool exact = model.collision == Collision::event;
+  pace_ = std::sqrt(g * model.scale);
+  if (pace_ == 0) pace_ = model.scale;
+  closed_ = (exact ? 1e-12 : 1e-9) * model.scale;
+  rest_ = exact ? 1e-6 * pace_ : std::max(1e-6 * pace_, 0.1 * g * h);
+  most_cuts_ = exact ? 2000 + 100 * int(model.bodies.size()) : 32 + 8 * int(model.bodies.size());
+  for (const Body<D>& body : model.bodies) {
+    rims_.push_back(reach(body.shape));
+    thin_.push_back(thickness(body.shape));
+  }
+  for (int a = 0; a < int(model.bodies.size()); ++a) {
+    if (!model.bodies[a].fixed) {
+      for (int wall = 0; wall < int(model.walls.size()); ++wall) couples_.push_back({a, -1 - wall});
+    }
+    for (int b = a + 1; b < int(model.bodies.size()); ++b) {
+      if (may_touch(a, b)) couples_.push_back({a, b});
+    }
+  }
+}
+
+template <int D>
+void Direct<D>::keep(const State<D>& state, Motion& motion) const {
+  motion.x = state.x, motion.v = state.v, motion.turn = state.turn, motion.spin = state.spin;
+}
+
+template <int D>
+void Direct<D>::restore(const Motion& motion, State<D>& state) const {
+  state.x = motion.x, state.v = motion.v, state.turn = motion.turn, state.spin = motion.spin;
+}
+
+template <int D>
+void Direct<D>::ready(State<D>& state) {
+  const std::size_t n = model_.bodies.size();
+  state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
+  light_.resize(n);
+  double fastest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    light_[i] = model_.bodies[i].fixed || state.frozen[i] ? 0 : 1 / model_.bodies[i].mass;
+    fastest = std::max(fastest, state.v[i].squaredNorm());
+  }
+  still_ = 1e-11 * std::max(pace_, std::sqrt(fastest));
+  free_.gather(state, true);
+  stages_.reserve(std::size_t(free_.size()));
+}
+
+template <int D>
+void Direct<D>::step(State<D>& state, double t, double h) {
+  ready(state);
+  impulses_.clear(), contacts_.clear();
+  double done = 0;
+  forced_.clear();
+  const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
+  for (int cuts = 0; done < h; ++cuts) {
+    find(state, closed_);
+    if (wake(state)) {
+      ready(state);
+      find(state, closed_);
+    }
+    collide(state);
+    bool cut = true;
+    double length = 0;
+    if (choose(state, t + done) && cuts < most_cuts_) {
+      remember();
+      if (coming_apart()) project(state);
+      length = stretch(state, t + done, h - done, cut);
+      if (length > 0) project(state);
+    }
+    if (length == 0 && (forced_.empty() || forced_again_)) {
+      // no way to go on but a short one at once
+      length = std::min(cuts < most_cuts_ ? kShort * h : h, h - done);
+      settle(state, t + done, length);
+      cut = length < h - done;
+    }
+    if (length > 0) forced_.clear(), forced_again_ = false;
+    done = cut ? done + length : h;
+    // ever faster impacts count as rest, so that what bounces ever faster comes to an end
+    if (cuts > 8 + int(model_.bodies.size()) && cuts % 4 == 0) rest_ = std::min(fastest, 2 * rest_);
+  }
+  rest_ = slowest;
+  find(state, closed_);
+  if (wake(state)) {
+    ready(state);
+    find(state, closed_);
+  }
+  collide(state);
+  report(state);
+  rest(state, t + h, h);
+  report(state);
+}
+
+template <int D>
+void Direct<D>::rates(double t, std::span<const double> d, std::span<const double> v,
+                      std::span<double> d_rate, std::span<double> v_rate) {
+  free_.rates(t, d, v, d_rate, v_rate);
+  if (held_.empty()) return;
+
+  // rows where everyone is at this stage
+  const auto& members = free_.bodies();
+  for (std::size_t i = 0; i < members.size(); ++i) stances_[members[i]] = free_.stances()[i];
+  rows_.clear();
+  for (Held& held : held_) lay_rows(held, Spin<D>::Zero());
+  assemble();
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], v_rate) + rows_[i].drift;
+
+  // what holds goes on holding
+  cone_.hold(K_, b_, blocks_, modes_, f_);
+  for (int i = 0; i < int(rows_.size()); ++i) push(rows_[i], f_[i], v_rate);
+}
+
+// contacts and their forces as they were chosen last
+template <int D>
+void Direct<D>::remember() {
+  contacts_.clear();
+  for (const Held& held : held_) {
+    if (held.kind != Held::Kind::contact) continue;
+    const Hold hold = modes_[held.block].hold;
+    if (hold == Hold::open) continue;
+    Contact<D> contact;
+    contact.key = gaps_[held.of].key;
+    contact.touching = hold == Hold::slide ? Touching::slide : Touching::stick;
+    contact.point = held.point, contact.normal = held.normal, contact.gap = held.off;
+    for (int i = 0; i < D; ++i) contact.force += f_[held.first + i] * rows_[held.first + i].along;
+    contacts_.push_back(contact);
+  }
+}
+
+template <int D>
+void Direct<D>::report(State<D>& state) {
+  for (const Contact<D>& struck : impulses_) {
+    const auto at = std::lower_bound(contacts_.begin(), contacts_.end(), struck,
+                                     [](const auto& p, const auto& q) { return p.key < q.key; });
+    if (at != contacts_.end() && at->key == struck.key) {
+      at->impulse = struck.impulse;
+    } else {
+      contacts_.insert(at, struck);
+    }
+  }
+  // what was frozen keeps its forces
+  std::size_t kept = 0;
+  for (Contact<D>& contact : state.contacts) {
+    if (light(contact.key.a) > 0 || light(contact.key.b) > 0) continue;
+    contact.impulse.setZero();
+    state.contacts[kept++] = contact;
+  }
+  state.contacts.resize(kept);
+  state.contacts.insert(state.contacts.end(), contacts_.begin(), contacts_.end());
+  std::sort(state.contacts.begin(), state.contacts.end(),
+            [](const auto& p, const auto& q) { return p.key < q.key; });
+}
+
+// the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
+// end
+template <int D>
+void Direct<D>::settle(State<D>& state, double t, double h) {
+  find(state, closed_);
+  stand(state);
+  gather(state, true);
+  keep(state, begun_);
+  lay_blocks(true);
+  assemble();
+  const auto rate = free_.accelerations(state, t);
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(rows_[i], rate) + rows_[i].drift);
+  cone_.solve(K_, b_, blocks_, modes_, f_);
+  const auto& members = free_.bodies();
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const int body = members[i];
+    state.v[body] += h * Eigen::Map<const Vec<D>>(rate.data() + D * i);
+    if (const int at = free_.spin_start(int(i)); at >= 0)
+      state.spin[turning(state, body)] += h * Eigen::Map<const Spin<D>>(rate.data() + at);
+  }
+  for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
+  for (const int body : members) {
+    state.x[body] += 0.5 * h * (begun_.v[body] + state.v[body]);
+    if (const int k = turning(state, body); k >= 0)
+      state.turn[k] = turned<D>(begun_.turn[k], Spin<D>(0.5 * h * (begun_.spin[k] + state.spin[k])));
+  }
+  f_ /= h;
+  remember();
+
+  // whatever is inside now, and was not: out again
+  find(state, closed_);
+  gather(state, true);
+  lay_blocks(true);
+  for (const Held& held : held_) {
+    if (held.kind == Held::Kind::contact && held.off >= -closed_) modes_[held.block].hold = Hold::open;
+    if (held.kind == Held::Kind::contact && held.off < -closed_) modes_[held.block].hold = Hold::slide;
+    if (held.kind == Held::Kind::motor || held.kind == Held::Kind::friction)
+      modes_[held.block].hold = Hold::at_lower;
+    if (held.kind == Held::Kind::rope || held.kind == Held::Kind::lower || held.kind == Held::Kind::upper)
+      modes_[held.block].hold = held.off < -closed_ ? Hold::free : Hold::at_lower;
+  }
+  project(state);
+}
+
+template class Direct<2>;
+
+}  // namespace obscura::sim

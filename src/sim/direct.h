@@ -1,0 +1,145 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/cone.h"
+#include "sim/row.h"
+#include "sim/tied.h"
+
+namespace obscura::sim {
+
+/// The direct solver: contact and joint forces are part of the Runge-Kutta stages, found exactly
+/// (sim/cone.h). A step is cut where something closes, opens, slips or stops: in `event` always, in `contact`
+/// where it closes or stops, and a bounded number of times. For scenes of up to some hundred rows.
+template <int D>
+class Direct final : private System {
+ public:
+  /// Both are kept by reference.
+  Direct(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+  /// Moves `state` from t to t + h: its bodies, contacts, and who is frozen.
+  void step(State<D>& state, double t, double h);
+
+ private:
+  // something that keeps rows at the instant at hand
+  struct Held {
+    enum class Kind { contact, joint, rope, lower, upper, motor, friction };
+    Kind kind = Kind::contact;
+    int of = 0;                 // gap or joint
+    int first = 0, rows = 0;    // in rows_
+    int block = 0;              // in blocks_, its first
+    double off = 0;             // of a gap or limit: what is left, m or rad
+    double offs[kMostHeld<D>];  // of a joint: how far its rows are from where they belong
+    Vec<D> point = Vec<D>::Zero(), normal = Vec<D>::Zero();  // of a contact
+  };
+
+  // how bodies stand and move
+  struct Motion {
+    std::vector<Vec<D>> x, v;
+    std::vector<Turn<D>> turn;
+    std::vector<Spin<D>> spin;
+  };
+
+  // two that may come through each other: a body and a body or wall
+  struct Couple {
+    int a, b;
+  };
+
+  // direct.cpp
+  void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
+             std::span<double> v_rate) override;
+  void ready(State<D>& state);
+  void keep(const State<D>& state, Motion& motion) const;
+  void restore(const Motion& motion, State<D>& state) const;
+  void settle(State<D>& state, double t, double h);
+  void report(State<D>& state);
+  void remember();
+
+  // direct_hold.cpp
+  void stand(const State<D>& state);
+  Spin<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
+  void gather(const State<D>& state, bool all);
+  void lay_rows(Held& held, const Spin<D>& turn);
+  void lay_blocks(bool impulses);
+  void assemble();
+  void assemble_keeping_b();
+  bool choose(State<D>& state, double t);
+  bool acts(const Held& held) const;
+  double moves(int row) const;
+  double along(const Row<D>& row, std::span<const double> rate) const;
+  void push(const Row<D>& row, double f, std::span<double> rate) const;
+  void jump(State<D>& state, const Row<D>& row, double p, bool places) const;
+  void project(State<D>& state);
+
+  // direct_impacts.cpp
+  bool approaching() const;
+  bool coming_apart() const;
+  void collide(State<D>& state);
+  void only_worst_pair();
+  void strike(State<D>& state, double bounce);
+  void note(const ContactKey& key, const Held& held, const Vec<D>& impulse);
+
+  // direct_rest.cpp
+  void join(const State<D>& state);
+  bool wake(State<D>& state);
+  void rest(State<D>& state, double t, double h);
+
+  // direct_events.cpp
+  double stretch(State<D>& state, double t, double h, bool& cut);
+  void smooth(State<D>& state, double t, double h);
+  double crossing(const State<D>& state, double h);
+  double closing(const State<D>& state, double h, Couple couple);
+  double tightening(const State<D>& state, double h);
+  double stopping() const;
+  double way(const State<D>& state, int body, double h) const;
+  bool may_close(const State<D>& state, double h, Couple couple) const;
+  Spin<D> turn_part(const State<D>& state, const Joint<D>& joint, double h, double part) const;
+  void find(const State<D>& state, double margin);
+  bool may_touch(int a, int b) const;
+  template <class Found>
+  void near(const std::vector<Stance<D>>& at, Couple couple, double margin, Found&& found);
+  Stance<D> between(const State<D>& state, int body, double h, double part) const;
+
+  double light(int body) const { return body < 0 ? 0 : light_[body]; }
+  Spin<D> turned_by(int body, const Spin<D>& moment) const;
+  double friction(const ContactKey& key) const;
+  double elasticity(const ContactKey& key) const;
+
+  const Model<D>& model_;
+  Integrate* integrate_;
+  Tied<D> free_;
+  Stages stages_;
+  Cone<D> cone_;
+
+  double closed_ = 0;            // m: gaps up to this touch
+  double rest_ = 0;              // m/s: slower impacts do not bounce
+  double pace_ = 0;              // m/s: sqrt(g L), or L a second
+  double still_ = 0;             // m/s: slower is not at all, at the speeds at hand
+  int most_cuts_ = 0;            // of a step
+  std::vector<double> rims_;     // how far each body reaches, m
+  std::vector<double> thin_;     // the least thickness of each body, m; 0 of a point
+  std::vector<Couple> couples_;  // who may touch whom
+
+  // of the instant at hand
+  std::vector<Stance<D>> stances_;  // one a body
+  std::vector<double> light_;       // 1/m, 0 of what cannot move
+  std::vector<Gap<D>> gaps_, some_;
+  std::vector<Held> held_;
+  std::vector<Row<D>> rows_;
+  std::vector<ConeBlock<D>> blocks_;
+  std::vector<ConeMode<D>> modes_;
+  Eigen::MatrixXd K_;
+  Eigen::VectorXd b_, f_, kept_, forces_;  // forces_: of the last stage
+  Eigen::VectorXd slips_;                  // J v where the stretch began
+  std::vector<int> chosen_, island_;
+  std::vector<char> ripe_;
+  std::vector<double> rate_;
+  std::vector<std::pair<int, int>> forced_;  // couples that would come through each other at once
+  bool forced_again_ = false;
+  Motion begun_, saved_;
+  std::vector<Contact<D>> contacts_, impulses_;  // of this step
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,134 @@
+// Rest. What has been still for a while, with all that it touches, and would not accelerate if it stood still
+// altogether, is frozen: its velocity becomes zero exactly and steps leave it alone, until something awake
+// touches it or pulls at it. Stillness alone proves nothing: a block that has just begun to slide is slow
+// too.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/direct.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kQuiet = 0.25;    // s of stillness before rest is looked for
+constexpr double kStatic = 1e-10;  // of g: what rest may accelerate by
+constexpr double kStill = 1e-8;    // of sqrt(g L): faster is not still
+
+}  // namespace
+
+// who is joined to whom, by the contacts of the state, springs and joints; fixed bodies join nobody
+template <int D>
+void Direct<D>::join(const State<D>& state) {
+  island_.resize(model_.bodies.size());
+  for (int i = 0; i < int(island_.size()); ++i) island_[i] = i;
+  const auto root = [&](int i) {
+    while (island_[i] != i) i = island_[i] = island_[island_[i]];
+    return i;
+  };
+  const auto link = [&](int a, int b) {
+    if (a < 0 || b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) return;
+    const int p = root(a), q = root(b);
+    island_[std::max(p, q)] = std::min(p, q);
+  };
+  for (const Contact<D>& contact : state.contacts) link(contact.key.a, contact.key.b);
+  for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
+  for (int i = 0; i < int(model_.joints.size()); ++i) {
+    if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
+  }
+  for (int i = 0; i < int(island_.size()); ++i) island_[i] = root(i);
+}
+
+// thaws what something awake touches or holds, with all that it is joined to. True where it did
+template <int D>
+bool Direct<D>::wake(State<D>& state) {
+  if (std::none_of(state.frozen.begin(), state.frozen.end(), [](char frozen) { return frozen != 0; }))
+    return false;
+  chosen_.clear();
+  const auto meet = [&](int a, int b) {
+    if (a < 0 || b < 0) return;
+    if (state.frozen[a] && light_[b] > 0) chosen_.push_back(a);
+    if (state.frozen[b] && light_[a] > 0) chosen_.push_back(b);
+  };
+  for (const Gap<D>& gap : gaps_) meet(gap.key.a, gap.key.b);
+  for (const Grip<D>& grip : state.grips) {
+    if (grip.body >= 0 && state.frozen[grip.body]) chosen_.push_back(grip.body);
+  }
+  if (chosen_.empty()) return false;
+  join(state);
+  for (const int woken : chosen_) {
+    for (int i = 0; i < int(island_.size()); ++i) {
+      if (island_[i] == island_[woken]) state.frozen[i] = 0, state.quiet[i] = 0;
+    }
+  }
+  return true;
+}
+
+// freezes what rests, at time t after a step of h
+template <int D>
+void Direct<D>::rest(State<D>& state, double t, double h) {
+  const double g = pace_ * pace_ / model_.scale;
+  const int n = int(model_.bodies.size());
+  bool ripe = false;
+  for (int i = 0; i < n; ++i) {
+    if (light_[i] == 0) continue;
+    double fast = std::sqrt(state.v[i].squaredNorm());
+    if (const int k = turning(state, i); k >= 0) fast += rims_[i] * std::sqrt(state.spin[k].squaredNorm());
+    state.quiet[i] = fast <= kStill * pace_ ? state.quiet[i] + h : 0;
+    ripe = ripe || state.quiet[i] >= kQuiet;
+  }
+  if (!ripe) return;
+
+  // islands of which all have been still long enough, and no hand holds one
+  join(state);
+  ripe_.assign(n, 1);
+  for (int i = 0; i < n; ++i) {
+    if (light_[i] > 0 && state.quiet[i] < kQuiet) ripe_[island_[i]] = 0;
+  }
+  for (const Grip<D>& grip : state.grips) {
+    if (grip.body >= 0) ripe_[island_[grip.body]] = 0;
+  }
+  keep(state, begun_);
+  bool any = false;
+  for (int i = 0; i < n; ++i) {
+    if (light_[i] == 0 || !ripe_[island_[i]]) continue;
+    any = true;
+    state.v[i].setZero();
+    if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();
+  }
+  if (!any) return;
+
+  // what they would do at rest
+  find(state, closed_);
+  const bool found = choose(state, t);
+  const auto still = free_.accelerations(state, t);
+  rate_.assign(still.begin(), still.end());
+  for (int i = 0; i < int(rows_.size()); ++i) push(rows_[i], f_[i], rate_);
+  const auto& members = free_.bodies();
+  for (int k = 0; k < int(members.size()); ++k) {
+    const int body = members[k];
+    double a = std::sqrt(Eigen::Map<const Vec<D>>(rate_.data() + D * k).squaredNorm());
+    if (const int at = free_.spin_start(k); at >= 0)
+      a += rims_[body] * std::sqrt(Eigen::Map<const Spin<D>>(rate_.data() + at).squaredNorm());
+    if (!found || !(a <= kStatic * g)) ripe_[island_[body]] = 0;
+  }
+  any = false;
+  for (const int body : members) {
+    if (ripe_[island_[body]]) {
+      state.frozen[body] = 1;
+      any = true;
+      continue;
+    }
+    state.v[body] = begun_.v[body];
+    if (const int k = turning(state, body); k >= 0) state.spin[k] = begun_.spin[k];
+    if (state.quiet[body] >= kQuiet) state.quiet[body] = 0;
+  }
+  if (any) remember();
+}
+
+template void Direct<2>::join(const State<2>&);
+template bool Direct<2>::wake(State<2>&);
+template void Direct<2>::rest(State<2>&, double, double);
+
+}  // namespace obscura::sim
