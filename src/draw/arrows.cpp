@@ -26,29 +26,52 @@ std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
           arrow.tip - u * back - v * side};
 }
 
-}  // namespace
+/// An arrow large enough to be seen.
+void offer(const Point& tail, const Point& tip, double weight, std::vector<Arrow>& arrows) {
+  const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
+  if (grow > 0.2) arrows.push_back({tail, tip, grow});
+}
 
-void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+/// Halos of all below all arrows, one kind after another: few batches.
+void draw_arrows(const std::vector<Arrow>& arrows, const Stage& stage, Color color, List& list) {
   const double weight = stage.layout.weight;
-  std::vector<Arrow> arrows;
-  for (int i : stage.arrows) {
-    const sim::Snapshot::Body& body = now.bodies[i];
-    const Point tail = view.page(body.position);
-    const Point tip = view.page(body.position + stage.look.velocity_scale * body.velocity);
-    const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
-    if (grow > 0.2) arrows.push_back({tail, tip, grow});
-  }
-
-  // halos of all below all arrows, one kind after another: few batches
-  auto shaft = [&](const Arrow& a, double halo, Color color) {
+  auto shaft = [&](const Arrow& a, double halo, Color ink) {
     const Point u = (a.tip - a.tail).normalized();
     const double width = kArrowLine * weight * a.grow + 2 * halo;
-    list.add({{a.tail, width, color}, {a.tip - u * (kNotch - 1) * weight * a.grow, width, color}}, Cap::butt);
+    list.add({{a.tail, width, ink}, {a.tip - u * (kNotch - 1) * weight * a.grow, width, ink}}, Cap::butt);
   };
   for (const Arrow& a : arrows) shaft(a, kHalo * weight * a.grow, stage.colours.room);
   for (const Arrow& a : arrows) list.add(head(a, weight, kHalo * weight * a.grow), stage.colours.room);
-  for (const Arrow& a : arrows) shaft(a, 0, stage.colours.velocity);
-  for (const Arrow& a : arrows) list.add(head(a, weight, 0), stage.colours.velocity);
+  for (const Arrow& a : arrows) shaft(a, 0, color);
+  for (const Arrow& a : arrows) list.add(head(a, weight, 0), color);
+}
+
+}  // namespace
+
+void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  std::vector<Arrow> arrows;
+  for (int i : stage.arrows) {
+    const sim::Snapshot::Body& body = now.bodies[i];
+    offer(view.page(body.position), view.page(body.position + stage.look.velocity_scale * body.velocity),
+          stage.layout.weight, arrows);
+  }
+  draw_arrows(arrows, stage, stage.colours.velocity, list);
+}
+
+void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  std::vector<Arrow> arrows;
+  const sim::Vec3 up = stage.cast.gravity.norm() > 0 ? sim::Vec3(-stage.cast.gravity) : sim::Vec3::UnitY();
+  for (const sim::Snapshot::Contact& contact : now.contacts) {
+    const bool on_body = stage.looks(contact.body).contact;
+    const bool on_other = contact.other >= 0 && stage.looks(contact.other).contact;
+    if (!on_body && !on_other) continue;
+    // of the two, the one that is carried
+    const bool turned_about = !on_body || (on_other && contact.force.dot(up) < 0);
+    const sim::Vec3 force = turned_about ? sim::Vec3(-contact.force) : contact.force;
+    offer(view.page(contact.point), view.page(contact.point + stage.force_scale * force), stage.layout.weight,
+          arrows);
+  }
+  draw_arrows(arrows, stage, stage.colours.force, list);
 }
 
 }  // namespace obscura::draw

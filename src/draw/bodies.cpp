@@ -8,6 +8,28 @@ namespace {
 
 constexpr double kLeast = 1.6;  // radius of what is too small to see
 
+/// How a ball that turns stands: a radius, as the axes of a box are.
+void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  const auto each = [&](auto&& mark) {
+    for (int i : stage.rounds) {
+      const double radius = view.scale * stage.cast.bodies[i].radius;
+      const Point center = view.page(now.bodies[i].position);
+      if (!stage.cast.bodies[i].turns || radius < 7 * weight || outside(view.window, center, radius))
+        continue;
+      const double width = std::min(kAxisLine * weight, 0.14 * radius);
+      mark(center, radius, width, now.bodies[i].angle, stage.paints[i].axis);
+    }
+  };
+  each([&](const Point& center, double radius, double width, double angle, Color color) {
+    const Point rim = center + (radius - width) * Point(std::cos(angle), -std::sin(angle));
+    list.add({{center, width, color}, {rim, width, color}}, Cap::butt);
+  });
+  each([&](const Point& center, double, double width, double, Color color) {
+    list.add(Disc{center, 1.5 * width, 0, color, color});
+  });
+}
+
 }  // namespace
 
 void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
@@ -24,7 +46,7 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
     box.x_axis = {std::cos(body.angle), -std::sin(body.angle)};
     box.half = half.cwiseMax(0.8 * weight);
     box.line = std::min(kOutline * weight, 0.35 * shorter);
-    if (stage.look.axes && shorter > 6 * weight) {
+    if (stage.look.axes && !stage.cast.bodies[i].fixed && shorter > 12 * weight) {
       box.axis = std::min(0.56 * shorter, 44 * weight);
       box.axis_line = std::min(kAxisLine * weight, 0.16 * box.axis);
     }
@@ -51,6 +73,7 @@ void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now,
       list.add(Disc{center, radius, std::min(kOutline * weight, 0.32 * radius), paint.fill, paint.outline});
     }
   }
+  if (stage.look.axes) mark_turns(stage, view, now, list);
 }
 
 }  // namespace obscura::draw

@@ -11,10 +11,10 @@
 namespace obscura::draw {
 namespace {
 
-constexpr int kMany = 12;  // more springs than these, nets apart, are drawn as lines
+constexpr double kForceArrow = 0.13;  // of the room's height: an arrow of a usual force
+constexpr int kMany = 12;             // more springs than these, nets apart, are drawn as lines
 
 bool is_point(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::point; }
-bool is_box(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::box; }
 
 /// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on
 /// one.
@@ -22,7 +22,7 @@ std::vector<char> knots(const sim::Cast& cast) {
   std::vector<int> count(cast.bodies.size(), 0);
   for (const sim::Cast::Spring& spring : cast.springs) {
     for (int body : {spring.a, spring.b}) {
-      if (body >= 0 && !is_box(cast.bodies[body])) ++count[body];
+      if (body >= 0 && !cast.bodies[body].turns) ++count[body];
     }
   }
   std::vector<char> knot(cast.bodies.size(), 0);
@@ -33,6 +33,19 @@ std::vector<char> knots(const sim::Cast& cast) {
     }
   }
   return knot;
+}
+
+/// How long the arrow of a newton is, m.
+double newton(const sim::Cast& cast) {
+  // the heaviest, and all of them: a stack's lowest contacts carry much more than its highest
+  double heaviest = 0, all = 0;
+  for (const sim::Cast::Body& body : cast.bodies) {
+    if (body.fixed) continue;
+    heaviest = std::max(heaviest, body.mass), all += body.mass;
+  }
+  const double g = cast.gravity.norm() > 0 ? cast.gravity.norm() : 10;
+  const double usual = g * std::sqrt(heaviest * std::max(heaviest, all / 4));
+  return usual > 0 ? kForceArrow * cast.scale / usual : 0;
 }
 
 }  // namespace
@@ -67,6 +80,7 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
       if (body >= 0) tied[body] = 1;
     }
   }
+  force_scale = look.force_scale > 0 ? look.force_scale : newton(cast);
   for (const sim::Cast::Mouse& mouse : cast.mice) {
     // the hand's rest length is short and its pull long: turns for a pull across a part of the room
     const double rest = std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale;
@@ -86,7 +100,20 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
     paints.push_back(paint(own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++), look.theme));
     dots.push_back(is_point(body) ? std::max(tied[i] ? std::min(dot, 0.2 * mesh) : dot, 1.6 * layout.weight)
                                   : 0);
-    (is_box(body) ? boxes : rounds).push_back(i);
+    switch (body.kind) {
+      case sim::ShapeKind::box:
+        boxes.push_back(i);
+        break;
+      case sim::ShapeKind::polygon:
+      case sim::ShapeKind::compound:
+        polygons.push_back(i);
+        break;
+      case sim::ShapeKind::point:
+      case sim::ShapeKind::ball:
+        rounds.push_back(i);
+        break;
+    }
+    seams.push_back(seams_of(body));
     if (own.velocity) arrows.push_back(i);
   }
 }
@@ -119,7 +146,11 @@ View Depictor::view(double t) const { return view_at(plan_->stage.camera, plan_-
 Picture Depictor::depict(const sim::Snapshot& now,
                          std::span<const std::shared_ptr<const sim::Track>> ways) const {
   const Stage& stage = plan_->stage;
-  const View view = view_at(stage.camera, stage.layout, now.time);
+  View view = view_at(stage.camera, stage.layout, now.time);
+  if (stage.camera.follow) {
+    const sim::Vec3& middle = now.bodies[*stage.camera.follow].position;
+    view.origin = stage.layout.middle - view.scale * Point(middle.x(), -middle.y());
+  }
   Picture picture;
   picture.aspect = stage.layout.width / 1080;
   picture.ground = stage.colours.ground;
@@ -129,10 +160,15 @@ Picture Depictor::depict(const sim::Snapshot& now,
   if (stage.layout.clipped) list.clip(view.window);
   draw_trails(stage, view, now, ways, list);
   draw_ways(stage, view, now, list);
+  draw_rails(stage, view, now, list);
   draw_springs(stage, view, now, false, list);
   draw_boxes(stage, view, now, list);
+  draw_polygons(stage, view, now, list);
   draw_springs(stage, view, now, true, list);
+  draw_rods(stage, view, now, list);
   draw_rounds(stage, view, now, list);
+  draw_pins(stage, view, now, list);
+  draw_contacts(stage, view, now, list);
   draw_velocities(stage, view, now, list);
   draw_hands(stage, view, now, list);
   list.unclip();

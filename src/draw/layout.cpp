@@ -208,7 +208,7 @@ Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, co
   // what height is left over goes above and below alike; a camera that moves, or a world without an end,
   // keeps the caption at the top
   const double spare = 1080 - strip - 2 * band - w * kMargin - layout.scale * size.y();
-  const bool still = camera.keys.empty();
+  const bool still = camera.keys.empty() && !camera.follow;
   const double above = world.closed && still ? spare / 2 : 0;
   layout.clipped = !(world.closed && still);
   const double top = layout.caption ? strip + above - 0.12 * w * kStrip : 0;

@@ -45,9 +45,10 @@ struct CameraKey {
   Ease ease = Ease::in_out;
 };
 
-/// Without keys the camera fits the room.
+/// Without keys the camera shows as much as fits the room.
 struct Camera {
   std::vector<CameraKey> keys;  // by time
+  std::optional<int> follow;    // the body that it keeps in the middle
 };
 
 }  // namespace obscura::draw

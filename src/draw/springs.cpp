@@ -29,12 +29,8 @@ double lead(const Coil& coil, double length) {
   return std::min(std::clamp(0.085 * length, 2.2 * coil.line, 12 * coil.line), 0.2 * length);
 }
 
-bool is_box(const Stage& stage, int body) {
-  return body >= 0 && stage.cast.bodies[body].kind == sim::ShapeKind::box;
-}
-
-bool holds_box(const Stage& stage, const sim::Cast::Spring& spring) {
-  return is_box(stage, spring.a) || is_box(stage, spring.b);
+bool holds_solid(const Stage& stage, const sim::Cast::Spring& spring) {
+  return stage.solid(spring.a) || stage.solid(spring.b);
 }
 
 }  // namespace
@@ -82,11 +78,11 @@ std::vector<Point> coil_line(const Coil& coil, const Point& a, const Point& b, d
   return line;
 }
 
-void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool boxes, List& list) {
+void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool solids, List& list) {
   const double zoom = view.scale / stage.layout.scale, weight = stage.layout.weight;
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
-    if (holds_box(stage, stage.cast.springs[i]) != boxes) continue;
+    if (holds_solid(stage, stage.cast.springs[i]) != solids) continue;
     const Point a = view.page(now.springs[i].a), b = view.page(now.springs[i].b);
     const Coil& form = stage.coils[i];
     nodes.clear();
@@ -100,15 +96,15 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
     list.add(nodes, Cap::round);
   }
 
-  // made fast to the room or a box; a particle covers the end itself
+  // made fast to the room or a body that turns; a particle covers the end itself
   auto joint = [&](int body, const Point& at, const Coil& form) {
-    if (body >= 0 && !is_box(stage, body)) return;
+    if (body >= 0 && !stage.solid(body)) return;
     const double radius = (form.turns == 0 ? 0.75 : 1) * kJoint * weight;
     list.add(Disc{at, radius, 0, stage.colours.spring, stage.colours.spring});
   };
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
     const sim::Cast::Spring& spring = stage.cast.springs[i];
-    if (holds_box(stage, spring) != boxes) continue;
+    if (holds_solid(stage, spring) != solids) continue;
     joint(spring.a, view.page(now.springs[i].a), stage.coils[i]);
     joint(spring.b, view.page(now.springs[i].b), stage.coils[i]);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,18 +18,27 @@ struct Stage {
   Camera camera;
   Palette colours;
   Layout layout;
-  std::vector<Paint> paints;       // one a body
-  std::vector<double> dots;        // radius in page units of a body without one, 0 for others
-  std::vector<int> boxes, rounds;  // bodies by form
-  std::vector<int> arrows;         // bodies with velocity arrows
-  std::vector<Coil> coils;         // one a spring; turns 0: a plain line
-  std::vector<Coil> hands;         // one a mouse
+  std::vector<Paint> paints;                      // one a body
+  std::vector<double> dots;                       // radius in page units of a body without one, 0 for others
+  std::vector<int> boxes, polygons, rounds;       // bodies by form; a compound is among the polygons
+  std::vector<std::vector<std::uint64_t>> seams;  // of each body's parts: bit e of part p is set where its
+                                                  // edge e lies within another part
+  std::vector<int> arrows;                        // bodies with velocity arrows
+  double force_scale = 0;                         // m/N
+  std::vector<Coil> coils;                        // one a spring; turns 0: a plain line
+  std::vector<Coil> hands;                        // one a mouse
 
   Stage(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent, double aspect);
 
   /// The looks of a body, also where the scene says nothing.
   BodyLook looks(int body) const { return body < int(look.bodies.size()) ? look.bodies[body] : BodyLook{}; }
+
+  /// Whether a body has points of its own to be held at.
+  bool solid(int body) const { return body >= 0 && cast.bodies[body].turns; }
 };
+
+/// Of each part of a body, which of its edges lie within another part, see draw/polygons.cpp.
+std::vector<std::uint64_t> seams_of(const sim::Cast::Body& body);
 
 using Ways = std::span<const std::shared_ptr<const sim::Track>>;
 
@@ -37,13 +47,22 @@ void draw_still(const Stage& stage, const View& view, List& list);
 
 void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now, Ways ways, List& list);
 
-/// Springs that no box holds, drawn behind the bodies, or those that one does, in front of the boxes; with a
-/// dot where they are made fast.
-void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool boxes, List& list);
+/// Springs that no body with points of its own holds, drawn behind the bodies, or those that one does, in
+/// front of the boxes; with a dot where they are made fast.
+void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool solids, List& list);
 
 void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The forces where bodies touch that have such arrows: of two of them the one on the body that is pushed up.
+void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The rails of sliders, behind the bodies; rods and ropes, in front of boxes; pins, in front of all.
+void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 /// The dotted paths of the mice, and, in front of everything, their springs and pointers.
 void draw_ways(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);

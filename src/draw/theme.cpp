@@ -21,7 +21,8 @@ Palette palette(Theme theme) {
             .spring = {0x4A, 0x51, 0x59},
             .way = {0x88, 0x8E, 0x95},
             .hatch = {0x8B, 0x94, 0x9E},
-            .velocity = green};
+            .velocity = green,
+            .force = *color("vermilion")};
   }
   return {.ground = {0x0E, 0x13, 0x18},
           .room = {0x13, 0x1A, 0x21},
@@ -32,7 +33,8 @@ Palette palette(Theme theme) {
           .way = {0x72, 0x7E, 0x8A},
           .hatch = {0x5A, 0x67, 0x74},
           // lighter, to be seen on a green body
-          .velocity = mix(green, kWhite, 0.4)};
+          .velocity = mix(green, kWhite, 0.4),
+          .force = mix(*color("vermilion"), kWhite, 0.25)};
 }
 
 Paint paint(Color own, Theme theme) {

@@ -16,6 +16,7 @@ struct Palette {
   Color way;  // the hand's dotted path
   Color hatch;
   Color velocity;  // arrows of velocity
+  Color force;     // and of forces
 };
 
 /// The colours of one body.
@@ -25,11 +26,12 @@ struct Paint {
 
 /// Weights in page units at the weight 1 of a landscape page (layout.h), as in print on a slide.
 inline constexpr double kWallLine = 3.2, kOutline = 2.8, kAxisLine = 2.4, kSpringLine = 3.2,
-                        kThinSpring = 2.2, kNetLine = 2.0, kArrowLine = 4.0, kHatchLine = 1.6,
-                        kTrailLine = 6.4;
+                        kThinSpring = 2.2, kNetLine = 2.0, kArrowLine = 4.0, kHatchLine = 1.6, kRod = 5.2,
+                        kRope = 2.4, kTrailLine = 6.4;
 inline constexpr double kHatchStep = 14,
-                        kBand = 24;            // along an upright wall; from the wall to the band's edge
-inline constexpr double kDot = 8, kJoint = 5;  // radius of a point, of where a spring is made fast
+                        kBand = 24;  // along an upright wall; from the wall to the band's edge
+inline constexpr double kDot = 8, kJoint = 5,
+                        kPin = 7;  // radius of a point, of where a spring is made fast, of a pin
 
 /// The colours of the paper or of the screen.
 Palette palette(Theme theme);

@@ -50,8 +50,9 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
     if (!(lasting > 0)) continue;
     const Way way = way_of(int(i), now.time - lasting, now, ways);
     const double own = stage.dots[i] > 0 ? stage.dots[i] : view.scale * stage.cast.bodies[i].radius;
-    const bool box = stage.cast.bodies[i].kind == sim::ShapeKind::box;
-    const double widest = std::min(kTrailLine * stage.layout.weight, box ? 1e9 : std::max(1.5 * own, 1.2));
+    const sim::ShapeKind kind = stage.cast.bodies[i].kind;
+    const bool round = kind == sim::ShapeKind::point || kind == sim::ShapeKind::ball;
+    const double widest = std::min(kTrailLine * stage.layout.weight, round ? std::max(1.5 * own, 1.2) : 1e9);
     const Color strong = stage.paints[i].trail;
     auto node = [&](const sim::Track::Point& p) {
       const double s = std::clamp(1 - (now.time - p.time) / lasting, 0.0, 1.0);

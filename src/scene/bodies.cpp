@@ -150,12 +150,12 @@ void add(Making& making, const Fields& fields, const std::string& kind, const So
     body.group = families.emplace(fields.text("group"), int(families.size()) + 1).first->second;
   }
   sim::State<2>& state = making.world.state;
-  const Vec center = kind == "particle" ? Vec(Vec::Zero()) : solid.center;
+  const Vec center = kind == "particle" ? Vec(Vec::Zero()) : solid.bulk.center;
   if (kind != "particle") {
     body.shape = solid.shape;
     const Node* mass = fields.given("mass");
-    body.mass = mass ? number(*mass, i, n) : number(fields.node("density"), i, n) * solid.area;
-    body.inertia << body.mass * (solid.moment / solid.area);
+    body.mass = mass ? number(*mass, i, n) : number(fields.node("density"), i, n) * solid.bulk.content;
+    body.inertia << body.mass * (solid.bulk.second[0] / solid.bulk.content);
     if (!(std::isfinite(body.inertia[0]) && body.inertia[0] > 0))
       making.complaints.add(fields.place(kind == "box"       ? "size"
                                          : kind == "ball"    ? "radius"
@@ -243,6 +243,7 @@ void declaration(Making& making, Roster& roster, const Node& table, const std::s
   Group group;
   group.name = fields.given("name") ? fields.text("name") : fmt::format("{}[{}]", kind, ordinal);
   group.place = fields.place("name");
+  group.at = fields.place("position");
   group.first = int(making.world.model.bodies.size());
   // nameless ones have the names ball[0], ball[1], ...: another name would mean two things
   if (const Node* same = fields.given("name") ? making.top.find(group.name) : nullptr;

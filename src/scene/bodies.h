@@ -18,6 +18,7 @@ namespace obscura::scene {
 struct Group {
   std::string name;          // as given, or "box[0]"
   Place place;               // of its name, or of its table
+  Place at;                  // of its position, or of its table
   int first = 0, count = 1;  // bodies [first, first + count) of the model
   std::vector<int> grid;     // copies: how many in each direction; empty: none asked for
 };

@@ -63,7 +63,7 @@ void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& c
   }
 }
 
-draw::Camera camera(const Node& top, Complaints& complaints) {
+draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaints) {
   const Fields fields = Fields::of(top, "camera");
   draw::Camera camera;
   const Node* keys = fields.given("keys");
@@ -72,6 +72,12 @@ draw::Camera camera(const Node& top, Complaints& complaints) {
     complaints.add(fields.place(fields.given("center") ? "center" : "width"),
                    "the camera stands, or moves by 'keys'; leave one out");
     return camera;
+  }
+  if (const Node* follow = fields.given("follow")) {
+    if (const Node* center = fields.given("center"))
+      complaints.add(center->place, "the camera follows a body, or looks at 'center'; leave one out");
+    const std::vector<int> bodies = roster.bodies(follow->text(), follow->place, complaints);
+    if (!bodies.empty()) camera.follow = bodies.front();
   }
   if (stands) camera.keys.push_back(camera_key(fields));
   for (std::size_t i = 0; keys && i < keys->list().size(); ++i) {

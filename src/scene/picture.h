@@ -12,7 +12,7 @@ namespace obscura::scene {
 void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& complaints);
 
 /// The camera of a scene: none, one that stands, or keys.
-draw::Camera camera(const Node& top, Complaints& complaints);
+draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaints);
 
 /// How the scene asks to be filmed.
 Film film(const Node& top);

@@ -12,6 +12,7 @@
 #include "scene/fields.h"
 #include "scene/joints.h"
 #include "scene/links.h"
+#include "scene/overlap.h"
 #include "scene/overrides.h"
 #include "scene/picture.h"
 #include "scene/room.h"
@@ -123,7 +124,11 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   nets(top, roster, scene.world, complaints);
   joints(top, roster, scene.world, complaints);
   ignore(top, roster, model, complaints);
-  if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, complaints);
+  if (model.collision == sim::Collision::handout) {
+    refuse_beyond_handout(top, complaints);
+  } else if (model.overlap == sim::Overlap::refuse) {
+    refuse_overlaps(roster, scene.world, complaints);
+  }
   refuse_taken_names(top, roster, complaints);
 
   // what the camera fits, and with it the length of a reference pixel
@@ -133,7 +138,7 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
 
   // what it looks like, how it is filmed
   look(top, roster, scene.look, complaints);
-  scene.camera = camera(top, complaints);
+  scene.camera = camera(top, roster, complaints);
   scene.film = film(top);
   if (!complaints.none()) complaints.raise();
   return scene;

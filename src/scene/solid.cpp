@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "scene/bodies.h"
@@ -61,103 +62,80 @@ std::vector<Vec> corners(const Node& points, Complaints& complaints) {
   return all;
 }
 
-// a polygon about its centroid: triangles from its first corner
-Solid polygon(const std::vector<Vec>& corners) {
-  Solid it;
-  const Vec& first = corners.front();
-  Vec sum = Vec::Zero();
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-    const Vec a = corners[i] - first, b = corners[i + 1] - first;
-    it.area += cross(a, b) / 2;
-    sum += cross(a, b) / 6 * (a + b);
-  }
-  it.center = first + sum / it.area;
-  it.shape.kind = sim::ShapeKind::polygon;
-  for (const Vec& corner : corners) it.shape.vertices.push_back(corner - it.center);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec& a = it.shape.vertices[i];
-    const Vec& b = it.shape.vertices[(i + 1) % corners.size()];
-    it.moment += cross(a, b) / 12 * (a.squaredNorm() + a.dot(b) + b.squaredNorm());
-  }
+sim::Shape<2> polygon(std::vector<Vec> corners) {
+  sim::Shape<2> it;
+  it.kind = sim::ShapeKind::polygon;
+  it.vertices = std::move(corners);
   return it;
 }
 
-Solid ball(double radius) {
-  Solid it;
-  it.shape.kind = sim::ShapeKind::ball;
-  it.shape.radius = radius;
-  it.area = std::numbers::pi * radius * radius;
-  it.moment = it.area * radius * radius / 2;
+sim::Shape<2> ball(double radius) {
+  sim::Shape<2> it;
+  it.kind = sim::ShapeKind::ball;
+  it.radius = radius;
   return it;
 }
 
-Solid box(const Vec& size) {
-  Solid it;
-  it.shape.kind = sim::ShapeKind::box;
-  it.shape.half = size / 2;
-  it.area = size.x() * size.y();
-  it.moment = it.area * size.squaredNorm() / 12;  // handout §3.1
+sim::Shape<2> box(const Vec& size) {
+  sim::Shape<2> it;
+  it.kind = sim::ShapeKind::box;
+  it.half = size / 2;
   return it;
 }
 
-// a part where it lies on the body: its shape's places are seen from the body's own origin
-Solid part(const Fields& fields, Complaints& complaints) {
+// a part where it lies on the body; a box that is turned there is a polygon
+sim::Shape<2> part(const Fields& fields, Complaints& complaints) {
   const bool balls = fields.given("radius"), boxes = fields.given("size"), points = fields.given("points");
   if (balls + boxes + points != 1)
     complaints.add(fields.place(), "a shape is one of three: expected 'radius', 'size' or 'points'");
   const Vec position = fields.vector("position");
   const double angle = radians(fields.number("angle"));
-  Solid it;
-  if (points) {
-    it = polygon(corners(*fields.given("points"), complaints));
-  } else if (boxes) {
-    it = box(fields.vector("size"));
-    if (angle != 0) {
-      const Vec& half = it.shape.half;
-      const double moment = it.moment, area = it.area;
-      it = polygon(
-          {{-half.x(), -half.y()}, {half.x(), -half.y()}, {half.x(), half.y()}, {-half.x(), half.y()}});
-      it.moment = moment, it.area = area;
-    }
-  } else {
-    it = ball(balls ? fields.number("radius") : 1);
+  sim::Shape<2> it = points  ? polygon(corners(*fields.given("points"), complaints))
+                     : boxes ? box(fields.vector("size"))
+                             : ball(balls ? fields.number("radius") : 1);
+  if (boxes && angle != 0) {
+    const Vec h = it.half;
+    it = polygon({-h, {h.x(), -h.y()}, h, {-h.x(), h.y()}});
   }
-  for (Vec& vertex : it.shape.vertices) vertex = turned(vertex, angle);
-  it.center = position + turned(it.center, angle);
+  for (Vec& vertex : it.vertices) vertex = position + turned(vertex, angle);
+  if (it.vertices.empty()) it.center = position;
   return it;
 }
 
-Solid compound(const Node& shapes, Complaints& complaints) {
-  std::vector<Solid> parts;
-  for (const Node& each : shapes.list()) parts.push_back(part(Fields(each, "body.shapes"), complaints));
-  if (parts.empty()) {
+sim::Shape<2> compound(const Node& shapes, Complaints& complaints) {
+  sim::Shape<2> it;
+  it.kind = sim::ShapeKind::compound;
+  for (const Node& each : shapes.list()) it.parts.push_back(part(Fields(each, "body.shapes"), complaints));
+  if (it.parts.empty()) {
     complaints.add(shapes.place, "'shapes' is empty: expected a part at least");
-    parts.push_back(ball(1));
-  }
-  Solid it;
-  for (const Solid& each : parts) it.area += each.area, it.center += each.area * each.center;
-  it.center /= it.area;
-  it.shape.kind = sim::ShapeKind::compound;
-  for (Solid& each : parts) {
-    const Vec away = each.center - it.center;
-    it.moment += each.moment + each.area * away.squaredNorm();  // Steiner
-    each.shape.center = away;
-    for (Vec& vertex : each.shape.vertices) vertex += away;
-    if (each.shape.kind == sim::ShapeKind::polygon) each.shape.center = Vec::Zero();
-    it.shape.parts.push_back(std::move(each.shape));
+    it.parts.push_back(ball(1));
   }
   return it;
 }
 
-}  // namespace
-
-Solid solid(const Fields& fields, const std::string& kind, int i, int n, Complaints& complaints) {
+sim::Shape<2> form(const Fields& fields, const std::string& kind, int i, int n, Complaints& complaints) {
   if (kind == "ball") return ball(number(fields.node("radius"), i, n));
   if (kind == "box") return box(fields.vector("size"));
   if (kind == "polygon" && fields.given("points"))
     return polygon(corners(*fields.given("points"), complaints));
   if (kind == "body" && fields.given("shapes")) return compound(*fields.given("shapes"), complaints);
   return ball(1);
+}
+
+}  // namespace
+
+Solid solid(const Fields& fields, const std::string& kind, int i, int n, Complaints& complaints) {
+  Solid it;
+  it.shape = form(fields, kind, i, n, complaints);
+  it.bulk = sim::bulk(it.shape);
+  // about its centre of mass; a ball and a box are so already
+  const Vec center = it.bulk.center;
+  for (Vec& vertex : it.shape.vertices) vertex -= center;
+  for (sim::Shape<2>& part : it.shape.parts) {
+    if (part.vertices.empty()) part.center -= center;
+    for (Vec& vertex : part.vertices) vertex -= center;
+  }
+  return it;
 }
 
 }  // namespace obscura::scene

@@ -4,16 +4,15 @@
 
 #include "scene/complaints.h"
 #include "scene/fields.h"
-#include "sim/model.h"
+#include "sim/shape.h"
 
 namespace obscura::scene {
 
-/// The form of a body that turns, and what its mass is spread over.
+/// The form of a body that turns, about its centre of mass, and what its mass is spread over, seen from the
+/// body's own origin.
 struct Solid {
-  sim::Shape<2> shape;                       // about its centroid
-  sim::Vec<2> center = sim::Vec<2>::Zero();  // the centroid, seen from the body's own origin, m
-  double area = 0;                           // m^2; of parts, the sum of theirs
-  double moment = 0;                         // about the centroid, of density 1, m^4
+  sim::Shape<2> shape;
+  sim::Bulk<2> bulk;
 };
 
 /// The form of the i-th of n copies of a ball, box, polygon or body. Complains, and gives some form, where

@@ -22,6 +22,42 @@ Vec3 spinning(const Spin<D>& w) {
   }
 }
 
+template <int D>
+std::vector<Vec3> each_lifted(const std::vector<Vec<D>>& places) {
+  std::vector<Vec3> all;
+  for (const Vec<D>& place : places) all.push_back(lifted<D>(place));
+  return all;
+}
+
+template <int D>
+Cast::Body shown(const Body<D>& body) {
+  const Shape<D>& shape = body.shape;
+  Cast::Body it{body.name, shape.kind, shape.radius, lifted<D>(shape.half),
+                body.mass, body.fixed, body.turns(), each_lifted<D>(shape.vertices),
+                {}};
+  for (const Shape<D>& part : shape.parts) {
+    it.parts.push_back({part.kind, part.radius, lifted<D>(part.half), lifted<D>(part.center),
+                        each_lifted<D>(part.vertices)});
+  }
+  return it;
+}
+
+template <int D>
+Snapshot::Contact shown(const Contact<D>& contact) {
+  Snapshot::Contact it;
+  it.body = contact.key.a;
+  if (contact.key.b < 0) {
+    it.wall = -1 - contact.key.b;
+  } else {
+    it.other = contact.key.b;
+  }
+  it.point = lifted<D>(contact.point), it.normal = lifted<D>(contact.normal);
+  it.impulse = lifted<D>(contact.impulse), it.force = lifted<D>(contact.force);
+  it.gap = contact.gap;
+  it.sliding = contact.touching == Touching::slide;
+  return it;
+}
+
 }  // namespace
 
 template <int D>
@@ -29,14 +65,15 @@ Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   Cast cast;
   cast.dimension = D;
   cast.scale = model.scale;
-  for (const Body<D>& body : model.bodies) {
-    cast.bodies.push_back(
-        {body.name, body.shape.kind, body.shape.radius, lifted<D>(body.shape.half), body.mass, body.fixed});
-  }
+  cast.gravity = lifted<D>(model.gravity);
+  for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Wall<D>& wall : model.walls)
     cast.walls.push_back({lifted<D>(wall.point), lifted<D>(wall.normal)});
   for (const Spring<D>& s : model.springs)
     cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness});
+  for (const Joint<D>& j : model.joints)
+    cast.joints.push_back(
+        {j.name, j.kind, j.a.body, j.b.body, j.length, lifted<D>(j.axis), j.lower, j.upper});
   for (std::size_t i = 0; i < model.mice.size(); ++i) {
     const Path<D>& path = paths[i];
     Cast::Mouse mouse{path.start(), path.end(), model.mice[i].rest_length, {}};
@@ -73,6 +110,11 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
   for (const Spring<D>& s : model.springs) {
     now.springs.push_back({lifted<D>(place(state, s.a)), lifted<D>(place(state, s.b))});
   }
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint<D>& j = model.joints[i];
+    now.joints.push_back({lifted<D>(place(state, j.a)), lifted<D>(place(state, j.b)),
+                          i < state.broken.size() && state.broken[i] != 0});
+  }
   for (int i = 0; i < int(model.mice.size()); ++i) {
     Snapshot::Mouse mouse;
     mouse.pressed = stepper.pressed(i, at);
@@ -86,9 +128,14 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
   }
   for (const Touch<D>& touch : state.touches) {
     const Wall<D>& wall = model.walls[touch.wall];
-    now.contacts.push_back({touch.body, touch.wall, lifted<D>(touch.point), lifted<D>(wall.normal),
-                            lifted<D>(touch.impulse), (touch.point - wall.point).dot(wall.normal)});
+    Snapshot::Contact contact;
+    contact.body = touch.body, contact.wall = touch.wall;
+    contact.point = lifted<D>(touch.point), contact.normal = lifted<D>(wall.normal);
+    contact.impulse = lifted<D>(touch.impulse);
+    contact.gap = (touch.point - wall.point).dot(wall.normal);
+    now.contacts.push_back(contact);
   }
+  for (const Contact<D>& contact : state.contacts) now.contacts.push_back(shown(contact));
   now.energies = energies(model, state, stepper.paths(), t);
   now.momentum = lifted<D>(momentum(model, state));
   now.angular_momentum = spinning<D>(angular_momentum(model, state));

@@ -14,6 +14,14 @@ namespace obscura::sim {
 
 /// What is the same at every instant: who is in the room and what they look like to a measuring eye.
 struct Cast {
+  /// A piece of a body of several, in the body's frame.
+  struct Part {
+    ShapeKind kind = ShapeKind::ball;
+    double radius = 0;           // m
+    Vec3 half = Vec3::Zero();    // m
+    Vec3 center = Vec3::Zero();  // of a ball or box, m
+    std::vector<Vec3> vertices;  // of a polygon, counter-clockwise, m
+  };
   struct Body {
     std::string name;
     ShapeKind kind = ShapeKind::point;
@@ -21,6 +29,9 @@ struct Cast {
     Vec3 half = Vec3::Zero();  // m
     double mass = 0;           // kg
     bool fixed = false;
+    bool turns = false;
+    std::vector<Vec3> vertices;  // of a polygon, in its own frame from its centre of mass, m
+    std::vector<Part> parts;     // of a compound
   };
   struct Wall {
     Vec3 point, normal;
@@ -28,6 +39,14 @@ struct Cast {
   struct Spring {
     int a = -1, b = -1;  // bodies; -1: the room
     double rest_length = 0, stiffness = 0;
+  };
+  struct Joint {
+    std::string name;
+    JointKind kind = JointKind::pin;
+    int a = -1, b = -1;                    // bodies; -1: the room
+    double length = 0;                     // of a rod or rope, m
+    Vec3 axis = Vec3::UnitX();             // of a slider, in b's frame
+    double lower = -1e300, upper = 1e300;  // of a slider's way, m
   };
   struct Mouse {
     double press = 0, release = 0;  // s
@@ -37,10 +56,12 @@ struct Cast {
 
   int dimension = 2;
   double scale = 1;  // the room's height, m
+  Vec3 gravity = Vec3::Zero();
   std::vector<Body> bodies;
   std::vector<Wall> walls;
   std::vector<Spring> springs;
   std::vector<Mouse> mice;
+  std::vector<Joint> joints;
 };
 
 struct Energies {
@@ -67,11 +88,18 @@ struct Snapshot {
     int body = -1;             // what it holds
     Vec3 held = Vec3::Zero();  // the point of the body it holds
   };
+  struct Joint {
+    Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
+    bool broken = false;
+  };
   struct Contact {
-    int body = -1, wall = -1;
-    Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
-    Vec3 impulse = Vec3::Zero();  // N s, in the last step
-    double gap = 0;               // m, negative when inside
+    int body = -1, wall = -1;                          // wall: -1 where `other` is what it touches
+    Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  // towards `body`
+    Vec3 impulse = Vec3::Zero();                       // on `body`, N s, in the last step
+    double gap = 0;                                    // m, negative when inside
+    int other = -1;                                    // a body
+    Vec3 force = Vec3::Zero();                         // on `body`, N
+    bool sliding = false;
   };
 
   double time = 0;           // s
@@ -79,6 +107,7 @@ struct Snapshot {
   std::vector<Body> bodies;  // as in the Cast
   std::vector<Spring> springs;
   std::vector<Mouse> mice;
+  std::vector<Joint> joints;
   std::vector<Contact> contacts;
   Energies energies;
   Vec3 momentum = Vec3::Zero();          // kg m/s

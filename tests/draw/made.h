@@ -29,7 +29,7 @@ struct Made {
     who.name = "body " + std::to_string(cast.bodies.size());
     who.kind = kind;
     who.radius = kind == sim::ShapeKind::ball ? size : 0;
-    if (kind == sim::ShapeKind::box) who.half = {size, size, 0};
+    if (kind == sim::ShapeKind::box) who.half = {size, size, 0}, who.turns = true;
     cast.bodies.push_back(who);
     sim::Snapshot::Body where;
     where.position = position;

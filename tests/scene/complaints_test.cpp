@@ -201,6 +201,48 @@ TEST(Complaints, GroupsAreThoseOfBodies) {
           "\"stones\"");
 }
 
+TEST(Complaints, OverlapsNameThePairAndTheDepth) {
+  const std::string pair =
+      "[[box]]\nname = \"a\"\nsize = [1, 1]\nposition = [2, 2]\n[[box]]\nname = \"b\"\nsize = [1, 1]\n";
+  refused(kContact + pair + "position = [2.9, 2.2]",
+          "a.toml:10:12: 'a' and 'b' overlap by 0.1 m at the start; move them apart, or let them be pushed: "
+          "[physics] "
+          "overlap = \"separate\"");
+  refused(
+      kContact + "[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 4, offset = [0.3, 0] }",
+      "a.toml:5:12: 'ball[0]' and 'ball[1]' overlap by 0.1 m at the start, and 2 more pairs do; move them "
+      "apart, or "
+      "let them be pushed: [physics] overlap = \"separate\"");
+  // a millionth of a metre square's size is 1.4e-6 m: less is put right
+  EXPECT_TRUE(wrong(kContact + pair + "position = [2.999999, 2.2]").empty());
+  EXPECT_FALSE(wrong(kContact + pair + "position = [2.999998, 2.2]").empty());
+  // what may overlap
+  EXPECT_TRUE(wrong(kContact + "overlap = \"separate\"\n" + pair + "position = [2.9, 2.2]").empty());
+  EXPECT_TRUE(wrong("[physics]\ncollision = \"handout\"\n" + pair + "position = [2.9, 2.2]").empty());
+  EXPECT_TRUE(wrong(kContact + pair +
+                    "position = [2.9, 2.2]\n[[joint]]\ntype = \"pin\"\nbetween = [\"a\", \"b\"]\n"
+                    "at = [2.5, 2]")
+                  .empty());
+  EXPECT_FALSE(wrong(kContact + pair +
+                     "position = [2.9, 2.2]\n[[joint]]\ntype = \"pin\"\nbetween = [\"a\", \"b\"]\n"
+                     "at = [2.5, 2]\ntouching = true")
+                   .empty());
+  EXPECT_TRUE(wrong(kContact +
+                    "[[ball]]\nposition = [1, 1]\ngroup = \"g\"\ncopies = { count = 4, offset = [0.3, 0] }\n"
+                    "[contact]\nignore = [[\"g\", \"g\"]]")
+                  .empty());
+  EXPECT_TRUE(
+      wrong(kContact + "[[ball]]\nposition = [1, 1]\nfixed = true\ncopies = { count = 4, offset = [0.3, 0] }")
+          .empty());
+}
+
+TEST(Complaints, TheCameraFollowsOneBody) {
+  refused("[[box]]\nname = \"a\"\n[camera]\nfollow = \"b\"",
+          "a.toml:4:10: no body is called 'b'; did you mean 'a'?");
+  refused("[[box]]\nname = \"a\"\n[camera]\nfollow = \"a\"\ncenter = [1, 1]",
+          "a.toml:5:10: the camera follows a body, or looks at 'center'; leave one out");
+}
+
 TEST(Complaints, TheHandoutKnowsParticlesAndBoxes) {
   refused(
       "[physics]\ncollision = \"handout\"\n[[ball]]",

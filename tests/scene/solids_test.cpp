@@ -54,8 +54,9 @@ TEST(Polygon, IsKeptAboutItsCentreOfMass) {
 }
 
 TEST(Polygon, ASquareIsABox) {
-  const Scene it =
-      scene("[[polygon]]\npoints = [[0, 0], [0.8, 0], [0.8, 0.5], [0, 0.5]]\nposition = [3.6, 2]\n[[box]]");
+  const Scene it = scene(
+      "[[polygon]]\npoints = [[0, 0], [0.8, 0], [0.8, 0.5], [0, 0.5]]\nposition = [3.6, 2]\n"
+      "group = \"one\"\n[[box]]\ngroup = \"one\"\n[contact]\nignore = [[\"one\", \"one\"]]");
   const auto& bodies = it.world.model.bodies;
   EXPECT_EQ(bodies[0].name, "box[0]");
   EXPECT_NEAR(bodies[0].mass, bodies[1].mass, kExact);

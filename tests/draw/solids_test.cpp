@@ -1,0 +1,210 @@
+// Polygons, bodies of several parts, balls that turn, joints, forces: where they are on the page.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "draw/made.h"
+
+namespace obscura::draw {
+namespace {
+
+using sim::JointKind;
+using sim::ShapeKind;
+
+constexpr double kExact = 1e-9;  // page units: rounding of numbers about a thousand
+
+int polygon(Made& made, const sim::Vec3& position, std::vector<sim::Vec3> vertices) {
+  const int it = made.body(ShapeKind::polygon, position);
+  made.cast.bodies[it].vertices = std::move(vertices);
+  made.cast.bodies[it].turns = true;
+  return it;
+}
+
+sim::Cast::Part bar(double x, double y, double half_x, double half_y) {
+  return {.kind = ShapeKind::box, .half = {half_x, half_y, 0}, .center = {x, y, 0}, .vertices = {}};
+}
+
+// what is on top at a point of the page, of polygons alone
+Color on_top(const List& list, const Point& p) {
+  Color top = {0, 0, 0, 0};
+  for (const Polygon& polygon : list.polygons) {
+    int left = 0, right = 0;
+    const int n = polygon.end - polygon.begin;
+    for (int i = 0; i < n; ++i) {
+      const Point& a = list.points[polygon.begin + i];
+      const Point& b = list.points[polygon.begin + (i + 1) % n];
+      ((b - a).x() * (p - a).y() - (b - a).y() * (p - a).x() > 0 ? left : right) += 1;
+    }
+    const bool within = left == 0 || right == 0;
+    if (within) top = polygon.fill;
+  }
+  return top;
+}
+
+void joint(Made& made, JointKind kind, int a, int b, const sim::Vec3& at, const sim::Vec3& to,
+           double length = 0) {
+  sim::Cast::Joint who;
+  who.kind = kind, who.a = a, who.b = b, who.length = length;
+  made.cast.joints.push_back(who);
+  made.now.joints.push_back({at, to, false});
+}
+
+double length(const List& list, const Stroke& stroke) {
+  double sum = 0;
+  for (int i = stroke.begin; i + 1 < stroke.end; ++i) sum += (list.nodes[i + 1].at - list.nodes[i].at).norm();
+  return sum;
+}
+
+TEST(Polygons, LieWhereTheirCornersAreWithTheirOutlineInside) {
+  Made made = room(8, 4.5);
+  const int it = polygon(made, {3, 2, 0}, {{-0.3, -0.2, 0}, {0.6, -0.2, 0}, {-0.3, 0.4, 0}});
+  made.now.bodies[it].angle = std::numbers::pi / 2;
+  const View view = made.depictor().view(0);
+  const Picture picture = made.picture();
+  const List& list = picture.moving;
+  ASSERT_EQ(list.polygons.size(), 2u);
+  EXPECT_NEAR((list.points[0] - view.page({3.2, 1.7, 0})).norm(), 0, kExact);
+  EXPECT_NEAR((list.points[1] - view.page({3.2, 2.6, 0})).norm(), 0, kExact);
+
+  // each inner corner is a line's width from two edges, and no nearer to the third
+  ASSERT_EQ(list.polygons[1].end - list.polygons[1].begin, 3);
+  for (int i = 3; i < 6; ++i) {
+    int near = 0;
+    for (int e = 0; e < 3; ++e) {
+      const Point a = list.points[e], along = (list.points[(e + 1) % 3] - a).normalized();
+      const double inside = (list.points[i] - a).dot(Point(along.y(), -along.x()));
+      EXPECT_GT(inside, 2.8 - kExact);
+      near += std::abs(inside - 2.8) < 1e-6;
+    }
+    EXPECT_EQ(near, 2);
+  }
+}
+
+TEST(Polygons, PartsOfOneBodyAreDrawnAsOne) {
+  // a T: the stem's upper edge lies on the bar's lower one
+  Made made = room(8, 4.5);
+  const int it = made.body(ShapeKind::compound, {3, 2, 0});
+  made.cast.bodies[it].parts = {bar(0, 0.3, 0.6, 0.1), bar(0, -0.2, 0.1, 0.4)};
+  const View view = made.depictor().view(0);
+  const Picture picture = made.picture();
+  const List& list = picture.moving;
+  ASSERT_EQ(list.polygons.size(), 4u);
+  const Color outline = list.polygons[0].fill, fill = list.polygons[3].fill;
+  EXPECT_NE(outline, fill);
+  const double line = 2.8 / view.scale;
+  // across the joint there is no line, beside it and around the whole there is
+  for (const double y : {0.2 - 0.9 * line, 0.2, 0.2 + 0.9 * line})
+    EXPECT_EQ(on_top(list, view.page({3, 2 + y, 0})), fill) << y;
+  EXPECT_EQ(on_top(list, view.page({3.3, 2 + 0.2 + 0.5 * line, 0})), outline);
+  EXPECT_EQ(on_top(list, view.page({3 + 0.1 - 0.5 * line, 2, 0})), outline);
+  EXPECT_EQ(on_top(list, view.page({3, 2 + 0.4 - 0.5 * line, 0})), outline);
+  EXPECT_EQ(on_top(list, view.page({3, 2 - 0.6 + 0.5 * line, 0})), outline);
+}
+
+TEST(Balls, ThatTurnShowHowTheyStand) {
+  Made made = room(8, 4.5);
+  const int ball = made.body(ShapeKind::ball, {3, 2, 0}, 0.25);
+  EXPECT_TRUE(made.picture().moving.strokes.empty()) << "a particle has no way up";
+  made.cast.bodies[ball].turns = true;
+  made.now.bodies[ball].angle = std::numbers::pi / 2;
+  const Picture picture = made.picture();
+  ASSERT_EQ(picture.moving.strokes.size(), 1u);
+  const Point way = picture.moving.nodes[1].at - picture.moving.nodes[0].at;
+  EXPECT_NEAR(way.x(), 0, kExact);
+  EXPECT_LT(way.y(), -0.8 * 0.25 * made.depictor().view(0).scale);
+}
+
+TEST(Ropes, SagByTheirLengthAndAreStraightWhereTaut) {
+  Made made = room(8, 4.5);
+  made.cast.gravity = {0, -9.81, 0};
+  const int ball = made.body(ShapeKind::ball, {3, 2, 0}, 0.1);
+  joint(made, JointKind::rope, ball, -1, {3, 2, 0}, {4, 3, 0}, 2);
+  joint(made, JointKind::rope, ball, -1, {3, 2, 0}, {3, 4, 0}, 2);
+  const double scale = made.depictor().view(0).scale;
+  const Picture picture = made.picture();
+  const List& list = picture.moving;
+  ASSERT_EQ(list.strokes.size(), 2u);
+  EXPECT_NEAR(length(list, list.strokes[0]), 2 * scale, 1e-6);
+  EXPECT_GT(list.strokes[0].end - list.strokes[0].begin, 10);
+  EXPECT_EQ(list.strokes[1].end - list.strokes[1].begin, 2);
+  // below the straight line: y runs down
+  const int middle = (list.strokes[0].begin + list.strokes[0].end) / 2;
+  EXPECT_GT(list.nodes[middle].at.y(), made.depictor().view(0).page({3.5, 2.5, 0}).y() + 0.2 * scale);
+}
+
+TEST(Joints, ThatBrokeAreGone) {
+  Made made = room(8, 4.5);
+  const int a = made.body(ShapeKind::box, {3, 2, 0}, 0.2), b = made.body(ShapeKind::box, {3.4, 2, 0}, 0.2);
+  const std::size_t bare = made.picture().moving.discs.size();
+  joint(made, JointKind::pin, a, b, {3.2, 2, 0}, {3.2, 2, 0});
+  joint(made, JointKind::rod, a, b, {3, 2, 0}, {3.4, 2, 0}, 0.4);
+  EXPECT_EQ(made.picture().moving.discs.size(), bare + 3) << "a ring, and the rod's two ends";
+  EXPECT_EQ(made.picture().moving.strokes.size(), 1u);
+  for (auto& each : made.now.joints) each.broken = true;
+  EXPECT_EQ(made.picture().moving.discs.size(), bare);
+  EXPECT_TRUE(made.picture().moving.strokes.empty());
+}
+
+TEST(Contacts, ArrowsAreTheForceOnWhatIsCarried) {
+  Made made = room(8, 4.5);
+  made.cast.gravity = {0, -9.81, 0};
+  made.body(ShapeKind::box, {3, 0.2, 0}, 0.2);
+  made.body(ShapeKind::box, {3, 0.6, 0}, 0.2);
+  made.look.force_scale = 0.1;
+  sim::Snapshot::Contact contact;
+  contact.body = 0, contact.other = 1;
+  contact.point = {3, 0.4, 0}, contact.normal = {0, -1, 0}, contact.force = {1, -5, 0};
+  made.now.contacts = {contact};
+  EXPECT_TRUE(made.picture().moving.polygons.empty()) << "nobody asked";
+
+  const auto tip = [&] {
+    const Picture picture = made.picture();
+    EXPECT_EQ(picture.moving.polygons.size(), 2u) << "halo and head";
+    return picture.moving.polygons.size() == 2 ? picture.moving.points[picture.moving.polygons[1].begin]
+                                               : Point(0, 0);
+  };
+  const View view = made.depictor().view(0);
+  for (const auto& [lower, upper] : {std::pair(true, true), std::pair(false, true)}) {
+    made.look.bodies[0].contact = lower, made.look.bodies[1].contact = upper;
+    EXPECT_NEAR((tip() - view.page({2.9, 0.9, 0})).norm(), 0, kExact);
+  }
+  made.look.bodies[0].contact = true, made.look.bodies[1].contact = false;
+  EXPECT_NEAR((tip() - view.page({3.1, -0.1, 0})).norm(), 0, kExact);
+}
+
+TEST(Contacts, TheScaleSuitsTheWeights) {
+  Made made = room(8, 4.5);
+  made.cast.gravity = {0, -9.81, 0};
+  made.body(ShapeKind::box, {3, 0.2, 0}, 0.2);
+  made.look.bodies[0].contact = true;
+  sim::Snapshot::Contact contact;
+  contact.body = 0, contact.wall = 0, contact.point = {3, 0, 0};
+  for (const double mass : {1e-3, 1.0, 1e3}) {
+    made.cast.bodies[0].mass = mass;
+    contact.force = {0, 9.81 * mass, 0};
+    made.now.contacts = {contact};
+    const Picture picture = made.picture();
+    ASSERT_EQ(picture.moving.polygons.size(), 2u);
+    const Point tip = picture.moving.points[picture.moving.polygons[1].begin];
+    // an eighth of the room's height or so
+    EXPECT_NEAR((tip - made.depictor().view(0).page({3, 0.13 * 4.5, 0})).norm(), 0, 1e-6);
+  }
+}
+
+TEST(Camera, KeepsWhomItFollowsInTheMiddle) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {3, 2, 0}, 0.1);
+  made.camera.follow = 0;
+  made.camera.keys.push_back({.time = 0, .center = {}, .width = 4});
+  const Picture one = made.picture();
+  made.now.bodies[0].position = {7, 1, 0};
+  const Picture two = made.picture();
+  EXPECT_NEAR((one.moving.discs[0].center - two.moving.discs[0].center).norm(), 0, kExact);
+  EXPECT_NEAR(one.moving.discs[0].center.x(), 960, kExact);
+  EXPECT_NE(one.still, two.still) << "the walls move instead";
+}
+
+}  // namespace
+}  // namespace obscura::draw
