@@ -7,7 +7,9 @@
 //
 // each end of what the two share is a corner of the one over the face of the other. Where the outlines
 // overlap, the deepest corner always lies over the touching face, for a shift by the depth leaves them
-// touching there; and no end of the touching face lies deeper in the partner.
+// touching there; and no end of the touching face lies deeper in the partner. Parallel faces that share
+// nothing but a corner (bricks across a joint's crossing, a box about to slide from one onto the next) do not
+// touch: whichever normal it had, it would stop what may pass.
 
 #include "sim/gap.h"
 
@@ -120,15 +122,7 @@ void face_at_face(const Couple& couple, const Touching& touching, double margin,
   const Outline &base = touching.base, &other = touching.other;
   const Vec<2> n = base.normal(touching.face), t(-n[1], n[0]);
   const Vec<2> down = -(touching.lies.turn.transpose() * n);
-  int partner = 0;
-  double most = -2;
-  for (int i = 0; i < other.faces(); ++i) {
-    const double against = down.dot(other.normal(i));
-    if (against > most) {
-      most = against;
-      partner = i;
-    }
-  }
+  const int partner = other.facing(down);
   const int base_ends[2] = {touching.face, base.next(touching.face)};  // lo, hi
   const int other_ends[2] = {other.next(partner), partner};
   const Vec<2> r[2] = {base.corner(base_ends[0]), base.corner(base_ends[1])};
@@ -144,7 +138,8 @@ void face_at_face(const Couple& couple, const Touching& touching, double margin,
   const double base_core[2] = {partner_n.dot(r[0] - i[0]), partner_n.dot(r[1] - i[0])};
   const double place[2] = {t.dot(i[0] - r[0]), t.dot(i[1] - r[0])};
 
-  // apart: is it a face that is nearest?
+  // apart: is it a face that is nearest? Parallel ones in line with each other's ends pass by.
+  const bool parallel = std::abs(t.dot(partner_n)) < kParallel;
   if (touching.value > 0) {
     bool over = false;
     for (int end = 0; end < 2; ++end) {
@@ -155,35 +150,38 @@ void face_at_face(const Couple& couple, const Touching& touching, double margin,
              (foot >= -slack && foot <= partner_length + slack && base_core[end] <= touching.value + slack);
     }
     if (!over) {
+      if (parallel && std::min(std::abs(place[0] - length), std::abs(place[1])) <= aligned) return;
       const int deepest = other_ends[other_core[1] < other_core[0]];
       return corner_at_corner(couple, touching, aligned, deepest, margin, out);
     }
   }
 
   // the inner of both corners at either end
-  const bool parallel = std::abs(t.dot(partner_n)) < kParallel;
-  Gap<2> ends[2];
-  double at[2];
+  bool others[2];
+  double at[2], core[2];
   for (int end = 0; end < 2; ++end) {
     const double base_place = end ? length : 0;
     const double inner = end ? base_place - place[end] : place[end] - base_place;
-    const bool others = std::abs(inner) <= aligned ? touching.base_is_b || !parallel : inner > 0;
-    at[end] = others ? place[end] : base_place;
-    ends[end] = others ? touching.other_at_base(couple, other_ends[end], other_core[end])
-                       : touching.base_at_other(couple, base_ends[end], partner, base_core[end]);
+    others[end] = std::abs(inner) <= aligned ? touching.base_is_b || !parallel : inner > 0;
+    at[end] = others[end] ? place[end] : base_place;
+    core[end] = others[end] ? other_core[end] : base_core[end];
   }
+  const auto keep_end = [&](int end) {
+    if (!(core[end] - couple.radii() < margin)) return;
+    out.push_back(others[end] ? touching.other_at_base(couple, other_ends[end], core[end])
+                              : touching.base_at_other(couple, base_ends[end], partner, core[end]));
+  };
+
   // apart and askew, a corner that only seems to be over the partner seems nearer than all
   const double nearest = touching.value > 0 ? touching.value * (1 - kAligned) - aligned : -1e300;
-  for (int end = 0; end < 2; ++end) {
-    if (ends[end].value + couple.radii() < nearest) ends[end] = ends[1 - end];
-  }
-  if (at[1] - at[0] <= aligned || ends[0].key == ends[1].key) {
-    keep(ends[ends[1].value < ends[0].value], margin, out);
+  if (core[0] < nearest) return keep_end(1);
+  if (core[1] < nearest) return keep_end(0);
+  if (at[1] - at[0] <= aligned) {
+    if (!parallel) keep_end(core[1] < core[0]);
     return;
   }
-  if (ends[1].key < ends[0].key) std::swap(ends[0], ends[1]);
-  keep(ends[0], margin, out);
-  keep(ends[1], margin, out);
+  keep_end(0);
+  keep_end(1);
 }
 
 void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin, std::vector<Gap<2>>& out) {
@@ -208,7 +206,11 @@ void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin, std::v
   const Touching touching = base_is_b ? Touching{b, a, a_in_b, true, by_b.face, by_b.value}
                                       : Touching{a, b, b_in_a, false, by_a.face, by_a.value};
   if (touching.other.faces()) {
+    const std::size_t before = out.size();
     face_at_face(couple, touching, margin, out);
+    if (out.size() == before + 2 && out[before + 1].key < out[before].key) {
+      std::swap(out[before], out[before + 1]);
+    }
   } else {
     corner_at_face(couple, touching, margin, out);
   }

@@ -72,8 +72,9 @@ Meeting<D> evaluate(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b) {
 /// to `out`, with a and b for the key. A corner that lies deep inside is told by the face it is nearest to.
 /// In the plane, the two are the corners that bound what the touching faces share, be they a's or b's; where
 /// corners of both lie at one place (within 1e-6 of the face) a's is taken. Corner at corner only where no
-/// face is nearer: where a ball takes part, or shapes are apart. Two points never touch. Depends on nothing
-/// but the two poses; `feature` counts kind, parts, and the corner or face of each.
+/// face is nearer: where a ball takes part, or shapes are apart. Parallel faces in line with each other's
+/// ends pass by, within 1e-6 of the face: a box slides over a row of boxes. Two points never touch. Depends
+/// on nothing but the two poses; `feature` counts kind, parts, and the corner or face of each.
 template <int D>
 void gaps(int a, const Shape<D>& shape_a, const Stance<D>& at_a, int b, const Shape<D>& shape_b,
           const Stance<D>& at_b, double margin, std::vector<Gap<D>>& out);

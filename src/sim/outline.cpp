@@ -31,6 +31,15 @@ double nearest(const Outline& outline, const Outline& other, const Lie& lies) {
   return least;
 }
 
+// the same as by corners, for the two axes of a box at once
+Separation of_boxes(const Outline& of, const Outline& other, const Lie& lies) {
+  const Vec<2> away = lies * other.middle() - of.middle();
+  const Vec<2> s = away.cwiseAbs() - of.half() - lies.turn.cwiseAbs() * other.half();
+  const int upright = away[1] > 0 ? 2 : 0, across = away[0] < 0 ? 3 : 1;
+  if (s[0] == s[1]) return {s[0], std::min(upright, across)};
+  return s[1] > s[0] ? Separation{s[1], upright} : Separation{s[0], across};
+}
+
 }  // namespace
 
 Outline::Outline(const Shape<2>& shape) : shape_(&shape) {
@@ -59,25 +68,9 @@ Outline::Outline(const Shape<2>& shape) : shape_(&shape) {
   }
 }
 
-Vec<2> Outline::corner(int i) const {
-  if (corners_ == 1) return middle_;
-  if (shape_->kind == ShapeKind::polygon) return shape_->vertices[i];
-  const Vec<2>& half = shape_->half;
-  return {middle_[0] + (i == 1 || i == 2 ? half[0] : -half[0]), middle_[1] + (i >= 2 ? half[1] : -half[1])};
-}
-
-Vec<2> Outline::normal(int i) const {
-  if (shape_->kind == ShapeKind::box) {
-    const double out = i == 1 || i == 2 ? 1 : -1;
-    return i % 2 ? Vec<2>(out, 0) : Vec<2>(0, out);
-  }
-  const Vec<2> along = shape_->vertices[next(i)] - shape_->vertices[i];
-  return Vec<2>(along[1], -along[0]) / along.norm();
-}
-
 int Outline::farthest(const Vec<2>& d) const {
   if (corners_ == 1) return 0;
-  if (shape_->kind == ShapeKind::box) {
+  if (is_box()) {
     if (d[1] > 0) return d[0] > 0 ? 2 : 3;
     return d[0] > 0 ? 1 : 0;
   }
@@ -87,6 +80,25 @@ int Outline::farthest(const Vec<2>& d) const {
     const double here = d.dot(shape_->vertices[i]);
     if (here > most) {
       most = here;
+      best = i;
+    }
+  }
+  return best;
+}
+
+int Outline::facing(const Vec<2>& d) const {
+  if (is_box()) {
+    const int upright = d[1] > 0 ? 2 : 0, across = d[0] < 0 ? 3 : 1;
+    const double height = std::abs(d[1]), width = std::abs(d[0]);
+    if (height == width) return std::min(upright, across);
+    return height > width ? upright : across;
+  }
+  int best = 0;
+  double most = -1e300;
+  for (int i = 0; i < corners_; ++i) {
+    const double along = d.dot(normal(i));
+    if (along > most) {
+      most = along;
       best = i;
     }
   }
@@ -104,6 +116,7 @@ Lie inverse(const Lie& of) {
 }
 
 Separation greatest_separation(const Outline& of, const Outline& other, const Lie& lies, double enough) {
+  if (of.is_box() && other.is_box()) return of_boxes(of, other, lies);
   Separation best{-1e300, 0};
   for (int i = 0; i < of.faces(); ++i) {
     const Vec<2> n = of.normal(i);

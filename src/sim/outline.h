@@ -17,10 +17,19 @@ class Outline {
   int faces() const { return corners_ > 1 ? corners_ : 0; }
   int next(int i) const { return i + 1 < corners_ ? i + 1 : 0; }
   double radius() const { return radius_; }
-  Vec<2> corner(int i) const;
+  Vec<2> corner(int i) const {
+    if (corners_ == 1) return middle_;
+    if (!is_box()) return shape_->vertices[i];
+    return {middle_[0] + (i == 1 || i == 2 ? half()[0] : -half()[0]),
+            middle_[1] + (i >= 2 ? half()[1] : -half()[1])};
+  }
 
   /// Outward unit normal of face i.
-  Vec<2> normal(int i) const;
+  Vec<2> normal(int i) const {
+    if (is_box()) return i % 2 ? Vec<2>(2 - i, 0) : Vec<2>(0, i - 1);
+    const Vec<2> along = shape_->vertices[next(i)] - shape_->vertices[i];
+    return Vec<2>(along[1], -along[0]) / along.norm();
+  }
 
   /// A circle that holds the core without its radius, around `middle`.
   Vec<2> middle() const { return middle_; }
@@ -28,6 +37,12 @@ class Outline {
 
   /// Which corner lies farthest along d, the first of equals.
   int farthest(const Vec<2>& d) const;
+
+  /// Which face's normal lies most along d, the first of equals. Requires faces.
+  int facing(const Vec<2>& d) const;
+
+  bool is_box() const { return shape_->kind == ShapeKind::box; }
+  const Vec<2>& half() const { return shape_->half; }  // of a box
 
  private:
   const Shape<2>* shape_;

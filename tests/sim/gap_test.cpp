@@ -236,8 +236,24 @@ TEST(Gaps, OfCornersApartPointFromOneToTheOther) {
   EXPECT_NEAR(now.value, 0.05, 1e-15);
   EXPECT_NEAR(now.normal[0], 0.6, 1e-13);
   EXPECT_NEAR(now.point[1], 0.52, 1e-15);
-  // at one place, sharp ones touch with a face
-  EXPECT_NE(found(box, standing({1, 1}), box, standing({0, 0}), 0.1)[0].kind, Kind::corners);
+  // at one place, sharp ones that are askew touch with a face
+  const double half = std::sqrt(0.5);
+  const auto askew =
+      found(box, standing({0.5 + half, 0.5}, std::numbers::pi / 4), box, standing({0, 0}), 0.1);
+  ASSERT_EQ(askew.size(), 1u);
+  EXPECT_NE(askew[0].kind, Kind::corners);
+}
+
+// a box that slides from one onto the next, a hair lower or higher, and bricks across a crossing of joints
+TEST(Gaps, OfParallelFacesInLineAreNone) {
+  const Shape<2> box = box_shape(1, 1);
+  for (const double level : {0.0, 1e-9, -1e-9, 1e-7, -1e-7}) {
+    for (const double before : {0.05, 1e-3, 1e-9, 0.0, -1e-9}) {
+      EXPECT_TRUE(found(box, standing({-1 - before, 1 + level}), box, standing({0, 0}), 0.1).empty());
+      EXPECT_TRUE(found(box, standing({1 + level, 1 + before}), box, standing({0, 0}), 0.1).empty());
+    }
+    EXPECT_EQ(found(box, standing({-0.999, 1 + level}), box, standing({0, 0}), 0.1).size(), 2u);
+  }
 }
 
 TEST(Gaps, OfBallsRunAlongTheirCentres) {
