@@ -14,7 +14,7 @@
 namespace obscura::sim::sweep {
 
 /// Where a body stands: its centre (m), and cosine and sine of its turn.
-struct Pose {
+struct alignas(32) Pose {
   double x = 0, y = 0, c = 1, s = 0;
 };
 

@@ -192,7 +192,7 @@ Place Pairs::place(const Pair& pair, const std::vector<Pose>& poses, Feature fea
                feature);
 }
 
-void Pairs::renew(const Pair& pair, State<2>& state, const std::vector<Pose>& poses) {
+bool Pairs::renew(const Pair& pair, State<2>& state, const std::vector<Pose>& poses) {
   Feature features[2];
   if (pair.b < 0) {
     nearest(cores_, cores_.all[pair.core_a], poses[pair.a], model_.walls[-1 - pair.b], features);
@@ -205,13 +205,14 @@ void Pairs::renew(const Pair& pair, State<2>& state, const std::vector<Pose>& po
   const int parts = now->key.feature >> 16 << 16;
   bool same = true;
   for (int k = 0; k < pair.touches; ++k) same = same && now[k].key.feature == (parts | words[k]);
-  if (same) return;
+  if (same) return false;
   const Contact<2> old[2] = {now[0], now[pair.touches - 1]};
   for (int k = 0; k < pair.touches; ++k) {
     now[k] = {};
     now[k].key = {pair.a, pair.b, parts | words[k]};
   }
   inherit(pair, poses, old, pair.touches, now);
+  return true;
 }
 
 void Pairs::adopt(const State<2>& state) {

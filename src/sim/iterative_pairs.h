@@ -33,8 +33,9 @@ class Pairs {
   /// Makes the pairs those of state.contacts, where they are not already.
   void adopt(const State<2>& state);
 
-  /// Features of a pair anew; its forces move with their keys or, failing that, their places.
-  void renew(const Pair& pair, State<2>& state, const std::vector<Pose>& poses);
+  /// Features of a pair anew, false where they stay; its forces move with their keys or, failing that, their
+  /// places.
+  bool renew(const Pair& pair, State<2>& state, const std::vector<Pose>& poses);
 
   const std::vector<Pair>& all() const { return pairs_; }
   std::vector<Pair>& all() { return pairs_; }

@@ -1,12 +1,16 @@
 // One sweep of projected Gauss and Seidel. Of each pair in turn,
 //   friction   lt' = clamp(lt - v_t / K_t, -mu ln, mu ln)
 //   normals    ln >= 0,  v_n + K (ln' - ln) - target >= 0,  one of both zero in each touch
-// the second by its cases: both press, one presses. Where rounding leaves no case, the one less violated.
+// the second by its cases: both press, one presses. Where rounding leaves no case, the one less violated. A
+// target is -g / h where the touch is open, else zero.
 //
 // Written once in vectors of the compiler; two lanes are SSE2, four AVX2. No operation differs, so the bits
 // are the same.
 
 #include "sim/iterative_rows.h"
+
+#include <cmath>
+#include <limits>
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // every function with vectors is inlined
 
@@ -20,6 +24,8 @@ typedef long long I2 __attribute__((vector_size(16)));
 typedef long long I4 __attribute__((vector_size(32)));
 #define OBSCURA_INLINE [[gnu::always_inline]] inline
 
+constexpr double kTiny = 1e-300;  // against division by zero in empty seats: changes no other number
+
 template <class V>
 struct Of;
 template <>
@@ -32,168 +38,356 @@ struct Of<V4> {
   using Mask = I4;
   static constexpr int lanes = 4;
 };
+template <class V>
+using Mask = typename Of<V>::Mask;
 
 template <class V>
 OBSCURA_INLINE V load(const double* from) {
   return *reinterpret_cast<const V*>(from);
 }
 template <class V>
-OBSCURA_INLINE void store(double* to, V v) {
+OBSCURA_INLINE void store(double* to, const V& v) {
   *reinterpret_cast<V*>(to) = v;
 }
 template <class V>
-OBSCURA_INLINE V pick(typename Of<V>::Mask which, V yes, V no) {
-  using M = typename Of<V>::Mask;
-  return V((which & M(yes)) | (~which & M(no)));
+OBSCURA_INLINE V pick(const Mask<V>& which, const V& yes, const V& no) {
+  return V((which & Mask<V>(yes)) | (~which & Mask<V>(no)));
 }
 template <class V>
-OBSCURA_INLINE V larger(V a, V b) {
+OBSCURA_INLINE V larger(const V& a, const V& b) {
   return pick<V>(a > b, a, b);
 }
 template <class V>
-OBSCURA_INLINE V smaller(V a, V b) {
+OBSCURA_INLINE V smaller(const V& a, const V& b) {
   return pick<V>(a < b, a, b);
+}
+template <class V>
+OBSCURA_INLINE V magnitude(const V& a) {
+  return larger<V>(a, -a);
+}
+OBSCURA_INLINE V2 root(const V2& a) { return V2{std::sqrt(a[0]), std::sqrt(a[1])}; }
+OBSCURA_INLINE V4 root(const V4& a) {
+  return V4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
+OBSCURA_INLINE bool any(const I2& m) { return (m[0] | m[1]) != 0; }
+OBSCURA_INLINE bool any(const I4& m) { return ((m[0] | m[1]) | (m[2] | m[3])) != 0; }
+
+// all bits of the lanes whose bit is set
+struct alignas(32) Bits {
+  long long lane[16][4];
+};
+constexpr Bits spread() {
+  Bits bits{};
+  for (int i = 0; i < 16; ++i) {
+    for (int k = 0; k < 4; ++k) bits.lane[i][k] = i >> k & 1 ? -1 : 0;
+  }
+  return bits;
+}
+constexpr Bits kBits = spread();
+template <class V>
+OBSCURA_INLINE Mask<V> mask(unsigned char bits, int lane) {
+  return *reinterpret_cast<const Mask<V>*>(&kBits.lane[bits][lane]);
 }
 
 template <class V>
-struct Moving {
-  V x, y, w;
+struct Quad {
+  V x, y, z, w;
 };
 
-OBSCURA_INLINE void gather(const Motion* m, const int* i, Moving<V2>& out) {
-  const V2 a0 = load<V2>(&m[i[0]].x), a1 = load<V2>(&m[i[0]].w);
-  const V2 b0 = load<V2>(&m[i[1]].x), b1 = load<V2>(&m[i[1]].w);
+// four doubles of each lane's body
+OBSCURA_INLINE void gather(const double* m, const int* i, Quad<V2>& out) {
+  const double *p = m + 4 * i[0], *q = m + 4 * i[1];
+  const V2 a0 = load<V2>(p), a1 = load<V2>(p + 2), b0 = load<V2>(q), b1 = load<V2>(q + 2);
   out.x = __builtin_shufflevector(a0, b0, 0, 2), out.y = __builtin_shufflevector(a0, b0, 1, 3);
-  out.w = __builtin_shufflevector(a1, b1, 0, 2);
+  out.z = __builtin_shufflevector(a1, b1, 0, 2), out.w = __builtin_shufflevector(a1, b1, 1, 3);
 }
-OBSCURA_INLINE void scatter(Motion* m, const int* i, const Moving<V2>& in) {
-  store<V2>(&m[i[0]].x, __builtin_shufflevector(in.x, in.y, 0, 2));
-  m[i[0]].w = in.w[0];
-  store<V2>(&m[i[1]].x, __builtin_shufflevector(in.x, in.y, 1, 3));
-  m[i[1]].w = in.w[1];
+OBSCURA_INLINE void scatter(double* m, const int* i, const Quad<V2>& in) {
+  double *p = m + 4 * i[0], *q = m + 4 * i[1];
+  store<V2>(p, __builtin_shufflevector(in.x, in.y, 0, 2)),
+      store<V2>(p + 2, __builtin_shufflevector(in.z, in.w, 0, 2));
+  store<V2>(q, __builtin_shufflevector(in.x, in.y, 1, 3)),
+      store<V2>(q + 2, __builtin_shufflevector(in.z, in.w, 1, 3));
 }
-OBSCURA_INLINE void gather(const Motion* m, const int* i, Moving<V4>& out) {
-  const V4 a = load<V4>(&m[i[0]].x), b = load<V4>(&m[i[1]].x);
-  const V4 c = load<V4>(&m[i[2]].x), d = load<V4>(&m[i[3]].x);
+OBSCURA_INLINE void gather(const double* m, const int* i, Quad<V4>& out) {
+  const V4 a = load<V4>(m + 4 * i[0]), b = load<V4>(m + 4 * i[1]);
+  const V4 c = load<V4>(m + 4 * i[2]), d = load<V4>(m + 4 * i[3]);
   const V4 ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
   const V4 ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7), cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  out.x = __builtin_shufflevector(ab, cd, 0, 1, 4, 5), out.w = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-  out.y = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+  out.x = __builtin_shufflevector(ab, cd, 0, 1, 4, 5), out.z = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+  out.y = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5),
+  out.w = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
-OBSCURA_INLINE void scatter(Motion* m, const int* i, const Moving<V4>& in) {
-  const V4 none{};
+OBSCURA_INLINE void scatter(double* m, const int* i, const Quad<V4>& in) {
   const V4 xy = __builtin_shufflevector(in.x, in.y, 0, 4, 2, 6),
            xy1 = __builtin_shufflevector(in.x, in.y, 1, 5, 3, 7);
-  const V4 w = __builtin_shufflevector(in.w, none, 0, 4, 2, 6),
-           w1 = __builtin_shufflevector(in.w, none, 1, 5, 3, 7);
-  store<V4>(&m[i[0]].x, __builtin_shufflevector(xy, w, 0, 1, 4, 5));
-  store<V4>(&m[i[1]].x, __builtin_shufflevector(xy1, w1, 0, 1, 4, 5));
-  store<V4>(&m[i[2]].x, __builtin_shufflevector(xy, w, 2, 3, 6, 7));
-  store<V4>(&m[i[3]].x, __builtin_shufflevector(xy1, w1, 2, 3, 6, 7));
+  const V4 zw = __builtin_shufflevector(in.z, in.w, 0, 4, 2, 6),
+           zw1 = __builtin_shufflevector(in.z, in.w, 1, 5, 3, 7);
+  store<V4>(m + 4 * i[0], __builtin_shufflevector(xy, zw, 0, 1, 4, 5));
+  store<V4>(m + 4 * i[1], __builtin_shufflevector(xy1, zw1, 0, 1, 4, 5));
+  store<V4>(m + 4 * i[2], __builtin_shufflevector(xy, zw, 2, 3, 6, 7));
+  store<V4>(m + 4 * i[3], __builtin_shufflevector(xy1, zw1, 2, 3, 6, 7));
+}
+
+template <class V>
+struct Row {
+  V nx, ny, x, y, gap, na, nb, ta, tb;
+};
+
+template <class V>
+OBSCURA_INLINE void make(const Seats& g, int lane, int k, const Quad<V>& a, const Quad<V>& b, Row<V>& r) {
+  // the corner's body, and the face's
+  const Mask<V> swapped = mask<V>(g.of_b[k], lane);
+  const V px = pick<V>(swapped, b.x, a.x), py = pick<V>(swapped, b.y, a.y);
+  const V pc = pick<V>(swapped, b.z, a.z), ps = pick<V>(swapped, b.w, a.w);
+  const V qx = pick<V>(swapped, a.x, b.x), qy = pick<V>(swapped, a.y, b.y);
+  const V qc = pick<V>(swapped, a.z, b.z), qs = pick<V>(swapped, a.w, b.w);
+  const V cx = load<V>(g.cx[k] + lane), cy = load<V>(g.cy[k] + lane);
+  const V fx = load<V>(g.fx[k] + lane), fy = load<V>(g.fy[k] + lane);
+  const V d = load<V>(g.d[k] + lane), radius = load<V>(g.radius + lane);
+  const V x = px + (pc * cx - ps * cy), y = py + (ps * cx + pc * cy);
+  const V nx = qc * fx - qs * fy, ny = qs * fx + qc * fy;
+  r.gap = nx * (x - qx) + ny * (y - qy) - d - radius;
+  const V back = radius + 0.5 * r.gap;
+  r.x = x - nx * back, r.y = y - ny * back;
+  r.nx = pick<V>(swapped, -nx, nx), r.ny = pick<V>(swapped, -ny, ny);
+  if (g.corners[k]) {
+    // two corners: from b's to a's
+    const Mask<V> two = mask<V>(g.corners[k], lane);
+    const V ox = qx + nx, oy = qy + ny;
+    const V ux = x - ox, uy = y - oy;
+    const V l = root(ux * ux + uy * uy);
+    const Mask<V> apart =
+        l > 1e-12 * (d + radius + magnitude<V>(fx) + magnitude<V>(fy) + magnitude<V>(cx) + magnitude<V>(cy));
+    const V one = V{} + 1.0;
+    const V safe = pick<V>(apart, l, one);
+    const V mx = pick<V>(apart, ux / safe, V{}), my = pick<V>(apart, uy / safe, one);
+    const V gap = l - radius, along = d + 0.5 * gap;
+    r.gap = pick<V>(two, gap, r.gap);
+    r.nx = pick<V>(two, mx, r.nx), r.ny = pick<V>(two, my, r.ny);
+    r.x = pick<V>(two, ox + mx * along, r.x), r.y = pick<V>(two, oy + my * along, r.y);
+  }
+  const V ax = r.x - a.x, ay = r.y - a.y, bx = r.x - b.x, by = r.y - b.y;
+  r.na = ax * r.ny - ay * r.nx, r.nb = bx * r.ny - by * r.nx;
+  r.ta = ax * r.nx + ay * r.ny, r.tb = bx * r.nx + by * r.ny;
 }
 
 // the two bodies of each lane under impulses
 template <class V>
 struct Two {
-  Moving<V> a, b;
-  V ima, iia, imb, iib;
+  Quad<V> a, b;  // velocities, and 1 / mass
+  V iia, iib;
 
-  OBSCURA_INLINE Two(const Group& g, int lane, const Motion* v) {
-    gather(v, g.a + lane, a), gather(v, g.b + lane, b);
-    ima = load<V>(g.ima + lane), iia = load<V>(g.iia + lane);
-    imb = load<V>(g.imb + lane), iib = load<V>(g.iib + lane);
+  OBSCURA_INLINE Two(const Seats& g, int lane, const Motion* v) {
+    gather(&v->x, g.a + lane, a), gather(&v->x, g.b + lane, b);
+    iia = load<V>(g.iia + lane), iib = load<V>(g.iib + lane);
   }
-  OBSCURA_INLINE void back(const Group& g, int lane, Motion* v) const {
-    scatter(v, g.a + lane, a), scatter(v, g.b + lane, b);
+  OBSCURA_INLINE void back(const Seats& g, int lane, Motion* v) const {
+    scatter(&v->x, g.a + lane, a), scatter(&v->x, g.b + lane, b);
   }
   OBSCURA_INLINE V along(const V& dx, const V& dy, const V& ra, const V& rb) const {
-    return dx * (a.x - b.x) + dy * (a.y - b.y) + (ra * a.w - rb * b.w);
+    return dx * (a.x - b.x) + dy * (a.y - b.y) + (ra * a.z - rb * b.z);
   }
   OBSCURA_INLINE void push(const V& dx, const V& dy, const V& ra, const V& rb, const V& l) {
-    const V la = ima * l, lb = imb * l;
-    a.x += dx * la, a.y += dy * la, a.w += iia * (ra * l);
-    b.x -= dx * lb, b.y -= dy * lb, b.w -= iib * (rb * l);
+    const V la = a.w * l, lb = b.w * l;
+    a.x += dx * la, a.y += dy * la, a.z += iia * (ra * l);
+    b.x -= dx * lb, b.y -= dy * lb, b.z -= iib * (rb * l);
   }
 };
 
 // the normal impulses of a pair together
 template <class V>
-OBSCURA_INLINE void press(const Group& g, int lane, Two<V>& two, V target0, V target1, V& l0, V& l1) {
-  const Group::Side &s0 = g.side[0], &s1 = g.side[1];
-  const V nx0 = load<V>(s0.nx + lane), ny0 = load<V>(s0.ny + lane);
-  const V nx1 = load<V>(s1.nx + lane), ny1 = load<V>(s1.ny + lane);
-  const V na0 = load<V>(s0.na + lane), nb0 = load<V>(s0.nb + lane);
-  const V na1 = load<V>(s1.na + lane), nb1 = load<V>(s1.nb + lane);
-  const V k12 = load<V>(g.k12 + lane);
+OBSCURA_INLINE void press(Two<V>& two, const Row<V>& r0, const Row<V>& r1, const V& target0, const V& target1,
+                          V& l0, V& l1) {
   const V none{};
-  const V e0 = two.along(nx0, ny0, na0, nb0) - target0, e1 = two.along(nx1, ny1, na1, nb1) - target1;
+  const V im = two.a.w + two.b.w;
+  const V k11 =
+      im * (r0.nx * r0.nx + r0.ny * r0.ny) + (two.iia * (r0.na * r0.na) + two.iib * (r0.nb * r0.nb));
+  const V k22 =
+      im * (r1.nx * r1.nx + r1.ny * r1.ny) + (two.iia * (r1.na * r1.na) + two.iib * (r1.nb * r1.nb));
+  const V k12 =
+      im * (r0.nx * r1.nx + r0.ny * r1.ny) + (two.iia * (r0.na * r1.na) + two.iib * (r0.nb * r1.nb));
+  const V e0 = two.along(r0.nx, r0.ny, r0.na, r0.nb) - target0,
+          e1 = two.along(r1.nx, r1.ny, r1.na, r1.nb) - target1;
 
   // both press
-  const V i12 = load<V>(g.i12 + lane);
-  const V both0 = l0 - (load<V>(g.i11 + lane) * e0 + i12 * e1);
-  const V both1 = l1 - (i12 * e0 + load<V>(g.i22 + lane) * e1);
-  const typename Of<V>::Mask together = (both0 >= none) & (both1 >= none);
+  const V det = k11 * k22 - k12 * k12, over = 1.0 / (det + kTiny);
+  const V both0 = l0 - (k22 * e0 - k12 * e1) * over, both1 = l1 - (k11 * e1 - k12 * e0) * over;
+  const Mask<V> together = (both0 >= none) & (both1 >= none) & (det > 1e-8 * (k11 * k22));
 
   // one presses, the other's impulse taken back
-  const V only0 = larger<V>(l0 - load<V>(g.r11 + lane) * (e0 - k12 * l1), none);
-  const V left1 = e1 + k12 * (only0 - l0) - load<V>(g.k22 + lane) * l1;
-  const V only1 = larger<V>(l1 - load<V>(g.r22 + lane) * (e1 - k12 * l0), none);
-  const V left0 = e0 + k12 * (only1 - l1) - load<V>(g.k11 + lane) * l0;
-  const typename Of<V>::Mask first = left1 >= left0;
+  const V only0 = larger<V>(l0 - (e0 - k12 * l1) / (k11 + kTiny), none);
+  const V left1 = e1 + k12 * (only0 - l0) - k22 * l1;
+  const V only1 = larger<V>(l1 - (e1 - k12 * l0) / (k22 + kTiny), none);
+  const V left0 = e0 + k12 * (only1 - l1) - k11 * l0;
+  const Mask<V> first = left1 >= left0;
 
   const V next0 = pick<V>(together, both0, pick<V>(first, only0, none));
   const V next1 = pick<V>(together, both1, pick<V>(first, none, only1));
-  two.push(nx0, ny0, na0, nb0, next0 - l0);
-  two.push(nx1, ny1, na1, nb1, next1 - l1);
+  two.push(r0.nx, r0.ny, r0.na, r0.nb, next0 - l0);
+  two.push(r1.nx, r1.ny, r1.na, r1.nb, next1 - l1);
   l0 = next0, l1 = next1;
 }
 
 template <class V>
-OBSCURA_INLINE void start_all(const Group* groups, int count, Motion* v) {
-  for (const Group* g = groups; g < groups + count; ++g) {
+OBSCURA_INLINE void rub(Two<V>& two, const Row<V>& r, const V& most, V& lt) {
+  const V tx = -r.ny, ty = r.nx;
+  const V kt = (two.a.w + two.b.w) + (two.iia * (r.ta * r.ta) + two.iib * (r.tb * r.tb));
+  const V wanted = lt - two.along(tx, ty, r.ta, r.tb) / (kt + kTiny);
+  const V next = larger<V>(smaller<V>(wanted, most), -most);
+  two.push(tx, ty, r.ta, r.tb, next - lt);
+  lt = next;
+}
+
+template <class V>
+OBSCURA_INLINE void lively_all(const Seats* seats, int count, const Motion* v, Found& out) {
+  for (int i = 0; i < count; ++i) {
+    const Seats& g = seats[i];
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
-      Two<V> two(*g, lane, v);
-      for (const Group::Side& s : g->side) {
-        const V nx = load<V>(s.nx + lane), ny = load<V>(s.ny + lane);
-        two.push(nx, ny, load<V>(s.na + lane), load<V>(s.nb + lane), load<V>(s.ln + lane));
-        two.push(-ny, nx, load<V>(s.ta + lane), load<V>(s.tb + lane), load<V>(s.lt + lane));
+      Quad<V> a, b;
+      gather(&v->x, g.a + lane, a), gather(&v->x, g.b + lane, b);
+      const V speed = magnitude<V>(a.x - b.x) + magnitude<V>(a.y - b.y) +
+                      (magnitude<V>(a.z) + magnitude<V>(b.z)) * load<V>(g.far + lane);
+      const Mask<V> moves = speed > load<V>(g.calm + lane);
+      if (!any(moves)) continue;
+      for (int k = 0; k < Of<V>::lanes; ++k) {
+        if (moves[k]) out.push_back(kLanes * i + lane + k);
       }
-      two.back(*g, lane, v);
     }
   }
 }
 
 template <class V>
-OBSCURA_INLINE void sweep_all(Group* groups, int count, Motion* v) {
-  for (Group* g = groups; g < groups + count; ++g) {
+OBSCURA_INLINE void expand_one(const Seats& g, const Pose* poses, Rows& out) {
+  for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+    Quad<V> a, b;
+    gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
+    for (int k = 0; k < 2; ++k) {
+      Row<V> r;
+      make<V>(g, lane, k, a, b, r);
+      store<V>(out.nx[k] + lane, r.nx), store<V>(out.ny[k] + lane, r.ny);
+      store<V>(out.x[k] + lane, r.x), store<V>(out.y[k] + lane, r.y), store<V>(out.gap[k] + lane, r.gap);
+      store<V>(out.na[k] + lane, r.na), store<V>(out.nb[k] + lane, r.nb);
+      store<V>(out.ta[k] + lane, r.ta), store<V>(out.tb[k] + lane, r.tb);
+    }
+  }
+}
+
+template <class V>
+OBSCURA_INLINE void start_all(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v,
+                              const Pace& pace, Found& closing, Found& blows) {
+  const V h = V{} + pace.h, creep = V{} - pace.creep, blow = V{} - pace.blow, gain = V{} + pace.gain, none{};
+  for (int i = 0; i < count; ++i) {
+    Seats& g = seats[i];
+    g.struck[0] = g.struck[1] = 0;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+      Quad<V> a, b;
+      gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
+      const Two<V> before(g, lane, old);
+      Two<V> two(g, lane, v);
+      const V mu = load<V>(g.mu + lane);
+      Mask<V> slow{}, fast{};
+      for (int k = 0; k < 2; ++k) {
+        Row<V> r;
+        make<V>(g, lane, k, a, b, r);
+        const V vn = before.along(r.nx, r.ny, r.na, r.nb);
+        slow |= (vn < creep) & (r.gap + h * vn < none);
+        fast |= (vn < blow) & (r.gap + h * (vn - gain) < none);
+        const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
+        const V ln = larger<V>(h * (px * r.nx + py * r.ny), none), most = mu * ln;
+        const V lt = larger<V>(smaller<V>(h * (py * r.nx - px * r.ny), most), -most);
+        store<V>(g.p[k] + lane, ln), store<V>(g.q[k] + lane, lt);
+        two.push(r.nx, r.ny, r.na, r.nb, ln);
+        two.push(-r.ny, r.nx, r.ta, r.tb, lt);
+      }
+      two.back(g, lane, v);
+      if (!any(slow | fast)) continue;
+      for (int k = 0; k < Of<V>::lanes; ++k) {
+        if (fast[k]) {
+          blows.push_back(kLanes * i + lane + k);
+        } else if (slow[k]) {
+          closing.push_back(kLanes * i + lane + k);
+        }
+      }
+    }
+  }
+}
+
+OBSCURA_INLINE void keep(const Seats& g, const Rows& rows, Contact<2>* contacts) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (g.pair[lane] < 0) continue;
+    Contact<2>* c = contacts + g.first[lane];
+    for (int k = 0; k < g.touches[lane]; ++k, ++c) {
+      c->point[0] = rows.x[k][lane], c->point[1] = rows.y[k][lane];
+      c->normal[0] = rows.nx[k][lane], c->normal[1] = rows.ny[k][lane];
+      c->gap = rows.gap[k][lane];
+      c->force[0] = g.p[k][lane], c->force[1] = g.q[k][lane];
+      c->impulse[0] = c->impulse[1] = 0;
+      const double ln = rows.na[k][lane], lt = rows.ta[k][lane];
+      c->touching = ln <= 0                           ? Touching::open
+                    : std::fabs(lt) < g.mu[lane] * ln ? Touching::stick
+                                                      : Touching::slide;
+    }
+  }
+}
+
+template <class V, bool kLast>
+OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
+                              Contact<2>* contacts) {
+  const V per_h = V{} + 1 / pace.h, none{};
+  for (Seats* g = seats; g < seats + count; ++g) {
+    [[maybe_unused]] Rows kept;
+    for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+      Quad<V> a, b;
+      gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
+      Row<V> r0, r1;
+      make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
       Two<V> two(*g, lane, v);
       const V mu = load<V>(g->mu + lane);
-      for (Group::Side& s : g->side) {
-        const V tx = -load<V>(s.ny + lane), ty = load<V>(s.nx + lane);
-        const V ta = load<V>(s.ta + lane), tb = load<V>(s.tb + lane);
-        const V lt = load<V>(s.lt + lane), most = mu * load<V>(s.ln + lane);
-        const V wanted = lt - load<V>(s.mt + lane) * two.along(tx, ty, ta, tb);
-        const V next = larger<V>(smaller<V>(wanted, most), -most);
-        two.push(tx, ty, ta, tb, next - lt);
-        store<V>(s.lt + lane, next);
-      }
-      Group::Side &s0 = g->side[0], &s1 = g->side[1];
-      V l0 = load<V>(s0.ln + lane), l1 = load<V>(s1.ln + lane);
-      press<V>(*g, lane, two, load<V>(s0.target + lane), load<V>(s1.target + lane), l0, l1);
-      store<V>(s0.ln + lane, l0), store<V>(s1.ln + lane, l1);
+      V l0 = load<V>(g->p[0] + lane), t0 = load<V>(g->q[0] + lane);
+      V l1 = load<V>(g->p[1] + lane), t1 = load<V>(g->q[1] + lane);
+      rub<V>(two, r0, mu * l0, t0);
+      rub<V>(two, r1, mu * l1, t1);
+      const V target0 = pick<V>(mask<V>(g->struck[0], lane), none, smaller<V>(-r0.gap * per_h, none));
+      const V target1 = pick<V>(mask<V>(g->struck[1], lane), none, smaller<V>(-r1.gap * per_h, none));
+      press<V>(two, r0, r1, target0, target1, l0, l1);
       two.back(*g, lane, v);
+      if constexpr (!kLast) {
+        store<V>(g->p[0] + lane, l0), store<V>(g->q[0] + lane, t0);
+        store<V>(g->p[1] + lane, l1), store<V>(g->q[1] + lane, t1);
+      } else {
+        const V fn0 = l0 * per_h, ft0 = t0 * per_h, fn1 = l1 * per_h, ft1 = t1 * per_h;
+        store<V>(g->p[0] + lane, fn0 * r0.nx - ft0 * r0.ny),
+            store<V>(g->q[0] + lane, fn0 * r0.ny + ft0 * r0.nx);
+        store<V>(g->p[1] + lane, fn1 * r1.nx - ft1 * r1.ny),
+            store<V>(g->q[1] + lane, fn1 * r1.ny + ft1 * r1.nx);
+        store<V>(kept.nx[0] + lane, r0.nx), store<V>(kept.ny[0] + lane, r0.ny);
+        store<V>(kept.nx[1] + lane, r1.nx), store<V>(kept.ny[1] + lane, r1.ny);
+        store<V>(kept.x[0] + lane, r0.x), store<V>(kept.y[0] + lane, r0.y),
+            store<V>(kept.gap[0] + lane, r0.gap);
+        store<V>(kept.x[1] + lane, r1.x), store<V>(kept.y[1] + lane, r1.y),
+            store<V>(kept.gap[1] + lane, r1.gap);
+        store<V>(kept.na[0] + lane, l0), store<V>(kept.ta[0] + lane, t0);
+        store<V>(kept.na[1] + lane, l1), store<V>(kept.ta[1] + lane, t1);
+      }
     }
+    if constexpr (kLast) keep(*g, kept, contacts);
   }
 }
 
 template <class V>
-OBSCURA_INLINE void project_all(const Group* groups, Projection* p, int count, Motion* d) {
-  for (const Group* g = groups; g < groups + count; ++g, ++p) {
+OBSCURA_INLINE void project_all(const Seats* seats, Projection* p, int count, const Pose* poses, Motion* d,
+                                double share) {
+  const V none{}, part = V{} + share;
+  for (const Seats* g = seats; g < seats + count; ++g, ++p) {
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+      Quad<V> a, b;
+      gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
+      Row<V> r0, r1;
+      make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
       Two<V> two(*g, lane, d);
       V l0 = load<V>(p->push[0] + lane), l1 = load<V>(p->push[1] + lane);
-      press<V>(*g, lane, two, load<V>(p->target[0] + lane), load<V>(p->target[1] + lane), l0, l1);
+      press<V>(two, r0, r1, pick<V>(r0.gap < none, -part * r0.gap, -r0.gap),
+               pick<V>(r1.gap < none, -part * r1.gap, -r1.gap), l0, l1);
       store<V>(p->push[0] + lane, l0), store<V>(p->push[1] + lane, l1);
       two.back(*g, lane, d);
     }
@@ -203,28 +397,53 @@ OBSCURA_INLINE void project_all(const Group* groups, Projection* p, int count, M
 #if defined(__x86_64__)
 const bool kWide = __builtin_cpu_supports("avx2") != 0;
 #define OBSCURA_WIDE __attribute__((target("avx2")))
-OBSCURA_WIDE void start_wide(const Group* g, int count, Motion* v) { start_all<V4>(g, count, v); }
-OBSCURA_WIDE void sweep_wide(Group* g, int count, Motion* v) { sweep_all<V4>(g, count, v); }
-OBSCURA_WIDE void project_wide(const Group* g, Projection* p, int count, Motion* d) {
-  project_all<V4>(g, p, count, d);
-}
 #else
 constexpr bool kWide = false;
-void start_wide(const Group*, int, Motion*) {}
-void sweep_wide(Group*, int, Motion*) {}
-void project_wide(const Group*, Projection*, int, Motion*) {}
+#define OBSCURA_WIDE
 #endif
+OBSCURA_WIDE void lively_wide(const Seats* s, int n, const Motion* v, Found& out) {
+  lively_all<V4>(s, n, v, out);
+}
+OBSCURA_WIDE void expand_wide(const Seats& s, const Pose* at, Rows& out) { expand_one<V4>(s, at, out); }
+OBSCURA_WIDE void start_wide(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace,
+                             Found& closing, Found& blows) {
+  start_all<V4>(s, n, at, old, v, pace, closing, blows);
+}
+OBSCURA_WIDE void sweep_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
+  sweep_all<V4, false>(s, n, at, v, pace, nullptr);
+}
+OBSCURA_WIDE void finish_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace,
+                              Contact<2>* contacts) {
+  sweep_all<V4, true>(s, n, at, v, pace, contacts);
+}
+OBSCURA_WIDE void project_wide(const Seats* s, Projection* p, int n, const Pose* at, Motion* d,
+                               double share) {
+  project_all<V4>(s, p, n, at, d, share);
+}
 
 }  // namespace
 
-void start(const Group* groups, int count, Motion* v) {
-  kWide ? start_wide(groups, count, v) : start_all<V2>(groups, count, v);
+void find_lively(const Seats* s, int n, const Motion* v, Found& out) {
+  out.clear();
+  kWide ? lively_wide(s, n, v, out) : lively_all<V2>(s, n, v, out);
 }
-void sweep(Group* groups, int count, Motion* v) {
-  kWide ? sweep_wide(groups, count, v) : sweep_all<V2>(groups, count, v);
+void expand(const Seats& s, const Pose* at, Rows& out) {
+  kWide ? expand_wide(s, at, out) : expand_one<V2>(s, at, out);
 }
-void project(const Group* groups, Projection* projections, int count, Motion* d) {
-  kWide ? project_wide(groups, projections, count, d) : project_all<V2>(groups, projections, count, d);
+void start(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace, Found& closing,
+           Found& blows) {
+  closing.clear(), blows.clear();
+  kWide ? start_wide(s, n, at, old, v, pace, closing, blows)
+        : start_all<V2>(s, n, at, old, v, pace, closing, blows);
+}
+void sweep(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
+  kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false>(s, n, at, v, pace, nullptr);
+}
+void finish(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace, Contact<2>* contacts) {
+  kWide ? finish_wide(s, n, at, v, pace, contacts) : sweep_all<V2, true>(s, n, at, v, pace, contacts);
+}
+void project(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share) {
+  kWide ? project_wide(s, p, n, at, d, share) : project_all<V2>(s, p, n, at, d, share);
 }
 
 }  // namespace obscura::sim::sweep

@@ -2,48 +2,81 @@
 
 #include <vector>
 
+#include "sim/contact.h"
+#include "sim/iterative_cores.h"
+
 namespace obscura::sim::sweep {
 
-// Pairs that touch, four side by side. A pair has up to two touches; its normal forces are found together
-// (a flat landing must not turn a box), its friction one by one. Groups of one colour share no body, so that
-// four pairs at once and one after another give the same bits.
+// Pairs that touch, four side by side. Seats of one colour share no body that moves, so that four pairs at
+// once and one after another give the same bits. A seat keeps what the features are, not the rows: those are
+// made from the poses in every pass, for memory is slower than arithmetic.
 
 inline constexpr int kLanes = 4;
 
-/// Velocity (m/s, rad/s) or displacement (m, rad) of a body.
+/// Velocity (m/s, rad/s) or displacement (m, rad) of a body, and 1/kg: zero for what does not move.
 struct alignas(32) Motion {
-  double x = 0, y = 0, w = 0, unused = 0;
+  double x = 0, y = 0, w = 0, im = 0;
 };
 
-/// v_n = n . (v_a - v_b) + r_a x n w_a - r_b x n w_b, v_t likewise with t = (-n_y, n_x).
-struct alignas(64) Group {
-  struct Side {
-    double nx[kLanes], ny[kLanes];
-    double na[kLanes], nb[kLanes];  // r_a x n, r_b x n, m
-    double ta[kLanes], tb[kLanes];  // r_a x t, r_b x t, m
-    double mt[kLanes];              // 1 / K_t, kg
-    double target[kLanes];          // least v_n, m/s
-    double ln[kLanes], lt[kLanes];  // impulses, N s
-  };
-  int a[kLanes], b[kLanes];  // where in the motions; what does not move has a place that stays zero
-  double ima[kLanes], iia[kLanes], imb[kLanes], iib[kLanes];  // 1/kg, 1/(kg m^2)
-  double mu[kLanes];
-  Side side[2];
-  double k12[kLanes], k11[kLanes], k22[kLanes];  // of v_n under normal impulses, 1/kg
-  double i11[kLanes], i12[kLanes], i22[kLanes];  // its inverse; not a number where it has none
-  double r11[kLanes], r22[kLanes];               // 1 / k11, 1 / k22
+/// A pair has up to two touches. Of each: a corner in its body's frame, and the other's face (or corner,
+/// where two corners touch) in its own; gap = n . (p - x) - d - radius.
+struct alignas(64) Seats {
+  int a[kLanes], b[kLanes];         // bodies; walls and empty seats have the one after the last
+  int pair[kLanes], first[kLanes];  // and where its touches are among the contacts; -1: nobody
+  unsigned char touches[kLanes];
+  unsigned char of_b[2];     // a bit a lane: the corner is b's
+  unsigned char corners[2];  // two corners touch
+  unsigned char struck[2];   // met a blow in this step
+  alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
+  double calm[kLanes], far[kLanes];  // m/s up to which features stay; the farther reach of both, m
+  double radius[kLanes];             // of both together, m
+  double cx[2][kLanes], cy[2][kLanes];
+  double fx[2][kLanes], fy[2][kLanes];
+  double d[2][kLanes];                // of two corners: b's radius
+  double p[2][kLanes], q[2][kLanes];  // force on a, N; within a step: normal and tangential impulse, N s
+};
+
+/// The rows of four pairs.
+///   v_n = n . (v_a - v_b) + r_a x n w_a - r_b x n w_b      v_t likewise, t = (-n_y, n_x)
+struct alignas(64) Rows {
+  double nx[2][kLanes], ny[2][kLanes], x[2][kLanes], y[2][kLanes], gap[2][kLanes];
+  double na[2][kLanes], nb[2][kLanes], ta[2][kLanes], tb[2][kLanes];  // r_a x n, ..., m
 };
 
 /// What projects positions along the rows of a group: least n . d (m), and the push so far (kg m).
 struct alignas(64) Projection {
-  double target[2][kLanes], push[2][kLanes];
+  double push[2][kLanes];
 };
 
-/// Applies all impulses to the velocities.
-void start(const Group* groups, int count, Motion* v);
+/// Which pairs a pass has found, as numbers of seats: lane + kLanes * group.
+using Found = std::vector<int>;
+
+/// Constants of a step.
+struct Pace {
+  double h = 0;      // s
+  double creep = 0;  // m/s: slower approaches are none
+  double blow = 0;   // m/s: faster ones are blows
+  double gain = 0;   // m/s that gravity may add in the step
+};
+
+/// Pairs whose features may change.
+void find_lively(const Seats* seats, int count, const Motion* v, Found& out);
+
+/// Rows of one group.
+void expand(const Seats& seats, const Pose* poses, Rows& out);
+
+/// Makes impulses of the forces and applies them to v. `old`: velocities at the start. Which close slowly in
+/// the step, and which with a blow.
+void start(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v, const Pace& pace,
+           Found& closing, Found& blows);
+
 /// One sweep: every pair once, in order.
-void sweep(Group* groups, int count, Motion* v);
-/// One sweep over positions.
-void project(const Group* groups, Projection* projections, int count, Motion* d);
+void sweep(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace);
+/// The last one of a step: forces into the seats and into the contacts.
+void finish(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace, Contact<2>* contacts);
+
+/// One sweep over positions: `share` of each penetration is to go.
+void project(const Seats* seats, Projection* projections, int count, const Pose* poses, Motion* d,
+             double share);
 
 }  // namespace obscura::sim::sweep

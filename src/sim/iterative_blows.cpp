@@ -1,0 +1,189 @@
+// A blow, handout §3.5, of both touches of a pair:
+//   v_n' = -e v_n,  l >= 0               l = -K^-1 (1 + e) v_n,  or one touch alone
+//   lt = clamp(-v_t / K_t, -mu l, mu l)
+// at the time tau at which the first of them closes: until then the body flies with the velocity it had,
+//   g + v_n tau + a_n tau^2 / 2 = 0
+// after it with the one it got. An elastic ball keeps its energy to rounding.
+
+#include "sim/iterative_blows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obscura::sim::sweep {
+
+Blows::Blows(int bodies) {
+  around_start_.resize(bodies + 2);
+  when_.assign(bodies + 1, -1);
+  before_.resize(bodies + 1), now_.resize(bodies + 1);
+}
+
+void Blows::join(const std::vector<Pair>& pairs, const std::vector<Motion>& v) {
+  std::fill(around_start_.begin(), around_start_.end(), 0);
+  const int n = int(around_start_.size()) - 2;
+  const auto each = [&](const auto& act) {
+    for (int i = 0; i < int(pairs.size()); ++i) {
+      if (pairs[i].slot < 0) continue;
+      for (const int body : {pairs[i].a, pairs[i].b}) {
+        if (body >= 0 && v[body].im > 0) act(i, body);
+      }
+    }
+  };
+  each([&](int, int body) { ++around_start_[body + 2]; });
+  for (int i = 2; i < n + 2; ++i) around_start_[i] += around_start_[i - 1];
+  around_.resize(around_start_[n + 1]);
+  each([&](int i, int body) { around_[around_start_[body + 1]++] = i; });
+  waiting_.assign(pairs.size(), 0), blow_.assign(pairs.size(), -1);
+}
+
+const Rows& Blows::rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses) {
+  if (known_[group] < 0) {
+    known_[group] = int(groups_.size());
+    groups_.push_back(group);
+    rows_.emplace_back();
+    expand(seats[group], poses.data(), rows_.back());
+  }
+  return rows_[known_[group]];
+}
+
+// a body meets its first blow of the step
+void Blows::reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace) {
+  if (now_[body].im == 0 || when_[body] >= 0) return;
+  when_[body] = when;
+  bodies_.push_back(body);
+  const double part = when / pace.h;
+  now_[body].x += part * dv[body].x, now_[body].y += part * dv[body].y, now_[body].w += part * dv[body].w;
+  before_[body] = now_[body];
+}
+
+// one pair, both touches together; false where it does not approach
+bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+                const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) {
+  const Pair& pair = pairs[i];
+  const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
+  Seats& g = seats[group];
+  const Rows& r = rows(group, seats, poses);
+  const int a = g.a[lane], b = g.b[lane];
+  const auto along = [&](int k, const std::vector<Motion>& v) {
+    return r.nx[k][lane] * (v[a].x - v[b].x) + r.ny[k][lane] * (v[a].y - v[b].y) +
+           (r.na[k][lane] * v[a].w - r.nb[k][lane] * v[b].w);
+  };
+  const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
+  const auto push = [&](double dx, double dy, double ra, double rb, double l) {
+    now_[a].x += dx * (ima * l), now_[a].y += dy * (ima * l), now_[a].w += iia * (ra * l);
+    now_[b].x -= dx * (imb * l), now_[b].y -= dy * (imb * l), now_[b].w -= iib * (rb * l);
+  };
+
+  // which touches close, and when
+  double e[2] = {1e300, 1e300};
+  bool closes[2] = {false, false}, fast[2] = {false, false};
+  double when = pace.h;
+  const Blow* known = blow_[i] >= 0 ? &blows_[blow_[i]] : nullptr;
+  for (int k = 0; k < pair.touches; ++k) {
+    const double vn = along(k, now_), dvn = along(k, dv), gap = r.gap[k][lane];
+    closes[k] = gap + pace.h * (vn + 0.5 * dvn) < 0 || (known && known->met[k]);
+    fast[k] = closes[k] && vn < -pace.blow;
+    if (!fast[k]) continue;
+    const double left = std::max(0.0, gap);
+    when = std::min(when, left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn)));
+  }
+  if (!fast[0] && !fast[1]) return false;
+  reach(a, when, dv, pace), reach(b, when, dv, pace);
+  for (int k = 0; k < 2; ++k) {
+    if (closes[k]) e[k] = (fast[k] ? 1 + pair.elasticity : 1) * along(k, now_);
+  }
+  if (!known) blow_[i] = int(blows_.size()), blows_.push_back({i, {false, false}, {0, 0}, {0, 0}});
+  Blow& blow = blows_[blow_[i]];
+
+  // impulses l >= 0 with e + K l >= 0
+  const auto yields = [&](int p, int q) {
+    return (ima + imb) * (r.nx[p][lane] * r.nx[q][lane] + r.ny[p][lane] * r.ny[q][lane]) +
+           (iia * (r.na[p][lane] * r.na[q][lane]) + iib * (r.nb[p][lane] * r.nb[q][lane]));
+  };
+  const double k11 = yields(0, 0), k22 = yields(1, 1), k12 = yields(0, 1), det = k11 * k22 - k12 * k12;
+  double l[2] = {0, 0};
+  if (closes[0] && closes[1] && det > 1e-8 * k11 * k22) {
+    l[0] = -(k22 * e[0] - k12 * e[1]) / det, l[1] = -(k11 * e[1] - k12 * e[0]) / det;
+  }
+  if (!(closes[0] && closes[1] && det > 1e-8 * k11 * k22 && l[0] >= 0 && l[1] >= 0)) {
+    const double only0 = closes[0] ? std::max(0.0, -e[0] / k11) : 0;
+    const double only1 = closes[1] ? std::max(0.0, -e[1] / k22) : 0;
+    const bool first = e[1] + k12 * only0 >= e[0] + k12 * only1;
+    l[0] = first ? only0 : 0, l[1] = first ? 0 : only1;
+  }
+  for (int k = 0; k < 2; ++k) {
+    if (!closes[k]) continue;
+    g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
+    blow.met[k] = true, blow.n[k] += l[k];
+    push(r.nx[k][lane], r.ny[k][lane], r.na[k][lane], r.nb[k][lane], l[k]);
+  }
+
+  // friction
+  for (int k = 0; k < 2; ++k) {
+    if (!closes[k]) continue;
+    const double tx = -r.ny[k][lane], ty = r.nx[k][lane], ta = r.ta[k][lane], tb = r.tb[k][lane];
+    const double vt =
+        tx * (now_[a].x - now_[b].x) + ty * (now_[a].y - now_[b].y) + (ta * now_[a].w - tb * now_[b].w);
+    const double most = pair.friction * blow.n[k];
+    const double next =
+        std::clamp(blow.t[k] - vt / (ima + imb + (iia * ta * ta + iib * tb * tb)), -most, most);
+    push(tx, ty, ta, tb, next - blow.t[k]);
+    blow.t[k] = next;
+  }
+  return true;
+}
+
+void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+                const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
+                std::vector<Motion>& v, const Pace& pace) {
+  for (const int body : bodies_) when_[body] = -1;
+  for (const Blow& blow : blows_) {
+    if (blow.pair < int(blow_.size())) blow_[blow.pair] = -1;
+  }
+  bodies_.clear(), blows_.clear(), queue_.clear(), rows_.clear(), groups_.clear();
+  if (found.empty()) return;
+  known_.assign(seats.size(), -1);
+  std::copy(old.begin(), old.end(), now_.begin());
+
+  // in the order of pairs
+  for (const int seat : found) queue_.push_back(seats[seat / kLanes].pair[seat % kLanes]);
+  std::sort(queue_.begin(), queue_.end());
+  for (const int i : queue_) waiting_[i] = 1;
+  const std::size_t most = 40 * queue_.size() + 100;
+  std::size_t at = 0;
+  for (; at < queue_.size() && at < most; ++at) {
+    const int i = queue_[at];
+    waiting_[i] = 0;
+    if (!hit(i, pairs, seats, poses, dv, pace)) continue;
+    for (const int body : {pairs[i].a, pairs[i].b}) {
+      if (body < 0 || now_[body].im == 0) continue;
+      for (int k = around_start_[body]; k < around_start_[body + 1]; ++k) {
+        const int next = around_[k];
+        if (waiting_[next]) continue;
+        waiting_[next] = 1;
+        queue_.push_back(next);
+      }
+    }
+  }
+  for (; at < queue_.size(); ++at) waiting_[queue_[at]] = 0;
+
+  for (const int body : bodies_) {
+    const Motion &p = before_[body], &q = now_[body];
+    v[body].x += q.x - p.x, v[body].y += q.y - p.y, v[body].w += q.w - p.w;
+  }
+}
+
+void Blows::keep(const std::vector<Pair>& pairs, std::vector<Contact<2>>& contacts) const {
+  for (const Blow& blow : blows_) {
+    const Pair& pair = pairs[blow.pair];
+    for (int k = 0; k < pair.touches; ++k) {
+      if (!blow.met[k]) continue;
+      Contact<2>& c = contacts[pair.first + k];
+      c.impulse[0] = blow.n[k] * c.normal[0] - blow.t[k] * c.normal[1];
+      c.impulse[1] = blow.n[k] * c.normal[1] + blow.t[k] * c.normal[0];
+      if (c.touching == Touching::open && blow.n[k] > 0) c.touching = Touching::slide;
+    }
+  }
+}
+
+}  // namespace obscura::sim::sweep

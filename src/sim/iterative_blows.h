@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/iterative_pairs.h"
+#include "sim/iterative_rows.h"
+#include "sim/state.h"
+
+namespace obscura::sim::sweep {
+
+/// Blows: touches that close within a step faster than the resting speed. Newton's law with Coulomb friction,
+/// both touches of a pair together, from pair to pair until none approaches, in the order in which they come
+/// up.
+class Blows {
+ public:
+  /// For `bodies` bodies.
+  explicit Blows(int bodies);
+
+  /// Who is with whom: the awake pairs of each body.
+  void join(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
+
+  /// Beginning with the seats in `found`. `old`: velocities at the start; dv: what the step adds to them
+  /// without contacts; v gains what the blows do. Marks seats as struck.
+  void run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+           const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
+           std::vector<Motion>& v, const Pace& pace);
+
+  /// Impulses of the last run into the contacts.
+  void keep(const std::vector<Pair>& pairs, std::vector<Contact<2>>& contacts) const;
+
+  /// Who was struck; when (s from the start of the step), with which velocity before and after.
+  const std::vector<int>& bodies() const { return bodies_; }
+  double when(int body) const { return when_[body]; }
+  const Motion& before(int body) const { return before_[body]; }
+  const Motion& after(int body) const { return now_[body]; }
+
+ private:
+  struct Blow {
+    int pair = -1;
+    bool met[2] = {false, false};
+    double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
+  };
+  struct Known {
+    const Seats& seats;
+    const Rows& rows;
+  };
+
+  void reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace);
+  bool hit(int pair, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace);
+  const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
+
+  std::vector<int> around_, around_start_;  // pairs of each body
+  std::vector<int> bodies_;
+  std::vector<double> when_;  // -1: not struck
+  std::vector<Motion> before_, now_;
+
+  std::vector<int> queue_;
+  std::vector<char> waiting_;  // of pairs
+  std::vector<int> blow_;      // of pairs: place in blows_, or -1
+  std::vector<Blow> blows_;
+  std::vector<int> known_;  // of groups: place in rows_, or -1
+  std::vector<int> groups_;
+  std::vector<Rows> rows_;
+};
+
+}  // namespace obscura::sim::sweep
