@@ -71,6 +71,8 @@ class Cone {
   bool turn(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
   void start(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);
   void gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes, bool turning);
+  void factor_symmetric();
+  bool factor_leaning(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);
   void refine(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
   void answer();
   double misfit() const;
@@ -86,6 +88,8 @@ class Cone {
   FullRank factors_;
   std::vector<Unknown> unknowns_;
   std::vector<double> A_, x_;  // of the equalities
+  std::vector<int> rows_, to_;
+  std::vector<double> share_;
   Modes trial_, better_, best_;
   std::vector<double> wrong_;  // violation, one a block
   std::vector<double> best_g_;

@@ -77,6 +77,9 @@ void Cone<D>::gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeM
     }
   }
 
+  ++tries_;
+  if (!turning && (symmetric ? (factor_symmetric(), true) : factor_leaning(blocks, modes))) return;
+
   const int m = int(unknowns_.size());
   A_.resize(std::size_t(m) * m), x_.resize(m);
   std::vector<double>& push = w_;  // what an unknown does to every row; answer() writes w_ again
@@ -88,11 +91,10 @@ void Cone<D>::gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeM
     const double mu = blocks[u.block].mu;
     const double* from = K;
     if (u.kind != Kind::row && !(u.kind == Kind::cone && mu == 0)) {
-      const double part = 1 / std::sqrt(1 + mu * mu);
       for (int i = 0; i < n_; ++i) {
-        double sum = u.kind == Kind::cone ? part * K[i] : 0;
+        double sum = u.kind == Kind::cone ? K[i] : 0;
         for (int k = 1; k < D; ++k) {
-          const double share = u.kind == Kind::cone ? -part * mu * along[k - 1] : -aside[k - 1];
+          const double share = u.kind == Kind::cone ? -mu * along[k - 1] : -aside[k - 1];
           sum += share * K[std::size_t(k) * n_ + i];
         }
         push[i] = sum;
@@ -122,12 +124,43 @@ void Cone<D>::gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeM
       A_[std::size_t(j) * m + j] -= along / (blocks[u.block].mu * g_[u.row]);
     }
   }
-  if (symmetric) {
-    factors_.symmetric(A_, m, kDependent);
-  } else {
-    factors_.general(A_, m, kDependent);
+  factors_.general(A_, m, kDependent);
+}
+
+// K between the rows of the unknowns
+template <int D>
+void Cone<D>::factor_symmetric() {
+  const int m = int(unknowns_.size());
+  A_.resize(std::size_t(m) * m), x_.resize(m);
+  for (int j = 0; j < m; ++j) {
+    const double* const K = K_.data() + std::size_t(unknowns_[j].row) * n_;
+    for (int i = 0; i < m; ++i) A_[std::size_t(j) * m + i] = K[unknowns_[i].row];
   }
-  ++tries_;
+  factors_.symmetric(A_, m, kDependent);
+}
+
+// The same, with the tangents of contacts on their cones below.
+template <int D>
+bool Cone<D>::factor_leaning(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes) {
+  const int m = int(unknowns_.size());
+  rows_.clear(), to_.clear(), share_.clear();
+  x_.resize(m);
+  for (const Unknown& u : unknowns_) rows_.push_back(u.row);
+  for (int i = 0; i < m; ++i) {
+    const Unknown& u = unknowns_[i];
+    const double mu = blocks[u.block].mu;
+    if (u.kind != Unknown::Kind::cone || mu == 0) continue;
+    for (int k = 1; k < D; ++k) {
+      rows_.push_back(u.row + k), to_.push_back(i), share_.push_back(-mu * modes[u.block].along[k - 1]);
+    }
+  }
+  const int all = int(rows_.size());
+  A_.resize(std::size_t(all) * all);
+  for (int j = 0; j < m; ++j) {
+    const double* const K = K_.data() + std::size_t(rows_[j]) * n_;
+    for (int i = 0; i < all; ++i) A_[std::size_t(j) * all + i] = K[rows_[i]];
+  }
+  return factors_.leaning(A_, all, m, to_, share_, kDependent);
 }
 
 // one correction of g by what the equalities still miss
@@ -160,7 +193,7 @@ void Cone<D>::refine(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>
           std::clamp(x_[i] / (mu * std::max(g_[u.row], 1e-300)), -kLargestTurn, kLargestTurn);
       along = (along + angle * across(along)).normalized();
     } else {
-      g_[u.row] += x_[i] / (mu == 0 ? 1 : std::sqrt(1 + mu * mu));
+      g_[u.row] += x_[i];
     }
     for (int k = 1; k < D; ++k) g_[u.row + k] = -mu * g_[u.row] * along[k - 1];
   }

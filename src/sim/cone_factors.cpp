@@ -12,6 +12,8 @@ namespace obscura::sim {
 
 namespace {
 
+constexpr double kAlike = 1e-10;  // of a column's square, what others may leave of it at least
+
 // y += a x
 void add(int n, double a, const double* __restrict x, double* __restrict y) {
   for (int i = 0; i < n; ++i) y[i] += a * x[i];
@@ -45,24 +47,26 @@ double dot(int n, const double* x, const double* y) {
   return (s0 + s1) + (s2 + s3);
 }
 
-// the lower Cholesky factor of X^T X, r x r; X: n x r
-void factor_gram(int n, int r, const double* X, std::vector<double>& out) {
+// out = X^T y for `count` columns of X
+void dots(int n, const double* y, const double* X, int count, double* out) {
+  int j = 0;
+  for (; j + 4 <= count; j += 4) {
+    const double *x0 = X + std::size_t(j) * n, *x1 = x0 + n, *x2 = x1 + n, *x3 = x2 + n;
+    double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+    for (int i = 0; i < n; ++i)
+      s0 += y[i] * x0[i], s1 += y[i] * x1[i], s2 += y[i] * x2[i], s3 += y[i] * x3[i];
+    out[j] = s0, out[j + 1] = s1, out[j + 2] = s2, out[j + 3] = s3;
+  }
+  for (; j < count; ++j) out[j] = dot(n, y, X + std::size_t(j) * n);
+}
+
+// the lower Cholesky factor of X^T X, r x r; X: n x r. False where columns all but depend on one another.
+bool factor_gram(int n, int r, const double* X, std::vector<double>& out) {
   out.resize(std::size_t(r) * r);
   double* const c = out.data();
   for (int k = 0; k < r; ++k) {
-    const double* xk = X + std::size_t(k) * n;
-    int j = k;
-    for (; j + 4 <= r; j += 4) {
-      const double *x0 = X + std::size_t(j) * n, *x1 = x0 + n, *x2 = x1 + n, *x3 = x2 + n;
-      double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-      for (int i = 0; i < n; ++i) {
-        const double x = xk[i];
-        s0 += x * x0[i], s1 += x * x1[i], s2 += x * x2[i], s3 += x * x3[i];
-      }
-      double* to = c + std::size_t(k) * r + j;
-      to[0] = s0, to[1] = s1, to[2] = s2, to[3] = s3;
-    }
-    for (; j < r; ++j) c[std::size_t(k) * r + j] = dot(n, xk, X + std::size_t(j) * n);
+    const double* const xk = X + std::size_t(k) * n;
+    dots(n, xk, xk, r - k, c + std::size_t(k) * r + k);
   }
   for (int k = 0; k < r; ++k) {
     double* ck = c + std::size_t(k) * r;
@@ -70,9 +74,12 @@ void factor_gram(int n, int r, const double* X, std::vector<double>& out) {
       const double* cj = c + std::size_t(j) * r;
       if (cj[k] != 0) add(r - k, -cj[k], cj + k, ck + k);
     }
+    const double* xk = X + std::size_t(k) * n;
+    if (!(ck[k] > kAlike * dot(n, xk, xk))) return false;
     const double root = std::sqrt(ck[k]);
     for (int i = k; i < r; ++i) ck[i] /= root;
   }
+  return true;
 }
 
 // x = (C C^T)^-1 x
@@ -91,10 +98,17 @@ void solve_gram(int r, const std::vector<double>& C, double* x) {
 }  // namespace
 
 void FullRank::symmetric(std::span<const double> A, int n, double tolerance) {
-  n_ = n, rank_ = 0, symmetric_ = true;
-  f_.resize(std::size_t(n) * n), d_.resize(n), rows_.resize(n), left_.resize(n), t_.resize(2 * n);
+  kind_ = Kind::symmetric;
+  factor(A, n, n, tolerance);
+  if (rank_ < n) factor_gram(n, rank_, f_.data(), ff_);
+}
+
+// the first n rows hold the pivots
+void FullRank::factor(std::span<const double> B, int all, int n, double tolerance) {
+  n_ = n, rank_ = 0;
+  f_.resize(std::size_t(all) * n), d_.resize(n), rows_.resize(n), left_.resize(n), t_.resize(2 * n);
   open_.resize(n);
-  for (int i = 0; i < n; ++i) left_[i] = A[std::size_t(i) * n + i];
+  for (int i = 0; i < n; ++i) left_[i] = B[std::size_t(i) * all + i];
 
   double least = 0;
   for (int k = 0; k < n; ++k) {
@@ -107,27 +121,26 @@ void FullRank::symmetric(std::span<const double> A, int n, double tolerance) {
     if (!(left_[p] > least)) break;
 
     // its column, less what the columns before it explain
-    double* const c = f_.data() + std::size_t(k) * n;
-    std::copy_n(A.data() + std::size_t(p) * n, n, c);
-    for (int j = 0; j < k; ++j) t_[j] = -d_[j] * f_[std::size_t(j) * n + p];
-    add_columns(n, k, f_.data(), t_.data(), open_.data(), c);
+    double* const c = f_.data() + std::size_t(k) * all;
+    std::copy_n(B.data() + std::size_t(p) * all, all, c);
+    for (int j = 0; j < k; ++j) t_[j] = -d_[j] * f_[std::size_t(j) * all + p];
+    add_columns(all, k, f_.data(), t_.data(), open_.data(), c);
     const double pivot = c[p];
     if (!(pivot > least)) {
       left_[p] = 0, --k;  // its diagonal had drifted by rounding
       continue;
     }
     for (int j = 0; j < k; ++j) c[rows_[j]] = 0;
-    for (int i = 0; i < n; ++i) c[i] /= pivot;
+    for (int i = 0; i < all; ++i) c[i] /= pivot;
     c[p] = 1;
     for (int i = 0; i < n; ++i) left_[i] -= pivot * c[i] * c[i];
     left_[p] = 0;
     d_[k] = pivot, rows_[k] = p, rank_ = k + 1;
   }
-  finish();
 }
 
 void FullRank::general(std::span<double> A, int n, double tolerance) {
-  n_ = n, rank_ = 0, symmetric_ = false;
+  n_ = n, rank_ = 0, kind_ = Kind::general;
   f_.resize(std::size_t(n) * n), g_.resize(std::size_t(n) * n);
   d_.resize(n), rows_.resize(n), cols_.resize(n), t_.resize(2 * n), open_.resize(n), top_.resize(n);
   const auto at = [&](int row, int col) -> double& { return A[std::size_t(col) * n + row]; };
@@ -169,50 +182,77 @@ void FullRank::general(std::span<double> A, int n, double tolerance) {
     }
     d_[k] = pivot, rows_[k] = row, cols_[k] = col, rank_ = k + 1;
   }
-  finish();
+  if (rank_ == n_) return;
+  factor_gram(n_, rank_, f_.data(), ff_);
+  factor_gram(n_, rank_, g_.data(), gg_);
 }
 
-void FullRank::finish() {
-  if (rank_ == n_ || rank_ == 0) return;
-  factor_gram(n_, rank_, f_.data(), ff_);
-  if (!symmetric_) factor_gram(n_, rank_, g_.data(), gg_);
+bool FullRank::leaning(std::span<const double> B, int all, int n, std::span<const int> to,
+                       std::span<const double> share, double tolerance) {
+  kind_ = Kind::leaning;
+  factor(B, all, n, tolerance);
+  const int r = rank_;
+  g_.resize(std::size_t(n) * n);
+  for (int k = 0; k < r; ++k) {
+    const double* const b = f_.data() + std::size_t(k) * all;
+    double* const f = f_.data() + std::size_t(k) * n;
+    double* const g = g_.data() + std::size_t(k) * n;
+    std::copy_n(b, n, g);
+    for (int j = n; j < all; ++j) g[to[j - n]] += share[j - n] * b[j];
+    std::copy(b, b + n, f);  // closer together, front to back
+  }
+  if (r < n && !factor_gram(n, r, f_.data(), ff_)) return false;
+  lu_.resize(std::size_t(r) * r), swaps_.resize(r);
+  for (int k = 0; k < r; ++k)
+    dots(n, f_.data() + std::size_t(k) * n, g_.data(), r, lu_.data() + std::size_t(k) * r);
+  return eliminate(lu_, r, kAlike, swaps_);
 }
 
 void FullRank::solve(std::span<const double> r, std::span<double> x) {
+  // F's part
   const int n = n_;
-  const std::vector<double>& g = symmetric_ ? f_ : g_;
   double* const t = t_.data();
   if (rank_ == n) {
-    // both factors are triangular
-    const std::vector<int>& cols = symmetric_ ? rows_ : cols_;
     double* const left = t + n;
     std::copy_n(r.data(), n, left);
     for (int k = 0; k < n; ++k) {
-      const double y = left[rows_[k]];
-      add(n, -y, f_.data() + std::size_t(k) * n, left);
-      t[k] = y / d_[k];
+      t[k] = left[rows_[k]];
+      add(n, -t[k], f_.data() + std::size_t(k) * n, left);
     }
-    std::fill_n(x.data(), n, 0.0);
-    for (int k = n - 1; k >= 0; --k) x[cols[k]] = t[k] - dot(n, g.data() + std::size_t(k) * n, x.data());
+  } else {
+    for (int k = 0; k < rank_; ++k) t[k] = dot(n, f_.data() + std::size_t(k) * n, r.data());
+    solve_gram(rank_, ff_, t);
+  }
+  for (int k = 0; k < rank_; ++k) t[k] /= d_[k];
+
+  // G's part
+  std::fill_n(x.data(), n, 0.0);
+  if (kind_ == Kind::leaning) {
+    substitute(lu_, rank_, swaps_, {t, std::size_t(rank_)});
+    for (int k = 0; k < rank_; ++k) add(n, t[k], f_.data() + std::size_t(k) * n, x.data());
     return;
   }
-  for (int k = 0; k < rank_; ++k) t[k] = dot(n, f_.data() + std::size_t(k) * n, r.data());
-  if (rank_ > 0) solve_gram(rank_, ff_, t);
-  for (int k = 0; k < rank_; ++k) t[k] /= d_[k];
-  if (rank_ > 0) solve_gram(rank_, symmetric_ ? ff_ : gg_, t);
-  std::fill_n(x.data(), n, 0.0);
-  for (int k = 0; k < rank_; ++k) add(n, t[k], g.data() + std::size_t(k) * n, x.data());
+  const std::vector<double>& g = kind_ == Kind::symmetric ? f_ : g_;
+  if (rank_ == n) {
+    const std::vector<int>& cols = kind_ == Kind::symmetric ? rows_ : cols_;
+    for (int k = n - 1; k >= 0; --k) x[cols[k]] = t[k] - dot(n, g.data() + std::size_t(k) * n, x.data());
+  } else {
+    solve_gram(rank_, kind_ == Kind::symmetric ? ff_ : gg_, t);
+    for (int k = 0; k < rank_; ++k) add(n, t[k], g.data() + std::size_t(k) * n, x.data());
+  }
 }
 
-bool eliminate(std::span<double> A, int n, std::span<double> x) {
+bool eliminate(std::span<double> A, int n, double tolerance, std::span<int> swaps) {
   const auto at = [&](int row, int col) -> double& { return A[std::size_t(col) * n + row]; };
+  double most = 0;
+  for (const double a : A.first(std::size_t(n) * n)) most = std::max(most, std::fabs(a));
   for (int k = 0; k < n; ++k) {
     int p = k;
     for (int i = k + 1; i < n; ++i) {
       if (std::fabs(at(i, k)) > std::fabs(at(p, k))) p = i;
     }
-    if (at(p, k) == 0 || !std::isfinite(at(p, k))) return false;
-    if (p != k) std::swap(x[p], x[k]);
+    if (!(std::fabs(at(p, k)) > tolerance * most)) return false;
+    swaps[k] = p;
     double* const c = A.data() + std::size_t(k) * n;
     std::swap(c[p], c[k]);
     for (int i = k + 1; i < n; ++i) c[i] /= c[k];
@@ -220,13 +260,20 @@ bool eliminate(std::span<double> A, int n, std::span<double> x) {
       if (p != k) std::swap(at(p, j), at(k, j));
       if (at(k, j) != 0) add(n - k - 1, -at(k, j), c + k + 1, A.data() + std::size_t(j) * n + k + 1);
     }
-    add(n - k - 1, -x[k], c + k + 1, x.data() + k + 1);
+  }
+  // multipliers of earlier columns stay where they were: substitute() swaps as it goes
+  return true;
+}
+
+void substitute(std::span<const double> A, int n, std::span<const int> swaps, std::span<double> x) {
+  for (int k = 0; k < n; ++k) {
+    std::swap(x[k], x[swaps[k]]);
+    add(n - k - 1, -x[k], A.data() + std::size_t(k) * n + k + 1, x.data() + k + 1);
   }
   for (int k = n - 1; k >= 0; --k) {
-    x[k] /= at(k, k);
+    x[k] /= A[std::size_t(k) * n + k];
     add(k, -x[k], A.data() + std::size_t(k) * n, x.data());
   }
-  return true;
 }
 
 }  // namespace obscura::sim

@@ -16,6 +16,13 @@ class FullRank {
   /// A: n x n, any; overwritten. By elimination with complete pivoting; tolerance as above.
   void general(std::span<double> A, int n, double tolerance);
 
+  /// A = E B (E + T share)^T, where forces on n rows lean on others: B: all x all, symmetric, positive
+  /// semidefinite; E its first n rows, T the others; T's row j adds `share[j]` times to E's row `to[j]`. Then
+  /// solve() gives the x in the span of A, which is the limit of (A + eps)^-1 r: what slightly soft rows
+  /// would do. False, and nothing else, where that does not exist and general() must be asked.
+  bool leaning(std::span<const double> B, int all, int n, std::span<const int> to,
+               std::span<const double> share, double tolerance);
+
   int rank() const { return rank_; }
 
   /// Column k of F, n numbers: 1 in the row of pivot k, no number larger.
@@ -28,21 +35,28 @@ class FullRank {
   void solve(std::span<const double> r, std::span<double> x);
 
  private:
-  void finish();
+  enum class Kind : char { symmetric, general, leaning };
+
+  void factor(std::span<const double> B, int all, int n, double tolerance);
 
   int n_ = 0, rank_ = 0;
-  bool symmetric_ = true;
+  Kind kind_ = Kind::symmetric;
   std::vector<double> f_, g_;     // n x rank, G^T in the second
   std::vector<double> d_;         // pivots
   std::vector<int> rows_, cols_;  // of the pivots
-  std::vector<double> ff_, gg_;   // Cholesky factors of F^T F and G G^T, where rank < n
+  std::vector<double> ff_, gg_;   // Cholesky factors of F^T F and G G^T, where they are not triangular
+  std::vector<double> lu_;        // G F of a leaning one, eliminated
+  std::vector<int> swaps_;
   std::vector<double> left_, t_;  // scratch
   std::vector<int> open_;         // columns without a pivot
   std::vector<int> top_;          // in each column, the row of its largest
 };
 
-/// Solves A x = r for a small dense nonsingular A by elimination with row pivoting. A: n x n, column by
-/// column, overwritten; x: r going in. False where a pivot is zero.
-bool eliminate(std::span<double> A, int n, std::span<double> x);
+/// Eliminates a dense A in place with row pivoting. A: n x n, column by column; swaps: n. False where a pivot
+/// is no more than `tolerance` of the largest entry in its column at the start.
+bool eliminate(std::span<double> A, int n, double tolerance, std::span<int> swaps);
+
+/// x = A^-1 x of an eliminated A.
+void substitute(std::span<const double> A, int n, std::span<const int> swaps, std::span<double> x);
 
 }  // namespace obscura::sim

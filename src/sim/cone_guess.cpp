@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kDependent = 1e-11;  // a pivot this small beside the first is rounding
 constexpr double kSettled = 1e-10;    // of u
-constexpr int kShifts = 6;
+constexpr double kStride = 0.1;       // of softness
+constexpr int kStrides = 100;
 
 double dot(std::span<const double> x, std::span<const double> y) {
   double sum = 0;
@@ -171,7 +172,10 @@ bool ConeGuess<D>::step(double softness) {
   work_ = H_;
   for (int k = 0; k < r_; ++k) work_[std::size_t(k) * r_ + k] += softness;
   for (int k = 0; k < r_; ++k) du_[k] = -softness * F_[k];
-  return eliminate(work_, r_, du_);
+  swaps_.resize(r_);
+  if (!eliminate(work_, r_, 0, swaps_)) return false;
+  substitute(work_, r_, swaps_, du_);
+  return true;
 }
 
 template <int D>
@@ -207,21 +211,6 @@ bool ConeGuess<D>::newton(double softness, Friction friction, int iterations) {
   return false;
 }
 
-// what the convex problem takes as given, from where it is now
-template <int D>
-void ConeGuess<D>::shift() {
-  for (int block = 0; block < int(blocks_.size()); ++block) {
-    const ConeBlock<D>& law = blocks_[block];
-    if (law.law != Law::contact) continue;
-    const int row = first_[block];
-    if (law.sliding) {
-      for (int k = 1; k < D; ++k) shift_[row + k] = -law.mu * f_[row] * law.direction[k - 1];
-    } else {
-      shift_[row] = law.mu * Eigen::Map<const Tangent<D>>(w_.data() + row + 1).norm();
-    }
-  }
-}
-
 template <int D>
 void ConeGuess<D>::modes(double softness, std::span<ConeMode<D>> modes) const {
   for (int block = 0; block < int(blocks_.size()); ++block) {
@@ -249,24 +238,39 @@ void ConeGuess<D>::modes(double softness, std::span<ConeMode<D>> modes) const {
   }
 }
 
+// Coulomb's law from very soft to `softness`, each solution the start of the next; shorter strides where
+// Newton's method does not follow.
+template <int D>
+bool ConeGuess<D>::stiffen(double softness) {
+  std::fill(u_.begin(), u_.end(), 0.0);
+  std::fill(shift_.begin(), shift_.end(), 0.0);
+  double from = 1, stride = kStride;
+  newton(from, Friction::associated, 20);
+  if (!newton(from, Friction::coulomb, 25)) return false;
+  for (int i = 0; i < kStrides && from > softness; ++i) {
+    kept_ = u_;
+    const double to = std::max(softness, from * stride);
+    if (newton(to, Friction::coulomb, 25)) {
+      from = to, stride = std::max(kStride, stride * stride);
+    } else {
+      u_ = kept_, stride = std::sqrt(stride);
+    }
+  }
+  evaluate(from, Friction::coulomb, u_);
+  return from <= softness;
+}
+
 template <int D>
 bool ConeGuess<D>::guess(double softness, std::span<ConeMode<D>> out) {
   // softness in stages, the convex problem first
+  bool settled = true;
   if (r_ > 0) {
+    std::fill(shift_.begin(), shift_.end(), 0.0);
     for (double eps = 1e-2; eps > softness; eps *= 1e-2) newton(eps, Friction::associated, 20);
     newton(softness, Friction::associated, 40);
-  }
-  bool settled = r_ == 0;
-  if (settled) evaluate(softness, Friction::coulomb, u_);
-  for (int i = 0; i < kShifts && !settled; ++i) {
-    kept_ = u_;
-    settled = newton(softness, Friction::coulomb, 25);
-    if (settled || i + 1 == kShifts) break;
-    // back to the convex problem, with what it has found as given
-    u_ = kept_;
-    evaluate(softness, Friction::associated, u_);
-    shift();
-    newton(softness, Friction::associated, 40);
+    settled = newton(softness, Friction::coulomb, 25) || stiffen(softness);
+  } else {
+    evaluate(softness, Friction::coulomb, u_);
   }
   modes(softness, out);
   return settled;

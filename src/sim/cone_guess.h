@@ -31,7 +31,7 @@ class ConeGuess {
   bool newton(double softness, Friction friction, int iterations);
   double evaluate(double softness, Friction friction, std::span<const double> u);
   double law(int block, double softness, Friction friction, const double* w, VecD& f, SquareD& slope) const;
-  void shift();
+  bool stiffen(double softness);
   bool step(double softness);
   void modes(double softness, std::span<ConeMode<D>> modes) const;
 
@@ -46,6 +46,7 @@ class ConeGuess {
   std::vector<SquareD> slopes_, built_;        // df/dy a block; those H_ was built with
   std::vector<double> H_, work_;               // sum of L slope L^T
   std::vector<double> shift_;  // a row: mu |w_t| on normals, friction on those that slide already
+  std::vector<int> swaps_;
   bool fresh_ = true;
 };
 

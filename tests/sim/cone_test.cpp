@@ -462,7 +462,7 @@ Heap random_heap(std::mt19937& random, int bodies, bool trial_slides) {
 TEST(Cone, RandomHeapsObeyTheLaws) {
   std::mt19937 random(7);
   int found = 0, all = 0, rest = 0, rest_found = 0;
-  for (int trial = 0; trial < 600; ++trial) {
+  for (int trial = 0; trial < 200; ++trial) {
     const Heap heap = random_heap(random, 2 + trial % 20, trial % 2);
     const MatrixXd K = heap.K();
     const VectorXd b = heap.b();
@@ -475,7 +475,7 @@ TEST(Cone, RandomHeapsObeyTheLaws) {
       ASSERT_LT(violation<2>(K, b, heap.blocks, s.f), 1e-10) << trial;
     }
   }
-  EXPECT_GT(found, 0.6 * all);
+  EXPECT_GT(rest_found, 0.95 * rest);
 }
 
 // in space: a block with four corners on a plane
