@@ -16,7 +16,12 @@ struct ContactKey {
 };
 
 /// What a contact does at an instant.
-enum class Touching : std::uint8_t { open, stick, slide };
+enum class Touching : std::uint8_t {
+  open,
+  stick,
+  brink,  // holds with all the friction there is
+  slide
+};
 
 /// A contact as the state keeps it. Forces, not impulses: a partial step then starts rightly from them.
 template <int D>

@@ -106,7 +106,7 @@ void Direct<D>::ready(State<D>& state) {
 template <int D>
 void Direct<D>::step(State<D>& state, double t, double h) {
   ready(state);
-  impulses_.clear(), contacts_.clear();
+  impulses_.clear(), contacts_ = state.contacts;
   double done = 0;
   forced_.clear();
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
@@ -122,6 +122,11 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     if (choose(state, t + done) && cuts < most_cuts_) {
       remember();
       if (coming_apart()) project(state);
+      // on the brink nothing slips: as an equality it is a stick
+      holding_ = modes_;
+      for (ConeMode<D>& mode : holding_) {
+        if (mode.hold == Hold::brink) mode.hold = Hold::stick;
+      }
       length = stretch(state, t + done, h - done, cut);
       if (length > 0) project(state);
     }
@@ -163,7 +168,7 @@ void Direct<D>::rates(double t, std::span<const double> d, std::span<const doubl
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], v_rate) + rows_[i].drift;
 
   // what holds goes on holding
-  cone_.hold(K_, b_, blocks_, modes_, f_);
+  cone_.hold(K_, b_, blocks_, holding_, f_);
   for (int i = 0; i < int(rows_.size()); ++i) push(rows_[i], f_[i], v_rate);
 }
 
@@ -177,7 +182,9 @@ void Direct<D>::remember() {
     if (hold == Hold::open) continue;
     Contact<D> contact;
     contact.key = gaps_[held.of].key;
-    contact.touching = hold == Hold::slide ? Touching::slide : Touching::stick;
+    contact.touching = hold == Hold::slide   ? Touching::slide
+                       : hold == Hold::brink ? Touching::brink
+                                             : Touching::stick;
     contact.point = held.point, contact.normal = held.normal, contact.gap = held.off;
     for (int i = 0; i < D; ++i) contact.force += f_[held.first + i] * rows_[held.first + i].along;
     contacts_.push_back(contact);

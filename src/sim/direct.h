@@ -66,6 +66,7 @@ class Direct final : private System {
   void assemble();
   void assemble_keeping_b();
   bool choose(State<D>& state, double t);
+  void guess();
   bool acts(const Held& held) const;
   double moves(int row) const;
   double along(const Row<D>& row, std::span<const double> rate) const;
@@ -129,7 +130,7 @@ class Direct final : private System {
   std::vector<Held> held_;
   std::vector<Row<D>> rows_;
   std::vector<ConeBlock<D>> blocks_;
-  std::vector<ConeMode<D>> modes_;
+  std::vector<ConeMode<D>> modes_, holding_;  // as chosen, and as the stages keep them
   Eigen::MatrixXd K_;
   Eigen::VectorXd b_, f_, kept_, forces_;  // forces_: of the last stage
   Eigen::VectorXd slips_;                  // J v where the stretch began

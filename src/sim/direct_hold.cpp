@@ -234,6 +234,25 @@ void Direct<D>::jump(State<D>& state, const Row<D>& row, double p, bool places) 
   side(row.a, row.turn_a, p), side(row.b, row.turn_b, -p);
 }
 
+// what contacts did last is the first guess at what they do now
+template <int D>
+void Direct<D>::guess() {
+  for (const Held& held : held_) {
+    if (held.kind != Held::Kind::contact) continue;
+    const ContactKey& key = gaps_[held.of].key;
+    const auto known = std::lower_bound(contacts_.begin(), contacts_.end(), key,
+                                        [](const Contact<D>& c, const ContactKey& k) { return c.key < k; });
+    if (known == contacts_.end() || known->key != key) continue;
+    ConeMode<D>& mode = modes_[held.block];
+    if (known->touching == Touching::open) mode.hold = Hold::open;
+    if (known->touching != Touching::slide && known->touching != Touching::brink) continue;
+    Tangent<D> drag;
+    for (int i = 0; i < D - 1; ++i) drag[i] = known->force.dot(rows_[held.first + 1 + i].along);
+    const double size = std::sqrt(drag.squaredNorm());
+    if (size > 0) mode.hold = Hold::slide, mode.along = -drag / size;
+  }
+}
+
 // the forces of this instant, and what each contact does. False where there are none.
 template <int D>
 bool Direct<D>::choose(State<D>& state, double t) {
@@ -244,6 +263,7 @@ bool Direct<D>::choose(State<D>& state, double t) {
   assemble();
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], rate) + rows_[i].drift;
+  guess();
   const bool found = cone_.solve(K_, b_, blocks_, modes_, f_).found;
   // what lets go, but would come closer by the change of the forces alone, is held
   for (const Held& held : held_) {
