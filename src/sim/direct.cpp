@@ -16,8 +16,6 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kShort = 1.0 / 64;  // of a step
-
 // the least thickness of a shape, m
 template <int D>
 double thickness(const Shape<D>& shape) {
@@ -63,7 +61,9 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
   if (pace_ == 0) pace_ = model.scale;
   closed_ = (exact ? 1e-12 : 1e-9) * model.scale;
   rest_ = exact ? 1e-6 * pace_ : std::max(1e-6 * pace_, 0.1 * g * h);
-  most_cuts_ = exact ? 2000 + 100 * int(model.bodies.size()) : 32 + 8 * int(model.bodies.size());
+  most_cuts_ = exact ? 2000 + 100 * int(model.bodies.size()) : 12;
+  patience_ = exact ? 8 + int(model.bodies.size()) : 4;
+  short_ = exact ? 1.0 / 64 : 1.0 / 4;
   for (const Body<D>& body : model.bodies) {
     rims_.push_back(reach(body.shape));
     thin_.push_back(thickness(body.shape));
@@ -132,14 +132,14 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     }
     if (length == 0 && (forced_.empty() || forced_again_)) {
       // no way to go on but a short one at once
-      length = std::min(cuts < most_cuts_ ? kShort * h : h, h - done);
+      length = std::min(cuts < most_cuts_ ? short_ * h : h, h - done);
       settle(state, t + done, length);
       cut = length < h - done;
     }
     if (length > 0) forced_.clear(), forced_again_ = false;
     done = cut ? done + length : h;
     // ever faster impacts count as rest, so that what bounces ever faster comes to an end
-    if (cuts > 8 + int(model_.bodies.size()) && cuts % 4 == 0) rest_ = std::min(fastest, 2 * rest_);
+    if (cuts > patience_ && cuts % 2 == 0) rest_ = std::min(fastest, 2 * rest_);
   }
   rest_ = slowest;
   find(state, closed_);

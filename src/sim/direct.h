@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/cone.h"
+#include "sim/contact_step.h"
 #include "sim/row.h"
 #include "sim/tied.h"
 
@@ -14,13 +15,13 @@ namespace obscura::sim {
 /// (sim/cone.h). A step is cut where something closes, opens, slips or stops: in `event` always, in `contact`
 /// where it closes or stops, and a bounded number of times. For scenes of up to some hundred rows.
 template <int D>
-class Direct final : private System {
+class Direct final : public ContactStep<D>, private System {
  public:
   /// Both are kept by reference.
   Direct(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// Moves `state` from t to t + h: its bodies, contacts, and who is frozen.
-  void step(State<D>& state, double t, double h);
+  void step(State<D>& state, double t, double h) override;
 
  private:
   // something that keeps rows at the instant at hand
@@ -75,7 +76,7 @@ class Direct final : private System {
   void project(State<D>& state);
 
   // direct_impacts.cpp
-  bool approaching() const;
+  double approach() const;
   bool coming_apart() const;
   void collide(State<D>& state);
   void only_worst_pair();
@@ -119,6 +120,8 @@ class Direct final : private System {
   double pace_ = 0;              // m/s: sqrt(g L), or L a second
   double still_ = 0;             // m/s: slower is not at all, at the speeds at hand
   int most_cuts_ = 0;            // of a step
+  int patience_ = 0;             // cuts of a step before rest begins to grow
+  double short_ = 0;             // of a step: what is done at once where there is no other way
   std::vector<double> rims_;     // how far each body reaches, m
   std::vector<double> thin_;     // the least thickness of each body, m; 0 of a point
   std::vector<Couple> couples_;  // who may touch whom

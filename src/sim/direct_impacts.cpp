@@ -13,7 +13,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kRounds = 200;  // of pairs in turn
+constexpr int kRounds = 200;        // of pairs in turn
+constexpr double kRounding = 1000;  // of what is still: what a solve leaves
 
 template <int D>
 double moving(const Model<D>& model, const State<D>& state) {
@@ -26,24 +27,23 @@ double moving(const Model<D>& model, const State<D>& state) {
 
 }  // namespace
 
-// whether anything that touches comes closer yet, or a joint comes apart
+// how fast what touches comes closer, or joints come apart, at most
 template <int D>
-bool Direct<D>::approaching() const {
+double Direct<D>::approach() const {
+  double most = 0;
   for (const Held& held : held_) {
     switch (held.kind) {
       case Held::Kind::motor:
       case Held::Kind::friction:
         break;
       case Held::Kind::joint:
-        for (int i = 0; i < held.rows; ++i) {
-          if (std::abs(moves(held.first + i)) > still_) return true;
-        }
+        for (int i = 0; i < held.rows; ++i) most = std::max(most, std::abs(moves(held.first + i)));
         break;
       default:
-        if (moves(held.first) < -still_) return true;
+        most = std::max(most, -moves(held.first));
     }
   }
-  return false;
+  return most;
 }
 
 // whether anything that is held from now on comes apart yet
@@ -60,11 +60,16 @@ bool Direct<D>::coming_apart() const {
 // impacts of this instant
 template <int D>
 void Direct<D>::collide(State<D>& state) {
+  double before = 0;
   for (int round = 0; round < kRounds; ++round) {
     stand(state);
     gather(state, true);
-    if (!approaching()) return;
+    // a second time only for what the first has set off, not for its rounding
+    const double fast = approach();
+    if (fast <= (round == 0 ? still_ : kRounding * still_)) return;
     const bool in_turn = model_.impacts == Impacts::sequential && round + 1 < kRounds;
+    if (!in_turn && round > 0 && fast > 0.5 * before) return;
+    before = fast;
     if (in_turn) only_worst_pair();
     strike(state, round + 1 == kRounds ? 0 : 1);
   }
@@ -140,7 +145,7 @@ void Direct<D>::note(const ContactKey& key, const Held& held, const Vec<D>& impu
   impulses_.push_back(contact);
 }
 
-template bool Direct<2>::approaching() const;
+template double Direct<2>::approach() const;
 template bool Direct<2>::coming_apart() const;
 template void Direct<2>::collide(State<2>&);
 

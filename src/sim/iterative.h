@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/iterative_blows.h"
+#include "sim/contact_step.h"
 #include "sim/iterative_cores.h"
 #include "sim/iterative_pairs.h"
 #include "sim/iterative_rows.h"
@@ -17,14 +18,14 @@ namespace obscura::sim {
 /// run in one; a state whose step and motion are to the bit those that the last step left is taken to be that
 /// state, contacts and all.
 template <int D>
-class Iterative {
+class Iterative final : public ContactStep<D> {
  public:
   /// Both are kept by reference.
   explicit Iterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// Moves `state` from t to t + h (s): forces, impacts, contacts with friction, rest. Uses and writes
   /// state.contacts, frozen, quiet.
-  void step(State<D>& state, double t, double h);
+  void step(State<D>& state, double t, double h) override;
 
  private:
   using Motion = sweep::Motion;

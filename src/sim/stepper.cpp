@@ -60,7 +60,7 @@ Stepper<D>::Stepper(const Model<D>& model)
   }
   if (!drag) drag_.clear();
   d_.resize(std::max(D, kSpins<D>) * kBlock);
-  if (model.collision != Collision::handout) direct_ = std::make_unique<Direct<D>>(model, paths_);
+  if (model.collision != Collision::handout) contact_ = contact_step(model, paths_);
   suspects_.reserve(model.bodies.size());
   watch_every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / 60));
 }
@@ -74,7 +74,7 @@ void Stepper<D>::begin(State<D>& state) {
     if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
   }
   state.grips.resize(model_.mice.size());
-  if (direct_) {
+  if (contact_) {
     state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
     state.broken.resize(model_.joints.size());
   }
@@ -108,8 +108,8 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
     const bool cut = edge != edges_.end() && edge->at.step == state.step && edge->at.fraction <= fraction;
     const double to = cut ? edge->at.fraction : fraction;
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
-    if (direct_) {
-      direct_->step(state, begun, (to - from) * h);
+    if (contact_) {
+      contact_->step(state, begun, (to - from) * h);
       if (!sound(state)) return watch_.ran_away(state, ended);
     } else {
       plan(state);

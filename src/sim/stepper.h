@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/direct.h"
+#include "sim/contact_step.h"
 #include "sim/handout.h"
 #include "sim/integrator.h"
 #include "sim/script.h"
@@ -56,7 +56,7 @@ class Stepper {
   std::vector<Beat> presses_, releases_;  // one a mouse
   Integrate* integrate_;
   Handout<D> handout_;
-  std::unique_ptr<Direct<D>> direct_;  // of `contact` and `event`
+  std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
   Watch<D> watch_;
   Tied<D> tied_;
   std::vector<int> gripped_;  // by each mouse, as the plan knows

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/path.h"
+#include "sim/state.h"
+
+namespace obscura::sim {
+
+/// A solver of `contact` and `event`: moves a state on, with everything that touches, hangs and pulls.
+template <int D>
+class ContactStep {
+ public:
+  virtual ~ContactStep() = default;
+
+  /// Moves `state` from t to t + h (s): bodies, contacts, joints, and who is frozen.
+  virtual void step(State<D>& state, double t, double h) = 0;
+};
+
+/// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event`
+/// and joints are the direct one's.
+template <int D>
+Solver solver(const Model<D>& model);
+
+/// That solver. Both are kept by reference.
+template <int D>
+std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+}  // namespace obscura::sim
