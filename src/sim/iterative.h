@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/iterative_blows.h"
 #include "sim/contact_step.h"
+#include "sim/iterative_blows.h"
 #include "sim/iterative_cores.h"
 #include "sim/iterative_pairs.h"
 #include "sim/iterative_rows.h"
