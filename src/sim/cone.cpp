@@ -12,7 +12,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kSoftness[] = {1e-7, 1e-9, 1e-5};
+constexpr double kSoftness[] = {1e-7, 1e-4, 1e-3};
 constexpr double kExact = 1e-14;  // no better is to be had
 constexpr int kTurns = 30;        // Newton steps for directions of slip
 constexpr int kSmall = 64;        // rows: so few that a factorisation costs nothing

@@ -20,10 +20,10 @@ struct ConeReport {
 /// Forces that obey joints, limits and Coulomb's cone, exactly: w = K f + b with one of the laws above a
 /// block. K: n x n, symmetric, positive semidefinite, J M^-1 J^T; b: n, what the rows would do without f
 /// (m/s^2, or m/s and then f are impulses). Where rows are redundant, of the forces that solve with the modes
-/// found, those of least norm (each block weighed by its own response), so that what is symmetric stays so.
-/// Sets of modes are guessed by Newton's method on slightly soft contacts and then solved as equalities,
-/// after Baraff, "Fast contact force computation for nonpenetrating rigid bodies", 1994. Room is kept from
-/// solve to solve; a warm one allocates nothing.
+/// found, those of least norm (each block weighed by its own response), or, where some are on their cones, as
+/// slightly soft ones would share: what is symmetric stays so. Sets of modes are guessed by Newton's method
+/// on slightly soft contacts and then solved as equalities, after Baraff, "Fast contact force computation for
+/// nonpenetrating rigid bodies", 1994. Room is kept from solve to solve; a warm one allocates nothing.
 template <int D>
 class Cone {
  public:

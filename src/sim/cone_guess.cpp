@@ -20,7 +20,7 @@ namespace {
 constexpr double kDependent = 1e-11;  // a pivot this small beside the first is rounding
 constexpr double kSettled = 1e-10;    // of u
 constexpr double kStride = 0.1;       // of softness
-constexpr int kStrides = 100;
+constexpr int kStrides = 40;
 
 double dot(std::span<const double> x, std::span<const double> y) {
   double sum = 0;
@@ -239,14 +239,14 @@ void ConeGuess<D>::modes(double softness, std::span<ConeMode<D>> modes) const {
 }
 
 // Coulomb's law from very soft to `softness`, each solution the start of the next; shorter strides where
-// Newton's method does not follow.
+// Newton's method does not follow. How soft it still is where it ends.
 template <int D>
-bool ConeGuess<D>::stiffen(double softness) {
+double ConeGuess<D>::stiffen(double softness) {
   std::fill(u_.begin(), u_.end(), 0.0);
   std::fill(shift_.begin(), shift_.end(), 0.0);
   double from = 1, stride = kStride;
   newton(from, Friction::associated, 20);
-  if (!newton(from, Friction::coulomb, 25)) return false;
+  if (!newton(from, Friction::coulomb, 25)) return from;
   for (int i = 0; i < kStrides && from > softness; ++i) {
     kept_ = u_;
     const double to = std::max(softness, from * stride);
@@ -257,23 +257,23 @@ bool ConeGuess<D>::stiffen(double softness) {
     }
   }
   evaluate(from, Friction::coulomb, u_);
-  return from <= softness;
+  return from;
 }
 
 template <int D>
 bool ConeGuess<D>::guess(double softness, std::span<ConeMode<D>> out) {
   // softness in stages, the convex problem first
-  bool settled = true;
+  double reached = softness;
   if (r_ > 0) {
     std::fill(shift_.begin(), shift_.end(), 0.0);
     for (double eps = 1e-2; eps > softness; eps *= 1e-2) newton(eps, Friction::associated, 20);
     newton(softness, Friction::associated, 40);
-    settled = newton(softness, Friction::coulomb, 25) || stiffen(softness);
+    if (!newton(softness, Friction::coulomb, 25)) reached = stiffen(softness);
   } else {
     evaluate(softness, Friction::coulomb, u_);
   }
-  modes(softness, out);
-  return settled;
+  modes(reached, out);
+  return reached <= softness;
 }
 
 template class ConeGuess<2>;

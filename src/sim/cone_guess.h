@@ -19,8 +19,8 @@ class ConeGuess {
   void begin(std::span<const double> K, std::span<const double> b, std::span<const ConeBlock<D>> blocks,
              std::span<const int> first, std::span<const double> sigma);
 
-  /// Modes of the rows of this softness, one a block. False where Newton's method did not settle; the modes
-  /// are then those it came to. Starts from where the last call ended.
+  /// Modes of the rows of this softness, one a block. False where Newton's method did not get there; the
+  /// modes are then those of the softness it came to. Starts from where the last call ended.
   bool guess(double softness, std::span<ConeMode<D>> modes);
 
  private:
@@ -31,7 +31,7 @@ class ConeGuess {
   bool newton(double softness, Friction friction, int iterations);
   double evaluate(double softness, Friction friction, std::span<const double> u);
   double law(int block, double softness, Friction friction, const double* w, VecD& f, SquareD& slope) const;
-  bool stiffen(double softness);
+  double stiffen(double softness);
   bool step(double softness);
   void modes(double softness, std::span<ConeMode<D>> modes) const;
 
