@@ -164,11 +164,11 @@ void Direct<D>::rates(double t, std::span<const double> d, std::span<const doubl
   for (std::size_t i = 0; i < members.size(); ++i) stances_[members[i]] = free_.stances()[i];
   rows_.clear();
   for (Held& held : held_) lay_rows(held, Spin<D>::Zero());
-  assemble();
+  b_.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], v_rate) + rows_[i].drift;
 
   // what holds goes on holding
-  cone_.hold(K_, b_, blocks_, holding_, f_);
+  hold();
   for (int i = 0; i < int(rows_.size()); ++i) push(rows_[i], f_[i], v_rate);
 }
 
@@ -224,10 +224,11 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
   gather(state, true);
   keep(state, begun_);
   lay_blocks(true);
-  assemble();
+  split();
+  b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(rows_[i], rate) + rows_[i].drift);
-  cone_.solve(K_, b_, blocks_, modes_, f_);
+  solve();
   const auto& members = free_.bodies();
   for (std::size_t i = 0; i < members.size(); ++i) {
     const int body = members[i];
@@ -248,6 +249,7 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
   find(state, closed_);
   gather(state, true);
   lay_blocks(true);
+  split();
   for (const Held& held : held_) {
     if (held.kind == Held::Kind::contact && held.off >= -closed_) modes_[held.block].hold = Hold::open;
     if (held.kind == Held::Kind::contact && held.off < -closed_) modes_[held.block].hold = Hold::slide;

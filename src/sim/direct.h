@@ -64,8 +64,6 @@ class Direct final : public ContactStep<D>, private System {
   void gather(const State<D>& state, bool all);
   void lay_rows(Held& held, const Spin<D>& turn);
   void lay_blocks(bool impulses);
-  void assemble();
-  void assemble_keeping_b();
   bool choose(State<D>& state, double t);
   void guess();
   bool acts(const Held& held) const;
@@ -74,6 +72,15 @@ class Direct final : public ContactStep<D>, private System {
   void push(const Row<D>& row, double f, std::span<double> rate) const;
   void jump(State<D>& state, const Row<D>& row, double p, bool places) const;
   void project(State<D>& state);
+
+  // direct_parts.cpp
+  void split();
+  void assemble();
+  bool solve();
+  void hold();
+  void least();
+  template <class Solve>
+  void each_part(std::vector<ConeMode<D>>& modes, Solve&& solve);
 
   // direct_impacts.cpp
   double approach() const;
@@ -134,9 +141,17 @@ class Direct final : public ContactStep<D>, private System {
   std::vector<Row<D>> rows_;
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_, holding_;  // as chosen, and as the stages keep them
-  Eigen::MatrixXd K_;
-  Eigen::VectorXd b_, f_, kept_, forces_;  // forces_: of the last stage
-  Eigen::VectorXd slips_;                  // J v where the stretch began
+  // parts that share no body
+  int parts_ = 0;
+  std::vector<std::vector<int>> members_;  // of held_, one list a part
+  std::vector<int> roots_, part_of_, part_rows_, part_chosen_;
+  std::vector<ConeBlock<D>> part_blocks_;
+  std::vector<ConeMode<D>> part_modes_;
+  std::vector<char> wanted_;
+  Eigen::MatrixXd K_;  // of the part at hand
+  Eigen::VectorXd part_b_, part_f_;
+  Eigen::VectorXd b_, f_;
+  Eigen::VectorXd slips_;  // J v where the stretch began
   std::vector<int> chosen_, island_;
   std::vector<char> ripe_;
   std::vector<double> rate_;

@@ -165,28 +165,6 @@ void Direct<D>::lay_blocks(bool impulses) {
   modes_.assign(blocks_.size(), {});
 }
 
-// K of the rows at hand
-template <int D>
-void Direct<D>::assemble() {
-  const int n = int(rows_.size());
-  K_.resize(n, n), b_.resize(n), f_.setZero(n);
-  for (int i = 0; i < n; ++i) {
-    const Row<D>& r = rows_[i];
-    const double ma = light(r.a), mb = light(r.b);
-    const Spin<D> wa = ma > 0 ? turned_by(r.a, r.turn_a) : Spin<D>::Zero();
-    const Spin<D> wb = mb > 0 ? turned_by(r.b, r.turn_b) : Spin<D>::Zero();
-    for (int j = 0; j <= i; ++j) {
-      const Row<D>& s = rows_[j];
-      double k = 0;
-      if (ma > 0 && r.a == s.a) k += ma * r.along.dot(s.along) + wa.dot(s.turn_a);
-      if (mb > 0 && r.b == s.b) k += mb * r.along.dot(s.along) + wb.dot(s.turn_b);
-      if (ma > 0 && r.a == s.b) k -= ma * r.along.dot(s.along) + wa.dot(s.turn_b);
-      if (mb > 0 && r.b == s.a) k -= mb * r.along.dot(s.along) + wb.dot(s.turn_a);
-      K_(i, j) = k, K_(j, i) = k;
-    }
-  }
-}
-
 // J a: what the rows accelerate by, of accelerations in the order of free_
 template <int D>
 double Direct<D>::along(const Row<D>& row, std::span<const double> rate) const {
@@ -260,11 +238,12 @@ bool Direct<D>::choose(State<D>& state, double t) {
   gather(state, false);
   lay_blocks(false);
   if (held_.empty()) return true;
-  assemble();
+  split();
+  b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], rate) + rows_[i].drift;
   guess();
-  const bool found = cone_.solve(K_, b_, blocks_, modes_, f_).found;
+  const bool found = solve();
   // what lets go, but would come closer by the change of the forces alone, is held
   for (const Held& held : held_) {
     if (forced_.empty() || held.kind != Held::Kind::contact) continue;
@@ -303,7 +282,7 @@ void Direct<D>::project(State<D>& state) {
                                                 : turn_between(state, model_.joints[held.of]));
     }
   };
-  const auto least = [&](bool places) {
+  const auto move = [&](bool places) {
     for (int i = 0; i < int(chosen_.size()); ++i) jump(state, rows_[chosen_[i]], f_[chosen_[i]], places);
   };
   for (int round = 0; round < 3; ++round) {
@@ -320,9 +299,8 @@ void Direct<D>::project(State<D>& state) {
       }
     }
     if (worst <= 1e-14 * model_.scale) break;
-    assemble_keeping_b();
-    cone_.least(K_, b_, chosen_, f_);
-    least(true);
+    least();
+    move(true);
     if (worst <= 1e-9 * model_.scale) break;
   }
 
@@ -343,16 +321,8 @@ void Direct<D>::project(State<D>& state) {
     }
   }
   if (worst <= 1e-6 * still_) return;
-  assemble_keeping_b();
-  cone_.least(K_, b_, chosen_, f_);
-  least(false);
-}
-
-template <int D>
-void Direct<D>::assemble_keeping_b() {
-  kept_ = b_;
-  assemble();
-  b_ = kept_;
+  least();
+  move(false);
 }
 
 template class Direct<2>;

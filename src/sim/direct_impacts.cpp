@@ -99,7 +99,8 @@ void Direct<D>::only_worst_pair() {
 template <int D>
 void Direct<D>::strike(State<D>& state, double bounce) {
   lay_blocks(true);
-  assemble();
+  split();
+  b_.resize(Eigen::Index(rows_.size()));
   keep(state, saved_);
   const double before = moving(model_, state);
   double low = 0, high = bounce;
@@ -111,7 +112,7 @@ void Direct<D>::strike(State<D>& state, double bounce) {
         b_[held.first] += bounce * elasticity(gaps_[held.of].key) * vn;
     }
     modes_.assign(blocks_.size(), {});
-    const bool found = cone_.solve(K_, b_, blocks_, modes_, f_).found;
+    const bool found = solve();
     for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
     const double after = moving(model_, state);
     if ((found && after <= before * (1 + 1e-13)) || bounce == 0) break;
