@@ -25,11 +25,13 @@ namespace {
 constexpr int kEvery = 10;         // steps between two looks for pairs
 constexpr int kMostSweeps = 40;    // of few pairs
 constexpr int kPairSweeps = 2000;  // pairs times sweeps where there are more; at least one sweep
-constexpr int kFirstSweeps = 400;  // of the first step, which knows no forces
+constexpr int kFirstSweeps = 100;  // of the first step, which knows no forces
 constexpr double kCalm = 0.02;     // of its thickness: what a pair may move between two looks, features kept
-constexpr double kProject = 0.2;   // of a penetration each time pairs are looked for
-constexpr int kColours = 40;       // seats of more colours hold one pair each
-constexpr double kNowhere = 1e9;   // m: the gap of a touch that is none
+constexpr double kSoft = 0.05;  // of its thickness between two looks: slower inelastic closings are no blows
+constexpr double kSight = 0.5;  // of its thickness: what may pass within a step is swept instead
+constexpr double kProject = 0.2;  // of a penetration each time pairs are looked for
+constexpr int kColours = 40;      // seats of more colours hold one pair each
+constexpr double kNowhere = 1e9;  // m: the gap of a touch that is none
 
 }  // namespace
 
@@ -39,6 +41,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       cores_(model),
       pairs_(model, cores_),
       blows_(int(model.bodies.size())),
+      rest_(model, cores_),
       tied_(model, paths) {
   const int n = int(model.bodies.size());
   const double h = 1 / value(model.rate);
@@ -46,7 +49,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
   rest_speed_ = 2 * h * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
   v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
-  closing_.resize(n + 1), colours_.resize(n + 1);
+  closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);
   for (const Body<D>& body : model.bodies) drag_ = drag_ || body.drag != 0;
 }
 
@@ -57,13 +60,29 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
 
   const bool known = gather(state);
-  const bool look = state.step % kEvery == 0;
-  if (look) {
-    pairs_.find(state, poses_, span_);
+  const bool due = state.step % kEvery == 0;
+
+  // whom springs and hands hold
+  if (!model_.springs.empty() || !model_.mice.empty()) {
+    tied_.gather(state);
+    for (int i = 0; i < n; ++i) movers_[i] = tied_.has(i);
+  }
+  bool held = false, asleep = true;
+  for (int i = 0; i < n; ++i) {
+    held = held || (movers_[i] && state.frozen[i]);
+    asleep = asleep && (state.frozen[i] || model_.bodies[i].fixed);
+  }
+  if (asleep && !held) {
+    next_step_ = known ? state.step + 1 : -1;
+    return;
+  }
+
+  if (due || held) {
+    look(state);
   } else if (!known) {
     pairs_.adopt(state);
+    seat(state);
   }
-  if (look || !known) seat(state);
   sweep::find_lively(seats_.data(), int(seats_.size()), v_.data(), lively_);
   for (const int i : lively_) {
     const Pair& pair = pairs_.all()[seats_[i / kLanes].pair[i % kLanes]];
@@ -71,7 +90,7 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   }
 
   fall(state, t, h);
-  const sweep::Pace pace{h, 0.05 * rest_speed_, rest_speed_, h * std::sqrt(model_.gravity.squaredNorm())};
+  const sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm())};
   const int count = int(seats_.size());
   sweep::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
   blows_.run(fast_, pairs_.all(), seats_, poses_, old_, dv_, v_, pace);
@@ -80,11 +99,29 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   for (int i = 1; i < sweeps; ++i) sweep::sweep(seats_.data(), count, poses_.data(), v_.data(), pace);
   sweep::finish(seats_.data(), count, poses_.data(), v_.data(), pace, state.contacts.data());
   blows_.keep(pairs_.all(), state.contacts);
-  if (look) project();
-  advance(state, h, look);
+  if (due) project();
+  advance(state, h, due);
+  if (outran(h)) look(state);
+  if (due && rest_.freeze(state, pairs_.all(), seats_, poses_, v_, movers_, h)) {
+    for (int i = 0; i < n; ++i) {
+      if (state.frozen[i]) v_[i] = {};
+    }
+    seat(state);
+  }
   next_step_ = state.step + 1;
-  if (outran(h)) {
-    pairs_.find(state, poses_, span_);
+}
+
+// pairs anew, who wakes by them, and seats for all
+template <int D>
+void Iterative<D>::look(State<D>& state) {
+  pairs_.find(state, poses_, span_);
+  if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) pairs_.find(state, poses_, span_);
+  seat(state);
+  const bool fresh =
+      state.step == 0 && std::all_of(state.contacts.begin(), state.contacts.end(),
+                                     [](const Contact<D>& c) { return c.force == Vec<D>::Zero(); });
+  if (fresh) {
+    guess(state);
     seat(state);
   }
 }
@@ -147,7 +184,8 @@ void Iterative<D>::seat(const State<D>& state) {
       if (a) colours_[pair.a] |= std::uint64_t(1) << which;
       if (b) colours_[pair.b] |= std::uint64_t(1) << which;
     }
-    pair.slot = which;  // for now
+    pair.slot = pair.colour = which;  // for now
+    pair.alone = which == kColours;
     ++count_[which];
   }
 
@@ -173,11 +211,12 @@ void Iterative<D>::seat(const State<D>& state) {
     Seats& g = seats_[pair.slot / kLanes];
     const int lane = pair.slot % kLanes;
     const sweep::Core& a = cores_.all[pair.core_a];
-    double far = a.reach, thin = a.inside, radius = a.radius;
+    double sight = 1e300, far = a.reach, thin = a.inside, radius = a.radius;
     bool round = a.count == 1;
     if (pair.b >= 0) {
       const sweep::Core& b = cores_.all[pair.core_b];
       far = std::max(far, b.reach), thin = std::min(thin, b.inside), radius += b.radius;
+      sight = kSight * std::max(thin, 0.5 * radius);
       // features of round things may change at any time, if there are more than one
       round = (a.count == 1) != (b.count == 1);
     } else {
@@ -186,7 +225,8 @@ void Iterative<D>::seat(const State<D>& state) {
     g.a[lane] = pair.a, g.iia[lane] = ii_[pair.a];
     g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
     g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
-    g.mu[lane] = pair.friction, g.radius[lane] = radius;
+    g.blow[lane] = -(pair.elasticity > 0 ? rest_speed_ : std::max(rest_speed_, kSoft * thin / span_));
+    g.sight[lane] = sight, g.mu[lane] = pair.friction, g.radius[lane] = radius;
     g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
     sit(pair, state);
   }
@@ -233,6 +273,54 @@ void Iterative<D>::sit(const Pair& pair, const State<D>& state) {
   }
 }
 
+// forces that a pile may begin with: from the top down, each body hands its weight and its load to what lies
+// below it, in equal parts
+template <int D>
+void Iterative<D>::guess(State<D>& state) {
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  if (g == 0) return;
+  const int n = int(turns_.size());
+  const Vec<D> down = model_.gravity / g;
+  std::vector<std::pair<double, int>> order;
+  std::vector<std::vector<int>> below(n);
+  for (int i = 0; i < n; ++i) order.emplace_back(down.dot(state.x[i]), i);
+  std::sort(order.begin(), order.end());
+  const auto lower = [&](const Pair& pair) {  // who bears whom: -1 where neither does
+    if (pair.b < 0) return pair.a;
+    return down.dot(state.x[pair.a]) > down.dot(state.x[pair.b]) ? pair.b : pair.a;
+  };
+  for (int i = 0; i < int(pairs_.all().size()); ++i) {
+    if (pairs_.all()[i].slot >= 0) below[lower(pairs_.all()[i])].push_back(i);
+  }
+  std::vector<double> load(n, 0);
+  std::vector<Contact<D>*> bears;
+  for (const auto& [height, body] : order) {
+    if (v_[body].im == 0) continue;
+    bears.clear();
+    for (const int i : below[body]) {
+      const Pair& pair = pairs_.all()[i];
+      for (int k = 0; k < pair.touches; ++k) {
+        Contact<D>& contact = state.contacts[pair.first + k];
+        const Feature f = Feature::of(contact.key.feature);
+        if (f.kind == Feature::none) continue;
+        const sweep::Place at = pairs_.place(pair, poses_, f);
+        const double side = pair.a == body ? 1 : -1;
+        contact.normal = {at.nx, at.ny};
+        if (at.gap < 1e-3 * cores_.inside[body] && -side * down.dot(contact.normal) > 0.5)
+          bears.push_back(&contact);
+      }
+    }
+    const double weight = g / v_[body].im + load[body];
+    for (Contact<D>* contact : bears) {
+      const double side = contact->key.a == body ? 1 : -1;
+      const double part = weight / double(bears.size()) / (-side * down.dot(contact->normal));
+      contact->force = part * contact->normal;
+      const int other = contact->key.a == body ? contact->key.b : contact->key.a;
+      if (other >= 0) load[other] += weight / double(bears.size());
+    }
+  }
+}
+
 // what everyone would do in the step if nothing touched
 template <int D>
 void Iterative<D>::fall(State<D>& state, double t, double h) {
@@ -258,7 +346,6 @@ void Iterative<D>::fall(State<D>& state, double t, double h) {
 
   // springs and hands
   if (model_.springs.empty() && model_.mice.empty()) return;
-  tied_.gather(state);
   const std::vector<int>& bodies = tied_.bodies();
   stages_.reserve(bodies.size() * (D + kSpins<D>));
   tied_.step(integrate(model_.integrator), state, t, h, stages_);
@@ -297,22 +384,11 @@ void Iterative<D>::advance(State<D>& state, double h, bool look) {
   for (const int i : slow_)
     closing_[seats_[i / kLanes].a[i % kLanes]] = closing_[seats_[i / kLanes].b[i % kLanes]] = 1;
 
-  const double quiet_speed = 0.02, half = 0.5 * h;
+  const double quiet_speed = 0.02;
   for (int i = 0; i < n; ++i) {
-    const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
-    if (v.im == 0) continue;
-    Motion d;
-    if (const double when = blows_.when(i); when >= 0) {
-      const double one = 0.5 * when, two = 0.5 * (h - when);
-      const Motion &b = blows_.before(i), &a = blows_.after(i);
-      d = {one * (o.x + b.x) + two * (a.x + v.x), one * (o.y + b.y) + two * (a.y + v.y),
-           one * (o.w + b.w) + two * (a.w + v.w), 0};
-    } else if (closing_[i]) {
-      d = {h * v.x, h * v.y, h * v.w, 0};
-    } else {
-      d = {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
-           dx.w + half * (v.w - (o.w + dv.w)), 0};
-    }
+    if (v_[i].im == 0) continue;
+    Motion d = course(i, h);
+    const Motion& v = v_[i];
     if (look) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
     state.x[i][0] = poses_[i].x += d.x, state.x[i][1] = poses_[i].y += d.y;
     state.v[i][0] = v.x, state.v[i][1] = v.y;
@@ -328,6 +404,82 @@ void Iterative<D>::advance(State<D>& state, double h, bool look) {
   }
 }
 
+// the way of a body in the step
+template <int D>
+sweep::Motion Iterative<D>::course(int i, double h) {
+  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
+  const double when = blows_.when(i);
+  Motion d;
+  if (when >= 0) {
+    const double one = 0.5 * when, two = 0.5 * (h - when);
+    const Motion &b = blows_.before(i), &a = blows_.after(i);
+    const Motion there{one * (o.x + b.x), one * (o.y + b.y), one * (o.w + b.w), 0};
+    Motion back{two * (a.x + v.x), two * (a.y + v.y), two * (a.w + v.w), 0};
+    if (fast(i, back)) {
+      sweep::Pose from = poses_[i];
+      from.x += there.x, from.y += there.y;
+      const double part = clear(i, from, back, true);
+      back.x *= part, back.y *= part, back.w *= part;
+    }
+    d = {there.x + back.x, there.y + back.y, there.w + back.w, 0};
+  } else if (closing_[i]) {
+    d = {h * v.x, h * v.y, h * v.w, 0};
+  } else {
+    const double half = 0.5 * h;
+    d = {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
+         dx.w + half * (v.w - (o.w + dv.w)), 0};
+  }
+  // who is too fast to have been seen comes as far as what it meets, and strikes in the next step
+  const Motion way{h * o.x, h * o.y, h * o.w, 0};
+  if (!fast(i, way)) return d;
+  const double part = clear(i, poses_[i], way, false);
+  if (part >= 1 || (when >= 0 && when <= part * h)) return d;
+  const double im = v_[i].im;
+  v_[i] = o, v_[i].im = im;
+  return {part * way.x, part * way.y, part * way.w, 0};
+}
+
+// whether it may pass through something in the step
+template <int D>
+bool Iterative<D>::fast(int body, const Motion& way) const {
+  const double inside = 0.5 * kSight * cores_.inside[body];
+  return way.x * way.x + way.y * way.y > inside * inside;
+}
+
+// the part of its way that a body may go before it meets another where that stands, or a wall: by steps as
+// long as the distance that is left
+template <int D>
+double Iterative<D>::clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const {
+  const double length = std::sqrt(way.x * way.x + way.y * way.y);
+  double part = 1;
+  Feature features[2];
+  for (const int i : blows_.around(body)) {
+    const Pair& pair = pairs_.all()[i];
+    const sweep::Core& a = cores_.all[pair.core_a];
+    if (pair.b < 0) {
+      const Wall<D>& wall = model_.walls[-1 - pair.b];
+      const double nears = -(wall.normal[0] * way.x + wall.normal[1] * way.y);
+      const double gap = nearest(cores_, a, from, wall, features) + 0.02 * a.inside;
+      if (walls && nears > gap) part = std::min(part, std::max(gap, 0.0) / nears);
+      continue;
+    }
+    const sweep::Core& b = cores_.all[pair.core_b];
+    const double close = 0.02 * std::max(std::min(a.inside, b.inside), 1e-6 * model_.scale);
+    sweep::Pose at = from;
+    for (double gone = 0; gone < part;) {
+      at.x = from.x + gone * way.x, at.y = from.y + gone * way.y;
+      const double left = body == pair.a ? nearest(cores_, a, at, b, poses_[pair.b], features)
+                                         : nearest(cores_, a, poses_[pair.a], b, at, features);
+      if (left <= close) {
+        if (gone > 0) part = gone;
+        break;
+      }
+      gone += std::max(left - 0.5 * close, 0.5 * close) / length;
+    }
+  }
+  return part;
+}
+
 // whether a body may come farther than its pairs foresaw
 template <int D>
 bool Iterative<D>::outran(double h) const {
@@ -335,7 +487,7 @@ bool Iterative<D>::outran(double h) const {
   const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
   for (int i = 0; i < n; ++i) {
     const Motion &v = v_[i], &o = old_[i];
-    const double reach = cores_.reach[i], little = 0.01 * cores_.inside[i] + falls;
+    const double reach = cores_.reach[i], little = 0.04 * cores_.inside[i] + falls;
     const double gain = std::fabs(v.x - o.x) + std::fabs(v.y - o.y) + std::fabs(v.w - o.w) * reach;
     if (gain * span_ < little) continue;
     const auto speed = [&](const Motion& m) {

@@ -7,6 +7,7 @@
 #include "sim/iterative_blows.h"
 #include "sim/iterative_cores.h"
 #include "sim/iterative_pairs.h"
+#include "sim/iterative_rest.h"
 #include "sim/iterative_rows.h"
 #include "sim/tied.h"
 
@@ -33,15 +34,21 @@ class Iterative final : public ContactStep<D> {
   bool gather(const State<D>& state);
   void seat(const State<D>& state);
   void sit(const sweep::Pair& pair, const State<D>& state);
+  void guess(State<D>& state);
   void fall(State<D>& state, double t, double h);
   void project();
   void advance(State<D>& state, double h, bool look);
+  void look(State<D>& state);
   bool outran(double h) const;
+  double clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const;
+  Motion course(int body, double h);
+  bool fast(int body, const Motion& way) const;
 
   const Model<D>& model_;
   sweep::Cores cores_;
   sweep::Pairs pairs_;
   sweep::Blows blows_;
+  sweep::Rest rest_;
   Tied<D> tied_;
   Stages stages_;
   double span_ = 0;        // s, between two looks for pairs
@@ -57,6 +64,7 @@ class Iterative final : public ContactStep<D> {
   std::vector<Motion> push_;     // by projection
   std::vector<char> closing_;    // a slow touch closed in this step
   std::vector<char> frozen_;     // that the seats are of
+  std::vector<char> movers_;     // springs, hands and joints hold them
 
   std::vector<std::uint64_t> colours_;  // used on each body
   std::vector<int> count_;

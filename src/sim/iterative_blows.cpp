@@ -12,6 +12,16 @@
 
 namespace obscura::sim::sweep {
 
+namespace {
+
+// v_n of touch k
+double along(const Rows& r, int k, int lane, const Motion& a, const Motion& b) {
+  return r.nx[k][lane] * (a.x - b.x) + r.ny[k][lane] * (a.y - b.y) +
+         (r.na[k][lane] * a.w - r.nb[k][lane] * b.w);
+}
+
+}  // namespace
+
 Blows::Blows(int bodies) {
   around_start_.resize(bodies + 2);
   when_.assign(bodies + 1, -1);
@@ -56,6 +66,24 @@ void Blows::reach(int body, double when, const std::vector<Motion>& dv, const Pa
   before_[body] = now_[body];
 }
 
+// when the first touch of a pair closes with a blow, s; the step's length where none does
+double Blows::closing(int i, const std::vector<Pair>& pairs, const std::vector<Seats>& seats,
+                      const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) {
+  const Pair& pair = pairs[i];
+  const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
+  const Seats& g = seats[group];
+  const Rows& r = rows(group, seats, poses);
+  double when = pace.h;
+  for (int k = 0; k < pair.touches; ++k) {
+    const double vn = along(r, k, lane, now_[g.a[lane]], now_[g.b[lane]]), gap = r.gap[k][lane];
+    const double dvn = along(r, k, lane, dv[g.a[lane]], dv[g.b[lane]]);
+    if (gap > g.sight[lane] || !(vn < g.blow[lane])) continue;
+    const double left = std::max(0.0, gap);
+    when = std::min(when, left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn)));
+  }
+  return when;
+}
+
 // one pair, both touches together; false where it does not approach
 bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
                 const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) {
@@ -64,10 +92,6 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   Seats& g = seats[group];
   const Rows& r = rows(group, seats, poses);
   const int a = g.a[lane], b = g.b[lane];
-  const auto along = [&](int k, const std::vector<Motion>& v) {
-    return r.nx[k][lane] * (v[a].x - v[b].x) + r.ny[k][lane] * (v[a].y - v[b].y) +
-           (r.na[k][lane] * v[a].w - r.nb[k][lane] * v[b].w);
-  };
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
   const auto push = [&](double dx, double dy, double ra, double rb, double l) {
     now_[a].x += dx * (ima * l), now_[a].y += dy * (ima * l), now_[a].w += iia * (ra * l);
@@ -77,20 +101,19 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   // which touches close, and when
   double e[2] = {1e300, 1e300};
   bool closes[2] = {false, false}, fast[2] = {false, false};
-  double when = pace.h;
   const Blow* known = blow_[i] >= 0 ? &blows_[blow_[i]] : nullptr;
   for (int k = 0; k < pair.touches; ++k) {
-    const double vn = along(k, now_), dvn = along(k, dv), gap = r.gap[k][lane];
+    const double vn = along(r, k, lane, now_[a], now_[b]), dvn = along(r, k, lane, dv[a], dv[b]),
+                 gap = r.gap[k][lane];
+    if (gap > g.sight[lane]) continue;
     closes[k] = gap + pace.h * (vn + 0.5 * dvn) < 0 || (known && known->met[k]);
-    fast[k] = closes[k] && vn < -pace.blow;
-    if (!fast[k]) continue;
-    const double left = std::max(0.0, gap);
-    when = std::min(when, left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn)));
+    fast[k] = closes[k] && vn < g.blow[lane];
   }
   if (!fast[0] && !fast[1]) return false;
+  const double when = closing(i, pairs, seats, poses, dv, pace);
   reach(a, when, dv, pace), reach(b, when, dv, pace);
   for (int k = 0; k < 2; ++k) {
-    if (closes[k]) e[k] = (fast[k] ? 1 + pair.elasticity : 1) * along(k, now_);
+    if (closes[k]) e[k] = (fast[k] ? 1 + pair.elasticity : 1) * along(r, k, lane, now_[a], now_[b]);
   }
   if (!known) blow_[i] = int(blows_.size()), blows_.push_back({i, {false, false}, {0, 0}, {0, 0}});
   Blow& blow = blows_[blow_[i]];
@@ -145,9 +168,14 @@ void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<
   known_.assign(seats.size(), -1);
   std::copy(old.begin(), old.end(), now_.begin());
 
-  // in the order of pairs
-  for (const int seat : found) queue_.push_back(seats[seat / kLanes].pair[seat % kLanes]);
-  std::sort(queue_.begin(), queue_.end());
+  // in the order of time, then of pairs
+  first_.clear();
+  for (const int seat : found) {
+    const int i = seats[seat / kLanes].pair[seat % kLanes];
+    first_.emplace_back(closing(i, pairs, seats, poses, dv, pace), i);
+  }
+  std::sort(first_.begin(), first_.end());
+  for (const auto& [when, i] : first_) queue_.push_back(i);
   for (const int i : queue_) waiting_[i] = 1;
   const std::size_t most = 40 * queue_.size() + 100;
   std::size_t at = 0;

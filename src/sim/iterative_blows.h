@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/iterative_pairs.h"
@@ -28,6 +30,11 @@ class Blows {
   /// Impulses of the last run into the contacts.
   void keep(const std::vector<Pair>& pairs, std::vector<Contact<2>>& contacts) const;
 
+  /// The awake pairs of a body.
+  std::span<const int> around(int body) const {
+    return {around_.data() + around_start_[body], around_.data() + around_start_[body + 1]};
+  }
+
   /// Who was struck; when (s from the start of the step), with which velocity before and after.
   const std::vector<int>& bodies() const { return bodies_; }
   double when(int body) const { return when_[body]; }
@@ -40,12 +47,9 @@ class Blows {
     bool met[2] = {false, false};
     double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
   };
-  struct Known {
-    const Seats& seats;
-    const Rows& rows;
-  };
-
   void reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace);
+  double closing(int pair, const std::vector<Pair>& pairs, const std::vector<Seats>& seats,
+                 const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace);
   bool hit(int pair, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace);
   const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
@@ -55,6 +59,7 @@ class Blows {
   std::vector<double> when_;  // -1: not struck
   std::vector<Motion> before_, now_;
 
+  std::vector<std::pair<double, int>> first_;
   std::vector<int> queue_;
   std::vector<char> waiting_;  // of pairs
   std::vector<int> blow_;      // of pairs: place in blows_, or -1

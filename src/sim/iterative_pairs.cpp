@@ -56,7 +56,7 @@ double Pairs::room_to_move(const State<2>& state, int body, double span) const {
   const double speed = std::sqrt(state.v[body].squaredNorm());
   const double swing = k >= 0 ? std::fabs(state.spin[k][0]) * cores_.reach[body] : 0;
   return span * (speed + swing) + span * span * std::sqrt(model_.gravity.squaredNorm()) +
-         0.02 * std::max(cores_.inside[body], 1e-3 * model_.scale);
+         0.05 * std::max(cores_.inside[body], 1e-3 * model_.scale);
 }
 
 void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
@@ -81,10 +81,10 @@ void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
   // in the order of keys: walls from the last, then bodies
   found_.clear(), contacts_.clear();
   Feature features[2];
-  const auto add = [&](Pair pair) {
+  const auto add = [&](Pair pair, double gap) {
     pair.first = int(contacts_.size());
     Contact<2> contact;
-    contact.key.a = pair.a, contact.key.b = pair.b;
+    contact.key.a = pair.a, contact.key.b = pair.b, contact.gap = gap;
     const int part_a = part_of(cores_, pair.core_a), part_b = part_of(cores_, pair.core_b);
     int words[2] = {features[0].word(), features[1].word()};
     if (pair.touches == 2 && words[1] < words[0]) std::swap(words[0], words[1]);
@@ -94,17 +94,27 @@ void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
     }
     found_.push_back(pair);
   };
+  std::size_t resting = 0;
   for (int a = 0; a < n; ++a) {
-    const Body<2>& body = model_.bodies[a];
     const std::size_t begun = found_.size();
-    if (!body.fixed) {
+    const bool still = rests(state, a);
+    bool kept = false;
+    for (; resting < pairs_.size() && pairs_[resting].a <= a; ++resting) {
+      const Pair& pair = pairs_[resting];
+      if (pair.a < a || !still || !rests(state, pair.b)) continue;
+      found_.push_back(pair);
+      found_.back().first = int(contacts_.size());
+      for (int k = 0; k < pair.touches; ++k) contacts_.push_back(state.contacts[pair.first + k]);
+      kept = true;
+    }
+    if (!still) {
       for (int wall = int(model_.walls.size()); wall-- > 0;) {
         const Wall<2>& w = model_.walls[wall];
         const double high = w.normal[0] * (poses[a].x - w.point[0]) + w.normal[1] * (poses[a].y - w.point[1]);
         if (high > cores_.reach[a] + margin_[a]) continue;
         for (int i = cores_.begin[a]; i < cores_.begin[a + 1]; ++i) {
-          if (nearest(cores_, cores_.all[i], poses[a], w, features) < margin_[a])
-            add(pair(a, -1 - wall, i, -1));
+          const double gap = nearest(cores_, cores_.all[i], poses[a], w, features);
+          if (gap < margin_[a]) add(pair(a, -1 - wall, i, -1), gap);
         }
       }
     }
@@ -113,19 +123,21 @@ void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
       const Core& p = cores_.all[i];
       for (const int j : near_) {
         const Core& q = cores_.all[j];
-        if (q.body == a || (p.count == 1 && q.count == 1 && p.radius + q.radius <= 0)) continue;
+        if (q.body == a || (still && rests(state, q.body))) continue;
+        if ((p.count == 1 && q.count == 1 && p.radius + q.radius <= 0)) continue;
         if (!may_touch(a, q.body)) continue;
-        if (nearest(cores_, p, poses[a], q, poses[q.body], features) < margin_[a] + margin_[q.body])
-          add(pair(a, q.body, i, j));
+        const double gap = nearest(cores_, p, poses[a], q, poses[q.body], features);
+        if (gap < margin_[a] + margin_[q.body]) add(pair(a, q.body, i, j), gap);
       }
     }
-    if (compounds_) {
+    if (compounds_ || kept) {
       std::sort(found_.begin() + long(begun), found_.end(), [&](const Pair& p, const Pair& q) {
         return contacts_[p.first].key < contacts_[q.first].key;
       });
     }
   }
-  if (compounds_) {
+  if (!std::is_sorted(contacts_.begin(), contacts_.end(),
+                      [](const auto& p, const auto& q) { return p.key < q.key; })) {
     // the touches follow their pairs
     std::sort(contacts_.begin(), contacts_.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
     int first = 0;

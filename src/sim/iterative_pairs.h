@@ -17,7 +17,9 @@ struct Pair {
   int a = -1, b = -1;            // bodies; b = -1 - wall
   int core_a = -1, core_b = -1;  // -1: a wall
   int first = 0, touches = 1;
-  int slot = -1;  // lane + kLanes * group; -1: asleep
+  int slot = -1;       // lane + kLanes * group; -1: asleep
+  int colour = -1;     // of its seat
+  bool alone = false;  // colours ran out: nobody sits beside it
   double friction = 0, elasticity = 0;
 };
 
@@ -28,6 +30,7 @@ class Pairs {
 
   /// Finds the pairs nearer than their bodies can come within `span` s, and writes their touches into
   /// state.contacts; forces of the same touches stay.
+  /// A pair whose two sides rest stays as it is.
   void find(State<2>& state, const std::vector<Pose>& poses, double span);
 
   /// Makes the pairs those of state.contacts, where they are not already.
@@ -56,6 +59,10 @@ class Pairs {
 
   const Model<2>& model_;
   const Cores& cores_;
+  bool rests(const State<2>& state, int body) const {
+    return body < 0 || state.frozen[body] || model_.bodies[body].fixed;
+  }
+
   std::vector<Pair> pairs_, found_;
   long version_ = 0;
 

@@ -24,6 +24,7 @@ typedef long long I2 __attribute__((vector_size(16)));
 typedef long long I4 __attribute__((vector_size(32)));
 #define OBSCURA_INLINE [[gnu::always_inline]] inline
 
+constexpr int kAhead = 4;         // groups
 constexpr double kTiny = 1e-300;  // against division by zero in empty seats: changes no other number
 
 template <class V>
@@ -275,7 +276,7 @@ OBSCURA_INLINE void expand_one(const Seats& g, const Pose* poses, Rows& out) {
 template <class V>
 OBSCURA_INLINE void start_all(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v,
                               const Pace& pace, Found& closing, Found& blows) {
-  const V h = V{} + pace.h, creep = V{} - pace.creep, blow = V{} - pace.blow, gain = V{} + pace.gain, none{};
+  const V h = V{} + pace.h, creep = V{} - pace.creep, gain = V{} + pace.gain, none{};
   for (int i = 0; i < count; ++i) {
     Seats& g = seats[i];
     g.struck[0] = g.struck[1] = 0;
@@ -285,13 +286,14 @@ OBSCURA_INLINE void start_all(Seats* seats, int count, const Pose* poses, const 
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
+      const V sight = load<V>(g.sight + lane);
       Mask<V> slow{}, fast{};
       for (int k = 0; k < 2; ++k) {
         Row<V> r;
         make<V>(g, lane, k, a, b, r);
         const V vn = before.along(r.nx, r.ny, r.na, r.nb);
-        slow |= (vn < creep) & (r.gap + h * vn < none);
-        fast |= (vn < blow) & (r.gap + h * (vn - gain) < none);
+        slow |= (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
+        fast |= (vn < load<V>(g.blow + lane)) & (r.gap + h * (vn - gain) < none) & (r.gap <= sight);
         const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
         const V ln = larger<V>(h * (px * r.nx + py * r.ny), none), most = mu * ln;
         const V lt = larger<V>(smaller<V>(h * (py * r.nx - px * r.ny), most), -most);
@@ -336,6 +338,15 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
   const V per_h = V{} + 1 / pace.h, none{};
   for (Seats* g = seats; g < seats + count; ++g) {
     [[maybe_unused]] Rows kept;
+    if constexpr (kLast) {
+      // contacts are far apart in memory: ask for those of a later group
+      if (g + kAhead < seats + count) {
+        for (int lane = 0; lane < kLanes; ++lane) {
+          const char* at = reinterpret_cast<const char*>(contacts + g[kAhead].first[lane]);
+          __builtin_prefetch(at, 1), __builtin_prefetch(at + 64, 1), __builtin_prefetch(at + 128, 1);
+        }
+      }
+    }
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
@@ -347,8 +358,11 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
       V l1 = load<V>(g->p[1] + lane), t1 = load<V>(g->q[1] + lane);
       rub<V>(two, r0, mu * l0, t0);
       rub<V>(two, r1, mu * l1, t1);
-      const V target0 = pick<V>(mask<V>(g->struck[0], lane), none, smaller<V>(-r0.gap * per_h, none));
-      const V target1 = pick<V>(mask<V>(g->struck[1], lane), none, smaller<V>(-r1.gap * per_h, none));
+      const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
+      const V open0 = pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none));
+      const V open1 = pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none));
+      const V target0 = pick<V>(mask<V>(g->struck[0], lane), none, open0);
+      const V target1 = pick<V>(mask<V>(g->struck[1], lane), none, open1);
       press<V>(two, r0, r1, target0, target1, l0, l1);
       two.back(*g, lane, v);
       if constexpr (!kLast) {
@@ -385,10 +399,16 @@ OBSCURA_INLINE void project_all(const Seats* seats, Projection* p, int count, co
       Row<V> r0, r1;
       make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
       Two<V> two(*g, lane, d);
+      const V mu = load<V>(g->mu + lane), allowed = kAllowed * load<V>(g->far + lane);
       V l0 = load<V>(p->push[0] + lane), l1 = load<V>(p->push[1] + lane);
-      press<V>(two, r0, r1, pick<V>(r0.gap < none, -part * r0.gap, -r0.gap),
-               pick<V>(r1.gap < none, -part * r1.gap, -r1.gap), l0, l1);
+      V t0 = load<V>(p->side[0] + lane), t1 = load<V>(p->side[1] + lane);
+      rub<V>(two, r0, mu * l0, t0);
+      rub<V>(two, r1, mu * l1, t1);
+      const V over0 = r0.gap + allowed, over1 = r1.gap + allowed;
+      press<V>(two, r0, r1, pick<V>(over0 < none, -part * over0, -over0),
+               pick<V>(over1 < none, -part * over1, -over1), l0, l1);
       store<V>(p->push[0] + lane, l0), store<V>(p->push[1] + lane, l1);
+      store<V>(p->side[0] + lane, t0), store<V>(p->side[1] + lane, t1);
       two.back(*g, lane, d);
     }
   }
@@ -422,6 +442,27 @@ OBSCURA_WIDE void project_wide(const Seats* s, Projection* p, int n, const Pose*
 }
 
 }  // namespace
+
+void copy_forces(const Seats& from, int i, Seats& to, int k) {
+  for (int side = 0; side < 2; ++side) to.p[side][k] = from.p[side][i], to.q[side][k] = from.q[side][i];
+}
+void copy_seat(const Seats& from, int i, Seats& to, int k) {
+  to.a[k] = from.a[i], to.b[k] = from.b[i], to.pair[k] = from.pair[i], to.first[k] = from.first[i];
+  to.touches[k] = from.touches[i];
+  to.mu[k] = from.mu[i], to.iia[k] = from.iia[i], to.iib[k] = from.iib[i];
+  to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.blow[k] = from.blow[i],
+  to.radius[k] = from.radius[i];
+  to.sight[k] = from.sight[i];
+  for (int side = 0; side < 2; ++side) {
+    to.cx[side][k] = from.cx[side][i], to.cy[side][k] = from.cy[side][i];
+    to.fx[side][k] = from.fx[side][i], to.fy[side][k] = from.fy[side][i], to.d[side][k] = from.d[side][i];
+    const auto bit = [&](unsigned char bits, unsigned char& out) {
+      out = static_cast<unsigned char>((out & ~(1 << k)) | (bits >> i & 1) << k);
+    };
+    bit(from.of_b[side], to.of_b[side]), bit(from.corners[side], to.corners[side]);
+  }
+  copy_forces(from, i, to, k);
+}
 
 void find_lively(const Seats* s, int n, const Motion* v, Found& out) {
   out.clear();

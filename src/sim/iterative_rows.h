@@ -29,6 +29,8 @@ struct alignas(64) Seats {
   unsigned char struck[2];   // met a blow in this step
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
   double calm[kLanes], far[kLanes];  // m/s up to which features stay; the farther reach of both, m
+  double blow[kLanes];               // -m/s: faster approaches are blows
+  double sight[kLanes];              // m: touches farther off are none
   double radius[kLanes];             // of both together, m
   double cx[2][kLanes], cy[2][kLanes];
   double fx[2][kLanes], fy[2][kLanes];
@@ -43,9 +45,9 @@ struct alignas(64) Rows {
   double na[2][kLanes], nb[2][kLanes], ta[2][kLanes], tb[2][kLanes];  // r_a x n, ..., m
 };
 
-/// What projects positions along the rows of a group: least n . d (m), and the push so far (kg m).
+/// What has projected positions along the rows of a group so far: along normals and tangents, kg m.
 struct alignas(64) Projection {
-  double push[2][kLanes];
+  double push[2][kLanes], side[2][kLanes];
 };
 
 /// Which pairs a pass has found, as numbers of seats: lane + kLanes * group.
@@ -55,12 +57,15 @@ using Found = std::vector<int>;
 struct Pace {
   double h = 0;      // s
   double creep = 0;  // m/s: slower approaches are none
-  double blow = 0;   // m/s: faster ones are blows
   double gain = 0;   // m/s that gravity may add in the step
 };
 
 /// Pairs whose features may change.
 void find_lively(const Seats* seats, int count, const Motion* v, Found& out);
+
+/// One pair to another seat; the forces alone.
+void copy_seat(const Seats& from, int i, Seats& to, int k);
+void copy_forces(const Seats& from, int i, Seats& to, int k);
 
 /// Rows of one group.
 void expand(const Seats& seats, const Pose* poses, Rows& out);
@@ -75,7 +80,9 @@ void sweep(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pa
 /// The last one of a step: forces into the seats and into the contacts.
 void finish(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace, Contact<2>* contacts);
 
-/// One sweep over positions: `share` of each penetration is to go.
+/// One sweep over positions: `share` of what is deeper than `kAllowed` of the farther reach is to go.
+/// Friction holds there too, or piles would slide apart by being mended.
+inline constexpr double kAllowed = 5e-7;
 void project(const Seats* seats, Projection* projections, int count, const Pose* poses, Motion* d,
              double share);
 

@@ -179,6 +179,63 @@ TEST(Iterative, RunCutInTwoIsTheRunInOne) {
   }
 }
 
+// static equilibrium found, to 1e-6 of g: from then on nothing changes by a bit
+TEST(Iterative, StackAndPyramidFreezeAndStayToTheBit) {
+  Room stack;
+  stack.floor();
+  for (int i = 0; i < 10; ++i) stack.box({1, 1}, {0.01 * (i % 2), 0.5 + i}, 0.5);
+  Room heap = pyramid(8);
+  for (Room* r : {&stack, &heap}) {
+    r->run(10);
+    for (const char frozen : r->state().frozen) EXPECT_TRUE(frozen);
+    const State<2> then = r->state();
+    r->run(2);
+    EXPECT_EQ(r->state().x, then.x);
+    EXPECT_EQ(r->state().contacts, then.contacts);
+  }
+}
+
+// a speed threshold would freeze it: 0.96 mm/s after half a second
+TEST(Iterative, SlowSlideIsNotFrozen) {
+  const double mu = 0.5, slope = std::atan(mu) + 0.01 * std::numbers::pi / 180;
+  Room r;
+  r.floor(slope);
+  r.box({1, 0.5}, {-0.25 * std::sin(slope), 0.25 * std::cos(slope)}, mu, 0, {0, 0}, slope);
+  r.run(1);
+  EXPECT_FALSE(r.state().frozen[0]);
+  EXPECT_GT(r.state().v[0].norm(), 1e-3);
+}
+
+TEST(Iterative, SleepersWakeWhenTouched) {
+  Room r;
+  r.floor();
+  for (int i = 0; i < 4; ++i) r.box({1, 1}, {0, 0.5 + i}, 0.5);
+  r.disc(0.25, {-16, 2.5}, 0.3, 0.5, {4, 8});
+  r.run(1.2);
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(r.state().frozen[i]) << i;
+  r.world.model.gravity = {0, -9.81};
+  r.state().x[4] = {-4, 2.5}, r.state().v[4] = {30, 0};
+  r.run(0.5);
+  EXPECT_FALSE(r.state().frozen[2]);
+  EXPECT_GT(r.state().x[2][0], 0.1);
+}
+
+TEST(Iterative, FastBallStaysInTheRoomAndOutOfBoxes) {
+  for (const Vec2 v : {Vec2(1e4, 0), Vec2(7e3, 7.1e3), Vec2(3e3, -9e3)}) {
+    Room r;
+    add_walls(r.world, 8, 4.5);
+    r.disc(0.05, {1, 2}, 0.2, 0.9, v);
+    r.box({0.5, 3}, {5, 1.5}, 0.5, 0.5);
+    r.world.model.bodies[1].fixed = true;
+    for (int i = 0; i < 240; ++i) {
+      r.run(1 / 600.0);
+      const Vec2 at = r.state().x[0];
+      ASSERT_TRUE(at[0] > 0 && at[0] < 8 && at[1] > 0 && at[1] < 4.5) << i << " " << at.transpose();
+      ASSERT_FALSE(std::fabs(at[0] - 5) < 0.25 && at[1] < 3) << i << " " << at.transpose();
+    }
+  }
+}
+
 TEST(Iterative, WarmStepAllocatesNothing) {
   Room r = pyramid(10);
   r.run(0.5);

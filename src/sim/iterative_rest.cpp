@@ -1,0 +1,189 @@
+// A quiet island at rest needs forces with
+//   g + sum f / m = 0,  sum r x f = 0        each f in its friction cone
+// which sweeps look for as in a step of bodies without speed: what speed they leave, over h, is the residual.
+
+#include "sim/iterative_rest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace obscura::sim::sweep {
+
+namespace {
+
+constexpr double kWait = 0.25;      // s
+constexpr double kHeld = 1e-6;      // of gravity
+constexpr int kPairSweeps = 40000;  // pairs times sweeps of an island at a time
+constexpr int kMostSweeps = 400;
+constexpr int kBetweenChecks = 10;
+
+}  // namespace
+
+Rest::Rest(const Model<2>& model, const Cores& cores) : model_(model), cores_(cores) {
+  const std::size_t n = model.bodies.size();
+  parent_.resize(n), restless_.resize(n), v_.resize(n + 1), zero_.resize(n + 1);
+}
+
+int Rest::root(int body) {
+  while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
+  return body;
+}
+
+// the lower index is the root, whatever the order
+void Rest::unite(int a, int b) {
+  a = root(a), b = root(b);
+  parent_[std::max(a, b)] = std::min(a, b);
+}
+
+// whether a touch makes an island of two bodies
+bool Rest::joins(const Contact<2>& touch, const Pair& pair) const {
+  return touch.touching != Touching::open ||
+         touch.gap < 1e-3 * std::min(cores_.inside[pair.a], cores_.inside[pair.b]);
+}
+
+bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+                  const std::vector<Pose>& poses, const std::vector<Motion>& v,
+                  const std::vector<char>& movers, double h) {
+  const int n = int(parent_.size());
+  bool candidates = false;
+  for (int i = 0; i < n; ++i) candidates = candidates || (v[i].im > 0 && state.quiet[i] >= kWait);
+  if (!candidates) return false;
+
+  // islands, and which of them will not rest
+  std::iota(parent_.begin(), parent_.end(), 0);
+  std::fill(restless_.begin(), restless_.end(), 0);
+  for (const Pair& pair : pairs) {
+    if (pair.slot < 0 || pair.b < 0 || v[pair.a].im == 0 || v[pair.b].im == 0) continue;
+    for (int k = 0; k < pair.touches; ++k) {
+      if (joins(state.contacts[pair.first + k], pair)) unite(pair.a, pair.b);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    if (v[i].im > 0 && (state.quiet[i] < kWait || movers[i])) restless_[root(i)] = 1;
+  }
+  order_.clear();
+  for (int i = 0; i < int(pairs.size()); ++i) {
+    const Pair& pair = pairs[i];
+    if (pair.slot < 0) continue;
+    const int body = v[pair.a].im > 0 ? pair.a : pair.b;
+    bool deep = false;
+    for (int k = 0; k < pair.touches; ++k)
+      deep = deep || state.contacts[pair.first + k].gap < -2 * kAllowed * cores_.reach[body];
+    if (deep) restless_[root(body)] = 1;
+    order_.push_back(i);
+  }
+  const auto island = [&](int i) { return root(v[pairs[i].a].im > 0 ? pairs[i].a : pairs[i].b); };
+  std::erase_if(order_, [&](int i) { return restless_[island(i)] != 0; });
+  std::sort(order_.begin(), order_.end(), [&](int i, int j) {
+    const int p = island(i), q = island(j);
+    return p != q ? p < q : pairs[i].slot < pairs[j].slot;
+  });
+
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  const Pace pace{h, 1e300, 0};
+  bool froze = false;
+  for (std::size_t begin = 0; begin < order_.size();) {
+    std::size_t end = begin;
+    const int which = island(order_[begin]);
+    while (end < order_.size() && island(order_[end]) == which) ++end;
+
+    // seats of its own: those of one colour stay together
+    some_.clear();
+    int lane = kLanes, colour = -1;
+    Seats empty{};
+    for (int k = 0; k < kLanes; ++k) {
+      empty.a[k] = empty.b[k] = n, empty.pair[k] = empty.first[k] = -1, empty.d[0][k] = empty.d[1][k] = -1e9;
+    }
+    for (std::size_t at = begin; at < end; ++at) {
+      const Pair& pair = pairs[order_[at]];
+      if (lane == kLanes || pair.colour != colour || pair.alone)
+        some_.push_back(empty), lane = 0, colour = pair.colour;
+      copy_seat(seats[pair.slot / kLanes], pair.slot % kLanes, some_.back(), lane++);
+    }
+
+    // bodies without speed for a step
+    for (std::size_t at = begin; at < end; ++at) {
+      for (const int body : {pairs[order_[at]].a, pairs[order_[at]].b}) {
+        if (body < 0) continue;
+        v_[body] = {0, 0, 0, v[body].im};
+        if (v[body].im > 0) v_[body].x = h * model_.gravity[0], v_[body].y = h * model_.gravity[1];
+      }
+    }
+    const int count = int(some_.size());
+    start(some_.data(), count, poses.data(), zero_.data(), v_.data(), pace, slow_, fast_);
+    const int most = std::clamp(kPairSweeps / int(end - begin), kBetweenChecks, kMostSweeps);
+    double worst = 1e300;
+    for (int i = 1; worst > kHeld * g * h && i < most; ++i) {
+      sweep(some_.data(), count, poses.data(), v_.data(), pace);
+      if (i % kBetweenChecks != 0 && i + 1 < most) continue;
+      worst = 0;
+      for (std::size_t at = begin; at < end; ++at) {
+        for (const int body : {pairs[order_[at]].a, pairs[order_[at]].b}) {
+          if (body < 0 || v[body].im == 0) continue;
+          const Motion& m = v_[body];
+          worst = std::max(worst, std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[body]);
+        }
+      }
+    }
+    const bool held = worst <= kHeld * g * h;
+    finish(some_.data(), count, poses.data(), v_.data(), pace, state.contacts.data());
+    for (Seats& g4 : some_) {
+      for (int k = 0; k < kLanes; ++k) {
+        if (g4.pair[k] >= 0)
+          copy_forces(g4, k, seats[pairs[g4.pair[k]].slot / kLanes], pairs[g4.pair[k]].slot % kLanes);
+      }
+    }
+    for (std::size_t at = begin; held && at < end; ++at) {
+      for (const int body : {pairs[order_[at]].a, pairs[order_[at]].b}) {
+        if (body < 0 || v[body].im == 0 || state.frozen[body]) continue;
+        state.frozen[body] = 1, froze = true;
+        state.v[body].setZero();
+        if (const int k = body - (n - int(state.turn.size())); k >= 0) state.spin[k].setZero();
+      }
+    }
+    begin = end;
+  }
+  return froze;
+}
+
+bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vector<Motion>& v,
+                const std::vector<char>& movers, double span) {
+  const int n = int(parent_.size());
+  const double falls = 0.5 * span * span * std::sqrt(model_.gravity.squaredNorm());
+  bool any = false;
+  std::fill(restless_.begin(), restless_.end(), 0);
+  for (int i = 0; i < n; ++i) {
+    if (state.frozen[i] && movers[i]) restless_[i] = 1, any = true;
+  }
+  for (const Pair& pair : pairs) {
+    if (pair.b < 0 || model_.bodies[pair.a].fixed || model_.bodies[pair.b].fixed) continue;
+    if (state.frozen[pair.a] == state.frozen[pair.b]) continue;
+    const int sleeper = state.frozen[pair.a] ? pair.a : pair.b, other = pair.a + pair.b - sleeper;
+    const Motion& m = v[other];
+    const double comes =
+        span * (std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[other]) + falls;
+    double gap = 1e300;
+    for (int k = 0; k < pair.touches; ++k) gap = std::min(gap, state.contacts[pair.first + k].gap);
+    if (gap < comes) restless_[sleeper] = 1, any = true;
+  }
+  if (!any) return false;
+
+  // all of an island
+  std::iota(parent_.begin(), parent_.end(), 0);
+  for (const Pair& pair : pairs) {
+    if (pair.b < 0 || !state.frozen[pair.a] || !state.frozen[pair.b]) continue;
+    bool together = false;
+    for (int k = 0; k < pair.touches; ++k) together = together || joins(state.contacts[pair.first + k], pair);
+    if (together) unite(pair.a, pair.b);
+  }
+  for (int i = 0; i < n; ++i) {
+    if (restless_[i]) restless_[root(i)] = 1;
+  }
+  for (int i = 0; i < n; ++i) {
+    if (state.frozen[i] && restless_[root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
+  }
+  return true;
+}
+
+}  // namespace obscura::sim::sweep

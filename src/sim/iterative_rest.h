@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/iterative_pairs.h"
+#include "sim/iterative_rows.h"
+#include "sim/state.h"
+
+namespace obscura::sim::sweep {
+
+/// Who may rest. Bodies that touch are an island. One that has been quiet for a while freezes if forces are
+/// found that hold it still: static equilibrium is the certificate, no speed is.
+class Rest {
+ public:
+  Rest(const Model<2>& model, const Cores& cores);
+
+  /// Freezes islands; forces of those that have waited but are not yet held are improved. `movers`: bodies
+  /// that springs, hands and joints hold are never frozen. True where someone froze.
+  bool freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+              const std::vector<Pose>& poses, const std::vector<Motion>& v, const std::vector<char>& movers,
+              double h);
+
+  /// Wakes islands that something awake will touch within `span` s, and those of `movers`. True where someone
+  /// woke.
+  bool wake(State<2>& state, const std::vector<Pair>& pairs, const std::vector<Motion>& v,
+            const std::vector<char>& movers, double span);
+
+ private:
+  int root(int body);
+  void unite(int a, int b);
+  bool joins(const Contact<2>& touch, const Pair& pair) const;
+
+  const Model<2>& model_;
+  const Cores& cores_;
+  std::vector<int> parent_;
+  std::vector<char> restless_;
+  std::vector<int> order_;  // pairs by island, then by seat
+  std::vector<Seats> some_;
+  std::vector<Motion> v_, zero_;
+  Found slow_, fast_;
+};
+
+}  // namespace obscura::sim::sweep
