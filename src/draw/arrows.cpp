@@ -61,15 +61,24 @@ void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& 
 void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   std::vector<Arrow> arrows;
   const sim::Vec3 up = stage.cast.gravity.norm() > 0 ? sim::Vec3(-stage.cast.gravity) : sim::Vec3::UnitY();
-  for (const sim::Snapshot::Contact& contact : now.contacts) {
-    const bool on_body = stage.looks(contact.body).contact;
-    const bool on_other = contact.other >= 0 && stage.looks(contact.other).contact;
-    if (!on_body && !on_other) continue;
+  for (std::size_t i = 0; i < now.contacts.size();) {
+    // all that one gives to another, and where it acts: corners that press harder count for more
+    const sim::Snapshot::Contact& first = now.contacts[i];
+    sim::Vec3 force = sim::Vec3::Zero(), point = sim::Vec3::Zero();
+    double pressed = 0;
+    for (; i < now.contacts.size(); ++i) {
+      const sim::Snapshot::Contact& each = now.contacts[i];
+      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
+      const double weight = std::max(each.force.dot(each.normal), 0.0);
+      force += each.force, point += weight * each.point, pressed += weight;
+    }
+    const bool on_body = stage.looks(first.body).contact;
+    const bool on_other = first.other >= 0 && stage.looks(first.other).contact;
+    if ((!on_body && !on_other) || !(pressed > 0)) continue;
+    point /= pressed;
     // of the two, the one that is carried
-    const bool turned_about = !on_body || (on_other && contact.force.dot(up) < 0);
-    const sim::Vec3 force = turned_about ? sim::Vec3(-contact.force) : contact.force;
-    offer(view.page(contact.point), view.page(contact.point + stage.force_scale * force), stage.layout.weight,
-          arrows);
+    if (!on_body || (on_other && force.dot(up) < 0)) force = -force;
+    offer(view.page(point), view.page(point + stage.force_scale * force), stage.layout.weight, arrows);
   }
   draw_arrows(arrows, stage, stage.colours.force, list);
 }

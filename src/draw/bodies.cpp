@@ -46,7 +46,7 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
     box.x_axis = {std::cos(body.angle), -std::sin(body.angle)};
     box.half = half.cwiseMax(0.8 * weight);
     box.line = std::min(kOutline * weight, 0.35 * shorter);
-    if (stage.look.axes && !stage.cast.bodies[i].fixed && shorter > 12 * weight) {
+    if (stage.look.axes && !stage.cast.bodies[i].fixed && shorter > 18 * weight) {
       box.axis = std::min(0.56 * shorter, 44 * weight);
       box.axis_line = std::min(kAxisLine * weight, 0.16 * box.axis);
     }

@@ -11,8 +11,8 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kForceArrow = 0.13;  // of the room's height: an arrow of a usual force
-constexpr int kMany = 12;             // more springs than these, nets apart, are drawn as lines
+constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
+constexpr int kMany = 12;            // more springs than these, nets apart, are drawn as lines
 
 bool is_point(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::point; }
 

@@ -56,7 +56,8 @@ void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& no
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
-/// The forces where bodies touch that have such arrows: of two of them the one on the body that is pushed up.
+/// The forces where bodies touch that have such arrows: one arrow for two that touch, at their centre of
+/// pressure, the force on the one that is pushed up.
 void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 /// The rails of sliders, behind the bodies; rods and ropes, in front of boxes; pins, in front of all.

@@ -145,6 +145,7 @@ void add(Making& making, const Fields& fields, const std::string& kind, const So
   const Node* drag = fields.given("drag");
   body.drag = drag ? number(*drag, i, n) : making.drag;
   body.fixed = fixed;
+  body.handout = fields.given("collision") != nullptr;
   if (fields.given("group")) {
     auto& families = making.roster.families;
     body.group = families.emplace(fields.text("group"), int(families.size()) + 1).first->second;

@@ -37,8 +37,8 @@ void refuse_overlaps(const Roster& roster, const sim::World<2>& world, Complaint
   const auto keep_apart = [&](int a, int b) {
     const sim::Body<2>&one = model.bodies[std::size_t(a)], &other = model.bodies[std::size_t(b)];
     const bool points = one.shape.kind == sim::ShapeKind::point && other.shape.kind == sim::ShapeKind::point;
-    return !points && !(one.fixed && other.fixed) && !ignored.contains(ordered(one.group, other.group)) &&
-           !joined.contains(ordered(a, b));
+    return !points && !one.handout && !other.handout && !(one.fixed && other.fixed) &&
+           !ignored.contains(ordered(one.group, other.group)) && !joined.contains(ordered(a, b));
   };
 
   // neighbours by sweeping along x

@@ -69,6 +69,7 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
     thin_.push_back(thickness(body.shape));
   }
   for (int a = 0; a < int(model.bodies.size()); ++a) {
+    if (model.bodies[a].handout) continue;
     if (!model.bodies[a].fixed) {
       for (int wall = 0; wall < int(model.walls.size()); ++wall) couples_.push_back({a, -1 - wall});
     }

@@ -24,7 +24,7 @@ constexpr int kMostRoots = 100;
 template <int D>
 bool Direct<D>::may_touch(int a, int b) const {
   const Body<D>&p = model_.bodies[a], &q = model_.bodies[b];
-  if (p.fixed && q.fixed) return false;
+  if ((p.fixed && q.fixed) || p.handout || q.handout) return false;
   if (p.shape.kind == ShapeKind::point && q.shape.kind == ShapeKind::point) return false;
   for (const auto& [g, h] : model_.ignore) {
     if ((p.group == g && q.group == h) || (p.group == h && q.group == g)) return false;

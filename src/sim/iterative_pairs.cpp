@@ -24,7 +24,7 @@ Pairs::Pairs(const Model<2>& model, const Cores& cores) : model_(model), cores_(
 
 bool Pairs::may_touch(int a, int b) const {
   const Body<2>&p = model_.bodies[a], &q = model_.bodies[b];
-  if (p.fixed && q.fixed) return false;
+  if ((p.fixed && q.fixed) || p.handout || q.handout) return false;
   for (const auto& [g, h] : model_.ignore) {
     if ((p.group == g && q.group == h) || (p.group == h && q.group == g)) return false;
   }
@@ -107,7 +107,7 @@ void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
       for (int k = 0; k < pair.touches; ++k) contacts_.push_back(state.contacts[pair.first + k]);
       kept = true;
     }
-    if (!still) {
+    if (!still && !model_.bodies[a].handout) {
       for (int wall = int(model_.walls.size()); wall-- > 0;) {
         const Wall<2>& w = model_.walls[wall];
         const double high = w.normal[0] * (poses[a].x - w.point[0]) + w.normal[1] * (poses[a].y - w.point[1]);

@@ -52,6 +52,7 @@ struct Body {
   double drag = 0;                    // c of f = -c v at the centre of mass, N s/m
   int group = 0;                      // for Model::ignore
   bool fixed = false;                 // held where it starts; as heavy as the room
+  bool handout = false;  // meets walls by the handout's law, and no bodies, whatever `collision` says
 
   bool turns() const { return inertia != Spin<D>::Zero(); }
 };

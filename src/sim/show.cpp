@@ -132,6 +132,7 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
     contact.body = touch.body, contact.wall = touch.wall;
     contact.point = lifted<D>(touch.point), contact.normal = lifted<D>(wall.normal);
     contact.impulse = lifted<D>(touch.impulse);
+    contact.force = contact.impulse * value(model.rate);  // the mean over the step
     contact.gap = (touch.point - wall.point).dot(wall.normal);
     now.contacts.push_back(contact);
   }

@@ -59,6 +59,9 @@ Stepper<D>::Stepper(const Model<D>& model)
     if (body.turns()) spin_limits_.push_back(fastest / reach(body.shape));
   }
   if (!drag) drag_.clear();
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    if (model.bodies[body].handout) by_handout_.push_back(body);
+  }
   d_.resize(std::max(D, kSpins<D>) * kBlock);
   if (model.collision != Collision::handout) contact_ = contact_step(model, paths_);
   suspects_.reserve(model.bodies.size());
@@ -111,6 +114,9 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
     if (contact_) {
       contact_->step(state, begun, (to - from) * h);
       if (!sound(state)) return watch_.ran_away(state, ended);
+      suspects_.clear();
+      for (const int body : by_handout_) handout_.look(state, body, 1, suspects_);
+      handout_.collide(state, suspects_, ended);
     } else {
       plan(state);
       suspects_.clear();

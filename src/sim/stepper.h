@@ -68,6 +68,7 @@ class Stepper {
   std::vector<double> spin_limits_;       // of every body that turns, rad/s
   std::vector<double> d_;
   std::vector<int> suspects_;
+  std::vector<int> by_handout_;  // who has that law in `contact` and `event` too
   Stages stages_;
   std::int64_t watch_every_ = 1;  // steps
   bool springs_ = false;          // something may ever tie

@@ -130,6 +130,15 @@ TEST(Groups, ThatIgnoreEachOtherAreNumbered) {
   EXPECT_THAT(it.world.model.ignore, ElementsAre(std::pair(2, 1), std::pair(1, 1)));
 }
 
+TEST(Physics, ABodyMayKeepTheHandoutsLaw) {
+  const Scene it = scene(
+      "[[box]]\ncollision = \"handout\"\n[[box]]\nposition = [4.1, 2.2]\n[[particle]]\ncollision = "
+      "\"handout\"");
+  EXPECT_TRUE(it.world.model.bodies[0].handout);
+  EXPECT_TRUE(it.world.model.bodies[1].handout);
+  EXPECT_FALSE(it.world.model.bodies[2].handout);
+}
+
 TEST(Physics, WordsChooseItsWays) {
   const Scene it = parse(
       "[physics]\ncollision = \"event\"\nsolver = \"direct\"\nimpacts = \"sequential\"\noverlap = "

@@ -53,6 +53,21 @@ TEST(Path, OfTwoKnotsIsAStraightLine) {
   EXPECT_EQ(path.at(1.5).velocity, Vec2(2, 1));
 }
 
+TEST(Grip, TakesCornersOfPolygonsAndParts) {
+  World<2> world = room();
+  const int stone = add_box(world, {1, 1}, 1, {2, 2}, {0, 0}, std::acos(-1) / 2);
+  Shape<2>& shape = world.model.bodies[stone].shape;
+  shape.kind = ShapeKind::polygon;
+  shape.vertices = {{-0.4, -0.2}, {0.6, -0.2}, {-0.2, 0.4}};
+  EXPECT_EQ(closest<2>(world.model, world.state, {2.2, 3}).local, Vec2(0.6, -0.2));
+  Shape<2> ball, polygon = shape;
+  ball.kind = ShapeKind::ball, ball.center = {1, 0};
+  shape = {};
+  shape.kind = ShapeKind::compound, shape.parts = {polygon, ball};
+  EXPECT_EQ(closest<2>(world.model, world.state, {2, 3.1}).local, Vec2(1, 0));
+  EXPECT_EQ(closest<2>(world.model, world.state, {1.5, 1.7}).local, Vec2(-0.2, 0.4));
+}
+
 TEST(Grip, TakesTheClosestParticleOrCorner) {
   World<2> world = room();
   add_particle(world, {0, 0});
