@@ -22,7 +22,7 @@ using sweep::Seats;
 
 namespace {
 
-constexpr int kEvery = 10;         // steps between two looks for pairs
+constexpr double kLooks = 60;      // a second: how often pairs are looked for
 constexpr int kMostSweeps = 40;    // of few pairs
 constexpr int kPairSweeps = 2000;  // pairs times sweeps where there are more; at least one sweep
 constexpr int kFirstSweeps = 100;  // of the first step, which knows no forces
@@ -45,7 +45,8 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       tied_(model, paths) {
   const int n = int(model.bodies.size());
   const double h = 1 / value(model.rate);
-  span_ = kEvery * h;
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
+  span_ = double(every_) * h;
   rest_speed_ = 2 * h * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
   v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
@@ -60,7 +61,7 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
 
   const bool known = gather(state);
-  const bool due = state.step % kEvery == 0;
+  const bool due = state.step % every_ == 0;
 
   // whom springs and hands hold
   if (!model_.springs.empty() || !model_.mice.empty()) {
@@ -480,20 +481,21 @@ double Iterative<D>::clear(int body, const sweep::Pose& from, const Motion& way,
   return part;
 }
 
-// whether a body may come farther than its pairs foresaw
+// whether a body may come farther than its pairs foresaw, by more than a part of its thickness
 template <int D>
 bool Iterative<D>::outran(double h) const {
   const int n = int(turns_.size());
   const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
   for (int i = 0; i < n; ++i) {
     const Motion &v = v_[i], &o = old_[i];
-    const double reach = cores_.reach[i], little = 0.04 * cores_.inside[i] + falls;
+    const double reach = cores_.reach[i];
     const double gain = std::fabs(v.x - o.x) + std::fabs(v.y - o.y) + std::fabs(v.w - o.w) * reach;
-    if (gain * span_ < little) continue;
+    if (gain * span_ < 0.04 * cores_.inside[i] + falls) continue;
     const auto speed = [&](const Motion& m) {
       return std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * reach;
     };
-    if ((speed(v) - speed(o)) * span_ > little) return true;
+    if ((speed(v) - speed(o)) * span_ > 0.25 * cores_.inside[i] + pairs_.spare(i, speed(o), span_) + falls)
+      return true;
   }
   return false;
 }

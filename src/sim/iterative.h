@@ -51,8 +51,9 @@ class Iterative final : public ContactStep<D> {
   sweep::Rest rest_;
   Tied<D> tied_;
   Stages stages_;
-  double span_ = 0;        // s, between two looks for pairs
-  double rest_speed_ = 0;  // m/s: slower approaches do not bounce
+  std::int64_t every_ = 1;  // steps between two looks for pairs
+  double span_ = 0;         // and s
+  double rest_speed_ = 0;   // m/s: slower approaches do not bounce
   bool drag_ = false;
 
   // of bodies; one more that never moves, for walls

@@ -55,8 +55,13 @@ double Pairs::room_to_move(const State<2>& state, int body, double span) const {
   const int k = turning(state, body);
   const double speed = std::sqrt(state.v[body].squaredNorm());
   const double swing = k >= 0 ? std::fabs(state.spin[k][0]) * cores_.reach[body] : 0;
-  return span * (speed + swing) + span * span * std::sqrt(model_.gravity.squaredNorm()) +
-         0.05 * std::max(cores_.inside[body], 1e-3 * model_.scale);
+  return span * (speed + swing + std::sqrt(model_.gravity.squaredNorm()) * span) +
+         spare(body, speed + swing, span);
+}
+
+double Pairs::spare(int body, double speed, double span) const {
+  const double inside = std::max(cores_.inside[body], 1e-3 * model_.scale);
+  return 0.05 * inside + std::min(0.2 * inside, speed * span);
 }
 
 void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {

@@ -51,6 +51,9 @@ class Pairs {
   /// How far a body may come within `span` s by itself, m.
   double room_to_move(const State<2>& state, int body, double span) const;
 
+  /// What of this is for speed (m/s) that it may gain meanwhile, by blows.
+  double spare(int body, double speed, double span) const;
+
  private:
   bool may_touch(int a, int b) const;
   void inherit(const Pair& pair, const std::vector<Pose>& poses, const Contact<2>* old, int count,
