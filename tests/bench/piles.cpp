@@ -1,0 +1,193 @@
+// Piles of boxes beside Box2D and Chipmunk at their usual settings (60 steps a second, 8 + 3 and 10
+// iterations), one thread, nobody asleep: piles SECONDS. Of each the processor time of a sixtieth of a
+// second, the deepest penetration, how far the farthest body has come from its place, and the ratio of times.
+
+#include <box2d/box2d.h>
+#include <chipmunk/chipmunk.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "sim/iterative.h"
+#include "sim/shape.h"
+
+namespace {
+
+using obscura::sim::Vec;
+
+struct Box {
+  double side, x, y, angle;
+};
+struct Scene {
+  std::string name;
+  std::vector<Box> boxes;
+  double wide = 0;  // half the room's width, m; 0: no walls but the floor
+  double friction = 0.6;
+};
+struct Result {
+  double ms = 0;           // a sixtieth
+  double penetration = 0;  // m; -1: not told
+  double moved = 0;        // m
+};
+
+Scene pyramid(int base) {
+  Scene scene{"pyramid of base " + std::to_string(base), {}, 0};
+  for (int row = 0; row < base; ++row) {
+    for (int i = 0; i < base - row; ++i) scene.boxes.push_back({1, 1.125 * (i + 0.5 * row), 0.5 + row, 0});
+  }
+  return scene;
+}
+
+Scene dropped(int count) {
+  Scene scene{std::to_string(count) + " boxes dropped", {}, 20};
+  for (int i = 0; i < count; ++i)
+    scene.boxes.push_back(
+        {0.5, -18 + 0.9 * (i % 40) + 0.1 * ((i / 40) % 3), 1 + 0.9 * (i / 40), 0.1 * (i % 7)});
+  return scene;
+}
+
+// processor time of this thread, ms
+double spent() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * double(now.tv_sec) + 1e-6 * double(now.tv_nsec);
+}
+
+Result ours(const Scene& scene, double seconds, int rate) {
+  namespace sim = obscura::sim;
+  sim::World<2> world;
+  world.model.rate = {rate, 1}, world.model.scale = 10;
+  const auto wall = [&](Vec<2> point, Vec<2> normal) {
+    world.model.walls.push_back({point, normal, {}, scene.friction});
+  };
+  wall({0, 0}, {0, 1});
+  if (scene.wide > 0) wall({-scene.wide, 0}, {1, 0}), wall({scene.wide, 0}, {-1, 0});
+  for (const Box& box : scene.boxes) {
+    sim::Body<2> body;
+    body.shape.kind = sim::ShapeKind::box, body.shape.half = Vec<2>::Constant(box.side / 2);
+    body.mass = box.side * box.side, body.inertia = sim::inertia(body.shape, body.mass);
+    body.friction = scene.friction, body.elasticity = 0;
+    world.model.bodies.push_back(body);
+    world.state.x.push_back({box.x, box.y}), world.state.v.push_back({0, 0});
+    world.state.turn.push_back(sim::Turn<2>(box.angle)), world.state.spin.push_back(sim::Spin<2>(0.0));
+  }
+  const std::vector<sim::Path<2>> paths;
+  sim::Iterative<2> solver(world.model, paths);
+  Result result;
+  const double begun = spent();
+  for (; world.state.step < std::llround(seconds * rate); ++world.state.step) {
+    solver.step(world.state, double(world.state.step) / rate, 1.0 / rate);
+    std::fill(world.state.quiet.begin(), world.state.quiet.end(), 0);  // nobody sleeps
+  }
+  result.ms = (spent() - begun) / (60 * seconds);
+  for (const auto& contact : world.state.contacts)
+    result.penetration = std::max(result.penetration, -contact.gap);
+  for (std::size_t i = 0; i < scene.boxes.size(); ++i)
+    result.moved = std::max(result.moved, std::hypot(world.state.x[i][0] - scene.boxes[i].x,
+                                                     world.state.x[i][1] - scene.boxes[i].y));
+  return result;
+}
+
+Result box2d(const Scene& scene, double seconds) {
+  b2World world({0, -9.81f});
+  world.SetAllowSleeping(false);
+  const b2BodyDef still;
+  b2Body* ground = world.CreateBody(&still);
+  const auto wall = [&](b2Vec2 from, b2Vec2 to) {
+    b2EdgeShape edge;
+    edge.SetTwoSided(from, to);
+    b2FixtureDef fixture;
+    fixture.shape = &edge, fixture.friction = float(scene.friction);
+    ground->CreateFixture(&fixture);
+  };
+  const float wide = float(scene.wide);
+  wall({-1000, 0}, {1000, 0});
+  if (wide > 0) wall({-wide, 0}, {-wide, 1000}), wall({wide, 0}, {wide, 1000});
+  std::vector<b2Body*> bodies;
+  for (const Box& box : scene.boxes) {
+    b2BodyDef body;
+    body.type = b2_dynamicBody, body.angle = float(box.angle);
+    body.position.Set(float(box.x), float(box.y));
+    b2PolygonShape shape;
+    shape.SetAsBox(float(box.side / 2), float(box.side / 2));
+    b2FixtureDef fixture;
+    fixture.shape = &shape, fixture.density = 1, fixture.friction = float(scene.friction);
+    bodies.push_back(world.CreateBody(&body));
+    bodies.back()->CreateFixture(&fixture);
+  }
+  Result result;
+  const double begun = spent();
+  for (int i = 0; i < std::lround(60 * seconds); ++i) world.Step(1 / 60.0f, 8, 3);
+  result.ms = (spent() - begun) / (60 * seconds);
+  for (b2Contact* contact = world.GetContactList(); contact; contact = contact->GetNext()) {
+    if (!contact->IsTouching()) continue;
+    b2WorldManifold manifold;
+    contact->GetWorldManifold(&manifold);
+    for (int k = 0; k < contact->GetManifold()->pointCount; ++k)
+      result.penetration = std::max(result.penetration, -double(manifold.separations[k]));
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const b2Vec2 at = bodies[i]->GetPosition();
+    result.moved = std::max(result.moved, std::hypot(at.x - scene.boxes[i].x, at.y - scene.boxes[i].y));
+  }
+  return result;
+}
+
+Result chipmunk(const Scene& scene, double seconds) {
+  cpSpace* space = cpSpaceNew();
+  cpSpaceSetGravity(space, cpv(0, -9.81));
+  cpBody* ground = cpSpaceGetStaticBody(space);
+  const double friction = std::sqrt(scene.friction);  // a pair has the product
+  std::vector<cpShape*> shapes;
+  const auto wall = [&](cpVect from, cpVect to) { shapes.push_back(cpSegmentShapeNew(ground, from, to, 0)); };
+  wall(cpv(-1000, 0), cpv(1000, 0));
+  if (scene.wide > 0) {
+    wall(cpv(-scene.wide, 0), cpv(-scene.wide, 1000));
+    wall(cpv(scene.wide, 0), cpv(scene.wide, 1000));
+  }
+  std::vector<cpBody*> bodies;
+  for (const Box& box : scene.boxes) {
+    const double mass = box.side * box.side;
+    bodies.push_back(cpBodyNew(mass, cpMomentForBox(mass, box.side, box.side)));
+    cpBodySetPosition(bodies.back(), cpv(box.x, box.y)), cpBodySetAngle(bodies.back(), box.angle);
+    cpSpaceAddBody(space, bodies.back());
+    shapes.push_back(cpBoxShapeNew(bodies.back(), box.side, box.side, 0));
+  }
+  for (cpShape* shape : shapes) cpShapeSetFriction(shape, friction), cpSpaceAddShape(space, shape);
+  Result result;
+  result.penetration = -1;
+  const double begun = spent();
+  for (int i = 0; i < std::lround(60 * seconds); ++i) cpSpaceStep(space, 1 / 60.0);
+  result.ms = (spent() - begun) / (60 * seconds);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const cpVect at = cpBodyGetPosition(bodies[i]);
+    result.moved = std::max(result.moved, std::hypot(at.x - scene.boxes[i].x, at.y - scene.boxes[i].y));
+  }
+  for (cpShape* shape : shapes) cpSpaceRemoveShape(space, shape), cpShapeFree(shape);
+  for (cpBody* body : bodies) cpSpaceRemoveBody(space, body), cpBodyFree(body);
+  cpSpaceFree(space);
+  return result;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const double seconds = count > 1 ? std::atof(words[1]) : 4;
+  std::printf("%-24s %-16s %10s %14s %10s %10s\n", "pile", "", "ms/60th", "penetration", "moved", "ratio");
+  for (const Scene& scene : {pyramid(100), dropped(2000)}) {
+    const Result us = ours(scene, seconds, 600);
+    const auto row = [&](const char* who, const Result& r) {
+      std::printf("%-24s %-16s %10.2f %14.2g %10.2g %10.2f\n", scene.name.c_str(), who, r.ms, r.penetration,
+                  r.moved, r.ms / us.ms);
+    };
+    row("600 a second", us);
+    row("180 a second", ours(scene, seconds, 180));
+    row("Box2D", box2d(scene, seconds));
+    row("Chipmunk", chipmunk(scene, seconds));
+  }
+}
