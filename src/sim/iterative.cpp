@@ -51,7 +51,10 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
   v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
   closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);
-  for (const Body<D>& body : model.bodies) drag_ = drag_ || body.drag != 0;
+  for (const Body<D>& body : model.bodies) {
+    drag_ = drag_ || body.drag != 0;
+    fixed_.push_back(body.fixed);
+  }
 }
 
 template <int D>
@@ -60,7 +63,6 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
 
-  const bool known = gather(state);
   const bool due = state.step % every_ == 0;
 
   // whom springs and hands hold
@@ -71,17 +73,17 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   bool held = false, asleep = true;
   for (int i = 0; i < n; ++i) {
     held = held || (movers_[i] && state.frozen[i]);
-    asleep = asleep && (state.frozen[i] || model_.bodies[i].fixed);
+    asleep = asleep && (state.frozen[i] | fixed_[i]);
   }
   if (asleep && !held) {
-    next_step_ = known ? state.step + 1 : -1;
+    next_step_ = -1;
     return;
   }
-
+  const bool known = gather(state);
+  if (!known) pairs_.adopt(state);
   if (due || held) {
     look(state);
   } else if (!known) {
-    pairs_.adopt(state);
     seat(state);
   }
   sweep::find_lively(seats_.data(), int(seats_.size()), v_.data(), lively_);

@@ -65,7 +65,8 @@ class Iterative final : public ContactStep<D> {
   std::vector<Motion> push_;     // by projection
   std::vector<char> closing_;    // a slow touch closed in this step
   std::vector<char> frozen_;     // that the seats are of
-  std::vector<char> movers_;     // springs, hands and joints hold them
+  std::vector<char> fixed_;
+  std::vector<char> movers_;  // springs, hands and joints hold them
 
   std::vector<std::uint64_t> colours_;  // used on each body
   std::vector<int> count_;
