@@ -2,16 +2,14 @@
 #include "page.glsl"
 
 layout(location = 0) in vec4 place;    // centre, half extents; px
-layout(location = 1) in vec4 frame;    // x axis, outline width, radius of the dot in the middle
+layout(location = 1) in vec4 frame;    // x axis, outline width
 layout(location = 2) in vec4 fill_color;
 layout(location = 3) in vec4 outline_color;
-layout(location = 4) in vec4 dot_color;
 
 flat out vec4 box;
 flat out vec4 turned;
 flat out vec4 fill;
 flat out vec4 outline;
-flat out vec4 middle;
 
 void main() {
   vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
@@ -21,5 +19,4 @@ void main() {
   turned = frame;
   fill = premultiplied(fill_color);
   outline = premultiplied(outline_color);
-  middle = premultiplied(dot_color);
 }

@@ -201,8 +201,7 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
   parts.hire = [&] {
     auto renderer = std::make_shared<gl::Renderer>(spec.width, spec.height, options.context);
     auto depictor = std::make_shared<const draw::Depictor>(Simulation::depictor(scene));
-    auto image = std::make_shared<media::Image>();
-    return [&, renderer, depictor, image](Take take) {
+    return [&, renderer, depictor](Take take) {
       Print print;
       print.origin = origin;
       print.origin.gl_version = renderer->version(), print.origin.gl_renderer = renderer->device();
@@ -216,13 +215,13 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
         }
         draw::Picture picture = depictor->depict(take.moments[i], take.ways);
         picture.transparent = pictures && options.transparent;
-        renderer->draw(picture, *image);
-        if (encoder) encoder->add(*image);
-        if (output.form == Output::Form::pipe) print.images.push_back(*image);
+        const media::Image& image = renderer->draw(picture);
+        if (encoder) encoder->add(image);
+        if (output.form == Output::Form::pipe) print.images.push_back(image);
         if (pictures) {
           Origin of_frame = print.origin;
           of_frame.shot = take.shots[i], of_frame.state = take.states[i];
-          media::write_png(output.file(take.shots[i].frame), *image,
+          media::write_png(output.file(take.shots[i].frame), image,
                            {.alpha = options.transparent, .tags = of_frame.tags(scene.look.title)});
         }
         ++print.frames;

@@ -42,6 +42,30 @@ const std::vector<Damage::Rect>& Damage::rects() {
   return rects_;
 }
 
+const std::vector<Damage::Rect>& Damage::bands() {
+  rects_.clear();
+  for (int r = 0; r < rows_; ++r) {
+    const auto row = tiles_.begin() + std::ptrdiff_t(columns_) * r, end = row + columns_;
+    const auto first = std::find(row, end, std::uint8_t(1));
+    if (first == end) continue;
+    auto last = end;
+    while (!last[-1]) --last;
+    const int x = int(first - row) * kTile, y = r * kTile;
+    const int width = std::min(int(last - row) * kTile, width_) - x, height = std::min(kTile, height_ - y);
+    if (!rects_.empty() && rects_.back().x == x && rects_.back().width == width &&
+        rects_.back().y + rects_.back().height == y) {
+      rects_.back().height += height;
+    } else {
+      rects_.push_back({x, y, width, height});
+    }
+  }
+  return rects_;
+}
+
+void Damage::add(const Damage& other) {
+  for (std::size_t i = 0; i < tiles_.size(); ++i) tiles_[i] |= other.tiles_[i];
+}
+
 double Damage::share() const {
   return double(std::count(tiles_.begin(), tiles_.end(), std::uint8_t(1))) / double(tiles_.size());
 }

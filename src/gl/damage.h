@@ -33,6 +33,10 @@ class Damage {
   void mark(const Bounds& b);
   /// The marked tiles as rectangles without overlap, row by row, tall where rows are alike.
   const std::vector<Rect>& rects();
+  /// The same in few: one a row of tiles, from its first to its last, tall where rows are alike.
+  const std::vector<Rect>& bands();
+  /// Marks what `other` marks; of the same size.
+  void add(const Damage& other);
   /// Marked tiles over all.
   double share() const;
 

@@ -11,6 +11,9 @@ namespace {
 constexpr float kMargin = 0.75f;  // px beyond an edge where a pixel may still be covered: sqrt(1/2)
 constexpr double kDot = 3;        // px radius under which a disc's area is summed in chords
 
+constexpr double kSlab = 0.75;  // px half extent under which a pixel may meet both edges of a slab
+constexpr int kTile = 16;       // px, of the layers
+
 constexpr GLsizei kCorners = 4;  // of a quad, as a triangle strip
 
 }  // namespace
@@ -23,6 +26,8 @@ Painter::Painter(const Functions& gl, int width, int height)
       disc_program_(gl, "disc.vert", "disc.frag"),
       dot_program_(gl, "disc.vert", "dot.frag"),
       box_program_(gl, "box.vert", "box.frag"),
+      slab_program_(gl, "box.vert", "slab.frag"),
+      frame_program_(gl, "frame.vert", "frame.frag"),
       stroke_program_(gl, "stroke.vert", "stroke.frag"),
       polygon_program_(gl, "polygon.vert", "polygon.frag"),
       glyph_program_(gl, "glyph.vert", "glyph.frag"),
@@ -35,8 +40,7 @@ Painter::Painter(const Functions& gl, int width, int height)
                  {{4, GL_FLOAT, offsetof(Box, x)},
                   {4, GL_FLOAT, offsetof(Box, axis_x)},
                   {4, GL_UNSIGNED_BYTE, offsetof(Box, fill)},
-                  {4, GL_UNSIGNED_BYTE, offsetof(Box, outline)},
-                  {4, GL_UNSIGNED_BYTE, offsetof(Box, middle)}}),
+                  {4, GL_UNSIGNED_BYTE, offsetof(Box, outline)}}),
       strip_array_(gl, sizeof(StripVertex), 0,
                    {{2, GL_FLOAT, offsetof(StripVertex, x)},
                     {3, GL_FLOAT, offsetof(StripVertex, lateral)},
@@ -54,8 +58,8 @@ Painter::Painter(const Functions& gl, int width, int height)
       index_buffer_(gl, GL_ELEMENT_ARRAY_BUFFER),
       edge_buffer_(gl, GL_TEXTURE_BUFFER),
       glyph_pictures_(gl) {
-  for (const Program* program :
-       {&disc_program_, &dot_program_, &box_program_, &stroke_program_, &polygon_program_, &glyph_program_}) {
+  for (const Program* program : {&disc_program_, &dot_program_, &box_program_, &slab_program_,
+                                 &frame_program_, &stroke_program_, &polygon_program_, &glyph_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
   }
@@ -116,6 +120,7 @@ void Painter::encode(const draw::List& list, const draw::Batch& batch, Damage& d
         break;
     }
   }
+  lay_boxes();
 }
 
 bool Painter::touches(const Bounds& bounds, Damage& damage) const {
@@ -150,31 +155,53 @@ void Painter::add(const draw::Disc& disc, Damage& damage) {
 void Painter::add(const draw::Box& box, Damage& damage) {
   const draw::Point center = box.center * scale_, half = box.half * scale_;
   const draw::Point u = box.x_axis, v(-u.y(), u.x());
-  const auto push = [&](const draw::Point& middle, const draw::Point& extent, double line, double dot,
-                        draw::Color fill, draw::Color outline, draw::Color spot) {
-    boxes_.push_back({float(middle.x()), float(middle.y()), float(extent.x()), float(extent.y()),
-                      float(u.x()), float(u.y()), float(line), float(dot), fill, outline, spot});
-  };
+  const double line = box.line * scale_;
   const double rx = std::abs(u.x()) * half.x() + std::abs(v.x()) * half.y() + kMargin;
   const double ry = std::abs(u.y()) * half.x() + std::abs(v.y()) * half.y() + kMargin;
-  if (!touches(
-          {float(center.x() - rx), float(center.y() - ry), float(center.x() + rx), float(center.y() + ry)},
-          damage)) {
-    return;
-  }
-  const int first = int(boxes_.size());
+  const Bounds bounds{float(center.x() - rx), float(center.y() - ry), float(center.x() + rx),
+                      float(center.y() + ry)};
+  if (!touches(bounds, damage)) return;
 
-  // the frame's axes are thin boxes of the same frame; the body's y is up where the page's is down
-  const bool framed = box.axis > 0 && box.axis_line > 0;
-  const draw::Color axes = framed ? box.axis_color : draw::Color{0, 0, 0, 0};
-  push(center, half, box.line * scale_, framed ? 1.5 * box.axis_line * scale_ : -1, box.fill, box.outline,
-       axes);
-  if (framed) {
-    const double length = box.axis * scale_, width = box.axis_line * scale_;
-    push(center + u * (length / 2), {length / 2, width / 2}, 0, -1, axes, axes, axes);
-    push(center - v * (length / 2), {width / 2, length / 2}, 0, -1, axes, axes, axes);
+  // above all that came before it in the tiles that it touches
+  const Bounds seen = bounds & clip_;
+  const int columns = width_ / kTile + 1, rows = height_ / kTile + 1;
+  layers_.resize(std::size_t(columns) * rows);
+  int layer = 0;
+  const auto each_tile = [&](auto&& visit) {
+    for (int r = int(seen.y0) / kTile; r <= int(seen.y1) / kTile; ++r)
+      for (int c = int(seen.x0) / kTile; c <= int(seen.x1) / kTile; ++c)
+        visit(layers_[std::size_t(columns) * r + c]);
+  };
+  each_tile([&](int below) { layer = std::max(layer, below); });
+  each_tile([&](int& below) { below = layer + 1; });
+
+  const auto push = [&](Shape shape, double x, double y, double outlined, double dot, draw::Color fill,
+                        draw::Color outline) {
+    layered_.push_back({layer, shape,
+                        Box{float(center.x()), float(center.y()), float(x), float(y), float(u.x()),
+                            float(u.y()), float(outlined), float(dot), fill, outline}});
+  };
+  push(half.minCoeff() - line < kSlab ? Shape::slab : Shape::box, half.x(), half.y(), line, 0, box.fill,
+       box.outline);
+  if (box.axis > 0 && box.axis_line > 0) {
+    push(Shape::frame, box.axis * scale_, box.axis_line * scale_ / 2, 0, 1.5 * box.axis_line * scale_,
+         box.axis_color, box.axis_color);
   }
-  run(Shape::box, first, int(boxes_.size()));
+}
+
+// Boxes that do not touch may be drawn in any order, so that each layer is drawn shape by shape.
+void Painter::lay_boxes() {
+  if (layered_.empty()) return;
+  std::stable_sort(layered_.begin(), layered_.end(), [](const Layered& a, const Layered& b) {
+    return a.layer != b.layer ? a.layer < b.layer : a.shape < b.shape;
+  });
+  for (const Layered& next : layered_) {
+    boxes_.push_back(next.box);
+    const int end = int(boxes_.size());
+    run(next.shape, end - 1, end);
+  }
+  layered_.clear();
+  std::fill(layers_.begin(), layers_.end(), 0);
 }
 
 void Painter::add(const draw::List& list, const draw::Stroke& stroke, Damage& damage) {
@@ -279,6 +306,12 @@ void Painter::draw(const Run& run, draw::Color ground, bool transparent) {
       break;
     case Shape::box:
       quads(box_program_, box_array_);
+      break;
+    case Shape::slab:
+      quads(slab_program_, box_array_);
+      break;
+    case Shape::frame:
+      quads(frame_program_, box_array_);
       break;
     case Shape::polygon:
       quads(polygon_program_, polygon_array_);

@@ -26,10 +26,10 @@ class Painter {
     float x, y, outer, inner;
     draw::Color fill, outline;
   };
-  struct Box {
+  struct Box {  // or the frame of one: length and half width of its axes; only the dot, fill its colour
     float x, y, half_x, half_y;
     float axis_x, axis_y, line, dot;
-    draw::Color fill, outline, middle;
+    draw::Color fill, outline;
   };
   struct Polygon {
     float x0, y0, x1, y1;
@@ -41,7 +41,7 @@ class Painter {
     float u, v;
     draw::Color ink;
   };
-  enum class Shape { disc, dot, box, stroke, darken, lighten, polygon, glyph };
+  enum class Shape { disc, dot, box, slab, frame, stroke, darken, lighten, polygon, glyph };
   /// What is drawn in one call.
   struct Run {
     Shape shape;
@@ -49,9 +49,17 @@ class Painter {
     Damage::Rect scissor;
   };
 
+  /// A box or a frame, and how many lie below it at most.
+  struct Layered {
+    int layer;
+    Shape shape;
+    Box box;
+  };
+
   void encode(const draw::List& list, const draw::Batch& batch, Damage& damage);
   void add(const draw::Disc& disc, Damage& damage);
   void add(const draw::Box& box, Damage& damage);
+  void lay_boxes();
   void add(const draw::List& list, const draw::Stroke& stroke, Damage& damage);
   void add(const draw::List& list, const draw::Polygon& polygon, Damage& damage);
   void add(const draw::Text& text, Damage& damage);
@@ -63,7 +71,8 @@ class Painter {
   const Functions& gl_;
   int width_, height_;
   double scale_;  // px a page unit
-  Program disc_program_, dot_program_, box_program_, stroke_program_, polygon_program_, glyph_program_;
+  Program disc_program_, dot_program_, box_program_, slab_program_, frame_program_, stroke_program_,
+      polygon_program_, glyph_program_;
   int ground_uniform_;
   VertexArray disc_array_, box_array_, strip_array_, polygon_array_, glyph_array_;
   Buffer index_buffer_, edge_buffer_;
@@ -75,6 +84,8 @@ class Painter {
   std::vector<Run> runs_;
   std::vector<Disc> discs_;
   std::vector<Box> boxes_;
+  std::vector<Layered> layered_;  // of the batch at hand
+  std::vector<int> layers_;       // boxes that lie on each other, by tile
   Strip strip_;
   std::vector<Polygon> polygons_;
   std::vector<float> edges_;  // four an edge

@@ -55,9 +55,8 @@ void check_size(const Functions& gl, int width, int height) {
 }
 
 // premultiplied to plain, to the nearest level
-void unpremultiply(media::Image& image) {
-  std::uint8_t* p = image.pixels.data();
-  for (const std::uint8_t* end = p + image.pixels.size(); p < end; p += 4) {
+void unpremultiply(std::uint8_t* p, int count) {
+  for (const std::uint8_t* end = p + std::ptrdiff_t(4) * count; p < end; p += 4) {
     const int a = p[3];
     if (a == 255) continue;
     for (int c = 0; c < 3; ++c) p[c] = std::uint8_t(a == 0 ? 0 : std::min((p[c] * 255 + a / 2) / a, 255));
@@ -92,6 +91,7 @@ struct Renderer::Impl {
   draw::Color ground;
   bool transparent = false;
   std::shared_ptr<const draw::List> still;
+  media::Image image;  // what was read last
 
   Impl(int w, int h, const ContextOptions& options)
       : width(w),
@@ -126,6 +126,7 @@ struct Renderer::Impl {
 
   void draw_backdrop(const draw::Picture& picture);
   void restore();
+  void read(const Damage::Rect& rect);
 };
 
 void Renderer::Impl::draw_backdrop(const draw::Picture& picture) {
@@ -161,6 +162,15 @@ void Renderer::Impl::restore() {
   drawn = true;
 }
 
+void Renderer::Impl::read(const Damage::Rect& rect) {
+  gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+  gl.PixelStorei(GL_PACK_ROW_LENGTH, width);
+  std::uint8_t* corner = image.row(rect.y) + 4 * rect.x;
+  gl.ReadPixels(rect.x, rect.y, rect.width, rect.height, GL_RGBA, GL_UNSIGNED_BYTE, corner);
+  for (int y = rect.y; transparent && y < rect.y + rect.height; ++y)
+    unpremultiply(image.row(y) + 4 * rect.x, rect.width);
+}
+
 Renderer::Renderer(int width, int height, const ContextOptions& options)
     : impl_(std::make_unique<Impl>(width, height, options)) {
   impl_->context->release();
@@ -173,7 +183,9 @@ Renderer::~Renderer() {
 
 Renderer::Renderer(Renderer&&) noexcept = default;
 
-void Renderer::draw(const draw::Picture& picture, media::Image& out) {
+void Renderer::draw(const draw::Picture& picture, media::Image& out) { out = draw(picture); }
+
+const media::Image& Renderer::draw(const draw::Picture& picture) {
   Impl& my = *impl_;
   const Current current(*my.context);
   my.gl.Viewport(0, 0, my.width, my.height);
@@ -186,16 +198,22 @@ void Renderer::draw(const draw::Picture& picture, media::Image& out) {
   }
 
   // what moves, on what the last picture left of the backdrop
+  const bool anew = !my.drawn;
+  Damage changed = my.damage;
   my.restore();
   my.frame.bind();
   my.painter.paint(picture.moving, picture.ground, picture.transparent, my.damage);
 
-  out.width = my.width;
-  out.height = my.height;
-  out.pixels.resize(std::size_t(4) * my.width * my.height);
-  my.gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
-  my.gl.ReadPixels(0, 0, my.width, my.height, GL_RGBA, GL_UNSIGNED_BYTE, out.pixels.data());
-  if (picture.transparent) unpremultiply(out);
+  // what either picture drew on is read
+  my.image.width = my.width;
+  my.image.height = my.height;
+  my.image.pixels.resize(std::size_t(4) * my.width * my.height);
+  changed.add(my.damage);
+  if (anew) {
+    my.read({0, 0, my.width, my.height});
+  } else {
+    for (const Damage::Rect& rect : changed.bands()) my.read(rect);
+  }
 
   const GLenum error = my.gl.GetError();
   if (error != GL_NO_ERROR || !my.trouble.empty()) {
@@ -203,6 +221,7 @@ void Renderer::draw(const draw::Picture& picture, media::Image& out) {
     throw Error("OpenGL error " + std::to_string(error) + " while drawing" +
                 (my.trouble.empty() ? "" : ": " + std::exchange(my.trouble, "")));
   }
+  return my.image;
 }
 
 std::string Renderer::version() const { return impl_->version; }

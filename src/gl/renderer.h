@@ -9,8 +9,8 @@
 
 namespace obscura::gl {
 
-/// Puts pictures down as pixels, in a context of its own. Used from one thread at a time, not always the same: it is
-/// current to a thread only while it draws. Several draw side by side.
+/// Puts pictures down as pixels, in a context of its own. Used from one thread at a time, not always the
+/// same: it is current to a thread only while it draws. Several draw side by side.
 class Renderer {
  public:
   /// Throws gl::Error where there is no context or the size is beyond its limit.
@@ -21,6 +21,8 @@ class Renderer {
   /// Draws into `out` (made the right size). The still list is drawn anew only when it is another one than
   /// last time.
   void draw(const draw::Picture& picture, media::Image& out);
+  /// The same without a copy of what did not change. The image is good until the next call.
+  const media::Image& draw(const draw::Picture& picture);
 
   /// GL_VERSION, GL_RENDERER, and the back end, for the origin.
   std::string version() const;
