@@ -12,6 +12,7 @@
 #include "app/shots.h"
 #include "media/error.h"
 #include "scene/error.h"
+#include "sim/contact_step.h"
 #include "sim/run.h"
 
 namespace obscura::app {
@@ -27,6 +28,26 @@ double movie_bytes(const scene::Film& film, std::int64_t frames) {
   return double(frames) * film.width * film.height * 0.0016;
 }
 
+// what holds bodies apart, and why that
+std::string contact(const sim::Model<2>& model) {
+  if (model.collision == sim::Collision::handout) return "the handout's: walls alone, put back and pushed";
+  const bool direct = sim::solver(model) == sim::Solver::direct;
+  const sim::Crowd crowd = sim::crowd(model);
+  std::string why;
+  if (model.collision == sim::Collision::event)
+    why = "every event at its own time";
+  else if (!model.joints.empty())
+    why = count(model.joints.size(), "joint", "joints");
+  else if (model.solver != sim::Solver::automatic)
+    why = "as the scene says";
+  else
+    why =
+        fmt::format("{} and {} that move; up to {} and {} it is the direct one",
+                    count(std::size_t(crowd.bodies), "body", "bodies"),
+                    count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies, sim::kMostPoints);
+  return fmt::format("{} solver: {}", direct ? "direct" : "iterative", why);
+}
+
 void report(const scene::Scene& scene) {
   const auto& model = scene.world.model;
   const std::size_t particles = std::size_t(model.particles());
@@ -38,6 +59,7 @@ void report(const scene::Scene& scene) {
              count(model.mice.size(), "mouse", "mice"));
   fmt::print("  time     {:g} s in {} steps of 1/{} s\n", sim::value(scene.duration),
              sim::ceil(scene.duration * model.rate), sim::text(model.rate));
+  fmt::print("  contact  {}\n", contact(model));
   fmt::print("  film     {} frames at {} fps, {}x{}\n", shots.size(), sim::text(scene.film.fps),
              scene.film.width, scene.film.height);
   fmt::print("  disk     about {:.1f} MB as a movie\n", movie_bytes(scene.film, shots.size()) / 1e6);

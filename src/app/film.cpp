@@ -73,6 +73,7 @@ class Simulation {
         run_(sim::run(scene.world)),
         trail_(depictor(scene).longest_trail()) {
     run_->track(depictor(scene).trailed());
+    run_->heed(interrupted);
   }
 
   static draw::Depictor depictor(const scene::Scene& scene) {
@@ -92,6 +93,7 @@ class Simulation {
         trouble_ = *trouble;
         break;
       }
+      if (std::holds_alternative<sim::Stopped>(moment)) break;
       take.shots.push_back(shot);
       take.moments.push_back(std::move(std::get<sim::Snapshot>(moment)));
       if (hash_each_ || take.states.empty()) take.states.push_back(state_hash(run_->words()));

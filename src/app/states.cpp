@@ -17,6 +17,7 @@
 #include "app/trouble.h"
 #include "media/error.h"
 #include "scene/scene.h"
+#include "sim/contact_step.h"
 #include "sim/run.h"
 
 namespace obscura::app {
@@ -38,6 +39,8 @@ void put(const std::string& text) {
     throw media::Error("standard output cannot be written");
 }
 
+const std::string& name(const sim::Cast& cast, int body) { return cast.bodies[std::size_t(body)].name; }
+
 // one instant as a JSON object
 std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::string& hash) {
   const int d = cast.dimension;
@@ -54,18 +57,34 @@ std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::str
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
     const auto& body = now.bodies[i];
     text += fmt::format(
-        "{}\n       {{\"name\": {}, \"position\": {}, \"angle\": {}, \"velocity\": {}, \"spin\": {}}}",
+        "{}\n       {{\"name\": {}, \"position\": {}, \"angle\": {}, \"velocity\": {}, \"spin\": {}, "
+        "\"at_rest\": "
+        "{}}}",
         i ? "," : "", quoted(cast.bodies[i].name), vector(body.position, d), number(body.angle),
-        vector(body.velocity, d), number(body.spin.z()));
+        vector(body.velocity, d), number(body.spin.z()), body.at_rest);
   }
   text += "],\n     \"contacts\": [";
   for (std::size_t i = 0; i < now.contacts.size(); ++i) {
     const auto& contact = now.contacts[i];
     text += fmt::format(
-        "{}\n       {{\"body\": {}, \"wall\": {}, \"point\": {}, \"normal\": {}, \"gap\": {}, \"impulse\": "
-        "{}}}",
-        i ? "," : "", quoted(cast.bodies[std::size_t(contact.body)].name), contact.wall,
-        vector(contact.point, d), vector(contact.normal, d), number(contact.gap), vector(contact.impulse, d));
+        "{}\n       {{\"body\": {}, {}, \"point\": {}, \"normal\": {}, \"gap\": {}, \"force\": {}, "
+        "\"impulse\": "
+        "{}, \"mode\": \"{}\"}}",
+        i ? "," : "", quoted(name(cast, contact.body)),
+        contact.other < 0 ? fmt::format("\"wall\": {}", contact.wall)
+                          : fmt::format("\"other\": {}", quoted(name(cast, contact.other))),
+        vector(contact.point, d), vector(contact.normal, d), number(contact.gap), vector(contact.force, d),
+        vector(contact.impulse, d),
+        !contact.holds    ? "bouncing"
+        : contact.sliding ? "sliding"
+                          : "sticking");
+  }
+  text += "],\n     \"joints\": [";
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const auto& joint = now.joints[i];
+    text += fmt::format("{}\n       {{\"name\": {}, \"a\": {}, \"b\": {}, \"force\": {}, \"broken\": {}}}",
+                        i ? "," : "", quoted(cast.joints[i].name), vector(joint.a, d), vector(joint.b, d),
+                        vector(joint.force, d), joint.broken);
   }
   return text + "]}";
 }
@@ -81,6 +100,7 @@ std::string csv_header(const sim::Cast& cast) {
       line += fmt::format(",{}.{}", body.name, part);
     }
   }
+  for (const auto& joint : cast.joints) line += fmt::format(",{0}.force.x,{0}.force.y", joint.name);
   return line + "\n";
 }
 
@@ -98,7 +118,14 @@ std::string csv_row(const sim::Snapshot& now, const std::string& hash) {
       line += "," + number(x);
     }
   }
+  for (const auto& joint : now.joints) line += "," + number(joint.force.x()) + "," + number(joint.force.y());
   return line + "\n";
+}
+
+// who finds the forces; none does in the handout's mode
+const char* solver(const sim::Model<2>& model) {
+  if (model.collision == sim::Collision::handout) return "null";
+  return sim::solver(model) == sim::Solver::direct ? "\"direct\"" : "\"iterative\"";
 }
 
 struct Flags {
@@ -121,14 +148,16 @@ int states(const Flags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
   const auto times = times_of(flags, scene);
   const auto run = sim::run(scene.world);
+  run->heed(interrupted);
   const bool as_json = flags.format == "json";
   if (as_json) {
     put(
         fmt::format("{{\"version\": \"{}\", \"scene\": {}, \"scene_hash\": \"{}\", \"dimension\": {},\n"
                     " \"units\": {{\"length\": \"m\", \"time\": \"s\", \"angle\": \"rad\", \"energy\": "
-                    "\"J\", \"impulse\": \"N s\"}},\n"
-                    " \"states\": [\n",
-                    OBSCURA_VERSION, quoted(scene.file), hash(scene.text), run->cast().dimension));
+                    "\"J\", \"force\": \"N\", \"impulse\": \"N s\"}},\n"
+                    " \"solver\": {},\n \"states\": [\n",
+                    OBSCURA_VERSION, quoted(scene.file), hash(scene.text), run->cast().dimension,
+                    solver(scene.world.model)));
   } else {
     put(csv_header(run->cast()));
   }
@@ -141,6 +170,7 @@ int states(const Flags& flags) {
       trouble = *bad;
       break;
     }
+    if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
     const auto& now = std::get<sim::Snapshot>(outcome);
     const std::string state = state_hash(run->words());
     if (as_json)
@@ -170,6 +200,10 @@ void add_states(CLI::App& program, int& exit) {
   command->footer(
       "SI units; angles in radians, counter-clockwise. Numbers have 17 significant digits: they read back to "
       "the bit.\n"
+      "A contact is where a body touches a wall (floor, left, right, ceiling, then the scene's own: 0, 1, "
+      "...) or "
+      "an other body; normal, force (N) and the impulse (N s) of the last step are towards and on the body. "
+      "A joint's force is that on the first of its two. at_rest: proved to stay.\n"
       "energy.displacement and energy.impacts are what collision = \"handout\" gained and lost since the "
       "start.\n\n"
       "Examples:\n"

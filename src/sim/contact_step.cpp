@@ -5,22 +5,21 @@
 
 namespace obscura::sim {
 
-namespace {
-
-constexpr int kMostBodies = 40;   // with an extent, that move: a few hundred rows when all lie in one heap
-constexpr int kMostPoints = 400;  // they touch walls and bodies, not one another
-
-}  // namespace
+template <int D>
+Crowd crowd(const Model<D>& model) {
+  Crowd all;
+  for (const Body<D>& body : model.bodies) {
+    if (!body.fixed) ++(body.shape.kind == ShapeKind::point ? all.points : all.bodies);
+  }
+  return all;
+}
 
 template <int D>
 Solver solver(const Model<D>& model) {
   if (model.collision == Collision::event || !model.joints.empty()) return Solver::direct;
   if (model.solver != Solver::automatic) return model.solver;
-  int points = 0, bodies = 0;
-  for (const Body<D>& body : model.bodies) {
-    if (!body.fixed) ++(body.shape.kind == ShapeKind::point ? points : bodies);
-  }
-  return points <= kMostPoints && bodies <= kMostBodies ? Solver::direct : Solver::iterative;
+  const Crowd all = crowd(model);
+  return all.points <= kMostPoints && all.bodies <= kMostBodies ? Solver::direct : Solver::iterative;
 }
 
 template <int D>
@@ -29,6 +28,7 @@ std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::v
   return std::make_unique<Iterative<D>>(model, paths);
 }
 
+template Crowd crowd<2>(const Model<2>&);
 template Solver solver<2>(const Model<2>&);
 template std::unique_ptr<ContactStep<2>> contact_step<2>(const Model<2>&, const std::vector<Path<2>>&);
 

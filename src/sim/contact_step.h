@@ -18,6 +18,17 @@ class ContactStep {
   virtual void step(State<D>& state, double t, double h) = 0;
 };
 
+/// Up to how many bodies the direct solver serves on its own accord: of those that move, with an extent, and
+/// points. A few hundred rows when all lie in one heap; points touch walls and bodies, not one another.
+inline constexpr int kMostBodies = 40, kMostPoints = 400;
+
+/// How many bodies that move may touch others, with an extent; and points.
+struct Crowd {
+  int bodies = 0, points = 0;
+};
+template <int D>
+Crowd crowd(const Model<D>& model);
+
 /// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event`
 /// and joints are the direct one's.
 template <int D>

@@ -93,6 +93,7 @@ template <int D>
 void Direct<D>::ready(State<D>& state) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
+  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
   light_.resize(n);
   double fastest = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -107,7 +108,7 @@ void Direct<D>::ready(State<D>& state) {
 template <int D>
 void Direct<D>::step(State<D>& state, double t, double h) {
   ready(state);
-  impulses_.clear(), contacts_ = state.contacts;
+  impulses_.clear(), contacts_ = state.contacts, joint_forces_ = state.joint_forces;
   double done = 0;
   forced_.clear();
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
@@ -149,9 +150,12 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     find(state, closed_);
   }
   collide(state);
+  // the forces that joints are shown with and break by are those of the end
+  if (!model_.joints.empty() && choose(state, t + h)) remember();
   report(state);
   rest(state, t + h, h);
   report(state);
+  break_joints(state);
 }
 
 template <int D>
@@ -173,10 +177,19 @@ void Direct<D>::rates(double t, std::span<const double> d, std::span<const doubl
   for (int i = 0; i < int(rows_.size()); ++i) push(rows_[i], f_[i], v_rate);
 }
 
-// contacts and their forces as they were chosen last
+// contacts and joints and their forces as they were chosen last; joints of what is frozen keep theirs
 template <int D>
 void Direct<D>::remember() {
   contacts_.clear();
+  for (std::size_t i = 0; i < joint_forces_.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (light(joint.a.body) > 0 || light(joint.b.body) > 0) joint_forces_[i].setZero();
+  }
+  for (const Held& held : held_) {
+    if (held.kind == Held::Kind::contact) continue;
+    for (int i = held.first; i < held.first + held.rows; ++i)
+      joint_forces_[held.of] += f_[i] * rows_[i].along;
+  }
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact) continue;
     const Hold hold = modes_[held.block].hold;
@@ -192,8 +205,28 @@ void Direct<D>::remember() {
   }
 }
 
+// joints that are loaded beyond what they bear are no more from the next step on; what they held wakes
+template <int D>
+void Direct<D>::break_joints(State<D>& state) {
+  bool any = false;
+  ripe_.assign(model_.bodies.size(), 0);
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > joint.breaks)) continue;
+    if (!any) join(state);
+    state.broken[i] = 1, any = true;
+    for (const int body : {joint.a.body, joint.b.body}) {
+      if (body >= 0) ripe_[island_[body]] = 1;
+    }
+  }
+  for (std::size_t i = 0; any && i < ripe_.size(); ++i) {
+    if (ripe_[island_[i]]) state.frozen[i] = 0, state.quiet[i] = 0;
+  }
+}
+
 template <int D>
 void Direct<D>::report(State<D>& state) {
+  state.joint_forces = joint_forces_;
   for (const Contact<D>& struck : impulses_) {
     const auto at = std::lower_bound(contacts_.begin(), contacts_.end(), struck,
                                      [](const auto& p, const auto& q) { return p.key < q.key; });

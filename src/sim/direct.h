@@ -57,6 +57,7 @@ class Direct final : public ContactStep<D>, private System {
   void settle(State<D>& state, double t, double h);
   void report(State<D>& state);
   void remember();
+  void break_joints(State<D>& state);
 
   // direct_hold.cpp
   void stand(const State<D>& state);
@@ -159,6 +160,7 @@ class Direct final : public ContactStep<D>, private System {
   bool forced_again_ = false;
   Motion begun_, saved_;
   std::vector<Contact<D>> contacts_, impulses_;  // of this step
+  std::vector<Vec<D>> joint_forces_;             // of this step
 };
 
 }  // namespace obscura::sim

@@ -26,11 +26,14 @@ class RunOf final : public Run {
   const Cast& cast() const override { return cast_; }
   Rational rate() const override { return model_.rate; }
 
-  std::variant<Snapshot, Trouble> at(Rational t) override {
+  void heed(std::function<bool()> stop) override { stop_ = std::move(stop); }
+
+  std::variant<Snapshot, Trouble, Stopped> at(Rational t) override {
     if (trouble_) return *trouble_;
     const Beat to = beat(t, model_.rate);
     assert(to.step >= state_.step);
     while (state_.step < to.step) {
+      if (stop_ && stop_()) return Stopped{};
       trouble_ = stepper_.step(state_);
       if (trouble_) return *trouble_;
       keep_ways();
@@ -59,18 +62,27 @@ class RunOf final : public Run {
   }
 
  private:
-  // a point of every way that this step belongs to: all at equal steps, and who has just touched a wall
+  // a point of every way that this step belongs to: all at equal steps, and who has just been struck
   void keep_ways() {
     if (track_.bodies.empty()) return;
     const bool all = state_.step % stride_ == 0;
-    if (!all && state_.touches.empty()) return;
-    for (const Touch<D>& touch : state_.touches) touched_[touch.body] = true;
+    const auto struck = [&](bool now) {
+      bool any = false;
+      for (const Touch<D>& touch : state_.touches) touched_[touch.body] = now, any = true;
+      for (const Contact<D>& contact : state_.contacts) {
+        if (contact.impulse == Vec<D>::Zero()) continue;
+        touched_[contact.key.a] = now, any = true;
+        if (contact.key.b >= 0) touched_[contact.key.b] = now;
+      }
+      return any;
+    };
+    if (!struck(true) && !all) return;
     const double t = time({state_.step, 0}, model_.rate);
     for (std::size_t i = 0; i < track_.bodies.size(); ++i) {
       const int body = track_.bodies[i];
       if (all || touched_[body]) track_.points[i].push_back({t, lifted<D>(state_.x[body])});
     }
-    for (const Touch<D>& touch : state_.touches) touched_[touch.body] = false;
+    struck(false);
   }
 
   Model<D> model_;
@@ -78,6 +90,7 @@ class RunOf final : public Run {
   Stepper<D> stepper_;
   Cast cast_;
   std::optional<Trouble> trouble_;
+  std::function<bool()> stop_;
   bool between_ = false;  // the last instant lay between two steps: copy_ shows it
   Track track_;
   std::vector<char> touched_;  // all false between two calls

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <variant>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "sim/trouble.h"
 
 namespace obscura::sim {
+
+/// A run that was asked to stop on its way to an instant. It stands between two steps and may be asked to go
+/// on.
+struct Stopped {};
 
 /// The one loop: steps a world along its own clock and hands out instants. A frame between two steps is a
 /// partial step on a copy; the trajectory never notices.
@@ -22,7 +27,10 @@ class Run {
 
   /// Goes on to the instant t (s, >= 0 and not before the last one asked for). Trouble ends the run: the
   /// answer to every later call is the same trouble.
-  virtual std::variant<Snapshot, Trouble> at(Rational t) = 0;
+  virtual std::variant<Snapshot, Trouble, Stopped> at(Rational t) = 0;
+
+  /// From now on, `stop` is asked before every step whether to stop there.
+  virtual void heed(std::function<bool()> stop) = 0;
 
   /// The words of the state that the last snapshot shows (sim/state.h).
   virtual std::vector<std::uint64_t> words() const = 0;

@@ -55,6 +55,7 @@ Snapshot::Contact shown(const Contact<D>& contact) {
   it.impulse = lifted<D>(contact.impulse), it.force = lifted<D>(contact.force);
   it.gap = contact.gap;
   it.sliding = contact.touching == Touching::slide;
+  it.holds = contact.touching != Touching::open;
   return it;
 }
 
@@ -100,6 +101,7 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
     Snapshot::Body& body = now.bodies[i];
     body.position = lifted<D>(state.x[i]);
     body.velocity = lifted<D>(state.v[i]);
+    body.at_rest = i < int(state.frozen.size()) && state.frozen[i] != 0;
     if (const int k = turning(state, i); k >= 0) {
       body.spin = spinning<D>(state.spin[k]);
       body.angle = state.turn[k][0];
@@ -112,8 +114,10 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint<D>& j = model.joints[i];
-    now.joints.push_back({lifted<D>(place(state, j.a)), lifted<D>(place(state, j.b)),
-                          i < state.broken.size() && state.broken[i] != 0});
+    Snapshot::Joint joint{lifted<D>(place(state, j.a)), lifted<D>(place(state, j.b))};
+    if (i < state.joint_forces.size()) joint.force = lifted<D>(state.joint_forces[i]);
+    joint.broken = i < state.broken.size() && state.broken[i] != 0;
+    now.joints.push_back(joint);
   }
   for (int i = 0; i < int(model.mice.size()); ++i) {
     Snapshot::Mouse mouse;
@@ -136,7 +140,11 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
     contact.gap = (touch.point - wall.point).dot(wall.normal);
     now.contacts.push_back(contact);
   }
-  for (const Contact<D>& contact : state.contacts) now.contacts.push_back(shown(contact));
+  for (const Contact<D>& contact : state.contacts) {
+    // some are carried along before they touch
+    if (contact.touching != Touching::open || contact.impulse != Vec<D>::Zero())
+      now.contacts.push_back(shown(contact));
+  }
   now.energies = energies(model, state, stepper.paths(), t);
   now.momentum = lifted<D>(momentum(model, state));
   now.angular_momentum = spinning<D>(angular_momentum(model, state));

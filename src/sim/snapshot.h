@@ -77,7 +77,8 @@ struct Snapshot {
     Vec3 velocity = Vec3::Zero();
     Vec3 spin = Vec3::Zero();  // rad/s; in the plane (0, 0, w)
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-    double angle = 0;  // plane: rad, not wrapped
+    double angle = 0;      // plane: rad, not wrapped
+    bool at_rest = false;  // frozen: steps leave it alone
   };
   struct Spring {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
@@ -90,6 +91,7 @@ struct Snapshot {
   };
   struct Joint {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
+    Vec3 force = Vec3::Zero();                // on its a, N
     bool broken = false;
   };
   struct Contact {
@@ -100,6 +102,7 @@ struct Snapshot {
     int other = -1;                                    // a body
     Vec3 force = Vec3::Zero();                         // on `body`, N
     bool sliding = false;
+    bool holds = false;  // false: an impact alone
   };
 
   double time = 0;           // s

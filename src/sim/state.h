@@ -60,6 +60,7 @@ struct State {
   std::vector<char> frozen;          // one a body: at rest by proof, steps leave it alone
   std::vector<double> quiet;         // one a body: how long it has been still, s
   std::vector<char> broken;          // one a joint
+  std::vector<Vec<D>> joint_forces;  // one a joint: on its a, N
 
   bool operator==(const State&) const = default;
 };

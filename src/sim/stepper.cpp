@@ -80,6 +80,7 @@ void Stepper<D>::begin(State<D>& state) {
   if (contact_) {
     state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
     state.broken.resize(model_.joints.size());
+    state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
   }
   state.touches.reserve(2 * model_.bodies.size() + 16);
   touch_script(state, {state.step, 0});

@@ -61,6 +61,7 @@ std::vector<std::uint64_t> words(const State<D>& state) {
   }
   w.integer(std::int64_t(state.broken.size()));
   for (const char broken : state.broken) w.integer(broken);
+  w.list(state.joint_forces);
   w.number(state.ledger.displacement);
   w.number(state.ledger.impacts);
   return w.all;

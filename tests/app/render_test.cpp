@@ -178,6 +178,21 @@ TEST_F(Render, AnInterruptLeavesAPlayablePartialMovie) {
   EXPECT_EQ(others, 1);
 }
 
+TEST_F(Render, AnInterruptEndsAFrameThatTakesForever) {
+  // half a million steps a second of film: the first frame after t = 0 is minutes away
+  scene(kRoom);
+  const Outcome run = shell("env --default-signal=INT " OBSCURA_BINARY
+                            " render scene.toml -o far.png --at 100000 --set physics.rate=500000 --progress "
+                            "none & pid=$!; sleep 1; "
+                            "kill -INT $pid; wait $pid");
+  EXPECT_EQ(run.exit, 130) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(path("far.png")));
+  const Outcome states = shell("env --default-signal=TERM " OBSCURA_BINARY
+                               " states scene.toml --at 100000 --set physics.rate=500000 & pid=$!; sleep 1; "
+                               "kill -TERM $pid; wait $pid");
+  EXPECT_EQ(states.exit, 130);
+}
+
 TEST_F(Render, TroubleKeepsTheFramesSoFarAndExitsWithSix) {
   // k far above the limit of RK4 at this step: the spring tears itself apart
   scene(

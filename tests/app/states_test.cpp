@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdlib>
 
 #include <nlohmann/json.hpp>
@@ -74,6 +75,85 @@ TEST_F(States, TroubleExitsWithSixAfterWhatWasGood) {
   const Outcome run = obscura("states scene.toml --at 0,5");
   EXPECT_EQ(run.exit, 6);
   EXPECT_EQ(nlohmann::json::parse(run.out)["states"].size(), 1u);
+}
+
+TEST_F(States, ReportWhatHoldsABlockOnASlidingOneAndAJoint) {
+  // a block at rest on the floor bears half of g m at each corner (1e-9: the direct solver's); a sled slides
+  // with mu m g against it; a lamp hangs on a rod
+  scene(R"(
+[room]
+size = [8, 4]
+[[box]]
+name = "block"
+size = [1, 1]
+mass = 2
+position = [1, 0.5]
+[[box]]
+name = "lid"
+size = [0.5, 0.5]
+mass = 1
+position = [1, 1.25]
+[[box]]
+name = "sled"
+size = [1, 0.2]
+mass = 1
+position = [3, 0.1]
+velocity = [3, 0]
+friction = 0.3
+[[particle]]
+name = "lamp"
+position = [6, 3]
+mass = 0.5
+[[joint]]
+name = "cord"
+type = "rod"
+between = ["lamp", [6, 4]]
+)");
+  const Outcome run = obscura("states scene.toml --at 0.5");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["solver"], "direct");
+  const auto& state = json["states"][0];
+  EXPECT_EQ(state["bodies"][1]["name"], "block");
+  EXPECT_EQ(state["bodies"][1]["at_rest"], true);
+  EXPECT_EQ(state["bodies"][3]["at_rest"], false);
+  double block = 0, lid = 0, drag = 0;
+  int slides = 0, sticks = 0;
+  for (const auto& contact : state["contacts"]) {
+    const bool wall = contact.contains("wall");
+    if (contact["body"] == "block" && wall) block += double(contact["force"][1]);
+    if (!wall) lid += double(contact["force"][1]) * (contact["other"] == "block" ? 1 : -1);
+    if (contact["body"] == "sled") drag += double(contact["force"][0]);
+    (contact["mode"] == "sliding" ? slides : sticks)++;
+    EXPECT_NEAR(contact["gap"], 0, 1e-8);
+  }
+  EXPECT_NEAR(block, 3 * 9.81, 1e-9);
+  EXPECT_NEAR(std::abs(lid), 9.81, 1e-9);
+  EXPECT_NEAR(drag, -std::sqrt(0.3 * 0.3) * 9.81, 1e-9);
+  EXPECT_EQ(slides, 2);
+  EXPECT_EQ(sticks, 4);
+  EXPECT_EQ(state["joints"][0]["name"], "cord");
+  EXPECT_EQ(state["joints"][0]["broken"], false);
+  EXPECT_NEAR(state["joints"][0]["force"][1], 0.5 * 9.81, 1e-11);
+
+  const Outcome csv = obscura("states scene.toml --at 0.5 --format csv");
+  EXPECT_NE(csv.out.find(",cord.force.x,cord.force.y\n"), std::string::npos);
+}
+
+TEST_F(States, NameTheSolver) {
+  const std::string crowd =
+      "duration = 1\n[room]\nsize = [8, 8]\n[[ball]]\nradius = 0.1\nposition = [1, 1]\n"
+      "copies = { count = [7, 6], offset = [[0.3, 0], [0, 0.3]] }\n";
+  scene(crowd);
+  EXPECT_EQ(nlohmann::json::parse(obscura("states scene.toml --at 0").out)["solver"], "iterative");
+  EXPECT_NE(obscura("check scene.toml")
+                .out.find("iterative solver: 42 bodies and 0 points that move; up to 40 and 400"),
+            std::string::npos);
+  scene(kFlight);
+  EXPECT_NE(obscura("check scene.toml").out.find("direct solver: "), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(
+                obscura("states scene.toml --at 0 --set physics.collision=handout").out)["solver"],
+            nullptr);
 }
 
 TEST_F(States, OpenNoGl) {
