@@ -59,7 +59,7 @@ std::vector<Key> rows() {
       {.path = "physics.integrator", .form = choice, .fallback = "\"rk4\"",
        .choices = {"rk4", "midpoint", "euler", "semi-implicit"},
        .doc = "The scheme of a step; of fourth, second, first and first order.", .example = "\"midpoint\""},
-      {.path = "physics.collision", .form = choice, .fallback = "\"handout\"",
+      {.path = "physics.collision", .form = choice, .fallback = "\"contact\"",
        .choices = {"contact", "event", "handout"},
        .doc = "What happens where things touch. `contact`: forces hold them apart, with friction; `event`: the same, with every "
               "impact at its own time; `handout`: only walls, put back onto them, then an impulse; what rests there jitters.",

@@ -124,11 +124,7 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   nets(top, roster, scene.world, complaints);
   joints(top, roster, scene.world, complaints);
   ignore(top, roster, model, complaints);
-  if (model.collision == sim::Collision::handout) {
-    refuse_beyond_handout(top, complaints);
-  } else if (model.overlap == sim::Overlap::refuse) {
-    refuse_overlaps(roster, scene.world, complaints);
-  }
+  if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, complaints);
   refuse_taken_names(top, roster, complaints);
 
   // what the camera fits, and with it the length of a reference pixel
@@ -140,6 +136,12 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   look(top, roster, scene.look, complaints);
   scene.camera = camera(top, roster, complaints);
   scene.film = film(top);
+
+  // overlaps may come of other mistakes: they are told where there are none
+  if (complaints.none() && model.collision != sim::Collision::handout &&
+      model.overlap == sim::Overlap::refuse) {
+    refuse_overlaps(roster, scene.world, complaints);
+  }
   if (!complaints.none()) complaints.raise();
   return scene;
 }

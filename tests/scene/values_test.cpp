@@ -20,6 +20,9 @@ Scene scene(const std::string& text, const std::vector<std::string>& sets = {}) 
   return parse(text, "a.toml", sets);
 }
 
+// bodies that lie on each other, which only this mode lets them
+Scene crossing(const std::string& text) { return scene(text, {"physics.collision=handout"}); }
+
 // the end of each spring, as a place in the room at the start; boxes at no angle
 std::vector<std::pair<int, int>> pairs(const Scene& it) {
   std::vector<std::pair<int, int>> all;
@@ -121,7 +124,7 @@ TEST(Values, TheMouseRestsAtTwentyReferencePixelsWhateverThePicture) {
 
 TEST(Values, DegreesBecomeRadiansAndMassComesFromDensity) {
   const Scene it =
-      scene("[[box]]\nsize = [2, 0.5]\nangle = 30\nspin = -90\ndensity = 3\n[[box]]\nmass = 0.5");
+      crossing("[[box]]\nsize = [2, 0.5]\nangle = 30\nspin = -90\ndensity = 3\n[[box]]\nmass = 0.5");
   EXPECT_NEAR(it.world.state.turn[0][0], M_PI / 6, 1e-15);
   EXPECT_NEAR(it.world.state.spin[0][0], -M_PI / 2, 1e-15);
   EXPECT_DOUBLE_EQ(it.world.model.bodies[0].mass, 3);
@@ -130,7 +133,7 @@ TEST(Values, DegreesBecomeRadiansAndMassComesFromDensity) {
 }
 
 TEST(Values, ParticlesComeBeforeBoxes) {
-  const Scene it = scene(
+  const Scene it = crossing(
       "[[box]]\nname = \"b\"\n[[particle]]\nname = \"p\"\n[[box]]\nname = \"c\"\n[[particle]]\nname = \"q\"");
   std::vector<std::string> names;
   for (const auto& body : it.world.model.bodies) names.push_back(body.name);
@@ -141,7 +144,7 @@ TEST(Values, ParticlesComeBeforeBoxes) {
 }
 
 TEST(Values, DragOfTheRoomIsThatOfBodiesWithNone) {
-  const Scene it = scene("[room]\ndrag = 0.3\n[[particle]]\n[[box]]\ndrag = 0.1");
+  const Scene it = crossing("[room]\ndrag = 0.3\n[[particle]]\n[[box]]\ndrag = 0.1");
   EXPECT_EQ(it.world.model.bodies[0].drag, 0.3);
   EXPECT_EQ(it.world.model.bodies[1].drag, 0.1);
 }
@@ -252,11 +255,11 @@ TEST(Springs, AStarTiesEachToItsOwn) {
 
 TEST(Springs, UnnamedBodiesHaveNamesToo) {
   EXPECT_THAT(
-      pairs(scene("[[particle]]\n[[box]]\n[[box]]\n[[spring]]\nbetween = [\"box[1]\", \"particle[0]\"]")),
+      pairs(crossing("[[particle]]\n[[box]]\n[[box]]\n[[spring]]\nbetween = [\"box[1]\", \"particle[0]\"]")),
       ElementsAre(std::pair(2, 0)));
   EXPECT_THAT(
-      pairs(
-          scene("[[particle]]\ncopies = { count = 2 }\n[[spring]]\nbetween = [\"particle[0][1]\", [1, 1]]")),
+      pairs(crossing(
+          "[[particle]]\ncopies = { count = 2 }\n[[spring]]\nbetween = [\"particle[0][1]\", [1, 1]]")),
       ElementsAre(std::pair(1, -1)));
 }
 
@@ -280,7 +283,7 @@ TEST(Nets, JoinNeighbours) {
 }
 
 TEST(Looks, TrailsAreOfAllOrByName) {
-  const Scene all = scene(
+  const Scene all = crossing(
       "[look]\ntrails = 1.5\narrows = [\"velocity\"]\n[[particle]]\n[[box]]\nfixed = true\n[[box]]\ntrail = "
       "0.5\narrows = []");
   EXPECT_EQ(all.look.bodies[0].trail, 1.5);
@@ -289,7 +292,7 @@ TEST(Looks, TrailsAreOfAllOrByName) {
   EXPECT_TRUE(all.look.bodies[0].velocity);
   EXPECT_FALSE(all.look.bodies[1].velocity);
   EXPECT_FALSE(all.look.bodies[2].velocity);
-  const Scene some = scene(
+  const Scene some = crossing(
       "[look]\ntrails = { ball = 1, \"b[1]\" = 2 }\n[[particle]]\nname = \"ball\"\ncopies = { count = 2 "
       "}\n[[box]]\nname = \"b\"\ncopies = { count = 2 }");
   EXPECT_EQ(some.look.bodies[1].trail, 1);
@@ -298,7 +301,7 @@ TEST(Looks, TrailsAreOfAllOrByName) {
 }
 
 TEST(Looks, ColoursGoOnFromDeclarationToDeclaration) {
-  const Scene it = scene(
+  const Scene it = crossing(
       "[[particle]]\ncopies = { count = 3 }\n[[particle]]\n[[box]]\nfixed = true\n[[particle]]\nname = "
       "\"k\"\ncopies = { count = 2, offset = [1, 0] }\n"
       "[[net]]\nof = \"k\"");
