@@ -48,7 +48,7 @@ void joint(Made& made, JointKind kind, int a, int b, const sim::Vec3& at, const 
   sim::Cast::Joint who;
   who.kind = kind, who.a = a, who.b = b, who.length = length;
   made.cast.joints.push_back(who);
-  made.now.joints.push_back({at, to, false});
+  made.now.joints.push_back({at, to});
 }
 
 double length(const List& list, const Stroke& stroke) {
