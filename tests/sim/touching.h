@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "sim/rooms.h"
 #include "sim/trig.h"
@@ -45,6 +49,92 @@ inline double energy(const World<2>& world, const State<2>& state) {
     sum += 0.5 * body.mass * state.v[i].squaredNorm() - body.mass * world.model.gravity.dot(state.x[i]);
     if (const int k = turning(state, i); k >= 0)
       sum += 0.5 * body.inertia[0] * state.spin[k][0] * state.spin[k][0];
+  }
+  return sum;
+}
+
+/// A convex polygon, its corners about a point that lies at `x` when it is not turned. Mass in kg.
+inline int add_polygon(World<2>& world, std::vector<Vec2> corners, double mass, Vec2 x, Vec2 v = {0, 0},
+                       double angle = 0, double spin = 0, double elasticity = 1) {
+  Body<2> body;
+  body.name = "polygon[" + std::to_string(world.model.bodies.size()) + "]";
+  body.shape.kind = ShapeKind::polygon;
+  body.shape.vertices = std::move(corners);
+  const Vec2 c = bulk(body.shape).center;
+  for (Vec2& corner : body.shape.vertices) corner -= c;
+  body.mass = mass, body.elasticity = elasticity;
+  body.inertia = inertia(body.shape, mass);
+  world.model.bodies.push_back(body);
+  world.state.x.push_back(x + rotation<2>(Turn<2>(angle)) * c), world.state.v.push_back(v);
+  world.state.turn.push_back(Turn<2>(angle)), world.state.spin.push_back(Spin<2>(spin));
+  return int(world.model.bodies.size()) - 1;
+}
+
+/// Numbers that look random and are the same everywhere: splitmix64.
+class Chance {
+ public:
+  explicit Chance(std::uint64_t seed) : state_(seed) {}
+
+  double between(double low, double high) {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u, z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return low + (high - low) * (double((z ^ (z >> 31)) >> 11) * 0x1p-53);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// A polygon of `n` corners on a circle, out of true by up to a third of their spacing.
+inline std::vector<Vec2> odd_polygon(Chance& chance, int n, double radius) {
+  std::vector<Vec2> corners;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * std::acos(-1) * (i + chance.between(-0.33, 0.33)) / n;
+    corners.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return corners;
+}
+
+/// Momentum and, last, angular momentum about the origin.
+inline Eigen::Vector3d momenta(const World<2>& world, const State<2>& state) {
+  Eigen::Vector3d sum(0, 0, 0);
+  for (int i = 0; i < int(world.model.bodies.size()); ++i) {
+    const Body<2>& body = world.model.bodies[i];
+    const Vec2 p = body.mass * state.v[i];
+    sum += Eigen::Vector3d(p.x(), p.y(), state.x[i].x() * p.y() - state.x[i].y() * p.x());
+    if (const int k = turning(state, i); k >= 0) sum[2] += body.inertia[0] * state.spin[k][0];
+  }
+  return sum;
+}
+
+/// By how much the contact forces leave Coulomb's cone, of the room's largest weight.
+inline double outside_cone(const World<2>& world, const State<2>& state) {
+  double worst = 0, heaviest = 0;
+  for (const Body<2>& body : world.model.bodies)
+    heaviest = std::max(heaviest, body.mass * world.model.gravity.norm());
+  for (const auto& contact : state.contacts) {
+    double mu = world.model.bodies[contact.key.a].friction;
+    if (contact.key.b >= 0) mu = std::sqrt(mu * world.model.bodies[contact.key.b].friction);
+    const double fn = contact.force.dot(contact.normal);
+    const double ft = (contact.force - fn * contact.normal).norm();
+    worst = std::max({worst, -fn, ft - mu * std::max(fn, 0.0)});
+  }
+  return worst / heaviest;
+}
+
+/// The deepest that things lie in each other, m: by the gaps the state reports.
+inline double deepest(const State<2>& state) {
+  double depth = 0;
+  for (const auto& contact : state.contacts) depth = std::max(depth, -contact.gap);
+  return depth;
+}
+
+/// The force (N) that everything but gravity and joints puts on a body.
+inline Vec2 carried(const State<2>& state, int body) {
+  Vec2 sum(0, 0);
+  for (const auto& contact : state.contacts) {
+    if (contact.key.a == body) sum += contact.force;
+    if (contact.key.b == body) sum -= contact.force;
   }
   return sum;
 }
