@@ -221,7 +221,7 @@ TEST(Iterative, SleepersWakeWhenTouched) {
 }
 
 TEST(Iterative, FastBallStaysInTheRoomAndOutOfBoxes) {
-  for (const Vec2 v : {Vec2(1e4, 0), Vec2(7e3, 7.1e3), Vec2(3e3, -9e3)}) {
+  for (const Vec2& v : {Vec2(1e4, 0), Vec2(7e3, 7.1e3), Vec2(3e3, -9e3)}) {
     Room r;
     add_walls(r.world, 8, 4.5);
     r.disc(0.05, {1, 2}, 0.2, 0.9, v);
