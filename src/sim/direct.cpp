@@ -121,6 +121,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     collide(state);
     bool cut = true;
     double length = 0;
+    bool held_again = false;  // what let go is to be held: the same instant once more
     if (choose(state, t + done) && cuts < most_cuts_) {
       remember();
       if (coming_apart()) project(state);
@@ -129,10 +130,12 @@ void Direct<D>::step(State<D>& state, double t, double h) {
       for (ConeMode<D>& mode : holding_) {
         if (mode.hold == Hold::brink) mode.hold = Hold::stick;
       }
+      const std::size_t forced = forced_.size();
       length = stretch(state, t + done, h - done, cut);
+      held_again = forced_.size() > forced && !forced_again_;
       if (length > 0) project(state);
     }
-    if (length == 0 && (forced_.empty() || forced_again_)) {
+    if (length == 0 && !held_again) {
       // no way to go on but a short one at once
       length = std::min(cuts < most_cuts_ ? short_ * h : h, h - done);
       settle(state, t + done, length);

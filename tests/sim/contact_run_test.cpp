@@ -64,7 +64,7 @@ void expect_no_rise(const World<2>& world, int steps, double slack, const std::s
 TEST(ContactRun, EnergyNeverRisesInRandomRooms) {
   // flight keeps gravity's energy to rounding; what is put back onto its contacts errs by the closing
   // tolerance, 4e-9 m
-  for (const int seed : {0, 3, 4, 5, 7, 8, 9})
+  for (const int seed : {0, 1, 2, 3, 4, 5, 7, 8, 9})
     expect_no_rise(thrown(seed, kModes[seed % 2]), 900, 1e-9, "seed " + std::to_string(seed));
 }
 
