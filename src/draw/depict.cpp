@@ -106,6 +106,8 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
         break;
       case sim::ShapeKind::polygon:
       case sim::ShapeKind::compound:
+      case sim::ShapeKind::capsule:
+      case sim::ShapeKind::hull:
         polygons.push_back(i);
         break;
       case sim::ShapeKind::point:

@@ -28,8 +28,16 @@ std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::v
   return std::make_unique<Iterative<D>>(model, paths);
 }
 
+// in space nothing rests on anything yet: the handout's law holds
+template <>
+std::unique_ptr<ContactStep<3>> contact_step<3>(const Model<3>&, const std::vector<Path<3>>&) {
+  return nullptr;
+}
+
 template Crowd crowd<2>(const Model<2>&);
+template Crowd crowd<3>(const Model<3>&);
 template Solver solver<2>(const Model<2>&);
+template Solver solver<3>(const Model<3>&);
 template std::unique_ptr<ContactStep<2>> contact_step<2>(const Model<2>&, const std::vector<Path<2>>&);
 
 }  // namespace obscura::sim

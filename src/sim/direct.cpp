@@ -22,7 +22,10 @@ double thickness(const Shape<D>& shape) {
   switch (shape.kind) {
     case ShapeKind::point:
       return 0;
+    case ShapeKind::hull:
+      return 0;
     case ShapeKind::ball:
+    case ShapeKind::capsule:
       return shape.radius;
     case ShapeKind::box:
       return shape.half.minCoeff();

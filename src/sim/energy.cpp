@@ -70,13 +70,15 @@ Vec<D> momentum(const Model<D>& model, const State<D>& state) {
 
 template <int D>
 Spin<D> angular_momentum(const Model<D>& model, const State<D>& state) {
-  static_assert(D == 2, "in space the moments belong to the body's axes");
   Spin<D> sum = Spin<D>::Zero();
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     const Body<D>& b = model.bodies[body];
     if (b.fixed) continue;
     sum += b.mass * moment<D>(state.x[body], state.v[body]);
-    if (const int k = turning(state, body); k >= 0) sum += b.inertia.cwiseProduct(state.spin[k]);
+    if (const int k = turning(state, body); k >= 0) {
+      const Rotation<D> axes = D == 2 ? Rotation<D>(Rotation<D>::Identity()) : rotation<D>(state.turn[k]);
+      sum += to_room<D>(axes, b.inertia.cwiseProduct(from_room<D>(axes, state.spin[k])));
+    }
   }
   return sum;
 }
@@ -89,5 +91,13 @@ template double stored<2>(const Model<2>&, const State<2>&, const std::vector<Pa
 template Energies energies<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, double);
 template Vec<2> momentum<2>(const Model<2>&, const State<2>&);
 template Spin<2> angular_momentum<2>(const Model<2>&, const State<2>&);
+template Vec<3> place<3>(const State<3>&, const End<3>&);
+template double kinetic<3>(const Model<3>&, const State<3>&, int);
+template double lifted<3>(const Model<3>&, const State<3>&, int);
+template double stored<3>(const Model<3>&, const State<3>&, int);
+template double stored<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, int, double);
+template Energies energies<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, double);
+template Vec<3> momentum<3>(const Model<3>&, const State<3>&);
+template Spin<3> angular_momentum<3>(const Model<3>&, const State<3>&);
 
 }  // namespace obscura::sim

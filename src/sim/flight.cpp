@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/tumble.h"
+
 namespace obscura::sim {
 
 namespace {
@@ -28,10 +30,21 @@ void Flight::rates(double, std::span<const double>, std::span<const double> v, s
   fall(gravity_.first(v.size()), drag_, v, v_rate);
 }
 
-void Spinning::rates(double, std::span<const double>, std::span<const double> v, std::span<double> d_rate,
-                     std::span<double> v_rate) {
+template <>
+void Spinning<2>::rates(double, std::span<const double>, std::span<const double> v, std::span<double> d_rate,
+                        std::span<double> v_rate) {
   std::copy(v.begin(), v.end(), d_rate.begin());
   std::fill(v_rate.begin(), v_rate.end(), 0.0);
+}
+
+template <>
+void Spinning<3>::rates(double, std::span<const double> d, std::span<const double> v,
+                        std::span<double> d_rate, std::span<double> v_rate) {
+  for (std::size_t i = 0; i < base_.size(); ++i) {
+    const Vec3 w = base_[i] + Eigen::Map<const Vec3>(v.data() + 3 * i);
+    Eigen::Map<Vec3>(d_rate.data() + 3 * i) = displacing<3>(Eigen::Map<const Vec3>(d.data() + 3 * i), w);
+    Eigen::Map<Vec3>(v_rate.data() + 3 * i) = gyration<3>(inertia_[i], w);
+  }
 }
 
 }  // namespace obscura::sim

@@ -22,11 +22,19 @@ class Flight final : public System {
   std::span<const double> gravity_, drag_;
 };
 
-/// Free turning in the plane: the spin stays.
+/// Free turning, see sim/tumble.h: in the plane the spin stays, in space it wobbles.
+template <int D>
 class Spinning final : public System {
  public:
+  /// Principal moments (kg m^2) and base spins of the bodies of the system.
+  Spinning(std::span<const Spin<D>> inertia, std::span<const Spin<D>> base)
+      : inertia_(inertia), base_(base) {}
+
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
+
+ private:
+  std::span<const Spin<D>> inertia_, base_;
 };
 
 /// v_rate = gravity - drag v, on n components; what every body feels, tied or free.

@@ -40,7 +40,16 @@ void mark(int n, const double* __restrict x, const double* __restrict rims, cons
 template <int D>
 Handout<D>::Handout(const Model<D>& model, const std::vector<Path<D>>& paths) : model_(model), paths_(paths) {
   springs_.resize(model.bodies.size());
-  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
+  std::size_t most = 0;
+  for (const Body<D>& body : model.bodies) {
+    rims_.push_back(reach(body.shape));
+    first_tip_.push_back(int(tips_.size()));
+    const std::vector<Tip<D>> own = tips(body.shape);
+    tips_.insert(tips_.end(), own.begin(), own.end());
+    most = std::max(most, own.size());
+  }
+  first_tip_.push_back(int(tips_.size()));
+  arms_.resize(most), distances_.resize(most), striking_.resize(most), met_.reserve(most);
   for (int spring = 0; spring < int(model.springs.size()); ++spring) {
     const int a = model.springs[spring].a.body, b = model.springs[spring].b.body;
     if (a >= 0) springs_[a].push_back(spring);
@@ -63,9 +72,9 @@ void Handout<D>::look(const State<D>& state, int first, int count, std::vector<i
 
 template <int D>
 Vec<D> Handout<D>::arm(const Striker& s, int point, const Wall<D>& wall) const {
-  if (s.body->turns()) return s.arms[point];
-  if (s.body->shape.radius == 0) return Vec<D>::Zero();
-  return -s.body->shape.radius * wall.normal;
+  const double radius = s.tips[point].radius;
+  if (s.centred) return radius == 0 ? Vec<D>(Vec<D>::Zero()) : Vec<D>(-radius * wall.normal);
+  return radius == 0 ? arms_[point] : Vec<D>(arms_[point] - radius * wall.normal);
 }
 
 template <int D>
@@ -92,12 +101,13 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
     Striker s;
     s.body = &b;
     hits_.clear();
-    if (b.turns()) {
+    s.tips = std::span(tips_).subspan(first_tip_[body], first_tip_[body + 1] - first_tip_[body]);
+    s.centred = particle_like(body);
+    if (!s.centred) {
       s.at = stance(state, body);
-      s.points = kCorners<D>;
-      for (int i = 0; i < s.points; ++i) s.arms[i] = s.at.arm(corner(b.shape, i));
+      for (std::size_t i = 0; i < s.tips.size(); ++i) arms_[i] = s.at.arm(s.tips[i].at);
       s.speed = s.at.v.squaredNorm() + s.at.w.squaredNorm() * rims_[body] * rims_[body];
-      if (!box(s)) continue;
+      if (!extended(s)) continue;
     } else {
       s.at.x = state.x[body], s.at.v = state.v[body];
       s.speed = s.at.v.squaredNorm();
@@ -119,12 +129,18 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
   }
 }
 
+template <int D>
+bool Handout<D>::particle_like(int body) const {
+  const Body<D>& b = model_.bodies[body];
+  return !b.turns() && (b.shape.kind == ShapeKind::point || b.shape.kind == ShapeKind::ball);
+}
+
 // the plain case, and the only one that happens often: a particle that no spring holds meets one wall. False,
 // and nothing done, where it is anything else
 template <int D>
 bool Handout<D>::bounce(State<D>& state, int body) const {
   const Body<D>& b = model_.bodies[body];
-  if (b.turns() || !springs_[body].empty()) return false;
+  if (!particle_like(body) || !springs_[body].empty()) return false;
   for (const Grip<D>& grip : state.grips) {
     if (grip.body == body) return false;
   }
@@ -179,9 +195,9 @@ bool Handout<D>::particle(Striker& s) {
   return true;
 }
 
-// a box at each wall in turn, §3.5; false where nothing happened
+// a body with an extent at each wall in turn, §3.5; false where nothing happened
 template <int D>
-bool Handout<D>::box(Striker& s) {
+bool Handout<D>::extended(Striker& s) {
   for (int round = 0; round < kRounds; ++round) {
     bool quiet = true;
     for (int wall = 0; wall < int(model_.walls.size()); ++wall) {
@@ -199,42 +215,45 @@ template <int D>
 bool Handout<D>::meet(Striker& s, int wall) {
   const Wall<D>& w = model_.walls[wall];
   const double middle = (s.at.x - w.point).dot(w.normal);
-  const double span = reach(s.body->shape);
+  const double span = rims_[s.body - model_.bodies.data()];
   if (middle > span) return false;
 
-  double distances[kCorners<D>];
-  bool striking[kCorners<D>];
   double depth = -1;
-  for (int i = 0; i < s.points; ++i) {
+  for (int i = 0; i < int(s.tips.size()); ++i) {
     const Vec<D> r = arm(s, i, w);
-    distances[i] = middle + r.dot(w.normal);
-    striking[i] = strikes(s.at.velocity(r).dot(w.normal), s.speed);
-    if (distances[i] < 0 && striking[i]) depth = std::max(depth, -distances[i]);
+    distances_[i] = middle + r.dot(w.normal);
+    striking_[i] = strikes(s.at.velocity(r).dot(w.normal), s.speed);
+    if (distances_[i] < 0 && striking_[i]) depth = std::max(depth, -distances_[i]);
   }
   if (depth < 0) return false;
   s.at.x += depth * w.normal;
 
-  Row rows[kCorners<D>];
-  int n = 0;
-  for (int i = 0; i < s.points; ++i) {
-    if (!striking[i] || std::fabs(distances[i] + depth) > kTogether * span) continue;
-    const Vec<D> r = arm(s, i, w);
-    rows[n++] = {wall, i, r, moment<D>(r, w.normal)};
+  met_.clear();
+  for (int i = 0; i < int(s.tips.size()); ++i) {
+    if (striking_[i] && std::fabs(distances_[i] + depth) <= kTogether * span) met_.push_back(i);
   }
-  strike(s, rows, n, D);
+  // of a face with more corners than are solved together, every second one, or third, ...
+  const int stride = (int(met_.size()) + kMostRows - 1) / kMostRows;
+  Row rows[kMostRows];
+  int n = 0;
+  for (std::size_t i = 0; i < met_.size(); i += stride) {
+    const Vec<D> r = arm(s, met_[i], w);
+    rows[n++] = {wall, met_[i], r, moment<D>(r, w.normal)};
+  }
+  strike(s, rows, n, s.body->turns() ? D : 1);
   return true;
 }
 
 // all walls that are touched or passed, at once: what a narrow wedge comes to
 template <int D>
 void Handout<D>::meet_all(Striker& s) {
-  const double span = reach(s.body->shape);
+  const double span = rims_[s.body - model_.bodies.data()];
   const double near = std::max(kTogether * span, kOutside * model_.scale);
   Row rows[kMostRows];
   int n = 0;
   for (int wall = 0; wall < int(model_.walls.size()); ++wall) {
     const Wall<D>& w = model_.walls[wall];
-    for (int i = 0; i < s.points && n < kMostRows; ++i) {
+    for (int i = 0; i < int(s.tips.size()) && n < kMostRows; ++i) {
       const Vec<D> r = arm(s, i, w);
       if ((s.at.x + r - w.point).dot(w.normal) > near) continue;
       if (!strikes(s.at.velocity(r).dot(w.normal), s.speed)) continue;
@@ -316,5 +335,6 @@ void Handout<D>::hit(int wall, int point, const Vec<D>& impulse) {
 }
 
 template class Handout<2>;
+template class Handout<3>;
 
 }  // namespace obscura::sim

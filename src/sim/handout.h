@@ -32,8 +32,8 @@ class Handout {
     const Body<D>* body = nullptr;
     Stance<D> at;
     double speed = 0;  // square of how fast any of its points came, m^2/s^2
-    int points = 1;
-    Vec<D> arms[kCorners<D>];  // a box: from its centre to its corners
+    std::span<const Tip<D>> tips;
+    bool centred = false;  // a particle: all it has is its centre, and a radius
   };
   // the impulses of one point at one wall
   struct Hit {
@@ -50,9 +50,10 @@ class Handout {
   Vec<D> arm(const Striker& s, int point, const Wall<D>& wall) const;
   double elasticity(const Body<D>& body, const Wall<D>& wall) const;
   double springs(const State<D>& state, int body, double t) const;
+  bool particle_like(int body) const;
   bool bounce(State<D>& state, int body) const;
   bool particle(Striker& s);
-  bool box(Striker& s);
+  bool extended(Striker& s);
   bool meet(Striker& s, int wall);
   void meet_all(Striker& s);
   void strike(Striker& s, const Row* rows, int n, int rank);
@@ -62,9 +63,15 @@ class Handout {
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
   std::vector<double> rims_;               // how far each body reaches, m
+  std::vector<Tip<D>> tips_;               // of all bodies, one after another
+  std::vector<int> first_tip_;             // of each body; one more at the end
   std::vector<std::vector<int>> springs_;  // of each body
   std::vector<std::int64_t> signs_;        // a block's: negative where somebody is outside
   std::vector<Hit> hits_;                  // of the body at hand
+  std::vector<Vec<D>> arms_;               // of its tips, from its centre, m
+  std::vector<double> distances_;          // of its tips from the wall at hand, m
+  std::vector<char> striking_;
+  std::vector<int> met_;  // tips that meet it in one instant
 };
 
 }  // namespace obscura::sim

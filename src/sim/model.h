@@ -26,17 +26,21 @@ enum class Impacts { simultaneous, sequential };
 /// What is done with bodies that overlap at the start: they are refused, or gently pushed apart.
 enum class Overlap { refuse, separate };
 
-enum class ShapeKind { point, ball, box, polygon, compound };
+/// A polygon is of the plane, a hull of space.
+enum class ShapeKind { point, ball, box, polygon, compound, capsule, hull };
 
 /// The form of a body about its centre of mass, in its own frame.
 template <int D>
 struct Shape {
   ShapeKind kind = ShapeKind::point;
-  double radius = 0;               // ball, m
-  Vec<D> half = Vec<D>::Zero();    // box: half its sides, m
-  Vec<D> center = Vec<D>::Zero();  // of a ball or box that is a part, m
-  std::vector<Vec<D>> vertices;    // polygon: convex, counter-clockwise, m
-  std::vector<Shape> parts;        // compound: balls, boxes and polygons, in the body's frame
+  double radius = 0;               // ball, capsule, m
+  Vec<D> half = Vec<D>::Zero();    // box: half its sides, m; capsule: its axis goes from -half[1] to half[1]
+                                   // along y
+  Vec<D> center = Vec<D>::Zero();  // of a ball, box or capsule that is a part, m
+  std::vector<Vec<D>> vertices;    // polygon: convex, counter-clockwise; hull: convex; m
+  std::vector<Shape> parts;        // compound: in the body's frame, m
+  std::vector<std::vector<int>> faces = {};  // hull: loops of vertices, counter-clockwise seen from outside
+  Turn<D> turn = upright<D>();               // of a box or capsule that is a part
 };
 
 /// What stays true of a body while the room moves. A particle is a point or a ball that does not turn; a

@@ -64,6 +64,8 @@ Outline::Outline(const Shape<2>& shape) : shape_(&shape) {
       break;
     case ShapeKind::point:
     case ShapeKind::compound:
+    case ShapeKind::capsule:
+    case ShapeKind::hull:
       break;
   }
 }

@@ -46,5 +46,6 @@ typename Path<D>::Motion Path<D>::at(double t) const {
 }
 
 template class Path<2>;
+template class Path<3>;
 
 }  // namespace obscura::sim

@@ -100,5 +100,6 @@ class RunOf final : public Run {
 }  // namespace
 
 std::unique_ptr<Run> run(World<2> world) { return std::make_unique<RunOf<2>>(std::move(world)); }
+std::unique_ptr<Run> run(World<3> world) { return std::make_unique<RunOf<3>>(std::move(world)); }
 
 }  // namespace obscura::sim

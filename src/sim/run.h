@@ -44,9 +44,11 @@ class Run {
 
 /// A run of a world from its state.
 std::unique_ptr<Run> run(World<2> world);
+std::unique_ptr<Run> run(World<3> world);
 
 /// What is known to go wrong before it does: the first spring group whose step is longer than the
 /// integrator's limit, as the Trouble it would end in; empty where nothing is.
 std::vector<Trouble> forebodings(const Model<2>& model);
+std::vector<Trouble> forebodings(const Model<3>& model);
 
 }  // namespace obscura::sim

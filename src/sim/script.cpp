@@ -53,5 +53,6 @@ std::vector<Edge> edges(const Model<D>& model) {
 }
 
 template std::vector<Edge> edges<2>(const Model<2>&);
+template std::vector<Edge> edges<3>(const Model<3>&);
 
 }  // namespace obscura::sim

@@ -1,17 +1,21 @@
 #pragma once
 
+#include <vector>
+
 #include "sim/model.h"
 #include "sim/turning.h"
 
 namespace obscura::sim {
 
 /// Principal moments of inertia of `shape` about its centre of mass, kg m^2, of uniform density: in the plane
-/// m (x^2 + y^2) / 12 of a box with sides x and y (handout §3.1). Zero for what does not turn: points and
-/// balls, which are particles; see solid_inertia for a ball that rolls.
+/// m (x^2 + y^2) / 12 of a box with sides x and y (handout §3.1). Of a hull or compound in space they belong
+/// to the body's axes where it is seated (below). Zero for what does not turn: points and balls, which are
+/// particles; see solid_inertia for a ball that rolls.
 template <int D>
 Spin<D> inertia(const Shape<D>& shape, double mass);
 
-/// The same, and of a ball what it has when it turns: in the plane m r^2 / 2. Zero for a point.
+/// The same, and of a ball what it has when it turns: in the plane m r^2 / 2, in space 2 m r^2 / 5. Zero for
+/// a point.
 template <int D>
 Spin<D> solid_inertia(const Shape<D>& shape, double mass);
 
@@ -22,11 +26,21 @@ struct Bulk {
   double content = 0;                // m^2; in space m^3
   Vec<D> center = Vec<D>::Zero();    // centroid, in the shape's frame, m
   Spin<D> second = Spin<D>::Zero();  // second moment about the centroid, m^4; in space principal ones, m^5
+  Turn<D> axes = upright<D>();       // the principal axes in the shape's frame: those it has, where they are
 };
 
 /// Of a point: nothing.
 template <int D>
 Bulk<D> bulk(const Shape<D>& shape);
+template <>
+Bulk<2> bulk<2>(const Shape<2>& shape);
+template <>
+Bulk<3> bulk<3>(const Shape<3>& shape);
+
+/// The shape as its body sees it, whose origin is the centroid and whose axes are the principal ones of
+/// `bulk`. The body then stands at room_from_shape * bulk.center, turned by room_from_shape * bulk.axes.
+template <int D>
+Shape<D> seated(const Shape<D>& shape, const Bulk<D>& bulk);
 
 /// Corners of a box: corner i lies on the positive side of axis a where bit a of i is set.
 template <int D>
@@ -41,6 +55,18 @@ Vec<D> corner(const Shape<D>& shape, int i) {
   }
   return place;
 }
+
+/// A point of a shape that may be the first to touch a plane, rounded by a radius.
+template <int D>
+struct Tip {
+  Vec<D> at = Vec<D>::Zero();  // in the body's frame, m
+  double radius = 0;           // m
+};
+
+/// All of them: the centre of a point or ball, the ends of a capsule, the corners of all else; of a compound
+/// those of its parts in order.
+template <int D>
+std::vector<Tip<D>> tips(const Shape<D>& shape);
 
 /// The farthest the shape reaches from its centre (the origin of its frame), m.
 template <int D>

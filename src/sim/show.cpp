@@ -29,15 +29,26 @@ std::vector<Vec3> each_lifted(const std::vector<Vec<D>>& places) {
   return all;
 }
 
+// in the plane about z
+template <int D>
+Eigen::Quaterniond oriented(const Turn<D>& turn) {
+  if constexpr (D == 2) {
+    const auto [s, c] = sin_cos(0.5 * turn[0]);
+    return {c, 0, 0, s};
+  } else {
+    return {turn[3], turn[0], turn[1], turn[2]};
+  }
+}
+
 template <int D>
 Cast::Body shown(const Body<D>& body) {
   const Shape<D>& shape = body.shape;
   Cast::Body it{body.name, shape.kind, shape.radius, lifted<D>(shape.half),
                 body.mass, body.fixed, body.turns(), each_lifted<D>(shape.vertices),
-                {}};
+                {},        shape.faces};
   for (const Shape<D>& part : shape.parts) {
     it.parts.push_back({part.kind, part.radius, lifted<D>(part.half), lifted<D>(part.center),
-                        each_lifted<D>(part.vertices)});
+                        each_lifted<D>(part.vertices), part.faces, oriented<D>(part.turn)});
   }
   return it;
 }
@@ -92,7 +103,6 @@ Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
 template <int D>
 Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, Beat at,
                   double t) {
-  static_assert(D == 2, "in space an orientation is no angle");
   Snapshot now;
   now.time = t;
   now.step = state.step;
@@ -104,9 +114,8 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
     body.at_rest = i < int(state.frozen.size()) && state.frozen[i] != 0;
     if (const int k = turning(state, i); k >= 0) {
       body.spin = spinning<D>(state.spin[k]);
-      body.angle = state.turn[k][0];
-      const auto [s, c] = sin_cos(0.5 * body.angle);
-      body.orientation = Eigen::Quaterniond(c, 0, 0, s);
+      if (D == 2) body.angle = state.turn[k][0];
+      body.orientation = oriented<D>(state.turn[k]);
     }
   }
   for (const Spring<D>& s : model.springs) {
@@ -153,5 +162,7 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
 
 template Cast cast<2>(const Model<2>&, const std::vector<Path<2>>&);
 template Snapshot snapshot<2>(const Model<2>&, const State<2>&, const Stepper<2>&, Beat, double);
+template Cast cast<3>(const Model<3>&, const std::vector<Path<3>>&);
+template Snapshot snapshot<3>(const Model<3>&, const State<3>&, const Stepper<3>&, Beat, double);
 
 }  // namespace obscura::sim

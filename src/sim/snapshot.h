@@ -19,8 +19,10 @@ struct Cast {
     ShapeKind kind = ShapeKind::ball;
     double radius = 0;           // m
     Vec3 half = Vec3::Zero();    // m
-    Vec3 center = Vec3::Zero();  // of a ball or box, m
-    std::vector<Vec3> vertices;  // of a polygon, counter-clockwise, m
+    Vec3 center = Vec3::Zero();  // of a ball, box or capsule, m
+    std::vector<Vec3> vertices;  // of a polygon, counter-clockwise, or a hull; in the body's frame, m
+    std::vector<std::vector<int>> faces = {};                  // of a hull, as a body's
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  // of a box or capsule
   };
   struct Body {
     std::string name;
@@ -30,8 +32,9 @@ struct Cast {
     double mass = 0;           // kg
     bool fixed = false;
     bool turns = false;
-    std::vector<Vec3> vertices;  // of a polygon, in its own frame from its centre of mass, m
+    std::vector<Vec3> vertices;  // of a polygon or hull, in its own frame from its centre of mass, m
     std::vector<Part> parts;     // of a compound
+    std::vector<std::vector<int>> faces = {};  // of a hull: loops of vertices, counter-clockwise from outside
   };
   struct Wall {
     Vec3 point, normal;

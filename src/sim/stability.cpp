@@ -183,8 +183,11 @@ Tightness tightest(const Model<D>& model, const std::vector<Grip<D>>& grips) {
   return worst;
 }
 
-std::vector<Trouble> forebodings(const Model<2>& model) {
-  const std::vector<Grip<2>> none(model.mice.size());
+namespace {
+
+template <int D>
+std::vector<Trouble> foreseen(const Model<D>& model) {
+  const std::vector<Grip<D>> none(model.mice.size());
   const std::vector<Tightness> all = tightness(model, none);
   Tightness worst = tightest(model, none);
   const double h = 1 / value(model.rate);
@@ -193,10 +196,10 @@ std::vector<Trouble> forebodings(const Model<2>& model) {
   // a hand may take any body
   for (int mouse = 0; mouse < int(model.mice.size()); ++mouse) {
     for (const Tightness& free : all) {
-      const Body<2>& body = model.bodies[free.body];
+      const Body<D>& body = model.bodies[free.body];
       if (body.fixed) continue;
       Tightness held = free;
-      const double yields = yielding(model, End<2>{free.body, body.shape.half});
+      const double yields = yielding(model, End<D>{free.body, body.shape.half});
       held.stiffness += model.mice[mouse].stiffness * yields,
           held.damping += model.mice[mouse].damping * yields;
       ++held.ties, held.hand = true, held.strongest = mouse;
@@ -208,9 +211,18 @@ std::vector<Trouble> forebodings(const Model<2>& model) {
   return {{0, named(model, worst.body), "energy", "will grow from nowhere", too_long(model, worst)}};
 }
 
+}  // namespace
+
+std::vector<Trouble> forebodings(const Model<2>& model) { return foreseen(model); }
+std::vector<Trouble> forebodings(const Model<3>& model) { return foreseen(model); }
+
 template std::string named<2>(const Model<2>&, int);
 template std::vector<Tightness> tightness<2>(const Model<2>&, const std::vector<Grip<2>>&);
 template std::string too_long<2>(const Model<2>&, const Tightness&);
 template Tightness tightest<2>(const Model<2>&, const std::vector<Grip<2>>&);
+template std::string named<3>(const Model<3>&, int);
+template std::vector<Tightness> tightness<3>(const Model<3>&, const std::vector<Grip<3>>&);
+template std::string too_long<3>(const Model<3>&, const Tightness&);
+template Tightness tightest<3>(const Model<3>&, const std::vector<Grip<3>>&);
 
 }  // namespace obscura::sim

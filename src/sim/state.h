@@ -8,11 +8,6 @@
 
 namespace obscura::sim {
 
-/// The turn of a rigid body: in the plane an angle (rad, not wrapped), in space a unit quaternion (x, y, z,
-/// w).
-template <int D>
-using Turn = Eigen::Matrix<double, D == 2 ? 1 : 4, 1>;
-
 /// What a pressed mouse holds.
 template <int D>
 struct Grip {
@@ -31,6 +26,18 @@ struct Touch {
   Vec<D> impulse = Vec<D>::Zero();
 
   bool operator==(const Touch&) const = default;
+};
+
+/// The spin of a body in space as the body sees it, and what rounding has taken from it since: near its
+/// middle axis a top doubles every error in a fraction of a second, that of rounding too. It counts while
+/// `spin` of the state is what it gives in the room's frame, to the bit; who changes that or the turn need
+/// not know of it.
+template <int D>
+struct OwnSpin {
+  Spin<D> w = Spin<D>::Zero();     // rad/s
+  Spin<D> rest = Spin<D>::Zero();  // rad/s; to be added
+
+  bool operator==(const OwnSpin&) const = default;
 };
 
 /// What the displacement and the impulses of `handout` did to the energy since t = 0, J.
@@ -54,6 +61,7 @@ struct State {
   std::vector<Grip<D>> grips;     // one a mouse
   std::vector<Touch<D>> touches;  // of `handout`
   Ledger ledger;
+  std::vector<OwnSpin<D>> own;  // in space: one a body that turns
 
   // of `contact` and `event`
   std::vector<Contact<D>> contacts;  // sorted by key

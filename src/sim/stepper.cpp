@@ -14,6 +14,7 @@
 #include "sim/flight.h"
 #include "sim/grip.h"
 #include "sim/runaway.h"
+#include "sim/tumble.h"
 
 namespace obscura::sim {
 
@@ -62,7 +63,10 @@ Stepper<D>::Stepper(const Model<D>& model)
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     if (model.bodies[body].handout) by_handout_.push_back(body);
   }
-  d_.resize(std::max(D, kSpins<D>) * kBlock);
+  for (const Body<D>& body : model.bodies) {
+    if (body.turns()) inertia_.push_back(body.inertia);
+  }
+  d_.resize(std::max(D, kSpins<D>) * kBlock), w_.resize(kSpins<D> * kBlock), base_.resize(kBlock);
   if (model.collision != Collision::handout) contact_ = contact_step(model, paths_);
   suspects_.reserve(model.bodies.size());
   watch_every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / 60));
@@ -77,6 +81,7 @@ void Stepper<D>::begin(State<D>& state) {
     if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
   }
   state.grips.resize(model_.mice.size());
+  if (D == 3) state.own.resize(state.turn.size());
   if (contact_) {
     state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
     state.broken.resize(model_.joints.size());
@@ -234,17 +239,21 @@ bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
 
 template <int D>
 bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
-  static_assert(D == 2, "in space a free spin wobbles");
   const std::size_t n = std::size_t(kSpins<D>) * block.count;
-  const std::span<double> w(state.spin[block.first].data(), n), d(d_.data(), n);
+  const std::span<double> w(w_.data(), n), d(d_.data(), n);
   std::fill(d.begin(), d.end(), 0.0);
-  Spinning spinning;
+  const bool whole = model_.integrator == Integrator::semi_implicit;
+  for (int i = 0; i < block.count; ++i)
+    take_spin(state, block.first + i, whole, base_[i], w.data() + kSpins<D> * i);
+  const std::span<const Spin<D>> moments(inertia_), base(base_);
+  Spinning<D> spinning(moments.subspan(block.first, block.count), base.first(block.count));
   integrate_(spinning, t, h, d, w, stages_);
 
   std::int64_t sound = 0;
   for (int i = 0; i < block.count; ++i) {
     const int k = block.first + i;
-    state.turn[k] = turned<D>(state.turn[k], Eigen::Map<const Spin<D>>(d.data() + kSpins<D> * i));
+    const int at = kSpins<D> * i;
+    give_spin<D>(state, k, Turn<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
     sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
     sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
   }
@@ -268,5 +277,6 @@ bool Stepper<D>::tied(State<D>& state, double t, double h) {
 }
 
 template class Stepper<2>;
+template class Stepper<3>;
 
 }  // namespace obscura::sim

@@ -66,7 +66,9 @@ class Stepper {
   std::vector<double> gravity_;           // a block of it
   std::vector<double> drag_;              // c/m of every component; empty where there is none
   std::vector<double> spin_limits_;       // of every body that turns, rad/s
-  std::vector<double> d_;
+  std::vector<Spin<D>> inertia_;          // likewise, principal moments, kg m^2
+  std::vector<Spin<D>> base_;             // of a block, see sim/tumble.h
+  std::vector<double> d_, w_;
   std::vector<int> suspects_;
   std::vector<int> by_handout_;  // who has that law in `contact` and `event` too
   Stages stages_;

@@ -1,12 +1,13 @@
 // Bodies under springs, handout §2.2, §3.2.
 //   dv/dt = g - (c/m) v + sum f / m
-//   dw/dt = I^-1 sum r x f
+//   dw/dt = I^-1 (sum r x f - w x I w)          in the body's axes
 
 #include "sim/tied.h"
 
 #include <algorithm>
 
 #include "sim/flight.h"
+#include "sim/tumble.h"
 
 namespace obscura::sim {
 
@@ -74,7 +75,8 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
   if (!drag) drag_.clear();
 
   const std::size_t n = D * bodies_.size() + kSpins<D> * turning_;
-  x_.resize(bodies_.size()), stances_.assign(bodies_.size(), {}), turn_.resize(turning_);
+  x_.resize(bodies_.size()), stances_.assign(bodies_.size(), {}), turn_.resize(turning_),
+      base_.resize(turning_);
   d_.resize(n), v_.resize(n), d_rate_.resize(n), v_rate_.resize(n);
 }
 
@@ -89,7 +91,8 @@ void Tied<D>::load(const State<D>& state) {
   for (int i = 0; i < turning_; ++i) {
     const int k = turning(state, bodies_[still + i]);
     turn_[i] = state.turn[k];
-    std::copy_n(state.spin[k].data(), kSpins<D>, v_.data() + D * n + kSpins<D> * i);
+    take_spin(state, k, model_.integrator == Integrator::semi_implicit, base_[i],
+              v_.data() + D * n + kSpins<D> * i);
   }
   std::fill(d_.begin(), d_.end(), 0.0);
 }
@@ -114,8 +117,7 @@ void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, St
   }
   for (int i = 0; i < turning_; ++i) {
     const int k = turning(state, bodies_[still + i]), at = D * n + kSpins<D> * i;
-    state.turn[k] = turned<D>(turn_[i], Eigen::Map<const Spin<D>>(d_.data() + at));
-    state.spin[k] = Eigen::Map<const Spin<D>>(v_.data() + at);
+    give_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
   }
 }
 
@@ -139,30 +141,32 @@ void Tied<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std
   Eigen::Map<Vec<D>>(v_rate.data() + D * hold.member) += force / body.mass;
   if (spinning < 0) return;
   Eigen::Map<Spin<D>>(v_rate.data() + D * n + kSpins<D> * spinning) +=
-      spun<D>(body.inertia, stances_[hold.member].room_from_body, moment<D>(arm, force));
+      from_room<D>(stances_[hold.member].room_from_body, moment<D>(arm, force)).cwiseQuotient(body.inertia);
 }
 
 template <int D>
 void Tied<D>::rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
                     std::span<double> v_rate) {
-  static_assert(D == 2, "in space the turn's rate bends with the turn, and a free spin wobbles");
   const int n = int(bodies_.size()), still = n - turning_;
 
-  // what needs no spring: x' = v, turn' = w, v' = g - (c/m) v, w' = 0
-  std::copy(v.begin(), v.end(), d_rate.begin());
+  // what needs no spring: x' = v, v' = g - (c/m) v
+  std::copy_n(v.begin(), D * n, d_rate.begin());
   fall(gravity_, drag_, v.first(D * n), v_rate.first(D * n));
-  std::fill(v_rate.begin() + D * n, v_rate.end(), 0.0);
 
-  // where everyone is at this stage
+  // where everyone is at this stage, and how it turns by itself
   for (int i = 0; i < n; ++i) {
     stances_[i].x = x_[i] + Eigen::Map<const Vec<D>>(d.data() + D * i);
     stances_[i].v = Eigen::Map<const Vec<D>>(v.data() + D * i);
   }
   for (int i = 0; i < turning_; ++i) {
     const int at = D * n + kSpins<D> * i;
-    stances_[still + i].room_from_body =
-        rotation<D>(turned<D>(turn_[i], Eigen::Map<const Spin<D>>(d.data() + at)));
-    stances_[still + i].w = Eigen::Map<const Spin<D>>(v.data() + at);
+    const Spin<D> by = Eigen::Map<const Spin<D>>(d.data() + at);
+    const Spin<D> w = whole_spin<D>(base_[i], Spin<D>(Eigen::Map<const Spin<D>>(v.data() + at)));
+    Stance<D>& it = stances_[still + i];
+    it.room_from_body = rotation<D>(displaced<D>(turn_[i], by));
+    it.w = to_room<D>(it.room_from_body, w);
+    Eigen::Map<Spin<D>>(d_rate.data() + at) = displacing<D>(by, w);
+    Eigen::Map<Spin<D>>(v_rate.data() + at) = gyration<D>(model_.bodies[bodies_[still + i]].inertia, w);
   }
 
   for (const Tie& tie : ties_) {
@@ -174,5 +178,6 @@ void Tied<D>::rates(double t, std::span<const double> d, std::span<const double>
 }
 
 template class Tied<2>;
+template class Tied<3>;
 
 }  // namespace obscura::sim

@@ -10,7 +10,9 @@
 namespace obscura::sim {
 
 /// The bodies that springs and hands hold, gathered into one system: first the centres, then the turns of
-/// those that turn.
+/// those that turn. In space d and v of a turn are as the body sees them, and v is what base spin lacks
+/// (sim/tumble.h): of the rates, a row J in the room's frame meets J . to_room(room_from_body, v'), and a
+/// torque adds from_room(room_from_body, torque) / inertia.
 template <int D>
 class Tied final : public System {
  public:
@@ -77,6 +79,7 @@ class Tied final : public System {
 
   std::vector<Vec<D>> x_;  // where the step began
   std::vector<Turn<D>> turn_;
+  std::vector<Spin<D>> base_;       // see sim/tumble.h
   std::vector<Stance<D>> stances_;  // at the stage at hand
   std::vector<double> d_, v_, d_rate_, v_rate_;
 };

@@ -5,6 +5,9 @@
 //   tau = r x f              handout §3.2
 //   dw = I^-1 (r x J)        handout §3.4
 
+#include <cmath>
+
+#include "sim/exponential.h"
 #include "sim/state.h"
 #include "sim/trig.h"
 
@@ -36,18 +39,67 @@ Spin<D> moment(const Vec<D>& r, const Vec<D>& f) {
 /// Columns are the axes of the body, seen from the room.
 template <int D>
 Rotation<D> rotation(const Turn<D>& turn) {
-  static_assert(D == 2, "space comes with its own turns");
-  const auto [s, c] = sin_cos(turn[0]);
-  Rotation<D> room_from_body;
-  room_from_body << c, -s, s, c;
-  return room_from_body;
+  if constexpr (D == 2) {
+    const auto [s, c] = sin_cos(turn[0]);
+    Rotation<D> room_from_body;
+    room_from_body << c, -s, s, c;
+    return room_from_body;
+  } else {
+    return matrix(turn);
+  }
 }
 
-/// Where a body comes to that turns by `by` (rad) from `turn`.
+/// Where a body comes to that turns from `turn` by `by` (rad; in space a rotation vector in the room's frame,
+/// as spins are).
 template <int D>
 Turn<D> turned(const Turn<D>& turn, const Spin<D>& by) {
-  static_assert(D == 2, "space comes with its own turns");
-  return turn + by;
+  if constexpr (D == 2) {
+    return turn + by;
+  } else {
+    if (by.isZero(0)) return turn;
+    const Turn<D> to = product(exponential(by), turn);
+    return to / std::sqrt(to.squaredNorm());
+  }
+}
+
+/// The turn `inner`, itself turned by `outer`: rotation(outer) rotation(inner).
+template <int D>
+Turn<D> composed(const Turn<D>& outer, const Turn<D>& inner) {
+  if constexpr (D == 2) {
+    return outer + inner;
+  } else {
+    return product(outer, inner);
+  }
+}
+
+/// The turn that undoes `turn`.
+template <int D>
+Turn<D> undone(const Turn<D>& turn) {
+  if constexpr (D == 2) {
+    return -turn;
+  } else {
+    return {-turn[0], -turn[1], -turn[2], turn[3]};
+  }
+}
+
+/// A spin or torque of the room's frame as the body sees it: in the plane the same.
+template <int D>
+Spin<D> from_room([[maybe_unused]] const Rotation<D>& room_from_body, const Spin<D>& w) {
+  if constexpr (D == 2) {
+    return w;
+  } else {
+    return room_from_body.transpose() * w;
+  }
+}
+
+/// A spin or torque that the body sees, in the room's frame: in the plane the same.
+template <int D>
+Spin<D> to_room([[maybe_unused]] const Rotation<D>& room_from_body, const Spin<D>& w) {
+  if constexpr (D == 2) {
+    return w;
+  } else {
+    return room_from_body * w;
+  }
 }
 
 /// I^-1 tau: the spin (or its rate) that a torque (room's frame) gives to a body of these principal moments.

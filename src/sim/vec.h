@@ -17,6 +17,17 @@ inline constexpr int kSpins = D*(D - 1) / 2;
 template <int D>
 using Spin = Eigen::Matrix<double, kSpins<D>, 1>;
 
+/// The turn of a rigid body: in the plane an angle (rad, not wrapped), in space a unit quaternion (x, y, z,
+/// w), room from body.
+template <int D>
+using Turn = Eigen::Matrix<double, D == 2 ? 1 : 4, 1>;
+
+/// The turn of what stands as it was made: the angle zero, or (0, 0, 0, 1).
+template <int D>
+Turn<D> upright() {
+  return D == 2 ? Turn<D>(Turn<D>::Zero()) : Turn<D>(Turn<D>::Unit(Turn<D>::RowsAtCompileTime - 1));
+}
+
 using Vec3 = Eigen::Vector3d;
 
 }  // namespace obscura::sim

@@ -64,7 +64,7 @@ std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const
     }
     constexpr int kTurn = Turn<D>::RowsAtCompileTime;
     if (apart<kTurn>(state.turn[k], kFarthest * kFarthest)) {
-      return trouble("angle", fate<kTurn>(state.turn[k], "1e12 radians"));
+      return trouble(D == 2 ? "angle" : "orientation", fate<kTurn>(state.turn[k], "1e12 radians"));
     }
   }
   return {};
@@ -130,5 +130,6 @@ std::string Watch<D>::likely(const State<D>& state, int body) const {
 }
 
 template class Watch<2>;
+template class Watch<3>;
 
 }  // namespace obscura::sim

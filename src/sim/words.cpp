@@ -62,11 +62,18 @@ std::vector<std::uint64_t> words(const State<D>& state) {
   w.integer(std::int64_t(state.broken.size()));
   for (const char broken : state.broken) w.integer(broken);
   w.list(state.joint_forces);
+  if constexpr (D == 3) {
+    for (const OwnSpin<D>& own : state.own) {
+      w.template numbers<kSpins<D>>(own.w);
+      w.template numbers<kSpins<D>>(own.rest);
+    }
+  }
   w.number(state.ledger.displacement);
   w.number(state.ledger.impacts);
   return w.all;
 }
 
 template std::vector<std::uint64_t> words<2>(const State<2>&);
+template std::vector<std::uint64_t> words<3>(const State<3>&);
 
 }  // namespace obscura::sim

@@ -1,0 +1,91 @@
+#pragma once
+
+// Turning as a step integrates it: a displacement d of the turn and a spin, both as the body sees them. In
+// the plane they are the room's own.
+//   turn = turn0 exp(d),   d' = dexp^-1(d, w),   w' = I^-1 (tau - w x I w)          sim/exponential.h
+// In space w is kept as base + v: v starts with what earlier steps could not add (OwnSpin), so that steps
+// add up as if rounded once.
+
+#include <algorithm>
+
+#include "sim/turning.h"
+
+namespace obscura::sim {
+
+/// -I^-1 (w x I w), rad/s^2, of principal moments and a spin that the body sees: nothing in the plane.
+template <int D>
+Spin<D> gyration([[maybe_unused]] const Spin<D>& inertia, [[maybe_unused]] const Spin<D>& w) {
+  if constexpr (D == 2) {
+    return Spin<D>::Zero();
+  } else {
+    return inertia.cwiseProduct(w).cross(w).cwiseQuotient(inertia);
+  }
+}
+
+/// The rate of the displacement d of a turn under the spin w.
+template <int D>
+Spin<D> displacing([[maybe_unused]] const Spin<D>& d, const Spin<D>& w) {
+  if constexpr (D == 2) {
+    return w;
+  } else {
+    return turn_rate(d, w);
+  }
+}
+
+/// The spin that the body sees, of a base and what is kept beside it.
+template <int D>
+Spin<D> whole_spin([[maybe_unused]] const Spin<D>& base, const Spin<D>& v) {
+  if constexpr (D == 2) {
+    return v;
+  } else {
+    return base + v;
+  }
+}
+
+/// Where a turn comes to that is displaced by d.
+template <int D>
+Turn<D> displaced(const Turn<D>& turn, const Spin<D>& d) {
+  if constexpr (D == 2) {
+    return turn + d;
+  } else {
+    return sim::turned(turn, d);
+  }
+}
+
+/// The spin of the body with turn k, ready for a step: base + v is what the body sees. `whole`: v is all of
+/// it, as a scheme needs that takes v itself for the rate of d (semi-implicit Euler).
+template <int D>
+void take_spin(const State<D>& state, int k, bool whole, Spin<D>& base, double* v) {
+  base.setZero();
+  if constexpr (D == 2) {
+    std::copy_n(state.spin[k].data(), kSpins<D>, v);
+  } else {
+    const Rotation<D> axes = rotation<D>(state.turn[k]);
+    OwnSpin<D> own;
+    if (k < int(state.own.size())) own = state.own[k];
+    if (to_room<D>(axes, own.w) != state.spin[k]) own = {from_room<D>(axes, state.spin[k]), Spin<D>::Zero()};
+    Eigen::Map<Spin<D>> given(v);
+    if (whole) {
+      given = own.w;
+    } else {
+      base = own.w, given = own.rest;
+    }
+  }
+}
+
+/// Gives body k, whose turn was `from`, what a step has made of it.
+template <int D>
+void give_spin(State<D>& state, int k, const Turn<D>& from, const double* d, const Spin<D>& base,
+               const double* v) {
+  const Eigen::Map<const Spin<D>> by(d), more(v);
+  state.turn[k] = displaced<D>(from, by);
+  if constexpr (D == 2) {
+    state.spin[k] = more;
+  } else {
+    const Spin<D> w = base + more;
+    state.spin[k] = to_room<D>(rotation<D>(state.turn[k]), w);
+    if (k < int(state.own.size())) state.own[k] = {w, more - (w - base)};
+  }
+}
+
+}  // namespace obscura::sim
