@@ -286,7 +286,7 @@ double Direct<D>::tightening(const State<D>& state, double h) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
     if (joint.kind == JointKind::rope) look(Kind::rope, i);
-    if (joint.kind != JointKind::pin && joint.kind != JointKind::slider) continue;
+    if (!has_free_row<D>(joint.kind)) continue;
     if (joint.lower > -1e299) look(Kind::lower, i);
     if (joint.upper < 1e299) look(Kind::upper, i);
   }

@@ -107,7 +107,7 @@ void Direct<D>::gather(const State<D>& state, bool all) {
     if (state.broken[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
     const Spin<D> turn = turn_between(state, joint);
     add(joint.kind == JointKind::rope ? Kind::rope : Kind::joint, i, turn, joint.kind == JointKind::rope);
-    if (joint.kind != JointKind::pin && joint.kind != JointKind::slider) continue;
+    if (!has_free_row<D>(joint.kind)) continue;
     if (joint.lower > -1e299) add(Kind::lower, i, turn, true);
     if (joint.upper < 1e299) add(Kind::upper, i, turn, true);
     if (joint.motor) add(Kind::motor, i, turn, false);

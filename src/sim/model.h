@@ -86,28 +86,30 @@ struct Spring {
   double damping = 0;      // c, N s/m
 };
 
-/// What two ends may not do against each other. Of the rows: weld D + D(D-1)/2, pin D, slider those of a weld
-/// but one, rod and rope one.
-enum class JointKind { pin, weld, slider, rod, rope };
+/// What two ends may not do against each other. Of the rows: weld D + D(D-1)/2, pin D, slider and hinge those
+/// of a weld but one, rod and rope one. A pin of space is a ball joint; in the plane a pin and a hinge are
+/// one.
+enum class JointKind { pin, weld, slider, rod, rope, hinge };
 
 /// A joint between two bodies, or a body and the room, as it stood at the start.
 template <int D>
 struct Joint {
   struct Motor {
-    double speed = 0;  // rad/s of a pin, m/s of a slider: of a against b
+    double speed = 0;  // rad/s of a hinge, m/s of a slider: of a against b
     double most = 0;   // N m or N
   };
 
   std::string name;
   JointKind kind = JointKind::pin;
   End<D> a, b;
-  Vec<D> axis = Vec<D>::Unit(0);         // slider: the way of a, unit, in b's frame
-  Spin<D> turn = Spin<D>::Zero();        // weld, slider: the turn of a against b to be kept; pin: where its
-                                         // angle is zero, rad
-  double length = 0;                     // rod: the distance; rope: the largest, m
-  double lower = -1e300, upper = 1e300;  // of a pin's angle (rad) or a slider's way (m)
+  Vec<D> axis = Vec<D>::Unit(0);   // slider: the way of a; hinge of space: what it turns about. Unit, in
+                                   // b's frame
+  Spin<D> turn = Spin<D>::Zero();  // weld, slider: the turn of a against b to be kept; hinge: where its
+                                   // angle is zero, rad. In space a rotation vector in b's frame
+  double length = 0;               // rod: the distance; rope: the largest, m
+  double lower = -1e300, upper = 1e300;  // of a hinge's angle (rad, in space within pi) or a slider's way (m)
   std::optional<Motor> motor;
-  double friction = 0;    // dry: the largest torque (N m) of a pin or force (N) of a slider
+  double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider
   double breaks = 1e300;  // N: a larger force on the joint breaks it
   bool touching = false;  // whether the two bodies may touch each other
 };

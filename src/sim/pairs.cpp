@@ -201,5 +201,7 @@ void BroadPhase<D>::sort_pairs(int bodies) {
 
 template class MayTouch<2>;
 template class BroadPhase<2>;
+template class MayTouch<3>;
+template class BroadPhase<3>;
 
 }  // namespace obscura::sim

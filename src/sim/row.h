@@ -43,13 +43,20 @@ template <int D>
 inline constexpr int kMostHeld = D + kSpins<D>;
 
 /// The rows that a joint holds as equalities, and by how much each is off (m or rad). Returns how many. A
-/// rope has one, what it has left; it is no equality. `turn`: of a against b (rad), for what keeps one.
+/// rope has one, what it has left; it is no equality. `turn`: of a against b (rad), for what keeps one; in
+/// space the stances tell it.
 template <int D>
 int rows(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b, const Spin<D>& turn, Row<D>* out,
          double* off);
 
-/// The row of what a joint leaves free, for motors, limits and friction: the turn of a pin, the way of a
-/// slider; and how far it is (rad or m). False where there is none.
+/// Whether a joint leaves one thing free that it can tell: the turn of a hinge (in the plane also called a
+/// pin), the way of a slider.
+template <int D>
+bool has_free_row(JointKind kind) {
+  return kind == JointKind::hinge || kind == JointKind::slider || (D == 2 && kind == JointKind::pin);
+}
+
+/// The row of that, for motors, limits and friction; and how far it is (rad or m). False where there is none.
 template <int D>
 bool free_row(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b, const Spin<D>& turn, Row<D>& out,
               double& way);

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "sim/exponential.h"
+#include "sim/shapes.h"
+
+namespace obscura::sim {
+
+// Shapes of space.
+
+inline Shape<3> ball_solid(double radius) {
+  Shape<3> shape;
+  shape.kind = radius > 0 ? ShapeKind::ball : ShapeKind::point;
+  shape.radius = radius;
+  return shape;
+}
+
+/// A box by its sides, m.
+inline Shape<3> box_solid(double x, double y, double z) {
+  Shape<3> shape;
+  shape.kind = ShapeKind::box;
+  shape.half = Vec<3>(x, y, z) / 2;
+  return shape;
+}
+
+/// Its straight part along y, m.
+inline Shape<3> capsule_solid(double length, double radius) {
+  Shape<3> shape;
+  shape.kind = ShapeKind::capsule;
+  shape.half = {0, length / 2, 0};
+  shape.radius = radius;
+  return shape;
+}
+
+inline Shape<3> compound_solid(std::vector<Shape<3>> parts) {
+  Shape<3> shape;
+  shape.kind = ShapeKind::compound;
+  shape.parts = std::move(parts);
+  return shape;
+}
+
+/// The hull of some places, by trying every plane through three of them.
+inline Shape<3> hull_solid(const std::vector<Vec<3>>& places) {
+  const int n = int(places.size());
+  std::vector<std::vector<int>> faces;
+  for (int i = 0; i < n; ++i) {
+    for (int j = i + 1; j < n; ++j) {
+      for (int k = j + 1; k < n; ++k) {
+        Vec<3> normal = (places[j] - places[i]).cross(places[k] - places[i]);
+        if (normal.norm() < 1e-9) continue;
+        normal.normalize();
+        double low = 0, high = 0;
+        std::vector<int> on;
+        for (int p = 0; p < n; ++p) {
+          const double d = normal.dot(places[p] - places[i]);
+          low = std::min(low, d), high = std::max(high, d);
+          if (std::abs(d) < 1e-9) on.push_back(p);
+        }
+        if ((low < -1e-9 && high > 1e-9) || on[0] != i || on[1] != j || on[2] != k) continue;
+        if (high > 1e-9) normal = -normal;
+        // around the middle
+        Vec<3> middle = Vec<3>::Zero();
+        for (const int p : on) middle += places[p] / double(on.size());
+        const Vec<3> x = (places[on[0]] - middle).normalized(), y = normal.cross(x);
+        std::sort(on.begin(), on.end(), [&](int p, int q) {
+          const Vec<3> a = places[p] - middle, b = places[q] - middle;
+          return std::atan2(y.dot(a), x.dot(a)) < std::atan2(y.dot(b), x.dot(b));
+        });
+        faces.push_back(on);
+      }
+    }
+  }
+  // only those that are corners
+  std::vector<int> to(places.size(), -1);
+  Shape<3> shape;
+  shape.kind = ShapeKind::hull;
+  for (std::vector<int>& face : faces) {
+    for (int& corner : face) {
+      if (to[corner] < 0) {
+        to[corner] = int(shape.vertices.size());
+        shape.vertices.push_back(places[corner]);
+      }
+      corner = to[corner];
+    }
+  }
+  shape.faces = faces;
+  return shape;
+}
+
+/// The corners of a box as a hull.
+inline Shape<3> as_hull(const Shape<3>& box) {
+  std::vector<Vec<3>> all;
+  for (int i = 0; i < 8; ++i) all.push_back(box.center + corner(box, i));
+  return hull_solid(all);
+}
+
+/// A shape of the plane given a thickness, m, along z.
+inline Shape<3> extruded(const Shape<2>& flat, double depth) {
+  if (flat.kind == ShapeKind::ball || flat.kind == ShapeKind::point) return ball_solid(flat.radius);
+  if (flat.kind == ShapeKind::box) return box_solid(2 * flat.half[0], 2 * flat.half[1], depth);
+  std::vector<Vec<3>> all;
+  for (const Vec<2>& v : flat.vertices) {
+    all.push_back({v[0], v[1], -depth / 2}), all.push_back({v[0], v[1], depth / 2});
+  }
+  return hull_solid(all);
+}
+
+inline Stance<3> placed(const Vec<3>& x, const Vec<3>& turn = Vec<3>::Zero()) {
+  Stance<3> at;
+  at.x = x;
+  at.room_from_body = matrix(exponential(turn));
+  return at;
+}
+
+inline Stance<3> extruded(const Stance<2>& flat) {
+  Stance<3> at;
+  at.x = {flat.x[0], flat.x[1], 0};
+  at.room_from_body.topLeftCorner<2, 2>() = flat.room_from_body;
+  at.v = {flat.v[0], flat.v[1], 0};
+  at.w = {0, 0, flat.w[0]};
+  return at;
+}
+
+/// Where it comes to in a time h.
+inline Stance<3> moved(const Stance<3>& from, double h) {
+  Stance<3> at = from;
+  at.x += h * from.v;
+  at.room_from_body = matrix(exponential(Vec<3>(h * from.w))) * from.room_from_body;
+  return at;
+}
+
+class SpaceDice : public Dice {
+ public:
+  using Dice::Dice;
+
+  Vec<3> vec(double size) { return {within(-size, size), within(-size, size), within(-size, size)}; }
+
+  Shape<3> hull(double size) {
+    const int n = 4 + below(6);
+    std::vector<Vec<3>> places;
+    while (int(places.size()) < n) {
+      const Vec<3> p = vec(1);
+      if (p.norm() > 0.2) places.push_back(size * p.normalized());
+    }
+    return hull_solid(places);
+  }
+
+  /// Any kind that has a core.
+  Shape<3> solid(double size) {
+    switch (below(6)) {
+      case 0:
+        return ball_solid(size * within(0.2, 1));
+      case 1:
+        return ball_solid(0);
+      case 2:
+        return capsule_solid(size * within(0.3, 2), size * within(0.1, 0.5));
+      case 3:
+        return hull(size);
+      default:
+        return box_solid(size * within(0.3, 2), size * within(0.3, 2), size * within(0.3, 2));
+    }
+  }
+
+  Stance<3> place(double room) {
+    Stance<3> at = placed(vec(room), vec(3));
+    at.v = vec(1), at.w = vec(1);
+    return at;
+  }
+};
+
+}  // namespace obscura::sim
