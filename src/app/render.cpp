@@ -136,7 +136,7 @@ void add_render(CLI::App& program, int& exit) {
   command->add_flag("--transparent", flags->film.transparent, "PNG: leave the ground out");
   command->add_flag("--no-overwrite", flags->no_overwrite, "Refuse to write over an earlier render");
   command->add_option("--crf", flags->crf, "Quality of the movie, lower is better [18]")
-      ->check(CLI::Range(0.0, 63.0));
+      ->check(CLI::Range(1.0, 63.0));
   command->add_option("--preset", flags->preset,
                       "x264's preset; left out: quick settings of medium's quality");
   command->add_option("--codec", flags->codec,

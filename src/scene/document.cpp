@@ -150,11 +150,79 @@ Node copied(const toml::node& from) {
   return node;
 }
 
+// on one line
+std::string lined(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  return text;
+}
+
 // the parser's first sentence says where it was, its second what it met
 std::string lowered(std::string_view description) {
   std::string text(description);
   if (!text.empty() && text[0] >= 'A' && text[0] <= 'Z') text[0] = char(text[0] - 'A' + 'a');
   return text;
+}
+
+// what a person has most likely forgotten where the parser stopped: a quote, a bracket, or the quotes about a
+// word; empty where none of them
+std::string forgotten(std::string_view text, int line) {
+  std::vector<std::string_view> lines;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  if (line < 1 || line > int(lines.size())) return {};
+
+  // quotes and brackets outside of strings and comments
+  struct Count {
+    bool quoted = false;
+    int open = 0;
+  };
+  const auto count = [](std::string_view one) {
+    Count sum;
+    char quote = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      const char c = one[i];
+      if (quote != 0) {
+        if (c == '\\' && quote == '"')
+          ++i;
+        else if (c == quote)
+          quote = 0;
+        continue;
+      }
+      if (c == '#') break;
+      if (c == '"' || c == '\'') quote = c;
+      if (c == '[' || c == '{') ++sum.open;
+      if (c == ']' || c == '}') --sum.open;
+    }
+    sum.quoted = quote != 0;
+    return sum;
+  };
+  const std::string_view here = lines[line - 1];
+  const std::size_t first = here.find_first_not_of(" \t"), equals = here.find('=');
+  if (first == std::string_view::npos) return {};
+  if (count(here).quoted) return "a quote is opened here and not closed";
+  if (here[first] == '[' && count(here).open != 0)
+    return "a table's name closes as it opens: [room], [[box]]";
+
+  // a bracket left open above
+  int open = 0;
+  for (int i = line - 1; i >= 1; --i) {
+    open += count(lines[i - 1]).open;
+    if (open > 0) return fmt::format("a bracket opened in line {} is not closed", i);
+    if (lines[i - 1].find('=') != std::string_view::npos) break;
+  }
+  if (count(here).open > 0) return "a bracket is opened here and not closed";
+  if (equals == std::string_view::npos) return "a key is given as key = value";
+  const std::size_t value = here.find_first_not_of(" \t", equals + 1);
+  if (value == std::string_view::npos || here[value] == '#') return "a value is missing after the =";
+  if (std::isalpha(static_cast<unsigned char>(here[value]))) {
+    std::string_view word = here.substr(value, here.find_first_of(" \t#", value) - value);
+    if (word != "true" && word != "false") return fmt::format("words go in quotes: \"{}\"", word);
+  }
+  return {};
 }
 
 std::string slurp(std::istream& in, const std::string& file) {
@@ -183,17 +251,6 @@ const Node* Node::find(std::string_view key) const {
 
 Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
 
-namespace {
-
-// on one line
-std::string lined(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  return text;
-}
-
-}  // namespace
-
 std::string described(const Node& node) {
   if (node.is_integer()) return fmt::format("{}", std::get<std::int64_t>(node.value));
   if (node.is_number())
@@ -221,7 +278,9 @@ Node document(std::string_view text, const std::string& file) {
     return top;
   } catch (const toml::parse_error& error) {
     const Place place = place_of(error.source());
-    refuse(file, place.line, place.column, "not TOML: " + lined(lowered(error.description())));
+    const std::string likely = forgotten(text, place.line);
+    refuse(file, place.line, place.column,
+           "not TOML: " + lined(likely.empty() ? lowered(error.description()) : likely));
   }
 }
 

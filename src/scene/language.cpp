@@ -273,7 +273,7 @@ std::vector<Key> rows() {
        .doc = "Width and height of the picture; even for movies.", .example = "[1280, 720]"},
       {.path = "film.fps", .form = rational, .unit = "1/s", .fallback = "60", .range = {0, 1000, true},
        .doc = "Frames per second.", .example = "\"30000/1001\""},
-      {.path = "film.crf", .form = number, .absent = "18 for H.264, its like for others", .range = {0, 63},
+      {.path = "film.crf", .form = number, .absent = "18 for H.264, its like for others", .range = {1, 63},
        .doc = "Quality of a movie; less is better and larger.", .example = "23"},
       {.path = "film.preset", .form = text, .fallback = "\"\"", .absent = "quick to encode",
        .doc = "The encoder's preset.", .example = "\"medium\""},

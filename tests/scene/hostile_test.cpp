@@ -84,6 +84,19 @@ TEST(Hostile, WhatIsNotTomlIsOneLine) {
   }
 }
 
+TEST(Hostile, WhatIsForgottenIsNamed) {
+  EXPECT_EQ(complaint("[look]\ntheme = \"paper\ntrails = 1"),
+            "a.toml:2:15: not TOML: a quote is opened here and not closed");
+  EXPECT_THAT(complaint("[room]\nsize = [4, 3\n[[box]]\nmass = 1"),
+              testing::EndsWith("not TOML: a bracket opened in line 2 is not closed"));
+  EXPECT_THAT(complaint("[[box]\nmass = 1"),
+              testing::EndsWith("not TOML: a table's name closes as it opens: [room], [[box]]"));
+  EXPECT_THAT(complaint("[look]\ntheme = paper"),
+              testing::EndsWith("not TOML: words go in quotes: \"paper\""));
+  EXPECT_THAT(complaint("[box]\nmass ="), testing::EndsWith("not TOML: a value is missing after the ="));
+  EXPECT_THAT(complaint("[box]\nmass"), testing::EndsWith("not TOML: a key is given as key = value"));
+}
+
 TEST(Hostile, NothingIsNoScene) {
   EXPECT_EQ(complaint(""), "a.toml: has no keys at all; `obscura new NAME` writes a scene to start from");
   EXPECT_EQ(complaint("# only a comment\n"),
