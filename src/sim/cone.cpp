@@ -1,7 +1,8 @@
 // Joints, limits and dry contacts by an active set.
 //   w = K f + b        every block obeys its law; a set of modes makes the laws equalities
-// The modes of the last step are tried first, and where few are wrong they are switched; then those a
-// softened problem has; each time the equalities are solved exactly, and the laws looked at.
+// The modes of the last step are tried first, and where few are wrong they are switched; then those that
+// sweeps leave, then those a softened problem has; each time the equalities are solved exactly, and the laws
+// looked at.
 
 #include "sim/cone.h"
 
@@ -16,6 +17,7 @@ constexpr double kSoftness[] = {1e-7, 1e-4, 1e-3};
 constexpr double kExact = 1e-14;  // no better is to be had
 constexpr int kTurns = 30;        // Newton steps for directions of slip
 constexpr int kSmall = 64;        // rows: so few that a factorisation costs nothing
+constexpr int kSweeps[] = {200, 1000};
 constexpr long kMostSets = 5000;  // of modes, tried one by one
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
@@ -157,13 +159,24 @@ ConeReport Cone<D>::solve(const Eigen::Ref<const Eigen::MatrixXd>& K,
   for (std::size_t i = 0; i < blocks.size(); ++i) trial_[i] = fit(blocks[i], modes[i]);
   bool found = attempt(blocks, n_ <= kSmall ? 6 : 1);
 
-  // as softer rows have it
-  for (std::size_t i = 0; i < std::size(kSoftness) && !found; ++i) {
-    if (i == 0) guess_.begin(K_, b_, blocks, first_, sigma_);
-    guess_.guess(kSoftness[i], trial_);
-    found = attempt(blocks, 20);
+  // as sweeps leave it
+  for (const int sweeps : kSweeps) {
+    if (found || best_residual_ <= enough) break;
+    sweep(K, b, blocks, trial_, f, sweeps);
+    for (std::size_t i = 0; i < blocks.size(); ++i) trial_[i] = fit(blocks[i], trial_[i]);
+    found = attempt(blocks, 6);
   }
-  if (!found) found = enumerate(blocks);
+
+  // as softer rows have it
+  const bool all = thorough || n_ <= kSmall;
+  found = found || best_residual_ <= enough;
+  for (std::size_t i = 0; i < (all ? std::size(kSoftness) : 1) && !found; ++i) {
+    if (i == 0) guess_.begin(K_, b_, blocks, first_, sigma_);
+    if (!guess_.guess(kSoftness[i], trial_, all) && !all) break;
+    found = attempt(blocks, all ? 20 : 6);
+  }
+  if (!found && all) found = enumerate(blocks);
+  found = found || best_residual_ <= enough;
 
   for (int i = 0; i < n_; ++i) f[i] = sigma_[i] * best_g_[i];
   g_ = best_g_;

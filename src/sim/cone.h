@@ -30,15 +30,28 @@ class Cone {
   /// What counts as solved: violations beside the largest term in their row.
   static constexpr double kTolerance = 1e-10;
 
+  /// Whether everything is tried before a solve is given up, however long it takes.
+  bool thorough = true;
+
+  /// The residual that is good enough once nothing better was met.
+  double enough = kTolerance;
+
   /// Answers w this small, in b's unit, are rounding: for rows whose every term is.
   double negligible = 0;
 
-  /// Finds modes and f (n, out). `modes` is the first guess: one a block, those of the last step, or default
-  /// ones. Without a solution (sliding contacts can have none: Painleve) found is false, modes and f are the
-  /// best that was met, and the time it took is bounded. Never throws.
+  /// Finds modes and f (n). `modes` is the first guess: one a block, those of the last step, or default
+  /// ones; so is f: forces of the last step, or zeros. Without a solution (sliding contacts can have none:
+  /// Painleve) found is false, modes and f are the best that was met, and the time it took is bounded. Never
+  /// throws.
   ConeReport solve(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
                    std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes,
                    Eigen::Ref<Eigen::VectorXd> f);
+
+  /// Roughly such forces, from those in `f`: `sweeps` times over the rows, at a cost that is known
+  /// beforehand. `modes` (out) are as the sweeps left them.
+  void sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
+             std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes,
+             Eigen::Ref<Eigen::VectorXd> f, int sweeps);
 
   /// f where the modes are known, as equalities; inequalities are not looked at: free and stick: w = 0; open:
   /// f = 0; slide and brink: w_n = 0, f_t = -mu f_n `along` (the mode's, not the block's); at a bound: f is
@@ -72,6 +85,7 @@ class Cone {
   void start(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);
   void gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes, bool turning);
   void factor_symmetric();
+  void lay_leaning(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes, bool turning);
   bool factor_leaning(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);
   void refine(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
   void answer();
@@ -96,6 +110,8 @@ class Cone {
   double best_residual_ = 0;
   std::vector<std::uint64_t> seen_;  // sets of modes tried
   ConeGuess<D> guess_;
+  std::vector<int> starts_, places_;  // of K's columns: what is not zero
+  std::vector<double> entries_;
 };
 
 }  // namespace obscura::sim

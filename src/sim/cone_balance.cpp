@@ -16,6 +16,7 @@ namespace {
 constexpr double kDependent = 1e-11;  // a pivot this small beside the first is rounding
 constexpr double kLargestTurn = 0.5;  // of a slip's direction at once, rad
 constexpr int kRefinements = 3;
+constexpr double kSafe = 1e-5;  // no pivot is so small where rows are far from dependent
 
 bool on_cone(Hold hold) { return hold == Hold::slide || hold == Hold::brink; }
 
@@ -78,8 +79,19 @@ void Cone<D>::gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeM
   }
 
   ++tries_;
-  if (!turning && (symmetric ? (factor_symmetric(), true) : factor_leaning(blocks, modes))) return;
+  if (symmetric && !turning) return factor_symmetric();
+  lay_leaning(blocks, modes, turning);
+  if (turning) return factors_.general(A_, int(unknowns_.size()), kDependent);
+  if (factors_.regular(A_, int(unknowns_.size()), kSafe) || factor_leaning(blocks, modes)) return;
+  lay_leaning(blocks, modes, false);
+  factors_.general(A_, int(unknowns_.size()), kDependent);
+}
 
+// K between rows and unknowns
+template <int D>
+void Cone<D>::lay_leaning(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes,
+                          bool turning) {
+  using Kind = typename Unknown::Kind;
   const int m = int(unknowns_.size());
   A_.resize(std::size_t(m) * m), x_.resize(m);
   std::vector<double>& push = w_;  // what an unknown does to every row; answer() writes w_ again
@@ -124,7 +136,6 @@ void Cone<D>::gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeM
       A_[std::size_t(j) * m + j] -= along / (blocks[u.block].mu * g_[u.row]);
     }
   }
-  factors_.general(A_, m, kDependent);
 }
 
 // K between the rows of the unknowns
@@ -136,7 +147,7 @@ void Cone<D>::factor_symmetric() {
     const double* const K = K_.data() + std::size_t(unknowns_[j].row) * n_;
     for (int i = 0; i < m; ++i) A_[std::size_t(j) * m + i] = K[unknowns_[i].row];
   }
-  factors_.symmetric(A_, m, kDependent);
+  if (!factors_.definite(A_, m, kSafe)) factors_.symmetric(A_, m, kDependent);
 }
 
 // The same, with the tangents of contacts on their cones below.
@@ -265,7 +276,8 @@ ConeReport Cone<D>::least(const Eigen::Ref<const Eigen::MatrixXd>& K,
   for (int j = 0; j < n_; ++j) {
     for (int i = 0; i < n_; ++i) K_[std::size_t(j) * n_ + i] = sigma_[i] * sigma_[j] * K(rows[i], rows[j]);
   }
-  factors_.symmetric(K_, n_, kDependent), ++tries_;
+  ++tries_;
+  if (!factors_.definite(K_, n_, kSafe)) factors_.symmetric(K_, n_, kDependent);
   for (int pass = 0; pass < kRefinements; ++pass) {
     answer();
     for (int i = 0; i < n_; ++i) x_[i] = -w_[i];

@@ -208,7 +208,34 @@ bool FullRank::leaning(std::span<const double> B, int all, int n, std::span<cons
   return eliminate(lu_, r, kAlike, swaps_);
 }
 
+bool FullRank::definite(std::span<const double> A, int n, double least) {
+  lu_.assign(A.begin(), A.begin() + std::ptrdiff_t(n) * n);
+  for (int k = 0; k < n; ++k) {
+    double* const c = lu_.data() + std::size_t(k) * n;
+    if (!(c[k] > least)) return false;
+    const double root = std::sqrt(c[k]);
+    for (int i = k; i < n; ++i) c[i] /= root;
+    for (int j = k + 1; j < n; ++j) {
+      if (c[j] != 0) add(n - j, -c[j], c + j, lu_.data() + std::size_t(j) * n + j);
+    }
+  }
+  n_ = rank_ = n, kind_ = Kind::definite;
+  return true;
+}
+
+bool FullRank::regular(std::span<const double> A, int n, double least) {
+  lu_.assign(A.begin(), A.begin() + std::ptrdiff_t(n) * n), swaps_.resize(n);
+  if (!eliminate(lu_, n, least, swaps_)) return false;
+  n_ = rank_ = n, kind_ = Kind::regular;
+  return true;
+}
+
 void FullRank::solve(std::span<const double> r, std::span<double> x) {
+  if (kind_ == Kind::definite || kind_ == Kind::regular) {
+    if (x.data() != r.data()) std::copy_n(r.data(), n_, x.data());
+    kind_ == Kind::definite ? solve_gram(n_, lu_, x.data()) : substitute(lu_, n_, swaps_, x);
+    return;
+  }
   // F's part
   const int n = n_;
   double* const t = t_.data();

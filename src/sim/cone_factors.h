@@ -23,6 +23,14 @@ class FullRank {
   bool leaning(std::span<const double> B, int all, int n, std::span<const int> to,
                std::span<const double> share, double tolerance);
 
+  /// A: n x n, symmetric, positive definite, its diagonal no larger than 1: without pivoting, so that zeros
+  /// stay zeros. False, and nothing else, where a pivot is below `least`.
+  bool definite(std::span<const double> A, int n, double least);
+
+  /// A: n x n, any; by elimination with row pivoting. False, and nothing else, where a pivot is below `least`
+  /// of the largest entry.
+  bool regular(std::span<const double> A, int n, double least);
+
   int rank() const { return rank_; }
 
   /// Column k of F, n numbers: 1 in the row of pivot k, no number larger.
@@ -35,7 +43,7 @@ class FullRank {
   void solve(std::span<const double> r, std::span<double> x);
 
  private:
-  enum class Kind : char { symmetric, general, leaning };
+  enum class Kind : char { symmetric, general, leaning, definite, regular };
 
   void factor(std::span<const double> B, int all, int n, double tolerance);
 
@@ -45,7 +53,7 @@ class FullRank {
   std::vector<double> d_;         // pivots
   std::vector<int> rows_, cols_;  // of the pivots
   std::vector<double> ff_, gg_;   // Cholesky factors of F^T F and G G^T, where they are not triangular
-  std::vector<double> lu_;        // G F of a leaning one, eliminated
+  std::vector<double> lu_;        // G F of a leaning one, eliminated; Cholesky's factor of a definite one
   std::vector<int> swaps_;
   std::vector<double> left_, t_;  // scratch
   std::vector<int> open_;         // columns without a pivot

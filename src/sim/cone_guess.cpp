@@ -261,14 +261,14 @@ double ConeGuess<D>::stiffen(double softness) {
 }
 
 template <int D>
-bool ConeGuess<D>::guess(double softness, std::span<ConeMode<D>> out) {
+bool ConeGuess<D>::guess(double softness, std::span<ConeMode<D>> out, bool follow) {
   // softness in stages, the convex problem first
   double reached = softness;
   if (r_ > 0) {
     std::fill(shift_.begin(), shift_.end(), 0.0);
     for (double eps = 1e-2; eps > softness; eps *= 1e-2) newton(eps, Friction::associated, 20);
     newton(softness, Friction::associated, 40);
-    if (!newton(softness, Friction::coulomb, 25)) reached = stiffen(softness);
+    if (!newton(softness, Friction::coulomb, 25)) reached = follow ? stiffen(softness) : 1;
   } else {
     evaluate(softness, Friction::coulomb, u_);
   }

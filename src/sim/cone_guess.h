@@ -20,8 +20,9 @@ class ConeGuess {
              std::span<const int> first, std::span<const double> sigma);
 
   /// Modes of the rows of this softness, one a block. False where Newton's method did not get there; the
-  /// modes are then those of the softness it came to. Starts from where the last call ended.
-  bool guess(double softness, std::span<ConeMode<D>> modes);
+  /// modes are then those of the softness it came to; without `follow` it does not go there by degrees.
+  /// Starts from where the last call ended.
+  bool guess(double softness, std::span<ConeMode<D>> modes, bool follow = true);
 
  private:
   using VecD = Eigen::Matrix<double, D, 1>;

@@ -20,7 +20,7 @@ class ContactStep {
 
 /// Up to how many bodies the direct solver serves on its own accord: of those that move, with an extent, and
 /// points. A few hundred rows when all lie in one heap; points touch walls and bodies, not one another.
-inline constexpr int kMostBodies = 40, kMostPoints = 400;
+inline constexpr int kMostBodies = 20, kMostPoints = 400;
 
 /// How many bodies that move may touch others, with an extent; and points.
 struct Crowd {

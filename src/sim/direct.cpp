@@ -67,6 +67,9 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
   most_cuts_ = exact ? 2000 + 100 * int(model.bodies.size()) : 12;
   patience_ = exact ? 8 + int(model.bodies.size()) : 4;
   short_ = exact ? 1.0 / 64 : 1.0 / 4;
+  budget_ = exact ? 1e300 : 1e7;
+  cone_.thorough = exact;
+  if (!exact) cone_.enough = 1e-7;
   for (const Body<D>& body : model.bodies) {
     rims_.push_back(reach(body.shape));
     thin_.push_back(thickness(body.shape));
@@ -114,6 +117,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   impulses_.clear(), contacts_ = state.contacts, joint_forces_ = state.joint_forces;
   double done = 0;
   forced_.clear();
+  rough_ = false, work_ = 0;
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
   for (int cuts = 0; done < h; ++cuts) {
     find(state, closed_);
@@ -125,7 +129,10 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     bool cut = true;
     double length = 0;
     bool held_again = false;  // what let go is to be held: the same instant once more
-    if (choose(state, t + done) && cuts < most_cuts_) {
+    if (work_ > budget_ && cuts > 0) rough_ = true;
+    const bool chosen = !rough_ && choose(state, t + done);
+    if (!chosen) rough_ = model_.collision != Collision::event;
+    if (chosen && cuts < most_cuts_) {
       remember();
       if (coming_apart()) project(state);
       // on the brink nothing slips: as an equality it is a stick
@@ -140,7 +147,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     }
     if (length == 0 && !held_again) {
       // no way to go on but a short one at once
-      length = std::min(cuts < most_cuts_ ? short_ * h : h, h - done);
+      length = std::min(cuts < most_cuts_ && !rough_ ? short_ * h : h, h - done);
       settle(state, t + done, length);
       cut = length < h - done;
     }
@@ -268,6 +275,7 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(rows_[i], rate) + rows_[i].drift);
+  guess(h);
   solve();
   const auto& members = free_.bodies();
   for (std::size_t i = 0; i < members.size(); ++i) {

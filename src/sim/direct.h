@@ -66,7 +66,7 @@ class Direct final : public ContactStep<D>, private System {
   void lay_rows(Held& held, const Spin<D>& turn);
   void lay_blocks(bool impulses);
   bool choose(State<D>& state, double t);
-  void guess();
+  void guess(double h);
   bool acts(const Held& held) const;
   double moves(int row) const;
   double along(const Row<D>& row, std::span<const double> rate) const;
@@ -129,6 +129,7 @@ class Direct final : public ContactStep<D>, private System {
   double still_ = 0;             // m/s: slower is not at all, at the speeds at hand
   int most_cuts_ = 0;            // of a step
   int patience_ = 0;             // cuts of a step before rest begins to grow
+  double budget_ = 0;            // rows^3 that a step may solve before it is done roughly
   double short_ = 0;             // of a step: what is done at once where there is no other way
   std::vector<double> rims_;     // how far each body reaches, m
   std::vector<double> thin_;     // the least thickness of each body, m; 0 of a point
@@ -151,13 +152,15 @@ class Direct final : public ContactStep<D>, private System {
   std::vector<char> wanted_;
   Eigen::MatrixXd K_;  // of the part at hand
   Eigen::VectorXd part_b_, part_f_;
-  Eigen::VectorXd b_, f_;
-  Eigen::VectorXd slips_;  // J v where the stretch began
+  Eigen::VectorXd b_, f_, warm_;  // warm_: forces to begin with
+  Eigen::VectorXd slips_;         // J v where the stretch began
   std::vector<int> chosen_, island_;
   std::vector<char> ripe_;
   std::vector<double> rate_;
   std::vector<std::pair<int, int>> forced_;  // couples that would come through each other at once
   bool forced_again_ = false;
+  bool rough_ = false;  // of this step: forces by sweeps from here on
+  double work_ = 0;     // of this step: rows^3 solved
   Motion begun_, saved_;
   std::vector<Contact<D>> contacts_, impulses_;  // of this step
   std::vector<Vec<D>> joint_forces_;             // of this step

@@ -12,7 +12,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kFiner = 3;
+constexpr int kFiner = 3;  // steps for one, where there are joints, but few
+constexpr int kFewJoints = 8;
 constexpr double kNever = 2;        // a part of the stretch
 constexpr double kAtOnce = 1e-9;    // a part too short to go
 constexpr double kFine = 0.25;      // of the thinner body: how far two may move between two looks
@@ -318,7 +319,7 @@ double Direct<D>::stretch(State<D>& state, double t, double h, bool& cut) {
 // in finer steps where there are joints: what they hold swings faster than what flies
 template <int D>
 void Direct<D>::smooth(State<D>& state, double t, double h) {
-  const int pieces = model_.joints.empty() ? 1 : kFiner;
+  const int pieces = model_.joints.empty() || model_.joints.size() > kFewJoints ? 1 : kFiner;
   for (int i = 0; i < pieces; ++i)
     free_.step(integrate_, state, t + i * (h / pieces), h / pieces, stages_, this);
 }

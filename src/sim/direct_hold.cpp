@@ -212,15 +212,18 @@ void Direct<D>::jump(State<D>& state, const Row<D>& row, double p, bool places) 
   side(row.a, row.turn_a, p), side(row.b, row.turn_b, -p);
 }
 
-// what contacts did last is the first guess at what they do now
+// what contacts did last is the first guess at what they do now; their forces, times `h` where impulses are
+// asked for
 template <int D>
-void Direct<D>::guess() {
+void Direct<D>::guess(double h) {
+  warm_.setZero(Eigen::Index(rows_.size()));
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact) continue;
     const ContactKey& key = gaps_[held.of].key;
     const auto known = std::lower_bound(contacts_.begin(), contacts_.end(), key,
                                         [](const Contact<D>& c, const ContactKey& k) { return c.key < k; });
     if (known == contacts_.end() || known->key != key) continue;
+    for (int i = 0; i < D; ++i) warm_[held.first + i] = h * known->force.dot(rows_[held.first + i].along);
     ConeMode<D>& mode = modes_[held.block];
     if (known->touching == Touching::open) mode.hold = Hold::open;
     if (known->touching != Touching::slide && known->touching != Touching::brink) continue;
@@ -242,7 +245,7 @@ bool Direct<D>::choose(State<D>& state, double t) {
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], rate) + rows_[i].drift;
-  guess();
+  guess(1);
   const bool found = solve();
   // what lets go, but would come closer by the change of the forces alone, is held
   for (const Held& held : held_) {

@@ -111,7 +111,7 @@ void Direct<D>::strike(State<D>& state, double bounce) {
       if (held.kind == Held::Kind::contact && vn < -rest_)
         b_[held.first] += bounce * elasticity(gaps_[held.of].key) * vn;
     }
-    modes_.assign(blocks_.size(), {});
+    modes_.assign(blocks_.size(), {}), warm_.setZero(Eigen::Index(rows_.size()));
     const bool found = solve();
     for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
     const double after = moving(model_, state);

@@ -6,6 +6,12 @@
 
 namespace obscura::sim {
 
+namespace {
+
+constexpr int kSweeps = 40;  // of a rough solve
+
+}  // namespace
+
 // what of held_ belongs together, by the bodies it moves
 template <int D>
 void Direct<D>::split() {
@@ -59,12 +65,15 @@ void Direct<D>::assemble() {
   }
 }
 
-// f_ and modes_ of all rows under b_, exactly. False where a part has none
+// f_ and modes_ of all rows under b_, exactly; false where a part has none. Or roughly
 template <int D>
 bool Direct<D>::solve() {
   bool found = true;
   each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
-    found = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_).found && found;
+    if (rough_)
+      cone_.sweep(K_, part_b_, part_blocks_, modes, part_f_, kSweeps);
+    else
+      found = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_).found && found;
   });
   return found;
 }
@@ -93,6 +102,9 @@ void Direct<D>::each_part(std::vector<ConeMode<D>>& modes, Solve&& solve) {
       }
     }
     assemble();
+    for (int i = 0; i < int(part_rows_.size()) && warm_.size() == f_.size(); ++i)
+      part_f_[i] = warm_[part_rows_[i]];
+    work_ += double(part_rows_.size()) * part_rows_.size() * part_rows_.size();
     solve(part_modes_);
     for (int i = 0; i < int(part_rows_.size()); ++i) f_[part_rows_[i]] = part_f_[i];
     int at = 0;
