@@ -38,17 +38,11 @@ void mark(int n, const double* __restrict x, const double* __restrict rims, cons
 }  // namespace
 
 template <int D>
-Handout<D>::Handout(const Model<D>& model, const std::vector<Path<D>>& paths) : model_(model), paths_(paths) {
+Handout<D>::Handout(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model), paths_(paths), tips_(model.bodies) {
   springs_.resize(model.bodies.size());
-  std::size_t most = 0;
-  for (const Body<D>& body : model.bodies) {
-    rims_.push_back(reach(body.shape));
-    first_tip_.push_back(int(tips_.size()));
-    const std::vector<Tip<D>> own = tips(body.shape);
-    tips_.insert(tips_.end(), own.begin(), own.end());
-    most = std::max(most, own.size());
-  }
-  first_tip_.push_back(int(tips_.size()));
+  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
+  const int most = tips_.most();
   arms_.resize(most), distances_.resize(most), striking_.resize(most), met_.reserve(most);
   for (int spring = 0; spring < int(model.springs.size()); ++spring) {
     const int a = model.springs[spring].a.body, b = model.springs[spring].b.body;
@@ -101,7 +95,7 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
     Striker s;
     s.body = &b;
     hits_.clear();
-    s.tips = std::span(tips_).subspan(first_tip_[body], first_tip_[body + 1] - first_tip_[body]);
+    s.tips = tips_[body];
     s.centred = particle_like(body);
     if (!s.centred) {
       s.at = stance(state, body);

@@ -62,9 +62,8 @@ class Handout {
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
-  std::vector<double> rims_;               // how far each body reaches, m
-  std::vector<Tip<D>> tips_;               // of all bodies, one after another
-  std::vector<int> first_tip_;             // of each body; one more at the end
+  std::vector<double> rims_;  // how far each body reaches, m
+  Tips<D> tips_;
   std::vector<std::vector<int>> springs_;  // of each body
   std::vector<std::int64_t> signs_;        // a block's: negative where somebody is outside
   std::vector<Hit> hits_;                  // of the body at hand

@@ -66,7 +66,7 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   const bool due = state.step % every_ == 0;
 
   // whom springs and hands hold
-  if (!model_.springs.empty() || !model_.mice.empty()) {
+  if (tied_.ever()) {
     tied_.gather(state);
     for (int i = 0; i < n; ++i) movers_[i] = tied_.has(i);
   }
@@ -348,7 +348,7 @@ void Iterative<D>::fall(State<D>& state, double t, double h) {
   }
 
   // springs and hands
-  if (model_.springs.empty() && model_.mice.empty()) return;
+  if (!tied_.ever()) return;
   const std::vector<int>& bodies = tied_.bodies();
   stages_.reserve(bodies.size() * (D + kSpins<D>));
   tied_.step(integrate(model_.integrator), state, t, h, stages_);

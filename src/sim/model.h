@@ -54,6 +54,7 @@ struct Body {
   double elasticity = 1;              // the handout's e, 0 <= e <= 1
   double friction = 0;                // Coulomb's mu >= 0; of a pair, the root of the product
   double drag = 0;                    // c of f = -c v at the centre of mass, N s/m
+  double ground_drag = 0;             // the same along the ground while it stands there, beside mu; N s/m
   int group = 0;                      // for Model::ignore
   bool fixed = false;                 // held where it starts; as heavy as the room
   bool handout = false;  // meets walls by the handout's law, and no bodies, whatever `collision` says
@@ -131,6 +132,20 @@ struct Mouse {
   double damping = 0;         // N s/m
 };
 
+/// A force from a point, F = S r / (|r|^2 + eps^2)^(3/2), on each point of each body: see sim/blast.h.
+template <int D>
+struct Explosion {
+  /// How the force goes with the motion: as the integrator sees it, or held through each interval as the
+  /// explosion paper does.
+  enum class Scheme { smooth, paper };
+
+  Vec<D> center = Vec<D>::Zero();
+  double strength = 0;                                              // S, N m^2
+  Rational start = {0, 1}, duration = {1, 1}, interval = {1, 100};  // s
+  double softening = 0;                                             // eps, m: 0 is singular at the centre
+  Scheme scheme = Scheme::smooth;
+};
+
 /// What does not change while the room runs. Bodies are ordered: those that do not turn first, then those
 /// that do; a body's index here is its index everywhere.
 template <int D>
@@ -148,6 +163,7 @@ struct Model {
   std::vector<Spring<D>> springs;
   std::vector<Mouse<D>> mice;
   std::vector<Joint<D>> joints;
+  std::vector<Explosion<D>> explosions;
   std::vector<std::pair<int, int>> ignore;  // groups that do not touch each other
 
   int particles() const {  // bodies that do not turn

@@ -44,6 +44,17 @@ std::vector<Edge> edges(const Model<D>& model) {
       all.push_back({snapped(beat(knot.time, model.rate)), mouse, kind});
     }
   }
+  for (int i = 0; i < int(model.explosions.size()); ++i) {
+    const Explosion<D>& it = model.explosions[i];
+    const Rational end = it.start + it.duration;
+    const bool held = it.scheme == Explosion<D>::Scheme::paper;
+    Rational at = it.start;
+    do {
+      all.push_back({snapped(beat(at, model.rate)), i, Edge::Kind::blast});
+      at = at + it.interval;
+    } while (held && at < end);
+    all.push_back({snapped(beat(end, model.rate)), i, Edge::Kind::calm});
+  }
   std::stable_sort(all.begin(), all.end(), [](const Edge& a, const Edge& b) { return a.at < b.at; });
   for (std::size_t i = 1; i < all.size(); ++i) {
     const Beat before = all[i - 1].at;

@@ -29,9 +29,9 @@ inline double step_length(Rational rate) { return double(rate.den) / double(rate
 
 /// An instant at which the script changes what happens: a step is cut there.
 struct Edge {
-  enum class Kind { press, knot, release };
+  enum class Kind { press, knot, release, blast, calm };  // blast: it begins, or its next interval
   Beat at;
-  int mouse = 0;
+  int mouse = 0;  // or explosion
   Kind kind = Kind::knot;
 };
 

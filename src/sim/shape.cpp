@@ -93,6 +93,22 @@ std::vector<Tip<D>> tips(const Shape<D>& shape) {
 }
 
 template <int D>
+Tips<D>::Tips(const std::vector<Body<D>>& bodies) {
+  for (const Body<D>& body : bodies) {
+    first_.push_back(int(all_.size()));
+    add_tips(body.shape, all_);
+  }
+  first_.push_back(int(all_.size()));
+}
+
+template <int D>
+int Tips<D>::most() const {
+  int most = 0;
+  for (std::size_t i = 1; i < first_.size(); ++i) most = std::max(most, first_[i] - first_[i - 1]);
+  return most;
+}
+
+template <int D>
 double reach(const Shape<D>& shape) {
   double most = 0;
   switch (shape.kind) {
@@ -159,12 +175,14 @@ template Spin<2> solid_inertia<2>(const Shape<2>&, double);
 template Spin<2> inertia<2>(const Shape<2>&, double);
 template Shape<2> seated<2>(const Shape<2>&, const Bulk<2>&);
 template std::vector<Tip<2>> tips<2>(const Shape<2>&);
+template class Tips<2>;
 template double reach<2>(const Shape<2>&);
 template Bounds<2> bounds<2>(const Shape<2>&, const Stance<2>&);
 template Spin<3> solid_inertia<3>(const Shape<3>&, double);
 template Spin<3> inertia<3>(const Shape<3>&, double);
 template Shape<3> seated<3>(const Shape<3>&, const Bulk<3>&);
 template std::vector<Tip<3>> tips<3>(const Shape<3>&);
+template class Tips<3>;
 template double reach<3>(const Shape<3>&);
 template Bounds<3> bounds<3>(const Shape<3>&, const Stance<3>&);
 

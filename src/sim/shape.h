@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sim/model.h"
@@ -67,6 +68,23 @@ struct Tip {
 /// those of its parts in order.
 template <int D>
 std::vector<Tip<D>> tips(const Shape<D>& shape);
+
+/// The tips of many bodies, side by side.
+template <int D>
+class Tips {
+ public:
+  explicit Tips(const std::vector<Body<D>>& bodies);
+
+  std::span<const Tip<D>> operator[](int body) const {
+    return std::span(all_).subspan(first_[body], first_[body + 1] - first_[body]);
+  }
+  /// The most that one body has.
+  int most() const;
+
+ private:
+  std::vector<Tip<D>> all_;
+  std::vector<int> first_;  // of each body; one more at the end
+};
 
 /// The farthest the shape reaches from its centre (the origin of its frame), m.
 template <int D>

@@ -103,7 +103,7 @@ std::vector<Tightness> tightness(const Model<D>& model, const std::vector<Grip<D
   std::vector<double> most(model.bodies.size(), -1);
   for (int body = 0; body < int(all.size()); ++body) {
     all[body].body = body;
-    all[body].damping = model.bodies[body].drag / model.bodies[body].mass;
+    all[body].damping = (model.bodies[body].drag + model.bodies[body].ground_drag) / model.bodies[body].mass;
   }
   const auto add = [&](int body, const SpringLaw& s, double yields, bool hand, int index) {
     if (body < 0 || model.bodies[body].fixed) return;

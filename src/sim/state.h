@@ -48,6 +48,16 @@ struct Ledger {
   bool operator==(const Ledger&) const = default;
 };
 
+/// An explosion of the model at an instant.
+template <int D>
+struct Blast {
+  char on = 0;
+  std::vector<Vec<D>> forces;    // held through the interval at hand, one a body, N; of Scheme::paper
+  std::vector<Spin<D>> torques;  // likewise, N m
+
+  bool operator==(const Blast&) const = default;
+};
+
 /// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
 /// step / rate, plus `beyond` in the copy that a frame between two steps shows.
 template <int D>
@@ -61,7 +71,8 @@ struct State {
   std::vector<Grip<D>> grips;     // one a mouse
   std::vector<Touch<D>> touches;  // of `handout`
   Ledger ledger;
-  std::vector<OwnSpin<D>> own;  // in space: one a body that turns
+  std::vector<OwnSpin<D>> own;   // in space: one a body that turns
+  std::vector<Blast<D>> blasts;  // one an explosion
 
   // of `contact` and `event`
   std::vector<Contact<D>> contacts;  // sorted by key

@@ -2,7 +2,7 @@
 //   1. cut at the edges of the script
 //   2. integrate: free bodies in blocks, tied bodies together
 //   3. collide with the walls
-//   4. at an edge, press and release
+//   4. at an edge, press and release, begin and end explosions
 //   5. look for trouble
 
 #include "sim/stepper.h"
@@ -40,6 +40,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       releases_(model.mice.size()),
       integrate_(sim::integrate(model.integrator)),
       handout_(model, paths_),
+      blasts_(model),
       watch_(model, paths_),
       tied_(model, paths_),
       springs_(!model.springs.empty() || !model.mice.empty()) {
@@ -81,6 +82,7 @@ void Stepper<D>::begin(State<D>& state) {
     if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
   }
   state.grips.resize(model_.mice.size());
+  state.blasts.resize(model_.explosions.size());
   if (D == 3) state.own.resize(state.turn.size());
   if (contact_) {
     state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
@@ -96,7 +98,7 @@ template <int D>
 std::optional<Trouble> Stepper<D>::step(State<D>& state) {
   auto trouble = advance(state, 1);
   if (trouble) return trouble;
-  if (springs_ && state.step % watch_every_ == 0)
+  if (springs_ && state.step % watch_every_ == 0 && !blasting(state))
     return watch_.energy(state, time({state.step, 0}, model_.rate));
   return {};
 }
@@ -148,6 +150,13 @@ void Stepper<D>::touch_script(State<D>& state, Beat at) {
   auto edge =
       std::lower_bound(edges_.begin(), edges_.end(), at, [](const Edge& e, Beat b) { return e.at < b; });
   for (; edge != edges_.end() && edge->at == at; ++edge) {
+    if (edge->kind == Edge::Kind::blast) blasts_.begin(state, edge->mouse);
+    if (edge->kind == Edge::Kind::calm) {
+      // what it gave is no energy out of nowhere
+      blasts_.end(state, edge->mouse);
+      watch_.start(state, time(at, model_.rate));
+    }
+    if (edge->kind == Edge::Kind::blast || edge->kind == Edge::Kind::calm) continue;
     Grip<D>& grip = state.grips[edge->mouse];
     if (edge->kind == Edge::Kind::press)
       grip = closest(model_, state, model_.mice[edge->mouse].path.front().place);
@@ -163,12 +172,12 @@ bool Stepper<D>::pressed(int mouse, Beat at) const {
 // who flies alone and who is tied, anew whenever a hand has taken or let go
 template <int D>
 void Stepper<D>::plan(const State<D>& state) {
-  bool known = planned_ && gripped_.size() == state.grips.size();
+  bool known = planned_ && gripped_.size() == state.grips.size() && blasting_ == blasting(state);
   for (std::size_t i = 0; known && i < gripped_.size(); ++i) known = gripped_[i] == state.grips[i].body;
   if (known) return;
   gripped_.clear();
   for (const Grip<D>& grip : state.grips) gripped_.push_back(grip.body);
-  planned_ = true;
+  planned_ = true, blasting_ = blasting(state);
   tied_.gather(state);
 
   const int bodies = int(model_.bodies.size()), still = bodies - int(state.turn.size());

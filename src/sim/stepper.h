@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/blast.h"
 #include "sim/contact_step.h"
 #include "sim/handout.h"
 #include "sim/integrator.h"
@@ -56,11 +57,12 @@ class Stepper {
   std::vector<Beat> presses_, releases_;  // one a mouse
   Integrate* integrate_;
   Handout<D> handout_;
+  Blasts<D> blasts_;
   std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
   Watch<D> watch_;
   Tied<D> tied_;
   std::vector<int> gripped_;  // by each mouse, as the plan knows
-  bool planned_ = false;
+  bool planned_ = false, blasting_ = false;
 
   std::vector<Block> flying_, spinning_;  // centres, and turns
   std::vector<double> gravity_;           // a block of it

@@ -1,19 +1,29 @@
 // Bodies under springs, handout §2.2, §3.2.
-//   dv/dt = g - (c/m) v + sum f / m
+//   dv/dt = g - (c/m) v - (c_g/m) v_g + sum f / m          v_g  along the ground, for what stands on it
 //   dw/dt = I^-1 (sum r x f - w x I w)          in the body's axes
 
 #include "sim/tied.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/flight.h"
 #include "sim/tumble.h"
 
 namespace obscura::sim {
 
+namespace {
+
+constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stands on it
+
+}  // namespace
+
 template <int D>
-Tied<D>::Tied(const Model<D>& model, const std::vector<Path<D>>& paths) : model_(model), paths_(paths) {
+Tied<D>::Tied(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model), paths_(paths), blasts_(model), tips_(model.bodies) {
   member_.assign(model.bodies.size(), -1);
+  ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty();
+  for (const Body<D>& body : model.bodies) ever_ = ever_ || body.ground_drag != 0;
 }
 
 template <int D>
@@ -31,13 +41,16 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
   const auto mark = [&](int body) {
     if (body >= 0 && !model_.bodies[body].fixed) member_[body] = 0;
   };
-  if (everyone) {
+  if (everyone || blasting(state)) {
     for (int body = 0; body < int(member_.size()); ++body) {
       if (state.frozen.empty() || !state.frozen[body]) mark(body);
     }
   } else {
     for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
     for (const Grip<D>& grip : state.grips) mark(grip.body);
+    for (int body = 0; body < int(member_.size()); ++body) {
+      if (model_.bodies[body].ground_drag != 0 && (state.frozen.empty() || !state.frozen[body])) mark(body);
+    }
   }
   bodies_.clear();
   for (int body = 0; body < int(member_.size()); ++body) {
@@ -74,6 +87,12 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
   }
   if (!drag) drag_.clear();
 
+  dragged_.clear();
+  for (int i = 0; i < int(bodies_.size()); ++i) {
+    if (model_.bodies[bodies_[i]].ground_drag != 0) dragged_.push_back(i);
+  }
+  braked_.reserve(dragged_.size());
+
   const std::size_t n = D * bodies_.size() + kSpins<D> * turning_;
   x_.resize(bodies_.size()), stances_.assign(bodies_.size(), {}), turn_.resize(turning_),
       base_.resize(turning_);
@@ -95,6 +114,38 @@ void Tied<D>::load(const State<D>& state) {
               v_.data() + D * n + kSpins<D> * i);
   }
   std::fill(d_.begin(), d_.end(), 0.0);
+
+  // what explodes
+  acting_.clear(), held_.clear();
+  for (int i = 0; i < int(state.blasts.size()); ++i) {
+    const Blast<D>& blast = state.blasts[i];
+    if (!blast.on) continue;
+    if (blast.forces.empty()) {
+      acting_.push_back(i);
+      continue;
+    }
+    held_.resize(n);
+    for (int k = 0; k < n; ++k) held_[k] += Wrench<D>{blast.torques[bodies_[k]], blast.forces[bodies_[k]]};
+  }
+
+  // what the ground brakes
+  braked_.clear();
+  for (const int member : dragged_) {
+    const Stance<D> at = stance(state, bodies_[member]);
+    const Body<D>& body = model_.bodies[bodies_[member]];
+    const double h = 1 / value(model_.rate), g = std::sqrt(model_.gravity.squaredNorm());
+    // as far as it falls between two impacts of the handout's rest
+    const double near = kOnGround * model_.scale + g * h * h;
+    for (const Wall<D>& wall : model_.walls) {
+      if (g > 0 && !(wall.normal.dot(model_.gravity) < 0)) continue;
+      double least = 1e300;
+      for (const Tip<D>& tip : tips_[bodies_[member]])
+        least = std::min(least, (at.x + at.arm(tip.at) - wall.point).dot(wall.normal) - tip.radius);
+      if (least > near) continue;
+      braked_.push_back({member, body.ground_drag / body.mass, wall.normal});
+      break;
+    }
+  }
 }
 
 template <int D>
@@ -135,13 +186,18 @@ typename Tied<D>::Moving Tied<D>::moving(const Hold& hold, double t) const {
 
 template <int D>
 void Tied<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) const {
-  if (hold.member < 0) return;
-  const int n = int(bodies_.size()), spinning = hold.member - (n - turning_);
-  const Body<D>& body = model_.bodies[bodies_[hold.member]];
-  Eigen::Map<Vec<D>>(v_rate.data() + D * hold.member) += force / body.mass;
+  if (hold.member >= 0) push(hold.member, {moment<D>(arm, force), force}, v_rate);
+}
+
+// by a force at the centre and a torque, in the room's frame
+template <int D>
+void Tied<D>::push(int member, const Wrench<D>& by, std::span<double> v_rate) const {
+  const int n = int(bodies_.size()), spinning = member - (n - turning_);
+  const Body<D>& body = model_.bodies[bodies_[member]];
+  Eigen::Map<Vec<D>>(v_rate.data() + D * member) += by.f / body.mass;
   if (spinning < 0) return;
   Eigen::Map<Spin<D>>(v_rate.data() + D * n + kSpins<D> * spinning) +=
-      from_room<D>(stances_[hold.member].room_from_body, moment<D>(arm, force)).cwiseQuotient(body.inertia);
+      from_room<D>(stances_[member].room_from_body, by.n).cwiseQuotient(body.inertia);
 }
 
 template <int D>
@@ -174,6 +230,15 @@ void Tied<D>::rates(double t, std::span<const double> d, std::span<const double>
     const Vec<D> force = pull<D>(tie.law, a.place, a.velocity, b.place, b.velocity);
     push(tie.a, a.arm, force, v_rate);
     push(tie.b, b.arm, -force, v_rate);
+  }
+  for (const int explosion : acting_) {
+    for (int i = 0; i < n; ++i)
+      push(i, blasts_.push(model_.explosions[explosion], bodies_[i], stances_[i]), v_rate);
+  }
+  for (int i = 0; i < int(held_.size()); ++i) push(i, held_[i], v_rate);
+  for (const Braked& it : braked_) {
+    const Vec<D>& speed = stances_[it.member].v;
+    Eigen::Map<Vec<D>>(v_rate.data() + D * it.member) -= it.rate * (speed - it.normal * it.normal.dot(speed));
   }
 }
 

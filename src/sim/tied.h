@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/blast.h"
 #include "sim/integrator.h"
 #include "sim/path.h"
 #include "sim/spring.h"
@@ -19,8 +20,12 @@ class Tied final : public System {
   /// `paths`: the way of each mouse. Both are kept by reference.
   Tied(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// Who is tied under the grips of `state`; or everyone who can move and is not frozen. To be called
-  /// whenever a grip changes, or who is frozen.
+  /// Whether anything of the model may ever tie a body.
+  bool ever() const { return ever_; }
+
+  /// Who is tied under the grips of `state`; or everyone who can move and is not frozen, as they are while
+  /// an explosion acts. What the ground brakes counts as tied. To be called whenever a grip changes, or who
+  /// is frozen, or what explodes.
   void gather(const State<D>& state, bool everyone = false);
 
   bool has(int body) const { return member_[body] >= 0; }
@@ -60,6 +65,12 @@ class Tied final : public System {
     Hold a, b;
     SpringLaw law;
   };
+  // a tied body that the ground brakes
+  struct Braked {
+    int member;
+    double rate;    // c/m, 1/s
+    Vec<D> normal;  // of the ground
+  };
   struct Moving {
     Vec<D> arm, place, velocity;
   };
@@ -68,12 +79,20 @@ class Tied final : public System {
   void load(const State<D>& state);
   Moving moving(const Hold& hold, double t) const;
   void push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) const;
+  void push(int member, const Wrench<D>& by, std::span<double> v_rate) const;
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
-  std::vector<int> bodies_;             // ascending: those that turn come last
-  std::vector<int> member_;             // a body's place in bodies_, or -1
-  std::vector<Tie> ties_;               // springs in order, then mice in order
+  std::vector<int> bodies_;  // ascending: those that turn come last
+  std::vector<int> member_;  // a body's place in bodies_, or -1
+  std::vector<Tie> ties_;    // springs in order, then mice in order
+  bool ever_ = false;
+  Blasts<D> blasts_;
+  Tips<D> tips_;
+  std::vector<int> acting_;             // explosions that act
+  std::vector<Wrench<D>> held_;         // by the paper's scheme, one a member; empty where nothing is
+  std::vector<int> dragged_;            // members with drag on the ground
+  std::vector<Braked> braked_;          // those that stand on it
   std::vector<double> gravity_, drag_;  // a component each; drag_ empty where there is none
   int turning_ = 0;                     // how many turn
 

@@ -68,6 +68,11 @@ std::vector<std::uint64_t> words(const State<D>& state) {
       w.template numbers<kSpins<D>>(own.rest);
     }
   }
+  for (const Blast<D>& blast : state.blasts) {
+    w.integer(blast.on);
+    w.list(blast.forces);
+    w.list(blast.torques);
+  }
   w.number(state.ledger.displacement);
   w.number(state.ledger.impacts);
   return w.all;

@@ -178,7 +178,7 @@ World<3> hanging(int rate, Integrator which) {
   world.model.rate = {rate, 1}, world.model.integrator = which;
   add_solid(world, brick({1, 0.6, 0.3}), 2, {0, 0, 0}, {0.3, 0.1, 0.5}, exponential({0.3, -0.5, 0.2}),
             {1, 4, 2});
-  add_solid(world, capsule(0.3, 0.1), 1, {1, 0, 0.5}, {0, 0, 0}, exponential({1, 0, 0.2}), {5, 1, -2});
+  add_solid(world, capsule(0.3, 0.3), 1, {1, 0, 0.5}, {0, 0, 0}, exponential({1, 0, 0.2}), {5, 1, -2});
   world.model.springs.push_back({{0, {0.5, 0.3, 0.15}}, {-1, {0, 1, 0}}, 0.5, 40, 0.1});
   world.model.springs.push_back({{0, {-0.5, 0.3, 0.15}}, {1, {0, 0.3, 0}}, 0.5, 30, 0.1});
   return world;
