@@ -28,10 +28,10 @@ std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::v
   return std::make_unique<Iterative<D>>(model, paths);
 }
 
-// in space nothing rests on anything yet: the handout's law holds
+// in space by the direct one only
 template <>
-std::unique_ptr<ContactStep<3>> contact_step<3>(const Model<3>&, const std::vector<Path<3>>&) {
-  return nullptr;
+std::unique_ptr<ContactStep<3>> contact_step<3>(const Model<3>& model, const std::vector<Path<3>>& paths) {
+  return std::make_unique<Direct<3>>(model, paths);
 }
 
 template Crowd crowd<2>(const Model<2>&);

@@ -16,6 +16,20 @@ namespace obscura::sim {
 
 namespace {
 
+// the least half depth below a face of a hull, m
+double hull_thickness(const Shape<3>& hull) {
+  double least = 1e300;
+  for (const std::vector<int>& face : hull.faces) {
+    const Vec<3>& p = hull.vertices[face[0]];
+    const Vec<3> n = (hull.vertices[face[1]] - p).cross(hull.vertices[face[2]] - p);
+    double most = 0;
+    for (const Vec<3>& v : hull.vertices) most = std::max(most, -n.dot(v - p));
+    least = std::min(least, 0.5 * most / std::sqrt(n.squaredNorm()));
+  }
+  return least;
+}
+double hull_thickness(const Shape<2>&) { return 0; }
+
 // the least thickness of a shape, m
 template <int D>
 double thickness(const Shape<D>& shape) {
@@ -23,7 +37,7 @@ double thickness(const Shape<D>& shape) {
     case ShapeKind::point:
       return 0;
     case ShapeKind::hull:
-      return 0;
+      return hull_thickness(shape);
     case ShapeKind::ball:
     case ShapeKind::capsule:
       return shape.radius;
@@ -88,11 +102,13 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
 template <int D>
 void Direct<D>::keep(const State<D>& state, Motion& motion) const {
   motion.x = state.x, motion.v = state.v, motion.turn = state.turn, motion.spin = state.spin;
+  motion.own = state.own;
 }
 
 template <int D>
 void Direct<D>::restore(const Motion& motion, State<D>& state) const {
   state.x = motion.x, state.v = motion.v, state.turn = motion.turn, state.spin = motion.spin;
+  state.own = motion.own;
 }
 
 template <int D>
@@ -140,6 +156,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
       for (ConeMode<D>& mode : holding_) {
         if (mode.hold == Hold::brink) mode.hold = Hold::stick;
       }
+      if (D > 2) begin_slides(state, t + done, h - done);
       const std::size_t forced = forced_.size();
       length = stretch(state, t + done, h - done, cut);
       held_again = forced_.size() > forced && !forced_again_;
@@ -186,6 +203,7 @@ void Direct<D>::rates(double t, std::span<const double> d, std::span<const doubl
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], v_rate) + rows_[i].drift;
 
   // what holds goes on holding
+  if (D > 2) turn_slides();
   hold();
   for (int i = 0; i < int(rows_.size()); ++i) push(rows_[i], f_[i], v_rate);
 }
@@ -282,7 +300,8 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
     const int body = members[i];
     state.v[body] += h * Eigen::Map<const Vec<D>>(rate.data() + D * i);
     if (const int at = free_.spin_start(int(i)); at >= 0)
-      state.spin[turning(state, body)] += h * Eigen::Map<const Spin<D>>(rate.data() + at);
+      state.spin[turning(state, body)] +=
+          h * to_room<D>(stances_[body].room_from_body, Eigen::Map<const Spin<D>>(rate.data() + at));
   }
   for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
   for (const int body : members) {
@@ -310,5 +329,6 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
 }
 
 template class Direct<2>;
+template class Direct<3>;
 
 }  // namespace obscura::sim

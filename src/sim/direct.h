@@ -34,6 +34,8 @@ class Direct final : public ContactStep<D>, private System {
     double off = 0;             // of a gap or limit: what is left, m or rad
     double offs[kMostHeld<D>];  // of a joint: how far its rows are from where they belong
     Vec<D> point = Vec<D>::Zero(), normal = Vec<D>::Zero();  // of a contact
+    Vec<D> slip = Vec<D>::Zero();  // of a contact that slides, its way where the stretch begins, room's frame
+    bool slow = false;             // its way is that for all of the stretch
   };
 
   // how bodies stand and move
@@ -41,6 +43,7 @@ class Direct final : public ContactStep<D>, private System {
     std::vector<Vec<D>> x, v;
     std::vector<Turn<D>> turn;
     std::vector<Spin<D>> spin;
+    std::vector<OwnSpin<D>> own;
   };
 
   // two that may come through each other: a body and a body or wall
@@ -73,6 +76,11 @@ class Direct final : public ContactStep<D>, private System {
   void push(const Row<D>& row, double f, std::span<double> rate) const;
   void jump(State<D>& state, const Row<D>& row, double p, bool places) const;
   void project(State<D>& state);
+
+  // direct_slides.cpp
+  void begin_slides(State<D>& state, double t, double h);
+  void aim_slow_slides(State<D>& state, double t, double h);
+  void turn_slides();
 
   // direct_parts.cpp
   void split();
@@ -143,6 +151,9 @@ class Direct final : public ContactStep<D>, private System {
   std::vector<Row<D>> rows_;
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_, holding_;  // as chosen, and as the stages keep them
+  std::vector<ConeBlock<D>> chosen_blocks_;
+  std::vector<ConeMode<D>> chosen_modes_;
+  Eigen::VectorXd chosen_f_;
   // parts that share no body
   int parts_ = 0;
   std::vector<std::vector<int>> members_;  // of held_, one list a part

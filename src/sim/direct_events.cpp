@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/direct.h"
+#include "sim/tumble.h"
 
 namespace obscura::sim {
 
@@ -75,9 +76,8 @@ Stance<D> Direct<D>::between(const State<D>& state, int body, double h, double p
   Stance<D> at;
   at.x = p0 * begun_.x[body] + p1 * state.x[body] + m0 * begun_.v[body] + m1 * state.v[body];
   if (const int k = turning(state, body); k >= 0) {
-    static_assert(D == 2, "in space turns are joined on the sphere");
-    at.room_from_body = rotation<D>(
-        Turn<D>(p0 * begun_.turn[k] + p1 * state.turn[k] + m0 * begun_.spin[k] + m1 * state.spin[k]));
+    at.room_from_body =
+        rotation<D>(sim::between<D>(begun_.turn[k], begun_.spin[k], state.turn[k], state.spin[k], h, s));
   }
   return at;
 }
@@ -188,10 +188,12 @@ double Direct<D>::stopping() const {
     if (held.kind == Held::Kind::contact) {
       const ConeBlock<D>& block = blocks_[held.block];
       if (!block.sliding || modes_[held.block].hold != Hold::slide) continue;
+      const Tangent<D>& way = D > 2 ? holding_[held.block].along : block.direction;
       for (int i = 0; i < D - 1; ++i) {
-        begun += block.direction[i] * slips_[held.first + 1 + i];
-        now += block.direction[i] * moves(held.first + 1 + i);
+        begun += way[i] * slips_[held.first + 1 + i];
+        now += way[i] * moves(held.first + 1 + i);
       }
+      if (D > 2 && begun <= 0) continue;
     } else if (held.kind == Held::Kind::motor || held.kind == Held::Kind::friction) {
       const ConeBlock<D>& block = blocks_[held.block];
       if (block.lower != block.upper) continue;
@@ -232,12 +234,10 @@ double Direct<D>::crossing(const State<D>& state, double h) {
 // the turn between the sides of a joint a part of the way
 template <int D>
 Spin<D> Direct<D>::turn_part(const State<D>& state, const Joint<D>& joint, double h, double part) const {
-  const double s = part, r = 1 - s;
   const auto at = [&](int body) -> Spin<D> {
     const int k = body < 0 ? -1 : turning(state, body);
     if (k < 0) return Spin<D>::Zero();
-    return r * r * (1 + 2 * s) * begun_.turn[k] + s * s * (3 - 2 * s) * state.turn[k] +
-           h * s * r * r * begun_.spin[k] - h * s * s * r * state.spin[k];
+    return rounds<D>(sim::between<D>(begun_.turn[k], begun_.spin[k], state.turn[k], state.spin[k], h, part));
   };
   return at(joint.a.body) - at(joint.b.body);
 }
@@ -327,5 +327,8 @@ void Direct<D>::smooth(State<D>& state, double t, double h) {
 template double Direct<2>::stretch(State<2>&, double, double, bool&);
 template void Direct<2>::find(const State<2>&, double);
 template bool Direct<2>::may_touch(int, int) const;
+template double Direct<3>::stretch(State<3>&, double, double, bool&);
+template void Direct<3>::find(const State<3>&, double);
+template bool Direct<3>::may_touch(int, int) const;
 
 }  // namespace obscura::sim

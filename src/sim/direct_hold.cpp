@@ -8,6 +8,7 @@
 
 #include "sim/direct.h"
 #include "sim/energy.h"
+#include "sim/tumble.h"
 
 namespace obscura::sim {
 
@@ -42,10 +43,11 @@ double Direct<D>::elasticity(const ContactKey& key) const {
 
 template <int D>
 Spin<D> Direct<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
-  static_assert(D == 2, "in space a turn between two bodies is a rotation vector");
   Spin<D> turn = Spin<D>::Zero();
-  if (const int k = joint.a.body < 0 ? -1 : turning(state, joint.a.body); k >= 0) turn += state.turn[k];
-  if (const int k = joint.b.body < 0 ? -1 : turning(state, joint.b.body); k >= 0) turn -= state.turn[k];
+  if (const int k = joint.a.body < 0 ? -1 : turning(state, joint.a.body); k >= 0)
+    turn += rounds<D>(state.turn[k]);
+  if (const int k = joint.b.body < 0 ? -1 : turning(state, joint.b.body); k >= 0)
+    turn -= rounds<D>(state.turn[k]);
   return turn;
 }
 
@@ -174,7 +176,8 @@ double Direct<D>::along(const Row<D>& row, std::span<const double> rate) const {
     if (place < 0) return;
     sum += sign * row.along.dot(Eigen::Map<const Vec<D>>(rate.data() + D * place));
     if (const int at = free_.spin_start(place); at >= 0)
-      sum += sign * turn.dot(Eigen::Map<const Spin<D>>(rate.data() + at));
+      sum += sign *
+             turn.dot(to_room<D>(stances_[body].room_from_body, Eigen::Map<const Spin<D>>(rate.data() + at)));
   };
   side(row.a, row.turn_a, 1), side(row.b, row.turn_b, -1);
   return sum;
@@ -188,7 +191,8 @@ void Direct<D>::push(const Row<D>& row, double f, std::span<double> rate) const 
     if (place < 0) return;
     Eigen::Map<Vec<D>>(rate.data() + D * place) += force * light_[body] * row.along;
     if (const int at = free_.spin_start(place); at >= 0)
-      Eigen::Map<Spin<D>>(rate.data() + at) += force * turned_by(body, turn);
+      Eigen::Map<Spin<D>>(rate.data() + at) +=
+          force * from_room<D>(stances_[body].room_from_body, turned_by(body, turn));
   };
   if (f == 0) return;
   side(row.a, row.turn_a, f), side(row.b, row.turn_b, -f);
@@ -329,5 +333,6 @@ void Direct<D>::project(State<D>& state) {
 }
 
 template class Direct<2>;
+template class Direct<3>;
 
 }  // namespace obscura::sim

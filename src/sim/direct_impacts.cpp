@@ -149,5 +149,8 @@ void Direct<D>::note(const ContactKey& key, const Held& held, const Vec<D>& impu
 template double Direct<2>::approach() const;
 template bool Direct<2>::coming_apart() const;
 template void Direct<2>::collide(State<2>&);
+template double Direct<3>::approach() const;
+template bool Direct<3>::coming_apart() const;
+template void Direct<3>::collide(State<3>&);
 
 }  // namespace obscura::sim

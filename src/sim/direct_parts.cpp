@@ -139,5 +139,9 @@ template void Direct<2>::split();
 template bool Direct<2>::solve();
 template void Direct<2>::hold();
 template void Direct<2>::least();
+template void Direct<3>::split();
+template bool Direct<3>::solve();
+template void Direct<3>::hold();
+template void Direct<3>::least();
 
 }  // namespace obscura::sim

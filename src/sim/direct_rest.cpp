@@ -130,5 +130,8 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
 template void Direct<2>::join(const State<2>&);
 template bool Direct<2>::wake(State<2>&);
 template void Direct<2>::rest(State<2>&, double, double);
+template void Direct<3>::join(const State<3>&);
+template bool Direct<3>::wake(State<3>&);
+template void Direct<3>::rest(State<3>&, double, double);
 
 }  // namespace obscura::sim

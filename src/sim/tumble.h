@@ -52,6 +52,33 @@ Turn<D> displaced(const Turn<D>& turn, const Spin<D>& d) {
   }
 }
 
+/// The turn a part s of the way between two, h (s) apart, with the spins w (room's frame) at either: of the
+/// displacement from the first, the cubic through its values and rates. In the plane that of the angles.
+template <int D>
+Turn<D> between(const Turn<D>& from, const Spin<D>& w_from, const Turn<D>& to, const Spin<D>& w_to, double h,
+                double s) {
+  const double r = 1 - s;
+  const double p0 = r * r * (1 + 2 * s), p1 = s * s * (3 - 2 * s), m0 = h * s * r * r, m1 = -h * s * s * r;
+  if constexpr (D == 2) {
+    return p0 * from + p1 * to + m0 * w_from + m1 * w_to;
+  } else {
+    const Spin<D> d = logarithm(product(undone<D>(from), to));
+    const Spin<D> begun = from_room<D>(rotation<D>(from), w_from),
+                  ended = turn_rate(d, from_room<D>(rotation<D>(to), w_to));
+    return sim::turned(from, Spin<D>(p1 * d + m0 * begun + m1 * ended));
+  }
+}
+
+/// The angle of a turn of the plane with all its rounds; of space nothing, where the rotation tells all.
+template <int D>
+Spin<D> rounds([[maybe_unused]] const Turn<D>& turn) {
+  if constexpr (D == 2) {
+    return turn;
+  } else {
+    return Spin<D>::Zero();
+  }
+}
+
 /// The spin of the body with turn k, ready for a step: base + v is what the body sees. `whole`: v is all of
 /// it, as a scheme needs that takes v itself for the rate of d (semi-implicit Euler).
 template <int D>

@@ -342,7 +342,7 @@ TEST(SpaceGaps, ABoxIsAHullToAllOthers) {
     const Shape<3> box = box_solid(dice.within(0.2, 1), dice.within(0.2, 1), dice.within(0.2, 1)),
                    other = dice.solid(0.7);
     const Stance<3> at = dice.place(0.7), there = dice.place(0.7);
-    const auto one = found(box, at, other, there, 0.3), two = found(as_hull(box), at, other, there, 0.3);
+    const auto one = found(box, at, other, there, 0.3), two = found(hull_of(box), at, other, there, 0.3);
     ASSERT_EQ(one.size(), two.size()) << n;
     for (const Gap<3>& gap : one) {
       const Meeting<3> now = evaluate(gap, at, there);

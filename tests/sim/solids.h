@@ -91,7 +91,7 @@ inline Shape<3> hull_solid(const std::vector<Vec<3>>& places) {
 }
 
 /// The corners of a box as a hull.
-inline Shape<3> as_hull(const Shape<3>& box) {
+inline Shape<3> hull_of(const Shape<3>& box) {
   std::vector<Vec<3>> all;
   for (int i = 0; i < 8; ++i) all.push_back(box.center + corner(box, i));
   return hull_solid(all);
