@@ -29,7 +29,8 @@ double movie_bytes(const scene::Film& film, std::int64_t frames) {
 }
 
 // what holds bodies apart, and why that
-std::string contact(const sim::Model<2>& model) {
+template <int D>
+std::string contact(const sim::Model<D>& model) {
   if (model.collision == sim::Collision::handout) return "the handout's: walls alone, put back and pushed";
   const bool direct = sim::solver(model) == sim::Solver::direct;
   const sim::Crowd crowd = sim::crowd(model);
@@ -48,22 +49,39 @@ std::string contact(const sim::Model<2>& model) {
   return fmt::format("{} solver: {}", direct ? "direct" : "iterative", why);
 }
 
-void report(const scene::Scene& scene) {
-  const auto& model = scene.world.model;
-  const std::size_t particles = std::size_t(model.particles());
+// "2 particles, 1 ball, 12 boxes", those kinds that there are; bodies by what they are made of
+template <int D>
+std::string bodies(const sim::Model<D>& model) {
+  std::size_t particles = 0, balls = 0, boxes = 0, others = 0;
+  for (const sim::Body<D>& body : model.bodies) {
+    const bool ball = body.shape.kind == sim::ShapeKind::ball;
+    if (body.shape.kind == sim::ShapeKind::point || (ball && !body.turns()))
+      ++particles;
+    else
+      ++(ball ? balls : body.shape.kind == sim::ShapeKind::box ? boxes : others);
+  }
+  std::string text = count(particles, "particle", "particles");
+  if (balls > 0) text += ", " + count(balls, "ball", "balls");
+  text += ", " + count(boxes, "box", "boxes");
+  if (others > 0) text += ", " + count(others, "other body", "other bodies");
+  text += ", " + count(model.springs.size(), "spring", "springs");
+  if (!model.joints.empty()) text += ", " + count(model.joints.size(), "joint", "joints");
+  return text + ", " + count(model.walls.size(), "wall", "walls") + ", " +
+         count(model.mice.size(), "mouse", "mice");
+}
+
+template <int D>
+void report(const scene::Scene& scene, const sim::Model<D>& model) {
   const Shots shots = Shots::film(scene.duration, scene.film.fps);
   fmt::print("{}: good\n", scene.file);
-  fmt::print("  bodies   {}, {}, {}, {}, {}\n", count(particles, "particle", "particles"),
-             count(model.bodies.size() - particles, "box", "boxes"),
-             count(model.springs.size(), "spring", "springs"), count(model.walls.size(), "wall", "walls"),
-             count(model.mice.size(), "mouse", "mice"));
+  fmt::print("  bodies   {}\n", bodies(model));
   fmt::print("  time     {:g} s in {} steps of 1/{} s\n", sim::value(scene.duration),
              sim::ceil(scene.duration * model.rate), sim::text(model.rate));
   fmt::print("  contact  {}\n", contact(model));
   fmt::print("  film     {} frames at {} fps, {}x{}\n", shots.size(), sim::text(scene.film.fps),
              scene.film.width, scene.film.height);
   fmt::print("  disk     about {:.1f} MB as a movie\n", movie_bytes(scene.film, shots.size()) / 1e6);
-  for (const sim::Trouble& ahead : sim::forebodings(model)) fmt::print("  warning  {}\n", ahead.likely);
+  for (const sim::Trouble& ahead : scene.forebodings()) fmt::print("  warning  {}\n", ahead.likely);
 }
 
 int check(const std::vector<std::string>& files, const std::vector<std::string>& sets) {
@@ -71,7 +89,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
   for (const std::string& file : files) {
     try {
       const scene::Scene scene = scene::read(file, sets);
-      report(scene);
+      std::visit([&](const auto& world) { report(scene, world.model); }, scene.world);
       media::check(scene.name + ".mp4", movie_spec(scene));
     } catch (const scene::Error& error) {
       std::fflush(stdout);

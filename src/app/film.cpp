@@ -70,14 +70,14 @@ class Simulation {
       : shots_(shots),
         frames_(frames),
         hash_each_(hash_each),
-        run_(sim::run(scene.world)),
+        run_(scene.run()),
         trail_(depictor(scene).longest_trail()) {
     run_->track(depictor(scene).trailed());
     run_->heed(interrupted);
   }
 
   static draw::Depictor depictor(const scene::Scene& scene) {
-    const auto run = sim::run(scene.world);
+    const auto run = scene.run();
     return draw::Depictor(run->cast(), scene.look, scene.camera, scene.extent,
                           double(scene.film.width) / scene.film.height);
   }

@@ -101,7 +101,7 @@ int render(Flags flags) {
   if (flags.film.transparent && out.form != Output::Form::frames && out.form != Output::Form::still) {
     throw UsageError("--transparent is for PNG: movies and streams have no alpha");
   }
-  for (const sim::Trouble& ahead : sim::forebodings(scene.world.model)) {
+  for (const sim::Trouble& ahead : scene.forebodings()) {
     fmt::print(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
   }
   return film(scene, shots, out, flags.film);

@@ -41,6 +41,21 @@ void put(const std::string& text) {
 
 const std::string& name(const sim::Cast& cast, int body) { return cast.bodies[std::size_t(body)].name; }
 
+// a spin or turning momentum: one number in the plane
+std::string spin(const sim::Vec3& w, int dimension) {
+  return dimension == 2 ? number(w.z()) : vector(w, dimension);
+}
+
+std::vector<double> numbers(const sim::Vec3& v, int dimension) { return {v.data(), v.data() + dimension}; }
+
+// "angle": rad; in space "orientation": a unit quaternion x, y, z, w
+std::string turn(const sim::Snapshot::Body& body, int dimension) {
+  if (dimension == 2) return "\"angle\": " + number(body.angle);
+  const Eigen::Quaterniond& q = body.orientation;
+  return fmt::format("\"orientation\": [{}, {}, {}, {}]", number(q.x()), number(q.y()), number(q.z()),
+                     number(q.w()));
+}
+
 // one instant as a JSON object
 std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::string& hash) {
   const int d = cast.dimension;
@@ -53,15 +68,15 @@ std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::str
       "     \"momentum\": {}, \"angular_momentum\": {},\n     \"bodies\": [",
       number(now.time), now.step, hash, number(e.kinetic), number(e.potential()), number(e.gravity),
       number(e.springs), number(e.total()), number(e.displacement), number(e.impacts),
-      vector(now.momentum, d), number(now.angular_momentum.z()));
+      vector(now.momentum, d), spin(now.angular_momentum, d));
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
     const auto& body = now.bodies[i];
     text += fmt::format(
-        "{}\n       {{\"name\": {}, \"position\": {}, \"angle\": {}, \"velocity\": {}, \"spin\": {}, "
+        "{}\n       {{\"name\": {}, \"position\": {}, {}, \"velocity\": {}, \"spin\": {}, "
         "\"at_rest\": "
         "{}}}",
-        i ? "," : "", quoted(cast.bodies[i].name), vector(body.position, d), number(body.angle),
-        vector(body.velocity, d), number(body.spin.z()), body.at_rest);
+        i ? "," : "", quoted(cast.bodies[i].name), vector(body.position, d), turn(body, d),
+        vector(body.velocity, d), spin(body.spin, d), body.at_rest);
   }
   text += "],\n     \"contacts\": [";
   for (std::size_t i = 0; i < now.contacts.size(); ++i) {
@@ -91,39 +106,59 @@ std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::str
 
 // the columns are the paths that --set and --measure know, one row an instant
 std::string csv_header(const sim::Cast& cast) {
+  const bool space = cast.dimension == 3;
   std::string line =
-      "time,step,hash,energy.kinetic,energy.potential,energy.total,energy.displacement,energy.impacts,"
-      "momentum.x,momentum.y,"
-      "angular_momentum,contacts";
+      "time,step,hash,energy.kinetic,energy.potential,energy.total,energy.displacement,energy.impacts";
+  const auto vector = [&](const std::string& name) {
+    for (const char* axis : {"x", "y", "z"})
+      if (space || *axis != 'z') line += fmt::format(",{}.{}", name, axis);
+  };
+  const auto spin = [&](const std::string& name) { space ? vector(name) : void(line += "," + name); };
+  vector("momentum");
+  spin("angular_momentum");
+  line += ",contacts";
   for (const auto& body : cast.bodies) {
-    for (const char* part : {"position.x", "position.y", "angle", "velocity.x", "velocity.y", "spin"}) {
-      line += fmt::format(",{}.{}", body.name, part);
+    vector(body.name + ".position");
+    if (space) {
+      for (const char* part : {"x", "y", "z", "w"})
+        line += fmt::format(",{}.orientation.{}", body.name, part);
+    } else {
+      line += fmt::format(",{}.angle", body.name);
     }
+    vector(body.name + ".velocity");
+    spin(body.name + ".spin");
   }
-  for (const auto& joint : cast.joints) line += fmt::format(",{0}.force.x,{0}.force.y", joint.name);
+  for (const auto& joint : cast.joints) vector(joint.name + ".force");
   return line + "\n";
 }
 
-std::string csv_row(const sim::Snapshot& now, const std::string& hash) {
+std::string csv_row(const sim::Snapshot& now, const std::string& hash, int dimension) {
   const sim::Energies& e = now.energies;
   std::string line = fmt::format("{},{},{}", number(now.time), now.step, hash);
-  for (const double x : {e.kinetic, e.potential(), e.total(), e.displacement, e.impacts, now.momentum.x(),
-                         now.momentum.y(), now.angular_momentum.z()}) {
-    line += "," + number(x);
-  }
+  const auto add = [&](const std::vector<double>& all) {
+    for (const double x : all) line += "," + number(x);
+  };
+  const auto spin = [&](const sim::Vec3& w) {
+    add(dimension == 2 ? std::vector<double>{w.z()} : numbers(w, dimension));
+  };
+  add({e.kinetic, e.potential(), e.total(), e.displacement, e.impacts});
+  add(numbers(now.momentum, dimension));
+  spin(now.angular_momentum);
   line += fmt::format(",{}", now.contacts.size());
   for (const auto& body : now.bodies) {
-    for (const double x : {body.position.x(), body.position.y(), body.angle, body.velocity.x(),
-                           body.velocity.y(), body.spin.z()}) {
-      line += "," + number(x);
-    }
+    add(numbers(body.position, dimension));
+    const Eigen::Quaterniond& q = body.orientation;
+    add(dimension == 2 ? std::vector<double>{body.angle} : std::vector<double>{q.x(), q.y(), q.z(), q.w()});
+    add(numbers(body.velocity, dimension));
+    spin(body.spin);
   }
-  for (const auto& joint : now.joints) line += "," + number(joint.force.x()) + "," + number(joint.force.y());
+  for (const auto& joint : now.joints) add(numbers(joint.force, dimension));
   return line + "\n";
 }
 
 // who finds the forces; none does in the handout's mode
-const char* solver(const sim::Model<2>& model) {
+template <int D>
+const char* solver_name(const sim::Model<D>& model) {
   if (model.collision == sim::Collision::handout) return "null";
   return sim::solver(model) == sim::Solver::direct ? "\"direct\"" : "\"iterative\"";
 }
@@ -147,7 +182,7 @@ std::vector<sim::Rational> times_of(const Flags& flags, const scene::Scene& scen
 int states(const Flags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
   const auto times = times_of(flags, scene);
-  const auto run = sim::run(scene.world);
+  const auto run = scene.run();
   run->heed(interrupted);
   const bool as_json = flags.format == "json";
   if (as_json) {
@@ -157,7 +192,7 @@ int states(const Flags& flags) {
                     "\"J\", \"force\": \"N\", \"impulse\": \"N s\"}},\n"
                     " \"solver\": {},\n \"states\": [\n",
                     OBSCURA_VERSION, quoted(scene.file), hash(scene.text), run->cast().dimension,
-                    solver(scene.world.model)));
+                    std::visit([](const auto& world) { return solver_name(world.model); }, scene.world)));
   } else {
     put(csv_header(run->cast()));
   }
@@ -176,7 +211,7 @@ int states(const Flags& flags) {
     if (as_json)
       put((first ? "" : ",\n") + json(now, run->cast(), state));
     else
-      put(csv_row(now, state));
+      put(csv_row(now, state, run->cast().dimension));
     first = false;
   }
   if (as_json) put("\n ]}\n");
@@ -198,7 +233,8 @@ void add_states(CLI::App& program, int& exit) {
   command->add_option("--format", flags->format, "json or csv [json]")->check(CLI::IsMember({"json", "csv"}));
   add_sets(*command, flags->sets);
   command->footer(
-      "SI units; angles in radians, counter-clockwise. Numbers have 17 significant digits: they read back to "
+      "SI units; angles in radians, counter-clockwise; in space an orientation is a unit quaternion x, y, z, "
+      "w, and a spin a vector, about axes of the room. Numbers have 17 significant digits: they read back to "
       "the bit.\n"
       "A contact is where a body touches a wall (floor, left, right, ceiling, then the scene's own: 0, 1, "
       "...) or "

@@ -7,6 +7,7 @@
 
 #include "draw/look.h"
 #include "scene/complaints.h"
+#include "scene/dimension.h"
 #include "scene/document.h"
 #include "scene/overrides.h"
 #include "scene/room.h"
@@ -26,8 +27,7 @@ struct Group {
 /// Who is in the scene, by name.
 struct Roster {
   std::vector<Group> groups;
-  std::map<std::string, int, std::less<>> index;  // name -> group
-  std::vector<sim::Vec<2>> centers;               // one a body: its centre of mass, seen from its own origin
+  std::map<std::string, int, std::less<>> index;     // name -> group
   std::map<std::string, int, std::less<>> families;  // what `group` says -> Body::group
 
   /// The bodies that a reference means ("ball", "ball[3]", "ball[*]"). Complains at `place` and gives none
@@ -37,18 +37,39 @@ struct Roster {
   const Group* group(const std::string& name, Place place, Complaints& complaints) const;
 };
 
+/// How a body's frame lies in the one that was typed: its centre of mass, and in space its principal axes.
+template <int D>
+struct Seat {
+  sim::Vec<D> center = sim::Vec<D>::Zero();
+  sim::Turn<D> axes = sim::upright<D>();
+
+  /// A point of the frame that was typed, in the body's.
+  sim::Vec<D> seen(const sim::Vec<D>& typed) const;
+};
+
+/// The same, and how each body lies in what was typed.
+template <int D>
+struct Seating : Roster {
+  std::vector<Seat<D>> seats;  // one a body
+};
+
 /// Puts the bodies of a scene into a world and says what they look like. Complains of bodies outside the
 /// room.
-Roster bodies(const Node& top, const Room& room, std::uint64_t seed, const std::vector<CopySet>& sets,
-              sim::World<2>& world, std::vector<draw::BodyLook>& looks, Complaints& complaints);
+template <int D>
+Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, const std::vector<CopySet>& sets,
+                  const Dimension& told, sim::World<D>& world, std::vector<draw::BodyLook>& looks,
+                  Complaints& complaints);
 
 /// A point of a body in the room at the start.
-sim::Vec<2> place(const sim::World<2>& world, int body, const sim::Vec<2>& local);
+template <int D>
+sim::Vec<D> place(const sim::World<D>& world, int body, const sim::Vec<D>& local);
 
-/// Degrees, as a person types them, as radians.
-double radians(double degrees);
+/// How a body is turned at the start.
+template <int D>
+sim::Turn<D> turn_of(const sim::World<D>& world, int body);
 
-/// `v` turned by an angle (rad) counter-clockwise.
-sim::Vec<2> turned(const sim::Vec<2>& v, double angle);
+/// `v` turned.
+template <int D>
+sim::Vec<D> turned(const sim::Vec<D>& v, const sim::Turn<D>& turn);
 
 }  // namespace obscura::scene

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::int64_t kFinest = 1'000'000;  // of exact times: sums and differences of them fit 64 bits
 constexpr double kLargest = 1e100;           // beyond it squares overflow
-constexpr int kDimensions = 2;
 
 constexpr const char* kColors[] = {"orange", "sky",    "green", "blue",  "vermilion",
                                    "purple", "yellow", "grey",  "black", "white"};
@@ -29,7 +28,8 @@ std::string owner_text(const std::string& owner) {
   if (owner.empty()) return "a scene";
   const Key* it = key(owner);
   if (owner.find('.') != std::string::npos)
-    return (it->form == Form::tables ? "each of '" : "'") + std::string(it->last()) + "'";
+    return (it->form == Form::tables || it->form == Form::walls ? "each of '" : "'") +
+           std::string(it->last()) + "'";
   return it->form == Form::tables ? "[[" + owner + "]]" : "[" + owner + "]";
 }
 
@@ -42,16 +42,9 @@ std::string elsewhere(std::string_view last) {
   return "";
 }
 
-// a place or direction somewhere in the document, and how many numbers it was given
-struct Written {
-  Place place;
-  std::string key;
-  std::size_t numbers;
-};
-
 class Checker {
  public:
-  explicit Checker(Complaints& complaints) : complaints_(complaints) {}
+  Checker(const Dimension& told, Complaints& complaints) : told_(told), complaints_(complaints) {}
 
   // takes out of a table what is wrong with it
   void table(Node& node, const std::string& owner) {
@@ -64,35 +57,44 @@ class Checker {
         return true;
       }
       met.push_back(known->last());
+      if (known->dimension != 0 && known->dimension != told_.n) {
+        of_the_other(entry, *known);
+        return true;
+      }
       return !value(entry.node, *known);
     });
     for (const Key* each : keys_of(owner))
       if (each->required && std::find(met.begin(), met.end(), each->last()) == met.end())
-        complaints_.add(node.place,
-                        fmt::format("{} needs '{}': {}", owner_text(owner), each->last(), expected(*each)));
-  }
-
-  // a scene is planar or in space, not both, and this version knows the plane
-  void dimensions() {
-    const auto room =
-        std::find_if(written_.begin(), written_.end(), [](const Written& w) { return w.key == "room.size"; });
-    if (written_.empty()) return;
-    const Written first = room == written_.end() ? written_.front() : *room;
-    if (first.numbers > kDimensions)
-      complaints_.add(first.place, fmt::format("'{}' has three numbers: rooms in space are not in this "
-                                               "version of obscura yet, expected two [x, y]",
-                                               last(first.key)));
-    for (const Written& each : written_)
-      if (each.numbers != first.numbers)
-        complaints_.add(
-            each.place,
-            fmt::format("'{}' has {} numbers and '{}' at {} has {}: a scene is planar or in space, not both",
-                        last(each.key), each.numbers, last(first.key), complaints_.text(first.place),
-                        first.numbers));
+        complaints_.add(node.place, fmt::format("{} needs '{}': {}", owner_text(owner), each->last(),
+                                                expected(*each, told_.n)));
   }
 
  private:
   static std::string last(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+  // "and 'size' at a.toml:2:8 has three numbers", where that is why
+  std::string because() const {
+    if (told_.key.empty()) return "no place of this scene has three numbers";
+    return fmt::format("'{}' at {} has {}", last(told_.key), complaints_.text(told_.place), told_.n);
+  }
+
+  // a key of the plane in space, or the other way around
+  void of_the_other(const Entry& entry, const Key& key) {
+    const std::string here = told_.n == 2 ? "in the plane" : "in space",
+                      there = told_.n == 2 ? "of space" : "of the plane";
+    complaints_.add(
+        entry.place,
+        fmt::format("{} is {}, and {}{}",
+                    key.form == Form::tables ? "[[" + key.path + "]]" : "'" + entry.key + "'", there,
+                    because(), key.instead.empty() ? "" : "; " + here + " " + key.instead));
+  }
+
+  // a place with as many numbers as the others have
+  bool fits(const Node& node, const std::string& key, std::size_t numbers) {
+    if (int(numbers) == told_.n) return true;
+    return wrong(node, fmt::format("'{}' has {} numbers and {}: a scene is planar or in space, not both",
+                                   last(key), numbers, because()));
+  }
 
   bool wrong(const Node& node, std::string message) {
     complaints_.add(node.place, std::move(message));
@@ -103,7 +105,7 @@ class Checker {
     std::string hint;
     const bool wants_number = key.form == Form::number || key.form == Form::integer ||
                               key.form == Form::vector || key.form == Form::pixels ||
-                              key.form == Form::count || key.form == Form::path;
+                              key.form == Form::count || key.form == Form::path || key.form == Form::spin;
     if (wants_number && node.is_text() && looks_like_a_number(node.text()))
       hint = "; write it without the quotes";
     return wrong(node, fmt::format("'{}': expected {}, got {}{}", key.last(), what, described(node), hint));
@@ -125,7 +127,8 @@ class Checker {
       return {};
     }
     std::vector<std::string_view> words;
-    for (const Key* each : keys_of(owner)) words.push_back(each->last());
+    for (const Key* each : keys_of(owner))
+      if (each->dimension == 0 || each->dimension == told_.n) words.push_back(each->last());
     const std::string_view near = nearest(entry.key, words);
     std::string hint;
     if (!near.empty()) {
@@ -143,7 +146,7 @@ class Checker {
   bool value(Node& node, const Key& key) {
     switch (key.form) {
       case Form::table:
-        return node.is_table() ? (table(node, key.path), true) : mistyped(node, key, expected(key));
+        return node.is_table() ? (table(node, key.path), true) : mistyped(node, key, expected(key, told_.n));
       case Form::tables:
         return tables(node, key);
       case Form::number:
@@ -151,11 +154,11 @@ class Checker {
       case Form::integer:
         return integer(node, key);
       case Form::boolean:
-        return std::holds_alternative<bool>(node.value) || mistyped(node, key, expected(key));
+        return std::holds_alternative<bool>(node.value) || mistyped(node, key, expected(key, told_.n));
       case Form::text:
-        return node.is_text() || mistyped(node, key, expected(key));
+        return node.is_text() || mistyped(node, key, expected(key, told_.n));
       case Form::thing:
-        return node.is_text() || mistyped(node, key, expected(key));
+        return node.is_text() || mistyped(node, key, expected(key, told_.n));
       case Form::name:
         return name(node, key);
       case Form::rational:
@@ -168,6 +171,12 @@ class Checker {
         return color(node, key);
       case Form::vector:
         return key.varies && node.is_table() ? varied(node, key) : vector(node, key);
+      case Form::spin:
+        return spin(node, key);
+      case Form::turn:
+        return turn(node, key);
+      case Form::walls:
+        return node.is_text() ? choice(node, key) : tables(node, key);
       case Form::pixels:
         return pixels(node, key);
       case Form::count:
@@ -176,7 +185,7 @@ class Checker {
         return offset(node, key);
       case Form::which:
         return std::holds_alternative<bool>(node.value) || node.is_text() ||
-               mistyped(node, key, expected(key));
+               mistyped(node, key, expected(key, told_.n));
       case Form::points:
         return points(node, key);
       case Form::pairs:
@@ -199,14 +208,14 @@ class Checker {
     if (!list) {
       if (node.is_table() && node.header && key.owner().empty())
         return wrong(node, fmt::format("[{}] stands for one of many; write [[{}]]", key.path, key.path));
-      return mistyped(node, key, expected(key));
+      return mistyped(node, key, expected(key, told_.n));
     }
     for (Node& each : node.list()) table(each, key.path);
     return true;
   }
 
   bool number(const Node& node, const Key& key) {
-    if (!node.is_number()) return mistyped(node, key, expected(key));
+    if (!node.is_number()) return mistyped(node, key, expected(key, told_.n));
     const double x = node.number();
     if (!std::isfinite(x)) return wrong(node, fmt::format("'{}' must be finite, got {}", key.last(), x));
     if (!key.range.has(x))
@@ -217,7 +226,7 @@ class Checker {
   }
 
   bool integer(const Node& node, const Key& key) {
-    if (!node.is_integer()) return mistyped(node, key, expected(key));
+    if (!node.is_integer()) return mistyped(node, key, expected(key, told_.n));
     if (key.path == "version" && !key.range.has(node.number()))
       return wrong(node,
                    fmt::format("version {} of the language is newer than this obscura, which reads version 1",
@@ -228,7 +237,7 @@ class Checker {
   }
 
   bool name(const Node& node, const Key& key) {
-    if (!node.is_text()) return mistyped(node, key, expected(key));
+    if (!node.is_text()) return mistyped(node, key, expected(key, told_.n));
     const std::string& text = node.text();
     const bool good =
         !text.empty() && text.size() <= 100 && letter(text[0]) &&
@@ -250,8 +259,8 @@ class Checker {
     if (node.is_text()) {
       exact = sim::parse_rational(node.text());
       if (!exact)
-        return wrong(
-            node, fmt::format("'{}': expected {}, got {}", key.last(), expected(key), quoted(node.text())));
+        return wrong(node, fmt::format("'{}': expected {}, got {}", key.last(), expected(key, told_.n),
+                                       quoted(node.text())));
     } else {
       if (!number(node, key)) return false;
       exact = node.is_integer() ? sim::Rational{std::get<std::int64_t>(node.value), 1}
@@ -282,11 +291,11 @@ class Checker {
   }
 
   bool choice(const Node& node, const Key& key) {
-    return node.is_text() ? word(node, key) : mistyped(node, key, expected(key));
+    return node.is_text() ? word(node, key) : mistyped(node, key, expected(key, told_.n));
   }
 
   bool choices(const Node& node, const Key& key) {
-    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (!node.is_list()) return mistyped(node, key, expected(key, told_.n));
     bool good = true;
     for (const Node& each : node.list())
       good = (each.is_text() ? word(each, key) : mistyped(each, key, "a string")) && good;
@@ -305,7 +314,7 @@ class Checker {
   }
 
   bool one_color(const Node& node, const Key& key) {
-    if (!node.is_text()) return mistyped(node, key, expected(key));
+    if (!node.is_text()) return mistyped(node, key, expected(key, told_.n));
     if (draw::color(node.text())) return true;
     const std::string hint = did_you_mean(node.text(), {std::begin(kColors), std::end(kColors)});
     return wrong(node, fmt::format("'{}': {} is no colour{}", key.last(), quoted(node.text()),
@@ -323,29 +332,70 @@ class Checker {
   }
 
   bool vector(const Node& node, const Key& key) {
-    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (!node.is_list()) return mistyped(node, key, expected(key, told_.n));
     if (!components(node, key)) return false;
     const std::size_t n = node.list().size();
     if (n != 2 && n != 3)
-      return wrong(node, fmt::format("'{}': expected {}, got {} of them", key.last(), expected(key), n));
-    written_.push_back({node.place, key.path, n});
-    if (n != kDimensions) return false;
-    if (key.last() == "normal" &&
-        std::all_of(node.list().begin(), node.list().end(), [](const Node& c) { return c.number() == 0; }))
-      return wrong(node, "'normal' is zero: expected the direction into the room, such as [0, 1]");
+      return wrong(node,
+                   fmt::format("'{}': expected {}, got {} of them", key.last(), expected(key, told_.n), n));
+    if (!fits(node, key.path, n)) return false;
+    if (key.last() == "normal" && zero(node))
+      return wrong(node, fmt::format("'normal' is zero: expected the direction into the room, such as {}",
+                                     told_.n == 2 ? "[0, 1]" : "[0, 1, 0]"));
     return true;
+  }
+
+  static bool zero(const Node& node) {
+    return std::all_of(node.list().begin(), node.list().end(), [](const Node& c) { return c.number() == 0; });
+  }
+
+  // a number in the plane, a vector in space
+  bool spin(Node& node, const Key& key) {
+    if (told_.n == 2) return node.is_number() ? number(node, key) : varied(node, key);
+    if (node.is_number())
+      return wrong(node, fmt::format("'{}' is one number, as in the plane, and {}: expected {}", key.last(),
+                                     because(), expected(key, told_.n)));
+    const Key whole{.path = key.path, .form = Form::vector, .unit = key.unit, .varies = key.varies};
+    return value(node, whole);
+  }
+
+  // three turns, or an axis and an angle
+  bool turn(Node& node, const Key& key) {
+    if (node.is_list())
+      return node.list().size() == 3
+                 ? components(node, key)
+                 : wrong(node, fmt::format("'{}': expected {}, got {} numbers", key.last(),
+                                           expected(key, told_.n), node.list().size()));
+    if (!node.is_table()) return mistyped(node, key, expected(key, told_.n));
+    bool good = true;
+    for (Entry& entry : node.table()) {
+      if (entry.key == "axis") {
+        good = vector(entry.node, {.path = "axis", .form = Form::vector}) && good;
+        if (good && zero(entry.node))
+          good = wrong(entry.node, "'axis' is zero: expected a direction such as [0, 1, 0]");
+      } else if (entry.key == "angle") {
+        good = number(entry.node, {.path = "angle", .form = Form::number, .unit = "deg"}) && good;
+      } else {
+        complaints_.add(entry.place, fmt::format("unknown key {} in an orientation{}", quoted(entry.key),
+                                                 did_you_mean(entry.key, {"axis", "angle"})));
+        good = false;
+      }
+    }
+    if (good && (!node.find("axis") || !node.find("angle")))
+      return wrong(node, fmt::format("'{}': expected {}", key.last(), expected(key, told_.n)));
+    return good;
   }
 
   // over copies: { from = a, to = b }, or a list with one for each
   bool varied(Node& node, const Key& key) {
     if (node.is_list()) return components(node, key);
-    if (!node.is_table()) return mistyped(node, key, expected(key));
+    if (!node.is_table()) return mistyped(node, key, expected(key, told_.n));
     bool good = true;
     for (const Entry& entry : node.table()) {
       if (entry.key == "from" || entry.key == "to") continue;
       complaints_.add(entry.place,
                       fmt::format("unknown key {} in '{}': expected {{ from, to }} over copies, or {}",
-                                  quoted(entry.key), key.last(), expected(key)));
+                                  quoted(entry.key), key.last(), expected(key, told_.n)));
       good = false;
     }
     for (const char* end : {"from", "to"}) {
@@ -360,16 +410,17 @@ class Checker {
   }
 
   bool pixels(const Node& node, const Key& key) {
-    if (!node.is_list() || node.list().size() != 2) return mistyped(node, key, expected(key));
+    if (!node.is_list() || node.list().size() != 2) return mistyped(node, key, expected(key, told_.n));
     bool good = true;
     for (const Node& each : node.list()) good = integer(each, key) && good;
     return good;
   }
 
   bool count(const Node& node, const Key& key) {
-    if (!node.is_list()) return node.is_number() ? integer(node, key) : mistyped(node, key, expected(key));
-    if (node.list().empty() || node.list().size() > kDimensions)
-      return wrong(node, fmt::format("'{}': expected {}, got {} numbers", key.last(), expected(key),
+    if (!node.is_list())
+      return node.is_number() ? integer(node, key) : mistyped(node, key, expected(key, told_.n));
+    if (node.list().empty() || int(node.list().size()) > told_.n)
+      return wrong(node, fmt::format("'{}': expected {}, got {} numbers", key.last(), expected(key, told_.n),
                                      node.list().size()));
     bool good = true;
     for (const Node& each : node.list()) good = integer(each, key) && good;
@@ -377,7 +428,7 @@ class Checker {
   }
 
   bool offset(const Node& node, const Key& key) {
-    if (!node.is_list() || node.list().empty()) return mistyped(node, key, expected(key));
+    if (!node.is_list() || node.list().empty()) return mistyped(node, key, expected(key, told_.n));
     if (!node.list().front().is_list()) return vector(node, key);
     bool good = true;
     for (const Node& each : node.list()) good = vector(each, key) && good;
@@ -385,17 +436,17 @@ class Checker {
   }
 
   bool points(const Node& node, const Key& key) {
-    if (!node.is_list()) return mistyped(node, key, expected(key));
-    if (node.list().size() < 3)
-      return wrong(node,
-                   fmt::format("'{}': expected {}, got {}", key.last(), expected(key), node.list().size()));
+    if (!node.is_list()) return mistyped(node, key, expected(key, told_.n));
+    if (int(node.list().size()) < told_.n + 1)
+      return wrong(node, fmt::format("'{}': expected {}, got {}", key.last(), expected(key, told_.n),
+                                     node.list().size()));
     bool good = true;
     for (const Node& each : node.list()) good = vector(each, key) && good;
     return good;
   }
 
   bool pairs(const Node& node, const Key& key) {
-    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (!node.is_list()) return mistyped(node, key, expected(key, told_.n));
     bool good = true;
     for (const Node& pair : node.list()) {
       const bool two =
@@ -406,7 +457,7 @@ class Checker {
   }
 
   bool limits(const Node& node, const Key& key) {
-    if (!node.is_list() || node.list().size() != 2) return mistyped(node, key, expected(key));
+    if (!node.is_list() || node.list().size() != 2) return mistyped(node, key, expected(key, told_.n));
     if (!components(node, key)) return false;
     const double low = node.list()[0].number(), high = node.list()[1].number();
     if (low > high)
@@ -418,9 +469,9 @@ class Checker {
   }
 
   bool ends(Node& node, const Key& key) {
-    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (!node.is_list()) return mistyped(node, key, expected(key, told_.n));
     if (node.list().size() != 2)
-      return wrong(node, fmt::format("'{}': expected {}, got {} of them", key.last(), expected(key),
+      return wrong(node, fmt::format("'{}': expected {}, got {} of them", key.last(), expected(key, told_.n),
                                      node.list().size()));
     bool good = true;
     for (Node& each : node.list()) good = end(each, key) && good;
@@ -430,7 +481,8 @@ class Checker {
   bool end(Node& node, const Key& key) {
     if (node.is_text()) return true;
     if (node.is_list()) return vector(node, key);
-    const std::string what = "a body's name, { body = \"name\", local = [x, y] } or a place [x, y]";
+    const std::string what = fmt::format("a body's name, {{ body = \"name\", local = {0} }} or a place {0}",
+                                         told_.n == 2 ? "[x, y]" : "[x, y, z]");
     if (!node.is_table()) return mistyped(node, key, what);
     bool good = true;
     for (Entry& entry : node.table()) {
@@ -453,15 +505,16 @@ class Checker {
   }
 
   bool path(const Node& node, const Key& key) {
-    if (!node.is_list()) return mistyped(node, key, expected(key));
+    if (!node.is_list()) return mistyped(node, key, expected(key, told_.n));
     if (node.list().size() < 2)
-      return wrong(node,
-                   fmt::format("'{}': expected {}, got {}", key.last(), expected(key), node.list().size()));
+      return wrong(node, fmt::format("'{}': expected {}, got {}", key.last(), expected(key, told_.n),
+                                     node.list().size()));
     bool good = true;
     const Node* before = nullptr;
     for (const Node& knot : node.list()) {
       if (!knot.is_list() || knot.list().empty()) {
-        good = mistyped(knot, key, "a point in time [t, x, y]");
+        good =
+            mistyped(knot, key, told_.n == 2 ? "a point in time [t, x, y]" : "a point in time [t, x, y, z]");
         continue;
       }
       if (!components(knot, key)) {
@@ -470,11 +523,12 @@ class Checker {
       }
       const std::size_t n = knot.list().size() - 1;
       if (n != 2 && n != 3) {
-        good = wrong(knot, fmt::format("'{}': expected three numbers [t, x, y], got {}", key.last(), n + 1));
+        good = wrong(
+            knot, fmt::format("'{}': expected {}, got {}", key.last(),
+                              told_.n == 2 ? "three numbers [t, x, y]" : "four numbers [t, x, y, z]", n + 1));
         continue;
       }
-      written_.push_back({knot.place, "place after the time in path", n});
-      if (n != kDimensions) {
+      if (!fits(knot, "place after the time in path", n)) {
         good = false;
         continue;
       }
@@ -491,28 +545,24 @@ class Checker {
   bool trails(const Node& node, const Key& key) {
     const Key seconds{.path = "trails", .form = Form::number, .unit = "s", .range = {0, 1e6}};
     if (node.is_number()) return number(node, seconds);
-    if (!node.is_table()) return mistyped(node, key, expected(key));
+    if (!node.is_table()) return mistyped(node, key, expected(key, told_.n));
     bool good = true;
     for (const Entry& entry : node.table()) good = number(entry.node, seconds) && good;
     return good;
   }
 
+  const Dimension& told_;
   Complaints& complaints_;
-  std::vector<Written> written_;
 };
 
 }  // namespace
 
-void check(Node& top, Complaints& complaints) {
-  Checker checker(complaints);
-  checker.table(top, "");
-  checker.dimensions();
+void check(Node& top, const Dimension& told, Complaints& complaints) {
+  Checker(told, complaints).table(top, "");
 }
 
-void check(Node& table, const std::string& owner, Complaints& complaints) {
-  Checker checker(complaints);
-  checker.table(table, owner);
-  checker.dimensions();
+void check(Node& table, const std::string& owner, const Dimension& told, Complaints& complaints) {
+  Checker(told, complaints).table(table, owner);
 }
 
 std::string quoted(std::string_view word) {

@@ -1,5 +1,9 @@
 #include "scene/fields.h"
 
+#include <numbers>
+
+#include "sim/exponential.h"
+
 namespace obscura::scene {
 
 namespace {
@@ -21,16 +25,25 @@ Place Fields::place(std::string_view key) const {
   return it ? it->place : table_->place;
 }
 
-const Node& Fields::node(std::string_view key) const {
+const Node& Fields::node(std::string_view key, int dimension) const {
   const Node* it = given(key);
-  return it ? *it : fallback(owner_.empty() ? std::string(key) : owner_ + '.' + std::string(key));
+  if (it) return *it;
+  return fallback(owner_.empty() ? std::string(key) : owner_ + '.' + std::string(key), dimension);
 }
 
-sim::Vec<2> Fields::vector(std::string_view key) const { return scene::vector(node(key)); }
+template <int D>
+sim::Vec<D> Fields::vector(std::string_view key) const {
+  return scene::vector<D>(node(key, D));
+}
 
 sim::Rational Fields::rational(std::string_view key) const { return exact(node(key)); }
 
-sim::Vec<2> vector(const Node& node) { return {node.list()[0].number(), node.list()[1].number()}; }
+template <int D>
+sim::Vec<D> vector(const Node& node) {
+  sim::Vec<D> v;
+  for (int k = 0; k < D; ++k) v[k] = node.list()[std::size_t(k)].number();
+  return v;
+}
 
 sim::Rational exact(const Node& node) {
   if (node.is_text()) return *sim::parse_rational(node.text());
@@ -45,10 +58,53 @@ double number(const Node& node, int i, int n) {
   return (1 - t) * node.find("from")->number() + t * node.find("to")->number();
 }
 
-sim::Vec<2> vector(const Node& node, int i, int n) {
-  if (node.is_list()) return vector(node);
+template <int D>
+sim::Vec<D> vector(const Node& node, int i, int n) {
+  if (node.is_list()) return vector<D>(node);
   const double t = along(i, n);
-  return (1 - t) * vector(*node.find("from")) + t * vector(*node.find("to"));
+  return (1 - t) * vector<D>(*node.find("from")) + t * vector<D>(*node.find("to"));
 }
+
+template <>
+sim::Spin<2> spin<2>(const Node& node, int i, int n) {
+  return sim::Spin<2>(radians(number(node, i, n)));
+}
+
+template <>
+sim::Spin<3> spin<3>(const Node& node, int i, int n) {
+  return vector<3>(node, i, n) * (std::numbers::pi / 180);
+}
+
+template <>
+sim::Turn<2> turn<2>(const Fields& fields, int i, int n) {
+  return sim::Turn<2>(radians(number(fields.node("angle"), i, n)));
+}
+
+template <>
+sim::Turn<3> turn<3>(const Fields& fields, int, int) {
+  const Node* it = fields.given("orientation");
+  if (!it) return sim::upright<3>();
+  if (it->is_table()) {
+    const sim::Vec<3> axis = vector<3>(*it->find("axis")).stableNormalized();
+    return sim::exponential(radians(it->find("angle")->number()) * axis);
+  }
+  // about x, then y, then z of the room
+  sim::Turn<3> all = sim::upright<3>();
+  for (int k = 0; k < 3; ++k)
+    all = sim::product(sim::exponential(radians(it->list()[std::size_t(k)].number()) * sim::Vec<3>::Unit(k)),
+                       all);
+  return all;
+}
+
+double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
+
+double degrees(double radians) { return radians * (180 / std::numbers::pi); }
+
+template sim::Vec<2> Fields::vector<2>(std::string_view) const;
+template sim::Vec<3> Fields::vector<3>(std::string_view) const;
+template sim::Vec<2> vector<2>(const Node&);
+template sim::Vec<3> vector<3>(const Node&);
+template sim::Vec<2> vector<2>(const Node&, int, int);
+template sim::Vec<3> vector<3>(const Node&, int, int);
 
 }  // namespace obscura::scene

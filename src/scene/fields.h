@@ -21,11 +21,13 @@ class Fields {
   /// Where a value was written, or where its table begins.
   Place place(std::string_view key) const;
   const Node* given(std::string_view key) const { return table_->find(key); }
-  const Node& node(std::string_view key) const;
+  /// The value; where it is left out the default in the plane, or in space.
+  const Node& node(std::string_view key, int dimension = 2) const;
   const Node& table() const { return *table_; }
 
   double number(std::string_view key) const { return node(key).number(); }
-  sim::Vec<2> vector(std::string_view key) const;
+  template <int D>
+  sim::Vec<D> vector(std::string_view key) const;
   sim::Rational rational(std::string_view key) const;
   bool flag(std::string_view key) const { return std::get<bool>(node(key).value); }
   const std::string& text(std::string_view key) const { return node(key).text(); }
@@ -35,14 +37,31 @@ class Fields {
   std::string owner_;
 };
 
-/// Two numbers. Requires a checked list of two.
-sim::Vec<2> vector(const Node& node);
+/// Two numbers, or three. Requires a checked list of as many.
+template <int D>
+sim::Vec<D> vector(const Node& node);
 
 /// The exact time of a checked number or fraction.
 sim::Rational exact(const Node& node);
 
 /// The number that the i-th of n has: itself, one of a list, or on the way { from, to }.
 double number(const Node& node, int i, int n);
-sim::Vec<2> vector(const Node& node, int i, int n);
+template <int D>
+sim::Vec<D> vector(const Node& node, int i, int n);
+
+/// A spin in radians a second from one in degrees: a number in the plane, a vector in space.
+template <int D>
+sim::Spin<D> spin(const Node& node, int i, int n);
+
+/// The turn that `angle` (in the plane) or `orientation` (in space) of a table says, in radians and as a unit
+/// quaternion; of the i-th of n copies. Upright where neither is given.
+template <int D>
+sim::Turn<D> turn(const Fields& fields, int i = 0, int n = 1);
+
+/// Degrees, as a person types them, as radians.
+double radians(double degrees);
+
+/// Radians as degrees.
+double degrees(double radians);
 
 }  // namespace obscura::scene

@@ -9,83 +9,104 @@
 
 #include "scene/fields.h"
 #include "scene/links.h"
+#include "sim/exponential.h"
+#include "sim/turning.h"
 
 namespace obscura::scene {
 
 namespace {
 
-using Vec = sim::Vec<2>;
-using End = sim::End<2>;
 using sim::JointKind;
 
 constexpr std::size_t kMostJoints = 1'000'000;
 constexpr double kRounding = 1e-9;  // of the room's size: places this near are one
 
+// in the plane a hinge is a pin; in space a pin is a ball joint
+template <int D>
 JointKind type(const std::string& word) {
   using enum JointKind;
-  return word == "weld"     ? weld
-         : word == "slider" ? slider
-         : word == "rod"    ? rod
-         : word == "rope"   ? rope
-                            : pin;
+  return word == "weld"              ? weld
+         : word == "slider"          ? slider
+         : word == "rod"             ? rod
+         : word == "rope"            ? rope
+         : word == "hinge" && D == 3 ? hinge
+                                     : pin;
 }
 
-// the angle of an end's body at the start, rad
-double angle(const sim::World<2>& world, int body) {
-  const int k = body - int(world.state.x.size() - world.state.turn.size());
-  return body < 0 || k < 0 ? 0 : world.state.turn[std::size_t(k)][0];
+// a direction of the room as the body at an end sees it
+template <int D>
+sim::Vec<D> as_seen(const sim::World<D>& world, int body, const sim::Vec<D>& direction) {
+  const sim::Turn<D> turn = turn_of(world, body);
+  return turn == sim::upright<D>() ? direction : turned<D>(direction, sim::undone<D>(turn));
 }
 
 // a place of the room as an end of a body
-End on(const sim::World<2>& world, int body, const Vec& at) {
+template <int D>
+sim::End<D> on(const sim::World<D>& world, int body, const sim::Vec<D>& at) {
   if (body < 0) return {-1, at};
-  const Vec away = at - world.state.x[std::size_t(body)];
-  const double its = angle(world, body);
-  return {body, its == 0 ? away : turned(away, -its)};
+  return {body, as_seen<D>(world, body, at - world.state.x[std::size_t(body)])};
+}
+
+// the turn of one body against another: an angle, or a rotation vector in the other's frame
+sim::Spin<2> against(const sim::World<2>& world, int a, int b) {
+  return sim::Spin<2>(turn_of(world, a)[0] - turn_of(world, b)[0]);
+}
+sim::Spin<3> against(const sim::World<3>& world, int a, int b) {
+  return sim::logarithm(sim::composed<3>(sim::undone<3>(turn_of(world, b)), turn_of(world, a)));
 }
 
 // one side of `between`: what it means, and whether it says where
+template <int D>
 struct Side {
-  std::vector<End> ends;
+  std::vector<sim::End<D>> ends;
   bool says_where = false;
 
-  const End& operator[](int i) const { return ends[ends.size() == 1 ? 0 : std::size_t(i)]; }
+  const sim::End<D>& operator[](int i) const { return ends[ends.size() == 1 ? 0 : std::size_t(i)]; }
 };
 
-Side side(const Node& node, const Roster& roster, const sim::World<2>& world, Complaints& complaints) {
-  if (node.is_text() && node.text() == "room") return {{End{}}, false};
+template <int D>
+Side<D> side(const Node& node, const Seating<D>& roster, const sim::World<D>& world, Complaints& complaints) {
+  if (node.is_text() && node.text() == "room") return {{sim::End<D>{}}, false};
   return {ends(node, roster, world, complaints),
           node.is_list() || node.find("local") != nullptr || node.find("at") != nullptr};
 }
 
 // keys of some kinds of joint only
-void refuse_others(const Fields& fields, JointKind kind, Complaints& complaints) {
+void refuse_others(const Fields& fields, JointKind kind, int dimension, Complaints& complaints) {
+  const bool space = dimension == 3;
   const bool far = kind == JointKind::rod || kind == JointKind::rope;
-  const bool moves = kind == JointKind::pin || kind == JointKind::slider;
+  const bool turns = kind == (space ? JointKind::hinge : JointKind::pin);
+  const bool moves = turns || kind == JointKind::slider;
   const auto only = [&](const char* key, bool good, const char* whose) {
     if (!good && fields.given(key))
       complaints.add(fields.place(key),
                      fmt::format("'{}' is that of {}; a {} has none", key, whose, fields.text("type")));
   };
   only("at", !far, "a pin, a weld or a slider");
-  only("axis", kind == JointKind::slider, "a slider");
+  only("axis", kind == JointKind::slider || kind == JointKind::hinge,
+       space ? "a hinge or a slider" : "a slider");
   only("length", far, "a rod or a rope");
-  for (const char* key : {"limits", "motor", "friction"}) only(key, moves, "a pin or a slider");
+  for (const char* key : {"limits", "motor", "friction"})
+    only(key, moves, space ? "a hinge or a slider" : "a pin or a slider");
 }
 
+template <int D>
 class Joining {
  public:
-  Joining(const Fields& fields, JointKind kind, const Side& a, const Side& b, sim::World<2>& world,
+  using Vec = sim::Vec<D>;
+  using End = sim::End<D>;
+
+  Joining(const Fields& fields, JointKind kind, const Side<D>& a, const Side<D>& b, sim::World<D>& world,
           Complaints& complaints)
       : fields_(fields), kind_(kind), a_(a), b_(b), world_(world), complaints_(complaints) {
-    for (const sim::Wall<2>& wall : world.model.walls)
+    for (const sim::Wall<D>& wall : world.model.walls)
       size_ = std::max(size_, wall.point.cwiseAbs().maxCoeff());
     for (const Vec& x : world.state.x) size_ = std::max(size_, x.cwiseAbs().maxCoeff());
   }
 
   // the i-th joint; none, and a complaint, where it cannot be
-  std::optional<sim::Joint<2>> joint(const std::string& name, int i) {
-    sim::Joint<2> it;
+  std::optional<sim::Joint<D>> joint(const std::string& name, int i) {
+    sim::Joint<D> it;
     it.name = name;
     it.kind = kind_;
     it.a = a_[i], it.b = b_[i];
@@ -94,12 +115,12 @@ class Joining {
     if (it.a.body < 0) std::swap(it.a, it.b), std::swap(a_says, b_says);
     const Place place = fields_.place("between");
     if (it.a.body < 0) return refuse(place, "'between' names no body: it would hold nothing");
-    const sim::Body<2>& body = world_.model.bodies[std::size_t(it.a.body)];
+    const sim::Body<D>& body = world_.model.bodies[std::size_t(it.a.body)];
     if (it.a.body == it.b.body) return refuse(place, fmt::format("both ends are on '{}'", body.name));
     const bool far = kind_ == JointKind::rod || kind_ == JointKind::rope;
     if (!far && !meet(it, a_says, b_says)) return {};
     if (far && !stretch(it, b_says)) return {};
-    if (kind_ == JointKind::weld || kind_ == JointKind::slider) {
+    if (kind_ == JointKind::weld || kind_ == JointKind::slider || kind_ == JointKind::hinge) {
       for (const End& end : {it.a, it.b})
         if (end.body >= 0 && !world_.model.bodies[std::size_t(end.body)].turns())
           return refuse(place,
@@ -110,14 +131,18 @@ class Joining {
       return refuse(place,
                     fmt::format("'{}' is fixed, and so is the other end: nothing could move", body.name));
 
-    it.turn << angle(world_, it.a.body) - angle(world_, it.b.body);
-    if (kind_ == JointKind::slider) {
-      const Vec axis = fields_.vector("axis");
+    it.turn = against(world_, it.a.body, it.b.body);
+    if (kind_ == JointKind::slider || kind_ == JointKind::hinge) {
+      const Vec axis = fields_.given("axis")       ? fields_.vector<D>("axis")
+                       : kind_ == JointKind::hinge ? Vec(Vec::Unit(D - 1))
+                                                   : Vec(Vec::Unit(0));
       if (axis.isZero(0))
-        return refuse(fields_.place("axis"), "'axis' is zero: expected a direction such as [1, 0]");
-      it.axis = turned(axis.stableNormalized(), -angle(world_, it.b.body));
+        return refuse(fields_.place("axis"), fmt::format("'axis' is zero: expected a direction such as {}",
+                                                         D == 2 ? "[1, 0]" : "[1, 0, 0]"));
+      it.axis = as_seen<D>(world_, it.b.body, axis.stableNormalized());
     }
-    const auto own = [&](double x) { return kind_ == JointKind::pin ? radians(x) : x; };
+    const bool turns = kind_ == JointKind::pin || kind_ == JointKind::hinge;
+    const auto own = [&](double x) { return turns ? radians(x) : x; };
     if (const Node* limits = fields_.given("limits"))
       it.lower = own(limits->list()[0].number()), it.upper = own(limits->list()[1].number());
     if (const Node* motor = fields_.given("motor"); motor && motor->find("speed") && motor->find("most"))
@@ -129,20 +154,20 @@ class Joining {
   }
 
  private:
-  std::optional<sim::Joint<2>> refuse(Place place, std::string message) {
+  std::optional<sim::Joint<D>> refuse(Place place, std::string message) {
     complaints_.add(place, std::move(message));
     return {};
   }
 
   // pin, weld, slider: one place of both
-  bool meet(sim::Joint<2>& it, bool a_says, bool b_says) {
+  bool meet(sim::Joint<D>& it, bool a_says, bool b_says) {
     const Vec from_a = start(world_, it.a), from_b = start(world_, it.b);
     if (const Node* at = fields_.given("at")) {
       if (a_says || b_says) {
         complaints_.add(at->place, "'at' and a point in 'between' both say where; leave one out");
         return false;
       }
-      it.a = on(world_, it.a.body, vector(*at)), it.b = on(world_, it.b.body, vector(*at));
+      it.a = on<D>(world_, it.a.body, vector<D>(*at)), it.b = on<D>(world_, it.b.body, vector<D>(*at));
       return true;
     }
     if (a_says && b_says) {
@@ -155,24 +180,27 @@ class Joining {
     }
     // the one that says where; a body against the room, and bodies that lie on each other, have a place
     if (b_says) {
-      it.a = on(world_, it.a.body, from_b);
-    } else if (a_says || it.b.body < 0 || kind_ != JointKind::pin ||
+      it.a = on<D>(world_, it.a.body, from_b);
+    } else if (a_says || it.b.body < 0 || (kind_ != JointKind::pin && kind_ != JointKind::hinge) ||
                (from_a - from_b).norm() <= kRounding * (1 + size_)) {
-      it.b = on(world_, it.b.body, from_a);
+      it.b = on<D>(world_, it.b.body, from_a);
     } else {
-      complaints_.add(fields_.place(),
-                      "a pin between two bodies needs 'at', the place in the room where it is, or a "
-                      "point of one in 'between'");
+      complaints_.add(
+          fields_.place(),
+          fmt::format("a {} between two bodies needs 'at', the place in the room where it is, or a "
+                      "point of one in 'between'",
+                      fields_.text("type")));
       return false;
     }
     return true;
   }
 
   // rod, rope: two places, and how far apart
-  bool stretch(sim::Joint<2>& it, bool b_says) {
+  bool stretch(sim::Joint<D>& it, bool b_says) {
     if (it.b.body < 0 && !b_says) {
       complaints_.add(fields_.place("between"),
-                      fmt::format("where in the room? A {} needs a place [x, y]", fields_.text("type")));
+                      fmt::format("where in the room? A {} needs a place {}", fields_.text("type"),
+                                  D == 2 ? "[x, y]" : "[x, y, z]"));
       return false;
     }
     const double apart = (start(world_, it.a) - start(world_, it.b)).norm();
@@ -197,24 +225,25 @@ class Joining {
 
   const Fields& fields_;
   JointKind kind_;
-  const Side &a_, &b_;
-  sim::World<2>& world_;
+  const Side<D>&a_, &b_;
+  sim::World<D>& world_;
   Complaints& complaints_;
   double size_ = 0;
 };
 
 }  // namespace
 
-void joints(const Node& top, const Roster& roster, sim::World<2>& world, Complaints& complaints) {
+template <int D>
+void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Complaints& complaints) {
   const Node* all = top.find("joint");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "joint");
     const Node* between = fields.given("between");
     if (!between || !fields.given("type")) continue;
-    const JointKind kind = type(fields.text("type"));
-    refuse_others(fields, kind, complaints);
-    const Side a = side(between->list()[0], roster, world, complaints);
-    const Side b = side(between->list()[1], roster, world, complaints);
+    const JointKind kind = type<D>(fields.text("type"));
+    refuse_others(fields, kind, D, complaints);
+    const Side<D> a = side(between->list()[0], roster, world, complaints);
+    const Side<D> b = side(between->list()[1], roster, world, complaints);
     if (a.ends.empty() || b.ends.empty()) continue;
     if (a.ends.size() != b.ends.size() && a.ends.size() != 1 && b.ends.size() != 1) {
       complaints.add(
@@ -231,7 +260,7 @@ void joints(const Node& top, const Roster& roster, sim::World<2>& world, Complai
       continue;
     }
     const std::string own = fields.given("name") ? fields.text("name") : fmt::format("joint[{}]", k);
-    Joining joining(fields, kind, a, b, world, complaints);
+    Joining<D> joining(fields, kind, a, b, world, complaints);
     for (int i = 0; i < n; ++i) {
       auto it = joining.joint(n == 1 ? own : fmt::format("{}[{}]", own, i), i);
       if (!it) break;
@@ -240,5 +269,8 @@ void joints(const Node& top, const Roster& roster, sim::World<2>& world, Complai
     }
   }
 }
+
+template void joints<2>(const Node&, const Seating<2>&, sim::World<2>&, Complaints&);
+template void joints<3>(const Node&, const Seating<3>&, sim::World<3>&, Complaints&);
 
 }  // namespace obscura::scene

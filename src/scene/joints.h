@@ -8,6 +8,7 @@
 namespace obscura::scene {
 
 /// Puts the joints of a scene into its world. Requires the bodies.
-void joints(const Node& top, const Roster& roster, sim::World<2>& world, Complaints& complaints);
+template <int D>
+void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Complaints& complaints);
 
 }  // namespace obscura::scene

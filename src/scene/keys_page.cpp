@@ -38,6 +38,36 @@ trails = 1.0
 Metres, kilograms, seconds; angles are degrees, counter-clockwise. x goes to the right, y up, and the origin is the left end of the
 floor, unless `room.corner` moves it. Numbers may be written `2` or `2.0`. Times are exact: `duration = 0.1` is one tenth.
 
+## The plane and space
+
+A scene is in the plane, or in space where `room.size`, or else the first place in it, has three numbers. Wherever the tables
+below say [x, y], a scene in space has [x, y, z]: x to the right, y up, z towards the viewer; the origin is the middle of the floor.
+
+```toml
+[room]
+size  = [6, 3, 4]                                                # six walls
+walls = "ground"                                                 # of them only the floor
+
+[[box]]
+size        = [0.6, 0.4, 0.3]
+position    = [0, 1, 0]
+orientation = [0, 30, 0]                                         # degrees about x, then y, then z of the room
+# orientation = { axis = [1, 1, 0], angle = 30 }                 # or about an axis
+spin        = [0, 0, 90]                                         # degrees per second, about axes of the room
+
+[[capsule]]                                                      # along its own y
+length   = 0.8
+radius   = 0.1
+position = [1, 1, 0]
+
+[[hull]]                                                         # a wedge: all that lies between its points
+points   = [[0, 0, 0], [1, 0, 0], [1, 0.5, 0], [0, 0, 1], [1, 0, 1], [1, 0.5, 1]]
+position = [-2, 0, 0]
+fixed    = true
+```
+
+`rotation = false`, of a body or of `[physics]` for all, keeps bodies from turning.
+
 This page is written by the program from the table that it checks scenes with.
 
 ## Names and references
@@ -202,17 +232,23 @@ std::string type(const Key& key) {
     case Form::color:
       return "colour";
     case Form::vector:
-      return "[x, y]";
+      return key.dimension == 3 ? "[x, y, z]" : "[x, y]";
+    case Form::spin:
+      return "number; in space [x, y, z]";
+    case Form::turn:
+      return "[x, y, z], deg, or { axis, angle }";
+    case Form::walls:
+      return "`ground`, `none`, or tables";
     case Form::pixels:
       return "[width, height]";
     case Form::count:
-      return "whole number, or two";
+      return "whole number, or one a direction";
     case Form::offset:
       return "[x, y], or a list of them";
     case Form::which:
       return "true, false, or which copies";
     case Form::points:
-      return "[[x, y], ...]";
+      return key.dimension == 3 ? "[[x, y, z], ...]" : "[[x, y], ...]";
     case Form::pairs:
       return "pairs of names";
     case Form::limits:
@@ -260,7 +296,8 @@ constexpr const char* kHead = "| key | takes | left out | what it is | example |
 void rows_under(std::string& page, const std::string& owner, const std::string& section) {
   for (const Key* each : keys_of(owner)) {
     page += row(*each, section);
-    if (each->form == Form::table || each->form == Form::tables) rows_under(page, each->path, section);
+    if (each->form == Form::table || each->form == Form::tables || each->form == Form::walls)
+      rows_under(page, each->path, section);
   }
 }
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <iterator>
 #include <optional>
 
 #include "scene/check.h"
@@ -13,28 +13,61 @@ namespace obscura::scene {
 
 namespace {
 
-using Vec = sim::Vec<2>;
-using End = sim::End<2>;
-
 constexpr std::size_t kMostSprings = 4'000'000;
 
-// corners and sides of a box in its own frame, in halves of its size
-const std::map<std::string_view, Vec>& spots() {
-  static const std::map<std::string_view, Vec> all = {
-      {"top left", {-1, 1}},     {"top", {0, 1}},     {"top right", {1, 1}},
-      {"left", {-1, 0}},         {"center", {0, 0}},  {"right", {1, 0}},
-      {"bottom left", {-1, -1}}, {"bottom", {0, -1}}, {"bottom right", {1, -1}}};
+// a side of a thing in its own frame
+struct Way {
+  std::string_view word;
+  int axis, side;
+};
+constexpr Way kWays[] = {{"left", 0, -1}, {"right", 0, 1}, {"bottom", 1, -1},
+                         {"top", 1, 1},   {"back", 2, -1}, {"front", 2, 1}};
+
+// the corner or side that words such as "top left" mean, in halves of a thing's size: a word for each axis at
+// most; nothing where they mean none
+template <int D>
+std::optional<sim::Vec<D>> way(std::string_view words) {
+  sim::Vec<D> sum = sim::Vec<D>::Zero();
+  if (words == "center") return sum;
+  while (!words.empty()) {
+    const std::string_view word = words.substr(0, words.find(' '));
+    const auto found =
+        std::find_if(std::begin(kWays), std::end(kWays), [&](const Way& w) { return w.word == word; });
+    if (found == std::end(kWays) || found->axis >= D || sum[found->axis] != 0) return {};
+    sum[found->axis] = found->side;
+    words.remove_prefix(std::min(words.size(), word.size() + 1));
+  }
+  if (sum.isZero(0)) return {};
+  return sum;
+}
+
+// the words there are, upper ones first
+template <int D>
+std::vector<std::string> all_words() {
+  std::vector<std::string> all;
+  for (const char* depth : {"", " front", " back"}) {
+    if (D == 2 && *depth) continue;
+    for (const char* up : {"top", "", "bottom"}) {
+      for (const char* across : {" left", "", " right"}) {
+        const std::string word = std::string(up) + across + depth;
+        all.push_back(word.empty() ? "center" : word[0] == ' ' ? word.substr(1) : word);
+      }
+    }
+  }
   return all;
 }
 
-// which of the spots a shape has, and where
-std::optional<Vec> spot(const sim::Shape<2>& shape, std::string_view word) {
-  const auto found = spots().find(word);
-  if (found == spots().end()) return {};
-  const Vec& way = found->second;
-  if (shape.kind == sim::ShapeKind::box) return way.cwiseProduct(shape.half);
-  if (shape.kind == sim::ShapeKind::ball && way.cwiseAbs().sum() < 1.5) return way * shape.radius;
-  if (way.isZero(0)) return way;
+// where that is on a shape, if it has it
+template <int D>
+std::optional<sim::Vec<D>> spot(const sim::Shape<D>& shape, std::string_view word) {
+  const auto found = way<D>(word);
+  if (!found) return {};
+  const double far = found->cwiseAbs().sum();
+  if (shape.kind == sim::ShapeKind::box) return sim::Vec<D>(found->cwiseProduct(shape.half));
+  if (shape.kind == sim::ShapeKind::ball && far < 1.5) return sim::Vec<D>(*found * shape.radius);
+  if (shape.kind == sim::ShapeKind::capsule && far < 1.5)
+    return sim::Vec<D>(*found * shape.radius + found->cwiseProduct(shape.half));
+  if (found->isZero(0)) return *found;
   return {};
 }
 
@@ -55,7 +88,8 @@ std::string automatic(const Fields& fields, const std::string& kind, std::size_t
   return fields.given("name") ? fields.text("name") : fmt::format("{}[{}]", kind, i);
 }
 
-bool too_many(const sim::World<2>& world, std::size_t more, Place place, Complaints& complaints) {
+template <int D>
+bool too_many(const sim::World<D>& world, std::size_t more, Place place, Complaints& complaints) {
   if (world.model.springs.size() + more <= kMostSprings) return false;
   complaints.add(place, fmt::format("{} springs in all are more than {}, the most a scene may have",
                                     world.model.springs.size() + more, kMostSprings));
@@ -64,39 +98,45 @@ bool too_many(const sim::World<2>& world, std::size_t more, Place place, Complai
 
 }  // namespace
 
-Vec start(const sim::World<2>& world, const End& end) {
+template <int D>
+sim::Vec<D> start(const sim::World<D>& world, const sim::End<D>& end) {
   return end.body < 0 ? end.local : place(world, end.body, end.local);
 }
 
-std::vector<End> ends(const Node& node, const Roster& roster, const sim::World<2>& world,
-                      Complaints& complaints) {
-  if (node.is_list()) return {End{-1, vector(node)}};
+template <int D>
+std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
+                              Complaints& complaints) {
+  using End = sim::End<D>;
+  if (node.is_list()) return {End{-1, vector<D>(node)}};
   const Node& name = node.is_text() ? node : *node.find("body");
   std::vector<End> all;
   for (const int body : roster.bodies(name.text(), name.place, complaints))
-    all.push_back({body, Vec::Zero()});
+    all.push_back({body, sim::Vec<D>::Zero()});
   if (node.is_text() || all.empty()) return all;
 
   // a point of a body that turns
   const Node* local = node.find("local");
   const Node* at = node.find("at");
-  if ((local || at) && !world.model.bodies[std::size_t(all.front().body)].turns()) {
+  const sim::Body<D>& first = world.model.bodies[std::size_t(all.front().body)];
+  if ((local || at) && (first.shape.kind == sim::ShapeKind::point ||
+                        (first.shape.kind == sim::ShapeKind::ball && !first.turns()))) {
     complaints.add((local ? local : at)->place,
                    fmt::format("{} is a particle, which has no point but its centre", quoted(name.text())));
     return {};
   }
   for (End& end : all) {
-    const sim::Shape<2>& its = world.model.bodies[std::size_t(end.body)].shape;
+    const sim::Shape<D>& its = world.model.bodies[std::size_t(end.body)].shape;
     if (local) {
-      end.local = vector(*local) - roster.centers[std::size_t(end.body)];
+      end.local = roster.seats[std::size_t(end.body)].seen(vector<D>(*local));
       continue;
     }
     if (!at) continue;
-    const auto place = spot(its, at->text());
+    const auto place = spot<D>(its, at->text());
     if (!place) {
+      const std::vector<std::string> known = all_words<D>();
       std::vector<std::string_view> words;
-      for (const auto& [word, way] : spots())
-        if (spot(its, word)) words.push_back(word);
+      for (const std::string& word : known)
+        if (spot<D>(its, word)) words.push_back(word);
       complaints.add(
           at->place,
           its.kind == sim::ShapeKind::box
@@ -113,14 +153,16 @@ std::vector<End> ends(const Node& node, const Roster& roster, const sim::World<2
   return all;
 }
 
-void springs(const Node& top, const Roster& roster, sim::World<2>& world, Complaints& complaints) {
+template <int D>
+void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Complaints& complaints) {
+  using End = sim::End<D>;
   const Node* all = top.find("spring");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "spring");
     const Node* between = fields.given("between");
     if (!between) continue;
-    const std::vector<End> a = ends(between->list()[0], roster, world, complaints);
-    const std::vector<End> b = ends(between->list()[1], roster, world, complaints);
+    const std::vector<End> a = ends<D>(between->list()[0], roster, world, complaints);
+    const std::vector<End> b = ends<D>(between->list()[1], roster, world, complaints);
     if (a.empty() || b.empty()) continue;
     if (a.size() != b.size() && a.size() != 1 && b.size() != 1) {
       complaints.add(
@@ -140,7 +182,7 @@ void springs(const Node& top, const Roster& roster, sim::World<2>& world, Compla
         too_many(world, std::size_t(n), between->place, complaints))
       continue;
     for (int i = 0; i < n; ++i) {
-      sim::Spring<2> spring;
+      sim::Spring<D> spring;
       spring.a = a[a.size() == 1 ? 0 : std::size_t(i)];
       spring.b = b[b.size() == 1 ? 0 : std::size_t(i)];
       if (spring.a.body == spring.b.body && spring.a.body >= 0 && spring.a.local == spring.b.local) {
@@ -159,7 +201,8 @@ void springs(const Node& top, const Roster& roster, sim::World<2>& world, Compla
   }
 }
 
-void nets(const Node& top, const Roster& roster, sim::World<2>& world, Complaints& complaints) {
+template <int D>
+void nets(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints) {
   const Node* all = top.find("net");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "net");
@@ -173,11 +216,17 @@ void nets(const Node& top, const Roster& roster, sim::World<2>& world, Complaint
           fmt::format("'{}' has no copies to join: give it copies = {{ count = [5, 4], ... }}", group->name));
       continue;
     }
+    if (group->grid.size() > 2) {
+      complaints.add(
+          of->place,
+          fmt::format("'{}' is a grid in three directions: a net joins a row or a grid of two", group->name));
+      continue;
+    }
     const int columns = group->grid[0], rows = group->grid.size() > 1 ? group->grid[1] : 1;
     if (too_many(world, std::size_t(group->count) * 4, of->place, complaints)) continue;
     const Node* rest = fields.given("rest_length");
     const auto join = [&](int i, int j, bool diagonal) {
-      sim::Spring<2> spring;
+      sim::Spring<D> spring;
       spring.a.body = group->first + i, spring.b.body = group->first + j;
       spring.stiffness = fields.number("stiffness");
       spring.damping = fields.number("damping");
@@ -200,20 +249,24 @@ void nets(const Node& top, const Roster& roster, sim::World<2>& world, Complaint
   }
 }
 
-void mice(const Node& top, sim::World<2>& world, Complaints& complaints) {
+template <int D>
+void mice(const Node& top, sim::World<D>& world, Complaints& complaints) {
   const Node* all = top.find("mouse");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "mouse");
     const Node* path = fields.given("path");
     if (!path) continue;
     if (std::all_of(world.model.bodies.begin(), world.model.bodies.end(),
-                    [](const sim::Body<2>& body) { return body.fixed; })) {
+                    [](const sim::Body<D>& body) { return body.fixed; })) {
       complaints.add(fields.place(), "the mouse has nothing to take: no body of the scene can move");
       continue;
     }
-    sim::Mouse<2> mouse;
-    for (const Node& knot : path->list())
-      mouse.path.push_back({exact(knot.list()[0]), Vec(knot.list()[1].number(), knot.list()[2].number())});
+    sim::Mouse<D> mouse;
+    for (const Node& knot : path->list()) {
+      sim::Vec<D> at;
+      for (int axis = 0; axis < D; ++axis) at[axis] = knot.list()[std::size_t(axis) + 1].number();
+      mouse.path.push_back({exact(knot.list()[0]), at});
+    }
     mouse.stiffness = fields.number("stiffness");
     mouse.damping = fields.number("damping");
     // twenty reference pixels: a length in the room, whatever the size of the picture
@@ -223,5 +276,16 @@ void mice(const Node& top, sim::World<2>& world, Complaints& complaints) {
     world.state.grips.emplace_back();
   }
 }
+
+#define OBSCURA_INSTANTIATE(D)                                                                    \
+  template sim::Vec<D> start<D>(const sim::World<D>&, const sim::End<D>&);                        \
+  template std::vector<sim::End<D>> ends<D>(const Node&, const Seating<D>&, const sim::World<D>&, \
+                                            Complaints&);                                         \
+  template void springs<D>(const Node&, const Seating<D>&, sim::World<D>&, Complaints&);          \
+  template void nets<D>(const Node&, const Roster&, sim::World<D>&, Complaints&);                 \
+  template void mice<D>(const Node&, sim::World<D>&, Complaints&)
+OBSCURA_INSTANTIATE(2);
+OBSCURA_INSTANTIATE(3);
+#undef OBSCURA_INSTANTIATE
 
 }  // namespace obscura::scene

@@ -11,16 +11,21 @@ namespace obscura::scene {
 
 /// The ends that one side of `between` means: a place in the room is one, "ball[*]" is many. Complains and
 /// gives none where there are none such.
-std::vector<sim::End<2>> ends(const Node& node, const Roster& roster, const sim::World<2>& world,
+template <int D>
+std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
                               Complaints& complaints);
 
 /// Where an end is at the start.
-sim::Vec<2> start(const sim::World<2>& world, const sim::End<2>& end);
+template <int D>
+sim::Vec<D> start(const sim::World<D>& world, const sim::End<D>& end);
 
 /// Puts the springs, the nets and the mice of a scene into its world. Requires the bodies, and model.scale
 /// for the mice.
-void springs(const Node& top, const Roster& roster, sim::World<2>& world, Complaints& complaints);
-void nets(const Node& top, const Roster& roster, sim::World<2>& world, Complaints& complaints);
-void mice(const Node& top, sim::World<2>& world, Complaints& complaints);
+template <int D>
+void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Complaints& complaints);
+template <int D>
+void nets(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints);
+template <int D>
+void mice(const Node& top, sim::World<D>& world, Complaints& complaints);
 
 }  // namespace obscura::scene

@@ -28,14 +28,15 @@ struct Found {
 
 }  // namespace
 
-void refuse_overlaps(const Roster& roster, const sim::World<2>& world, Complaints& complaints) {
-  const sim::Model<2>& model = world.model;
+template <int D>
+void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaints& complaints) {
+  const sim::Model<D>& model = world.model;
   std::set<std::pair<int, int>> joined, ignored;
-  for (const sim::Joint<2>& joint : model.joints)
+  for (const sim::Joint<D>& joint : model.joints)
     if (!joint.touching) joined.insert(ordered(joint.a.body, joint.b.body));
   for (const auto& [a, b] : model.ignore) ignored.insert(ordered(a, b));
   const auto keep_apart = [&](int a, int b) {
-    const sim::Body<2>&one = model.bodies[std::size_t(a)], &other = model.bodies[std::size_t(b)];
+    const sim::Body<D>&one = model.bodies[std::size_t(a)], &other = model.bodies[std::size_t(b)];
     const bool points = one.shape.kind == sim::ShapeKind::point && other.shape.kind == sim::ShapeKind::point;
     return !points && !one.handout && !other.handout && !(one.fixed && other.fixed) &&
            !ignored.contains(ordered(one.group, other.group)) && !joined.contains(ordered(a, b));
@@ -43,7 +44,7 @@ void refuse_overlaps(const Roster& roster, const sim::World<2>& world, Complaint
 
   // neighbours by sweeping along x
   const int n = int(model.bodies.size());
-  std::vector<sim::Bounds<2>> boxes;
+  std::vector<sim::Bounds<D>> boxes;
   for (int i = 0; i < n; ++i)
     boxes.push_back(sim::bounds(model.bodies[std::size_t(i)].shape, sim::stance(world.state, i)));
   std::vector<int> order(static_cast<std::size_t>(n));
@@ -60,7 +61,7 @@ void refuse_overlaps(const Roster& roster, const sim::World<2>& world, Complaint
       const auto [a, b] = ordered(order[i], order[k]);
       if (boxes[std::size_t(order[k])].lower.x() > boxes[std::size_t(order[i])].upper.x()) break;
       if (!boxes[std::size_t(a)].meets(boxes[std::size_t(b)]) || !keep_apart(a, b)) continue;
-      const sim::Shape<2>&one = model.bodies[std::size_t(a)].shape,
+      const sim::Shape<D>&one = model.bodies[std::size_t(a)].shape,
             &other = model.bodies[std::size_t(b)].shape;
       const double depth =
           -sim::separation(one, sim::stance(world.state, a), other, sim::stance(world.state, b));
@@ -87,5 +88,8 @@ void refuse_overlaps(const Roster& roster, const sim::World<2>& world, Complaint
             its.more > 0 ? fmt::format(", and {} more pairs do", its.more) : ""));
   }
 }
+
+template void refuse_overlaps<2>(const Roster&, const sim::World<2>&, Complaints&);
+template void refuse_overlaps<3>(const Roster&, const sim::World<3>&, Complaints&);
 
 }  // namespace obscura::scene

@@ -9,6 +9,7 @@ namespace obscura::scene {
 /// Complains of bodies that overlap at the start by more than a millionth of their size: the first pair of
 /// each declaration, and how many more there are. What need not keep apart may overlap: fixed bodies among
 /// themselves, groups that ignore each other, bodies with a joint between them. Requires the joints.
-void refuse_overlaps(const Roster& roster, const sim::World<2>& world, Complaints& complaints);
+template <int D>
+void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaints& complaints);
 
 }  // namespace obscura::scene

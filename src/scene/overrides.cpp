@@ -6,14 +6,15 @@
 #include <optional>
 
 #include "scene/check.h"
+#include "scene/dimension.h"
 #include "scene/table.h"
 
 namespace obscura::scene {
 
 namespace {
 
-constexpr const char* kNamed[] = {"particle", "ball", "box",   "polygon", "body",
-                                  "spring",   "net",  "joint", "mouse"};
+constexpr const char* kNamed[] = {"particle", "ball",   "box", "capsule", "polygon", "hull",
+                                  "body",     "spring", "net", "joint",   "mouse"};
 
 void settle(Node& node, Place place) {
   node.place = place;
@@ -93,7 +94,7 @@ std::string starts(const Node& top, const std::string& word) {
 }  // namespace
 
 void write(Node& table, const std::string& owner, const std::vector<Step>& path, Node value, Place place,
-           Complaints& complaints) {
+           int dimension, Complaints& complaints) {
   Node* here = &table;
   std::string at = owner;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -104,7 +105,8 @@ void write(Node& table, const std::string& owner, const std::vector<Step>& path,
     if (here->is_list()) {
       const auto n = component(step.name);
       if (!n || !step.indices.empty() || *n >= here->list().size())
-        return complaints.add(place, fmt::format("a list has no {}; expected x or y", quoted(step.name)));
+        return complaints.add(place, fmt::format("a list has no {}; expected {}", quoted(step.name),
+                                                 dimension == 2 ? "x or y" : "x, y or z"));
       here = &here->list()[*n];
     } else if (here->is_table()) {
       at += (at.empty() ? "" : ".") + step.name;
@@ -113,9 +115,10 @@ void write(Node& table, const std::string& owner, const std::vector<Step>& path,
         const Key* known = key(at);
         const bool part = !(last && step.indices.empty());
         if (part && known && known->form == Form::vector && known->fallback.empty())
-          return complaints.add(
-              place, fmt::format("'{}' is not set; give the whole, {}=[x, y]", step.name, step.name));
-        Node fresh = part && known && !known->fallback.empty() ? fallback(at) : Node{place, Node::Table{}};
+          return complaints.add(place, fmt::format("'{0}' is not set; give the whole, {0}={1}", step.name,
+                                                   dimension == 2 ? "[x, y]" : "[x, y, z]"));
+        Node fresh =
+            part && known && !known->fallback.empty() ? fallback(at, dimension) : Node{place, Node::Table{}};
         settle(fresh, place);
         here->table().push_back({step.name, place, std::move(fresh)});
         next = &here->table().back().node;
@@ -143,6 +146,7 @@ void write(Node& table, const std::string& owner, const std::vector<Step>& path,
 
 std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Complaints& complaints) {
   std::vector<CopySet> later;
+  const int dim = dimension(top).n;
   for (std::size_t k = 0; k < sets.size(); ++k) {
     const Place place{int(k) + 1, 0, 0};
     const std::size_t equals = sets[k].find('=');
@@ -166,7 +170,7 @@ std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Comp
     const std::vector<Step> rest(steps->begin() + 1, steps->end());
     const Key* known = key(first.name);
     if (known && known->form != Form::tables) {
-      write(top, "", *steps, std::move(*value), place, complaints);
+      write(top, "", *steps, std::move(*value), place, dim, complaints);
       continue;
     }
 
@@ -205,7 +209,7 @@ std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Comp
       later.push_back({found.kind, found.table, int(std::min<std::int64_t>(*copy, 1'000'000'000)), rest,
                        std::move(*value), place});
     } else {
-      write(table, found.kind, rest, std::move(*value), place, complaints);
+      write(table, found.kind, rest, std::move(*value), place, dim, complaints);
     }
   }
   return later;

@@ -23,8 +23,9 @@ struct CopySet {
 /// them is found where all else is. What means one copy ("ball[3].mass=2") is handed back.
 std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Complaints& complaints);
 
-/// Writes a value under a table of the language ("box", "room") along a path.
+/// Writes a value under a table of the language ("box", "room") along a path, of a scene in the plane or in
+/// space.
 void write(Node& table, const std::string& owner, const std::vector<Step>& path, Node value, Place place,
-           Complaints& complaints);
+           int dimension, Complaints& complaints);
 
 }  // namespace obscura::scene

@@ -11,18 +11,23 @@ namespace obscura::scene {
 
 namespace {
 
-using Vec = sim::Vec<2>;
-
-sim::Vec3 in_space(const Vec& v) { return {v.x(), v.y(), 0}; }
+// a place of the plane at z = 0
+template <int D>
+sim::Vec3 in_space(const sim::Vec<D>& v) {
+  sim::Vec3 place = sim::Vec3::Zero();
+  place.head<D>() = v;
+  return place;
+}
 
 draw::CameraKey::Ease ease(const std::string& word) {
   using enum draw::CameraKey::Ease;
   return word == "linear" ? linear : word == "in" ? in : word == "out" ? out : word == "hold" ? hold : in_out;
 }
 
+template <int D>
 draw::CameraKey camera_key(const Fields& fields) {
   draw::CameraKey key;
-  if (const Node* center = fields.given("center")) key.center = in_space(vector(*center));
+  if (const Node* center = fields.given("center")) key.center = in_space<D>(vector<D>(*center));
   if (const Node* width = fields.given("width")) key.width = width->number();
   return key;
 }
@@ -63,6 +68,7 @@ void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& c
   }
 }
 
+template <int D>
 draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaints) {
   const Fields fields = Fields::of(top, "camera");
   draw::Camera camera;
@@ -79,11 +85,11 @@ draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaint
     const std::vector<int> bodies = roster.bodies(follow->text(), follow->place, complaints);
     if (!bodies.empty()) camera.follow = bodies.front();
   }
-  if (stands) camera.keys.push_back(camera_key(fields));
+  if (stands) camera.keys.push_back(camera_key<D>(fields));
   for (std::size_t i = 0; keys && i < keys->list().size(); ++i) {
     const Fields its(keys->list()[i], "camera.keys");
     if (!its.given("time")) continue;
-    draw::CameraKey key = camera_key(its);
+    draw::CameraKey key = camera_key<D>(its);
     key.time = its.number("time");
     key.ease = ease(its.text("ease"));
     if (!camera.keys.empty() && key.time <= camera.keys.back().time)
@@ -97,7 +103,7 @@ draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaint
 Film film(const Node& top) {
   const Fields fields = Fields::of(top, "film");
   Film film;
-  const Vec size = fields.vector("size");
+  const sim::Vec<2> size = fields.vector<2>("size");
   film.width = int(size.x()), film.height = int(size.y());
   film.fps = fields.rational("fps");
   if (const Node* crf = fields.given("crf")) film.crf = crf->number();
@@ -106,26 +112,33 @@ Film film(const Node& top) {
   return film;
 }
 
-draw::Extent extent(const Room& room, const sim::World<2>& world) {
-  if (room.bounds) return {in_space(room.bounds->low), in_space(room.bounds->high)};
+template <int D>
+draw::Extent extent(const Room<D>& room, const sim::World<D>& world) {
+  using Vec = sim::Vec<D>;
+  if (room.bounds) return {in_space<D>(room.bounds->low), in_space<D>(room.bounds->high)};
   std::vector<Vec> points;
   for (std::size_t i = 0; i < world.state.x.size(); ++i) {
     const double reach = sim::reach(world.model.bodies[i].shape);
-    points.push_back(world.state.x[i] - Vec(reach, reach));
-    points.push_back(world.state.x[i] + Vec(reach, reach));
+    points.push_back(world.state.x[i] - Vec::Constant(reach));
+    points.push_back(world.state.x[i] + Vec::Constant(reach));
   }
-  for (const sim::Wall<2>& wall : room.walls) points.push_back(wall.point);
-  for (const sim::Spring<2>& spring : world.model.springs)
-    for (const sim::End<2>& end : {spring.a, spring.b})
+  for (const sim::Wall<D>& wall : room.walls) points.push_back(wall.point);
+  for (const sim::Spring<D>& spring : world.model.springs)
+    for (const sim::End<D>& end : {spring.a, spring.b})
       if (end.body < 0) points.push_back(end.local);
-  for (const sim::Mouse<2>& mouse : world.model.mice)
-    for (const sim::Knot<2>& knot : mouse.path) points.push_back(knot.place);
-  if (points.empty()) points = {Vec(0, 0)};
+  for (const sim::Mouse<D>& mouse : world.model.mice)
+    for (const sim::Knot<D>& knot : mouse.path) points.push_back(knot.place);
+  if (points.empty()) points = {Vec(Vec::Zero())};
   Vec low = points.front(), high = points.front();
   for (const Vec& point : points) low = low.cwiseMin(point), high = high.cwiseMax(point);
   // a tenth around, and a metre at least
   const Vec size = ((high - low) * 1.2).cwiseMax(1.0), middle = (low + high) / 2;
-  return {in_space(middle - size / 2), in_space(middle + size / 2)};
+  return {in_space<D>(middle - size / 2), in_space<D>(middle + size / 2)};
 }
+
+template draw::Camera camera<2>(const Node&, const Roster&, Complaints&);
+template draw::Camera camera<3>(const Node&, const Roster&, Complaints&);
+template draw::Extent extent<2>(const Room<2>&, const sim::World<2>&);
+template draw::Extent extent<3>(const Room<3>&, const sim::World<3>&);
 
 }  // namespace obscura::scene

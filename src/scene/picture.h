@@ -12,12 +12,14 @@ namespace obscura::scene {
 void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& complaints);
 
 /// The camera of a scene: none, one that stands, or keys.
+template <int D>
 draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaints);
 
 /// How the scene asks to be filmed.
 Film film(const Node& top);
 
 /// What the camera fits: the room, or where it is open all that is in it at the start, with a margin.
-draw::Extent extent(const Room& room, const sim::World<2>& world);
+template <int D>
+draw::Extent extent(const Room<D>& room, const sim::World<D>& world);
 
 }  // namespace obscura::scene

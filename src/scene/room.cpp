@@ -2,89 +2,83 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "scene/fields.h"
 
 namespace obscura::scene {
 
 namespace {
 
-using Vec = sim::Vec<2>;
-
-constexpr double kFar = 1e7;  // m: a side of a room that goes on to here is open
-
-// a corner of what the walls leave, and the wall along the side from it to the next
-struct Corner {
-  Vec at;
-  sim::Wall<2> side;
+// the walls that a size gives, in their order: all of them, or as many as are wanted
+template <int D>
+struct Side {
+  const char* name;
+  int axis;
+  bool high;
 };
 
-// where the side from a corner meets a wall; the corner itself where they are one line but for rounding
-Vec meeting(const Corner& corner, const sim::Wall<2>& b) {
-  const sim::Wall<2>& a = corner.side;
-  const double ca = a.normal.dot(a.point), cb = b.normal.dot(b.point);
-  const double det = a.normal.x() * b.normal.y() - a.normal.y() * b.normal.x();
-  if (std::abs(det) < 1e-12) return corner.at;
-  const Vec at{(ca * b.normal.y() - cb * a.normal.y()) / det, (cb * a.normal.x() - ca * b.normal.x()) / det};
-  return at + Vec::Zero();  // -0 is 0
+constexpr Side<2> kPlane[] = {{"the floor", 1, false},
+                              {"the left wall", 0, false},
+                              {"the right wall", 0, true},
+                              {"the ceiling", 1, true}};
+constexpr Side<3> kSpace[] = {{"the floor", 1, false},     {"the left wall", 0, false},
+                              {"the right wall", 0, true}, {"the ceiling", 1, true},
+                              {"the back wall", 2, false}, {"the front wall", 2, true}};
+
+template <int D>
+std::vector<Side<D>> sides(const Node* walls);
+
+template <>
+std::vector<Side<2>> sides(const Node* walls) {
+  const std::size_t n = !walls || !walls->is_text() ? 4 : walls->text() == "ground" ? 1 : 0;
+  return {kPlane, kPlane + n};
 }
 
-// what a wall leaves of a convex polygon
-std::vector<Corner> clipped(const std::vector<Corner>& polygon, const sim::Wall<2>& wall) {
-  std::vector<Corner> left;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Corner& a = polygon[i];
-    const Corner& b = polygon[(i + 1) % polygon.size()];
-    const double da = beyond(wall, a.at), db = beyond(wall, b.at);
-    if (da <= 0) left.push_back(a);
-    // the wall takes over where the polygon leaves the room, and hands back where it comes in again
-    if (da <= 0 && db > 0) {
-      if (da < 0)
-        left.push_back({meeting(a, wall), wall});
-      else
-        left.back().side = wall;
-    }
-    if (da > 0 && db < 0) left.push_back({meeting(a, wall), a.side});
-  }
-  return left;
+template <>
+std::vector<Side<3>> sides(const Node* walls) {
+  const std::size_t n = !walls || !walls->is_text() ? 6 : walls->text() == "ground" ? 1 : 0;
+  return {kSpace, kSpace + n};
 }
+
+// the origin is the left end of the floor in the plane, its middle in space
+sim::Vec<2> corner(const sim::Vec<2>&) { return {0, 0}; }
+sim::Vec<3> corner(const sim::Vec<3>& size) { return {-size.x() / 2, 0, -size.z() / 2}; }
 
 }  // namespace
 
-double beyond(const sim::Wall<2>& wall, const Vec& point) { return -(point - wall.point).dot(wall.normal); }
-
-Room room(const Node& top, Complaints& complaints) {
+template <int D>
+Room<D> room(const Node& top, Complaints& complaints) {
+  using Vec = sim::Vec<D>;
   const Fields fields = Fields::of(top, "room");
-  Room room;
+  Room<D> room;
   std::optional<double> elasticity, friction;
   if (const Node* e = fields.given("elasticity")) elasticity = e->number();
   if (const Node* mu = fields.given("friction")) friction = mu->number();
 
-  // four walls about the size
-  const Node* slanted = fields.given("walls");
-  if (fields.given("size") || !slanted || slanted->list().empty()) {
-    const Vec low = fields.vector("corner"), size = fields.vector("size"), high = low + size;
+  // walls about the size
+  const Node* walls = fields.given("walls");
+  const bool word = walls && walls->is_text(), listed = walls && walls->is_list() && !walls->list().empty();
+  if (fields.given("size") || !listed) {
+    const Vec size = fields.vector<D>("size");
+    const Node* at = fields.given("corner");
+    const Vec low = at ? vector<D>(*at) : corner(size), high = low + size;
     room.height = size.y();
-    const auto wall = [&](const char* name, const Vec& point, const Vec& normal) {
-      room.walls.push_back({point, normal, elasticity, friction});
-      room.names.push_back(name);
+    room.bounds = {low, high};
+    for (const Side<D>& side : sides<D>(walls)) {
+      const Vec normal = (side.high ? -1.0 : 1.0) * Vec::Unit(side.axis) + Vec::Zero();
+      room.walls.push_back({side.high ? high : low, normal, elasticity, friction});
+      room.names.push_back(side.name);
       room.places.push_back(fields.given("size") ? fields.place("size") : Place{});
-    };
-    wall("the floor", low, {0, 1});
-    wall("the left wall", low, {1, 0});
-    wall("the right wall", high, {-1, 0});
-    wall("the ceiling", high, {0, -1});
-  } else if (const Node* corner = fields.given("corner")) {
-    complaints.add(corner->place, "'corner' is that of 'size', and there is none");
+    }
+  } else if (const Node* at = fields.given("corner")) {
+    complaints.add(at->place, "'corner' is that of 'size', and there is none");
   }
 
   // walls at any angle
-  for (std::size_t i = 0; slanted && i < slanted->list().size(); ++i) {
-    const Fields its(slanted->list()[i], "room.walls");
+  for (std::size_t i = 0; listed && i < walls->list().size(); ++i) {
+    const Fields its(walls->list()[i], "room.walls");
     if (!its.given("point") || !its.given("normal")) continue;
-    sim::Wall<2> wall{its.vector("point"), its.vector("normal").stableNormalized(), elasticity, friction};
+    sim::Wall<D> wall{its.vector<D>("point"), its.vector<D>("normal").stableNormalized(), elasticity,
+                      friction};
     if (const Node* e = its.given("elasticity")) wall.elasticity = e->number();
     if (const Node* mu = its.given("friction")) wall.friction = mu->number();
     room.walls.push_back(wall);
@@ -92,25 +86,19 @@ Room room(const Node& top, Complaints& complaints) {
     room.places.push_back(its.place());
   }
 
-  // what the walls leave
-  std::vector<Corner> inside = {{{-kFar, -kFar}, {{0, -kFar}, {0, 1}, {}, {}}},
-                                {{kFar, -kFar}, {{kFar, 0}, {-1, 0}, {}, {}}},
-                                {{kFar, kFar}, {{0, kFar}, {0, -1}, {}, {}}},
-                                {{-kFar, kFar}, {{-kFar, 0}, {1, 0}, {}, {}}}};
-  for (std::size_t i = 0; i < room.walls.size(); ++i) {
-    inside = clipped(inside, room.walls[i]);
-    if (inside.size() < 3) {
-      complaints.add(
-          room.places[i],
-          fmt::format("{} leaves no room: it lies on the outside of the walls before it", room.names[i]));
-      return room;
-    }
+  const Left<D> inside = left(room.walls);
+  if (inside.walls < int(room.walls.size())) {
+    const std::size_t first = std::size_t(inside.walls);
+    complaints.add(
+        room.places[first],
+        fmt::format("{} leaves no room: it lies on the outside of the walls before it", room.names[first]));
+    return room;
   }
-  Room::Bounds bounds{inside.front().at, inside.front().at};
-  for (const Corner& corner : inside)
-    bounds = {bounds.low.cwiseMin(corner.at), bounds.high.cwiseMax(corner.at)};
-  if (bounds.low.minCoeff() > -kFar && bounds.high.maxCoeff() < kFar) room.bounds = bounds;
+  if (!word) room.bounds = inside.bounds;
   return room;
 }
+
+template Room<2> room<2>(const Node&, Complaints&);
+template Room<3> room<3>(const Node&, Complaints&);
 
 }  // namespace obscura::scene

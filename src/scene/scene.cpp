@@ -8,6 +8,7 @@
 #include "scene/bodies.h"
 #include "scene/check.h"
 #include "scene/complaints.h"
+#include "scene/dimension.h"
 #include "scene/document.h"
 #include "scene/fields.h"
 #include "scene/joints.h"
@@ -40,10 +41,10 @@ sim::Solver solver(const std::string& word) {
 }
 
 // the handout knows particles and boxes, each alone
-void refuse_beyond_handout(const Node& top, Complaints& complaints) {
-  for (const char* kind : {"ball", "polygon", "body", "joint"}) {
+void refuse_beyond_handout(const Node& top, int dimension, Complaints& complaints) {
+  for (const std::string kind : {"ball", "polygon", "body", "joint"}) {
     const Node* all = top.find(kind);
-    if (!all || all->list().empty()) continue;
+    if (!all || all->list().empty() || (dimension == 3 && kind != "joint")) continue;
     complaints.add(all->list().front().place,
                    fmt::format("[[{}]] is not in `collision = \"handout\"`, which knows particles and boxes; "
                                "[physics] collision = \"contact\" has it",
@@ -52,7 +53,8 @@ void refuse_beyond_handout(const Node& top, Complaints& complaints) {
 }
 
 // groups that do not touch, as the bodies number them
-void ignore(const Node& top, const Roster& roster, sim::Model<2>& model, Complaints& complaints) {
+template <int D>
+void ignore(const Node& top, const Roster& roster, sim::Model<D>& model, Complaints& complaints) {
   for (const Node& pair : Fields::of(top, "contact").node("ignore").list()) {
     int groups[2] = {0, 0};
     for (std::size_t k = 0; k < 2; ++k) {
@@ -87,6 +89,49 @@ void refuse_taken_names(const Node& top, const Roster& roster, Complaints& compl
   }
 }
 
+// what happens in the plane, or in space, and what it looks like
+template <int D>
+sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, const Dimension& told,
+                    Scene& scene, Complaints& complaints) {
+  sim::World<D> world;
+  sim::Model<D>& model = world.model;
+  const Fields physics = Fields::of(top, "physics");
+  model.rate = physics.rational("rate");
+  model.integrator = integrator(physics.text("integrator"));
+  model.collision = collision(physics.text("collision"));
+  model.solver = solver(physics.text("solver"));
+  model.impacts =
+      physics.text("impacts") == "sequential" ? sim::Impacts::sequential : sim::Impacts::simultaneous;
+  model.overlap = physics.text("overlap") == "separate" ? sim::Overlap::separate : sim::Overlap::refuse;
+  model.gravity = Fields::of(top, "room").vector<D>("gravity");
+  const Room<D> walls = room<D>(top, complaints);
+  model.walls = walls.walls;
+  const Seating<D> roster =
+      bodies<D>(top, walls, scene.seed, copy_sets, told, world, scene.look.bodies, complaints);
+  springs(top, roster, world, complaints);
+  nets(top, roster, world, complaints);
+  joints(top, roster, world, complaints);
+  ignore(top, roster, model, complaints);
+  if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
+  refuse_taken_names(top, roster, complaints);
+
+  // what the camera fits, and with it the length of a reference pixel
+  scene.extent = extent(walls, world);
+  model.scale = walls.height ? *walls.height : scene.extent.high.y() - scene.extent.low.y();
+  mice(top, world, complaints);
+
+  // what it looks like
+  look(top, roster, scene.look, complaints);
+  scene.camera = camera<D>(top, roster, complaints);
+
+  // overlaps may come of other mistakes: they are told where there are none
+  if (complaints.none() && model.collision != sim::Collision::handout &&
+      model.overlap == sim::Overlap::refuse) {
+    refuse_overlaps(roster, world, complaints);
+  }
+  return world;
+}
+
 }  // namespace
 
 Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets) {
@@ -95,7 +140,8 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   if (top.table().empty())
     throw Error({{file, 0, 0, "has no keys at all; `obscura new NAME` writes a scene to start from"}});
   const std::vector<CopySet> copy_sets = apply(sets, top, complaints);
-  check(top, complaints);
+  const Dimension told = dimension(top);
+  check(top, told, complaints);
 
   Scene scene;
   scene.file = file;
@@ -106,44 +152,21 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   scene.duration = words.rational("duration");
   scene.seed = std::uint64_t(std::get<std::int64_t>(words.node("seed").value));
 
-  // what happens
-  sim::Model<2>& model = scene.world.model;
-  const Fields physics = Fields::of(top, "physics");
-  model.rate = physics.rational("rate");
-  model.integrator = integrator(physics.text("integrator"));
-  model.collision = collision(physics.text("collision"));
-  model.solver = solver(physics.text("solver"));
-  model.impacts =
-      physics.text("impacts") == "sequential" ? sim::Impacts::sequential : sim::Impacts::simultaneous;
-  model.overlap = physics.text("overlap") == "separate" ? sim::Overlap::separate : sim::Overlap::refuse;
-  model.gravity = Fields::of(top, "room").vector("gravity");
-  const Room walls = room(top, complaints);
-  model.walls = walls.walls;
-  const Roster roster = bodies(top, walls, scene.seed, copy_sets, scene.world, scene.look.bodies, complaints);
-  springs(top, roster, scene.world, complaints);
-  nets(top, roster, scene.world, complaints);
-  joints(top, roster, scene.world, complaints);
-  ignore(top, roster, model, complaints);
-  if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, complaints);
-  refuse_taken_names(top, roster, complaints);
-
-  // what the camera fits, and with it the length of a reference pixel
-  scene.extent = extent(walls, scene.world);
-  model.scale = walls.height ? *walls.height : scene.extent.high.y() - scene.extent.low.y();
-  mice(top, scene.world, complaints);
-
-  // what it looks like, how it is filmed
-  look(top, roster, scene.look, complaints);
-  scene.camera = camera(top, roster, complaints);
   scene.film = film(top);
-
-  // overlaps may come of other mistakes: they are told where there are none
-  if (complaints.none() && model.collision != sim::Collision::handout &&
-      model.overlap == sim::Overlap::refuse) {
-    refuse_overlaps(roster, scene.world, complaints);
-  }
+  if (told.n == 2)
+    scene.world = built<2>(top, copy_sets, told, scene, complaints);
+  else
+    scene.world = built<3>(top, copy_sets, told, scene, complaints);
   if (!complaints.none()) complaints.raise();
   return scene;
+}
+
+std::unique_ptr<sim::Run> Scene::run() const {
+  return std::visit([](const auto& it) { return sim::run(it); }, world);
+}
+
+std::vector<sim::Trouble> Scene::forebodings() const {
+  return std::visit([](const auto& it) { return sim::forebodings(it.model); }, world);
 }
 
 Scene read(const std::string& file, const std::vector<std::string>& sets) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,6 +11,7 @@
 #include "draw/depict.h"
 #include "draw/look.h"
 #include "sim/rational.h"
+#include "sim/run.h"
 #include "sim/state.h"
 
 namespace obscura::scene {
@@ -30,11 +32,20 @@ struct Scene {
   std::vector<std::string> sets;  // the --set overrides, as given
   sim::Rational duration{10, 1};  // s
   std::uint64_t seed = 0;
-  sim::World<2> world;
+  std::variant<sim::World<2>, sim::World<3>> world;
   draw::Look look;
   draw::Camera camera;
   draw::Extent extent;  // what the camera fits
   Film film;
+
+  int dimension() const { return world.index() == 0 ? 2 : 3; }
+  /// A run of it from its start; what is known to go wrong before it does (sim/run.h).
+  std::unique_ptr<sim::Run> run() const;
+  std::vector<sim::Trouble> forebodings() const;
+
+  /// The world of a scene in the plane, of one in space.
+  const sim::World<2>& plane() const { return std::get<sim::World<2>>(world); }
+  const sim::World<3>& space() const { return std::get<sim::World<3>>(world); }
 };
 
 /// Reads, validates and builds the scene in `file` ("-": standard input), with `sets`

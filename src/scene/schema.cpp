@@ -45,7 +45,9 @@ Json list_of(Json items, int least, int most) {
 
 Json any_of(std::vector<Json> ways) { return {{"anyOf", std::move(ways)}}; }
 
-Json vector(const Range& range = {}) { return list_of(ranged({{"type", "number"}}, range), 2, 2); }
+Json vector(const Range& range = {}, int dimension = 0) {
+  return list_of(ranged({{"type", "number"}}, range), dimension == 3 ? 3 : 2, dimension == 2 ? 2 : 3);
+}
 
 Json words(const std::vector<std::string>& choices) { return {{"type", "string"}, {"enum", choices}}; }
 
@@ -85,17 +87,29 @@ Json value(const Key& key) {
     case Form::color:
       return any_of({string, list_of(string, 1, 0)});
     case Form::vector:
-      return key.varies ? any_of({vector(key.range), between(vector(key.range))}) : vector(key.range);
+      return key.varies
+                 ? any_of({vector(key.range, key.dimension), between(vector(key.range, key.dimension))})
+                 : vector(key.range, key.dimension);
+    case Form::spin:
+      return any_of({number, list_of(number, 1, 0), between(number), between(vector(key.range, 3))});
+    case Form::turn:
+      return any_of({vector({}, 3),
+                     {{"type", "object"},
+                      {"properties", {{"axis", vector({}, 3)}, {"angle", {{"type", "number"}}}}},
+                      {"required", {"axis", "angle"}},
+                      {"additionalProperties", false}}});
+    case Form::walls:
+      return any_of({words(key.choices), list_of(object(key.path), 0, 0)});
     case Form::pixels:
       return list_of(whole, 2, 2);
     case Form::count:
-      return any_of({whole, list_of(whole, 1, 2)});
+      return any_of({whole, list_of(whole, 1, 3)});
     case Form::offset:
-      return any_of({vector(), list_of(vector(), 1, 2)});
+      return any_of({vector(), list_of(vector(), 1, 3)});
     case Form::which:
       return any_of({{{"type", "boolean"}}, string});
     case Form::points:
-      return list_of(vector(), 3, 0);
+      return list_of(vector({}, key.dimension), 3, 0);
     case Form::pairs:
       return list_of(list_of(string, 2, 2), 0, 0);
     case Form::limits:
@@ -108,7 +122,7 @@ Json value(const Key& key) {
       return list_of(any_of({string, vector(), point}), 2, 2);
     }
     case Form::path:
-      return list_of(list_of({{"type", "number"}}, 3, 3), 2, 0);
+      return list_of(list_of({{"type", "number"}}, 3, 4), 2, 0);
     case Form::trails:
       return any_of(
           {number, {{"type", "object"}, {"additionalProperties", {{"type", "number"}, {"minimum", 0}}}}});
@@ -123,7 +137,8 @@ Json property(const Key& key) {
   if (!key.unit.empty()) text += fmt::format(" [{}]", key.unit);
   if (!key.absent.empty()) text += fmt::format(" Left out: {}.", key.absent);
   it["description"] = text;
-  if (!key.fallback.empty() && key.absent.empty()) it["default"] = literal(fallback(key.path));
+  if (!key.fallback.empty() && key.absent.empty())
+    it["default"] = literal(fallback(key.path, key.dimension == 3 ? 3 : 2));
   return it;
 }
 

@@ -10,7 +10,7 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr std::string_view kBodyKinds[] = {"particle", "ball", "box", "polygon", "body"};
+constexpr std::string_view kBodyKinds[] = {"particle", "ball", "box", "capsule", "polygon", "hull", "body"};
 
 // a row for several kinds of body, "any.mass": which kinds
 bool holds(std::string_view prefix, std::string_view kind) {
@@ -39,7 +39,7 @@ std::vector<Key> built() {
     std::size_t end = i;
     while (end < rows.size() && of_bodies(rows[end])) ++end;
     for (const std::string_view kind : kBodyKinds) {
-      const bool own_origin = kind == "polygon" || kind == "body";
+      const bool own_origin = kind == "polygon" || kind == "hull" || kind == "body";
       for (std::size_t k = i; k < end; ++k) {
         Key key = rows[k];
         const std::size_t dot = std::min(key.path.find('.'), key.path.size());
@@ -58,13 +58,20 @@ std::vector<Key> built() {
 struct Language {
   std::vector<Key> all = built();
   std::map<std::string, std::size_t, std::less<>> index;
-  std::map<std::string, Node, std::less<>> fallbacks;
+  std::map<std::string, Node, std::less<>> planar, spatial;  // defaults
 
   Language() {
+    const auto value = [](const std::string& text, const std::string& path) {
+      return document("x = " + text, path).table().front().node;
+    };
     for (std::size_t i = 0; i < all.size(); ++i) {
-      index.emplace(all[i].path, i);
-      if (!all[i].fallback.empty())
-        fallbacks.emplace(all[i].path, document("x = " + all[i].fallback, all[i].path).table().front().node);
+      const Key& it = all[i];
+      index.emplace(it.path, i);
+      if (it.fallback.empty()) continue;
+      planar.emplace(it.path, value(it.fallback, it.path));
+      Node there = value(it.in_space.empty() ? it.fallback : it.in_space, it.path);
+      if (it.form == Form::vector && there.list().size() == 2) there.list().push_back({{}, 0.0});
+      spatial.emplace(it.path, std::move(there));
     }
   }
 };
@@ -92,33 +99,40 @@ std::vector<const Key*> keys_of(std::string_view owner) {
   return own;
 }
 
-const Node& fallback(std::string_view path) { return language().fallbacks.find(path)->second; }
+const Node& fallback(std::string_view path, int dimension) {
+  const auto& all = dimension == 2 ? language().planar : language().spatial;
+  return all.find(path)->second;
+}
 
 std::span<const std::string_view> body_kinds() { return kBodyKinds; }
 
 std::span<const std::string_view> later_keys() { return kLater; }
 
 std::string unit_words(std::string_view unit) {
-  static const std::map<std::string_view, std::string_view> words = {{"m", "metres"},
-                                                                     {"kg", "kilograms"},
-                                                                     {"s", "seconds"},
-                                                                     {"deg", "degrees"},
-                                                                     {"m/s", "metres per second"},
-                                                                     {"m/s^2", "metres per second squared"},
-                                                                     {"deg/s", "degrees per second"},
-                                                                     {"N/m", "newtons per metre"},
-                                                                     {"N s/m", "newton seconds per metre"},
-                                                                     {"kg/m^2", "kilograms per square metre"},
-                                                                     {"m/N", "metres per newton"},
-                                                                     {"N", "newtons"},
-                                                                     {"1/s", "per second"}};
+  static const std::map<std::string_view, std::string_view> words = {
+      {"m", "metres"},
+      {"kg", "kilograms"},
+      {"s", "seconds"},
+      {"deg", "degrees"},
+      {"m/s", "metres per second"},
+      {"m/s^2", "metres per second squared"},
+      {"deg/s", "degrees per second"},
+      {"N/m", "newtons per metre"},
+      {"N s/m", "newton seconds per metre"},
+      {"kg/m^2, in space kg/m^3", "kilograms per square metre, in space per cubic metre"},
+      {"m/N", "metres per newton"},
+      {"N", "newtons"},
+      {"1/s", "per second"}};
   const auto found = words.find(unit);
   return std::string(found == words.end() ? unit : found->second);
 }
 
-std::string expected(const Key& key) {
+std::string expected(const Key& key, int dimension) {
   const std::string of = key.unit.empty() ? "" : (key.unit == "1/s" ? " " : " of ") + unit_words(key.unit);
   const std::string in = key.unit.empty() ? "" : " in " + unit_words(key.unit);
+  const bool space = (key.dimension == 0 ? dimension : key.dimension) == 3;
+  const std::string place = space ? "[x, y, z]" : "[x, y]",
+                    numbers = (space ? "three numbers " : "two numbers ") + place;
   switch (key.form) {
     case Form::table:
       return "a table";
@@ -143,27 +157,35 @@ std::string expected(const Key& key) {
     case Form::color:
       return "a colour: a name or \"#rrggbb\"";
     case Form::vector:
-      return "two numbers [x, y]" + in;
+      return numbers + in;
+    case Form::spin:
+      return space ? numbers + in : "a number" + of;
+    case Form::turn:
+      return "three turns [x, y, z] in degrees, or { axis = [x, y, z], angle = degrees }";
     case Form::pixels:
       return "two whole numbers [width, height]";
     case Form::count:
-      return "a whole number, or two [columns, rows]";
+      return space ? "a whole number, or up to three [columns, rows, layers]"
+                   : "a whole number, or two [columns, rows]";
     case Form::offset:
-      return "two numbers [x, y]" + in + ", or a list of such";
+      return numbers + in + ", or a list of such";
     case Form::which:
       return "true, false, or which copies: \"0..4\", \"0,5\"";
     case Form::ends:
-      return "two ends, each a body's name, { body = \"name\", local = [x, y] } or a place [x, y]";
+      return fmt::format("two ends, each a body's name, {{ body = \"name\", local = {0} }} or a place {0}",
+                         place);
     case Form::thing:
       return "the name of a body";
     case Form::points:
-      return "three points or more [[x, y], ...]" + in;
+      return (space ? "four points or more [[x, y, z], ...]" : "three points or more [[x, y], ...]") + in;
     case Form::pairs:
       return "pairs of names [[\"a\", \"b\"], ...]";
     case Form::limits:
       return "two numbers [lowest, highest]";
     case Form::path:
-      return "points in time [[t, x, y], ...], two at least";
+      return fmt::format("points in time [[t, {}, ...], two at least", place.substr(1));
+    case Form::walls:
+      return "\"ground\", \"none\", or a list of tables";
     case Form::trails:
       return "a number of seconds, or a table of them by body";
   }

@@ -24,17 +24,20 @@ enum class Form {
   choice,
   choices,  // one word, a list of words
   color,
-  vector,  // [x, y]
+  vector,  // [x, y], in space [x, y, z]
+  spin,    // a number in the plane, [x, y, z] in space
+  turn,    // in space: [x, y, z] or { axis, angle }
   pixels,  // [width, height], whole
   count,   // 12, or [6, 2]
-  offset,  // [x, y], or one a direction of the grid
+  offset,  // a vector, or one a direction of the grid
   which,   // true, or "0..4": all, or those of the copies
-  points,  // [[x, y], ...], three at least
+  points,  // [[x, y], ...], three at least; in space four
   pairs,   // [["a", "b"], ...], names
   limits,  // [lowest, highest]
   ends,    // the two ends of a spring
   thing,   // the name of a body
   path,    // [[t, x, y], ...]
+  walls,   // "ground", "none", or tables
   trails,  // seconds, or a table of them by body
 };
 
@@ -54,7 +57,10 @@ struct Key {
   std::string fallback{};  // the default, as TOML; empty: see `absent`
   std::string absent{};    // the default, in words, where it is no constant
   Range range{};
-  bool varies = false;  // over copies: { from, to } or a list as well
+  std::string in_space{};  // the default there, where it is not that of the plane and zeros
+  int dimension = 0;       // 2, 3: of the plane, of space only
+  std::string instead{};   // what says it in the other
+  bool varies = false;     // over copies: { from, to } or a list as well
   bool required = false;
   std::vector<std::string> choices{}, later{};  // words of today, words that a later version will have
   std::string doc{};                            // one line
@@ -83,14 +89,14 @@ const Key* key(std::string_view path);
 /// The keys right under a table, "" for the top.
 std::vector<const Key*> keys_of(std::string_view owner);
 
-/// The default of a key as a value. Requires a key with a constant default.
-const Node& fallback(std::string_view path);
+/// The default of a key as a value, in the plane or in space. Requires a key with a constant default.
+const Node& fallback(std::string_view path, int dimension);
 
 /// Keys of the language's next versions, which this one refuses by name.
 std::span<const std::string_view> later_keys();
 
 /// What a key takes, in words: "a number of kilograms", "two numbers [x, y] in metres".
-std::string expected(const Key& key);
+std::string expected(const Key& key, int dimension = 2);
 
 /// "kg" as "kilograms"; the unit itself where it has no better word.
 std::string unit_words(std::string_view unit);

@@ -57,9 +57,6 @@ TEST(Complaints, WhatComesLaterIsNamedAsSuch) {
   refused("[golden]\nat = [0]", "a.toml:1:2: [golden] is not in this version of obscura yet");
   refused("version = 2",
           "a.toml:1:11: version 2 of the language is newer than this obscura, which reads version 1");
-  refused("[room]\nsize = [4, 3, 4]",
-          "a.toml:2:8: 'size' has three numbers: rooms in space are not in this version of obscura yet, "
-          "expected two [x, y]");
   for (const char* table : {"chain", "bond", "explosion"})
     EXPECT_THAT(wrong("[[" + std::string(table) + "]]"),
                 ElementsAre(EndsWith("is not in this version of obscura yet")))
@@ -190,7 +187,7 @@ TEST(Complaints, JointsSayWhereTheyAre) {
   refused(two + "type = \"pin\"\nbetween = [\"a\", \"room\"]\nlimits = [10, 20]",
           "a.toml:15:10: 'limits' leave out where it starts: expected 0 between 10 and 20");
   refused(two + "type = \"hook\"\nbetween = [\"a\", \"room\"]",
-          "a.toml:13:8: 'type': expected one of pin, weld, slider, rod, rope, got 'hook'");
+          "a.toml:13:8: 'type': expected one of pin, hinge, ball, weld, slider, rod, rope, got 'hook'");
 }
 
 TEST(Complaints, GroupsAreThoseOfBodies) {

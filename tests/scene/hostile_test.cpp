@@ -270,7 +270,7 @@ TEST(Hostile, AHundredThousandBodiesAreRead) {
   const Scene it = parse(
       "[[particle]]\nposition = [1, 1]\ncopies = { count = [400, 250], offset = [[0.01, 0], [0, 0.01]] }",
       "a.toml");
-  EXPECT_EQ(it.world.model.bodies.size(), 100'000u);
+  EXPECT_EQ(it.plane().model.bodies.size(), 100'000u);
 }
 
 }  // namespace

@@ -45,17 +45,17 @@ TEST(Overrides, ReachEveryKindOfKey) {
       with({"crate.elasticity=0.5", "room.gravity=[0, -1.6]", "film.fps=30000/1001", "seed=4",
             "mouse[0].stiffness=7", "look.theme=screen", "title=The room = mine", "crate.position.y=1.5",
             "box[1].density = 2", "look.trails={ crate = 2 }", "physics.rate=1000"});
-  EXPECT_EQ(it.world.model.bodies[5].elasticity, 0.5);
-  EXPECT_EQ(it.world.model.gravity, Vec(0, -1.6));
+  EXPECT_EQ(it.plane().model.bodies[5].elasticity, 0.5);
+  EXPECT_EQ(it.plane().model.gravity, Vec(0, -1.6));
   EXPECT_EQ(it.film.fps, sim::rational(30000, 1001));
   EXPECT_EQ(it.seed, 4u);
-  EXPECT_EQ(it.world.model.mice[0].stiffness, 7);
+  EXPECT_EQ(it.plane().model.mice[0].stiffness, 7);
   EXPECT_EQ(it.look.theme, draw::Theme::screen);
   EXPECT_EQ(it.look.title, "The room = mine");
-  EXPECT_EQ(it.world.state.x[5], Vec(5, 1.5));
-  EXPECT_DOUBLE_EQ(it.world.model.bodies[6].mass, 0.8);
+  EXPECT_EQ(it.plane().state.x[5], Vec(5, 1.5));
+  EXPECT_DOUBLE_EQ(it.plane().model.bodies[6].mass, 0.8);
   EXPECT_EQ(it.look.bodies[5].trail, 2);
-  EXPECT_EQ(it.world.model.rate, sim::rational(1000));
+  EXPECT_EQ(it.plane().model.rate, sim::rational(1000));
   EXPECT_EQ(it.sets.size(), 11u);
   EXPECT_EQ(it.text, kScene);
 }
@@ -63,23 +63,23 @@ TEST(Overrides, ReachEveryKindOfKey) {
 TEST(Overrides, ReachIntoListsAndDefaults) {
   const Scene it =
       with({"mouse[0].path[1][2]=3", "room.gravity.y=-1", "ball.copies.count=3", "film.size[0]=640"});
-  EXPECT_EQ(it.world.model.mice[0].path[1].place, Vec(2, 3));
-  EXPECT_EQ(it.world.model.gravity, Vec(0, -1));
-  EXPECT_EQ(it.world.model.particles(), 3);
+  EXPECT_EQ(it.plane().model.mice[0].path[1].place, Vec(2, 3));
+  EXPECT_EQ(it.plane().model.gravity, Vec(0, -1));
+  EXPECT_EQ(it.plane().model.particles(), 3);
 }
 
 TEST(Overrides, OneCopyOfMany) {
   const Scene plain = with({});
   const Scene it =
       with({"ball[3].position.y=2", "ball[3].mass=7", "ball[1].fixed=true", "ball[0].color=#f00"});
-  EXPECT_EQ(it.world.state.x[3], Vec(plain.world.state.x[3].x(), 2));
-  EXPECT_EQ(it.world.model.bodies[3].mass, 7);
-  EXPECT_EQ(it.world.model.bodies[3].elasticity, 0.75);
-  EXPECT_TRUE(it.world.model.bodies[1].fixed);
+  EXPECT_EQ(it.plane().state.x[3], Vec(plain.plane().state.x[3].x(), 2));
+  EXPECT_EQ(it.plane().model.bodies[3].mass, 7);
+  EXPECT_EQ(it.plane().model.bodies[3].elasticity, 0.75);
+  EXPECT_TRUE(it.plane().model.bodies[1].fixed);
   EXPECT_EQ(it.look.bodies[0].color, draw::color("#f00"));
   for (int i : {0, 1, 2, 4}) {
-    EXPECT_EQ(it.world.state.x[i], plain.world.state.x[i]) << i;
-    EXPECT_EQ(it.world.model.bodies[i].mass, 1) << i;
+    EXPECT_EQ(it.plane().state.x[i], plain.plane().state.x[i]) << i;
+    EXPECT_EQ(it.plane().model.bodies[i].mass, 1) << i;
   }
 }
 
@@ -104,8 +104,7 @@ TEST(Overrides, AreCheckedAsTheFileIs) {
       {"=3"},
       "--set =3: is not a path; expected one such as crate.elasticity, room.gravity or ball[3].position.y");
   refused({"seed="}, "--set seed=: expected a value after =");
-  refused({"room.size=[1"},
-          "--set room.size=[1: not TOML: a bracket is opened here and not closed");
+  refused({"room.size=[1"}, "--set room.size=[1: not TOML: a bracket is opened here and not closed");
   refused({"seed=1\nduration=2"}, "--set seed=1\nduration=2: expected one value after =");
   refused({"crate.position.z=1"}, "--set crate.position.z=1: a list has no 'z'; expected x or y");
   refused({"seed.x=1"}, "--set seed.x=1: 'x' is asked of 0, which is no table");

@@ -27,18 +27,18 @@ TEST(Scene, TenLinesAreAScene) {
   const Scene scene = parse(kTenLines, "a.toml");
   EXPECT_EQ(scene.look.title, "A bouncing box");
   EXPECT_EQ(scene.duration, (sim::Rational{20, 1}));
-  ASSERT_EQ(scene.world.model.bodies.size(), 1u);
-  const sim::Body<2>& box = scene.world.model.bodies[0];
+  ASSERT_EQ(scene.plane().model.bodies.size(), 1u);
+  const sim::Body<2>& box = scene.plane().model.bodies[0];
   EXPECT_EQ(box.name, "box[0]");
   EXPECT_DOUBLE_EQ(box.mass, 0.24);
   EXPECT_DOUBLE_EQ(box.inertia[0], 0.24 * (0.36 + 0.16) / 12);
   EXPECT_DOUBLE_EQ(box.elasticity, 0.8);
-  EXPECT_EQ(scene.world.state.x[0], (sim::Vec<2>{1, 2}));
-  EXPECT_EQ(scene.world.state.v[0], (sim::Vec<2>{1.5, 0}));
-  EXPECT_DOUBLE_EQ(scene.world.state.turn[0][0], 20 * 3.14159265358979323846 / 180);
+  EXPECT_EQ(scene.plane().state.x[0], (sim::Vec<2>{1, 2}));
+  EXPECT_EQ(scene.plane().state.v[0], (sim::Vec<2>{1.5, 0}));
+  EXPECT_DOUBLE_EQ(scene.plane().state.turn[0][0], 20 * 3.14159265358979323846 / 180);
   EXPECT_EQ(scene.look.bodies[0].trail, 1.0);
-  EXPECT_EQ(scene.world.model.walls.size(), 4u);
-  EXPECT_EQ(scene.world.model.scale, 3);
+  EXPECT_EQ(scene.plane().model.walls.size(), 4u);
+  EXPECT_EQ(scene.plane().model.scale, 3);
 }
 
 TEST(Scene, TheNewOneIsAScene) { EXPECT_NO_THROW(parse(new_scene("my-room"), "my-room.toml")); }

@@ -21,7 +21,7 @@ Scene scene(const std::string& text, const std::vector<std::string>& sets = {}) 
   return parse("[physics]\ncollision = \"contact\"\n" + text, "a.toml", sets);
 }
 
-const sim::Body<2>& only(const Scene& it) { return it.world.model.bodies.front(); }
+const sim::Body<2>& only(const Scene& it) { return it.plane().model.bodies.front(); }
 
 TEST(Ball, IsADiscThatTurns) {
   const Scene it = scene("[[ball]]\nradius = 0.3\ndensity = 2\nspin = 180\nangle = 90");
@@ -29,8 +29,8 @@ TEST(Ball, IsADiscThatTurns) {
   EXPECT_TRUE(only(it).turns());
   EXPECT_NEAR(only(it).mass, 2 * std::numbers::pi * 0.09, kExact);
   EXPECT_NEAR(only(it).inertia[0], only(it).mass * 0.09 / 2, kExact);
-  EXPECT_DOUBLE_EQ(it.world.state.spin[0][0], std::numbers::pi);
-  EXPECT_DOUBLE_EQ(it.world.state.turn[0][0], std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(it.plane().state.spin[0][0], std::numbers::pi);
+  EXPECT_DOUBLE_EQ(it.plane().state.turn[0][0], std::numbers::pi / 2);
   EXPECT_EQ(only(scene("[[ball]]")).shape.radius, 0.2);
 }
 
@@ -39,7 +39,7 @@ TEST(Polygon, IsKeptAboutItsCentreOfMass) {
   for (const char* points : {"[[0, 0], [0.6, 0], [0, 0.3]]", "[[0, 0.3], [0.6, 0], [0, 0]]"}) {
     const Scene it =
         scene(std::string("[[polygon]]\nposition = [1, 2]\nangle = 90\nmass = 3\npoints = ") + points);
-    EXPECT_NEAR((it.world.state.x[0] - Vec(1 - 0.1, 2 + 0.2)).norm(), 0, kExact);
+    EXPECT_NEAR((it.plane().state.x[0] - Vec(1 - 0.1, 2 + 0.2)).norm(), 0, kExact);
     EXPECT_NEAR(only(it).inertia[0], 3 * (0.36 + 0.09) / 18, kExact);
     ASSERT_EQ(only(it).shape.vertices.size(), 3u);
     double twice = 0;
@@ -57,11 +57,11 @@ TEST(Polygon, ASquareIsABox) {
   const Scene it = scene(
       "[[polygon]]\npoints = [[0, 0], [0.8, 0], [0.8, 0.5], [0, 0.5]]\nposition = [3.6, 2]\n"
       "group = \"one\"\n[[box]]\ngroup = \"one\"\n[contact]\nignore = [[\"one\", \"one\"]]");
-  const auto& bodies = it.world.model.bodies;
+  const auto& bodies = it.plane().model.bodies;
   EXPECT_EQ(bodies[0].name, "box[0]");
   EXPECT_NEAR(bodies[0].mass, bodies[1].mass, kExact);
   EXPECT_NEAR(bodies[0].inertia[0], bodies[1].inertia[0], kExact);
-  EXPECT_NEAR((it.world.state.x[0] - it.world.state.x[1]).norm(), 0, kExact);
+  EXPECT_NEAR((it.plane().state.x[0] - it.plane().state.x[1]).norm(), 0, kExact);
 }
 
 TEST(Body, ItsPartsAreOne) {
@@ -70,7 +70,7 @@ TEST(Body, ItsPartsAreOne) {
       "[[body]]\nmass = 2\nposition = [1, 1]\nshapes = [{ radius = 0.1, position = [-0.25, 0] }, "
       "{ radius = 0.1, position = [0.75, 0] }]");
   EXPECT_EQ(only(it).shape.kind, sim::ShapeKind::compound);
-  EXPECT_NEAR((it.world.state.x[0] - Vec(1.25, 1)).norm(), 0, kExact);
+  EXPECT_NEAR((it.plane().state.x[0] - Vec(1.25, 1)).norm(), 0, kExact);
   EXPECT_NEAR(only(it).inertia[0], 2 * (0.005 + 0.25), kExact);
   EXPECT_NEAR((only(it).shape.parts[0].center - Vec(-0.5, 0)).norm(), 0, kExact);
 }
@@ -93,10 +93,10 @@ TEST(Bodies, ThoseThatDoNotTurnComeFirst) {
       "[[polygon]]\nname = \"stone\"\npoints = [[0, 0], [1, 0], [0, 1]]\n[[box]]\nposition = [1, 1]\n"
       "[[ball]]\nposition = [2, 3]\n[[particle]]\nradius = 0.1\nposition = [6, 2]");
   std::vector<std::string> names;
-  for (const auto& body : it.world.model.bodies) names.push_back(body.name);
+  for (const auto& body : it.plane().model.bodies) names.push_back(body.name);
   EXPECT_THAT(names, ElementsAre("particle[0]", "ball[0]", "box[0]", "stone"));
-  EXPECT_EQ(it.world.model.particles(), 1);
-  EXPECT_EQ(it.world.state.turn.size(), 3u);
+  EXPECT_EQ(it.plane().model.particles(), 1);
+  EXPECT_EQ(it.plane().state.turn.size(), 3u);
 }
 
 TEST(Bodies, CopiesOfAPolygonTurnAboutAPlace) {
@@ -104,39 +104,39 @@ TEST(Bodies, CopiesOfAPolygonTurnAboutAPlace) {
   const Scene it = scene(
       "[[polygon]]\nname = \"stone\"\npoints = [[1, -0.1], [1.3, -0.1], [1.3, 0.1], [1, 0.1]]\n"
       "position = [4, 2]\ncopies = { count = 3, turn = 90, around = [4, 2] }");
-  EXPECT_NEAR((it.world.state.x[0] - Vec(5.15, 2)).norm(), 0, kExact);
-  EXPECT_NEAR((it.world.state.x[1] - Vec(4, 3.15)).norm(), 0, kExact);
-  EXPECT_NEAR((it.world.state.x[2] - Vec(2.85, 2)).norm(), 0, kExact);
+  EXPECT_NEAR((it.plane().state.x[0] - Vec(5.15, 2)).norm(), 0, kExact);
+  EXPECT_NEAR((it.plane().state.x[1] - Vec(4, 3.15)).norm(), 0, kExact);
+  EXPECT_NEAR((it.plane().state.x[2] - Vec(2.85, 2)).norm(), 0, kExact);
 }
 
 TEST(Bodies, FrictionIsTheirsAndTheWallsOnlyWhereTheySay) {
   const Scene it = scene(
       "[room]\nsize = [4, 3]\nfriction = 0.8\nwalls = [{ point = [0, 0], normal = [1, 1], friction = 0 }]\n"
       "[[box]]\n[[ball]]\nposition = [1, 1]\nfriction = 0.1");
-  EXPECT_EQ(it.world.model.walls[0].friction, 0.8);
-  EXPECT_EQ(it.world.model.walls[4].friction, 0.0);
-  EXPECT_EQ(it.world.model.bodies[0].friction, 0.1);
-  EXPECT_EQ(it.world.model.bodies[1].friction, 0.5);
-  EXPECT_FALSE(scene("[[box]]").world.model.walls[0].friction);
+  EXPECT_EQ(it.plane().model.walls[0].friction, 0.8);
+  EXPECT_EQ(it.plane().model.walls[4].friction, 0.0);
+  EXPECT_EQ(it.plane().model.bodies[0].friction, 0.1);
+  EXPECT_EQ(it.plane().model.bodies[1].friction, 0.5);
+  EXPECT_FALSE(scene("[[box]]").plane().model.walls[0].friction);
 }
 
 TEST(Groups, ThatIgnoreEachOtherAreNumbered) {
   const Scene it = scene(
       "[[box]]\ngroup = \"a\"\n[[box]]\nposition = [1, 1]\ngroup = \"b\"\n[[box]]\nposition = [7, 3]\n"
       "[contact]\nignore = [[\"b\", \"a\"], [\"a\", \"a\"]]");
-  EXPECT_EQ(it.world.model.bodies[0].group, 1);
-  EXPECT_EQ(it.world.model.bodies[1].group, 2);
-  EXPECT_EQ(it.world.model.bodies[2].group, 0);
-  EXPECT_THAT(it.world.model.ignore, ElementsAre(std::pair(2, 1), std::pair(1, 1)));
+  EXPECT_EQ(it.plane().model.bodies[0].group, 1);
+  EXPECT_EQ(it.plane().model.bodies[1].group, 2);
+  EXPECT_EQ(it.plane().model.bodies[2].group, 0);
+  EXPECT_THAT(it.plane().model.ignore, ElementsAre(std::pair(2, 1), std::pair(1, 1)));
 }
 
 TEST(Physics, ABodyMayKeepTheHandoutsLaw) {
   const Scene it = scene(
       "[[box]]\ncollision = \"handout\"\n[[box]]\nposition = [4.1, 2.2]\n[[particle]]\ncollision = "
       "\"handout\"");
-  EXPECT_TRUE(it.world.model.bodies[0].handout);
-  EXPECT_TRUE(it.world.model.bodies[1].handout);
-  EXPECT_FALSE(it.world.model.bodies[2].handout);
+  EXPECT_TRUE(it.plane().model.bodies[0].handout);
+  EXPECT_TRUE(it.plane().model.bodies[1].handout);
+  EXPECT_FALSE(it.plane().model.bodies[2].handout);
 }
 
 TEST(Physics, WordsChooseItsWays) {
@@ -144,10 +144,10 @@ TEST(Physics, WordsChooseItsWays) {
       "[physics]\ncollision = \"event\"\nsolver = \"direct\"\nimpacts = \"sequential\"\noverlap = "
       "\"separate\"\n[[box]]",
       "a.toml");
-  EXPECT_EQ(it.world.model.collision, sim::Collision::event);
-  EXPECT_EQ(it.world.model.solver, sim::Solver::direct);
-  EXPECT_EQ(it.world.model.impacts, sim::Impacts::sequential);
-  EXPECT_EQ(it.world.model.overlap, sim::Overlap::separate);
+  EXPECT_EQ(it.plane().model.collision, sim::Collision::event);
+  EXPECT_EQ(it.plane().model.solver, sim::Solver::direct);
+  EXPECT_EQ(it.plane().model.impacts, sim::Impacts::sequential);
+  EXPECT_EQ(it.plane().model.overlap, sim::Overlap::separate);
 }
 
 TEST(Joints, APinIsAPointOfBoth) {
@@ -155,7 +155,7 @@ TEST(Joints, APinIsAPointOfBoth) {
       "[[box]]\nname = \"a\"\nposition = [2, 2]\nangle = 90\n[[ball]]\nname = \"b\"\nposition = [3, 2]\n"
       "[[joint]]\nname = \"hinge\"\ntype = \"pin\"\nbetween = [\"a\", \"b\"]\nat = [2.5, 2.25]\n"
       "limits = [-90, 45]\nmotor = { speed = 180, most = 3 }\nbreaks = 50\ntouching = true");
-  const sim::Joint<2>& joint = it.world.model.joints[0];
+  const sim::Joint<2>& joint = it.plane().model.joints[0];
   EXPECT_EQ(joint.name, "hinge");
   EXPECT_EQ(joint.a.body, 1);  // balls come before boxes
   EXPECT_EQ(joint.b.body, 0);
@@ -168,7 +168,7 @@ TEST(Joints, APinIsAPointOfBoth) {
   EXPECT_EQ(joint.motor->most, 3);
   EXPECT_EQ(joint.breaks, 50);
   EXPECT_TRUE(joint.touching);
-  EXPECT_EQ(it.world.state.broken.size(), 1u);
+  EXPECT_EQ(it.plane().state.broken.size(), 1u);
 }
 
 TEST(Joints, ManyJoinEachToTheNext) {
@@ -177,11 +177,11 @@ TEST(Joints, ManyJoinEachToTheNext) {
       "0] }\n"
       "[[joint]]\ntype = \"pin\"\nbetween = [{ body = \"plank[0..2]\", at = \"right\" }, "
       "{ body = \"plank[1..3]\", at = \"left\" }]");
-  ASSERT_EQ(it.world.model.joints.size(), 3u);
-  EXPECT_EQ(it.world.model.joints[2].name, "joint[0][2]");
-  EXPECT_EQ(it.world.model.joints[2].a.body, 2);
-  EXPECT_EQ(it.world.model.joints[2].b.body, 3);
-  EXPECT_EQ(it.world.model.joints[2].b.local, Vec(-0.25, 0));
+  ASSERT_EQ(it.plane().model.joints.size(), 3u);
+  EXPECT_EQ(it.plane().model.joints[2].name, "joint[0][2]");
+  EXPECT_EQ(it.plane().model.joints[2].a.body, 2);
+  EXPECT_EQ(it.plane().model.joints[2].b.body, 3);
+  EXPECT_EQ(it.plane().model.joints[2].b.local, Vec(-0.25, 0));
 }
 
 TEST(Joints, AgainstTheRoomTheBodyIsTheFirst) {
@@ -189,7 +189,7 @@ TEST(Joints, AgainstTheRoomTheBodyIsTheFirst) {
       "[[ball]]\nname = \"bob\"\nposition = [2, 1]\n[[joint]]\ntype = \"rod\"\nbetween = [[2, 3], \"bob\"]\n"
       "[[joint]]\ntype = \"rope\"\nlength = 3\nbetween = [\"bob\", [2, 3]]\n"
       "[[joint]]\ntype = \"pin\"\nbetween = [\"room\", \"bob\"]");
-  const auto& joints = it.world.model.joints;
+  const auto& joints = it.plane().model.joints;
   EXPECT_EQ(joints[0].a.body, 0);
   EXPECT_EQ(joints[0].b.local, Vec(2, 3));
   EXPECT_EQ(joints[0].length, 2);
@@ -201,7 +201,7 @@ TEST(Joints, ASliderGoesWithItsSecondEnd) {
   const Scene it = scene(
       "[[box]]\nname = \"cart\"\nposition = [2, 1]\n[[box]]\nname = \"rail\"\nposition = [4, 3]\nangle = 90\n"
       "[[joint]]\ntype = \"slider\"\nbetween = [\"cart\", \"rail\"]\naxis = [0, 2]\nlimits = [-1, 2]");
-  const sim::Joint<2>& joint = it.world.model.joints[0];
+  const sim::Joint<2>& joint = it.plane().model.joints[0];
   EXPECT_NEAR((joint.axis - Vec(1, 0)).norm(), 0, kExact);
   EXPECT_EQ(joint.a.local, Vec(0, 0));
   EXPECT_EQ(joint.upper, 2);
@@ -212,19 +212,19 @@ TEST(Ends, CountFromAPolygonsOwnOrigin) {
       "[[polygon]]\nname = \"p\"\npoints = [[0, 0], [0.6, 0], [0, 0.3]]\nposition = [1, 2]\n"
       "[[spring]]\nbetween = [[1, 4], { body = \"p\", local = [0, 0.3] }]\n"
       "[[spring]]\nbetween = [[1, 4], { body = \"p\", at = \"center\" }]");
-  EXPECT_NEAR(it.world.model.springs[0].rest_length, 4 - 2.3, kExact);
-  EXPECT_EQ(it.world.model.springs[1].b.local, Vec(0, 0));
+  EXPECT_NEAR(it.plane().model.springs[0].rest_length, 4 - 2.3, kExact);
+  EXPECT_EQ(it.plane().model.springs[1].b.local, Vec(0, 0));
 }
 
 TEST(Overrides, ReachWhatIsNew) {
   const Scene it =
       scene("[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 2, offset = [1, 0] }",
             {"ball[1].radius=0.4", "ball.friction=0.1", "ball[1].angle=90", "physics.solver=iterative"});
-  EXPECT_EQ(it.world.model.bodies[0].shape.radius, 0.2);
-  EXPECT_EQ(it.world.model.bodies[1].shape.radius, 0.4);
-  EXPECT_EQ(it.world.model.bodies[1].friction, 0.1);
-  EXPECT_DOUBLE_EQ(it.world.state.turn[1][0], std::numbers::pi / 2);
-  EXPECT_EQ(it.world.model.solver, sim::Solver::iterative);
+  EXPECT_EQ(it.plane().model.bodies[0].shape.radius, 0.2);
+  EXPECT_EQ(it.plane().model.bodies[1].shape.radius, 0.4);
+  EXPECT_EQ(it.plane().model.bodies[1].friction, 0.1);
+  EXPECT_DOUBLE_EQ(it.plane().state.turn[1][0], std::numbers::pi / 2);
+  EXPECT_EQ(it.plane().model.solver, sim::Solver::iterative);
 }
 
 }  // namespace

@@ -26,20 +26,21 @@ Scene crossing(const std::string& text) { return scene(text, {"physics.collision
 // the end of each spring, as a place in the room at the start; boxes at no angle
 std::vector<std::pair<int, int>> pairs(const Scene& it) {
   std::vector<std::pair<int, int>> all;
-  for (const sim::Spring<2>& spring : it.world.model.springs) all.emplace_back(spring.a.body, spring.b.body);
+  for (const sim::Spring<2>& spring : it.plane().model.springs)
+    all.emplace_back(spring.a.body, spring.b.body);
   return all;
 }
 
 TEST(Values, ABareParticleHasEveryDefault) {
   const Scene it = scene("[[particle]]");
   EXPECT_EQ(it.duration, sim::rational(10));
-  EXPECT_EQ(it.world.model.rate, sim::rational(600));
-  EXPECT_EQ(it.world.model.integrator, sim::Integrator::rk4);
-  EXPECT_EQ(it.world.model.gravity, Vec(0, -9.81));
-  EXPECT_EQ(it.world.model.scale, 4.5);
-  EXPECT_EQ(it.world.state.x[0], Vec(4, 2.25));
-  EXPECT_EQ(it.world.state.v[0], Vec(0, 0));
-  const sim::Body<2>& body = it.world.model.bodies[0];
+  EXPECT_EQ(it.plane().model.rate, sim::rational(600));
+  EXPECT_EQ(it.plane().model.integrator, sim::Integrator::rk4);
+  EXPECT_EQ(it.plane().model.gravity, Vec(0, -9.81));
+  EXPECT_EQ(it.plane().model.scale, 4.5);
+  EXPECT_EQ(it.plane().state.x[0], Vec(4, 2.25));
+  EXPECT_EQ(it.plane().state.v[0], Vec(0, 0));
+  const sim::Body<2>& body = it.plane().model.bodies[0];
   EXPECT_EQ(body.name, "particle[0]");
   EXPECT_EQ(body.shape.kind, sim::ShapeKind::point);
   EXPECT_EQ(body.mass, 1);
@@ -64,15 +65,15 @@ TEST(Values, TypedDecimalsAreExactTimes) {
       "2]]");
   EXPECT_EQ(it.duration, sim::rational(1, 10));
   EXPECT_EQ(it.film.fps, sim::rational(30000, 1001));
-  EXPECT_EQ(it.world.model.rate, sim::rational(481, 2));
-  EXPECT_EQ(it.world.model.mice[0].path[0].time, sim::rational(1, 10));
-  EXPECT_EQ(it.world.model.mice[0].path[1].time, sim::rational(7, 10));
+  EXPECT_EQ(it.plane().model.rate, sim::rational(481, 2));
+  EXPECT_EQ(it.plane().model.mice[0].path[0].time, sim::rational(1, 10));
+  EXPECT_EQ(it.plane().model.mice[0].path[1].time, sim::rational(7, 10));
   EXPECT_EQ(scene("[film]\nfps = 29.97\n[[box]]").film.fps, sim::rational(2997, 100));
 }
 
 TEST(Values, FourWallsInTheirOrder) {
   const Scene it = scene("[room]\nsize = [4, 3]\ncorner = [-1, 2]\nelasticity = 0.5\n[[box]]");
-  const auto& walls = it.world.model.walls;
+  const auto& walls = it.plane().model.walls;
   ASSERT_EQ(walls.size(), 4u);
   EXPECT_EQ(walls[0].normal, Vec(0, 1));
   EXPECT_EQ(walls[1].normal, Vec(1, 0));
@@ -81,8 +82,8 @@ TEST(Values, FourWallsInTheirOrder) {
   EXPECT_EQ(walls[0].point, Vec(-1, 2));
   EXPECT_EQ(walls[3].point, Vec(3, 5));
   for (const auto& wall : walls) EXPECT_EQ(wall.elasticity, 0.5);
-  EXPECT_EQ(it.world.state.x[0], Vec(1, 3.5));
-  EXPECT_EQ(it.world.model.scale, 3);
+  EXPECT_EQ(it.plane().state.x[0], Vec(1, 3.5));
+  EXPECT_EQ(it.plane().model.scale, 3);
 }
 
 TEST(Values, WallsAloneMayCloseARoom) {
@@ -90,14 +91,14 @@ TEST(Values, WallsAloneMayCloseARoom) {
       "[room]\nwalls = [{ point = [0, 0], normal = [0, 2] }, { point = [0, 0], normal = [1, 0], elasticity = "
       "0.3 }, { point = [2, 2], normal = "
       "[-1, -1] }]\n[[particle]]");
-  ASSERT_EQ(it.world.model.walls.size(), 3u);
-  EXPECT_EQ(it.world.model.walls[0].normal, Vec(0, 1));
-  EXPECT_EQ(it.world.model.walls[1].elasticity, 0.3);
-  EXPECT_NEAR(it.world.model.walls[2].normal.norm(), 1, 1e-15);
+  ASSERT_EQ(it.plane().model.walls.size(), 3u);
+  EXPECT_EQ(it.plane().model.walls[0].normal, Vec(0, 1));
+  EXPECT_EQ(it.plane().model.walls[1].elasticity, 0.3);
+  EXPECT_NEAR(it.plane().model.walls[2].normal.norm(), 1, 1e-15);
   // corners are where two walls meet: to the last bits
   EXPECT_NEAR(it.extent.high.x(), 4, 1e-14);
   EXPECT_NEAR(it.extent.high.y(), 4, 1e-14);
-  EXPECT_NEAR(it.world.model.scale, 4, 1e-14);
+  EXPECT_NEAR(it.plane().model.scale, 4, 1e-14);
 }
 
 TEST(Values, AnOpenRoomIsAsLargeAsWhatIsInIt) {
@@ -109,55 +110,55 @@ TEST(Values, AnOpenRoomIsAsLargeAsWhatIsInIt) {
   EXPECT_NEAR(it.extent.low.x(), -1.1, 1e-12);
   EXPECT_NEAR(it.extent.high.x(), 12.1, 1e-12);
   EXPECT_NEAR(it.extent.high.y() - it.extent.low.y(), 4.8, 1e-12);
-  EXPECT_NEAR(it.world.model.mice[0].rest_length, 20.0 / 480 * 4.8, 1e-12);
+  EXPECT_NEAR(it.plane().model.mice[0].rest_length, 20.0 / 480 * 4.8, 1e-12);
 }
 
 TEST(Values, TheMouseRestsAtTwentyReferencePixelsWhateverThePicture) {
   for (const char* film : {"", "[film]\nsize = [640, 480]\n"}) {
     const Scene it =
         scene(std::string(film) + "[room]\nsize = [4, 3]\n[[box]]\n[[mouse]]\npath = [[0, 1, 1], [1, 2, 2]]");
-    EXPECT_EQ(it.world.model.mice[0].rest_length, 20.0 / 480 * 3);
-    EXPECT_EQ(it.world.model.mice[0].stiffness, 60);
-    EXPECT_EQ(it.world.state.grips.size(), 1u);
+    EXPECT_EQ(it.plane().model.mice[0].rest_length, 20.0 / 480 * 3);
+    EXPECT_EQ(it.plane().model.mice[0].stiffness, 60);
+    EXPECT_EQ(it.plane().state.grips.size(), 1u);
   }
 }
 
 TEST(Values, DegreesBecomeRadiansAndMassComesFromDensity) {
   const Scene it =
       crossing("[[box]]\nsize = [2, 0.5]\nangle = 30\nspin = -90\ndensity = 3\n[[box]]\nmass = 0.5");
-  EXPECT_NEAR(it.world.state.turn[0][0], M_PI / 6, 1e-15);
-  EXPECT_NEAR(it.world.state.spin[0][0], -M_PI / 2, 1e-15);
-  EXPECT_DOUBLE_EQ(it.world.model.bodies[0].mass, 3);
-  EXPECT_DOUBLE_EQ(it.world.model.bodies[0].inertia[0], 3 * (4 + 0.25) / 12);
-  EXPECT_EQ(it.world.model.bodies[1].mass, 0.5);
+  EXPECT_NEAR(it.plane().state.turn[0][0], M_PI / 6, 1e-15);
+  EXPECT_NEAR(it.plane().state.spin[0][0], -M_PI / 2, 1e-15);
+  EXPECT_DOUBLE_EQ(it.plane().model.bodies[0].mass, 3);
+  EXPECT_DOUBLE_EQ(it.plane().model.bodies[0].inertia[0], 3 * (4 + 0.25) / 12);
+  EXPECT_EQ(it.plane().model.bodies[1].mass, 0.5);
 }
 
 TEST(Values, ParticlesComeBeforeBoxes) {
   const Scene it = crossing(
       "[[box]]\nname = \"b\"\n[[particle]]\nname = \"p\"\n[[box]]\nname = \"c\"\n[[particle]]\nname = \"q\"");
   std::vector<std::string> names;
-  for (const auto& body : it.world.model.bodies) names.push_back(body.name);
+  for (const auto& body : it.plane().model.bodies) names.push_back(body.name);
   EXPECT_THAT(names, ElementsAre("p", "q", "b", "c"));
-  EXPECT_EQ(it.world.model.particles(), 2);
-  EXPECT_EQ(it.world.state.turn.size(), 2u);
-  EXPECT_EQ(it.world.state.spin.size(), 2u);
+  EXPECT_EQ(it.plane().model.particles(), 2);
+  EXPECT_EQ(it.plane().state.turn.size(), 2u);
+  EXPECT_EQ(it.plane().state.spin.size(), 2u);
 }
 
 TEST(Values, DragOfTheRoomIsThatOfBodiesWithNone) {
   const Scene it = crossing("[room]\ndrag = 0.3\n[[particle]]\n[[box]]\ndrag = 0.1");
-  EXPECT_EQ(it.world.model.bodies[0].drag, 0.3);
-  EXPECT_EQ(it.world.model.bodies[1].drag, 0.1);
+  EXPECT_EQ(it.plane().model.bodies[0].drag, 0.3);
+  EXPECT_EQ(it.plane().model.bodies[1].drag, 0.1);
 }
 
 TEST(Copies, AGridCountsAlongItsFirstDirection) {
   const Scene it = scene(
       "[[particle]]\nname = \"b\"\nposition = [1, 1]\nvelocity = [1, 0]\ncopies = { count = [3, 2], offset = "
       "[[0.5, 0], [0, 0.25]] }");
-  ASSERT_EQ(it.world.state.x.size(), 6u);
-  EXPECT_EQ(it.world.model.bodies[4].name, "b[4]");
-  EXPECT_EQ(it.world.state.x[2], Vec(2, 1));
-  EXPECT_EQ(it.world.state.x[4], Vec(1.5, 1.25));
-  EXPECT_EQ(it.world.state.v[5], Vec(1, 0));
+  ASSERT_EQ(it.plane().state.x.size(), 6u);
+  EXPECT_EQ(it.plane().model.bodies[4].name, "b[4]");
+  EXPECT_EQ(it.plane().state.x[2], Vec(2, 1));
+  EXPECT_EQ(it.plane().state.x[4], Vec(1.5, 1.25));
+  EXPECT_EQ(it.plane().state.v[5], Vec(1, 0));
 }
 
 TEST(Copies, ARingTurnsPlaceVelocityAndAngle) {
@@ -165,9 +166,9 @@ TEST(Copies, ARingTurnsPlaceVelocityAndAngle) {
       "[[box]]\nsize = [0.2, 0.2]\nposition = [5, 2]\nvelocity = [1, 0]\nangle = 10\ncopies = { count = 4, "
       "turn = 90, around = [4, 2] }");
   // sines of multiples of a right angle are off by a part in 2^53
-  EXPECT_NEAR((it.world.state.x[1] - Vec(4, 3)).norm(), 0, 1e-15);
-  EXPECT_NEAR((it.world.state.v[2] - Vec(-1, 0)).norm(), 0, 1e-15);
-  EXPECT_NEAR(it.world.state.turn[3][0], 280 * M_PI / 180, 1e-15);
+  EXPECT_NEAR((it.plane().state.x[1] - Vec(4, 3)).norm(), 0, 1e-15);
+  EXPECT_NEAR((it.plane().state.v[2] - Vec(-1, 0)).norm(), 0, 1e-15);
+  EXPECT_NEAR(it.plane().state.turn[3][0], 280 * M_PI / 180, 1e-15);
 }
 
 TEST(Copies, ValuesMayVaryOverThem) {
@@ -175,11 +176,11 @@ TEST(Copies, ValuesMayVaryOverThem) {
       "[[particle]]\nelasticity = { from = 0, to = 1 }\nmass = [1, 2, 4, 8, 16]\ncolor = [\"blue\", "
       "\"#ff0000\"]\nvelocity = { from = [0, 0], to = [2, "
       "4] }\ncopies = { count = 5 }");
-  EXPECT_EQ(it.world.model.bodies[0].elasticity, 0);
-  EXPECT_EQ(it.world.model.bodies[1].elasticity, 0.25);
-  EXPECT_EQ(it.world.model.bodies[4].elasticity, 1);
-  EXPECT_EQ(it.world.model.bodies[3].mass, 8);
-  EXPECT_EQ(it.world.state.v[2], Vec(1, 2));
+  EXPECT_EQ(it.plane().model.bodies[0].elasticity, 0);
+  EXPECT_EQ(it.plane().model.bodies[1].elasticity, 0.25);
+  EXPECT_EQ(it.plane().model.bodies[4].elasticity, 1);
+  EXPECT_EQ(it.plane().model.bodies[3].mass, 8);
+  EXPECT_EQ(it.plane().state.v[2], Vec(1, 2));
   EXPECT_EQ(it.look.bodies[3].color, draw::color("#ff0000"));
   EXPECT_EQ(it.look.bodies[4].color, draw::color("blue"));
 }
@@ -192,16 +193,16 @@ TEST(Copies, JitterIsSmallSeededAndOfTheCopyAlone) {
   double widest = 0;
   Vec sum = Vec::Zero();
   for (int i = 0; i < 50; ++i) {
-    EXPECT_EQ(a.world.state.x[i], b.world.state.x[i]);
-    EXPECT_NE(a.world.state.x[i], other.world.state.x[i]);
-    widest = std::max(widest, (a.world.state.x[i] - Vec(2, 2)).cwiseAbs().maxCoeff());
-    sum += a.world.state.x[i] - Vec(2, 2);
+    EXPECT_EQ(a.plane().state.x[i], b.plane().state.x[i]);
+    EXPECT_NE(a.plane().state.x[i], other.plane().state.x[i]);
+    widest = std::max(widest, (a.plane().state.x[i] - Vec(2, 2)).cwiseAbs().maxCoeff());
+    sum += a.plane().state.x[i] - Vec(2, 2);
   }
   EXPECT_LE(widest, 0.02);
   EXPECT_GT(widest, 0.015);                            // 100 even numbers all below three quarters: 3e-13
   EXPECT_LT((sum / 50).cwiseAbs().maxCoeff(), 0.008);  // five standard deviations
   const Scene more = at("[[box]]\n", "");
-  EXPECT_EQ(more.world.state.x[7], a.world.state.x[7]);
+  EXPECT_EQ(more.plane().state.x[7], a.plane().state.x[7]);
 }
 
 // SplitMix64 by hand, of (seed, the first [[particle]], which copy and coordinate)
@@ -209,14 +210,14 @@ TEST(Copies, JitterIsTheSameEverywhere) {
   const Scene it = scene(
       "seed = 4\n[[particle]]\nposition = [0, 0]\ncopies = { count = 2, jitter = 1 }\n[room]\nsize = [4, "
       "4]\ncorner = [-2, -2]");
-  EXPECT_EQ(it.world.state.x[0].x(), -0x1.785605e3e1c00p-4);
-  EXPECT_EQ(it.world.state.x[1].y(), 0x1.7e3be376daac0p-3);
+  EXPECT_EQ(it.plane().state.x[0].x(), -0x1.785605e3e1c00p-4);
+  EXPECT_EQ(it.plane().state.x[1].y(), 0x1.7e3be376daac0p-3);
 }
 
 TEST(Copies, SomeMayBeHeld) {
   const Scene it = scene("[[particle]]\nfixed = \"0,2..3\"\ncopies = { count = 5 }");
   std::vector<bool> held;
-  for (const auto& body : it.world.model.bodies) held.push_back(body.fixed);
+  for (const auto& body : it.plane().model.bodies) held.push_back(body.fixed);
   EXPECT_THAT(held, ElementsAre(true, false, true, true, false));
 }
 
@@ -226,7 +227,7 @@ TEST(Springs, RestAsLongAsTheyAreAtTheStart) {
       "body = \"crate\", at = \"right\" }, [4, "
       "4.5]]\n[[spring]]\nbetween = [\"crate\", { body = \"crate\", local = [0.3, 0.4] }]\nrest_length = "
       "2\ndamping = 0.5");
-  const auto& springs = it.world.model.springs;
+  const auto& springs = it.plane().model.springs;
   ASSERT_EQ(springs.size(), 2u);
   EXPECT_NEAR(springs[0].rest_length, 1.5, 1e-15);  // the box's right side is up
   EXPECT_EQ(springs[0].a.local, Vec(1, 0));
@@ -249,8 +250,8 @@ TEST(Springs, AStarTiesEachToItsOwn) {
               ElementsAre(std::pair(4, -1), std::pair(5, -1)));
   const Scene stiff =
       scene(two + "between = [\"a[*]\", \"b[*]\"]\nstiffness = [1, 2, 3]\ndamping = { from = 0, to = 1 }");
-  EXPECT_EQ(stiff.world.model.springs[2].stiffness, 3);
-  EXPECT_EQ(stiff.world.model.springs[1].damping, 0.5);
+  EXPECT_EQ(stiff.plane().model.springs[2].stiffness, 3);
+  EXPECT_EQ(stiff.plane().model.springs[1].damping, 0.5);
 }
 
 TEST(Springs, UnnamedBodiesHaveNamesToo) {
@@ -271,14 +272,15 @@ TEST(Nets, JoinNeighbours) {
                                        std::pair(0, 1), std::pair(1, 2), std::pair(3, 4), std::pair(4, 5),
                                        std::pair(0, 3), std::pair(1, 4), std::pair(2, 5)));
   const Scene shear = scene(knots + "diagonals = true\nrest_length = 0.4");
-  EXPECT_EQ(shear.world.model.springs.size(), 11u);
+  EXPECT_EQ(shear.plane().model.springs.size(), 11u);
   int across = 0;
-  for (const auto& spring : shear.world.model.springs)
+  for (const auto& spring : shear.plane().model.springs)
     across += std::abs(spring.rest_length - 0.4 * std::sqrt(2.0)) < 1e-15;
   EXPECT_EQ(across, 4);
   EXPECT_EQ(
       scene("[[particle]]\nname = \"k\"\ncopies = { count = 5, offset = [0.1, 0] }\n[[net]]\nof = \"k\"")
-          .world.model.springs.size(),
+          .plane()
+          .model.springs.size(),
       4u);
 }
 

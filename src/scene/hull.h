@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/model.h"
+
+namespace obscura::scene {
+
+/// The convex hull of points in space: of all that lie on it the corners, and its faces, flat ones whole,
+/// loops counter-clockwise seen from outside. No faces where the points lie in a plane.
+sim::Shape<3> hull(const std::vector<sim::Vec3>& typed);
+
+}  // namespace obscura::scene
