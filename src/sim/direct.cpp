@@ -267,6 +267,12 @@ void Direct<D>::report(State<D>& state) {
       contacts_.insert(at, struck);
     }
   }
+  // what was pushed out of another has another gap now than when its force was found
+  if (rough_) stand(state);
+  for (Contact<D>& contact : contacts_) {
+    if (!rough_) break;
+    contact.gap = gap_of(contact.key, contact.gap);
+  }
   // what was frozen keeps its forces
   std::size_t kept = 0;
   for (Contact<D>& contact : state.contacts) {

@@ -115,6 +115,7 @@ class Direct final : public ContactStep<D>, private System {
   bool may_close(const State<D>& state, double h, Couple couple) const;
   Spin<D> turn_part(const State<D>& state, const Joint<D>& joint, double h, double part) const;
   void find(const State<D>& state, double margin);
+  double gap_of(const ContactKey& key, double otherwise);
   bool may_touch(int a, int b) const;
   template <class Found>
   void near(const std::vector<Stance<D>>& at, Couple couple, double margin, Found&& found);

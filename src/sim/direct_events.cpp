@@ -68,6 +68,16 @@ void Direct<D>::find(const State<D>& state, double margin) {
   std::sort(gaps_.begin(), gaps_.end(), [](const Gap<D>& p, const Gap<D>& q) { return p.key < q.key; });
 }
 
+// a gap at the stances at hand, m; `otherwise` where its features no longer face each other
+template <int D>
+double Direct<D>::gap_of(const ContactKey& key, double otherwise) {
+  double value = otherwise;
+  near(stances_, {key.a, key.b}, model_.scale, [&](const Gap<D>& gap) {
+    if (gap.key == key) value = gap.value;
+  });
+  return value;
+}
+
 // the pose of a body a part of the way from begun_ to `state`
 template <int D>
 Stance<D> Direct<D>::between(const State<D>& state, int body, double h, double part) const {
@@ -330,5 +340,7 @@ template bool Direct<2>::may_touch(int, int) const;
 template double Direct<3>::stretch(State<3>&, double, double, bool&);
 template void Direct<3>::find(const State<3>&, double);
 template bool Direct<3>::may_touch(int, int) const;
+template double Direct<2>::gap_of(const ContactKey&, double);
+template double Direct<3>::gap_of(const ContactKey&, double);
 
 }  // namespace obscura::sim
