@@ -299,8 +299,6 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(rows_[i], rate) + rows_[i].drift);
-  guess(h);
-  solve();
   const auto& members = free_.bodies();
   for (std::size_t i = 0; i < members.size(); ++i) {
     const int body = members[i];
@@ -309,7 +307,16 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
       state.spin[turning(state, body)] +=
           h * to_room<D>(stances_[body].room_from_body, Eigen::Map<const Spin<D>>(rate.data() + at));
   }
-  for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
+  // what only holds takes energy; where it does not, it was begun too strongly
+  keep(state, saved_);
+  const double most = moving(model_, state);
+  for (const double warm : {h, 0.0}) {
+    guess(warm);
+    solve();
+    for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
+    if (warm == 0 || moving(model_, state) <= most) break;
+    restore(saved_, state);
+  }
   for (const int body : members) {
     state.x[body] += 0.5 * h * (begun_.v[body] + state.v[body]);
     if (const int k = turning(state, body); k >= 0)

@@ -16,15 +16,6 @@ namespace {
 constexpr int kRounds = 200;        // of pairs in turn
 constexpr double kRounding = 1000;  // of what is still: what a solve leaves
 
-template <int D>
-double moving(const Model<D>& model, const State<D>& state) {
-  double sum = 0;
-  for (int body = 0; body < int(model.bodies.size()); ++body) {
-    if (!model.bodies[body].fixed) sum += kinetic(model, state, body);
-  }
-  return sum;
-}
-
 }  // namespace
 
 // how fast what touches comes closer, or joints come apart, at most

@@ -23,6 +23,15 @@ double kinetic(const Model<D>& model, const State<D>& state, int body) {
 }
 
 template <int D>
+double moving(const Model<D>& model, const State<D>& state) {
+  double sum = 0;
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    if (!model.bodies[body].fixed) sum += kinetic(model, state, body);
+  }
+  return sum;
+}
+
+template <int D>
 double lifted(const Model<D>& model, const State<D>& state, int body) {
   return -model.bodies[body].mass * model.gravity.dot(state.x[body]);
 }
@@ -85,6 +94,7 @@ Spin<D> angular_momentum(const Model<D>& model, const State<D>& state) {
 
 template Vec<2> place<2>(const State<2>&, const End<2>&);
 template double kinetic<2>(const Model<2>&, const State<2>&, int);
+template double moving<2>(const Model<2>&, const State<2>&);
 template double lifted<2>(const Model<2>&, const State<2>&, int);
 template double stored<2>(const Model<2>&, const State<2>&, int);
 template double stored<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, int, double);
@@ -93,6 +103,7 @@ template Vec<2> momentum<2>(const Model<2>&, const State<2>&);
 template Spin<2> angular_momentum<2>(const Model<2>&, const State<2>&);
 template Vec<3> place<3>(const State<3>&, const End<3>&);
 template double kinetic<3>(const Model<3>&, const State<3>&, int);
+template double moving<3>(const Model<3>&, const State<3>&);
 template double lifted<3>(const Model<3>&, const State<3>&, int);
 template double stored<3>(const Model<3>&, const State<3>&, int);
 template double stored<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, int, double);

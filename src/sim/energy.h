@@ -18,6 +18,10 @@ Vec<D> place(const State<D>& state, const End<D>& end);
 template <int D>
 double kinetic(const Model<D>& model, const State<D>& state, int body);
 
+/// Kinetic energy of all bodies that are not fixed, J.
+template <int D>
+double moving(const Model<D>& model, const State<D>& state);
+
 /// Gravity's potential of one body relative to the origin, -m g . x, J.
 template <int D>
 double lifted(const Model<D>& model, const State<D>& state, int body);
