@@ -2,6 +2,7 @@
 
 #include "sim/direct.h"
 #include "sim/iterative.h"
+#include "sim/sweeps.h"
 
 namespace obscura::sim {
 
@@ -28,10 +29,11 @@ std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::v
   return std::make_unique<Iterative<D>>(model, paths);
 }
 
-// in space by the direct one only
 template <>
 std::unique_ptr<ContactStep<3>> contact_step<3>(const Model<3>& model, const std::vector<Path<3>>& paths) {
-  return std::make_unique<Direct<3>>(model, paths);
+  if (!model.joints.empty() || solver(model) == Solver::direct)
+    return std::make_unique<Direct<3>>(model, paths);
+  return std::make_unique<Sweeps<3>>(model, paths);
 }
 
 template Crowd crowd<2>(const Model<2>&);

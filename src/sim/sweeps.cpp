@@ -1,0 +1,456 @@
+// One step of many bodies with contacts, from v to v':
+//   1. all gaps that may close within the step, and who wakes by them
+//   2. free motion, by Runge-Kutta: v -> v_free
+//   3. forces of the last step, then sweeps from gap to gap, over and over:
+//        v_n' >= -g / h,  of what closes fast  v_n' >= -e v_n         p_n >= 0
+//        p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
+//      a step along the velocity and not by the inverse block: cut back, that would brake a sliding box with
+//      less than mu g
+//   4. positions: by the mean of old and new velocity; by the new one where a slow touch closed
+//   5. out of each other, a part of the way
+//   6. rest: what is quiet and found in static equilibrium freezes
+
+#include "sim/sweeps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kLooks = 60;        // a second: how often rest is looked for
+constexpr int kMostSweeps = 40;      // of few touches
+constexpr int kFewestSweeps = 4;     // of many
+constexpr int kTouchSweeps = 20000;  // touches times sweeps between
+constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
+constexpr double kAllowed = 1e-4;    // of a body's reach: how deep is not too deep
+constexpr double kPart = 0.1;        // of what is too deep, in a step
+constexpr double kQuiet = 0.02;      // m/s
+constexpr double kWait = 0.25;       // s
+constexpr double kHeld = 1e-6;       // of gravity
+constexpr int kRestSweeps = 400;     // of an island at a time
+constexpr int kBetweenChecks = 10;
+
+}  // namespace
+
+template <int D>
+Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model), may_touch_(model), tied_(model, paths) {
+  const double h = 1 / value(model.rate);
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
+  g_ = std::sqrt(model.gravity.squaredNorm());
+  rest_speed_ = 2 * h * g_ + 1e-9 * model.scale;
+  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
+}
+
+template <int D>
+void Sweeps<D>::step(State<D>& state, double t, double h) {
+  const std::size_t n = model_.bodies.size();
+  state.frozen.resize(n), state.quiet.resize(n);
+  state.broken.resize(model_.joints.size());
+  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+  ready(state);
+  find(h);
+  if (wake(state, h)) ready(state), find(h);
+  fall(state, t, h);
+  begin(state, h);
+  int sweeps = std::clamp(kTouchSweeps / std::max(1, int(touches_.size())), kFewestSweeps, kMostSweeps);
+  if (state.step == 0) sweeps = kFirstSweeps;
+  for (int i = 0; i < sweeps; ++i) sweep(all_, i % 2 != 0);
+  advance(state, h);
+  part(state);
+  report(state, h);
+  if (state.step % every_ == 0) rest(state, h);
+}
+
+// who moves, and where everyone stands
+template <int D>
+void Sweeps<D>::ready(const State<D>& state) {
+  const int n = int(model_.bodies.size());
+  stances_.resize(n), moving_.assign(n + 1, {}), still_.resize(n);
+  for (int i = 0; i < n; ++i) {
+    const Body<D>& body = model_.bodies[i];
+    stances_[i] = stance(state, i);
+    still_[i] = body.fixed || state.frozen[i];
+    if (still_[i]) continue;
+    Moving& m = moving_[i];
+    m.v = stances_[i].v, m.w = stances_[i].w, m.light = 1 / body.mass;
+    if (!body.turns()) continue;
+    for (int axis = 0; axis < kSpins<D>; ++axis) {
+      m.ease.col(axis) = spun<D>(body.inertia, stances_[i].room_from_body, Spin<D>::Unit(axis));
+    }
+  }
+}
+
+// of the fastest point, at most
+template <int D>
+double Sweeps<D>::swiftness(int body) const {
+  const Moving& m = moving_[body];
+  return std::sqrt(m.v.squaredNorm()) + rims_[body] * std::sqrt(m.w.squaredNorm());
+}
+
+template <int D>
+void Sweeps<D>::find(double h) {
+  const int n = int(model_.bodies.size());
+  const auto margin = [&](int body) {
+    return still_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * rims_[body];
+  };
+  bounds_.resize(n), touches_.clear();
+  for (int i = 0; i < n; ++i) {
+    bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
+    const Vec<D> more = Vec<D>::Constant(margin(i));
+    bounds_[i].lower -= more, bounds_[i].upper += more;
+  }
+  const auto& pairs = broad_.find(bounds_, still_, [&](int a, int b) {
+    const Body<D>&p = model_.bodies[a], &q = model_.bodies[b];
+    if (p.handout || q.handout) return false;
+    if (p.shape.kind == ShapeKind::point && q.shape.kind == ShapeKind::point) return false;
+    return may_touch_(a, b);
+  });
+
+  // ascending: of a body first its walls, from the last
+  auto pair = pairs.begin();
+  for (int a = 0; a < n; ++a) {
+    const Body<D>& p = model_.bodies[a];
+    for (int wall = int(model_.walls.size()); !still_[a] && !p.handout && wall-- > 0;) {
+      const Wall<D>& w = model_.walls[wall];
+      if ((stances_[a].x - w.point).dot(w.normal) > rims_[a] + margin(a)) continue;
+      gaps_.clear();
+      gaps(a, p.shape, stances_[a], wall, w, margin(a), gaps_);
+      const double mu = w.friction ? std::sqrt(p.friction * *w.friction) : p.friction;
+      const double e = w.elasticity ? std::sqrt(p.elasticity * *w.elasticity) : p.elasticity;
+      for (const Gap<D>& gap : gaps_) add(gap, mu, e);
+    }
+    for (; pair != pairs.end() && pair->first == a; ++pair) {
+      const int b = pair->second;
+      const Body<D>& q = model_.bodies[b];
+      gaps_.clear();
+      gaps(a, p.shape, stances_[a], b, q.shape, stances_[b], margin(a) + margin(b), gaps_);
+      const double mu = std::sqrt(p.friction * q.friction), e = std::sqrt(p.elasticity * q.elasticity);
+      for (const Gap<D>& gap : gaps_) add(gap, mu, e);
+    }
+  }
+}
+
+template <int D>
+void Sweeps<D>::add(const Gap<D>& gap, double mu, double bounce) {
+  static const Stance<D> room;
+  const int none = int(model_.bodies.size());
+  const int a = gap.key.a, b = gap.key.b < 0 ? none : gap.key.b;
+  const Stance<D>& at_b = b == none ? room : stances_[b];
+  const Meeting<D> now = evaluate(gap, stances_[a], at_b);
+  Touch touch;
+  touch.key = gap.key, touch.a = a, touch.b = b;
+  touch.n = now.normal, touch.point = now.point, touch.gap = now.value;
+  touch.arm_a = now.point - stances_[a].x, touch.arm_b = now.point - at_b.x;
+  touch.mu = mu, touch.bounce = bounce;
+
+  // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
+  const auto answer = [&](const Vec<D>& s, const Vec<D>& t) {
+    const Spin<D> as = moment<D>(touch.arm_a, s), at = moment<D>(touch.arm_a, t);
+    const Spin<D> bs = moment<D>(touch.arm_b, s), bt = moment<D>(touch.arm_b, t);
+    return (moving_[a].light + moving_[b].light) * s.dot(t) + as.dot(moving_[a].ease * at) +
+           bs.dot(moving_[b].ease * bt);
+  };
+  touch.normal = answer(touch.n, touch.n);
+  const Vec<D> t = perpendicular<D>(touch.n);
+  touch.across = answer(t, t);
+  if constexpr (D == 3) {
+    const Vec<D> u = touch.n.cross(t);
+    const double p = touch.across, q = answer(u, u), r = answer(t, u), half = 0.5 * (p - q);
+    touch.across = 0.5 * (p + q) + std::sqrt(half * half + r * r);
+  }
+  touches_.push_back(touch);
+}
+
+// wakes the islands that something awake will touch, and those in a hand
+template <int D>
+bool Sweeps<D>::wake(State<D>& state, double h) {
+  const int n = int(model_.bodies.size());
+  if (std::none_of(state.frozen.begin(), state.frozen.end(), [](char frozen) { return frozen != 0; }))
+    return false;
+  ripe_.assign(n, 0);
+  bool any = false;
+  for (const Touch& touch : touches_) {
+    if (touch.b == n || state.frozen[touch.a] == state.frozen[touch.b]) continue;
+    const int sleeper = state.frozen[touch.a] ? touch.a : touch.b, other = touch.a + touch.b - sleeper;
+    if (model_.bodies[other].fixed) continue;
+    if (touch.gap < h * swiftness(other) + g_ * h * h) ripe_[sleeper] = 1, any = true;
+  }
+  const auto mark = [&](int body) {
+    if (body >= 0 && state.frozen[body]) ripe_[body] = 1, any = true;
+  };
+  for (const Grip<D>& grip : state.grips) mark(grip.body);
+  for (const Spring<D>& spring : model_.springs) {
+    const auto awake = [&](int body) {
+      return body >= 0 && !state.frozen[body] && !model_.bodies[body].fixed;
+    };
+    if (awake(spring.b.body)) mark(spring.a.body);
+    if (awake(spring.a.body)) mark(spring.b.body);
+  }
+  if (!any) return false;
+  join(state);
+  for (int i = 0; i < n; ++i) {
+    if (ripe_[i]) ripe_[island_[i]] = 1;
+  }
+  for (int i = 0; i < n; ++i) {
+    if (state.frozen[i] && ripe_[island_[i]]) state.frozen[i] = 0, state.quiet[i] = 0;
+  }
+  return true;
+}
+
+// where and how fast everyone would be without contacts
+template <int D>
+void Sweeps<D>::fall(State<D>& state, double t, double h) {
+  const int n = int(model_.bodies.size());
+  x_ = state.x, turn_ = state.turn;
+  tied_.gather(state, true);
+  stages_.reserve(std::size_t(tied_.size()));
+  tied_.step(integrate(model_.integrator), state, t, h, stages_);
+  v_free_ = state.v, w_free_ = state.spin;
+  for (int i = 0; i < n; ++i) {
+    if (still_[i]) continue;
+    moving_[i].v = state.v[i];
+    if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
+  }
+}
+
+template <int D>
+Vec<D> Sweeps<D>::slip(const Touch& touch) const {
+  const Moving &a = moving_[touch.a], &b = moving_[touch.b];
+  return a.v + swing<D>(a.w, touch.arm_a) - b.v - swing<D>(b.w, touch.arm_b);
+}
+
+template <int D>
+void Sweeps<D>::push(const Touch& touch, const Vec<D>& impulse) {
+  Moving &a = moving_[touch.a], &b = moving_[touch.b];
+  a.v += a.light * impulse, a.w += a.ease * moment<D>(touch.arm_a, impulse);
+  b.v -= b.light * impulse, b.w -= b.ease * moment<D>(touch.arm_b, impulse);
+}
+
+// what each touch wants of the step, and the forces it had in the last
+template <int D>
+void Sweeps<D>::begin(const State<D>& state, double h) {
+  static const Stance<D> room;
+  const int n = int(model_.bodies.size());
+  closing_.assign(n + 1, 0), all_.clear();
+  auto known = state.contacts.begin();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    Touch& touch = touches_[i];
+    all_.push_back(i);
+    const Stance<D>& b = touch.b == n ? room : stances_[touch.b];
+    const double before = touch.n.dot(stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b));
+    touch.least = std::min(-touch.gap / h, 0.0);
+    if (before < -rest_speed_ && touch.gap + h * (before - g_ * h) < 0) {
+      touch.least = -touch.bounce * before;
+      touch.closing = touch.bounce == 0;
+    } else {
+      touch.closing = before < -0.05 * rest_speed_ && touch.gap + h * before < 0;
+    }
+    if (touch.closing) closing_[touch.a] = closing_[touch.b] = 1;
+    while (known != state.contacts.end() && known->key < touch.key) ++known;
+    if (known == state.contacts.end() || known->key != touch.key) continue;
+    touch.pressed = std::max(0.0, h * known->force.dot(touch.n));
+    touch.rubbed = h * (known->force - touch.n * touch.n.dot(known->force));
+    const double size = std::sqrt(touch.rubbed.squaredNorm()), most = touch.mu * touch.pressed;
+    if (size > most) touch.rubbed *= most / size;
+    push(touch, touch.pressed * touch.n + touch.rubbed);
+  }
+}
+
+template <int D>
+void Sweeps<D>::sweep(const std::vector<int>& order, bool back) {
+  const int count = int(order.size());
+  for (int i = 0; i < count; ++i) {
+    Touch& touch = touches_[order[back ? count - 1 - i : i]];
+    const Vec<D> u = slip(touch);
+    const double along = touch.n.dot(u);
+    const double pressed = std::max(0.0, touch.pressed + (touch.least - along) / touch.normal);
+    Vec<D> impulse = (pressed - touch.pressed) * touch.n;
+    touch.pressed = pressed;
+    const double most = touch.mu * pressed;
+    if (most > 0 || !touch.rubbed.isZero(0)) {
+      const Vec<D> wanted = touch.rubbed - (u - along * touch.n) / touch.across;
+      const double size = std::sqrt(wanted.squaredNorm());
+      const Vec<D> rubbed = size > most ? Vec<D>(wanted * (most / size)) : wanted;
+      impulse += rubbed - touch.rubbed;
+      touch.rubbed = rubbed;
+    }
+    if (!impulse.isZero(0)) push(touch, impulse);
+  }
+}
+
+template <int D>
+void Sweeps<D>::advance(State<D>& state, double h) {
+  const int n = int(model_.bodies.size());
+  for (int i = 0; i < n; ++i) {
+    if (still_[i]) continue;
+    const Moving& m = moving_[i];
+    if (closing_[i]) {
+      state.x[i] = x_[i] + h * m.v;
+    } else {
+      state.x[i] += 0.5 * h * (m.v - v_free_[i]);
+    }
+    state.v[i] = m.v;
+    double fast = m.v.squaredNorm();
+    if (const int k = turning(state, i); k >= 0) {
+      state.turn[k] = closing_[i] ? turned<D>(turn_[k], Spin<D>(h * m.w))
+                                  : turned<D>(state.turn[k], Spin<D>(0.5 * h * (m.w - w_free_[k])));
+      state.spin[k] = m.w;
+      fast += rims_[i] * rims_[i] * m.w.squaredNorm();
+    }
+    state.quiet[i] = fast < kQuiet * kQuiet ? state.quiet[i] + h : 0;
+  }
+}
+
+// positions out of each other, a part of the way, by the same rows
+template <int D>
+void Sweeps<D>::part(State<D>& state) {
+  some_.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    const Touch& touch = touches_[i];
+    const double far = rims_[touch.a];
+    if (touch.gap < -kAllowed * far) some_.push_back(i);
+  }
+  if (some_.empty()) return;
+  kept_ = moving_;
+  for (Moving& m : moving_) m.v.setZero(), m.w.setZero();
+  for (int round = 0; round < 4; ++round) {
+    for (const int i : some_) {
+      const Touch& touch = touches_[i];
+      const double wanted = kPart * (-touch.gap - kAllowed * rims_[touch.a]);
+      const double left = wanted - touch.n.dot(slip(touch));
+      if (left > 0) push(touch, left / touch.normal * touch.n);
+    }
+  }
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    if (still_[i]) continue;
+    state.x[i] += moving_[i].v;
+    if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
+  }
+  moving_.swap(kept_);
+}
+
+// the forces of this step; what sleeps keeps its own
+template <int D>
+void Sweeps<D>::report(State<D>& state, double h) const {
+  const auto asleep = [&](int body) { return body < 0 || still_[body]; };
+  std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
+  const std::size_t kept = state.contacts.size();
+  for (const Touch& touch : touches_) {
+    Contact<D> contact;
+    contact.key = touch.key, contact.point = touch.point, contact.normal = touch.n, contact.gap = touch.gap;
+    const Vec<D> impulse = touch.pressed * touch.n + touch.rubbed;
+    contact.force = impulse / h;
+    if (touch.least > 0) contact.impulse = impulse;
+    contact.touching = touch.pressed <= 0 ? Touching::open
+                       : std::sqrt(touch.rubbed.squaredNorm()) < touch.mu * touch.pressed * (1 - 1e-9)
+                           ? Touching::stick
+                           : Touching::slide;
+    state.contacts.push_back(contact);
+  }
+  std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),
+                     state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
+}
+
+// who is joined to whom, by contacts that bear or are closed, and springs; fixed bodies join nobody
+template <int D>
+void Sweeps<D>::join(const State<D>& state) {
+  island_.resize(model_.bodies.size());
+  for (int i = 0; i < int(island_.size()); ++i) island_[i] = i;
+  const auto root = [&](int i) {
+    while (island_[i] != i) i = island_[i] = island_[island_[i]];
+    return i;
+  };
+  const auto link = [&](int a, int b) {
+    if (a < 0 || b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) return;
+    const int p = root(a), q = root(b);
+    island_[std::max(p, q)] = std::min(p, q);
+  };
+  for (const Contact<D>& contact : state.contacts) {
+    const bool near = contact.touching != Touching::open || contact.gap < 1e-3 * rims_[contact.key.a];
+    if (near) link(contact.key.a, contact.key.b);
+  }
+  for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
+  for (int i = 0; i < int(island_.size()); ++i) island_[i] = root(i);
+}
+
+// A quiet island at rest needs forces that leave it there: sweeps look for them as in a step of bodies
+// without speed; what speed they leave, over h, is the residual. Forces found on the way are kept.
+template <int D>
+bool Sweeps<D>::rest(State<D>& state, double h) {
+  const int n = int(model_.bodies.size());
+  bool ripe = false;
+  for (int i = 0; i < n; ++i) ripe = ripe || (!still_[i] && state.quiet[i] >= kWait);
+  if (!ripe) return false;
+  join(state);
+  ripe_.assign(n, 1);
+  for (int i = 0; i < n; ++i) {
+    if (!still_[i] && state.quiet[i] < kWait) ripe_[island_[i]] = 0;
+  }
+  for (const Spring<D>& spring : model_.springs) {
+    for (const int body : {spring.a.body, spring.b.body}) {
+      if (body >= 0) ripe_[island_[body]] = 0;
+    }
+  }
+  for (const Grip<D>& grip : state.grips) {
+    if (grip.body >= 0) ripe_[island_[grip.body]] = 0;
+  }
+  const auto resting = [&](int body) { return body < n && !still_[body] && ripe_[island_[body]]; };
+  some_.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    const Touch& touch = touches_[i];
+    if (!resting(touch.a) && !resting(touch.b)) continue;
+    // too deep to stay so, or awake beyond
+    const int body = resting(touch.a) ? touch.a : touch.b;
+    if (touch.gap < -20 * kAllowed * rims_[touch.a]) ripe_[island_[body]] = 0;
+    some_.push_back(i);
+  }
+  std::erase_if(some_, [&](int i) { return !resting(touches_[i].a) && !resting(touches_[i].b); });
+  bool any = false;
+  for (int i = 0; i < n; ++i) any = any || resting(i);
+  if (!any) return false;
+
+  kept_ = moving_;
+  for (int i = 0; i < n; ++i) {
+    if (!resting(i)) {
+      moving_[i] = {};
+      continue;
+    }
+    moving_[i].v = h * model_.gravity, moving_[i].w.setZero();
+  }
+  for (const int i : some_) {
+    Touch& touch = touches_[i];
+    touch.least = std::min(-touch.gap / h, 0.0);
+    push(touch, touch.pressed * touch.n + touch.rubbed);
+  }
+  double worst = 1e300;
+  for (int i = 1; i < kRestSweeps && worst > kHeld * g_ * h; ++i) {
+    sweep(some_, i % 2 != 0);
+    if (i % kBetweenChecks != 0) continue;
+    worst = 0;
+    for (int k = 0; k < n; ++k) {
+      if (resting(k)) worst = std::max(worst, swiftness(k));
+    }
+  }
+  // island by island
+  left_.assign(n, 0);
+  for (int i = 0; i < n; ++i) {
+    if (resting(i)) left_[island_[i]] = std::max(left_[island_[i]], swiftness(i));
+  }
+  bool froze = false;
+  for (int i = 0; i < n; ++i) {
+    if (!resting(i) || left_[island_[i]] > kHeld * g_ * h) continue;
+    state.frozen[i] = 1, froze = true;
+    state.v[i].setZero();
+    if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();
+  }
+  moving_.swap(kept_);
+  report(state, h);
+  return froze;
+}
+
+template class Sweeps<3>;
+
+}  // namespace obscura::sim

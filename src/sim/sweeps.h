@@ -1,0 +1,90 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "sim/contact_step.h"
+#include "sim/gap.h"
+#include "sim/pairs.h"
+#include "sim/tied.h"
+
+namespace obscura::sim {
+
+/// Contact for hundreds of bodies of space: all that may touch within a step is found anew in each, forces by
+/// warm sweeps over it. All that is carried from step to step is in the state, so a run cut in two is the run
+/// in one. Joints it does not know: those are the direct solver's.
+template <int D>
+class Sweeps final : public ContactStep<D> {
+ public:
+  /// Both are kept by reference.
+  Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+  /// Moves `state` from t to t + h (s): forces, impacts, contacts with friction, rest. Uses and writes
+  /// state.contacts, frozen, quiet.
+  void step(State<D>& state, double t, double h) override;
+
+ private:
+  // how a body moves, and answers a push; none of what is fixed, frozen, or a wall
+  struct Moving {
+    Vec<D> v = Vec<D>::Zero();
+    Spin<D> w = Spin<D>::Zero();
+    double light = 0;  // 1/kg
+    Eigen::Matrix<double, kSpins<D>, kSpins<D>> ease =
+        Eigen::Matrix<double, kSpins<D>, kSpins<D>>::Zero();  // 1/(kg m^2)
+  };
+
+  // a gap that may close in the step
+  struct Touch {
+    ContactKey key;
+    int a = 0, b = 0;  // in moving_; walls and the room are its last
+    Vec<D> n, arm_a, arm_b, point;
+    double gap = 0, mu = 0, bounce = 0;
+    double normal = 0, across = 0;   // what a push answers, 1/kg; across: at most
+    double least = 0;                // of the normal speed after the step, m/s
+    double pressed = 0;              // impulse along n, N s
+    Vec<D> rubbed = Vec<D>::Zero();  // and across it
+    bool closing = false;            // slowly
+  };
+
+  void ready(const State<D>& state);
+  void find(double h);
+  void add(const Gap<D>& gap, double mu, double bounce);
+  bool wake(State<D>& state, double h);
+  void fall(State<D>& state, double t, double h);
+  void begin(const State<D>& state, double h);
+  void sweep(const std::vector<int>& order, bool back);
+  void push(const Touch& touch, const Vec<D>& impulse);
+  Vec<D> slip(const Touch& touch) const;
+  void advance(State<D>& state, double h);
+  void part(State<D>& state);
+  void report(State<D>& state, double h) const;
+  void join(const State<D>& state);
+  bool rest(State<D>& state, double h);
+  double swiftness(int body) const;
+
+  const Model<D>& model_;
+  MayTouch<D> may_touch_;
+  BroadPhase<D> broad_;
+  Tied<D> tied_;
+  Stages stages_;
+  std::int64_t every_ = 1;  // steps between two looks for rest
+  double g_ = 0, rest_speed_ = 0;
+  std::vector<double> rims_;
+
+  std::vector<Stance<D>> stances_;
+  std::vector<Moving> moving_;
+  std::vector<Bounds<D>> bounds_;
+  std::vector<char> still_;
+  std::vector<Gap<D>> gaps_;
+  std::vector<Touch> touches_;  // ascending by key
+  std::vector<int> all_, some_;
+  std::vector<Vec<D>> x_, v_free_;
+  std::vector<Turn<D>> turn_;
+  std::vector<Spin<D>> w_free_;
+  std::vector<char> closing_, ripe_;
+  std::vector<int> island_;
+  std::vector<Moving> kept_;
+  std::vector<double> left_;  // of each island's fastest point, m/s
+};
+
+}  // namespace obscura::sim
