@@ -59,7 +59,8 @@ int main(int argc, const char* const* argv) {
       "  obscura new ball                        write ball.toml to start from\n"
       "  obscura render ball.toml                film it: render_out/ball.mp4\n"
       "  obscura render ball.toml --at 1.5       one picture of it\n"
-      "  obscura states ball.toml --every 0.1    where everything is, as data\n\n"
+      "  obscura states ball.toml --every 0.1    where everything is, as data\n"
+      "  obscura export ball.toml                its motion as glTF, for another renderer\n\n"
       "Exit codes: 0 done, 2 usage, 3 scene, 4 files or codec, 5 OpenGL, 6 the simulation diverged, 130 "
       "interrupted.");
   program.require_subcommand(1);
@@ -70,6 +71,7 @@ int main(int argc, const char* const* argv) {
   add_new(program, exit);
   add_check(program, exit);
   add_states(program, exit);
+  add_export(program, exit);
   add_docs(program, exit);
   try {
     know_command(program, argc, argv);

@@ -38,6 +38,7 @@ struct Making {
   Seating<D>& roster;
   Complaints& complaints;
   bool rotation = true;                    // the scene's
+  double ground_drag = 0;                  // the room's
   double drag = 0;                         // the room's
   double trail = 0;                        // the look's
   bool velocity = false, contact = false;  // arrows on every body
@@ -196,6 +197,8 @@ void add(Making<D>& making, const Fields& fields, const std::string& kind, const
   body.friction = number(fields.node("friction"), i, n);
   const Node* drag = fields.given("drag");
   body.drag = drag ? number(*drag, i, n) : making.drag;
+  const Node* ground_drag = fields.given("ground_drag");
+  body.ground_drag = ground_drag ? number(*ground_drag, i, n) : making.ground_drag;
   body.fixed = start.fixed;
   body.handout = fields.given("collision") != nullptr;
   if (fields.given("group")) {
@@ -552,6 +555,7 @@ Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, cons
   Seating<D> roster;
   Making<D> making{top, room, seed, told, world, looks, roster, complaints};
   making.drag = Fields::of(top, "room").number("drag");
+  making.ground_drag = Fields::of(top, "room").number("ground_drag");
   making.rotation = Fields::of(top, "physics").flag("rotation");
   const Fields look = Fields::of(top, "look");
   if (const Node& trails = look.node("trails"); trails.is_number()) making.trail = trails.number();

@@ -181,6 +181,26 @@ breaks  = 50
 
 Two bodies with a joint between them do not touch each other, unless it says `touching = true`.
 
+## Explosions
+
+An explosion pushes every point of every body away from its centre for a while: the corners of a box, the ends of a capsule, a
+particle, the middle of a ball. Each point feels the force, so that a box of eight corners feels eight times what a particle does there.
+
+```toml
+[[explosion]]
+center   = [0, 0, 0]
+strength = 20                                                    # newtons on a point a metre away
+start    = 0.5
+duration = 1
+scheme   = "paper"                                               # the force is held for 10 ms at a time
+
+[room]
+ground_drag = 0.5                                                # the paper's friction on the ground
+
+[physics]
+rotation = false                                                 # the paper's own: forces move bodies as a whole
+```
+
 )";
 
 const char* const kNotes[][2] = {

@@ -13,8 +13,8 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr const char* kNamed[] = {"particle", "ball",   "box", "capsule", "polygon", "hull",
-                                  "body",     "spring", "net", "joint",   "mouse"};
+constexpr const char* kNamed[] = {"particle", "ball",   "box", "capsule", "polygon",   "hull",
+                                  "body",     "spring", "net", "joint",   "explosion", "mouse"};
 
 void settle(Node& node, Place place) {
   node.place = place;

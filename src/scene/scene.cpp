@@ -10,6 +10,7 @@
 #include "scene/complaints.h"
 #include "scene/dimension.h"
 #include "scene/document.h"
+#include "scene/explosions.h"
 #include "scene/fields.h"
 #include "scene/joints.h"
 #include "scene/links.h"
@@ -76,7 +77,7 @@ void ignore(const Node& top, const Roster& roster, sim::Model<D>& model, Complai
 void refuse_taken_names(const Node& top, const Roster& roster, Complaints& complaints) {
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
-  for (const char* kind : {"spring", "net", "joint", "mouse"}) {
+  for (const char* kind : {"spring", "net", "joint", "explosion", "mouse"}) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i) {
       const Node* name = all->list()[i].find("name");
@@ -111,6 +112,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, world, complaints);
+  explosions(top, model, complaints);
   ignore(top, roster, model, complaints);
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
   refuse_taken_names(top, roster, complaints);

@@ -81,7 +81,7 @@ const Language& language() {
   return it;
 }
 
-constexpr std::string_view kLater[] = {"chain", "bond", "explosion", "golden", "spring.breaks"};
+constexpr std::string_view kLater[] = {"chain", "bond", "golden", "spring.breaks"};
 
 }  // namespace
 
@@ -121,6 +121,7 @@ std::string unit_words(std::string_view unit) {
       {"N s/m", "newton seconds per metre"},
       {"kg/m^2, in space kg/m^3", "kilograms per square metre, in space per cubic metre"},
       {"m/N", "metres per newton"},
+      {"N m^2", "newton square metres"},
       {"N", "newtons"},
       {"1/s", "per second"}};
   const auto found = words.find(unit);

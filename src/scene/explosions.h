@@ -1,0 +1,13 @@
+#pragma once
+
+#include "scene/complaints.h"
+#include "scene/document.h"
+#include "sim/state.h"
+
+namespace obscura::scene {
+
+/// Puts the explosions of a scene into its model.
+template <int D>
+void explosions(const Node& top, sim::Model<D>& model, Complaints& complaints);
+
+}  // namespace obscura::scene
