@@ -12,11 +12,6 @@ constexpr double kHead = 24, kHeadHalf = 8.6, kNotch = 17;  // tip to barbs, hal
 constexpr double kHalo = 2.4;
 constexpr double kWhole = 1.5;  // heads long: from here on the head is full
 
-struct Arrow {
-  Point tail, tip;
-  double grow = 1;  // of its head and shaft
-};
-
 /// The head, larger by `halo` all around.
 std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
   const Point u = (arrow.tip - arrow.tail).normalized(), v(-u.y(), u.x());
@@ -26,27 +21,25 @@ std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
           arrow.tip - u * back - v * side};
 }
 
-/// An arrow large enough to be seen.
+}  // namespace
+
 void offer(const Point& tail, const Point& tip, double weight, std::vector<Arrow>& arrows) {
   const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
   if (grow > 0.2) arrows.push_back({tail, tip, grow});
 }
 
-/// Halos of all below all arrows, one kind after another: few batches.
-void draw_arrows(const std::vector<Arrow>& arrows, const Stage& stage, Color color, List& list) {
-  const double weight = stage.layout.weight;
+// one kind after another: few batches
+void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list) {
   auto shaft = [&](const Arrow& a, double halo, Color ink) {
     const Point u = (a.tip - a.tail).normalized();
     const double width = kArrowLine * weight * a.grow + 2 * halo;
     list.add({{a.tail, width, ink}, {a.tip - u * (kNotch - 1) * weight * a.grow, width, ink}}, Cap::butt);
   };
-  for (const Arrow& a : arrows) shaft(a, kHalo * weight * a.grow, stage.colours.room);
-  for (const Arrow& a : arrows) list.add(head(a, weight, kHalo * weight * a.grow), stage.colours.room);
+  for (const Arrow& a : arrows) shaft(a, kHalo * weight * a.grow, room);
+  for (const Arrow& a : arrows) list.add(head(a, weight, kHalo * weight * a.grow), room);
   for (const Arrow& a : arrows) shaft(a, 0, color);
   for (const Arrow& a : arrows) list.add(head(a, weight, 0), color);
 }
-
-}  // namespace
 
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   std::vector<Arrow> arrows;
@@ -55,12 +48,13 @@ void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& 
     offer(view.page(body.position), view.page(body.position + stage.look.velocity_scale * body.velocity),
           stage.layout.weight, arrows);
   }
-  draw_arrows(arrows, stage, stage.colours.velocity, list);
+  draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.velocity, list);
 }
 
-void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
-  std::vector<Arrow> arrows;
-  const sim::Vec3 up = stage.cast.gravity.norm() > 0 ? sim::Vec3(-stage.cast.gravity) : sim::Vec3::UnitY();
+std::vector<Push> pushes(const sim::Cast& cast, const Look& look, const sim::Snapshot& now) {
+  std::vector<Push> found;
+  const auto wanted = [&](int body) { return body < int(look.bodies.size()) && look.bodies[body].contact; };
+  const sim::Vec3 up = cast.gravity.norm() > 0 ? sim::Vec3(-cast.gravity) : sim::Vec3::UnitY();
   for (std::size_t i = 0; i < now.contacts.size();) {
     // all that one gives to another, and where it acts: corners that press harder count for more
     const sim::Snapshot::Contact& first = now.contacts[i];
@@ -72,15 +66,24 @@ void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& no
       const double weight = std::max(each.force.dot(each.normal), 0.0);
       force += each.force, point += weight * each.point, pressed += weight;
     }
-    const bool on_body = stage.looks(first.body).contact;
-    const bool on_other = first.other >= 0 && stage.looks(first.other).contact;
+    const bool on_body = wanted(first.body);
+    const bool on_other = first.other >= 0 && wanted(first.other);
     if ((!on_body && !on_other) || !(pressed > 0)) continue;
     point /= pressed;
     // of the two, the one that is carried
     if (!on_body || (on_other && force.dot(up) < 0)) force = -force;
-    offer(view.page(point), view.page(point + stage.force_scale * force), stage.layout.weight, arrows);
+    found.push_back({point, force});
   }
-  draw_arrows(arrows, stage, stage.colours.force, list);
+  return found;
+}
+
+void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  std::vector<Arrow> arrows;
+  for (const Push& push : pushes(stage.cast, stage.look, now)) {
+    offer(view.page(push.point), view.page(push.point + stage.force_scale * push.force), stage.layout.weight,
+          arrows);
+  }
+  draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.force, list);
 }
 
 }  // namespace obscura::draw

@@ -6,18 +6,18 @@
 #include <utility>
 
 #include "draw/camera.h"
+#include "draw/space.h"
 #include "draw/stage.h"
 
 namespace obscura::draw {
 namespace {
 
 constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
-constexpr int kMany = 12;            // more springs than these, nets apart, are drawn as lines
 
 bool is_point(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::point; }
 
-/// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on
-/// one.
+}  // namespace
+
 std::vector<char> knots(const sim::Cast& cast) {
   std::vector<int> count(cast.bodies.size(), 0);
   for (const sim::Cast::Spring& spring : cast.springs) {
@@ -35,7 +35,6 @@ std::vector<char> knots(const sim::Cast& cast) {
   return knot;
 }
 
-/// How long the arrow of a newton is, m.
 double newton(const sim::Cast& cast) {
   // the heaviest, and all of them: a stack's lowest contacts carry much more than its highest
   double heaviest = 0, all = 0;
@@ -47,8 +46,6 @@ double newton(const sim::Cast& cast) {
   const double usual = g * std::sqrt(heaviest * std::max(heaviest, all / 4));
   return usual > 0 ? kForceArrow * cast.scale / usual : 0;
 }
-
-}  // namespace
 
 Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, const Extent& extent,
              double aspect)
@@ -120,6 +117,7 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
   }
 }
 
+// Of a run in the plane.
 struct Depictor::Plan {
   Stage stage;
   // the last still list, and the view it is of
@@ -141,12 +139,24 @@ struct Depictor::Plan {
 
 Depictor::Depictor(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
                    double aspect)
-    : plan_(new Plan{Stage(cast, look, camera, extent, aspect), {}, {}, {}}) {}
+    : Depictor(cast, look, std::vector{camera}, extent, aspect) {}
+
+Depictor::Depictor(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras,
+                   const Extent& extent, double aspect)
+    : look_(look) {
+  if (cast.dimension == 3)
+    space_ = std::make_shared<const SpaceStage>(cast, look, cameras, extent, aspect);
+  else
+    plan_.reset(new Plan{Stage(cast, look, cameras.at(0), extent, aspect), {}, {}, {}});
+}
 
 View Depictor::view(double t) const { return view_at(plan_->stage.camera, plan_->stage.layout, t); }
 
+Lens Depictor::lens(const sim::Snapshot& now, int panel) const { return lens_of(space_->panels[panel], now); }
+
 Picture Depictor::depict(const sim::Snapshot& now,
                          std::span<const std::shared_ptr<const sim::Track>> ways) const {
+  if (space_) return depict_space(*space_, now, ways);
   const Stage& stage = plan_->stage;
   View view = view_at(stage.camera, stage.layout, now.time);
   if (stage.camera.follow) {
@@ -184,14 +194,14 @@ Picture Depictor::depict(const sim::Snapshot& now,
 
 double Depictor::longest_trail() const {
   double longest = 0;
-  for (const BodyLook& body : plan_->stage.look.bodies) longest = std::max(longest, body.trail);
+  for (const BodyLook& body : look_.bodies) longest = std::max(longest, body.trail);
   return longest;
 }
 
 std::vector<int> Depictor::trailed() const {
   std::vector<int> bodies;
-  for (std::size_t i = 0; i < plan_->stage.look.bodies.size(); ++i) {
-    if (plan_->stage.look.bodies[i].trail > 0) bodies.push_back(int(i));
+  for (std::size_t i = 0; i < look_.bodies.size(); ++i) {
+    if (look_.bodies[i].trail > 0) bodies.push_back(int(i));
   }
   return bodies;
 }

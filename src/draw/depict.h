@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "draw/lens.h"
 #include "draw/list.h"
 #include "draw/look.h"
 #include "sim/snapshot.h"
@@ -27,6 +28,8 @@ struct Extent {
   sim::Vec3 low = sim::Vec3::Zero(), high = sim::Vec3::Zero();
 };
 
+struct SpaceStage;
+
 /// Draws instants of one run. Holds what does not change: the look's colours, the room's walls as polygons,
 /// the still list.
 class Depictor {
@@ -35,8 +38,15 @@ class Depictor {
   Depictor(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
            double aspect);
 
-  /// Where the world lies on the page at time t (s).
+  /// In space: several cameras look at one run, in panels beside each other with their names over them.
+  Depictor(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras, const Extent& extent,
+           double aspect);
+
+  /// In the plane: where the world lies on the page at time t (s).
   View view(double t) const;
+
+  /// In space: how it lies in a panel.
+  Lens lens(const sim::Snapshot& now, int panel = 0) const;
 
   /// The picture of one instant. `ways`: the tracks that hold the last `trail` seconds before it, oldest
   /// first.
@@ -50,7 +60,10 @@ class Depictor {
 
  private:
   struct Plan;
+  Look look_;
+  // one of them
   std::shared_ptr<const Plan> plan_;
+  std::shared_ptr<const SpaceStage> space_;
 };
 
 }  // namespace obscura::draw

@@ -78,23 +78,35 @@ struct Hand {
 };
 
 std::vector<Hand> hands(const Stage& stage, const View& view, const sim::Snapshot& now) {
-  std::vector<Hand> shown;
-  if (!stage.look.pointer) return shown;
+  std::vector<Hand> found;
+  if (!stage.look.pointer) return found;
   for (std::size_t i = 0; i < now.mice.size() && i < stage.cast.mice.size(); ++i) {
     const sim::Cast::Mouse& mouse = stage.cast.mice[i];
     if (mouse.path.empty()) continue;
-    const double before = mouse.press - now.time, after = now.time - mouse.release;
-    const double alpha = std::clamp(std::min(1 - before / kAppear, 1 - after / kLeave), 0.0, 1.0);
-    if (alpha <= 0) continue;
-    const sim::Vec3 place = before > 0  ? mouse.path.front()
-                            : after > 0 ? mouse.path.back()
-                                        : now.mice[i].pointer;
-    shown.push_back({i, view.page(place), alpha});
+    const double alpha = shown(mouse, now.time);
+    if (alpha > 0) found.push_back({i, view.page(pointer(mouse, now.mice[i], now.time)), alpha});
   }
-  return shown;
+  return found;
 }
 
 }  // namespace
+
+double shown(const sim::Cast::Mouse& mouse, double time) {
+  const double before = mouse.press - time, after = time - mouse.release;
+  return std::clamp(std::min(1 - before / kAppear, 1 - after / kLeave), 0.0, 1.0);
+}
+
+sim::Vec3 pointer(const sim::Cast::Mouse& mouse, const sim::Snapshot::Mouse& now, double time) {
+  return time < mouse.press ? mouse.path.front() : time > mouse.release ? mouse.path.back() : now.pointer;
+}
+
+void draw_pointer(const Point& at, double alpha, double weight, const Palette& colours, List& list) {
+  std::vector<Node> around;
+  for (const Point& p : placed(kPointer, at, weight))
+    around.push_back({p, 2 * kEdge * weight, faded(colours.room, alpha)});
+  list.add(around, Cap::round, Blend::over, true);
+  list.add(placed(kPointer, at, weight), faded(colours.ink, alpha));
+}
 
 void draw_ways(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   for (const Hand& hand : hands(stage, view, now)) {
@@ -104,8 +116,8 @@ void draw_ways(const Stage& stage, const View& view, const sim::Snapshot& now, L
 
 void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight, zoom = view.scale / stage.layout.scale;
-  const std::vector<Hand> shown = hands(stage, view, now);
-  for (const Hand& hand : shown) {
+  const std::vector<Hand> found = hands(stage, view, now);
+  for (const Hand& hand : found) {
     const sim::Snapshot::Mouse& mouse = now.mice[hand.mouse];
     if (!mouse.pressed || mouse.body < 0) continue;
     const Coil& form = stage.hands[hand.mouse];
@@ -118,14 +130,7 @@ void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, 
     list.add(nodes, Cap::round);
     list.add(Disc{held, kJoint * weight, 0, stage.colours.spring, stage.colours.spring});
   }
-  for (const Hand& hand : shown) {
-    std::vector<Node> around;
-    for (const Point& p : placed(kPointer, hand.at, weight)) {
-      around.push_back({p, 2 * kEdge * weight, faded(stage.colours.room, hand.alpha)});
-    }
-    list.add(around, Cap::round, Blend::over, true);
-    list.add(placed(kPointer, hand.at, weight), faded(stage.colours.ink, hand.alpha));
-  }
+  for (const Hand& hand : found) draw_pointer(hand.at, hand.alpha, weight, stage.colours, list);
 }
 
 }  // namespace obscura::draw

@@ -168,6 +168,17 @@ std::string fitted(const std::string& words, Face face, double size, double widt
   return low == 0 ? std::string() : with_ellipsis(low);
 }
 
+double lay_caption(Layout& layout, const Look& look) {
+  const double w = layout.weight;
+  layout.caption = look.caption && (look.clock || !look.title.empty() || !look.subtitle.empty());
+  if (!layout.caption) return 0;
+  const double page = layout.width - 2 * std::max(w * kMargin, 0.045 * layout.width);
+  const Setting setting = set_words(look, w, page, page);
+  write_caption(layout, look, palette(look.theme), setting, (layout.width - page) / 2,
+                (layout.width + page) / 2, 0);
+  return w * (kStrip + (setting.lines - 1) * kSecondLine);
+}
+
 Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
                double aspect) {
   Layout layout;

@@ -30,6 +30,9 @@ struct Layout {
 Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
                double aspect);
 
+/// Writes the caption over a page without a room on it, and says how high its strip is.
+double lay_caption(Layout& layout, const Look& look);
+
 /// "t = 3.42 s"
 std::string clock_text(double time);
 

@@ -131,13 +131,16 @@ struct List {
   void mark(Kind kind, int end);
 };
 
+struct Solids;
+
 /// One frame: a ground, what stands still (shared by all frames that have it, so that it is drawn once), what
-/// moves.
+/// is drawn by depth in space, what moves.
 struct Picture {
   double aspect = 16.0 / 9;  // width over height
   Color ground;
   bool transparent = false;  // leave the ground out
   std::shared_ptr<const List> still;
+  std::vector<std::shared_ptr<const Solids>> solids;  // one a panel
   List moving;
 };
 

@@ -32,6 +32,10 @@ struct Look {
   double velocity_scale = 0.1;   // s: arrow length in metres a metre per second
   double force_scale = 0;        // m/N: arrow length in metres a newton; 0: chosen by the bodies' weights
   std::vector<BodyLook> bodies;  // as in the Cast
+  // in space
+  sim::Vec3 light{-0.6, 1, 0.42};  // towards the light
+  bool ground = true;              // the grid, and shadows on it
+  double tile = 0;                 // m from one line of the grid to the next; 0: chosen by the camera
   enum class Springs { automatic, coils, lines } springs = Springs::automatic;
 };
 
@@ -43,12 +47,26 @@ struct CameraKey {
   std::optional<double>
       width;  // m that the picture's world region shows across; none: as much as fits the room
   Ease ease = Ease::in_out;
+  // in space; left out: as the camera says
+  std::optional<double> azimuth, elevation;  // rad: from where it looks, see Camera
+  std::optional<sim::Vec3> eye;              // m: instead of both; a perspective camera's width, too
 };
 
-/// Without keys the camera shows as much as fits the room.
+/// Without keys the camera shows as much as fits the room. In space it looks at a key's `center` from a
+/// direction: azimuth 0 is from +z, a quarter turn from +x, counter-clockwise seen from above; elevation 0 is
+/// level, a quarter turn is from above. `width` is what it shows across at the centre's distance, and so the
+/// eye's distance follows from the field of view.
 struct Camera {
   std::vector<CameraKey> keys;  // by time
   std::optional<int> follow;    // the body that it keeps in the middle
+  // in space
+  enum class Projection { perspective, orthographic };
+  std::string name;  // over its panel, where there are several
+  Projection projection = Projection::perspective;
+  double field = 0.5235987755982988;      // rad, of a perspective camera, over the longer side of its window
+  double azimuth = 0.5235987755982988;    // rad: where no key says otherwise
+  double elevation = 0.3839724354387525;  // rad
+  double orbit = 0;  // rad/s, added to the azimuth, about the vertical through the centre
 };
 
 }  // namespace obscura::draw

@@ -42,6 +42,48 @@ std::vector<std::uint64_t> seams_of(const sim::Cast::Body& body);
 
 using Ways = std::span<const std::shared_ptr<const sim::Track>>;
 
+/// The way of a body since `from` (s), up to now.
+std::vector<sim::Track::Point> way_of(int body, double from, const sim::Snapshot& now, Ways ways);
+
+/// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on
+/// one.
+std::vector<char> knots(const sim::Cast& cast);
+
+/// How long the arrow of a newton is, m.
+double newton(const sim::Cast& cast);
+
+/// More springs than these, nets apart, are drawn as lines.
+inline constexpr int kMany = 12;
+
+/// An arrow from `tail` to `tip` on the page.
+struct Arrow {
+  Point tail, tip;
+  double grow = 1;  // of its head and shaft
+};
+
+/// An arrow large enough to be seen.
+void offer(const Point& tail, const Point& tip, double weight, std::vector<Arrow>& arrows);
+
+/// Halos of all below all arrows.
+void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list);
+
+/// A force where two touch: all that one gives to the other, at their centre of pressure.
+struct Push {
+  sim::Vec3 point, force;
+};
+
+/// The forces of contacts that the look asks for.
+std::vector<Push> pushes(const sim::Cast& cast, const Look& look, const sim::Snapshot& now);
+
+/// The pointer of a hand, its tip at `at`.
+void draw_pointer(const Point& at, double alpha, double weight, const Palette& colours, List& list);
+
+/// How strongly a hand is shown at a time: it appears before the press and leaves after the release.
+double shown(const sim::Cast::Mouse& mouse, double time);
+
+/// Where the hand is then, also before the press and after the release.
+sim::Vec3 pointer(const sim::Cast::Mouse& mouse, const sim::Snapshot::Mouse& now, double time);
+
 /// Hatching, room, walls, title: what stands still while the camera does.
 void draw_still(const Stage& stage, const View& view, List& list);
 

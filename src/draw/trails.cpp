@@ -17,7 +17,8 @@ constexpr double kClose = 0.5;  // page units: nearer points are one
 
 using Way = std::vector<sim::Track::Point>;
 
-/// The way of a body since `from`, up to now.
+}  // namespace
+
 Way way_of(int body, double from, const sim::Snapshot& now, Ways ways) {
   Way way;
   for (const auto& track : ways) {
@@ -39,8 +40,6 @@ Way way_of(int body, double from, const sim::Snapshot& now, Ways ways) {
   }
   return way;
 }
-
-}  // namespace
 
 void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now, Ways ways, List& list) {
   const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;

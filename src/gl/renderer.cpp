@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "gl/damage.h"
 #include "gl/error.h"
 #include "gl/functions.h"
 #include "gl/painter.h"
+#include "gl/solids.h"
 
 namespace obscura::gl {
 namespace {
@@ -86,7 +88,8 @@ struct Renderer::Impl {
   std::string trouble;     // the last GL error of a debug build
   Canvas backdrop, frame;  // ground and still list; the picture
   Painter painter;
-  Damage damage;  // what the last picture drew over the backdrop
+  std::optional<SolidPainter> solid_painter;  // from the first picture in space on
+  Damage damage;                              // what the last picture drew over the backdrop
   bool drawn = false;
   draw::Color ground;
   bool transparent = false;
@@ -201,6 +204,11 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
   const bool anew = !my.drawn;
   Damage changed = my.damage;
   my.restore();
+  my.frame.bind();
+  for (const auto& solids : picture.solids) {
+    if (!my.solid_painter) my.solid_painter.emplace(my.gl, my.width, my.height);
+    my.solid_painter->paint(*solids, my.frame.framebuffer(), my.damage);
+  }
   my.frame.bind();
   my.painter.paint(picture.moving, picture.ground, picture.transparent, my.damage);
 

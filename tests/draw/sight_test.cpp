@@ -1,0 +1,116 @@
+#include "draw/sight.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "draw/camera.h"
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+const Rect kPage{0, 0, 1920, 1080};
+
+Lens front(Camera::Projection projection = Camera::Projection::orthographic) {
+  Camera camera = side();
+  camera.elevation = 0;
+  camera.projection = projection;
+  return lens_at(camera, {Vec3::Zero(), 9.6}, kPage, 0);
+}
+
+TEST(Sight, ABoxHidesWhatLiesBehindItAndNoMore) {
+  const Lens lens = front();
+  Sight sight(lens);
+  sight.add(box({1, 1, 1}), 0);
+  sight.finish();
+  Sight::Parts parts;
+  sight.seen({-2, 0, -3}, {2, 0, -3}, -1, -1, parts);
+  ASSERT_EQ(parts.size(), 2u);
+  // the box is a quarter to three quarters of the way; a line counts as hidden 0.4 of 200 page units inside
+  EXPECT_NEAR(parts[0].second, 0.25, 0.001);
+  EXPECT_NEAR(parts[1].first, 0.75, 0.001);
+  sight.seen({-2, 0, 3}, {2, 0, 3}, -1, -1, parts);
+  ASSERT_EQ(parts.size(), 1u) << "before it";
+  sight.seen({-2, 0, -3}, {2, 0, -3}, 0, -1, parts);
+  ASSERT_EQ(parts.size(), 1u) << "its own";
+}
+
+TEST(Sight, BodiesThatTouchDoNotHideEachOthersEdges) {
+  const Lens lens = front();
+  Sight sight(lens);
+  // stands on the ground at y = 0; an edge in its upper face, and one that sank into it by a hair
+  sight.add(box({1, 1, 1}), 0);
+  sight.finish();
+  Sight::Parts parts;
+  for (double sunk : {0.0, 0.0005}) {
+    sight.seen({-0.5, 1 - sunk, 1 - sunk}, {0.5, 1 - sunk, 1 - sunk}, -1, -1, parts);
+    EXPECT_EQ(parts.size(), 1u);
+  }
+}
+
+TEST(Sight, AgreesWithRaysThroughRandomBoxes) {
+  std::mt19937 random(7);
+  const auto number = [&](double from, double to) {
+    return from + (to - from) * double(random()) / 4294967295.0;
+  };
+  for (auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
+    const Lens lens = front(projection);
+    int hidden = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+      const Eigen::Quaterniond turn =
+          Eigen::Quaterniond(number(-1, 1), number(-1, 1), number(-1, 1), number(-1, 1)).normalized();
+      const Vec3 half(number(0.3, 1), number(0.3, 1), number(0.3, 1)),
+          at(number(-2, 2), number(-1, 1), number(-2, 2));
+      Sight sight(lens);
+      sight.add(box(half).placed(turn.toRotationMatrix(), at), 0);
+      sight.finish();
+      const Vec3 place(number(-3, 3), number(-2, 2), number(-4, 4));
+      // the place seen along the ray, in the box's frame: by slabs
+      const Vec3 o = turn.conjugate() * (place - at), d = turn.conjugate() * lens.sight(place);
+      double low = 0, high = lens.perspective() ? (lens.eye() - place).norm() : 1e9, clear = 1e9;
+      for (int i = 0; i < 3; ++i) {
+        const double a = (-half[i] - o[i]) / d[i], b = (half[i] - o[i]) / d[i];
+        low = std::max(low, std::min(a, b)), high = std::min(high, std::max(a, b));
+        clear = std::min(clear, std::abs(std::abs(o[i]) - half[i]));
+      }
+      // within a few millimetres of an edge either answer will do: sight has a margin of half a page unit
+      if (std::abs(high - low) < 0.02 || clear < 0.01) continue;
+      EXPECT_EQ(sight.seen(place, -1), high < low) << trial;
+      hidden += high > low;
+    }
+    EXPECT_GT(hidden, 10);
+  }
+}
+
+TEST(Sight, ABallHidesADiscAndARodAStrip) {
+  const Lens lens = front();
+  Sight sight(lens);
+  sight.add_disc(contour(lens, {0, 0, 0}, 1, 64), {0, 0, 0}, 0);
+  sight.add_rod({3, -1, 0}, {3, 1, 0}, 0.1, 0.1, 1);
+  sight.finish();
+  EXPECT_FALSE(sight.seen({0.69, 0.69, -0.5}, -1));
+  EXPECT_TRUE(sight.seen({0.73, 0.73, -0.5}, -1));
+  EXPECT_TRUE(sight.seen({0.69, 0.69, 0.5}, -1));
+  EXPECT_FALSE(sight.seen({3.05, 0, -1}, -1));
+  EXPECT_TRUE(sight.seen({3.15, 0, -1}, -1));
+}
+
+TEST(Sight, AWallCutsTheRoomFromSpace) {
+  Polyhedron room = box({10, 10, 10});
+  room = cut(room, {0, 0, 0}, {0, 1, 0}, 0);
+  room = cut(room, {1, 0, 0}, {-1, 0, 0}, 1);
+  EXPECT_EQ(room.faces.size(), 6u);
+  EXPECT_EQ(room.edges.size(), 12u);
+  for (const Polyhedron::Edge& e : room.edges) EXPECT_GE(e.right, 0) << "closed";
+  for (const Polyhedron::Face& f : room.faces) {
+    EXPECT_EQ(f.side == 0, f.normal.y() < -0.5) << "outwards: down";
+  }
+  room = cut(room, {0, 0, 0}, Vec3(1, 1, 1).normalized(), 2);
+  EXPECT_EQ(room.vertices.size() + room.faces.size(), room.edges.size() + 2) << "Euler";
+}
+
+}  // namespace
+}  // namespace obscura::draw

@@ -1,0 +1,242 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "draw/camera.h"
+#include "draw/depict.h"
+#include "draw/light.h"
+#include "draw/solids.h"
+#include "gl/pictures.h"
+
+namespace obscura::gl {
+namespace {
+
+using draw::Camera;
+using draw::Color;
+using draw::Point;
+using sim::Vec3;
+
+/// A run in space made by hand.
+struct Made {
+  sim::Cast cast;
+  sim::Snapshot now;
+  draw::Look look;
+  std::vector<Camera> cameras{draw::slant()};
+  draw::Extent extent{{-2, 0, -2}, {2, 2, 2}};
+
+  Made() {
+    cast.dimension = 3, cast.scale = 2, look.caption = false;
+    cast.walls.push_back({{0, 0, 0}, {0, 1, 0}});
+  }
+  int box(const Vec3& at, const Vec3& half, const char* color,
+          const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) {
+    return body(sim::ShapeKind::box, at, half, 0, color, turn);
+  }
+  int body(sim::ShapeKind kind, const Vec3& at, const Vec3& half, double radius, const char* color,
+           const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) {
+    sim::Cast::Body who;
+    who.kind = kind, who.half = half, who.radius = radius, who.turns = true, who.mass = 1;
+    cast.bodies.push_back(who);
+    sim::Snapshot::Body where;
+    where.position = at, where.orientation = turn;
+    now.bodies.push_back(where);
+    draw::BodyLook own;
+    own.color = draw::color(color);
+    look.bodies.push_back(own);
+    return int(cast.bodies.size()) - 1;
+  }
+  draw::Depictor depictor(double aspect = 16.0 / 9) const { return {cast, look, cameras, extent, aspect}; }
+  draw::Picture picture(double aspect = 16.0 / 9) const { return depictor(aspect).depict(now, {}); }
+};
+
+Made everything() {
+  Made made;
+  made.box({-0.8, 0.5, 0}, {0.3, 0.2, 0.4}, "orange",
+           Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())));
+  made.box({-0.5, 1.3, 0.2}, {0.2, 0.2, 0.2}, "blue");
+  made.body(sim::ShapeKind::ball, {0.6, 0.3, 0.5}, Vec3::Zero(), 0.3, "green");
+  made.body(sim::ShapeKind::capsule, {0.9, 0.9, -0.5}, {0, 0.3, 0}, 0.15, "purple",
+            Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Vec3::UnitZ())));
+  made.cast.springs.push_back({-1, 1, 0.5, 1});
+  made.now.springs.push_back({{-0.5, 2.2, 0.2}, {-0.5, 1.5, 0.2}});
+  return made;
+}
+
+Color at(const media::Image& image, const Point& page) {
+  const int x = int(page.x() * image.height / 1080), y = int(page.y() * image.height / 1080);
+  const std::uint8_t* p = image.row(y) + 4 * x;
+  return {p[0], p[1], p[2], p[3]};
+}
+
+double brightness(Color c) { return 0.3 * c.r + 0.6 * c.g + 0.1 * c.b; }
+
+/// How much a colour has of the hue of another, whatever the shade: 1 for all, near 0 for grey.
+double like(Color c, Color own) {
+  const Vec3 a(c.r, c.g, c.b), b(own.r, own.g, own.b);
+  const Vec3 hue = a.array() - a.mean(), wanted = b.array() - b.mean();
+  return hue.dot(wanted) / (wanted.norm() * (hue.norm() + 10));
+}
+
+TEST(Space, ABallsCentreIsWhereAHandPutsIt) {
+  for (auto projection : {Camera::Projection::orthographic, Camera::Projection::perspective}) {
+    Made made;
+    made.cast.walls.clear();
+    made.look.light = Vec3(0, 0, 1);
+    made.body(sim::ShapeKind::ball, {1.1, 0.7, 0.4}, Vec3::Zero(), 0.02, "black");
+    Camera camera = draw::side();
+    camera.elevation = 0, camera.projection = projection;
+    draw::CameraKey key;
+    key.center = Vec3(0, 1, 0), key.width = 4;
+    camera.keys = {key};
+    made.cameras = {camera};
+    Renderer renderer(480, 270);
+    const media::Image image = drawn(renderer, made.picture());
+    double sum = 0, x = 0, y = 0;
+    for (int r = 0; r < image.height; ++r)
+      for (int c = 0; c < image.width; ++c) {
+        const double dark = ink(image, c, r);
+        sum += dark, x += dark * (c + 0.5), y += dark * (r + 0.5);
+      }
+    // 120 px a metre at the target; the eye is 2 m / tan 15 degrees before it
+    const double depth =
+        projection == Camera::Projection::perspective ? 1 - 0.4 * std::tan(M_PI / 12) / 2 : 1;
+    EXPECT_NEAR(x / sum, 240 + 120 * 1.1 / depth, 0.1);
+    EXPECT_NEAR(y / sum, 135 + 120 * 0.3 / depth, 0.1);
+  }
+}
+
+TEST(Space, FacesAreLitFromTheSideTheLightIsOn) {
+  const auto face = [](const Vec3& light, const Vec3& on) {
+    Made made;
+    made.look.light = light;
+    made.box({0, 0.5, 0}, {0.5, 0.5, 0.5}, "grey");
+    Renderer renderer(320, 180);
+    const media::Image image = drawn(renderer, made.picture());
+    return brightness(at(image, made.depictor().lens(made.now).page(Vec3(0, 0.5, 0) + on)));
+  };
+  // slant sees the front, the right and the upper side
+  const Vec3 front(0.1, 0.1, 0.5), right(0.5, 0.1, 0.1), top(0, 0.5, 0);
+  EXPECT_GT(face({-0.2, 0.5, 1}, front), face({-0.2, 0.5, 1}, right) + 20);
+  EXPECT_GT(face({1, 0.5, 0.2}, right), face({1, 0.5, 0.2}, front) + 20);
+  EXPECT_GT(face({-0.6, 1, 0.42}, top), face({-0.6, 1, 0.42}, front) + 20);
+  EXPECT_GT(face({-0.6, 1, 0.42}, right), 40) << "never black";
+}
+
+TEST(Space, NothingIsInFrontOfWhatHidesIt) {
+  // a far box of every other size behind a near one, which is turned a little more each time
+  Renderer renderer(320, 180);
+  for (int k = 0; k < 12; ++k) {
+    Made made;
+    made.cast.walls.clear();
+    made.box({0, 1, 0.6}, {0.6, 0.6, 0.2}, "orange",
+             Eigen::Quaterniond(Eigen::AngleAxisd(0.3 * k, Vec3(1, 1, 0).normalized())));
+    made.box({0.2, 1, -0.8}, {1.5, 0.4, 0.2}, "blue");
+    made.cameras = {draw::side()};
+    const media::Image image = drawn(renderer, made.picture());
+    const draw::Lens lens = made.depictor().lens(made.now);
+    // places on the near box's middle cross: its own colour, whatever the shade
+    for (double t : {-0.5, -0.25, 0.0, 0.25, 0.5}) {
+      const Color seen =
+          at(image, lens.page(made.now.bodies[0].position + made.now.bodies[0].orientation * Vec3(t, 0, 0)));
+      EXPECT_GT(like(seen, *draw::color("orange")), 0.7) << k << " " << t;
+    }
+  }
+}
+
+TEST(Space, ACentimetreIsWholeInAKilometre) {
+  // a box of 1 cm on a plate at the near end of a hall of 1 km: its upper face hides the plate, and a thing
+  // half a millimetre under the plate stays under it
+  Made made;
+  made.cast.walls.clear();
+  made.cast.scale = 1000;
+  made.extent = {{-500, 0, -500}, {500, 1000, 500}};
+  made.box({0, -0.5, 0}, {500, 0.5, 500}, "grey");
+  made.box({400, 0.005, 300}, {0.005, 0.005, 0.005}, "orange");
+  made.box({400.02, -0.0015, 300}, {0.005, 0.001, 0.005}, "blue");
+  made.box({-300, 50, -400}, {50, 50, 50}, "green");
+  Camera camera = draw::slant();
+  draw::CameraKey key;
+  key.center = Vec3(400.01, 0, 300), key.width = 0.1;
+  camera.keys = {key};
+  Renderer renderer(480, 270);
+  for (auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
+    camera.projection = projection;
+    made.cameras = {camera};
+    const media::Image image = drawn(renderer, made.picture());
+    const draw::Lens lens = made.depictor().lens(made.now);
+    const Color top = at(image, lens.page({400, 0.01, 300}));
+    EXPECT_GT(like(top, *draw::color("orange")), 0.7);
+    const Color over = at(image, lens.page({400.02, 0, 300}));
+    EXPECT_LT(like(over, *draw::color("blue")), 0.5) << "what is under the plate";
+  }
+}
+
+TEST(Space, ShadowsLieOnTheGroundAwayFromTheLightSoftAndNeverBlack) {
+  Made made;
+  made.look.ground = false;  // no grid
+  made.box({0, 1, 0}, {0.4, 0.1, 0.4}, "orange");
+  Renderer renderer(640, 360);
+  const media::Image image = drawn(renderer, made.picture());
+  const draw::Lens lens = made.depictor().lens(made.now);
+  // the shadow's middle by hand: 1 m down along the light
+  const Vec3 foot(0.6, 0, -0.42);
+  const double dark = brightness(at(image, lens.page(foot)));
+  EXPECT_LT(dark, 235);
+  EXPECT_GT(dark, 120);
+  EXPECT_EQ(brightness(at(image, lens.page({-1.2, 0, 0.84}))), 255) << "on the light's side";
+  // across its edge it grows dark in many steps
+  int steps = 0;
+  double last = 255;
+  for (double t = 0; t <= 1; t += 0.01) {
+    const double here = brightness(at(image, lens.page(foot + Vec3(0, 0, 0.95 * (1 - t)))));
+    EXPECT_LE(here, last + 1.5);
+    steps += here < last;
+    last = here;
+  }
+  EXPECT_GT(steps, 8);
+}
+
+TEST(Space, ABoxThrowsItsShadowOnAnother) {
+  Renderer renderer(320, 180);
+  const auto top = [&](double height) {
+    Made made;
+    made.box({0, 0.25, 0}, {0.8, 0.25, 0.8}, "sky");
+    // over the light's way to the middle of the upper face
+    made.box(Vec3(0, 0.5, 0) + height * Vec3(-0.6, 1, 0.42), {0.2, 0.05, 0.2}, "orange");
+    const media::Image image = drawn(renderer, made.picture());
+    return brightness(at(image, made.depictor().lens(made.now).page({0, 0.5, 0})));
+  };
+  EXPECT_LT(top(0.6), top(-3) - 25);
+}
+
+TEST(Space, TheSameBytesTwiceAndFromBothBackEnds) {
+  Renderer osmesa(320, 180, {.backend = Backend::osmesa});
+  Renderer egl(320, 180, {.backend = Backend::egl});
+  const Made made = everything();
+  const media::Image first = drawn(osmesa, made.picture());
+  Made other = everything();
+  other.now.bodies[0].position.y() += 0.5;
+  other.look.theme = draw::Theme::screen;
+  drawn(osmesa, other.picture());
+  EXPECT_EQ(drawn(osmesa, made.picture()), first) << "whatever was drawn before";
+  EXPECT_EQ(drawn(egl, made.picture()), first);
+}
+
+TEST(Space, CamerasBesideEachOtherKeepToTheirWindows) {
+  Made made = everything();
+  made.cameras = {draw::side(), draw::slant()};
+  Renderer renderer(320, 180);
+  const media::Image both = drawn(renderer, made.picture());
+  const draw::Lens left = made.depictor().lens(made.now, 0), right = made.depictor().lens(made.now, 1);
+  EXPECT_LT(left.window.x + left.window.width, right.window.x);
+  for (const draw::Lens& lens : {left, right}) {
+    const Color green = at(both, lens.page({0.6, 0.3, 0.5}));
+    EXPECT_GT(like(green, *draw::color("green")), 0.7);
+  }
+  const int gap = int((left.window.x + left.window.width + 11) * both.height / 1080);
+  for (int y = 0; y < both.height; ++y)
+    EXPECT_EQ(at(both, {gap * 1080.0 / both.height + 1, y * 6.0 + 3}), (Color{255, 255, 255}));
+}
+
+}  // namespace
+}  // namespace obscura::gl
