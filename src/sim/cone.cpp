@@ -172,7 +172,10 @@ ConeReport Cone<D>::solve(const Eigen::Ref<const Eigen::MatrixXd>& K,
   found = found || best_residual_ <= enough;
   for (std::size_t i = 0; i < (all ? std::size(kSoftness) : 1) && !found; ++i) {
     if (i == 0) guess_.begin(K_, b_, blocks, first_, sigma_);
-    if (!guess_.guess(kSoftness[i], trial_, all) && !all) break;
+    const int systems = guess_.systems();
+    const bool there = guess_.guess(kSoftness[i], trial_, all);
+    tries_ += guess_.systems() - systems;
+    if (!there && !all) break;
     found = attempt(blocks, all ? 20 : 6);
   }
   if (!found && all) found = enumerate(blocks);

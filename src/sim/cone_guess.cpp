@@ -34,6 +34,7 @@ template <int D>
 void ConeGuess<D>::begin(std::span<const double> K, std::span<const double> b,
                          std::span<const ConeBlock<D>> blocks, std::span<const int> first,
                          std::span<const double> sigma) {
+  systems_ = 0;
   n_ = int(b.size()), b_ = b, blocks_ = blocks, first_ = first, sigma_ = sigma;
   factors_.symmetric(K, n_, kDependent);
   r_ = factors_.rank();
@@ -172,7 +173,7 @@ bool ConeGuess<D>::step(double softness) {
   work_ = H_;
   for (int k = 0; k < r_; ++k) work_[std::size_t(k) * r_ + k] += softness;
   for (int k = 0; k < r_; ++k) du_[k] = -softness * F_[k];
-  swaps_.resize(r_);
+  swaps_.resize(r_), ++systems_;
   if (!eliminate(work_, r_, 0, swaps_)) return false;
   substitute(work_, r_, swaps_, du_);
   return true;

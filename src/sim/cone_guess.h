@@ -24,6 +24,9 @@ class ConeGuess {
   /// Starts from where the last call ended.
   bool guess(double softness, std::span<ConeMode<D>> modes, bool follow = true);
 
+  /// Linear systems solved since begin().
+  int systems() const { return systems_; }
+
  private:
   using VecD = Eigen::Matrix<double, D, 1>;
   using SquareD = Eigen::Matrix<double, D, D>;
@@ -36,7 +39,7 @@ class ConeGuess {
   bool step(double softness);
   void modes(double softness, std::span<ConeMode<D>> modes) const;
 
-  int n_ = 0, r_ = 0;
+  int n_ = 0, r_ = 0, systems_ = 0;
   std::span<const double> b_, sigma_;
   std::span<const ConeBlock<D>> blocks_;
   std::span<const int> first_;

@@ -103,7 +103,8 @@ void Direct<D>::strike(State<D>& state, double bounce) {
         b_[held.first] += bounce * elasticity(gaps_[held.of].key) * vn;
     }
     modes_.assign(blocks_.size(), {}), warm_.setZero(Eigen::Index(rows_.size()));
-    const bool found = solve();
+    bool found = solve();
+    if (!found && model_.collision != Collision::event) rough_ = true, found = solve();
     for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
     const double after = moving(model_, state);
     if ((found && after <= before * (1 + 1e-13)) || bounce == 0) break;

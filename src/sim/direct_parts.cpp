@@ -72,8 +72,11 @@ bool Direct<D>::solve() {
   each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
     if (rough_)
       cone_.sweep(K_, part_b_, part_blocks_, modes, part_f_, kSweeps);
-    else
-      found = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_).found && found;
+    else {
+      const ConeReport report = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_);
+      found = report.found && found;
+      work_ += double(report.tries) * part_rows_.size() * part_rows_.size() * part_rows_.size();
+    }
   });
   return found;
 }
