@@ -30,6 +30,8 @@ double hull_thickness(const Shape<3>& hull) {
 }
 double hull_thickness(const Shape<2>&) { return 0; }
 
+constexpr double kMostPieces = 200;  // of a step that is done roughly
+
 // the least thickness of a shape, m
 template <int D>
 double thickness(const Shape<D>& shape) {
@@ -164,7 +166,8 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     }
     if (length == 0 && !held_again) {
       // no way to go on but a short one at once
-      length = std::min(cuts < most_cuts_ && !rough_ ? short_ * h : h, h - done);
+      length = std::min(cuts < most_cuts_ && !rough_ ? short_ * h : std::max(h / kMostPieces, unseen(state)),
+                        h - done);
       settle(state, t + done, length);
       cut = length < h - done;
     }
@@ -186,6 +189,24 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   rest(state, t + h, h);
   report(state);
   break_joints(state);
+}
+
+// s: how long all may move on and not pass through one another unseen
+template <int D>
+double Direct<D>::unseen(const State<D>& state) const {
+  double least = 1e300;
+  for (int body = 0; body < int(thin_.size()); ++body) {
+    if (thin_[body] > 0) least = std::min(least, thin_[body]);
+  }
+  double fastest = 0;
+  for (int body = 0; body < int(thin_.size()); ++body) {
+    if (light(body) == 0) continue;
+    double speed = std::sqrt(state.v[body].squaredNorm());
+    if (const int k = turning(state, body); k >= 0)
+      speed += rims_[body] * std::sqrt(state.spin[k].squaredNorm());
+    fastest = std::max(fastest, speed);
+  }
+  return fastest > 0 ? 0.5 * least / fastest : 1e300;
 }
 
 template <int D>

@@ -58,6 +58,7 @@ class Direct final : public ContactStep<D>, private System {
   void keep(const State<D>& state, Motion& motion) const;
   void restore(const Motion& motion, State<D>& state) const;
   void settle(State<D>& state, double t, double h);
+  double unseen(const State<D>& state) const;
   void report(State<D>& state);
   void remember();
   void break_joints(State<D>& state);

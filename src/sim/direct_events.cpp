@@ -18,7 +18,6 @@ constexpr int kFewJoints = 8;
 constexpr double kNever = 2;        // a part of the stretch
 constexpr double kAtOnce = 1e-9;    // a part too short to go
 constexpr double kFine = 0.25;      // of the thinner body: how far two may move between two looks
-constexpr double kLook = 2000;      // what a look costs, beside rows^3
 constexpr int kMostLooks = 200000;  // of a couple in a stretch
 constexpr int kMostRoots = 100;
 
@@ -135,7 +134,6 @@ double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
   const auto least = [&](double part) {
     if (light(a) > 0) stances_[a] = between(state, a, h, part);
     if (light(b) > 0) stances_[b] = between(state, b, h, part);
-    work_ += kLook;
     double value = 1e300;
     near(stances_, couple, ways + closed_, [&](const Gap<D>& gap) {
       if (!held(gap.key)) value = std::min(value, gap.value);
