@@ -138,9 +138,11 @@ Spread spread(const Shape<3>& shape) {
   return whole;
 }
 
+}  // namespace
+
 // Jacobi's rotations: turns a symmetric matrix into a diagonal one, smallest turns first to last, so that
 // axes stay as near to those of the frame as they can. The axes it finds, as a turn.
-Turn<3> diagonalize(Eigen::Matrix3d& a) {
+Turn<3> principal_axes(Eigen::Matrix3d& a) {
   Turn<3> turn = upright<3>();
   for (int sweep = 0; sweep < 50; ++sweep) {
     // what is rounding counts as none: a shape whose axes are its frame's keeps them
@@ -168,8 +170,6 @@ Turn<3> diagonalize(Eigen::Matrix3d& a) {
   }
   return turn / std::sqrt(turn.squaredNorm());
 }
-
-}  // namespace
 
 template <>
 Bulk<2> bulk<2>(const Shape<2>& shape) {
@@ -211,7 +211,7 @@ Bulk<3> bulk<3>(const Shape<3>& shape) {
   Spread whole = spread(shape);
   Bulk<3> out;
   out.content = whole.content, out.center = whole.center;
-  out.axes = diagonalize(whole.c);
+  out.axes = principal_axes(whole.c);
   const Vec3 c = whole.c.diagonal();
   out.second = Vec3(c[1] + c[2], c[2] + c[0], c[0] + c[1]);
   return out;

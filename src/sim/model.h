@@ -115,6 +115,15 @@ struct Joint {
   bool touching = false;  // whether the two bodies may touch each other
 };
 
+/// Makes two bodies one as they stand at the start, until it is loaded beyond its strength: see
+/// sim/bond_load.h.
+template <int D>
+struct Bond {
+  int a = -1, b = -1;       // bodies; b = -1: the room
+  double strength = 1e300;  // N
+  double blow = 0.001;      // s: how long an impact is taken to last
+};
+
 /// The hand of the scripted mouse: pressed at the first knot, released at the last.
 template <int D>
 struct Knot {
@@ -164,6 +173,7 @@ struct Model {
   std::vector<Mouse<D>> mice;
   std::vector<Joint<D>> joints;
   std::vector<Explosion<D>> explosions;
+  std::vector<Bond<D>> bonds;
   std::vector<std::pair<int, int>> ignore;  // groups that do not touch each other
 
   int particles() const {  // bodies that do not turn

@@ -38,6 +38,10 @@ Bulk<2> bulk<2>(const Shape<2>& shape);
 template <>
 Bulk<3> bulk<3>(const Shape<3>& shape);
 
+/// Turns a symmetric tensor into its diagonal; the turn of the axes in which it is that. Axes stay those of
+/// the frame where they are principal ones already.
+Turn<3> principal_axes(Eigen::Matrix3d& tensor);
+
 /// The shape as its body sees it, whose origin is the centroid and whose axes are the principal ones of
 /// `bulk`. The body then stands at room_from_shape * bulk.center, turned by room_from_shape * bulk.axes.
 template <int D>

@@ -58,6 +58,15 @@ struct Blast {
   bool operator==(const Blast&) const = default;
 };
 
+/// How a part sits in the body that bonds make it part of: in that body's frame.
+template <int D>
+struct Seat {
+  Vec<D> x = Vec<D>::Zero();  // m
+  Turn<D> turn = upright<D>();
+
+  bool operator==(const Seat&) const = default;
+};
+
 /// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
 /// step / rate, plus `beyond` in the copy that a frame between two steps shows.
 template <int D>
@@ -73,6 +82,11 @@ struct State {
   Ledger ledger;
   std::vector<OwnSpin<D>> own;   // in space: one a body that turns
   std::vector<Blast<D>> blasts;  // one an explosion
+
+  // of what is bonded, see sim/pieces.h: everything above is then told of the parts, and this is what moves
+  std::vector<char> holds;        // one a bond
+  std::vector<Seat<D>> seats;     // one a body
+  std::vector<State> whole = {};  // one: of the bodies that the bonds make
 
   // of `contact` and `event`
   std::vector<Contact<D>> contacts;  // sorted by key

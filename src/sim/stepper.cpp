@@ -13,6 +13,7 @@
 
 #include "sim/flight.h"
 #include "sim/grip.h"
+#include "sim/pieces.h"
 #include "sim/runaway.h"
 #include "sim/tumble.h"
 
@@ -68,10 +69,14 @@ Stepper<D>::Stepper(const Model<D>& model)
     if (body.turns()) inertia_.push_back(body.inertia);
   }
   d_.resize(std::max(D, kSpins<D>) * kBlock), w_.resize(kSpins<D> * kBlock), base_.resize(kBlock);
-  if (model.collision != Collision::handout) contact_ = contact_step(model, paths_);
+  if (!model.bonds.empty()) pieces_ = std::make_unique<Pieces<D>>(model, paths_);
+  if (model.collision != Collision::handout && !pieces_) contact_ = contact_step(model, paths_);
   suspects_.reserve(model.bodies.size());
   watch_every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / 60));
 }
+
+template <int D>
+Stepper<D>::~Stepper() = default;
 
 template <int D>
 void Stepper<D>::begin(State<D>& state) {
@@ -81,6 +86,7 @@ void Stepper<D>::begin(State<D>& state) {
     state.v[body].setZero();
     if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
   }
+  if (pieces_) return pieces_->begin(state);
   state.grips.resize(model_.mice.size());
   state.blasts.resize(model_.explosions.size());
   if (D == 3) state.own.resize(state.turn.size());
@@ -96,6 +102,7 @@ void Stepper<D>::begin(State<D>& state) {
 
 template <int D>
 std::optional<Trouble> Stepper<D>::step(State<D>& state) {
+  if (pieces_) return pieces_->step(state);
   auto trouble = advance(state, 1);
   if (trouble) return trouble;
   if (springs_ && state.step % watch_every_ == 0 && !blasting(state))
@@ -105,6 +112,7 @@ std::optional<Trouble> Stepper<D>::step(State<D>& state) {
 
 template <int D>
 std::optional<Trouble> Stepper<D>::part(State<D>& state, double fraction) {
+  if (pieces_) return pieces_->part(state, fraction);
   return advance(state, fraction);
 }
 

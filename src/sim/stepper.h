@@ -14,12 +14,16 @@
 
 namespace obscura::sim {
 
+template <int D>
+class Pieces;
+
 /// Carries states of one model forward. What it owns belongs to the step at hand and is never saved; a warm
 /// step allocates nothing. The model is kept by reference.
 template <int D>
 class Stepper {
  public:
   explicit Stepper(const Model<D>& model);
+  ~Stepper();
 
   /// Readies a state that nothing has stepped yet: what the script does at this very instant is done.
   void begin(State<D>& state);
@@ -59,6 +63,7 @@ class Stepper {
   Handout<D> handout_;
   Blasts<D> blasts_;
   std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
+  std::unique_ptr<Pieces<D>> pieces_;        // of a model with bonds: all is done there
   Watch<D> watch_;
   Tied<D> tied_;
   std::vector<int> gripped_;  // by each mouse, as the plan knows

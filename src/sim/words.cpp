@@ -73,6 +73,15 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     w.list(blast.forces);
     w.list(blast.torques);
   }
+  for (const char holds : state.holds) w.integer(holds);
+  for (const Seat<D>& seat : state.seats) {
+    w.template numbers<D>(seat.x);
+    w.template numbers<Turn<D>::RowsAtCompileTime>(seat.turn);
+  }
+  for (const State<D>& whole : state.whole) {
+    const std::vector<std::uint64_t> more = words(whole);
+    w.all.insert(w.all.end(), more.begin(), more.end());
+  }
   w.number(state.ledger.displacement);
   w.number(state.ledger.impacts);
   return w.all;
