@@ -143,9 +143,9 @@ void keep(const Gap<3>& gap, double margin, std::vector<Gap<3>>& out) {
 
 // a face seen along a normal: its corners, where they are seen, and how high they lie
 struct Seen {
-  int corner = 0;
-  Point at = Point::Zero();
-  double height = 0;
+  int corner;
+  Point at;
+  double height;
 };
 using Loop = Few<Seen, 16>;
 
@@ -193,7 +193,9 @@ bool cross_within(const Solid& a, const Solid& b, int of_a, int of_b) {
 // What a touching face shares with its partner.
 class Shared {
  public:
-  Shared(const Couple& couple, const Touching& touching) : couple_(couple), touching_(touching) {
+  // Appends its gaps to `out`.
+  Shared(const Couple& couple, const Touching& touching, std::vector<Gap<3>>& out)
+      : couple_(couple), touching_(touching), gaps_(out), begin_(out.size()) {
     const Solid &base = touching.base, &other = touching.other;
     n_ = base.normal(touching.by.face);
     t_ = perpendicular<3>(n_), u_ = n_.cross(t_);
@@ -228,13 +230,19 @@ class Shared {
   // whether its gaps are what touches: the least of them is the greatest separation
   bool found() const { return least_ <= touching_.best + aligned_ && least_ >= touching_.best - aligned_; }
 
-  void keep_all(double margin, std::vector<Gap<3>>& out) const {
+  // drops the gaps beyond `margin`
+  void keep_near(double margin) {
     // apart and askew, a corner that only seems to be over the partner seems nearer than all
     const double nearest = touching_.best > 0 ? touching_.best * (1 - kAligned) - aligned_ : -1e300;
-    for (int i = 0; i < gaps_.size(); ++i) {
-      if (gaps_[i].value + couple_.radii() >= nearest) keep(gaps_[i], margin, out);
-    }
+    gaps_.erase(std::remove_if(gaps_.begin() + std::ptrdiff_t(begin_), gaps_.end(),
+                               [&](const Gap<3>& gap) {
+                                 return !(gap.value < margin && gap.value + couple_.radii() >= nearest);
+                               }),
+                gaps_.end());
   }
+
+  // drops them all
+  void drop() { gaps_.resize(begin_); }
 
  private:
   Seen seen(const Solid& of, int corner) const {
@@ -334,7 +342,8 @@ class Shared {
   double aligned_ = 0, least_ = 1e300;
   Loop own_, its_;
   Few<Point, 16> places_;
-  Few<Gap<3>, 16> gaps_;
+  std::vector<Gap<3>>& gaps_;
+  std::size_t begin_;
 };
 
 // no face is nearest, nor edges that cross: corners and edges; of parallel edges both ends of what they share
@@ -441,9 +450,10 @@ void solid_gaps(const Couple& couple, double margin, std::vector<Gap<3>>& out) {
     return nearest_features(couple, &touching, margin, out);
   }
 
-  const Shared shared(couple, touching);
-  if (shared.passes()) return;
-  if (shared.found()) return shared.keep_all(margin, out);
+  Shared shared(couple, touching, out);
+  if (shared.passes()) return shared.drop();
+  if (shared.found()) return shared.keep_near(margin);
+  shared.drop();
   const bool edges = by_edges.value > touching.by.value;
   if (edges && (touching.best <= 0 || cross_within(a, b, by_edges.of_a, by_edges.of_b))) {
     return keep(couple.edges(by_edges.of_a, by_edges.of_b, by_edges.normal, by_edges.value), margin, out);

@@ -139,6 +139,10 @@ Vec<3> Solid::along(int edge) const {
 }
 
 int Solid::edge_between(int corner, int other) const {
+  if (is_box()) {
+    const int axis = (corner ^ other) >> 1, next = (axis + 1) % 3, last = (axis + 2) % 3;
+    return 4 * axis + (corner >> next & 1) + 2 * (corner >> last & 1);
+  }
   for (int i = 0; i < edges_; ++i) {
     const Edge of = edge(i);
     if ((of.from == corner && of.to == other) || (of.from == other && of.to == corner)) return i;

@@ -18,7 +18,7 @@ class Solid {
 
   /// From corner to corner; `left` and `right` of it, seen from outside, are faces. -1 of a capsule.
   struct Edge {
-    int from = 0, to = 0, left = -1, right = -1;
+    int from, to, left, right;
   };
 
   /// Requires any kind but polygon and compound.

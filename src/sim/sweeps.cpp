@@ -24,6 +24,7 @@ constexpr int kMostSweeps = 40;      // of few touches
 constexpr int kFewestSweeps = 4;     // of many
 constexpr int kTouchSweeps = 20000;  // touches times sweeps between
 constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
+constexpr double kSpare = 0.02;      // of their reach: what two may come nearer by being struck
 constexpr double kAllowed = 1e-4;    // of a body's reach: how deep is not too deep
 constexpr double kPart = 0.1;        // of what is too deep, in a step
 constexpr double kQuiet = 0.02;      // m/s
@@ -125,8 +126,14 @@ void Sweeps<D>::find(double h) {
     for (; pair != pairs.end() && pair->first == a; ++pair) {
       const int b = pair->second;
       const Body<D>& q = model_.bodies[b];
+      // of two that fly side by side none comes nearer, but for what strikes them meanwhile
+      const double passes = std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
+                            rims_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
+                            rims_[b] * std::sqrt(moving_[b].w.squaredNorm());
+      const double near =
+          std::min(margin(a) + margin(b), h * (passes + 2 * g_ * h) + kSpare * (rims_[a] + rims_[b]));
       gaps_.clear();
-      gaps(a, p.shape, stances_[a], b, q.shape, stances_[b], margin(a) + margin(b), gaps_);
+      gaps(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
       const double mu = std::sqrt(p.friction * q.friction), e = std::sqrt(p.elasticity * q.elasticity);
       for (const Gap<D>& gap : gaps_) add(gap, mu, e);
     }
@@ -214,19 +221,6 @@ void Sweeps<D>::fall(State<D>& state, double t, double h) {
     moving_[i].v = state.v[i];
     if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
   }
-}
-
-template <int D>
-Vec<D> Sweeps<D>::slip(const Touch& touch) const {
-  const Moving &a = moving_[touch.a], &b = moving_[touch.b];
-  return a.v + swing<D>(a.w, touch.arm_a) - b.v - swing<D>(b.w, touch.arm_b);
-}
-
-template <int D>
-void Sweeps<D>::push(const Touch& touch, const Vec<D>& impulse) {
-  Moving &a = moving_[touch.a], &b = moving_[touch.b];
-  a.v += a.light * impulse, a.w += a.ease * moment<D>(touch.arm_a, impulse);
-  b.v -= b.light * impulse, b.w -= b.ease * moment<D>(touch.arm_b, impulse);
 }
 
 // what each touch wants of the step, and the forces it had in the last

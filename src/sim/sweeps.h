@@ -53,8 +53,17 @@ class Sweeps final : public ContactStep<D> {
   void fall(State<D>& state, double t, double h);
   void begin(const State<D>& state, double h);
   void sweep(const std::vector<int>& order, bool back);
-  void push(const Touch& touch, const Vec<D>& impulse);
-  Vec<D> slip(const Touch& touch) const;
+  // an impulse on a, and back on b
+  void push(const Touch& touch, const Vec<D>& impulse) {
+    Moving &a = moving_[touch.a], &b = moving_[touch.b];
+    a.v += a.light * impulse, a.w += a.ease * moment<D>(touch.arm_a, impulse);
+    b.v -= b.light * impulse, b.w -= b.ease * moment<D>(touch.arm_b, impulse);
+  }
+  // how fast a's matter moves against b's
+  Vec<D> slip(const Touch& touch) const {
+    const Moving &a = moving_[touch.a], &b = moving_[touch.b];
+    return a.v + swing<D>(a.w, touch.arm_a) - b.v - swing<D>(b.w, touch.arm_b);
+  }
   void advance(State<D>& state, double h);
   void part(State<D>& state);
   void report(State<D>& state, double h) const;
