@@ -1,7 +1,7 @@
 #version 330 core
 
 // A surface that may lie in the shadow of another. Where the map's surface is nearer to the light than this one, it
-// is dark. The mean of 3 x 3 places, each of four texels, makes a soft edge; beside the point the surface itself is deeper
+// is dark. The mean of four places, each of four texels, makes a soft edge; beside the point the surface itself is deeper
 // by its slope, so that it throws no shadow on itself.
 
 in vec3 lit;
@@ -14,11 +14,11 @@ out vec4 color;
 
 void main() {
   float reached = 0.0;
-  for (int i = -1; i <= 1; ++i) {
-    for (int j = -1; j <= 1; ++j) {
-      vec2 d = vec2(i, j) * (1.8 * texel.x);
+  for (int i = -1; i <= 1; i += 2) {
+    for (int j = -1; j <= 1; j += 2) {
+      vec2 d = vec2(i, j) * (1.1 * texel.x);
       reached += texture(map, vec3(light.xy + d, light.z + dot(slope, d) - texel.y));
     }
   }
-  color = vec4(mix(shaded, lit, reached / 9.0), 1.0);
+  color = vec4(mix(shaded, lit, reached / 4.0), 1.0);
 }

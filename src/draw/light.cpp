@@ -9,7 +9,6 @@
 #include "draw/light.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -70,8 +69,8 @@ Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
     const Color dark = mix(own, {0x08, 0x0C, 0x12}, 0.72), bright = mix(own, {255, 255, 255}, 0.14);
     return mix(dark, bright, s);
   };
-  const double base = 0.20 + 0.14 * sky;
-  return {tone(base + 0.66 * sun), tone(base + 0.14 * sun)};
+  const double base = 0.27 + 0.13 * sky;
+  return {tone(base + 0.60 * sun), tone(base + 0.12 * sun)};
 }
 
 Color edge(Color own, Theme theme) {
@@ -79,7 +78,7 @@ Color edge(Color own, Theme theme) {
 }
 
 void cast_on(const Ground& ground, const Light& light, const Lens& lens, const std::vector<Vec3>& corners,
-             double radius, Solids& solids) {
+             double radius, bool many, Solids& solids) {
   // what is under the ground casts nothing on it
   double low = 1e300, high = -1e300;
   for (const Vec3& c : corners) {
@@ -93,7 +92,7 @@ void cast_on(const Ground& ground, const Light& light, const Lens& lens, const s
   const Vec3 foot = corners[0] - light.toward * ((corners[0] - ground.point).dot(ground.normal) / fall);
   const double depth = std::max(lens.depth(foot), kNear);
   const double soft = 2 * kSpread * high / (fall * fall) * lens.scale / depth;
-  const int share = soft < kSharp ? kRays : soft < 4 * kSharp ? 4 : soft < 16 * kSharp ? 2 : 1;
+  const int share = soft < kSharp ? kRays : soft < 4 * kSharp ? 4 : soft < 16 * kSharp || many ? 2 : 1;
 
   std::vector<Point> cast, outline;
   std::vector<Eigen::Vector4d> cut;

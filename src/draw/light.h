@@ -36,8 +36,9 @@ struct Ground {
   sim::Vec3 point = sim::Vec3::Zero(), normal = sim::Vec3::UnitY();
 };
 
-/// Adds the shadow on the ground of a convex body that has these corners, each a ball of `radius`.
+/// Adds the shadow on the ground of a convex body that has these corners, each a ball of `radius`. Where
+/// there are `many` bodies every second ray will do.
 void cast_on(const Ground& ground, const Light& light, const Lens& lens,
-             const std::vector<sim::Vec3>& corners, double radius, Solids& solids);
+             const std::vector<sim::Vec3>& corners, double radius, bool many, Solids& solids);
 
 }  // namespace obscura::draw

@@ -13,8 +13,8 @@ namespace {
 using sim::Vec3;
 
 constexpr double kTile = 105;  // page units that a tile measures at least where one looks
-constexpr double kFrom = 0.42,
-                 kTo = 1.55;  // of the width that is shown: where the grid begins to fade, and ends
+constexpr double kFrom = 0.35,
+                 kTo = 1.25;  // of the width that is shown: where the grid begins to fade, and ends
 constexpr double kGridLine = 1.5, kFrameLine = 1.8;
 constexpr int kPieces = 28;  // of a line that fades
 

@@ -226,19 +226,20 @@ void cast_on_each_other(Scenery& s) {
 void cast_on_ground(Scenery& s) {
   const Ground& ground = *s.stage.ground;
   const auto& pieces = s.stage.pieces;
+  const bool many = pieces.size() > 64;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece& piece = pieces[i];
     const sim::Snapshot::Body& body = s.now.bodies[piece.body];
     const auto place = [&](const Vec3& local) { return Vec3(body.position + body.orientation * local); };
     if (piece.form == Piece::Form::polyhedron) {
-      cast_on(ground, s.stage.light, s.lens, s.placed[i].vertices, 0, s.solids);
+      cast_on(ground, s.stage.light, s.lens, s.placed[i].vertices, 0, many, s.solids);
       continue;
     }
     const double radius =
         s.stage.dots[piece.body] > 0 ? s.stage.dots[piece.body] / s.lens.scale : piece.radius;
     std::vector<Vec3> middles{place(piece.a)};
     if (piece.form == Piece::Form::capsule) middles.push_back(place(piece.b));
-    cast_on(ground, s.stage.light, s.lens, middles, radius, s.solids);
+    cast_on(ground, s.stage.light, s.lens, middles, radius, many, s.solids);
   }
 }
 
@@ -250,7 +251,7 @@ void add_shadows(Scenery& s) {
                      s.stage.ground->normal.dot(
                          s.lens.perspective() ? Vec3(s.lens.eye() - s.stage.ground->point) : s.lens.back) > 0;
   if (!above) return;
-  s.solids.shade = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 62} : Color{0, 0, 0, 140};
+  s.solids.shade = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 62} : Color{0, 0, 0, 115};
   cast_on_ground(s);
 }
 

@@ -4,6 +4,7 @@
 #include "gl/solids.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 
@@ -210,7 +211,7 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
 
 void SolidPainter::paint_ground(const draw::Solids& solids, unsigned frame, const Damage::Rect& window,
                                 Damage& damage) {
-  // fans, in px of the half picture, each ray's shifted within a pixel: their mean has smooth edges
+  // fans, each ray's shifted within a pixel of the half picture: their mean has smooth edges
   const Bounds seen{float(window.x), float(window.y), float(window.x + window.width),
                     float(window.y + window.height)};
   touched_.clear();
@@ -219,9 +220,13 @@ void SolidPainter::paint_ground(const draw::Solids& solids, unsigned frame, cons
   for (const draw::Solids::Shade& shade : solids.shades) {
     Bounds b{1e9f, 1e9f, -1e9f, -1e9f};
     const auto first = std::uint32_t(corners_.size());
+    const bool all = shade.rays == ~0u;
+    const auto ray = std::uint32_t(std::countr_zero(shade.rays));
+    const float right = all ? 0 : float(ray * 5 % 32) / 16 - 1,
+                down = all ? 0 : float(ray * 13 % 32) / 16 - 1;
     for (int i = shade.begin; i < shade.end; ++i) {
       const draw::Point p = solids.points[std::size_t(i)] * scale_;
-      const auto x = float(p.x()), y = float(p.y());
+      const auto x = float(p.x()) + right, y = float(p.y()) + down;
       b = {std::min(b.x0, x - 3), std::min(b.y0, y - 3), std::max(b.x1, x + 3), std::max(b.y1, y + 3)};
       corners_.push_back({x, y, shade.rays});
     }
