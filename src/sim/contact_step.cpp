@@ -17,7 +17,8 @@ Crowd crowd(const Model<D>& model) {
 
 template <int D>
 Solver solver(const Model<D>& model) {
-  if (model.collision == Collision::event || !model.joints.empty()) return Solver::direct;
+  if (model.collision == Collision::event) return Solver::direct;
+  if (D == 3 && !model.joints.empty()) return Solver::direct;  // the sweeps of space know no joints
   if (model.solver != Solver::automatic) return model.solver;
   const Crowd all = crowd(model);
   return all.points <= kMostPoints && all.bodies <= kMostBodies ? Solver::direct : Solver::iterative;
@@ -31,8 +32,7 @@ std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::v
 
 template <>
 std::unique_ptr<ContactStep<3>> contact_step<3>(const Model<3>& model, const std::vector<Path<3>>& paths) {
-  if (!model.joints.empty() || solver(model) == Solver::direct)
-    return std::make_unique<Direct<3>>(model, paths);
+  if (solver(model) == Solver::direct) return std::make_unique<Direct<3>>(model, paths);
   return std::make_unique<Sweeps<3>>(model, paths);
 }
 

@@ -1,16 +1,17 @@
-// One step from v to v' of bodies with contacts:
-//   1. where everyone stands; pairs anew, if it is time, and features of pairs that move
+// One step of bodies with contacts: pairs anew, if it is time; then, at low rates in several stretches so
+// that none is longer than 1/240 s, from v to v'
+//   1. features of pairs that move
 //   2. free motion: dv, dx of the step without contacts, springs and hands by Runge-Kutta
 //   3. forces of the last step
 //   4. blows: touches that close in this step faster than the resting speed
 //   5. warm sweeps: v_n' >= -g / h
+//      between them joints, all at once
 //   6. positions: by the mean of old and new velocity; a body struck at tau by that up to tau and after it;
-//      by the new one where a slow touch closed
+//      by the new one where a slow touch closed; back onto the joints
 
 #include "sim/iterative.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace obscura::sim {
@@ -22,16 +23,13 @@ using sweep::Seats;
 
 namespace {
 
-constexpr double kLooks = 60;      // a second: how often pairs are looked for
-constexpr int kMostSweeps = 40;    // of few pairs
-constexpr int kPairSweeps = 2000;  // pairs times sweeps where there are more; at least one sweep
-constexpr int kFirstSweeps = 100;  // of the first step, which knows no forces
-constexpr double kCalm = 0.02;     // of its thickness: what a pair may move between two looks, features kept
-constexpr double kSoft = 0.05;  // of its thickness between two looks: slower inelastic closings are no blows
-constexpr double kSight = 0.5;  // of its thickness: what may pass within a step is swept instead
-constexpr double kProject = 0.2;  // of a penetration each time pairs are looked for
-constexpr int kColours = 40;      // seats of more colours hold one pair each
-constexpr double kNowhere = 1e9;  // m: the gap of a touch that is none
+constexpr double kLooks = 60;       // a second: how often pairs are looked for
+constexpr double kStretches = 240;  // a second, at least
+constexpr int kMostSweeps = 40;     // of few pairs
+constexpr int kJointSweeps = 16;    // where there are joints: those are solved exactly in each
+constexpr int kPairSweeps = 2000;   // pairs times sweeps where there are more; at least one sweep
+constexpr int kFirstSweeps = 100;   // of the first step, which knows no forces
+constexpr double kProject = 0.2;    // of a penetration each time pairs are looked for
 
 }  // namespace
 
@@ -42,12 +40,14 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       pairs_(model, cores_),
       blows_(int(model.bodies.size())),
       rest_(model, cores_),
-      tied_(model, paths) {
+      tied_(model, paths),
+      linkage_(model) {
   const int n = int(model.bodies.size());
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
   span_ = double(every_) * h;
-  rest_speed_ = 2 * h * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
+  stretches_ = std::max(1, int(std::ceil(kStretches * h - 1e-9)));
+  rest_speed_ = 2 * h / stretches_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
   v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
   closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);
@@ -62,6 +62,7 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
+  if (!linkage_.empty()) linkage_.ready(state);
 
   const bool due = state.step % every_ == 0;
 
@@ -82,30 +83,17 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   const bool known = gather(state);
   if (!known) pairs_.adopt(state);
   if (due || held) {
-    look(state);
+    look(state, known);
   } else if (!known) {
     seat(state);
   }
-  sweep::find_lively(seats_.data(), int(seats_.size()), v_.data(), lively_);
-  for (const int i : lively_) {
-    const Pair& pair = pairs_.all()[seats_[i / kLanes].pair[i % kLanes]];
-    if (pairs_.renew(pair, state, poses_)) sit(pair, state);
-  }
-
-  fall(state, t, h);
-  const sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm())};
-  const int count = int(seats_.size());
-  sweep::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
-  blows_.run(fast_, pairs_.all(), seats_, poses_, old_, dv_, v_, pace);
-  int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
-  if (state.step == 0) sweeps = kFirstSweeps;
-  for (int i = 1; i < sweeps; ++i) sweep::sweep(seats_.data(), count, poses_.data(), v_.data(), pace);
-  sweep::finish(seats_.data(), count, poses_.data(), v_.data(), pace, state.contacts.data());
-  blows_.keep(pairs_.all(), state.contacts);
-  if (due) project();
-  advance(state, h, due);
-  if (outran(h)) look(state);
-  if (due && rest_.freeze(state, pairs_.all(), seats_, poses_, v_, movers_, h)) {
+  blows_.begin();
+  outran_ = false;
+  const double part = h / stretches_;
+  for (int i = 0; i < stretches_; ++i) stretch(state, t + i * part, part, i);
+  blows_.keep(state.contacts);
+  if (outran_) look(state, true);
+  if (due && rest_.freeze(state, pairs_.all(), seats_, linkage_, poses_, v_, movers_, part)) {
     for (int i = 0; i < n; ++i) {
       if (state.frozen[i]) v_[i] = {};
     }
@@ -114,11 +102,86 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   next_step_ = state.step + 1;
 }
 
+// from t to t + h, between two looks: forces stay in the seats until the last
+template <int D>
+void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
+  const bool first = which == 0 && state.step % every_ == 0, last = which + 1 == stretches_;
+  if (outran_) {
+    for (const Pair& pair : pairs_.all()) report(pair, state);
+    look(state, true);
+    outran_ = false;
+  }
+  if (!linkage_.empty()) linkage_.gather(state);
+  const double share = (double(state.step % every_) * stretches_ + which) / double(every_ * stretches_);
+  double fastest = 0;
+  for (int i = 0; i < int(turns_.size()); ++i) {
+    const Motion& m = v_[i];
+    fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.reach[i]);
+  }
+  lively_.clear();
+  if (share > 0 && 2 * share * fastest > calmest_)
+    sweep::find_lively(seats_.data(), int(seats_.size()), v_.data(), share, lively_);
+  for (const int i : lively_) {
+    const Pair& pair = pairs_.all()[seats_[i / kLanes].pair[i % kLanes]];
+    const auto tell = [&](const Pair& old) {
+      if (stretches_ > 1) report(old, state);
+    };
+    if (pairs_.renew(pair, state, poses_, tell)) sit(pair, state);
+  }
+
+  fall(state, t, h);
+  const sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm())};
+  const int count = int(seats_.size());
+  const bool deep =
+      sweep::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
+  blows_.run(fast_, pairs_.all(), seats_, poses_, old_, dv_, v_, pace);
+  int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  if (state.step == 0 && first) sweeps = kFirstSweeps;
+  if (!linkage_.empty()) {
+    lend();
+    linkage_.begin(h);
+    take();
+    sweeps = count == 0 && linkage_.plain() ? 1 : std::clamp(4 * sweeps, 4, kJointSweeps);
+  }
+  for (int i = 1; i < sweeps; ++i) {
+    hold();
+    sweep::sweep(seats_.data(), count, poses_.data(), v_.data(), pace);
+  }
+  hold();
+  sweep::finish(seats_.data(), count, poses_.data(), v_.data(), pace, last ? state.contacts.data() : nullptr);
+  blows_.note(pairs_.all(), state.contacts, seats_);
+  if (first && deep) project();
+  advance(state, h, first && deep);
+  if (!linkage_.empty()) rejoin(state, h);
+  outran_ = outran(h);
+}
+
+// a pair's forces, from its seat
+template <int D>
+void Iterative<D>::report(const Pair& pair, State<D>& state) const {
+  if (pair.slot < 0) return;
+  const Seats& g = seats_[pair.slot / kLanes];
+  const int lane = pair.slot % kLanes;
+  for (int k = 0; k < pair.touches; ++k) {
+    Contact<D>& contact = state.contacts[pair.first + k];
+    const Feature f = Feature::of(contact.key.feature);
+    contact.force = {g.p[k][lane], g.q[k][lane]};
+    if (f.kind == Feature::none) continue;
+    const sweep::Place at = pairs_.place(pair, poses_, f);
+    contact.point = {at.x, at.y};
+  }
+}
+
 // pairs anew, who wakes by them, and seats for all
 template <int D>
-void Iterative<D>::look(State<D>& state) {
-  pairs_.find(state, poses_, span_);
-  if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) pairs_.find(state, poses_, span_);
+void Iterative<D>::look(State<D>& state, bool known) {
+  const bool all = state.step % (sweep::Pairs::kCalmLooks * every_) == 0 || state.contacts.empty();
+  bool changed = pairs_.find(state, poses_, span_, all);
+  if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) {
+    pairs_.find(state, poses_, span_, true);
+    changed = true;
+  }
+  if (known && !changed && frozen_ == state.frozen) return;
   seat(state);
   const bool fresh =
       state.step == 0 && std::all_of(state.contacts.begin(), state.contacts.end(),
@@ -152,176 +215,6 @@ bool Iterative<D>::gather(const State<D>& state) {
     poses_[i].c = sc.cos, poses_[i].s = sc.sin, turns_[i] = turn;
   }
   return known;
-}
-
-// seats for the pairs that are awake: greedy colours, in the order of pairs
-template <int D>
-void Iterative<D>::seat(const State<D>& state) {
-  std::vector<Pair>& all = pairs_.all();
-  if (version_ == pairs_.version() && frozen_ == state.frozen) {
-    for (const Pair& pair : all) {
-      if (pair.slot >= 0) sit(pair, state);
-    }
-    return;
-  }
-  const int n = int(turns_.size());
-  version_ = pairs_.version(), frozen_ = state.frozen;
-  for (int i = 0; i < n; ++i) {
-    const Body<D>& body = model_.bodies[i];
-    const bool moves = !body.fixed && !state.frozen[i];
-    v_[i].im = moves ? 1 / body.mass : 0;
-    ii_[i] = moves && body.turns() ? 1 / body.inertia[0] : 0;
-  }
-
-  std::fill(colours_.begin(), colours_.end(), 0);
-  count_.assign(kColours + 1, 0);
-  awake_pairs_ = 0;
-  for (Pair& pair : all) {
-    const bool a = v_[pair.a].im > 0, b = pair.b >= 0 && v_[pair.b].im > 0;
-    pair.slot = -1;
-    if (!a && !b) continue;
-    ++awake_pairs_;
-    const std::uint64_t used = (a ? colours_[pair.a] : 0) | (b ? colours_[pair.b] : 0);
-    const int which = std::min(std::countr_one(used), kColours);
-    if (which < kColours) {
-      if (a) colours_[pair.a] |= std::uint64_t(1) << which;
-      if (b) colours_[pair.b] |= std::uint64_t(1) << which;
-    }
-    pair.slot = pair.colour = which;  // for now
-    pair.alone = which == kColours;
-    ++count_[which];
-  }
-
-  // a colour begins with seats of its own
-  int begin = 0;
-  for (int which = 0; which <= kColours; ++which) {
-    const int taken =
-        which < kColours ? (count_[which] + kLanes - 1) / kLanes * kLanes : count_[which] * kLanes;
-    count_[which] = begin, begin += taken;
-  }
-  Seats empty{};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    empty.a[lane] = empty.b[lane] = n, empty.pair[lane] = empty.first[lane] = -1;
-    empty.d[0][lane] = empty.d[1][lane] = -kNowhere;
-  }
-  seats_.assign(begin / kLanes, empty);
-  projections_.resize(seats_.size());
-  for (int i = 0; i < int(all.size()); ++i) {
-    Pair& pair = all[i];
-    if (pair.slot < 0) continue;
-    const int which = pair.slot;
-    pair.slot = count_[which], count_[which] += which < kColours ? 1 : kLanes;
-    Seats& g = seats_[pair.slot / kLanes];
-    const int lane = pair.slot % kLanes;
-    const sweep::Core& a = cores_.all[pair.core_a];
-    double sight = 1e300, far = a.reach, thin = a.inside, radius = a.radius;
-    bool round = a.count == 1;
-    if (pair.b >= 0) {
-      const sweep::Core& b = cores_.all[pair.core_b];
-      far = std::max(far, b.reach), thin = std::min(thin, b.inside), radius += b.radius;
-      sight = kSight * std::max(thin, 0.5 * radius);
-      // features of round things may change at any time, if there are more than one
-      round = (a.count == 1) != (b.count == 1);
-    } else {
-      round = false;
-    }
-    g.a[lane] = pair.a, g.iia[lane] = ii_[pair.a];
-    g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
-    g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
-    g.blow[lane] = -(pair.elasticity > 0 ? rest_speed_ : std::max(rest_speed_, kSoft * thin / span_));
-    g.sight[lane] = sight, g.mu[lane] = pair.friction, g.radius[lane] = radius;
-    g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
-    sit(pair, state);
-  }
-  blows_.join(all, v_);
-}
-
-// features and forces of a pair
-template <int D>
-void Iterative<D>::sit(const Pair& pair, const State<D>& state) {
-  Seats& g = seats_[pair.slot / kLanes];
-  const int lane = pair.slot % kLanes, bit = 1 << lane;
-  g.first[lane] = pair.first;
-  for (int k = 0; k < 2; ++k) {
-    g.of_b[k] = static_cast<unsigned char>(g.of_b[k] & ~bit);
-    g.corners[k] = static_cast<unsigned char>(g.corners[k] & ~bit);
-    g.cx[k][lane] = g.cy[k][lane] = g.fx[k][lane] = g.fy[k][lane] = g.p[k][lane] = g.q[k][lane] = 0;
-    g.d[k][lane] = -kNowhere;
-    if (k >= pair.touches) continue;
-    const Contact<D>& contact = state.contacts[pair.first + k];
-    const Feature f = Feature::of(contact.key.feature);
-    if (f.kind == Feature::none) continue;
-    g.p[k][lane] = contact.force[0], g.q[k][lane] = contact.force[1];
-    const sweep::Core& a = cores_.all[pair.core_a];
-    if (pair.b < 0) {
-      const Wall<D>& wall = model_.walls[-1 - pair.b];
-      g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
-      g.fx[k][lane] = wall.normal[0], g.fy[k][lane] = wall.normal[1];
-      g.d[k][lane] = wall.normal.dot(wall.point);
-      continue;
-    }
-    const sweep::Core& b = cores_.all[pair.core_b];
-    if (f.kind == Feature::corners) {
-      g.corners[k] = static_cast<unsigned char>(g.corners[k] | bit);
-      g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
-      g.fx[k][lane] = cores_.x[b.first + f.face], g.fy[k][lane] = cores_.y[b.first + f.face];
-      g.d[k][lane] = b.radius;
-      continue;
-    }
-    const bool of_a = f.kind == Feature::corner_of_a;
-    const int corner = (of_a ? a : b).first + f.corner, face = (of_a ? b : a).first + f.face;
-    if (!of_a) g.of_b[k] = static_cast<unsigned char>(g.of_b[k] | bit);
-    g.cx[k][lane] = cores_.x[corner], g.cy[k][lane] = cores_.y[corner];
-    g.fx[k][lane] = cores_.nx[face], g.fy[k][lane] = cores_.ny[face], g.d[k][lane] = cores_.d[face];
-  }
-}
-
-// forces that a pile may begin with: from the top down, each body hands its weight and its load to what lies
-// below it, in equal parts
-template <int D>
-void Iterative<D>::guess(State<D>& state) {
-  const double g = std::sqrt(model_.gravity.squaredNorm());
-  if (g == 0) return;
-  const int n = int(turns_.size());
-  const Vec<D> down = model_.gravity / g;
-  std::vector<std::pair<double, int>> order;
-  std::vector<std::vector<int>> below(n);
-  for (int i = 0; i < n; ++i) order.emplace_back(down.dot(state.x[i]), i);
-  std::sort(order.begin(), order.end());
-  const auto lower = [&](const Pair& pair) {  // who bears whom: -1 where neither does
-    if (pair.b < 0) return pair.a;
-    return down.dot(state.x[pair.a]) > down.dot(state.x[pair.b]) ? pair.b : pair.a;
-  };
-  for (int i = 0; i < int(pairs_.all().size()); ++i) {
-    if (pairs_.all()[i].slot >= 0) below[lower(pairs_.all()[i])].push_back(i);
-  }
-  std::vector<double> load(n, 0);
-  std::vector<Contact<D>*> bears;
-  for (const auto& [height, body] : order) {
-    if (v_[body].im == 0) continue;
-    bears.clear();
-    for (const int i : below[body]) {
-      const Pair& pair = pairs_.all()[i];
-      for (int k = 0; k < pair.touches; ++k) {
-        Contact<D>& contact = state.contacts[pair.first + k];
-        const Feature f = Feature::of(contact.key.feature);
-        if (f.kind == Feature::none) continue;
-        const sweep::Place at = pairs_.place(pair, poses_, f);
-        const double side = pair.a == body ? 1 : -1;
-        contact.normal = {at.nx, at.ny};
-        if (at.gap < 1e-3 * cores_.inside[body] && -side * down.dot(contact.normal) > 0.5)
-          bears.push_back(&contact);
-      }
-    }
-    const double weight = g / v_[body].im + load[body];
-    for (Contact<D>* contact : bears) {
-      const double side = contact->key.a == body ? 1 : -1;
-      const double part = weight / double(bears.size()) / (-side * down.dot(contact->normal));
-      contact->force = part * contact->normal;
-      const int other = contact->key.a == body ? contact->key.b : contact->key.a;
-      if (other >= 0) load[other] += weight / double(bears.size());
-    }
-  }
 }
 
 // what everyone would do in the step if nothing touched
@@ -367,139 +260,74 @@ void Iterative<D>::fall(State<D>& state, double t, double h) {
   }
 }
 
+// bodies of joints to the joints, and their velocities back
+template <int D>
+void Iterative<D>::lend() {
+  for (const int i : linkage_.bodies()) {
+    Stance<D>& at = linkage_.stance(i);
+    at.x = {poses_[i].x, poses_[i].y}, at.v = {v_[i].x, v_[i].y}, at.w[0] = v_[i].w;
+    at.room_from_body << poses_[i].c, -poses_[i].s, poses_[i].s, poses_[i].c;
+    linkage_.turn(i)[0] = turns_[i];
+  }
+}
+
+template <int D>
+void Iterative<D>::take() {
+  for (const int i : linkage_.bodies()) {
+    const Stance<D>& at = linkage_.stance(i);
+    v_[i].x = at.v[0], v_[i].y = at.v[1], v_[i].w = at.w[0];
+  }
+}
+
+template <int D>
+void Iterative<D>::hold() {
+  if (linkage_.empty()) return;
+  for (const int i : linkage_.bodies())
+    linkage_.stance(i).v = {v_[i].x, v_[i].y}, linkage_.stance(i).w[0] = v_[i].w;
+  linkage_.sweep();
+  take();
+}
+
+// what the step has pulled apart
+template <int D>
+void Iterative<D>::rejoin(State<D>& state, double h) {
+  lend();
+  linkage_.finish(h);
+  linkage_.keep(state, h);
+  linkage_.break_joints(state);
+  take();
+  const int still = int(turns_.size() - state.turn.size());
+  for (const int i : linkage_.bodies()) {
+    if (v_[i].im == 0) continue;
+    const Stance<D>& at = linkage_.stance(i);
+    state.x[i] = at.x, state.v[i] = at.v;
+    poses_[i].x = at.x[0], poses_[i].y = at.x[1];
+    if (i < still) continue;
+    state.spin[i - still] = at.w, state.turn[i - still] = linkage_.turn(i);
+    turns_[i] = linkage_.turn(i)[0];
+    const SinCos sc = sin_cos(turns_[i]);
+    poses_[i].c = sc.cos, poses_[i].s = sc.sin;
+  }
+}
+
 // positions out of each other, a part of the way
 template <int D>
 void Iterative<D>::project() {
   std::fill(projections_.begin(), projections_.end(), sweep::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
   const int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 2, kMostSweeps);
-  for (int i = 0; i < sweeps; ++i)
+  for (int i = 0; i < sweeps; ++i) {
+    // joints go along
+    for (const int k : linkage_.bodies())
+      linkage_.stance(k).v = {push_[k].x, push_[k].y}, linkage_.stance(k).w[0] = push_[k].w;
+    if (!linkage_.empty()) linkage_.agree();
+    for (const int k : linkage_.bodies()) {
+      const Stance<D>& at = linkage_.stance(k);
+      push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
+    }
     sweep::project(seats_.data(), projections_.data(), int(seats_.size()), poses_.data(), push_.data(),
                    kProject);
-}
-
-template <int D>
-void Iterative<D>::advance(State<D>& state, double h, bool look) {
-  const int n = int(turns_.size()), still = n - int(state.turn.size());
-
-  // whose slow touches closed
-  std::fill(closing_.begin(), closing_.end(), 0);
-  for (const int i : slow_)
-    closing_[seats_[i / kLanes].a[i % kLanes]] = closing_[seats_[i / kLanes].b[i % kLanes]] = 1;
-
-  const double quiet_speed = 0.02;
-  for (int i = 0; i < n; ++i) {
-    if (v_[i].im == 0) continue;
-    Motion d = course(i, h);
-    const Motion& v = v_[i];
-    if (look) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
-    state.x[i][0] = poses_[i].x += d.x, state.x[i][1] = poses_[i].y += d.y;
-    state.v[i][0] = v.x, state.v[i][1] = v.y;
-    if (i >= still) {
-      state.spin[i - still][0] = v.w;
-      state.turn[i - still][0] = turns_[i] += d.w;
-      const SinCos sc = sin_cos(turns_[i]);
-      poses_[i].c = sc.cos, poses_[i].s = sc.sin;
-    }
-    const double reach = cores_.reach[i];
-    const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (reach * reach) < quiet_speed * quiet_speed;
-    state.quiet[i] = quiet ? state.quiet[i] + h : 0;
   }
-}
-
-// the way of a body in the step
-template <int D>
-sweep::Motion Iterative<D>::course(int i, double h) {
-  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
-  const double when = blows_.when(i);
-  Motion d;
-  if (when >= 0) {
-    const double one = 0.5 * when, two = 0.5 * (h - when);
-    const Motion &b = blows_.before(i), &a = blows_.after(i);
-    const Motion there{one * (o.x + b.x), one * (o.y + b.y), one * (o.w + b.w), 0};
-    Motion back{two * (a.x + v.x), two * (a.y + v.y), two * (a.w + v.w), 0};
-    if (fast(i, back)) {
-      sweep::Pose from = poses_[i];
-      from.x += there.x, from.y += there.y;
-      const double part = clear(i, from, back, true);
-      back.x *= part, back.y *= part, back.w *= part;
-    }
-    d = {there.x + back.x, there.y + back.y, there.w + back.w, 0};
-  } else if (closing_[i]) {
-    d = {h * v.x, h * v.y, h * v.w, 0};
-  } else {
-    const double half = 0.5 * h;
-    d = {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
-         dx.w + half * (v.w - (o.w + dv.w)), 0};
-  }
-  // who is too fast to have been seen comes as far as what it meets, and strikes in the next step
-  const Motion way{h * o.x, h * o.y, h * o.w, 0};
-  if (!fast(i, way)) return d;
-  const double part = clear(i, poses_[i], way, false);
-  if (part >= 1 || (when >= 0 && when <= part * h)) return d;
-  const double im = v_[i].im;
-  v_[i] = o, v_[i].im = im;
-  return {part * way.x, part * way.y, part * way.w, 0};
-}
-
-// whether it may pass through something in the step
-template <int D>
-bool Iterative<D>::fast(int body, const Motion& way) const {
-  const double inside = 0.5 * kSight * cores_.inside[body];
-  return way.x * way.x + way.y * way.y > inside * inside;
-}
-
-// the part of its way that a body may go before it meets another where that stands, or a wall: by steps as
-// long as the distance that is left
-template <int D>
-double Iterative<D>::clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const {
-  const double length = std::sqrt(way.x * way.x + way.y * way.y);
-  double part = 1;
-  Feature features[2];
-  for (const int i : blows_.around(body)) {
-    const Pair& pair = pairs_.all()[i];
-    const sweep::Core& a = cores_.all[pair.core_a];
-    if (pair.b < 0) {
-      const Wall<D>& wall = model_.walls[-1 - pair.b];
-      const double nears = -(wall.normal[0] * way.x + wall.normal[1] * way.y);
-      const double gap = nearest(cores_, a, from, wall, features) + 0.02 * a.inside;
-      if (walls && nears > gap) part = std::min(part, std::max(gap, 0.0) / nears);
-      continue;
-    }
-    const sweep::Core& b = cores_.all[pair.core_b];
-    const double close = 0.02 * std::max(std::min(a.inside, b.inside), 1e-6 * model_.scale);
-    sweep::Pose at = from;
-    for (double gone = 0; gone < part;) {
-      at.x = from.x + gone * way.x, at.y = from.y + gone * way.y;
-      const double left = body == pair.a ? nearest(cores_, a, at, b, poses_[pair.b], features)
-                                         : nearest(cores_, a, poses_[pair.a], b, at, features);
-      if (left <= close) {
-        if (gone > 0) part = gone;
-        break;
-      }
-      gone += std::max(left - 0.5 * close, 0.5 * close) / length;
-    }
-  }
-  return part;
-}
-
-// whether a body may come farther than its pairs foresaw, by more than a part of its thickness
-template <int D>
-bool Iterative<D>::outran(double h) const {
-  const int n = int(turns_.size());
-  const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
-  for (int i = 0; i < n; ++i) {
-    const Motion &v = v_[i], &o = old_[i];
-    const double reach = cores_.reach[i];
-    const double gain = std::fabs(v.x - o.x) + std::fabs(v.y - o.y) + std::fabs(v.w - o.w) * reach;
-    if (gain * span_ < 0.04 * cores_.inside[i] + falls) continue;
-    const auto speed = [&](const Motion& m) {
-      return std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * reach;
-    };
-    if ((speed(v) - speed(o)) * span_ > 0.25 * cores_.inside[i] + pairs_.spare(i, speed(o), span_) + falls)
-      return true;
-  }
-  return false;
 }
 
 template class Iterative<2>;

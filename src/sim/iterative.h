@@ -6,6 +6,7 @@
 #include "sim/contact_step.h"
 #include "sim/iterative_blows.h"
 #include "sim/iterative_cores.h"
+#include "sim/iterative_joints.h"
 #include "sim/iterative_pairs.h"
 #include "sim/iterative_rest.h"
 #include "sim/iterative_rows.h"
@@ -31,14 +32,22 @@ class Iterative final : public ContactStep<D> {
  private:
   using Motion = sweep::Motion;
 
+  static constexpr double kSight = 0.5;  // of its thickness: what may pass within a step is swept instead
+
   bool gather(const State<D>& state);
+  void stretch(State<D>& state, double t, double h, int which);
+  void report(const sweep::Pair& pair, State<D>& state) const;
   void seat(const State<D>& state);
   void sit(const sweep::Pair& pair, const State<D>& state);
   void guess(State<D>& state);
   void fall(State<D>& state, double t, double h);
+  void lend();
+  void take();
+  void hold();
+  void rejoin(State<D>& state, double h);
   void project();
   void advance(State<D>& state, double h, bool look);
-  void look(State<D>& state);
+  void look(State<D>& state, bool known);
   bool outran(double h) const;
   double clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const;
   Motion course(int body, double h);
@@ -50,9 +59,12 @@ class Iterative final : public ContactStep<D> {
   sweep::Blows blows_;
   sweep::Rest rest_;
   Tied<D> tied_;
+  Linkage<D> linkage_;
   Stages stages_;
   std::int64_t every_ = 1;  // steps between two looks for pairs
   double span_ = 0;         // and s
+  int stretches_ = 1;       // of a step
+  bool outran_ = false;     // someone came farther than pairs foresaw
   double rest_speed_ = 0;   // m/s: slower approaches do not bounce
   bool drag_ = false;
 
@@ -66,7 +78,7 @@ class Iterative final : public ContactStep<D> {
   std::vector<char> closing_;    // a slow touch closed in this step
   std::vector<char> frozen_;     // that the seats are of
   std::vector<char> fixed_;
-  std::vector<char> movers_;  // springs, hands and joints hold them
+  std::vector<char> movers_;  // springs and hands hold them
 
   std::vector<std::uint64_t> colours_;  // used on each body
   std::vector<int> count_;
@@ -76,6 +88,7 @@ class Iterative final : public ContactStep<D> {
   std::int64_t next_step_ = -1;  // of the state that this has left
   long version_ = -1;
   int awake_pairs_ = 0;
+  double calmest_ = 0;  // m/s: if no point of a body is faster than half of it, all features stay
 };
 
 }  // namespace obscura::sim

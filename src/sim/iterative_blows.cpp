@@ -8,6 +8,7 @@
 #include "sim/iterative_blows.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace obscura::sim::sweep {
@@ -201,16 +202,30 @@ void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<
   }
 }
 
-void Blows::keep(const std::vector<Pair>& pairs, std::vector<Contact<2>>& contacts) const {
+void Blows::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
+                 [[maybe_unused]] const std::vector<Seats>& seats) {
   for (const Blow& blow : blows_) {
     const Pair& pair = pairs[blow.pair];
+    const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
+    assert(seats[group].pair[lane] == blow.pair);
+    const Rows& r = rows_[known_[group]];
     for (int k = 0; k < pair.touches; ++k) {
       if (!blow.met[k]) continue;
-      Contact<2>& c = contacts[pair.first + k];
-      c.impulse[0] = blow.n[k] * c.normal[0] - blow.t[k] * c.normal[1];
-      c.impulse[1] = blow.n[k] * c.normal[1] + blow.t[k] * c.normal[0];
-      if (c.touching == Touching::open && blow.n[k] > 0) c.touching = Touching::slide;
+      const double nx = r.nx[k][lane], ny = r.ny[k][lane];
+      struck_.push_back({contacts[pair.first + k].key,
+                         {blow.n[k] * nx - blow.t[k] * ny, blow.n[k] * ny + blow.t[k] * nx},
+                         blow.n[k] > 0});
     }
+  }
+}
+
+void Blows::keep(std::vector<Contact<2>>& contacts) const {
+  for (const Struck& struck : struck_) {
+    const auto at = std::lower_bound(contacts.begin(), contacts.end(), struck.key,
+                                     [](const Contact<2>& c, const ContactKey& key) { return c.key < key; });
+    if (at == contacts.end() || at->key != struck.key) continue;
+    at->impulse += struck.impulse;
+    if (at->touching == Touching::open && struck.pushed) at->touching = Touching::slide;
   }
 }
 

@@ -27,8 +27,13 @@ class Blows {
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
            std::vector<Motion>& v, const Pace& pace);
 
-  /// Impulses of the last run into the contacts.
-  void keep(const std::vector<Pair>& pairs, std::vector<Contact<2>>& contacts) const;
+  /// Forgets the impulses of the step before.
+  void begin() { struck_.clear(); }
+  /// Remembers the impulses of the last run, under the keys of the contacts.
+  void note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
+            const std::vector<Seats>& seats);
+  /// What was remembered, into the contacts.
+  void keep(std::vector<Contact<2>>& contacts) const;
 
   /// The awake pairs of a body.
   std::span<const int> around(int body) const {
@@ -42,6 +47,11 @@ class Blows {
   const Motion& after(int body) const { return now_[body]; }
 
  private:
+  struct Struck {
+    ContactKey key;
+    Vec<2> impulse;  // on a, N s
+    bool pushed;
+  };
   struct Blow {
     int pair = -1;
     bool met[2] = {false, false};
@@ -64,6 +74,7 @@ class Blows {
   std::vector<char> waiting_;  // of pairs
   std::vector<int> blow_;      // of pairs: place in blows_, or -1
   std::vector<Blow> blows_;
+  std::vector<Struck> struck_;
   std::vector<int> known_;  // of groups: place in rows_, or -1
   std::vector<int> groups_;
   std::vector<Rows> rows_;

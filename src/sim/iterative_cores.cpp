@@ -38,6 +38,12 @@ Reference reference(const Cores& cores, const Core& a, const Pose& at_a, const C
   const double wx = at_b.x - at_a.x, wy = at_b.y - at_a.y;
   const double x = at_a.c * wx + at_a.s * wy, y = at_a.c * wy - at_a.s * wx;
   Reference best;
+  if (a.wide > 0 && b.wide > 0) {
+    const double ac = std::fabs(c), as = std::fabs(s);
+    const double gap_x = std::fabs(x) - a.wide - (ac * b.wide + as * b.high);
+    const double gap_y = std::fabs(y) - a.high - (as * b.wide + ac * b.high);
+    return gap_x > gap_y ? Reference{x > 0 ? 1 : 3, gap_x} : Reference{y > 0 ? 2 : 0, gap_y};
+  }
   for (int i = a.first; i < a.first + a.count; ++i) {
     const double nx = cores.nx[i], ny = cores.ny[i];
     // the normal in b's frame
@@ -131,6 +137,7 @@ Cores::Cores(const Model<2>& model) {
     core.body = body, core.part = part, core.first = int(x.size());
     core.radius = shape.kind == ShapeKind::ball ? shape.radius : 0;
     if (shape.kind == ShapeKind::box) {
+      if (shape.center == Vec<2>::Zero()) core.wide = shape.half[0], core.high = shape.half[1];
       for (const int i : {0, 1, 3, 2}) {
         const Vec<2> at = shape.center + sim::corner(shape, i);
         x.push_back(at[0]), y.push_back(at[1]);
@@ -174,7 +181,7 @@ Cores::Cores(const Model<2>& model) {
 }
 
 double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
-               Feature out[2]) {
+               Feature out[2], double margin) {
   if (a.count == 1 && b.count == 1) {
     const Point p = corner(cores, a, at_a, 0), q = corner(cores, b, at_b, 0);
     out[0] = {Feature::corners, 0, 0}, out[1] = {};
@@ -182,7 +189,10 @@ double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Core& 
   }
   if (a.count == 1) return at_corner(cores, a, at_a, b, at_b, false, out);
   if (b.count == 1) return at_corner(cores, b, at_b, a, at_a, true, out);
-  const Reference ra = reference(cores, a, at_a, b, at_b), rb = reference(cores, b, at_b, a, at_a);
+  const Reference ra = reference(cores, a, at_a, b, at_b);
+  if (ra.gap >= margin) return ra.gap;
+  const Reference rb = reference(cores, b, at_b, a, at_a);
+  if (rb.gap >= margin) return rb.gap;
   // of nearly equals a's face, so that rounding does not choose
   if (rb.gap > ra.gap + 1e-6 * std::min(a.inside, b.inside))
     return clip(cores, b, at_b, rb.face, a, at_a, true, out);

@@ -20,10 +20,11 @@ struct alignas(32) Pose {
 
 struct Core {
   int body = 0, part = 0;
-  int first = 0, count = 0;  // corners, counter-clockwise; face i goes from corner i to the next
-  double radius = 0;         // m
-  double inside = 0;         // about how thick it is, m
-  double reach = 0;          // from the body's centre, m
+  int first = 0, count = 0;   // corners, counter-clockwise; face i goes from corner i to the next
+  double radius = 0;          // m
+  double inside = 0;          // about how thick it is, m
+  double reach = 0;           // from the body's centre, m
+  double wide = 0, high = 0;  // of a box about the body's centre: half its sides, m; else 0
 };
 
 /// All cores of a model, those of a body side by side.
@@ -61,9 +62,9 @@ struct Place {
 };
 
 /// The features nearest to each other: two where a corner of each end of two faces that lie on each other,
-/// else one and `none`. Returns a lower bound of the distance, m.
+/// else one and `none`. Returns a lower bound of the distance, m; from `margin` on features may be left out.
 double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
-               Feature out[2]);
+               Feature out[2], double margin = 1e300);
 Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
             Feature feature);
 

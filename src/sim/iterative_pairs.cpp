@@ -9,6 +9,8 @@ namespace obscura::sim::sweep {
 
 namespace {
 
+constexpr double kCalm = 0.02;  // of the least thickness: how far a calm body may come
+
 int part_of(const Cores& cores, int core) { return core < 0 ? 0 : cores.all[core].part; }
 
 }  // namespace
@@ -20,6 +22,9 @@ Pairs::Pairs(const Model<2>& model, const Cores& cores) : model_(model), cores_(
   }
   std::sort(joined_.begin(), joined_.end());
   compounds_ = cores.all.size() > model.bodies.size();
+  double thin = 1e300;
+  for (const double inside : cores.inside) thin = std::min(thin, std::max(inside, 1e-3 * model.scale));
+  calm_ = kCalm * thin / kCalmLooks;
 }
 
 bool Pairs::may_touch(int a, int b) const {
@@ -49,14 +54,17 @@ Pair Pairs::pair(int a, int b, int core_a, int core_b) const {
   return made;
 }
 
-double Pairs::room_to_move(const State<2>& state, int body, double span) const {
-  const Body<2>& b = model_.bodies[body];
-  if (b.fixed || state.frozen[body]) return 0;
+// of the fastest point, at most
+double Pairs::speed(const State<2>& state, int body) const {
   const int k = turning(state, body);
-  const double speed = std::sqrt(state.v[body].squaredNorm());
-  const double swing = k >= 0 ? std::fabs(state.spin[k][0]) * cores_.reach[body] : 0;
-  return span * (speed + swing + std::sqrt(model_.gravity.squaredNorm()) * span) +
-         spare(body, speed + swing, span);
+  return std::sqrt(state.v[body].squaredNorm()) +
+         (k >= 0 ? std::fabs(state.spin[k][0]) * cores_.reach[body] : 0);
+}
+
+double Pairs::room_to_move(const State<2>& state, int body, double span) const {
+  if (model_.bodies[body].fixed || state.frozen[body]) return 0;
+  const double fast = speed(state, body);
+  return span * (fast + std::sqrt(model_.gravity.squaredNorm()) * span) + spare(body, fast, span);
 }
 
 double Pairs::spare(int body, double speed, double span) const {
@@ -64,10 +72,54 @@ double Pairs::spare(int body, double speed, double span) const {
   return 0.05 * inside + std::min(0.2 * inside, speed * span);
 }
 
-void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
+// Who may be struck within the span: who may reach another as both fly now, or a wall; and, since they may be
+// thrown about, their neighbours. Of two that fly side by side and cannot be struck, none will touch.
+void Pairs::expose(const State<2>& state, const std::vector<Pose>& poses, double span) {
   const int n = int(model_.bodies.size());
-  margin_.resize(n), bounds_.resize(cores_.all.size());
-  for (int body = 0; body < n; ++body) margin_[body] = room_to_move(state, body, span);
+  exposed_.assign(n, 0);
+  for (int a = 0; a < n; ++a) {
+    if (still_[a]) continue;
+    for (const Wall<2>& w : model_.walls) {
+      const double high = w.normal[0] * (poses[a].x - w.point[0]) + w.normal[1] * (poses[a].y - w.point[1]);
+      if (high <= cores_.reach[a] + margin_[a]) exposed_[a] = 1;
+    }
+  }
+  const double falls = 2 * span * span * std::sqrt(model_.gravity.squaredNorm());
+  const auto swings = [&](int body) {
+    const int k = turning(state, body);
+    return k >= 0 ? std::fabs(state.spin[k][0]) * cores_.reach[body] : 0;
+  };
+  for (Candidate& c : candidates_) {
+    const int a = cores_.all[c.a].body, b = cores_.all[c.b].body;
+    const double passes = std::sqrt((state.v[a] - state.v[b]).squaredNorm()) + swings(a) + swings(b);
+    const double margin = std::min(margin_[a] + margin_[b],
+                                   span * passes + falls + 0.1 * (cores_.inside[a] + cores_.inside[b]));
+    const double far = cores_.reach[a] + cores_.reach[b] + margin;
+    const double dx = poses[a].x - poses[b].x, dy = poses[a].y - poses[b].y;
+    c.close = dx * dx + dy * dy <= far * far;
+    if (c.close) exposed_[a] = exposed_[b] = 1;
+  }
+  for (Candidate& c : candidates_) {
+    const int a = cores_.all[c.a].body, b = cores_.all[c.b].body;
+    if (exposed_[a] == 1 || exposed_[b] == 1) {
+      c.close = true;
+      if (!exposed_[a]) exposed_[a] = 2;
+      if (!exposed_[b]) exposed_[b] = 2;
+    }
+  }
+}
+
+bool Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span, bool all) {
+  const int n = int(model_.bodies.size());
+  margin_.resize(n), bounds_.resize(cores_.all.size()), still_.resize(n);
+  bool everyone = true;
+  for (int body = 0; body < n; ++body) {
+    still_[body] =
+        model_.bodies[body].fixed || state.frozen[body] || (!all && span * speed(state, body) < calm_);
+    everyone = everyone && still_[body];
+    margin_[body] = room_to_move(state, body, span);
+  }
+  if (everyone && !all) return false;
   for (int i = 0; i < int(bounds_.size()); ++i) {
     const Core& core = cores_.all[i];
     const Pose& at = poses[core.body];
@@ -82,6 +134,19 @@ void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
     bounds_[i] = {b.left - out, b.bottom - out, b.right + out, b.top + out};
   }
   grid_.fill(bounds_);
+  candidates_.clear();
+  for (int i = 0; i < int(cores_.all.size()); ++i) {
+    const Core& p = cores_.all[i];
+    if (model_.bodies[p.body].handout) continue;
+    grid_.after(i, near_);
+    for (const int j : near_) {
+      const Core& q = cores_.all[j];
+      if (q.body == p.body || (still_[p.body] && still_[q.body])) continue;
+      if (p.count == 1 && q.count == 1 && p.radius + q.radius <= 0) continue;
+      if (may_touch(p.body, q.body)) candidates_.push_back({i, j, false});
+    }
+  }
+  expose(state, poses, span);
 
   // in the order of keys: walls from the last, then bodies
   found_.clear(), contacts_.clear();
@@ -99,20 +164,19 @@ void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
     }
     found_.push_back(pair);
   };
-  std::size_t resting = 0;
+  std::size_t resting = 0, next = 0;
   for (int a = 0; a < n; ++a) {
     const std::size_t begun = found_.size();
-    const bool still = rests(state, a);
     bool kept = false;
     for (; resting < pairs_.size() && pairs_[resting].a <= a; ++resting) {
       const Pair& pair = pairs_[resting];
-      if (pair.a < a || !still || !rests(state, pair.b)) continue;
+      if (pair.a < a || !still_[a] || !still(pair.b)) continue;
       found_.push_back(pair);
       found_.back().first = int(contacts_.size());
       for (int k = 0; k < pair.touches; ++k) contacts_.push_back(state.contacts[pair.first + k]);
       kept = true;
     }
-    if (!still && !model_.bodies[a].handout) {
+    if (!still_[a] && !model_.bodies[a].handout) {
       for (int wall = int(model_.walls.size()); wall-- > 0;) {
         const Wall<2>& w = model_.walls[wall];
         const double high = w.normal[0] * (poses[a].x - w.point[0]) + w.normal[1] * (poses[a].y - w.point[1]);
@@ -123,17 +187,13 @@ void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
         }
       }
     }
-    for (int i = cores_.begin[a]; i < cores_.begin[a + 1]; ++i) {
-      grid_.after(i, near_);
-      const Core& p = cores_.all[i];
-      for (const int j : near_) {
-        const Core& q = cores_.all[j];
-        if (q.body == a || (still && rests(state, q.body))) continue;
-        if ((p.count == 1 && q.count == 1 && p.radius + q.radius <= 0)) continue;
-        if (!may_touch(a, q.body)) continue;
-        const double gap = nearest(cores_, p, poses[a], q, poses[q.body], features);
-        if (gap < margin_[a] + margin_[q.body]) add(pair(a, q.body, i, j), gap);
-      }
+    for (; next < candidates_.size() && candidates_[next].a < cores_.begin[a + 1]; ++next) {
+      const Candidate& c = candidates_[next];
+      if (!c.close) continue;
+      const Core &p = cores_.all[c.a], &q = cores_.all[c.b];
+      const double margin = margin_[a] + margin_[q.body];
+      const double gap = nearest(cores_, p, poses[a], q, poses[q.body], features, margin);
+      if (gap < margin) add(pair(a, q.body, c.a, c.b), gap);
     }
     if (compounds_ || kept) {
       std::sort(found_.begin() + long(begun), found_.end(), [&](const Pair& p, const Pair& q) {
@@ -168,9 +228,10 @@ void Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span) {
            pairs_[i].core_b == found_[i].core_b;
   }
   state.contacts.assign(contacts_.begin(), contacts_.end());
-  if (same) return;
+  if (same) return true;
   pairs_.swap(found_);
   ++version_;
+  return true;
 }
 
 void Pairs::inherit(const Pair& pair, const std::vector<Pose>& poses, const Contact<2>* old, int count,
@@ -209,27 +270,32 @@ Place Pairs::place(const Pair& pair, const std::vector<Pose>& poses, Feature fea
                feature);
 }
 
-bool Pairs::renew(const Pair& pair, State<2>& state, const std::vector<Pose>& poses) {
+bool Pairs::same_features(const Pair& pair, const State<2>& state, const std::vector<Pose>& poses,
+                          int words[2]) const {
   Feature features[2];
   if (pair.b < 0) {
     nearest(cores_, cores_.all[pair.core_a], poses[pair.a], model_.walls[-1 - pair.b], features);
   } else {
     nearest(cores_, cores_.all[pair.core_a], poses[pair.a], cores_.all[pair.core_b], poses[pair.b], features);
   }
-  Contact<2>* now = &state.contacts[pair.first];
-  int words[2] = {features[0].word(), features[1].word()};
+  words[0] = features[0].word(), words[1] = features[1].word();
   if (pair.touches == 2 && words[1] < words[0]) std::swap(words[0], words[1]);
+  const Contact<2>* now = &state.contacts[pair.first];
   const int parts = now->key.feature >> 16 << 16;
   bool same = true;
   for (int k = 0; k < pair.touches; ++k) same = same && now[k].key.feature == (parts | words[k]);
-  if (same) return false;
+  return same;
+}
+
+void Pairs::replace(const Pair& pair, State<2>& state, const std::vector<Pose>& poses, const int words[2]) {
+  Contact<2>* now = &state.contacts[pair.first];
+  const int parts = now->key.feature >> 16 << 16;
   const Contact<2> old[2] = {now[0], now[pair.touches - 1]};
   for (int k = 0; k < pair.touches; ++k) {
     now[k] = {};
     now[k].key = {pair.a, pair.b, parts | words[k]};
   }
   inherit(pair, poses, old, pair.touches, now);
-  return true;
 }
 
 void Pairs::adopt(const State<2>& state) {

@@ -29,16 +29,26 @@ class Pairs {
   explicit Pairs(const Model<2>& model, const Cores& cores);
 
   /// Finds the pairs nearer than their bodies can come within `span` s, and writes their touches into
-  /// state.contacts; forces of the same touches stay.
-  /// A pair whose two sides rest stays as it is.
-  void find(State<2>& state, const std::vector<Pose>& poses, double span);
+  /// state.contacts; forces of the same touches stay. A pair whose two sides rest stays as it is; unless
+  /// `all`, also one whose sides are calm: so slow that they come nowhere until the next look at all, which
+  /// is no more than kCalmLooks spans away. False where nothing was changed.
+  bool find(State<2>& state, const std::vector<Pose>& poses, double span, bool all);
+  static constexpr int kCalmLooks = 16;
 
   /// Makes the pairs those of state.contacts, where they are not already.
   void adopt(const State<2>& state);
 
   /// Features of a pair anew, false where they stay; its forces move with their keys or, failing that, their
   /// places.
-  bool renew(const Pair& pair, State<2>& state, const std::vector<Pose>& poses);
+  /// `report(pair)` is asked for the forces of a pair before they are moved.
+  template <class Report>
+  bool renew(const Pair& pair, State<2>& state, const std::vector<Pose>& poses, Report&& report) {
+    int words[2];
+    if (same_features(pair, state, poses, words)) return false;
+    report(pair);
+    replace(pair, state, poses, words);
+    return true;
+  }
 
   const std::vector<Pair>& all() const { return pairs_; }
   std::vector<Pair>& all() { return pairs_; }
@@ -56,15 +66,18 @@ class Pairs {
 
  private:
   bool may_touch(int a, int b) const;
+  bool same_features(const Pair& pair, const State<2>& state, const std::vector<Pose>& poses,
+                     int words[2]) const;
+  void replace(const Pair& pair, State<2>& state, const std::vector<Pose>& poses, const int words[2]);
+  double speed(const State<2>& state, int body) const;
+  void expose(const State<2>& state, const std::vector<Pose>& poses, double span);
   void inherit(const Pair& pair, const std::vector<Pose>& poses, const Contact<2>* old, int count,
                Contact<2>* now) const;
   Pair pair(int a, int b, int core_a, int core_b) const;
 
   const Model<2>& model_;
   const Cores& cores_;
-  bool rests(const State<2>& state, int body) const {
-    return body < 0 || state.frozen[body] || model_.bodies[body].fixed;
-  }
+  bool still(int body) const { return body < 0 || still_[body] != 0; }
 
   std::vector<Pair> pairs_, found_;
   long version_ = 0;
@@ -73,6 +86,14 @@ class Pairs {
   std::vector<Bounds> bounds_;  // of cores
   std::vector<double> margin_;  // of bodies, m
   std::vector<int> near_;
+  std::vector<char> still_;    // bodies that pairs need not be looked for
+  std::vector<char> exposed_;  // bodies that may be struck within the span
+  struct Candidate {
+    int a, b;  // cores
+    bool close;
+  };
+  std::vector<Candidate> candidates_;
+  double calm_ = 0;  // m/s, times the span
   std::vector<Contact<2>> contacts_;
   std::vector<std::pair<int, int>> joined_;  // sorted
   bool compounds_ = false;

@@ -22,7 +22,7 @@ constexpr int kBetweenChecks = 10;
 
 Rest::Rest(const Model<2>& model, const Cores& cores) : model_(model), cores_(cores) {
   const std::size_t n = model.bodies.size();
-  parent_.resize(n), restless_.resize(n), v_.resize(n + 1), zero_.resize(n + 1);
+  parent_.resize(n), restless_.resize(n), marked_.assign(n, 0), v_.resize(n + 1), zero_.resize(n + 1);
 }
 
 int Rest::root(int body) {
@@ -42,8 +42,17 @@ bool Rest::joins(const Contact<2>& touch, const Pair& pair) const {
          touch.gap < 1e-3 * std::min(cores_.inside[pair.a], cores_.inside[pair.b]);
 }
 
+// the two of a joint are of one island, if they are alike
+template <class Alike>
+void Rest::unite_joined(const State<2>& state, Alike&& alike) {
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const int a = model_.joints[i].a.body, b = model_.joints[i].b.body;
+    if (a >= 0 && b >= 0 && !state.broken[i] && alike(a) && alike(b)) unite(a, b);
+  }
+}
+
 bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
-                  const std::vector<Pose>& poses, const std::vector<Motion>& v,
+                  Linkage<2>& linkage, const std::vector<Pose>& poses, const std::vector<Motion>& v,
                   const std::vector<char>& movers, double h) {
   const int n = int(parent_.size());
   bool candidates = false;
@@ -59,6 +68,7 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
       if (joins(state.contacts[pair.first + k], pair)) unite(pair.a, pair.b);
     }
   }
+  unite_joined(state, [&](int body) { return v[body].im > 0; });
   for (int i = 0; i < n; ++i) {
     if (v[i].im > 0 && (state.quiet[i] < kWait || movers[i])) restless_[root(i)] = 1;
   }
@@ -80,13 +90,47 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
     return p != q ? p < q : pairs[i].slot < pairs[j].slot;
   });
 
+  // bodies without speed for a step
   const double g = std::sqrt(model_.gravity.squaredNorm());
   const Pace pace{h, 1e300, 0};
+  members_.clear();
+  for (int i = 0; i < n; ++i) {
+    v_[i] = {0, 0, 0, v[i].im};
+    if (v[i].im == 0 || restless_[root(i)]) continue;
+    v_[i].x = h * model_.gravity[0], v_[i].y = h * model_.gravity[1];
+    members_.emplace_back(root(i), i);
+  }
+  std::sort(members_.begin(), members_.end());
+  const auto lend = [&](int body) {
+    linkage.stance(body).v = {v_[body].x, v_[body].y}, linkage.stance(body).w[0] = v_[body].w;
+  };
+  const auto take = [&](int body) {
+    const Stance<2>& at = linkage.stance(body);
+    v_[body].x = at.v[0], v_[body].y = at.v[1], v_[body].w = at.w[0];
+  };
+  if (!linkage.empty()) {
+    for (const auto& member : members_) {
+      if (linkage.has(member.second)) lend(member.second);
+    }
+    linkage.begin(h);
+    for (const auto& member : members_) {
+      if (linkage.has(member.second)) take(member.second);
+    }
+  }
+
   bool froze = false;
-  for (std::size_t begin = 0; begin < order_.size();) {
-    std::size_t end = begin;
-    const int which = island(order_[begin]);
+  std::size_t begin = 0, end = 0;
+  for (std::size_t first = 0, last = 0; first < members_.size(); first = last, begin = end) {
+    const int which = members_[first].first;
+    parts_.clear();
+    for (; last < members_.size() && members_[last].first == which; ++last) {
+      const int body = members_[last].second;
+      if (linkage.has(body)) parts_.push_back(linkage.part(body));
+    }
     while (end < order_.size() && island(order_[end]) == which) ++end;
+    if (begin == end && parts_.empty()) continue;
+    std::sort(parts_.begin(), parts_.end());
+    parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
 
     // seats of its own: those of one colour stay together
     some_.clear();
@@ -101,32 +145,34 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
         some_.push_back(empty), lane = 0, colour = pair.colour;
       copy_seat(seats[pair.slot / kLanes], pair.slot % kLanes, some_.back(), lane++);
     }
-
-    // bodies without speed for a step
-    for (std::size_t at = begin; at < end; ++at) {
-      for (const int body : {pairs[order_[at]].a, pairs[order_[at]].b}) {
-        if (body < 0) continue;
-        v_[body] = {0, 0, 0, v[body].im};
-        if (v[body].im > 0) v_[body].x = h * model_.gravity[0], v_[body].y = h * model_.gravity[1];
-      }
-    }
     const int count = int(some_.size());
+    const auto hold = [&] {
+      if (parts_.empty()) return;
+      const auto each = [&](const auto& act) {
+        for (std::size_t k = first; k < last; ++k) {
+          if (linkage.has(members_[k].second)) act(members_[k].second);
+        }
+      };
+      each(lend);
+      for (const int part : parts_) linkage.sweep(part);
+      each(take);
+    };
     start(some_.data(), count, poses.data(), zero_.data(), v_.data(), pace, slow_, fast_);
-    const int most = std::clamp(kPairSweeps / int(end - begin), kBetweenChecks, kMostSweeps);
+    const int most = std::clamp(kPairSweeps / std::max(1, int(end - begin)), kBetweenChecks, kMostSweeps);
     double worst = 1e300;
     for (int i = 1; worst > kHeld * g * h && i < most; ++i) {
+      hold();
       sweep(some_.data(), count, poses.data(), v_.data(), pace);
       if (i % kBetweenChecks != 0 && i + 1 < most) continue;
       worst = 0;
-      for (std::size_t at = begin; at < end; ++at) {
-        for (const int body : {pairs[order_[at]].a, pairs[order_[at]].b}) {
-          if (body < 0 || v[body].im == 0) continue;
-          const Motion& m = v_[body];
-          worst = std::max(worst, std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[body]);
-        }
+      for (std::size_t k = first; k < last; ++k) {
+        const Motion& m = v_[members_[k].second];
+        worst = std::max(
+            worst, std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[members_[k].second]);
       }
     }
     const bool held = worst <= kHeld * g * h;
+    hold();
     finish(some_.data(), count, poses.data(), v_.data(), pace, state.contacts.data());
     for (Seats& g4 : some_) {
       for (int k = 0; k < kLanes; ++k) {
@@ -134,15 +180,19 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
           copy_forces(g4, k, seats[pairs[g4.pair[k]].slot / kLanes], pairs[g4.pair[k]].slot % kLanes);
       }
     }
-    for (std::size_t at = begin; held && at < end; ++at) {
-      for (const int body : {pairs[order_[at]].a, pairs[order_[at]].b}) {
-        if (body < 0 || v[body].im == 0 || state.frozen[body]) continue;
-        state.frozen[body] = 1, froze = true;
-        state.v[body].setZero();
-        if (const int k = body - (n - int(state.turn.size())); k >= 0) state.spin[k].setZero();
-      }
+    if (!parts_.empty()) {
+      for (std::size_t k = first; k < last; ++k) marked_[members_[k].second] = 1;
+      linkage.keep(state, h, &marked_);
+      for (std::size_t k = first; k < last; ++k) marked_[members_[k].second] = 0;
     }
-    begin = end;
+    for (std::size_t k = first; held && k < last; ++k) {
+      const int body = members_[k].second;
+      if (state.frozen[body]) continue;
+      state.frozen[body] = 1, froze = true;
+      state.v[body].setZero();
+      if (const int turning = body - (n - int(state.turn.size())); turning >= 0)
+        state.spin[turning].setZero();
+    }
   }
   return froze;
 }
@@ -167,6 +217,11 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
     for (int k = 0; k < pair.touches; ++k) gap = std::min(gap, state.contacts[pair.first + k].gap);
     if (gap < comes) restless_[sleeper] = 1, any = true;
   }
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const int a = model_.joints[i].a.body, b = model_.joints[i].b.body;
+    if (a < 0 || b < 0 || state.broken[i] || model_.bodies[a].fixed || model_.bodies[b].fixed) continue;
+    if (state.frozen[a] != state.frozen[b]) restless_[state.frozen[a] ? a : b] = 1, any = true;
+  }
   if (!any) return false;
 
   // all of an island
@@ -177,6 +232,7 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
     for (int k = 0; k < pair.touches; ++k) together = together || joins(state.contacts[pair.first + k], pair);
     if (together) unite(pair.a, pair.b);
   }
+  unite_joined(state, [&](int body) { return state.frozen[body] != 0; });
   for (int i = 0; i < n; ++i) {
     if (restless_[i]) restless_[root(i)] = 1;
   }

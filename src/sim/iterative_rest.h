@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/iterative_joints.h"
 #include "sim/iterative_pairs.h"
 #include "sim/iterative_rows.h"
 #include "sim/state.h"
@@ -15,8 +16,8 @@ class Rest {
   Rest(const Model<2>& model, const Cores& cores);
 
   /// Freezes islands; forces of those that have waited but are not yet held are improved. `movers`: bodies
-  /// that springs, hands and joints hold are never frozen. True where someone froze.
-  bool freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+  /// that springs and hands hold are never frozen. True where someone froze.
+  bool freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<Seats>& seats, Linkage<2>& linkage,
               const std::vector<Pose>& poses, const std::vector<Motion>& v, const std::vector<char>& movers,
               double h);
 
@@ -29,12 +30,17 @@ class Rest {
   int root(int body);
   void unite(int a, int b);
   bool joins(const Contact<2>& touch, const Pair& pair) const;
+  template <class Alike>
+  void unite_joined(const State<2>& state, Alike&& alike);
 
   const Model<2>& model_;
   const Cores& cores_;
   std::vector<int> parent_;
   std::vector<char> restless_;
-  std::vector<int> order_;  // pairs by island, then by seat
+  std::vector<int> order_;                    // pairs by island, then by seat
+  std::vector<std::pair<int, int>> members_;  // island, body
+  std::vector<int> parts_;                    // of the joints of an island
+  std::vector<char> marked_;                  // bodies of an island
   std::vector<Seats> some_;
   std::vector<Motion> v_, zero_;
   Found slow_, fast_;

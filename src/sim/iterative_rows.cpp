@@ -201,10 +201,8 @@ OBSCURA_INLINE void press(Two<V>& two, const Row<V>& r0, const Row<V>& r1, const
                           V& l0, V& l1) {
   const V none{};
   const V im = two.a.w + two.b.w;
-  const V k11 =
-      im * (r0.nx * r0.nx + r0.ny * r0.ny) + (two.iia * (r0.na * r0.na) + two.iib * (r0.nb * r0.nb));
-  const V k22 =
-      im * (r1.nx * r1.nx + r1.ny * r1.ny) + (two.iia * (r1.na * r1.na) + two.iib * (r1.nb * r1.nb));
+  const V k11 = im + (two.iia * (r0.na * r0.na) + two.iib * (r0.nb * r0.nb));
+  const V k22 = im + (two.iia * (r1.na * r1.na) + two.iib * (r1.nb * r1.nb));
   const V k12 =
       im * (r0.nx * r1.nx + r0.ny * r1.ny) + (two.iia * (r0.na * r1.na) + two.iib * (r0.nb * r1.nb));
   const V e0 = two.along(r0.nx, r0.ny, r0.na, r0.nb) - target0,
@@ -216,14 +214,16 @@ OBSCURA_INLINE void press(Two<V>& two, const Row<V>& r0, const Row<V>& r1, const
   const Mask<V> together = (both0 >= none) & (both1 >= none) & (det > 1e-8 * (k11 * k22));
 
   // one presses, the other's impulse taken back
-  const V only0 = larger<V>(l0 - (e0 - k12 * l1) / (k11 + kTiny), none);
-  const V left1 = e1 + k12 * (only0 - l0) - k22 * l1;
-  const V only1 = larger<V>(l1 - (e1 - k12 * l0) / (k22 + kTiny), none);
-  const V left0 = e0 + k12 * (only1 - l1) - k11 * l0;
-  const Mask<V> first = left1 >= left0;
-
-  const V next0 = pick<V>(together, both0, pick<V>(first, only0, none));
-  const V next1 = pick<V>(together, both1, pick<V>(first, none, only1));
+  V next0 = both0, next1 = both1;
+  if (any(~together)) {
+    const V only0 = larger<V>(l0 - (e0 - k12 * l1) / (k11 + kTiny), none);
+    const V left1 = e1 + k12 * (only0 - l0) - k22 * l1;
+    const V only1 = larger<V>(l1 - (e1 - k12 * l0) / (k22 + kTiny), none);
+    const V left0 = e0 + k12 * (only1 - l1) - k11 * l0;
+    const Mask<V> first = left1 >= left0;
+    next0 = pick<V>(together, both0, pick<V>(first, only0, none));
+    next1 = pick<V>(together, both1, pick<V>(first, none, only1));
+  }
   two.push(r0.nx, r0.ny, r0.na, r0.nb, next0 - l0);
   two.push(r1.nx, r1.ny, r1.na, r1.nb, next1 - l1);
   l0 = next0, l1 = next1;
@@ -240,7 +240,8 @@ OBSCURA_INLINE void rub(Two<V>& two, const Row<V>& r, const V& most, V& lt) {
 }
 
 template <class V>
-OBSCURA_INLINE void lively_all(const Seats* seats, int count, const Motion* v, Found& out) {
+OBSCURA_INLINE void lively_all(const Seats* seats, int count, const Motion* v, double share, Found& out) {
+  const V part = V{} + share;
   for (int i = 0; i < count; ++i) {
     const Seats& g = seats[i];
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
@@ -248,7 +249,7 @@ OBSCURA_INLINE void lively_all(const Seats* seats, int count, const Motion* v, F
       gather(&v->x, g.a + lane, a), gather(&v->x, g.b + lane, b);
       const V speed = magnitude<V>(a.x - b.x) + magnitude<V>(a.y - b.y) +
                       (magnitude<V>(a.z) + magnitude<V>(b.z)) * load<V>(g.far + lane);
-      const Mask<V> moves = speed > load<V>(g.calm + lane);
+      const Mask<V> moves = part * speed > load<V>(g.calm + lane);
       if (!any(moves)) continue;
       for (int k = 0; k < Of<V>::lanes; ++k) {
         if (moves[k]) out.push_back(kLanes * i + lane + k);
@@ -274,9 +275,10 @@ OBSCURA_INLINE void expand_one(const Seats& g, const Pose* poses, Rows& out) {
 }
 
 template <class V>
-OBSCURA_INLINE void start_all(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v,
+OBSCURA_INLINE bool start_all(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v,
                               const Pace& pace, Found& closing, Found& blows) {
   const V h = V{} + pace.h, creep = V{} - pace.creep, gain = V{} + pace.gain, none{};
+  Mask<V> deep{};
   for (int i = 0; i < count; ++i) {
     Seats& g = seats[i];
     g.struck[0] = g.struck[1] = 0;
@@ -286,12 +288,13 @@ OBSCURA_INLINE void start_all(Seats* seats, int count, const Pose* poses, const 
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
-      const V sight = load<V>(g.sight + lane);
+      const V sight = load<V>(g.sight + lane), allowed = kAllowed * load<V>(g.far + lane);
       Mask<V> slow{}, fast{};
       for (int k = 0; k < 2; ++k) {
         Row<V> r;
         make<V>(g, lane, k, a, b, r);
         const V vn = before.along(r.nx, r.ny, r.na, r.nb);
+        deep |= r.gap < -allowed;
         slow |= (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
         fast |= (vn < load<V>(g.blow + lane)) & (r.gap + h * (vn - gain) < none) & (r.gap <= sight);
         const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
@@ -312,6 +315,7 @@ OBSCURA_INLINE void start_all(Seats* seats, int count, const Pose* poses, const 
       }
     }
   }
+  return any(deep);
 }
 
 OBSCURA_INLINE void keep(const Seats& g, const Rows& rows, Contact<2>* contacts) {
@@ -338,7 +342,7 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
   const V per_h = V{} + 1 / pace.h, none{};
   for (Seats* g = seats; g < seats + count; ++g) {
     [[maybe_unused]] Rows kept;
-    if constexpr (kLast) {
+    if (kLast && contacts) {
       // contacts are far apart in memory: ask for those of a later group
       if (g + kAhead < seats + count) {
         for (int lane = 0; lane < kLanes; ++lane) {
@@ -384,7 +388,7 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
         store<V>(kept.na[1] + lane, l1), store<V>(kept.ta[1] + lane, t1);
       }
     }
-    if constexpr (kLast) keep(*g, kept, contacts);
+    if (kLast && contacts) keep(*g, kept, contacts);
   }
 }
 
@@ -421,13 +425,13 @@ const bool kWide = __builtin_cpu_supports("avx2") != 0;
 constexpr bool kWide = false;
 #define OBSCURA_WIDE
 #endif
-OBSCURA_WIDE void lively_wide(const Seats* s, int n, const Motion* v, Found& out) {
-  lively_all<V4>(s, n, v, out);
+OBSCURA_WIDE void lively_wide(const Seats* s, int n, const Motion* v, double share, Found& out) {
+  lively_all<V4>(s, n, v, share, out);
 }
 OBSCURA_WIDE void expand_wide(const Seats& s, const Pose* at, Rows& out) { expand_one<V4>(s, at, out); }
-OBSCURA_WIDE void start_wide(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace,
+OBSCURA_WIDE bool start_wide(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace,
                              Found& closing, Found& blows) {
-  start_all<V4>(s, n, at, old, v, pace, closing, blows);
+  return start_all<V4>(s, n, at, old, v, pace, closing, blows);
 }
 OBSCURA_WIDE void sweep_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
   sweep_all<V4, false>(s, n, at, v, pace, nullptr);
@@ -464,18 +468,18 @@ void copy_seat(const Seats& from, int i, Seats& to, int k) {
   copy_forces(from, i, to, k);
 }
 
-void find_lively(const Seats* s, int n, const Motion* v, Found& out) {
+void find_lively(const Seats* s, int n, const Motion* v, double share, Found& out) {
   out.clear();
-  kWide ? lively_wide(s, n, v, out) : lively_all<V2>(s, n, v, out);
+  kWide ? lively_wide(s, n, v, share, out) : lively_all<V2>(s, n, v, share, out);
 }
 void expand(const Seats& s, const Pose* at, Rows& out) {
   kWide ? expand_wide(s, at, out) : expand_one<V2>(s, at, out);
 }
-void start(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace, Found& closing,
+bool start(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace, Found& closing,
            Found& blows) {
   closing.clear(), blows.clear();
-  kWide ? start_wide(s, n, at, old, v, pace, closing, blows)
-        : start_all<V2>(s, n, at, old, v, pace, closing, blows);
+  return kWide ? start_wide(s, n, at, old, v, pace, closing, blows)
+               : start_all<V2>(s, n, at, old, v, pace, closing, blows);
 }
 void sweep(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
   kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false>(s, n, at, v, pace, nullptr);

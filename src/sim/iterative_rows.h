@@ -60,8 +60,8 @@ struct Pace {
   double gain = 0;   // m/s that gravity may add in the step
 };
 
-/// Pairs whose features may change.
-void find_lively(const Seats* seats, int count, const Motion* v, Found& out);
+/// Pairs whose features may have changed in `share` of the time between two looks.
+void find_lively(const Seats* seats, int count, const Motion* v, double share, Found& out);
 
 /// One pair to another seat; the forces alone.
 void copy_seat(const Seats& from, int i, Seats& to, int k);
@@ -71,13 +71,13 @@ void copy_forces(const Seats& from, int i, Seats& to, int k);
 void expand(const Seats& seats, const Pose* poses, Rows& out);
 
 /// Makes impulses of the forces and applies them to v. `old`: velocities at the start. Which close slowly in
-/// the step, and which with a blow.
-void start(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v, const Pace& pace,
+/// the step, and which with a blow. True where something is deeper than project() lets it.
+bool start(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v, const Pace& pace,
            Found& closing, Found& blows);
 
 /// One sweep: every pair once, in order.
 void sweep(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace);
-/// The last one of a step: forces into the seats and into the contacts.
+/// The last one of a stretch: forces into the seats and, where there are some, into the contacts.
 void finish(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace, Contact<2>* contacts);
 
 /// One sweep over positions: `share` of what is deeper than `kAllowed` of the farther reach is to go.

@@ -20,6 +20,8 @@ namespace {
 
 using obscura::sim::Vec;
 
+constexpr int kRate = 60;  // ours: steps a second, of four stretches each
+
 struct Box {
   double side, x, y, angle;
 };
@@ -176,17 +178,22 @@ Result chipmunk(const Scene& scene, double seconds) {
 
 }  // namespace
 
+// piles SECONDS [RATE [PILE]]: with a rate only ours, at that many steps a second
 int main(int count, char** words) {
   const double seconds = count > 1 ? std::atof(words[1]) : 4;
+  const int rate = count > 2 ? std::atoi(words[2]) : 0, only = count > 3 ? std::atoi(words[3]) : -1;
   std::printf("%-24s %-16s %10s %14s %10s %10s\n", "pile", "", "ms/60th", "penetration", "moved", "ratio");
+  int number = 0;
   for (const Scene& scene : {pyramid(100), dropped(2000)}) {
-    const Result us = ours(scene, seconds, 600);
-    const auto row = [&](const char* who, const Result& r) {
-      std::printf("%-24s %-16s %10.2f %14.2g %10.2g %10.2f\n", scene.name.c_str(), who, r.ms, r.penetration,
-                  r.moved, r.ms / us.ms);
+    if (only >= 0 && number++ != only) continue;
+    const Result us = ours(scene, seconds, rate > 0 ? rate : kRate);
+    const auto row = [&](const std::string& who, const Result& r) {
+      std::printf("%-24s %-16s %10.2f %14.2g %10.2g %10.2f\n", scene.name.c_str(), who.c_str(), r.ms,
+                  r.penetration, r.moved, r.ms / us.ms);
     };
-    row("600 a second", us);
-    row("180 a second", ours(scene, seconds, 180));
+    row(std::to_string(rate > 0 ? rate : kRate) + " a second", us);
+    if (rate > 0) continue;
+    row("600 a second", ours(scene, seconds, 600));
     row("Box2D", box2d(scene, seconds));
     row("Chipmunk", chipmunk(scene, seconds));
   }

@@ -11,6 +11,8 @@
 #include "allocations.h"
 #include "rooms.h"
 #include "sim/energy.h"
+#include "sim/iterative_turns.h"
+#include "sim/trig.h"
 
 namespace obscura::sim {
 namespace {
@@ -177,6 +179,74 @@ TEST(Iterative, RunCutInTwoIsTheRunInOne) {
     cut.run(6 - first);
     EXPECT_EQ(words(r.state()), words(cut.state())) << first;
   }
+}
+
+// the same where a step is several stretches, with joints that bear loads
+TEST(Iterative, RunCutInTwoIsTheRunInOneAtALowRate) {
+  Room whole;
+  whole.world.model.rate = {60, 1};
+  whole.floor();
+  for (int i = 0; i < 12; ++i)
+    whole.box({0.5, 0.5}, {0.3 * (i % 3), 0.6 + 0.7 * i}, 0.4, 0.2, {0.1 * i, 0}, 0.3 * i);
+  for (int i = 0; i < 4; ++i) {
+    Joint<2> joint;
+    joint.a = {2 * i + 1, {-0.25, 0}}, joint.b = {2 * i, {0.3, 0}};
+    joint.a.local = rotation<2>(whole.state().turn[2 * i + 1]).transpose() *
+                    (whole.state().x[2 * i] + rotation<2>(whole.state().turn[2 * i]) * joint.b.local -
+                     whole.state().x[2 * i + 1]);
+    joint.friction = 0.1 * i, joint.lower = -1, joint.upper = 0.5;
+    whole.world.model.joints.push_back(joint);
+  }
+  for (const double first : {0.5, 1.25, 4.0}) {
+    Room r, cut;
+    r.world = cut.world = whole.world;
+    r.run(6);
+    cut.run(first);
+    cut.solver.reset();
+    cut.run(6 - first);
+    EXPECT_EQ(words(r.state()), words(cut.state())) << first;
+  }
+}
+
+// forces from the top down are its equilibrium: it never moves by more than rounding, and freezes
+TEST(Iterative, PyramidOfBaseAHundredStandsAndFreezes) {
+  Room r = pyramid(100);
+  r.world.model.rate = {60, 1};
+  const auto begun = r.state().x;
+  r.run(0.5);
+  for (std::size_t i = 0; i < begun.size(); ++i) {
+    ASSERT_TRUE(r.state().frozen[i]) << i;
+    ASSERT_LT((r.state().x[i] - begun[i]).norm(), 1e-12) << i;
+  }
+}
+
+TEST(Iterative, TurnsManyAtOnceToTheBit) {
+  std::vector<double> turns;
+  for (int i = -4000; i < 4000; ++i) turns.push_back(i * 0.0137), turns.push_back(i * 261.7);
+  turns.insert(turns.end(), {0.0, -0.0, 1e-300, 1048576, -1048577, 1e15});
+  std::vector<sweep::Pose> poses(turns.size());
+  sweep::turn_all(turns.data(), poses.data(), int(turns.size()));
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const SinCos want = sin_cos(turns[i]);
+    ASSERT_TRUE(poses[i].c == want.cos && poses[i].s == want.sin) << turns[i];
+    ASSERT_EQ(std::signbit(poses[i].s), std::signbit(want.sin)) << turns[i];
+  }
+}
+
+// a spring takes part of the weight and pulls sideways, less than friction holds: what the floor gives is the
+// rest. Springs act along the free fall of a step, so their dampers feel c a h / 2 of what the floor stops
+TEST(Iterative, SpringsAndTheFloorShareAWeight) {
+  Room r;
+  r.floor();
+  const int i = r.box({1, 1}, {0, 0.5}, 0.5);
+  add_spring(r.world, {-1, {0, 3}}, {i, {0, 0}}, 2, 0.5, 1);
+  add_spring(r.world, {-1, {2, 0.5}}, {i, {0, 0}}, 1, 1, 1);
+  r.run(2);
+  EXPECT_NEAR((r.state().x[i] - Vec2(0, 0.5)).norm(), 0, 1e-6);
+  Vec2 sum(0, 0);
+  for (const Contact<2>& contact : r.state().contacts) sum += contact.force;
+  EXPECT_NEAR(sum[1], kG - 2 * 2, 1.01 * (kG - 4) / 1200);
+  EXPECT_NEAR(sum[0], -1, 1.01 / 1200);
 }
 
 // static equilibrium found, to 1e-6 of g: from then on nothing changes by a bit

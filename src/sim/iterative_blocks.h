@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace obscura::sim {
+
+/// A sparse symmetric positive matrix of small blocks, of up to M rows each, factorised as L D L' in an order
+/// of few neighbours first: trees fill in nothing. Blocks that no entries connect are parts, solved apart.
+/// Vectors have the rows of the blocks one after another.
+template <int M>
+class Blocks {
+ public:
+  using Block = std::array<double, M * M>;  // row by row, M a row
+
+  /// Sizes of the blocks, and which two have an entry: i < j, each pair once, ascending.
+  void plan(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& pairs);
+
+  int count() const { return int(sizes_.size()); }
+  int rows() const { return rows_; }
+  /// Where the rows of a block begin; how many they are.
+  int first(int block) const { return first_[block]; }
+  int size(int block) const { return sizes_[block]; }
+  /// The part that a block belongs to, and the blocks of a part, in the order of elimination.
+  int part(int block) const { return part_[block]; }
+  int parts() const { return int(parts_.size()) - 1; }
+  int begin(int part) const { return parts_[part]; }
+  int end(int part) const { return parts_[part + 1]; }
+  int at(int place) const { return order_[place]; }
+
+  /// The block on the diagonal, and the entry of pair e, rows of i and columns of j: to be written, all,
+  /// before factorise().
+  Block& diagonal(int block) { return diagonal_[block]; }
+  Block& entry(int e) { return entries_[e]; }
+
+  /// Blocks without a pivot, of rows that others imply, are taken as a little stiffer than nothing.
+  void factorise();
+
+  /// x := A^-1 x; of one part only.
+  void solve(double* x) const;
+  void solve(double* x, int part) const;
+
+ private:
+  struct Below {
+    int block;
+    Block l;
+  };
+  struct Source {
+    int pair, below;
+    bool turned;  // the entry's rows are the column's
+  };
+
+  std::vector<int> sizes_, first_, part_, parts_ = {0}, order_;
+  int rows_ = 0;
+  std::vector<Block> diagonal_, entries_, inverse_;
+  std::vector<int> begin_;  // of below_, by place
+  std::vector<Below> below_;
+  std::vector<Source> sources_;
+  std::vector<int> updates_;  // below_ that each product goes to, or -1 - block
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/iterative_blocks.h"
+#include "sim/row.h"
+#include "sim/state.h"
+
+namespace obscura::sim {
+
+/// Joints as the iterative solver holds them. What they keep as equalities is solved all at once, exactly, by
+/// a sparse factorisation: linear in the number of joints where they form trees. Ropes, limits, motors and
+/// dry friction are rows with bounds, one after another, each with what the joints answer to it.
+template <int D>
+class Linkage {
+ public:
+  /// Kept by reference.
+  explicit Linkage(const Model<D>& model);
+
+  bool empty() const { return model_.joints.empty(); }
+  /// Whether no row has bounds in this step: then one sweep is as good as many.
+  bool plain() const { return active_ == 0; }
+
+  /// Bodies that joints have, ascending; how each stands and moves, by its number in the model, and its turn:
+  /// written by the caller before and read after each of what follows.
+  const std::vector<int>& bodies() const { return bodies_; }
+  bool has(int body) const { return member_[body] != 0; }
+  Stance<D>& stance(int body) { return at_[body]; }
+  Turn<D>& turn(int body) { return turn_[body]; }
+
+  /// Makes room for the joints in a state that no step has seen yet.
+  void ready(State<D>& state) const;
+
+  /// Which joints hold in this state.
+  void gather(const State<D>& state);
+
+  /// Rows of a step of h (s) where bodies stand now. All forces begin at zero.
+  void begin(double h);
+
+  /// Velocities under which no joint comes apart: of all, or of one part. What shares no body that moves is a
+  /// part; part -1: of ropes between bodies that nothing else joins.
+  void sweep();
+  void sweep(int part);
+  /// The same once, of velocities that are none: places that are put right. Impulses stay as they are.
+  void agree();
+  int parts() const { return factors_.parts(); }
+  /// The part that a body's joints are of, or -1.
+  int part(int body) const { return part_of_body_[body]; }
+
+  /// After a step: places back onto the joints, velocities along them where bodies now stand.
+  void finish(double h);
+
+  /// Forces of the step into the state; only of joints of the bodies marked in `of`, where that is given.
+  void keep(State<D>& state, double h, const std::vector<char>* of = nullptr) const;
+
+  /// Joints that are loaded beyond what they bear are no more from the next step on. True where one broke.
+  bool break_joints(State<D>& state) const;
+
+ private:
+  // what keeps within bounds
+  enum Load { lower, upper, motor, friction };  // a rope is an upper
+  struct Bounded {
+    int joint = 0;
+    Load load = lower;
+    int part = -1;
+    Row<D> row;
+    double least = 0, most = 0, target = 0;  // N s or N m s; m/s or rad/s
+    double give = 0;                         // what a unit of impulse changes, joints answering, inverted
+    double impulse = 0;
+    std::vector<double> answer;  // impulses of the rows of its part to a unit, in the order of elimination
+    std::vector<std::pair<int, double>> felt;  // what rows of its part it moves by a unit, and how fast
+    int first = 0;                             // of its row in yields_
+  };
+
+  void plan();
+  void lay();
+  Spin<D> turn_between(const Joint<D>& joint) const;
+  const Stance<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
+  double light(int body) const { return body < 0 ? 0 : light_[body]; }
+  double couple(const Row<D>& p, const Row<D>& q) const;
+  void push(const Row<D>& row, double impulse);
+  void shift(const Row<D>& row, double by);
+  template <class Act>
+  void each_row(int part, Act&& act) const;
+  void bind(double h);
+  void answer(Bounded& bounded);
+  void couple_bounded();
+  void push_bounded(int part);
+  void shift_bounded(const Bounded& bounded, double by);
+  bool left(const Bounded& bounded, double& off) const;
+  void put_back(double h);
+
+  const Model<D>& model_;
+  Stance<D> room_;
+  std::vector<int> bodies_;
+  std::vector<char> member_;
+  std::vector<Stance<D>> at_;
+  std::vector<Turn<D>> turn_;
+  std::vector<double> light_;  // 1/kg; 0 of what cannot move
+
+  std::vector<char> broken_, frozen_;  // that the plan is of
+  bool planned_ = false;
+  std::vector<int> held_;                   // joints with equalities: the blocks
+  std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
+  std::vector<int> part_of_body_;
+  Blocks<kMostHeld<D>> factors_;  // of K = J M^-1 J'
+  std::vector<Row<D>> rows_, old_rows_;
+  std::vector<double> impulses_, totals_, rhs_, shifts_;
+  std::vector<Bounded> bounded_;  // the first `active_`
+  std::size_t active_ = 0;
+  std::vector<int> by_part_, part_first_;  // of them, those of part -1 first; where each part's begin
+  std::vector<double> yields_;             // of a part: what its rows with bounds do to each other
+  std::vector<double> speeds_, changes_;
+};
+
+}  // namespace obscura::sim
