@@ -78,8 +78,10 @@ class Simulation {
 
   static draw::Depictor depictor(const scene::Scene& scene) {
     const auto run = scene.run();
-    return draw::Depictor(run->cast(), scene.look, scene.camera, scene.extent,
-                          double(scene.film.width) / scene.film.height);
+    const double aspect = double(scene.film.width) / scene.film.height;
+    if (scene.dimension() == 2)
+      return draw::Depictor(run->cast(), scene.look, scene.cameras.front(), scene.extent, aspect);
+    return draw::Depictor(run->cast(), scene.look, scene.cameras, scene.extent, aspect);
   }
 
   std::optional<Take> next() {

@@ -20,7 +20,7 @@ namespace {
 struct Flags {
   std::string scene;
   std::vector<std::string> sets;
-  std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec;
+  std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec, camera;
   std::optional<double> crf;
   bool draft = false, no_overwrite = false;
   FilmOptions film;
@@ -61,6 +61,33 @@ void override_film(const Flags& flags, scene::Scene& scene) {
   if (flags.codec) scene.film.codec = *flags.codec;
 }
 
+// of several cameras the one that was asked for
+void choose_camera(const std::string& name, scene::Scene& scene) {
+  std::string known;
+  for (const draw::Camera& camera : scene.cameras) {
+    if (camera.name == name) {
+      scene.cameras = {draw::Camera(camera)};
+      return;
+    }
+    if (!camera.name.empty()) known += (known.empty() ? "" : ", ") + camera.name;
+  }
+  throw UsageError(
+      fmt::format("--camera {}: the scene has {}", name, known.empty() ? "one without a name" : known));
+}
+
+// a file for each camera: their names in OUT's {camera}
+int render_each(const scene::Scene& scene, const Shots& shots, const Flags& flags) {
+  for (const draw::Camera& camera : scene.cameras) {
+    scene::Scene one = scene;
+    one.cameras = {camera};
+    std::string name = *flags.out;
+    name.replace(name.find("{camera}"), 8, camera.name);
+    const Output out = output(name, scene.name, flags.at.has_value(), shots.size());
+    if (const int exit = film(one, shots, out, flags.film); exit != kDone) return exit;
+  }
+  return kDone;
+}
+
 // GIF counts in hundredths of a second: a rate that is none of them becomes the next below, and that is said
 void suit_gif(const std::string& out, scene::Film& film) {
   if (!out.ends_with(".gif")) return;
@@ -95,7 +122,9 @@ int render(Flags flags) {
   override_film(flags, scene);
   if (flags.out && !flags.fps) suit_gif(*flags.out, scene.film);
   const Shots shots = shots_of(flags, scene);
+  if (flags.camera) choose_camera(*flags.camera, scene);
   // a draft never takes the film's place
+  const bool each = flags.out && flags.out->find("{camera}") != std::string::npos;
   const Output out =
       output(flags.out, flags.draft ? scene.name + ".draft" : scene.name, flags.at.has_value(), shots.size());
   if (flags.film.transparent && out.form != Output::Form::frames && out.form != Output::Form::still) {
@@ -104,7 +133,7 @@ int render(Flags flags) {
   for (const sim::Trouble& ahead : scene.forebodings()) {
     fmt::print(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
   }
-  return film(scene, shots, out, flags.film);
+  return each ? render_each(scene, shots, flags) : film(scene, shots, out, flags.film);
 }
 
 }  // namespace
@@ -121,6 +150,10 @@ void add_render(CLI::App& program, int& exit) {
           "frames/%04d.png, one picture.png with --at, - for a stream. Left out: render_out/SCENE.mp4")
       ->type_name("OUT");
   add_sets(*command, flags->sets);
+  command
+      ->add_option("--camera", flags->camera,
+                   "Of several cameras this one alone; -o '{camera}.mp4' writes a file for each")
+      ->type_name("NAME");
   command->add_option("--at", flags->at, "One picture, of this instant (s), be it after the duration")
       ->type_name("SECONDS");
   command->add_option("--from", flags->from, "The first instant (s) that is filmed")->type_name("SECONDS");

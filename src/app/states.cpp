@@ -200,13 +200,16 @@ int states(const Flags& flags) {
   bool first = true;
   for (const sim::Rational t : times) {
     if (interrupted()) return kInterrupted;
-    const auto outcome = run->at(t);
+    auto outcome = run->at(t);
     if (const auto* bad = std::get_if<sim::Trouble>(&outcome)) {
       trouble = *bad;
       break;
     }
     if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
-    const auto& now = std::get<sim::Snapshot>(outcome);
+    auto& now = std::get<sim::Snapshot>(outcome);
+    // turned as it was typed, not as its principal axes lie
+    for (std::size_t i = 0; i < now.bodies.size(); ++i)
+      now.bodies[i].orientation = now.bodies[i].orientation * scene.axes[i].conjugate();
     const std::string state = state_hash(run->words());
     if (as_json)
       put((first ? "" : ",\n") + json(now, run->cast(), state));

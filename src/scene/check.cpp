@@ -159,6 +159,8 @@ class Checker {
         return node.is_text() || mistyped(node, key, expected(key, told_.n));
       case Form::thing:
         return node.is_text() || mistyped(node, key, expected(key, told_.n));
+      case Form::things:
+        return things(node, key);
       case Form::name:
         return name(node, key);
       case Form::rational:
@@ -175,6 +177,12 @@ class Checker {
         return spin(node, key);
       case Form::turn:
         return turn(node, key);
+      case Form::cameras:
+        if (node.is_table()) return table(node, key.path), true;
+        if (told_.n == 2 && node.is_list())
+          return wrong(node, "[[camera]]s beside each other are of space, and " + because() +
+                                 "; in the plane it is one [camera]");
+        return tables(node, key);
       case Form::walls:
         return node.is_text() ? choice(node, key) : tables(node, key);
       case Form::pixels:
@@ -453,6 +461,14 @@ class Checker {
           pair.is_list() && pair.list().size() == 2 && pair.list()[0].is_text() && pair.list()[1].is_text();
       if (!two) good = mistyped(pair, key, "pairs of names such as [\"stones\", \"frame\"]");
     }
+    return good;
+  }
+
+  bool things(const Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key, expected(key, told_.n));
+    bool good = true;
+    for (const Node& each : node.list())
+      if (!each.is_text()) good = mistyped(each, key, "names of bodies such as \"plank[*]\"");
     return good;
   }
 

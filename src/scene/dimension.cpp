@@ -44,6 +44,9 @@ Told value(const Node& node, const Key& key) {
   switch (key.form) {
     case Form::table:
       return node.is_table() ? table(node, key.path) : Told{};
+    case Form::cameras:
+      if (node.is_table()) return table(node, key.path);
+      [[fallthrough]];
     case Form::walls:
     case Form::tables:
       if (!node.is_list()) return {};

@@ -68,6 +68,22 @@ fixed    = true
 
 `rotation = false`, of a body or of `[physics]` for all, keeps bodies from turning.
 
+Without a `[camera]` the picture shows the room from the right and above. Several cameras look at one run, beside each other:
+
+```toml
+[[camera]]
+view = "side"
+
+[[camera]]
+name      = "around"
+azimuth   = 30                                                   # degrees: 0 is from the front, 90 from the right
+elevation = 20
+orbit     = 12                                                   # degrees per second
+follow    = "box[0]"
+```
+
+`obscura render SCENE --camera side` films one of them, `-o '{camera}.mp4'` each into a file of its own.
+
 This page is written by the program from the table that it checks scenes with.
 
 ## Names and references
@@ -181,6 +197,21 @@ breaks  = 50
 
 Two bodies with a joint between them do not touch each other, unless it says `touching = true`.
 
+## Pieces
+
+`[[bond]]` makes one body of several, until it breaks:
+
+```toml
+[[box]]
+name   = "piece"
+size   = [0.2, 0.2, 0.2]
+copies = { count = [3, 3, 3], offset = [[0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.2]] }
+
+[[bond]]
+of     = ["piece[*]"]                                            # each with those that it touches
+breaks = 300                                                     # newtons
+```
+
 ## Explosions
 
 An explosion pushes every point of every body away from its centre for a while: the corners of a box, the ends of a capsule, a
@@ -217,7 +248,8 @@ const char* const kNotes[][2] = {
      "The reference pixel is 1/480 of the room's height, so that a larger picture shows the same motion."},
     {"camera",
      "`center` and `width` stand for one view; with `keys` the camera moves from each to the next, and rests "
-     "before the first and after the last."},
+     "before the first and after the last. In space it looks at `center` from `azimuth` and `elevation`, or "
+     "from `eye`."},
 };
 
 std::string cell(std::string text) {
@@ -232,6 +264,8 @@ std::string type(const Key& key) {
       return "table";
     case Form::tables:
       return "tables";
+    case Form::cameras:
+      return "table, or tables";
     case Form::number:
       return "number";
     case Form::integer:
@@ -243,6 +277,8 @@ std::string type(const Key& key) {
     case Form::name:
     case Form::thing:
       return "name";
+    case Form::things:
+      return "list of names";
     case Form::rational:
       return "number or fraction";
     case Form::choice:
@@ -313,6 +349,10 @@ std::string row(const Key& key, const std::string& section) {
 
 constexpr const char* kHead = "| key | takes | left out | what it is | example |\n|---|---|---|---|---|\n";
 
+bool section(const Key& key) {
+  return key.form == Form::table || key.form == Form::tables || key.form == Form::cameras;
+}
+
 void rows_under(std::string& page, const std::string& owner, const std::string& section) {
   for (const Key* each : keys_of(owner)) {
     page += row(*each, section);
@@ -326,12 +366,12 @@ void rows_under(std::string& page, const std::string& owner, const std::string& 
 std::string keys_page() {
   std::string page = std::string(kOpening) + "## The keys\n\n### At the top\n\n" + kHead;
   for (const Key* each : keys_of(""))
-    if (each->form != Form::table && each->form != Form::tables) page += row(*each, "");
+    if (!section(*each)) page += row(*each, "");
   for (const Key* each : keys_of("")) {
-    if (each->form != Form::table && each->form != Form::tables) continue;
-    page +=
-        fmt::format("\n### {}\n\n{}\n\n",
-                    each->form == Form::table ? "[" + each->path + "]" : "[[" + each->path + "]]", each->doc);
+    if (!section(*each)) continue;
+    page += fmt::format("\n### {}\n\n{}\n\n",
+                        each->form != Form::tables ? "[" + each->path + "]" : "[[" + each->path + "]]",
+                        each->doc);
     for (const auto& note : kNotes)
       if (each->path == note[0]) page += std::string(note[1]) + "\n\n";
     page += kHead;

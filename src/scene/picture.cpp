@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "draw/camera.h"
+#include "scene/check.h"
 #include "scene/fields.h"
 #include "sim/shape.h"
 
@@ -29,6 +31,7 @@ draw::CameraKey camera_key(const Fields& fields) {
   draw::CameraKey key;
   if (const Node* center = fields.given("center")) key.center = in_space<D>(vector<D>(*center));
   if (const Node* width = fields.given("width")) key.width = width->number();
+  if (const Node* eye = fields.given("eye")) key.eye = in_space<D>(vector<D>(*eye));
   return key;
 }
 
@@ -50,6 +53,13 @@ void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& c
   look.springs = springs == "coils"   ? draw::Look::Springs::coils
                  : springs == "lines" ? draw::Look::Springs::lines
                                       : draw::Look::Springs::automatic;
+  look.light = fields.vector<3>("light");
+  if (look.light.isZero(0)) {
+    complaints.add(fields.place("light"), "'light' is zero: expected a direction such as [-0.6, 1, 0.4]");
+    look.light = sim::Vec3(0, 1, 0);
+  }
+  look.ground = fields.flag("ground");
+  if (const Node* tile = fields.given("tile")) look.tile = tile->number();
 
   // trails by name: of a body, or of all its copies
   const Node& trails = fields.node("trails");
@@ -68,14 +78,39 @@ void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& c
   }
 }
 
+namespace {
+
+// where a camera of space stands
+draw::Camera standing(const Fields& fields) {
+  const std::string& view = fields.text("view");
+  draw::Camera camera = view == "side" || view == "front" ? draw::side() : draw::slant();
+  if (view == "front") camera.elevation = 0;
+  if (view == "top") camera.azimuth = 0, camera.elevation = radians(90);
+  camera.name = fields.given("name") ? fields.text("name") : view;
+  if (fields.given("projection"))
+    camera.projection = fields.text("projection") == "orthographic" ? draw::Camera::Projection::orthographic
+                                                                    : draw::Camera::Projection::perspective;
+  if (const Node* field = fields.given("field")) camera.field = radians(field->number());
+  if (const Node* azimuth = fields.given("azimuth")) camera.azimuth = radians(azimuth->number());
+  if (const Node* elevation = fields.given("elevation")) camera.elevation = radians(elevation->number());
+  camera.orbit = radians(fields.number("orbit"));
+  return camera;
+}
+
 template <int D>
-draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaints) {
-  const Fields fields = Fields::of(top, "camera");
-  draw::Camera camera;
+draw::Camera camera(const Fields& fields, const Roster& roster, Complaints& complaints) {
+  draw::Camera camera = D == 3 ? standing(fields) : draw::Camera{};
   const Node* keys = fields.given("keys");
-  const bool stands = fields.given("center") || fields.given("width");
+  const bool stands = fields.given("center") || fields.given("width") || fields.given("eye");
+  if (fields.given("eye"))
+    for (const char* key : {"azimuth", "elevation", "orbit"})
+      if (const Node* both = fields.given(key))
+        complaints.add(both->place,
+                       fmt::format("'eye' and '{}' both say from where it looks; leave one out", key));
   if (keys && stands) {
-    complaints.add(fields.place(fields.given("center") ? "center" : "width"),
+    complaints.add(fields.place(fields.given("center")  ? "center"
+                                : fields.given("width") ? "width"
+                                                        : "eye"),
                    "the camera stands, or moves by 'keys'; leave one out");
     return camera;
   }
@@ -90,6 +125,8 @@ draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaint
     const Fields its(keys->list()[i], "camera.keys");
     if (!its.given("time")) continue;
     draw::CameraKey key = camera_key<D>(its);
+    if (const Node* azimuth = its.given("azimuth")) key.azimuth = radians(azimuth->number());
+    if (const Node* elevation = its.given("elevation")) key.elevation = radians(elevation->number());
     key.time = its.number("time");
     key.ease = ease(its.text("ease"));
     if (!camera.keys.empty() && key.time <= camera.keys.back().time)
@@ -98,6 +135,25 @@ draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaint
     camera.keys.push_back(key);
   }
   return camera;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<draw::Camera> cameras(const Node& top, const Roster& roster, Complaints& complaints) {
+  const Node* all = top.find("camera");
+  if (!all || all->is_table()) return {camera<D>(Fields::of(top, "camera"), roster, complaints)};
+  std::vector<draw::Camera> several;
+  for (const Node& each : all->list())
+    several.push_back(camera<D>(Fields(each, "camera"), roster, complaints));
+  for (std::size_t i = 0; i < several.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (several[i].name == several[k].name)
+        complaints.add(all->list()[i].place, fmt::format("two cameras are called {}: give one another 'name'",
+                                                         quoted(several[i].name)));
+  if (several.empty())
+    several.push_back(camera<D>(Fields(Node{{}, Node::Table{}}, "camera"), roster, complaints));
+  return several;
 }
 
 Film film(const Node& top) {
@@ -136,8 +192,8 @@ draw::Extent extent(const Room<D>& room, const sim::World<D>& world) {
   return {in_space<D>(middle - size / 2), in_space<D>(middle + size / 2)};
 }
 
-template draw::Camera camera<2>(const Node&, const Roster&, Complaints&);
-template draw::Camera camera<3>(const Node&, const Roster&, Complaints&);
+template std::vector<draw::Camera> cameras<2>(const Node&, const Roster&, Complaints&);
+template std::vector<draw::Camera> cameras<3>(const Node&, const Roster&, Complaints&);
 template draw::Extent extent<2>(const Room<2>&, const sim::World<2>&);
 template draw::Extent extent<3>(const Room<3>&, const sim::World<3>&);
 

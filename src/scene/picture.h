@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "scene/bodies.h"
 #include "scene/complaints.h"
 #include "scene/document.h"
@@ -11,9 +13,9 @@ namespace obscura::scene {
 /// How the scene is to look; the bodies have theirs already, and trails by name are added to them.
 void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& complaints);
 
-/// The camera of a scene: none, one that stands, or keys.
+/// The cameras of a scene, one at least: each stands, or has keys.
 template <int D>
-draw::Camera camera(const Node& top, const Roster& roster, Complaints& complaints);
+std::vector<draw::Camera> cameras(const Node& top, const Roster& roster, Complaints& complaints);
 
 /// How the scene asks to be filmed.
 Film film(const Node& top);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "scene/bodies.h"
+#include "scene/bonds.h"
 #include "scene/check.h"
 #include "scene/complaints.h"
 #include "scene/dimension.h"
@@ -18,6 +19,7 @@
 #include "scene/overrides.h"
 #include "scene/picture.h"
 #include "scene/room.h"
+#include "sim/trig.h"
 
 namespace obscura::scene {
 
@@ -53,6 +55,13 @@ void refuse_beyond_handout(const Node& top, int dimension, Complaints& complaint
   }
 }
 
+// a turn, in the plane about z
+Eigen::Quaterniond quaternion(const sim::Turn<2>& turn) {
+  const auto [s, c] = sim::sin_cos(0.5 * turn[0]);
+  return {c, 0, 0, s};
+}
+Eigen::Quaterniond quaternion(const sim::Turn<3>& turn) { return {turn[3], turn[0], turn[1], turn[2]}; }
+
 // groups that do not touch, as the bodies number them
 template <int D>
 void ignore(const Node& top, const Roster& roster, sim::Model<D>& model, Complaints& complaints) {
@@ -77,7 +86,7 @@ void ignore(const Node& top, const Roster& roster, sim::Model<D>& model, Complai
 void refuse_taken_names(const Node& top, const Roster& roster, Complaints& complaints) {
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
-  for (const char* kind : {"spring", "net", "joint", "explosion", "mouse"}) {
+  for (const char* kind : {"spring", "net", "joint", "bond", "explosion", "mouse"}) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i) {
       const Node* name = all->list()[i].find("name");
@@ -109,10 +118,12 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   model.walls = walls.walls;
   const Seating<D> roster =
       bodies<D>(top, walls, scene.seed, copy_sets, told, world, scene.look.bodies, complaints);
+  for (const Seat<D>& seat : roster.seats) scene.axes.push_back(quaternion(seat.axes));
   springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, world, complaints);
   explosions(top, model, complaints);
+  bonds(top, roster, world, complaints);
   ignore(top, roster, model, complaints);
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
   refuse_taken_names(top, roster, complaints);
@@ -124,7 +135,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
 
   // what it looks like
   look(top, roster, scene.look, complaints);
-  scene.camera = camera<D>(top, roster, complaints);
+  scene.cameras = cameras<D>(top, roster, complaints);
 
   // overlaps may come of other mistakes: they are told where there are none
   if (complaints.none() && model.collision != sim::Collision::handout &&

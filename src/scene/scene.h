@@ -33,9 +33,10 @@ struct Scene {
   sim::Rational duration{10, 1};  // s
   std::uint64_t seed = 0;
   std::variant<sim::World<2>, sim::World<3>> world;
+  std::vector<Eigen::Quaterniond> axes;  // one a body: its own axes, seen from those in which it was typed
   draw::Look look;
-  draw::Camera camera;
-  draw::Extent extent;  // what the camera fits
+  std::vector<draw::Camera> cameras;  // one; in space as many as there are
+  draw::Extent extent;                // what the camera fits
   Film film;
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }

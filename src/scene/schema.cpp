@@ -67,6 +67,8 @@ Json value(const Key& key) {
       return object(key.path);
     case Form::tables:
       return list_of(object(key.path), 0, 0);
+    case Form::cameras:
+      return any_of({object(key.path), list_of(object(key.path), 1, 0)});
     case Form::number:
       return key.varies ? any_of({number, list_of(number, 1, 0), between(number)}) : number;
     case Form::integer:
@@ -76,6 +78,8 @@ Json value(const Key& key) {
     case Form::text:
     case Form::thing:
       return string;
+    case Form::things:
+      return list_of(string, 1, 0);
     case Form::name:
       return {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_-]*$"}};
     case Form::rational:

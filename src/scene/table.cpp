@@ -81,7 +81,7 @@ const Language& language() {
   return it;
 }
 
-constexpr std::string_view kLater[] = {"chain", "bond", "golden", "spring.breaks"};
+constexpr std::string_view kLater[] = {"chain", "golden", "spring.breaks"};
 
 }  // namespace
 
@@ -139,6 +139,8 @@ std::string expected(const Key& key, int dimension) {
       return "a table";
     case Form::tables:
       return "a list of tables";
+    case Form::cameras:
+      return space ? "a table, or a list of them" : "a table";
     case Form::number:
       return "a number" + of;
     case Form::integer:
@@ -175,6 +177,8 @@ std::string expected(const Key& key, int dimension) {
     case Form::ends:
       return fmt::format("two ends, each a body's name, {{ body = \"name\", local = {0} }} or a place {0}",
                          place);
+    case Form::things:
+      return "a list of names of bodies";
     case Form::thing:
       return "the name of a body";
     case Form::points:

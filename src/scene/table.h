@@ -24,21 +24,23 @@ enum class Form {
   choice,
   choices,  // one word, a list of words
   color,
-  vector,  // [x, y], in space [x, y, z]
-  spin,    // a number in the plane, [x, y, z] in space
-  turn,    // in space: [x, y, z] or { axis, angle }
-  pixels,  // [width, height], whole
-  count,   // 12, or [6, 2]
-  offset,  // a vector, or one a direction of the grid
-  which,   // true, or "0..4": all, or those of the copies
-  points,  // [[x, y], ...], three at least; in space four
-  pairs,   // [["a", "b"], ...], names
-  limits,  // [lowest, highest]
-  ends,    // the two ends of a spring
-  thing,   // the name of a body
-  path,    // [[t, x, y], ...]
-  walls,   // "ground", "none", or tables
-  trails,  // seconds, or a table of them by body
+  vector,   // [x, y], in space [x, y, z]
+  spin,     // a number in the plane, [x, y, z] in space
+  turn,     // in space: [x, y, z] or { axis, angle }
+  pixels,   // [width, height], whole
+  count,    // 12, or [6, 2]
+  offset,   // a vector, or one a direction of the grid
+  which,    // true, or "0..4": all, or those of the copies
+  points,   // [[x, y], ...], three at least; in space four
+  pairs,    // [["a", "b"], ...], names
+  limits,   // [lowest, highest]
+  ends,     // the two ends of a spring
+  thing,    // the name of a body
+  things,   // references to bodies
+  path,     // [[t, x, y], ...]
+  walls,    // "ground", "none", or tables
+  cameras,  // [camera], in space [[camera]] too
+  trails,   // seconds, or a table of them by body
 };
 
 struct Range {

@@ -147,7 +147,7 @@ TEST_F(States, NameTheSolver) {
   scene(crowd);
   EXPECT_EQ(nlohmann::json::parse(obscura("states scene.toml --at 0").out)["solver"], "iterative");
   EXPECT_NE(obscura("check scene.toml")
-                .out.find("iterative solver: 42 bodies and 0 points that move; up to 40 and 400"),
+                .out.find("iterative solver: 42 bodies and 0 points that move; up to 20 and 400"),
             std::string::npos);
   scene(kFlight);
   EXPECT_NE(obscura("check scene.toml").out.find("direct solver: "), std::string::npos);

@@ -139,6 +139,11 @@ TEST(Space, AHullStandsOnItsPrincipalAxesWhereItWasTyped) {
   // turned a quarter about y, x goes to -z and z to x
   const Vec corner = Vec(0.25, 1, 0) + Vec(2, 1, -1.5);
   EXPECT_NEAR((world.state.x[0] + axes * world.model.springs[0].b.local - corner).norm(), 0, 1e-13);
+  const Eigen::Quaterniond typed = Eigen::Quaterniond(world.state.turn[0][3], world.state.turn[0][0],
+                                                      world.state.turn[0][1], world.state.turn[0][2]) *
+                                   it.axes[0].conjugate();
+  EXPECT_NEAR(std::abs(typed.dot(Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Vec::UnitY())))),
+              1, kExact);
   double nearest = 1;
   for (const Vec& v : body.shape.vertices)
     nearest = std::min(nearest, (world.state.x[0] + axes * v - corner).norm());
@@ -280,6 +285,44 @@ TEST(Space, AnExplosionThrowsAParticleAsTheTableSays) {
   EXPECT_EQ(blast.softening, 0.1);
   EXPECT_EQ(blast.scheme, sim::Explosion<2>::Scheme::paper);
   EXPECT_EQ(paper.plane().model.bodies[0].ground_drag, 0.25);
+}
+
+TEST(Space, BondsHoldNeighbours) {
+  // three in a row touch, the fourth stands apart
+  const std::string row = kRoom +
+                          "[[box]]\nname = \"piece\"\nsize = [0.2, 0.2, 0.2]\nposition = [-0.5, 1, 0]\n"
+                          "copies = { count = 3, offset = [0.2, 0, 0] }\n"
+                          "[[box]]\nname = \"far\"\nsize = [0.2, 0.2, 0.2]\nposition = [1, 1, 0]\n";
+  const Scene it = scene(row + "[[bond]]\nof = [\"piece[*]\", \"far\"]\nbreaks = 50");
+  const auto& bonds = it.space().model.bonds;
+  ASSERT_EQ(bonds.size(), 2u);
+  EXPECT_EQ(std::pair(bonds[0].a, bonds[0].b), std::pair(0, 1));
+  EXPECT_EQ(std::pair(bonds[1].a, bonds[1].b), std::pair(1, 2));
+  EXPECT_EQ(bonds[0].strength, 50);
+  EXPECT_THAT(complaint(row + "[[bond]]\nof = [\"piece[0]\", \"far\"]"),
+              EndsWith("no two of these 2 bodies lie within 0.001 m of each other"));
+}
+
+TEST(Space, CamerasStandBesideEachOther) {
+  const Scene it = scene(kRoom +
+                         "[[box]]\n[[camera]]\nview = \"side\"\n[[camera]]\nname = \"bird\"\nazimuth = 90\n"
+                         "projection = \"orthographic\"\norbit = 36\nfollow = \"box[0]\"\n");
+  ASSERT_EQ(it.cameras.size(), 2u);
+  EXPECT_EQ(it.cameras[0].name, "side");
+  EXPECT_EQ(it.cameras[1].name, "bird");
+  EXPECT_NEAR(it.cameras[1].azimuth, std::numbers::pi / 2, kExact);
+  EXPECT_NEAR(it.cameras[1].orbit, std::numbers::pi / 5, kExact);
+  EXPECT_EQ(it.cameras[1].projection, draw::Camera::Projection::orthographic);
+  EXPECT_EQ(it.cameras[1].follow, 0);
+  const Scene eye = scene(kRoom + "[[box]]\n[camera]\neye = [1, 2, 3]\ncenter = [0, 1, 0]");
+  ASSERT_EQ(eye.cameras.size(), 1u);
+  EXPECT_EQ(eye.cameras[0].keys[0].eye, sim::Vec3(1, 2, 3));
+  EXPECT_THAT(complaint(kRoom + "[[box]]\n[[camera]]\n[[camera]]"),
+              HasSubstr("two cameras are called 'slant'"));
+  EXPECT_THAT(complaint("[room]\nsize = [4, 3]\n[[box]]\n[[camera]]\nwidth = 3"),
+              HasSubstr("in the plane it is one [camera]"));
+  EXPECT_THAT(complaint("[room]\nsize = [4, 3]\n[[box]]\n[camera]\nazimuth = 3"),
+              HasSubstr("'azimuth' is of space"));
 }
 
 TEST(Space, SetWritesTheThirdNumber) {

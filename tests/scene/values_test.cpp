@@ -51,7 +51,7 @@ TEST(Values, ABareParticleHasEveryDefault) {
   EXPECT_EQ(it.film.height, 1080);
   EXPECT_EQ(it.film.fps, sim::rational(60));
   EXPECT_FALSE(it.film.crf);
-  EXPECT_TRUE(it.camera.keys.empty());
+  EXPECT_TRUE(it.cameras.front().keys.empty());
   EXPECT_EQ(it.look.theme, draw::Theme::paper);
   EXPECT_EQ(it.name, "a");
   EXPECT_EQ(it.extent.high, sim::Vec3(8, 4.5, 0));
@@ -315,17 +315,17 @@ TEST(Looks, ColoursGoOnFromDeclarationToDeclaration) {
 
 TEST(Looks, TheCameraStandsOrMoves) {
   const Scene stands = scene("[camera]\nwidth = 3\n[[box]]");
-  ASSERT_EQ(stands.camera.keys.size(), 1u);
-  EXPECT_EQ(stands.camera.keys[0].width, 3);
-  EXPECT_FALSE(stands.camera.keys[0].center);
+  ASSERT_EQ(stands.cameras.front().keys.size(), 1u);
+  EXPECT_EQ(stands.cameras.front().keys[0].width, 3);
+  EXPECT_FALSE(stands.cameras.front().keys[0].center);
   const Scene moves = scene(
       "[camera]\nkeys = [{ time = 0 }, { time = 2.5, center = [1, 2], width = 4, ease = \"hold\" "
       "}]\n[[box]]");
-  ASSERT_EQ(moves.camera.keys.size(), 2u);
-  EXPECT_EQ(moves.camera.keys[1].center, sim::Vec3(1, 2, 0));
-  EXPECT_EQ(moves.camera.keys[1].time, 2.5);
-  EXPECT_EQ(moves.camera.keys[1].ease, draw::CameraKey::Ease::hold);
-  EXPECT_EQ(moves.camera.keys[0].ease, draw::CameraKey::Ease::in_out);
+  ASSERT_EQ(moves.cameras.front().keys.size(), 2u);
+  EXPECT_EQ(moves.cameras.front().keys[1].center, sim::Vec3(1, 2, 0));
+  EXPECT_EQ(moves.cameras.front().keys[1].time, 2.5);
+  EXPECT_EQ(moves.cameras.front().keys[1].ease, draw::CameraKey::Ease::hold);
+  EXPECT_EQ(moves.cameras.front().keys[0].ease, draw::CameraKey::Ease::in_out);
 }
 
 TEST(Scenes, EveryOneThatShipsIsGood) {

@@ -1,0 +1,75 @@
+#include "scene/bonds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "scene/fields.h"
+#include "sim/gap.h"
+#include "sim/shape.h"
+#include "sim/turning.h"
+
+namespace obscura::scene {
+
+namespace {
+
+constexpr std::size_t kMostBonds = 1'000'000;
+
+// the bodies that a list of references means, each once, in the order of the model
+std::vector<int> meant(const Node& list, const Roster& roster, Complaints& complaints) {
+  std::vector<int> all;
+  for (const Node& each : list.list()) {
+    const std::vector<int> some = roster.bodies(each.text(), each.place, complaints);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+// how far apart two bodies are at the start, m; no less than `far` where they are farther than that
+template <int D>
+double apart(const sim::World<D>& world, int a, int b, double far) {
+  const auto& one = world.model.bodies[std::size_t(a)].shape;
+  const auto& other = world.model.bodies[std::size_t(b)].shape;
+  const double centres = (world.state.x[std::size_t(a)] - world.state.x[std::size_t(b)]).norm();
+  const double least = centres - sim::reach(one) - sim::reach(other);
+  if (least > far) return least;
+  return sim::separation(one, sim::stance(world.state, a), other, sim::stance(world.state, b));
+}
+
+}  // namespace
+
+template <int D>
+void bonds(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints) {
+  const Node* all = top.find("bond");
+  for (std::size_t k = 0; all && k < all->list().size(); ++k) {
+    const Fields fields(all->list()[k], "bond");
+    const Node* of = fields.given("of");
+    if (!of) continue;
+    const double within = fields.number("within");
+    sim::Bond<D> bond;
+    if (const Node* breaks = fields.given("breaks")) bond.strength = breaks->number();
+    const std::size_t wrong = complaints.count();
+    const std::vector<int> bodies = meant(*of, roster, complaints);
+    if (complaints.count() != wrong) continue;
+    std::size_t made = 0;
+    for (std::size_t i = 0; i < bodies.size() && world.model.bonds.size() < kMostBonds; ++i) {
+      for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+        if (apart(world, bodies[i], bodies[j], within) > within) continue;
+        bond.a = bodies[i], bond.b = bodies[j];
+        world.model.bonds.push_back(bond);
+        ++made;
+      }
+    }
+    if (made == 0)
+      complaints.add(of->place, fmt::format("no two of these {} bodies lie within {} m of each other",
+                                            bodies.size(), within));
+  }
+}
+
+template void bonds<2>(const Node&, const Roster&, sim::World<2>&, Complaints&);
+template void bonds<3>(const Node&, const Roster&, sim::World<3>&, Complaints&);
+
+}  // namespace obscura::scene

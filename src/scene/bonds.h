@@ -1,0 +1,15 @@
+#pragma once
+
+#include "scene/bodies.h"
+#include "scene/complaints.h"
+#include "scene/document.h"
+#include "sim/state.h"
+
+namespace obscura::scene {
+
+/// Puts the bonds of a scene into its model: between two bodies, or between all of some that lie near each
+/// other at the start. Requires the bodies.
+template <int D>
+void bonds(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints);
+
+}  // namespace obscura::scene
