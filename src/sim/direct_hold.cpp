@@ -216,8 +216,8 @@ void Direct<D>::jump(State<D>& state, const Row<D>& row, double p, bool places) 
   side(row.a, row.turn_a, p), side(row.b, row.turn_b, -p);
 }
 
-// what contacts did last is the first guess at what they do now; their forces, times `h` where impulses are
-// asked for
+// what contacts did last is the first guess at what they do now; and so are their forces,
+// times `h` where impulses are asked for
 template <int D>
 void Direct<D>::guess(double h) {
   warm_.setZero(Eigen::Index(rows_.size()));
@@ -232,7 +232,7 @@ void Direct<D>::guess(double h) {
     if (known->touching == Touching::open) mode.hold = Hold::open;
     if (known->touching != Touching::slide && known->touching != Touching::brink) continue;
     Tangent<D> drag;
-    for (int i = 0; i < D - 1; ++i) drag[i] = known->force.dot(rows_[held.first + 1 + i].along);
+    for (int i = 0; i < D - 1; ++i) drag[i] = h * known->force.dot(rows_[held.first + 1 + i].along);
     const double size = std::sqrt(drag.squaredNorm());
     if (size > 0) mode.hold = Hold::slide, mode.along = -drag / size;
   }
