@@ -42,14 +42,13 @@ struct Look {
 /// Where the camera is at one time; between two keys it moves with the ease of the later one.
 struct CameraKey {
   enum class Ease { linear, in, out, in_out, hold };
-  double time = 0;                  // s
-  std::optional<sim::Vec3> center;  // m; none: the room's
-  std::optional<double>
-      width;  // m that the picture's world region shows across; none: as much as fits the room
+  double time = 0;                       // s
+  std::optional<sim::Vec3> center = {};  // m; none: the room's
+  std::optional<double> width = {};  // m that the picture shows of the world across; none: all of the room
   Ease ease = Ease::in_out;
   // in space; left out: as the camera says
-  std::optional<double> azimuth, elevation;  // rad: from where it looks, see Camera
-  std::optional<sim::Vec3> eye;              // m: instead of both; a perspective camera's width, too
+  std::optional<double> azimuth = {}, elevation = {};  // rad: from where it looks, see Camera
+  std::optional<sim::Vec3> eye = {};  // m: instead of both; a perspective camera's width, too
 };
 
 /// Without keys the camera shows as much as fits the room. In space it looks at a key's `center` from a
