@@ -70,9 +70,17 @@ sweep::Motion Iterative<D>::course(int i, double h) {
   const Motion way{h * o.x, h * o.y, h * o.w, 0};
   if (!fast(i, way)) return d;
   const double part = clear(i, poses_[i], way, false);
-  if (part >= 1 || (when >= 0 && when <= part * h)) return d;
-  const double im = v_[i].im;
-  v_[i] = o, v_[i].im = im;
+  if (part >= 1) return d;
+  // the blow it met is what was seen, within half of its thickness
+  const double over = when - part * h;
+  if (when >= 0 && (over <= 0 || !fast(i, {over * o.x, over * o.y, 0, 0}))) return d;
+  // what another was given against it stays given
+  const double gone = std::fabs(v.x - (o.x + dv.x)) + std::fabs(v.y - (o.y + dv.y)) +
+                      std::fabs(v.w - (o.w + dv.w)) * cores_.reach[i];
+  if (when < 0 && gone <= 1e-9 * (std::fabs(o.x) + std::fabs(o.y))) {
+    const double im = v_[i].im;
+    v_[i] = o, v_[i].im = im;
+  }
   return {part * way.x, part * way.y, part * way.w, 0};
 }
 

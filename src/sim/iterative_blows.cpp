@@ -114,7 +114,7 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   const double when = closing(i, pairs, seats, poses, dv, pace);
   reach(a, when, dv, pace), reach(b, when, dv, pace);
   for (int k = 0; k < 2; ++k) {
-    if (closes[k]) e[k] = (fast[k] ? 1 + pair.elasticity : 1) * along(r, k, lane, now_[a], now_[b]);
+    if (closes[k]) e[k] = (1 + pair.elasticity) * along(r, k, lane, now_[a], now_[b]);
   }
   if (!known) blow_[i] = int(blows_.size()), blows_.push_back({i, {false, false}, {0, 0}, {0, 0}});
   Blow& blow = blows_[blow_[i]];
