@@ -166,7 +166,7 @@ std::string lowered(std::string_view description) {
 
 // what a person has most likely forgotten where the parser stopped: a quote, a bracket, or the quotes about a
 // word; empty where none of them
-std::string forgotten(std::string_view text, int line) {
+std::string forgotten(std::string_view text, int line, int column) {
   std::vector<std::string_view> lines;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -203,6 +203,8 @@ std::string forgotten(std::string_view text, int line) {
   const std::string_view here = lines[line - 1];
   const std::size_t first = here.find_first_not_of(" \t"), equals = here.find('=');
   if (first == std::string_view::npos) return {};
+  if (column >= 1 && column <= int(here.size()) && here[column - 1] == '.')
+    return "a number has a digit before its point: 0.1";
   if (count(here).quoted) return "a quote is opened here and not closed";
   if (here[first] == '[' && count(here).open != 0)
     return "a table's name closes as it opens: [room], [[box]]";
@@ -278,7 +280,7 @@ Node document(std::string_view text, const std::string& file) {
     return top;
   } catch (const toml::parse_error& error) {
     const Place place = place_of(error.source());
-    const std::string likely = forgotten(text, place.line);
+    const std::string likely = forgotten(text, place.line, place.column);
     refuse(file, place.line, place.column,
            "not TOML: " + lined(likely.empty() ? lowered(error.description()) : likely));
   }

@@ -94,6 +94,10 @@ TEST(Hostile, WhatIsForgottenIsNamed) {
   EXPECT_THAT(complaint("[look]\ntheme = paper"),
               testing::EndsWith("not TOML: words go in quotes: \"paper\""));
   EXPECT_THAT(complaint("[box]\nmass ="), testing::EndsWith("not TOML: a value is missing after the ="));
+  EXPECT_THAT(complaint("[box]\nmass = .1"),
+              testing::EndsWith("not TOML: a number has a digit before its point: 0.1"));
+  EXPECT_THAT(complaint("[box]\nsize = [1, -.1]"),
+              testing::EndsWith("not TOML: a number has a digit before its point: 0.1"));
   EXPECT_THAT(complaint("[box]\nmass"), testing::EndsWith("not TOML: a key is given as key = value"));
 }
 
