@@ -52,8 +52,9 @@ int complain(int code, const std::string& what) {
 
 int main(int argc, const char* const* argv) {
   heed_interrupts();
-  CLI::App program("Simulates a room of particles, boxes and springs, and films it without a window.",
-                   argc > 0 ? argv[0] : "obscura");
+  CLI::App program(
+      "Simulates a room of bodies that move, in the plane or in space, and films it without a window.",
+      argc > 0 ? argv[0] : "obscura");
   program.footer(
       "Examples:\n"
       "  obscura new ball                        write ball.toml to start from\n"
