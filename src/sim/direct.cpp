@@ -269,11 +269,11 @@ void Direct<D>::break_joints(State<D>& state) {
     if (!any) join(state);
     state.broken[i] = 1, any = true;
     for (const int body : {joint.a.body, joint.b.body}) {
-      if (body >= 0) ripe_[island_[body]] = 1;
+      if (body >= 0) ripe_[islands_.root(body)] = 1;
     }
   }
   for (std::size_t i = 0; any && i < ripe_.size(); ++i) {
-    if (ripe_[island_[i]]) state.frozen[i] = 0, state.quiet[i] = 0;
+    if (ripe_[islands_.root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "sim/cone.h"
 #include "sim/contact_step.h"
+#include "sim/islands.h"
 #include "sim/row.h"
 #include "sim/tied.h"
 
@@ -159,7 +160,8 @@ class Direct final : public ContactStep<D>, private System {
   // parts that share no body
   int parts_ = 0;
   std::vector<std::vector<int>> members_;  // of held_, one list a part
-  std::vector<int> roots_, part_of_, part_rows_, part_chosen_;
+  Islands roots_;
+  std::vector<int> part_of_, part_rows_, part_chosen_;
   std::vector<ConeBlock<D>> part_blocks_;
   std::vector<ConeMode<D>> part_modes_;
   std::vector<char> wanted_;
@@ -167,7 +169,8 @@ class Direct final : public ContactStep<D>, private System {
   Eigen::VectorXd part_b_, part_f_;
   Eigen::VectorXd b_, f_, warm_;  // warm_: forces to begin with
   Eigen::VectorXd slips_;         // J v where the stretch began
-  std::vector<int> chosen_, island_;
+  std::vector<int> chosen_;
+  Islands islands_;
   std::vector<char> ripe_;
   std::vector<double> rate_;
   std::vector<std::pair<int, int>> forced_;  // couples that would come through each other at once

@@ -1,7 +1,5 @@
 // Rows that share no body do not know of one another: K falls into parts, each solved alone.
 
-#include <algorithm>
-
 #include "sim/direct.h"
 
 namespace obscura::sim {
@@ -15,30 +13,23 @@ constexpr int kSweeps = 40;  // of a rough solve
 // what of held_ belongs together, by the bodies it moves
 template <int D>
 void Direct<D>::split() {
-  roots_.resize(model_.bodies.size());
-  for (int i = 0; i < int(roots_.size()); ++i) roots_[i] = i;
-  const auto root = [&](int i) {
-    while (roots_[i] != i) i = roots_[i] = roots_[roots_[i]];
-    return i;
-  };
+  roots_.reset(int(model_.bodies.size()));
   for (const Held& held : held_) {
     const Row<D>& row = rows_[held.first];
-    if (light(row.a) == 0 || light(row.b) == 0) continue;
-    const int p = root(row.a), q = root(row.b);
-    roots_[std::max(p, q)] = std::min(p, q);
+    if (light(row.a) > 0 && light(row.b) > 0) roots_.join(row.a, row.b);
   }
   part_of_.assign(model_.bodies.size(), -1);
   parts_ = 0;
   for (const Held& held : held_) {
     const Row<D>& row = rows_[held.first];
-    const int body = root(light(row.a) > 0 ? row.a : row.b);
+    const int body = roots_.root(light(row.a) > 0 ? row.a : row.b);
     if (part_of_[body] < 0) part_of_[body] = parts_++;
     if (int(members_.size()) < parts_) members_.emplace_back();
   }
   for (int part = 0; part < parts_; ++part) members_[part].clear();
   for (int i = 0; i < int(held_.size()); ++i) {
     const Row<D>& row = rows_[held_[i].first];
-    members_[part_of_[root(light(row.a) > 0 ? row.a : row.b)]].push_back(i);
+    members_[part_of_[roots_.root(light(row.a) > 0 ? row.a : row.b)]].push_back(i);
   }
 }
 

@@ -21,23 +21,16 @@ constexpr double kStill = 1e-8;    // of sqrt(g L): faster is not still
 // who is joined to whom, by the contacts of the state, springs and joints; fixed bodies join nobody
 template <int D>
 void Direct<D>::join(const State<D>& state) {
-  island_.resize(model_.bodies.size());
-  for (int i = 0; i < int(island_.size()); ++i) island_[i] = i;
-  const auto root = [&](int i) {
-    while (island_[i] != i) i = island_[i] = island_[island_[i]];
-    return i;
-  };
+  islands_.reset(int(model_.bodies.size()));
   const auto link = [&](int a, int b) {
     if (a < 0 || b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) return;
-    const int p = root(a), q = root(b);
-    island_[std::max(p, q)] = std::min(p, q);
+    islands_.join(a, b);
   };
   for (const Contact<D>& contact : state.contacts) link(contact.key.a, contact.key.b);
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
   }
-  for (int i = 0; i < int(island_.size()); ++i) island_[i] = root(i);
 }
 
 // thaws what something awake touches or holds, with all that it is joined to. True where it did
@@ -58,8 +51,8 @@ bool Direct<D>::wake(State<D>& state) {
   if (chosen_.empty()) return false;
   join(state);
   for (const int woken : chosen_) {
-    for (int i = 0; i < int(island_.size()); ++i) {
-      if (island_[i] == island_[woken]) state.frozen[i] = 0, state.quiet[i] = 0;
+    for (int i = 0; i < int(state.frozen.size()); ++i) {
+      if (islands_.root(i) == islands_.root(woken)) state.frozen[i] = 0, state.quiet[i] = 0;
     }
   }
   return true;
@@ -84,15 +77,15 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
   join(state);
   ripe_.assign(n, 1);
   for (int i = 0; i < n; ++i) {
-    if (light_[i] > 0 && state.quiet[i] < kQuiet) ripe_[island_[i]] = 0;
+    if (light_[i] > 0 && state.quiet[i] < kQuiet) ripe_[islands_.root(i)] = 0;
   }
   for (const Grip<D>& grip : state.grips) {
-    if (grip.body >= 0) ripe_[island_[grip.body]] = 0;
+    if (grip.body >= 0) ripe_[islands_.root(grip.body)] = 0;
   }
   keep(state, begun_);
   bool any = false;
   for (int i = 0; i < n; ++i) {
-    if (light_[i] == 0 || !ripe_[island_[i]]) continue;
+    if (light_[i] == 0 || !ripe_[islands_.root(i)]) continue;
     any = true;
     state.v[i].setZero();
     if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();
@@ -111,11 +104,11 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
     double a = std::sqrt(Eigen::Map<const Vec<D>>(rate_.data() + D * k).squaredNorm());
     if (const int at = free_.spin_start(k); at >= 0)
       a += rims_[body] * std::sqrt(Eigen::Map<const Spin<D>>(rate_.data() + at).squaredNorm());
-    if (!found || !(a <= kStatic * g)) ripe_[island_[body]] = 0;
+    if (!found || !(a <= kStatic * g)) ripe_[islands_.root(body)] = 0;
   }
   any = false;
   for (const int body : members) {
-    if (ripe_[island_[body]]) {
+    if (ripe_[islands_.root(body)]) {
       state.frozen[body] = 1;
       any = true;
       continue;

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <set>
 
+#include "sim/islands.h"
+
 namespace obscura::sim {
 
 namespace {
@@ -43,20 +45,15 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
   diagonal_.assign(n, {}), inverse_.assign(n, {}), entries_.assign(pairs.size(), {});
 
   // parts, each told by its lowest block
-  std::vector<int> root(n);
-  for (int i = 0; i < n; ++i) root[i] = i;
-  const auto find = [&](int i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
+  Islands parts;
+  parts.reset(n);
   std::vector<std::set<int>> near(n);
   for (const auto& [i, j] : pairs) {
     near[i].insert(j), near[j].insert(i);
-    const int p = find(i), q = find(j);
-    root[std::max(p, q)] = std::min(p, q);
+    parts.join(i, j);
   }
   std::vector<std::vector<int>> members(n);
-  for (int i = 0; i < n; ++i) members[find(i)].push_back(i);
+  for (int i = 0; i < n; ++i) members[parts.root(i)].push_back(i);
 
   // whoever has the fewest neighbours left goes first, then by number
   part_.assign(n, 0), parts_.assign(1, 0), order_.clear();

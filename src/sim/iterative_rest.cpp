@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace obscura::sim::sweep {
 
@@ -22,18 +21,7 @@ constexpr int kBetweenChecks = 10;
 
 Rest::Rest(const Model<2>& model, const Cores& cores) : model_(model), cores_(cores) {
   const std::size_t n = model.bodies.size();
-  parent_.resize(n), restless_.resize(n), marked_.assign(n, 0), v_.resize(n + 1), zero_.resize(n + 1);
-}
-
-int Rest::root(int body) {
-  while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
-  return body;
-}
-
-// the lower index is the root, whatever the order
-void Rest::unite(int a, int b) {
-  a = root(a), b = root(b);
-  parent_[std::max(a, b)] = std::min(a, b);
+  restless_.resize(n), marked_.assign(n, 0), v_.resize(n + 1), zero_.resize(n + 1);
 }
 
 // whether a touch makes an island of two bodies
@@ -47,30 +35,30 @@ template <class Alike>
 void Rest::unite_joined(const State<2>& state, Alike&& alike) {
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const int a = model_.joints[i].a.body, b = model_.joints[i].b.body;
-    if (a >= 0 && b >= 0 && !state.broken[i] && alike(a) && alike(b)) unite(a, b);
+    if (a >= 0 && b >= 0 && !state.broken[i] && alike(a) && alike(b)) islands_.join(a, b);
   }
 }
 
 bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
                   Linkage<2>& linkage, const std::vector<Pose>& poses, const std::vector<Motion>& v,
                   const std::vector<char>& movers, double h) {
-  const int n = int(parent_.size());
+  const int n = int(model_.bodies.size());
   bool candidates = false;
   for (int i = 0; i < n; ++i) candidates = candidates || (v[i].im > 0 && state.quiet[i] >= kWait);
   if (!candidates) return false;
 
   // islands, and which of them will not rest
-  std::iota(parent_.begin(), parent_.end(), 0);
+  islands_.reset(n);
   std::fill(restless_.begin(), restless_.end(), 0);
   for (const Pair& pair : pairs) {
     if (pair.slot < 0 || pair.b < 0 || v[pair.a].im == 0 || v[pair.b].im == 0) continue;
     for (int k = 0; k < pair.touches; ++k) {
-      if (joins(state.contacts[pair.first + k], pair)) unite(pair.a, pair.b);
+      if (joins(state.contacts[pair.first + k], pair)) islands_.join(pair.a, pair.b);
     }
   }
   unite_joined(state, [&](int body) { return v[body].im > 0; });
   for (int i = 0; i < n; ++i) {
-    if (v[i].im > 0 && (state.quiet[i] < kWait || movers[i])) restless_[root(i)] = 1;
+    if (v[i].im > 0 && (state.quiet[i] < kWait || movers[i])) restless_[islands_.root(i)] = 1;
   }
   order_.clear();
   for (int i = 0; i < int(pairs.size()); ++i) {
@@ -80,10 +68,10 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
     bool deep = false;
     for (int k = 0; k < pair.touches; ++k)
       deep = deep || state.contacts[pair.first + k].gap < -2 * kAllowed * cores_.reach[body];
-    if (deep) restless_[root(body)] = 1;
+    if (deep) restless_[islands_.root(body)] = 1;
     order_.push_back(i);
   }
-  const auto island = [&](int i) { return root(v[pairs[i].a].im > 0 ? pairs[i].a : pairs[i].b); };
+  const auto island = [&](int i) { return islands_.root(v[pairs[i].a].im > 0 ? pairs[i].a : pairs[i].b); };
   std::erase_if(order_, [&](int i) { return restless_[island(i)] != 0; });
   std::sort(order_.begin(), order_.end(), [&](int i, int j) {
     const int p = island(i), q = island(j);
@@ -96,9 +84,9 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
   members_.clear();
   for (int i = 0; i < n; ++i) {
     v_[i] = {0, 0, 0, v[i].im};
-    if (v[i].im == 0 || restless_[root(i)]) continue;
+    if (v[i].im == 0 || restless_[islands_.root(i)]) continue;
     v_[i].x = h * model_.gravity[0], v_[i].y = h * model_.gravity[1];
-    members_.emplace_back(root(i), i);
+    members_.emplace_back(islands_.root(i), i);
   }
   std::sort(members_.begin(), members_.end());
   const auto lend = [&](int body) {
@@ -199,7 +187,7 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
 
 bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vector<Motion>& v,
                 const std::vector<char>& movers, double span) {
-  const int n = int(parent_.size());
+  const int n = int(model_.bodies.size());
   const double falls = 0.5 * span * span * std::sqrt(model_.gravity.squaredNorm());
   bool any = false;
   std::fill(restless_.begin(), restless_.end(), 0);
@@ -225,19 +213,19 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
   if (!any) return false;
 
   // all of an island
-  std::iota(parent_.begin(), parent_.end(), 0);
+  islands_.reset(n);
   for (const Pair& pair : pairs) {
     if (pair.b < 0 || !state.frozen[pair.a] || !state.frozen[pair.b]) continue;
     bool together = false;
     for (int k = 0; k < pair.touches; ++k) together = together || joins(state.contacts[pair.first + k], pair);
-    if (together) unite(pair.a, pair.b);
+    if (together) islands_.join(pair.a, pair.b);
   }
   unite_joined(state, [&](int body) { return state.frozen[body] != 0; });
   for (int i = 0; i < n; ++i) {
-    if (restless_[i]) restless_[root(i)] = 1;
+    if (restless_[i]) restless_[islands_.root(i)] = 1;
   }
   for (int i = 0; i < n; ++i) {
-    if (state.frozen[i] && restless_[root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
+    if (state.frozen[i] && restless_[islands_.root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
   }
   return true;
 }

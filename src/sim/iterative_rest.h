@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/islands.h"
 #include "sim/iterative_joints.h"
 #include "sim/iterative_pairs.h"
 #include "sim/iterative_rows.h"
@@ -27,15 +28,13 @@ class Rest {
             const std::vector<char>& movers, double span);
 
  private:
-  int root(int body);
-  void unite(int a, int b);
   bool joins(const Contact<2>& touch, const Pair& pair) const;
   template <class Alike>
   void unite_joined(const State<2>& state, Alike&& alike);
 
   const Model<2>& model_;
   const Cores& cores_;
-  std::vector<int> parent_;
+  Islands islands_;
   std::vector<char> restless_;
   std::vector<int> order_;                    // pairs by island, then by seat
   std::vector<std::pair<int, int>> members_;  // island, body

@@ -8,8 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "sim/islands.h"
 #include "sim/spatial.h"
 #include "sim/stepper.h"
 
@@ -22,18 +22,13 @@ constexpr double kLeastMoment = 1e-6;  // of the largest
 // of each part, the lowest of those that bonds hold it to
 template <int D>
 std::vector<int> roots(const Model<D>& model, const std::vector<char>& holds) {
-  std::vector<int> root(model.bodies.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
+  Islands held;
+  held.reset(int(model.bodies.size()));
   for (std::size_t k = 0; k < model.bonds.size(); ++k) {
-    if (!holds[k] || model.bonds[k].b < 0) continue;
-    const int p = find(model.bonds[k].a), q = find(model.bonds[k].b);
-    root[std::max(p, q)] = std::min(p, q);
+    if (holds[k] && model.bonds[k].b >= 0) held.join(model.bonds[k].a, model.bonds[k].b);
   }
-  for (int i = 0; i < int(root.size()); ++i) root[i] = find(i);
+  std::vector<int> root(model.bodies.size());
+  for (int i = 0; i < int(root.size()); ++i) root[i] = held.root(i);
   return root;
 }
 

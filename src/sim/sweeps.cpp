@@ -199,10 +199,10 @@ bool Sweeps<D>::wake(State<D>& state, double h) {
   if (!any) return false;
   join(state);
   for (int i = 0; i < n; ++i) {
-    if (ripe_[i]) ripe_[island_[i]] = 1;
+    if (ripe_[i]) ripe_[islands_.root(i)] = 1;
   }
   for (int i = 0; i < n; ++i) {
-    if (state.frozen[i] && ripe_[island_[i]]) state.frozen[i] = 0, state.quiet[i] = 0;
+    if (state.frozen[i] && ripe_[islands_.root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
   }
   return true;
 }
@@ -351,23 +351,16 @@ void Sweeps<D>::report(State<D>& state, double h) const {
 // who is joined to whom, by contacts that bear or are closed, and springs; fixed bodies join nobody
 template <int D>
 void Sweeps<D>::join(const State<D>& state) {
-  island_.resize(model_.bodies.size());
-  for (int i = 0; i < int(island_.size()); ++i) island_[i] = i;
-  const auto root = [&](int i) {
-    while (island_[i] != i) i = island_[i] = island_[island_[i]];
-    return i;
-  };
+  islands_.reset(int(model_.bodies.size()));
   const auto link = [&](int a, int b) {
     if (a < 0 || b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) return;
-    const int p = root(a), q = root(b);
-    island_[std::max(p, q)] = std::min(p, q);
+    islands_.join(a, b);
   };
   for (const Contact<D>& contact : state.contacts) {
     const bool near = contact.touching != Touching::open || contact.gap < 1e-3 * rims_[contact.key.a];
     if (near) link(contact.key.a, contact.key.b);
   }
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
-  for (int i = 0; i < int(island_.size()); ++i) island_[i] = root(i);
 }
 
 // A quiet island at rest needs forces that leave it there: sweeps look for them as in a step of bodies
@@ -381,24 +374,24 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
   join(state);
   ripe_.assign(n, 1);
   for (int i = 0; i < n; ++i) {
-    if (!still_[i] && state.quiet[i] < kWait) ripe_[island_[i]] = 0;
+    if (!still_[i] && state.quiet[i] < kWait) ripe_[islands_.root(i)] = 0;
   }
   for (const Spring<D>& spring : model_.springs) {
     for (const int body : {spring.a.body, spring.b.body}) {
-      if (body >= 0) ripe_[island_[body]] = 0;
+      if (body >= 0) ripe_[islands_.root(body)] = 0;
     }
   }
   for (const Grip<D>& grip : state.grips) {
-    if (grip.body >= 0) ripe_[island_[grip.body]] = 0;
+    if (grip.body >= 0) ripe_[islands_.root(grip.body)] = 0;
   }
-  const auto resting = [&](int body) { return body < n && !still_[body] && ripe_[island_[body]]; };
+  const auto resting = [&](int body) { return body < n && !still_[body] && ripe_[islands_.root(body)]; };
   some_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
     const Touch& touch = touches_[i];
     if (!resting(touch.a) && !resting(touch.b)) continue;
     // too deep to stay so, or awake beyond
     const int body = resting(touch.a) ? touch.a : touch.b;
-    if (touch.gap < -20 * kAllowed * rims_[touch.a]) ripe_[island_[body]] = 0;
+    if (touch.gap < -20 * kAllowed * rims_[touch.a]) ripe_[islands_.root(body)] = 0;
     some_.push_back(i);
   }
   std::erase_if(some_, [&](int i) { return !resting(touches_[i].a) && !resting(touches_[i].b); });
@@ -431,11 +424,11 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
   // island by island
   left_.assign(n, 0);
   for (int i = 0; i < n; ++i) {
-    if (resting(i)) left_[island_[i]] = std::max(left_[island_[i]], swiftness(i));
+    if (resting(i)) left_[islands_.root(i)] = std::max(left_[islands_.root(i)], swiftness(i));
   }
   bool froze = false;
   for (int i = 0; i < n; ++i) {
-    if (!resting(i) || left_[island_[i]] > kHeld * g_ * h) continue;
+    if (!resting(i) || left_[islands_.root(i)] > kHeld * g_ * h) continue;
     state.frozen[i] = 1, froze = true;
     state.v[i].setZero();
     if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();

@@ -5,6 +5,7 @@
 
 #include "sim/contact_step.h"
 #include "sim/gap.h"
+#include "sim/islands.h"
 #include "sim/pairs.h"
 #include "sim/tied.h"
 
@@ -91,7 +92,7 @@ class Sweeps final : public ContactStep<D> {
   std::vector<Turn<D>> turn_;
   std::vector<Spin<D>> w_free_;
   std::vector<char> closing_, ripe_;
-  std::vector<int> island_;
+  Islands islands_;
   std::vector<Moving> kept_;
   std::vector<double> left_;  // of each island's fastest point, m/s
 };

@@ -1,31 +1,13 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
-#include <random>
 #include <vector>
 
 #include "sim/chain_dynamics.h"
+#include "sim/dice.h"
 #include "sim/integrator.h"
 
 namespace obscura::sim {
-
-/// Numbers of a seed, the same on every machine.
-class Dice {
- public:
-  explicit Dice(std::uint32_t seed) : engine_(seed) {}
-  double between(double a, double b) { return a + (b - a) * (engine_() / 4294967296.0); }
-  int below(int n) { return int(engine_() % std::uint32_t(n)); }
-  template <int N>
-  Eigen::Matrix<double, N, 1> vector(double most) {
-    Eigen::Matrix<double, N, 1> v;
-    for (int k = 0; k < N; ++k) v[k] = between(-most, most);
-    return v;
-  }
-
- private:
-  std::mt19937 engine_;
-};
 
 inline Eigen::Map<const Eigen::VectorXd> vector(const std::vector<double>& x) {
   return {x.data(), Eigen::Index(x.size())};

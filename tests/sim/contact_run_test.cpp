@@ -47,25 +47,13 @@ World<2> thrown(int seed, Collision collision) {
   return world;
 }
 
-void expect_no_rise(const World<2>& world, int steps, double slack, const std::string& what) {
-  State<2> state = world.state;
-  Stepper<2> stepper(world.model);
-  stepper.begin(state);
-  double before = energy(world, state);
-  const double size = std::abs(before);
-  for (int i = 0; i < steps; ++i) {
-    ASSERT_FALSE(stepper.step(state)) << what;
-    const double now = energy(world, state);
-    ASSERT_LE(now, before + slack * size) << what << " at step " << i;
-    before = now;
-  }
-}
-
 TEST(ContactRun, EnergyNeverRisesInRandomRooms) {
   // flight keeps gravity's energy to rounding; what is put back onto its contacts errs by the closing
   // tolerance, 4e-9 m
-  for (const int seed : {0, 1, 2, 3, 4, 5, 7, 8, 9})
-    expect_no_rise(thrown(seed, kModes[seed % 2]), 900, 1e-9, "seed " + std::to_string(seed));
+  for (int seed = 0; seed < 10; ++seed) {
+    const World<2> world = thrown(seed, kModes[seed % 2]);
+    expect_no_gain(world, 900, 1e-9, "seed " + std::to_string(seed), std::abs(energy(world, world.state)));
+  }
 }
 
 Joint<2> pin(End<2> a, End<2> b) {
@@ -91,7 +79,7 @@ TEST(ContactRun, AChainThatSwingsAgainstWallsNeverGains) {
     World<2> world = chain(4, 0.9, collision);
     add_wall(world, {-0.5, 0}, {1, 0});
     // between impacts what hangs together is as exact as RK4 at a third of a step: 1e-8 a step of the whole
-    expect_no_rise(world, 900, 1e-8, "chain");
+    expect_no_gain(world, 900, 1e-8, "chain", std::abs(energy(world, world.state)));
   }
 }
 

@@ -19,7 +19,7 @@ World<3> floor_room(Vec3 gravity = {0, -kG, 0}) {
   world.model.rate = {600, 1};
   world.model.collision = Collision::contact;
   world.model.scale = 4;
-  add_plane(world, {0, 0, 0}, {0, 1, 0});
+  add_wall(world, {0, 0, 0}, {0, 1, 0});
   return world;
 }
 
@@ -152,7 +152,7 @@ TEST(SpaceContact, ABoxHoldsOnASlopeUpToAtanMu) {
 TEST(SpaceContact, ABallThatSlidesRollsAtFiveSevenths) {
   World<3> world = floor_room();
   const Vec3 way = Vec3(2, 0, 1).normalized();
-  add_solid(world, ball_solid(0.2), 3, {0, 0.2, 0}, way);
+  add_solid(world, ball_shape<3>(0.2), 3, {0, 0.2, 0}, way);
   rub(world, 0.3);
   const State<3> now = stepped(world, 600);
   EXPECT_NEAR((now.v[0] - 5.0 / 7 * way).norm(), 0, 1e-10);
@@ -166,8 +166,8 @@ TEST(SpaceContact, ElasticBallsTradeTheirSpeedAlongTheirCentres) {
   World<3> world = space(Vec3::Zero());
   world.model.collision = Collision::contact, world.model.rate = {600, 1};
   const Vec3 n = Vec3(3, -2, 6) / 7;
-  add_solid(world, ball_solid(0.1), 1, {0, 0, 0}, {1, 0.5, 2});
-  add_solid(world, ball_solid(0.1), 1, 0.2 * n + 0.1 * Vec3(1, 0.5, 2));
+  add_solid(world, ball_shape<3>(0.1), 1, {0, 0, 0}, {1, 0.5, 2});
+  add_solid(world, ball_shape<3>(0.1), 1, 0.2 * n + 0.1 * Vec3(1, 0.5, 2));
   const State<3> now = stepped(world, 120);
   const double along = Vec3(1, 0.5, 2).dot(n);
   EXPECT_NEAR((now.v[1] - along * n).norm(), 0, 1e-8);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/gap.h"
+#include "sim/gaps.h"
 #include "sim/row.h"
 #include "sim/solids.h"
 
@@ -13,19 +13,6 @@ namespace obscura::sim {
 namespace {
 
 using Kind = Gap<3>::Kind;
-
-std::vector<Gap<3>> found(const Shape<3>& a, const Stance<3>& at_a, const Shape<3>& b, const Stance<3>& at_b,
-                          double margin = 1e3) {
-  std::vector<Gap<3>> out;
-  gaps(0, a, at_a, 1, b, at_b, margin, out);
-  return out;
-}
-
-double least(const std::vector<Gap<3>>& all) {
-  double value = 1e300;
-  for (const Gap<3>& gap : all) value = std::min(value, gap.value);
-  return value;
-}
 
 // a core's corners in the room, in long double
 using Place = Eigen::Matrix<long double, 3, 1>;
@@ -120,7 +107,7 @@ TEST(SpaceGaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
   for (int n = 0; n < 20000; ++n) {
     const Shape<3> a = dice.solid(1), b = dice.solid(0.8);
     const Stance<3> at_a = dice.place(1), at_b = dice.place(1);
-    const double apart = separation(a, at_a, b, at_b), margin = dice.within(-0.3, 0.5);
+    const double apart = separation(a, at_a, b, at_b), margin = dice.between(-0.3, 0.5);
     const auto all = found(a, at_a, b, at_b, margin);
     const bool points = a.kind == ShapeKind::point && b.kind == ShapeKind::point;
     ASSERT_EQ(all.empty(), points || apart >= margin) << n << " " << apart << " " << margin;
@@ -213,7 +200,7 @@ TEST(SpaceGaps, OfExtrudedShapesAreThoseOfThePlane) {
   for (int n = 0; n < 5000; ++n) {
     const Shape<2> flat_a = dice.simple(1), flat_b = dice.simple(0.8);
     const Stance<2> at_a = dice.stance(1.2), at_b = dice.stance(1.2);
-    const double depth_a = dice.within(3, 4), depth_b = n % 3 ? dice.within(3, 4) : depth_a;
+    const double depth_a = dice.between(3, 4), depth_b = n % 3 ? dice.between(3, 4) : depth_a;
     const Shape<3> a = extruded(flat_a, depth_a), b = extruded(flat_b, depth_b);
     std::vector<Gap<2>> flat;
     gaps(0, flat_a, at_a, 1, flat_b, at_b, 0.2, flat);
@@ -239,7 +226,7 @@ TEST(SpaceGaps, OfExtrudedShapesAreThoseOfThePlane) {
 }
 
 TEST(SpaceGaps, OfAStackAreFourAndKeepTheirFeatures) {
-  const Shape<3> box = box_solid(0.2, 0.1, 0.3), wide = box_solid(1, 0.1, 1);
+  const Shape<3> box = brick({0.2, 0.1, 0.3}), wide = brick({1, 0.1, 1});
   struct Case {
     const Shape<3>&upper, &lower;
     Vec<3> offset;
@@ -286,7 +273,7 @@ TEST(SpaceGaps, OfAStackAreFourAndKeepTheirFeatures) {
 }
 
 TEST(SpaceGaps, OfCrossedBeamsAreTheirEdgesCrossings) {
-  const Shape<3> beam = box_solid(2, 0.2, 0.4);
+  const Shape<3> beam = brick({2, 0.2, 0.4});
   for (const double angle : {0.6, 1.0, std::numbers::pi / 2}) {
     for (const bool swapped : {false, true}) {
       const Stance<3> below = placed({0, 0, 0}), above = placed({0.1, 0.2, 0.05}, {0, angle, 0});
@@ -300,13 +287,13 @@ TEST(SpaceGaps, OfCrossedBeamsAreTheirEdgesCrossings) {
     }
   }
   // turned about the middle, a square on a square: eight
-  const auto octagon = found(box_solid(1, 1, 1), placed({0, 1, 0}, {0, std::numbers::pi / 4, 0}),
-                             box_solid(1, 1, 1), placed({0, 0, 0}), 0.01);
+  const auto octagon = found(brick({1, 1, 1}), placed({0, 1, 0}, {0, std::numbers::pi / 4, 0}),
+                             brick({1, 1, 1}), placed({0, 0, 0}), 0.01);
   EXPECT_EQ(octagon.size(), 8u);
 }
 
 TEST(SpaceGaps, OfParallelFacesInLineAreNone) {
-  const Shape<3> box = box_solid(1, 1, 1);
+  const Shape<3> box = brick({1, 1, 1});
   for (const double level : {0.0, 1e-9, -1e-9, 1e-7, -1e-7}) {
     for (const double before : {0.05, 1e-3, 1e-9, 0.0, -1e-9}) {
       for (const double aside : {0.0, 0.2, 1.0}) {
@@ -319,7 +306,7 @@ TEST(SpaceGaps, OfParallelFacesInLineAreNone) {
 }
 
 TEST(SpaceGaps, OfCapsulesSideBySideAreTheEndsOfWhatTheyShare) {
-  const Shape<3> one = capsule_solid(1, 0.1), other = capsule_solid(0.6, 0.2);
+  const Shape<3> one = capsule(0.5, 0.1), other = capsule(0.3, 0.2);
   const auto all = found(one, placed({0, 0, 0}), other, placed({0.3, 0.5, 0}), 0.01);
   ASSERT_EQ(all.size(), 2u);
   for (const Gap<3>& gap : all) {
@@ -330,7 +317,7 @@ TEST(SpaceGaps, OfCapsulesSideBySideAreTheEndsOfWhatTheyShare) {
     EXPECT_TRUE(std::abs(now.point[1] - 0.5) < 1e-15 || std::abs(now.point[1] - 0.2) < 1e-15);
   }
   // lying on a table
-  const auto flat = found(one, placed({0, 0.6, 0}, {0, 0, std::numbers::pi / 2}), box_solid(4, 1, 4),
+  const auto flat = found(one, placed({0, 0.6, 0}, {0, 0, std::numbers::pi / 2}), brick({4, 1, 4}),
                           placed({0, 0, 0}), 0.01);
   ASSERT_EQ(flat.size(), 2u);
   EXPECT_NEAR(flat[0].value, 0, 1e-15);
@@ -339,10 +326,10 @@ TEST(SpaceGaps, OfCapsulesSideBySideAreTheEndsOfWhatTheyShare) {
 TEST(SpaceGaps, ABoxIsAHullToAllOthers) {
   SpaceDice dice(6);
   for (int n = 0; n < 2000; ++n) {
-    const Shape<3> box = box_solid(dice.within(0.2, 1), dice.within(0.2, 1), dice.within(0.2, 1)),
+    const Shape<3> box = brick({dice.between(0.2, 1), dice.between(0.2, 1), dice.between(0.2, 1)}),
                    other = dice.solid(0.7);
     const Stance<3> at = dice.place(0.7), there = dice.place(0.7);
-    const auto one = found(box, at, other, there, 0.3), two = found(hull_of(box), at, other, there, 0.3);
+    const auto one = found(box, at, other, there, 0.3), two = found(as_hull(box), at, other, there, 0.3);
     ASSERT_EQ(one.size(), two.size()) << n;
     for (const Gap<3>& gap : one) {
       const Meeting<3> now = evaluate(gap, at, there);
@@ -355,12 +342,12 @@ TEST(SpaceGaps, ABoxIsAHullToAllOthers) {
 }
 
 TEST(SpaceGaps, OfACompoundAreThoseOfItsTurnedParts) {
-  Shape<3> left = box_solid(0.2, 0.4, 0.2), right = ball_solid(0.1), bar = capsule_solid(0.4, 0.1);
+  Shape<3> left = brick({0.2, 0.4, 0.2}), right = ball_shape<3>(0.1), bar = capsule(0.2, 0.1);
   left.center = {-0.5, 0, 0}, left.turn = exponential(Vec<3>(0, 0, std::numbers::pi / 2));
   right.center = {0.5, 0, 0};
   bar.turn = exponential(Vec<3>(0, 0, std::numbers::pi / 2));
-  const Shape<3> all_three = compound_solid({left, right, bar});
-  const Shape<3> floor = box_solid(4, 0.2, 4);
+  const Shape<3> all_three = compound_shape<3>({left, right, bar});
+  const Shape<3> floor = brick({4, 0.2, 4});
   const auto all = found(all_three, placed({0, 0.2, 0}), floor, placed({0, 0, 0}), 1e-3);
   ASSERT_EQ(all.size(), 7u);
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -7,25 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/gaps.h"
 #include "sim/shapes.h"
 
 namespace obscura::sim {
 namespace {
 
 using Kind = Gap<2>::Kind;
-
-std::vector<Gap<2>> found(const Shape<2>& a, const Stance<2>& at_a, const Shape<2>& b, const Stance<2>& at_b,
-                          double margin = 1e3) {
-  std::vector<Gap<2>> out;
-  gaps(0, a, at_a, 1, b, at_b, margin, out);
-  return out;
-}
-
-double least(const std::vector<Gap<2>>& all) {
-  double value = 1e300;
-  for (const Gap<2>& gap : all) value = std::min(value, gap.value);
-  return value;
-}
 
 // a polygon's corners in the room, in long double
 using Place = Eigen::Matrix<long double, 2, 1>;
@@ -73,7 +61,7 @@ long double brute_force(const std::vector<Place>& a, const std::vector<Place>& b
 }
 
 TEST(Separation, IsTheDistanceOrDepthOfTheDifferencesHull) {
-  Dice dice(1);
+  ShapeDice dice(1);
   int overlapping = 0;
   for (int n = 0; n < 3000; ++n) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
@@ -89,11 +77,11 @@ TEST(Separation, IsTheDistanceOrDepthOfTheDifferencesHull) {
 }
 
 TEST(Gaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
-  Dice dice(2);
+  ShapeDice dice(2);
   for (int n = 0; n < 5000; ++n) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
     const Stance<2> at_a = dice.stance(1.2), at_b = dice.stance(1.2);
-    const double apart = separation(a, at_a, b, at_b), margin = dice.within(-0.3, 0.5);
+    const double apart = separation(a, at_a, b, at_b), margin = dice.between(-0.3, 0.5);
     const auto all = found(a, at_a, b, at_b, margin);
     const bool points = a.kind == ShapeKind::point && b.kind == ShapeKind::point;
     ASSERT_EQ(all.empty(), points || apart >= margin) << n << " " << apart << " " << margin;
@@ -109,7 +97,7 @@ TEST(Gaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
 
 // two gaps of swapped bodies are the same touch
 TEST(Gaps, AreTheSameFromEitherSide) {
-  Dice dice(3);
+  ShapeDice dice(3);
   for (int n = 0; n < 5000; ++n) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
     const Stance<2> at_a = dice.stance(1.2), at_b = dice.stance(1.2);
@@ -127,17 +115,17 @@ TEST(Gaps, AreTheSameFromEitherSide) {
 }
 
 TEST(Gaps, ChangeAtTheNormalVelocityOfTheirPoint) {
-  Dice dice(4);
+  ShapeDice dice(4);
   int seen = 0;
   for (int n = 0; n < 3000; ++n) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
-    const Vec<2> xa(dice.within(-1, 1), dice.within(-1, 1)), xb(dice.within(-1, 1), dice.within(-1, 1));
-    const double ta = dice.within(-4, 4), tb = dice.within(-4, 4);
+    const Vec<2> xa(dice.between(-1, 1), dice.between(-1, 1)), xb(dice.between(-1, 1), dice.between(-1, 1));
+    const double ta = dice.between(-4, 4), tb = dice.between(-4, 4);
     Stance<2> at_a = standing(xa, ta), at_b = standing(xb, tb);
-    at_a.v = {dice.within(-1, 1), dice.within(-1, 1)};
-    at_b.v = {dice.within(-1, 1), dice.within(-1, 1)};
-    at_a.w[0] = dice.within(-1, 1);
-    at_b.w[0] = dice.within(-1, 1);
+    at_a.v = {dice.between(-1, 1), dice.between(-1, 1)};
+    at_b.v = {dice.between(-1, 1), dice.between(-1, 1)};
+    at_a.w[0] = dice.between(-1, 1);
+    at_b.w[0] = dice.between(-1, 1);
     for (const Gap<2>& gap : found(a, at_a, b, at_b, 0.5)) {
       const Meeting<2> now = evaluate(gap, at_a, at_b);
       if (gap.kind == Kind::corners && now.value + gap.radius_a + gap.radius_b < 0.1) continue;
@@ -279,9 +267,9 @@ TEST(Gaps, ABallDeepInABoxLeavesByTheNearestFace) {
 }
 
 TEST(Gaps, ABoxIsAPolygonToAllOthers) {
-  Dice dice(5);
+  ShapeDice dice(5);
   for (int n = 0; n < 1000; ++n) {
-    const Shape<2> box = box_shape(dice.within(0.2, 1), dice.within(0.2, 1)), other = dice.simple(0.7);
+    const Shape<2> box = box_shape(dice.between(0.2, 1), dice.between(0.2, 1)), other = dice.simple(0.7);
     const Stance<2> at = dice.stance(0.8), there = dice.stance(0.8);
     const auto one = found(box, at, other, there, 0.3), two = found(as_polygon(box), at, other, there, 0.3);
     ASSERT_EQ(one.size(), two.size());

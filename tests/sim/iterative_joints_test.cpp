@@ -8,37 +8,17 @@
 
 #include "allocations.h"
 #include "sim/iterative.h"
+#include "sim/jointed.h"
 #include "sim/reference.h"
 #include "sim/touching.h"
 
 namespace obscura::sim {
 namespace {
 
-Vec2 hanging(double angle) { return {std::sin(angle), -std::cos(angle)}; }
-
-Joint<2> pin(End<2> a, End<2> b) {
-  Joint<2> joint;
-  joint.a = a, joint.b = b;
-  return joint;
-}
-
-Joint<2> rod(End<2> a, End<2> b, double length) {
-  Joint<2> joint = pin(a, b);
-  joint.kind = JointKind::rod, joint.length = length;
-  return joint;
-}
-
 World<2> swept_room(Vec2 gravity = {0, -9.81}) {
   World<2> world = touching_room(Collision::contact, gravity);
   world.model.solver = Solver::iterative;
   return world;
-}
-
-std::vector<double> at_two(const char* name) {
-  for (const auto& row : table(name)) {
-    if (std::abs(row[0] - 2) < 1e-9) return row;
-  }
-  return {};
 }
 
 // how far the second bob is from the table's at t = 2 s
@@ -51,7 +31,7 @@ double pendulum_error(int rate) {
   world.model.joints.push_back(rod({0, {0, 0}}, {-1, {0, 0}}, 1));
   world.model.joints.push_back(rod({1, {0, 0}}, {0, {0, 0}}, 1));
   const State<2> now = stepped(world, 2 * rate);
-  const auto want = at_two("double_pendulum_point_regular.csv");
+  const auto want = row_at("double_pendulum_point_regular.csv", 2);
   EXPECT_NEAR(now.x[0].norm(), 1, 1e-13) << "joints do not drift";
   EXPECT_NEAR((now.x[1] - now.x[0]).norm(), 1, 1e-13);
   return (now.x[1] - hanging(want[1]) - hanging(want[2])).norm();
@@ -100,32 +80,6 @@ TEST(IterativeJoints, AWeldMakesOneBodyOfTwo) {
   EXPECT_NEAR(now.turn[0][0], now.turn[1][0], 1e-13);
 }
 
-TEST(IterativeJoints, ASliderFallsAlongItsWayAndStopsAtItsLimit) {
-  World<2> world = swept_room();
-  const Vec2 axis = Vec2(3, -4) / 5;
-  add_box(world, {0.2, 0.2}, 1, {0, 0});
-  Joint<2> slider = pin({0, {0, 0}}, {-1, {0, 0}});
-  slider.kind = JointKind::slider, slider.axis = axis, slider.upper = 1;
-  world.model.joints.push_back(slider);
-  const State<2> half = stepped(world, 300);
-  EXPECT_NEAR((half.x[0] - 0.5 * 9.81 * 0.8 * 0.25 * axis).norm(), 0, 1e-12);
-  const State<2> now = stepped(world, 1200);
-  EXPECT_NEAR((now.x[0] - axis).norm(), 0, 1e-9);
-  EXPECT_LT(now.v[0].norm(), 1e-12);
-  EXPECT_NEAR(now.turn[0][0], 0, 1e-14);
-}
-
-TEST(IterativeJoints, AMotorReachesItsSpeedAtItsTorque) {
-  World<2> world = swept_room({0, 0});
-  add_box(world, {1, 0.5}, 2, {0, 0});
-  Joint<2> hinge = pin({0, {0, 0}}, {-1, {0, 0}});
-  hinge.motor = Joint<2>::Motor{3, 0.5};
-  world.model.joints.push_back(hinge);
-  const double rate = 0.5 / world.model.bodies[0].inertia[0];
-  EXPECT_NEAR(stepped(world, 300).spin[0][0], 0.5 * rate, 1e-12);
-  EXPECT_NEAR(stepped(world, 3000).spin[0][0], 3, 1e-12);
-}
-
 // I w' = -tau, whatever the pin's own forces
 TEST(IterativeJoints, DryFrictionStopsAPinAtItsTime) {
   World<2> world = swept_room({0, 0});
@@ -137,23 +91,6 @@ TEST(IterativeJoints, DryFrictionStopsAPinAtItsTime) {
   const double stops = 2 * inertia / 0.7;
   EXPECT_NEAR(stepped(world, 600).spin[0][0], 2 - 0.7 / inertia, 1e-5);
   EXPECT_NEAR(stepped(world, int(600 * stops) + 2).spin[0][0], 0, 1e-12);
-}
-
-TEST(IterativeJoints, ARopeIsSlackUntilItIsTight) {
-  World<2> world = swept_room();
-  add_particle(world, {0.3, 0}, {0, 0}, 1, 0);
-  Joint<2> rope = rod({0, {0, 0}}, {-1, {0, 0}}, 1);
-  rope.kind = JointKind::rope;
-  world.model.joints.push_back(rope);
-  const double fall = std::sqrt(1 - 0.09), t = std::sqrt(2 * fall / 9.81);
-  EXPECT_NEAR(stepped(world, int(600 * t) - 1).x[0].x(), 0.3, 1e-15);
-  State<2> state = world.state;
-  Stepper<2> stepper(world.model);
-  stepper.begin(state);
-  for (int i = 0; i < 6000; ++i) {
-    ASSERT_FALSE(stepper.step(state));
-    ASSERT_LE(state.x[0].norm(), 1 + 1e-8);
-  }
 }
 
 // T = 3 m g cos; first the step's mean, half a step late: 3 m g w h / 2

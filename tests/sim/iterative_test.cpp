@@ -187,6 +187,19 @@ TEST(Iterative, PyramidStands) {
   }
 }
 
+// six seconds in one, and cut at each of some instants, s: the same words
+void expect_cut_is_whole(const Room& begun, std::initializer_list<double> cuts) {
+  for (const double first : cuts) {
+    Room whole, cut;
+    whole.world = cut.world = begun.world;
+    whole.run(6);
+    cut.run(first);
+    cut.solver.reset();
+    cut.run(6 - first);
+    EXPECT_EQ(words(whole.state()), words(cut.state())) << first;
+  }
+}
+
 // everything a step needs is in the state, also between two looks for pairs
 TEST(Iterative, RunCutInTwoIsTheRunInOne) {
   Room whole;
@@ -194,15 +207,7 @@ TEST(Iterative, RunCutInTwoIsTheRunInOne) {
   for (int i = 0; i < 12; ++i)
     whole.box({0.5, 0.5}, {0.3 * (i % 3), 0.6 + 0.7 * i}, 0.4, 0.2, {0.1 * i, 0}, 0.3 * i);
   whole.disc(0.2, {0.4, 12}, 0.3, 0.5);
-  for (const double first : {303 / 600.0, 901 / 600.0, 3001 / 600.0}) {
-    Room r, cut;
-    r.world = cut.world = whole.world;
-    r.run(6);
-    cut.run(first);
-    cut.solver.reset();
-    cut.run(6 - first);
-    EXPECT_EQ(words(r.state()), words(cut.state())) << first;
-  }
+  expect_cut_is_whole(whole, {303 / 600.0, 901 / 600.0, 3001 / 600.0});
 }
 
 // the same where a step is several stretches, with joints that bear loads
@@ -221,15 +226,7 @@ TEST(Iterative, RunCutInTwoIsTheRunInOneAtALowRate) {
     joint.friction = 0.1 * i, joint.lower = -1, joint.upper = 0.5;
     whole.world.model.joints.push_back(joint);
   }
-  for (const double first : {0.5, 1.25, 4.0}) {
-    Room r, cut;
-    r.world = cut.world = whole.world;
-    r.run(6);
-    cut.run(first);
-    cut.solver.reset();
-    cut.run(6 - first);
-    EXPECT_EQ(words(r.state()), words(cut.state())) << first;
-  }
+  expect_cut_is_whole(whole, {0.5, 1.25, 4.0});
 }
 
 // forces from the top down are its equilibrium: it never moves by more than rounding, and freezes

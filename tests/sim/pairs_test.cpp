@@ -31,11 +31,11 @@ struct Crowd {
 };
 
 // bodies of like size, some of them floors, towers, points, and one far away
-Crowd crowd(Dice& dice, int n, double room) {
+Crowd crowd(ShapeDice& dice, int n, double room) {
   Crowd all;
   for (int i = 0; i < n; ++i) {
-    const Vec<2> x(dice.within(-room, room), dice.within(-room, room));
-    Vec<2> half(dice.within(0.1, 1), dice.within(0.1, 1));
+    const Vec<2> x(dice.between(-room, room), dice.between(-room, room));
+    Vec<2> half(dice.between(0.1, 1), dice.between(0.1, 1));
     const int odd = dice.below(40);
     if (odd == 0) half[0] *= 50;
     if (odd == 1) half[1] *= 2000;
@@ -49,23 +49,23 @@ Crowd crowd(Dice& dice, int n, double room) {
 }
 
 TEST(BroadPhase, FindsAllPairsAndNoOther) {
-  Dice dice(1);
+  ShapeDice dice(1);
   for (int n = 0; n < 60; ++n) {
-    const Crowd all = crowd(dice, 1 + dice.below(300), dice.within(1, 60));
+    const Crowd all = crowd(dice, 1 + dice.below(300), dice.between(1, 60));
     BroadPhase<2> phase;
     EXPECT_EQ(phase.find(all.bounds, all.still), all_pairs(all.bounds, all.still)) << n;
   }
 }
 
 TEST(BroadPhase, FindsTheSameWhateverCameBefore) {
-  Dice dice(2);
+  ShapeDice dice(2);
   BroadPhase<2> phase;
   Crowd all = crowd(dice, 400, 10);
   for (int n = 0; n < 60; ++n) {
     // drift, now and then a jump
     const double far = n % 10 == 9 ? 20 : 0.1;
     for (Bounds<2>& one : all.bounds) {
-      const Vec<2> by(dice.within(-far, far), dice.within(-far, far));
+      const Vec<2> by(dice.between(-far, far), dice.between(-far, far));
       one.lower += by;
       one.upper += by;
     }
@@ -85,7 +85,7 @@ TEST(BroadPhase, TellsTouchingBoundsAndNeverNaN) {
 }
 
 TEST(BroadPhase, AllocatesNothingOnceWarm) {
-  Dice dice(3);
+  ShapeDice dice(3);
   Crowd all = crowd(dice, 500, 10);
   BroadPhase<2> phase;
   for (int n = 0; n < 3; ++n) phase.find(all.bounds, all.still);

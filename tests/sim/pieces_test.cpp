@@ -93,7 +93,7 @@ TEST(Bonds, MakeTheirPartsOneRigidBody) {
 TEST(Bonds, BearWhatKeepsThemTurning) {
   for (const double over : {0.999, 1.001}) {
     World<3> world = space(Vec3::Zero());
-    add_point(world, {-2, 0, 0}, {0, 0, 0}, 3), add_point(world, {1, 0, 0}, {0, 0, 0}, 6);
+    add_particle(world, {-2, 0, 0}, {0, 0, 0}, 3), add_particle(world, {1, 0, 0}, {0, 0, 0}, 6);
     const double w = 4, load = 3 * 2 * w * w;
     world.state.v[0] = {0, -2 * w, 0}, world.state.v[1] = {0, w, 0};
     world.model.bonds.push_back({0, 1, load / over});
@@ -140,7 +140,7 @@ TEST(Bonds, BearWhatABlastPushesOnePartMore) {
   for (const double over : {0.99, 1.01}) {
     World<3> world = space(Vec3::Zero());
     world.model.scale = 4, world.model.rate = {10000, 1};
-    add_point(world, {2, 0, 0}, Vec3::Zero(), m1), add_point(world, {3, 0, 0}, Vec3::Zero(), m2);
+    add_particle(world, {2, 0, 0}, Vec3::Zero(), m1), add_particle(world, {3, 0, 0}, Vec3::Zero(), m2);
     Explosion<3> explosion;
     explosion.strength = 10;
     world.model.explosions.push_back(explosion);
@@ -223,7 +223,7 @@ TEST(Bonds, InALoopShareTheLoad) {
 TEST(Bonds, BreakAtTheSameStepAtEveryFrameRateAndCutInTwo) {
   World<3> world = block(2, 2, 2, 60);
   world.model.gravity = {0, -9.81, 0};
-  add_plane(world, {0, -1, 0}, Vec3::UnitY());
+  add_wall(world, {0, -1, 0}, Vec3::UnitY());
   for (Body<3>& body : world.model.bodies) body.elasticity = 0.3;
   set_moving(world, {0.5, 0, 0.2}, {1, 0.5, 2});
   Explosion<3> explosion;
@@ -240,7 +240,7 @@ TEST(Bonds, BreakAtTheSameStepAtEveryFrameRateAndCutInTwo) {
     const auto want = by(24);
     EXPECT_EQ(by(25), want);
     for (const int first : {300, 510, 700})
-      EXPECT_EQ(words(stepped({world.model, stepped(world, first)}, 1000 - first)), want) << first;
+      EXPECT_EQ(words(stepped(World<3>{world.model, stepped(world, first)}, 1000 - first)), want) << first;
     const State<3> end = stepped(world, 1000);
     EXPECT_GT(end.whole[0].x.size(), 1u);
     for (const Vec3& x : end.x) EXPECT_TRUE(x.allFinite());

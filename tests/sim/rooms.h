@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -24,9 +25,11 @@ inline World<2> room(Vec2 gravity = {0, -9.81}) {
   return world;
 }
 
-inline int add_particle(World<2>& world, Vec2 x, Vec2 v = {0, 0}, double mass = 1, double elasticity = 1,
-                        double radius = 0) {
-  Body<2> body;
+template <int D>
+int add_particle(World<D>& world, std::type_identity_t<Vec<D>> x,
+                 std::type_identity_t<Vec<D>> v = Vec<D>::Zero(), double mass = 1, double elasticity = 1,
+                 double radius = 0) {
+  Body<D> body;
   body.name = "particle[" + std::to_string(world.model.bodies.size()) + "]";
   body.shape.kind = radius > 0 ? ShapeKind::ball : ShapeKind::point;
   body.shape.radius = radius;
@@ -50,7 +53,8 @@ inline int add_box(World<2>& world, Vec2 size, double mass, Vec2 x, Vec2 v = {0,
   return int(world.model.bodies.size()) - 1;
 }
 
-inline void add_wall(World<2>& world, Vec2 point, Vec2 normal) {
+template <int D>
+void add_wall(World<D>& world, std::type_identity_t<Vec<D>> point, std::type_identity_t<Vec<D>> normal) {
   world.model.walls.push_back({point, normal / normal.norm(), {}, {}});
 }
 
@@ -72,9 +76,10 @@ inline Snapshot shown(Run& run, Rational t) {
 }
 
 /// The state after whole steps, without a Run around it.
-inline State<2> stepped(const World<2>& world, int steps) {
-  State<2> state = world.state;
-  Stepper<2> stepper(world.model);
+template <int D>
+State<D> stepped(const World<D>& world, int steps) {
+  State<D> state = world.state;
+  Stepper<D> stepper(world.model);
   stepper.begin(state);
   for (int i = 0; i < steps; ++i) {
     if (auto trouble = stepper.step(state)) throw *trouble;

@@ -89,7 +89,7 @@ TEST(SpaceRows, AreNotOffWhereTheJointIsSeatedAndLeaveItsOneFreedom) {
       const Joint<3> joint = joint_of(kind, dice);
       const bool turns = kind == JointKind::hinge || kind == JointKind::pin,
                  slides = kind == JointKind::slider;
-      const double angle = turns ? dice.within(-3, 3) : 0, along = slides ? dice.within(-1, 1) : 0;
+      const double angle = turns ? dice.between(-3, 3) : 0, along = slides ? dice.between(-1, 1) : 0;
       Stance<3> b = dice.place(2), a = seated_on(joint, b, along * joint.axis, angle);
       const Held at = held(joint, a, b);
       for (int i = 0; i < at.rows; ++i) EXPECT_NEAR(at.off[i], 0, 1e-14) << int(kind) << " " << i;

@@ -56,9 +56,9 @@ TEST(Inertia, OfABallIsNoneUntilItRolls) {
 }
 
 TEST(Bounds, HoldTheShapeTightly) {
-  Dice dice(6);
+  ShapeDice dice(6);
   for (int n = 0; n < 200; ++n) {
-    Shape<2> box = box_shape(dice.within(0.2, 1), dice.within(0.2, 1)), ball = ball_shape(0.3);
+    Shape<2> box = box_shape(dice.between(0.2, 1), dice.between(0.2, 1)), ball = ball_shape(0.3);
     ball.center = {0.6, 0.1};
     const Shape<2> polygon = dice.polygon(1), all = compound_shape({box, ball, polygon});
     const Stance<2> at = dice.stance(3);

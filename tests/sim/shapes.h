@@ -2,16 +2,17 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <utility>
 #include <vector>
 
+#include "sim/dice.h"
 #include "sim/shape.h"
 
 namespace obscura::sim {
 
-inline Shape<2> ball_shape(double radius) {
-  Shape<2> shape;
+template <int D = 2>
+Shape<D> ball_shape(double radius) {
+  Shape<D> shape;
   shape.kind = radius > 0 ? ShapeKind::ball : ShapeKind::point;
   shape.radius = radius;
   return shape;
@@ -32,8 +33,9 @@ inline Shape<2> polygon_shape(std::vector<Vec<2>> vertices) {
   return shape;
 }
 
-inline Shape<2> compound_shape(std::vector<Shape<2>> parts) {
-  Shape<2> shape;
+template <int D = 2>
+Shape<D> compound_shape(std::vector<Shape<D>> parts) {
+  Shape<D> shape;
   shape.kind = ShapeKind::compound;
   shape.parts = std::move(parts);
   return shape;
@@ -53,22 +55,19 @@ inline Stance<2> standing(const Vec<2>& x, double angle = 0) {
   return at;
 }
 
-/// Numbers that are the same on every machine.
-class Dice {
+/// Shapes of the plane and places for them.
+class ShapeDice : public Dice {
  public:
-  explicit Dice(unsigned seed) : bits_(seed) {}
-
-  double within(double from, double to) { return from + (to - from) * (double(bits_()) / 4294967296.0); }
-  int below(int n) { return int(bits_() % unsigned(n)); }
+  using Dice::Dice;
 
   /// Corners on an ellipse, so convex; its centre near the origin.
   Shape<2> polygon(double size) {
     const int n = 3 + below(6);
-    const double a = size * within(0.3, 1), b = size * within(0.3, 1), tilt = within(0, 6.3);
-    const Vec<2> off = size * Vec<2>(within(-0.2, 0.2), within(-0.2, 0.2));
+    const double a = size * between(0.3, 1), b = size * between(0.3, 1), tilt = between(0, 6.3);
+    const Vec<2> off = size * Vec<2>(between(-0.2, 0.2), between(-0.2, 0.2));
     std::vector<Vec<2>> around;
     for (int i = 0; i < n; ++i) {
-      const double angle = 2 * std::numbers::pi * (i + within(0, 0.8)) / n;
+      const double angle = 2 * std::numbers::pi * (i + between(0, 0.8)) / n;
       const double x = a * std::cos(angle), y = b * std::sin(angle);
       around.push_back(
           off + Vec<2>(std::cos(tilt) * x - std::sin(tilt) * y, std::sin(tilt) * x + std::cos(tilt) * y));
@@ -80,22 +79,19 @@ class Dice {
   Shape<2> simple(double size) {
     switch (below(4)) {
       case 0:
-        return ball_shape(size * within(0.2, 1));
+        return ball_shape(size * between(0.2, 1));
       case 1:
         return ball_shape(0);
       case 2:
-        return box_shape(size * within(0.3, 2), size * within(0.3, 2));
+        return box_shape(size * between(0.3, 2), size * between(0.3, 2));
       default:
         return polygon(size);
     }
   }
 
   Stance<2> stance(double room) {
-    return standing({within(-room, room), within(-room, room)}, within(-4, 4));
+    return standing({between(-room, room), between(-room, room)}, between(-4, 4));
   }
-
- private:
-  std::mt19937 bits_;
 };
 
 }  // namespace obscura::sim

@@ -11,34 +11,20 @@ namespace obscura::sim {
 
 // Shapes of space.
 
-inline Shape<3> ball_solid(double radius) {
-  Shape<3> shape;
-  shape.kind = radius > 0 ? ShapeKind::ball : ShapeKind::point;
-  shape.radius = radius;
-  return shape;
-}
-
 /// A box by its sides, m.
-inline Shape<3> box_solid(double x, double y, double z) {
+inline Shape<3> brick(const Vec<3>& size) {
   Shape<3> shape;
   shape.kind = ShapeKind::box;
-  shape.half = Vec<3>(x, y, z) / 2;
+  shape.half = size / 2;
   return shape;
 }
 
-/// Its straight part along y, m.
-inline Shape<3> capsule_solid(double length, double radius) {
+/// `half` of its straight part along y, m.
+inline Shape<3> capsule(double half, double radius) {
   Shape<3> shape;
   shape.kind = ShapeKind::capsule;
-  shape.half = {0, length / 2, 0};
+  shape.half = {0, half, 0};
   shape.radius = radius;
-  return shape;
-}
-
-inline Shape<3> compound_solid(std::vector<Shape<3>> parts) {
-  Shape<3> shape;
-  shape.kind = ShapeKind::compound;
-  shape.parts = std::move(parts);
   return shape;
 }
 
@@ -90,17 +76,19 @@ inline Shape<3> hull_solid(const std::vector<Vec<3>>& places) {
   return shape;
 }
 
-/// The corners of a box as a hull.
-inline Shape<3> hull_of(const Shape<3>& box) {
-  std::vector<Vec<3>> all;
-  for (int i = 0; i < 8; ++i) all.push_back(box.center + corner(box, i));
-  return hull_solid(all);
+/// A box as a hull: corners as in corner(), faces counter-clockwise from outside.
+inline Shape<3> as_hull(const Shape<3>& box) {
+  Shape<3> shape;
+  shape.kind = ShapeKind::hull;
+  for (int i = 0; i < 8; ++i) shape.vertices.push_back(box.center + rotation<3>(box.turn) * corner(box, i));
+  shape.faces = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  return shape;
 }
 
 /// A shape of the plane given a thickness, m, along z.
 inline Shape<3> extruded(const Shape<2>& flat, double depth) {
-  if (flat.kind == ShapeKind::ball || flat.kind == ShapeKind::point) return ball_solid(flat.radius);
-  if (flat.kind == ShapeKind::box) return box_solid(2 * flat.half[0], 2 * flat.half[1], depth);
+  if (flat.kind == ShapeKind::ball || flat.kind == ShapeKind::point) return ball_shape<3>(flat.radius);
+  if (flat.kind == ShapeKind::box) return brick({2 * flat.half[0], 2 * flat.half[1], depth});
   std::vector<Vec<3>> all;
   for (const Vec<2>& v : flat.vertices) {
     all.push_back({v[0], v[1], -depth / 2}), all.push_back({v[0], v[1], depth / 2});
@@ -132,11 +120,11 @@ inline Stance<3> moved(const Stance<3>& from, double h) {
   return at;
 }
 
-class SpaceDice : public Dice {
+class SpaceDice : public ShapeDice {
  public:
-  using Dice::Dice;
+  using ShapeDice::ShapeDice;
 
-  Vec<3> vec(double size) { return {within(-size, size), within(-size, size), within(-size, size)}; }
+  Vec<3> vec(double size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
 
   Shape<3> hull(double size) {
     const int n = 4 + below(6);
@@ -152,15 +140,15 @@ class SpaceDice : public Dice {
   Shape<3> solid(double size) {
     switch (below(6)) {
       case 0:
-        return ball_solid(size * within(0.2, 1));
+        return ball_shape<3>(size * between(0.2, 1));
       case 1:
-        return ball_solid(0);
+        return ball_shape<3>(0);
       case 2:
-        return capsule_solid(size * within(0.3, 2), size * within(0.1, 0.5));
+        return capsule(size * between(0.15, 1), size * between(0.1, 0.5));
       case 3:
         return hull(size);
       default:
-        return box_solid(size * within(0.3, 2), size * within(0.3, 2), size * within(0.3, 2));
+        return brick({size * between(0.3, 2), size * between(0.3, 2), size * between(0.3, 2)});
     }
   }
 

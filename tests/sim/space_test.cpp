@@ -85,7 +85,7 @@ TEST(FreeTop, OfASymmetricTopPrecessesAsEulerSays) {
 TEST(FlightInSpace, IsTheParabola) {
   World<3> world = space({0, -9.8125, 0});
   world.model.rate = {64, 1};
-  add_point(world, {0, 1, 2}, {3, 4, -1});
+  add_particle(world, {0, 1, 2}, {3, 4, -1});
   add_solid(world, brick({1, 2, 3}), 2, {0, 1, 2}, {3, 4, -1}, upright<3>(), {1, 2, 3});
   for (const double t : {0.5, 1.0, 2.0}) {
     const auto want = closed_form({"projectile_dyadic", "t=" + std::string(t == 0.5 ? "0.5"
@@ -112,8 +112,8 @@ World<3> in_space(const World<2>& plane, double depth) {
       add_solid(out, box, it.mass, lifted<2>(plane.state.x[i]), lifted<2>(plane.state.v[i]),
                 exponential({0, 0, plane.state.turn[k][0]}), {0, 0, plane.state.spin[k][0]}, it.elasticity);
     } else {
-      add_point(out, lifted<2>(plane.state.x[i]), lifted<2>(plane.state.v[i]), it.mass, it.elasticity,
-                it.shape.radius);
+      add_particle(out, lifted<2>(plane.state.x[i]), lifted<2>(plane.state.v[i]), it.mass, it.elasticity,
+                   it.shape.radius);
     }
     out.model.bodies.back().drag = it.drag;
   }
@@ -243,8 +243,8 @@ TEST(SpringsInSpace, TurnWithTheWholeScene) {
 TEST(WallsInSpace, ReturnABallAsTheHandoutSays) {
   World<3> world = space(Vec3::Zero());
   world.model.scale = 4;
-  for (int axis = 0; axis < 3; ++axis) add_plane(world, Vec3::Zero(), Vec3::Unit(axis));
-  add_point(world, {1, 1, 1}, {-2, -2, -2}, 1, 0.5, 0.25);
+  for (int axis = 0; axis < 3; ++axis) add_wall(world, Vec3::Zero(), Vec3::Unit(axis));
+  add_particle(world, {1, 1, 1}, {-2, -2, -2}, 1, 0.5, 0.25);
   const State<3> now = stepped(world, 1000);
   // there after 0.375 s, back with half the speed for 0.625 s; it is put on the wall within a step
   EXPECT_LE((now.v[0] - Vec3(1, 1, 1)).norm(), 1e-14);
@@ -255,7 +255,7 @@ TEST(WallsInSpace, ReturnABallAsTheHandoutSays) {
 TEST(WallsInSpace, GiveACornerItsImpulse) {
   World<3> world = space(Vec3::Zero());
   world.model.rate = {100000000, 1}, world.model.scale = 4;
-  add_plane(world, Vec3::Zero(), Vec3::UnitY());
+  add_wall(world, Vec3::Zero(), Vec3::UnitY());
   const Turn<3> turn = exponential({0.5, 0.3, -0.4});
   add_solid(world, brick({1, 0.5, 0.8}), 2, {0, 0, 0}, {1, -3, 0.5}, turn, {2, -1, 0.5}, 0.6);
   const Eigen::Matrix3d axes = rotation<3>(turn);
@@ -281,7 +281,7 @@ TEST(WallsInSpace, GiveNoSpinToWhatLandsFlat) {
   for (const Shape<3>& shape : shapes) {
     World<3> world = space();
     world.model.scale = 4;
-    add_plane(world, Vec3::Zero(), Vec3::UnitY());
+    add_wall(world, Vec3::Zero(), Vec3::UnitY());
     add_solid(world, shape, 2, {0, 1, 0}, {0.3, 0, 0.1}, upright<3>(), Vec3::Zero(), 0.5);
     const State<3> now = stepped(world, 3000);
     EXPECT_LE(now.spin[0].norm(), 1e-13);
@@ -291,7 +291,7 @@ TEST(WallsInSpace, GiveNoSpinToWhatLandsFlat) {
   // lying on its side
   World<3> world = space();
   world.model.scale = 4;
-  add_plane(world, Vec3::Zero(), Vec3::UnitY());
+  add_wall(world, Vec3::Zero(), Vec3::UnitY());
   add_solid(world, capsule(0.5, 0.1), 2, {0, 1, 0}, {0.3, 0, 0.1}, exponential({0, 0, std::numbers::pi / 2}),
             Vec3::Zero(), 0.5);
   const State<3> now = stepped(world, 3000);
@@ -304,8 +304,8 @@ TEST(WallsInSpace, MeetAHullOfABoxAsTheBox) {
     World<3> world = space();
     world.model.scale = 4;
     for (int axis = 0; axis < 3; ++axis) {
-      add_plane(world, Vec3::Constant(-2), Vec3::Unit(axis));
-      add_plane(world, Vec3::Constant(2), -Vec3::Unit(axis));
+      add_wall(world, Vec3::Constant(-2), Vec3::Unit(axis));
+      add_wall(world, Vec3::Constant(2), -Vec3::Unit(axis));
     }
     add_solid(world, shape, 2, {0, 0, 0}, {1, 2, 1.5}, exponential({1, 2, 3}), {3, 1, 2}, 0.9);
     return stepped(world, 2000);
@@ -319,8 +319,8 @@ TEST(WallsInSpace, KeepEnergyOfWhatIsElastic) {
   World<3> world = space(Vec3::Zero());
   world.model.scale = 4;
   for (int axis = 0; axis < 3; ++axis) {
-    add_plane(world, Vec3::Constant(-2), Vec3::Unit(axis));
-    add_plane(world, Vec3::Constant(2), -Vec3::Unit(axis));
+    add_wall(world, Vec3::Constant(-2), Vec3::Unit(axis));
+    add_wall(world, Vec3::Constant(2), -Vec3::Unit(axis));
   }
   add_solid(world, brick({1, 0.5, 0.8}), 2, {0, 0, 0}, {3, 2, 1.5}, exponential({1, 2, 3}), {3, 1, 2});
   add_solid(world, capsule(0.5, 0.1), 2, {1, 0, 0}, {2, 2, 4}, exponential({1, 2, 3}), {3, 1, 2});
@@ -338,9 +338,9 @@ TEST(WallsInSpace, KeepEnergyOfWhatIsElastic) {
 TEST(WithoutRotation, ABoxBouncesAsAParticleDoes) {
   World<3> world = space();
   world.model.scale = 4;
-  add_plane(world, Vec3::Zero(), Vec3::UnitY());
-  add_point(world, {0, 1.25, 0}, {1, 0, 0.5}, 1, 0.8, 0.25);
-  add_point(world, {0, 1.25, 0}, {1, 0, 0.5}, 1, 0.8);
+  add_wall(world, Vec3::Zero(), Vec3::UnitY());
+  add_particle(world, {0, 1.25, 0}, {1, 0, 0.5}, 1, 0.8, 0.25);
+  add_particle(world, {0, 1.25, 0}, {1, 0, 0.5}, 1, 0.8);
   world.model.bodies[1].shape = brick({1, 0.5, 0.8});
   const State<3> now = stepped(world, 2000);
   EXPECT_LE((now.x[0] - now.x[1]).norm(), 1e-12);
@@ -349,7 +349,7 @@ TEST(WithoutRotation, ABoxBouncesAsAParticleDoes) {
 
 TEST(HandInSpace, TakesTheClosestCorner) {
   World<3> world = space(Vec3::Zero());
-  add_point(world, {5, 0, 0});
+  add_particle(world, {5, 0, 0});
   add_solid(world, brick({1, 1, 1}), 1, {0, 0, 0});
   add_solid(world, capsule(1, 0.1), 1, {0, 0, 3});
   world.model.mice.push_back({{{{0, 1}, {0.9, 0.8, 0.7}}, {{2, 1}, {1, 1, 1}}}, 0, 10, 0});
@@ -378,7 +378,7 @@ TEST(RunInSpace, GivesTheSameStateAtEveryFrameRateAndCutInTwo) {
   const Snapshot now = shown(*it, {1, 1});
   EXPECT_EQ(it->cast().dimension, 3);
   const State<3> half = stepped(world, 500);
-  const State<3> whole = stepped({world.model, half}, 500);
+  const State<3> whole = stepped(World<3>{world.model, half}, 500);
   EXPECT_EQ(words(whole), want);
   EXPECT_EQ(now.bodies[0].position, whole.x[0]);
   EXPECT_EQ(Vec3(now.bodies[0].orientation * Vec3::UnitX()), Vec3(now.bodies[0].orientation * Vec3::UnitX()));

@@ -20,7 +20,7 @@ World<3> swept_room(double mu, Vec3 gravity = {0, -kG, 0}) {
   world.model.rate = {600, 1};
   world.model.collision = Collision::contact, world.model.solver = Solver::iterative;
   world.model.scale = 4;
-  add_plane(world, {0, 0, 0}, {0, 1, 0});
+  add_wall(world, {0, 0, 0}, {0, 1, 0});
   world.model.walls[0].friction = mu;
   return world;
 }
@@ -49,8 +49,8 @@ World<3> heap(int n, int side, double mu) {
   for (int i = 0; i < n; ++i) {
     const Vec3 place(0.45 * (i % side) - 0.2 * side, 0.3 + 0.45 * (i / (side * side)),
                      0.45 * (i / side % side) - 0.2 * side);
-    add_box(world, {dice.within(0.2, 0.3), dice.within(0.2, 0.3), dice.within(0.2, 0.3)}, place, Vec3::Zero(),
-            dice.vec(1), mu);
+    add_box(world, {dice.between(0.2, 0.3), dice.between(0.2, 0.3), dice.between(0.2, 0.3)}, place,
+            Vec3::Zero(), dice.vec(1), mu);
   }
   return world;
 }

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -51,6 +54,22 @@ inline double energy(const World<2>& world, const State<2>& state) {
       sum += 0.5 * body.inertia[0] * state.spin[k][0] * state.spin[k][0];
   }
   return sum;
+}
+
+/// Steps, and wants the energy after each to be at most that before it, but for `slack` of that or of `size`,
+/// J, where this is more. `what` is told when it rises.
+inline void expect_no_gain(const World<2>& world, int steps, double slack, const std::string& what,
+                           double size = 0) {
+  State<2> state = world.state;
+  Stepper<2> stepper(world.model);
+  stepper.begin(state);
+  double before = energy(world, state);
+  for (int i = 0; i < steps; ++i) {
+    ASSERT_FALSE(stepper.step(state)) << what << " at step " << i;
+    const double now = energy(world, state);
+    ASSERT_LE(now, before + slack * std::max(std::abs(before), size)) << what << " at step " << i;
+    before = now;
+  }
 }
 
 /// A convex polygon, its corners about a point that lies at `x` when it is not turned. Mass in kg.

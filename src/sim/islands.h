@@ -1,0 +1,36 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace obscura::sim {
+
+/// Disjoint sets of the numbers 0 .. n-1: what is joined to what, directly or by way of others. A set is told
+/// by its lowest member, whatever the order of joining, so that results do not depend on it.
+/// Path halving after Tarjan and van Leeuwen (1984).
+class Islands {
+ public:
+  /// n sets of one member each; keeps its memory.
+  void reset(int n) {
+    parent_.resize(n);
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  /// The lowest member of i's set.
+  int root(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+  /// Makes one set of the two that a and b are in.
+  void join(int a, int b) {
+    a = root(a), b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace obscura::sim
