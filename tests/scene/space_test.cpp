@@ -109,7 +109,7 @@ TEST(Space, DensityIsMassForVolume) {
   // m (y^2 + z^2) / 12 about x
   EXPECT_NEAR(body.inertia[0], 4 * (0.16 + 0.04) / 12, kExact);
   EXPECT_NEAR(body.inertia[1], 4 * (0.25 + 0.04) / 12, kExact);
-  const auto& ball = scene(kRoom + "[[ball]]\nradius = 0.5\nmass = 2").space().model.bodies[0];
+  const auto ball = scene(kRoom + "[[ball]]\nradius = 0.5\nmass = 2").space().model.bodies[0];
   EXPECT_NEAR(ball.inertia[0], 0.4 * 2 * 0.25, kExact);
 }
 
