@@ -14,6 +14,7 @@ void add_new(CLI::App& program, int& exit);
 void add_check(CLI::App& program, int& exit);
 void add_states(CLI::App& program, int& exit);
 void add_export(CLI::App& program, int& exit);
+void add_figure(CLI::App& program, int& exit);
 void add_docs(CLI::App& program, int& exit);
 
 /// The whole program: reads the command line, runs a command, turns every error into one line and an exit

@@ -14,6 +14,8 @@
 #include "gl/renderer.h"
 #include "media/error.h"
 #include "media/movie.h"
+#include "page/error.h"
+#include "page/page.h"
 #include "scene/error.h"
 
 namespace obscura::app {
@@ -29,7 +31,7 @@ std::string version() {
   } catch (const std::exception& error) {
     gl = fmt::format("OpenGL: {}", error.what());
   }
-  return fmt::format("obscura {}\n{}\n{}", OBSCURA_VERSION, gl, media::libraries());
+  return fmt::format("obscura {}\n{}\n{}\n{}", OBSCURA_VERSION, gl, media::libraries(), page::libraries());
 }
 
 // CLI11 would only say that a command is missing
@@ -60,6 +62,7 @@ int main(int argc, const char* const* argv) {
       "  obscura new ball                        write ball.toml to start from\n"
       "  obscura render ball.toml                film it: render_out/ball.mp4\n"
       "  obscura render ball.toml --at 1.5       one picture of it\n"
+      "  obscura figure ball.toml -o ball.pdf    a figure for print\n"
       "  obscura states ball.toml --every 0.1    where everything is, as data\n"
       "  obscura export ball.toml                its motion as glTF, for another renderer\n\n"
       "Exit codes: 0 done, 2 usage, 3 scene, 4 files or codec, 5 OpenGL, 6 the simulation diverged, 130 "
@@ -69,6 +72,7 @@ int main(int argc, const char* const* argv) {
   program.get_formatter()->column_width(34);
   int exit = kDone;
   add_render(program, exit);
+  add_figure(program, exit);
   add_new(program, exit);
   add_check(program, exit);
   add_states(program, exit);
@@ -93,6 +97,10 @@ int main(int argc, const char* const* argv) {
     return complain(kGl, error.what());
   } catch (const media::Error& error) {
     return complain(kFiles, error.what());
+  } catch (const page::Error& error) {
+    return complain(kFiles, error.what());
+  } catch (const Interrupted&) {
+    return kInterrupted;
   } catch (const draw::Error& error) {
     return complain(kFiles, error.what());
   } catch (const std::bad_alloc&) {

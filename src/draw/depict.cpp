@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "draw/camera.h"
+#include "draw/sheet.h"
 #include "draw/space.h"
 #include "draw/stage.h"
 
@@ -47,13 +48,8 @@ double newton(const sim::Cast& cast) {
   return usual > 0 ? kForceArrow * cast.scale / usual : 0;
 }
 
-Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, const Extent& extent,
-             double aspect)
-    : cast(who),
-      look(looks_),
-      camera(camera_),
-      colours(palette(looks_.theme)),
-      layout(lay_out(who, looks_, camera_, extent, aspect)) {
+Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, const Layout& page)
+    : cast(who), look(looks_), camera(camera_), colours(palette(looks_.theme)), layout(page) {
   const std::vector<char> net = knots(cast);
   auto knot = [&](int body) { return body >= 0 && net[body]; };
 
@@ -147,8 +143,14 @@ Depictor::Depictor(const sim::Cast& cast, const Look& look, const std::vector<Ca
   if (cast.dimension == 3)
     space_ = std::make_shared<const SpaceStage>(cast, look, cameras, extent, aspect);
   else
-    plan_.reset(new Plan{Stage(cast, look, cameras.at(0), extent, aspect), {}, {}, {}});
+    plan_.reset(new Plan{
+        Stage(cast, look, cameras.at(0), lay_out(cast, look, cameras.at(0), extent, aspect)), {}, {}, {}});
 }
+
+Depictor::Depictor(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet)
+    : look_(look), plan_(new Plan{Stage(cast, look, {}, lay_out(cast, look, extent, sheet)), {}, {}, {}}) {}
+
+const Layout& Depictor::layout() const { return plan_->stage.layout; }
 
 View Depictor::view(double t) const { return view_at(plan_->stage.camera, plan_->stage.layout, t); }
 
@@ -164,7 +166,7 @@ Picture Depictor::depict(const sim::Snapshot& now,
     view.origin = stage.layout.middle - view.scale * Point(middle.x(), -middle.y());
   }
   Picture picture;
-  picture.aspect = stage.layout.width / 1080;
+  picture.aspect = stage.layout.width / stage.layout.height;
   picture.ground = stage.colours.ground;
   picture.still = plan_->still_of(view);
 
@@ -190,6 +192,26 @@ Picture Depictor::depict(const sim::Snapshot& now,
     list.add(clock);
   }
   return picture;
+}
+
+void Depictor::ghosts(const sim::Snapshot& then, double strength, List& list) const {
+  Stage faded = plan_->stage;
+  faded.look.axes = false;
+  for (Paint& paint : faded.paints) {
+    for (Color* color : {&paint.fill, &paint.outline, &paint.axis})
+      *color = mix(faded.colours.room, *color, strength);
+  }
+  // what is held is where it was
+  const auto still = [&](int body) { return faded.cast.bodies[std::size_t(body)].fixed; };
+  std::erase_if(faded.boxes, still);
+  std::erase_if(faded.polygons, still);
+  std::erase_if(faded.rounds, still);
+  const View view = view_at(faded.camera, faded.layout, then.time);
+  if (faded.layout.clipped) list.clip(view.window);
+  draw_boxes(faded, view, then, list);
+  draw_polygons(faded, view, then, list);
+  draw_rounds(faded, view, then, list);
+  list.unclip();
 }
 
 double Depictor::longest_trail() const {

@@ -28,7 +28,9 @@ struct Extent {
   sim::Vec3 low = sim::Vec3::Zero(), high = sim::Vec3::Zero();
 };
 
+struct Layout;
 struct SpaceStage;
+struct Sheet;
 
 /// Draws instants of one run. Holds what does not change: the look's colours, the room's walls as polygons,
 /// the still list.
@@ -42,6 +44,9 @@ class Depictor {
   Depictor(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras, const Extent& extent,
            double aspect);
 
+  /// In the plane, for print: a picture of `sheet`, whose size follows from what it shows (draw/sheet.h).
+  Depictor(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet);
+
   /// In the plane: where the world lies on the page at time t (s).
   View view(double t) const;
 
@@ -51,6 +56,13 @@ class Depictor {
   /// The picture of one instant. `ways`: the tracks that hold the last `trail` seconds before it, oldest
   /// first.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways) const;
+
+  /// In the plane: the bodies alone as they were at another instant, `strength` (0 to 1) of the way from the
+  /// ground to their own colours.
+  void ghosts(const sim::Snapshot& then, double strength, List& list) const;
+
+  /// In the plane: how the page is laid out.
+  const Layout& layout() const;
 
   /// The longest trail, s: how far back depict's `ways` must reach.
   double longest_trail() const;

@@ -24,11 +24,7 @@ double width_of(const std::string& words, Face face, double size, bool tabular =
       .width;
 }
 
-/// What is fitted: the room where its walls close, else the extent, and the ground near it.
-struct Fitted {
-  bool closed = false;
-  sim::Vec3 low, high;
-};
+}  // namespace
 
 Fitted fitted_world(const sim::Cast& cast, const Extent& extent) {
   Fitted f{false, extent.low.cwiseMin(extent.high), extent.low.cwiseMax(extent.high)};
@@ -66,6 +62,8 @@ Fitted fitted_world(const sim::Cast& cast, const Extent& extent) {
   }
   return f;
 }
+
+namespace {
 
 /// How the caption's words are set: their size, and in how many lines.
 struct Setting {

@@ -12,7 +12,8 @@ namespace obscura::draw {
 /// Where things lie on the page, once for a whole run: the caption strip, the window below it that shows the
 /// world, and how large the world is where the camera fits it.
 struct Layout {
-  double width = 1920;   // of the page; its height is 1080
+  double width = 1920;   // of the page
+  double height = 1080;  // only a sheet's is another, see draw/sheet.h
   double weight = 1;     // of lines and type: 1 on a landscape page, less where the page is narrow
   Rect window;           // shows the world
   bool clipped = false;  // the world may reach over the window's edge
@@ -24,6 +25,13 @@ struct Layout {
   std::vector<Text> words;  // title and subtitle
   Text clock;               // its span's text is the instant's
 };
+
+/// What is fitted: the room where its walls close, else the extent, and the ground near it.
+struct Fitted {
+  bool closed = false;
+  sim::Vec3 low, high;
+};
+Fitted fitted_world(const sim::Cast& cast, const Extent& extent);
 
 /// Lays the page out: the caption above, aligned to the room's edges, the room centred and as large as
 /// caption and hatching allow. Throws draw::Error where a font is missing.

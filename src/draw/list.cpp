@@ -48,4 +48,55 @@ void List::clip(const Rect& rect) {
 
 void List::unclip() { clip_ = -1; }
 
+void List::add(const List& list, double k, const Point& at) {
+  const auto moved = [&](const Point& p) { return Point(at + k * p); };
+  for (const Batch& batch : list.batches) {
+    if (batch.clip >= 0) {
+      const Rect& r = list.clips[std::size_t(batch.clip)];
+      clip({at.x() + k * r.x, at.y() + k * r.y, k * r.width, k * r.height});
+    } else {
+      unclip();
+    }
+    for (int i = batch.begin; i < batch.end; ++i) {
+      const auto n = std::size_t(i);
+      switch (batch.kind) {
+        case Kind::disc: {
+          Disc disc = list.discs[n];
+          disc.center = moved(disc.center), disc.radius *= k, disc.line *= k;
+          add(disc);
+          break;
+        }
+        case Kind::box: {
+          Box box = list.boxes[n];
+          box.center = moved(box.center), box.half *= k, box.line *= k, box.axis *= k, box.axis_line *= k;
+          add(box);
+          break;
+        }
+        case Kind::stroke: {
+          const Stroke& stroke = list.strokes[n];
+          std::vector<Node> line(list.nodes.begin() + stroke.begin, list.nodes.begin() + stroke.end);
+          for (Node& node : line) node.at = moved(node.at), node.width *= k;
+          add(line, stroke.cap, stroke.blend, stroke.closed);
+          break;
+        }
+        case Kind::polygon: {
+          const Polygon& polygon = list.polygons[n];
+          std::vector<Point> outline(list.points.begin() + polygon.begin, list.points.begin() + polygon.end);
+          for (Point& p : outline) p = moved(p);
+          add(outline, polygon.fill);
+          break;
+        }
+        case Kind::text: {
+          Text text = list.texts[n];
+          text.at = moved(text.at);
+          for (Span& span : text.spans) span.size *= k, span.rise *= k, span.lead *= k;
+          add(text);
+          break;
+        }
+      }
+    }
+  }
+  unclip();
+}
+
 }  // namespace obscura::draw

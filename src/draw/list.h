@@ -125,6 +125,8 @@ struct List {
   /// What follows is clipped to `rect` until the next call of clip or unclip.
   void clip(const Rect& rect);
   void unclip();
+  /// Another list on top of this one: each of its lengths times `scale`, its origin at `at`.
+  void add(const List& list, double scale, const Point& at);
 
  private:
   int clip_ = -1;

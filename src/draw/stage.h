@@ -28,7 +28,7 @@ struct Stage {
   std::vector<Coil> coils;                        // one a spring; turns 0: a plain line
   std::vector<Coil> hands;                        // one a mouse
 
-  Stage(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent, double aspect);
+  Stage(const sim::Cast& cast, const Look& look, const Camera& camera, const Layout& layout);
 
   /// The looks of a body, also where the scene says nothing.
   BodyLook looks(int body) const { return body < int(look.bodies.size()) ? look.bodies[body] : BodyLook{}; }

@@ -57,10 +57,28 @@ std::vector<fs::path> folders() {
   return found;
 }
 
-std::string find(const Source& source) {
+/// The files of a face: of words, those of the family in $OBSCURA_FONT, as its files are usually called.
+std::vector<std::string> files_of(Face face) {
+  const Source& source = kSources[std::size_t(face)];
+  const char* family = std::getenv("OBSCURA_FONT");
+  if (!family || !*family || face > Face::bold) return {source.files.begin(), source.files.end()};
+  std::string stem;
+  for (const char* c = family; *c; ++c)
+    if (*c != ' ') stem += *c;
+  const std::string style = face == Face::bold ? "Bold" : face == Face::medium ? "Medium" : "Regular";
+  std::vector<std::string> files;
+  for (const std::string& each : {style, std::string(face == Face::bold ? "Bold" : "Regular")})
+    for (const char* end : {".otf", ".ttf"}) files.push_back(stem + "-" + each + end);
+  for (const char* end : {".otf", ".ttf"}) files.push_back(stem + (face == Face::bold ? "Bd" : "") + end);
+  return files;
+}
+
+std::string find(Face face) {
+  const Source& source = kSources[std::size_t(face)];
+  const std::vector<std::string> files = files_of(face);
   for (const fs::path& folder : folders()) {
     std::error_code ignored;
-    std::array<std::string, 3> here;
+    std::vector<std::string> here(files.size());
     const auto skip =
         fs::directory_options::skip_permission_denied | fs::directory_options::follow_directory_symlink;
     // the best file of this folder; of two alike, the first by name
@@ -69,7 +87,7 @@ std::string find(const Source& source) {
       if (it.depth() > 8) it.disable_recursion_pending();
       const std::string name = it->path().filename().string();
       for (std::size_t i = 0; i < here.size(); ++i) {
-        if (name != source.files[i]) continue;
+        if (name != files[i]) continue;
         const std::string path = it->path().string();
         if (here[i].empty() || path < here[i]) here[i] = path;
       }
@@ -78,13 +96,15 @@ std::string find(const Source& source) {
       if (!path.empty()) return path;
     }
   }
+  if (files[0] != source.files[0])
+    throw Error("cannot find the font " + files[0] + ": name a folder that has it in OBSCURA_FONTS");
   throw Error(std::string("cannot find the font ") + source.what + " (" + std::string(source.files[0]) +
               "): install " + source.package + ", or name a folder that has it in OBSCURA_FONTS");
 }
 
 template <Face face>
 const std::string& file() {
-  static const std::string path = find(kSources[int(face)]);
+  static const std::string path = find(face);
   return path;
 }
 

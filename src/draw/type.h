@@ -32,8 +32,8 @@ struct Line {
 /// missing.
 Line shape(const Text& text);
 
-/// The file of a face: Inter for words, STIX for mathematics. Looked for in $OBSCURA_FONTS and the system's
-/// font folders. Throws draw::Error naming the package.
+/// The file of a face: Inter, or the family in $OBSCURA_FONT, for words, STIX for mathematics. Looked for in
+/// $OBSCURA_FONTS and the system's font folders. Throws draw::Error naming the package.
 const std::string& font_file(Face face);
 
 }  // namespace obscura::draw

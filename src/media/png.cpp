@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -104,14 +105,15 @@ std::vector<std::uint8_t> deflated(const Image& image, bool alpha) {
 }
 
 // No object with a destructor may live in here: an error jumps out of it. False: `call.failure` says why.
-bool write_chunks(Writing& file, Call& call, const Image& image, bool alpha, png_text* texts, int text_count,
-                  const std::vector<std::uint8_t>& pixels) {
+bool write_chunks(Writing& file, Call& call, const Image& image, bool alpha, png_uint_32 per_metre,
+                  png_text* texts, int text_count, const std::vector<std::uint8_t>& pixels) {
   if (setjmp(png_jmpbuf(file.png)) != 0) return false;
   png_set_write_fn(file.png, &call, on_write, on_flush);
   png_set_IHDR(file.png, file.facts, png_uint_32(image.width), png_uint_32(image.height), 8,
                alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB_gAMA_and_cHRM(file.png, file.facts, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (per_metre > 0) png_set_pHYs(file.png, file.facts, per_metre, per_metre, PNG_RESOLUTION_METER);
   if (text_count > 0) png_set_text(file.png, file.facts, texts, text_count);
   png_write_info(file.png, file.facts);
   // chunks of a moderate length, for readers that buffer whole chunks
@@ -174,7 +176,8 @@ std::vector<std::uint8_t> encode(const Image& image, const PngOptions& options, 
   file.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &call, on_error, on_warning);
   if (file.png) file.facts = png_create_info_struct(file.png);
   if (!file.facts) throw std::bad_alloc();
-  if (!write_chunks(file, call, image, options.alpha, texts.data(), int(texts.size()), pixels)) {
+  if (!write_chunks(file, call, image, options.alpha, png_uint_32(std::lround(options.per_metre)),
+                    texts.data(), int(texts.size()), pixels)) {
     throw Error(path + ": " + call.failure);
   }
   return out;

@@ -9,7 +9,8 @@
 namespace obscura::media {
 
 struct PngOptions {
-  bool alpha = false;  // keep the alpha channel; else opaque RGB
+  bool alpha = false;    // keep the alpha channel; else opaque RGB
+  double per_metre = 0;  // pixels a metre (pHYs); 0: left open
   Tags tags{};
 };
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/shots.h"
+#include "draw/list.h"
+#include "draw/look.h"
+#include "scene/scene.h"
+#include "sim/snapshot.h"
+
+namespace obscura::app {
+
+/// What the command line says of a figure; what it leaves out the scene's [figure] says.
+struct AlbumOptions {
+  std::vector<sim::Rational> at;  // s, one a panel
+  std::optional<double> width;    // pt
+  std::optional<sim::Rational> every;
+  std::optional<int> columns;
+  std::vector<std::string> vary;  // "crate.elasticity=0,0.5,1"
+  std::optional<draw::Theme> theme;
+};
+
+/// The instants that a figure shows, simulated: one panel for each, of one run or of several that differ in a
+/// value.
+class Album {
+ public:
+  /// Reads the scene and runs it as far as the figure needs. Throws UsageError, scene::Error, TroubleError.
+  Album(const std::string& scene, const std::vector<std::string>& sets, const AlbumOptions& options);
+
+  draw::Picture picture() const;
+  double width() const { return width_; }  // pt
+  std::string title() const { return panels_.front().scene.look.title; }
+
+ private:
+  struct Panel {
+    scene::Scene scene;
+    sim::Cast cast;
+    sim::Snapshot now;
+    std::vector<sim::Snapshot> before;                    // exposures, oldest first
+    std::vector<std::shared_ptr<const sim::Track>> ways;  // of trails
+    std::string words;                                    // what sets it apart from the others
+  };
+  void take(const scene::Scene& scene, const std::vector<sim::Rational>& times, const std::string& words,
+            std::size_t values);
+  draw::Picture in_space() const;
+
+  std::vector<Panel> panels_;
+  double width_ = 0;
+  int columns_ = 1;
+  std::optional<sim::Rational> every_;
+};
+
+}  // namespace obscura::app

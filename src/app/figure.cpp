@@ -1,0 +1,184 @@
+// obscura figure: one picture for print: vectors as SVG or PDF, pixels as PNG.
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/album.h"
+#include "app/commands.h"
+#include "app/exit.h"
+#include "app/options.h"
+#include "draw/sheet.h"
+#include "gl/renderer.h"
+#include "media/error.h"
+#include "media/file.h"
+#include "media/png.h"
+#include "page/page.h"
+
+namespace obscura::app {
+
+namespace {
+
+struct Flags {
+  std::string scene;
+  std::vector<std::string> sets, vary;
+  std::optional<std::string> out, at, width, font, theme, every;
+  std::optional<int> columns;
+  double dpi = 300;
+};
+
+constexpr double kMillimetre = 72 / 25.4;  // pt
+
+// "84mm", "3.3in", "240pt"; a bare number is of millimetres
+double points(const std::string& text) {
+  double value = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string unit(read.ptr, text.data() + text.size());
+  const double each = unit.empty() || unit == "mm" ? kMillimetre
+                      : unit == "cm"               ? 10 * kMillimetre
+                      : unit == "in"               ? 72
+                      : unit == "pt"               ? 1
+                                                   : 0;
+  const double width = value * each;
+  if (read.ec != std::errc() || !(width >= 20 * kMillimetre && width <= 1000 * kMillimetre))
+    throw UsageError(fmt::format("--width {}: expected 20mm to 1000mm, as in 84mm, 3.3in or 240pt", text));
+  return width;
+}
+
+std::string ending(const std::string& name) {
+  const std::string end = std::filesystem::path(name).extension().string();
+  return end.empty() ? "" : end.substr(1);
+}
+
+void check_ending(const std::string& out) {
+  const std::string end = ending(out);
+  if (end == "png") return;
+  const auto form = page::form(end);
+  if (!form) throw UsageError(fmt::format("-o {}: expected a name that ends with .svg, .pdf or .png", out));
+  if (!page::writes(*form))
+    throw UsageError(fmt::format(
+        "-o {}: this obscura was built without Cairo and writes no PDF; .svg and .png it does", out));
+}
+
+void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {
+  media::File file(out);
+  file.write(bytes);
+  file.place(false);
+}
+
+// the picture's pixels at a density
+media::Image pixels(const draw::Picture& picture, double width, double dpi) {
+  const int across = std::max(1, int(std::lround(width / 72 * dpi)));
+  const int down = std::max(1, int(std::lround(across / picture.aspect)));
+  gl::Renderer renderer(across, down);
+  return renderer.draw(picture);
+}
+
+int run(const Flags& flags) {
+  if (flags.out) check_ending(*flags.out);
+  const std::string first = flags.scene == "-" ? "scene" : std::filesystem::path(flags.scene).stem().string();
+  const std::string out = flags.out.value_or("render_out/" + first + ".svg");
+
+  AlbumOptions options;
+  if (flags.at) options.at = instants(*flags.at);
+  if (flags.width) options.width = points(*flags.width);
+  if (flags.every) {
+    options.every = sim::parse_rational(*flags.every);
+    if (!options.every || options.every->num <= 0)
+      throw UsageError(fmt::format("--every {}: expected seconds above 0", *flags.every));
+  }
+  options.columns = flags.columns;
+  options.vary = flags.vary;
+  if (flags.theme) options.theme = *flags.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
+  if (flags.font) ::setenv("OBSCURA_FONT", flags.font->c_str(), 1);
+
+  const Album album(flags.scene, flags.sets, options);
+  const std::filesystem::path folder = std::filesystem::path(out).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error)
+    throw media::Error(fmt::format("{}: cannot make this folder: {}", folder.string(), error.message()));
+
+  const draw::Picture picture = album.picture();
+  const double width = album.width(), height = width / picture.aspect;
+  std::string size = fmt::format("{:.1f} x {:.1f} mm", width / kMillimetre, height / kMillimetre);
+  if (ending(out) == "png") {
+    const media::Image image = pixels(picture, width, flags.dpi);
+    media::Tags tags{{"Software", "obscura " OBSCURA_VERSION}};
+    if (!album.title().empty()) tags["Title"] = album.title();
+    media::write_png(out, image, {.per_metre = flags.dpi / 0.0254, .tags = tags});
+    size += fmt::format(", {} x {} px at {:g} dpi", image.width, image.height, flags.dpi);
+  } else {
+    const page::Sheet sheet{width, album.title()};
+    std::optional<page::Raster> raster;
+    media::Image under;
+    if (!picture.solids.empty()) {
+      // what no vector says: surfaces, their light and their shadows
+      draw::Picture solids = picture;
+      solids.moving = {};
+      under = pixels(solids, width, flags.dpi);
+      raster = page::Raster{under.width, under.height, under.pixels.data(), media::encode_png(under)};
+    }
+    write(out, page::page(picture, *page::form(ending(out)), sheet, raster));
+  }
+  fmt::print("{}: {}\n", out, size);
+  return kDone;
+}
+
+}  // namespace
+
+void add_figure(CLI::App& program, int& exit) {
+  CLI::App* command = program.add_subcommand("figure", "A figure for print: SVG, PDF or PNG");
+  auto flags = std::make_shared<Flags>();
+  command->add_option("SCENE", flags->scene, "The scene, a TOML file; - for standard input")->required();
+  command
+      ->add_option("-o,--output", flags->out,
+                   "Where to: .svg or .pdf (vectors; type stays type) or .png [render_out/SCENE.svg]")
+      ->type_name("OUT");
+  command
+      ->add_option(
+          "--at", flags->at,
+          "The instant (s); of several, as in 0,0.5,1 or 0:2:0.5, each has its panel [figure.at, or a "
+          "quarter of the duration]")
+      ->type_name("SECONDS");
+  command
+      ->add_option(
+          "--width", flags->width,
+          "Of the figure, as in 84mm, 3.3in or 240pt; type and lines keep their size [figure.width, 84mm]")
+      ->type_name("LENGTH");
+  command
+      ->add_option("--every", flags->every,
+                   "Earlier exposures, one every so many seconds, fading [figure.every]")
+      ->type_name("SECONDS");
+  command
+      ->add_option("--vary", flags->vary,
+                   "A panel for each value of a key, as in --vary crate.elasticity=0,0.5,1")
+      ->type_name("PATH=VALUES")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--columns", flags->columns, "Of panels beside each other")->check(CLI::Range(1, 20));
+  command->add_option("--font", flags->font, "The family of words, as in 'Source Sans 3' [Inter]")
+      ->type_name("NAME");
+  command->add_option("--dpi", flags->dpi, "Pixels an inch of a PNG, and of what is lit in space [300]")
+      ->check(CLI::Range(10.0, 4800.0));
+  command->add_option("--theme", flags->theme, "paper (white) or screen (dark) [paper]")
+      ->check(CLI::IsMember({"paper", "screen"}));
+  add_sets(*command, flags->sets);
+  command->footer(
+      "What is named, measured and drawn on it says the scene's [figure], see docs/scene.md.\n\n"
+      "Examples:\n"
+      "  obscura figure scenes/box.toml -o box.svg --at 0.8\n"
+      "  obscura figure scenes/bounce.toml -o bounce.pdf --at 1.2 --every 0.1 --width 120mm\n"
+      "  obscura figure scenes/box.toml -o box.png --at 0,0.4,0.8 --dpi 600\n"
+      "  obscura figure scenes/box.toml -o e.pdf --vary 'box[0].elasticity=0,0.5,1' --width 174mm\n\n"
+      "Exit codes: 0 done, 2 usage, 3 scene, 4 files, fonts, 5 OpenGL, 6 the simulation diverged.");
+  command->callback([flags, &exit] { exit = run(*flags); });
+}
+
+}  // namespace obscura::app

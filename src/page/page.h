@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "draw/list.h"
+
+namespace obscura::page {
+
+/// A file of vectors.
+enum class Form { svg, pdf };
+
+/// "svg", "pdf".
+std::optional<Form> form(std::string_view name);
+
+/// "Cairo 1.16.0", or that there is none.
+std::string libraries();
+
+/// Whether this build writes it: PDF needs Cairo.
+bool writes(Form form);
+
+/// What a page is besides its picture.
+struct Sheet {
+  double width = 238.11;  // pt; its height follows from the picture's aspect
+  std::string title;      // of the file's properties
+};
+
+/// Colours of a picture's solids, which no vector says: put under its moving list, over the whole page.
+/// RGBA8, row 0 at the top, alpha not multiplied in.
+struct Raster {
+  int width = 0, height = 0;
+  const std::uint8_t* pixels = nullptr;
+  std::vector<std::uint8_t> png{};  // the same as a file, for SVG
+};
+
+/// A picture put down as one page exactly as large as it: type as type with its fonts in the file, lines as
+/// lines. The same bytes for the same picture. Throws page::Error, draw::Error where a font is missing.
+std::vector<std::uint8_t> page(const draw::Picture& picture, Form form, const Sheet& sheet,
+                               const std::optional<Raster>& raster = {});
+
+}  // namespace obscura::page
