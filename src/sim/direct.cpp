@@ -82,6 +82,7 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
   closed_ = (exact ? 1e-12 : 1e-9) * model.scale;
   rest_ = exact ? 1e-6 * pace_ : std::max(1e-6 * pace_, 0.1 * g * h);
   most_cuts_ = exact ? 2000 + 100 * int(model.bodies.size()) : 12;
+  most_openings_ = exact ? most_cuts_ : 6;
   patience_ = exact ? 8 + int(model.bodies.size()) : 4;
   short_ = exact ? 1.0 / 64 : 1.0 / 4;
   budget_ = exact ? 1e300 : 1e7;
@@ -137,6 +138,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   double done = 0;
   forced_.clear();
   rough_ = false, work_ = 0;
+  openings_ = most_openings_, let_go_.reset();
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
   for (int cuts = 0; done < h; ++cuts) {
     find(state, closed_);
@@ -152,6 +154,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     const bool chosen = !rough_ && choose(state, t + done);
     if (!chosen) rough_ = model_.collision != Collision::event;
     if (chosen && cuts < most_cuts_) {
+      if (let_go_) part_ways();
       remember();
       if (coming_apart()) project(state);
       // on the brink nothing slips: as an equality it is a stick
@@ -190,6 +193,22 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   rest(state, t + h, h);
   report(state);
   break_joints(state);
+}
+
+// what the last stretch ended by, and bears next to nothing now, lets go
+template <int D>
+void Direct<D>::part_ways() {
+  --openings_;
+  for (const Held& held : held_) {
+    if (held.kind != Held::Kind::contact || gaps_[held.of].key != *let_go_ || !acts(held)) continue;
+    if (f_[held.first] <= slight_) {
+      modes_[held.block].hold = Hold::open;
+      f_.segment(held.first, D).setZero();
+    } else if (f_[held.first] > 0.25 * pressed_at_let_go_) {
+      openings_ = 0;  // one of many that may bear the same load: its force tells nothing
+    }
+  }
+  let_go_.reset();
 }
 
 // s: how long all may move on and not pass through one another unseen

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -62,6 +63,7 @@ class Direct final : public ContactStep<D>, private System {
   double unseen(const State<D>& state) const;
   void report(State<D>& state);
   void remember();
+  void part_ways();
   void break_joints(State<D>& state);
 
   // direct_hold.cpp
@@ -113,6 +115,7 @@ class Direct final : public ContactStep<D>, private System {
   double closing(const State<D>& state, double h, Couple couple);
   double tightening(const State<D>& state, double h);
   double stopping() const;
+  double letting_go(const Held*& which);
   double way(const State<D>& state, int body, double h) const;
   bool may_close(const State<D>& state, double h, Couple couple) const;
   Spin<D> turn_part(const State<D>& state, const Joint<D>& joint, double h, double part) const;
@@ -139,6 +142,7 @@ class Direct final : public ContactStep<D>, private System {
   double pace_ = 0;              // m/s: sqrt(g L), or L a second
   double still_ = 0;             // m/s: slower is not at all, at the speeds at hand
   int most_cuts_ = 0;            // of a step
+  int most_openings_ = 0;        // cuts of a step by what lets go
   int patience_ = 0;             // cuts of a step before rest begins to grow
   double budget_ = 0;            // rows^3 that a step may solve before it is done roughly
   double short_ = 0;             // of a step: what is done at once where there is no other way
@@ -167,8 +171,13 @@ class Direct final : public ContactStep<D>, private System {
   std::vector<char> wanted_;
   Eigen::MatrixXd K_;  // of the part at hand
   Eigen::VectorXd part_b_, part_f_;
-  Eigen::VectorXd b_, f_, warm_;  // warm_: forces to begin with
-  Eigen::VectorXd slips_;         // J v where the stretch began
+  Eigen::VectorXd b_, f_, warm_;      // warm_: forces to begin with
+  Eigen::VectorXd slips_;             // J v where the stretch began
+  Eigen::VectorXd pressed_;           // f there
+  int openings_ = 0;                  // how many more may cut this step
+  double slight_ = 0;                 // N: less presses nothing
+  double pressed_at_let_go_ = 0;      // N: by what, when that stretch began
+  std::optional<ContactKey> let_go_;  // what the last stretch ended by
   std::vector<int> chosen_;
   Islands islands_;
   std::vector<char> ripe_;

@@ -20,6 +20,8 @@ constexpr double kAtOnce = 1e-9;    // a part too short to go
 constexpr double kFine = 0.25;      // of the thinner body: how far two may move between two looks
 constexpr int kMostLooks = 200000;  // of a couple in a stretch
 constexpr int kMostRoots = 100;
+constexpr double kStraight = 0.8;  // how far a straight line is right about when a force has gone, at least
+constexpr double kSlight = 1e-6;   // of the largest force: what may pull before it lets go
 
 }  // namespace
 
@@ -218,6 +220,26 @@ double Direct<D>::stopping() const {
   return first;
 }
 
+// the part of the stretch at which the first of what is pressed together lets go, by a straight line: where
+// its force has come to pull by a little, so that it lets go indeed. Beyond, it would hold on, and friction
+// would drive the slip
+template <int D>
+double Direct<D>::letting_go(const Held*& which) {
+  double most = 0, first = kNever;
+  for (const Held& held : held_) {
+    if (held.kind == Held::Kind::contact) most = std::max(most, pressed_[held.first]);
+  }
+  slight_ = kSlight * most;
+  for (const Held& held : held_) {
+    if (held.kind != Held::Kind::contact || !acts(held)) continue;
+    const double begun = pressed_[held.first], now = f_[held.first];
+    if (begun <= slight_ || now >= -slight_) continue;
+    const double part = (begun + 0.5 * slight_) / (begun - now);
+    if (part < first) first = part, which = &held;
+  }
+  return first;
+}
+
 // the part of the stretch from begun_ to `state` at which the first thing happens; kNever: nothing does
 template <int D>
 double Direct<D>::crossing(const State<D>& state, double h) {
@@ -312,11 +334,18 @@ double Direct<D>::stretch(State<D>& state, double t, double h, bool& cut) {
   for (int i = 0; i < int(rows_.size()); ++i) slips_[i] = moves(i);
   double length = h;
   cut = false;
+  pressed_ = f_;
   for (int tries = 0; tries < 20; ++tries) {
     smooth(state, t, length);
-    const double part = crossing(state, length);
+    const Held* which = nullptr;
+    double opens = openings_ > 0 ? letting_go(which) : kNever;
+    // a force that comes down as far in a shorter time is one of many that may bear the same load
+    if (let_go_ && opens < kStraight) openings_ = 0, opens = kNever;
+    const double part = std::min(opens, crossing(state, length));
     if (part > 1) return length;
     cut = true;
+    let_go_.reset();
+    if (part == opens) let_go_ = gaps_[which->of].key, pressed_at_let_go_ = pressed_[which->first];
     restore(begun_, state);
     stand(state);
     if (part * length < 1e-14 * h) return 0;
