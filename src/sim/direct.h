@@ -80,6 +80,7 @@ class Direct final : public ContactStep<D>, private System {
   void push(const Row<D>& row, double f, std::span<double> rate) const;
   void jump(State<D>& state, const Row<D>& row, double p, bool places) const;
   void project(State<D>& state);
+  void pay_for(State<D>& state) const;
 
   // direct_slides.cpp
   void begin_slides(State<D>& state, double t, double h);
@@ -187,6 +188,7 @@ class Direct final : public ContactStep<D>, private System {
   bool rough_ = false;  // of this step: forces by sweeps from here on
   double work_ = 0;     // of this step: rows^3 solved
   Motion begun_, saved_;
+  std::vector<Vec<D>> placed_;                   // x before places are put right
   std::vector<Contact<D>> contacts_, impulses_;  // of this step
   std::vector<Vec<D>> joint_forces_;             // of this step
 };

@@ -277,6 +277,19 @@ bool Direct<D>::acts(const Held& held) const {
   }
 }
 
+// What is lifted out of what it had sunk into pays for its height with its motion
+template <int D>
+void Direct<D>::pay_for(State<D>& state) const {
+  for (const int body : free_.bodies()) {
+    const double more = -model_.bodies[body].mass * model_.gravity.dot(state.x[body] - placed_[body]);
+    const double has = more > 0 ? kinetic(model_, state, body) : 0;
+    if (has <= 0) continue;
+    const double left = std::sqrt(std::max(0.0, 1 - more / has));
+    state.v[body] *= left;
+    if (const int k = turning(state, body); k >= 0) state.spin[k] *= left;
+  }
+}
+
 // puts what is held back to where it belongs: places first, then velocities
 template <int D>
 void Direct<D>::project(State<D>& state) {
@@ -292,6 +305,8 @@ void Direct<D>::project(State<D>& state) {
   const auto move = [&](bool places) {
     for (int i = 0; i < int(chosen_.size()); ++i) jump(state, rows_[chosen_[i]], f_[chosen_[i]], places);
   };
+  placed_ = state.x;
+  double moved = 0;
   for (int round = 0; round < 3; ++round) {
     again();
     chosen_.clear();
@@ -306,10 +321,12 @@ void Direct<D>::project(State<D>& state) {
       }
     }
     if (worst <= 1e-14 * model_.scale) break;
+    moved = std::max(moved, worst);
     least();
     move(true);
     if (worst <= 1e-9 * model_.scale) break;
   }
+  if (moved > closed_) pay_for(state);
 
   again();
   chosen_.clear();
