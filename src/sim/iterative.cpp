@@ -54,6 +54,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
   for (const Body<D>& body : model.bodies) {
     drag_ = drag_ || body.drag != 0;
     fixed_.push_back(body.fixed);
+    light_.push_back({1 / body.mass, body.turns() ? 1 / body.inertia[0] : 0});
   }
 }
 
@@ -85,19 +86,21 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   if (due || held) {
     look(state, known);
   } else if (!known) {
-    seat(state);
+    seat(state, false);
   }
   blows_.begin();
   outran_ = false;
   const double part = h / stretches_;
   for (int i = 0; i < stretches_; ++i) stretch(state, t + i * part, part, i);
   blows_.keep(state.contacts);
-  if (outran_) look(state, true);
+  // the next step looks anyway, unless this was a part of one
+  const bool whole = h * value(model_.rate) > 1 - 1e-9;
+  if (outran_ && !(whole && (state.step + 1) % every_ == 0)) look(state, true);
   if (due && rest_.freeze(state, pairs_.all(), seats_, linkage_, poses_, v_, movers_, part)) {
     for (int i = 0; i < n; ++i) {
       if (state.frozen[i]) v_[i] = {};
     }
-    seat(state);
+    seat(state, true);
   }
   next_step_ = state.step + 1;
 }
@@ -118,15 +121,13 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
     const Motion& m = v_[i];
     fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.reach[i]);
   }
-  lively_.clear();
-  if (share > 0 && 2 * share * fastest > calmest_)
-    sweep::find_lively(seats_.data(), int(seats_.size()), v_.data(), share, lively_);
-  for (const int i : lively_) {
-    const Pair& pair = pairs_.all()[seats_[i / kLanes].pair[i % kLanes]];
-    const auto tell = [&](const Pair& old) {
-      if (stretches_ > 1) report(old, state);
-    };
-    if (pairs_.renew(pair, state, poses_, tell)) sit(pair, state);
+  if (share > 0 && 2 * share * fastest > calmest_) {
+    for (const sweep::Outdated& old : pairs_.outdated(seats_, v_, poses_, share)) {
+      const Pair& pair = pairs_.all()[old.pair];
+      if (stretches_ > 1) report(pair, state);
+      pairs_.renew(old, state, poses_);
+      sit(pair, state);
+    }
   }
 
   fall(state, t, h);
@@ -153,7 +154,7 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
   if (first && deep) project();
   advance(state, h, first && deep);
   if (!linkage_.empty()) rejoin(state, h);
-  outran_ = outran(h);
+  outran_ = outran(h, (1 - share) * span_);
 }
 
 // a pair's forces, from its seat
@@ -175,20 +176,20 @@ void Iterative<D>::report(const Pair& pair, State<D>& state) const {
 // pairs anew, who wakes by them, and seats for all
 template <int D>
 void Iterative<D>::look(State<D>& state, bool known) {
-  const bool all = state.step % (sweep::Pairs::kCalmLooks * every_) == 0 || state.contacts.empty();
+  const bool all = state.step % (sweep::Near::kCalmLooks * every_) == 0 || state.contacts.empty();
   bool changed = pairs_.find(state, poses_, span_, all);
   if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) {
     pairs_.find(state, poses_, span_, true);
     changed = true;
   }
   if (known && !changed && frozen_ == state.frozen) return;
-  seat(state);
+  seat(state, known);
   const bool fresh =
       state.step == 0 && std::all_of(state.contacts.begin(), state.contacts.end(),
                                      [](const Contact<D>& c) { return c.force == Vec<D>::Zero(); });
   if (fresh) {
     guess(state);
-    seat(state);
+    seat(state, false);
   }
 }
 

@@ -37,7 +37,8 @@ class Iterative final : public ContactStep<D> {
   bool gather(const State<D>& state);
   void stretch(State<D>& state, double t, double h, int which);
   void report(const sweep::Pair& pair, State<D>& state) const;
-  void seat(const State<D>& state);
+  void seat(const State<D>& state, bool known);
+  void take_seat(int pair, const State<D>& state);
   void sit(const sweep::Pair& pair, const State<D>& state);
   void guess(State<D>& state);
   void fall(State<D>& state, double t, double h);
@@ -48,7 +49,7 @@ class Iterative final : public ContactStep<D> {
   void project();
   void advance(State<D>& state, double h, bool look);
   void look(State<D>& state, bool known);
-  bool outran(double h) const;
+  bool outran(double h, double left) const;
   double clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const;
   Motion course(int body, double h);
   bool fast(int body, const Motion& way) const;
@@ -78,13 +79,18 @@ class Iterative final : public ContactStep<D> {
   std::vector<char> closing_;    // a slow touch closed in this step
   std::vector<char> frozen_;     // that the seats are of
   std::vector<char> fixed_;
+  struct Light {
+    double im, ii;  // 1/kg, 1/(kg m^2)
+  };
+  std::vector<Light> light_;
   std::vector<char> movers_;  // springs and hands hold them
 
   std::vector<std::uint64_t> colours_;  // used on each body
   std::vector<int> count_;
   std::vector<sweep::Seats> seats_;
   std::vector<sweep::Projection> projections_;
-  sweep::Found lively_, slow_, fast_;
+  sweep::Found slow_, fast_;
+  std::vector<int> slots_;       // which pair sits where
   std::int64_t next_step_ = -1;  // of the state that this has left
   long version_ = -1;
   int awake_pairs_ = 0;

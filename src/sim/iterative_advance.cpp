@@ -125,26 +125,27 @@ double Iterative<D>::clear(int body, const sweep::Pose& from, const Motion& way,
   return part;
 }
 
-// whether a body may come farther than its pairs foresaw, by more than a part of its thickness
+// whether a body may come farther in `left` s until the next look than its pairs foresaw, by more than a part
+// of its thickness
 template <int D>
-bool Iterative<D>::outran(double h) const {
+bool Iterative<D>::outran(double h, double left) const {
   const int n = int(turns_.size());
   const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
   for (int i = 0; i < n; ++i) {
     const Motion &v = v_[i], &o = old_[i];
     const double reach = cores_.reach[i];
     const double gain = std::fabs(v.x - o.x) + std::fabs(v.y - o.y) + std::fabs(v.w - o.w) * reach;
-    if (gain * span_ < 0.04 * cores_.inside[i] + falls) continue;
+    if (gain * left < 0.04 * cores_.inside[i] + falls) continue;
     const auto speed = [&](const Motion& m) {
       return std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * reach;
     };
-    if ((speed(v) - speed(o)) * span_ > 0.25 * cores_.inside[i] + pairs_.spare(i, speed(o), span_) + falls)
+    if ((speed(v) - speed(o)) * left > 0.25 * cores_.inside[i] + pairs_.spare(i, speed(o), span_) + falls)
       return true;
   }
   return false;
 }
 
 template void Iterative<2>::advance(State<2>&, double, bool);
-template bool Iterative<2>::outran(double) const;
+template bool Iterative<2>::outran(double, double) const;
 
 }  // namespace obscura::sim

@@ -91,8 +91,13 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   const Pair& pair = pairs[i];
   const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
   Seats& g = seats[group];
-  const Rows& r = rows(group, seats, poses);
   const int a = g.a[lane], b = g.b[lane];
+  // too slow for a blow however they meet
+  if (std::fabs(now_[a].x - now_[b].x) + std::fabs(now_[a].y - now_[b].y) +
+          (std::fabs(now_[a].w) + std::fabs(now_[b].w)) * g.far[lane] <
+      -g.blow[lane])
+    return false;
+  const Rows& r = rows(group, seats, poses);
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
   const auto push = [&](double dx, double dy, double ra, double rb, double l) {
     now_[a].x += dx * (ima * l), now_[a].y += dy * (ima * l), now_[a].w += iia * (ra * l);

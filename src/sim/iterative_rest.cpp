@@ -195,8 +195,8 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
     if (state.frozen[i] && movers[i]) restless_[i] = 1, any = true;
   }
   for (const Pair& pair : pairs) {
-    if (pair.b < 0 || model_.bodies[pair.a].fixed || model_.bodies[pair.b].fixed) continue;
-    if (state.frozen[pair.a] == state.frozen[pair.b]) continue;
+    if (pair.b < 0 || state.frozen[pair.a] == state.frozen[pair.b]) continue;
+    if (model_.bodies[pair.a].fixed || model_.bodies[pair.b].fixed) continue;
     const int sleeper = state.frozen[pair.a] ? pair.a : pair.b, other = pair.a + pair.b - sleeper;
     const Motion& m = v[other];
     const double comes =

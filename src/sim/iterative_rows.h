@@ -24,9 +24,11 @@ struct alignas(64) Seats {
   int a[kLanes], b[kLanes];         // bodies; walls and empty seats have the one after the last
   int pair[kLanes], first[kLanes];  // and where its touches are among the contacts; -1: nobody
   unsigned char touches[kLanes];
-  unsigned char of_b[2];     // a bit a lane: the corner is b's
-  unsigned char corners[2];  // two corners touch
-  unsigned char struck[2];   // met a blow in this step
+  unsigned char of_b[2];            // a bit a lane: the corner is b's
+  unsigned char corners[2];         // two corners touch
+  unsigned char struck[2];          // met a blow in this step
+  unsigned char boxes;              // both are boxes
+  unsigned short words[2][kLanes];  // of the features
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
   double calm[kLanes], far[kLanes];  // m/s up to which features stay; the farther reach of both, m
   double blow[kLanes];               // -m/s: faster approaches are blows
@@ -59,9 +61,6 @@ struct Pace {
   double creep = 0;  // m/s: slower approaches are none
   double gain = 0;   // m/s that gravity may add in the step
 };
-
-/// Pairs whose features may have changed in `share` of the time between two looks.
-void find_lively(const Seats* seats, int count, const Motion* v, double share, Found& out);
 
 /// One pair to another seat; the forces alone.
 void copy_seat(const Seats& from, int i, Seats& to, int k);

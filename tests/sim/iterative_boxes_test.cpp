@@ -1,0 +1,68 @@
+// Boxes that meet four at a time: against one pair after another.
+
+#include "sim/iterative_boxes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "rooms.h"
+#include "sim/trig.h"
+
+namespace obscura::sim {
+namespace {
+
+// 4000 random pairs, near enough to touch or overlap: the same features by the same gap. Both turn corners in
+// another order, so that they may choose another corner where two are as near, to rounding (1e-12 of boxes
+// of size 1)
+TEST(IterativeBoxes, MeetAsOnePairAfterAnother) {
+  World<2> world = room();
+  std::vector<sweep::Pose> poses;
+  constexpr int kBoxes = 200;
+  for (int i = 0; i < kBoxes; ++i) {
+    const double angle = i % 10 == 0 ? 0 : 0.73 * i;
+    const Vec2 at(0.9 * std::sin(2.1 * i), 0.9 * std::sin(3.7 * i));
+    add_box(world, {0.3 + 0.1 * (i % 7), 1 - 0.1 * (i % 5)}, 1, at, {0, 0}, angle, 0, 0);
+    const SinCos sc = sin_cos(angle);
+    poses.push_back({at[0], at[1], sc.cos, sc.sin});
+  }
+  poses.emplace_back();
+  const sweep::Cores cores(world.model);
+  const std::vector<sweep::Half> halves = sweep::halves(cores);
+  int apart = 0, corners = 0;
+  for (int i = 0; i < 1000; ++i) {
+    sweep::Meeting four{};
+    for (int lane = 0; lane < sweep::kLanes; ++lane)
+      four.a[lane] = (7 * i + 31 * lane) % kBoxes, four.b[lane] = (13 * i + 57 * lane + 1) % kBoxes;
+    sweep::meet(&four, 1, poses.data(), halves.data());
+    for (int lane = 0; lane < sweep::kLanes; ++lane) {
+      const int p = four.a[lane], q = four.b[lane];
+      if (p == q) continue;
+      const sweep::Core &a = cores.all[p], &b = cores.all[q];
+      sweep::Feature features[2];
+      const double gap = nearest(cores, a, poses[p], b, poses[q], features);
+      EXPECT_NEAR(four.gap[lane], gap, 1e-12) << p << " " << q;
+      apart += gap > 0;
+      double want[2], got[2];
+      for (int k = 0; k < 2; ++k) {
+        const auto off = [&](const sweep::Feature& f) {
+          return f.kind == sweep::Feature::none ? 1e3 : touch(cores, a, poses[p], b, poses[q], f).gap;
+        };
+        const sweep::Feature found = sweep::Feature::of(four.words[k][lane]);
+        corners += found.kind == sweep::Feature::corners;
+        want[k] = off(features[k]), got[k] = off(found);
+      }
+      if (want[1] < want[0]) std::swap(want[0], want[1]);
+      if (got[1] < got[0]) std::swap(got[0], got[1]);
+      EXPECT_NEAR(got[0], want[0], 1e-12) << p << " " << q;
+      EXPECT_NEAR(got[1], want[1], 1e-12) << p << " " << q;
+      EXPECT_LE(four.words[0][lane], four.words[1][lane]);
+    }
+  }
+  // all cases were among them
+  EXPECT_GT(apart, 200);
+  EXPECT_GT(corners, 20);
+}
+
+}  // namespace
+}  // namespace obscura::sim
