@@ -138,7 +138,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   double done = 0;
   forced_.clear();
   rough_ = false, work_ = 0;
-  openings_ = most_openings_, let_go_.reset();
+  openings_ = most_openings_, let_go_.reset(), vague_.clear();
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
   for (int cuts = 0; done < h; ++cuts) {
     find(state, closed_);
@@ -195,17 +195,22 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   break_joints(state);
 }
 
-// what the last stretch ended by, and bears next to nothing now, lets go
+// what the last stretch ended by lets go, or slips, if it bears next to nothing more now
 template <int D>
 void Direct<D>::part_ways() {
   --openings_;
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact || gaps_[held.of].key != *let_go_ || !acts(held)) continue;
+    ConeMode<D>& mode = modes_[held.block];
+    const Tangent<D> drag = f_.segment(held.first + 1, D - 1);
+    const double left = grasp(held, f_);
     if (f_[held.first] <= slight_) {
-      modes_[held.block].hold = Hold::open;
+      mode.hold = Hold::open;
       f_.segment(held.first, D).setZero();
-    } else if (f_[held.first] > 0.25 * pressed_at_let_go_) {
-      openings_ = 0;  // one of many that may bear the same load: its force tells nothing
+    } else if (left <= slight_ && mode.hold != Hold::slide) {
+      mode.hold = Hold::slide, mode.along = -drag / std::sqrt(drag.squaredNorm());
+    } else if (left > 0.25 * grasp_at_let_go_) {
+      vague_.push_back(*let_go_);  // one of many that may bear the same load: its force tells nothing
     }
   }
   let_go_.reset();

@@ -116,6 +116,7 @@ class Direct final : public ContactStep<D>, private System {
   double closing(const State<D>& state, double h, Couple couple);
   double tightening(const State<D>& state, double h);
   double stopping() const;
+  double grasp(const Held& held, const Eigen::VectorXd& f) const;
   double letting_go(const Held*& which);
   double way(const State<D>& state, int body, double h) const;
   bool may_close(const State<D>& state, double h, Couple couple) const;
@@ -177,12 +178,13 @@ class Direct final : public ContactStep<D>, private System {
   Eigen::VectorXd pressed_;           // f there
   int openings_ = 0;                  // how many more may cut this step
   double slight_ = 0;                 // N: less presses nothing
-  double pressed_at_let_go_ = 0;      // N: by what, when that stretch began
+  double grasp_at_let_go_ = 0;        // N: what it had left when that stretch began
   std::optional<ContactKey> let_go_;  // what the last stretch ended by
   std::vector<int> chosen_;
   Islands islands_;
   std::vector<char> ripe_;
   std::vector<double> rate_;
+  std::vector<ContactKey> vague_;            // whose forces do not tell in this step when they let go
   std::vector<std::pair<int, int>> forced_;  // couples that would come through each other at once
   bool forced_again_ = false;
   bool rough_ = false;  // of this step: forces by sweeps from here on

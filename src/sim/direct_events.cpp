@@ -220,9 +220,17 @@ double Direct<D>::stopping() const {
   return first;
 }
 
-// the part of the stretch at which the first of what is pressed together lets go, by a straight line: where
-// its force has come to pull by a little, so that it lets go indeed. Beyond, it would hold on, and friction
-// would drive the slip
+// how much force is left, of these, until a contact lets go; in event mode, until it slips
+template <int D>
+double Direct<D>::grasp(const Held& held, const Eigen::VectorXd& f) const {
+  const double pressed = f[held.first];
+  if (model_.collision != Collision::event || holding_[held.block].hold != Hold::stick) return pressed;
+  return blocks_[held.block].mu * pressed - std::sqrt(f.segment(held.first + 1, D - 1).squaredNorm());
+}
+
+// the part of the stretch at which the first contact lets go or slips, by a straight line: where its force
+// has gone beyond by a little, so that it does indeed. Beyond, what pulls would hold on, and friction would
+// drive the slip
 template <int D>
 double Direct<D>::letting_go(const Held*& which) {
   double most = 0, first = kNever;
@@ -232,7 +240,8 @@ double Direct<D>::letting_go(const Held*& which) {
   slight_ = kSlight * most;
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact || !acts(held)) continue;
-    const double begun = pressed_[held.first], now = f_[held.first];
+    if (std::find(vague_.begin(), vague_.end(), gaps_[held.of].key) != vague_.end()) continue;
+    const double begun = grasp(held, pressed_), now = grasp(held, f_);
     if (begun <= slight_ || now >= -slight_) continue;
     const double part = (begun + 0.5 * slight_) / (begun - now);
     if (part < first) first = part, which = &held;
@@ -340,12 +349,12 @@ double Direct<D>::stretch(State<D>& state, double t, double h, bool& cut) {
     const Held* which = nullptr;
     double opens = openings_ > 0 ? letting_go(which) : kNever;
     // a force that comes down as far in a shorter time is one of many that may bear the same load
-    if (let_go_ && opens < kStraight) openings_ = 0, opens = kNever;
+    if (let_go_ && opens < kStraight) vague_.push_back(gaps_[which->of].key), opens = kNever;
     const double part = std::min(opens, crossing(state, length));
     if (part > 1) return length;
     cut = true;
     let_go_.reset();
-    if (part == opens) let_go_ = gaps_[which->of].key, pressed_at_let_go_ = pressed_[which->first];
+    if (part == opens) let_go_ = gaps_[which->of].key, grasp_at_let_go_ = grasp(*which, pressed_);
     restore(begun_, state);
     stand(state);
     if (part * length < 1e-14 * h) return 0;
@@ -366,9 +375,11 @@ void Direct<D>::smooth(State<D>& state, double t, double h) {
 template double Direct<2>::stretch(State<2>&, double, double, bool&);
 template void Direct<2>::find(const State<2>&, double);
 template bool Direct<2>::may_touch(int, int) const;
+template double Direct<2>::grasp(const Held&, const Eigen::VectorXd&) const;
 template double Direct<3>::stretch(State<3>&, double, double, bool&);
 template void Direct<3>::find(const State<3>&, double);
 template bool Direct<3>::may_touch(int, int) const;
+template double Direct<3>::grasp(const Held&, const Eigen::VectorXd&) const;
 template double Direct<2>::gap_of(const ContactKey&, double);
 template double Direct<3>::gap_of(const ContactKey&, double);
 

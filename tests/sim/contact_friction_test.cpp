@@ -178,5 +178,25 @@ TEST(ContactFriction, ABoxOnABoxIsDraggedAlong) {
   }
 }
 
+// drawn by a spring whose end moves at speed u, it stays until k u t = mu m g; then, tau later,
+//   x = u tau - u/w sin(w tau)
+TEST(ContactFriction, WhatAHandDrawsSlipsAtItsTime) {
+  const double k = 20, mu = 0.5, u = 0.5, w = std::sqrt(k);
+  const auto error = [&](int rate) {
+    World<2> world = touching_room(Collision::event);
+    world.model.rate = {rate, 1};
+    add_wall(world, {0, 0}, {0, 1});
+    add_particle(world, {0, 0}, {0, 0}, 1, 0);
+    rub(world, mu);
+    world.model.mice.push_back({{{{0, 1}, {0, 0}}, {{2, 1}, {2 * u, 0}}}, 0, k, 0});
+    const auto all = run(world);
+    const double tau = 1.2 - mu * kG / (k * u);
+    return shown(*all, {6, 5}).bodies[0].position.x() - (u * tau - u / w * std::sin(w * tau));
+  };
+  // Runge-Kutta's own error, (w h)^4 / 120 u tau
+  EXPECT_NEAR(error(100), 0, 1.3e-8);
+  EXPECT_NEAR(error(600), 0, 1e-11);
+}
+
 }  // namespace
 }  // namespace obscura::sim
