@@ -1,5 +1,7 @@
 // obscura check: reads, validates and builds scenes without opening GL; says what a render would do.
 
+#include <array>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
@@ -49,21 +51,31 @@ std::string contact(const sim::Model<D>& model) {
   return fmt::format("{} solver: {}", direct ? "direct" : "iterative", why);
 }
 
+// as sim::ShapeKind counts them
+constexpr const char* kKinds[][2] = {{"particle", "particles"},
+                                     {"ball", "balls"},
+                                     {"box", "boxes"},
+                                     {"polygon", "polygons"},
+                                     {"body of several shapes", "bodies of several shapes"},
+                                     {"capsule", "capsules"},
+                                     {"hull", "hulls"}};
+
 // "2 particles, 1 ball, 12 boxes", those kinds that there are; bodies by what they are made of
 template <int D>
 std::string bodies(const sim::Model<D>& model) {
-  std::size_t particles = 0, balls = 0, boxes = 0, others = 0;
+  using sim::ShapeKind;
+  std::array<std::size_t, std::size(kKinds)> numbers{};
   for (const sim::Body<D>& body : model.bodies) {
-    const bool ball = body.shape.kind == sim::ShapeKind::ball;
-    if (body.shape.kind == sim::ShapeKind::point || (ball && !body.turns()))
-      ++particles;
-    else
-      ++(ball ? balls : body.shape.kind == sim::ShapeKind::box ? boxes : others);
+    ShapeKind kind = body.shape.kind;
+    // what stands askew and does not turn is a body of one part
+    if (kind == ShapeKind::compound && body.shape.parts.size() == 1) kind = body.shape.parts[0].kind;
+    if (kind == ShapeKind::ball && !body.turns()) kind = ShapeKind::point;
+    ++numbers[std::size_t(kind)];
   }
-  std::string text = count(particles, "particle", "particles");
-  if (balls > 0) text += ", " + count(balls, "ball", "balls");
-  text += ", " + count(boxes, "box", "boxes");
-  if (others > 0) text += ", " + count(others, "other body", "other bodies");
+  std::string text = count(numbers[0], kKinds[0][0], kKinds[0][1]);
+  for (std::size_t k = 1; k < numbers.size(); ++k) {
+    if (numbers[k] > 0) text += ", " + count(numbers[k], kKinds[k][0], kKinds[k][1]);
+  }
   text += ", " + count(model.springs.size(), "spring", "springs");
   if (!model.joints.empty()) text += ", " + count(model.joints.size(), "joint", "joints");
   return text + ", " + count(model.walls.size(), "wall", "walls") + ", " +

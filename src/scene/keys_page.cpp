@@ -241,9 +241,9 @@ const char* const kNotes[][2] = {
      "those, and may be open. Where there is no size, the reference pixel of the mouse is 1/480 of the "
      "height that the camera fits."},
     {"physics",
-     "Balls, polygons, bodies of several shapes and joints need `collision = \"contact\"` or `\"event\"`; so "
-     "do "
-     "friction, and bodies that meet other bodies."},
+     "In the plane, balls, polygons and bodies of several shapes need `collision = \"contact\"` or "
+     "`\"event\"`; in space `handout` has bodies of every form, which meet walls alone. Joints, friction and "
+     "bodies that meet other bodies need `contact` or `event` in both."},
     {"mouse",
      "The reference pixel is 1/480 of the room's height, so that a larger picture shows the same motion."},
     {"camera",

@@ -176,6 +176,17 @@ TEST_F(Check, SaysWhatWouldBeDone) {
   }
 }
 
+TEST_F(Check, CallsBodiesWhatTheyAreAlsoWhereTheyStandAskewAndDoNotTurn) {
+  scene(
+      "duration = 1\n[room]\nsize = [8, 4, 8]\n[physics]\nrotation = false\n"
+      "[[box]]\nsize = [0.5, 0.5, 0.5]\nposition = [2, 1, 0]\n"
+      "copies = { count = 8, turn = 45, around = [0, 0, 0] }\n"
+      "[[capsule]]\nlength = 0.5\nradius = 0.1\nposition = [0, 2, 0]\norientation = [0, 0, 30]\n");
+  const Outcome run = obscura("check scene.toml");
+  EXPECT_NE(run.out.find("0 particles, 8 boxes, 1 capsule, 0 springs"), std::string::npos)
+      << run.out << run.err;
+}
+
 TEST_F(Check, ReadsAllScenesAndFailsIfOneIsBad) {
   scene(kRoom);
   scene("duration = -1\n", "bad.toml");

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -648,27 +647,6 @@ TEST(Cone, AWarmSolveAllocatesNothing) {
   const std::size_t before = allocations();
   run();
   EXPECT_EQ(allocations(), before);
-}
-
-TEST(Cone, DISABLED_Timing) {
-  for (const int base : {4, 7, 10}) {
-    const Heap heap = pyramid(base, 0.5);
-    const MatrixXd K = heap.K();
-    const VectorXd b = heap.b();
-    Cone<2> cone;
-    std::vector<ConeMode<2>> modes(heap.blocks.size());
-    VectorXd f = VectorXd::Zero(b.size());
-    for (int i = 0; i < 3; ++i) {
-      const auto start = std::chrono::steady_clock::now();
-      const ConeReport report = cone.solve(K, b, heap.blocks, modes, f);
-      const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-      const auto middle = std::chrono::steady_clock::now();
-      cone.hold(K, b, heap.blocks, modes, f);
-      const std::chrono::duration<double, std::milli> held = std::chrono::steady_clock::now() - middle;
-      std::printf("%d rows: %g ms, %d tries, found %d; hold %g ms\n", int(b.size()), took.count(),
-                  report.tries, report.found, held.count());
-    }
-  }
 }
 
 }  // namespace
