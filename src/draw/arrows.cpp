@@ -1,7 +1,8 @@
 // An arrow: a shaft of even width and a head with swept barbs, all heads of one size; an arrow shorter than
-// its head shrinks as a whole.
+// its head shrinks as a whole. One that would leave the window has its head at the edge.
 
 #include <algorithm>
+#include <cmath>
 
 #include "draw/stage.h"
 
@@ -11,6 +12,7 @@ namespace {
 constexpr double kHead = 24, kHeadHalf = 8.6, kNotch = 17;  // tip to barbs, half across, tip to notch
 constexpr double kHalo = 2.4;
 constexpr double kWhole = 1.5;  // heads long: from here on the head is full
+constexpr double kEdge = 8;     // page units from a window's edge to a head
 
 /// The head, larger by `halo` all around.
 std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
@@ -23,7 +25,19 @@ std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
 
 }  // namespace
 
-void offer(const Point& tail, const Point& tip, double weight, std::vector<Arrow>& arrows) {
+void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows) {
+  // how much of its way lies in the window, if it begins there
+  const Point low = Point(window.x, window.y).array() + kEdge * weight;
+  const Point high = Point(window.x + window.width, window.y + window.height).array() - kEdge * weight;
+  if ((tail.array() >= low.array()).all() && (tail.array() <= high.array()).all()) {
+    double part = 1;
+    for (int i = 0; i < 2; ++i) {
+      const double edge = tip[i] < tail[i] ? low[i] : high[i];
+      if (std::abs(tip[i] - tail[i]) > std::abs(edge - tail[i]))
+        part = std::min(part, (edge - tail[i]) / (tip[i] - tail[i]));
+    }
+    tip = tail + part * (tip - tail);
+  }
   const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
   if (grow > 0.2) arrows.push_back({tail, tip, grow});
 }
@@ -46,7 +60,7 @@ void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& 
   for (int i : stage.arrows) {
     const sim::Snapshot::Body& body = now.bodies[i];
     offer(view.page(body.position), view.page(body.position + stage.look.velocity_scale * body.velocity),
-          stage.layout.weight, arrows);
+          view.window, stage.layout.weight, arrows);
   }
   draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.velocity, list);
 }
@@ -80,8 +94,8 @@ std::vector<Push> pushes(const sim::Cast& cast, const Look& look, const sim::Sna
 void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   std::vector<Arrow> arrows;
   for (const Push& push : pushes(stage.cast, stage.look, now)) {
-    offer(view.page(push.point), view.page(push.point + stage.force_scale * push.force), stage.layout.weight,
-          arrows);
+    offer(view.page(push.point), view.page(push.point + stage.force_scale * push.force), view.window,
+          stage.layout.weight, arrows);
   }
   draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.force, list);
 }

@@ -184,6 +184,7 @@ Picture Depictor::depict(const sim::Snapshot& now,
   draw_pins(stage, view, now, list);
   draw_contacts(stage, view, now, list);
   draw_velocities(stage, view, now, list);
+  draw_labels(stage, view, now, list);
   draw_hands(stage, view, now, list);
   list.unclip();
   if (stage.layout.caption && stage.look.clock) {

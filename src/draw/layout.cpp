@@ -18,12 +18,6 @@ constexpr double kStrip = 76, kSecondLine = 36, kBaseline = 50;  // heights
 constexpr double kMargin = 36, kTitleGap = 18, kClockGap = 44;
 constexpr double kSmallestType = 0.82;  // before the caption takes another line
 
-double width_of(const std::string& words, Face face, double size, bool tabular = false) {
-  if (words.empty()) return 0;
-  return shape({{0, 0}, Align::left, {{.text = words, .face = face, .size = size, .tabular = tabular}}})
-      .width;
-}
-
 }  // namespace
 
 Fitted fitted_world(const sim::Cast& cast, const Extent& extent) {
@@ -124,6 +118,12 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
 }
 
 }  // namespace
+
+double width_of(const std::string& words, Face face, double size, bool tabular) {
+  if (words.empty()) return 0;
+  return shape({{0, 0}, Align::left, {{.text = words, .face = face, .size = size, .tabular = tabular}}})
+      .width;
+}
 
 std::string clock_text(double time) {
   return fmt::format("t = {:.2f} s", std::abs(time) < 0.005 ? 0.0 : time);

@@ -41,6 +41,9 @@ Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, co
 /// Writes the caption over a page without a room on it, and says how high its strip is.
 double lay_caption(Layout& layout, const Look& look);
 
+/// How wide words are set, page units; `tabular`: with figures of equal width.
+double width_of(const std::string& words, Face face, double size, bool tabular = false);
+
 /// "t = 3.42 s"
 std::string clock_text(double time);
 

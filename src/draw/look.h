@@ -18,6 +18,7 @@ struct BodyLook {
   double trail = 0;            // s; 0: none
   bool velocity = false;       // draw its velocity as an arrow
   bool contact = false;        // draw the forces where it touches as arrows
+  std::string label = {};      // words beside it
 };
 
 /// What the scene says about the looks of the picture.

@@ -235,6 +235,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
                     {},
                     {},
                     {},
+                    {},
                     {}};
     scenery.solids.window = panel.window;
     picture.moving.clip(panel.window);
@@ -247,6 +248,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     trace_edges(scenery);
     draw_room_front(stage, lens, picture.moving);
     draw_space_arrows(scenery);
+    draw_space_labels(scenery);
     draw_space_hands(scenery);
     picture.moving.unclip();
     picture.solids.push_back(std::make_shared<const Solids>(std::move(scenery.solids)));

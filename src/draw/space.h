@@ -68,7 +68,7 @@ Lens lens_of(const Panel& panel, const sim::Snapshot& now);
 Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways);
 
 /// A stroke, and how near it is: the farther is drawn first.
-struct Line {
+struct Trace {
   std::vector<Node> nodes;
   bool closed = false;
   double near = 0;
@@ -88,6 +88,13 @@ struct Corner {
   Shaded color;
 };
 
+/// What a spring, rod or rope throws on the ground: the shadow of a round rod that stops a share of the
+/// light.
+struct Rod {
+  sim::Vec3 a, b;
+  double radius = 0, share = 1;
+};
+
 /// One panel at one instant, while it is drawn.
 struct Scenery {
   const SpaceStage& stage;
@@ -102,7 +109,8 @@ struct Scenery {
   std::vector<Corner> corners;
   std::vector<std::uint32_t> triangles;  // into corners
   std::vector<Chunk> chunks;
-  std::vector<Line> lines;
+  std::vector<Trace> lines;
+  std::vector<Rod> rods;
 };
 
 /// Grid, room, caption: what stands still while the camera does.
@@ -126,6 +134,7 @@ void trace_trails(Scenery& scenery, Ways ways);
 void add_shadows(Scenery& scenery);
 /// The lines that were traced, the farthest first, and arrows over them.
 void draw_space_arrows(Scenery& scenery);
+void draw_space_labels(Scenery& scenery);
 void draw_space_hands(Scenery& scenery);
 
 /// The parts of a line through `way` that are seen, as lines of this width and colour.

@@ -227,8 +227,8 @@ void trace(Scenery& s, const std::vector<Vec3>& way, bool closed, int own, int t
            Color color) {
   if (way.size() < 2) return;
   Sight::Parts parts;
-  std::vector<Line> found;
-  Line line;
+  std::vector<Trace> found;
+  Trace line;
   bool whole = closed;
   const auto flush = [&] {
     if (line.nodes.size() > 1) found.push_back(line);
@@ -258,7 +258,7 @@ void trace(Scenery& s, const std::vector<Vec3>& way, bool closed, int own, int t
   flush();
   double near = 0;
   for (const Vec3& p : way) near += s.lens.seen(p).z() / double(way.size());
-  for (Line& l : found) {
+  for (Trace& l : found) {
     l.near = near;
     s.lines.push_back(std::move(l));
   }

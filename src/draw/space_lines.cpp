@@ -82,15 +82,15 @@ void trace_trails(Scenery& s, Ways ways) {
 void draw_space_arrows(Scenery& s) {
   // the lines that are seen, the farthest first
   std::stable_sort(s.lines.begin(), s.lines.end(),
-                   [](const Line& a, const Line& b) { return a.near < b.near; });
-  for (const Line& line : s.lines) s.list.add(line.nodes, Cap::round, Blend::over, line.closed);
+                   [](const Trace& a, const Trace& b) { return a.near < b.near; });
+  for (const Trace& line : s.lines) s.list.add(line.nodes, Cap::round, Blend::over, line.closed);
 
   const SpaceStage& stage = s.stage;
   const double weight = stage.layout.weight;
   std::vector<Arrow> arrows;
   const auto arrow = [&](const Vec3& tail, const Vec3& tip) {
     if (s.lens.depth(tail) < 1e-2 || s.lens.depth(tip) < 1e-2) return;
-    offer(s.lens.page(tail), s.lens.page(tip), weight, arrows);
+    offer(s.lens.page(tail), s.lens.page(tip), s.lens.window, weight, arrows);
   };
   for (const Push& push : pushes(stage.cast, stage.look, s.now))
     arrow(push.point, push.point + stage.force_scale * push.force);

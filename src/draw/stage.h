@@ -61,8 +61,8 @@ struct Arrow {
   double grow = 1;  // of its head and shaft
 };
 
-/// An arrow large enough to be seen.
-void offer(const Point& tail, const Point& tip, double weight, std::vector<Arrow>& arrows);
+/// An arrow large enough to be seen. What begins in the window ends there.
+void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows);
 
 /// Halos of all below all arrows.
 void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list);
@@ -97,6 +97,9 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
 void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The words of bodies that have some, over all of them.
+void draw_labels(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 /// The forces where bodies touch that have such arrows: one arrow for two that touch, at their centre of
 /// pressure, the force on the one that is pushed up.

@@ -254,6 +254,7 @@ void add(Making<D>& making, const Fields& fields, const std::string& kind, const
   const Node* arrows = fields.given("arrows");
   look.velocity = arrows ? has(*arrows, "velocity") : making.velocity && !start.fixed;
   look.contact = arrows ? has(*arrows, "contact") : making.contact && !start.fixed;
+  if (fields.given("label")) look.label = fields.text("label");
   making.looks.push_back(look);
 }
 

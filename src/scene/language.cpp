@@ -173,6 +173,7 @@ std::vector<Key> rows() {
        .doc = "How long its trail lasts.", .example = "1.5"},
       {.path = "any.arrows", .form = choices, .absent = "`look.arrows`", .choices = {"velocity", "contact"},
        .later = {"force"}, .doc = "What is drawn on it as arrows: its velocity; the force on it where it touches.", .example = "[\"velocity\"]"},
+      {.path = "any.label", .form = text, .absent = "none", .doc = "Words that stand beside it, upright.", .example = "\"m = 2 kg\""},
       {.path = "any.copies", .form = table,
        .doc = "More of the same: a row, a grid, a ring. They are called `ball[0]`, `ball[1]`, ..."},
       {.path = "any.copies.count", .form = count, .range = {1, 1e6}, .required = true,

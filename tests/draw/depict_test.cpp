@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "draw/layout.h"
 #include "draw/made.h"
 
 namespace obscura::draw {
@@ -194,6 +195,20 @@ TEST(Depict, VelocityArrowEndsWhereItsScaleSays) {
 
   made.now.bodies[0].velocity = {0.01, 0, 0};
   EXPECT_TRUE(made.picture().moving.polygons.empty()) << "too short to have a head";
+}
+
+TEST(Depict, AnArrowThatWouldLeaveThePageEndsAtItsEdgeOnTheSameWay) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {3, 2, 0}, 0.1);
+  made.now.bodies[0].velocity = {400, 300, 0};
+  made.look.bodies[0].velocity = true;
+  const Picture picture = made.picture();
+  const View view = made.depictor().view(0);
+  const Point tip = picture.moving.points[picture.moving.polygons[1].begin], tail = view.page({3, 2, 0});
+  const Rect& w = view.window;
+  EXPECT_FALSE(outside(w, tip, 0));
+  EXPECT_TRUE(outside(w, tip + 14 * Point(0.8, -0.6), 0));
+  EXPECT_NEAR((tip - tail).normalized().dot(Point(0.8, -0.6)), 1, 1e-12);
 }
 
 TEST(Depict, HandIsShownFromJustBeforeThePressToJustAfterTheRelease) {
