@@ -20,6 +20,7 @@ using sim::Vec3;
 constexpr double kSpread = 0.10;  // radius of the light's disc at distance 1
 constexpr double kNear = 1e-3;    // least depth over the target's
 constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
+constexpr double kLevel = 0.05;   // light that comes from lower throws no shadows on the ground
 
 double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -40,6 +41,12 @@ void hull(std::vector<Point>& points, std::vector<Point>& out) {
   };
   chain(points.begin(), points.end());
   chain(points.rbegin(), points.rend());
+}
+
+/// (x w, y w, w) of a place, see Lens::homogeneous.
+Vec3 seen_at(const Lens& lens, const Vec3& place) {
+  const Eigen::Vector4d h = lens.homogeneous(place);
+  return {h.x(), h.y(), h.w()};
 }
 
 }  // namespace
@@ -77,65 +84,79 @@ Color edge(Color own, Theme theme) {
   return theme == Theme::paper ? mix(own, {0x10, 0x13, 0x18}, 0.58) : mix(own, {0x06, 0x09, 0x0D}, 0.80);
 }
 
-void cast_on(const Ground& ground, const Light& light, const Lens& lens, const std::vector<Vec3>& corners,
-             double radius, bool many, Solids& solids) {
-  // what is under the ground casts nothing on it
-  double low = 1e300, high = -1e300;
-  for (const Vec3& c : corners) {
-    const double h = (c - ground.point).dot(ground.normal);
-    low = std::min(low, h - radius), high = std::max(high, h + radius);
+std::uint32_t stopped(double share) {
+  std::uint32_t rays = 0;
+  for (int i = 0; i < kRays; ++i)
+    if (std::floor((i + 1) * share) > std::floor(i * share)) rays |= 1u << i;
+  return share < 1 ? rays : ~0u;
+}
+
+Fall::Fall(const Ground& ground, const Light& light, const Lens& lens)
+    : ground_(ground), light_(light), lens_(lens), slope_(light.toward.dot(ground.normal)) {
+  if (slope_ <= kLevel) return;
+  for (int i = 0; i < kRays; ++i) rays_[i] = ray(light.rays[i]);
+  rays_[kRays] = ray(light.toward);
+}
+
+Fall::Ray Fall::ray(const Vec3& along) const {
+  // a ball's shadow is an ellipse: its axis along the light is longer
+  const double down = along.dot(ground_.normal);
+  const Vec3 flat = along - ground_.normal * down;
+  const Vec3 u = flat.norm() > 1e-9 ? Vec3(flat.normalized()) : ground_.normal.unitOrthogonal();
+  const Vec3 v = ground_.normal.cross(u);
+  const auto seen = [&](const Vec3& way) {
+    return Vec3(seen_at(lens_, lens_.target + way) - seen_at(lens_, lens_.target));
+  };
+  Ray r{seen(-along / down), {}};
+  for (int k = 0; k < kRim; ++k) {
+    const double a = 2 * std::numbers::pi * k / kRim;
+    r.round[k] = seen(along.norm() / down * std::cos(a) * u + std::sin(a) * v);
   }
-  const double fall = light.toward.dot(ground.normal);
-  if (high <= 0 || fall <= 0.05) return;
+  return r;
+}
+
+void Fall::cast(std::span<const Vec3> corners, double radius, bool many, std::uint32_t rays, Solids& solids) {
+  if (slope_ <= kLevel) return;
+  // what is under the ground casts nothing on it
+  double high = -1e300;
+  seen_.clear(), heights_.clear();
+  for (const Vec3& c : corners) {
+    const double h = (c - ground_.point).dot(ground_.normal);
+    high = std::max(high, h + radius);
+    heights_.push_back(std::max(h, 0.0));
+    seen_.push_back(seen_at(lens_, c));
+  }
+  if (high <= 0) return;
 
   // a sharp shadow takes one ray for all, a soft one each
-  const Vec3 foot = corners[0] - light.toward * ((corners[0] - ground.point).dot(ground.normal) / fall);
-  const double depth = std::max(lens.depth(foot), kNear);
-  const double soft = 2 * kSpread * high / (fall * fall) * lens.scale / depth;
+  const double depth = std::max((seen_[0] + heights_[0] * rays_[kRays].down).z(), kNear);
+  const double soft = 2 * kSpread * high / (slope_ * slope_) * lens_.scale / depth;
   const int share = soft < kSharp ? kRays : soft < 4 * kSharp ? 4 : soft < 16 * kSharp || many ? 2 : 1;
-
-  std::vector<Point> cast, outline;
-  std::vector<Eigen::Vector4d> cut;
   for (int i = 0; i < kRays; i += share) {
-    const Vec3& ray = light.rays[share == kRays ? 0 : i];
-    const Vec3 along = share == kRays ? light.toward : ray;
-    const double down = along.dot(ground.normal);
-    cast.clear();
+    const std::uint32_t own = share == kRays ? ~0u : ((1u << share) - 1) << i;
+    if (!(own & rays)) continue;
+    const Ray& ray = rays_[share == kRays ? kRays : i];
+    cast_.clear();
     bool behind = false;
-    std::vector<Vec3> places;
-    for (const Vec3& c : corners) {
-      const Vec3 place = c - along * (std::max((c - ground.point).dot(ground.normal), 0.0) / down);
+    const auto add = [&](const Vec3& place) {
+      behind = behind || place.z() < kNear;
+      cast_.push_back(place.head<2>() / place.z());
+    };
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      const Vec3 place = seen_[k] + heights_[k] * ray.down;
       if (radius <= 0) {
-        places.push_back(place);
-        continue;
+        add(place);
+      } else {
+        for (const Vec3& rim : ray.round) add(place + radius * rim);
       }
-      // a ball's shadow is an ellipse: its axis along the light is longer
-      const Vec3 flat = along - ground.normal * down;
-      const Vec3 u = flat.norm() > 1e-9 ? Vec3(flat.normalized()) : ground.normal.unitOrthogonal();
-      const Vec3 v = ground.normal.cross(u);
-      const double longer = radius * along.norm() / down;
-      constexpr int kRim = 14;
-      for (int k = 0; k < kRim; ++k) {
-        const double a = 2 * std::numbers::pi * k / kRim;
-        places.push_back(place + longer * std::cos(a) * u + radius * std::sin(a) * v);
-      }
-    }
-    for (const Vec3& place : places) {
-      if (lens.depth(place) < kNear) {
-        behind = true;
-        break;
-      }
-      cast.push_back(lens.page(place));
     }
     // shadows that reach behind the eye are far outside the page or all over it
-    if (behind || cast.size() < 3) continue;
-    hull(cast, outline);
-    if (outline.size() < 3) continue;
+    if (behind || cast_.size() < 3) continue;
+    hull(cast_, outline_);
+    if (outline_.size() < 3) continue;
     const int begin = int(solids.points.size());
-    solids.points.insert(solids.points.end(), outline.begin(), outline.end());
-    std::uint32_t bits = share == kRays ? ~0u : 0;
-    for (int k = i; share < kRays && k < i + share; ++k) bits |= 1u << k;
-    solids.shades.push_back({begin, int(solids.points.size()), bits});
+    solids.points.insert(solids.points.end(), outline_.begin(), outline_.end());
+    solids.shades.push_back({begin, int(solids.points.size()), own & rays});
   }
 }
 

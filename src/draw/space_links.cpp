@@ -49,12 +49,24 @@ void add_coil(Scenery& s, const Coil& form, const Vec3& a, const Vec3& b, int nu
   const double length = (b - a).norm();
   const double weight = s.stage.layout.weight;
   if (form.turns == 0) {
-    add_tube(s, {a, b}, 0.5 * kNetLine * weight * s.zoom / page, s.stage.colours.spring, number);
+    const double radius = 0.5 * kNetLine * weight * s.zoom / page;
+    add_tube(s, {a, b}, radius, s.stage.colours.spring, number);
+    s.rods.push_back({a, b, radius});
     return;
   }
   const double wire = 0.6 * line_width(form, length * page, s.zoom) / page;
   const double wide = amplitude(form, length * page, s.zoom) / page;
-  add_tube(s, helix(form, a, b, wire, wide), wire, s.stage.colours.spring, number);
+  const std::vector<Vec3> way = helix(form, a, b, wire, wide);
+  add_tube(s, way, wire, s.stage.colours.spring, number);
+  if (length < 1e-9) return;
+  // its leads, and what it winds around, of which its wire covers a part
+  double wound = 0;
+  for (std::size_t i = 2; i + 2 < way.size(); ++i) wound += (way[i + 1] - way[i]).norm();
+  const Vec3 from = a + (b - a) * ((way[1] - a).dot(b - a) / (length * length)), to = a + b - from;
+  s.rods.push_back({a, from, wire});
+  s.rods.push_back({to, b, wire});
+  s.rods.push_back(
+      {from, to, wide + wire, std::min(1.0, wound * wire / ((to - from).norm() * (wide + wire)))});
 }
 
 /// A rope of this length from a to b, longer than the way: a parabola.
@@ -106,8 +118,10 @@ void add_links(Scenery& s) {
         const double radius = 0.5 * (rope ? kRope : kRod) * weight * metre;
         const Vec3 down = cast.gravity.norm() > 0 ? Vec3(cast.gravity.normalized()) : Vec3(-Vec3::UnitY());
         const bool slack = rope && joint.length > (at.b - at.a).norm() * (1 + 1e-6);
-        add_tube(s, slack ? hanging(at.a, at.b, down, joint.length) : std::vector<Vec3>{at.a, at.b}, radius,
-                 color, number);
+        const std::vector<Vec3> way =
+            slack ? hanging(at.a, at.b, down, joint.length) : std::vector<Vec3>{at.a, at.b};
+        add_tube(s, way, radius, color, number);
+        for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
         knob(joint.a, at.a, kJoint);
         knob(joint.b, at.b, joint.b < 0 ? kPin : kJoint);
         break;

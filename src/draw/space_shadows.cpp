@@ -6,6 +6,7 @@
 // which tells how deep the surface itself is beside a point, so that it throws no shadow on itself.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -224,23 +225,25 @@ void cast_on_each_other(Scenery& s) {
 }
 
 void cast_on_ground(Scenery& s) {
-  const Ground& ground = *s.stage.ground;
+  Fall fall(*s.stage.ground, s.stage.light, s.lens);
   const auto& pieces = s.stage.pieces;
   const bool many = pieces.size() > 64;
+  constexpr std::uint32_t all = ~0u;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece& piece = pieces[i];
     const sim::Snapshot::Body& body = s.now.bodies[piece.body];
-    const auto place = [&](const Vec3& local) { return Vec3(body.position + body.orientation * local); };
     if (piece.form == Piece::Form::polyhedron) {
-      cast_on(ground, s.stage.light, s.lens, s.placed[i].vertices, 0, many, s.solids);
+      fall.cast(s.placed[i].vertices, 0, many, all, s.solids);
       continue;
     }
     const double radius =
         s.stage.dots[piece.body] > 0 ? s.stage.dots[piece.body] / s.lens.scale : piece.radius;
-    std::vector<Vec3> middles{place(piece.a)};
-    if (piece.form == Piece::Form::capsule) middles.push_back(place(piece.b));
-    cast_on(ground, s.stage.light, s.lens, middles, radius, many, s.solids);
+    const std::array<Vec3, 2> ends{body.position + body.orientation * piece.a,
+                                   body.position + body.orientation * piece.b};
+    fall.cast(std::span(ends).first(piece.form == Piece::Form::capsule ? 2 : 1), radius, many, all, s.solids);
   }
+  for (const Rod& rod : s.rods)
+    fall.cast(std::array{rod.a, rod.b}, rod.radius, many || s.rods.size() > 64, stopped(rod.share), s.solids);
 }
 
 }  // namespace

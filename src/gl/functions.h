@@ -26,8 +26,8 @@ namespace obscura::gl {
                                       X(TexBuffer) X(TexImage2D) X(TexParameteri) X(TexSubImage2D)           \
                                           X(Uniform1i) X(Uniform2f) X(Uniform4f) X(UseProgram)               \
                                               X(VertexAttribDivisor) X(VertexAttribPointer) X(Viewport)      \
-                                                  X(ClearDepth) X(DepthFunc) X(DrawBuffer) X(LogicOp)        \
-                                                      X(ReadBuffer) X(TexImage2DMultisample)
+                                                  X(ClearDepth) X(DepthFunc) X(DrawBuffer) X(ReadBuffer)     \
+                                                      X(TexImage2DMultisample)
 
 #define OBSCURA_GL_NEWER_FUNCTIONS(X) X(ClipControl) X(CopyImageSubData) X(DebugMessageCallback)
 

@@ -56,8 +56,6 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
       solid_program_(gl, "solid.vert", "solid.frag"),
       shadow_program_(gl, "solid.vert", "solid_shadow.frag"),
       caster_program_(gl, "caster.vert", "caster.frag"),
-      ray_program_(gl, "ray.vert", "ray.frag"),
-      count_program_(gl, "cover.vert", "count.frag"),
       shade_program_(gl, "cover.vert", "shade.frag"),
       resolve_program_(gl, "cover.vert", "resolve.frag"),
       solid_array_(gl, sizeof(draw::Solids::Vertex), 0,
@@ -67,10 +65,9 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
                     {3, GL_FLOAT, offsetof(draw::Solids::Vertex, light)},
                     {2, GL_FLOAT, offsetof(draw::Solids::Vertex, slope)}}),
       caster_array_(gl, 3 * sizeof(float), 0, {{3, GL_FLOAT, 0}}),
-      ray_array_(gl, sizeof(Ray), 0, {{2, GL_FLOAT, 0}, {4, GL_UNSIGNED_BYTE, offsetof(Ray, rays)}}),
       cover_array_(gl, 0, 0, {}),
       index_buffer_(gl, GL_ELEMENT_ARRAY_BUFFER),
-      ray_index_buffer_(gl, GL_ELEMENT_ARRAY_BUFFER),
+      shade_(half_width_, half_height_),
       touched_(width, height) {
   // the samples, and how near they are
   for (GLuint* name : {&samples_texture_, &depth_texture_}) {
@@ -92,14 +89,9 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
   gl.ReadBuffer(GL_NONE);
   check(gl, "shadows");
 
-  rays_texture_ = texture(gl, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, half_width_, half_height_, GL_NEAREST);
-  rays_ = framebuffer(gl, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, rays_texture_);
-  check(gl, "rays");
   dark_texture_ = texture(gl, GL_R8, GL_RED, GL_UNSIGNED_BYTE, half_width_, half_height_, GL_LINEAR);
-  dark_ = framebuffer(gl, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, dark_texture_);
-  check(gl, "the ground's shadows");
 
-  for (const Program* program : {&solid_program_, &shadow_program_, &ray_program_}) {
+  for (const Program* program : {&solid_program_, &shadow_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
   }
@@ -111,8 +103,8 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
 }
 
 SolidPainter::~SolidPainter() {
-  for (GLuint name : {samples_, map_, rays_, dark_}) gl_.DeleteFramebuffers(1, &name);
-  for (GLuint name : {samples_texture_, depth_texture_, map_texture_, rays_texture_, dark_texture_})
+  for (GLuint name : {samples_, map_}) gl_.DeleteFramebuffers(1, &name);
+  for (GLuint name : {samples_texture_, depth_texture_, map_texture_, dark_texture_})
     gl_.DeleteTextures(1, &name);
 }
 
@@ -211,79 +203,62 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
 
 void SolidPainter::paint_ground(const draw::Solids& solids, unsigned frame, const Damage::Rect& window,
                                 Damage& damage) {
-  // fans, each ray's shifted within a pixel of the half picture: their mean has smooth edges
+  // each ray's shadows are shifted within a pixel of the half picture: their mean has smooth edges
   const Bounds seen{float(window.x), float(window.y), float(window.x + window.width),
                     float(window.y + window.height)};
+  const auto shift = [](const draw::Solids::Shade& shade) {
+    const int ray = std::countr_zero(shade.rays);
+    return shade.rays == ~0u ? draw::Point(0, 0)
+                             : draw::Point(double(ray * 5 % 32) / 16 - 1, double(ray * 13 % 32) / 16 - 1);
+  };
   touched_.clear();
-  corners_.clear();
-  indices_.clear();
+  seen_.clear();
   for (const draw::Solids::Shade& shade : solids.shades) {
     Bounds b{1e9f, 1e9f, -1e9f, -1e9f};
-    const auto first = std::uint32_t(corners_.size());
-    const bool all = shade.rays == ~0u;
-    const auto ray = std::uint32_t(std::countr_zero(shade.rays));
-    const float right = all ? 0 : float(ray * 5 % 32) / 16 - 1,
-                down = all ? 0 : float(ray * 13 % 32) / 16 - 1;
     for (int i = shade.begin; i < shade.end; ++i) {
       const draw::Point p = solids.points[std::size_t(i)] * scale_;
-      const auto x = float(p.x()) + right, y = float(p.y()) + down;
-      b = {std::min(b.x0, x - 3), std::min(b.y0, y - 3), std::max(b.x1, x + 3), std::max(b.y1, y + 3)};
-      corners_.push_back({x, y, shade.rays});
+      const auto x = float(p.x()), y = float(p.y());
+      b = {std::min(b.x0, x - 4), std::min(b.y0, y - 4), std::max(b.x1, x + 4), std::max(b.y1, y + 4)};
     }
     b = b & seen;
-    if (!any(b)) {
-      corners_.resize(first);
-      continue;
-    }
+    if (!any(b)) continue;
     touched_.mark(b);
-    for (std::uint32_t i = 2; i < std::uint32_t(shade.end - shade.begin); ++i)
-      for (std::uint32_t k : {first, first + i - 1, first + i}) indices_.push_back(k);
+    seen_.push_back(&shade);
   }
-  if (indices_.empty()) return;
+  if (seen_.empty()) return;
   damage.add(touched_);
 
-  const auto halved = [](const Damage::Rect& r) {
+  // how dark it is, two pixels by two
+  const auto halved = [&](const Damage::Rect& r) {
     const int x = std::max(r.x / 2 - 1, 0), y = std::max(r.y / 2 - 1, 0);
-    return Damage::Rect{x, y, (r.x + r.width + 1) / 2 + 1 - x, (r.y + r.height + 1) / 2 + 1 - y};
+    return Damage::Rect{x, y, std::min((r.x + r.width + 1) / 2 + 1, half_width_) - x,
+                        std::min((r.y + r.height + 1) / 2 + 1, half_height_) - y};
   };
-  gl_.Viewport(0, 0, half_width_, half_height_);
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, rays_);
-  gl_.ClearColor(0, 0, 0, 0);
-  for (const Damage::Rect& r : touched_.bands()) {
-    const Damage::Rect h = halved(r);
-    gl_.Scissor(h.x, h.y, h.width, h.height);
-    gl_.Clear(GL_COLOR_BUFFER_BIT);
+  for (const Damage::Rect& r : touched_.bands()) shade_.clear(halved(r));
+  for (const draw::Solids::Shade* shade : seen_) {
+    const draw::Point by = shift(*shade);
+    corners_.clear();
+    for (int i = shade->begin; i < shade->end; ++i)
+      corners_.push_back((solids.points[std::size_t(i)] * scale_ + by) / 2);
+    shade_.add(corners_, shade->rays);
   }
-  gl_.Scissor(0, 0, half_width_, half_height_);
-  ray_program_.use();
-  // the half picture's pixels are two wide even where the picture's size is odd
-  gl_.Uniform2f(ray_program_.uniform("per_half_size"), 1.0f / float(half_width_), 1.0f / float(half_height_));
-  ray_array_.upload(corners_);
-  ray_array_.bind();
-  ray_index_buffer_.upload(indices_);
-  gl_.Enable(GL_COLOR_LOGIC_OP);
-  gl_.LogicOp(GL_OR);
-  gl_.DrawElements(GL_TRIANGLES, GLsizei(indices_.size()), GL_UNSIGNED_INT, nullptr);
-  gl_.Disable(GL_COLOR_LOGIC_OP);
-
-  // how dark it is
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, dark_);
   gl_.ActiveTexture(GL_TEXTURE0);
-  gl_.BindTexture(GL_TEXTURE_2D, rays_texture_);
-  count_program_.use();
-  cover_array_.bind();
+  gl_.BindTexture(GL_TEXTURE_2D, dark_texture_);
+  gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl_.PixelStorei(GL_UNPACK_ROW_LENGTH, half_width_);
   for (const Damage::Rect& r : touched_.bands()) {
     const Damage::Rect h = halved(r);
-    gl_.Scissor(h.x, h.y, h.width, h.height);
-    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    shade_.count(h);
+    gl_.TexSubImage2D(GL_TEXTURE_2D, 0, h.x, h.y, h.width, h.height, GL_RED, GL_UNSIGNED_BYTE,
+                      shade_.dark().data() + std::ptrdiff_t(half_width_) * h.y + h.x);
   }
+  gl_.PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 
   // over the picture
-  gl_.Viewport(0, 0, width_, height_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, frame);
   gl_.Enable(GL_BLEND);
   gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  gl_.BindTexture(GL_TEXTURE_2D, dark_texture_);
+  cover_array_.bind();
   shade_program_.use();
   const draw::Color c = solids.shade;
   const float alpha = float(c.a) / 255.0f;

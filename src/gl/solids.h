@@ -7,6 +7,7 @@
 #include "gl/buffer.h"
 #include "gl/damage.h"
 #include "gl/program.h"
+#include "gl/shade.h"
 
 namespace obscura::gl {
 
@@ -23,25 +24,22 @@ class SolidPainter {
   void paint(const draw::Solids& solids, unsigned frame, Damage& damage);
 
  private:
-  struct Ray {  // a corner of a shadow
-    float x, y;
-    std::uint32_t rays;
-  };
   void paint_ground(const draw::Solids& solids, unsigned frame, const Damage::Rect& window, Damage& damage);
   void paint_map(const draw::Solids& solids);
 
   const Functions& gl_;
   int width_, height_, half_width_, half_height_;
   double scale_;  // px a page unit
-  Program solid_program_, shadow_program_, caster_program_, ray_program_, count_program_, shade_program_,
-      resolve_program_;
-  VertexArray solid_array_, caster_array_, ray_array_, cover_array_;
-  Buffer index_buffer_, ray_index_buffer_;
-  GLuint samples_texture_ = 0, depth_texture_ = 0, map_texture_ = 0, rays_texture_ = 0, dark_texture_ = 0;
-  GLuint samples_ = 0, map_ = 0, rays_ = 0, dark_ = 0;  // framebuffers
+  Program solid_program_, shadow_program_, caster_program_, shade_program_, resolve_program_;
+  VertexArray solid_array_, caster_array_, cover_array_;
+  Buffer index_buffer_;
+  GLuint samples_texture_ = 0, depth_texture_ = 0, map_texture_ = 0, dark_texture_ = 0;
+  GLuint samples_ = 0, map_ = 0;  // framebuffers
+  Shade shade_;                   // of the half picture
   std::vector<draw::Solids::Vertex> vertices_;
-  std::vector<Ray> corners_;
   std::vector<std::uint32_t> indices_;
+  std::vector<const draw::Solids::Shade*> seen_;
+  std::vector<draw::Point> corners_;
   Damage touched_;
 };
 
