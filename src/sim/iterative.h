@@ -51,6 +51,7 @@ class Iterative final : public ContactStep<D> {
   void look(State<D>& state, bool known);
   bool outran(double h, double left) const;
   double clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const;
+  Motion mean_way(int body, double h) const;
   Motion course(int body, double h);
   bool fast(int body, const Motion& way) const;
 

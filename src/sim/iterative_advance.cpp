@@ -25,8 +25,14 @@ void Iterative<D>::advance(State<D>& state, double h, bool look) {
   const double quiet_speed = 0.02;
   for (int i = 0; i < n; ++i) {
     if (v_[i].im == 0) continue;
-    Motion d = course(i, h);
-    const Motion& v = v_[i];
+    const Motion &v = v_[i], &o = old_[i];
+    const double reach = cores_.reach[i], far = 0.5 * kSight * cores_.inside[i];
+    Motion d;
+    if (blows_.when(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
+      d = course(i, h);
+    } else {
+      d = closing_[i] ? Motion{h * v.x, h * v.y, h * v.w, 0} : mean_way(i, h);
+    }
     if (look) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
     state.x[i][0] = poses_[i].x += d.x, state.x[i][1] = poses_[i].y += d.y;
     state.v[i][0] = v.x, state.v[i][1] = v.y;
@@ -34,17 +40,25 @@ void Iterative<D>::advance(State<D>& state, double h, bool look) {
       state.spin[i - still][0] = v.w;
       state.turn[i - still][0] = turns_[i] += d.w;
     }
-    const double reach = cores_.reach[i];
     const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (reach * reach) < quiet_speed * quiet_speed;
     state.quiet[i] = quiet ? state.quiet[i] + h : 0;
   }
   sweep::turn_all(turns_.data() + still, poses_.data() + still, n - still);
 }
 
-// the way of a body in the step
+// by the mean of old and new velocity
+template <int D>
+sweep::Motion Iterative<D>::mean_way(int i, double h) const {
+  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
+  const double half = 0.5 * h;
+  return {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
+          dx.w + half * (v.w - (o.w + dv.w)), 0};
+}
+
+// the way of a body in the step, of one too that is struck or fast
 template <int D>
 sweep::Motion Iterative<D>::course(int i, double h) {
-  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
+  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i];
   const double when = blows_.when(i);
   Motion d;
   if (when >= 0) {
@@ -62,9 +76,7 @@ sweep::Motion Iterative<D>::course(int i, double h) {
   } else if (closing_[i]) {
     d = {h * v.x, h * v.y, h * v.w, 0};
   } else {
-    const double half = 0.5 * h;
-    d = {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
-         dx.w + half * (v.w - (o.w + dv.w)), 0};
+    d = mean_way(i, h);
   }
   // who is too fast to have been seen comes as far as what it meets, and strikes in the next step
   const Motion way{h * o.x, h * o.y, h * o.w, 0};
