@@ -75,7 +75,8 @@ std::vector<Key> rows() {
        .example = "\"direct\""},
       {.path = "physics.impacts", .form = choice, .fallback = "\"simultaneous\"",
        .choices = {"simultaneous", "sequential"},
-       .doc = "Impacts in one instant: solved together, or pair after pair, as Newton's cradle needs it.",
+       .doc = "Impacts in one instant: solved together, or pair after pair, as Newton's cradle needs it. With the iterative "
+              "solver always pair after pair.",
        .example = "\"sequential\""},
       {.path = "physics.rotation", .form = boolean, .fallback = "true",
        .doc = "Whether bodies turn. `false`: forces move them as a whole and never turn them.", .example = "false"},

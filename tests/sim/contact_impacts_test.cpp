@@ -66,6 +66,24 @@ TEST(ContactImpacts, ACradleObeysTheLawThatIsChosen) {
   }
 }
 
+// three equal balls, the first at 1 m/s: v_n' = -e v_n at both touches of one instant and the momentum give
+// v1 = (1 - 2e) / 3, v2 = v3 = (1 + e) / 3
+TEST(ContactImpacts, OfThreeTouchingBallsBothTouchesAreSolvedAtOnce) {
+  for (const auto collision : kModes) {
+    for (const double e : {0.0, 0.3, 1.0}) {
+      World<2> world = touching_room(collision, {0, 0});
+      for (int i = 0; i < 3; ++i) add_particle(world, {0.2 * i, 0}, {i == 0 ? 1.0 : 0.0, 0}, 1, e, 0.1);
+      const State<2> now = stepped(world, 10);
+      EXPECT_NEAR(now.v[0].x(), (1 - 2 * e) / 3, 1e-12) << e;
+      EXPECT_NEAR(now.v[1].x(), (1 + e) / 3, 1e-12) << e;
+      EXPECT_NEAR(now.v[2].x(), (1 + e) / 3, 1e-12) << e;
+      double energy = 0;
+      for (const auto& v : now.v) energy += 0.5 * v.squaredNorm();
+      EXPECT_LE(energy, 0.5 + 1e-12) << e;
+    }
+  }
+}
+
 TEST(ContactImpacts, ABoxLandsOnItsCornerAsTheClosedFormSays) {
   for (const auto& [name, e] : {std::pair{"box_corner_impact_2d_e1", 1.0},
                                 {"box_corner_impact_2d_e05", 0.5},
