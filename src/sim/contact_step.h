@@ -30,7 +30,7 @@ template <int D>
 Crowd crowd(const Model<D>& model);
 
 /// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event`,
-/// and in space joints, are the direct one's.
+/// chains, and in space joints, are the direct one's.
 template <int D>
 Solver solver(const Model<D>& model);
 

@@ -88,8 +88,9 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
   budget_ = exact ? 1e300 : 1e7;
   cone_.thorough = exact;
   if (!exact) cone_.enough = 1e-7;
+  for (const Joint<D>& joint : model.joints) row_joints_ += !joint.linked;
   for (const Body<D>& body : model.bodies) {
-    rims_.push_back(reach(body.shape));
+    rims_.push_back(sim::reach(body.shape));
     thin_.push_back(thickness(body.shape));
   }
   for (int a = 0; a < int(model.bodies.size()); ++a) {
@@ -106,13 +107,13 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
 template <int D>
 void Direct<D>::keep(const State<D>& state, Motion& motion) const {
   motion.x = state.x, motion.v = state.v, motion.turn = state.turn, motion.spin = state.spin;
-  motion.own = state.own;
+  motion.own = state.own, motion.postures = state.postures;
 }
 
 template <int D>
 void Direct<D>::restore(const Motion& motion, State<D>& state) const {
   state.x = motion.x, state.v = motion.v, state.turn = motion.turn, state.spin = motion.spin;
-  state.own = motion.own;
+  state.own = motion.own, state.postures = motion.postures;
 }
 
 template <int D>
@@ -243,15 +244,18 @@ void Direct<D>::rates(double t, std::span<const double> d, std::span<const doubl
   // rows where everyone is at this stage
   const auto& members = free_.bodies();
   for (std::size_t i = 0; i < members.size(); ++i) stances_[members[i]] = free_.stances()[i];
+  const auto& links = free_.chains().links();
+  for (std::size_t i = 0; i < links.size(); ++i) stances_[links[i]] = free_.stances()[members.size() + i];
   rows_.clear();
   for (Held& held : held_) lay_rows(held, Spin<D>::Zero());
+  reach();
   b_.resize(Eigen::Index(rows_.size()));
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], v_rate) + rows_[i].drift;
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(i, v_rate) + rows_[i].drift;
 
   // what holds goes on holding
   if (D > 2) turn_slides();
   hold();
-  for (int i = 0; i < int(rows_.size()); ++i) push(rows_[i], f_[i], v_rate);
+  for (int i = 0; i < int(rows_.size()); ++i) push(i, f_[i], v_rate);
 }
 
 // contacts and joints and their forces as they were chosen last; joints of what is frozen keep theirs
@@ -262,6 +266,7 @@ void Direct<D>::remember() {
     const Joint<D>& joint = model_.joints[i];
     if (light(joint.a.body) > 0 || light(joint.b.body) > 0) joint_forces_[i].setZero();
   }
+  chain_forces();
   for (const Held& held : held_) {
     if (held.kind == Held::Kind::contact) continue;
     for (int i = held.first; i < held.first + held.rows; ++i)
@@ -344,7 +349,7 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
   split();
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(rows_[i], rate) + rows_[i].drift);
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(i, rate) + rows_[i].drift);
   // What all but rests is begun with the forces of the step before. With these sweeps would go on holding
   // what has begun to fall
   double fastest = 0;
@@ -357,14 +362,19 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
       state.spin[turning(state, body)] +=
           h * to_room<D>(stances_[body].room_from_body, Eigen::Map<const Spin<D>>(rate.data() + at));
   }
+  Articulated<D>& chains = free_.chains();
+  chain_change_.assign(rate.begin() + free_.chain_start(), rate.end());
+  for (double& change : chain_change_) change *= h;
+  chains.jump(state, chain_change_, false);
   guess(fastest < kCreep * pace_ ? h : 0);
   solve();
-  for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
+  jump(state, false);
   for (const int body : members) {
     state.x[body] += 0.5 * h * (begun_.v[body] + state.v[body]);
     if (const int k = turning(state, body); k >= 0)
       state.turn[k] = turned<D>(begun_.turn[k], Spin<D>(0.5 * h * (begun_.spin[k] + state.spin[k])));
   }
+  chains.advance(begun_.postures, h, state);
   f_ /= h;
   remember();
 

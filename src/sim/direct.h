@@ -46,6 +46,7 @@ class Direct final : public ContactStep<D>, private System {
     std::vector<Turn<D>> turn;
     std::vector<Spin<D>> spin;
     std::vector<OwnSpin<D>> own;
+    std::vector<Posture> postures;
   };
 
   // two that may come through each other: a body and a body or wall
@@ -76,11 +77,20 @@ class Direct final : public ContactStep<D>, private System {
   void guess(double h);
   bool acts(const Held& held) const;
   double moves(int row) const;
-  double along(const Row<D>& row, std::span<const double> rate) const;
-  void push(const Row<D>& row, double f, std::span<double> rate) const;
+  double along(int row, std::span<const double> rate) const;
+  void push(int row, double f, std::span<double> rate) const;
   void jump(State<D>& state, const Row<D>& row, double p, bool places) const;
   void project(State<D>& state);
-  void pay_for(State<D>& state) const;
+  void pay_for(State<D>& state);
+
+  // direct_chains.cpp
+  void reach();
+  std::span<const double> reached(const std::vector<double>& numbers, int row) const;
+  bool linked(int body) const { return body >= 0 && light_[body] > 0 && model_.bodies[body].linked; }
+  bool free(int body) const { return body >= 0 && light_[body] > 0 && !model_.bodies[body].linked; }
+  double answer(int row) const;
+  void jump(State<D>& state, bool places);
+  void chain_forces();
 
   // direct_slides.cpp
   void begin_slides(State<D>& state, double t, double h);
@@ -139,6 +149,7 @@ class Direct final : public ContactStep<D>, private System {
   Stages stages_;
   Cone<D> cone_;
 
+  int row_joints_ = 0;           // that no chain holds
   double closed_ = 0;            // m: gaps up to this touch
   double rest_ = 0;              // m/s: slower impacts do not bounce
   double pace_ = 0;              // m/s: sqrt(g L), or L a second
@@ -158,6 +169,10 @@ class Direct final : public ContactStep<D>, private System {
   std::vector<Gap<D>> gaps_, some_;
   std::vector<Held> held_;
   std::vector<Row<D>> rows_;
+  // of rows that move chains: their J, and M^-1 J', each of all chains
+  std::vector<int> reaches_;  // one a row: its number among those, or -1
+  std::vector<double> chain_J_, chain_U_, chain_change_;
+  std::vector<Twist<D>> motions_;  // of the links
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_, holding_;  // as chosen, and as the stages keep them
   std::vector<ConeBlock<D>> chosen_blocks_;

@@ -13,7 +13,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kFiner = 3;  // steps for one, where there are joints, but few
+constexpr int kFiner = 3;  // steps for one, where there are joints of rows, but few
 constexpr int kFewJoints = 8;
 constexpr double kNever = 2;        // a part of the stretch
 constexpr double kAtOnce = 1e-9;    // a part too short to go
@@ -367,7 +367,7 @@ double Direct<D>::stretch(State<D>& state, double t, double h, bool& cut) {
 // in finer steps where there are joints: what they hold swings faster than what flies
 template <int D>
 void Direct<D>::smooth(State<D>& state, double t, double h) {
-  const int pieces = model_.joints.empty() || model_.joints.size() > kFewJoints ? 1 : kFiner;
+  const int pieces = row_joints_ == 0 || row_joints_ > kFewJoints ? 1 : kFiner;
   for (int i = 0; i < pieces; ++i)
     free_.step(integrate_, state, t + i * (h / pieces), h / pieces, stages_, this);
 }

@@ -16,6 +16,7 @@ template <int D>
 void Direct<D>::stand(const State<D>& state) {
   stances_.resize(model_.bodies.size());
   for (int body = 0; body < int(stances_.size()); ++body) stances_[body] = stance(state, body);
+  free_.chains().stand(state);
 }
 
 template <int D>
@@ -108,7 +109,8 @@ void Direct<D>::gather(const State<D>& state, bool all) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
     const Spin<D> turn = turn_between(state, joint);
-    add(joint.kind == JointKind::rope ? Kind::rope : Kind::joint, i, turn, joint.kind == JointKind::rope);
+    if (!joint.linked)
+      add(joint.kind == JointKind::rope ? Kind::rope : Kind::joint, i, turn, joint.kind == JointKind::rope);
     if (!has_free_row<D>(joint.kind)) continue;
     if (joint.lower > -1e299) add(Kind::lower, i, turn, true);
     if (joint.upper < 1e299) add(Kind::upper, i, turn, true);
@@ -116,6 +118,7 @@ void Direct<D>::gather(const State<D>& state, bool all) {
     if (joint.friction > 0) add(Kind::friction, i, turn, false);
   }
   for (int i = 0; i < int(gaps_.size()); ++i) add(Kind::contact, i, Spin<D>::Zero(), true);
+  reach();
 }
 
 // blocks of what is held, at the stances at hand. Of impulses motors and friction in joints have none.
@@ -169,10 +172,11 @@ void Direct<D>::lay_blocks(bool impulses) {
 
 // J a: what the rows accelerate by, of accelerations in the order of free_
 template <int D>
-double Direct<D>::along(const Row<D>& row, std::span<const double> rate) const {
+double Direct<D>::along(int number, std::span<const double> rate) const {
+  const Row<D>& row = rows_[number];
   double sum = 0;
   const auto side = [&](int body, const Spin<D>& turn, double sign) {
-    const int place = body < 0 || light_[body] == 0 ? -1 : free_.place(body);
+    const int place = free(body) ? free_.place(body) : -1;
     if (place < 0) return;
     sum += sign * row.along.dot(Eigen::Map<const Vec<D>>(rate.data() + D * place));
     if (const int at = free_.spin_start(place); at >= 0)
@@ -180,14 +184,18 @@ double Direct<D>::along(const Row<D>& row, std::span<const double> rate) const {
              turn.dot(to_room<D>(stances_[body].room_from_body, Eigen::Map<const Spin<D>>(rate.data() + at)));
   };
   side(row.a, row.turn_a, 1), side(row.b, row.turn_b, -1);
+  if (reaches_[number] < 0) return sum;
+  const auto J = reached(chain_J_, number);
+  for (std::size_t i = 0; i < J.size(); ++i) sum += J[i] * rate[std::size_t(free_.chain_start()) + i];
   return sum;
 }
 
 // M^-1 J' f, onto accelerations in the order of free_
 template <int D>
-void Direct<D>::push(const Row<D>& row, double f, std::span<double> rate) const {
+void Direct<D>::push(int number, double f, std::span<double> rate) const {
+  const Row<D>& row = rows_[number];
   const auto side = [&](int body, const Spin<D>& turn, double force) {
-    const int place = body < 0 || light_[body] == 0 ? -1 : free_.place(body);
+    const int place = free(body) ? free_.place(body) : -1;
     if (place < 0) return;
     Eigen::Map<Vec<D>>(rate.data() + D * place) += force * light_[body] * row.along;
     if (const int at = free_.spin_start(place); at >= 0)
@@ -196,13 +204,16 @@ void Direct<D>::push(const Row<D>& row, double f, std::span<double> rate) const 
   };
   if (f == 0) return;
   side(row.a, row.turn_a, f), side(row.b, row.turn_b, -f);
+  if (reaches_[number] < 0) return;
+  const auto U = reached(chain_U_, number);
+  for (std::size_t i = 0; i < U.size(); ++i) rate[std::size_t(free_.chain_start()) + i] += f * U[i];
 }
 
-// M^-1 J' p onto the velocities of a state, or onto its places
+// M^-1 J' p onto the velocities of the free bodies of a state, or onto their places
 template <int D>
 void Direct<D>::jump(State<D>& state, const Row<D>& row, double p, bool places) const {
   const auto side = [&](int body, const Spin<D>& turn, double impulse) {
-    if (body < 0 || light_[body] == 0) return;
+    if (!free(body)) return;
     (places ? state.x : state.v)[body] += impulse * light_[body] * row.along;
     const int k = turning(state, body);
     if (k < 0) return;
@@ -248,7 +259,7 @@ bool Direct<D>::choose(State<D>& state, double t) {
   split();
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(rows_[i], rate) + rows_[i].drift;
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(i, rate) + rows_[i].drift;
   guess(1);
   const bool found = solve();
   // what lets go, but would come closer by the change of the forces alone, is held
@@ -279,15 +290,25 @@ bool Direct<D>::acts(const Held& held) const {
 
 // What is lifted out of what it had sunk into pays for its height with its motion
 template <int D>
-void Direct<D>::pay_for(State<D>& state) const {
+void Direct<D>::pay_for(State<D>& state) {
+  const auto lifted = [&](int body) {
+    return -model_.bodies[body].mass * model_.gravity.dot(state.x[body] - placed_[body]);
+  };
+  const auto left = [](double more, double has) { return std::sqrt(std::max(0.0, 1 - more / has)); };
   for (const int body : free_.bodies()) {
-    const double more = -model_.bodies[body].mass * model_.gravity.dot(state.x[body] - placed_[body]);
+    const double more = lifted(body);
     const double has = more > 0 ? kinetic(model_, state, body) : 0;
     if (has <= 0) continue;
-    const double left = std::sqrt(std::max(0.0, 1 - more / has));
-    state.v[body] *= left;
-    if (const int k = turning(state, body); k >= 0) state.spin[k] *= left;
+    state.v[body] *= left(more, has);
+    if (const int k = turning(state, body); k >= 0) state.spin[k] *= left(more, has);
   }
+  for (std::size_t i = 0; i < model_.chains.size(); ++i) {
+    double more = 0, has = 0;
+    for (const int body : model_.chains[i].bodies) more += lifted(body), has += kinetic(model_, state, body);
+    if (more <= 0 || has <= 0) continue;
+    for (double& v : state.postures[i].v) v *= left(more, has);
+  }
+  if (!model_.chains.empty()) free_.chains().follow(state);
 }
 
 // puts what is held back to where it belongs: places first, then velocities
@@ -301,9 +322,7 @@ void Direct<D>::project(State<D>& state) {
       lay_rows(held, held.kind == Kind::contact ? Spin<D>::Zero().eval()
                                                 : turn_between(state, model_.joints[held.of]));
     }
-  };
-  const auto move = [&](bool places) {
-    for (int i = 0; i < int(chosen_.size()); ++i) jump(state, rows_[chosen_[i]], f_[chosen_[i]], places);
+    reach();
   };
   placed_ = state.x;
   double moved = 0;
@@ -323,7 +342,7 @@ void Direct<D>::project(State<D>& state) {
     if (worst <= 1e-14 * model_.scale) break;
     moved = std::max(moved, worst);
     least();
-    move(true);
+    jump(state, true);
     if (worst <= 1e-9 * model_.scale) break;
   }
   if (moved > closed_) pay_for(state);
@@ -346,7 +365,7 @@ void Direct<D>::project(State<D>& state) {
   }
   if (worst <= 1e-6 * still_) return;
   least();
-  move(false);
+  jump(state, false);
 }
 
 template class Direct<2>;

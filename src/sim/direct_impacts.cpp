@@ -83,6 +83,7 @@ void Direct<D>::only_worst_pair() {
   });
   rows_.clear();
   for (Held& held : held_) lay_rows(held, Spin<D>::Zero());
+  reach();
 }
 
 // Newton's law with Coulomb's friction for all that is held; `bounce` scales e. Where energy would rise e is
@@ -105,7 +106,7 @@ void Direct<D>::strike(State<D>& state, double bounce) {
     modes_.assign(blocks_.size(), {}), warm_.setZero(Eigen::Index(rows_.size()));
     bool found = solve();
     if (!found && model_.collision != Collision::event) rough_ = true, found = solve();
-    for (int i = 0; i < int(rows_.size()); ++i) jump(state, rows_[i], f_[i], false);
+    jump(state, false);
     const double after = moving(model_, state);
     if ((found && after <= before * (1 + 1e-13)) || bounce == 0) break;
     // too much: less of e, at most half as often as it takes to know how much to 1e-6

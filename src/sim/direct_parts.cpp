@@ -1,5 +1,7 @@
 // Rows that share no body do not know of one another: K falls into parts, each solved alone.
 
+#include <numeric>
+
 #include "sim/direct.h"
 
 namespace obscura::sim {
@@ -14,6 +16,9 @@ constexpr int kSweeps = 40;  // of a rough solve
 template <int D>
 void Direct<D>::split() {
   roots_.reset(int(model_.bodies.size()));
+  for (const Articulation<D>& chain : model_.chains) {
+    for (const int body : chain.bodies) roots_.join(body, chain.bodies[0]);
+  }
   for (const Held& held : held_) {
     const Row<D>& row = rows_[held.first];
     if (light(row.a) > 0 && light(row.b) > 0) roots_.join(row.a, row.b);
@@ -41,7 +46,8 @@ void Direct<D>::assemble() {
   for (int i = 0; i < n; ++i) {
     const Row<D>& r = rows_[part_rows_[i]];
     part_b_[i] = b_[part_rows_[i]];
-    const double ma = light(r.a), mb = light(r.b);
+    const double ma = free(r.a) ? light_[r.a] : 0, mb = free(r.b) ? light_[r.b] : 0;
+    const int chained = reaches_[part_rows_[i]];
     const Spin<D> wa = ma > 0 ? turned_by(r.a, r.turn_a) : Spin<D>::Zero();
     const Spin<D> wb = mb > 0 ? turned_by(r.b, r.turn_b) : Spin<D>::Zero();
     for (int j = 0; j <= i; ++j) {
@@ -51,6 +57,10 @@ void Direct<D>::assemble() {
       if (mb > 0 && r.b == s.b) k += mb * r.along.dot(s.along) + wb.dot(s.turn_b);
       if (ma > 0 && r.a == s.b) k -= ma * r.along.dot(s.along) + wa.dot(s.turn_b);
       if (mb > 0 && r.b == s.a) k -= mb * r.along.dot(s.along) + wb.dot(s.turn_a);
+      if (chained >= 0 && reaches_[part_rows_[j]] >= 0) {
+        const auto J = reached(chain_J_, part_rows_[i]), U = reached(chain_U_, part_rows_[j]);
+        k += std::inner_product(J.begin(), J.end(), U.begin(), 0.0);
+      }
       K_(i, j) = k, K_(j, i) = k;
     }
   }

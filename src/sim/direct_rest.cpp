@@ -28,6 +28,9 @@ void Direct<D>::join(const State<D>& state) {
   };
   for (const Contact<D>& contact : state.contacts) link(contact.key.a, contact.key.b);
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
+  for (const Articulation<D>& chain : model_.chains) {
+    for (const int body : chain.bodies) link(body, chain.bodies[0]);
+  }
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
   }
@@ -91,13 +94,18 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
     if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();
   }
   if (!any) return;
+  for (std::size_t i = 0; i < model_.chains.size(); ++i) {
+    const int body = model_.chains[i].bodies[0];
+    if (light_[body] > 0 && ripe_[islands_.root(body)])
+      std::fill(state.postures[i].v.begin(), state.postures[i].v.end(), 0.0);
+  }
 
   // what they would do at rest
   find(state, closed_);
   const bool found = choose(state, t);
   const auto still = free_.accelerations(state, t);
   rate_.assign(still.begin(), still.end());
-  for (int i = 0; i < int(rows_.size()); ++i) push(rows_[i], f_[i], rate_);
+  for (int i = 0; i < int(rows_.size()); ++i) push(i, f_[i], rate_);
   const auto& members = free_.bodies();
   for (int k = 0; k < int(members.size()); ++k) {
     const int body = members[k];
@@ -106,16 +114,30 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
       a += rims_[body] * std::sqrt(Eigen::Map<const Spin<D>>(rate_.data() + at).squaredNorm());
     if (!found || !(a <= kStatic * g)) ripe_[islands_.root(body)] = 0;
   }
+  const auto& links = free_.chains().links();
+  free_.chains().motions(std::span<const double>(rate_).subspan(std::size_t(free_.chain_start())), motions_);
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    const double a =
+        std::sqrt(motions_[k].v.squaredNorm()) + rims_[links[k]] * std::sqrt(motions_[k].w.squaredNorm());
+    if (!found || !(a <= kStatic * g)) ripe_[islands_.root(links[k])] = 0;
+  }
+
+  // who stays so, and who goes on
   any = false;
-  for (const int body : members) {
+  const auto decide = [&](int body) {
     if (ripe_[islands_.root(body)]) {
       state.frozen[body] = 1;
       any = true;
-      continue;
+      return;
     }
     state.v[body] = begun_.v[body];
     if (const int k = turning(state, body); k >= 0) state.spin[k] = begun_.spin[k];
     if (state.quiet[body] >= kQuiet) state.quiet[body] = 0;
+  };
+  for (const int body : members) decide(body);
+  for (const int body : links) decide(body);
+  for (std::size_t i = 0; i < model_.chains.size(); ++i) {
+    if (!state.frozen[model_.chains[i].bodies[0]]) state.postures[i].v = begun_.postures[i].v;
   }
   if (any) remember();
 }

@@ -27,17 +27,14 @@ void Direct<D>::begin_slides(State<D>& state, double t, double h) {
     held.slip.setZero(), held.slow = false;
     if (held.kind != Held::Kind::contact || holding_[held.block].hold != Hold::slide) continue;
     Tangent<D> slip;
-    double answer = 0;
+    double most = 0;
     for (int i = 0; i < D - 1; ++i) {
       const Row<D>& row = rows_[held.first + 1 + i];
       slip[i] = moves(held.first + 1 + i);
       held.slip += holding_[held.block].along[i] * row.along;
-      double here = light(row.a) + light(row.b);
-      if (light(row.a) > 0) here += row.turn_a.dot(turned_by(row.a, row.turn_a));
-      if (light(row.b) > 0) here += row.turn_b.dot(turned_by(row.b, row.turn_b));
-      answer = std::max(answer, here);
+      most = std::max(most, answer(held.first + 1 + i));
     }
-    const double taken = blocks_[held.block].mu * f_[held.first] * answer * h;
+    const double taken = blocks_[held.block].mu * f_[held.first] * most * h;
     held.slow = std::sqrt(slip.squaredNorm()) < kSlow * taken;
     any = any || held.slow;
   }
@@ -50,7 +47,7 @@ void Direct<D>::aim_slow_slides(State<D>& state, double t, double h) {
   chosen_blocks_ = blocks_, chosen_modes_ = modes_, chosen_f_ = f_;
   lay_blocks(true);
   const auto rate = free_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(rows_[i], rate) + rows_[i].drift);
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(i, rate) + rows_[i].drift);
   guess(h);
   solve();
   for (Held& held : held_) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,6 +58,7 @@ struct Body {
   double ground_drag = 0;             // the same along the ground while it stands there, beside mu; N s/m
   int group = 0;                      // for Model::ignore
   bool fixed = false;                 // held where it starts; as heavy as the room
+  bool linked = false;                // a link of a chain, which moves it
   bool handout = false;  // meets walls by the handout's law, and no bodies, whatever `collision` says
 
   bool turns() const { return inertia != Spin<D>::Zero(); }
@@ -113,6 +115,7 @@ struct Joint {
   double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider
   double breaks = 1e300;  // N: a larger force on the joint breaks it
   bool touching = false;  // whether the two bodies may touch each other
+  bool linked = false;    // a chain holds it: of its own it has limits, a motor and friction
 };
 
 /// Makes two bodies one as they stand at the start, until it is loaded beyond its strength: see
@@ -155,6 +158,19 @@ struct Explosion {
   Scheme scheme = Scheme::smooth;
 };
 
+template <int D>
+class Chain;
+
+/// A tree of links in reduced coordinates, whose joints hold exactly: see sim/articulated.h. A link's frame
+/// is its body's.
+template <int D>
+struct Articulation {
+  std::shared_ptr<const Chain<D>> tree;
+  std::vector<int> bodies;      // one a link, each `linked`
+  std::vector<int> joints;      // one a link: the joint of the model that holds it to its parent, or -1
+  std::vector<double> offsets;  // one a link, in the plane: its angle where all q are zero, rad
+};
+
 /// What does not change while the room runs. Bodies are ordered: those that do not turn first, then those
 /// that do; a body's index here is its index everywhere.
 template <int D>
@@ -174,6 +190,7 @@ struct Model {
   std::vector<Joint<D>> joints;
   std::vector<Explosion<D>> explosions;
   std::vector<Bond<D>> bonds;
+  std::vector<Articulation<D>> chains;      // none where there are bonds
   std::vector<std::pair<int, int>> ignore;  // groups that do not touch each other
 
   int particles() const {  // bodies that do not turn

@@ -67,6 +67,14 @@ struct Seat {
   bool operator==(const Seat&) const = default;
 };
 
+/// How an articulated body stands and moves, in the numbers of its tree (sim/chain.h); the places of its
+/// bodies follow from them.
+struct Posture {
+  std::vector<double> q, v;
+
+  bool operator==(const Posture&) const = default;
+};
+
 /// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
 /// step / rate, plus `beyond` in the copy that a frame between two steps shows.
 template <int D>
@@ -80,8 +88,9 @@ struct State {
   std::vector<Grip<D>> grips;     // one a mouse
   std::vector<Touch<D>> touches;  // of `handout`
   Ledger ledger;
-  std::vector<OwnSpin<D>> own;   // in space: one a body that turns
-  std::vector<Blast<D>> blasts;  // one an explosion
+  std::vector<OwnSpin<D>> own;    // in space: one a body that turns
+  std::vector<Blast<D>> blasts;   // one an explosion
+  std::vector<Posture> postures;  // one a chain of the model
 
   // of what is bonded, see sim/pieces.h: everything above is then told of the parts, and this is what moves
   std::vector<char> holds;        // one a bond

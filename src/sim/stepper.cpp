@@ -1,6 +1,6 @@
 // One step:
 //   1. cut at the edges of the script
-//   2. integrate: free bodies in blocks, tied bodies together
+//   2. integrate: free bodies in blocks, tied bodies and chains together
 //   3. collide with the walls
 //   4. at an edge, press and release, begin and end explosions
 //   5. look for trouble
@@ -69,6 +69,7 @@ Stepper<D>::Stepper(const Model<D>& model)
     if (body.turns()) inertia_.push_back(body.inertia);
   }
   d_.resize(std::max(D, kSpins<D>) * kBlock), w_.resize(kSpins<D> * kBlock), base_.resize(kBlock);
+  assert(model.bonds.empty() || model.chains.empty());
   if (!model.bonds.empty()) pieces_ = std::make_unique<Pieces<D>>(model, paths_);
   if (model.collision != Collision::handout && !pieces_) contact_ = contact_step(model, paths_);
   suspects_.reserve(model.bodies.size());
@@ -95,6 +96,7 @@ void Stepper<D>::begin(State<D>& state) {
     state.broken.resize(model_.joints.size());
     state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
   }
+  follow(model_, state);
   state.touches.reserve(2 * model_.bodies.size() + 16);
   touch_script(state, {state.step, 0});
   watch_.start(state, time({state.step, 0}, model_.rate));
@@ -206,9 +208,7 @@ void Stepper<D>::plan(const State<D>& state) {
   cut(still, spinning_);
   for (Block& block : spinning_) block.first -= still;
 
-  std::size_t turning = 0;
-  for (const int body : tied_.bodies()) turning += body >= still;
-  stages_.reserve(std::max<std::size_t>(D * tied_.bodies().size() + kSpins<D> * turning, d_.size()));
+  stages_.reserve(std::max<std::size_t>(std::size_t(tied_.size()), d_.size()));
 }
 
 // false where a number ran away
@@ -282,14 +282,18 @@ bool Stepper<D>::tied(State<D>& state, double t, double h) {
   tied_.step(integrate_, state, t, h, stages_);
   const double limit = kFarthest * model_.scale;
   std::int64_t sound = 0;
-  for (const int body : tied_.bodies()) {
+  const auto look = [&](int body) {
     sound |= within(state.x[body].data(), D, limit) | within(state.v[body].data(), D, limit);
     if (const int k = turning(state, body); k >= 0) {
       sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
       sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
     }
+  };
+  for (const int body : tied_.bodies()) {
+    look(body);
     handout_.look(state, body, 1, suspects_);
   }
+  for (const int body : tied_.chains().links()) look(body);  // which touch nothing by the handout
   return sound >= 0;
 }
 

@@ -20,9 +20,9 @@ constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stan
 
 template <int D>
 Tied<D>::Tied(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), paths_(paths), blasts_(model), tips_(model.bodies) {
+    : model_(model), paths_(paths), chains_(model), blasts_(model), tips_(model.bodies) {
   member_.assign(model.bodies.size(), -1);
-  ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty();
+  ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty() || !model.chains.empty();
   for (const Body<D>& body : model.bodies) ever_ = ever_ || body.ground_drag != 0;
 }
 
@@ -30,7 +30,7 @@ template <int D>
 typename Tied<D>::Hold Tied<D>::hold(const State<D>& state, const End<D>& end) const {
   if (end.body < 0) return {-1, -1, end.local};
   if (member_[end.body] >= 0) return {member_[end.body], -1, end.local};
-  const Stance<D> at = stance(state, end.body);  // a fixed body: its point stays
+  const Stance<D> at = stance(state, end.body);  // what does not move: its point stays
   return {-1, -1, at.x + at.arm(end.local)};
 }
 
@@ -39,7 +39,7 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
   // who: bodies with a spring, and those in a hand
   std::fill(member_.begin(), member_.end(), -1);
   const auto mark = [&](int body) {
-    if (body >= 0 && !model_.bodies[body].fixed) member_[body] = 0;
+    if (body >= 0 && !model_.bodies[body].fixed && !model_.bodies[body].linked) member_[body] = 0;
   };
   if (everyone || blasting(state)) {
     for (int body = 0; body < int(member_.size()); ++body) {
@@ -60,6 +60,12 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
   }
   turning_ = 0;
   for (const int body : bodies_) turning_ += turning(state, body) >= 0;
+  chains_.gather(state);
+  all_ = bodies_;
+  for (const int body : chains_.links()) {
+    member_[body] = int(all_.size());
+    all_.push_back(body);
+  }
 
   // by what
   ties_.clear();
@@ -69,7 +75,7 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
   }
   for (int mouse = 0; mouse < int(state.grips.size()); ++mouse) {
     const Grip<D>& grip = state.grips[mouse];
-    if (grip.body < 0) continue;
+    if (grip.body < 0 || member_[grip.body] < 0) continue;
     ties_.push_back(
         {hold(state, {grip.body, grip.local}), {-1, mouse, Vec<D>::Zero()}, law(model_.mice[mouse])});
   }
@@ -88,14 +94,13 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
   if (!drag) drag_.clear();
 
   dragged_.clear();
-  for (int i = 0; i < int(bodies_.size()); ++i) {
-    if (model_.bodies[bodies_[i]].ground_drag != 0) dragged_.push_back(i);
+  for (int i = 0; i < int(all_.size()); ++i) {
+    if (model_.bodies[all_[i]].ground_drag != 0) dragged_.push_back(i);
   }
   braked_.reserve(dragged_.size());
 
-  const std::size_t n = D * bodies_.size() + kSpins<D> * turning_;
-  x_.resize(bodies_.size()), stances_.assign(bodies_.size(), {}), turn_.resize(turning_),
-      base_.resize(turning_);
+  const std::size_t n = std::size_t(chain_start() + chains_.size());
+  x_.resize(bodies_.size()), stances_.assign(all_.size(), {}), turn_.resize(turning_), base_.resize(turning_);
   d_.resize(n), v_.resize(n), d_rate_.resize(n), v_rate_.resize(n);
 }
 
@@ -113,6 +118,7 @@ void Tied<D>::load(const State<D>& state) {
     take_spin(state, k, model_.integrator == Integrator::semi_implicit, base_[i],
               v_.data() + D * n + kSpins<D> * i);
   }
+  chains_.load(state, std::span<double>(v_).subspan(std::size_t(chain_start())));
   std::fill(d_.begin(), d_.end(), 0.0);
 
   // what explodes
@@ -124,22 +130,23 @@ void Tied<D>::load(const State<D>& state) {
       acting_.push_back(i);
       continue;
     }
-    held_.resize(n);
-    for (int k = 0; k < n; ++k) held_[k] += Wrench<D>{blast.torques[bodies_[k]], blast.forces[bodies_[k]]};
+    held_.resize(all_.size());
+    for (std::size_t k = 0; k < all_.size(); ++k)
+      held_[k] += Wrench<D>{blast.torques[all_[k]], blast.forces[all_[k]]};
   }
 
   // what the ground brakes
   braked_.clear();
   for (const int member : dragged_) {
-    const Stance<D> at = stance(state, bodies_[member]);
-    const Body<D>& body = model_.bodies[bodies_[member]];
+    const Stance<D> at = stance(state, all_[member]);
+    const Body<D>& body = model_.bodies[all_[member]];
     const double h = 1 / value(model_.rate), g = std::sqrt(model_.gravity.squaredNorm());
     // as far as it falls between two impacts of the handout's rest
     const double near = kOnGround * model_.scale + g * h * h;
     for (const Wall<D>& wall : model_.walls) {
       if (g > 0 && !(wall.normal.dot(model_.gravity) < 0)) continue;
       double least = 1e300;
-      for (const Tip<D>& tip : tips_[bodies_[member]])
+      for (const Tip<D>& tip : tips_[all_[member]])
         least = std::min(least, (at.x + at.arm(tip.at) - wall.point).dot(wall.normal) - tip.radius);
       if (least > near) continue;
       braked_.push_back({member, body.ground_drag / body.mass, wall.normal});
@@ -158,7 +165,7 @@ std::span<const double> Tied<D>::accelerations(const State<D>& state, double t) 
 template <int D>
 void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System* with) {
   const int n = int(bodies_.size()), still = n - turning_;
-  if (n == 0) return;
+  if (all_.empty()) return;
   load(state);
   integrate(with ? *with : *this, t, h, d_, v_, stages);
 
@@ -170,6 +177,9 @@ void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, St
     const int k = turning(state, bodies_[still + i]), at = D * n + kSpins<D> * i;
     give_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
   }
+  const std::size_t chains = std::size_t(chain_start());
+  chains_.give(std::span<const double>(d_).subspan(chains), std::span<const double>(v_).subspan(chains),
+               state);
 }
 
 template <int D>
@@ -185,14 +195,15 @@ typename Tied<D>::Moving Tied<D>::moving(const Hold& hold, double t) const {
 }
 
 template <int D>
-void Tied<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) const {
+void Tied<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) {
   if (hold.member >= 0) push(hold.member, {moment<D>(arm, force), force}, v_rate);
 }
 
 // by a force at the centre and a torque, in the room's frame
 template <int D>
-void Tied<D>::push(int member, const Wrench<D>& by, std::span<double> v_rate) const {
+void Tied<D>::push(int member, const Wrench<D>& by, std::span<double> v_rate) {
   const int n = int(bodies_.size()), spinning = member - (n - turning_);
+  if (member >= n) return chains_.pull(member - n, by);
   const Body<D>& body = model_.bodies[bodies_[member]];
   Eigen::Map<Vec<D>>(v_rate.data() + D * member) += by.f / body.mass;
   if (spinning < 0) return;
@@ -224,6 +235,13 @@ void Tied<D>::rates(double t, std::span<const double> d, std::span<const double>
     Eigen::Map<Spin<D>>(d_rate.data() + at) = displacing<D>(by, w);
     Eigen::Map<Spin<D>>(v_rate.data() + at) = gyration<D>(model_.bodies[bodies_[still + i]].inertia, w);
   }
+  const std::size_t chains = std::size_t(chain_start());
+  const int links = int(chains_.links().size());
+  if (links > 0) chains_.stand(d.subspan(chains), v.subspan(chains)), chains_.let_go();
+  for (int k = 0; k < links; ++k) {
+    stances_[n + k] = chains_.stance(k);
+    chains_.pull(k, {Spin<D>::Zero(), -model_.bodies[all_[n + k]].drag * stances_[n + k].v});
+  }
 
   for (const Tie& tie : ties_) {
     const Moving a = moving(tie.a, t), b = moving(tie.b, t);
@@ -232,14 +250,20 @@ void Tied<D>::rates(double t, std::span<const double> d, std::span<const double>
     push(tie.b, b.arm, -force, v_rate);
   }
   for (const int explosion : acting_) {
-    for (int i = 0; i < n; ++i)
-      push(i, blasts_.push(model_.explosions[explosion], bodies_[i], stances_[i]), v_rate);
+    for (int i = 0; i < int(all_.size()); ++i)
+      push(i, blasts_.push(model_.explosions[explosion], all_[i], stances_[i]), v_rate);
   }
   for (int i = 0; i < int(held_.size()); ++i) push(i, held_[i], v_rate);
   for (const Braked& it : braked_) {
     const Vec<D>& speed = stances_[it.member].v;
-    Eigen::Map<Vec<D>>(v_rate.data() + D * it.member) -= it.rate * (speed - it.normal * it.normal.dot(speed));
+    const Vec<D> rate = it.rate * (speed - it.normal * it.normal.dot(speed));
+    if (it.member < n)
+      Eigen::Map<Vec<D>>(v_rate.data() + D * it.member) -= rate;
+    else
+      push(it.member, {Spin<D>::Zero(), -model_.bodies[all_[it.member]].mass * rate}, v_rate);
   }
+  if (links > 0)
+    chains_.rates(d.subspan(chains), v.subspan(chains), d_rate.subspan(chains), v_rate.subspan(chains));
 }
 
 template class Tied<2>;

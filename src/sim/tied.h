@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/articulated.h"
 #include "sim/blast.h"
 #include "sim/integrator.h"
 #include "sim/path.h"
@@ -10,10 +11,11 @@
 
 namespace obscura::sim {
 
-/// The bodies that springs and hands hold, gathered into one system: first the centres, then the turns of
-/// those that turn. In space d and v of a turn are as the body sees them, and v is what base spin lacks
-/// (sim/tumble.h): of the rates, a row J in the room's frame meets J . to_room(room_from_body, v'), and a
-/// torque adds from_room(room_from_body, torque) / inertia.
+/// The bodies that springs and hands hold, and the links of chains, gathered into one system: first the
+/// centres, then the turns of those that turn, then the joints of the chains. In space d and v of a turn are
+/// as the body sees them, and v is what base spin lacks (sim/tumble.h): of the rates, a row J in the room's
+/// frame meets J . to_room(room_from_body, v'), and a torque adds from_room(room_from_body, torque) /
+/// inertia.
 template <int D>
 class Tied final : public System {
  public:
@@ -30,6 +32,9 @@ class Tied final : public System {
 
   bool has(int body) const { return member_[body] >= 0; }
   const std::vector<int>& bodies() const { return bodies_; }
+  /// The chains, whose links move with the bodies.
+  Articulated<D>& chains() { return chains_; }
+  const Articulated<D>& chains() const { return chains_; }
 
   /// Moves the tied bodies of `state` from t to t + h; under more forces than those of springs, `with` has
   /// the rates.
@@ -39,11 +44,13 @@ class Tied final : public System {
   /// v' of the tied bodies as they are at time t, in the order of d and v. Allocates nothing once gathered.
   std::span<const double> accelerations(const State<D>& state, double t);
 
-  /// How the tied bodies stand and move at the stage that rates() saw last, in the order of bodies().
+  /// How the tied bodies stand and move at the stage that rates() saw last: bodies(), then the links of
+  /// chains().
   const std::vector<Stance<D>>& stances() const { return stances_; }
 
-  /// How many numbers d and v have: D of each body, then the spins of those that turn.
+  /// How many numbers d and v have: D of each body, then the spins of those that turn, then the chains'.
   int size() const { return int(v_.size()); }
+  int chain_start() const { return D * int(bodies_.size()) + kSpins<D> * turning_; }
   /// Where the spin of the body at `place` in bodies() starts; below zero: it does not turn.
   int spin_start(int place) const {
     const int spinning = place - (int(bodies_.size()) - turning_);
@@ -57,7 +64,7 @@ class Tied final : public System {
  private:
   // one end of a tie: a point of a tied body, a place that stays, or a hand
   struct Hold {
-    int member = -1;             // place in bodies_; -1: not a tied body
+    int member = -1;             // place in bodies_, and from there on in links(); -1: not a tied body
     int mouse = -1;              // whose hand; -1: none
     Vec<D> at = Vec<D>::Zero();  // in the body's frame; else a place in the room
   };
@@ -78,13 +85,15 @@ class Tied final : public System {
   Hold hold(const State<D>& state, const End<D>& end) const;
   void load(const State<D>& state);
   Moving moving(const Hold& hold, double t) const;
-  void push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) const;
-  void push(int member, const Wrench<D>& by, std::span<double> v_rate) const;
+  void push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate);
+  void push(int member, const Wrench<D>& by, std::span<double> v_rate);
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
+  Articulated<D> chains_;
   std::vector<int> bodies_;  // ascending: those that turn come last
-  std::vector<int> member_;  // a body's place in bodies_, or -1
+  std::vector<int> member_;  // a body's place in bodies_, a link's after them, or -1
+  std::vector<int> all_;     // bodies_ and the links
   std::vector<Tie> ties_;    // springs in order, then mice in order
   bool ever_ = false;
   Blasts<D> blasts_;

@@ -73,6 +73,10 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     w.list(blast.forces);
     w.list(blast.torques);
   }
+  for (const Posture& posture : state.postures) {
+    for (const double x : posture.q) w.number(x);
+    for (const double x : posture.v) w.number(x);
+  }
   for (const char holds : state.holds) w.integer(holds);
   for (const Seat<D>& seat : state.seats) {
     w.template numbers<D>(seat.x);
