@@ -7,8 +7,11 @@
 
 #include "app/exit.h"
 #include "app/interrupt.h"
+#include "app/plots.h"
 #include "app/trouble.h"
+#include "draw/annotate.h"
 #include "draw/depict.h"
+#include "draw/formula.h"
 #include "draw/sheet.h"
 #include "sim/run.h"
 
@@ -18,6 +21,7 @@ namespace {
 
 constexpr double kColumn = 84 * 72 / 25.4;            // pt
 constexpr double kGutter = 8, kLetter = 13;           // pt: between panels; above one, for its letter
+constexpr double kFormula = 10;                       // pt, em
 constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
 
 // "crate.elasticity=0,0.5,1" as --set values, and the words of each
@@ -38,6 +42,29 @@ std::vector<std::pair<std::string, std::string>> values(const std::string& vary)
     all.emplace_back(path + "=" + value, last + " = " + value);
   }
   return all;
+}
+
+// the run at an instant, or what ended it
+sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene) {
+  auto found = run.at(t);
+  if (const auto* trouble = std::get_if<sim::Trouble>(&found)) throw TroubleError(scene.file, *trouble, "");
+  if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();
+  return std::get<sim::Snapshot>(std::move(found));
+}
+
+// the end of the first step in which the figure's body is struck
+sim::Rational impact(const scene::Scene& scene) {
+  const auto run = scene.run();
+  run->heed(interrupted);
+  const int body = scene.figure.impact;
+  for (std::int64_t step = 1; sim::rational(step) / run->rate() <= scene.duration; ++step) {
+    const sim::Rational t = sim::rational(step) / run->rate();
+    const sim::Snapshot now = moment(*run, t, scene);
+    for (const sim::Snapshot::Contact& each : now.contacts)
+      if ((each.body == body || each.other == body) && each.impulse.norm() > 0) return t;
+  }
+  throw UsageError(fmt::format("{}: {} strikes nothing within the duration", scene.file,
+                               run->cast().bodies[std::size_t(body)].name));
 }
 
 draw::Text words(const std::string& text, draw::Face face, double size, const draw::Point& at,
@@ -65,21 +92,33 @@ Album::Album(const std::string& file, const std::vector<std::string>& sets, cons
   if (file == "-" && variants.size() > 1)
     throw UsageError("--vary reads its scene more than once: name a file");
 
+  int wanted = 0;
   for (const auto& [changes, said] : variants) {
     scene::Scene scene = scene::read(file, changes);
     if (options.theme) scene.look.theme = *options.theme;
-    std::vector<sim::Rational> times = options.at;
+    const draw::Figure& figure = scene.figure;
+    std::vector<sim::Rational> times = options.at.empty() ? figure.at : options.at;
+    if (figure.impact >= 0) {
+      const sim::Rational struck = impact(scene);
+      if (times.empty()) times = {{0, 1}};
+      for (sim::Rational& time : times) {
+        time = struck + time;
+        if (time < sim::Rational{0, 1}) time = {0, 1};
+      }
+    }
     if (times.empty()) times = {scene.duration / sim::rational(4)};
-    width_ = options.width.value_or(kColumn);
-    every_ = options.every;
-    take(scene, times, said, variants.size());
+    std::sort(times.begin(), times.end(), [](auto a, auto b) { return a < b; });
+    width_ = options.width.value_or(figure.width ? *figure.width * 72 / 25.4 : kColumn);
+    every_ = options.every ? options.every : figure.every;
+    wanted = options.columns ? *options.columns : figure.columns;
+    take(scene, times, said);
   }
   const int n = int(panels_.size());
-  columns_ = std::min(n, options.columns.value_or(n <= 4 ? n : int(std::ceil(std::sqrt(n)))));
+  columns_ = std::min(n, wanted > 0 ? wanted : n <= 4 ? n : int(std::ceil(std::sqrt(n))));
 }
 
-void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& times, const std::string& said,
-                 std::size_t values) {
+void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& times,
+                 const std::string& said) {
   const auto run = scene.run();
   run->heed(interrupted);
   std::vector<int> trailed;
@@ -87,13 +126,7 @@ void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& ti
     if (scene.look.bodies[i].trail > 0) trailed.push_back(int(i));
   run->track(trailed);
 
-  const auto at = [&](sim::Rational t) {
-    auto moment = run->at(t);
-    if (const auto* trouble = std::get_if<sim::Trouble>(&moment))
-      throw TroubleError(scene.file, *trouble, "");
-    if (std::holds_alternative<sim::Stopped>(moment)) throw Interrupted();
-    return std::get<sim::Snapshot>(std::move(moment));
-  };
+  const auto at = [&](sim::Rational t) { return moment(*run, t, scene); };
   std::vector<sim::Snapshot> before;
   std::vector<std::shared_ptr<const sim::Track>> ways;
   sim::Rational next;
@@ -106,51 +139,96 @@ void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& ti
       panel.words += (said.empty() ? "" : ", ") + fmt::format("t = {:g} s", sim::value(time));
     panels_.push_back(std::move(panel));
   }
-  (void)values;
 }
 
 draw::Picture Album::picture() const {
   if (panels_.front().cast.dimension == 3) return in_space();
-  const bool several = panels_.size() > 1;
   const double each = (width_ - kGutter * (columns_ - 1)) / columns_;
-  draw::List all;
-  double row_top = 0, row_height = 0;
-  draw::Color ground;
-  for (std::size_t i = 0; i < panels_.size(); ++i) {
-    const Panel& panel = panels_[i];
-    draw::Look look = panel.scene.look;
-    look.caption = false;
-    const draw::Depictor depictor(panel.cast, look, panel.scene.extent,
-                                  draw::Sheet{.width = each, .above = several ? kLetter : 0});
-    const int column = int(i) % columns_;
-    if (column == 0) row_top += row_height, row_height = 0;
+  const draw::Palette colours = draw::palette(panels_.front().scene.look.theme);
 
-    // what stands still, earlier exposures from the oldest on, the instant itself
-    draw::Picture picture = depictor.depict(panel.now, panel.ways);
-    ground = picture.ground;
-    draw::List list = *picture.still;
-    for (std::size_t k = 0; k < panel.before.size(); ++k) {
-      const double age = double(k) / double(panel.before.size());
-      depictor.ghosts(panel.before[k], kFaintest + (kStrongest - kFaintest) * age, list);
-    }
-    list.add(picture.moving, 1, {0, 0});
-    const draw::Layout& layout = depictor.layout();
-    if (several) {
-      const draw::Palette colours = draw::palette(look.theme);
-      const double baseline = 9 * draw::kPoint;
-      list.add(words(fmt::format("({})", char('a' + int(i % 26))), draw::Face::bold, 9, {2, baseline},
-                     colours.ink));
-      list.add(words(panel.words, draw::Face::regular, 8.5, {18 * draw::kPoint, baseline}, colours.ink));
-    }
-    all.add(list, 1, {column * (each + kGutter) * draw::kPoint, row_top});
-    row_height = std::max(row_height, layout.height);
+  // one scale for the arrows of all panels
+  const draw::Figure& figure = panels_.front().scene.figure;
+  std::vector<sim::Snapshot> moments;
+  for (const Panel& panel : panels_) moments.push_back(panel.now);
+  const draw::Depictor first = depictor(panels_.front(), each);
+  const draw::Scales scales = draw::scales(figure, panels_.front().cast, moments, first.layout());
+
+  draw::List all;
+  double top = 0;
+  if (!figure.formula.empty()) {
+    const draw::Formula formula = draw::formula(figure.formula, kFormula * draw::kPoint, colours.ink);
+    top += draw::kPoint * 3 + formula.ascent;
+    draw::add(formula, {draw::kPoint * 2, top}, all);
+    top += formula.descent + draw::kPoint * 5;
   }
-  const double height = row_top + row_height, width = width_ * draw::kPoint;
+  double row_height = 0;
+  for (std::size_t i = 0; figure.room && i < panels_.size(); ++i) {
+    const int column = int(i) % columns_;
+    if (column == 0) top += row_height, row_height = 0;
+    double height = 0;
+    const draw::List list = panel(int(i), each, scales, height);
+    all.add(list, 1, {column * (each + kGutter) * draw::kPoint, top});
+    row_height = std::max(row_height, height);
+  }
+  top += row_height;
+  if (figure.room && draw::has_legend(figure)) {
+    const draw::Layout& layout = first.layout();
+    const double margin = layout.clipped ? 2 * draw::kPoint : layout.weight * draw::kBand;
+    top += 10 * draw::kPoint;
+    draw::draw_legend(figure, scales, colours, layout.scale, margin, width_ * draw::kPoint - margin, top,
+                      all);
+    top += 4 * draw::kPoint;
+  }
+  // plots below each other, as wide as the figure
+  std::vector<double> marks;
+  if (figure.room)
+    for (const Panel& panel : panels_) marks.push_back(panel.now.time);
+  const std::vector<draw::Plot> plots = app::plots(panels_.front().scene, marks);
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    if (top > 0) top += 4 * draw::kPoint;
+    const double height = figure.plots[i].height * 72 / 25.4 * draw::kPoint;
+    draw::draw_plot(plots[i], colours, {2 * draw::kPoint, top, (width_ - 4) * draw::kPoint, height}, all);
+    top += height;
+  }
   draw::Picture page;
-  page.aspect = width / height;
-  page.ground = ground;
-  page.moving.add(all, 1080 / height, {0, 0});
+  page.aspect = width_ * draw::kPoint / top;
+  page.ground = colours.ground;
+  page.moving.add(all, 1080 / top, {0, 0});
   return page;
+}
+
+draw::Depictor Album::depictor(const Panel& panel, double width) const {
+  draw::Look look = panel.scene.look;
+  look.caption = false;
+  draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? kLetter : 0};
+  const draw::Figure& figure = panel.scene.figure;
+  if (figure.low && figure.high) sheet.region = draw::Extent{*figure.low, *figure.high};
+  return {panel.cast, look, panel.scene.extent, sheet};
+}
+
+draw::List Album::panel(int i, double width, const draw::Scales& scales, double& height) const {
+  const Panel& panel = panels_[std::size_t(i)];
+  const draw::Depictor depictor = this->depictor(panel, width);
+  const draw::Palette colours = draw::palette(panel.scene.look.theme);
+
+  // what stands still, earlier exposures from the oldest on, the instant itself, what is said of it
+  draw::Picture picture = depictor.depict(panel.now, panel.ways);
+  draw::List list = *picture.still;
+  for (std::size_t k = 0; k < panel.before.size(); ++k) {
+    const double age = double(k) / double(panel.before.size());
+    depictor.ghosts(panel.before[k], kFaintest + (kStrongest - kFaintest) * age, list);
+  }
+  list.add(picture.moving, 1, {0, 0});
+  draw::annotate(panel.scene.figure, scales, panel.cast, colours, depictor.layout(),
+                 depictor.view(panel.now.time), panel.now, list);
+  if (panels_.size() > 1) {
+    const double baseline = 9 * draw::kPoint;
+    list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9, {2 * draw::kPoint, baseline},
+                   colours.ink));
+    list.add(words(panel.words, draw::Face::regular, 8.5, {18 * draw::kPoint, baseline}, colours.ink));
+  }
+  height = depictor.layout().height;
+  return list;
 }
 
 draw::Picture Album::in_space() const {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/shots.h"
+#include "draw/annotate.h"
+#include "draw/depict.h"
 #include "draw/list.h"
 #include "draw/look.h"
 #include "scene/scene.h"
@@ -42,9 +45,10 @@ class Album {
     std::vector<std::shared_ptr<const sim::Track>> ways;  // of trails
     std::string words;                                    // what sets it apart from the others
   };
-  void take(const scene::Scene& scene, const std::vector<sim::Rational>& times, const std::string& words,
-            std::size_t values);
+  void take(const scene::Scene& scene, const std::vector<sim::Rational>& times, const std::string& words);
   draw::Picture in_space() const;
+  draw::Depictor depictor(const Panel& panel, double width) const;
+  draw::List panel(int i, double width, const draw::Scales& scales, double& height) const;
 
   std::vector<Panel> panels_;
   double width_ = 0;

@@ -14,7 +14,7 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/options.h"
-#include "draw/sheet.h"
+#include "draw/type.h"
 #include "gl/renderer.h"
 #include "media/error.h"
 #include "media/file.h"
@@ -72,12 +72,17 @@ void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {
   file.place(false);
 }
 
-// the picture's pixels at a density
+// the picture's pixels at a density: exactly so many a point, the last ones cut where the page ends between two
 media::Image pixels(const draw::Picture& picture, double width, double dpi) {
-  const int across = std::max(1, int(std::lround(width / 72 * dpi)));
-  const int down = std::max(1, int(std::lround(across / picture.aspect)));
-  gl::Renderer renderer(across, down);
-  return renderer.draw(picture);
+  const double across = width / 72 * dpi, down = across / picture.aspect;
+  const int w = std::max(1, int(std::ceil(across - 0.01))), h = std::max(1, int(std::ceil(down - 0.01)));
+  gl::Renderer renderer(w, h);
+  if (!picture.solids.empty()) return renderer.draw(picture);
+  draw::Picture exact;
+  exact.aspect = double(w) / h;
+  exact.ground = picture.ground;
+  exact.moving.add(picture.moving, down / h, {0, 0});
+  return renderer.draw(exact);
 }
 
 int run(const Flags& flags) {
@@ -96,7 +101,10 @@ int run(const Flags& flags) {
   options.columns = flags.columns;
   options.vary = flags.vary;
   if (flags.theme) options.theme = *flags.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
-  if (flags.font) ::setenv("OBSCURA_FONT", flags.font->c_str(), 1);
+  if (flags.font) {
+    ::setenv("OBSCURA_FONT", flags.font->c_str(), 1);
+    (void)draw::font_file(draw::Face::regular);  // throws where there is none
+  }
 
   const Album album(flags.scene, flags.sets, options);
   const std::filesystem::path folder = std::filesystem::path(out).parent_path();

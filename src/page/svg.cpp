@@ -109,14 +109,15 @@ class Svg final : public Pen {
       const FaceName& face = face_name(span.face);
       characters(span.text, used_[std::size_t(span.face)]);
       const double x = start.x() + scale * line.spans[i].glyphs.front().at.x();
-      body_ +=
-          fmt::format("<tspan x=\"{}\"{} font-family=\"{}\" font-size=\"{}\"{}{}{}{}>{}</tspan>", number(x),
-                      span.rise != 0 ? fmt::format(" y=\"{}\"", number(start.y() - scale * span.rise)) : "",
-                      escaped(face.family), number(scale * span.size),
-                      face.weight != 400 ? fmt::format(" font-weight=\"{}\"", face.weight) : "",
-                      face.italic ? " font-style=\"italic\"" : "",
-                      span.tabular ? " style=\"font-feature-settings:'tnum'\"" : "", ink("fill", span.color),
-                      escaped(span.text));
+      // a later span says its baseline too: it would take over that of the one before
+      body_ += fmt::format(
+          "<tspan x=\"{}\"{} font-family=\"{}\" font-size=\"{}\"{}{}{}{}>{}</tspan>", number(x),
+          i > 0 || span.rise != 0 ? fmt::format(" y=\"{}\"", number(start.y() - scale * span.rise)) : "",
+          escaped(face.family), number(scale * span.size),
+          face.weight != 400 ? fmt::format(" font-weight=\"{}\"", face.weight) : "",
+          face.italic ? " font-style=\"italic\"" : "",
+          span.tabular ? " style=\"font-feature-settings:'tnum'\"" : "", ink("fill", span.color),
+          escaped(span.text));
     }
     body_ += "</text>\n";
   }

@@ -202,6 +202,10 @@ class Checker {
         return limits(node, key);
       case Form::ends:
         return ends(node, key);
+      case Form::place:
+        return end(node, key);
+      case Form::times:
+        return times(node, key);
       case Form::path:
         return path(node, key);
       case Form::trails:
@@ -517,6 +521,14 @@ class Checker {
       return wrong(node, fmt::format("'{}': expected {}, got a table without 'body'", key.last(), what));
     if (node.find("local") && node.find("at"))
       return wrong(node, "'local' and 'at' both say where on the body; leave one out");
+    return good;
+  }
+
+  bool times(const Node& node, const Key& key) {
+    if (!node.is_list()) return rational(node, key);
+    if (node.list().empty()) return mistyped(node, key, expected(key, told_.n));
+    bool good = true;
+    for (const Node& each : node.list()) good = rational(each, key) && good;
     return good;
   }
 

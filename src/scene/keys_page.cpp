@@ -232,6 +232,38 @@ ground_drag = 0.5                                                # the paper's f
 rotation = false                                                 # the paper's own: forces move bodies as a whole
 ```
 
+## Figures
+
+`obscura figure` makes a figure for print of an instant, or of several. `[figure]` says what it shows and what is named, measured and drawn on it;
+every value is the run's:
+
+```toml
+[figure]
+impact = "crate"                                                 # the step in which it is first struck
+at     = [-0.1, 0, 0.1]                                          # seconds from there, a panel each
+width  = 174                                                     # mm
+
+[[figure.vector]]
+quantity = "velocity"
+of       = "crate"
+label    = "v_center = {}"                                       # {}: its value, with its unit
+
+[[figure.point]]
+at    = { body = "crate", at = "bottom left" }
+label = "P"
+
+[[figure.length]]
+between = [[0, 0], [0, 1.2]]
+label   = "h"
+
+[[figure.plot]]
+quantity = ["energy", "kinetic", "potential"]
+```
+
+Labels are mathematics: letters are italic, words of three letters and more and digits upright. `_` and `^` make sub- and superscripts (`v_center`,
+`a_{ij}`, `x^2`), `'` a prime, `*r*` a vector, `"in quotes"` words; `\omega` and the other Greek letters, `\Delta`, `\times`, `\cdot`, `\perp`, `\dot{q}`,
+`\bar{v}`, `\vec{r}`. In TOML a backslash is written twice, or the string stands in single quotes.
+
 )";
 
 const char* const kNotes[][2] = {
@@ -313,6 +345,10 @@ std::string type(const Key& key) {
       return "two ends";
     case Form::path:
       return "[[t, x, y], ...]";
+    case Form::place:
+      return "a place, or a point of a body";
+    case Form::times:
+      return "number, or a list of them";
     case Form::trails:
       return "number, or table of them";
   }

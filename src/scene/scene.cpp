@@ -13,6 +13,7 @@
 #include "scene/document.h"
 #include "scene/explosions.h"
 #include "scene/fields.h"
+#include "scene/figure.h"
 #include "scene/joints.h"
 #include "scene/links.h"
 #include "scene/overlap.h"
@@ -136,6 +137,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   // what it looks like
   look(top, roster, scene.look, complaints);
   scene.cameras = cameras<D>(top, roster, complaints);
+  scene.figure = figure<D>(top, roster, world, complaints);
 
   // overlaps may come of other mistakes: they are told where there are none
   if (complaints.none() && model.collision != sim::Collision::handout &&

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "draw/depict.h"
+#include "draw/figure.h"
 #include "draw/look.h"
 #include "sim/rational.h"
 #include "sim/run.h"
@@ -38,6 +39,7 @@ struct Scene {
   std::vector<draw::Camera> cameras;  // one; in space as many as there are
   draw::Extent extent;                // what the camera fits
   Film film;
+  draw::Figure figure;
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
   /// A run of it from its start; what is known to go wrong before it does (sim/run.h).

@@ -118,12 +118,18 @@ Json value(const Key& key) {
       return list_of(list_of(string, 2, 2), 0, 0);
     case Form::limits:
       return list_of({{"type", "number"}}, 2, 2);
+    case Form::times: {
+      const Json time = any_of({number, {{"type", "string"}}});
+      return any_of({time, list_of(time, 1, 0)});
+    }
+    case Form::place:
     case Form::ends: {
       const Json point = {{"type", "object"},
                           {"properties", {{"body", string}, {"local", vector()}, {"at", string}}},
                           {"required", {"body"}},
                           {"additionalProperties", false}};
-      return list_of(any_of({string, vector(), point}), 2, 2);
+      const Json end = any_of({string, vector(), point});
+      return key.form == Form::place ? end : list_of(end, 2, 2);
     }
     case Form::path:
       return list_of(list_of({{"type", "number"}}, 3, 4), 2, 0);

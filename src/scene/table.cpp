@@ -191,6 +191,10 @@ std::string expected(const Key& key, int dimension) {
       return fmt::format("points in time [[t, {}, ...], two at least", place.substr(1));
     case Form::walls:
       return "\"ground\", \"none\", or a list of tables";
+    case Form::place:
+      return fmt::format("a body's name, {{ body = \"name\", local = {0} }} or a place {0}", place);
+    case Form::times:
+      return "a number" + of + ", or a list of them";
     case Form::trails:
       return "a number of seconds, or a table of them by body";
   }

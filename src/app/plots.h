@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "draw/plot.h"
+#include "scene/scene.h"
+
+namespace obscura::app {
+
+/// Runs a scene for each of its figure's plots. `marks`: instants that the panels show, s.
+std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<double>& marks);
+
+}  // namespace obscura::app

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "draw/color.h"
+#include "sim/rational.h"
+#include "sim/snapshot.h"
+
+namespace obscura::draw {
+
+// What a figure shows besides the picture: what is named, measured and drawn on it. Values are the run's.
+
+/// A place of the room, or of a body that takes it along.
+struct Site {
+  int body = -1;                        // -1: the room
+  sim::Vec3 local = sim::Vec3::Zero();  // in the body's frame, or the room's, m
+};
+
+/// What an arrow stands for.
+enum class Quantity { position, velocity, weight, spring, contact, impulse, normal, spin, torque };
+
+struct Figure {
+  struct Point {
+    Site at;
+    std::string label;
+    bool dot = true;
+    std::optional<Color> color{};
+  };
+  struct Vector {
+    Quantity quantity = Quantity::position;
+    int body = -1;             // whose
+    std::optional<Site> at{};  // where its tail is: of a position needed; of a velocity, which point's it is
+    std::optional<Site> to{};  // the tip of a position
+    std::string label;
+    std::optional<Color> color{};
+  };
+  struct Angle {
+    int body = -1;                     // its own angle, or
+    std::optional<Site> at, from, to;  // between two directions from a place
+    std::string label;
+  };
+  struct Length {
+    Site from, to;
+    std::string label;
+    double offset = 0;  // mm to the left of the way from one to the other
+  };
+  struct Label {
+    Site at;
+    std::string text;
+  };
+  struct Plot {
+    std::vector<std::string> quantities;  // as [[figure.plot]] calls them
+    int body = -1;
+    sim::Rational from, to;  // s
+    double height = 36;      // mm
+  };
+
+  std::vector<sim::Rational> at;       // s, one a panel; after the impact, where there is one
+  int impact = -1;                     // the body whose first impact it is about
+  std::optional<double> width;         // mm
+  std::optional<sim::Vec3> low, high;  // m: what of the world is shown
+  std::optional<sim::Rational> every;
+  int columns = 0;
+  bool room = true;  // the run's picture; false: plots alone
+  bool scale_bar = false;
+  std::string formula;  // above the picture
+  std::vector<Point> points;
+  std::vector<Vector> vectors;
+  std::vector<Angle> angles;
+  std::vector<Length> lengths;
+  std::vector<Label> labels;
+  std::vector<Plot> plots;
+};
+
+/// Where a site is at an instant of the plane.
+sim::Vec3 place(const Site& site, const sim::Snapshot& now);
+
+}  // namespace obscura::draw

@@ -1,0 +1,162 @@
+#include "scene/figure.h"
+
+#include <array>
+#include <utility>
+
+#include "draw/color.h"
+#include "scene/fields.h"
+#include "scene/links.h"
+
+namespace obscura::scene {
+
+namespace {
+
+draw::Quantity quantity(const std::string& word) {
+  using enum draw::Quantity;
+  constexpr std::array<std::pair<const char*, draw::Quantity>, 9> words{{{"position", position},
+                                                                         {"velocity", velocity},
+                                                                         {"weight", weight},
+                                                                         {"spring", spring},
+                                                                         {"contact", contact},
+                                                                         {"impulse", impulse},
+                                                                         {"normal", normal},
+                                                                         {"spin", spin},
+                                                                         {"torque", torque}}};
+  for (const auto& [known, value] : words)
+    if (word == known) return value;
+  return position;
+}
+
+template <int D>
+class Reader {
+ public:
+  Reader(const Seating<D>& roster, const sim::World<D>& world, Complaints& complaints)
+      : roster_(roster), world_(world), complaints_(complaints) {}
+
+  int body(const Fields& fields, const char* key) const {
+    const Node* name = fields.given(key);
+    if (!name) return -1;
+    const std::vector<int> all = roster_.bodies(name->text(), name->place, complaints_);
+    return all.empty() ? -1 : all.front();
+  }
+  std::optional<draw::Site> site(const Fields& fields, const char* key) const {
+    const Node* node = fields.given(key);
+    return node ? site(*node) : std::nullopt;
+  }
+  std::optional<draw::Site> site(const Node& node) const {
+    const std::vector<sim::End<D>> all = ends(node, roster_, world_, complaints_);
+    if (all.empty()) return {};
+    draw::Site site{all.front().body};
+    site.local.template head<D>() = all.front().local;
+    return site;
+  }
+  static std::optional<draw::Color> color(const Fields& fields) {
+    const Node* node = fields.given("color");
+    return node && node->is_text() ? draw::color(node->text()) : std::nullopt;
+  }
+
+ private:
+  const Seating<D>& roster_;
+  const sim::World<D>& world_;
+  Complaints& complaints_;
+};
+
+const Node::List& tables(const Fields& fields, const char* key) {
+  static const Node::List none;
+  const Node* node = fields.given(key);
+  return node ? node->list() : none;
+}
+
+}  // namespace
+
+template <int D>
+draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+                    Complaints& complaints) {
+  draw::Figure figure;
+  const Fields fields = Fields::of(top, "figure");
+  const Reader<D> read(roster, world, complaints);
+  if (const Node* at = fields.given("at")) {
+    if (at->is_list())
+      for (const Node& each : at->list()) figure.at.push_back(exact(each));
+    else
+      figure.at.push_back(exact(*at));
+  }
+  figure.impact = read.body(fields, "impact");
+  if (const Node* width = fields.given("width")) figure.width = width->number();
+  const auto corner = [&](const char* key, std::optional<sim::Vec3>& to) {
+    if (!fields.given(key)) return;
+    to = sim::Vec3::Zero();
+    to->template head<D>() = fields.template vector<D>(key);
+  };
+  corner("low", figure.low), corner("high", figure.high);
+  if (figure.low.has_value() != figure.high.has_value() ||
+      (figure.low &&
+       !(figure.high->template head<D>().array() > figure.low->template head<D>().array()).all()))
+    complaints.add(fields.place(figure.low ? "low" : "high"),
+                   "'low' and 'high' are the corners of what is shown: both, the lower left one first");
+  if (fields.given("every")) figure.every = fields.rational("every");
+  if (const Node* columns = fields.given("columns")) figure.columns = int(columns->number());
+  figure.room = fields.flag("room");
+  figure.scale_bar = fields.flag("scale_bar");
+  figure.formula = fields.text("formula");
+
+  for (const Node& node : tables(fields, "point")) {
+    const Fields its(node, "figure.point");
+    if (const auto at = read.site(its, "at"))
+      figure.points.push_back({*at, its.text("label"), its.flag("dot"), read.color(its)});
+  }
+  for (const Node& node : tables(fields, "vector")) {
+    const Fields its(node, "figure.vector");
+    draw::Figure::Vector vector{quantity(its.text("quantity")), read.body(its, "of"), read.site(its, "at"),
+                                read.site(its, "to"),           its.text("label"),    read.color(its)};
+    const bool position = vector.quantity == draw::Quantity::position;
+    if (position ? !vector.to && vector.body < 0 : vector.body < 0)
+      complaints.add(node.place, position ? "a position needs 'to', a place, or 'of', a body"
+                                          : "this vector needs 'of', the body that has it");
+    figure.vectors.push_back(vector);
+  }
+  for (const Node& node : tables(fields, "angle")) {
+    const Fields its(node, "figure.angle");
+    draw::Figure::Angle angle{read.body(its, "of"), read.site(its, "at"), read.site(its, "from"),
+                              read.site(its, "to"), its.text("label")};
+    if (!its.given("of") && (!its.given("at") || !its.given("from") || !its.given("to")))
+      complaints.add(node.place, "an angle needs 'of', a body, or 'at', 'from' and 'to', three places");
+    figure.angles.push_back(angle);
+  }
+  for (const Node& node : tables(fields, "length")) {
+    const Fields its(node, "figure.length");
+    const Node* between = its.given("between");
+    if (!between) continue;
+    const auto from = read.site(between->list()[0]), to = read.site(between->list()[1]);
+    if (from && to) figure.lengths.push_back({*from, *to, its.text("label"), its.number("offset")});
+  }
+  for (const Node& node : tables(fields, "label")) {
+    const Fields its(node, "figure.label");
+    if (const auto at = read.site(its, "at")) figure.labels.push_back({*at, its.text("text")});
+  }
+  for (const Node& node : tables(fields, "plot")) {
+    const Fields its(node, "figure.plot");
+    draw::Figure::Plot plot;
+    const Node* wanted = its.given("quantity");
+    for (const Node& each : wanted ? wanted->list() : Node::List{}) plot.quantities.push_back(each.text());
+    plot.body = read.body(its, "of");
+    plot.from = its.rational("from");
+    plot.to = its.given("to") ? its.rational("to") : Fields(top, "").rational("duration");
+    plot.height = its.number("height");
+    if (!(plot.from < plot.to)) complaints.add(its.place("from"), "a plot needs 'from' before 'to'");
+    if (plot.body < 0)
+      for (const std::string& each : plot.quantities)
+        if (each != "energy" && each != "kinetic" && each != "potential" && each != "gravity" &&
+            each != "springs")
+          complaints.add(node.place, "a plot of '" + each + "' needs 'of', the body that has it");
+    figure.plots.push_back(plot);
+  }
+  if (!figure.room && figure.plots.empty())
+    complaints.add(fields.place("room"), "a figure without its picture needs a plot: [[figure.plot]]");
+  return figure;
+}
+
+template draw::Figure figure<2>(const Node&, const Seating<2>&, const sim::World<2>&, Complaints&);
+template draw::Figure figure<3>(const Node&, const Seating<3>&, const sim::World<3>&, Complaints&);
+
+}  // namespace obscura::scene

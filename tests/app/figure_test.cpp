@@ -1,0 +1,215 @@
+// Figures: the same picture as vectors and as pixels, type that stays type, arrows that end where the world
+// says.
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "media/png.h"
+#include "page/page.h"
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+using testing::HasSubstr;
+
+using Figure = Program;
+
+bool there(const char* tool) {
+  return std::system((std::string("command -v ") + tool + " >/dev/null").c_str()) == 0;
+}
+
+const char* const kMarked = R"(
+duration = 2
+[room]
+size = [4, 2.5]
+[[box]]
+name = "crate"
+size = [0.9, 0.5]
+position = [1.2, 1.5]
+velocity = [1.5, 0.5]
+spin = 60
+[[spring]]
+between = ["crate", [3, 2.4]]
+[look]
+trails = 0.5
+[figure]
+at = 0.4
+scale_bar = true
+formula = "*J* = J *n*"
+[[figure.vector]]
+quantity = "velocity"
+of = "crate"
+label = "v_center"
+[[figure.point]]
+at = { body = "crate", at = "top right" }
+label = "P'"
+[[figure.label]]
+at = [0.8, 0.5]
+text = "e = 0.8"
+)";
+
+// what is not ground, as part of what either has
+double overlap(const media::Image& a, const media::Image& b) {
+  const auto inked = [](const media::Image& image, int x, int y) {
+    if (x >= image.width || y >= image.height) return false;
+    const std::uint8_t* p = image.row(y) + 4 * x;
+    return std::min({p[0], p[1], p[2]}) < 235;
+  };
+  double both = 0, any = 0;
+  for (int y = 0; y < std::max(a.height, b.height); ++y) {
+    for (int x = 0; x < std::max(a.width, b.width); ++x) {
+      const bool of_a = inked(a, x, y), of_b = inked(b, x, y);
+      both += of_a && of_b, any += of_a || of_b;
+    }
+  }
+  return any > 0 ? both / any : 0;
+}
+
+TEST_F(Figure, VectorsAndPixelsAreTheSamePicture) {
+  if (!there("rsvg-convert") || !there("pdftocairo")) GTEST_SKIP() << "needs librsvg2-bin and poppler-utils";
+  scene(kMarked);
+  ASSERT_EQ(obscura("figure scene.toml -o a.png --dpi 600").exit, 0);
+  ASSERT_EQ(obscura("figure scene.toml -o a.svg").exit, 0);
+  const media::Image pixels = media::read_png(path("a.png")).image;
+  ASSERT_EQ(shell("rsvg-convert -d 600 -p 600 a.svg -o svg.png").exit, 0);
+  // the issue's bound; edges, of letters above all, are what two rasterisers see differently (measured:
+  // 0.996). Not pdftoppm: its fills take every pixel that they touch, which widens a hatching line by a tenth
+  // (0.972)
+  EXPECT_GT(overlap(pixels, media::read_png(path("svg.png")).image), 0.995);
+  if (!page::writes(page::Form::pdf)) return;
+  ASSERT_EQ(obscura("figure scene.toml -o a.pdf").exit, 0);
+  ASSERT_EQ(shell("pdftocairo -singlefile -r 600 -png a.pdf pdf").exit, 0);
+  EXPECT_GT(overlap(pixels, media::read_png(path("pdf.png")).image), 0.995);
+}
+
+TEST_F(Figure, TypeStaysType) {
+  scene(kMarked);
+  ASSERT_EQ(obscura("figure scene.toml -o a.svg").exit, 0);
+  const std::string svg = contents(path("a.svg"));
+  for (const char* words : {">center<", ">P<", ">e<", "@font-face"}) EXPECT_THAT(svg, HasSubstr(words));
+  if (!page::writes(page::Form::pdf) || !there("pdftotext")) return;
+  ASSERT_EQ(obscura("figure scene.toml -o a.pdf").exit, 0);
+  // how wide a space is, in mathematics, is its own matter
+  const std::string text = shell("pdftotext a.pdf - | sed 's/J = /J=/'").out;
+  for (const char* words : {"center", "P′", "e = 0.8", "J=Jn", "m/s"})
+    EXPECT_THAT(text, HasSubstr(words)) << text;
+}
+
+TEST_F(Figure, ThePageIsAsLargeAsTheFigure) {
+  scene(kMarked);
+  ASSERT_EQ(obscura("figure scene.toml -o a.svg --width 120mm").exit, 0);
+  EXPECT_THAT(contents(path("a.svg")), HasSubstr("width=\"120mm\""));
+  if (!page::writes(page::Form::pdf) || !there("pdfinfo")) return;
+  ASSERT_EQ(obscura("figure scene.toml -o a.pdf --width 240pt").exit, 0);
+  EXPECT_THAT(shell("pdfinfo a.pdf").out, testing::ContainsRegex("Page size: +240 x [0-9.]+ pts"));
+}
+
+TEST_F(Figure, TypeAndLinesKeepTheirSizeWhateverTheWidth) {
+  scene(kMarked);
+  const auto sizes = [&](const std::string& width) {
+    EXPECT_EQ(obscura("figure scene.toml -o a.svg --width " + width).exit, 0);
+    const std::string svg = contents(path("a.svg"));
+    std::set<std::string> found;
+    static const std::regex size(" font-size=\"([0-9.]+)\"");
+    for (std::sregex_iterator it(svg.begin(), svg.end(), size), end; it != end; ++it) found.insert((*it)[1]);
+    EXPECT_THAT(svg, HasSubstr("stroke-width=\"0.9\""));  // outlines, pt
+    return found;
+  };
+  EXPECT_EQ(sizes("60mm"), sizes("170mm"));
+}
+
+// Without walls the margin is 2 pt, and 84 mm are 238.11 pt: a place (x, y) of what is shown from `low` to
+// `high` lies at 2 + (x - low) s, s = (238.11 - 4) / (high - low).
+TEST_F(Figure, ArrowTipsAreWhereTheProjectionSays) {
+  scene(R"(
+duration = 1
+[room]
+size = [4, 3]
+walls = "none"
+[[particle]]
+name = "ball"
+position = [2.5, 1.75]
+[figure]
+at = 0
+low = [0.5, 0.5]
+high = [3.5, 2.5]
+[[figure.vector]]
+at = [1, 0.75]
+of = "ball"
+)");
+  ASSERT_EQ(obscura("figure scene.toml -o a.svg").exit, 0);
+  const std::string svg = contents(path("a.svg"));
+  const double s = (84 * 72 / 25.4 - 4) / 3, x = 2 + 2 * s, y = 2 + 0.75 * s;
+  static const std::regex head("d=\"M([0-9.]+) ([0-9.]+)L[^Z\"]*Z\"");
+  double nearest = 1e9;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), head), end; it != end; ++it)
+    nearest = std::min(nearest, std::hypot(std::stod((*it)[1]) - x, std::stod((*it)[2]) - y));
+  EXPECT_LT(nearest, 0.05);  // pt, as the issue asks
+}
+
+TEST_F(Figure, APngSaysItsDensity) {
+  scene(kMarked);
+  ASSERT_EQ(obscura("figure scene.toml -o a.png --dpi 300").exit, 0);
+  // 300 / 0.0254 = 11811 pixels a metre, both ways, unit 1
+  EXPECT_THAT(contents(path("a.png")), HasSubstr(std::string("pHYs\0\0\x2e\x23\0\0\x2e\x23\x01", 13)));
+  EXPECT_EQ(media::read_png(path("a.png")).image.width, 993);  // 84 mm are 992.1
+}
+
+TEST_F(Figure, TheSameFigureIsTheSameBytes) {
+  scene(kMarked);
+  for (const std::string end : {"svg", "pdf", "png"}) {
+    if (end == "pdf" && !page::writes(page::Form::pdf)) continue;
+    ASSERT_EQ(obscura("figure scene.toml -o a." + end).exit, 0);
+    ASSERT_EQ(obscura("figure scene.toml -o b." + end).exit, 0);
+    EXPECT_EQ(contents(path("a." + end)), contents(path("b." + end))) << end;
+  }
+}
+
+TEST_F(Figure, SeveralInstantsAndValuesArePanelsWithLetters) {
+  scene(kMarked);
+  ASSERT_EQ(obscura("figure scene.toml -o a.svg --at 0,0.2 --vary crate.elasticity=0,1 --columns 2").exit, 0);
+  const std::string svg = contents(path("a.svg"));
+  for (const char* words : {">(a)<", ">(d)<", "elasticity = 0, t = 0.2 s", "elasticity = 1, t = 0 s"})
+    EXPECT_THAT(svg, HasSubstr(words));
+}
+
+TEST_F(Figure, ErrorsAreOneClearLine) {
+  scene(kMarked);
+  const auto fails = [&](const std::string& arguments, int exit, const std::string& words) {
+    const Outcome outcome = obscura("figure " + arguments);
+    EXPECT_EQ(outcome.exit, exit) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  };
+  fails("scene.toml -o a.jpg", 2, "ends with .svg, .pdf or .png");
+  fails("scene.toml -o a.svg --width 3", 2, "--width 3: expected 20mm to 1000mm");
+  fails("scene.toml -o a.svg --vary crate", 2, "expected PATH=VALUES");
+  fails("scene.toml -o a.svg --font NoSuchFamily", 4, "cannot find the font NoSuchFamily-Regular.otf");
+  scene("[[box]]\n[[figure.vector]]\nquantity = \"velocity\"\n", "none.toml");
+  fails("none.toml -o a.svg", 3, "this vector needs 'of', the body that has it");
+}
+
+// script/figures makes them anew
+TEST_F(Figure, NoFigureOfTheHandoutIsStale) {
+  namespace fs = std::filesystem;
+  static const std::regex fonts("<style>[^<]*</style>");  // of this system's version
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(OBSCURA_SOURCE_DIR) / "scenes/figures")) {
+    if (entry.path().extension() != ".toml") continue;
+    const fs::path drawn = fs::path(OBSCURA_SOURCE_DIR) / "docs/handout" / entry.path().stem().concat(".svg");
+    ASSERT_EQ(obscura("figure '" + entry.path().string() + "' -o a.svg").exit, 0) << entry.path();
+    EXPECT_TRUE(std::regex_replace(contents(path("a.svg")), fonts, "") ==
+                std::regex_replace(contents(drawn.string()), fonts, ""))
+        << drawn << " is not what its scene draws today; script/figures makes it anew";
+    ++count;
+  }
+  EXPECT_GE(count, 3);
+}
+
+}  // namespace
+}  // namespace obscura::app
