@@ -315,7 +315,7 @@ void Notes::vector(const Figure::Vector& vector, Scales scales) {
       tip = view_.page(reading.tail + (scale ? *scale : 1.0) * reading.value);
     }
     std::vector<Arrow> arrows;
-    offer(tail, tip, kArrow, arrows);
+    offer(tail, tip, view_.window, kArrow, arrows);
     if (arrows.empty()) continue;
     draw_arrows(arrows, kArrow, colours_.room, ink, list_);
     placing_.avoid(tail, tip, 4);
@@ -515,7 +515,8 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     add(f, {x, baseline}, list);
     x -= 3 * kPoint;
     std::vector<Arrow> arrows;
-    offer({x - length, middle}, {x, middle}, kArrow, arrows);
+    offer({x - length, middle}, {x, middle}, {left, middle - length, right - left, 2 * length}, kArrow,
+          arrows);
     Figure::Vector of;
     of.quantity = kind.quantity;
     draw_arrows(arrows, kArrow, colours.ground, color_of(of, colours), list);
