@@ -33,16 +33,23 @@ template <int D>
 void Cone<D>::answer() {
   std::copy(b_.begin(), b_.end(), w_.begin());
   for (int i = 0; i < n_; ++i) size_[i] = std::fabs(b_[i]);
-  for (int j = 0; j < n_; ++j) {
-    if (g_[j] == 0) continue;
-    const double* __restrict const column = K_.data() + std::size_t(j) * n_;
+  // by two columns at once, each in its turn
+  const auto next = [&](int j) {
+    while (j < n_ && g_[j] == 0) ++j;
+    return j;
+  };
+  for (int j = next(0); j < n_;) {
+    const int other = next(j + 1);
+    const double* __restrict const one = K_.data() + std::size_t(j) * n_;
+    const double* __restrict const two = K_.data() + std::size_t(other < n_ ? other : j) * n_;
     double* __restrict const w = w_.data();
     double* __restrict const size = size_.data();
-    const double g = g_[j];
+    const double g = g_[j], h = other < n_ ? g_[other] : 0;
     for (int i = 0; i < n_; ++i) {
-      const double term = column[i] * g;
-      w[i] += term, size[i] += std::fabs(term);
+      const double p = one[i] * g, q = two[i] * h;
+      w[i] = (w[i] + p) + q, size[i] = (size[i] + std::fabs(p)) + std::fabs(q);
     }
+    j = next(other + 1);
   }
 }
 
@@ -81,9 +88,11 @@ void Cone<D>::gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeM
   ++tries_;
   if (symmetric && !turning) return factor_symmetric();
   lay_leaning(blocks, modes, turning);
-  if (turning) return factors_.general(A_, int(unknowns_.size()), kDependent);
-  if (factors_.regular(A_, int(unknowns_.size()), kSafe) || factor_leaning(blocks, modes)) return;
-  lay_leaning(blocks, modes, false);
+  if (factors_.regular(A_, int(unknowns_.size()), kSafe)) return;
+  if (!turning) {
+    if (factor_leaning(blocks, modes)) return;
+    lay_leaning(blocks, modes, false);
+  }
   factors_.general(A_, int(unknowns_.size()), kDependent);
 }
 

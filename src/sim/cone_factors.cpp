@@ -269,34 +269,46 @@ void FullRank::solve(std::span<const double> r, std::span<double> x) {
   }
 }
 
+// column by column, by all before it: four at a time, each entry less one product after another
 bool eliminate(std::span<double> A, int n, double tolerance, std::span<int> swaps) {
-  const auto at = [&](int row, int col) -> double& { return A[std::size_t(col) * n + row]; };
   double most = 0;
   for (const double a : A.first(std::size_t(n) * n)) most = std::max(most, std::fabs(a));
-  for (int k = 0; k < n; ++k) {
-    int p = k;
-    for (int i = k + 1; i < n; ++i) {
-      if (std::fabs(at(i, k)) > std::fabs(at(p, k))) p = i;
+  const auto column = [&](int k) { return A.data() + std::size_t(k) * n; };
+  for (int j = 0; j < n; ++j) {
+    double* __restrict const c = column(j);
+    for (int k = 0; k < j; ++k) std::swap(c[k], c[swaps[k]]);
+    int k = 0;
+    for (; k + 4 <= j; k += 4) {
+      const double* __restrict const l0 = column(k);
+      const double* __restrict const l1 = column(k + 1);
+      const double* __restrict const l2 = column(k + 2);
+      const double* __restrict const l3 = column(k + 3);
+      const double u0 = c[k];
+      const double u1 = c[k + 1] -= u0 * l0[k + 1];
+      const double u2 = c[k + 2] = (c[k + 2] - u0 * l0[k + 2]) - u1 * l1[k + 2];
+      const double u3 = c[k + 3] = ((c[k + 3] - u0 * l0[k + 3]) - u1 * l1[k + 3]) - u2 * l2[k + 3];
+      if (u0 == 0 && u1 == 0 && u2 == 0 && u3 == 0) continue;
+      for (int i = k + 4; i < n; ++i) c[i] = (((c[i] - u0 * l0[i]) - u1 * l1[i]) - u2 * l2[i]) - u3 * l3[i];
     }
-    if (!(std::fabs(at(p, k)) > tolerance * most)) return false;
-    swaps[k] = p;
-    double* const c = A.data() + std::size_t(k) * n;
-    std::swap(c[p], c[k]);
-    for (int i = k + 1; i < n; ++i) c[i] /= c[k];
-    for (int j = k + 1; j < n; ++j) {
-      if (p != k) std::swap(at(p, j), at(k, j));
-      if (at(k, j) != 0) add(n - k - 1, -at(k, j), c + k + 1, A.data() + std::size_t(j) * n + k + 1);
+    for (; k < j; ++k) {
+      if (c[k] != 0) add(n - k - 1, -c[k], column(k) + k + 1, c + k + 1);
     }
+
+    int p = j;
+    for (int i = j + 1; i < n; ++i) {
+      if (std::fabs(c[i]) > std::fabs(c[p])) p = i;
+    }
+    if (!(std::fabs(c[p]) > tolerance * most)) return false;
+    swaps[j] = p;
+    for (int i = 0; i <= j && p != j; ++i) std::swap(column(i)[p], column(i)[j]);
+    for (int i = j + 1; i < n; ++i) c[i] /= c[j];
   }
-  // multipliers of earlier columns stay where they were: substitute() swaps as it goes
   return true;
 }
 
 void substitute(std::span<const double> A, int n, std::span<const int> swaps, std::span<double> x) {
-  for (int k = 0; k < n; ++k) {
-    std::swap(x[k], x[swaps[k]]);
-    add(n - k - 1, -x[k], A.data() + std::size_t(k) * n + k + 1, x.data() + k + 1);
-  }
+  for (int k = 0; k < n; ++k) std::swap(x[k], x[swaps[k]]);
+  for (int k = 0; k < n; ++k) add(n - k - 1, -x[k], A.data() + std::size_t(k) * n + k + 1, x.data() + k + 1);
   for (int k = n - 1; k >= 0; --k) {
     x[k] /= A[std::size_t(k) * n + k];
     add(k, -x[k], A.data() + std::size_t(k) * n, x.data());
