@@ -1,6 +1,7 @@
 #include "app/album.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -19,10 +20,12 @@ namespace obscura::app {
 
 namespace {
 
-constexpr double kColumn = 84 * 72 / 25.4;            // pt
-constexpr double kGutter = 8, kLetter = 13;           // pt: between panels; above one, for its letter
-constexpr double kFormula = 10;                       // pt, em
-constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
+constexpr double kColumn = 84 * 72 / 25.4;   // pt
+constexpr double kGutter = 8, kLetter = 13;  // pt: between panels; above one, for its letter
+constexpr std::array<const char*, 5> kTold{"blue", "vermilion", "green", "purple",
+                                           "orange"};  // lines of runs
+constexpr double kFormula = 10;                        // pt, em
+constexpr double kFaintest = 0.18, kStrongest = 0.6;   // of exposures
 
 // "crate.elasticity=0,0.5,1" as --set values, and the words of each
 std::vector<std::pair<std::string, std::string>> values(const std::string& vary) {
@@ -79,7 +82,10 @@ draw::Text words(const std::string& text, draw::Face face, double size, const dr
 Album::Album(const std::string& file, const std::vector<std::string>& sets, const AlbumOptions& options) {
   // one scene for each value, all combinations
   std::vector<std::pair<std::vector<std::string>, std::string>> variants{{sets, ""}};
-  for (const std::string& vary : options.vary) {
+  std::vector<std::string> varies = options.vary;
+  if (varies.empty() && file != "-")
+    if (const std::string own = scene::read(file, sets).figure.vary; !own.empty()) varies = {own};
+  for (const std::string& vary : varies) {
     std::vector<std::pair<std::vector<std::string>, std::string>> more;
     for (const auto& [so_far, said] : variants) {
       for (const auto& [set, text] : values(vary)) {
@@ -112,6 +118,8 @@ Album::Album(const std::string& file, const std::vector<std::string>& sets, cons
     every_ = options.every ? options.every : figure.every;
     wanted = options.columns ? *options.columns : figure.columns;
     take(scene, times, said);
+    const auto value = said.rfind(" = ");
+    variants_.push_back({scene, value == said.npos ? said : said.substr(value + 3)});
   }
   const int n = int(panels_.size());
   columns_ = std::min(n, wanted > 0 ? wanted : n <= 4 ? n : int(std::ceil(std::sqrt(n))));
@@ -180,10 +188,7 @@ draw::Picture Album::picture() const {
     top += 4 * draw::kPoint;
   }
   // plots below each other, as wide as the figure
-  std::vector<double> marks;
-  if (figure.room)
-    for (const Panel& panel : panels_) marks.push_back(panel.now.time);
-  const std::vector<draw::Plot> plots = app::plots(panels_.front().scene, marks);
+  const std::vector<draw::Plot> plots = this->plots();
   for (std::size_t i = 0; i < plots.size(); ++i) {
     if (top > 0) top += 4 * draw::kPoint;
     const double height = figure.plots[i].height * 72 / 25.4 * draw::kPoint;
@@ -195,6 +200,29 @@ draw::Picture Album::picture() const {
   page.ground = colours.ground;
   page.moving.add(all, 1080 / top, {0, 0});
   return page;
+}
+
+// of several runs, their lines in one plot, each with the value that sets it apart
+std::vector<draw::Plot> Album::plots() const {
+  std::vector<double> marks;
+  if (panels_.front().scene.figure.room)
+    for (const Panel& panel : panels_) marks.push_back(panel.now.time);
+  std::vector<draw::Plot> all = app::plots(variants_.front().scene, marks);
+  if (variants_.size() == 1) return all;
+  const draw::Color ink = draw::palette(variants_.front().scene.look.theme).ink;
+  for (draw::Plot& plot : all) plot.lines.clear();
+  for (std::size_t v = 0; v < variants_.size(); ++v) {
+    const std::vector<draw::Plot> own = app::plots(variants_[v].scene, marks);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (draw::Series line : own[i].lines) {
+        const std::string what = own[i].lines.size() > 1 ? line.label + " " : "";
+        line.label = what + "\"" + variants_[v].name + "\"";
+        line.color = draw::mix(*draw::color(kTold[all[i].lines.size() % kTold.size()]), ink, 0.2);
+        all[i].lines.push_back(std::move(line));
+      }
+    }
+  }
+  return all;
 }
 
 draw::Depictor Album::depictor(const Panel& panel, double width) const {

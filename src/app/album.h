@@ -10,6 +10,7 @@
 #include "draw/depict.h"
 #include "draw/list.h"
 #include "draw/look.h"
+#include "draw/plot.h"
 #include "scene/scene.h"
 #include "sim/snapshot.h"
 
@@ -50,7 +51,15 @@ class Album {
   draw::Depictor depictor(const Panel& panel, double width) const;
   draw::List panel(int i, double width, const draw::Scales& scales, double& height) const;
 
+  /// One of the runs that differ in a value, and what it is called in a plot.
+  struct Variant {
+    scene::Scene scene;
+    std::string name;
+  };
+  std::vector<draw::Plot> plots() const;
+
   std::vector<Panel> panels_;
+  std::vector<Variant> variants_;
   double width_ = 0;
   int columns_ = 1;
   std::optional<sim::Rational> every_;

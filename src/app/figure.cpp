@@ -72,7 +72,8 @@ void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {
   file.place(false);
 }
 
-// the picture's pixels at a density: exactly so many a point, the last ones cut where the page ends between two
+// the picture's pixels at a density: exactly so many a point, the last ones cut where the page ends between
+// two
 media::Image pixels(const draw::Picture& picture, double width, double dpi) {
   const double across = width / 72 * dpi, down = across / picture.aspect;
   const int w = std::max(1, int(std::ceil(across - 0.01))), h = std::max(1, int(std::ceil(down - 0.01)));
@@ -165,8 +166,10 @@ void add_figure(CLI::App& program, int& exit) {
                    "Earlier exposures, one every so many seconds, fading [figure.every]")
       ->type_name("SECONDS");
   command
-      ->add_option("--vary", flags->vary,
-                   "A panel for each value of a key, as in --vary crate.elasticity=0,0.5,1")
+      ->add_option(
+          "--vary", flags->vary,
+          "A panel, and a line of each plot, for each value of a key, as in --vary crate.elasticity=0,0.5,1 "
+          "[figure.vary]")
       ->type_name("PATH=VALUES")
       ->expected(1)
       ->take_all();

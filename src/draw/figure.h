@@ -62,6 +62,7 @@ struct Figure {
   std::optional<double> width;         // mm
   std::optional<sim::Vec3> low, high;  // m: what of the world is shown
   std::optional<sim::Rational> every;
+  std::string vary;  // "crate.elasticity=0,0.5,1": a panel and a line of each plot for each value
   int columns = 0;
   bool room = true;  // the run's picture; false: plots alone
   bool scale_bar = false;

@@ -99,6 +99,11 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
   figure.room = fields.flag("room");
   figure.scale_bar = fields.flag("scale_bar");
   figure.formula = fields.text("formula");
+  figure.vary = fields.text("vary");
+  if (const auto equals = figure.vary.find('=');
+      fields.given("vary") && (equals == 0 || equals == std::string::npos))
+    complaints.add(fields.place("vary"),
+                   "'vary': expected a path and its values, as in \"crate.elasticity=0,0.5,1\"");
 
   for (const Node& node : tables(fields, "point")) {
     const Fields its(node, "figure.point");

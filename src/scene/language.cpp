@@ -387,6 +387,8 @@ std::vector<Key> rows() {
        .example = "[4, 3]"},
       {.path = "figure.every", .form = rational, .unit = "s", .absent = "none", .range = {0, 1e6, true},
        .doc = "Earlier exposures, one every so many seconds, fading.", .example = "0.1"},
+      {.path = "figure.vary", .form = text, .fallback = "\"\"",
+       .doc = "A panel, and a line of each plot, for each value of a key.", .example = "\"physics.integrator=euler,midpoint,rk4\""},
       {.path = "figure.columns", .form = integer, .absent = "up to four", .range = {1, 20}, .doc = "Panels beside each other.", .example = "2"},
       {.path = "figure.room", .form = boolean, .fallback = "true", .doc = "The picture itself; `false`: plots alone.", .example = "false"},
       {.path = "figure.scale_bar", .form = boolean, .fallback = "false", .dimension = 2, .doc = "How long a metre is.", .example = "true"},

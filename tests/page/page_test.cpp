@@ -1,0 +1,89 @@
+// A page: as large as it is told, with its things where the list has them.
+
+#include "page/page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace obscura::page {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// 1080 units are 108 pt high, so that ten units are a point
+constexpr double kWidth = 216;
+
+draw::Picture picture(draw::List list) {
+  draw::Picture it;
+  it.aspect = 2;
+  it.ground = {255, 255, 255};
+  it.moving = std::move(list);
+  return it;
+}
+
+std::string svg(draw::List list) {
+  const auto bytes = page(picture(std::move(list)), Form::svg, {.width = kWidth, .title = ""});
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST(Page, AnOutlineLiesWithinItsRim) {
+  draw::List list;
+  list.add(draw::Disc{{100, 200}, 50, 10, {1, 2, 3}, {4, 5, 6}});
+  // radius 5 pt, line 1 pt: its middle is 4.5 pt out, and so far goes the fill
+  EXPECT_THAT(svg(list), HasSubstr("<circle cx=\"10\" cy=\"20\" r=\"4.5\" fill=\"#010203\"/>\n"
+                                   "<circle cx=\"10\" cy=\"20\" r=\"4.5\" fill=\"none\" stroke-width=\"1\" "
+                                   "stroke=\"#040506\"/>"));
+}
+
+TEST(Page, AnEvenStrokeIsOneLineAndATaperingOneIsPieces) {
+  draw::List even, taper;
+  even.add({{{0, 0}, 10, {}}, {{100, 0}, 10, {}}, {{100, 100}, 10, {}}}, draw::Cap::butt);
+  EXPECT_THAT(svg(even), HasSubstr("<path d=\"M0 0L10 0 10 10\" fill=\"none\" stroke-width=\"1\""));
+  taper.add({{{0, 0}, 10, {}}, {{100, 0}, 20, {}}}, draw::Cap::butt);
+  // from half a point on either side to a point
+  EXPECT_THAT(svg(taper), HasSubstr("<path d=\"M0 0.5L10 1 10 1 10 -1 10 -1 0 -0.5Z\""));
+}
+
+TEST(Page, WhatFadesIsMixedWithTheGround) {
+  draw::List list;
+  list.add({{{0, 0}, 10, {0, 0, 0, 51}}, {{100, 0}, 10, {0, 0, 0, 51}}}, draw::Cap::butt,
+           draw::Blend::darken);
+  EXPECT_THAT(svg(list), HasSubstr("stroke=\"#cccccc\""));  // 255 * 4 / 5
+  EXPECT_THAT(svg(list), Not(HasSubstr("stroke-opacity")));
+}
+
+TEST(Page, WhatIsClippedIsInAGroup) {
+  draw::List list;
+  list.clip({10, 20, 30, 40});
+  list.add(draw::Disc{{0, 0}, 50, 0, {}, {}});
+  list.unclip();
+  list.add(draw::Disc{{0, 0}, 60, 0, {}, {}});
+  EXPECT_THAT(svg(list), HasSubstr("<path d=\"M1 2h3v4h-3Z\"/></clipPath>\n<g clip-path=\"url(#c1)\">\n"
+                                   "<circle cx=\"0\" cy=\"0\" r=\"5\" fill=\"#000000\"/>\n</g>\n<circle"));
+}
+
+TEST(Page, TypeIsEscapedAndBringsItsFont) {
+  draw::List list;
+  list.add(draw::Text{{0, 0}, draw::Align::left, {{.text = "a<b & c", .size = 100}}});
+  const std::string page = svg(list);
+  EXPECT_THAT(page, HasSubstr(">a&lt;b &amp; c</tspan>"));
+  EXPECT_THAT(page, HasSubstr("font-size=\"10\""));
+  EXPECT_THAT(page, HasSubstr("src:url(data:font/otf;base64,T1RUTw"));  // "OTTO"
+}
+
+TEST(Page, APdfIsTheSameBytesWheneverItIsMade) {
+  if (!writes(Form::pdf)) GTEST_SKIP() << "built without Cairo";
+  draw::List list;
+  list.add(draw::Text{{0, 0}, draw::Align::left, {{.text = "v", .face = draw::Face::math_italic}}});
+  const auto one = page(picture(list), Form::pdf, {}), other = page(picture(list), Form::pdf, {});
+  EXPECT_EQ(one, other);
+  const std::string text(one.begin(), one.end());
+  EXPECT_THAT(text, HasSubstr("%PDF-1.5"));
+  EXPECT_THAT(text, Not(HasSubstr("CreationDate")));
+}
+
+}  // namespace
+}  // namespace obscura::page
