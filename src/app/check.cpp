@@ -39,6 +39,8 @@ std::string contact(const sim::Model<D>& model) {
   std::string why;
   if (model.collision == sim::Collision::event)
     why = "every event at its own time";
+  else if (!model.chains.empty())
+    why = count(model.chains.size(), "chain", "chains");
   else if (!model.joints.empty())
     why = count(model.joints.size(), "joint", "joints");
   else if (model.solver != sim::Solver::automatic)
@@ -79,6 +81,10 @@ std::string bodies(const sim::Model<D>& model) {
   }
   text += ", " + count(model.springs.size(), "spring", "springs");
   if (!model.joints.empty()) text += ", " + count(model.joints.size(), "joint", "joints");
+  std::size_t links = 0;
+  for (const sim::Articulation<D>& chain : model.chains) links += chain.bodies.size();
+  if (links > 0)
+    text += ", " + count(model.chains.size(), "chain", "chains") + " with " + count(links, "link", "links");
   return text + ", " + count(model.walls.size(), "wall", "walls") + ", " +
          count(model.mice.size(), "mouse", "mice");
 }

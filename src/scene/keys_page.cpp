@@ -197,6 +197,19 @@ breaks  = 50
 
 Two bodies with a joint between them do not touch each other, unless it says `touching = true`.
 
+## Articulated bodies
+
+`[[chain]]` makes the joints of a figure, a crane or a pendulum hold exactly, by Featherstone's algorithm: they cannot drift, and they
+keep their energy for long. Its links are bodies as others, with joints as others, limits, motors and friction among them; they touch, hang
+on springs and are taken by the mouse. If no joint is with the room it flies:
+
+```toml
+[[chain]]
+of = ["trunk", "head", "arm[*]", "leg[*]"]
+```
+
+Velocities at the start that the joints do not allow are put right by impulses between the links. The joints of a chain do not break.
+
 ## Pieces
 
 `[[bond]]` makes one body of several, until it breaks:

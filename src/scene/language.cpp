@@ -248,6 +248,14 @@ std::vector<Key> rows() {
       {.path = "joint.touching", .form = boolean, .fallback = "false",
        .doc = "Whether the two bodies may touch each other.", .example = "true"},
 
+      {.path = "chain", .form = tables,
+       .doc = "An articulated body: bodies whose joints hold exactly, for the numbers that move are those of the joints."},
+      {.path = "chain.name", .form = name, .absent = "`chain[0]`, ...", .doc = "What `--set` calls it.", .example = "\"figure\""},
+      {.path = "chain.of", .form = things, .required = true,
+       .doc = "Its links. Pins, hinges, balls, welds and sliders among them, and between them and the room, hold exactly; what closes a loop, "
+              "rods and ropes hold as other joints do.",
+       .example = "[\"trunk\", \"arm[*]\"]"},
+
       {.path = "bond", .form = tables,
        .doc = "Makes bodies one as they stand at the start, until what it bears is more than its strength. Then they go on as bodies of their own."},
       {.path = "bond.name", .form = name, .absent = "`bond[0]`, ...", .doc = "What `--set` calls it.", .example = "\"glue\""},

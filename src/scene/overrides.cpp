@@ -13,8 +13,8 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr const char* kNamed[] = {"particle", "ball", "box",   "capsule", "polygon",   "hull", "body",
-                                  "spring",   "net",  "joint", "bond",    "explosion", "mouse"};
+constexpr const char* kNamed[] = {"particle", "ball", "box",   "capsule", "polygon", "hull",      "body",
+                                  "spring",   "net",  "joint", "chain",   "bond",    "explosion", "mouse"};
 
 void settle(Node& node, Place place) {
   node.place = place;

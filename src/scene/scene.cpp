@@ -7,6 +7,7 @@
 
 #include "scene/bodies.h"
 #include "scene/bonds.h"
+#include "scene/chains.h"
 #include "scene/check.h"
 #include "scene/complaints.h"
 #include "scene/dimension.h"
@@ -46,9 +47,9 @@ sim::Solver solver(const std::string& word) {
 
 // the handout knows particles and boxes, each alone
 void refuse_beyond_handout(const Node& top, int dimension, Complaints& complaints) {
-  for (const std::string kind : {"ball", "polygon", "body", "joint"}) {
+  for (const std::string kind : {"ball", "polygon", "body", "joint", "chain"}) {
     const Node* all = top.find(kind);
-    if (!all || all->list().empty() || (dimension == 3 && kind != "joint")) continue;
+    if (!all || all->list().empty() || (dimension == 3 && kind != "joint" && kind != "chain")) continue;
     complaints.add(all->list().front().place,
                    fmt::format("[[{}]] is not in `collision = \"handout\"`, which knows particles and boxes; "
                                "[physics] collision = \"contact\" has it",
@@ -87,7 +88,7 @@ void ignore(const Node& top, const Roster& roster, sim::Model<D>& model, Complai
 void refuse_taken_names(const Node& top, const Roster& roster, Complaints& complaints) {
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
-  for (const char* kind : {"spring", "net", "joint", "bond", "explosion", "mouse"}) {
+  for (const char* kind : {"spring", "net", "joint", "chain", "bond", "explosion", "mouse"}) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i) {
       const Node* name = all->list()[i].find("name");
@@ -123,6 +124,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, world, complaints);
+  chains(top, roster, world, complaints);
   explosions(top, model, complaints);
   bonds(top, roster, world, complaints);
   ignore(top, roster, model, complaints);

@@ -57,10 +57,6 @@ TEST(Complaints, WhatComesLaterIsNamedAsSuch) {
   refused("[golden]\nat = [0]", "a.toml:1:2: [golden] is not in this version of obscura yet");
   refused("version = 2",
           "a.toml:1:11: version 2 of the language is newer than this obscura, which reads version 1");
-  for (const char* table : {"chain"})
-    EXPECT_THAT(wrong("[[" + std::string(table) + "]]"),
-                ElementsAre(EndsWith("is not in this version of obscura yet")))
-        << table;
 }
 
 TEST(Complaints, TypesAreNeverGuessed) {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "scene/bodies.h"
+#include "scene/complaints.h"
+#include "scene/document.h"
+#include "sim/state.h"
+
+namespace obscura::scene {
+
+/// Makes the chains of a scene of its bodies and joints, which are in the world already.
+template <int D>
+void chains(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints);
+
+}  // namespace obscura::scene
