@@ -38,7 +38,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
     : model_(model),
       cores_(model),
       pairs_(model, cores_),
-      blows_(int(model.bodies.size())),
+      blows_(cores_),
       rest_(model, cores_),
       tied_(model, paths),
       linkage_(model) {

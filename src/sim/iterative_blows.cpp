@@ -23,7 +23,9 @@ double along(const Rows& r, int k, int lane, const Motion& a, const Motion& b) {
 
 }  // namespace
 
-Blows::Blows(int bodies) {
+Blows::Blows(const Cores& cores) : reach_(cores.reach) {
+  const int bodies = int(reach_.size());
+  reach_.push_back(0);
   around_start_.resize(bodies + 2);
   when_.assign(bodies + 1, -1);
   before_.resize(bodies + 1), now_.resize(bodies + 1);
@@ -89,14 +91,14 @@ double Blows::closing(int i, const std::vector<Pair>& pairs, const std::vector<S
 bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
                 const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) {
   const Pair& pair = pairs[i];
+  const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
+  // too slow for a blow however they meet: most are, and their seats are far away in memory
+  if (std::fabs(now_[a].x - now_[b].x) + std::fabs(now_[a].y - now_[b].y) + std::fabs(now_[a].w) * reach_[a] +
+          std::fabs(now_[b].w) * reach_[b] <
+      pair.blow)
+    return false;
   const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
   Seats& g = seats[group];
-  const int a = g.a[lane], b = g.b[lane];
-  // too slow for a blow however they meet
-  if (std::fabs(now_[a].x - now_[b].x) + std::fabs(now_[a].y - now_[b].y) +
-          (std::fabs(now_[a].w) + std::fabs(now_[b].w)) * g.far[lane] <
-      -g.blow[lane])
-    return false;
   const Rows& r = rows(group, seats, poses);
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
   const auto push = [&](double dx, double dy, double ra, double rb, double l) {

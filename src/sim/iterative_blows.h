@@ -15,8 +15,7 @@ namespace obscura::sim::sweep {
 /// up.
 class Blows {
  public:
-  /// For `bodies` bodies.
-  explicit Blows(int bodies);
+  explicit Blows(const Cores& cores);
 
   /// Who is with whom: the awake pairs of each body.
   void join(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
@@ -64,6 +63,7 @@ class Blows {
            const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace);
   const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
 
+  std::vector<double> reach_;               // of bodies, and of walls, m
   std::vector<int> around_, around_start_;  // pairs of each body
   std::vector<int> bodies_;
   std::vector<double> when_;  // -1: not struck

@@ -21,6 +21,7 @@ struct Pair {
   int colour = -1;        // of its seat
   bool alone = false;     // colours ran out: nobody sits beside it
   bool fresh = false;     // its features have changed since it took its seat
+  float blow = 0;         // m/s: no slower approach is a blow
   double friction = 0, elasticity = 0;
 };
 

@@ -104,7 +104,7 @@ void Iterative<D>::seat(const State<D>& state, bool known) {
 // what stays as long as a pair has its seat
 template <int D>
 void Iterative<D>::take_seat(int i, const State<D>& state) {
-  const Pair& pair = pairs_.all()[i];
+  Pair& pair = pairs_.all()[i];
   const int n = int(turns_.size());
   Seats& g = seats_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
@@ -123,6 +123,7 @@ void Iterative<D>::take_seat(int i, const State<D>& state) {
   g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
   g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
   g.blow[lane] = -(pair.elasticity > 0 ? rest_speed_ : std::max(rest_speed_, kSoft * thin / span_));
+  pair.blow = float(-0.999 * g.blow[lane]);
   g.sight[lane] = sight, g.mu[lane] = pair.friction, g.radius[lane] = radius;
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
   // in terms of bodies' own reaches
