@@ -24,8 +24,10 @@ constexpr double kColumn = 84 * 72 / 25.4;   // pt
 constexpr double kGutter = 8, kLetter = 13;  // pt: between panels; above one, for its letter
 constexpr std::array<const char*, 5> kTold{"blue", "vermilion", "green", "purple",
                                            "orange"};  // lines of runs
-constexpr double kFormula = 10;                        // pt, em
-constexpr double kFaintest = 0.18, kStrongest = 0.6;   // of exposures
+constexpr std::size_t kMostPanels = 100;
+constexpr int kMostExposures = 2000;
+constexpr double kFormula = 10;                       // pt, em
+constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
 
 // "crate.elasticity=0,0.5,1" as --set values, and the words of each
 std::vector<std::pair<std::string, std::string>> values(const std::string& vary) {
@@ -117,6 +119,12 @@ Album::Album(const std::string& file, const std::vector<std::string>& sets, cons
     width_ = options.width.value_or(figure.width ? *figure.width * 72 / 25.4 : kColumn);
     every_ = options.every ? options.every : figure.every;
     wanted = options.columns ? *options.columns : figure.columns;
+    if (times.size() * variants.size() > kMostPanels)
+      throw UsageError(fmt::format("{}: {} panels are more than {}, the most a figure has", scene.file,
+                                   times.size() * variants.size(), kMostPanels));
+    if (every_ && sim::value(times.back()) / sim::value(*every_) > kMostExposures)
+      throw UsageError(fmt::format("{}: {:.0f} exposures are more than {}, the most a panel has", scene.file,
+                                   sim::value(times.back()) / sim::value(*every_), kMostExposures));
     take(scene, times, said);
     const auto value = said.rfind(" = ");
     variants_.push_back({scene, value == said.npos ? said : said.substr(value + 3)});

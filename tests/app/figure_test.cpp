@@ -190,6 +190,8 @@ TEST_F(Figure, ErrorsAreOneClearLine) {
   fails("scene.toml -o a.svg --width 3", 2, "--width 3: expected 20mm to 1000mm");
   fails("scene.toml -o a.svg --vary crate", 2, "expected PATH=VALUES");
   fails("scene.toml -o a.svg --font NoSuchFamily", 4, "cannot find the font NoSuchFamily-Regular.otf");
+  fails("scene.toml -o a.svg --at 0:10:0.01", 2, "1001 panels are more than 100");
+  fails("scene.toml -o a.svg --every 0.0001", 2, "4000 exposures are more than 2000");
   scene("[[box]]\n[[figure.vector]]\nquantity = \"velocity\"\n", "none.toml");
   fails("none.toml -o a.svg", 3, "this vector needs 'of', the body that has it");
 }
