@@ -1,0 +1,95 @@
+// How pictures differ. A pixel is no more than an edge that moved by less than a pixel where each of the two
+// pictures has its value between those that the other one has around it:
+//   min B(3x3) <= a <= max B(3x3)  and  min A(3x3) <= b <= max A(3x3),  in every channel.
+// Antialiased edges that are drawn a little otherwise are such; a colour, noise on a flat ground, a dot that
+// is lost are not.
+
+#include "media/pixels.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+#include <cstring>
+
+namespace obscura::media {
+
+namespace {
+
+// whether `value` lies within what `image` has around (x, y), in every channel
+bool within(const Image& image, int x, int y, const std::uint8_t* value) {
+  std::uint8_t low[4] = {255, 255, 255, 255}, high[4] = {0, 0, 0, 0};
+  for (int j = std::max(0, y - 1); j <= std::min(image.height - 1, y + 1); ++j) {
+    for (int i = std::max(0, x - 1); i <= std::min(image.width - 1, x + 1); ++i) {
+      const std::uint8_t* p = image.row(j) + 4 * i;
+      for (int k = 0; k < 4; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+    }
+  }
+  for (int k = 0; k < 4; ++k)
+    if (value[k] < low[k] || value[k] > high[k]) return false;
+  return true;
+}
+
+bool edge(const Image& a, const Image& b, int x, int y) {
+  return within(b, x, y, a.row(y) + 4 * x) && within(a, x, y, b.row(y) + 4 * x);
+}
+
+constexpr std::uint8_t kSolid[3] = {213, 94, 0}, kEdge[3] = {0, 114, 178};
+
+}  // namespace
+
+Difference difference(const Image& expected, const Image& actual, int level) {
+  assert(expected.width == actual.width && expected.height == actual.height);
+  Difference d;
+  d.alpha_only = true;
+  d.left = expected.width, d.top = expected.height, d.right = d.bottom = -1;
+  for (int y = 0; y < expected.height; ++y) {
+    const std::uint8_t *a = expected.row(y), *b = actual.row(y);
+    if (std::memcmp(a, b, std::size_t(4) * expected.width) == 0) continue;
+    for (int x = 0; x < expected.width; ++x) {
+      int most = 0;
+      for (int k = 0; k < 4; ++k) {
+        const int off = std::abs(int(a[4 * x + k]) - int(b[4 * x + k]));
+        most = std::max(most, off);
+        if (off > 0 && k < 3) d.alpha_only = false;
+      }
+      if (most == 0) continue;
+      ++d.pixels;
+      d.beyond += most > level;
+      d.solid += !edge(expected, actual, x, y);
+      if (most > d.largest) d.largest = most, d.x = x, d.y = y;
+      d.left = std::min(d.left, x), d.right = std::max(d.right, x);
+      d.top = std::min(d.top, y), d.bottom = std::max(d.bottom, y);
+    }
+  }
+  if (d.same()) d = {};
+  return d;
+}
+
+Image difference_picture(const Image& expected, const Image& actual) {
+  Image out;
+  out.width = std::max(expected.width, actual.width), out.height = std::max(expected.height, actual.height);
+  out.pixels.resize(std::size_t(4) * out.width * out.height);
+  const auto has = [](const Image& image, int x, int y) { return x < image.width && y < image.height; };
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      std::uint8_t* p = out.row(y) + 4 * x;
+      p[3] = 255;
+      if (!has(expected, x, y) || !has(actual, x, y)) {
+        std::memcpy(p, kSolid, 3);
+        continue;
+      }
+      const std::uint8_t *a = expected.row(y) + 4 * x, *b = actual.row(y) + 4 * x;
+      if (std::memcmp(a, b, 4) != 0) {
+        const bool one_size = expected.width == actual.width && expected.height == actual.height;
+        std::memcpy(p, one_size && edge(expected, actual, x, y) ? kEdge : kSolid, 3);
+      } else {
+        // grey by luma, a quarter as strong
+        const int grey = (54 * a[0] + 183 * a[1] + 19 * a[2]) / 256;
+        p[0] = p[1] = p[2] = std::uint8_t(255 - (255 - grey) / 4);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace obscura::media

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "media/image.h"
+
+namespace obscura::media {
+
+/// Where two pictures of one size differ: what is largest first, for one number of likeness rates a lost
+/// pixel above a level of noise everywhere.
+struct Difference {
+  std::int64_t pixels = 0;  // that differ in any channel
+  std::int64_t beyond = 0;  // of them: by more than the level asked for
+  std::int64_t solid = 0;   // of them: more than an edge moved by less than a pixel makes
+  int largest = 0;          // difference of a channel, levels of 255
+  bool alpha_only = false;  // only in alpha
+  int left = 0, top = 0, right = 0, bottom = 0;  // the smallest box around them, right and bottom within
+  int x = 0, y = 0;                              // the pixel of the largest difference, the first of several
+
+  bool same() const { return pixels == 0; }
+};
+
+/// Compares pixel by pixel, alpha too; `level`: what `beyond` is counted from. Requires one size.
+Difference difference(const Image& expected, const Image& actual, int level = 0);
+
+/// What differs, on the expected picture made pale: solid differences in vermilion, those of edges in blue.
+/// Pictures of two sizes: as large as either, what only one of them has in vermilion.
+Image difference_picture(const Image& expected, const Image& actual);
+
+}  // namespace obscura::media
