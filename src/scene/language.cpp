@@ -441,6 +441,20 @@ std::vector<Key> rows() {
       {.path = "figure.plot.from", .form = rational, .unit = "s", .fallback = "0", .range = {0, 1e6}, .doc = "When it begins.", .example = "0.5"},
       {.path = "figure.plot.to", .form = rational, .unit = "s", .absent = "the duration", .range = {0, 1e6}, .doc = "When it ends.", .example = "2"},
       {.path = "figure.plot.height", .form = number, .unit = "mm", .fallback = "36", .range = {10, 500}, .doc = "Of the plot.", .example = "50"},
+
+      {.path = "golden", .form = table, .doc = "What `obscura golden` draws of it and holds against references; see docs/golden.md."},
+      {.path = "golden.at", .form = times, .unit = "s", .absent = "the start, and half the duration", .range = {0, 1e6},
+       .doc = "The moments.", .example = "[0, 2.5]"},
+      {.path = "golden.size", .form = pixels, .unit = "pixels", .fallback = "[320, 180]", .range = {16, 16384},
+       .doc = "Width and height of the pictures.", .example = "[640, 360]"},
+      {.path = "golden.level", .form = integer, .fallback = "0", .range = {0, 255},
+       .doc = "The difference of a channel, of 255, that is let pass everywhere.", .example = "2"},
+      {.path = "golden.pixels", .form = integer, .fallback = "0", .range = kNotNegative,
+       .doc = "How many pixels may differ by more.", .example = "20"},
+      {.path = "golden.states", .form = boolean, .fallback = "true", .doc = "Whether states must be the same to the bit.",
+       .example = "false"},
+      {.path = "golden.reason", .form = text, .fallback = "\"\"", .doc = "Why anything is let pass: needed where it is.",
+       .example = "\"drawn on two versions of Mesa\""},
   };
 }
 // clang-format on

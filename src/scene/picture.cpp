@@ -168,6 +168,36 @@ Film film(const Node& top) {
   return film;
 }
 
+Golden golden(const Node& top, sim::Rational duration, Complaints& complaints) {
+  const Fields fields = Fields::of(top, "golden");
+  const auto whole = [&](const char* key) {
+    return int(std::min<std::int64_t>(std::get<std::int64_t>(fields.node(key).value), 1 << 30));
+  };
+  Golden golden;
+  golden.given = top.find("golden") != nullptr;
+  if (const Node* at = fields.given("at")) {
+    const Node::List one{*at};
+    for (const Node& each : at->is_list() ? at->list() : one) {
+      const sim::Rational time = exact(each);
+      if (!golden.at.empty() && time <= golden.at.back())
+        complaints.add(each.place, fmt::format("times must increase in 'at', got {} after {}",
+                                               sim::value(time), sim::value(golden.at.back())));
+      golden.at.push_back(time);
+    }
+  } else {
+    golden.at = {sim::rational(0), duration / sim::rational(2)};
+  }
+  const sim::Vec<2> size = fields.vector<2>("size");
+  golden.width = int(size.x()), golden.height = int(size.y());
+  golden.level = whole("level"), golden.pixels = whole("pixels");
+  golden.states = fields.flag("states");
+  golden.reason = fields.text("reason");
+  const bool lenient = golden.level > 0 || golden.pixels > 0 || !golden.states;
+  if (lenient && golden.reason.empty())
+    complaints.add(fields.place(), "[golden] lets differences pass and does not say why: give it a 'reason'");
+  return golden;
+}
+
 template <int D>
 draw::Extent extent(const Room<D>& room, const sim::World<D>& world) {
   using Vec = sim::Vec<D>;

@@ -20,6 +20,9 @@ std::vector<draw::Camera> cameras(const Node& top, const Roster& roster, Complai
 /// How the scene asks to be filmed.
 Film film(const Node& top);
 
+/// What is checked of it against references: its own moments, or the start and half the duration.
+Golden golden(const Node& top, sim::Rational duration, Complaints& complaints);
+
 /// What the camera fits: the room, or where it is open all that is in it at the start, with a margin.
 template <int D>
 draw::Extent extent(const Room<D>& room, const sim::World<D>& world);

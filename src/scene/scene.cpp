@@ -170,6 +170,7 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   scene.seed = std::uint64_t(std::get<std::int64_t>(words.node("seed").value));
 
   scene.film = film(top);
+  scene.golden = golden(top, scene.duration, complaints);
   if (told.n == 2)
     scene.world = built<2>(top, copy_sets, told, scene, complaints);
   else
@@ -179,7 +180,8 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
 }
 
 std::unique_ptr<sim::Run> Scene::run() const {
-  return std::visit([](const auto& it) { return sim::run(it); }, world);
+  return std::visit([&](const auto& it) { return trajectory ? sim::playback(it, trajectory) : sim::run(it); },
+                    world);
 }
 
 std::vector<sim::Trouble> Scene::forebodings() const {

@@ -11,6 +11,7 @@
 #include "draw/depict.h"
 #include "draw/figure.h"
 #include "draw/look.h"
+#include "sim/playback.h"
 #include "sim/rational.h"
 #include "sim/run.h"
 #include "sim/state.h"
@@ -23,6 +24,17 @@ struct Film {
   sim::Rational fps{60, 1};
   std::optional<double> crf;
   std::string preset, codec;
+};
+
+/// What is drawn of a scene and held against references.
+struct Golden {
+  std::vector<sim::Rational> at;  // s, increasing
+  int width = 320, height = 180;
+  int level = 0;       // difference of a channel that is let pass everywhere
+  int pixels = 0;      // how many may differ by more
+  bool states = true;  // must be the same
+  std::string reason;  // why anything is let pass
+  bool given = false;  // the scene has a [golden]
 };
 
 /// A scene, read, checked and built: what happens, what it looks like, how it is filmed.
@@ -40,6 +52,9 @@ struct Scene {
   draw::Extent extent;                // what the camera fits
   Film film;
   draw::Figure figure;
+  Golden golden;
+  std::shared_ptr<const sim::Trajectory> trajectory;  // another program's run, shown instead of the scene's
+  std::string trajectory_file;                        // its name
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
   /// A run of it from its start; what is known to go wrong before it does (sim/run.h).

@@ -81,7 +81,7 @@ const Language& language() {
   return it;
 }
 
-constexpr std::string_view kLater[] = {"golden", "spring.breaks"};
+constexpr std::string_view kLater[] = {"spring.breaks"};
 
 }  // namespace
 

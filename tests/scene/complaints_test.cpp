@@ -54,7 +54,8 @@ TEST(Complaints, AKeyInTheWrongTableIsSentHome) {
 }
 
 TEST(Complaints, WhatComesLaterIsNamedAsSuch) {
-  refused("[golden]\nat = [0]", "a.toml:1:2: [golden] is not in this version of obscura yet");
+  refused("[[spring]]\nbetween = [[0, 0], [1, 1]]\nbreaks = 5",
+          "a.toml:3:1: 'breaks' is not in this version of obscura yet");
   refused("version = 2",
           "a.toml:1:11: version 2 of the language is newer than this obscura, which reads version 1");
 }
