@@ -16,6 +16,9 @@ void add_states(CLI::App& program, int& exit);
 void add_export(CLI::App& program, int& exit);
 void add_figure(CLI::App& program, int& exit);
 void add_docs(CLI::App& program, int& exit);
+void add_compare(CLI::App& program, int& exit);
+void add_verify(CLI::App& program, int& exit);
+void add_golden(CLI::App& program, int& exit);
 
 /// The whole program: reads the command line, runs a command, turns every error into one line and an exit
 /// code.

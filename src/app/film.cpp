@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <deque>
 #include <filesystem>
 #include <thread>
 
@@ -13,26 +12,16 @@
 #include "app/exit.h"
 #include "app/interrupt.h"
 #include "app/origin.h"
+#include "app/simulation.h"
 #include "app/trouble.h"
 #include "draw/depict.h"
 #include "gl/renderer.h"
 #include "media/error.h"
 #include "media/png.h"
-#include "sim/run.h"
 
 namespace obscura::app {
 
 namespace {
-
-using Ways = std::vector<std::shared_ptr<const sim::Track>>;
-
-// a closed piece of the film, simulated and not yet drawn
-struct Take {
-  std::vector<Shot> shots;
-  std::vector<sim::Snapshot> moments;
-  std::vector<std::string> states;  // hashes, one a moment (a movie: of the first alone)
-  Ways ways;
-};
 
 // the same, drawn
 struct Print {
@@ -62,93 +51,6 @@ int take_frames(const Output& output, const media::MovieSpec& spec) {
   }
   return 1;
 }
-
-// simulates takes one after the other, keeping the ways that trails need
-class Simulation {
- public:
-  Simulation(const scene::Scene& scene, const Shots& shots, int frames, bool hash_each)
-      : shots_(shots),
-        frames_(frames),
-        hash_each_(hash_each),
-        run_(scene.run()),
-        trail_(depictor(scene).longest_trail()) {
-    run_->track(depictor(scene).trailed());
-    run_->heed(interrupted);
-  }
-
-  static draw::Depictor depictor(const scene::Scene& scene) {
-    const auto run = scene.run();
-    const double aspect = double(scene.film.width) / scene.film.height;
-    if (scene.dimension() == 2)
-      return draw::Depictor(run->cast(), scene.look, scene.cameras.front(), scene.extent, aspect);
-    return draw::Depictor(run->cast(), scene.look, scene.cameras, scene.extent, aspect);
-  }
-
-  std::optional<Take> next() {
-    if (trouble_ || next_ >= shots_.size() || interrupted()) return {};
-    approach(shots_[next_].time);
-    Take take;
-    while (int(take.shots.size()) < frames_ && next_ < shots_.size() && !interrupted()) {
-      const Shot shot = shots_[next_];
-      auto moment = run_->at(shot.time);
-      if (auto* trouble = std::get_if<sim::Trouble>(&moment)) {
-        trouble_ = *trouble;
-        break;
-      }
-      if (std::holds_alternative<sim::Stopped>(moment)) break;
-      take.shots.push_back(shot);
-      take.moments.push_back(std::move(std::get<sim::Snapshot>(moment)));
-      if (hash_each_ || take.states.empty()) take.states.push_back(state_hash(run_->words()));
-      ++next_;
-    }
-    keep_ways();
-    take.ways.assign(ways_.begin(), ways_.end());
-    if (take.shots.empty()) return {};
-    return take;
-  }
-
-  const std::optional<sim::Trouble>& trouble() const { return trouble_; }
-
- private:
-  // goes on to just before t in strides, so that the ways of a long beginning are not all kept
-  void approach(sim::Rational t) {
-    const sim::Rational stride{1, 1};
-    while (at_ + stride < t && !trouble_ && !interrupted()) {
-      at_ = at_ + stride;
-      auto moment = run_->at(at_);
-      if (auto* trouble = std::get_if<sim::Trouble>(&moment)) trouble_ = *trouble;
-      keep_ways();
-    }
-    at_ = t;
-  }
-
-  void keep_ways() {
-    if (trail_ <= 0) return;
-    ways_.push_back(std::make_shared<const sim::Track>(run_->take_track()));
-    // a way is let go when its last point is older than the longest trail before the next frame
-    const double now = next_ > 0 ? sim::value(shots_[next_ - 1].time) : sim::value(at_);
-    while (ways_.size() > 1 && last_time(*ways_.front()) < std::min(now, sim::value(at_)) - trail_)
-      ways_.pop_front();
-  }
-
-  static double last_time(const sim::Track& track) {
-    double t = 0;
-    for (const auto& way : track.points) {
-      if (!way.empty()) t = std::max(t, way.back().time);
-    }
-    return t;
-  }
-
-  Shots shots_;
-  int frames_;
-  bool hash_each_;
-  std::unique_ptr<sim::Run> run_;
-  double trail_;
-  std::deque<std::shared_ptr<const sim::Track>> ways_;
-  std::int64_t next_ = 0;
-  sim::Rational at_;
-  std::optional<sim::Trouble> trouble_;
-};
 
 }  // namespace
 
@@ -180,19 +82,20 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
       throw media::Error(fmt::format("{}: cannot make this folder: {}", folder.string(), error.message()));
   }
 
-  Origin origin;
-  origin.scene_hash = hash(scene.text), origin.scene_file = fs::path(scene.file).filename().string();
-  origin.scene_text = scene.text, origin.sets = scene.sets;
-  origin.width = spec.width, origin.height = spec.height;
-  origin.theme = scene.look.theme == draw::Theme::paper ? "paper" : "screen";
-  origin.fps = sim::text(scene.film.fps), origin.native = options.context.native;
+  Origin origin = origin_of(scene);
+  origin.native = options.context.native, origin.transparent = options.transparent;
+  origin.shots = shots.text();
+  if (output.form == Output::Form::movie) {
+    origin.encoder = media::codec_name(output.path, spec);
+    origin.preset = spec.preset, origin.crf = spec.crf;
+  }
 
   const bool pictures = output.form == Output::Form::frames || output.form == Output::Form::still;
   const int workers =
       options.workers > 0 ? options.workers : std::max(1, int(std::thread::hardware_concurrency()));
   const int needed = int(std::min<std::int64_t>(
       workers, (shots.size() + take_frames(output, spec) - 1) / take_frames(output, spec)));
-  Simulation simulation(scene, shots, take_frames(output, spec), pictures);
+  Simulation simulation(scene, shots, {.frames = take_frames(output, spec), .hash_each = pictures});
   Progress progress(options.progress, output.path == "-" ? "standard output" : output.path, shots.size(),
                     1 / sim::value(scene.film.fps));
   std::atomic<std::int64_t> drawn = 0;
@@ -204,8 +107,8 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
   // a worker: a context of its own, and for each take a closed piece of film
   parts.hire = [&] {
     auto renderer = std::make_shared<gl::Renderer>(spec.width, spec.height, options.context);
-    auto depictor = std::make_shared<const draw::Depictor>(Simulation::depictor(scene));
-    return [&, renderer, depictor](Take take) {
+    auto artist = std::make_shared<const draw::Depictor>(depictor(scene));
+    return [&, renderer, artist](Take take) {
       Print print;
       print.origin = origin;
       print.origin.gl_version = renderer->version(), print.origin.gl_renderer = renderer->device();
@@ -217,7 +120,7 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
           print.whole = false;
           break;
         }
-        draw::Picture picture = depictor->depict(take.moments[i], take.ways);
+        draw::Picture picture = artist->depict(take.moments[i], take.ways);
         picture.transparent = pictures && options.transparent;
         const media::Image& image = renderer->draw(picture);
         if (encoder) encoder->add(image);

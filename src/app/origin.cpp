@@ -2,8 +2,12 @@
 
 #include <xxhash.h>
 
+#include <filesystem>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "app/exit.h"
 
 namespace obscura::app {
 
@@ -20,21 +24,106 @@ std::string state_hash(const std::vector<std::uint64_t>& words) {
 
 media::Tags Origin::tags(const std::string& title) const {
   nlohmann::ordered_json json;
-  json["version"] = OBSCURA_VERSION;
+  json["version"] = version;
   json["scene"] = {{"file", scene_file}, {"hash", scene_hash}, {"set", sets}, {"text", scene_text}};
   json["size"] = {width, height};
   json["theme"] = theme;
+  if (!camera.empty()) json["camera"] = camera;
+  if (transparent) json["transparent"] = true;
   json["fps"] = fps;
   if (shot) {
     json["frame"] = shot->frame;
     json["time"] = sim::text(shot->time);
   }
-  if (frames > 0) json["frames"] = frames;
+  if (frames > 0) {
+    json["frames"] = frames;
+    json["shots"] = shots;
+    json["encoder"] = {{"name", encoder}, {"preset", preset}};
+    if (crf) json["encoder"]["crf"] = *crf;
+  }
   json["state"] = state;
+  if (!trajectory.empty()) json["trajectory"] = trajectory;
   json["gl"] = {{"version", gl_version}, {"renderer", gl_renderer}, {"native", native}};
   media::Tags tags = {{"Software", "obscura " OBSCURA_VERSION}, {"obscura", json.dump()}};
   if (!title.empty()) tags["Title"] = title;
   return tags;
+}
+
+Origin origin_of(const scene::Scene& scene) {
+  Origin origin;
+  origin.version = OBSCURA_VERSION;
+  origin.scene_hash = hash(scene.text);
+  origin.scene_file = std::filesystem::path(scene.file).filename().string();
+  origin.scene_text = scene.text, origin.sets = scene.sets;
+  origin.width = scene.film.width, origin.height = scene.film.height;
+  origin.theme = scene.look.theme == draw::Theme::paper ? "paper" : "screen";
+  if (scene.dimension() == 3 && scene.cameras.size() == 1) origin.camera = scene.cameras[0].name;
+  origin.fps = sim::text(scene.film.fps);
+  origin.trajectory = scene.trajectory_file;
+  return origin;
+}
+
+std::optional<Origin> origin_in(const media::Tags& tags) {
+  const auto found = tags.find("obscura");
+  if (found == tags.end()) return {};
+  try {
+    const auto json = nlohmann::json::parse(found->second);
+    Origin origin;
+    json.at("version").get_to(origin.version);
+    const auto& scene = json.at("scene");
+    scene.at("file").get_to(origin.scene_file), scene.at("hash").get_to(origin.scene_hash);
+    scene.at("text").get_to(origin.scene_text), scene.at("set").get_to(origin.sets);
+    origin.width = json.at("size").at(0), origin.height = json.at("size").at(1);
+    json.at("theme").get_to(origin.theme), json.at("fps").get_to(origin.fps);
+    origin.camera = json.value("camera", ""), origin.transparent = json.value("transparent", false);
+    const auto time = sim::parse_rational(json.at("time").get<std::string>());
+    if (!time || !sim::parse_rational(origin.fps)) return {};
+    origin.shot = Shot{json.at("frame").get<std::int64_t>(), *time};
+    origin.frames = json.value("frames", std::int64_t(0)), origin.shots = json.value("shots", "");
+    if (json.contains("encoder")) {
+      const auto& encoder = json["encoder"];
+      encoder.at("name").get_to(origin.encoder), encoder.at("preset").get_to(origin.preset);
+      if (encoder.contains("crf")) origin.crf = encoder["crf"].get<double>();
+    }
+    json.at("state").get_to(origin.state);
+    origin.trajectory = json.value("trajectory", "");
+    const auto& gl = json.at("gl");
+    gl.at("version").get_to(origin.gl_version), gl.at("renderer").get_to(origin.gl_renderer);
+    origin.native = gl.value("native", false);
+    return origin;
+  } catch (const nlohmann::json::exception&) {
+    return {};
+  }
+}
+
+scene::Scene scene_of(const Origin& origin) {
+  scene::Scene scene = scene::parse(origin.scene_text, origin.scene_file, origin.sets);
+  scene.film.width = origin.width, scene.film.height = origin.height;
+  scene.film.fps = *sim::parse_rational(origin.fps);
+  scene.film.preset = origin.preset, scene.film.crf = origin.crf, scene.film.codec = origin.encoder;
+  scene.look.theme = origin.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
+  if (!origin.camera.empty() && scene.cameras.size() > 1) choose_camera(origin.camera, scene);
+  return scene;
+}
+
+Shots shots_of(const Origin& origin, const scene::Scene& scene) {
+  if (origin.frames == 0) return Shots::still(origin.shot->time, scene.film.fps);
+  Shots shots = Shots::film(scene.duration, scene.film.fps);
+  if (!origin.shots.empty()) shots.only(origin.shots);
+  return shots;
+}
+
+void choose_camera(const std::string& name, scene::Scene& scene) {
+  std::string known;
+  for (const draw::Camera& camera : scene.cameras) {
+    if (camera.name == name) {
+      scene.cameras = {draw::Camera(camera)};
+      return;
+    }
+    if (!camera.name.empty()) known += (known.empty() ? "" : ", ") + camera.name;
+  }
+  throw UsageError(
+      fmt::format("--camera {}: the scene has {}", name, known.empty() ? "one without a name" : known));
 }
 
 }  // namespace obscura::app

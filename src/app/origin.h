@@ -20,18 +20,41 @@ std::string state_hash(const std::vector<std::uint64_t>& words);
 
 /// What made a picture or a movie: enough to make it again, and to say why another one differs.
 struct Origin {
+  std::string version;  // of obscura
   std::string scene_hash, scene_file, scene_text;
   std::vector<std::string> sets;
   int width = 0, height = 0;
   std::string theme, fps;
+  std::string camera;  // the one of several that is shown; empty: all there are
+  bool transparent = false;
   std::string gl_version, gl_renderer;
   bool native = false;
-  std::optional<Shot> shot;  // of a still or a frame; of a movie its first frame
-  std::string state;         // the hash of the state it shows
-  std::int64_t frames = 0;   // of a movie
+  std::optional<Shot> shot;     // of a still or a frame; of a movie its first frame
+  std::string state;            // the hash of the state it shows
+  std::int64_t frames = 0;      // of a movie
+  std::string shots;            // of a movie: which frames of the film (Shots::text)
+  std::string encoder, preset;  // of a movie
+  std::optional<double> crf;
+  std::string trajectory;  // the file of another program's run, where that is shown
 
   /// As the tags of a file: "Software", "Title", and the whole as JSON under "obscura".
   media::Tags tags(const std::string& title) const;
 };
+
+/// What all pictures of a scene have in common.
+Origin origin_of(const scene::Scene& scene);
+
+/// The origin that a file's tags carry; none where they carry none, or not all of it.
+std::optional<Origin> origin_in(const media::Tags& tags);
+
+/// The scene as it was filmed: its text, what was set, its size, theme, frame rate and camera. Throws
+/// scene::Error where this obscura does not read it.
+scene::Scene scene_of(const Origin& origin);
+
+/// The shots of it that a movie shows, or the one of a still. Throws UsageError where the scene has no such.
+Shots shots_of(const Origin& origin, const scene::Scene& scene);
+
+/// Of several cameras only the one of this name. Throws UsageError where there is none.
+void choose_camera(const std::string& name, scene::Scene& scene);
 
 }  // namespace obscura::app

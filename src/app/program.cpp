@@ -64,8 +64,11 @@ int main(int argc, const char* const* argv) {
       "  obscura render ball.toml --at 1.5       one picture of it\n"
       "  obscura figure ball.toml -o ball.pdf    a figure for print\n"
       "  obscura states ball.toml --every 0.1    where everything is, as data\n"
-      "  obscura export ball.toml                its motion as glTF, for another renderer\n\n"
-      "Exit codes: 0 done, 2 usage, 3 scene, 4 files or codec, 5 OpenGL, 6 the simulation diverged, 130 "
+      "  obscura export ball.toml                its motion as glTF, for another renderer\n"
+      "  obscura compare old.png new.png         whether they are the same, and why not\n"
+      "  obscura golden scenes                   check what scenes look like against references\n\n"
+      "Exit codes: 0 done, 1 pictures or states differ, 2 usage, 3 scene, 4 files or codec, 5 OpenGL, 6 the "
+      "simulation diverged, 130 "
       "interrupted.");
   program.require_subcommand(1);
   program.set_version_flag("--version", version, "Show the versions of obscura, OpenGL, FFmpeg and libpng");
@@ -77,6 +80,9 @@ int main(int argc, const char* const* argv) {
   add_check(program, exit);
   add_states(program, exit);
   add_export(program, exit);
+  add_compare(program, exit);
+  add_verify(program, exit);
+  add_golden(program, exit);
   add_docs(program, exit);
   try {
     know_command(program, argc, argv);

@@ -9,7 +9,9 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/film.h"
+#include "app/footage.h"
 #include "app/options.h"
+#include "app/origin.h"
 #include "app/trouble.h"
 #include "sim/run.h"
 
@@ -20,9 +22,9 @@ namespace {
 struct Flags {
   std::string scene;
   std::vector<std::string> sets;
-  std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec, camera;
+  std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec, camera, states;
   std::optional<double> crf;
-  bool draft = false, no_overwrite = false;
+  bool draft = false, no_overwrite = false, interpolate = false;
   FilmOptions film;
 };
 
@@ -59,20 +61,6 @@ void override_film(const Flags& flags, scene::Scene& scene) {
   if (flags.crf) scene.film.crf = flags.crf;
   if (flags.preset) scene.film.preset = *flags.preset;
   if (flags.codec) scene.film.codec = *flags.codec;
-}
-
-// of several cameras the one that was asked for
-void choose_camera(const std::string& name, scene::Scene& scene) {
-  std::string known;
-  for (const draw::Camera& camera : scene.cameras) {
-    if (camera.name == name) {
-      scene.cameras = {draw::Camera(camera)};
-      return;
-    }
-    if (!camera.name.empty()) known += (known.empty() ? "" : ", ") + camera.name;
-  }
-  throw UsageError(
-      fmt::format("--camera {}: the scene has {}", name, known.empty() ? "one without a name" : known));
 }
 
 // a file for each camera: their names in OUT's {camera}
@@ -116,12 +104,41 @@ Shots shots_of(const Flags& flags, const scene::Scene& scene) {
   return shots;
 }
 
+// another program's run instead of the simulation
+void take_run(const Flags& flags, scene::Scene& scene) {
+  std::vector<std::string> notes;
+  show_run(read_table(*flags.states), flags.interpolate, scene, notes);
+  for (const std::string& note : notes) fmt::print(stderr, "{}\n", note);
+}
+
+// what it has no rows of cannot be filmed
+void suit_run(const Flags& flags, const scene::Scene& scene, Shots& shots) {
+  const sim::Trajectory& run = *scene.trajectory;
+  if (!flags.at && !flags.to) {
+    // up to its last row
+    const auto last = std::int64_t(std::floor(run.times.back() * sim::value(scene.film.fps) + 1e-6));
+    shots.between({0, 1}, sim::rational(last + 1) / scene.film.fps);
+  }
+  for (std::int64_t i = 0; i < shots.size(); ++i) {
+    const double t = sim::value(shots[i].time);
+    if (run.has(t)) continue;
+    const bool outside = t < run.times.front() || t > run.times.back();
+    throw UsageError(fmt::format(
+        "{} has no row at t = {:g} s (frame {}){}", *flags.states, t, shots[i].frame,
+        outside ? fmt::format("; it goes from {:g} s to {:g} s", run.times.front(), run.times.back())
+                : "; --interpolate takes straight lines between rows, --fps films its own"));
+  }
+}
+
 int render(Flags flags) {
   flags.film.overwrite = !flags.no_overwrite;
   scene::Scene scene = scene::read(flags.scene, flags.sets);
   override_film(flags, scene);
   if (flags.out && !flags.fps) suit_gif(*flags.out, scene.film);
-  const Shots shots = shots_of(flags, scene);
+  if (flags.interpolate && !flags.states) throw UsageError("--interpolate is for --states");
+  if (flags.states) take_run(flags, scene);
+  Shots shots = shots_of(flags, scene);
+  if (flags.states) suit_run(flags, scene, shots);
   if (flags.camera) choose_camera(*flags.camera, scene);
   // a draft never takes the film's place
   const bool each = flags.out && flags.out->find("{camera}") != std::string::npos;
@@ -164,6 +181,13 @@ void add_render(CLI::App& program, int& exit) {
   command->add_option("--fps", flags->fps, "Frames per second, as in 60 or 30000/1001")->type_name("RATE");
   command->add_option("--theme", flags->theme, "paper (white, for print) or screen (dark, for projectors)")
       ->check(CLI::IsMember({"paper", "screen"}));
+  command
+      ->add_option(
+          "--states", flags->states,
+          "Film this run of another program instead of simulating: a table as `obscura states --format "
+          "csv` writes it, names matched to the scene's bodies")
+      ->type_name("RUN.csv");
+  command->add_flag("--interpolate", flags->interpolate, "With --states: straight lines between its rows");
   command->add_flag("--draft", flags->draft,
                     "Small and quick: 480 lines, at most 30 frames per second, ultrafast");
   command->add_flag("--transparent", flags->film.transparent, "PNG: leave the ground out");
@@ -210,6 +234,7 @@ void add_render(CLI::App& program, int& exit) {
       "  obscura render scenes/room.toml --at 2.5 -o room.png --theme screen\n"
       "  obscura render scenes/room.toml -o 'frames/{frame:04}.png' --from 2 --to 3\n"
       "  obscura render scenes/room.toml --draft --set ball.elasticity=1\n"
+      "  obscura render scenes/room.toml --states student.csv --fps 30\n"
       "  obscura render scenes/room.toml -o - | ffplay -");
   command->callback([flags, &exit] { exit = render(*flags); });
 }

@@ -47,17 +47,18 @@ Shots Shots::film(sim::Rational duration, sim::Rational fps) {
   return shots;
 }
 
-Shots Shots::still(sim::Rational time, sim::Rational fps) {
+Shots Shots::still(sim::Rational time, sim::Rational fps) { return stills({time}, fps); }
+
+Shots Shots::stills(std::vector<sim::Rational> times, sim::Rational fps) {
   Shots shots;
   shots.fps_ = fps;
-  shots.still_ = true;
-  shots.instant_ = time;
-  shots.size_ = 1;
+  shots.size_ = std::int64_t(times.size());
+  shots.instants_ = std::move(times);
   return shots;
 }
 
 void Shots::between(sim::Rational from, sim::Rational to) {
-  if (still_) return;
+  if (!instants_.empty()) return;
   const std::int64_t first = sim::ceil(from * fps_), last = sim::ceil(to * fps_) - 1;
   std::vector<std::pair<std::int64_t, std::int64_t>> kept;
   size_ = 0;
@@ -98,7 +99,10 @@ void Shots::only(const std::string& list) {
 }
 
 Shot Shots::operator[](std::int64_t i) const {
-  if (still_) return {sim::floor(instant_ * fps_), instant_};
+  if (!instants_.empty()) {
+    const sim::Rational time = instants_[std::size_t(i)];
+    return {sim::floor(time * fps_), time};
+  }
   for (const auto& [a, b] : ranges_) {
     const std::int64_t n = b - a + 1;
     if (i < n) return {a + i, sim::rational(a + i) / fps_};
@@ -108,7 +112,15 @@ Shot Shots::operator[](std::int64_t i) const {
 }
 
 std::int64_t Shots::last_frame() const {
-  return still_ ? sim::floor(instant_ * fps_) : ranges_.back().second;
+  return instants_.empty() ? ranges_.back().second : sim::floor(instants_.back() * fps_);
+}
+
+std::string Shots::text() const {
+  std::string text;
+  for (const auto& [a, b] : ranges_) {
+    text += (text.empty() ? "" : ",") + (a == b ? fmt::format("{}", a) : fmt::format("{}..{}", a, b));
+  }
+  return text;
 }
 
 std::vector<sim::Rational> instants(const std::string& list) {

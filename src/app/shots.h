@@ -23,6 +23,8 @@ class Shots {
   static Shots film(sim::Rational duration, sim::Rational fps);
   /// The one instant `time`, whichever frame it would be nearest to.
   static Shots still(sim::Rational time, sim::Rational fps);
+  /// Several such, in the order of time.
+  static Shots stills(std::vector<sim::Rational> times, sim::Rational fps);
 
   /// Only those in [from, to), s. Throws UsageError where none is left.
   void between(sim::Rational from, sim::Rational to);
@@ -35,13 +37,14 @@ class Shots {
   sim::Rational fps() const { return fps_; }
   /// The largest frame number, for the width of a name.
   std::int64_t last_frame() const;
+  /// What only() reads: "0..599". Of stills nothing.
+  std::string text() const;
 
  private:
   sim::Rational fps_{60, 1};
   std::vector<std::pair<std::int64_t, std::int64_t>> ranges_;  // [first, last]
   std::int64_t size_ = 0;
-  bool still_ = false;
-  sim::Rational instant_;
+  std::vector<sim::Rational> instants_;  // of stills
 };
 
 /// Instants as a person lists them: "0,0.5,2" or a range "0:1:0.1" (both ends). Throws UsageError.

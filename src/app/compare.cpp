@@ -1,0 +1,114 @@
+// obscura compare: two pictures, two sequences of them, or two runs as tables: whether they are the same,
+// where they are not, and why.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/comparison.h"
+#include "app/exit.h"
+#include "app/interrupt.h"
+#include "app/report.h"
+#include "app/runs.h"
+#include "media/png.h"
+
+namespace obscura::app {
+
+namespace {
+
+struct Flags {
+  std::string a, b, format = "text";
+  std::optional<std::string> diff, report;
+  std::optional<double> rtol, atol;
+  bool interpolate = false;
+};
+
+bool is_table(const std::string& path) { return std::filesystem::path(path).extension() == ".csv"; }
+
+int compare_runs(const Flags& flags) {
+  if (flags.diff || flags.report) throw UsageError("--diff and --report are for pictures, not for tables");
+  const Tolerance tolerance{flags.rtol.value_or(0), flags.atol.value_or(0)};
+  const RunComparison found = compare(read_table(flags.a), read_table(flags.b), tolerance, flags.interpolate);
+  fmt::print("{}", flags.format == "json" ? json(found) : text(found, tolerance));
+  return found.same() ? kDone : kDiffers;
+}
+
+void write_report(const Comparison& found, const std::string& path) {
+  std::vector<Finding> findings;
+  for (const int i : {found.first, found.worst}) {
+    if (i < 0 || (!findings.empty() && found.first == found.worst)) continue;
+    const Comparison::Frame& frame = found.differing[std::size_t(i)];
+    std::vector<std::string> lines = {sentence(frame)};
+    if (findings.empty() && found.cause)
+      lines.insert(lines.end(), found.cause->lines.begin(), found.cause->lines.end());
+    if (findings.empty()) lines.insert(lines.end(), found.plain.begin(), found.plain.end());
+    const char* mark = found.still ? "" : i == found.first ? ", the first" : ", the worst";
+    findings.push_back({frame.name + mark, "differs", lines, frame.a, frame.b});
+  }
+  if (findings.empty())
+    findings.push_back({found.a, found.same() ? "same" : "differs", {text(found)}, {}, {}});
+  write_text(path, report(fmt::format("{} and {}", found.a, found.b), findings));
+}
+
+int run(const Flags& flags) {
+  if (is_table(flags.a) != is_table(flags.b))
+    throw UsageError(fmt::format("{} is a table and {} is not", is_table(flags.a) ? flags.a : flags.b,
+                                 is_table(flags.a) ? flags.b : flags.a));
+  if (is_table(flags.a)) return compare_runs(flags);
+  if (flags.rtol || flags.atol || flags.interpolate)
+    throw UsageError("--rtol, --atol and --interpolate are for tables (.csv)");
+  const Comparison found = compare(flags.a, flags.b);
+  if (interrupted()) return kInterrupted;
+  fmt::print("{}", flags.format == "json" ? json(found) : text(found));
+  if (flags.diff && found.worst >= 0) {
+    const Comparison::Frame& worst = found.differing[std::size_t(found.worst)];
+    media::write_png(*flags.diff, media::difference_picture(worst.a, worst.b));
+  }
+  if (flags.report) write_report(found, *flags.report);
+  return found.same() ? kDone : kDiffers;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program, int& exit) {
+  CLI::App* command = program.add_subcommand(
+      "compare", "Say whether two pictures, sequences or runs are the same, and why not");
+  auto flags = std::make_shared<Flags>();
+  command->add_option("A", flags->a, "A PNG, a folder of them, a movie, or a run as CSV: what is expected")
+      ->required();
+  command->add_option("B", flags->b, "The same again: what there is")->required();
+  command->add_option("--diff", flags->diff, "Write what differs, of a sequence in its worst frame")
+      ->type_name("OUT.png");
+  command->add_option("--report", flags->report, "Write a page with both, a slider and a blink")
+      ->type_name("OUT.html");
+  command->add_option("--format", flags->format, "text or json [text]")
+      ->check(CLI::IsMember({"text", "json"}));
+  command->add_option("--rtol", flags->rtol, "Of runs: relative tolerance, of A's value [0]")
+      ->check(CLI::Range(0.0, 1e300));
+  command->add_option("--atol", flags->atol, "Of runs: absolute tolerance, in the quantity's unit [0]")
+      ->check(CLI::Range(0.0, 1e300));
+  command->add_flag("--interpolate", flags->interpolate, "Of runs: straight lines between B's rows");
+  command->footer(
+      "Files of the same bytes are the same. Else pixels are compared: how many differ, the largest "
+      "difference "
+      "of a channel, how many differ by more than an edge that moved by less than a pixel (solid), the box "
+      "around them. Where both carry their origin, as all that obscura writes does, the cause is named: "
+      "other "
+      "scene, other state (both are simulated again, and the step, body and quantity where they part are "
+      "told), other look, other OpenGL, or pixels only.\n"
+      "Runs are tables as `obscura states --format csv` writes them. A is the reference: its columns and its "
+      "times must be in B. Times are one within half a microsecond; |b - a| <= atol + rtol |a|.\n\n"
+      "Exit codes: 0 the same, 1 they differ, 2 usage, 4 something is not readable.\n\n"
+      "Examples:\n"
+      "  obscura compare old.png new.png --diff difference.png\n"
+      "  obscura compare frames/ again/ --report report.html\n"
+      "  obscura compare room.mp4 again.mp4 --format json\n"
+      "  obscura compare reference.csv student.csv --atol 1e-3");
+  command->callback([flags, &exit] { exit = run(*flags); });
+}
+
+}  // namespace obscura::app

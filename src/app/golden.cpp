@@ -1,0 +1,211 @@
+// obscura golden: draws what scenes' [golden] tables name, and holds it against references.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/conduct.h"
+#include "app/exit.h"
+#include "app/golden_case.h"
+#include "app/interrupt.h"
+#include "app/options.h"
+#include "app/trouble.h"
+#include "media/error.h"
+#include "scene/error.h"
+
+namespace obscura::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Flags {
+  std::vector<std::string> scenes, sets;
+  std::optional<std::string> junit, report;
+  int workers = 0;
+  GoldenOptions golden;
+};
+
+// what one scene came to
+struct Outcome {
+  std::string name;
+  std::vector<GoldenCase> cases;
+  double seconds = 0;
+};
+
+GoldenCase failed(const std::string& scene, int exit, const std::string& why) {
+  GoldenCase it;
+  it.scene = scene, it.state = "failed", it.file = scene, it.exit = exit;
+  it.lines = {why};
+  return it;
+}
+
+// the scenes of a folder are those with a [golden]; a scene that is named needs none
+bool wanted(const std::string& file) {
+  try {
+    return scene::read(file).golden.given;
+  } catch (const scene::Error&) {
+    return true;  // and is told what is wrong
+  }
+}
+
+std::vector<std::string> files(const Flags& flags) {
+  std::vector<std::string> named = flags.scenes;
+  if (named.empty()) named = {fs::is_directory("scenes") ? "scenes" : "."};
+  std::vector<std::string> all;
+  for (const std::string& each : named) {
+    if (!fs::is_directory(each)) {
+      all.push_back(each);
+      continue;
+    }
+    std::vector<std::string> found;
+    for (const auto& entry : fs::directory_iterator(each))
+      if (entry.path().extension() == ".toml" && wanted(entry.path().string()))
+        found.push_back(entry.path().string());
+    if (found.empty()) throw UsageError(each + ": no scene in it has a [golden] table");
+    std::sort(found.begin(), found.end());
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  return all;
+}
+
+Outcome check(const std::string& file, const Flags& flags) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point began = Clock::now();
+  Outcome outcome;
+  outcome.name = fs::path(file).stem().string();
+  try {
+    outcome.cases = check_golden(scene::read(file, flags.sets), flags.golden);
+  } catch (const scene::Error& error) {
+    outcome.cases = {failed(outcome.name, kScene, error.what())};
+  } catch (const TroubleError& error) {
+    outcome.cases = {failed(outcome.name, kDiverged, error.what())};
+  } catch (const media::Error& error) {
+    outcome.cases = {failed(outcome.name, kFiles, error.what())};
+  }
+  outcome.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  for (GoldenCase& it : outcome.cases) it.seconds = outcome.seconds / double(outcome.cases.size());
+  return outcome;
+}
+
+// a row a scene; under it what is not as it was
+void print(const Outcome& outcome) {
+  std::map<std::string, int> states;
+  for (const GoldenCase& it : outcome.cases) ++states[it.state];
+  std::string word;
+  for (const auto& [state, count] : states)
+    word += (word.empty() ? "" : ", ") + (states.size() == 1 ? state : fmt::format("{} {}", count, state));
+  fmt::print("{:<18} {:>2} {:<8} {:<22} {:6.2f} s\n", outcome.name, outcome.cases.size(),
+             outcome.cases.size() == 1 ? "moment" : "moments", word, outcome.seconds);
+  const bool ctest = std::getenv("DASHBOARD_TEST_FROM_CTEST") != nullptr;
+  for (const GoldenCase& it : outcome.cases) {
+    for (std::size_t i = 0; i < it.lines.size(); ++i)
+      fmt::print("    {}{}\n", i == 0 && !it.time.empty() ? "t = " + it.time + " s: " : "  ", it.lines[i]);
+    if (ctest)
+      for (const std::string& file : it.attachments)
+        fmt::print("<CTestMeasurementFile type=\"image/png\" name=\"{}\">{}</CTestMeasurementFile>\n",
+                   fs::path(file).stem().string(), fs::absolute(file).string());
+  }
+  std::fflush(stdout);
+}
+
+void write_page(const std::string& path, const std::vector<GoldenCase>& cases) {
+  std::vector<Finding> findings;
+  for (const GoldenCase& it : cases) {
+    Finding finding{it.time.empty() ? it.scene : fmt::format("{}, t = {} s", it.scene, it.time), it.state,
+                    it.lines, it.expected, it.actual};
+    findings.push_back(std::move(finding));
+  }
+  // what asks for eyes comes first
+  std::stable_partition(findings.begin(), findings.end(), [](const Finding& f) { return f.state != "same"; });
+  write_text(path, report("Golden images", findings));
+}
+
+int golden(const Flags& flags) {
+  const std::vector<std::string> all = files(flags);
+  const int cores = std::max(1, int(std::thread::hardware_concurrency()));
+  const int workers = std::min<int>(flags.workers > 0 ? flags.workers : cores, int(all.size()));
+  const auto began = std::chrono::steady_clock::now();
+
+  std::vector<GoldenCase> cases;
+  std::size_t next = 0;
+  Conduct<std::string, Outcome> parts;
+  parts.produce = [&]() -> std::optional<std::string> {
+    if (next >= all.size() || interrupted()) return {};
+    return all[next++];
+  };
+  parts.hire = [&] { return [&](std::string file) { return check(file, flags); }; };
+  parts.consume = [&](Outcome outcome) {
+    if (interrupted()) return false;
+    print(outcome);
+    std::move(outcome.cases.begin(), outcome.cases.end(), std::back_inserter(cases));
+    return true;
+  };
+  conduct(parts, workers);
+  if (interrupted()) return kInterrupted;
+
+  int exit = kDone;
+  std::map<std::string, int> states;
+  for (const GoldenCase& it : cases) {
+    ++states[it.state];
+    if (it.exit != kDone) exit = it.exit;
+    if (!it.good() && exit == kDone) exit = kDiffers;
+  }
+  std::string sum;
+  for (const auto& [state, count] : states) sum += fmt::format(", {} {}", count, state);
+  fmt::print("{} scenes, {} moments{}; {:.1f} s\n", all.size(), cases.size(), sum,
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+  if (flags.junit) write_text(*flags.junit, junit(cases));
+  if (flags.report) write_page(*flags.report, cases);
+  return exit;
+}
+
+}  // namespace
+
+void add_golden(CLI::App& program, int& exit) {
+  CLI::App* command =
+      program.add_subcommand("golden", "Check what scenes look like, and their states, against references");
+  auto flags = std::make_shared<Flags>();
+  command->add_option("SCENE", flags->scenes,
+                      "Scenes, or folders of them: there those with a [golden] table [scenes, or .]");
+  command
+      ->add_option("--references", flags->golden.references,
+                   "The folder of the references [golden/ beside each scene]")
+      ->type_name("DIR");
+  command->add_flag("--update", flags->golden.update, "Take what there is now as the reference");
+  command
+      ->add_option("--actual", flags->golden.actual,
+                   "Where pictures of what fails go, and differences [render_out/golden]")
+      ->type_name("DIR");
+  command->add_option("--junit", flags->junit, "Write the outcome as JUnit's XML")->type_name("OUT.xml");
+  command->add_option("--report", flags->report, "Write a page with expected, actual and difference")
+      ->type_name("OUT.html");
+  command->add_flag("--other-gl-states", flags->golden.states_only_on_other_gl,
+                    "Where a reference was drawn by another OpenGL, compare states alone");
+  command->add_option("-j,--jobs", flags->workers, "Scenes side by side [one a core]")
+      ->check(CLI::Range(1, 256));
+  add_sets(*command, flags->sets);
+  command->footer(
+      "A scene's [golden] table names the moments, the size, and what may differ, with a reason. States are "
+      "compared first, then pixels. A reference is a PNG of render's, SCENE-SECONDS.png, and carries its "
+      "origin: so the cause of a difference is named. A missing one fails, and the picture is written. "
+      "docs/golden.md has recipes.\n\n"
+      "Exit codes: 0 all are the same, 1 something differs or is missing, 3 a scene cannot be read, 6 one "
+      "diverged.\n\n"
+      "Examples:\n"
+      "  obscura golden\n"
+      "  obscura golden scenes/room.toml --report report.html\n"
+      "  obscura golden scenes --references tests/golden --update");
+  command->callback([flags, &exit] { exit = golden(*flags); });
+}
+
+}  // namespace obscura::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace obscura::app {
+
+/// A run as a table: a row an instant, a column a quantity, as `obscura states --format csv` writes it or
+/// another program does: "time", "ball.position.x", ...
+struct Table {
+  std::string file;
+  std::vector<std::string> columns;  // without "hash", which is no number
+  std::vector<std::vector<double>> rows;
+  std::vector<int> lines;  // of the file, from 1, one a row
+
+  /// Where a column is; none where there is no such.
+  std::optional<std::size_t> column(const std::string& name) const;
+  double time(std::size_t row) const { return rows[row][time_column]; }
+  std::size_t time_column = 0;
+};
+
+/// Reads numbers separated by commas under one line of names; lines that begin with # and empty ones are
+/// skipped. Times must increase. Throws media::Error with the line where something is no number or missing.
+Table read_table(const std::string& file);
+
+/// Two times, s, that are one: within half a microsecond.
+bool same_time(double a, double b);
+
+}  // namespace obscura::app

@@ -1,0 +1,185 @@
+// obscura verify: makes a picture or a movie again from the origin that it carries, and says whether it is
+// still true.
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/cause.h"
+#include "app/commands.h"
+#include "app/comparison.h"
+#include "app/exit.h"
+#include "app/film.h"
+#include "app/frames.h"
+#include "app/interrupt.h"
+#include "app/pictures.h"
+#include "app/trouble.h"
+#include "media/error.h"
+#include "scene/document.h"
+#include "scene/error.h"
+
+namespace obscura::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Flags {
+  std::vector<std::string> files;
+  std::optional<std::string> scene;
+  bool states = false;
+  FilmOptions film;
+};
+
+// a folder that is gone when it is no longer needed
+struct Workbench {
+  fs::path folder = fs::temp_directory_path() / fmt::format("obscura-verify-{}", ::getpid());
+  Workbench() { fs::create_directories(folder); }
+  ~Workbench() {
+    std::error_code none;
+    fs::remove_all(folder, none);
+  }
+};
+
+struct Verdict {
+  bool good = true;
+  std::vector<std::string> lines;
+  void no(std::string line) { good = false, lines.push_back(std::move(line)); }
+};
+
+gl::ContextOptions context_of(const Origin& origin, const Flags& flags) {
+  gl::ContextOptions context = flags.film.context;
+  context.native = origin.native;
+  return context;
+}
+
+void judge_still(const media::Image& image, const Origin& origin, const Origin& now, const Flags& flags,
+                 Verdict& verdict) {
+  const scene::Scene scene = scene_of(now);
+  const auto again = pictures(scene, shots_of(now, scene),
+                              {.context = context_of(origin, flags), .transparent = origin.transparent});
+  if (again.empty()) return;
+  const Pictured& made = again.front();
+  if (made.image.width != image.width || made.image.height != image.height)
+    return verdict.no(fmt::format("pixels: it is {}x{}, and says {}x{}", image.width, image.height,
+                                  made.image.width, made.image.height));
+  const media::Difference d = media::difference(image, made.image);
+  if (d.same()) return verdict.lines.push_back("pixels: the same");
+  verdict.no("pixels: " + sentence(d));
+  for (const std::string& line : cause(origin, made.origin).lines) verdict.lines.push_back("  " + line);
+}
+
+void judge_movie(const std::string& file, const Origin& now, const Flags& flags, Verdict& verdict) {
+  const Workbench bench;
+  scene::Scene scene = scene_of(now);
+  const std::string again = (bench.folder / fs::path(file).filename()).string();
+  if (fs::path(file).extension() == ".gif") scene.film.codec.clear();
+  FilmOptions options = flags.film;
+  options.progress = ProgressKind::none;
+  options.context = context_of(now, flags);
+  if (film(scene, shots_of(now, scene), {Output::Form::movie, again}, options) != kDone) return;
+  const Comparison found = compare(file, again);
+  if (found.same_bytes) return verdict.lines.push_back("movie: the same, byte by byte");
+  if (found.same()) return verdict.lines.push_back("movie: the same pixels in all frames");
+  verdict.no(fmt::format("movie: {} of {} frames differ", found.differing.size(), found.compared));
+  for (const std::string& line : found.plain) verdict.lines.push_back("  " + line);
+  if (found.worst >= 0) {
+    const auto& worst = found.differing[std::size_t(found.worst)];
+    verdict.lines.push_back(fmt::format("  worst is {}: {}", worst.name, sentence(worst)));
+  }
+  if (found.cause)
+    for (const std::string& line : found.cause->lines) verdict.lines.push_back("  " + line);
+}
+
+Verdict judge(const std::string& file, const Flags& flags) {
+  Frames frames(file);
+  if (frames.kind() == Frames::Kind::folder)
+    throw UsageError(file + ": is a folder; name its pictures, as in frames/*.png");
+  media::Image image;
+  if (!frames.next(image)) throw media::Error(file + ": has no picture in it");
+  if (!frames.origin()) throw media::Error(file + ": carries no origin of obscura's: nothing to verify");
+  const Origin& origin = *frames.origin();
+  if (!origin.trajectory.empty())
+    throw media::Error(fmt::format("{}: shows {}, another program's run, which cannot be simulated again",
+                                   file, origin.trajectory));
+
+  Verdict verdict;
+  if (hash(origin.scene_text) != origin.scene_hash)
+    verdict.no("scene: its text is not the one that its hash was taken of");
+  Origin now = origin;
+  if (flags.scene) {
+    now.scene_text = scene::contents(*flags.scene);
+    now.scene_hash = hash(now.scene_text);
+  }
+  const std::string when = fmt::format("state at t = {:g} s", sim::value(origin.shot->time));
+  const auto state = state_again(now);
+  if (interrupted()) return verdict;
+  if (!state) {
+    verdict.no(when + ": the run ends before it");
+    return verdict;
+  }
+  if (*state == origin.state)
+    verdict.lines.push_back(when + ": the same");
+  else
+    verdict.no(fmt::format("{}: {}, and now {}", when, origin.state, *state));
+  if (flags.states && *state != origin.state) {
+    now.state = *state;
+    for (const std::string& line : cause(origin, now).lines) verdict.lines.push_back("  " + line);
+  }
+  if (flags.states) return verdict;
+  if (frames.kind() == Frames::Kind::still)
+    judge_still(image, origin, now, flags, verdict);
+  else
+    judge_movie(file, now, flags, verdict);
+  return verdict;
+}
+
+int verify(const Flags& flags) {
+  int exit = kDone;
+  for (const std::string& file : flags.files) {
+    Verdict verdict;
+    try {
+      verdict = judge(file, flags);
+    } catch (const scene::Error& error) {
+      verdict.no(fmt::format("this obscura does not read its scene: {}", error.what()));
+    } catch (const TroubleError& error) {
+      verdict.no(error.what());
+    }
+    if (interrupted()) return kInterrupted;
+    fmt::print("{}: {}\n", file, verdict.good ? "still true" : "no longer true");
+    for (const std::string& line : verdict.lines) fmt::print("  {}\n", line);
+    if (!verdict.good) exit = kDiffers;
+  }
+  return exit;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& program, int& exit) {
+  CLI::App* command =
+      program.add_subcommand("verify", "Make a picture or movie again from its origin: is it still true?");
+  auto flags = std::make_shared<Flags>();
+  command->add_option("FILE", flags->files, "PNGs and movies that obscura wrote")->required();
+  command->add_option("--scene", flags->scene, "Hold it against this scene as it is now, not as it was")
+      ->type_name("SCENE");
+  command->add_flag("--states", flags->states, "Simulate, and draw nothing");
+  command->add_option("-j,--jobs", flags->film.workers, "Workers, of a movie [one a core]")
+      ->check(CLI::Range(1, 256));
+  command->footer(
+      "Every PNG and movie of obscura's carries its origin: the scene's text, what was set, the instant, the "
+      "hash of the state, who drew it. verify simulates that again, compares the state, draws it again and "
+      "compares pixels, of a movie bytes or else all frames.\n\n"
+      "Exit codes: 0 all are still true, 1 one is not, 4 one is not readable or has no origin.\n\n"
+      "Examples:\n"
+      "  obscura verify room.png\n"
+      "  obscura verify docs/*.png --states\n"
+      "  obscura verify room.mp4 --scene scenes/room.toml");
+  command->callback([flags, &exit] { exit = verify(*flags); });
+}
+
+}  // namespace obscura::app

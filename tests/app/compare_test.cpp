@@ -1,0 +1,268 @@
+// obscura compare and verify: what differs, and why.
+
+#include <cmath>
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::json;
+
+/// One short scene, filmed in many ways.
+class Compare : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    scene(text_);
+  }
+  // a still at 0.5 s, 160x90
+  std::string still(const std::string& name, const std::string& flags = "", const std::string& env = "") {
+    const Outcome run = shell(env + " " + OBSCURA_BINARY + " render scene.toml --at 0.5 --size 160x90 -o " +
+                              name + " " + flags);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return name;
+  }
+  Json compared(const std::string& arguments, int exit) {
+    const Outcome run = obscura("compare --format json " + arguments);
+    EXPECT_EQ(run.exit, exit) << run.out << run.err;
+    return Json::parse(run.out, nullptr, false);
+  }
+
+  const std::string text_ = R"(duration = 1
+[room]
+size = [4, 2.25]
+[[box]]
+name = "crate"
+size = [0.8, 0.5]
+position = [1, 1]
+velocity = [1, 1]
+spin = 90
+mass = 1.5
+color = "green"
+[[ball]]
+name = "ball"
+radius = 0.2
+position = [3, 1]
+velocity = [-1, 0]
+[[spring]]
+between = ["crate", [1, 2.2]]
+stiffness = 20
+)";
+};
+
+TEST_F(Compare, TheSameBytesAreTheSameWithoutAnotherLook) {
+  still("a.png");
+  const Json json = compared("a.png a.png", 0);
+  EXPECT_EQ(json["same_bytes"], true);
+}
+
+TEST_F(Compare, AMassByOneUnitInTheLastPlaceIsNamedWhetherItShowsOrNot) {
+  still("a.png");
+  still("b.png", "--set crate.mass=1.5000000000000002");
+  const Outcome run = obscura("compare a.png b.png");
+  EXPECT_THAT(run.out, HasSubstr("other scene"));
+  EXPECT_THAT(run.out, HasSubstr("crate.mass is 1.5 and 1.5000000000000002"));
+  EXPECT_THAT(run.out, HasSubstr("states part at step"));
+  EXPECT_THAT(run.out, HasSubstr("body crate, "));
+}
+
+TEST_F(Compare, ALargerMassPartsTheStatesAtAStepABodyAndAQuantity) {
+  still("a.png");
+  still("b.png", "--set crate.mass=3");
+  const Json json = compared("a.png b.png", 1);
+  EXPECT_EQ(json["cause"]["kind"], "scene");
+  const Json& states = json["cause"]["states"];
+  EXPECT_EQ(states["body"], "crate");
+  EXPECT_THAT(states["quantity"].get<std::string>(), HasSubstr("velocity"));
+  // the state before that step is the same, and that at it is not
+  const int step = states["step"];
+  ASSERT_GE(step, 1);
+  for (const int at : {step - 1, step}) {
+    const std::string when = " --at " + std::to_string(at) + "/600";
+    const auto hash = [&](const std::string& flags) {
+      return std::string(Json::parse(obscura("states scene.toml" + when + flags).out)["states"][0]["hash"]);
+    };
+    EXPECT_EQ(hash("") == hash(" --set crate.mass=3"), at < step) << at;
+  }
+}
+
+TEST_F(Compare, AColourAndACameraAreNamedAndTheStatesAreInnocent) {
+  still("a.png");
+  still("b.png", "--set crate.color=purple");
+  still("c.png", "--set camera.width=3");
+  Outcome run = obscura("compare a.png b.png");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("crate.color is \"green\" and \"purple\""));
+  EXPECT_THAT(run.out, HasSubstr("states are the same"));
+  run = obscura("compare a.png c.png");
+  EXPECT_THAT(run.out, HasSubstr("camera.width is left out and 3"));
+  EXPECT_THAT(run.out, HasSubstr("states are the same"));
+  still("d.png", "--theme screen");
+  EXPECT_THAT(obscura("compare a.png d.png").out, HasSubstr("cause: other theme: paper and screen"));
+}
+
+TEST_F(Compare, AnotherBackEndAndOtherNumbersOfThreadsGiveTheSamePixels) {
+  still("a.png");
+  for (const char* threads : {"0", "1", "3", "8"}) {
+    still("b.png", "", std::string("LP_NUM_THREADS=") + threads);
+    EXPECT_EQ(compared("a.png b.png", 0)["same_bytes"], true) << threads;
+  }
+  const Outcome egl = obscura("render scene.toml --at 0.5 --size 160x90 -o egl.png --backend egl");
+  const Outcome osmesa = obscura("render scene.toml --at 0.5 --size 160x90 -o osmesa.png --backend osmesa");
+  if (egl.exit != 0 || osmesa.exit != 0) GTEST_SKIP() << "only one back end here";
+  const Outcome run = obscura("compare osmesa.png egl.png");
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("other OpenGL"));
+}
+
+TEST_F(Compare, AllOfAProcessorsInstructionsAreNamedWhetherTheyShowOrNot) {
+  still("a.png");
+  still("b.png", "--native");
+  const Outcome run = obscura("compare a.png b.png");
+  EXPECT_THAT(run.out, HasSubstr("--native"));
+  if (run.exit == 1) {
+    EXPECT_THAT(run.out, HasSubstr("cause: one was drawn with all"));
+  }
+}
+
+TEST_F(Compare, OtherSizesAPixelAndAStillAgainstAMovieAreSaidPlainly) {
+  still("a.png");
+  ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 320x180 -o b.png").exit, 0);
+  Outcome run = obscura("compare a.png b.png --diff d.png");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("other sizes: 160x90 and 320x180"));
+  EXPECT_TRUE(std::filesystem::exists(path("d.png")));
+  ASSERT_EQ(obscura("render scene.toml --to 0.2 --size 160x90 -o m.mp4").exit, 0);
+  run = obscura("compare a.png m.mp4");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_EQ(obscura("compare a.png none.png").exit, 4);
+  scene("not a picture", "b.png");
+  EXPECT_EQ(obscura("compare a.png b.png").exit, 4);
+}
+
+TEST_F(Compare, FramesSayTheFirstTheWorstAndTheCause) {
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o a/").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o b/ --set crate.mass=3").exit, 0);
+  const Outcome run = obscura("compare a b --report report.html");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("of 10 frames"));
+  EXPECT_THAT(run.out, HasSubstr("first"));
+  EXPECT_THAT(run.out, HasSubstr("worst"));
+  EXPECT_THAT(run.out, HasSubstr("states part at step"));
+  EXPECT_THAT(contents(path("report.html")), HasSubstr("data:image/png;base64,"));
+  // a frame that is gone is no agreement
+  std::filesystem::remove_all(path("b"));
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o b/ --frames 0..8").exit, 0);
+  const Outcome fewer = obscura("compare a b");
+  EXPECT_EQ(fewer.exit, 1);
+  EXPECT_THAT(fewer.out, HasSubstr("only a has 0009.png"));
+}
+
+TEST_F(Compare, MoviesAgreeOrSayWhichFrameParts) {
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o a.mp4").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o same.mp4 -j 1").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o shorter.mp4 --to 0.9").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o b.mp4 --set crate.mass=3").exit, 0);
+  EXPECT_EQ(compared("a.mp4 same.mp4", 0)["same_bytes"], true);
+  const Json json = compared("a.mp4 b.mp4", 1);
+  EXPECT_EQ(json["frames"], 10);
+  EXPECT_GT(json["first"], 0);
+  EXPECT_GT(json["cause"]["states"]["step"], 0);
+  EXPECT_THAT(obscura("compare a.mp4 shorter.mp4").out,
+              HasSubstr("a.mp4 has 10 frames and shorter.mp4 has 9"));
+}
+
+using Runs = Compare;
+
+TEST_F(Runs, OfOneSceneAgreeAndOfAnotherPartAtABodyAndAQuantity) {
+  ASSERT_EQ(obscura("states scene.toml --every 0.1 --format csv > a.csv").exit, 0);
+  ASSERT_EQ(obscura("states scene.toml --every 0.1 --format csv --set crate.velocity=[1.001,1] > b.csv").exit,
+            0);
+  EXPECT_EQ(obscura("compare a.csv a.csv").exit, 0);
+  const Outcome run = obscura("compare a.csv b.csv");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("part first at t = 0 s"));
+  // until it hits something the crate is 0.001 t further right
+  const Json loose = compared("a.csv b.csv --atol 0.00025 --rtol 0", 1);
+  EXPECT_EQ(loose["part"]["body"], "crate");
+  EXPECT_EQ(compared("a.csv b.csv --atol 100 --rtol 0", 0)["same"], true);
+}
+
+TEST_F(Runs, AreMatchedByNamesAndTimesAndInterpolatedOnlyIfTold) {
+  scene("time,ball.position.x,ball.position.y\n0,0,0\n1,1,10\n2,2,20\n", "a.csv");
+  scene("# by hand\ntime, ball.position.y, ball.position.x\r\n0,0,0\r\n2,20,2\r\n", "b.csv");
+  Outcome run = obscura("compare a.csv b.csv");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("b.csv has no row at 1 of 3 times, the first t = 1 s"));
+  EXPECT_EQ(obscura("compare a.csv b.csv --interpolate").exit, 0);
+  scene("time,bell.position.x,bell.position.y\n0,0,0\n1,1,10\n2,2,20\n", "b.csv");
+  run = obscura("compare a.csv b.csv");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("b.csv has no ball"));
+}
+
+TEST_F(Runs, TakeAWholeTurnAndTheOtherQuaternionForTheSame) {
+  scene("time,a.angle,b.orientation.x,b.orientation.y,b.orientation.z,b.orientation.w\n0,7,0,0,0.6,0.8\n",
+        "a.csv");
+  scene(
+      "time,a.angle,b.orientation.x,b.orientation.y,b.orientation.z,b.orientation.w\n0,0.7168146928204138,0,"
+      "0,"
+      "-0.6,-0.8\n",
+      "b.csv");
+  EXPECT_EQ(obscura("compare a.csv b.csv --atol 1e-12").exit, 0);
+}
+
+TEST_F(Runs, SayWhatIsWrongWithATable) {
+  scene("time,ball.position.x\n0,0\n", "a.csv");
+  const auto told = [&](const std::string& text) {
+    scene(text, "b.csv");
+    const Outcome run = obscura("compare a.csv b.csv");
+    EXPECT_EQ(run.exit, 4) << text;
+    return run.err;
+  };
+  EXPECT_THAT(told("time,ball.position.x\n0,zero\n"),
+              HasSubstr("b.csv:2: 'zero' under ball.position.x is no number"));
+  EXPECT_THAT(told("time,ball.position.x\n0\n"), HasSubstr("b.csv:2: 1 cells under 2 columns"));
+  EXPECT_THAT(told("time,ball.position.x\n1,0\n1,0\n"), HasSubstr("b.csv:3: times must increase"));
+  EXPECT_THAT(told("t,ball.position.x\n1,0\n"), HasSubstr("no column is called 'time'"));
+  EXPECT_EQ(obscura("compare a.csv a.png").exit, 2);
+}
+
+using Verify = Compare;
+
+TEST_F(Verify, WhatWasJustMadeIsTrue) {
+  still("a.png");
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o a.mp4 --frames 2..5 --crf 20").exit, 0);
+  const Outcome run = obscura("verify a.png a.mp4");
+  EXPECT_EQ(run.exit, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("a.png: still true"));
+  EXPECT_THAT(run.out, HasSubstr("movie: the same, byte by byte"));
+}
+
+TEST_F(Verify, AgainstASceneThatHasChangedItIsTrueNoLonger) {
+  still("a.png");
+  scene(std::string(text_).replace(text_.find("1.5"), 3, "2.5"));
+  EXPECT_EQ(obscura("verify a.png").exit, 0) << "it carries its own scene";
+  const Outcome run = obscura("verify a.png --scene scene.toml --states");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("no longer true"));
+  EXPECT_THAT(run.out, HasSubstr("crate.mass is 1.5 and 2.5"));
+}
+
+TEST_F(Verify, APictureWithoutAnOriginCannotBe) {
+  still("a.png");
+  ASSERT_EQ(obscura("compare a.png " + still("b.png", "--theme screen") + " --diff d.png").exit, 1);
+  const Outcome run = obscura("verify d.png");
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_THAT(run.err, HasSubstr("d.png: carries no origin"));
+}
+
+}  // namespace
+}  // namespace obscura::app

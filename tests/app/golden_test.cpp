@@ -1,0 +1,201 @@
+// obscura golden: what is the same passes, what is not fails and says why; and the page in a browser.
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+
+#include "media/browser.h"
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const char* const kScene = R"(duration = 2
+[room]
+size = [4, 2.25]
+[[ball]]
+name = "ball"
+radius = 0.2
+position = [1, 1]
+velocity = [1, 1]
+color = "green"
+[golden]
+at = [0, 0.5]
+size = [160, 90]
+)";
+
+class Golden : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    scene(kScene);
+  }
+  Outcome golden(const std::string& arguments = "") const {
+    return obscura("golden scene.toml " + arguments);
+  }
+  void change(const std::string& from, const std::string& to) const {
+    std::string text = kScene;
+    text.replace(text.find(from), from.size(), to);
+    scene(text);
+  }
+};
+
+TEST_F(Golden, AMissingReferenceFailsAndLeavesThePicture) {
+  const Outcome run = golden();
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("golden/scene-0.5.png: there is no such reference"));
+  EXPECT_TRUE(std::filesystem::exists(path("render_out/golden/scene-0.5.png")));
+  EXPECT_FALSE(std::filesystem::exists(path("golden"))) << "only --update writes references";
+}
+
+TEST_F(Golden, WhatWasTakenIsTheSameAndItsPicturesAreThoseOfRender) {
+  EXPECT_EQ(golden("--update").exit, 0);
+  const Outcome run = golden();
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("2 moments, 2 same"));
+  ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 160x90 -o still.png").exit, 0);
+  EXPECT_EQ(obscura("compare still.png golden/scene-0.5.png").exit, 0);
+  EXPECT_EQ(obscura("verify golden/scene-0.5.png").exit, 0);
+}
+
+TEST_F(Golden, AChangeIsNamedLeavesItsDifferenceAndIsTakenByUpdate) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  change("\"green\"", "\"purple\"");
+  Outcome run = golden("--junit out.xml");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("ball.color is \"green\" and \"purple\""));
+  EXPECT_THAT(run.out, HasSubstr("states are the same: it is how they are shown"));
+  EXPECT_TRUE(std::filesystem::exists(path("render_out/golden/scene-0.difference.png")));
+  const std::string xml = contents(path("out.xml"));
+  EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"2\" errors=\"0\""));
+  EXPECT_THAT(xml, HasSubstr("[[ATTACHMENT|"));
+  EXPECT_THAT(xml, HasSubstr("&quot;purple&quot;"));
+  run = golden("--update");
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.out, HasSubstr("pixels differ by up to"));
+  EXPECT_EQ(golden().exit, 0);
+}
+
+TEST_F(Golden, AStateThatDoesNotShowFailsAllTheSame) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  change("[1, 1]\ncolor", "[1.0000000000000002, 1]\ncolor");
+  const Outcome run = golden();
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("the state is another one, though the picture is the same"));
+  EXPECT_THAT(run.out, HasSubstr("states part at step 0 (t = 0 s): body ball, velocity"));
+}
+
+TEST_F(Golden, WhatIsLetPassNeedsAReasonAndPassesWithIt) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  change("size = [160, 90]", "size = [160, 90]\nstates = false");
+  Outcome run = golden();
+  EXPECT_EQ(run.exit, 3);
+  EXPECT_THAT(run.out, HasSubstr("give it a 'reason'"));
+  change(
+      "[1, 1]\ncolor = \"green\"\n[golden]",
+      "[1.0000000000000002, 1]\ncolor = \"green\"\n[golden]\nstates = false\nreason = \"another compiler\"");
+  run = golden();
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("tolerated: another compiler"));
+}
+
+TEST_F(Golden, AReferenceOfNoMomentIsToldAndSweptByUpdate) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  change("[0, 0.5]", "[0]");
+  EXPECT_THAT(golden().out, HasSubstr("golden/scene-0.5.png is no moment of the scene any more"));
+  ASSERT_EQ(golden("--update").exit, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("golden/scene-0.5.png")));
+}
+
+TEST_F(Golden, OfAFolderTakesTheScenesWithATable) {
+  std::filesystem::create_directories(path("scenes"));
+  scene(kScene, "scenes/one.toml");
+  scene("duration = 1\n", "scenes/two.toml");
+  scene("duration = -1\n[golden]\n", "scenes/broken.toml");
+  const Outcome run = obscura("golden --update");
+  EXPECT_EQ(run.exit, 3);
+  EXPECT_THAT(run.out, HasSubstr("broken.toml:1:12"));
+  EXPECT_THAT(run.out, Not(HasSubstr("two")));
+  EXPECT_TRUE(std::filesystem::exists(path("scenes/golden/one-0.png")));
+}
+
+TEST_F(Golden, OnAnotherOpenGlStatesAreComparedAloneIfAskedFor) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  // drawn with other instructions it is another OpenGL's; the colour is what that one would do otherwise
+  ASSERT_EQ(
+      obscura("render scene.toml --at 0 --size 160x90 --native --set ball.color=purple -o golden/scene-0.png")
+          .exit,
+      0);
+  EXPECT_EQ(golden().exit, 1);
+  const Outcome run = golden("--other-gl-states");
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("the state is the same; drawn by another OpenGL"));
+  // on the same OpenGL it excuses nothing
+  ASSERT_EQ(
+      obscura("render scene.toml --at 0 --size 160x90 --set ball.color=purple -o golden/scene-0.png").exit, 0);
+  EXPECT_EQ(golden("--other-gl-states").exit, 1);
+}
+
+// The page filters, slides and blinks.
+constexpr const char* kLook = R"html(<script>
+addEventListener("load", async () => {
+  const wrong = [], say = (verdict) => console.log("OBSCURA " + verdict);
+  const check = (good, what) => { if (!good) wrong.push(what); };
+  try {
+    const sections = [...document.querySelectorAll("section")];
+    check(sections.length === 2, `${sections.length} sections`);
+    for (const image of document.images) check(image.naturalWidth === 160 && image.naturalHeight === 90, "a picture is not there");
+    const differs = document.querySelector("section[data-state=differs]"), same = document.querySelector("section[data-state=same]");
+    check(differs && same, "not one of each state");
+    const button = (state) => document.querySelector(`nav button[data-show="${state}"]`);
+    button("differs").click();
+    check(same.hidden && !differs.hidden, "the filter does not filter");
+    button("").click();
+    check(!same.hidden && !differs.hidden, "the filter does not let all through");
+    const over = differs.querySelector(".stack img:last-child"), slider = differs.querySelector("input");
+    const shown = (x) => document.elementFromPoint(x, 0);
+    slider.value = 25;
+    slider.dispatchEvent(new Event("input"));
+    check(getComputedStyle(over).clipPath === "inset(0px 0px 0px 25%)", "the slider does not slide: " + getComputedStyle(over).clipPath);
+    const blink = differs.querySelector(".both button");
+    blink.click();
+    const seen = new Set();
+    for (let i = 0; i < 30 && seen.size < 2; ++i) { await new Promise((go) => setTimeout(go, 100)); seen.add(over.hidden); }
+    check(seen.size === 2, "it does not blink");
+    blink.click();
+    check(!over.hidden, "it does not stop");
+    // the difference is orange somewhere, the expected picture nowhere
+    const orange = (image) => {
+      const canvas = document.createElement("canvas");
+      canvas.width = 160; canvas.height = 90;
+      const context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
+      const data = context.getImageData(0, 0, 160, 90).data;
+      for (let i = 0; i < data.length; i += 4) if (data[i] === 213 && data[i + 1] === 94 && data[i + 2] === 0) return true;
+      return false;
+    };
+    check(orange(differs.querySelector(".difference img")), "the difference is not coloured");
+    check(!orange(differs.querySelector(".expected img")), "the expected picture is coloured");
+    check(!document.documentElement.innerHTML.match(/(src|href)="(?!data:)/), "the page needs another file");
+  } catch (error) { wrong.push(String(error)); }
+  say(wrong.length ? "FAIL " + wrong.join("; ") : "PASS");
+});
+</script>)html";
+
+TEST_F(Golden, ThePageWorksInABrowser) {
+  const auto program = media::browser();
+  if (!program) GTEST_SKIP() << "no Chromium on this system: apt-get install chromium-headless-shell";
+  ASSERT_EQ(golden("--update").exit, 0);
+  // later, when the second moment shows it, the ball is elsewhere
+  change("[1, 1]\ncolor", "[1.5, 1]\ncolor");
+  ASSERT_EQ(obscura("render scene.toml --at 0 --size 160x90 -o golden/scene-0.png").exit, 0);
+  ASSERT_EQ(golden("--report report.html").exit, 1);
+  std::ofstream(path("page.html")) << contents(path("report.html")) << kLook;
+  EXPECT_THAT(media::verdict(*program, folder_.string()), testing::StartsWith("PASS"));
+}
+
+}  // namespace
+}  // namespace obscura::app
