@@ -49,7 +49,7 @@ std::string contact(const sim::Model<D>& model) {
     why =
         fmt::format("{} and {} that move; up to {} and {} it is the direct one",
                     count(std::size_t(crowd.bodies), "body", "bodies"),
-                    count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies, sim::kMostPoints);
+                    count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies<D>, sim::kMostPoints);
   return fmt::format("{} solver: {}{}", direct ? "direct" : "iterative", why,
                      direct ? "" : "; impacts go from pair to pair");
 }

@@ -31,6 +31,7 @@ double hull_thickness(const Shape<3>& hull) {
 double hull_thickness(const Shape<2>&) { return 0; }
 
 constexpr double kCreep = 1e-6;      // of sqrt(g L)
+constexpr double kSunk = 0.1;        // of the thinnest: how far two may come into each other in one piece
 constexpr double kMostPieces = 200;  // of a step that is done roughly
 
 // the least thickness of a shape, m
@@ -217,7 +218,7 @@ void Direct<D>::part_ways() {
   let_go_.reset();
 }
 
-// s: how long all may move on and not pass through one another unseen
+// s: how long all may move on and not come far into one another
 template <int D>
 double Direct<D>::unseen(const State<D>& state) const {
   double least = 1e300;
@@ -232,7 +233,7 @@ double Direct<D>::unseen(const State<D>& state) const {
       speed += rims_[body] * std::sqrt(state.spin[k].squaredNorm());
     fastest = std::max(fastest, speed);
   }
-  return fastest > 0 ? 0.5 * least / fastest : 1e300;
+  return fastest > 0 ? kSunk * least / fastest : 1e300;
 }
 
 template <int D>

@@ -12,6 +12,12 @@
 
 namespace obscura::sim {
 
+namespace {
+
+constexpr double kSlightly = 0.01;  // of its kinetic energy: what is lifted by more does not pay
+
+}  // namespace
+
 template <int D>
 void Direct<D>::stand(const State<D>& state) {
   stances_.resize(model_.bodies.size());
@@ -288,17 +294,17 @@ bool Direct<D>::acts(const Held& held) const {
   }
 }
 
-// What is lifted out of what it had sunk into pays for its height with its motion
+// What is lifted a little out of what it had sunk into pays for its height with its motion
 template <int D>
 void Direct<D>::pay_for(State<D>& state) {
   const auto lifted = [&](int body) {
     return -model_.bodies[body].mass * model_.gravity.dot(state.x[body] - placed_[body]);
   };
-  const auto left = [](double more, double has) { return std::sqrt(std::max(0.0, 1 - more / has)); };
+  const auto left = [](double more, double has) { return std::sqrt(1 - more / has); };
   for (const int body : free_.bodies()) {
     const double more = lifted(body);
     const double has = more > 0 ? kinetic(model_, state, body) : 0;
-    if (has <= 0) continue;
+    if (more <= 0 || more >= kSlightly * has) continue;
     state.v[body] *= left(more, has);
     if (const int k = turning(state, body); k >= 0) state.spin[k] *= left(more, has);
   }
@@ -345,7 +351,7 @@ void Direct<D>::project(State<D>& state) {
     jump(state, true);
     if (worst <= 1e-9 * model_.scale) break;
   }
-  if (moved > closed_) pay_for(state);
+  if (moved > closed_ && !rough_) pay_for(state);
 
   again();
   chosen_.clear();
