@@ -91,7 +91,9 @@ int main(int argc, const char* const* argv) {
   } catch (const CLI::Success& success) {
     return program.exit(success);
   } catch (const CLI::ParseError& error) {
-    return complain(kUsage, fmt::format("{}; see obscura --help", error.what()));
+    const auto parsed = program.get_subcommands();
+    const std::string command = parsed.empty() ? "" : parsed.front()->get_name() + " ";
+    return complain(kUsage, fmt::format("{}; see obscura {}--help", error.what(), command));
   } catch (const UsageError& error) {
     return complain(kUsage, error.what());
   } catch (const scene::Error& error) {

@@ -190,7 +190,7 @@ void add_render(CLI::App& program, int& exit) {
   command->add_flag("--interpolate", flags->interpolate, "With --states: straight lines between its rows");
   command->add_flag("--draft", flags->draft,
                     "Small and quick: 480 lines, at most 30 frames per second, ultrafast");
-  command->add_flag("--transparent", flags->film.transparent, "PNG: leave the ground out");
+  command->add_flag("--transparent", flags->film.transparent, "PNG: leave the page's colour out");
   command->add_flag("--no-overwrite", flags->no_overwrite, "Refuse to write over an earlier render");
   command->add_option("--crf", flags->crf, "Quality of the movie, lower is better [18]")
       ->check(CLI::Range(1.0, 63.0));

@@ -223,7 +223,9 @@ void add(const Formula& f, const Point& at, List& list) {
 
 std::string as_vector(const std::string& text) {
   if (text.empty() || text.find('*') != text.npos || !latin(text[0])) return text;
-  return "*" + text.substr(0, 1) + "*" + text.substr(1);
+  std::string vector = "*";
+  vector.append(text, 0, 1).append("*").append(text, 1);
+  return vector;
 }
 
 std::string with_value(const std::string& text, double value, std::string_view unit) {

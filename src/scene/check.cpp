@@ -131,12 +131,20 @@ class Checker {
       if (each->dimension == 0 || each->dimension == told_.n) words.push_back(each->last());
     const std::string_view near = nearest(entry.key, words);
     std::string hint;
-    if (!near.empty()) {
+    if (const std::string plural = entry.key + 's'; owner.empty() && !elsewhere(plural).empty()) {
+      hint = "; '" + plural + "': " + elsewhere(plural);
+    } else if (!near.empty()) {
       hint = fmt::format("; did you mean '{}'?", near);
     } else if (const std::string other = elsewhere(entry.key); !other.empty()) {
       hint = "; " + other;
     } else if (words.size() <= 8) {
       hint = fmt::format("; it has {}", fmt::join(words, ", "));
+    } else if (owner.empty() && several) {
+      std::vector<std::string> tables;
+      for (const Key* each : keys_of(owner))
+        if (each->form == Form::tables && (each->dimension == 0 || each->dimension == told_.n))
+          tables.push_back("[[" + std::string(each->last()) + "]]");
+      hint = fmt::format("; there are {}", fmt::join(tables, ", "));
     }
     complaints_.add(entry.place, fmt::format("unknown key {}{}{}", quoted(entry.key),
                                              owner.empty() ? "" : " in " + owner_text(owner), hint));

@@ -46,6 +46,14 @@ TEST(Complaints, UnknownKeysSayWhatWasMeant) {
           "a.toml:2:23: unknown key 'jiter' in 'copies'; did you mean 'jitter'?");
 }
 
+TEST(Complaints, TablesNobodyKnowsAreToldWhichThereAre) {
+  refused("[[wall]]", "a.toml:1:3: unknown key 'wall'; 'walls': it belongs in [room]");
+  refused(
+      "[[sphere]]",
+      "a.toml:1:3: unknown key 'sphere'; there are [[particle]], [[ball]], [[box]], [[polygon]], [[body]], "
+      "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[mouse]], [[explosion]]");
+}
+
 TEST(Complaints, AKeyInTheWrongTableIsSentHome) {
   refused("gravity = [0, -1]", "a.toml:1:1: unknown key 'gravity'; it belongs in [room]");
   refused("[room]\nfps = 30", "a.toml:2:1: unknown key 'fps' in [room]; it belongs in [film]");
