@@ -51,7 +51,7 @@ TEST(Complaints, TablesNobodyKnowsAreToldWhichThereAre) {
   refused(
       "[[sphere]]",
       "a.toml:1:3: unknown key 'sphere'; there are [[particle]], [[ball]], [[box]], [[polygon]], [[body]], "
-      "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[mouse]], [[explosion]]");
+      "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[explosion]], [[mouse]]");
 }
 
 TEST(Complaints, AKeyInTheWrongTableIsSentHome) {
@@ -62,8 +62,8 @@ TEST(Complaints, AKeyInTheWrongTableIsSentHome) {
 }
 
 TEST(Complaints, WhatComesLaterIsNamedAsSuch) {
-  refused("[[spring]]\nbetween = [[0, 0], [1, 1]]\nbreaks = 5",
-          "a.toml:3:1: 'breaks' is not in this version of obscura yet");
+  refused("[[particle]]\n[[spring]]\nbetween = [\"particle[0]\", [1, 1]]\nbreaks = 5",
+          "a.toml:4:1: 'breaks' is not in this version of obscura yet");
   refused("version = 2",
           "a.toml:1:11: version 2 of the language is newer than this obscura, which reads version 1");
 }
