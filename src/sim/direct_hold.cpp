@@ -12,12 +12,6 @@
 
 namespace obscura::sim {
 
-namespace {
-
-constexpr double kSlightly = 0.01;  // of its kinetic energy: what is lifted by more does not pay
-
-}  // namespace
-
 template <int D>
 void Direct<D>::stand(const State<D>& state) {
   stances_.resize(model_.bodies.size());
@@ -294,17 +288,17 @@ bool Direct<D>::acts(const Held& held) const {
   }
 }
 
-// What is lifted a little out of what it had sunk into pays for its height with its motion
+// What is lifted out of what it had sunk into pays for its height with its motion
 template <int D>
 void Direct<D>::pay_for(State<D>& state) {
   const auto lifted = [&](int body) {
     return -model_.bodies[body].mass * model_.gravity.dot(state.x[body] - placed_[body]);
   };
-  const auto left = [](double more, double has) { return std::sqrt(1 - more / has); };
+  const auto left = [](double more, double has) { return std::sqrt(std::max(0.0, 1 - more / has)); };
   for (const int body : free_.bodies()) {
     const double more = lifted(body);
     const double has = more > 0 ? kinetic(model_, state, body) : 0;
-    if (more <= 0 || more >= kSlightly * has) continue;
+    if (has <= 0) continue;
     state.v[body] *= left(more, has);
     if (const int k = turning(state, body); k >= 0) state.spin[k] *= left(more, has);
   }
