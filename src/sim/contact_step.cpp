@@ -18,8 +18,7 @@ Crowd crowd(const Model<D>& model) {
 template <int D>
 Solver solver(const Model<D>& model) {
   if (model.collision == Collision::event) return Solver::direct;
-  if (!model.chains.empty()) return Solver::direct;            // links are sides of its rows alone
-  if (D == 3 && !model.joints.empty()) return Solver::direct;  // the sweeps of space know no joints
+  if (!model.chains.empty()) return Solver::direct;  // links are sides of its rows alone
   if (model.solver != Solver::automatic) return model.solver;
   const Crowd all = crowd(model);
   return all.points <= kMostPoints && all.bodies <= kMostBodies<D> ? Solver::direct : Solver::iterative;

@@ -86,7 +86,7 @@ Spin<D> angular_momentum(const Model<D>& model, const State<D>& state) {
     sum += b.mass * moment<D>(state.x[body], state.v[body]);
     if (const int k = turning(state, body); k >= 0) {
       const Rotation<D> axes = D == 2 ? Rotation<D>(Rotation<D>::Identity()) : rotation<D>(state.turn[k]);
-      sum += to_room<D>(axes, b.inertia.cwiseProduct(from_room<D>(axes, state.spin[k])));
+      sum += spinning<D>(b.inertia, axes, state.spin[k]);
     }
   }
   return sum;

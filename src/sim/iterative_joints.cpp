@@ -3,6 +3,7 @@
 //   v*  = v + h a + M^-1 J l              l: J v* = 0, in sweeps with the contacts
 //   x'  = x + h (v + v*) / 2 + M^-1 J s   s: g(x') = 0, Newton with the factors at hand
 //   v'  = v* + M^-1 (J (s / h - l / 2) + J' m)     m: J' v' = 0
+// in space with angular momenta for spins, so that what turns on in the step keeps its own;
 // which is of second order, and no joint drifts. A row with bounds beside them: a unit of its impulse is
 // answered by c = -K^-1 J M^-1 r of the joints, so that
 //   give = 1 / (r M^-1 r - r M^-1 J K^-1 J M^-1 r)
@@ -136,7 +137,7 @@ void Linkage<D>::push(const Row<D>& row, double impulse) {
   side(row.a, row.turn_a, impulse), side(row.b, row.turn_b, -impulse);
 }
 
-// and onto places
+// and onto places: angular momentum stays
 template <int D>
 void Linkage<D>::shift(const Row<D>& row, double by) {
   const auto side = [&](int body, const Spin<D>& turn, double p) {
@@ -144,8 +145,11 @@ void Linkage<D>::shift(const Row<D>& row, double by) {
     const Body<D>& b = model_.bodies[body];
     at_[body].x += p * light_[body] * row.along;
     if (!b.turns()) return;
-    turn_[body] = turned<D>(turn_[body], Spin<D>(p * spun<D>(b.inertia, at_[body].room_from_body, turn)));
-    at_[body].room_from_body = rotation<D>(turn_[body]);
+    Stance<D>& at = at_[body];
+    const Rotation<D> from = at.room_from_body;
+    turn_[body] = turned<D>(turn_[body], Spin<D>(p * spun<D>(b.inertia, from, turn)));
+    at.room_from_body = rotation<D>(turn_[body]);
+    at.w = carried_spin<D>(b.inertia, from, at.room_from_body, at.w);
   };
   side(row.a, row.turn_a, by), side(row.b, row.turn_b, -by);
 }
@@ -459,5 +463,6 @@ bool Linkage<D>::break_joints(State<D>& state) const {
 }
 
 template class Linkage<2>;
+template class Linkage<3>;
 
 }  // namespace obscura::sim

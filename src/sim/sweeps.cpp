@@ -6,8 +6,9 @@
 //        p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
 //      a step along the velocity and not by the inverse block: cut back, that would brake a sliding box with
 //      less than mu g
+//      and, exactly, of joints together  J v' = 0
 //   4. positions: by the mean of old and new velocity; by the new one where a slow touch closed
-//   5. out of each other, a part of the way
+//   5. out of each other, a part of the way; joints back onto their places (sim/iterative_joints.h)
 //   6. rest: what is quiet and found in static equilibrium freezes
 
 #include "sim/sweeps.h"
@@ -32,12 +33,14 @@ constexpr double kWait = 0.25;       // s
 constexpr double kHeld = 1e-6;       // of gravity
 constexpr int kRestSweeps = 400;     // of an island at a time
 constexpr int kBetweenChecks = 10;
+constexpr int kTempering = 5;   // rounds
+constexpr double kGain = 1e-9;  // of its kinetic energy: what an island may win by rounding
 
 }  // namespace
 
 template <int D>
 Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), may_touch_(model), tied_(model, paths) {
+    : model_(model), may_touch_(model), tied_(model, paths), linkage_(model) {
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
   g_ = std::sqrt(model.gravity.squaredNorm());
@@ -49,8 +52,7 @@ template <int D>
 void Sweeps<D>::step(State<D>& state, double t, double h) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n);
-  state.broken.resize(model_.joints.size());
-  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+  linkage_.ready(state);
   ready(state);
   find(h);
   if (wake(state, h)) ready(state), find(h);
@@ -58,9 +60,34 @@ void Sweeps<D>::step(State<D>& state, double t, double h) {
   begin(state, h);
   int sweeps = std::clamp(kTouchSweeps / std::max(1, int(touches_.size())), kFewestSweeps, kMostSweeps);
   if (state.step == 0) sweeps = kFirstSweeps;
-  for (int i = 0; i < sweeps; ++i) sweep(all_, i % 2 != 0);
+  if (!linkage_.empty()) {
+    linkage_.gather(state);
+    for (const int i : linkage_.bodies()) {
+      linkage_.stance(i) = stances_[i];
+      if (const int k = turning(state, i); k >= 0) linkage_.turn(i) = turn_[k];
+    }
+    // what hangs together is struck together
+    parts_.assign(linkage_.parts(), 0);
+    for (const int i : linkage_.bodies()) {
+      if (closing_[i] && linkage_.part(i) >= 0) parts_[linkage_.part(i)] = 1;
+    }
+    for (const int i : linkage_.bodies()) {
+      if (linkage_.part(i) >= 0 && parts_[linkage_.part(i)]) closing_[i] = 1;
+    }
+    lend();
+    linkage_.begin(h);
+    if (touches_.empty() && linkage_.plain()) sweeps = 1;
+  }
+  for (int round = 0; round < kTempering; ++round) {
+    for (int i = 0; i < sweeps; ++i) {
+      hold();
+      sweep(all_, i % 2 != 0);
+    }
+    if (!temper(state)) break;
+  }
   advance(state, h);
   part(state);
+  if (!linkage_.empty()) rejoin(state, h);
   report(state, h);
   if (state.step % every_ == 0) rest(state, h);
 }
@@ -196,6 +223,11 @@ bool Sweeps<D>::wake(State<D>& state, double h) {
     if (awake(spring.b.body)) mark(spring.a.body);
     if (awake(spring.a.body)) mark(spring.b.body);
   }
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const int a = model_.joints[i].a.body, b = model_.joints[i].b.body;
+    if (a < 0 || b < 0 || state.broken[i] || model_.bodies[a].fixed || model_.bodies[b].fixed) continue;
+    if (state.frozen[a] != state.frozen[b]) mark(a), mark(b);
+  }
   if (!any) return false;
   join(state);
   for (int i = 0; i < n; ++i) {
@@ -275,12 +307,85 @@ void Sweeps<D>::sweep(const std::vector<int>& order, bool back) {
   }
 }
 
+// velocities to the joints, of all that they have or of those marked, and back
+template <int D>
+void Sweeps<D>::lend(const std::vector<char>* of) {
+  for (const int i : linkage_.bodies()) {
+    if (!of || (*of)[i]) linkage_.stance(i).v = moving_[i].v, linkage_.stance(i).w = moving_[i].w;
+  }
+}
+
+template <int D>
+void Sweeps<D>::take(const std::vector<char>* of) {
+  for (const int i : linkage_.bodies()) {
+    if (!of || (*of)[i]) moving_[i].v = linkage_.stance(i).v, moving_[i].w = linkage_.stance(i).w;
+  }
+}
+
+template <int D>
+void Sweeps<D>::hold() {
+  if (linkage_.empty()) return;
+  lend();
+  linkage_.sweep();
+  take();
+}
+
+// Several blows in one instant, with friction or on joints, may leave more energy than was there if each
+// keeps its restitution (Kane and Levinson 1985); those of such an island keep less. With
+//   dK = p . v' - p W p / 2
+// a share dK / p . v' less is enough where p stays; what stays of it is looked at again. True where there was
+// any.
+template <int D>
+bool Sweeps<D>::temper(const State<D>& state) {
+  if (std::none_of(touches_.begin(), touches_.end(),
+                   [](const Touch& touch) { return touch.least > 0 && touch.pressed > 0; }))
+    return false;
+  const int n = int(model_.bodies.size());
+  islands_.reset(n);
+  const auto link = [&](int a, int b) {
+    if (a >= 0 && a < n && b >= 0 && b < n && moving_[a].light > 0 && moving_[b].light > 0)
+      islands_.join(a, b);
+  };
+  for (const Touch& touch : touches_) {
+    if (touch.pressed > 0) link(touch.a, touch.b);
+  }
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
+  }
+  before_.assign(n, 0), gained_.assign(n, 0), returned_.assign(n, 0);
+  for (int i = 0; i < n; ++i) {
+    const Moving& m = moving_[i];
+    if (m.light == 0) continue;
+    double was = 0.5 * v_free_[i].squaredNorm() / m.light, is = 0.5 * m.v.squaredNorm() / m.light;
+    if (const int k = turning(state, i); k >= 0) {
+      const Rotation<D>& axes = stances_[i].room_from_body;
+      was += spin_energy<D>(model_.bodies[i].inertia, axes, w_free_[k]);
+      is += spin_energy<D>(model_.bodies[i].inertia, axes, m.w);
+    }
+    before_[islands_.root(i)] += was, gained_[islands_.root(i)] += is - was;
+  }
+  const auto island = [&](const Touch& touch) {
+    return islands_.root(moving_[touch.a].light > 0 ? touch.a : touch.b);
+  };
+  for (const Touch& touch : touches_) {
+    if (touch.least > 0 && touch.pressed > 0) returned_[island(touch)] += touch.pressed * touch.least;
+  }
+  bool any = false;
+  for (Touch& touch : touches_) {
+    if (!(touch.least > 0 && touch.pressed > 0)) continue;
+    const int of = island(touch);
+    if (gained_[of] <= kGain * before_[of]) continue;
+    touch.least *= std::max(0.0, 1 - 1.5 * gained_[of] / returned_[of]), any = true;
+  }
+  return any;
+}
+
 template <int D>
 void Sweeps<D>::advance(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
     if (still_[i]) continue;
-    const Moving& m = moving_[i];
+    Moving& m = moving_[i];
     if (closing_[i]) {
       state.x[i] = x_[i] + h * m.v;
     } else {
@@ -289,9 +394,19 @@ void Sweeps<D>::advance(State<D>& state, double h) {
     state.v[i] = m.v;
     double fast = m.v.squaredNorm();
     if (const int k = turning(state, i); k >= 0) {
-      state.turn[k] = closing_[i] ? turned<D>(turn_[k], Spin<D>(h * m.w))
-                                  : turned<D>(state.turn[k], Spin<D>(0.5 * h * (m.w - w_free_[k])));
-      state.spin[k] = m.w;
+      const Spin<D> change = m.w - w_free_[k];
+      if (!change.isZero(0)) {
+        // pushes were reckoned with the body as it stood when the step began; it turns on, and its angular
+        // momentum stays
+        const Spin<D>& inertia = model_.bodies[i].inertia;
+        const Rotation<D> fallen = rotation<D>(state.turn[k]);
+        state.turn[k] = closing_[i] ? turned<D>(turn_[k], Spin<D>(h * m.w))
+                                    : turned<D>(state.turn[k], Spin<D>(0.5 * h * change));
+        const Rotation<D> now = rotation<D>(state.turn[k]);
+        m.w = carried_spin<D>(inertia, fallen, now, w_free_[k]) +
+              carried_spin<D>(inertia, stances_[i].room_from_body, now, change);
+        state.spin[k] = m.w;
+      }
       fast += rims_[i] * rims_[i] * m.w.squaredNorm();
     }
     state.quiet[i] = fast < kQuiet * kQuiet ? state.quiet[i] + h : 0;
@@ -317,6 +432,10 @@ void Sweeps<D>::part(State<D>& state) {
       const double left = wanted - touch.n.dot(slip(touch));
       if (left > 0) push(touch, left / touch.normal * touch.n);
     }
+    if (linkage_.empty()) continue;
+    lend();
+    linkage_.agree();
+    take();
   }
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (still_[i]) continue;
@@ -324,6 +443,25 @@ void Sweeps<D>::part(State<D>& state) {
     if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
   }
   moving_.swap(kept_);
+}
+
+// what the step has pulled apart
+template <int D>
+void Sweeps<D>::rejoin(State<D>& state, double h) {
+  for (const int i : linkage_.bodies()) {
+    linkage_.stance(i) = stance(state, i);
+    if (const int k = turning(state, i); k >= 0) linkage_.turn(i) = state.turn[k];
+  }
+  linkage_.finish(h);
+  linkage_.keep(state, h);
+  linkage_.break_joints(state);
+  take();
+  for (const int i : linkage_.bodies()) {
+    if (still_[i]) continue;
+    state.x[i] = linkage_.stance(i).x, state.v[i] = moving_[i].v;
+    if (const int k = turning(state, i); k >= 0)
+      state.turn[k] = linkage_.turn(i), state.spin[k] = moving_[i].w;
+  }
 }
 
 // the forces of this step; what sleeps keeps its own
@@ -348,7 +486,7 @@ void Sweeps<D>::report(State<D>& state, double h) const {
                      state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
 }
 
-// who is joined to whom, by contacts that bear or are closed, and springs; fixed bodies join nobody
+// who is joined to whom, by contacts that bear or are closed, springs and joints; fixed bodies join nobody
 template <int D>
 void Sweeps<D>::join(const State<D>& state) {
   islands_.reset(int(model_.bodies.size()));
@@ -361,6 +499,9 @@ void Sweeps<D>::join(const State<D>& state) {
     if (near) link(contact.key.a, contact.key.b);
   }
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
+  }
 }
 
 // A quiet island at rest needs forces that leave it there: sweeps look for them as in a step of bodies
@@ -412,8 +553,23 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
     touch.least = std::min(-touch.gap / h, 0.0);
     push(touch, touch.pressed * touch.n + touch.rubbed);
   }
+  on_joints_.assign(n, 0), parts_.clear();
+  for (const int i : linkage_.bodies()) {
+    if (!resting(i)) continue;
+    on_joints_[i] = 1, parts_.push_back(linkage_.part(i));
+  }
+  std::sort(parts_.begin(), parts_.end());
+  parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
+  if (!parts_.empty()) lend(&on_joints_), linkage_.begin(h);
+  const auto hold = [&] {
+    if (parts_.empty()) return;
+    lend(&on_joints_);
+    for (const int part : parts_) linkage_.sweep(part);
+    take(&on_joints_);
+  };
   double worst = 1e300;
   for (int i = 1; i < kRestSweeps && worst > kHeld * g_ * h; ++i) {
+    hold();
     sweep(some_, i % 2 != 0);
     if (i % kBetweenChecks != 0) continue;
     worst = 0;
@@ -433,6 +589,7 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
     state.v[i].setZero();
     if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();
   }
+  if (!parts_.empty()) linkage_.keep(state, h, &on_joints_);
   moving_.swap(kept_);
   report(state, h);
   return froze;

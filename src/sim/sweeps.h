@@ -6,14 +6,15 @@
 #include "sim/contact_step.h"
 #include "sim/gap.h"
 #include "sim/islands.h"
+#include "sim/iterative_joints.h"
 #include "sim/pairs.h"
 #include "sim/tied.h"
 
 namespace obscura::sim {
 
 /// Contact for hundreds of bodies of space: all that may touch within a step is found anew in each, forces by
-/// warm sweeps over it. All that is carried from step to step is in the state, so a run cut in two is the run
-/// in one. Joints it does not know: those are the direct solver's.
+/// warm sweeps over it, joints exactly in each sweep. All that is carried from step to step is in the state,
+/// so a run cut in two is the run in one.
 template <int D>
 class Sweeps final : public ContactStep<D> {
  public:
@@ -65,8 +66,13 @@ class Sweeps final : public ContactStep<D> {
     const Moving &a = moving_[touch.a], &b = moving_[touch.b];
     return a.v + swing<D>(a.w, touch.arm_a) - b.v - swing<D>(b.w, touch.arm_b);
   }
+  bool temper(const State<D>& state);
+  void lend(const std::vector<char>* of = nullptr);
+  void take(const std::vector<char>* of = nullptr);
+  void hold();
   void advance(State<D>& state, double h);
   void part(State<D>& state);
+  void rejoin(State<D>& state, double h);
   void report(State<D>& state, double h) const;
   void join(const State<D>& state);
   bool rest(State<D>& state, double h);
@@ -76,6 +82,7 @@ class Sweeps final : public ContactStep<D> {
   MayTouch<D> may_touch_;
   BroadPhase<D> broad_;
   Tied<D> tied_;
+  Linkage<D> linkage_;
   Stages stages_;
   std::int64_t every_ = 1;  // steps between two looks for rest
   double g_ = 0, rest_speed_ = 0;
@@ -91,10 +98,12 @@ class Sweeps final : public ContactStep<D> {
   std::vector<Vec<D>> x_, v_free_;
   std::vector<Turn<D>> turn_;
   std::vector<Spin<D>> w_free_;
-  std::vector<char> closing_, ripe_;
+  std::vector<char> closing_, ripe_, on_joints_;  // the last: of those that rest
+  std::vector<int> parts_;                        // and of their joints
   Islands islands_;
   std::vector<Moving> kept_;
-  std::vector<double> left_;  // of each island's fastest point, m/s
+  std::vector<double> before_, gained_, returned_;  // of each island's blows, J
+  std::vector<double> left_;                        // of each island's fastest point, m/s
 };
 
 }  // namespace obscura::sim

@@ -113,6 +113,24 @@ Spin<D> spun(const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& room_fr
   }
 }
 
+/// I w: the angular momentum about its centre of a body with the spin w, both in the room's frame.
+template <int D>
+Spin<D> spinning(const Spin<D>& inertia, const Rotation<D>& room_from_body, const Spin<D>& w) {
+  return to_room<D>(room_from_body, inertia.cwiseProduct(from_room<D>(room_from_body, w)));
+}
+
+/// The spin of a body that is turned from one stance to another and keeps its angular momentum: in the plane
+/// the same.
+template <int D>
+Spin<D> carried_spin([[maybe_unused]] const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& from,
+                     [[maybe_unused]] const Rotation<D>& to, const Spin<D>& w) {
+  if constexpr (D == 2) {
+    return w;
+  } else {
+    return spun<D>(inertia, to, spinning<D>(inertia, from, w));
+  }
+}
+
 /// Kinetic energy of the spin, J.
 template <int D>
 double spin_energy(const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& room_from_body,

@@ -36,43 +36,6 @@ bool all_frozen(const State<3>& state) {
   return std::all_of(state.frozen.begin(), state.frozen.end(), [](char frozen) { return frozen != 0; });
 }
 
-// a world of the plane, given a depth
-World<3> extruded(const World<2>& flat, double depth) {
-  World<3> world = space({flat.model.gravity[0], flat.model.gravity[1], 0});
-  const auto up = [](const Vec<2>& p) { return Vec3(p[0], p[1], 0); };
-  world.model.rate = flat.model.rate, world.model.collision = flat.model.collision;
-  world.model.scale = flat.model.scale;
-  for (const Wall<2>& wall : flat.model.walls) {
-    world.model.walls.push_back({up(wall.point), up(wall.normal), wall.elasticity, wall.friction});
-  }
-  for (std::size_t i = 0; i < flat.model.bodies.size(); ++i) {
-    const Body<2>& body = flat.model.bodies[i];
-    Body<3> it;
-    it.name = body.name, it.mass = body.mass, it.elasticity = body.elasticity, it.friction = body.friction;
-    it.fixed = body.fixed;
-    it.shape = extruded(body.shape, depth);
-    it.inertia = solid_inertia(it.shape, body.mass);
-    if (body.turns()) it.inertia[2] = body.inertia[0];
-    world.model.bodies.push_back(it);
-    world.state.x.push_back(up(flat.state.x[i])), world.state.v.push_back(up(flat.state.v[i]));
-    const int k = turning(flat.state, int(i));
-    world.state.turn.push_back(exponential(Vec3(0, 0, flat.state.turn[k][0])));
-    world.state.spin.push_back({0, 0, flat.state.spin[k][0]});
-  }
-  for (const Joint<2>& joint : flat.model.joints) {
-    Joint<3> it;
-    it.kind = joint.kind == JointKind::pin ? JointKind::hinge : joint.kind;
-    it.a = {joint.a.body, up(joint.a.local)}, it.b = {joint.b.body, up(joint.b.local)};
-    it.axis = joint.kind == JointKind::pin ? Vec3(0, 0, 1) : up(joint.axis);
-    it.turn = {0, 0, joint.turn[0]};
-    it.length = joint.length, it.lower = joint.lower, it.upper = joint.upper;
-    if (joint.motor) it.motor = Joint<3>::Motor{joint.motor->speed, joint.motor->most};
-    it.friction = joint.friction;
-    world.model.joints.push_back(it);
-  }
-  return world;
-}
-
 // the plane's result and space's after so many steps
 void expect_same(const World<2>& flat, const World<3>& deep, int steps, double tolerance) {
   const State<2> want = stepped(flat, steps);

@@ -268,22 +268,8 @@ TEST(Linked, VelocitiesThatJointsForbidArePutRightByImpulses) {
   EXPECT_LE(apart(now, stepped(world, 600)), 1e-10);
 }
 
-// A doll of capsules on balls and hinges over the floor.
 TEST(Linked, ADollInSpaceIsADollOfRows) {
-  World<3> world = space();
-  world.model.collision = Collision::contact, world.model.rate = {600, 1}, world.model.scale = 4;
-  add_wall(world, {0, 0, 0}, {0, 1, 0});
-  const Vec3 v(1, 0, 0.3);
-  add_solid(world, brick({0.4, 0.6, 0.2}), 6, {0, 1.2, 0}, v, upright<3>(), {0, 0, 0}, 0.2);
-  add_solid(world, capsule(0.2, 0.06), 1, {0.3, 1.3, 0}, v, upright<3>(), {0, 0, 0}, 0.2);
-  add_solid(world, capsule(0.2, 0.06), 1, {-0.1, 0.65, 0}, v, upright<3>(), {0, 0, 0}, 0.2);
-  Joint<3> ball, hinge;
-  ball.a = {1, {0, 0.2, 0}}, ball.b = {0, {0.3, 0.3, 0}};
-  hinge.kind = JointKind::hinge, hinge.axis = {1, 0, 0};
-  hinge.a = {2, {0, 0.25, 0}}, hinge.b = {0, {-0.1, -0.3, 0}}, hinge.lower = -0.5, hinge.upper = 1.5;
-  world.model.joints = {ball, hinge};
-  for (Body<3>& body : world.model.bodies) body.friction = 0.5, body.group = 1;
-  world.model.ignore = {{1, 1}};
+  const World<3> world = doll();
   const World<3> links = chained(world, {0, 1, 2});
   for (const int steps : {240, 360}) {
     const State<3> a = stepped(world, steps), b = stepped(links, steps);
