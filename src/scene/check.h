@@ -15,7 +15,4 @@ void check(Node& top, const Dimension& told, Complaints& complaints);
 /// The same for one table ("box") of a document.
 void check(Node& table, const std::string& owner, const Dimension& told, Complaints& complaints);
 
-/// "'ball'", cut where it is long: a word of the scene as a complaint quotes it.
-std::string quoted(std::string_view word);
-
 }  // namespace obscura::scene

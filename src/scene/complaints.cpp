@@ -31,6 +31,15 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string quoted(std::string_view word) {
+  // cut where a code point ends
+  std::size_t most = std::min(word.size(), kLongestWord);
+  while (most > 0 && most < word.size() && (static_cast<unsigned char>(word[most]) & 0xC0) == 0x80) --most;
+  std::string text = "'";
+  for (const char c : word.substr(0, most)) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return text + (word.size() > most ? "...'" : "'");
+}
+
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& words) {
   if (word.size() > kLongestWord) return {};
   std::string_view best;

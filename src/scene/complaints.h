@@ -37,6 +37,9 @@ class Complaints {
   std::vector<std::pair<Place, std::string>> found_;
 };
 
+/// "'ball'", cut where it is long: a word of the scene as a complaint quotes it.
+std::string quoted(std::string_view word);
+
 /// The word of `words` that was probably meant; empty where none is near.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& words);
 

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <optional>
 
-#include "scene/check.h"
 #include "scene/fields.h"
 
 namespace obscura::scene {

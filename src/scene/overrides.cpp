@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "scene/check.h"
 #include "scene/dimension.h"
 #include "scene/table.h"
 

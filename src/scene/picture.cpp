@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "draw/camera.h"
-#include "scene/check.h"
 #include "scene/fields.h"
 #include "sim/shape.h"
 
