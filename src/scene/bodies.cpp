@@ -4,17 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <optional>
+#include <limits>
 #include <tuple>
 
 #include "scene/check.h"
+#include "scene/copies.h"
 #include "scene/fields.h"
 #include "scene/path.h"
-#include "scene/random.h"
 #include "scene/solid.h"
-#include "sim/exponential.h"
 #include "sim/shape.h"
 #include "sim/turning.h"
 
@@ -22,7 +19,6 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr std::int64_t kMostBodies = 1'000'000;
 // the palette's order for what has no colour; vermilion is for forces
 constexpr const char* kPalette[] = {"blue", "green", "orange", "purple", "sky", "yellow", "grey"};
 
@@ -45,134 +41,6 @@ struct Making {
   int declared = 0;                        // groups so far: which colour is next
   bool knots = false;  // the group at hand is joined by a net: draw has a colour for those
 };
-
-// copies.offset: one step in each direction of the grid
-template <int D>
-std::vector<sim::Vec<D>> offsets(const Fields& copies, std::size_t directions, Complaints& complaints) {
-  std::vector<sim::Vec<D>> steps(directions, sim::Vec<D>::Zero());
-  const Node* offset = copies.given("offset");
-  if (!offset) return steps;
-  if (!offset->list().front().is_list()) {
-    if (directions == 1) {
-      steps[0] = vector<D>(*offset);
-    } else {
-      complaints.add(offset->place,
-                     "'offset': a grid needs one for each direction, such as [[0.3, 0], [0, 0.3]]");
-    }
-    return steps;
-  }
-  if (offset->list().size() != directions) {
-    complaints.add(offset->place,
-                   fmt::format("'offset': expected {} for a count in {} direction{}, got {}", directions,
-                               directions, directions == 1 ? "" : "s", offset->list().size()));
-    return steps;
-  }
-  for (std::size_t k = 0; k < directions; ++k) steps[k] = vector<D>(offset->list()[k]);
-  return steps;
-}
-
-// how many in each direction; nothing where there are too many
-std::optional<std::vector<int>> grid(const Fields& copies, std::int64_t so_far, Complaints& complaints) {
-  const Node* count = copies.given("count");
-  if (!count) return std::vector<int>{1};
-  std::vector<int> sides;
-  std::int64_t all = 1;
-  for (const Node& side : count->is_list() ? count->list() : Node::List{*count}) {
-    sides.push_back(int(std::get<std::int64_t>(side.value)));
-    all *= sides.back();
-  }
-  if (so_far + all > kMostBodies) {
-    complaints.add(count->place,
-                   fmt::format("'count': {} bodies in all are more than {}, the most a scene may have",
-                               so_far + all, kMostBodies));
-    return {};
-  }
-  return sides;
-}
-
-// what varies over copies must have copies to vary over, and as many values as there are
-void refuse_odd_lists(const Fields& fields, const std::string& kind, bool copied, int n, int dimension,
-                      Complaints& complaints) {
-  for (const Key* key : keys_of(kind)) {
-    const Node* node = fields.given(key->last());
-    if (!key->varies || !node) continue;
-    const bool number = key->form == Form::number || (key->form == Form::spin && dimension == 2);
-    const bool list = node->is_list() && number;
-    if (!copied && (list || node->is_table()))
-      complaints.add(node->place, fmt::format("'{}' varies over copies, and there are none: expected {}",
-                                              key->last(), expected(*key, dimension)));
-    else if (list && int(node->list().size()) != n)
-      complaints.add(node->place, fmt::format("'{}': expected one for each of the {} copies, got {}",
-                                              key->last(), n, node->list().size()));
-  }
-}
-
-// how the bodies of one copy begin: seen from the frame that was typed
-template <int D>
-struct Start {
-  sim::Vec<D> position = sim::Vec<D>::Zero(), velocity = sim::Vec<D>::Zero();
-  sim::Turn<D> turn = sim::upright<D>();
-  sim::Spin<D> spin = sim::Spin<D>::Zero();
-  bool fixed = false;
-};
-
-Node leaf(Place place, double x) { return {place, x}; }
-
-// a vector as it would have been typed
-template <class V>
-Node typed(Place at, const V& v) {
-  Node::List list;
-  for (int k = 0; k < v.size(); ++k) list.push_back(leaf(at, v[k]));
-  return {at, std::move(list)};
-}
-
-// a turn and a spin as they would have been typed
-Node typed_turn(Place at, const sim::Turn<2>& turn) { return leaf(at, degrees(turn[0])); }
-Node typed_turn(Place at, const sim::Turn<3>& turn) {
-  const sim::Vec3 by = sim::logarithm(turn);
-  const double angle = std::sqrt(by.squaredNorm());
-  return {at, Node::Table{{"axis", at, typed(at, angle > 0 ? sim::Vec3(by / angle) : sim::Vec3(0, 1, 0))},
-                          {"angle", at, leaf(at, degrees(angle))}}};
-}
-
-Node typed_spin(const Node& spin, const sim::Spin<2>&, int i, int n) {
-  return leaf(spin.place, number(spin, i, n));
-}
-Node typed_spin(const Node& spin, const sim::Spin<3>& w, int, int) {
-  return typed(spin.place, sim::Vec3(w * (180 / std::numbers::pi)));
-}
-
-// how it is turned, of the kinds that are
-template <int D>
-constexpr const char* kTurnKey = D == 2 ? "angle" : "orientation";
-
-// the concrete table of one copy: its own place and values; its turn where that will be set from outside
-template <int D>
-Node single(const Fields& fields, const std::string& kind, int i, int n, const Start<D>& start, bool turn) {
-  Node one = fields.table();
-  std::erase_if(one.table(), [](const Entry& entry) {
-    return entry.key == "copies" || entry.key == "name" || entry.key == "fixed";
-  });
-  const auto put = [&](const std::string& key, Node value) {
-    if (Node* there = one.find(key)) {
-      *there = std::move(value);
-    } else {
-      one.table().push_back({key, one.place, std::move(value)});
-    }
-  };
-  for (const Key* key : keys_of(kind)) {
-    const Node* node = fields.given(key->last());
-    if (!node || !key->varies || node->is_number()) continue;
-    if (key->form == Form::number) put(std::string(key->last()), leaf(node->place, number(*node, i, n)));
-    if (key->form == Form::spin) put("spin", typed_spin(*node, start.spin, i, n));
-    if (key->form == Form::color && node->is_list())
-      put("color", node->list()[std::size_t(i) % node->list().size()]);
-  }
-  put("position", typed(fields.place("position"), start.position));
-  put("velocity", typed(fields.place("velocity"), start.velocity));
-  if (turn) put(kTurnKey<D>, typed_turn(fields.place(kTurnKey<D>), start.turn));
-  return one;
-}
 
 bool has(const Node& words, std::string_view word) {
   return std::any_of(words.list().begin(), words.list().end(),
@@ -307,28 +175,6 @@ std::uint64_t stream(const std::string& kind, int ordinal) {
   return std::uint64_t(ordinal) * 2 + (kind == "box" ? 1 : 0) + (of << 40);
 }
 
-// how a body is turned that was copied and turned by so many degrees about an axis
-sim::Turn<2> turned_copy(const Fields& fields, int i, int n, double by, const sim::Vec<2>&) {
-  const double angle = number(fields.node("angle"), i, n);
-  return sim::Turn<2>(radians(by != 0 ? angle + by : angle));
-}
-sim::Turn<3> turned_copy(const Fields& fields, int, int, double by, const sim::Vec<3>& axis) {
-  const sim::Turn<3> typed = turn<3>(fields);
-  return by != 0 ? sim::composed<3>(sim::exponential(radians(by) * axis), typed) : typed;
-}
-
-// the turn from one copy to another
-sim::Turn<2> between_copies(double by, const sim::Vec<2>&) { return sim::Turn<2>(radians(by)); }
-sim::Turn<3> between_copies(double by, const sim::Vec<3>& axis) {
-  return sim::exponential(radians(by) * axis);
-}
-
-// what copies turn about; of the plane there is but one way
-sim::Vec<2> copies_axis(const Fields&, const sim::Vec<2>&) { return {0, 0}; }
-sim::Vec<3> copies_axis(const Fields& copies, const sim::Vec<3>&) {
-  return copies.vector<3>("axis").stableNormalized();
-}
-
 template <int D>
 void declaration(Making<D>& making, const Node& table, const std::string& kind, int ordinal,
                  const std::vector<CopySet>& sets) {
@@ -365,17 +211,11 @@ void declaration(Making<D>& making, const Node& table, const std::string& kind, 
                    "'mass' and 'density' both say how heavy it is; leave one out");
 
   // how many, and how each lies from the one before
-  const bool copied = fields.given("copies") != nullptr;
-  const Node none{{}, Node::Table{}};
-  const Fields copies(copied ? *fields.given("copies") : none, kind + ".copies");
-  const auto sides = grid(copies, group.first, complaints);
-  if (!sides) return;
-  const std::vector<Vec> steps = offsets<D>(copies, sides->size(), complaints);
-  if (copied) group.grid = *sides;
-  for (const int side : *sides) group.count *= side;
-  const std::size_t wrong = complaints.count();
-  refuse_odd_lists(fields, kind, copied, group.count, D, complaints);
-  if (complaints.count() != wrong) return;
+  const auto copies = scene::copies<D>(fields, kind, group.first, complaints);
+  if (!copies) return;
+  const bool copied = copies->asked;
+  if (copied) group.grid = copies->sides;
+  group.count = copies->count();
 
   // which are held
   std::vector<bool> held(std::size_t(group.count), false);
@@ -410,33 +250,15 @@ void declaration(Making<D>& making, const Node& table, const std::string& kind, 
     complaints.add(spin->place, "'spin' of a body that does not turn: 'rotation' is false");
   const Solid<D> one_for_all = turns ? solid<D>(fields, kind, 0, group.count, complaints) : Solid<D>{};
   const bool varied = kind == "ball" || kind == "capsule";
-  const Node* about = copies.given("around");
-  const double by = copies.number("turn"), jitter = copies.number("jitter");
-  const Vec axis = copies_axis(copies, Vec());
   for (int i = 0; i < group.count; ++i) {
     Start<D> start;
     start.position =
         at ? vector<D>(*at, i, group.count) : Vec((making.room.bounds->low + making.room.bounds->high) / 2);
     start.velocity = vector<D>(fields.node("velocity", D), i, group.count);
     if (turns) start.spin = spin<D>(fields.node("spin", D), i, group.count);
-    if (turns) start.turn = turned_copy(fields, i, group.count, by * i, axis);
+    if (turns) start.turn = copies->orientation(fields, i);
     start.fixed = held[std::size_t(i)];
-
-    // along the grid, then about a place, then aside
-    int along = i;
-    for (std::size_t k = 0; k < sides->size(); ++k) {
-      start.position += steps[k] * (along % (*sides)[k]);
-      along /= (*sides)[k];
-    }
-    if (by != 0 && i > 0) {
-      const sim::Turn<D> further = between_copies(by * i, axis);
-      if (about) start.position = vector<D>(*about) + turned<D>(start.position - vector<D>(*about), further);
-      start.velocity = turned<D>(start.velocity, further);
-      start.spin = sim::to_room<D>(sim::rotation<D>(further), start.spin);
-    }
-    for (int k = 0; k < D && jitter > 0; ++k)
-      start.position[k] +=
-          jitter * even(making.seed, stream(kind, ordinal), std::uint64_t(i) * D + std::uint64_t(k));
+    copies->move(start, i, making.seed, stream(kind, ordinal));
 
     const std::string name = copied ? fmt::format("{}[{}]", group.name, i) : group.name;
     std::vector<const CopySet*> own;
@@ -486,70 +308,6 @@ void declaration(Making<D>& making, const Node& table, const std::string& kind, 
 }  // namespace
 
 template <int D>
-sim::Vec<D> turned(const sim::Vec<D>& v, const sim::Turn<D>& turn) {
-  return sim::rotation<D>(turn) * v;
-}
-
-template <int D>
-sim::Turn<D> turn_of(const sim::World<D>& world, int body) {
-  const int k = body < 0 ? -1 : sim::turning(world.state, body);
-  return k < 0 ? sim::upright<D>() : world.state.turn[std::size_t(k)];
-}
-
-template <int D>
-sim::Vec<D> place(const sim::World<D>& world, int body, const sim::Vec<D>& local) {
-  const sim::Vec<D>& x = world.state.x[std::size_t(body)];
-  const int k = sim::turning(world.state, body);
-  if (k < 0 || local.isZero(0)) return x + local;
-  return x + turned<D>(local, world.state.turn[std::size_t(k)]);
-}
-
-template <int D>
-sim::Vec<D> Seat<D>::seen(const sim::Vec<D>& typed) const {
-  const sim::Vec<D> from = typed - center;
-  return axes == sim::upright<D>() ? from : turned<D>(from, sim::undone<D>(axes));
-}
-
-const Group* Roster::group(const std::string& name, Place place, Complaints& complaints) const {
-  if (const auto found = index.find(name); found != index.end()) return &groups[std::size_t(found->second)];
-  std::vector<std::string_view> names;
-  if (!complaints.enough())
-    for (const Group& each : groups) names.push_back(each.name);
-  complaints.add(place, fmt::format("no body is called {}{}", quoted(name), did_you_mean(name, names)));
-  return nullptr;
-}
-
-std::vector<int> Roster::bodies(const std::string& text, Place place, Complaints& complaints) const {
-  if (const auto whole = index.find(text); whole != index.end()) {
-    const Group& it = groups[std::size_t(whole->second)];
-    if (it.count == 1) return {it.first};
-    complaints.add(place, fmt::format("'{}' is {} copies; say which: {}[0] .. {}[{}], or all, {}[*]", it.name,
-                                      it.count, it.name, it.name, it.count - 1, it.name));
-    return {};
-  }
-  const auto its = reference(text);
-  if (!its) {
-    complaints.add(
-        place, fmt::format("{} is no name of a body; expected one such as ball or ball[3]", quoted(text)));
-    return {};
-  }
-  const Group* it = group(its->bracketed ? its->name : text, place, complaints);
-  if (!it) return {};
-  if (it->grid.empty()) {
-    complaints.add(place, fmt::format("'{}' has no copies; write it without brackets", it->name));
-    return {};
-  }
-  auto which = range(its->which, it->count);
-  if (!which) {
-    complaints.add(place, fmt::format("{}: '{}' has {} copies, {}[0] .. {}[{}]", quoted(text), it->name,
-                                      it->count, it->name, it->name, it->count - 1));
-    return {};
-  }
-  for (int& body : *which) body += it->first;
-  return *which;
-}
-
-template <int D>
 Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, const std::vector<CopySet>& sets,
                   const Dimension& told, sim::World<D>& world, std::vector<draw::BodyLook>& looks,
                   Complaints& complaints) {
@@ -577,10 +335,6 @@ Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, cons
 }
 
 #define OBSCURA_INSTANTIATE(D)                                                                           \
-  template struct Seat<D>;                                                                               \
-  template sim::Vec<D> turned<D>(const sim::Vec<D>&, const sim::Turn<D>&);                               \
-  template sim::Turn<D> turn_of<D>(const sim::World<D>&, int);                                           \
-  template sim::Vec<D> place<D>(const sim::World<D>&, int, const sim::Vec<D>&);                          \
   template Seating<D> bodies<D>(const Node&, const Room<D>&, std::uint64_t, const std::vector<CopySet>&, \
                                 const Dimension&, sim::World<D>&, std::vector<draw::BodyLook>&, Complaints&)
 OBSCURA_INSTANTIATE(2);

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <string>
 #include <vector>
 
 #include "draw/look.h"
@@ -11,47 +9,10 @@
 #include "scene/document.h"
 #include "scene/overrides.h"
 #include "scene/room.h"
+#include "scene/roster.h"
 #include "sim/state.h"
 
 namespace obscura::scene {
-
-/// The bodies of one [[particle]], [[box]], ...: one, or its copies in a row.
-struct Group {
-  std::string name;          // as given, or "box[0]"
-  Place place;               // of its name, or of its table
-  Place at;                  // of its position, or of its table
-  int first = 0, count = 1;  // bodies [first, first + count) of the model
-  std::vector<int> grid;     // copies: how many in each direction; empty: none asked for
-};
-
-/// Who is in the scene, by name.
-struct Roster {
-  std::vector<Group> groups;
-  std::map<std::string, int, std::less<>> index;     // name -> group
-  std::map<std::string, int, std::less<>> families;  // what `group` says -> Body::group
-
-  /// The bodies that a reference means ("ball", "ball[3]", "ball[*]"). Complains at `place` and gives none
-  /// where there are none such.
-  std::vector<int> bodies(const std::string& reference, Place place, Complaints& complaints) const;
-  /// The group of a name. Complains at `place` where there is none.
-  const Group* group(const std::string& name, Place place, Complaints& complaints) const;
-};
-
-/// How a body's frame lies in the one that was typed: its centre of mass, and in space its principal axes.
-template <int D>
-struct Seat {
-  sim::Vec<D> center = sim::Vec<D>::Zero();
-  sim::Turn<D> axes = sim::upright<D>();
-
-  /// A point of the frame that was typed, in the body's.
-  sim::Vec<D> seen(const sim::Vec<D>& typed) const;
-};
-
-/// The same, and how each body lies in what was typed.
-template <int D>
-struct Seating : Roster {
-  std::vector<Seat<D>> seats;  // one a body
-};
 
 /// Puts the bodies of a scene into a world and says what they look like. Complains of bodies outside the
 /// room.
@@ -59,17 +20,5 @@ template <int D>
 Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, const std::vector<CopySet>& sets,
                   const Dimension& told, sim::World<D>& world, std::vector<draw::BodyLook>& looks,
                   Complaints& complaints);
-
-/// A point of a body in the room at the start.
-template <int D>
-sim::Vec<D> place(const sim::World<D>& world, int body, const sim::Vec<D>& local);
-
-/// How a body is turned at the start.
-template <int D>
-sim::Turn<D> turn_of(const sim::World<D>& world, int body);
-
-/// `v` turned.
-template <int D>
-sim::Vec<D> turned(const sim::Vec<D>& v, const sim::Turn<D>& turn);
 
 }  // namespace obscura::scene

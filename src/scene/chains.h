@@ -1,8 +1,8 @@
 #pragma once
 
-#include "scene/bodies.h"
 #include "scene/complaints.h"
 #include "scene/document.h"
+#include "scene/roster.h"
 #include "sim/state.h"
 
 namespace obscura::scene {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "draw/figure.h"
-#include "scene/bodies.h"
 #include "scene/complaints.h"
 #include "scene/document.h"
+#include "scene/roster.h"
 #include "sim/state.h"
 
 namespace obscura::scene {

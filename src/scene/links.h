@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "scene/bodies.h"
 #include "scene/complaints.h"
 #include "scene/document.h"
+#include "scene/roster.h"
 #include "sim/state.h"
 
 namespace obscura::scene {

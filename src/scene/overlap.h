@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/bodies.h"
 #include "scene/complaints.h"
+#include "scene/roster.h"
 #include "sim/state.h"
 
 namespace obscura::scene {

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "scene/bodies.h"
 #include "scene/complaints.h"
 #include "scene/document.h"
 #include "scene/room.h"
+#include "scene/roster.h"
 #include "scene/scene.h"
 
 namespace obscura::scene {
