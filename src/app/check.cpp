@@ -46,10 +46,10 @@ std::string contact(const sim::Model<D>& model) {
   else if (model.solver != sim::Solver::automatic)
     why = "as the scene says";
   else
-    why =
-        fmt::format("{} and {} that move; up to {} and {} it is the direct one",
-                    count(std::size_t(crowd.bodies), "body", "bodies"),
-                    count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies<D>, sim::kMostPoints);
+    why = fmt::format("{} and {} that move; up to {} and {} it is the direct one",
+                      count(std::size_t(crowd.bodies), "body", "bodies"),
+                      count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies<D>,
+                      sim::kMostPoints);
   return fmt::format("{} solver: {}{}", direct ? "direct" : "iterative", why,
                      direct ? "" : "; impacts go from pair to pair");
 }
@@ -91,7 +91,7 @@ std::string bodies(const sim::Model<D>& model) {
 
 template <int D>
 void report(const scene::Scene& scene, const sim::Model<D>& model) {
-  const Shots shots = Shots::film(scene.duration, scene.film.fps);
+  const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
   fmt::print("{}: good\n", scene.file);
   fmt::print("  bodies   {}\n", bodies(model));
   fmt::print("  time     {:g} s in {} steps of 1/{} s\n", sim::value(scene.duration),

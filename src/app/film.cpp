@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 
 #include "app/conduct.h"
+#include "app/darkroom.h"
 #include "app/exit.h"
 #include "app/interrupt.h"
 #include "app/origin.h"
+#include "app/plots.h"
 #include "app/simulation.h"
 #include "app/trouble.h"
-#include "draw/depict.h"
-#include "gl/renderer.h"
 #include "media/error.h"
 #include "media/png.h"
 
@@ -95,7 +95,9 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
       options.workers > 0 ? options.workers : std::max(1, int(std::thread::hardware_concurrency()));
   const int needed = int(std::min<std::int64_t>(
       workers, (shots.size() + take_frames(output, spec) - 1) / take_frames(output, spec)));
-  Simulation simulation(scene, shots, {.frames = take_frames(output, spec), .hash_each = pictures});
+  const draw::Charts charts = app::charts(scene);
+  Simulation simulation(scene, shots, depictor(scene, charts),
+                        {.frames = take_frames(output, spec), .hash_each = pictures});
   Progress progress(options.progress, output.path == "-" ? "standard output" : output.path, shots.size(),
                     1 / sim::value(scene.film.fps));
   std::atomic<std::int64_t> drawn = 0;
@@ -106,12 +108,12 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
 
   // a worker: a context of its own, and for each take a closed piece of film
   parts.hire = [&] {
-    auto renderer = std::make_shared<gl::Renderer>(spec.width, spec.height, options.context);
-    auto artist = std::make_shared<const draw::Depictor>(depictor(scene));
-    return [&, renderer, artist](Take take) {
+    auto darkroom = std::make_shared<Darkroom>(scene, charts, options.context);
+    return [&, darkroom](Take take) {
       Print print;
       print.origin = origin;
-      print.origin.gl_version = renderer->version(), print.origin.gl_renderer = renderer->device();
+      print.origin.gl_version = darkroom->renderer().version();
+      print.origin.gl_renderer = darkroom->renderer().device();
       print.origin.shot = take.shots[0], print.origin.state = take.states[0];
       std::optional<media::SegmentEncoder> encoder;
       if (output.form == Output::Form::movie) encoder.emplace(output.path, spec);
@@ -120,9 +122,7 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
           print.whole = false;
           break;
         }
-        draw::Picture picture = artist->depict(take.moments[i], take.ways);
-        picture.transparent = pictures && options.transparent;
-        const media::Image& image = renderer->draw(picture);
+        const media::Image& image = darkroom->print(take, i, pictures && options.transparent);
         if (encoder) encoder->add(image);
         if (output.form == Output::Form::pipe) print.images.push_back(image);
         if (pictures) {

@@ -116,7 +116,7 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
   scene::Scene small = scene;
   small.film.width = scene.golden.width, small.film.height = scene.golden.height;
   const std::vector<Pictured> made =
-      pictures(small, Shots::stills(scene.golden.at, scene.film.fps), options.picture);
+      pictures(small, Shots::stills(scene.golden.at, scene.film.fps, scene.film.speed), options.picture);
 
   const fs::path folder = references_of(scene.file, options);
   std::vector<GoldenCase> cases;

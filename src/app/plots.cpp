@@ -1,9 +1,6 @@
 #include "app/plots.h"
 
 #include <algorithm>
-#include <array>
-#include <functional>
-#include <string_view>
 
 #include "app/interrupt.h"
 #include "app/trouble.h"
@@ -13,33 +10,34 @@ namespace obscura::app {
 
 namespace {
 
-constexpr std::int64_t kPoints = 480;  // of a line
-constexpr double kDegrees = 57.29577951308232;
+constexpr std::int64_t kPoints = 480;   // of a line
+constexpr std::int64_t kPixels = 1920;  // of a line in a film
 
-/// What the scene calls it, what it is called beside its line, its unit and its value.
-struct Traced {
-  std::string_view word;
-  const char *label, *unit, *color;
-  double (*value)(const sim::Snapshot& now, const sim::Snapshot::Body& body);
-};
+// what a run gives at one more instant
+void add(const sim::Snapshot& now, const draw::Measured& measured, draw::Plot& plot) {
+  plot.times.push_back(now.time);
+  const std::vector<const draw::Measure*> measures = measured.measures();
+  for (std::size_t k = 0; k < measures.size(); ++k)
+    plot.lines[k].values.push_back(measures[k]->at(now, measured.body));
+}
 
-using Now = const sim::Snapshot&;
-using Body = const sim::Snapshot::Body&;
-
-constexpr std::array<Traced, 12> kTraced{{
-    {"energy", "total", "J", "", [](Now now, Body) { return now.energies.total(); }},
-    {"kinetic", "kinetic", "J", "vermilion", [](Now now, Body) { return now.energies.kinetic; }},
-    {"potential", "potential", "J", "blue", [](Now now, Body) { return now.energies.potential(); }},
-    {"gravity", "gravity", "J", "blue", [](Now now, Body) { return now.energies.gravity; }},
-    {"springs", "springs", "J", "green", [](Now now, Body) { return now.energies.springs; }},
-    {"x", "x", "m", "blue", [](Now, Body body) { return body.position.x(); }},
-    {"height", "height", "m", "blue", [](Now, Body body) { return body.position.y(); }},
-    {"speed", "speed", "m/s", "green", [](Now, Body body) { return body.velocity.norm(); }},
-    {"vx", "v_x", "m/s", "blue", [](Now, Body body) { return body.velocity.x(); }},
-    {"vy", "v_y", "m/s", "vermilion", [](Now, Body body) { return body.velocity.y(); }},
-    {"angle", "\\theta", "°", "purple", [](Now, Body body) { return kDegrees * body.angle; }},
-    {"spin", "\\omega", "rad/s", "purple", [](Now, Body body) { return body.spin.z(); }},
-}};
+// the instants of a run that a chart is made of: ends of steps, which cost nothing beside the run; of another
+// program's run its rows
+std::vector<sim::Rational> beats(const scene::Scene& scene, sim::Rational rate) {
+  std::vector<sim::Rational> times;
+  if (scene.trajectory) {
+    const std::vector<double>& rows = scene.trajectory->times;
+    const std::size_t stride = rows.size() / std::size_t(kPixels) + 1;
+    for (std::size_t i = 0; i < rows.size(); i += stride)
+      if (const auto exact = sim::from_double(rows[i]); exact && *exact <= scene.duration)
+        times.push_back(*exact);
+    return times;
+  }
+  const std::int64_t steps = sim::floor(scene.duration * rate), stride = steps / kPixels + 1;
+  for (std::int64_t k = 0; k <= steps; k += stride) times.push_back(sim::rational(k) / rate);
+  if (times.back() < scene.duration) times.push_back(scene.duration);
+  return times;
+}
 
 }  // namespace
 
@@ -47,21 +45,8 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
   const draw::Palette colours = draw::palette(scene.look.theme);
   std::vector<draw::Plot> all;
   for (const draw::Figure::Plot& wanted : scene.figure.plots) {
-    draw::Plot plot;
+    draw::Plot plot = draw::empty_plot(wanted, colours);
     plot.marks = marks;
-    std::vector<const Traced*> traced;
-    for (const std::string& word : wanted.quantities) {
-      const auto found =
-          std::find_if(kTraced.begin(), kTraced.end(), [&](const Traced& each) { return each.word == word; });
-      if (found == kTraced.end()) continue;
-      traced.push_back(&*found);
-      const auto color = draw::color(found->color);
-      plot.lines.push_back({found->label, {}, color ? draw::mix(*color, colours.ink, 0.2) : colours.ink});
-      if (traced.size() == 1 || plot.unit == found->unit)
-        plot.unit = found->unit;
-      else
-        plot.unit.clear();
-    }
 
     const auto run = scene.run();
     run->heed(interrupted);
@@ -72,16 +57,32 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
       if (const auto* trouble = std::get_if<sim::Trouble>(&found))
         throw TroubleError(scene.file, *trouble, "");
       if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();
-      const sim::Snapshot& now = std::get<sim::Snapshot>(found);
-      plot.times.push_back(now.time);
-      static const sim::Snapshot::Body nobody;
-      const sim::Snapshot::Body& body = wanted.body < 0 ? nobody : now.bodies[std::size_t(wanted.body)];
-      for (std::size_t k = 0; k < traced.size(); ++k)
-        plot.lines[k].values.push_back(traced[k]->value(now, body));
+      add(std::get<sim::Snapshot>(found), wanted, plot);
     }
     all.push_back(std::move(plot));
   }
   return all;
+}
+
+draw::Charts charts(const scene::Scene& scene) {
+  const std::vector<draw::Chart>& wanted = scene.film.charts;
+  if (wanted.empty()) return {};
+  draw::Palette colours = draw::palette(scene.look.theme);
+  if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
+  std::vector<draw::Plot> plots;
+  for (const draw::Chart& each : wanted) plots.push_back(draw::empty_plot(each, colours));
+
+  const auto run = scene.run();
+  run->heed(interrupted);
+  for (const sim::Rational t : beats(scene, run->rate())) {
+    const auto found = run->at(t);
+    if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();
+    if (std::holds_alternative<sim::Trouble>(found)) break;
+    for (std::size_t i = 0; i < wanted.size(); ++i) add(std::get<sim::Snapshot>(found), wanted[i], plots[i]);
+  }
+  if (plots[0].times.empty()) return {};
+  const double aspect = double(scene.film.width) / scene.film.height;
+  return {wanted, plots, colours, aspect, sim::value(scene.duration)};
 }
 
 }  // namespace obscura::app

@@ -92,9 +92,9 @@ Shots shots_of(const Flags& flags, const scene::Scene& scene) {
   if (flags.at) {
     if (flags.frames || flags.from || flags.to)
       throw UsageError("--at names one instant: leave out --frames, --from and --to");
-    return Shots::still(seconds("--at", *flags.at), scene.film.fps);
+    return Shots::still(seconds("--at", *flags.at), scene.film.fps, scene.film.speed);
   }
-  Shots shots = Shots::film(scene.duration, scene.film.fps);
+  Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
   if (shots.size() == 0) throw UsageError(fmt::format("{}: a film of 0 s has no frames", scene.file));
   if (flags.from || flags.to) {
     shots.between(flags.from ? seconds("--from", *flags.from) : sim::Rational{0, 1},
@@ -108,6 +108,10 @@ Shots shots_of(const Flags& flags, const scene::Scene& scene) {
 void take_run(const Flags& flags, scene::Scene& scene) {
   std::vector<std::string> notes;
   show_run(read_table(*flags.states), flags.interpolate, scene, notes);
+  if (scene.film.shutter > 0)
+    notes.push_back(
+        fmt::format("{} has no instants between its rows: filmed without motion blur", *flags.states));
+  scene.film.shutter = 0;
   for (const std::string& note : notes) fmt::print(stderr, "{}\n", note);
 }
 
@@ -116,8 +120,10 @@ void suit_run(const Flags& flags, const scene::Scene& scene, Shots& shots) {
   const sim::Trajectory& run = *scene.trajectory;
   if (!flags.at && !flags.to) {
     // up to its last row
-    const auto last = std::int64_t(std::floor(run.times.back() * sim::value(scene.film.fps) + 1e-6));
-    shots.between({0, 1}, sim::rational(last + 1) / scene.film.fps);
+    const draw::Pace& speed = scene.film.speed;
+    const double end = sim::value(speed.film(sim::rational(std::llround(run.times.back() * 1e6), 1'000'000)));
+    const auto last = std::int64_t(std::floor(end * sim::value(scene.film.fps) + 1e-6));
+    shots.between({0, 1}, speed.world(sim::rational(last + 1) / scene.film.fps));
   }
   for (std::int64_t i = 0; i < shots.size(); ++i) {
     const double t = sim::value(shots[i].time);
@@ -173,7 +179,8 @@ void add_render(CLI::App& program, int& exit) {
       ->type_name("NAME");
   command->add_option("--at", flags->at, "One picture, of this instant (s), be it after the duration")
       ->type_name("SECONDS");
-  command->add_option("--from", flags->from, "The first instant (s) that is filmed")->type_name("SECONDS");
+  command->add_option("--from", flags->from, "The first instant (s of the run) that is filmed")
+      ->type_name("SECONDS");
   command->add_option("--to", flags->to, "Where the film stops (s), not itself filmed")->type_name("SECONDS");
   command->add_option("--frames", flags->frames, "Only these frames, counted from 0, as in 1,3,5..9")
       ->type_name("LIST");

@@ -39,27 +39,46 @@ sim::Rational instant(std::string_view text, const std::string& list) {
 
 }  // namespace
 
-Shots Shots::film(sim::Rational duration, sim::Rational fps) {
+Shots Shots::film(sim::Rational duration, sim::Rational fps, const draw::Pace& speed) {
   Shots shots;
-  shots.fps_ = fps;
-  shots.size_ = sim::ceil(duration * fps);
+  shots.fps_ = fps, shots.speed_ = speed;
+  shots.size_ = shots.first_at(duration);
   if (shots.size_ > 0) shots.ranges_ = {{0, shots.size_ - 1}};
   return shots;
 }
 
-Shots Shots::still(sim::Rational time, sim::Rational fps) { return stills({time}, fps); }
+Shots Shots::still(sim::Rational time, sim::Rational fps, const draw::Pace& speed) {
+  return stills({time}, fps, speed);
+}
 
-Shots Shots::stills(std::vector<sim::Rational> times, sim::Rational fps) {
+Shots Shots::stills(std::vector<sim::Rational> times, sim::Rational fps, const draw::Pace& speed) {
   Shots shots;
-  shots.fps_ = fps;
+  shots.fps_ = fps, shots.speed_ = speed;
   shots.size_ = std::int64_t(times.size());
   shots.instants_ = std::move(times);
   return shots;
 }
 
+// the first frame that shows an instant not before `time`
+std::int64_t Shots::first_at(sim::Rational time) const {
+  if (speed_.plain()) return sim::ceil(time * fps_);
+  // near it by the film's time, which is rounded; then as the frames themselves say
+  auto n = std::int64_t(sim::value(speed_.film(time)) * sim::value(fps_));
+  while (n > 0 && !(instant(n - 1) < time)) --n;
+  while (instant(n) < time) ++n;
+  return n;
+}
+
+// the last frame that shows an instant not after `time`
+std::int64_t Shots::frame_of(sim::Rational time) const {
+  if (speed_.plain()) return sim::floor(time * fps_);
+  const std::int64_t n = first_at(time);
+  return time < instant(n) ? n - 1 : n;
+}
+
 void Shots::between(sim::Rational from, sim::Rational to) {
   if (!instants_.empty()) return;
-  const std::int64_t first = sim::ceil(from * fps_), last = sim::ceil(to * fps_) - 1;
+  const std::int64_t first = first_at(from), last = first_at(to) - 1;
   std::vector<std::pair<std::int64_t, std::int64_t>> kept;
   size_ = 0;
   for (auto [a, b] : ranges_) {
@@ -101,18 +120,18 @@ void Shots::only(const std::string& list) {
 Shot Shots::operator[](std::int64_t i) const {
   if (!instants_.empty()) {
     const sim::Rational time = instants_[std::size_t(i)];
-    return {sim::floor(time * fps_), time};
+    return {frame_of(time), time};
   }
   for (const auto& [a, b] : ranges_) {
     const std::int64_t n = b - a + 1;
-    if (i < n) return {a + i, sim::rational(a + i) / fps_};
+    if (i < n) return {a + i, instant(a + i)};
     i -= n;
   }
   return {};
 }
 
 std::int64_t Shots::last_frame() const {
-  return instants_.empty() ? ranges_.back().second : sim::floor(instants_.back() * fps_);
+  return instants_.empty() ? ranges_.back().second : frame_of(instants_.back());
 }
 
 std::string Shots::text() const {

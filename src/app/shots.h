@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "draw/pace.h"
 #include "sim/rational.h"
 
 namespace obscura::app {
@@ -13,20 +14,21 @@ namespace obscura::app {
 /// One frame to be made: its number in the whole film, and the exact instant it shows.
 struct Shot {
   std::int64_t frame = 0;
-  sim::Rational time;  // s
+  sim::Rational time;  // s of the run
 };
 
-/// Which frames of a film are wanted, without listing them: frame n is at exactly n / fps.
+/// Which frames of a film are wanted, without listing them: frame n is at exactly n / fps of the film, and
+/// shows the instant of the run that `speed` brings there.
 class Shots {
  public:
-  /// Every frame of a film of `duration` seconds: ceil(duration * fps) of them.
-  static Shots film(sim::Rational duration, sim::Rational fps);
-  /// The one instant `time`, whichever frame it would be nearest to.
-  static Shots still(sim::Rational time, sim::Rational fps);
+  /// Every frame of a film of `duration` seconds of the run: at its own speed ceil(duration * fps) of them.
+  static Shots film(sim::Rational duration, sim::Rational fps, const draw::Pace& speed = {});
+  /// The one instant `time` of the run, whichever frame it would be nearest to.
+  static Shots still(sim::Rational time, sim::Rational fps, const draw::Pace& speed = {});
   /// Several such, in the order of time.
-  static Shots stills(std::vector<sim::Rational> times, sim::Rational fps);
+  static Shots stills(std::vector<sim::Rational> times, sim::Rational fps, const draw::Pace& speed = {});
 
-  /// Only those in [from, to), s. Throws UsageError where none is left.
+  /// Only those that show an instant in [from, to), s of the run. Throws UsageError where none is left.
   void between(sim::Rational from, sim::Rational to);
   /// Only the numbers that `list` names: "1,3,5..9". Throws UsageError where it cannot be read or names a
   /// frame that is not there.
@@ -41,7 +43,12 @@ class Shots {
   std::string text() const;
 
  private:
+  sim::Rational instant(std::int64_t frame) const { return speed_.world(sim::rational(frame) / fps_); }
+  std::int64_t first_at(sim::Rational time) const;
+  std::int64_t frame_of(sim::Rational time) const;
+
   sim::Rational fps_{60, 1};
+  draw::Pace speed_;
   std::vector<std::pair<std::int64_t, std::int64_t>> ranges_;  // [first, last]
   std::int64_t size_ = 0;
   std::vector<sim::Rational> instants_;  // of stills

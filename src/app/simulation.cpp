@@ -1,6 +1,7 @@
 #include "app/simulation.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/interrupt.h"
 #include "app/origin.h"
@@ -8,6 +9,12 @@
 namespace obscura::app {
 
 namespace {
+
+// of motion blur: the longest way, px, that is no motion; how many moments a frame has where things move, one
+// a pixel of the longest way; and how much memory they may take, 2 MiB a frame
+constexpr double kStill = 0.05, kFewest = 4, kMost = 64, kMostBytes = 2 << 20;
+
+sim::Rational microseconds(double seconds) { return sim::rational(std::llround(seconds * 1e6), 1'000'000); }
 
 double last_time(const sim::Track& track) {
   double t = 0;
@@ -19,17 +26,16 @@ double last_time(const sim::Track& track) {
 
 }  // namespace
 
-draw::Depictor depictor(const scene::Scene& scene) {
+draw::Depictor depictor(const scene::Scene& scene, const draw::Charts& charts) {
   const auto run = scene.run();
   const double aspect = double(scene.film.width) / scene.film.height;
-  if (scene.dimension() == 2)
-    return draw::Depictor(run->cast(), scene.look, scene.cameras.front(), scene.extent, aspect);
-  return draw::Depictor(run->cast(), scene.look, scene.cameras, scene.extent, aspect);
+  return {run->cast(), scene.look, scene.cameras, scene.extent, aspect, charts};
 }
 
-Simulation::Simulation(const scene::Scene& scene, const Shots& shots, const SimulationOptions& options)
-    : shots_(shots), options_(options), run_(scene.run()) {
-  const draw::Depictor artist = depictor(scene);
+Simulation::Simulation(const scene::Scene& scene, const Shots& shots, const draw::Depictor& artist,
+                       const SimulationOptions& options)
+    : shots_(shots), artist_(artist), film_(scene.film), options_(options), run_(scene.run()) {
+  for (const draw::BodyLook& look : scene.look.bodies) contacts_ = contacts_ || look.contact;
   trail_ = artist.longest_trail();
   run_->track(artist.trailed());
   run_->heed(interrupted);
@@ -39,7 +45,7 @@ std::optional<Take> Simulation::next() {
   if (trouble_ || next_ >= shots_.size() || interrupted()) return {};
   approach(shots_[next_].time);
   Take take;
-  while (int(take.shots.size()) < options_.frames && next_ < shots_.size() && !interrupted()) {
+  while (int(take.shots.size()) < options_.frames && next_ < shots_.size() && !trouble_ && !interrupted()) {
     const Shot shot = shots_[next_];
     auto moment = run_->at(shot.time);
     if (auto* trouble = std::get_if<sim::Trouble>(&moment)) {
@@ -50,12 +56,45 @@ std::optional<Take> Simulation::next() {
     take.shots.push_back(shot);
     take.moments.push_back(std::move(std::get<sim::Snapshot>(moment)));
     if (options_.hash_each || take.states.empty()) take.states.push_back(state_hash(run_->words()));
+    take.open.push_back(open(take.moments.back()));
     ++next_;
   }
   keep_ways();
   take.ways.assign(ways_.begin(), ways_.end());
   if (take.shots.empty()) return {};
   return take;
+}
+
+// The instants that are seen while the shutter is open from a frame's own on, in the middle of as many equal
+// parts; none where nothing moves. How many is known by how things move when it opens.
+std::vector<sim::Snapshot> Simulation::open(const sim::Snapshot& moment) {
+  if (film_.shutter <= 0) return {};
+  const sim::Rational from = shots_[next_].time;
+  const double seconds = film_.shutter / 360 / sim::value(film_.fps);  // of the film
+  const double begins = sim::value(from),
+               until =
+                   sim::value(film_.speed.world(microseconds(sim::value(film_.speed.film(from)) + seconds)));
+  const double way = artist_.travel(moment, until - begins) * film_.height / 1080;
+  if (!(way >= kStill)) return {};
+
+  const double bytes = double(moment.bodies.size() * sizeof(sim::Snapshot::Body) +
+                              moment.springs.size() * sizeof(sim::Snapshot::Spring) +
+                              moment.joints.size() * sizeof(sim::Snapshot::Joint) +
+                              (contacts_ ? moment.contacts.size() * sizeof(sim::Snapshot::Contact) : 0));
+  const double most = std::clamp(kMostBytes / std::max(bytes, 1.0), kFewest, kMost);
+  const int count = int(std::clamp(std::ceil(way), kFewest, most));
+  std::vector<sim::Snapshot> seen;
+  for (int k = 0; k < count; ++k) {
+    sim::Rational t = microseconds(begins + (until - begins) * (2 * k + 1) / (2 * count));
+    if (t < from) t = from;
+    if (next_ + 1 < shots_.size() && shots_[next_ + 1].time < t) t = shots_[next_ + 1].time;
+    auto found = run_->at(t);
+    if (auto* trouble = std::get_if<sim::Trouble>(&found)) trouble_ = *trouble;
+    if (!std::holds_alternative<sim::Snapshot>(found)) break;
+    seen.push_back(std::move(std::get<sim::Snapshot>(found)));
+    if (!contacts_) seen.back().contacts = {};
+  }
+  return seen;
 }
 
 // goes on to just before t in strides, so that the ways of a long beginning are not all kept

@@ -19,12 +19,14 @@ using Ways = std::vector<std::shared_ptr<const sim::Track>>;
 struct Take {
   std::vector<Shot> shots;
   std::vector<sim::Snapshot> moments;
+  std::vector<std::vector<sim::Snapshot>>
+      open;                         // while the shutter is, one list a moment; empty: nothing moves
   std::vector<std::string> states;  // hashes, one a moment, or of the first alone
   Ways ways;                        // what trails are drawn from
 };
 
-/// Who draws the scene's instants, as large as its film is.
-draw::Depictor depictor(const scene::Scene& scene);
+/// Who draws the scene's instants, as large as its film is, with these charts beside them.
+draw::Depictor depictor(const scene::Scene& scene, const draw::Charts& charts);
 
 struct SimulationOptions {
   int frames = 1;          // of a take, at most
@@ -35,7 +37,9 @@ struct SimulationOptions {
 /// somebody asks for an end.
 class Simulation {
  public:
-  Simulation(const scene::Scene& scene, const Shots& shots, const SimulationOptions& options);
+  /// `artist`: who is going to draw them.
+  Simulation(const scene::Scene& scene, const Shots& shots, const draw::Depictor& artist,
+             const SimulationOptions& options);
 
   /// The next take; none after the last, or where the run cannot go on.
   std::optional<Take> next();
@@ -44,9 +48,13 @@ class Simulation {
 
  private:
   void approach(sim::Rational t);
+  std::vector<sim::Snapshot> open(const sim::Snapshot& moment);
   void keep_ways();
 
   Shots shots_;
+  draw::Depictor artist_;
+  scene::Film film_;
+  bool contacts_ = false;  // are drawn
   SimulationOptions options_;
   std::unique_ptr<sim::Run> run_;
   double trail_;  // s, the longest

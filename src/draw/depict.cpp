@@ -9,6 +9,7 @@
 #include "draw/sheet.h"
 #include "draw/space.h"
 #include "draw/stage.h"
+#include "draw/travel.h"
 
 namespace obscura::draw {
 namespace {
@@ -48,8 +49,9 @@ double newton(const sim::Cast& cast) {
   return usual > 0 ? kForceArrow * cast.scale / usual : 0;
 }
 
-Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, const Layout& page)
-    : cast(who), look(looks_), camera(camera_), colours(palette(looks_.theme)), layout(page) {
+Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, const Layout& page,
+             const Charts& beside)
+    : cast(who), look(looks_), camera(camera_), colours(palette(looks_.theme)), layout(page), charts(beside) {
   const std::vector<char> net = knots(cast);
   auto knot = [&](int body) { return body >= 0 && net[body]; };
 
@@ -121,6 +123,15 @@ struct Depictor::Plan {
   mutable View seen;
   mutable std::shared_ptr<const List> still;
 
+  View view(const sim::Snapshot& now) const {
+    View view = view_at(stage.camera, stage.layout, now.time);
+    if (stage.camera.follow) {
+      const sim::Vec3& middle = now.bodies[*stage.camera.follow].position;
+      view.origin = stage.layout.middle - view.scale * Point(middle.x(), -middle.y());
+    }
+    return view;
+  }
+
   std::shared_ptr<const List> still_of(const View& view) const {
     const std::lock_guard lock(mutex);
     if (!still || seen.origin != view.origin || seen.scale != view.scale) {
@@ -138,13 +149,15 @@ Depictor::Depictor(const sim::Cast& cast, const Look& look, const Camera& camera
     : Depictor(cast, look, std::vector{camera}, extent, aspect) {}
 
 Depictor::Depictor(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras,
-                   const Extent& extent, double aspect)
+                   const Extent& extent, double aspect, const Charts& charts)
     : look_(look) {
-  if (cast.dimension == 3)
-    space_ = std::make_shared<const SpaceStage>(cast, look, cameras, extent, aspect);
-  else
-    plan_.reset(new Plan{
-        Stage(cast, look, cameras.at(0), lay_out(cast, look, cameras.at(0), extent, aspect)), {}, {}, {}});
+  if (cast.dimension == 3) {
+    space_ = std::make_shared<const SpaceStage>(cast, look, cameras, extent, aspect, charts);
+    return;
+  }
+  const Camera& camera = cameras.at(0);
+  const Layout layout = lay_out(cast, look, camera, extent, aspect, charts.right(), charts.below());
+  plan_.reset(new Plan{Stage(cast, look, camera, layout, charts), {}, {}, {}});
 }
 
 Depictor::Depictor(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet)
@@ -158,15 +171,16 @@ Lens Depictor::lens(const sim::Snapshot& now, int panel) const { return lens_of(
 
 Picture Depictor::depict(const sim::Snapshot& now,
                          std::span<const std::shared_ptr<const sim::Track>> ways) const {
-  if (space_) return depict_space(*space_, now, ways);
+  return depict(now, ways, now);
+}
+
+Picture Depictor::depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
+                         const sim::Snapshot& frame) const {
+  if (space_) return depict_space(*space_, now, ways, frame);
   const Stage& stage = plan_->stage;
-  View view = view_at(stage.camera, stage.layout, now.time);
-  if (stage.camera.follow) {
-    const sim::Vec3& middle = now.bodies[*stage.camera.follow].position;
-    view.origin = stage.layout.middle - view.scale * Point(middle.x(), -middle.y());
-  }
+  const View view = plan_->view(now);
   Picture picture;
-  picture.aspect = stage.layout.width / stage.layout.height;
+  picture.aspect = stage.layout.aspect;
   picture.ground = stage.colours.ground;
   picture.still = plan_->still_of(view);
 
@@ -189,10 +203,17 @@ Picture Depictor::depict(const sim::Snapshot& now,
   list.unclip();
   if (stage.layout.caption && stage.look.clock) {
     Text clock = stage.layout.clock;
-    clock.spans[0].text = clock_text(now.time);
+    clock.spans[0].text = clock_text(frame.time);
     list.add(clock);
   }
+  stage.charts.draw_lines(frame, list);
   return picture;
+}
+
+double Depictor::travel(const sim::Snapshot& now, double seconds) const {
+  const sim::Snapshot then = later(now, seconds);
+  if (space_) return draw::travel(*space_, now, then);
+  return draw::travel(plan_->stage, plan_->view(now), plan_->view(then), now, then);
 }
 
 void Depictor::ghosts(const sim::Snapshot& then, double strength, List& list) const {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "draw/chart.h"
 #include "draw/lens.h"
 #include "draw/list.h"
 #include "draw/look.h"
@@ -41,8 +42,9 @@ class Depictor {
            double aspect);
 
   /// In space: several cameras look at one run, in panels beside each other with their names over them.
+  /// Charts of the run stand beside its picture.
   Depictor(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras, const Extent& extent,
-           double aspect);
+           double aspect, const Charts& charts = {});
 
   /// In the plane, for print: a picture of `sheet`, whose size follows from what it shows (draw/sheet.h).
   Depictor(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet);
@@ -56,6 +58,14 @@ class Depictor {
   /// The picture of one instant. `ways`: the tracks that hold the last `trail` seconds before it, oldest
   /// first.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways) const;
+
+  /// The same, with the clock and the charts of another instant: of the frame that `now` is a moment of.
+  Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
+                 const sim::Snapshot& frame) const;
+
+  /// How far anything that is seen moves on the page in the next `seconds` if it goes straight on, page
+  /// units.
+  double travel(const sim::Snapshot& now, double seconds) const;
 
   /// In the plane: the bodies alone as they were at another instant, `strength` (0 to 1) of the way from the
   /// ground to their own colours.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "draw/color.h"
+#include "draw/measure.h"
 #include "sim/rational.h"
 #include "sim/snapshot.h"
 
@@ -50,9 +51,7 @@ struct Figure {
     Site at;
     std::string text;
   };
-  struct Plot {
-    std::vector<std::string> quantities;  // as [[figure.plot]] calls them
-    int body = -1;
+  struct Plot : Measured {
     sim::Rational from, to;  // s
     double height = 36;      // mm
   };

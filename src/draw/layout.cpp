@@ -178,10 +178,12 @@ double lay_caption(Layout& layout, const Look& look) {
 }
 
 Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
-               double aspect) {
+               double aspect, double right, double below) {
   Layout layout;
   layout.width = 1080 * aspect;
+  layout.aspect = layout.width / 1080;
   layout.weight = std::min(1.0, std::sqrt(layout.width / 1440));
+  layout.width -= right, layout.height -= below;
   const double w = layout.weight;
   const Fitted world = fitted_world(cast, extent);
   layout.closed = world.closed;
@@ -194,7 +196,7 @@ Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, co
   const Point size = (world.high - world.low).head<2>();
   auto scale = [&](double strip) {
     const double wide = std::max(1.0, layout.width - 2 * around),
-                 high = std::max(1.0, 1080 - strip - band - around);
+                 high = std::max(1.0, layout.height - strip - band - around);
     return std::min(wide / size.x(), high / size.y());
   };
 
@@ -216,12 +218,12 @@ Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, co
 
   // what height is left over goes above and below alike; a camera that moves, or a world without an end,
   // keeps the caption at the top
-  const double spare = 1080 - strip - 2 * band - w * kMargin - layout.scale * size.y();
+  const double spare = layout.height - strip - 2 * band - w * kMargin - layout.scale * size.y();
   const bool still = camera.keys.empty() && !camera.follow;
   const double above = world.closed && still ? spare / 2 : 0;
   layout.clipped = !(world.closed && still);
   const double top = layout.caption ? strip + above - 0.12 * w * kStrip : 0;
-  layout.window = {0, top, layout.width, 1080 - top};
+  layout.window = {0, top, layout.width, layout.height - top};
   layout.middle = {layout.width / 2, strip + spare / 2 + band + layout.scale * size.y() / 2};
 
   if (layout.caption) {

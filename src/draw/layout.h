@@ -12,13 +12,14 @@ namespace obscura::draw {
 /// Where things lie on the page, once for a whole run: the caption strip, the window below it that shows the
 /// world, and how large the world is where the camera fits it.
 struct Layout {
-  double width = 1920;   // of the page
-  double height = 1080;  // only a sheet's is another, see draw/sheet.h
-  double weight = 1;     // of lines and type: 1 on a landscape page, less where the page is narrow
-  Rect window;           // shows the world
-  bool clipped = false;  // the world may reach over the window's edge
-  double scale = 1;      // page units a metre, where the camera fits
-  Point middle;          // where the centre of what is fitted lies
+  double width = 1920;            // of the page, less what charts take of it
+  double height = 1080;           // the same; a sheet's is another, see draw/sheet.h
+  double aspect = 1920 / 1080.0;  // of the page, width over height
+  double weight = 1;              // of lines and type: 1 on a landscape page, less where the page is narrow
+  Rect window;                    // shows the world
+  bool clipped = false;           // the world may reach over the window's edge
+  double scale = 1;               // page units a metre, where the camera fits
+  Point middle;                   // where the centre of what is fitted lies
   sim::Vec3 center = sim::Vec3::Zero();  // and which place of the world it is
   bool closed = false;                   // the walls close
   bool caption = false;
@@ -35,8 +36,9 @@ Fitted fitted_world(const sim::Cast& cast, const Extent& extent);
 
 /// Lays the page out: the caption above, aligned to the room's edges, the room centred and as large as
 /// caption and hatching allow. Throws draw::Error where a font is missing.
+/// `right` and `below` are left free at those edges, page units.
 Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
-               double aspect);
+               double aspect, double right = 0, double below = 0);
 
 /// Writes the caption over a page without a room on it, and says how high its strip is.
 double lay_caption(Layout& layout, const Look& look);

@@ -29,6 +29,7 @@ Layout lay_out(const sim::Cast& cast, const Look& look, const Extent& extent, co
                           (sheet.tallest * layout.width - 2 * around) / size.y());
   const double high = layout.scale * size.y() + 2 * around;
   layout.height = high + kPoint * (sheet.above + sheet.below);
+  layout.aspect = layout.width / layout.height;
   layout.window = {0, kPoint * sheet.above, layout.width, high};
   layout.middle = {layout.width / 2, kPoint * sheet.above + high / 2};
   return layout;

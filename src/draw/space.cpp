@@ -87,18 +87,18 @@ std::vector<Vec3> fitted_corners(const SpaceStage& stage, const Extent& extent) 
 
 /// Windows for so many panels under a strip: rows and columns that leave them about half again as wide as
 /// high.
-std::vector<Rect> windows(int count, double width, double top, bool named, double weight) {
-  if (count == 1) return {{0, top, width, 1080 - top}};
+std::vector<Rect> windows(int count, double width, double top, double bottom, bool named, double weight) {
+  if (count == 1) return {{0, top, width, bottom - top}};
   int best = 1;
   double least = 1e300;
   for (int columns = 1; columns <= count; ++columns) {
     const int rows = (count + columns - 1) / columns;
-    const double off = std::abs(std::log(width / columns / ((1080 - top) / rows) / 1.5));
+    const double off = std::abs(std::log(width / columns / ((bottom - top) / rows) / 1.5));
     if (off < least) least = off, best = columns;
   }
   const int rows = (count + best - 1) / best;
   const double gap = kPanelGap * weight, name = named ? kPanelStrip * weight : 0;
-  const double w = (width - gap * (best - 1)) / best, h = (1080 - top - gap * (rows - 1)) / rows;
+  const double w = (width - gap * (best - 1)) / best, h = (bottom - top - gap * (rows - 1)) / rows;
   std::vector<Rect> found;
   for (int i = 0; i < count; ++i) {
     const int column = i % best, row = i / best;
@@ -115,10 +115,16 @@ bool same(const Lens& a, const Lens& b) {
 }  // namespace
 
 SpaceStage::SpaceStage(const sim::Cast& who, const Look& looks_, const std::vector<Camera>& cameras,
-                       const Extent& extent, double aspect)
-    : cast(who), look(looks_), colours(palette(looks_.theme)), light(draw::light(looks_.light)) {
+                       const Extent& extent, double aspect, const Charts& beside)
+    : cast(who),
+      look(looks_),
+      colours(palette(looks_.theme)),
+      charts(beside),
+      light(draw::light(looks_.light)) {
   layout.width = 1080 * aspect;
+  layout.aspect = layout.width / 1080;
   layout.weight = std::min(1.0, std::sqrt(layout.width / 1440));
+  layout.width -= charts.right(), layout.height -= charts.below();
   const double w = layout.weight;
   // the ground has no edge: one colour for the page and the room
   colours.ground = colours.room;
@@ -163,7 +169,7 @@ SpaceStage::SpaceStage(const sim::Cast& who, const Look& looks_, const std::vect
   const double top = strip > 0 ? strip + (several ? kStripGap * w : -0.12 * strip) : 0;
   const bool named =
       several && std::any_of(cameras.begin(), cameras.end(), [](const Camera& c) { return !c.name.empty(); });
-  const std::vector<Rect> rects = windows(int(cameras.size()), layout.width, top, named, w);
+  const std::vector<Rect> rects = windows(int(cameras.size()), layout.width, top, layout.height, named, w);
   const std::vector<Vec3> corners = fitted_corners(*this, extent);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     Panel panel{cameras[i], rects[i], aim(cameras[i], corners, rects[i]), {}};
@@ -202,9 +208,10 @@ Lens lens_of(const Panel& panel, const sim::Snapshot& now) {
   return lens_at(panel.camera, panel.aim, panel.window, now.time, followed);
 }
 
-Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways) {
+Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways,
+                     const sim::Snapshot& frame) {
   Picture picture;
-  picture.aspect = stage.layout.width / 1080;
+  picture.aspect = stage.layout.aspect;
   picture.ground = stage.colours.ground;
   std::vector<Lens> lenses;
   for (const Panel& panel : stage.panels) lenses.push_back(lens_of(panel, now));
@@ -255,9 +262,10 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
   }
   if (stage.layout.caption && stage.look.clock) {
     Text clock = stage.layout.clock;
-    clock.spans[0].text = clock_text(now.time);
+    clock.spans[0].text = clock_text(frame.time);
     picture.moving.add(clock);
   }
+  stage.charts.draw_lines(frame, picture.moving);
   return picture;
 }
 

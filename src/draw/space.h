@@ -39,6 +39,7 @@ struct SpaceStage {
   Look look;
   Palette colours;
   Layout layout;  // the caption, weights
+  Charts charts;
   std::vector<Panel> panels;
   Light light;
   std::vector<Piece> pieces;  // by body
@@ -53,7 +54,7 @@ struct SpaceStage {
   std::vector<Coil> coils, hands;  // turns 0: a plain line
 
   SpaceStage(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras,
-             const Extent& extent, double aspect);
+             const Extent& extent, double aspect, const Charts& charts = {});
   BodyLook looks(int body) const { return body < int(look.bodies.size()) ? look.bodies[body] : BodyLook{}; }
 
   // the last still list, and what it is of
@@ -65,7 +66,9 @@ struct SpaceStage {
 /// How a panel sees space at an instant.
 Lens lens_of(const Panel& panel, const sim::Snapshot& now);
 
-Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways);
+/// `frame`: of which the clock and the charts are.
+Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways,
+                     const sim::Snapshot& frame);
 
 /// A stroke, and how near it is: the farther is drawn first.
 struct Trace {

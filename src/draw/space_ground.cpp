@@ -171,6 +171,7 @@ void draw_space_still(const SpaceStage& stage, const std::vector<Lens>& lenses, 
     for (const Text& text : stage.panels[i].words) list.add(text);
   }
   for (const Text& text : stage.layout.words) list.add(text);
+  stage.charts.draw_still(list);
 }
 
 void draw_room_front(const SpaceStage& stage, const Lens& lens, List& list) {

@@ -18,6 +18,7 @@ struct Stage {
   Camera camera;
   Palette colours;
   Layout layout;
+  Charts charts;
   std::vector<Paint> paints;                      // one a body
   std::vector<double> dots;                       // radius in page units of a body without one, 0 for others
   std::vector<int> boxes, polygons, rounds;       // bodies by form; a compound is among the polygons
@@ -28,7 +29,8 @@ struct Stage {
   std::vector<Coil> coils;                        // one a spring; turns 0: a plain line
   std::vector<Coil> hands;                        // one a mouse
 
-  Stage(const sim::Cast& cast, const Look& look, const Camera& camera, const Layout& layout);
+  Stage(const sim::Cast& cast, const Look& look, const Camera& camera, const Layout& layout,
+        const Charts& charts = {});
 
   /// The looks of a body, also where the scene says nothing.
   BodyLook looks(int body) const { return body < int(look.bodies.size()) ? look.bodies[body] : BodyLook{}; }

@@ -154,6 +154,7 @@ void draw_still(const Stage& stage, const View& view, List& list) {
     }
   }
   for (const Text& text : stage.layout.words) list.add(text);
+  stage.charts.draw_still(list);
 }
 
 }  // namespace obscura::draw

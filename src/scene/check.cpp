@@ -15,7 +15,8 @@ std::string owner_text(const std::string& owner) {
   if (owner.empty()) return "a scene";
   const Key* it = key(owner);
   if (owner.find('.') != std::string::npos)
-    return (it->form == Form::tables || it->form == Form::walls ? "each of '" : "'") +
+    return (it->form == Form::tables || it->form == Form::walls || it->form == Form::speeds ? "each of '"
+                                                                                            : "'") +
            std::string(it->last()) + "'";
   return it->form == Form::tables ? "[[" + owner + "]]" : "[" + owner + "]";
 }
@@ -71,6 +72,8 @@ class Tables : private Faults {
         return tables(node, key);
       case Form::walls:
         return node.is_text() ? check_value(node, key, *this) : tables(node, key);
+      case Form::speeds:
+        return node.is_list() ? tables(node, key) : check_value(node, key, *this);
       default:
         return check_value(node, key, *this);
     }

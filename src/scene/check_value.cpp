@@ -53,6 +53,7 @@ class Values : private Faults {
       case Form::integer:
         return integer(node, key);
       case Form::rational:
+      case Form::speeds:  // those that are a number
         return rational(node, key);
       case Form::times:
         return times(node, key);

@@ -1,5 +1,7 @@
 #include "scene/figure.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <utility>
 
@@ -49,6 +51,21 @@ class Reader {
     draw::Site site{all.front().body};
     site.local.template head<D>() = all.front().local;
     return site;
+  }
+  // what a plot shows, and whose it is
+  draw::Measured measured(const Fields& fields) const {
+    draw::Measured found;
+    const Node* wanted = fields.given("quantity");
+    for (const Node& each : wanted ? wanted->list() : Node::List{}) found.quantities.push_back(each.text());
+    found.body = body(fields, "of");
+    if (!fields.given("of"))
+      for (const draw::Measure* each : found.measures())
+        if (each->of_body)
+          complaints_.add(fields.place(),
+                          fmt::format("a plot of '{}' needs 'of', the body that has it", each->name));
+    if (wanted && wanted->list().empty())
+      complaints_.add(wanted->place, "'quantity': expected one at least, such as [\"energy\"]");
+    return found;
   }
   static std::optional<draw::Color> color(const Fields& fields) {
     const Node* node = fields.given("color");
@@ -142,18 +159,11 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
   for (const Node& node : tables(fields, "plot")) {
     const Fields its(node, "figure.plot");
     draw::Figure::Plot plot;
-    const Node* wanted = its.given("quantity");
-    for (const Node& each : wanted ? wanted->list() : Node::List{}) plot.quantities.push_back(each.text());
-    plot.body = read.body(its, "of");
+    static_cast<draw::Measured&>(plot) = read.measured(its);
     plot.from = its.rational("from");
     plot.to = its.given("to") ? its.rational("to") : Fields(top, "").rational("duration");
     plot.height = its.number("height");
     if (!(plot.from < plot.to)) complaints.add(its.place("from"), "a plot needs 'from' before 'to'");
-    if (plot.body < 0)
-      for (const std::string& each : plot.quantities)
-        if (each != "energy" && each != "kinetic" && each != "potential" && each != "gravity" &&
-            each != "springs")
-          complaints.add(node.place, "a plot of '" + each + "' needs 'of', the body that has it");
     figure.plots.push_back(plot);
   }
   if (!figure.room && figure.plots.empty())
@@ -161,7 +171,34 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
   return figure;
 }
 
+template <int D>
+std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+                                Complaints& complaints) {
+  const Fields fields = Fields::of(top, "film");
+  const Reader<D> read(roster, world, complaints);
+  std::vector<draw::Chart> all;
+  double below = 0, right = 0;
+  for (const Node& node : tables(fields, "plot")) {
+    const Fields its(node, "film.plot");
+    draw::Chart chart{read.measured(its)};
+    chart.place = its.text("place") == "right" ? draw::Chart::Place::right : draw::Chart::Place::below;
+    chart.share = its.number("size") / 100;
+    if (chart.place == draw::Chart::Place::below) below += chart.share;
+    if (chart.place == draw::Chart::Place::right) right = std::max(right, chart.share);
+    if (std::max(below, right) > 0.75 && all.size() < 100)
+      complaints.add(its.place("size"),
+                     fmt::format("the plots take {:.0f} percent of the picture: 75 is the most",
+                                 100 * std::max(below, right)));
+    all.push_back(chart);
+  }
+  return all;
+}
+
 template draw::Figure figure<2>(const Node&, const Seating<2>&, const sim::World<2>&, Complaints&);
 template draw::Figure figure<3>(const Node&, const Seating<3>&, const sim::World<3>&, Complaints&);
+template std::vector<draw::Chart> charts<2>(const Node&, const Seating<2>&, const sim::World<2>&,
+                                            Complaints&);
+template std::vector<draw::Chart> charts<3>(const Node&, const Seating<3>&, const sim::World<3>&,
+                                            Complaints&);
 
 }  // namespace obscura::scene

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "draw/chart.h"
 #include "draw/figure.h"
 #include "scene/complaints.h"
 #include "scene/document.h"
@@ -12,5 +13,10 @@ namespace obscura::scene {
 template <int D>
 draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                     Complaints& complaints);
+
+/// What of the run its film shows beside the picture.
+template <int D>
+std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+                                Complaints& complaints);
 
 }  // namespace obscura::scene

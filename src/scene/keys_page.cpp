@@ -245,6 +245,54 @@ ground_drag = 0.5                                                # the paper's f
 rotation = false                                                 # the paper's own: forces move bodies as a whole
 ```
 
+## Films
+
+A film goes as fast as its run, unless `speed` says otherwise: one number for all of it, or keys by the run's time, from each of which it
+goes to the next. Before the first key its speed holds, and after the last that one's.
+
+```toml
+[film]
+speed = 0.5                                                      # ten seconds become twenty
+# speed = [                                                      # from 2 s to 3 s at a tenth
+#   { time = 1.8 },                                              # 1, where nothing is said
+#   { time = 2, speed = 0.1 },
+#   { time = 3, speed = 0.1 },
+#   { time = 3.2 },
+# ]
+```
+
+All other times of a scene, those of cameras, mice and `[golden]`, are the run's too, and so are the clock on the picture, `--at`, `--from`
+and `--to`; `--frames` counts the film's frames. A frame at f seconds of the film shows the run at the integral of the speed up to f, exact
+where that is a fraction of whole numbers up to a million, and else to the nearest microsecond.
+
+A `[[film.plot]]` shows what happens over time below the picture, or at its right, while it happens: axes for all of the run, each line up to
+now with a dot at its end. The quantities are those of `[[figure.plot]]`.
+
+```toml
+[[film.plot]]
+quantity = ["energy", "kinetic", "potential"]                    # joules
+
+[[film.plot]]
+quantity = ["height"]
+of       = "ball"
+place    = "right"
+size     = 40                                                    # percent of the picture's width
+```
+
+What the axes span is known from a run of the scene ahead of the film's: simulating takes twice as long.
+
+With a `shutter` what moves is blurred as on film: a frame is the mean, in linear light, of what is seen from its instant on while the shutter
+is open, 180 of 360 degrees being half of a frame's time.
+
+```toml
+[film]
+shutter = 180
+```
+
+The picture is drawn once for each pixel that something moves meanwhile, by its velocity and the camera's when the shutter opens: 4 to 64
+times; where nothing moves, once, and that is the picture without a shutter. With many bodies it is fewer times (2 MB of them a frame: of a
+thousand bodies about 14). Clock and plots are those of the frame's instant.
+
 ## Figures
 
 `obscura figure` makes a figure for print of an instant, or of several. `[figure]` says what it shows and what is named, measured and drawn on it;
@@ -326,6 +374,8 @@ std::string type(const Key& key) {
       return "list of names";
     case Form::rational:
       return "number or fraction";
+    case Form::speeds:
+      return "number or fraction, or tables";
     case Form::choice:
       return fmt::format("`{}`", fmt::join(key.choices, "`, `"));
     case Form::choices:
@@ -405,7 +455,8 @@ bool section(const Key& key) {
 void rows_under(std::string& page, const std::string& owner, const std::string& section) {
   for (const Key* each : keys_of(owner)) {
     page += row(*each, section);
-    if (each->form == Form::table || each->form == Form::tables || each->form == Form::walls)
+    if (each->form == Form::table || each->form == Form::tables || each->form == Form::walls ||
+        each->form == Form::speeds)
       rows_under(page, each->path, section);
   }
 }

@@ -11,6 +11,10 @@ constexpr double kEndless = std::numeric_limits<double>::infinity();
 constexpr Range kPositive{0, kEndless, true};
 constexpr Range kNotNegative{0};
 constexpr Range kUnit{0, 1};
+constexpr Range kSpeeds{0.001, 1000};
+
+const std::vector<std::string> kQuantities{"energy", "kinetic", "potential", "gravity", "springs", "x",
+                                           "height", "speed",   "vx",        "vy",      "angle",   "spin"};
 
 }  // namespace
 
@@ -376,12 +380,32 @@ std::vector<Key> rows() {
        .doc = "Width and height of the picture; even for movies.", .example = "[1280, 720]"},
       {.path = "film.fps", .form = rational, .unit = "1/s", .fallback = "60", .range = {0, 1000, true},
        .doc = "Frames per second.", .example = "\"30000/1001\""},
+      {.path = "film.speed", .form = speeds, .fallback = "1", .range = kSpeeds,
+       .doc = "Seconds of the run in a second of the film: less than 1 is slow motion. Or keys, from each of which it goes to the next.",
+       .example = "[{ time = 2, speed = 0.1 }]"},
+      {.path = "film.speed.time", .form = rational, .unit = "s", .range = {0, 1e6}, .required = true, .doc = "When, by the run's time.",
+       .example = "2"},
+      {.path = "film.speed.speed", .form = rational, .fallback = "1", .range = kSpeeds, .doc = "The speed there.", .example = "0.1"},
+      {.path = "film.speed.ease", .form = choice, .fallback = "\"in-out\"",
+       .choices = {"linear", "in", "out", "in-out", "hold"}, .doc = "How it comes here from the key before, by the film's time; `hold`: at once.",
+       .example = "\"linear\""},
+      {.path = "film.shutter", .form = number, .unit = "deg", .fallback = "0", .range = {0, 360},
+       .doc = "Motion blur: for how much of a frame's time the shutter is open, of 360. Film cameras have 180.", .example = "180"},
       {.path = "film.crf", .form = number, .absent = "18 for H.264, its like for others", .range = {1, 63},
        .doc = "Quality of a movie; less is better and larger.", .example = "23"},
       {.path = "film.preset", .form = text, .fallback = "\"\"", .absent = "quick to encode",
        .doc = "The encoder's preset.", .example = "\"medium\""},
       {.path = "film.codec", .form = text, .fallback = "\"\"", .absent = "H.264 where the container takes it",
        .doc = "The encoder, as libavcodec names it.", .example = "\"libvpx-vp9\""},
+
+      {.path = "film.plot", .form = tables, .doc = "A plot of the run over time, in step with the picture: axes of the whole run, what has happened, and a dot at now."},
+      {.path = "film.plot.quantity", .form = choices, .required = true, .choices = kQuantities,
+       .doc = "What is plotted over time.", .example = "[\"energy\", \"kinetic\"]"},
+      {.path = "film.plot.of", .form = thing, .absent = "none: energies", .doc = "The body that has it.", .example = "\"ball\""},
+      {.path = "film.plot.place", .form = choice, .fallback = "\"below\"", .choices = {"below", "right"}, .doc = "Where it stands beside the picture.",
+       .example = "\"right\""},
+      {.path = "film.plot.size", .form = number, .unit = "%", .fallback = "30", .range = {10, 75},
+       .doc = "What it takes of the picture's height, or at its right of its width.", .example = "40"},
 
       {.path = "figure", .form = table, .doc = "What `obscura figure` shows of it. Flags of the command line go first."},
       {.path = "figure.at", .form = times, .unit = "s", .absent = "a quarter of the duration", .range = {-1e6, 1e6},
@@ -435,7 +459,7 @@ std::vector<Key> rows() {
       {.path = "figure.label.text", .form = text, .required = true, .doc = "As mathematics.", .example = "\"e = 0.8\""},
       {.path = "figure.plot", .form = tables, .doc = "A plot of the run below the picture."},
       {.path = "figure.plot.quantity", .form = choices, .required = true,
-       .choices = {"energy", "kinetic", "potential", "gravity", "springs", "x", "height", "speed", "vx", "vy", "angle", "spin"},
+       .choices = kQuantities,
        .doc = "What is plotted over time.", .example = "[\"energy\", \"kinetic\"]"},
       {.path = "figure.plot.of", .form = thing, .absent = "none: energies", .doc = "The body that has it.", .example = "\"ball\""},
       {.path = "figure.plot.from", .form = rational, .unit = "s", .fallback = "0", .range = {0, 1e6}, .doc = "When it begins.", .example = "0.5"},

@@ -155,12 +155,34 @@ std::vector<draw::Camera> cameras(const Node& top, const Roster& roster, Complai
   return several;
 }
 
-Film film(const Node& top) {
+namespace {
+
+draw::Pace speed(const Node& node, Complaints& complaints) {
+  if (!node.is_list()) return draw::Pace(exact(node));
+  std::vector<draw::PaceKey> keys;
+  for (const Node& each : node.list()) {
+    const Fields its(each, "film.speed");
+    if (!its.given("time")) continue;
+    const draw::PaceKey key{its.rational("time"), its.rational("speed"), ease(its.text("ease"))};
+    if (!keys.empty() && key.time <= keys.back().time)
+      complaints.add(its.place("time"),
+                     fmt::format("times must increase from key to key, got {:g} after {:g}",
+                                 sim::value(key.time), sim::value(keys.back().time)));
+    keys.push_back(key);
+  }
+  return complaints.none() ? draw::Pace(keys) : draw::Pace();
+}
+
+}  // namespace
+
+Film film(const Node& top, Complaints& complaints) {
   const Fields fields = Fields::of(top, "film");
   Film film;
   const sim::Vec<2> size = fields.vector<2>("size");
   film.width = int(size.x()), film.height = int(size.y());
   film.fps = fields.rational("fps");
+  film.shutter = fields.number("shutter");
+  film.speed = speed(fields.node("speed"), complaints);
   if (const Node* crf = fields.given("crf")) film.crf = crf->number();
   film.preset = fields.text("preset");
   film.codec = fields.text("codec");

@@ -18,7 +18,7 @@ template <int D>
 std::vector<draw::Camera> cameras(const Node& top, const Roster& roster, Complaints& complaints);
 
 /// How the scene asks to be filmed.
-Film film(const Node& top);
+Film film(const Node& top, Complaints& complaints);
 
 /// What is checked of it against references: its own moments, or the start and half the duration.
 Golden golden(const Node& top, sim::Rational duration, Complaints& complaints);

@@ -140,6 +140,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   look(top, roster, scene.look, complaints);
   scene.cameras = cameras<D>(top, roster, complaints);
   scene.figure = figure<D>(top, roster, world, complaints);
+  scene.film.charts = charts<D>(top, roster, world, complaints);
 
   // overlaps may come of other mistakes: they are told where there are none
   if (complaints.none() && model.collision != sim::Collision::handout &&
@@ -169,7 +170,7 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   scene.duration = words.rational("duration");
   scene.seed = std::uint64_t(std::get<std::int64_t>(words.node("seed").value));
 
-  scene.film = film(top);
+  scene.film = film(top, complaints);
   scene.golden = golden(top, scene.duration, complaints);
   if (told.n == 2)
     scene.world = built<2>(top, copy_sets, told, scene, complaints);

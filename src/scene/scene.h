@@ -11,6 +11,7 @@
 #include "draw/depict.h"
 #include "draw/figure.h"
 #include "draw/look.h"
+#include "draw/pace.h"
 #include "sim/playback.h"
 #include "sim/rational.h"
 #include "sim/run.h"
@@ -22,8 +23,11 @@ namespace obscura::scene {
 struct Film {
   int width = 1920, height = 1080;
   sim::Rational fps{60, 1};
+  draw::Pace speed;    // which instant each frame shows
+  double shutter = 0;  // deg: of 360 how much of a frame's time is seen
   std::optional<double> crf;
   std::string preset, codec;
+  std::vector<draw::Chart> charts;  // beside the picture, in step with it
 };
 
 /// What is drawn of a scene and held against references.

@@ -84,6 +84,10 @@ Json value(const Key& key) {
       return {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_-]*$"}};
     case Form::rational:
       return any_of({number, {{"type", "string"}, {"pattern", "^[0-9.]+(/[0-9.]+)?$"}}});
+    case Form::speeds:
+      return any_of({number,
+                     {{"type", "string"}, {"pattern", "^[0-9.]+(/[0-9.]+)?$"}},
+                     list_of(object(key.path), 1, 0)});
     case Form::choice:
       return words(key.choices);
     case Form::choices:

@@ -123,6 +123,7 @@ std::string unit_words(std::string_view unit) {
       {"m/N", "metres per newton"},
       {"N m^2", "newton square metres"},
       {"N", "newtons"},
+      {"%", "percent"},
       {"1/s", "per second"}};
   const auto found = words.find(unit);
   return std::string(found == words.end() ? unit : found->second);
@@ -141,6 +142,8 @@ std::string expected(const Key& key, int dimension) {
       return "a list of tables";
     case Form::cameras:
       return space ? "a table, or a list of them" : "a table";
+    case Form::speeds:
+      return "a number or fraction, or a list of tables";
     case Form::number:
       return "a number" + of;
     case Form::integer:

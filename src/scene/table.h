@@ -40,6 +40,7 @@ enum class Form {
   path,     // [[t, x, y], ...]
   walls,    // "ground", "none", or tables
   cameras,  // [camera], in space [[camera]] too
+  speeds,   // a speed, or keys of it
   place,    // one end of a spring: a body, a point of one, a place
   times,    // an exact time, or a list of them
   trails,   // seconds, or a table of them by body

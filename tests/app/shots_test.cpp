@@ -51,6 +51,40 @@ TEST(Shots, AStillShowsItsExactInstant) {
   EXPECT_EQ(still[0].frame, 75);
 }
 
+TEST(Shots, TenSecondsAtHalfSpeedAreTwenty) {
+  const Shots shots = Shots::film({10, 1}, {60, 1}, draw::Pace({1, 2}));
+  EXPECT_EQ(shots.size(), 1200);
+  EXPECT_EQ(shots[600].time, (Rational{5, 1}));
+  EXPECT_EQ(shots[1199].time, sim::rational(1199, 120));
+  EXPECT_EQ(Shots::still({5, 1}, {60, 1}, draw::Pace({1, 2}))[0].frame, 600);
+}
+
+TEST(Shots, APartOfASlowFilmIsNamedByTheRunsTime) {
+  const draw::Pace pace({{{0, 1}, {1, 1}},
+                         {{2, 1}, {1, 10}, draw::CameraKey::Ease::hold},
+                         {{3, 1}, {1, 1}, draw::CameraKey::Ease::hold}});
+  Shots shots = Shots::film({5, 1}, {30, 1}, pace);
+  EXPECT_EQ(shots.size(), 14 * 30);
+  shots.between({2, 1}, {3, 1});
+  EXPECT_EQ(shots.size(), 300);
+  EXPECT_EQ(shots[0].frame, 60);
+  EXPECT_EQ(shots[0].time, (Rational{2, 1}));
+  EXPECT_EQ(shots[299].time, sim::rational(2) + sim::rational(299, 300));
+}
+
+TEST(Shots, OfAFilmThatChangesItsSpeedAllFramesAndNoOthersLieWithin) {
+  const draw::Pace pace({{{1, 1}, {1, 1}}, {{2, 1}, {1, 7}}, {{3, 1}, {3, 1}}});
+  const Shots all = Shots::film({4, 1}, {30000, 1001}, pace);
+  EXPECT_LT(all[all.size() - 1].time, (Rational{4, 1}));
+  EXPECT_LE((Rational{4, 1}), pace.world(sim::rational(all.size()) / all.fps()));
+  Shots part = all;
+  part.between({3, 2}, {5, 2});
+  EXPECT_LE((Rational{3, 2}), part[0].time);
+  EXPECT_LT(all[part[0].frame - 1].time, (Rational{3, 2}));
+  EXPECT_LT(part[part.size() - 1].time, (Rational{5, 2}));
+  EXPECT_LE((Rational{5, 2}), all[part[part.size() - 1].frame + 1].time);
+}
+
 TEST(Instants, ListsAndRangesAreExactAndForwards) {
   const auto range = instants("0:1:0.1");
   ASSERT_EQ(range.size(), 11u);

@@ -377,6 +377,33 @@ TEST(Complaints, MouseTimesIncrease) {
           "a.toml:1:1: the mouse has nothing to take: no body of the scene can move");
 }
 
+TEST(Complaints, SpeedsOfAFilmArePositiveAndTheirKeysIncrease) {
+  refused("[film]\nspeed = 0", "a.toml:2:9: 'speed' must be at least 0.001, got 0");
+  refused("[film]\nspeed = \"fast\"",
+          "a.toml:2:9: 'speed': expected a number or fraction, or a list of tables, got 'fast'");
+  refused(
+      "[film]\nspeed = [{ speed = 0.5 }]",
+      "a.toml:2:10: each of 'speed' needs 'time': a number of seconds, or a fraction such as \"30000/1001\"");
+  refused("[film]\nspeed = [{ time = 2 }, { time = 2, speed = 0.5 }]",
+          "a.toml:2:33: times must increase from key to key, got 2 after 2");
+  refused("[film]\nspeed = [{ time = 2, spead = 3 }]",
+          "a.toml:2:22: unknown key 'spead' in each of 'speed'; did you mean 'speed'?");
+}
+
+TEST(Complaints, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
+  refused("[[film.plot]]\nquantity = [\"height\"]\n[[ball]]",
+          "a.toml:1:1: a plot of 'height' needs 'of', the body that has it");
+  refused("[[film.plot]]\nquantity = []\n[[ball]]",
+          "a.toml:2:12: 'quantity': expected one at least, such as [\"energy\"]");
+  refused("[[film.plot]]\nquantity = [\"warmth\"]\n[[ball]]",
+          "a.toml:2:13: 'quantity': expected one of energy, kinetic, potential, gravity, springs, x, height, "
+          "speed, vx, vy, angle, spin, got 'warmth'");
+  refused(
+      "[[film.plot]]\nquantity = [\"energy\"]\nsize = 50\n[[film.plot]]\nquantity = [\"energy\"]\n[[ball]]",
+      "a.toml:4:1: the plots take 80 percent of the picture: 75 is the most");
+  refused("[film]\nshutter = 400", "a.toml:2:11: 'shutter' must be at most 360 deg, got 400");
+}
+
 TEST(Complaints, CopiesAreCountedAndBounded) {
   refused("[[particle]]\ncopies = { count = [2000, 2000] }",
           "a.toml:2:20: 'count': 4000000 bodies in all are more than 1000000, the most a scene may have");

@@ -1,0 +1,59 @@
+#include "draw/measure.h"
+
+#include <algorithm>
+#include <array>
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kDegrees = 57.29577951308232;
+
+using Now = const sim::Snapshot&;
+using Body = const sim::Snapshot::Body&;
+
+constexpr std::array<Measure, 12> kMeasures{{
+    {"energy", "total", "J", "", false, [](Now now, Body) { return now.energies.total(); }},
+    {"kinetic", "kinetic", "J", "vermilion", false, [](Now now, Body) { return now.energies.kinetic; }},
+    {"potential", "potential", "J", "blue", false, [](Now now, Body) { return now.energies.potential(); }},
+    {"gravity", "gravity", "J", "blue", false, [](Now now, Body) { return now.energies.gravity; }},
+    {"springs", "springs", "J", "green", false, [](Now now, Body) { return now.energies.springs; }},
+    {"x", "x", "m", "blue", true, [](Now, Body body) { return body.position.x(); }},
+    {"height", "height", "m", "blue", true, [](Now, Body body) { return body.position.y(); }},
+    {"speed", "speed", "m/s", "green", true, [](Now, Body body) { return body.velocity.norm(); }},
+    {"vx", "v_x", "m/s", "blue", true, [](Now, Body body) { return body.velocity.x(); }},
+    {"vy", "v_y", "m/s", "vermilion", true, [](Now, Body body) { return body.velocity.y(); }},
+    {"angle", "\\theta", "°", "purple", true, [](Now, Body body) { return kDegrees * body.angle; }},
+    {"spin", "\\omega", "rad/s", "purple", true, [](Now, Body body) { return body.spin.z(); }},
+}};
+
+}  // namespace
+
+double Measure::at(const sim::Snapshot& now, int body) const {
+  static const sim::Snapshot::Body nobody;
+  return read(now, body < 0 ? nobody : now.bodies[std::size_t(body)]);
+}
+
+const Measure* measure(std::string_view name) {
+  const auto found = std::find_if(kMeasures.begin(), kMeasures.end(),
+                                  [&](const Measure& each) { return each.name == name; });
+  return found == kMeasures.end() ? nullptr : &*found;
+}
+
+std::vector<const Measure*> Measured::measures() const {
+  std::vector<const Measure*> all;
+  for (const std::string& name : quantities)
+    if (const Measure* found = measure(name)) all.push_back(found);
+  return all;
+}
+
+Plot empty_plot(const Measured& measured, const Palette& colours) {
+  Plot plot;
+  for (const Measure* each : measured.measures()) {
+    const auto own = color(each->color);
+    plot.unit = plot.lines.empty() || plot.unit == each->unit ? each->unit : "";
+    plot.lines.push_back({each->label, {}, own ? mix(*own, colours.ink, 0.2) : colours.ink});
+  }
+  return plot;
+}
+
+}  // namespace obscura::draw
