@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/energy.h"
 #include "sim/exponential.h"
 #include "sim/rooms.h"
 #include "sim/solids.h"
@@ -88,6 +89,14 @@ inline World<3> doll() {
   for (Body<3>& body : world.model.bodies) body.friction = 0.5, body.group = 1;
   world.model.ignore = {{1, 1}};
   return world;
+}
+
+/// Of motion and height, J.
+inline double energy(const World<3>& world, const State<3>& state) {
+  double sum = 0;
+  for (int i = 0; i < int(state.x.size()); ++i)
+    sum += kinetic(world.model, state, i) + lifted(world.model, state, i);
+  return sum;
 }
 
 }  // namespace obscura::sim

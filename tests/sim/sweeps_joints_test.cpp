@@ -6,20 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/energy.h"
 #include "sim/jointed.h"
 #include "sim/row.h"
 #include "sim/space_rooms.h"
 
 namespace obscura::sim {
 namespace {
-
-double energy(const World<3>& world, const State<3>& state) {
-  double sum = 0;
-  for (int i = 0; i < int(state.x.size()); ++i)
-    sum += kinetic(world.model, state, i) + lifted(world.model, state, i);
-  return sum;
-}
 
 // how far the equalities of all joints are off at most, m or rad
 double off(const World<3>& world, const State<3>& state) {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
 
-#include "sim/energy.h"
 #include "sim/solids.h"
 #include "sim/space_rooms.h"
 
@@ -104,26 +104,73 @@ TEST(Sweeps, ARunCutInTwoIsTheRunInOne) {
 
 TEST(Sweeps, EnergyOfAHeapOnlyFalls) {
   const World<3> world = heap(20, 2, 0.4);
-  const auto energy = [&](const State<3>& state) {
-    double sum = 0;
-    for (int i = 0; i < int(state.x.size()); ++i) {
-      sum += kinetic(world.model, state, i) + lifted(world.model, state, i);
-    }
-    return sum;
-  };
   State<3> state = world.state;
   Stepper<3> stepper(world.model);
   stepper.begin(state);
-  double before = energy(state);
+  double before = energy(world, state);
   const double whole = before;
   for (int i = 0; i < 900; ++i) {
     ASSERT_FALSE(stepper.step(state));
-    const double now = energy(state);
+    const double now = energy(world, state);
     // putting what is too deep back lifts it a little
     EXPECT_LT(now, before + 1e-4 * whole) << i;
     before = now;
   }
   EXPECT_LT(before, 0.6 * whole);
+}
+
+// Four floors of five by five, blown apart from below their middle.
+World<3> blown_apart() {
+  World<3> world = swept_room(0.5);
+  for (int i = 0; i < 100; ++i) {
+    const int box =
+        add_box(world, {0.3, 0.3, 0.3}, {0.32 * (i % 5 - 2), 0.15 + 0.3 * (i / 25), 0.32 * (i / 5 % 5 - 2)});
+    world.model.bodies[box].elasticity = 0.3;
+  }
+  Explosion<3> blast;
+  blast.center = {0.05, -0.3, 0.08}, blast.strength = 1500, blast.duration = {1, 10};
+  blast.softening = 0.1;
+  world.model.explosions.push_back(blast);
+  return world;
+}
+
+TEST(Sweeps, AHundredBoxesBlownApartComeToRestWithNoEnergyFromNowhere) {
+  const World<3> world = blown_apart();
+  const auto run = [&](State<3>& state, double& gained, double& thrown) {
+    Stepper<3> stepper(world.model);
+    stepper.begin(state);
+    const auto asleep = [&] {
+      return std::all_of(state.frozen.begin(), state.frozen.end(), [](char frozen) { return frozen != 0; });
+    };
+    double before = 0;
+    for (int step = 0; step < 9000; ++step) {
+      if (stepper.step(state)) return false;
+      const double now = energy(world, state);
+      if (step == 60) thrown = now;
+      if (step > 60) gained = std::max(gained, now - before);
+      before = now;
+      if (step > 60 && asleep()) return true;
+    }
+    return false;
+  };
+  State<3> one = world.state, other = world.state;
+  double gained = 0, thrown = 0, again = 0, same = 0;
+  bool rests = false, also = false;
+  std::thread beside([&] { also = run(other, again, same); });
+  rests = run(one, gained, thrown);
+  beside.join();
+  EXPECT_TRUE(rests) << "in fifteen seconds";
+  EXPECT_TRUE(also);
+  EXPECT_EQ(words(one), words(other)) << "two threads at once, the same bits";
+  EXPECT_GT(thrown, 1.5 * energy(world, world.state)) << "they fly";
+  EXPECT_LE(gained, 1e-4 * thrown) << thrown << " J thrown";
+  EXPECT_GT(one.x[12].norm(), 0.5) << "apart";
+  // without ants
+  const State<3> before = one;
+  Stepper<3> stepper(world.model);
+  stepper.begin(one);
+  for (int i = 0; i < 600; ++i) ASSERT_FALSE(stepper.step(one));
+  EXPECT_EQ(one.x, before.x);
 }
 
 }  // namespace
