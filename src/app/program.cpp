@@ -16,6 +16,7 @@
 #include "media/movie.h"
 #include "page/error.h"
 #include "page/page.h"
+#include "scene/complaints.h"
 #include "scene/error.h"
 
 namespace obscura::app {
@@ -37,12 +38,15 @@ std::string version() {
 // CLI11 would only say that a command is missing
 void know_command(const CLI::App& program, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return;
-  std::string known;
+  std::vector<std::string> names;
   for (const CLI::App* command : program.get_subcommands({})) {
     if (command->get_name() == argv[1]) return;
-    known += (known.empty() ? "" : ", ") + command->get_name();
+    names.push_back(command->get_name());
   }
-  throw UsageError(fmt::format("there is no command '{}'; the commands are {}", argv[1], known));
+  const std::string meant = scene::did_you_mean(argv[1], {names.begin(), names.end()});
+  throw UsageError(
+      fmt::format("there is no command '{}'{}", argv[1],
+                  meant.empty() ? fmt::format("; the commands are {}", fmt::join(names, ", ")) : meant));
 }
 
 int complain(int code, const std::string& what) {

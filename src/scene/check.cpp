@@ -83,9 +83,11 @@ class Tables : private Faults {
     const bool list = node.is_list() && std::all_of(node.list().begin(), node.list().end(),
                                                     [](const Node& n) { return n.is_table(); });
     if (!list) {
-      if (node.is_table() && node.header && key.owner().empty())
-        return wrong(node, fmt::format("[{}] stands for one of many; write [[{}]]", key.path, key.path));
-      return mistyped(node, key);
+      if (!node.is_table() || !node.header || !key.owner().empty()) return mistyped(node, key);
+      wrong(node, fmt::format("[{}] stands for one of many; write [[{}]]", key.path, key.path));
+      // and is read as one, or all that names it would be wrong too
+      Node one = node;
+      node.value = Node::List{std::move(one)};
     }
     for (Node& each : node.list()) table(each, key.path);
     return true;

@@ -205,6 +205,11 @@ std::string forgotten(std::string_view text, int line, int column) {
   if (first == std::string_view::npos) return {};
   if (column >= 1 && column <= int(here.size()) && here[column - 1] == '.')
     return "a number has a digit before its point: 0.1";
+  const auto digit_at = [&](int i) {
+    return i >= 1 && i <= int(here.size()) && std::isdigit(static_cast<unsigned char>(here[i - 1])) != 0;
+  };
+  if (digit_at(column - 1) && digit_at(column + 1) && here[column - 1] == ',')
+    return "a number has a point, not a comma: 0.1";
   if (count(here).quoted) return "a quote is opened here and not closed";
   if (here[first] == '[' && count(here).open != 0)
     return "a table's name closes as it opens: [room], [[box]]";

@@ -85,6 +85,8 @@ TEST(Complaints, TypesAreNeverGuessed) {
           "a.toml:2:12: 'position': expected two numbers [x, y] in metres, got a date or time");
   refused("room = 3", "a.toml:1:8: 'room': expected a table, got 3");
   refused("[box]\nmass = 3", "a.toml:1:1: [box] stands for one of many; write [[box]]");
+  refused("[ball]\nname = \"it\"\nposition = [1, 1]\n[[spring]]\nbetween = [\"it\", [1, 2]]",
+          "a.toml:1:1: [ball] stands for one of many; write [[ball]]");
   refused("box = 3", "a.toml:1:7: 'box': expected a list of tables, got 3");
   refused("[film]\nsize = [1920, 1080.5]",
           "a.toml:2:15: 'size': expected two whole numbers [width, height], got 1080.5");

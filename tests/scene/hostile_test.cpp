@@ -98,6 +98,8 @@ TEST(Hostile, WhatIsForgottenIsNamed) {
               testing::EndsWith("not TOML: a number has a digit before its point: 0.1"));
   EXPECT_THAT(complaint("[box]\nsize = [1, -.1]"),
               testing::EndsWith("not TOML: a number has a digit before its point: 0.1"));
+  EXPECT_THAT(complaint("[box]\nmass = 0,5"),
+              testing::EndsWith("not TOML: a number has a point, not a comma: 0.1"));
   EXPECT_THAT(complaint("[box]\nmass"), testing::EndsWith("not TOML: a key is given as key = value"));
 }
 
