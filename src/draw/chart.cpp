@@ -12,8 +12,8 @@ namespace {
 constexpr double kMargin = 36;  // page units at the weight 1, as of the caption
 constexpr double kType =
     24 / 8.5;  // page units a point of a plot for print: type as large as a caption's smallest
-constexpr double kHead = 3.2;    // points
-constexpr double kAround = 0.9;  // around a dot, points
+constexpr double kHead = 2.7;    // points
+constexpr double kAround = 0.8;  // around a dot, points
 
 }  // namespace
 
