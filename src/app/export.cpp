@@ -146,9 +146,7 @@ struct Flags {
 
 int run(const Flags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
-  const auto fps = flags.fps ? sim::parse_rational(*flags.fps) : std::optional(scene.film.fps);
-  if (!fps || fps->num <= 0 || sim::value(*fps) > 1000)
-    throw UsageError(fmt::format("--fps {}: expected frames per second up to 1000, as in 60", *flags.fps));
+  const sim::Rational fps = flags.fps ? parse_fps(*flags.fps) : scene.film.fps;
   const std::string out = flags.out.value_or(scene.name + ".glb");
   if (!out.ends_with(".glb"))
     throw UsageError(fmt::format("-o {}: expected a name that ends with .glb", out));
@@ -156,9 +154,9 @@ int run(const Flags& flags) {
   const auto motion = scene.run();
   motion->heed(interrupted);
   Stage stage(scene, motion->cast());
-  const std::int64_t frames = sim::ceil(scene.duration * *fps);
+  const std::int64_t frames = sim::ceil(scene.duration * fps);
   for (std::int64_t n = 0; n <= frames; ++n) {
-    const sim::Rational at = n < frames ? sim::rational(n) / *fps : scene.duration;
+    const sim::Rational at = n < frames ? sim::rational(n) / fps : scene.duration;
     const auto outcome = motion->at(at);
     if (const auto* trouble = std::get_if<sim::Trouble>(&outcome))
       throw TroubleError(scene.file, *trouble, "");
@@ -178,7 +176,7 @@ void add_export(CLI::App& program, int& exit) {
   CLI::App* command =
       program.add_subcommand("export", "Write a run as one animated glTF, for another renderer");
   auto flags = std::make_shared<Flags>();
-  command->add_option("SCENE", flags->scene, "The scene, a TOML file; - for standard input")->required();
+  add_scene(*command, flags->scene);
   command->add_option("-o,--output", flags->out, "Where to, a name that ends with .glb [SCENE.glb]")
       ->type_name("OUT");
   command->add_option("--fps", flags->fps, "Instants per second [film.fps]")->type_name("RATE");

@@ -108,12 +108,7 @@ int run(const Flags& flags) {
   }
 
   const Album album(flags.scene, flags.sets, options);
-  const std::filesystem::path folder = std::filesystem::path(out).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error)
-    throw media::Error(fmt::format("{}: cannot make this folder: {}", folder.string(), error.message()));
-
+  media::make_folder_of(out);
   const draw::Picture picture = album.picture();
   const double width = album.width(), height = width / picture.aspect;
   std::string size = fmt::format("{:.1f} x {:.1f} mm", width / kMillimetre, height / kMillimetre);
@@ -145,7 +140,7 @@ int run(const Flags& flags) {
 void add_figure(CLI::App& program, int& exit) {
   CLI::App* command = program.add_subcommand("figure", "A figure for print: SVG, PDF or PNG");
   auto flags = std::make_shared<Flags>();
-  command->add_option("SCENE", flags->scene, "The scene, a TOML file; - for standard input")->required();
+  add_scene(*command, flags->scene);
   command
       ->add_option("-o,--output", flags->out,
                    "Where to: .svg or .pdf (vectors; type stays type) or .png [render_out/SCENE.svg]")

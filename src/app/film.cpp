@@ -17,6 +17,7 @@
 #include "app/simulation.h"
 #include "app/trouble.h"
 #include "media/error.h"
+#include "media/file.h"
 #include "media/png.h"
 
 namespace obscura::app {
@@ -75,11 +76,7 @@ int film(const scene::Scene& scene, const Shots& shots, const Output& output, co
     if (!options.overwrite && fs::exists(first)) {
       throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", first));
     }
-    const fs::path folder = fs::path(first).parent_path();
-    std::error_code error;
-    if (!folder.empty()) fs::create_directories(folder, error);
-    if (error)
-      throw media::Error(fmt::format("{}: cannot make this folder: {}", folder.string(), error.message()));
+    media::make_folder_of(first);
   }
 
   Origin origin = origin_of(scene);

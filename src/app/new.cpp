@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "media/error.h"
+#include "media/file.h"
 #include "scene/keys.h"
 
 namespace obscura::app {
@@ -22,11 +23,7 @@ int make(const std::string& name, const std::string& program) {
   if (path.extension() != ".toml") path += ".toml";
   if (path.stem().empty()) throw UsageError("new needs a name");
   if (fs::exists(path)) throw media::Error(fmt::format("{}: is there already", path.string()));
-  std::error_code error;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-  if (error)
-    throw media::Error(
-        fmt::format("{}: cannot make this folder: {}", path.parent_path().string(), error.message()));
+  media::make_folder_of(path.string());
   std::ofstream file(path, std::ios::binary);
   file << scene::new_scene(path.stem().string());
   file.close();

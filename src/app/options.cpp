@@ -9,6 +9,10 @@
 
 namespace obscura::app {
 
+void add_scene(CLI::App& command, std::string& file) {
+  command.add_option("SCENE", file, "The scene, a TOML file; - for standard input")->required();
+}
+
 void add_sets(CLI::App& command, std::vector<std::string>& sets) {
   command
       .add_option("--set", sets,
@@ -16,6 +20,14 @@ void add_sets(CLI::App& command, std::vector<std::string>& sets) {
       ->type_name("PATH=VALUE")
       ->expected(1)
       ->take_all();
+}
+
+sim::Rational parse_fps(const std::string& text) {
+  const auto fps = sim::parse_rational(text);
+  if (!fps || fps->num <= 0 || sim::value(*fps) > 1000)
+    throw UsageError(
+        fmt::format("--fps {}: expected frames per second up to 1000, as in 60 or 30000/1001", text));
+  return *fps;
 }
 
 std::pair<int, int> parse_size(const std::string& text) {

@@ -49,14 +49,7 @@ void make_draft(const Flags& flags, scene::Film& film) {
 void override_film(const Flags& flags, scene::Scene& scene) {
   if (flags.draft) make_draft(flags, scene.film);
   if (flags.size) std::tie(scene.film.width, scene.film.height) = parse_size(*flags.size);
-  if (flags.fps) {
-    const auto fps = sim::parse_rational(*flags.fps);
-    if (!fps || fps->num <= 0 || sim::value(*fps) > 1000) {
-      throw UsageError(
-          fmt::format("--fps {}: expected frames per second up to 1000, as in 60 or 30000/1001", *flags.fps));
-    }
-    scene.film.fps = *fps;
-  }
+  if (flags.fps) scene.film.fps = parse_fps(*flags.fps);
   if (flags.theme) scene.look.theme = *flags.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
   if (flags.crf) scene.film.crf = flags.crf;
   if (flags.preset) scene.film.preset = *flags.preset;
@@ -165,7 +158,7 @@ void add_render(CLI::App& program, int& exit) {
   CLI::App* command =
       program.add_subcommand("render", "Film a scene: a movie, a sequence of PNGs, one PNG or a stream");
   auto flags = std::make_shared<Flags>();
-  command->add_option("SCENE", flags->scene, "The scene, a TOML file; - for standard input")->required();
+  add_scene(*command, flags->scene);
   command
       ->add_option(
           "-o,--output", flags->out,

@@ -8,8 +8,9 @@
 
 namespace obscura::app {
 
+/// How far apart two values may be.
 struct Tolerance {
-  double relative = 0, absolute = 0;
+  double relative = 0, absolute = 0;  // of the first; in the quantity's unit
   /// Whether `b` may stand for `a`: |b - a| <= absolute + relative |a|.
   bool holds(double a, double b) const;
 };
@@ -46,6 +47,7 @@ struct RunComparison {
 /// rows by straight lines. Angles that differ by whole turns are one angle, and so are q and -q.
 RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance, bool interpolate);
 
+/// The whole as lines for a person, as a JSON object for a program.
 std::string text(const RunComparison& comparison, const Tolerance& tolerance);
 std::string json(const RunComparison& comparison);
 

@@ -229,7 +229,7 @@ void add_states(CLI::App& program, int& exit) {
   CLI::App* command =
       program.add_subcommand("states", "Print the state at given instants as data, without drawing");
   auto flags = std::make_shared<Flags>();
-  command->add_option("SCENE", flags->scene, "The scene, a TOML file; - for standard input")->required();
+  add_scene(*command, flags->scene);
   command->add_option("--at", flags->at, "Instants (s), as in 0,0.5,2 or 0:10:0.5")->type_name("LIST");
   command->add_option("--every", flags->every, "Instants from 0 to the duration, this far apart (s) [1]")
       ->type_name("SECONDS");

@@ -34,6 +34,13 @@ std::string temporary_beside(const fs::path& target) {
 
 }  // namespace
 
+void make_folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty()) fs::create_directories(folder, error);
+  if (error) throw Error(folder.string() + ": cannot make this folder: " + error.message());
+}
+
 int write_all(int descriptor, std::span<const std::uint8_t> bytes) noexcept {
   while (!bytes.empty()) {
     const ssize_t n = ::write(descriptor, bytes.data(), bytes.size());

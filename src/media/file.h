@@ -31,6 +31,9 @@ class File {
   int descriptor_ = -1;
 };
 
+/// Makes the folder that a file of this path lies in, and those around it. Throws media::Error naming it.
+void make_folder_of(const std::string& path);
+
 /// Writes all of `bytes` to a descriptor, whatever interrupts or shortens it. 0, or errno of the failure.
 int write_all(int descriptor, std::span<const std::uint8_t> bytes) noexcept;
 
