@@ -6,25 +6,20 @@
 
 #include "app/cause.h"
 #include "app/comparison.h"
-#include "media/error.h"
+#include "media/file.h"
 #include "media/pixels.h"
 #include "media/png.h"
+#include "page/markup.h"
 
 namespace obscura::app {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw media::Error(fmt::format("{}: cannot make this folder: {}", folder.string(), error.message()));
-}
+using page::escaped;
 
 void write(const std::string& path, const Pictured& made) {
-  make_folder(fs::path(path).parent_path());
+  media::make_folder_of(path);
   media::write_png(path, made.image, {.tags = made.origin.tags("")});
 }
 
@@ -148,29 +143,6 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
   return cases;
 }
 
-namespace {
-
-std::string xml(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t')
-      out += ' ';
-    else
-      out += c;
-  }
-  return out;
-}
-
-}  // namespace
-
 std::string junit(const std::vector<GoldenCase>& cases) {
   std::size_t failures = 0, errors = 0;
   double seconds = 0;
@@ -179,18 +151,18 @@ std::string junit(const std::vector<GoldenCase>& cases) {
     seconds += it.seconds;
     const std::string name = it.time.empty() ? "scene" : "t = " + it.time + " s";
     body += fmt::format("  <testcase classname=\"{}\" name=\"{}\" file=\"{}\" time=\"{:.3f}\">\n",
-                        xml(it.scene), xml(name), xml(it.file), it.seconds);
+                        escaped(it.scene), escaped(name), escaped(it.file), it.seconds);
     std::string all;
-    for (const std::string& line : it.lines) all += xml(line) + "\n";
+    for (const std::string& line : it.lines) all += escaped(line) + "\n";
     if (!it.good()) {
       const bool broken = it.state == "failed";
       ++(broken ? errors : failures);
       body += fmt::format("    <{0} type=\"{1}\" message=\"{2}\">{3}</{0}>\n", broken ? "error" : "failure",
-                          xml(it.state), it.lines.empty() ? "" : xml(it.lines.front()), all);
+                          escaped(it.state), it.lines.empty() ? "" : escaped(it.lines.front()), all);
     }
     std::string out = it.good() ? all : "";
     for (const std::string& file : it.attachments)
-      out += fmt::format("[[ATTACHMENT|{}]]\n", xml(fs::absolute(file).string()));
+      out += fmt::format("[[ATTACHMENT|{}]]\n", escaped(fs::absolute(file).string()));
     if (!out.empty()) body += "    <system-out>" + out + "</system-out>\n";
     body += "  </testcase>\n";
   }

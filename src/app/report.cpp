@@ -2,60 +2,25 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <map>
-#include <span>
 
 #include "app/report_page.h"
 #include "media/file.h"
 #include "media/pixels.h"
 #include "media/png.h"
+#include "page/markup.h"
 
 namespace obscura::app {
 
 namespace {
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-std::string base64(std::span<const std::uint8_t> bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return k < bytes.size() ? bytes[k] : 0u; };
-    const unsigned word = at(i) << 16 | at(i + 1) << 8 | at(i + 2);
-    for (int k = 0; k < 4; ++k)
-      out += i + std::size_t(k) <= bytes.size() ? kDigits[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
-}
+using page::escaped;
 
 std::string picture(const media::Image& image, const std::string& kind) {
   return fmt::format(
       "<figure class=\"{0}\"><img alt=\"{0}\" width=\"{1}\" height=\"{2}\" "
       "src=\"data:image/png;base64,{3}\"><figcaption>{0}</figcaption></figure>",
-      kind, image.width, image.height, base64(media::encode_png(image, {.alpha = true})));
+      kind, image.width, image.height, page::base64(media::encode_png(image, {.alpha = true})));
 }
 
 std::string section(const Finding& finding) {

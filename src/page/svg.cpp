@@ -10,6 +10,7 @@
 
 #include "page/error.h"
 #include "page/fonts.h"
+#include "page/markup.h"
 #include "page/pen.h"
 
 namespace obscura::page {
@@ -24,36 +25,6 @@ std::string number(double x) {
 }
 
 std::string place(const Point& p) { return number(p.x()) + " " + number(p.y()); }
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20)
-      out += c;
-  }
-  return out;
-}
-
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  static constexpr std::string_view digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t triple = 0;
-    for (std::size_t k = 0; k < 3; ++k) triple = triple << 8 | (k < left ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= left ? digits[triple >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
-}
 
 // the code points of UTF-8
 void characters(std::string_view text, std::set<std::uint32_t>& out) {
