@@ -20,6 +20,22 @@ namespace {
 template <int D>
 constexpr int kTurns = D == 2 ? 1 : 4;
 
+// how many a joint has where any turn takes `turn` and any place `place`
+int numbers(Freedom freedom, int turn, int place) {
+  switch (freedom) {
+    case Freedom::weld:
+      return 0;
+    case Freedom::revolute:
+    case Freedom::prismatic:
+      return 1;
+    case Freedom::ball:
+      return turn;
+    case Freedom::free:
+      return turn + place;
+  }
+  return 0;
+}
+
 bool turns_all_ways(Freedom freedom) { return freedom == Freedom::ball || freedom == Freedom::free; }
 
 // the turn at the head of a ball's or free link's q
@@ -36,34 +52,12 @@ Rotation<D> turn_of(std::span<const double> q) {
 
 template <int D>
 int positions(Freedom freedom) {
-  switch (freedom) {
-    case Freedom::weld:
-      return 0;
-    case Freedom::revolute:
-    case Freedom::prismatic:
-      return 1;
-    case Freedom::ball:
-      return kTurns<D>;
-    case Freedom::free:
-      return kTurns<D> + D;
-  }
-  return 0;
+  return numbers(freedom, kTurns<D>, D);
 }
 
 template <int D>
 int velocities(Freedom freedom) {
-  switch (freedom) {
-    case Freedom::weld:
-      return 0;
-    case Freedom::revolute:
-    case Freedom::prismatic:
-      return 1;
-    case Freedom::ball:
-      return kSpins<D>;
-    case Freedom::free:
-      return kSpins<D> + D;
-  }
-  return 0;
+  return numbers(freedom, kSpins<D>, D);
 }
 
 template <int D>

@@ -7,29 +7,6 @@
 namespace obscura::sim {
 namespace {
 
-// The largest change of energy in a minute of twelve rods, one every second, over what the swing has to give.
-double energy_error(double amplitude, int rate) {
-  Swinging<2> chain(Chain<2>(pendulum(12, 0.15, 0.1, true)));
-  const double hanging = chain.sums().potential;
-  chain.q[0] = amplitude;
-  const double start = chain.sums().potential;
-  double worst = 0;
-  for (int i = 1; i <= 60 * rate; ++i) {
-    chain.step(1.0 / rate);
-    if (i % rate != 0) continue;
-    const auto now = chain.sums();
-    worst = std::max(worst, std::abs(now.kinetic + now.potential - start));
-  }
-  return worst / (start - hanging);
-}
-
-TEST(ChainMotion, TwelveLinksKeepTheirEnergyForAMinute) {
-  // Runge-Kutta takes energy away with the fifth power of the step, and nothing else does: 3.3e-8 of it
-  const double coarse = energy_error(0.3, 300), fine = energy_error(0.3, 600);
-  EXPECT_LE(fine, 5e-8);
-  EXPECT_NEAR(coarse / fine, 32, 3);
-}
-
 // A trunk with a head and four limbs of two parts each: balls at neck, shoulders and hips, hinges at elbows
 // and knees.
 Chain<3> figure() {

@@ -96,36 +96,7 @@ TEST(ChainReference, SixJointTreeSwingsFreely) {
   }
 }
 
-// A double pendulum against its table at the steps for which a plain RK4 in absolute angles is measured.
-// Relative angles are linear in those, so the scheme is the same and its error too; twice that, and rounding
-// where that is all.
-void expect_table(const std::string& name, bool rods, double first, double second) {
-  for (const int rate : {240, 1000, 4000}) {
-    Swinging<2> two(Chain<2>(pendulum(2, 1, 1, rods)));
-    two.q = {first, second - first};
-    const auto allowed = rk4_errors(name, rate);
-    int done = 0;
-    for (const auto& row : table(name + ".csv")) {
-      const int until = int(std::lround(row[0] * rate));
-      for (; done < until; ++done) two.step(1.0 / rate);
-      const double got[4] = {two.q[0], two.q[0] + two.q[1], two.v[0], two.v[0] + two.v[1]};
-      double worst = 0;
-      for (int k = 0; k < 4; ++k) worst = std::max(worst, std::abs(got[k] - row[1 + k]));
-      EXPECT_LE(worst, 2 * allowed.at(row[0]) + 1e-13) << name << " 1/" << rate << " at " << row[0];
-    }
-  }
-}
-
 constexpr double kDegree = 3.14159265358979324 / 180;
-
-TEST(ChainReference, DoublePendulumOfPointsIsPlainRungeKutta) {
-  expect_table("double_pendulum_point_regular", false, 30 * kDegree, 45 * kDegree);
-  expect_table("double_pendulum_point_large", false, 90 * kDegree, 90 * kDegree);
-}
-
-TEST(ChainReference, DoublePendulumOfRodsIsPlainRungeKutta) {
-  expect_table("double_pendulum_rods", true, 90 * kDegree, 90 * kDegree);
-}
 
 TEST(ChainReference, FreeTopFlips) {
   std::vector<Link<3>> links(1);
