@@ -14,20 +14,7 @@ class Footage : public Program {
  protected:
   void SetUp() override {
     Program::SetUp();
-    scene(R"(duration = 1
-[room]
-size = [4, 2.25]
-[[box]]
-name = "crate"
-size = [0.8, 0.5]
-position = [1, 1]
-spin = 90
-[[ball]]
-name = "ball"
-radius = 0.2
-position = [3, 1]
-velocity = [-1, 0]
-)");
+    scene(kCrateAndBall);
     ASSERT_EQ(obscura("states scene.toml --every 0.1 --format csv > run.csv").exit, 0);
   }
 };

@@ -94,4 +94,41 @@ trails = 0.5
 arrows = ["velocity"]
 )";
 
+/// A second of a crate on a spring and a ball: short, for what is filmed many times.
+inline const char* const kCrateAndBall = R"(duration = 1
+[room]
+size = [4, 2.25]
+[[box]]
+name = "crate"
+size = [0.8, 0.5]
+position = [1, 1]
+velocity = [1, 1]
+spin = 90
+mass = 1.5
+color = "green"
+[[ball]]
+name = "ball"
+radius = 0.2
+position = [3, 1]
+velocity = [-1, 0]
+[[spring]]
+between = ["crate", [1, 2.2]]
+stiffness = 20
+)";
+
+/// A spring far too stiff for Runge-Kutta at this rate: it tears itself apart.
+inline const char* const kTorn = R"(
+duration = 5
+[physics]
+rate = 60
+[[particle]]
+name = "ball"
+position = [4, 2]
+mass = 1
+[[spring]]
+between = ["ball", [4, 4]]
+stiffness = 40000
+rest_length = 1.9
+)";
+
 }  // namespace obscura::app

@@ -69,9 +69,7 @@ TEST_F(States, SetChangesAKeyFromOutside) {
 }
 
 TEST_F(States, TroubleExitsWithSixAfterWhatWasGood) {
-  scene(
-      "duration = 5\n[physics]\nrate = 60\n[[particle]]\nname = \"ball\"\nposition = [4, 2]\nmass = 1\n"
-      "[[spring]]\nbetween = [\"ball\", [4, 4]]\nstiffness = 40000\nrest_length = 1.9\n");
+  scene(kTorn);
   const Outcome run = obscura("states scene.toml --at 0,5");
   EXPECT_EQ(run.exit, 6);
   EXPECT_EQ(nlohmann::json::parse(run.out)["states"].size(), 1u);
