@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "media/browser.h"
+#include "needs.h"
 #include "program.h"
 
 namespace obscura::app {
@@ -187,7 +188,7 @@ addEventListener("load", async () => {
 
 TEST_F(Golden, ThePageWorksInABrowser) {
   const auto program = media::browser();
-  if (!program) GTEST_SKIP() << "no Chromium on this system: apt-get install chromium-headless-shell";
+  OBSCURA_NEEDS(program, "chromium-headless-shell");
   ASSERT_EQ(golden("--update").exit, 0);
   // later, when the second moment shows it, the ball is elsewhere
   change("[1, 1]\ncolor", "[1.5, 1]\ncolor");

@@ -10,6 +10,7 @@
 #include "media/browser.h"
 #include "media/movie.h"
 #include "media/pictures.h"
+#include "needs.h"
 
 namespace obscura::media {
 namespace {
@@ -117,7 +118,7 @@ async function watch(name, fps) {
 
 TEST(Play, ChromiumPlaysAndSeeksOurMoviesToTheFrame) {
   const auto program = browser();
-  if (!program) GTEST_SKIP() << "no Chromium on this system: apt-get install chromium-headless-shell";
+  OBSCURA_NEEDS(program, "chromium-headless-shell");
   Folder folder;
   write_clock(folder / "quick.mp4", 30, "");
   write_clock(folder / "medium.mp4", 60, "medium");

@@ -7,6 +7,8 @@
 
 #include <string>
 
+#include "needs.h"
+
 namespace obscura::page {
 namespace {
 
@@ -75,7 +77,7 @@ TEST(Page, TypeIsEscapedAndBringsItsFont) {
 }
 
 TEST(Page, APdfIsTheSameBytesWheneverItIsMade) {
-  if (!writes(Form::pdf)) GTEST_SKIP() << "built without Cairo";
+  OBSCURA_NEEDS(writes(Form::pdf), "libcairo2-dev, where it is built");
   draw::List list;
   list.add(draw::Text{{0, 0}, draw::Align::left, {{.text = "v", .face = draw::Face::math_italic}}});
   const auto one = page(picture(list), Form::pdf, {}), other = page(picture(list), Form::pdf, {});
