@@ -48,9 +48,13 @@ TEST(Formula, AnAccentLiesOverItsLetter) {
 }
 
 TEST(Formula, WhatIsNotClosedOrNotKnownStaysReadable) {
-  for (const char* text : {"v_", "v_{", "^", "\\", "\\nosuchname", "*", "\"", "\\bar", "\\bar{", "{}}"})
-    (void)formula(text, 100, {});
+  for (const char* text : {"v_", "v_{", "v^", "v\\", "*v", "\"v", "\\bar v", "\\bar{v", "v{}}"}) {
+    std::string read;
+    for (const auto& [words, face] : set(text)) read += words;
+    EXPECT_THAT(read, testing::HasSubstr("v")) << text;
+  }
   EXPECT_EQ(set("\\nosuchname")[0].first, "\\nosuchname");
+  for (const char* text : {"^", "\\", "\\bar", "\\bar{"}) EXPECT_GE(formula(text, 100, {}).width, 0) << text;
 }
 
 TEST(Formula, AValueHasThreeDigitsAndItsUnit) {
