@@ -51,11 +51,6 @@ struct Feature {
   bool operator==(const Feature&) const = default;
 };
 
-/// A contact's key names the parts and the features: ContactKey::feature.
-inline int key_feature(int part_a, int part_b, Feature feature) {
-  return (part_a << 7 | part_b) << 16 | feature.word();
-}
-
 /// Where two features are: point (m), normal from b to a, gap (m).
 struct Place {
   double x = 0, y = 0, nx = 0, ny = 1, gap = 0;

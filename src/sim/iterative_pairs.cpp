@@ -44,6 +44,7 @@ Pair Pairs::pair(int a, int b, int core_a, int core_b) const {
   return made;
 }
 
+// ContactKey::feature: which parts, and which features of them
 int Pairs::feature(const Pair& pair, int word) const {
   const int part_b = pair.core_b < 0 ? 0 : cores_.all[pair.core_b].part;
   return (cores_.all[pair.core_a].part << 7 | part_b) << 16 | word;
