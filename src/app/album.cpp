@@ -9,7 +9,8 @@
 #include "app/exit.h"
 #include "app/interrupt.h"
 #include "app/plots.h"
-#include "app/trouble.h"
+#include "app/simulation.h"
+#include "app/variation.h"
 #include "draw/annotate.h"
 #include "draw/depict.h"
 #include "draw/formula.h"
@@ -28,34 +29,6 @@ constexpr std::size_t kMostPanels = 100;
 constexpr int kMostExposures = 2000;
 constexpr double kFormula = 10;                       // pt, em
 constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
-
-// "crate.elasticity=0,0.5,1" as --set values, and the words of each
-std::vector<std::pair<std::string, std::string>> values(const std::string& vary) {
-  const auto equals = vary.find('=');
-  if (equals == 0 || equals == std::string::npos || equals + 1 == vary.size())
-    throw UsageError(fmt::format("--vary {}: expected PATH=VALUES, as in crate.elasticity=0,0.5,1", vary));
-  const std::string path = vary.substr(0, equals), list = vary.substr(equals + 1);
-  const std::string last = path.substr(path.rfind('.') == std::string::npos ? 0 : path.rfind('.') + 1);
-  std::vector<std::pair<std::string, std::string>> all;
-  std::size_t depth = 0, from = 0;
-  for (std::size_t i = 0; i <= list.size(); ++i) {
-    if (i < list.size() && list[i] == '[') ++depth;
-    if (i < list.size() && list[i] == ']' && depth > 0) --depth;
-    if (i < list.size() && (list[i] != ',' || depth > 0)) continue;
-    const std::string value = list.substr(from, i - from);
-    from = i + 1;
-    all.emplace_back(path + "=" + value, last + " = " + value);
-  }
-  return all;
-}
-
-// the run at an instant, or what ended it
-sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene) {
-  auto found = run.at(t);
-  if (const auto* trouble = std::get_if<sim::Trouble>(&found)) throw TroubleError(scene.file, *trouble, "");
-  if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();
-  return std::get<sim::Snapshot>(std::move(found));
-}
 
 // the end of the first step in which the figure's body is struck
 sim::Rational impact(const scene::Scene& scene) {
@@ -90,9 +63,11 @@ Album::Album(const std::string& file, const std::vector<std::string>& sets, cons
   for (const std::string& vary : varies) {
     std::vector<std::pair<std::vector<std::string>, std::string>> more;
     for (const auto& [so_far, said] : variants) {
-      for (const auto& [set, text] : values(vary)) {
+      const Variation variation(vary);
+      for (const std::string& value : variation.values) {
+        const std::string text = variation.name() + " = " + value;
         more.emplace_back(so_far, said.empty() ? text : said + ", " + text);
-        more.back().first.push_back(set);
+        more.back().first.push_back(variation.path + "=" + value);
       }
     }
     variants = std::move(more);
@@ -129,7 +104,8 @@ Album::Album(const std::string& file, const std::vector<std::string>& sets, cons
     const auto value = said.rfind(" = ");
     variants_.push_back({scene, value == said.npos ? said : said.substr(value + 3)});
   }
-  const int n = int(panels_.size());
+  const int n = int(panels_.size()) *
+                (panels_.front().cast.dimension == 3 ? int(panels_.front().scene.cameras.size()) : 1);
   columns_ = std::min(n, wanted > 0 ? wanted : n <= 4 ? n : int(std::ceil(std::sqrt(n))));
 }
 
@@ -157,18 +133,43 @@ void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& ti
   }
 }
 
-draw::Picture Album::picture() const {
-  if (panels_.front().cast.dimension == 3) return in_space();
-  const double each = (width_ - kGutter * (columns_ - 1)) / columns_;
+std::vector<Album::Cell> Album::cells() const {
+  const std::vector<draw::Camera>& cameras = panels_.front().scene.cameras;
+  const int seen = panels_.front().cast.dimension == 3 ? int(cameras.size()) : 1;
+  std::vector<Cell> all;
+  for (int camera = 0; camera < seen; ++camera) {
+    for (const Panel& panel : panels_) {
+      const std::string name = seen > 1 ? cameras[std::size_t(camera)].name : "";
+      all.push_back({&panel, camera, name + (name.empty() || panel.words.empty() ? "" : ", ") + panel.words});
+    }
+  }
+  return all;
+}
+
+Page Album::page() const {
+  const std::vector<Cell> cells = this->cells();
+  const bool space = panels_.front().cast.dimension == 3;
+  const int columns = std::min(columns_, int(cells.size()));
+  const double each = (width_ - kGutter * (columns - 1)) / columns;
   const draw::Palette colours = draw::palette(panels_.front().scene.look.theme);
 
   // one scale for the arrows of all panels
   const draw::Figure& figure = panels_.front().scene.figure;
   std::vector<sim::Snapshot> moments;
   for (const Panel& panel : panels_) moments.push_back(panel.now);
-  const draw::Depictor first = depictor(panels_.front(), each);
-  const draw::Scales scales = draw::scales(figure, panels_.front().cast, moments, first.layout());
+  const draw::Depictor first = depictor(cells.front(), each);
+  draw::Rect window;
+  double scale = 1;  // page units a metre
+  if (space) {
+    const draw::Lens lens = first.lens(moments.front());
+    const double k = each * draw::kPoint / lens.window.width;
+    window = {0, 0, k * lens.window.width, k * lens.window.height}, scale = k * lens.scale;
+  } else {
+    window = first.layout().window, scale = first.layout().scale;
+  }
+  const draw::Scales scales = draw::scales(figure, panels_.front().cast, moments, window, scale);
 
+  Page page;
   draw::List all;
   double top = 0;
   if (!figure.formula.empty()) {
@@ -178,21 +179,37 @@ draw::Picture Album::picture() const {
     top += formula.descent + draw::kPoint * 5;
   }
   double row_height = 0;
-  for (std::size_t i = 0; figure.room && i < panels_.size(); ++i) {
-    const int column = int(i) % columns_;
+  for (std::size_t i = 0; figure.room && i < cells.size(); ++i) {
+    const int column = int(i) % columns;
     if (column == 0) top += row_height, row_height = 0;
     double height = 0;
-    const draw::List list = panel(int(i), each, scales, height);
-    all.add(list, 1, {column * (each + kGutter) * draw::kPoint, top});
+    const draw::Point corner(column * (each + kGutter) * draw::kPoint, top);
+    const draw::Depictor artist = depictor(cells[i], each);
+    draw::List list;
+    if (space) {
+      Lit lit;
+      list = in_space(artist, cells[i], scales, each, height, lit);
+      lit.where.x += corner.x(), lit.where.y += corner.y();
+      page.lit.push_back(std::move(lit));
+    } else {
+      list = in_plane(artist, cells[i], scales, height);
+    }
+    if (cells.size() > 1) {
+      const double baseline = 9 * draw::kPoint;
+      list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9,
+                     {2 * draw::kPoint, baseline}, colours.ink));
+      list.add(words(cells[i].words, draw::Face::regular, 8.5, {18 * draw::kPoint, baseline}, colours.ink));
+    }
+    all.add(list, 1, corner);
     row_height = std::max(row_height, height);
   }
   top += row_height;
-  if (figure.room && draw::has_legend(figure)) {
+  if (figure.room && !space && draw::has_legend(figure)) {
     const draw::Layout& layout = first.layout();
     const double margin = layout.clipped ? 2 * draw::kPoint : layout.weight * draw::kBand;
     top += 10 * draw::kPoint;
-    draw::draw_legend(figure, scales, colours, layout.scale, margin, width_ * draw::kPoint - margin, top,
-                      all);
+    draw::draw_legend(figure, scales, colours, layout.scale, layout.window.x + margin,
+                      width_ * draw::kPoint - margin, top, all);
     top += 4 * draw::kPoint;
   }
   // plots below each other, as wide as the figure
@@ -203,10 +220,12 @@ draw::Picture Album::picture() const {
     draw::draw_plot(plots[i], colours, {2 * draw::kPoint, top, (width_ - 4) * draw::kPoint, height}, all);
     top += height;
   }
-  draw::Picture page;
-  page.aspect = width_ * draw::kPoint / top;
-  page.ground = colours.ground;
-  page.moving.add(all, 1080 / top, {0, 0});
+  const double unit = 1080 / top;
+  page.picture.aspect = width_ * draw::kPoint / top;
+  page.picture.ground = colours.ground;
+  page.picture.moving.add(all, unit, {0, 0});
+  for (Lit& lit : page.lit)
+    lit.where = {unit * lit.where.x, unit * lit.where.y, unit * lit.where.width, unit * lit.where.height};
   return page;
 }
 
@@ -233,18 +252,25 @@ std::vector<draw::Plot> Album::plots() const {
   return all;
 }
 
-draw::Depictor Album::depictor(const Panel& panel, double width) const {
+draw::Depictor Album::depictor(const Cell& cell, double width) const {
+  const Panel& panel = *cell.panel;
   draw::Look look = panel.scene.look;
   look.caption = false;
-  draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? kLetter : 0};
+  if (panel.cast.dimension == 3) {
+    const scene::Film& film = panel.scene.film;
+    return {panel.cast, look, panel.scene.cameras[std::size_t(cell.camera)], panel.scene.extent,
+            double(film.width) / film.height};
+  }
   const draw::Figure& figure = panel.scene.figure;
+  draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? kLetter : 0};
+  if (figure.axes) sheet.below = draw::kRulerBelow, sheet.left = draw::kRulerLeft;
   if (figure.low && figure.high) sheet.region = draw::Extent{*figure.low, *figure.high};
   return {panel.cast, look, panel.scene.extent, sheet};
 }
 
-draw::List Album::panel(int i, double width, const draw::Scales& scales, double& height) const {
-  const Panel& panel = panels_[std::size_t(i)];
-  const draw::Depictor depictor = this->depictor(panel, width);
+draw::List Album::in_plane(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+                           double& height) const {
+  const Panel& panel = *cell.panel;
   const draw::Palette colours = draw::palette(panel.scene.look.theme);
 
   // what stands still, earlier exposures from the oldest on, the instant itself, what is said of it
@@ -255,27 +281,29 @@ draw::List Album::panel(int i, double width, const draw::Scales& scales, double&
     depictor.ghosts(panel.before[k], kFaintest + (kStrongest - kFaintest) * age, list);
   }
   list.add(picture.moving, 1, {0, 0});
-  draw::annotate(panel.scene.figure, scales, panel.cast, colours, depictor.layout(),
-                 depictor.view(panel.now.time), panel.now, list);
-  if (panels_.size() > 1) {
-    const double baseline = 9 * draw::kPoint;
-    list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9, {2 * draw::kPoint, baseline},
-                   colours.ink));
-    list.add(words(panel.words, draw::Face::regular, 8.5, {18 * draw::kPoint, baseline}, colours.ink));
-  }
+  const draw::View view = depictor.view(panel.now.time);
+  draw::annotate(panel.scene.figure, scales, panel.cast, colours, draw::Projection(view), panel.now, list);
+  if (panel.scene.figure.axes) draw::draw_rulers(depictor.layout(), view, colours, list);
   height = depictor.layout().height;
   return list;
 }
 
-draw::Picture Album::in_space() const {
-  if (panels_.size() > 1) throw UsageError("in space a figure is of one instant");
-  const Panel& panel = panels_.front();
-  draw::Look look = panel.scene.look;
-  look.caption = false;
-  const scene::Film& film = panel.scene.film;
-  const draw::Depictor depictor(panel.cast, look, panel.scene.cameras, panel.scene.extent,
-                                double(film.width) / film.height);
-  return depictor.depict(panel.now, panel.ways);
+// a camera's picture, as wide as the panel, under the panel's letter
+draw::List Album::in_space(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+                           double width, double& height, Lit& lit) const {
+  const Panel& panel = *cell.panel;
+  const draw::Palette colours = draw::palette(panel.scene.look.theme);
+  lit.picture = depictor.depict(panel.now, panel.ways);
+  const double scale = width * draw::kPoint / (1080 * lit.picture.aspect);
+  const draw::Point corner(0, panels_.size() * panel.scene.cameras.size() > 1 ? kLetter * draw::kPoint : 0);
+  lit.where = {corner.x(), corner.y(), 1080 * lit.picture.aspect * scale, 1080 * scale};
+  height = corner.y() + lit.where.height;
+  draw::List list;
+  list.add(lit.picture.moving, scale, corner);
+  lit.picture.moving = {};
+  draw::annotate(panel.scene.figure, scales, panel.cast, colours,
+                 draw::Projection(depictor.lens(panel.now), scale, corner), panel.now, list);
+  return list;
 }
 
 }  // namespace obscura::app

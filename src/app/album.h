@@ -26,14 +26,26 @@ struct AlbumOptions {
   std::optional<draw::Theme> theme;
 };
 
+/// What of a page no vector says: surfaces, their light and their shadows.
+struct Lit {
+  draw::Rect where;       // in the page's units
+  draw::Picture picture;  // without what moves
+};
+
+/// A figure: its picture is what is drawn on what is lit.
+struct Page {
+  draw::Picture picture;
+  std::vector<Lit> lit;
+};
+
 /// The instants that a figure shows, simulated: one panel for each, of one run or of several that differ in a
-/// value.
+/// value; in space one for each by each camera.
 class Album {
  public:
   /// Reads the scene and runs it as far as the figure needs. Throws UsageError, scene::Error, TroubleError.
   Album(const std::string& scene, const std::vector<std::string>& sets, const AlbumOptions& options);
 
-  draw::Picture picture() const;
+  Page page() const;
   double width() const { return width_; }  // pt
   std::string title() const { return panels_.front().scene.look.title; }
 
@@ -47,9 +59,18 @@ class Album {
     std::string words;                                    // what sets it apart from the others
   };
   void take(const scene::Scene& scene, const std::vector<sim::Rational>& times, const std::string& words);
-  draw::Picture in_space() const;
-  draw::Depictor depictor(const Panel& panel, double width) const;
-  draw::List panel(int i, double width, const draw::Scales& scales, double& height) const;
+  /// What stands at one place of the page.
+  struct Cell {
+    const Panel* panel = nullptr;
+    int camera = 0;
+    std::string words;
+  };
+  std::vector<Cell> cells() const;
+  draw::Depictor depictor(const Cell& cell, double width) const;
+  draw::List in_plane(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+                      double& height) const;
+  draw::List in_space(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+                      double width, double& height, Lit& lit) const;
 
   /// One of the runs that differ in a value, and what it is called in a plot.
   struct Variant {

@@ -72,18 +72,65 @@ void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {
   file.place(false);
 }
 
-// the picture's pixels at a density: exactly so many a point, the last ones cut where the page ends between
-// two
-media::Image pixels(const draw::Picture& picture, double width, double dpi) {
+struct Size {
+  int width, height;
+  double per_unit;  // pixels a page unit
+};
+
+// a page's size at a density: exactly so many pixels a point, the last ones cut where it ends between two
+Size size_at(const draw::Picture& picture, double width, double dpi) {
   const double across = width / 72 * dpi, down = across / picture.aspect;
-  const int w = std::max(1, int(std::ceil(across - 0.01))), h = std::max(1, int(std::ceil(down - 0.01)));
-  gl::Renderer renderer(w, h);
-  if (!picture.solids.empty()) return renderer.draw(picture);
+  return {std::max(1, int(std::ceil(across - 0.01))), std::max(1, int(std::ceil(down - 0.01))), down / 1080};
+}
+
+media::Image pixels(const draw::Picture& picture, const Size& size) {
+  gl::Renderer renderer(size.width, size.height);
   draw::Picture exact;
-  exact.aspect = double(w) / h;
+  exact.aspect = double(size.width) / size.height;
   exact.ground = picture.ground;
-  exact.moving.add(picture.moving, down / h, {0, 0});
+  exact.transparent = picture.transparent;
+  exact.moving.add(picture.moving, size.per_unit * 1080 / size.height, {0, 0});
   return renderer.draw(exact);
+}
+
+// what is lit, at its places on the page's ground
+media::Image lit_pixels(const Page& page, const Size& size) {
+  draw::Picture blank;
+  blank.ground = page.picture.ground;
+  media::Image all = pixels(blank, size);
+  for (const Lit& lit : page.lit) {
+    const int left = int(std::lround(lit.where.x * size.per_unit)),
+              top = int(std::lround(lit.where.y * size.per_unit));
+    const int right = std::min(size.width, int(std::lround((lit.where.x + lit.where.width) * size.per_unit))),
+              bottom =
+                  std::min(size.height, int(std::lround((lit.where.y + lit.where.height) * size.per_unit)));
+    if (right <= left || bottom <= top) continue;
+    gl::Renderer renderer(right - left, bottom - top);
+    const media::Image own = renderer.draw(lit.picture);
+    for (int y = 0; y < own.height; ++y)
+      std::copy(own.row(y), own.row(y) + 4 * own.width, all.row(top + y) + 4 * left);
+  }
+  return all;
+}
+
+// one picture over another, alpha not multiplied in
+void put_over(const media::Image& upper, media::Image& lower) {
+  for (std::size_t i = 0; i + 3 < upper.pixels.size(); i += 4) {
+    const int alpha = upper.pixels[i + 3];
+    for (std::size_t c = i; c < i + 3; ++c)
+      lower.pixels[c] = std::uint8_t((upper.pixels[c] * alpha + lower.pixels[c] * (255 - alpha) + 127) / 255);
+    lower.pixels[i + 3] = 255;
+  }
+}
+
+media::Image pixels(const Page& page, double width, double dpi) {
+  const Size size = size_at(page.picture, width, dpi);
+  if (page.lit.empty()) return pixels(page.picture, size);
+  media::Image all = lit_pixels(page, size);
+  draw::Picture lines = page.picture;
+  lines.transparent = true;
+  put_over(pixels(lines, size), all);
+  return all;
 }
 
 int run(const Flags& flags) {
@@ -109,11 +156,11 @@ int run(const Flags& flags) {
 
   const Album album(flags.scene, flags.sets, options);
   media::make_folder_of(out);
-  const draw::Picture picture = album.picture();
-  const double width = album.width(), height = width / picture.aspect;
+  const Page made = album.page();
+  const double width = album.width(), height = width / made.picture.aspect;
   std::string size = fmt::format("{:.1f} x {:.1f} mm", width / kMillimetre, height / kMillimetre);
   if (ending(out) == "png") {
-    const media::Image image = pixels(picture, width, flags.dpi);
+    const media::Image image = pixels(made, width, flags.dpi);
     media::Tags tags{{"Software", "obscura " OBSCURA_VERSION}};
     if (!album.title().empty()) tags["Title"] = album.title();
     media::write_png(out, image, {.per_metre = flags.dpi / 0.0254, .tags = tags});
@@ -122,14 +169,18 @@ int run(const Flags& flags) {
     const page::Sheet sheet{width, album.title()};
     std::optional<page::Raster> raster;
     media::Image under;
-    if (!picture.solids.empty()) {
-      // what no vector says: surfaces, their light and their shadows
-      draw::Picture solids = picture;
-      solids.moving = {};
-      under = pixels(solids, width, flags.dpi);
-      raster = page::Raster{under.width, under.height, under.pixels.data(), media::encode_png(under)};
+    if (!made.lit.empty()) {
+      // so many pixels that a panel has whole ones: its lines, which are vectors, then lie on its edges
+      Size grid = size_at(made.picture, width, flags.dpi);
+      const double rows = made.lit.front().where.height;
+      grid.per_unit = std::ceil(rows * grid.per_unit) / rows;
+      grid.width = int(std::ceil(1080 * made.picture.aspect * grid.per_unit));
+      grid.height = int(std::ceil(1080 * grid.per_unit));
+      under = lit_pixels(made, grid);
+      raster = page::Raster{under.width, under.height, height / 1080 / grid.per_unit, under.pixels.data(),
+                            media::encode_png(under)};
     }
-    write(out, page::page(picture, *page::form(ending(out)), sheet, raster));
+    write(out, page::page(made.picture, *page::form(ending(out)), sheet, raster));
   }
   fmt::print("{}: {}\n", out, size);
   return kDone;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 #include "app/interrupt.h"
 #include "app/origin.h"
+#include "app/trouble.h"
 
 namespace obscura::app {
 
@@ -30,6 +33,13 @@ draw::Depictor depictor(const scene::Scene& scene, const draw::Charts& charts) {
   const auto run = scene.run();
   const double aspect = double(scene.film.width) / scene.film.height;
   return {run->cast(), scene.look, scene.cameras, scene.extent, aspect, charts};
+}
+
+sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene) {
+  auto found = run.at(t);
+  if (const auto* trouble = std::get_if<sim::Trouble>(&found)) throw TroubleError(scene.file, *trouble, "");
+  if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();
+  return std::get<sim::Snapshot>(std::move(found));
 }
 
 Simulation::Simulation(const scene::Scene& scene, const Shots& shots, const draw::Depictor& artist,

@@ -28,6 +28,10 @@ struct Take {
 /// Who draws the scene's instants, as large as its film is, with these charts beside them.
 draw::Depictor depictor(const scene::Scene& scene, const draw::Charts& charts);
 
+/// A run at an instant. Throws TroubleError where it cannot go on, Interrupted where somebody asks for an
+/// end.
+sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene);
+
 struct SimulationOptions {
   int frames = 1;          // of a take, at most
   bool hash_each = false;  // every state of a take, not its first alone

@@ -11,172 +11,38 @@
 
 #include "draw/formula.h"
 #include "draw/placing.h"
+#include "draw/readings.h"
 #include "draw/sheet.h"
 #include "draw/stage.h"
 
 namespace obscura::draw {
 namespace {
 
-constexpr double kType = 10 * kPoint, kSmall = 8.5 * kPoint;  // em of labels, of the legend
-constexpr double kArrow = 1.1 * kPoint / kArrowLine;          // weight at which a shaft is 1.1 pt
-constexpr double kThin = 0.5 * kPoint;                        // of angles and lengths
+constexpr double kType = 10 * kPoint;                 // em
+constexpr double kArrow = 1.1 * kPoint / kArrowLine;  // weight at which a shaft is 1.1 pt
+constexpr double kThin = 0.5 * kPoint;                // of angles and lengths
 constexpr double kDotRadius = 1.7 * kPoint, kGap = 2.2 * kPoint;
 constexpr double kNormal = 9 * 72 / 25.4 * kPoint;  // a unit normal: 9 mm
-constexpr double kLongest = 0.34;                   // of the picture's shorter side
+constexpr double kAngle = 13 * kPoint;              // radius of an arc
+constexpr double kAxes = 0.36;                      // of the picture's shorter side: axes in space
 constexpr double kMillimetre = 72 / 25.4 * kPoint;
 
 using sim::Vec3;
 
-double cross(const Vec3& a, const Vec3& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-/// What an arrow shows, before it is scaled.
-struct Reading {
-  Vec3 tail, value;
-  double signed_value = 0;  // of what turns
-};
-
-/// The velocity of a point of a body.
-Vec3 velocity_at(const sim::Snapshot& now, int body, const Vec3& point) {
-  const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
-  const Vec3 r = point - it.position;
-  return it.velocity + it.spin.z() * Vec3(-r.y(), r.x(), 0);
-}
-
-/// All that pushes on a body where it touches: one for each that it touches, at the middle of its contacts.
-std::vector<Reading> touches(const sim::Snapshot& now, int body, Quantity what) {
-  std::vector<Reading> found;
-  for (std::size_t i = 0; i < now.contacts.size();) {
-    const sim::Snapshot::Contact& first = now.contacts[i];
-    Vec3 sum = Vec3::Zero(), point = Vec3::Zero();
-    double weight = 0;
-    for (; i < now.contacts.size(); ++i) {
-      const sim::Snapshot::Contact& each = now.contacts[i];
-      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
-      const Vec3& push = what == Quantity::contact ? each.force : each.impulse;
-      const double w = std::max(push.dot(each.normal), what == Quantity::normal ? 1e-12 : 0.0);
-      sum += push, point += w * each.point, weight += w;
-    }
-    if ((first.body != body && first.other != body) || !(weight > 0)) continue;
-    const double side = first.body == body ? 1 : -1;
-    found.push_back(
-        {point / weight, side * (what == Quantity::normal ? first.normal : sum), side * sum.norm()});
-  }
-  return found;
-}
-
-/// The pull of each spring on a body, at the point that it holds.
-std::vector<Reading> pulls(const sim::Cast& cast, const sim::Snapshot& now, int body) {
-  std::vector<Reading> found;
-  for (std::size_t i = 0; i < cast.springs.size(); ++i) {
-    const sim::Cast::Spring& spring = cast.springs[i];
-    if (spring.a != body && spring.b != body) continue;
-    const bool at_a = spring.a == body;
-    const Vec3 here = at_a ? now.springs[i].a : now.springs[i].b,
-               there = at_a ? now.springs[i].b : now.springs[i].a;
-    const Vec3 way = there - here;
-    if (!(way.norm() > 0)) continue;
-    found.push_back({here, spring.stiffness * (way.norm() - spring.rest_length) * way.normalized()});
-  }
-  return found;
-}
-
-std::vector<Reading> readings(const Figure::Vector& vector, const sim::Cast& cast, const sim::Snapshot& now) {
-  if (vector.quantity == Quantity::position) {
-    const Vec3 tail = vector.at ? place(*vector.at, now) : Vec3(Vec3::Zero());
-    const Vec3 tip = vector.to         ? place(*vector.to, now)
-                     : vector.body < 0 ? tail
-                                       : now.bodies[std::size_t(vector.body)].position;
-    return {{tail, tip - tail}};
-  }
-  if (vector.body < 0) return {};
-  const sim::Snapshot::Body& body = now.bodies[std::size_t(vector.body)];
-  const Vec3 at = vector.at ? place(*vector.at, now) : body.position;
-  switch (vector.quantity) {
-    case Quantity::velocity:
-      return {{at, velocity_at(now, vector.body, at)}};
-    case Quantity::weight:
-      return {{at, cast.bodies[std::size_t(vector.body)].mass * cast.gravity}};
-    case Quantity::spring:
-      return pulls(cast, now, vector.body);
-    case Quantity::contact:
-    case Quantity::impulse:
-    case Quantity::normal:
-      return touches(now, vector.body, vector.quantity);
-    case Quantity::spin:
-      return {{body.position, Vec3::Zero(), body.spin.z()}};
-    case Quantity::torque: {
-      double torque = 0;
-      for (const auto& all : {pulls(cast, now, vector.body), touches(now, vector.body, Quantity::contact)})
-        for (const Reading& each : all) torque += cross(each.tail - body.position, each.value);
-      return {{body.position, Vec3::Zero(), torque}};
-    }
-    case Quantity::position:
-      break;
-  }
-  return {};
-}
-
-std::string_view unit(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::position:
-      return "m";
-    case Quantity::velocity:
-      return "m/s";
-    case Quantity::weight:
-    case Quantity::spring:
-    case Quantity::contact:
-      return "N";
-    case Quantity::impulse:
-      return "N s";
-    case Quantity::normal:
-      return "";
-    case Quantity::spin:
-      return "rad/s";
-    case Quantity::torque:
-      return "N m";
-  }
-  return "";
-}
-
-double* scale_of(Quantity quantity, Scales& scales) {
-  switch (quantity) {
-    case Quantity::velocity:
-      return &scales.velocity;
-    case Quantity::weight:
-    case Quantity::spring:
-    case Quantity::contact:
-      return &scales.force;
-    case Quantity::impulse:
-      return &scales.impulse;
-    default:
-      return nullptr;
-  }
-}
-
-Color color_of(const Figure::Vector& vector, const Palette& colours) {
-  if (vector.color) return *vector.color;
-  switch (vector.quantity) {
-    case Quantity::position:
-      return mix(*color("blue"), colours.ink, 0.3);
-    case Quantity::velocity:
-      return mix(colours.velocity, colours.ink, 0.25);
-    case Quantity::normal:
-    case Quantity::spin:
-    case Quantity::torque:
-      return colours.ink;
-    default:
-      return mix(colours.force, colours.ink, 0.12);
-  }
-}
-
 /// Puts the figure on one page: lines at once, words when all lines are known.
 class Notes {
  public:
-  Notes(const sim::Cast& cast, const Palette& colours, const Layout& layout, const View& view,
-        const sim::Snapshot& now, List& list)
-      : cast_(cast), colours_(colours), view_(view), now_(now), list_(list), placing_(layout.window) {
+  Notes(const sim::Cast& cast, const Palette& colours, const Projection& projection, const sim::Snapshot& now,
+        List& list)
+      : cast_(cast),
+        colours_(colours),
+        view_(projection),
+        now_(now),
+        list_(list),
+        placing_(projection.window()) {
     avoid_bodies();
-    for (const HalfPlane& wall : half_planes(cast, view)) {
+    if (!view_.view()) return;
+    for (const HalfPlane& wall : half_planes(cast, *view_.view())) {
       const Point along(-wall.normal.y(), wall.normal.x());
       placing_.avoid(wall.point - 1e4 * along, wall.point + 1e4 * along, 3);
       // nor in the hatching
@@ -191,6 +57,8 @@ class Notes {
   void length(const Figure::Length& length);
   void point(const Figure::Point& point);
   void label(const Figure::Label& label);
+  void cone(const Figure::Cone& cone, const Scales& scales);
+  void axes();
   void finish();
 
  private:
@@ -201,6 +69,7 @@ class Notes {
   };
   static Point size(const Formula& f) { return {f.width, f.ascent + f.descent}; }
   void avoid_bodies();
+  void arrow(const Point& tail, const Point& tip, const Formula& label, Color ink);
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
   void dashes(const Point& a, const Point& b);
   void arc(const Point& center, double radius, double from, double to, bool tip, double width, Color color);
@@ -210,7 +79,7 @@ class Notes {
 
   const sim::Cast& cast_;
   const Palette& colours_;
-  const View& view_;
+  const Projection& view_;
   const sim::Snapshot& now_;
   List& list_;
   Placing placing_;
@@ -219,26 +88,40 @@ class Notes {
 };
 
 void Notes::avoid_bodies() {
+  const bool flat = view_.view() != nullptr;
   for (std::size_t i = 0; i < cast_.bodies.size(); ++i) {
     const sim::Cast::Body& body = cast_.bodies[i];
-    std::vector<Vec3> corners = body.vertices;
+    const sim::Snapshot::Body& it = now_.bodies[i];
+    std::vector<Vec3> corners = flat ? body.vertices : std::vector<Vec3>();
     if (body.kind == sim::ShapeKind::box)
       corners = {Vec3(-body.half.x(), -body.half.y(), 0), Vec3(body.half.x(), -body.half.y(), 0),
                  Vec3(body.half.x(), body.half.y(), 0), Vec3(-body.half.x(), body.half.y(), 0)};
-    const double radius = body.radius > 0 ? body.radius : kDot * kPrint / view_.scale;
-    if (corners.empty())
+    std::vector<Point> outline;
+    for (const Vec3& corner : corners) outline.push_back(view_.page(place({int(i), corner}, now_)));
+    if (outline.empty()) {
+      const double scale = view_.scale_at(it.position);
+      const double radius = body.radius > 0 ? scale * body.radius : kDot * kPrint;
       for (int k = 0; k < 12; ++k)
-        corners.push_back(radius *
-                          Vec3(std::cos(k * std::numbers::pi / 6), std::sin(k * std::numbers::pi / 6), 0));
-    for (std::size_t k = 0; k < corners.size(); ++k)
-      placing_.avoid(view_.page(place({int(i), corners[k]}, now_)),
-                     view_.page(place({int(i), corners[(k + 1) % corners.size()]}, now_)), 2);
+        outline.push_back(view_.page(it.position) + radius * Point(std::cos(k * std::numbers::pi / 6),
+                                                                   -std::sin(k * std::numbers::pi / 6)));
+    }
+    for (std::size_t k = 0; k < outline.size(); ++k)
+      placing_.avoid(outline[k], outline[(k + 1) % outline.size()], 2);
   }
   for (const sim::Snapshot::Spring& spring : now_.springs) {
     const Point a = view_.page(spring.a), b = view_.page(spring.b), u = (b - a).normalized();
     for (const double side : {-3.0, 0.0, 3.0})
       placing_.avoid(a + side * kPoint * Point(-u.y(), u.x()), b + side * kPoint * Point(-u.y(), u.x()), 1);
   }
+}
+
+void Notes::arrow(const Point& tail, const Point& tip, const Formula& label, Color ink) {
+  std::vector<Arrow> arrows;
+  offer(tail, tip, view_.window(), kArrow, arrows);
+  if (arrows.empty()) return;
+  draw_arrows(arrows, kArrow, colours_.room, ink, list_);
+  placing_.avoid(tail, tip, 4);
+  word(label, Placing::along(tail, tip, 1.7 * kGap, size(label), kPoint), (tail + tip) / 2);
 }
 
 void Notes::stroke(const std::vector<Point>& line, double width, Color color, double weight) {
@@ -289,7 +172,7 @@ void Notes::vector(const Figure::Vector& vector, Scales scales) {
       const double reach = body.radius > 0        ? 1.6 * body.radius
                            : body.half.norm() > 0 ? 0.62 * body.half.head<2>().minCoeff()
                                                   : 0;
-      const double radius = std::clamp(view_.scale * reach, 9 * kPoint, 24 * kPoint);
+      const double radius = std::clamp(view_.scale_at(reading.tail) * reach, 9 * kPoint, 24 * kPoint);
       const double low = 25 * std::numbers::pi / 180, high = 165 * std::numbers::pi / 180;
       const Point center = view_.page(reading.tail);
       const bool left = reading.signed_value > 0;
@@ -306,57 +189,126 @@ void Notes::vector(const Figure::Vector& vector, Scales scales) {
       word(f, places, center);
       continue;
     }
-    const Point tail = view_.page(reading.tail);
-    Point tip;
-    if (vector.quantity == Quantity::normal) {
-      tip = tail + kNormal * Point(reading.value.x(), -reading.value.y()).normalized();
+    const Formula label_set = set(reading.value.norm());
+    if (vector.quantity == Quantity::normal && view_.view()) {
+      const Point tail = view_.page(reading.tail);
+      arrow(tail, tail + kNormal * Point(reading.value.x(), -reading.value.y()).normalized(), label_set, ink);
     } else {
       const double* scale = scale_of(vector.quantity, scales);
-      tip = view_.page(reading.tail + (scale ? *scale : 1.0) * reading.value);
+      const double length = vector.quantity == Quantity::normal ? kNormal / view_.scale_at(reading.tail)
+                            : scale                             ? *scale
+                                                                : 1.0;
+      arrow(view_.page(reading.tail), view_.page(reading.tail + length * reading.value), label_set, ink);
     }
-    std::vector<Arrow> arrows;
-    offer(tail, tip, view_.window, kArrow, arrows);
-    if (arrows.empty()) continue;
-    draw_arrows(arrows, kArrow, colours_.room, ink, list_);
-    placing_.avoid(tail, tip, 4);
-    const Formula f = set(reading.value.norm());
-    word(f, Placing::along(tail, tip, 1.7 * kGap, size(f), kPoint), (tail + tip) / 2);
   }
 }
 
 void Notes::angle(const Figure::Angle& angle) {
-  Point center;
-  double from = 0, to = 0;
+  Vec3 center = Vec3::Zero(), from = Vec3::UnitX(), to = Vec3::UnitX();
+  double wide = kAngle;
   if (angle.body >= 0) {
     const sim::Snapshot::Body& body = now_.bodies[std::size_t(angle.body)];
-    center = view_.page(body.position);
-    to = std::remainder(body.angle, 2 * std::numbers::pi);
-    const double reach = 22 * kPoint;
-    dashes(center, center + Point(reach, 0));
-    stroke({center, center + reach * Point(std::cos(to), -std::sin(to))}, kThin, colours_.ink, 2);
+    center = body.position;
+    to = body.orientation * Vec3::UnitX();
+    const double reach = 22 * kPoint / view_.scale_at(center);
+    dashes(view_.page(center), view_.page(center + reach * from));
+    stroke({view_.page(center), view_.page(center + reach * to)}, kThin, colours_.ink, 2);
   } else {
     if (!angle.at || !angle.from || !angle.to) return;
-    center = view_.page(place(*angle.at, now_));
-    const Point a = view_.page(place(*angle.from, now_)) - center,
-                b = view_.page(place(*angle.to, now_)) - center;
-    from = std::atan2(-a.y(), a.x());
-    to = from + std::remainder(std::atan2(-b.y(), b.x()) - from, 2 * std::numbers::pi);
+    center = place(*angle.at, now_);
+    from = place(*angle.from, now_) - center, to = place(*angle.to, now_) - center;
+    if (!(from.norm() > 0 && to.norm() > 0)) return;
+    // in space two directions may look close: farther out
+    const double shorter = std::min(from.norm(), to.norm()) * view_.scale_at(center);
+    if (!view_.view()) wide = std::clamp(0.4 * shorter, kAngle, 2.5 * kAngle);
+    from.normalize(), to.normalize();
+    dashes(view_.page(center), view_.page(center + (wide + 7 * kPoint) / view_.scale_at(center) * from));
   }
-  const double radius = 13 * kPoint, middle = (from + to) / 2;
-  arc(center, radius, from, to, false, kThin, colours_.ink);
-  const double degrees = std::abs(to - from) * 180 / std::numbers::pi;
+  // an arc of the great circle through both
+  const double whole = std::atan2(from.cross(to).norm(), from.dot(to));
+  Vec3 across = to - from.dot(to) * from;
+  if (!(across.norm() > 1e-12)) return;
+  across.normalize();
+  const double radius = wide / view_.scale_at(center);
+  const auto at = [&](double a, double r) {
+    return view_.page(center + r * (std::cos(a) * from + std::sin(a) * across));
+  };
+  std::vector<Point> line;
+  const int n = std::max(6, int(whole / 0.06));
+  for (int i = 0; i <= n; ++i) line.push_back(at(whole * i / n, radius));
+  stroke(line, kThin, colours_.ink, 3);
+
+  const double degrees = whole * 180 / std::numbers::pi;
   const Formula f = formula(with_value(angle.label, degrees, "°"), kType, colours_.ink);
-  const Point n(std::cos(middle), -std::sin(middle));
+  const Point hub = view_.page(center), rim = at(whole / 2, radius), out = rim - hub;
+  const Point m = out.norm() > 0 ? Point(out.normalized()) : Point(1, 0);
   std::vector<Placing::Candidate> places;
   for (const double off : {1.0, 2.0, 4.0, -3.2})
-    places.push_back({center + n * (radius + off * kGap) +
-                          (off > 0 ? 1 : -1) * Point(n.x() * f.width / 2, n.y() * (f.ascent + f.descent) / 2),
+    places.push_back({rim + off * kGap * m +
+                          (off > 0 ? 1 : -1) * Point(m.x() * f.width / 2, m.y() * (f.ascent + f.descent) / 2),
                       std::abs(off) * kPoint, false});
-  for (const Placing::Candidate& more : Placing::around(center + radius * n, kGap, size(f), kPoint)) {
+  for (const Placing::Candidate& more : Placing::around(rim, kGap, size(f), kPoint)) {
     places.push_back(more);
     places.back().cost += 12 * kPoint;
   }
-  word(f, places, center + radius * n);
+  word(f, places, rim);
+}
+
+// Friction holds while the force lies within arctan mu of the normal.
+void Notes::cone(const Figure::Cone& cone, const Scales& scales) {
+  for (std::size_t i = 0; i < now_.contacts.size();) {
+    const sim::Snapshot::Contact& first = now_.contacts[i];
+    Vec3 force = Vec3::Zero(), point = Vec3::Zero();
+    double pressed = 0;
+    for (; i < now_.contacts.size(); ++i) {
+      const sim::Snapshot::Contact& each = now_.contacts[i];
+      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
+      const double weight = std::max(each.force.dot(each.normal), 0.0);
+      force += each.force, point += weight * each.point, pressed += weight;
+    }
+    if ((first.body != cone.body && first.other != cone.body) || !(pressed > 0)) continue;
+    point /= pressed;
+    // a little longer than the arrow of the force
+    const double mu = sim::friction(cast_, first), half = std::atan(mu);
+    const double arrow = scales.force * force.norm();
+    const double long_side = arrow > 0 ? 1.2 * arrow : 15 * kMillimetre / view_.scale_at(point);
+    const Vec3 n = first.body == cone.body ? first.normal : Vec3(-first.normal), along(-n.y(), n.x(), 0);
+    const auto edge = [&](double a) { return Vec3(std::cos(a) * n + std::sin(a) * along); };
+    const auto tip = [&](double a, double r) { return view_.page(point + r * edge(a)); };
+    std::vector<Point> sector{view_.page(point)}, arc;
+    const double radius = std::max(kAngle, 0.55 * long_side * view_.scale_at(point)) / view_.scale_at(point);
+    for (int k = -8; k <= 8; ++k) sector.push_back(tip(half * k / 8, long_side));
+    for (int k = 0; k <= 8; ++k) arc.push_back(tip(half * k / 8, radius));
+    Color tint = colours_.force, rim_ink = mix(colours_.force, colours_.ink, 0.12);
+    tint.a = 36;
+    list_.add(sector, tint);
+    for (const double side : {-1.0, 1.0})
+      stroke({view_.page(point), tip(side * half, long_side)}, kThin, rim_ink, 2);
+    dashes(view_.page(point), tip(0, long_side));
+    stroke(arc, kThin, colours_.ink, 2);
+    const Formula f =
+        formula(with_value(cone.label, half * 180 / std::numbers::pi, "°"), kType, colours_.ink);
+    const Point rim = tip(half / 2, radius);
+    std::vector<Placing::Candidate> places =
+        Placing::along(view_.page(point), tip(half, long_side), kGap, size(f), kPoint);
+    for (Placing::Candidate& each : places) each.cost += 2 * kPoint;
+    const Point out = (rim - view_.page(point)).normalized();
+    places.insert(
+        places.begin(),
+        {rim + kGap * out + Point(out.x() * f.width / 2, out.y() * (f.ascent + f.descent) / 2), 0, false});
+    word(f, places, rim);
+  }
+}
+
+// Of space: from the origin, all of one length.
+void Notes::axes() {
+  const Rect& window = view_.window();
+  const double length = kAxes * std::min(window.width, window.height) / view_.scale_at(Vec3::Zero());
+  const std::pair<Vec3, const char*> all[] = {
+      {Vec3::UnitX(), "x"}, {Vec3::UnitY(), "y"}, {Vec3::UnitZ(), "z"}};
+  for (const auto& [axis, name] : all)
+    arrow(view_.page(Vec3::Zero()), view_.page(length * axis), formula(name, kType, colours_.ink),
+          colours_.ink);
 }
 
 void Notes::length(const Figure::Length& length) {
@@ -430,98 +382,31 @@ void Notes::finish() {
 
 }  // namespace
 
-sim::Vec3 place(const Site& site, const sim::Snapshot& now) {
-  if (site.body < 0) return site.local;
-  const sim::Snapshot::Body& body = now.bodies[std::size_t(site.body)];
-  const double c = std::cos(body.angle), s = std::sin(body.angle);
-  return body.position +
-         Vec3(c * site.local.x() - s * site.local.y(), s * site.local.x() + c * site.local.y(), 0);
+Projection::Projection(const Lens& lens, double scale, const Point& corner)
+    : lens_(lens), scale_(scale), corner_(corner) {
+  const Rect& w = lens.window;
+  window_ = {corner.x() + scale * w.x, corner.y() + scale * w.y, scale * w.width, scale * w.height};
 }
 
-double round_below(double x) {
-  if (!(x > 0)) return 0;
-  const double power = std::pow(10, std::floor(std::log10(x)));
-  for (const double digit : {5.0, 2.0})
-    if (digit * power <= x * (1 + 1e-12)) return digit * power;
-  return power;
+Point Projection::page(const Vec3& place) const {
+  return view_ ? view_->page(place) : Point(corner_ + scale_ * lens_.page(place));
 }
 
-Scales scales(const Figure& figure, const sim::Cast& cast, std::span<const sim::Snapshot> moments,
-              const Layout& layout) {
-  Scales longest;
-  for (const sim::Snapshot& now : moments) {
-    for (const Figure::Vector& vector : figure.vectors) {
-      double* most = scale_of(vector.quantity, longest);
-      if (!most) continue;
-      for (const Reading& each : readings(vector, cast, now)) *most = std::max(*most, each.value.norm());
-    }
-  }
-  const double room = kLongest * std::min(layout.window.width, layout.window.height) / layout.scale;
-  const auto scale = [&](double most) { return most > 1e-9 ? room / most : 0; };
-  return {scale(longest.velocity), scale(longest.force), scale(longest.impulse)};
+double Projection::scale_at(const Vec3& place) const {
+  return view_ ? view_->scale : scale_ * lens_.scale_at(place);
 }
 
 void annotate(const Figure& figure, const Scales& scales, const sim::Cast& cast, const Palette& colours,
-              const Layout& layout, const View& view, const sim::Snapshot& now, List& list) {
-  Notes notes(cast, colours, layout, view, now, list);
+              const Projection& projection, const sim::Snapshot& now, List& list) {
+  Notes notes(cast, colours, projection, now, list);
+  if (figure.axes && !projection.view()) notes.axes();
+  for (const Figure::Cone& cone : figure.cones) notes.cone(cone, scales);
   for (const Figure::Length& length : figure.lengths) notes.length(length);
   for (const Figure::Angle& angle : figure.angles) notes.angle(angle);
   for (const Figure::Vector& vector : figure.vectors) notes.vector(vector, scales);
   for (const Figure::Point& point : figure.points) notes.point(point);
   for (const Figure::Label& label : figure.labels) notes.label(label);
   notes.finish();
-}
-
-bool has_legend(const Figure& figure) {
-  Scales any;
-  return figure.scale_bar || std::any_of(figure.vectors.begin(), figure.vectors.end(),
-                                         [&](const auto& v) { return scale_of(v.quantity, any) != nullptr; });
-}
-
-void draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
-                 double left, double right, double baseline, List& list) {
-  const double middle = baseline - 0.24 * kSmall;
-  const auto write = [&](const std::string& text, double x, Color ink) {
-    const Formula f = formula(text, kSmall, ink);
-    add(f, {x, baseline}, list);
-    return f.width;
-  };
-  // the room's scale at the left
-  if (figure.scale_bar) {
-    const double metres = round_below(0.25 * (right - left) / scale), length = metres * scale;
-    const double tick = 2 * kPoint;
-    const auto line = [&](const Point& a, const Point& b) {
-      list.add({{a, 0.7 * kPoint, colours.ink}, {b, 0.7 * kPoint, colours.ink}}, Cap::butt);
-    };
-    line({left, middle}, {left + length, middle});
-    for (const double x : {left, left + length}) line({x, middle - tick}, {x, middle + tick});
-    write(fmt::format("{:g} \"m\"", metres), left + length + 3 * kPoint, colours.ink);
-  }
-  // from the right: an arrow of each kind
-  double x = right;
-  struct Each {
-    double scale;
-    const char* unit;
-    Quantity quantity;
-  };
-  for (const Each& kind :
-       {Each{scales.impulse, "N s", Quantity::impulse}, Each{scales.force, "N", Quantity::contact},
-        Each{scales.velocity, "m/s", Quantity::velocity}}) {
-    if (!(kind.scale > 0)) continue;
-    const double value = round_below(32 * kPoint / (kind.scale * scale));
-    const double length = value * kind.scale * scale;
-    const Formula f = formula(fmt::format("{:g} \"{}\"", value, kind.unit), kSmall, colours.ink);
-    x -= f.width;
-    add(f, {x, baseline}, list);
-    x -= 3 * kPoint;
-    std::vector<Arrow> arrows;
-    offer({x - length, middle}, {x, middle}, {left, middle - length, right - left, 2 * length}, kArrow,
-          arrows);
-    Figure::Vector of;
-    of.quantity = kind.quantity;
-    draw_arrows(arrows, kArrow, colours.ground, color_of(of, colours), list);
-    x -= length + 10 * kPoint;
-  }
 }
 
 }  // namespace obscura::draw

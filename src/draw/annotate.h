@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "draw/depict.h"
@@ -9,6 +10,29 @@
 
 namespace obscura::draw {
 
+/// Where places of the world lie on a sheet (`kPoint` units a point): of the plane by a view, of space by a
+/// lens.
+class Projection {
+ public:
+  explicit Projection(const View& view) : view_(view), window_(view.window) {}
+  /// A lens's page, put down `scale` times as large with its corner at `corner`.
+  Projection(const Lens& lens, double scale, const Point& corner);
+
+  Point page(const sim::Vec3& place) const;
+  /// Page units a metre there.
+  double scale_at(const sim::Vec3& place) const;
+  const Rect& window() const { return window_; }
+  /// The plane's; none of space.
+  const View* view() const { return view_ ? &*view_ : nullptr; }
+
+ private:
+  std::optional<View> view_;
+  Lens lens_;
+  double scale_ = 1;
+  Point corner_ = {0, 0};
+  Rect window_;
+};
+
 /// How long arrows are, one scale a kind for all panels of a figure: m a unit. 0: none is drawn.
 struct Scales {
   double velocity = 0;  // m/s
@@ -16,15 +40,19 @@ struct Scales {
   double impulse = 0;   // N s
 };
 
-/// The scales at which the longest arrow of each kind is a good part of the picture. Requires a sheet's
-/// layout.
+/// The scales at which the longest arrow of each kind is a good part of a window of `scale` page units a
+/// metre.
 Scales scales(const Figure& figure, const sim::Cast& cast, std::span<const sim::Snapshot> moments,
-              const Layout& layout);
+              const Rect& window, double scale);
 
 /// Draws what a figure says of an instant: arrows, angles, lengths, points, and their words where there is
 /// room for them.
 void annotate(const Figure& figure, const Scales& scales, const sim::Cast& cast, const Palette& colours,
-              const Layout& layout, const View& view, const sim::Snapshot& now, List& list);
+              const Projection& projection, const sim::Snapshot& now, List& list);
+
+/// Rulers in metres along the lower and the left edge of a sheet's window, and how much room they take there.
+void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list);
+inline constexpr double kRulerBelow = 25, kRulerLeft = 27;  // pt
 
 /// Whether a figure has a line of legend, and puts it down from `left` to `right` (page units) on a baseline:
 /// the room's scale, and an arrow of each kind.

@@ -20,7 +20,7 @@ struct Site {
 };
 
 /// What an arrow stands for.
-enum class Quantity { position, velocity, weight, spring, contact, impulse, normal, spin, torque };
+enum class Quantity { position, velocity, weight, spring, contact, impulse, blast, normal, spin, torque };
 
 struct Figure {
   struct Point {
@@ -47,6 +47,10 @@ struct Figure {
     std::string label;
     double offset = 0;  // mm to the left of the way from one to the other
   };
+  struct Cone {
+    int body = -1;  // whose contacts' friction
+    std::string label;
+  };
   struct Label {
     Site at;
     std::string text;
@@ -54,6 +58,11 @@ struct Figure {
   struct Plot : Measured {
     sim::Rational from, to;  // s
     double height = 36;      // mm
+    std::string against;     // a quantity, instead of time
+    std::string over;        // "physics.rate=10,20,40": the end of a run for each, instead of time
+    std::string reference;   // "physics.rate=6400; physics.integrator=rk4": plotted is how far the end is
+                             // from that run's
+    bool log = false;
   };
 
   std::vector<sim::Rational> at;       // s, one a panel; after the impact, where there is one
@@ -65,16 +74,18 @@ struct Figure {
   int columns = 0;
   bool room = true;  // the run's picture; false: plots alone
   bool scale_bar = false;
+  bool axes = false;    // the room's
   std::string formula;  // above the picture
   std::vector<Point> points;
   std::vector<Vector> vectors;
   std::vector<Angle> angles;
   std::vector<Length> lengths;
+  std::vector<Cone> cones;
   std::vector<Label> labels;
   std::vector<Plot> plots;
 };
 
-/// Where a site is at an instant of the plane.
+/// Where a site is at an instant.
 sim::Vec3 place(const Site& site, const sim::Snapshot& now);
 
 }  // namespace obscura::draw

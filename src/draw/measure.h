@@ -15,7 +15,7 @@ struct Measure {
   const char *label, *unit;  // what its line is called, as mathematics; of its values
   std::string_view color;    // of the palette; empty: ink
   bool of_body;              // else of all the room
-  double (*read)(const sim::Snapshot& now, const sim::Snapshot::Body& body);
+  double (*read)(const sim::Snapshot& now, int body);
 
   /// Its value; `body` is the one that has it.
   double at(const sim::Snapshot& now, int body) const;

@@ -25,13 +25,14 @@ Layout lay_out(const sim::Cast& cast, const Look& look, const Extent& extent, co
   const double band = cast.walls.empty() ? 0 : kPrint * (look.hatching ? kBand : kWallLine);
   const double around = kMargin * kPoint + band;
   const Point size = (world.high - world.low).head<2>();
-  layout.scale = std::min((layout.width - 2 * around) / size.x(),
-                          (sheet.tallest * layout.width - 2 * around) / size.y());
+  const double left = kPoint * sheet.left, wide = layout.width - left;
+  layout.scale =
+      std::min((wide - 2 * around) / size.x(), (sheet.tallest * layout.width - 2 * around) / size.y());
   const double high = layout.scale * size.y() + 2 * around;
   layout.height = high + kPoint * (sheet.above + sheet.below);
   layout.aspect = layout.width / layout.height;
-  layout.window = {0, kPoint * sheet.above, layout.width, high};
-  layout.middle = {layout.width / 2, kPoint * sheet.above + high / 2};
+  layout.window = {left, kPoint * sheet.above, wide, high};
+  layout.middle = {left + wide / 2, kPoint * sheet.above + high / 2};
   return layout;
 }
 

@@ -14,10 +14,10 @@ inline constexpr double kPrint = 0.9 / kOutline * kPoint;
 
 /// A picture for print. Type and lines have their own size in points, however wide it is.
 struct Sheet {
-  double width = 238.11;           // pt: 84 mm, a column
-  double tallest = 1.3;            // heights a width
-  std::optional<Extent> region{};  // of the world; none: what a camera fits
-  double above = 0, below = 0;     // pt left free
+  double width = 238.11;                  // pt: 84 mm, a column
+  double tallest = 1.3;                   // heights a width
+  std::optional<Extent> region{};         // of the world; none: what a camera fits
+  double above = 0, below = 0, left = 0;  // pt left free
 };
 
 /// Lays a sheet out in `kPoint` units a point: the world as wide as the sheet, its height what that takes.

@@ -42,9 +42,8 @@ std::vector<std::uint8_t> page(const draw::Picture& picture, Form form, const Sh
   const std::unique_ptr<Pen> pen =
       form == Form::svg ? svg_pen(sheet.width, height, sheet) : pdf_pen(sheet.width, height, sheet);
   if (!pen) throw Error("this build has no Cairo and writes no PDF");
-  const draw::Rect whole{0, 0, sheet.width, height};
   if (raster) {
-    pen->image(whole, *raster);
+    pen->image({0, 0, raster->width * raster->pixel, raster->height * raster->pixel}, *raster);
   } else {
     if (!picture.transparent)
       pen->fill({{0, 0}, {sheet.width, 0}, {sheet.width, height}, {0, height}}, picture.ground);

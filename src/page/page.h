@@ -28,10 +28,11 @@ struct Sheet {
   std::string title;      // of the file's properties
 };
 
-/// Colours of a picture's solids, which no vector says: put under its moving list, over the whole page.
-/// RGBA8, row 0 at the top, alpha not multiplied in.
+/// Colours of a picture's solids, which no vector says: put under its moving list, from the page's upper left
+/// corner on. RGBA8, row 0 at the top, alpha not multiplied in.
 struct Raster {
   int width = 0, height = 0;
+  double pixel = 0;  // pt
   const std::uint8_t* pixels = nullptr;
   std::vector<std::uint8_t> png{};  // the same as a file, for SVG
 };

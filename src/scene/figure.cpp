@@ -15,15 +15,16 @@ namespace {
 
 draw::Quantity quantity(const std::string& word) {
   using enum draw::Quantity;
-  constexpr std::array<std::pair<const char*, draw::Quantity>, 9> words{{{"position", position},
-                                                                         {"velocity", velocity},
-                                                                         {"weight", weight},
-                                                                         {"spring", spring},
-                                                                         {"contact", contact},
-                                                                         {"impulse", impulse},
-                                                                         {"normal", normal},
-                                                                         {"spin", spin},
-                                                                         {"torque", torque}}};
+  constexpr std::array<std::pair<const char*, draw::Quantity>, 10> words{{{"position", position},
+                                                                          {"velocity", velocity},
+                                                                          {"weight", weight},
+                                                                          {"spring", spring},
+                                                                          {"contact", contact},
+                                                                          {"impulse", impulse},
+                                                                          {"blast", blast},
+                                                                          {"normal", normal},
+                                                                          {"spin", spin},
+                                                                          {"torque", torque}}};
   for (const auto& [known, value] : words)
     if (word == known) return value;
   return position;
@@ -115,6 +116,7 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
   if (const Node* columns = fields.given("columns")) figure.columns = int(columns->number());
   figure.room = fields.flag("room");
   figure.scale_bar = fields.flag("scale_bar");
+  figure.axes = fields.flag("axes");
   figure.formula = fields.text("formula");
   figure.vary = fields.text("vary");
   if (const auto equals = figure.vary.find('=');
@@ -135,6 +137,10 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
     if (position ? !vector.to && vector.body < 0 : vector.body < 0)
       complaints.add(node.place, position ? "a position needs 'to', a place, or 'of', a body"
                                           : "this vector needs 'of', the body that has it");
+    const bool turning = vector.quantity == draw::Quantity::spin || vector.quantity == draw::Quantity::torque;
+    if (D == 3 && turning)
+      complaints.add(its.place("quantity"),
+                     "arcs of spin and torque are of the plane; in space there are none yet");
     figure.vectors.push_back(vector);
   }
   for (const Node& node : tables(fields, "angle")) {
@@ -143,7 +149,13 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
                               read.site(its, "to"), its.text("label")};
     if (!its.given("of") && (!its.given("at") || !its.given("from") || !its.given("to")))
       complaints.add(node.place, "an angle needs 'of', a body, or 'at', 'from' and 'to', three places");
+    if (D == 3 && its.given("of"))
+      complaints.add(its.place("of"), "in space a body has no one angle: 'at', 'from' and 'to' say which");
     figure.angles.push_back(angle);
+  }
+  for (const Node& node : tables(fields, "cone")) {
+    const Fields its(node, "figure.cone");
+    figure.cones.push_back({read.body(its, "of"), its.text("label")});
   }
   for (const Node& node : tables(fields, "length")) {
     const Fields its(node, "figure.length");
@@ -163,6 +175,21 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
     plot.from = its.rational("from");
     plot.to = its.given("to") ? its.rational("to") : Fields(top, "").rational("duration");
     plot.height = its.number("height");
+    if (const Node* against = its.given("against")) plot.against = against->text();
+    plot.over = its.text("over");
+    plot.reference = its.text("reference");
+    plot.log = its.text("scale") == "log";
+    const auto equals = plot.over.find('=');
+    if (its.given("over") && (equals == 0 || equals == std::string::npos))
+      complaints.add(its.place("over"),
+                     "'over': expected a path and its values, as in \"physics.rate=10,20,40\"");
+    if (its.given("over") && its.given("against"))
+      complaints.add(its.place("against"), "a plot is 'against' a quantity or 'over' a key, not both");
+    if (its.given("reference") && !its.given("over"))
+      complaints.add(its.place("reference"), "'reference' is for a plot 'over' a key");
+    if (const draw::Measure* other = draw::measure(plot.against); other && other->of_body && plot.body < 0)
+      complaints.add(its.place("against"),
+                     fmt::format("a plot against '{}' needs 'of', the body that has it", plot.against));
     if (!(plot.from < plot.to)) complaints.add(its.place("from"), "a plot needs 'from' before 'to'");
     figure.plots.push_back(plot);
   }

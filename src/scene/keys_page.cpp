@@ -321,6 +321,26 @@ label   = "h"
 quantity = ["energy", "kinetic", "potential"]
 ```
 
+In space each camera has a panel for each instant: what is lit is pixels, and lines, arrows and type are vectors over them. Points, vectors, lengths
+and angles between places are drawn there too. `axes = true` puts rulers beside a picture of the plane, and the three axes into one of space.
+
+A plot goes over time, `against` another quantity, or `over` the values of a key, a run for each; with `reference` it shows how far each run ends from
+another one, and on logarithmic axes by which power:
+
+```toml
+[figure]
+vary = "physics.integrator=euler,midpoint,rk4"                   # a line each
+room = false                                                     # the plot alone
+
+[[figure.plot]]
+quantity  = ["x"]
+of        = "ball"
+to        = 2
+over      = "physics.rate=20,40,80,160,320"
+reference = "physics.rate=10000; physics.integrator=rk4"
+scale     = "log"
+```
+
 Labels are mathematics: letters are italic, words of three letters and more and digits upright. `_` and `^` make sub- and superscripts (`v_center`,
 `a_{ij}`, `x^2`), `'` a prime, `*r*` a vector, `"in quotes"` words; `\omega` and the other Greek letters, `\Delta`, `\times`, `\cdot`, `\perp`, `\dot{q}`,
 `\bar{v}`, `\vec{r}`. In TOML a backslash is written twice, or the string stands in single quotes.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/blast.h"
 #include "sim/energy.h"
 
 namespace obscura::sim {
@@ -43,9 +44,9 @@ Eigen::Quaterniond oriented(const Turn<D>& turn) {
 template <int D>
 Cast::Body shown(const Body<D>& body) {
   const Shape<D>& shape = body.shape;
-  Cast::Body it{body.name, shape.kind, shape.radius, lifted<D>(shape.half),
-                body.mass, body.fixed, body.turns(), each_lifted<D>(shape.vertices),
-                {},        shape.faces};
+  Cast::Body it{body.name, shape.kind,  shape.radius, lifted<D>(shape.half),
+                body.mass, body.fixed,  body.turns(), each_lifted<D>(shape.vertices),
+                {},        shape.faces, body.friction};
   for (const Shape<D>& part : shape.parts) {
     it.parts.push_back({part.kind, part.radius, lifted<D>(part.half), lifted<D>(part.center),
                         each_lifted<D>(part.vertices), part.faces, oriented<D>(part.turn)});
@@ -70,7 +71,31 @@ Snapshot::Contact shown(const Contact<D>& contact) {
   return it;
 }
 
+// what explosions push each body with: held through their interval, or as it stands now
+template <int D>
+void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
+  const Blasts<D> blasts(model);
+  for (std::size_t i = 0; i < state.blasts.size(); ++i) {
+    const Blast<D>& it = state.blasts[i];
+    if (!it.on) continue;
+    for (int body = 0; body < int(model.bodies.size()); ++body) {
+      if (model.bodies[body].fixed) continue;
+      const bool held = it.forces.size() == model.bodies.size();
+      const Vec<D> push =
+          held ? it.forces[std::size_t(body)] : blasts.push(model.explosions[i], body, stance(state, body)).f;
+      now.bodies[std::size_t(body)].blast += lifted<D>(push);
+    }
+  }
+}
+
 }  // namespace
+
+double friction(const Cast& cast, const Snapshot::Contact& contact) {
+  const double own = cast.bodies[std::size_t(contact.body)].friction;
+  if (contact.other >= 0) return std::sqrt(own * cast.bodies[std::size_t(contact.other)].friction);
+  const std::optional<double>& wall = cast.walls[std::size_t(contact.wall)].friction;
+  return wall ? std::sqrt(own * *wall) : own;
+}
 
 template <int D>
 Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
@@ -80,7 +105,7 @@ Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   cast.gravity = lifted<D>(model.gravity);
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Wall<D>& wall : model.walls)
-    cast.walls.push_back({lifted<D>(wall.point), lifted<D>(wall.normal)});
+    cast.walls.push_back({lifted<D>(wall.point), lifted<D>(wall.normal), wall.friction});
   for (const Spring<D>& s : model.springs)
     cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness});
   for (const Joint<D>& j : model.joints)
@@ -118,8 +143,11 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
       body.orientation = oriented<D>(state.turn[k]);
     }
   }
+  if (blasting(state)) blow(model, state, now);
   for (const Spring<D>& s : model.springs) {
-    now.springs.push_back({lifted<D>(place(state, s.a)), lifted<D>(place(state, s.b))});
+    const Vec<D> a = place(state, s.a), b = place(state, s.b);
+    now.springs.push_back(
+        {lifted<D>(a), lifted<D>(b), s.a.body, s.b.body, -s.stiffness * ((b - a).norm() - s.rest_length)});
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint<D>& j = model.joints[i];

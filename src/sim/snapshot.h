@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,9 +36,11 @@ struct Cast {
     std::vector<Vec3> vertices;  // of a polygon or hull, in its own frame from its centre of mass, m
     std::vector<Part> parts;     // of a compound
     std::vector<std::vector<int>> faces = {};  // of a hull: loops of vertices, counter-clockwise from outside
+    double friction = 0;                       // Coulomb's mu
   };
   struct Wall {
     Vec3 point, normal;
+    std::optional<double> friction{};  // none: the body's own holds
   };
   struct Spring {
     int a = -1, b = -1;  // bodies; -1: the room
@@ -80,11 +83,14 @@ struct Snapshot {
     Vec3 velocity = Vec3::Zero();
     Vec3 spin = Vec3::Zero();  // rad/s; in the plane (0, 0, w)
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-    double angle = 0;      // plane: rad, not wrapped
-    bool at_rest = false;  // frozen: steps leave it alone
+    double angle = 0;           // plane: rad, not wrapped
+    bool at_rest = false;       // frozen: steps leave it alone
+    Vec3 blast = Vec3::Zero();  // what explosions push it with, N
   };
   struct Spring {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
+    int holds_a = -1, holds_b = -1;           // bodies; -1: the room
+    double push = 0;                          // of its stiffness, N; negative: it pulls
   };
   struct Mouse {
     bool pressed = false;
@@ -119,6 +125,9 @@ struct Snapshot {
   Vec3 momentum = Vec3::Zero();          // kg m/s
   Vec3 angular_momentum = Vec3::Zero();  // about the origin, kg m^2/s; in the plane (0, 0, L)
 };
+
+/// Coulomb's mu between the two that touch.
+double friction(const Cast& cast, const Snapshot::Contact& contact);
 
 /// The ways of chosen bodies on the physics clock, the same for every frame rate: what a trail is drawn from.
 /// Points come at equal steps and at each impact, so that a bounce keeps its cusp.
