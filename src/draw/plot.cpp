@@ -136,7 +136,7 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
   }
 
   // room for the numbers at the left, the names at the right
-  double numbers = 0, names = formula(plot.name, kType * point, {}).width;
+  double numbers = 0, names = plot.name == Plot{}.name ? 0 : formula(plot.name, kType * point, {}).width;
   for (const std::string& each : upward(area).numbers)
     numbers = std::max(numbers, formula(each, kType * point, {}).width);
   for (const Series& each : plot.lines)
@@ -195,8 +195,8 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
   }
   write(plot.name, {right + 4 * area.point, bottom + tick + 7.5 * area.point}, 0, colours.ink);
   if (!plot.unit.empty())
-    write(plot.unit == "°" ? "\"deg\"" : "\"" + plot.unit + "\"", {left, area.top - 8 * area.point}, 0.5,
-          colours.ink);
+    write(plot.unit == "°" ? "\"deg\"" : "\"" + plot.unit + "\"",
+          {left, area.top - (plot.log || !plot.dots.empty() ? 8 : 5) * area.point}, 0.5, colours.ink);
   for (const double mark : plot.marks)
     if (mark >= area.first && mark <= area.last)
       line(area.at(mark, area.low), area.at(mark, area.high), 0.3 * area.point, colours.hatch);
