@@ -399,7 +399,7 @@ TEST(Complaints, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
           "a.toml:2:12: 'quantity': expected one at least, such as [\"energy\"]");
   refused("[[film.plot]]\nquantity = [\"warmth\"]\n[[ball]]",
           "a.toml:2:13: 'quantity': expected one of energy, kinetic, potential, gravity, springs, x, height, "
-          "speed, vx, vy, angle, spin, got 'warmth'");
+          "speed, vx, vy, angle, spin, length, push, got 'warmth'");
   refused(
       "[[film.plot]]\nquantity = [\"energy\"]\nsize = 50\n[[film.plot]]\nquantity = [\"energy\"]\n[[ball]]",
       "a.toml:4:1: the plots take 80 percent of the picture: 75 is the most");
