@@ -10,6 +10,7 @@ namespace obscura::app {
 // exit code in `exit`.
 
 void add_render(CLI::App& program, int& exit);
+void add_join(CLI::App& program, int& exit);
 void add_new(CLI::App& program, int& exit);
 void add_check(CLI::App& program, int& exit);
 void add_states(CLI::App& program, int& exit);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "app/output.h"
 #include "app/progress.h"
@@ -20,6 +22,12 @@ struct FilmOptions {
   media::PipeFormat pipe = media::PipeFormat::y4m;
   bool overwrite = true;
   bool transparent = false;  // PNG with the ground left out
+
+  bool resume = false;                       // go on from what is whole
+  std::optional<std::pair<int, int>> shard;  // i of n, from 1: only this share, not joined
+  std::optional<int> prepare;                // draw nothing: leave what so many shards begin with
+  sim::Rational checkpoint_every{0, 1};      // s; 0: none are kept when the film is whole
+  std::optional<std::string> from_checkpoint;
 };
 
 /// What libav is asked for by this scene.

@@ -114,11 +114,13 @@ bool Frames::next(media::Image& image) {
   return true;
 }
 
-std::string file_hash(const std::string& path) {
+std::string file_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  std::string bytes((std::istreambuf_iterator<char>(file)), {});
   if (!file.good() && !file.eof()) throw media::Error(path + ": cannot be read");
-  return hash(bytes);
+  return bytes;
 }
+
+std::string file_hash(const std::string& path) { return hash(file_bytes(path)); }
 
 }  // namespace obscura::app

@@ -40,7 +40,8 @@ class Frames {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The hash of a file's bytes. Throws media::Error.
+/// A file's bytes, and their hash. Throws media::Error.
+std::string file_bytes(const std::string& path);
 std::string file_hash(const std::string& path);
 
 }  // namespace obscura::app

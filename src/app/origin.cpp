@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/exit.h"
+#include "scene/difference.h"
+#include "scene/error.h"
 
 namespace obscura::app {
 
@@ -47,6 +49,45 @@ media::Tags Origin::tags(const std::string& title) const {
   media::Tags tags = {{"Software", "obscura " OBSCURA_VERSION}, {"obscura", json.dump()}};
   if (!title.empty()) tags["Title"] = title;
   return tags;
+}
+
+std::string discord(const Origin& there, const Origin& here) {
+  const auto differ = [](const char* what, const std::string& a, const std::string& b) {
+    const auto said = [](const std::string& text) { return text.empty() ? std::string("none") : text; };
+    return fmt::format("{} is {} there, and {} here", what, said(a), said(b));
+  };
+  if (there.scene_hash != here.scene_hash || there.sets != here.sets) {
+    try {
+      const auto all = scene::differences({there.scene_text, there.sets}, {here.scene_text, here.sets});
+      if (!all.empty()) return differ(("the scene's " + all[0].path).c_str(), all[0].a, all[0].b);
+    } catch (const scene::Error&) {
+    }
+    return "the scene's text is another";
+  }
+  const auto size = [](const Origin& o) { return fmt::format("{}x{}", o.width, o.height); };
+  const auto crf = [](const Origin& o) { return o.crf ? fmt::format("{}", *o.crf) : std::string(); };
+  const auto word = [](bool yes) { return std::string(yes ? "on" : "off"); };
+  struct Fact {
+    const char* what;
+    std::string a, b;
+  };
+  for (const Fact& fact : {Fact{"obscura's version", there.version, here.version},
+                           {"the size", size(there), size(here)},
+                           {"the frame rate", there.fps, here.fps},
+                           {"the theme", there.theme, here.theme},
+                           {"the camera", there.camera, here.camera},
+                           {"--transparent", word(there.transparent), word(here.transparent)},
+                           {"the run", there.trajectory, here.trajectory},
+                           {"the choice of frames", there.shots, here.shots},
+                           {"the encoder", there.encoder, here.encoder},
+                           {"the preset", there.preset, here.preset},
+                           {"crf", crf(there), crf(here)},
+                           {"--native", word(there.native), word(here.native)},
+                           {"OpenGL", there.gl_version, here.gl_version},
+                           {"the renderer", there.gl_renderer, here.gl_renderer}}) {
+    if (fact.a != fact.b) return differ(fact.what, fact.a, fact.b);
+  }
+  return "";
 }
 
 Origin origin_of(const scene::Scene& scene) {

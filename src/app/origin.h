@@ -41,6 +41,10 @@ struct Origin {
   media::Tags tags(const std::string& title) const;
 };
 
+/// What keeps pictures of two origins from being of one film, in words: "the size is 640x360 there, and
+/// 320x180 here". Empty where nothing does; frame, instant and state may differ.
+std::string discord(const Origin& there, const Origin& here);
+
 /// What all pictures of a scene have in common.
 Origin origin_of(const scene::Scene& scene);
 

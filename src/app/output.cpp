@@ -60,6 +60,18 @@ std::string Output::partial() const {
   return (p.parent_path() / (p.stem().string() + ".partial" + p.extension().string())).string();
 }
 
+namespace {
+
+std::string beside(const std::string& path, const char* ending) {
+  const auto p = pattern(path);
+  return (p ? path.substr(0, p->begin) + "frame" + path.substr(p->end) : path) + ending;
+}
+
+}  // namespace
+
+std::string Output::parts() const { return beside(path, ".parts"); }
+std::string Output::checkpoints() const { return beside(path, ".checkpoints"); }
+
 Output output(const std::optional<std::string>& out, const std::string& name, bool still,
               std::int64_t frames) {
   if (!out) {

@@ -16,6 +16,10 @@ struct Output {
   std::string file(std::int64_t n) const;
   /// What stands beside `path` when the film ended early: room.partial.mp4.
   std::string partial() const;
+  /// The folders for what is whole before all of it is, and for checkpoints that were asked for:
+  /// room.mp4.parts, room.mp4.checkpoints; of frames/{frame:04}.png frames/frame.png.parts.
+  std::string parts() const;
+  std::string checkpoints() const;
 };
 
 /// Reads OUT. None: render_out/<name>.mp4, or .png for a still. A folder's name with its slash takes

@@ -79,6 +79,7 @@ int main(int argc, const char* const* argv) {
   program.get_formatter()->column_width(34);
   int exit = kDone;
   add_render(program, exit);
+  add_join(program, exit);
   add_figure(program, exit);
   add_new(program, exit);
   add_check(program, exit);

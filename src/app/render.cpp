@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <memory>
 
@@ -23,6 +24,7 @@ struct Flags {
   std::string scene;
   std::vector<std::string> sets;
   std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec, camera, states;
+  std::optional<std::string> shard, checkpoint_every;
   std::optional<double> crf;
   bool draft = false, no_overwrite = false, interpolate = false;
   FilmOptions film;
@@ -129,6 +131,33 @@ void suit_run(const Flags& flags, const scene::Scene& scene, Shots& shots) {
   }
 }
 
+// "2/4": i of n, from 1
+std::pair<int, int> parse_shard(const std::string& text) {
+  int i = 0, n = 0;
+  const char *begin = text.data(), *end = begin + text.size();
+  const auto first = std::from_chars(begin, end, i);
+  const bool slash = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
+  const auto second = slash ? std::from_chars(first.ptr + 1, end, n) : first;
+  if (!slash || second.ec != std::errc() || second.ptr != end || i < 1 || n < i)
+    throw UsageError(fmt::format("--shard {}: expected I/N, the I-th of N, as in 1/4", text));
+  return {i, n};
+}
+
+// what is made of a film, and from where
+void divide(Flags& flags, const Output& out) {
+  if (flags.shard) flags.film.shard = parse_shard(*flags.shard);
+  if (flags.checkpoint_every)
+    flags.film.checkpoint_every = seconds("--checkpoint-every", *flags.checkpoint_every);
+  if (flags.checkpoint_every && flags.film.checkpoint_every.num == 0)
+    throw UsageError("--checkpoint-every 0: expected seconds above 0");
+  if (flags.film.shard && flags.film.prepare) throw UsageError("--shard and --prepare exclude each other");
+  const bool whole = out.form == Output::Form::pipe || out.form == Output::Form::still;
+  if (whole && (flags.film.shard || flags.film.prepare || flags.film.resume))
+    throw UsageError("--resume, --shard and --prepare are for movies and sequences of pictures");
+  if (out.form == Output::Form::pipe && flags.checkpoint_every)
+    throw UsageError("--checkpoint-every needs an output with a name");
+}
+
 int render(Flags flags) {
   flags.film.overwrite = !flags.no_overwrite;
   scene::Scene scene = scene::read(flags.scene, flags.sets);
@@ -146,6 +175,7 @@ int render(Flags flags) {
   if (flags.film.transparent && out.form != Output::Form::frames && out.form != Output::Form::still) {
     throw UsageError("--transparent is for PNG: movies and streams have no alpha");
   }
+  divide(flags, out);
   for (const sim::Trouble& ahead : scene.forebodings()) {
     fmt::print(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
   }
@@ -204,6 +234,25 @@ void add_render(CLI::App& program, int& exit) {
           CLI::CheckedTransformer(std::map<std::string, media::PipeFormat>{{"y4m", media::PipeFormat::y4m},
                                                                            {"rgba", media::PipeFormat::rgba}})
               .description(""));
+  command->add_flag("--resume", flags->film.resume,
+                    "Go on from what is whole of a film that was stopped, to the same bytes");
+  command
+      ->add_option("--shard", flags->shard,
+                   "Make this share of the film alone, as in 2/4; obscura join makes the movie of them")
+      ->type_name("I/N");
+  command
+      ->add_option("--prepare", flags->film.prepare,
+                   "Draw nothing: simulate once, and leave the state that each of N shards begins with")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000));
+  command
+      ->add_option("--checkpoint-every", flags->checkpoint_every,
+                   "Keep the whole state this often (s of the run), in OUT.checkpoints")
+      ->type_name("SECONDS");
+  command
+      ->add_option("--from-checkpoint", flags->film.from_checkpoint,
+                   "Begin with the state in this file; for --from at its time or later")
+      ->type_name("FILE");
   command
       ->add_option("-j,--jobs", flags->film.workers, "Workers that draw and encode side by side [one a core]")
       ->check(CLI::Range(1, 256));
@@ -235,7 +284,9 @@ void add_render(CLI::App& program, int& exit) {
       "  obscura render scenes/room.toml -o 'frames/{frame:04}.png' --from 2 --to 3\n"
       "  obscura render scenes/room.toml --draft --set ball.elasticity=1\n"
       "  obscura render scenes/room.toml --states student.csv --fps 30\n"
-      "  obscura render scenes/room.toml -o - | ffplay -");
+      "  obscura render scenes/room.toml -o - | ffplay -\n"
+      "  obscura render scenes/room.toml --resume       after a power cut\n"
+      "While a film is made, what is whole of it lies in OUT.parts: it plays, and --resume goes on from it.");
   command->callback([flags, &exit] { exit = render(*flags); });
 }
 

@@ -17,6 +17,8 @@ namespace {
 // a pixel of the longest way; and how much memory they may take, 2 MiB a frame
 constexpr double kStill = 0.05, kFewest = 4, kMost = 64, kMostBytes = 2 << 20;
 
+constexpr double kTrailMargin = 0.1;  // s
+
 sim::Rational microseconds(double seconds) { return sim::rational(std::llround(seconds * 1e6), 1'000'000); }
 
 double last_time(const sim::Track& track) {
@@ -44,20 +46,52 @@ sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene) 
 
 Simulation::Simulation(const scene::Scene& scene, const Shots& shots, const draw::Depictor& artist,
                        const SimulationOptions& options)
-    : shots_(shots), artist_(artist), film_(scene.film), options_(options), run_(scene.run()) {
+    : shots_(shots), artist_(artist), film_(scene.film), options_(options), take_(options.first) {
   for (const draw::BodyLook& look : scene.look.bodies) contacts_ = contacts_ || look.contact;
   trail_ = artist.longest_trail();
-  run_->track(artist.trailed());
+  due_ = options_.every;
+  begin(scene.run());
+}
+
+void Simulation::begin(std::unique_ptr<sim::Run> run) {
+  run_ = std::move(run);
+  run_->track(artist_.trailed());
   run_->heed(interrupted);
+  at_ = run_->now();
+  ways_.clear();
+  while (options_.every.num > 0 && due_ <= at_) due_ = due_ + options_.every;
+}
+
+std::int64_t Simulation::step_before(sim::Rational t) const {
+  // a trail needs a point before its end
+  if (trail_ > 0) t = t - microseconds(std::min(trail_, 1e9) + kTrailMargin);
+  return sim::floor(t * run_->rate());
+}
+
+// what Run::at says, and on the way there at_every
+std::variant<sim::Snapshot, sim::Trouble, sim::Stopped> Simulation::at(sim::Rational t) {
+  while (options_.every.num > 0 && due_ <= t) {
+    auto moment = run_->at(due_);
+    if (!std::holds_alternative<sim::Snapshot>(moment)) return moment;
+    options_.at_every(*run_, due_);
+    due_ = due_ + options_.every;
+  }
+  return run_->at(t);
 }
 
 std::optional<Take> Simulation::next() {
-  if (trouble_ || next_ >= shots_.size() || interrupted()) return {};
+  if (trouble_ || interrupted()) return {};
+  const auto begins = [&] { return take_ * options_.frames; };
+  while (take_ < options_.last && begins() < shots_.size() && options_.skip(take_)) ++take_;
+  if (take_ >= options_.last || begins() >= shots_.size()) return {};
+  next_ = begins();
   approach(shots_[next_].time);
+  if (!trouble_ && !interrupted()) options_.begin_take(*run_);
   Take take;
+  take.number = take_++;
   while (int(take.shots.size()) < options_.frames && next_ < shots_.size() && !trouble_ && !interrupted()) {
     const Shot shot = shots_[next_];
-    auto moment = run_->at(shot.time);
+    auto moment = at(shot.time);
     if (auto* trouble = std::get_if<sim::Trouble>(&moment)) {
       trouble_ = *trouble;
       break;
@@ -98,7 +132,7 @@ std::vector<sim::Snapshot> Simulation::open(const sim::Snapshot& moment) {
     sim::Rational t = microseconds(begins + (until - begins) * (2 * k + 1) / (2 * count));
     if (t < from) t = from;
     if (next_ + 1 < shots_.size() && shots_[next_ + 1].time < t) t = shots_[next_ + 1].time;
-    auto found = run_->at(t);
+    auto found = at(t);
     if (auto* trouble = std::get_if<sim::Trouble>(&found)) trouble_ = *trouble;
     if (!std::holds_alternative<sim::Snapshot>(found)) break;
     seen.push_back(std::move(std::get<sim::Snapshot>(found)));
@@ -109,10 +143,12 @@ std::vector<sim::Snapshot> Simulation::open(const sim::Snapshot& moment) {
 
 // goes on to just before t in strides, so that the ways of a long beginning are not all kept
 void Simulation::approach(sim::Rational t) {
+  const std::int64_t here = sim::floor(run_->now() * run_->rate());
+  if (auto nearer = options_.nearer(here, step_before(t))) begin(std::move(nearer));
   const sim::Rational stride{1, 1};
   while (at_ + stride < t && !trouble_ && !interrupted()) {
     at_ = at_ + stride;
-    auto moment = run_->at(at_);
+    auto moment = at(at_);
     if (auto* trouble = std::get_if<sim::Trouble>(&moment)) trouble_ = *trouble;
     keep_ways();
   }

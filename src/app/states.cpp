@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/checkpoint.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/interrupt.h"
@@ -165,7 +166,7 @@ const char* solver_name(const sim::Model<D>& model) {
 
 struct Flags {
   std::string scene, format = "json";
-  std::optional<std::string> at, every;
+  std::optional<std::string> at, every, from_checkpoint;
   std::vector<std::string> sets;
 };
 
@@ -181,8 +182,12 @@ std::vector<sim::Rational> times_of(const Flags& flags, const scene::Scene& scen
 
 int states(const Flags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
-  const auto times = times_of(flags, scene);
-  const auto run = scene.run();
+  auto times = times_of(flags, scene);
+  const auto run = flags.from_checkpoint ? run_from(*flags.from_checkpoint, scene) : scene.run();
+  std::erase_if(times, [&](sim::Rational t) { return !flags.at && t < run->now(); });
+  if (!times.empty() && times.front() < run->now())
+    throw UsageError(fmt::format("{}: is of t = {:g} s, after {:g} s", *flags.from_checkpoint,
+                                 sim::value(run->now()), sim::value(times.front())));
   run->heed(interrupted);
   const bool as_json = flags.format == "json";
   if (as_json) {
@@ -233,6 +238,10 @@ void add_states(CLI::App& program, int& exit) {
   command->add_option("--at", flags->at, "Instants (s), as in 0,0.5,2 or 0:10:0.5")->type_name("LIST");
   command->add_option("--every", flags->every, "Instants from 0 to the duration, this far apart (s) [1]")
       ->type_name("SECONDS");
+  command
+      ->add_option("--from-checkpoint", flags->from_checkpoint,
+                   "Begin with the state in this file (render --checkpoint-every)")
+      ->type_name("FILE");
   command->add_option("--format", flags->format, "json or csv [json]")->check(CLI::IsMember({"json", "csv"}));
   add_sets(*command, flags->sets);
   command->footer(

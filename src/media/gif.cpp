@@ -16,7 +16,6 @@
 #include <cstring>
 #include <memory>
 #include <new>
-#include <span>
 
 #include "media/error.h"
 #include "media/palette.h"
@@ -273,6 +272,53 @@ void GifWriter::add(const Segment& segment) {
     out.insert(out.end(), packet.bytes.begin() + 8, packet.bytes.end());
   }
   file_.write(out);
+}
+
+Part gif_part(const std::string& path, std::span<const std::uint8_t> bytes) {
+  const auto take = [&](std::size_t n) {
+    if (bytes.size() < n) throw Error(path + ": is no whole GIF");
+    const auto taken = bytes.first(n);
+    bytes = bytes.subspan(n);
+    return taken;
+  };
+  // blocks of up to 255 bytes, each after its length, to the empty one
+  const auto take_blocks = [&](std::vector<std::uint8_t>* into, bool sizes) {
+    for (;;) {
+      const std::uint8_t size = take(1)[0];
+      if (into && sizes) into->push_back(size);
+      if (size == 0) return;
+      const auto block = take(size);
+      if (into) into->insert(into->end(), block.begin(), block.end());
+    }
+  };
+  Part part;
+  Segment& segment = part.segment;
+  std::vector<std::uint8_t> words;
+  take(13);
+  const auto palette = take(3 * 256);
+  segment.extradata.assign(palette.begin(), palette.end());
+  for (;;) {
+    const std::uint8_t kind = take(1)[0];
+    if (kind == 0x3b && bytes.empty()) break;
+    if (kind == 0x21) {
+      const bool comment = take(1)[0] == 0xfe;
+      take_blocks(comment ? &words : nullptr, false);
+      continue;
+    }
+    if (kind != 0x2c) throw Error(path + ": is no whole GIF");
+    Segment::Packet packet;
+    const auto place = take(8);
+    packet.bytes.assign(place.begin(), place.end());
+    take(1);  // no palette of its own
+    packet.bytes.push_back(take(1)[0]);
+    take_blocks(&packet.bytes, true);
+    packet.pts = packet.dts = segment.frames;
+    packet.key = segment.frames++ == 0;
+    segment.packets.push_back(std::move(packet));
+  }
+  if (segment.frames == 0) throw Error(path + ": is no whole GIF");
+  part.tags = tags_of_comment({words.begin(), words.end()});
+  return part;
 }
 
 void GifWriter::close(const std::string& instead) {

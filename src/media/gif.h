@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "media/file.h"
 #include "media/image.h"
 #include "media/movie.h"
+#include "media/part.h"
 
 namespace obscura::media {
 
@@ -46,5 +48,8 @@ class GifWriter {
   std::vector<std::uint8_t> palette_;  // of the first segment: the file's own
   std::int64_t frames_ = 0;
 };
+
+/// What a GIF of one segment holds that GifWriter made. Throws Error where it is none, or not whole.
+Part gif_part(const std::string& path, std::span<const std::uint8_t> bytes);
 
 }  // namespace obscura::media

@@ -109,12 +109,26 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
   }
   if (!spec.tags.empty())
     av_dict_set(&format_->metadata, "comment", fitting_comment(spec.tags, kind).c_str(), 0);
+}
 
+// the header, with the codec's own as the first segment has it: an encoder's, or that of a file it lay in
+void Muxer::begin(const std::vector<std::uint8_t>& extradata) {
+  AVCodecParameters& codec = *stream_->codecpar;
+  av_freep(&codec.extradata);
+  codec.extradata_size = 0;
+  if (!extradata.empty()) {
+    codec.extradata = static_cast<std::uint8_t*>(av_mallocz(extradata.size() + AV_INPUT_BUFFER_PADDING_SIZE));
+    if (!codec.extradata) throw std::bad_alloc();
+    std::copy(extradata.begin(), extradata.end(), codec.extradata);
+    codec.extradata_size = int(extradata.size());
+  }
   AVDictionary* options = nullptr;
-  if (quicktime) av_dict_set(&options, "movflags", "+faststart", 0);
-  const int code = avformat_write_header(format, &options);
+  const std::string muxer = format_->oformat->name;
+  if (muxer == "mp4" || muxer == "mov") av_dict_set(&options, "movflags", "+faststart", 0);
+  const int code = avformat_write_header(format_.get(), &options);
   av_dict_free(&options);
   require(code, "begin this movie");
+  begun_ = true;
 }
 
 void Muxer::Close::operator()(AVFormatContext* format) const {
@@ -127,6 +141,7 @@ void Muxer::Close::operator()(AVFormatContext* format) const {
 
 void Muxer::add(const Segment& segment) {
   listen();
+  if (!begun_) begin(segment.extradata);
   const AVCodecParameters& codec = *stream_->codecpar;
   if (segment.extradata.size() != std::size_t(codec.extradata_size) ||
       !std::equal(segment.extradata.begin(), segment.extradata.end(), codec.extradata)) {
@@ -156,6 +171,7 @@ void Muxer::add(const Segment& segment) {
 
 void Muxer::close(const std::string& instead) {
   listen();
+  if (!begun_) throw Error(path_ + ": a movie of no frames");
   require(av_write_trailer(format_.get()), "finish");
   avio_flush(format_->pb);
   require(0, "finish");

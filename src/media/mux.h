@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "media/file.h"
 #include "media/libav.h"
@@ -27,6 +28,7 @@ class Muxer {
   struct Close {
     void operator()(AVFormatContext* format) const;
   };
+  void begin(const std::vector<std::uint8_t>& extradata);
   static int on_write(void* self, const std::uint8_t* bytes, int size);
   static std::int64_t on_seek(void* self, std::int64_t offset, int whence);
   /// Throws where libav or the disk refused.
@@ -39,6 +41,7 @@ class Muxer {
   std::unique_ptr<AVFormatContext, Close> format_;
   AVStream* stream_ = nullptr;
   Packet packet_;
+  bool begun_ = false;  // its header is written
   std::int64_t frames_ = 0, last_dts_;
 };
 

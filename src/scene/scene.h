@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -61,8 +62,9 @@ struct Scene {
   std::string trajectory_file;                        // its name
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
-  /// A run of it from its start; what is known to go wrong before it does (sim/run.h).
-  std::unique_ptr<sim::Run> run() const;
+  /// A run of it from its start, or from a state that was saved of one; none where that is no state of this
+  /// scene. What is known to go wrong before it does. See sim/run.h.
+  std::unique_ptr<sim::Run> run(std::span<const std::uint64_t> saved = {}) const;
   std::vector<sim::Trouble> forebodings() const;
 
   /// The world of a scene in the plane, of one in space.

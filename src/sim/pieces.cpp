@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/archive.h"
 #include "sim/islands.h"
 #include "sim/spatial.h"
 #include "sim/stepper.h"
@@ -320,7 +321,7 @@ int Pieces<D>::part_at(int body, const Vec<D>& point, const State<D>& state) con
 template <int D>
 void Pieces<D>::tell(State<D>& state) const {
   const State<D>& whole = state.whole[0];
-  state.step = whole.step, state.beyond = whole.beyond, state.ledger = whole.ledger;
+  state.step = whole.step, state.beyond = whole.beyond, state.ledger = whole.ledger, state.fund = whole.fund;
   for (int i = 0; i < int(whole_.body.size()); ++i) {
     const int body = whole_.body[i], k = turning(state, i), kw = turning(whole, body);
     if (whole_.alone[i]) {
@@ -372,6 +373,12 @@ void Pieces<D>::tell(State<D>& state) const {
   }
   state.blasts.resize(whole.blasts.size());
   for (std::size_t k = 0; k < whole.blasts.size(); ++k) state.blasts[k].on = whole.blasts[k].on;
+}
+
+template <int D>
+bool Pieces<D>::fits(const State<D>& state) {
+  gather(state);
+  return sim::fits(state.whole[0], whole_.model);
 }
 
 template <int D>

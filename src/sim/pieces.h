@@ -37,6 +37,9 @@ class Pieces {
   /// rigid body become those of the same momentum and angular momentum.
   void begin(State<D>& state);
 
+  /// Whether what moves in a state is what its bonds make of the parts.
+  bool fits(const State<D>& state);
+
   std::optional<Trouble> step(State<D>& state);
   std::optional<Trouble> part(State<D>& state, double fraction);
 

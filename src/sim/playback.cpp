@@ -66,6 +66,10 @@ class PlaybackOf final : public Run {
     return snapshot(model_, state_, stepper_, beat, now);
   }
 
+  // it may begin anywhere: there is nothing to save
+  std::vector<std::uint64_t> saved() const override { return {}; }
+  Rational now() const override { return {0, 1}; }
+
   std::vector<std::uint64_t> words() const override { return sim::words(state_); }
 
   void track(std::vector<int> bodies) override {

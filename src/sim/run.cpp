@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "sim/archive.h"
 #include "sim/show.h"
 
 namespace obscura::sim {
@@ -16,9 +17,13 @@ constexpr double kTrackRate = 120;  // points a second of a way, about
 template <int D>
 class RunOf final : public Run {
  public:
-  explicit RunOf(World<D> world)
+  RunOf(World<D> world, std::optional<State<D>> saved)
       : model_(std::move(world.model)), state_(std::move(world.state)), stepper_(model_) {
-    stepper_.begin(state_);
+    sound_ = !saved || stepper_.fits(*saved);
+    if (saved)
+      state_ = std::move(*saved);
+    else
+      stepper_.begin(state_);
     cast_ = sim::cast(model_, stepper_.paths());
     stride_ = std::max<std::int64_t>(1, std::llround(value(model_.rate) / kTrackRate));
   }
@@ -45,6 +50,12 @@ class RunOf final : public Run {
     if (trouble_) return *trouble_;
     return snapshot(model_, copy_, stepper_, to, value(t));
   }
+
+  /// Whether it had a state to begin with.
+  bool sound() const { return sound_; }
+
+  std::vector<std::uint64_t> saved() const override { return sim::saved(state_); }
+  Rational now() const override { return rational(state_.step) / model_.rate; }
 
   std::vector<std::uint64_t> words() const override { return sim::words(between_ ? copy_ : state_); }
 
@@ -88,6 +99,7 @@ class RunOf final : public Run {
   Model<D> model_;
   State<D> state_, copy_;
   Stepper<D> stepper_;
+  bool sound_ = true;
   Cast cast_;
   std::optional<Trouble> trouble_;
   std::function<bool()> stop_;
@@ -97,9 +109,21 @@ class RunOf final : public Run {
   std::int64_t stride_ = 1;    // steps
 };
 
+template <int D>
+std::unique_ptr<Run> begun(World<D> world, std::span<const std::uint64_t> words) {
+  std::optional<State<D>> state;
+  if (!words.empty() && !(state = loaded<D>(words))) return {};
+  auto run = std::make_unique<RunOf<D>>(std::move(world), std::move(state));
+  return run->sound() ? std::move(run) : nullptr;
+}
+
 }  // namespace
 
-std::unique_ptr<Run> run(World<2> world) { return std::make_unique<RunOf<2>>(std::move(world)); }
-std::unique_ptr<Run> run(World<3> world) { return std::make_unique<RunOf<3>>(std::move(world)); }
+std::unique_ptr<Run> run(World<2> world, std::span<const std::uint64_t> saved) {
+  return begun(std::move(world), saved);
+}
+std::unique_ptr<Run> run(World<3> world, std::span<const std::uint64_t> saved) {
+  return begun(std::move(world), saved);
+}
 
 }  // namespace obscura::sim

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -32,6 +33,11 @@ class Run {
   /// From now on, `stop` is asked before every step whether to stop there.
   virtual void heed(std::function<bool()> stop) = 0;
 
+  /// The state at the last whole step, for run() to go on from (sim/archive.h), and its time (s). Empty: of a
+  /// run that may begin anywhere.
+  virtual std::vector<std::uint64_t> saved() const = 0;
+  virtual Rational now() const = 0;
+
   /// The words of the state that the last snapshot shows (sim/state.h).
   virtual std::vector<std::uint64_t> words() const = 0;
 
@@ -42,9 +48,10 @@ class Run {
   virtual Track take_track() = 0;
 };
 
-/// A run of a world from its state.
-std::unique_ptr<Run> run(World<2> world);
-std::unique_ptr<Run> run(World<3> world);
+/// A run of a world from its state, or from one that was saved of a run of the same world: it goes on to the
+/// same bits. None where that is no state of this world.
+std::unique_ptr<Run> run(World<2> world, std::span<const std::uint64_t> saved = {});
+std::unique_ptr<Run> run(World<3> world, std::span<const std::uint64_t> saved = {});
 
 /// What is known to go wrong before it does: the first spring group whose step is longer than the
 /// integrator's limit, as the Trouble it would end in; empty where nothing is.

@@ -48,6 +48,15 @@ struct Ledger {
   bool operator==(const Ledger&) const = default;
 };
 
+/// What energy there may be: what there was at the start and what hands can give. The watch over runs that
+/// go wrong measures by it (sim/watch.cpp).
+struct Fund {
+  double level = 0;   // gravity's potential at the start, J
+  double amount = 0;  // energy that could be there, J
+
+  bool operator==(const Fund&) const = default;
+};
+
 /// An explosion of the model at an instant.
 template <int D>
 struct Blast {
@@ -88,6 +97,7 @@ struct State {
   std::vector<Grip<D>> grips;     // one a mouse
   std::vector<Touch<D>> touches;  // of `handout`
   Ledger ledger;
+  Fund fund;
   std::vector<OwnSpin<D>> own;    // in space: one a body that turns
   std::vector<Blast<D>> blasts;   // one an explosion
   std::vector<Posture> postures;  // one a chain of the model

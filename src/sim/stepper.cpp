@@ -11,6 +11,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/archive.h"
 #include "sim/flight.h"
 #include "sim/grip.h"
 #include "sim/pieces.h"
@@ -100,6 +101,11 @@ void Stepper<D>::begin(State<D>& state) {
   state.touches.reserve(2 * model_.bodies.size() + 16);
   touch_script(state, {state.step, 0});
   watch_.start(state, time({state.step, 0}, model_.rate));
+}
+
+template <int D>
+bool Stepper<D>::fits(const State<D>& state) {
+  return sim::fits(state, model_) && (!pieces_ || pieces_->fits(state));
 }
 
 template <int D>

@@ -28,6 +28,9 @@ class Stepper {
   /// Readies a state that nothing has stepped yet: what the script does at this very instant is done.
   void begin(State<D>& state);
 
+  /// Whether a state that was saved can be one of this model's.
+  bool fits(const State<D>& state);
+
   /// One whole step, cut at the edges of the script. Trouble leaves the state as it was when it was noticed.
   std::optional<Trouble> step(State<D>& state);
 

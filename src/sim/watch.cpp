@@ -71,10 +71,9 @@ std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const
 }
 
 template <int D>
-void Watch<D>::start(const State<D>& state, double t) {
+void Watch<D>::start(State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
-  level_ = e.gravity + state.ledger.displacement;
-  fund_ = e.kinetic + e.springs;
+  double fund = e.kinetic + e.springs;
   const double little = 0.1 * model_.scale;
   double fastest = little;
   for (const Mouse<D>& mouse : model_.mice) {
@@ -85,20 +84,21 @@ void Watch<D>::start(const State<D>& state, double t) {
       way += piece;
       fastest = std::max(fastest, piece / (value(to.time) - value(from.time)));
     }
-    fund_ += 0.5 * mouse.stiffness * way * way;
+    fund += 0.5 * mouse.stiffness * way * way;
   }
-  for (const Spring<D>& spring : model_.springs) fund_ += 0.5 * spring.stiffness * little * little;
+  for (const Spring<D>& spring : model_.springs) fund += 0.5 * spring.stiffness * little * little;
   const double g = std::sqrt(model_.gravity.squaredNorm());
   for (const Body<D>& body : model_.bodies) {
-    if (!body.fixed) fund_ += body.mass * (g * model_.scale + fastest * fastest);
+    if (!body.fixed) fund += body.mass * (g * model_.scale + fastest * fastest);
   }
+  state.fund = {e.gravity + state.ledger.displacement, fund};
 }
 
 template <int D>
 std::optional<Trouble> Watch<D>::energy(const State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
-  const double fund = fund_ + std::max(0.0, state.ledger.displacement);
-  const double now = e.kinetic + e.springs + e.gravity - level_;
+  const double fund = state.fund.amount + std::max(0.0, state.ledger.displacement);
+  const double now = e.kinetic + e.springs + e.gravity - state.fund.level;
   if (now <= kSuspect * fund) return {};
   const Tightness worst = tightest(model_, state.grips);
   if (now <= kProof * fund && worst.body < 0) return {};

@@ -21,7 +21,7 @@ class Watch {
   std::optional<Trouble> ran_away(const State<D>& state, double t) const;
 
   /// Takes this state at time t as the start: what energy there is comes from it and from the hands.
-  void start(const State<D>& state, double t);
+  void start(State<D>& state, double t) const;
 
   /// Whether the springs hold far more energy than could have come from anywhere. Only springs can make it
   /// so.
@@ -32,8 +32,6 @@ class Watch {
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
-  double level_ = 0;  // gravity's potential at the start, J
-  double fund_ = 0;   // energy that could be there, J
 };
 
 }  // namespace obscura::sim

@@ -1,0 +1,140 @@
+// obscura join: a film that was made in shares, or was stopped, from the parts that are whole.
+
+#include "app/join.h"
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/exit.h"
+#include "app/film.h"
+#include "app/output.h"
+#include "media/error.h"
+#include "media/part.h"
+
+namespace obscura::app {
+
+std::int64_t join(Store& store, const std::string& movie, const Joining& joining) {
+  std::optional<media::MovieWriter> writer;
+  std::optional<Origin> first;
+  media::MovieSpec spec;
+  const auto add = [&](const std::string& path) {
+    const media::Part part = media::read_part(path);
+    const auto origin = origin_in(part.tags);
+    if (!origin) throw media::Error(path + ": does not say what film it is of");
+    if (!first) {
+      first = origin;
+      const sim::Rational fps = sim::parse_rational(origin->fps).value_or(sim::Rational{60, 1});
+      spec.width = origin->width, spec.height = origin->height;
+      spec.fps_num = fps.num, spec.fps_den = fps.den;
+      spec.codec = origin->encoder, spec.preset = origin->preset, spec.crf = origin->crf;
+      const auto title = part.tags.find("Title");
+      spec.tags = origin->tags(title == part.tags.end() ? "" : title->second);
+      writer.emplace(movie, spec);
+    }
+    if (const std::string why = discord(*first, *origin); !why.empty())
+      throw media::Error(fmt::format("{}: cannot go behind the parts before it: {}", path, why));
+    writer->add(part.segment);
+  };
+  for (std::int64_t take = 0; take < joining.takes; ++take) {
+    if (const auto path = store.part(take)) add(*path);
+  }
+  if (joining.cut) add(*joining.cut);
+  if (!writer) throw media::Error(store.folder() + ": no part is whole yet");
+  const std::int64_t frames = writer->frames();
+  writer->close(joining.instead);
+  return frames;
+}
+
+namespace {
+
+// what is missing, in words: "frames 120 to 179 (shard 2 of 4)"
+std::string missing(const Journal& journal, const std::vector<std::int64_t>& takes) {
+  std::string text;
+  int told = 0;
+  for (std::size_t i = 0; i < takes.size();) {
+    std::size_t end = i + 1;
+    while (end < takes.size() && takes[end] == takes[end - 1] + 1) ++end;
+    if (++told > 5) return text + " and more";
+    const std::int64_t first = takes[i] * journal.take_frames;
+    const std::int64_t last = std::min((takes[end - 1] + 1) * journal.take_frames, journal.origin.frames) - 1;
+    text += fmt::format("{}frames {} to {}", text.empty() ? "" : ", ", first, last);
+    std::string shards;
+    for (int k = 1; k <= journal.shards; ++k) {
+      const auto [from, to] = Store::share(journal.takes, k, journal.shards);
+      if (from <= takes[end - 1] && takes[i] < to)
+        shards += (shards.empty() ? fmt::format(" (of {} shards: ", journal.shards) : std::string(", ")) +
+                  fmt::format("{}", k);
+    }
+    if (!shards.empty()) text += shards + ")";
+    i = end;
+  }
+  return text;
+}
+
+struct Flags {
+  std::string out;
+  bool partial = false;
+};
+
+int join_command(const Flags& flags) {
+  const Output out = output(flags.out, "", false, 2);
+  if (out.form != Output::Form::movie && out.form != Output::Form::frames)
+    throw UsageError(
+        fmt::format("{}: a movie is joined, or a sequence of pictures looked through", flags.out));
+  Store store(out);
+  const Journal& journal = store.journal();
+  const bool pictures = out.form == Output::Form::frames;
+  std::optional<scene::Scene> scene;
+  std::optional<Shots> shots;
+  if (pictures) scene = scene_of(journal.origin), shots = shots_of(journal.origin, *scene);
+  std::vector<std::int64_t> absent;
+  for (std::int64_t take = 0; take < journal.takes; ++take) {
+    if (pictures) {
+      const std::int64_t end = std::min((take + 1) * journal.take_frames, journal.origin.frames);
+      for (std::int64_t i = take * journal.take_frames; i < end; ++i) {
+        if (std::filesystem::exists(out.file((*shots)[i].frame))) continue;
+        absent.push_back(take);
+        break;
+      }
+    } else if (!store.part(take)) {
+      absent.push_back(take);
+    }
+  }
+  if (!absent.empty() && !flags.partial)
+    throw media::Error(fmt::format("{}: missing: {}", flags.out, missing(journal, absent)));
+  if (pictures) {
+    fmt::print("{}: all {} frames are there\n", flags.out, journal.origin.frames);
+    store.remove();
+    return kDone;
+  }
+  Joining joining{.takes = journal.takes};
+  if (!absent.empty()) joining.instead = out.partial();
+  const std::int64_t frames = join(store, out.path, joining);
+  fmt::print("{}: {} of {} frames\n", joining.instead.value_or(out.path), frames, journal.origin.frames);
+  if (absent.empty()) store.remove();
+  return kDone;
+}
+
+}  // namespace
+
+void add_join(CLI::App& program, int& exit) {
+  CLI::App* command = program.add_subcommand("join", "Make the movie of the parts that shards have left");
+  auto flags = std::make_shared<Flags>();
+  command->add_option("OUT", flags->out, "The movie, as `render -o` named it, or the pattern of its pictures")
+      ->required()
+      ->type_name("");
+  command->add_flag("--partial", flags->partial,
+                    "Join what there is, into a movie whose name says that it is partial");
+  command->footer(
+      "Says what is missing, and which shard makes it; exit 4 then.\n\n"
+      "Examples:\n"
+      "  for i in 1 2 3 4; do obscura render scenes/room.toml -o room.mp4 --shard $i/4; done\n"
+      "  obscura join room.mp4");
+  command->callback([flags, &exit] { exit = join_command(*flags); });
+}
+
+}  // namespace obscura::app

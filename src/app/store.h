@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/origin.h"
+#include "app/output.h"
+#include "media/movie.h"
+#include "scene/scene.h"
+#include "sim/run.h"
+
+namespace obscura::app {
+
+/// What a film in the making is to be: it stays the same from the first part to the last.
+struct Journal {
+  Origin origin;                 // but for what one frame alone has, and OpenGL
+  std::int64_t takes = 0;        // closed pieces it is made in, numbered from 0
+  std::int64_t take_frames = 1;  // of each but the last
+  int shards = 0;                // how many were prepared for; 0: none
+};
+
+/// The folder of a film in the making, and what of it is whole: a journal, each take that is done as a part
+/// (media/part.h), checkpoints to go on from. All of it is written whole or not at all, a part's name holds
+/// the hash of its bytes, and nobody else makes the same takes at the same time: they are locked, on shared
+/// file systems too.
+class Store {
+ public:
+  /// Makes or opens the folder for the takes [first, last). Of another film: what is there is thrown away, or
+  /// with `keep` it is refused. Throws media::Error, also where somebody makes these takes already.
+  Store(const Output& output, const Journal& journal, std::int64_t first, std::int64_t last, bool keep);
+  /// Opens the folder of a film for somebody who takes all of it. Throws media::Error where there is none.
+  explicit Store(const Output& output);
+  ~Store();
+  Store(Store&&) noexcept;
+
+  const std::string& folder() const;
+  const Journal& journal() const;
+  /// The takes of shard i of n, counted from 1: [first, last).
+  static std::pair<std::int64_t, std::int64_t> share(std::int64_t takes, int i, int n);
+
+  /// The file of a take, where it is whole. A damaged one is thrown away.
+  std::optional<std::string> part(std::int64_t take);
+  /// Adds a take; from any thread. Throws media::Error.
+  void put(std::int64_t take, const std::string& movie, const media::MovieSpec& spec,
+           const media::Segment& segment);
+  /// The origin of any take that is there: it tells which OpenGL drew it.
+  std::optional<Origin> drawn() const;
+
+  /// Keeps the state at which a run stands, for run_before. One that may begin anywhere needs none.
+  void keep(const scene::Scene& scene, const sim::Run& run);
+  /// Lets checkpoints go that nobody needs who goes on at this step or later.
+  void forget_before(std::int64_t step);
+  /// A run that goes on from the latest checkpoint of the steps (since, until]; none where there is none that
+  /// is whole and of this scene.
+  std::unique_ptr<sim::Run> run_between(const scene::Scene& scene, std::int64_t since,
+                                        std::int64_t until) const;
+
+  /// Removes the folder: the film is whole.
+  void remove();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace obscura::app

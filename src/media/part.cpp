@@ -1,0 +1,80 @@
+#include "media/part.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+extern "C" {
+#include <libavutil/dict.h>
+#include <libavutil/mathematics.h>
+}
+
+#include "media/codec.h"
+#include "media/error.h"
+#include "media/gif.h"
+#include "media/libav.h"
+#include "media/tags.h"
+
+namespace obscura::media {
+
+namespace {
+
+struct CloseInput {
+  void operator()(AVFormatContext* format) const { avformat_close_input(&format); }
+};
+
+// every packet as it lies in the file: nothing is decoded
+Part packets_of(const std::string& path) {
+  listen();
+  const auto require = [&](int code) {
+    if (code < 0) throw Error(fmt::format("{}: no part of a movie: {}", path, complaint(code)));
+  };
+  AVFormatContext* opened = nullptr;
+  require(avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr));
+  const std::unique_ptr<AVFormatContext, CloseInput> format(opened);
+  if (format->nb_streams != 1) throw Error(path + ": no part of a movie");
+  const AVStream& stream = *format->streams[0];
+  const AVRational frame = av_inv_q(stream.avg_frame_rate);
+  if (frame.num <= 0) throw Error(path + ": no part of a movie");
+
+  Part part;
+  Segment& segment = part.segment;
+  const AVDictionaryEntry* said = av_dict_get(format->metadata, "comment", nullptr, 0);
+  part.tags = tags_of_comment(said ? said->value : "");
+  const AVCodecParameters& codec = *stream.codecpar;
+  segment.extradata.assign(codec.extradata, codec.extradata + codec.extradata_size);
+  const Packet packet = make_packet();
+  int code;
+  while ((code = av_read_frame(format.get(), packet.get())) >= 0) {
+    segment.packets.push_back({{packet->data, packet->data + packet->size},
+                               av_rescale_q(packet->pts, stream.time_base, frame),
+                               av_rescale_q(packet->dts, stream.time_base, frame),
+                               1,
+                               (packet->flags & AV_PKT_FLAG_KEY) != 0});
+    av_packet_unref(packet.get());
+  }
+  if (code != AVERROR_EOF) require(code);
+  segment.frames = int(segment.packets.size());
+  if (segment.frames == 0 || segment.frames != stream.nb_frames) throw Error(path + ": is not whole");
+  return part;
+}
+
+}  // namespace
+
+std::string part_ending(const std::string& movie) { return container(movie).ending == "gif" ? "gif" : "mp4"; }
+
+void write_part(const std::string& path, const MovieSpec& spec, const Segment& segment) {
+  MovieWriter movie(path, spec);
+  movie.add(segment);
+  movie.close();
+}
+
+Part read_part(const std::string& path) {
+  if (container(path).ending != "gif") return packets_of(path);
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(file)), {});
+  return gif_part(path, bytes);
+}
+
+}  // namespace obscura::media

@@ -1,0 +1,317 @@
+// A film that is stopped, divided or moved to another day is the film: the same bytes as in one go.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <random>
+
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSmall = " --size 96x54 --fps 10 --progress none";
+
+using Resume = Program;
+using Shards = Program;
+using Checkpoints = Program;
+
+// every file of a folder, one after the other
+std::string all_of(const std::string& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const fs::path& file : files) all += file.filename().string() + "\n" + contents(file.string());
+  return all;
+}
+
+int parts_in(const std::string& folder) {
+  int n = 0;
+  if (fs::exists(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      n += entry.path().filename().string().starts_with("take-");
+  return n;
+}
+
+double seconds_of(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// how many kills: OBSCURA_TEST_KILLS, or as few as show it
+int kills(int usual) {
+  const char* asked = std::getenv("OBSCURA_TEST_KILLS");
+  return asked ? std::max(1, std::atoi(asked) * usual / 100) : usual;
+}
+
+TEST_F(Resume, OfAMovieThatWasKilledIsTheSameMovie) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o film.mp4 -j 2") + kSmall;
+  Outcome whole;
+  const double takes = seconds_of([&] { whole = obscura(command); });
+  ASSERT_EQ(whole.exit, 0) << whole.err;
+  const std::string bytes = contents(path("film.mp4"));
+  EXPECT_FALSE(fs::exists(path("film.mp4.parts")));
+
+  std::mt19937 dice(1);
+  int part_way = 0;
+  for (int i = 0; i < kills(50); ++i) {
+    fs::remove(path("film.mp4"));
+    const double at = std::uniform_real_distribution(0.0, takes)(dice);
+    shell("timeout -s KILL " + std::to_string(at) + " " OBSCURA_BINARY " " + command);
+    // what is whole is neither lost nor wrong, and nothing stands under the film's name that is not the film
+    if (fs::exists(path("film.mp4"))) {
+      EXPECT_EQ(contents(path("film.mp4")), bytes);
+    }
+    const int before = parts_in(path("film.mp4.parts"));
+    part_way += before > 0;
+    const Outcome rest = obscura(command + " --resume");
+    ASSERT_EQ(rest.exit, 0) << "killed at " << at << ": " << rest.err;
+    ASSERT_EQ(contents(path("film.mp4")), bytes) << "killed at " << at << " with " << before << " parts";
+    ASSERT_FALSE(fs::exists(path("film.mp4.parts")));
+  }
+  if (kills(50) >= 50) {
+    EXPECT_GT(part_way, 3);
+  }
+}
+
+TEST_F(Resume, OfPicturesThatWereKilledIsTheSamePictures) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o 'frames/{frame:03}.png' -j 2") + kSmall;
+  Outcome whole;
+  const double takes = seconds_of([&] { whole = obscura(command); });
+  ASSERT_EQ(whole.exit, 0) << whole.err;
+  const std::string bytes = all_of(path("frames"));
+
+  std::mt19937 dice(2);
+  for (int i = 0; i < kills(30); ++i) {
+    fs::remove_all(path("frames"));
+    const double at = std::uniform_real_distribution(0.0, takes)(dice);
+    shell("timeout -s KILL " + std::to_string(at) + " " OBSCURA_BINARY " " + command);
+    // every picture that is there is whole
+    for (int n = 0; n < 100; ++n) {
+      const std::string name =
+          path("frames/" + std::string(n < 10 ? "00" : "0") + std::to_string(n) + ".png");
+      if (fs::exists(name)) {
+        ASSERT_EQ(contents(name).substr(contents(name).size() - 8, 4), "IEND");
+      }
+    }
+    const Outcome rest = obscura(command + " --resume");
+    ASSERT_EQ(rest.exit, 0) << "killed at " << at << ": " << rest.err;
+    shell("rm -f frames/.*.tmp");
+    ASSERT_EQ(all_of(path("frames")), bytes) << "killed at " << at;
+  }
+}
+
+TEST_F(Resume, AJoinThatWasKilledIsDoneAgain) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o film.mp4") + kSmall;
+  ASSERT_EQ(obscura(command).exit, 0);
+  const std::string bytes = contents(path("film.mp4"));
+  fs::remove(path("film.mp4"));
+  for (const char* shard : {" --shard 1/2", " --shard 2/2"}) ASSERT_EQ(obscura(command + shard).exit, 0);
+  shell("cp -r film.mp4.parts kept");
+
+  std::mt19937 dice(3);
+  Outcome joined;
+  const double takes = seconds_of([&] { joined = obscura("join film.mp4"); });
+  ASSERT_EQ(joined.exit, 0) << joined.err;
+  ASSERT_EQ(contents(path("film.mp4")), bytes);
+  for (int i = 0; i < kills(20); ++i) {
+    shell("rm -rf film.mp4 film.mp4.parts; cp -r kept film.mp4.parts");
+    const double at = std::uniform_real_distribution(0.0, takes)(dice);
+    shell("timeout -s KILL " + std::to_string(at) + " " OBSCURA_BINARY " join film.mp4");
+    if (fs::exists(path("film.mp4"))) {
+      ASSERT_EQ(contents(path("film.mp4")), bytes);
+    }
+    // it goes on either way
+    const Outcome rest = i % 2 ? obscura(command + " --resume") : obscura("join film.mp4");
+    if (rest.exit != 0) {
+      ASSERT_FALSE(fs::exists(path("film.mp4.parts/journal.json"))) << rest.err;
+    }
+    ASSERT_EQ(contents(path("film.mp4")), bytes) << "killed at " << at;
+  }
+}
+
+TEST_F(Resume, IsRefusedForAnotherFilm) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o film.mp4") + kSmall;
+  ASSERT_EQ(obscura(command + " --shard 1/5").exit, 0);
+  const Outcome other = obscura(command + " --resume --set crate.mass=3");
+  EXPECT_EQ(other.exit, 4);
+  EXPECT_NE(other.err.find("crate.mass is none there, and 3 here"), std::string::npos) << other.err;
+  EXPECT_EQ(std::count(other.err.begin(), other.err.end(), '\n'), 1);
+  const Outcome size = obscura(command + " --resume --theme screen");
+  EXPECT_EQ(size.exit, 4);
+  EXPECT_NE(size.err.find("the theme is paper there, and screen here"), std::string::npos) << size.err;
+  // what was there is there still, and a film from the beginning takes its place
+  EXPECT_EQ(parts_in(path("film.mp4.parts")), 2);
+  EXPECT_EQ(obscura(command + " --set crate.mass=3").exit, 0);
+}
+
+TEST_F(Resume, MendsADamagedPart) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o film.mp4") + kSmall;
+  ASSERT_EQ(obscura(command).exit, 0);
+  const std::string bytes = contents(path("film.mp4"));
+  ASSERT_EQ(obscura(command + " --shard 1/1").exit, 0);
+  shell("f=$(ls film.mp4.parts/take-000004-*); printf x | dd of=$f bs=1 seek=900 conv=notrunc status=none");
+  ASSERT_EQ(obscura(command + " --resume").exit, 0);
+  EXPECT_EQ(contents(path("film.mp4")), bytes);
+  const Outcome again = obscura(command + " --resume");
+  EXPECT_EQ(again.exit, 0);
+  EXPECT_NE(again.out.find("is whole already"), std::string::npos) << again.out;
+}
+
+TEST_F(Resume, AnInterruptLeavesAPlayableBeginningAndTheRest) {
+  scene(kRoom);
+  // a pipe that nobody reads holds the film up: it is interrupted in the middle for certain
+  const std::string command = "render scene.toml -o film.mp4 -j 1 --size 640x360 --fps 30 --progress none";
+  ASSERT_EQ(obscura(command).exit, 0);
+  const std::string bytes = contents(path("film.mp4"));
+  fs::remove(path("film.mp4"));
+  const Outcome cut =
+      shell(OBSCURA_BINARY " " + command +
+            " & p=$!; until ls film.mp4.parts/take-000001-* 2>/dev/null; do sleep 0.01; done; "
+            "kill -TERM $p; wait $p");
+  EXPECT_EQ(cut.exit, 130) << cut.err;
+  const int parts = parts_in(path("film.mp4.parts"));
+  ASSERT_GE(parts, 2);
+  ASSERT_LT(parts, 10);
+  const Outcome frames = shell(
+      "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 film.partial.mp4");
+  EXPECT_GE(std::atoi(frames.out.c_str()), 30 * parts) << frames.err;
+  // each part plays by itself
+  const Outcome part = shell(
+      "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 "
+      "film.mp4.parts/take-000001-*");
+  EXPECT_EQ(std::atoi(part.out.c_str()), 30) << part.err;
+  ASSERT_EQ(obscura(command + " --resume").exit, 0);
+  EXPECT_EQ(contents(path("film.mp4")), bytes);
+}
+
+TEST_F(Resume, TwoAtOnceOnOneFilmAreOne) {
+  scene(kRoom);
+  const Outcome both = shell(OBSCURA_BINARY
+                             " render scene.toml -o film.mp4 --size 640x360 --progress none & p=$!; "
+                             "until [ -e film.mp4.parts/journal.json ]; do sleep 0.01; done; " OBSCURA_BINARY
+                             " render scene.toml -o film.mp4 --size 640x360 --progress none; echo second $?; "
+                             "kill -INT $p; wait $p");
+  EXPECT_EQ(both.out, "second 4\n") << both.out;
+  EXPECT_NE(both.err.find("another obscura is making this film"), std::string::npos) << both.err;
+}
+
+TEST_F(Shards, JoinedAreTheFilmInOneGo) {
+  scene(kRoom);
+  for (const std::string out : {"film.mp4", "film.mkv", "film.webm", "film.gif"}) {
+    const std::string command = "render scene.toml -o " + out + " --to 4.5" + kSmall;
+    ASSERT_EQ(obscura(command).exit, 0) << out;
+    const std::string bytes = contents(path(out));
+    fs::remove(path(out));
+    ASSERT_EQ(obscura(command + " --prepare 3").exit, 0);
+    EXPECT_EQ(obscura(command + " --shard 3/3").exit, 0);
+    const Outcome early = obscura("join " + out);
+    EXPECT_EQ(early.exit, 4);
+    EXPECT_NE(early.err.find("missing: frames 0 to 29 (of 3 shards: 1, 2)"), std::string::npos) << early.err;
+    EXPECT_EQ(obscura(command + " --shard 1/3").exit, 0);
+    EXPECT_EQ(obscura(command + " --shard 2/3").exit, 0);
+    const Outcome joined = obscura("join " + out);
+    ASSERT_EQ(joined.exit, 0) << joined.err;
+    EXPECT_EQ(contents(path(out)), bytes) << out;
+  }
+}
+
+TEST_F(Shards, OfPicturesAreThePicturesInOneGo) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o 'a/{frame:03}.png' --from 1 --to 4") + kSmall;
+  ASSERT_EQ(obscura(command).exit, 0);
+  const std::string bytes = all_of(path("a"));
+  fs::remove_all(path("a"));
+  for (const char* shard : {" --shard 2/3", " --shard 1/3"}) ASSERT_EQ(obscura(command + shard).exit, 0);
+  const Outcome early = obscura("join 'a/{frame:03}.png'");
+  EXPECT_EQ(early.exit, 4);
+  EXPECT_NE(early.err.find("of 3 shards: 3"), std::string::npos) << early.err;
+  ASSERT_EQ(obscura(command + " --shard 3/3").exit, 0);
+  const Outcome joined = obscura("join 'a/{frame:03}.png'");
+  EXPECT_EQ(joined.exit, 0) << joined.err;
+  EXPECT_EQ(all_of(path("a")), bytes);
+}
+
+TEST_F(Shards, OfAnotherOriginAreNotJoined) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o film.mp4") + kSmall;
+  ASSERT_EQ(obscura(command + " --shard 1/2").exit, 0);
+  const Outcome native = obscura(command + " --shard 2/2 --native");
+  EXPECT_EQ(native.exit, 4);
+  EXPECT_NE(native.err.find("--native is off there, and on here"), std::string::npos) << native.err;
+}
+
+TEST_F(Shards, MovieBytesDoNotDependOnTheNumberOfWorkers) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o film.mp4") + kSmall;
+  ASSERT_EQ(obscura(command + " -j 1").exit, 0);
+  const std::string bytes = contents(path("film.mp4"));
+  for (const char* workers : {" -j 2", " -j 8"}) {
+    ASSERT_EQ(obscura(command + workers).exit, 0);
+    EXPECT_EQ(contents(path("film.mp4")), bytes) << workers;
+  }
+}
+
+TEST_F(Checkpoints, GoOnToTheSameStatesAndFrames) {
+  scene(kRoom);
+  ASSERT_EQ(obscura(std::string("render scene.toml -o film.mp4 --checkpoint-every 2.5") + kSmall).exit, 0);
+  const std::string kept = "film.mp4.checkpoints/";
+  ASSERT_TRUE(fs::exists(path(kept + "7.5.checkpoint")));
+  ASSERT_FALSE(fs::exists(path("film.mp4.parts")));
+  const Outcome whole = obscura("states scene.toml --at 7.5,9.25"),
+                rest = obscura("states scene.toml --at 7.5,9.25 --from-checkpoint " + kept + "5.checkpoint");
+  EXPECT_EQ(rest.exit, 0) << rest.err;
+  EXPECT_EQ(rest.out, whole.out);
+  // trails reach back half a second
+  const std::string at = std::string(" --from 6 --to 7 -o ") + "'%d.png'" + kSmall;
+  ASSERT_EQ(obscura("render scene.toml" + at).exit, 0);
+  shell("mkdir one && mv *.png one && mkdir two");
+  const Outcome from = obscura("render scene.toml --from-checkpoint " + kept + "5.checkpoint" + at);
+  ASSERT_EQ(from.exit, 0) << from.err;
+  shell("mv *.png two");
+  EXPECT_EQ(all_of(path("one")), all_of(path("two")));
+
+  const Outcome late = obscura("states scene.toml --at 1 --from-checkpoint " + kept + "5.checkpoint");
+  EXPECT_EQ(late.exit, 2);
+  EXPECT_NE(late.err.find("is of t = 5 s"), std::string::npos) << late.err;
+}
+
+TEST_F(Checkpoints, ThatAreDamagedOrForeignAreRefusedWithTheReason) {
+  scene(kRoom);
+  ASSERT_EQ(obscura(std::string("render scene.toml -o film.mp4 --checkpoint-every 1 --to 3") + kSmall).exit,
+            0);
+  const std::string file = "film.mp4.checkpoints/2.checkpoint";
+  const std::string bytes = contents(path(file));
+  const auto refused = [&](const std::string& with, const std::string& why) {
+    const Outcome outcome = obscura("states scene.toml --at 3 --from-checkpoint " + with);
+    EXPECT_EQ(outcome.exit, 4) << with;
+    EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  };
+  for (const std::size_t at : {std::size_t(60), bytes.size() / 2, bytes.size() - 1}) {
+    std::string damaged = bytes;
+    damaged[at] = char(damaged[at] ^ 1);
+    scene(damaged, "damaged");
+    refused("damaged", "damaged checkpoint");
+  }
+  scene(bytes.substr(0, bytes.size() - 9), "short");
+  refused("short", "damaged checkpoint");
+  refused("scene.toml", "is no checkpoint");
+  refused("nobody", "cannot be read");
+  refused(file + " --set ball.mass=2", "is of another scene: there ball.mass is not said, and here 2");
+  // what only the picture knows may be another
+  EXPECT_EQ(obscura("states scene.toml --at 3 --from-checkpoint " + file + " --set duration=12").exit, 0);
+}
+
+}  // namespace
+}  // namespace obscura::app
