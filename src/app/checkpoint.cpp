@@ -51,7 +51,7 @@ std::string other_scene(const scene::Source& of, const scene::Scene& scene) {
 
 }  // namespace
 
-void write_checkpoint(const std::string& path, const scene::Scene& scene, const sim::Run& run) {
+void write_checkpoint(const std::string& path, const scene::Scene& scene, const sim::Run& run, bool durable) {
   const std::vector<std::uint64_t> words = run.saved();
   std::vector<std::uint8_t> state;
   state.reserve(8 * words.size());
@@ -67,7 +67,7 @@ void write_checkpoint(const std::string& path, const scene::Scene& scene, const 
   media::File file(path);
   file.write({reinterpret_cast<const std::uint8_t*>(head.data()), head.size()});
   file.write(body);
-  file.place(true);
+  file.place(durable);
 }
 
 std::unique_ptr<sim::Run> run_from(const std::string& path, const scene::Scene& scene) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <set>
 #include <thread>
 #include <tuple>
 
@@ -76,6 +77,7 @@ class Filming {
   bool whole(std::int64_t take);
   bool has_frames(std::int64_t take) const;
   bool already_whole() const;
+  void clear_leftovers() const;
   SimulationOptions simulating();
   int prepare(Simulation& simulation);
   std::function<Print(Take)> hire(const draw::Charts& charts);
@@ -132,6 +134,19 @@ Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& ou
   media::make_folder_of(first);
   if (output.form == Output::Form::still || already_whole()) return;
   store_.emplace(output, journal_, first_, last_, options.resume || options.shard || options.prepare);
+  clear_leftovers();
+}
+
+// whoever wrote these files before us was killed: we have the lock of them
+void Filming::clear_leftovers() const {
+  std::set<std::string> names;
+  if (movie() && last_ - first_ == journal_.takes) names.insert(fs::path(output_.path).filename().string());
+  for (std::int64_t i = first_ * journal_.take_frames; pictures() && i < shots_.size(); ++i) {
+    if (i / journal_.take_frames >= last_) break;
+    names.insert(fs::path(output_.file(shots_[i].frame)).filename().string());
+  }
+  media::remove_leftovers(fs::path(output_.path).parent_path().string(),
+                          [&](const std::string& name) { return names.contains(name); });
 }
 
 // whether a take needs not be made
@@ -187,7 +202,7 @@ SimulationOptions Filming::simulating() {
   how.at_every = [this](const sim::Run& run, sim::Rational t) {
     write_checkpoint(
         (fs::path(output_.checkpoints()) / fmt::format("{:g}.checkpoint", sim::value(t))).string(), scene_,
-        run);
+        run, true);
   };
   return how;
 }
@@ -285,15 +300,20 @@ bool Filming::already_whole() const {
 
 // nothing is drawn: the states that shards begin with
 int Filming::prepare(Simulation& simulation) {
-  const auto run = scene_.run();
+  auto run = scene_.run();
   run->heed(interrupted);
+  const auto here = [&] { return sim::floor(run->now() * run->rate()); };
   const int n = *options_.prepare;
   Progress progress(options_.progress, store_->folder(), shots_.size(), 1 / sim::value(scene_.film.fps));
   for (int i = 2; i <= n; ++i) {
     const std::int64_t first = Store::share(journal_.takes, i, n).first * journal_.take_frames;
     if (first >= shots_.size()) break;
     const std::int64_t step = simulation.step_before(shots_[first].time);
-    if (step <= sim::floor(run->now() * run->rate())) continue;
+    if (step <= here() || store_->kept(step)) continue;
+    if (auto nearer = store_->run_between(scene_, here(), step)) {
+      run = std::move(nearer);
+      run->heed(interrupted);
+    }
     moment(*run, sim::rational(step) / run->rate(), scene_);
     store_->keep(scene_, *run);
     progress.at(first);

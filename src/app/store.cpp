@@ -203,11 +203,14 @@ std::optional<Origin> Store::drawn() const {
   return {};
 }
 
+bool Store::kept(std::int64_t step) const { return impl_->checkpoints.contains(step); }
+
 void Store::keep(const scene::Scene& scene, const sim::Run& run) {
   const std::int64_t step = sim::floor(run.now() * run.rate());
-  if (step == 0 || impl_->checkpoints.contains(step)) return;
+  if (step == 0 || kept(step)) return;
   const std::string name = fmt::format("{}{:012}{}", kStep, step, kCheckpoint);
-  write_checkpoint(impl_->at(name), scene, run);
+  // one that a power cut damages is known by its hash, and one before it is as good
+  write_checkpoint(impl_->at(name), scene, run, false);
   impl_->checkpoints[step] = name;
 }
 

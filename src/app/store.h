@@ -50,8 +50,9 @@ class Store {
   /// The origin of any take that is there: it tells which OpenGL drew it.
   std::optional<Origin> drawn() const;
 
-  /// Keeps the state at which a run stands, for run_before. One that may begin anywhere needs none.
+  /// Keeps the state at which a run stands, for run_between; not its start, which the scene is enough for.
   void keep(const scene::Scene& scene, const sim::Run& run);
+  bool kept(std::int64_t step) const;
   /// Lets checkpoints go that nobody needs who goes on at this step or later.
   void forget_before(std::int64_t step);
   /// A run that goes on from the latest checkpoint of the steps (since, until]; none where there is none that

@@ -41,6 +41,19 @@ void make_folder_of(const std::string& path) {
   if (error) throw Error(folder.string() + ": cannot make this folder: " + error.message());
 }
 
+void remove_leftovers(const std::string& folder, const std::function<bool(const std::string& name)>& ours) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
+    // .NAME.PROCESS-COUNT.tmp
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.') || !name.ends_with(".tmp")) continue;
+    const std::size_t own = name.find_last_of('.', name.size() - 5);
+    if (own == 0 || own == std::string::npos || !ours(name.substr(1, own - 1))) continue;
+    std::error_code ignored;
+    fs::remove(entry.path(), ignored);
+  }
+}
+
 int write_all(int descriptor, std::span<const std::uint8_t> bytes) noexcept {
   while (!bytes.empty()) {
     const ssize_t n = ::write(descriptor, bytes.data(), bytes.size());

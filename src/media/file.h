@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -33,6 +34,10 @@ class File {
 
 /// Makes the folder that a file of this path lies in, and those around it. Throws media::Error naming it.
 void make_folder_of(const std::string& path);
+
+/// Removes what a killed program left beside files of this folder under temporary names: of those that `ours`
+/// accepts by their final names. Requires: nobody writes them.
+void remove_leftovers(const std::string& folder, const std::function<bool(const std::string& name)>& ours);
 
 /// Writes all of `bytes` to a descriptor, whatever interrupts or shortens it. 0, or errno of the failure.
 int write_all(int descriptor, std::span<const std::uint8_t> bytes) noexcept;
