@@ -1,5 +1,7 @@
 #include "draw/list.h"
 
+#include "draw/solids.h"
+
 namespace obscura::draw {
 
 void List::mark(Kind kind, int end) {
@@ -97,6 +99,18 @@ void List::add(const List& list, double k, const Point& at) {
     }
   }
   unclip();
+}
+
+Solids placed(Solids solids, double k, const Point& at) {
+  const auto moved = [&](const Point& p) { return Point(at + k * p); };
+  const Rect& w = solids.window;
+  solids.window = {at.x() + k * w.x, at.y() + k * w.y, k * w.width, k * w.height};
+  for (Solids::Vertex& v : solids.vertices) {
+    v.at[0] = float(k * v.at[0] + at.x() * v.at[3]);
+    v.at[1] = float(k * v.at[1] + at.y() * v.at[3]);
+  }
+  for (Point& p : solids.points) p = moved(p);
+  return solids;
 }
 
 }  // namespace obscura::draw

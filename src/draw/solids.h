@@ -17,6 +17,9 @@ namespace obscura::draw {
 /// How many rays stand for the light: a shadow's edge has so many steps.
 inline constexpr int kRays = 32;
 
+/// Texels a side of the map in which the light sees what casts shadows on bodies.
+inline constexpr int kMap = 1024;
+
 struct Solids {
   struct Vertex {
     std::array<float, 4> at;  // (x w, y w, z w, w): page units, z from 0 at the farthest to 1
@@ -40,5 +43,8 @@ struct Solids {
   std::vector<Point> points;  // page units
   Color shade{0, 0, 0, 0};    // laid over the ground where no ray reaches it
 };
+
+/// The same on a larger page: each of its lengths times `scale`, its origin at `at`.
+Solids placed(Solids solids, double scale, const Point& at);
 
 }  // namespace obscura::draw

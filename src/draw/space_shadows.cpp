@@ -22,6 +22,8 @@ constexpr double kSoft =
     0.02;                      // of the window's width in the world: what a soft edge may reach beyond a body
 constexpr double kSteep = 12;  // slopes are cut off there
 constexpr double kNear = 1e-3;
+constexpr double kReach = 4;            // texels of the map that a soft edge reaches at most
+constexpr std::size_t kManyEdges = 30;  // of a body: more are not looked along
 
 /// How the light sees: the first two across, the third away from it.
 struct LightFrame {
@@ -40,6 +42,43 @@ bool over(const Extents& caster, const Extents& receiver, double soft) {
   return caster.low.z() < receiver.high.z() && caster.low.x() < receiver.high.x() + soft &&
          caster.high.x() > receiver.low.x() - soft && caster.low.y() < receiver.high.y() + soft &&
          caster.high.y() > receiver.low.y() - soft;
+}
+
+/// What the light sees of a convex body of flat faces: its corners, and the ways of its edges across the
+/// light.
+struct Outline {
+  std::vector<Vec3> corners;
+  std::vector<Point> ways;  // across the edges
+};
+
+/// Whether a body may throw a shadow on a triangle that faces the light, its edge soft up to `soft`: a corner
+/// of it lies before the triangle's plane, and no line across the light parts the two.
+bool may_darken(const Outline& caster, const std::array<Vec3, 3>& triangle, double soft) {
+  Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+  const double length = normal.norm();
+  if (!(length > 0)) return true;
+  normal *= (normal.z() < 0 ? 1 : -1) / length;  // towards the light
+  double before = -1e300;
+  for (const Vec3& p : caster.corners) before = std::max(before, normal.dot(p - triangle[0]));
+  if (before < 0) return false;
+  const auto parted = [&](const Point& way) {
+    double low = 1e300, high = -1e300, least = 1e300, most = -1e300;
+    for (const Vec3& p : triangle) {
+      const double at = way.dot(p.head<2>());
+      low = std::min(low, at), high = std::max(high, at);
+    }
+    for (const Vec3& p : caster.corners) {
+      const double at = way.dot(p.head<2>());
+      least = std::min(least, at), most = std::max(most, at);
+    }
+    const double reach = soft * way.norm();
+    return least > high + reach || most < low - reach;
+  };
+  for (int i = 0; i < 3; ++i) {
+    const Point along = (triangle[(i + 1) % 3] - triangle[i]).head<2>();
+    if (parted({-along.y(), along.x()})) return false;
+  }
+  return std::none_of(caster.ways.begin(), caster.ways.end(), parted);
 }
 
 /// For each thing, which others may throw a shadow on it.
@@ -126,12 +165,20 @@ void cast_on_each_other(Scenery& s) {
 
   // what the light sees of each thing
   std::vector<Extents> things(s.chunks.size());
+  std::vector<Outline> outlines(s.chunks.size());  // empty: a box around it is all that is known
   for (std::size_t i = 0; i < s.chunks.size(); ++i) {
     const Chunk& chunk = s.chunks[i];
     const bool flat =
         chunk.piece >= 0 && chunk.piece < int(s.placed.size()) && !s.placed[chunk.piece].empty();
     if (flat) {
-      for (const Vec3& v : s.placed[chunk.piece].vertices) things[i].add(frame(v));
+      const Polyhedron& body = s.placed[chunk.piece];
+      for (const Vec3& v : body.vertices) outlines[i].corners.push_back(frame(v));
+      for (const Vec3& v : outlines[i].corners) things[i].add(v);
+      if (body.edges.size() > kManyEdges) continue;
+      for (const Polyhedron::Edge& e : body.edges) {
+        const Vec3 along = outlines[i].corners[e.b] - outlines[i].corners[e.a];
+        outlines[i].ways.push_back({-along.y(), along.x()});
+      }
     } else {
       const Vec3 at = frame(chunk.center), reach = Vec3::Constant(chunk.reach);
       things[i].add(at - reach), things[i].add(at + reach);
@@ -147,20 +194,31 @@ void cast_on_each_other(Scenery& s) {
     return s.lens.depth(s.chunks[a].center) - s.lens.per_distance * s.chunks[a].reach <
            s.lens.depth(s.chunks[b].center) - s.lens.per_distance * s.chunks[b].reach;
   });
+  // a soft edge reaches some texels of the map, whose side is all that is seen at most
+  Extents all;
+  for (const Extents& thing : things) all.add(thing.low), all.add(thing.high);
+  const double reach =
+      things.empty()
+          ? 0
+          : kReach / kMap *
+                (1.02 * std::max(all.high.x() - all.low.x(), all.high.y() - all.low.y()) + 2 * soft);
   Extents fitted, fitted_casters;
   std::vector<char> casts(s.chunks.size(), 0);
   for (int i : order) {
     const Chunk& chunk = s.chunks[i];
     for (std::size_t k = chunk.begin; k < chunk.end; k += 3) {
       Extents triangle;
+      std::array<Vec3, 3> corners;
       bool lit = false, darkened = false;
       for (std::size_t c = k; c < k + 3 && !casters[i].empty(); ++c) {
         const Corner& corner = s.corners[s.triangles[c]];
         lit = lit || corner.normal.dot(frame.away) < 0;
-        triangle.add(frame(corner.place));
+        corners[c - k] = frame(corner.place);
+        triangle.add(corners[c - k]);
       }
       for (int caster : casters[i]) {
         if (!lit || !over(things[caster], triangle, soft)) continue;
+        if (!outlines[caster].corners.empty() && !may_darken(outlines[caster], corners, reach)) continue;
         darkened = true, casts[caster] = 1;
         fitted_casters.add(things[caster].low), fitted_casters.add(things[caster].high);
       }

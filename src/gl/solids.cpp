@@ -13,8 +13,9 @@
 namespace obscura::gl {
 namespace {
 
+using draw::kMap;
+
 constexpr int kSamples = 4;
-constexpr int kMap = 1024;        // texels a side
 constexpr float kBias = 0.0015f;  // of the map's depth
 
 GLuint framebuffer(const Functions& gl, GLenum attachment, GLenum target, GLuint texture) {

@@ -81,6 +81,9 @@ class Builder {
   void quad(const Vertex& a, const Vertex& b, const Point& tangent, const Tip& tip, const Point& end,
             double outward, bool terminal, bool cut);
   void cap(const Vertex& node, const Point& outward, const Tip& tip);
+  /// A straight stroke of one width and colour with two ends alike, in one.
+  void bar(const Vertex& a, const Vertex& b, End end);
+  void rectangle(std::uint32_t first);
 
   Strip& strip_;
   Bounds& bounds_;
@@ -112,10 +115,43 @@ void Builder::quad(const Vertex& a, const Vertex& b, const Point& tangent, const
       v.cut_normal_y = float(tip.cut_normal.y());
     }
     strip_.vertices.push_back(v);
+  }
+  rectangle(first);
+}
+
+void Builder::rectangle(std::uint32_t first) {
+  for (const std::uint32_t i : {0, 1, 2, 2, 1, 3}) strip_.indices.push_back(first + i);
+  for (std::size_t i = first; i < first + 4; ++i) {
+    const StripVertex& v = strip_.vertices[i];
     bounds_ = {std::min(bounds_.x0, v.x), std::min(bounds_.y0, v.y), std::max(bounds_.x1, v.x),
                std::max(bounds_.y1, v.y)};
   }
-  for (const std::uint32_t i : {0, 1, 2, 2, 1, 3}) strip_.indices.push_back(first + i);
+}
+
+void Builder::bar(const Vertex& a, const Vertex& b, End end) {
+  const Point step = b.at - a.at, middle = (a.at + b.at) / 2;
+  const double length = step.norm(), wide = a.half + kMargin;
+  const double reach = length / 2 + kMargin + (end == End::round ? a.half : 0);
+  const Point tangent = step / length, n = normal_of(tangent);
+  const auto first = std::uint32_t(strip_.vertices.size());
+  for (const double along : {-reach, reach}) {
+    for (const double across : {wide, -wide}) {
+      const Point at = middle + along * tangent + across * n;
+      StripVertex v;
+      v.x = float(at.x());
+      v.y = float(at.y());
+      v.lateral = float(across);
+      v.past = float(along);
+      v.half = float(a.half);
+      v.color = a.color;
+      v.tangent_x = float(tangent.x());
+      v.tangent_y = float(tangent.y());
+      v.butt = end == End::butt ? 1 : 0;
+      v.cut_x = float(length / 2);
+      strip_.vertices.push_back(v);
+    }
+  }
+  rectangle(first);
 }
 
 void Builder::cap(const Vertex& node, const Point& outward, const Tip& tip) {
@@ -128,6 +164,12 @@ void Builder::cap(const Vertex& node, const Point& outward, const Tip& tip) {
 }
 
 void Builder::arm(std::vector<Vertex>& nodes, const Tip& start, const Tip& finish, bool closed) {
+  if (nodes.size() == 2 && !closed && start.end == finish.end && start.end != End::joined &&
+      start.side == 0 && finish.side == 0 && nodes[0].half == nodes[1].half && nodes[0].half > 0 &&
+      nodes[0].color == nodes[1].color) {
+    bar(nodes[0], nodes[1], start.end);
+    return;
+  }
   // one segment with two ends: each has its half
   if (nodes.size() == 2 && !closed) {
     Vertex middle = nodes[0];

@@ -105,6 +105,77 @@ TEST(Space, ABallsCentreIsWhereAHandPutsIt) {
   }
 }
 
+TEST(Space, OnALargerPageItIsWhereThePageHasIt) {
+  Made made;
+  made.cast.walls.clear();
+  made.look.light = Vec3(0, 0, 1);
+  made.body(sim::ShapeKind::ball, {0.3, 1.2, 0}, Vec3::Zero(), 0.02, "black");
+  const draw::Picture own = made.picture();
+  Renderer renderer(640, 360);
+  // a half as large, with its corner at a part of a pixel
+  const Point corner(100.7, 61.1);
+  draw::Picture page;
+  page.ground = own.ground;
+  page.solids.push_back(std::make_shared<const draw::Solids>(draw::placed(*own.solids[0], 0.5, corner)));
+  const media::Image image = drawn(renderer, page);
+  double sum = 0, x = 0, y = 0;
+  for (int r = 0; r < image.height; ++r)
+    for (int c = 0; c < image.width; ++c) {
+      const double dark = ink(image, c, r);
+      sum += dark, x += dark * (c + 0.5), y += dark * (r + 0.5);
+    }
+  const Point wanted = (corner + 0.5 * made.depictor().lens(made.now).page({0.3, 1.2, 0})) / 3;
+  ASSERT_GT(sum, 0);
+  EXPECT_NEAR(x / sum, wanted.x(), 0.1);  // four samples a pixel
+  EXPECT_NEAR(y / sum, wanted.y(), 0.1);
+}
+
+// Of each triangle that may lie in a shadow the light's map is asked; of the others it is known beforehand
+// that none reaches them. Asked of all, the picture is the same.
+TEST(Space, WhatIsNotAskedOfTheMapLiesInNoShadow) {
+  Made made;
+  unsigned state = 1;
+  const auto number = [&] {
+    state = state * 1664525u + 1013904223u;
+    return (state >> 8) / 16777216.0;
+  };
+  for (int i = 0; i < 60; ++i) {
+    Eigen::Vector4d turn;
+    for (int k = 0; k < 4; ++k) turn[k] = number() - 0.5;
+    const Vec3 half(0.1 + 0.2 * number(), 0.1 + 0.2 * number(), 0.1 + 0.2 * number());
+    made.box({3 * number() - 1.5, 0.2 + 1.8 * number(), 3 * number() - 1.5}, half, "orange",
+             Eigen::Quaterniond(turn).normalized());
+  }
+  made.cameras = {draw::slant()};
+  Renderer renderer(640, 360);
+  draw::Picture picture = made.picture();
+  const media::Image few = drawn(renderer, picture);
+  auto all = std::make_shared<draw::Solids>(*picture.solids[0]);
+  ASSERT_FALSE(all->shadowed.empty());
+  ASSERT_FALSE(all->triangles.empty());
+  // but those turned away from the light, which are dark without it, and those beyond the map
+  const auto asked = [&](std::size_t i) {
+    bool within = true;
+    for (std::size_t k = i; k < i + 3; ++k)
+      for (float at : all->vertices[all->triangles[k]].light) within = within && at > 0 && at < 1;
+    const draw::Solids::Vertex& v = all->vertices[all->triangles[i]];
+    return within && !(v.lit == v.shaded);
+  };
+  std::vector<std::uint32_t> dark;
+  for (std::size_t i = 0; i < all->triangles.size(); i += 3) {
+    auto& list = asked(i) ? all->shadowed : dark;
+    list.insert(list.end(), all->triangles.begin() + std::ptrdiff_t(i),
+                all->triangles.begin() + std::ptrdiff_t(i) + 3);
+  }
+  ASSERT_LT(dark.size(), all->triangles.size()) << "none was left out";
+  all->triangles = dark;
+  picture.solids = {all};
+  const media::Image every = drawn(renderer, picture);
+  int other = 0;
+  for (std::size_t i = 0; i < few.pixels.size(); ++i) other += std::abs(few.pixels[i] - every.pixels[i]) > 2;
+  EXPECT_EQ(other, 0);
+}
+
 TEST(Space, FacesAreLitFromTheSideTheLightIsOn) {
   const auto face = [](const Vec3& light, const Vec3& on) {
     Made made;
