@@ -204,12 +204,16 @@ Page Album::page() const {
     row_height = std::max(row_height, height);
   }
   top += row_height;
-  if (figure.room && !space && draw::has_legend(figure)) {
-    const draw::Layout& layout = first.layout();
-    const double margin = layout.clipped ? 2 * draw::kPoint : layout.weight * draw::kBand;
+  if (figure.room && draw::has_legend(figure)) {
+    // in space a panel reaches to the page's edges, and the scale is that where its camera looks
+    double left = 2 * draw::kPoint, right = width_ * draw::kPoint - left;
+    if (!space) {
+      const draw::Layout& layout = first.layout();
+      const double margin = layout.clipped ? 2 * draw::kPoint : layout.weight * draw::kBand;
+      left = layout.window.x + margin, right = width_ * draw::kPoint - margin;
+    }
     top += 10 * draw::kPoint;
-    draw::draw_legend(figure, scales, colours, layout.scale, layout.window.x + margin,
-                      width_ * draw::kPoint - margin, top, all);
+    draw::draw_legend(figure, scales, colours, scale, left, right, top, all);
     top += 4 * draw::kPoint;
   }
   // plots below each other, as wide as the figure

@@ -14,6 +14,7 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/options.h"
+#include "draw/solids.h"
 #include "draw/type.h"
 #include "gl/renderer.h"
 #include "media/error.h"
@@ -83,13 +84,24 @@ Size size_at(const draw::Picture& picture, double width, double dpi) {
   return {std::max(1, int(std::ceil(across - 0.01))), std::max(1, int(std::ceil(down - 0.01))), down / 1080};
 }
 
-media::Image pixels(const draw::Picture& picture, const Size& size) {
+// what is drawn by depth lies where the lines over it do, to the part of a pixel
+media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, const Size& size) {
   gl::Renderer renderer(size.width, size.height);
   draw::Picture exact;
   exact.aspect = double(size.width) / size.height;
   exact.ground = picture.ground;
   exact.transparent = picture.transparent;
-  exact.moving.add(picture.moving, size.per_unit * 1080 / size.height, {0, 0});
+  const double k = size.per_unit * 1080 / size.height;
+  draw::List still;
+  for (const Lit& each : lit) {
+    const double scale = k * each.where.height / 1080;
+    const draw::Point at(k * each.where.x, k * each.where.y);
+    still.add(*each.picture.still, scale, at);
+    for (const auto& solids : each.picture.solids)
+      exact.solids.push_back(std::make_shared<const draw::Solids>(draw::placed(*solids, scale, at)));
+  }
+  exact.still = std::make_shared<const draw::List>(std::move(still));
+  exact.moving.add(picture.moving, k, {0, 0});
   return renderer.draw(exact);
 }
 
@@ -97,40 +109,7 @@ media::Image pixels(const draw::Picture& picture, const Size& size) {
 media::Image lit_pixels(const Page& page, const Size& size) {
   draw::Picture blank;
   blank.ground = page.picture.ground;
-  media::Image all = pixels(blank, size);
-  for (const Lit& lit : page.lit) {
-    const int left = int(std::lround(lit.where.x * size.per_unit)),
-              top = int(std::lround(lit.where.y * size.per_unit));
-    const int right = std::min(size.width, int(std::lround((lit.where.x + lit.where.width) * size.per_unit))),
-              bottom =
-                  std::min(size.height, int(std::lround((lit.where.y + lit.where.height) * size.per_unit)));
-    if (right <= left || bottom <= top) continue;
-    gl::Renderer renderer(right - left, bottom - top);
-    const media::Image own = renderer.draw(lit.picture);
-    for (int y = 0; y < own.height; ++y)
-      std::copy(own.row(y), own.row(y) + 4 * own.width, all.row(top + y) + 4 * left);
-  }
-  return all;
-}
-
-// one picture over another, alpha not multiplied in
-void put_over(const media::Image& upper, media::Image& lower) {
-  for (std::size_t i = 0; i + 3 < upper.pixels.size(); i += 4) {
-    const int alpha = upper.pixels[i + 3];
-    for (std::size_t c = i; c < i + 3; ++c)
-      lower.pixels[c] = std::uint8_t((upper.pixels[c] * alpha + lower.pixels[c] * (255 - alpha) + 127) / 255);
-    lower.pixels[i + 3] = 255;
-  }
-}
-
-media::Image pixels(const Page& page, double width, double dpi) {
-  const Size size = size_at(page.picture, width, dpi);
-  if (page.lit.empty()) return pixels(page.picture, size);
-  media::Image all = lit_pixels(page, size);
-  draw::Picture lines = page.picture;
-  lines.transparent = true;
-  put_over(pixels(lines, size), all);
-  return all;
+  return pixels(blank, page.lit, size);
 }
 
 int run(const Flags& flags) {
@@ -160,7 +139,7 @@ int run(const Flags& flags) {
   const double width = album.width(), height = width / made.picture.aspect;
   std::string size = fmt::format("{:.1f} x {:.1f} mm", width / kMillimetre, height / kMillimetre);
   if (ending(out) == "png") {
-    const media::Image image = pixels(made, width, flags.dpi);
+    const media::Image image = pixels(made.picture, made.lit, size_at(made.picture, width, flags.dpi));
     media::Tags tags{{"Software", "obscura " OBSCURA_VERSION}};
     if (!album.title().empty()) tags["Title"] = album.title();
     media::write_png(out, image, {.per_metre = flags.dpi / 0.0254, .tags = tags});

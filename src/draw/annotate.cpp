@@ -72,7 +72,9 @@ class Notes {
   void arrow(const Point& tail, const Point& tip, const Formula& label, Color ink);
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
   void dashes(const Point& a, const Point& b);
-  void arc(const Point& center, double radius, double from, double to, bool tip, double width, Color color);
+  void turn(const Figure::Vector& vector, const Reading& reading, const Formula& label, Color ink);
+  template <class At>
+  void arc(const At& at, double radius, double from, double to, double width, Color color);
   void word(Formula set, std::vector<Placing::Candidate> places, const Point& anchor) {
     if (!set.empty()) words_.push_back({std::move(set), std::move(places), anchor});
   }
@@ -133,29 +135,77 @@ void Notes::stroke(const std::vector<Point>& line, double width, Color color, do
 
 void Notes::dashes(const Point& a, const Point& b) {
   const double length = (b - a).norm(), dash = 2.4 * kPoint, gap = 1.8 * kPoint;
+  if (!(length > 0)) return;
   const Point u = (b - a) / length;
   for (double s = 0; s < length; s += dash + gap)
     stroke({a + s * u, a + std::min(s + dash, length) * u}, kThin, colours_.ink, 1);
 }
 
-// angles counter-clockwise from the right, rad
-void Notes::arc(const Point& center, double radius, double from, double to, bool tip, double width,
-                Color color) {
-  const auto at = [&](double a) { return Point(center + radius * Point(std::cos(a), -std::sin(a))); };
+// An arc with a tip through `at` of an angle, rad, of about `radius` on the page.
+template <class At>
+void Notes::arc(const At& at, double radius, double from, double to, double width, Color color) {
   std::vector<Point> line;
   const int n = std::max(6, int(std::abs(to - from) / 0.06));
   // the shaft ends within its head
-  const double head =
-      tip ? std::copysign(std::min(20 * kArrow / radius, 0.7 * std::abs(to - from)), to - from) : 0;
+  double head = std::copysign(std::min(20 * kArrow / radius, 0.7 * std::abs(to - from)), to - from);
+  // longer where the arc is seen aslant
+  while ((at(to) - at(to - head)).norm() < 16 * kArrow && std::abs(head) < 0.4 * std::abs(to - from))
+    head *= 1.2;
   for (int i = 0; i <= n; ++i) line.push_back(at(from + (to - 0.8 * head - from) * i / n));
   stroke(line, width, color, 3);
-  if (!tip) return;
   // the head points along the chord to its tip
   const Point end = at(to), back = at(to - head);
   const double grow = std::min(1.0, (end - back).norm() / (20 * kArrow));
+  if (!(grow > 0)) return;
   std::vector<Arrow> arrows{{Point(end - (end - back).normalized() * 18 * kArrow * grow), end, grow}};
   draw_arrows(arrows, kArrow, colours_.room, color, list_);
   placing_.avoid(back, end, 4);
+}
+
+// An arc with the way that it turns: in the plane over the body's middle; in space around it, about the axis,
+// which is dashed, and open away from the eye; its tip is before the body.
+void Notes::turn(const Figure::Vector& vector, const Reading& reading, const Formula& label, Color ink) {
+  if (!(std::abs(reading.signed_value) > 1e-9)) return;
+  const sim::Cast::Body& body = cast_.bodies[std::size_t(vector.body)];
+  const Point center = view_.page(reading.tail);
+  const double scale = view_.scale_at(reading.tail), wide = 1.1 * kPoint;
+  std::vector<Placing::Candidate> places;
+  const auto around = [&](const auto& at, std::initializer_list<double> angles) {
+    for (const double a : angles) {
+      const Point out = at(a) - center, n = out.norm() > 0 ? Point(out.normalized()) : Point(1, 0);
+      for (const double off : {1.0, 3.0, 7.0})
+        places.push_back({at(a) + n * kGap * off +
+                              Point(n.x() * label.width / 2, n.y() * (label.ascent + label.descent) / 2),
+                          off * kPoint, false});
+    }
+  };
+  if (view_.view()) {
+    const double reach = body.radius > 0        ? 1.6 * body.radius
+                         : body.half.norm() > 0 ? 0.62 * body.half.head<2>().minCoeff()
+                                                : 0;
+    const double radius = std::clamp(scale * reach, 9 * kPoint, 24 * kPoint);
+    const auto at = [&](double a) { return Point(center + radius * Point(std::cos(a), -std::sin(a))); };
+    const double low = 25 * std::numbers::pi / 180, high = 165 * std::numbers::pi / 180;
+    const bool left = reading.signed_value > 0;
+    arc(at, radius, left ? low : high, left ? high : low, wide, ink);
+    around(at, {low, 0.8, 1.2, high, 1.6, 2.1});
+  } else {
+    const double reach = body.radius > 0 ? 1.4 * body.radius : 1.05 * body.half.norm();
+    const double radius = std::clamp(scale * reach, 12 * kPoint, 40 * kPoint), world = radius / scale;
+    const Vec3 axis = reading.value.normalized();
+    Vec3 near = view_.sight(reading.tail);
+    near -= axis.dot(near) * axis;
+    near = near.norm() > 1e-6 ? Vec3(near.normalized()) : axis.unitOrthogonal();
+    const Vec3 on = axis.cross(near);
+    const auto at = [&](double a) {
+      return view_.page(reading.tail + world * (std::cos(a) * near + std::sin(a) * on));
+    };
+    const double back = -150 * std::numbers::pi / 180, ahead = 65 * std::numbers::pi / 180;
+    dashes(center, view_.page(reading.tail + 1.5 * world * axis));
+    arc(at, radius, back, ahead, wide, ink);
+    around(at, {ahead, 0.5 * ahead, 0.0, 0.3 * back, 0.6 * back, back});
+  }
+  word(label, places, center);
 }
 
 void Notes::vector(const Figure::Vector& vector, Scales scales) {
@@ -166,27 +216,7 @@ void Notes::vector(const Figure::Vector& vector, Scales scales) {
       return formula(with_value(label, value, unit(vector.quantity)), kType, ink);
     };
     if (vector.quantity == Quantity::spin || vector.quantity == Quantity::torque) {
-      if (!(std::abs(reading.signed_value) > 1e-9)) continue;
-      // over the body's middle, with the way it turns
-      const sim::Cast::Body& body = cast_.bodies[std::size_t(vector.body)];
-      const double reach = body.radius > 0        ? 1.6 * body.radius
-                           : body.half.norm() > 0 ? 0.62 * body.half.head<2>().minCoeff()
-                                                  : 0;
-      const double radius = std::clamp(view_.scale_at(reading.tail) * reach, 9 * kPoint, 24 * kPoint);
-      const double low = 25 * std::numbers::pi / 180, high = 165 * std::numbers::pi / 180;
-      const Point center = view_.page(reading.tail);
-      const bool left = reading.signed_value > 0;
-      arc(center, radius, left ? low : high, left ? high : low, true, 1.1 * kPoint, ink);
-      const Formula f = set(reading.signed_value);
-      std::vector<Placing::Candidate> places;
-      for (const double a : {low, 0.8, 1.2, high, 1.6, 2.1}) {
-        const Point n(std::cos(a), -std::sin(a));
-        for (const double off : {1.0, 3.0, 7.0})
-          places.push_back({center + n * (radius + kGap * off) +
-                                Point(n.x() * f.width / 2, n.y() * (f.ascent + f.descent) / 2),
-                            off * kPoint, false});
-      }
-      word(f, places, center);
+      turn(vector, reading, set(reading.signed_value), ink);
       continue;
     }
     const Formula label_set = set(reading.value.norm());
@@ -395,6 +425,8 @@ Point Projection::page(const Vec3& place) const {
 double Projection::scale_at(const Vec3& place) const {
   return view_ ? view_->scale : scale_ * lens_.scale_at(place);
 }
+
+Vec3 Projection::sight(const Vec3& place) const { return view_ ? Vec3(Vec3::UnitZ()) : lens_.sight(place); }
 
 void annotate(const Figure& figure, const Scales& scales, const sim::Cast& cast, const Palette& colours,
               const Projection& projection, const sim::Snapshot& now, List& list) {

@@ -21,6 +21,8 @@ class Projection {
   Point page(const sim::Vec3& place) const;
   /// Page units a metre there.
   double scale_at(const sim::Vec3& place) const;
+  /// The way from there to the eye, unit.
+  sim::Vec3 sight(const sim::Vec3& place) const;
   const Rect& window() const { return window_; }
   /// The plane's; none of space.
   const View* view() const { return view_ ? &*view_ : nullptr; }

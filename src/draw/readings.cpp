@@ -7,7 +7,10 @@ namespace {
 
 using sim::Vec3;
 
-double cross(const Vec3& a, const Vec3& b) { return a.x() * b.y() - a.y() * b.x(); }
+/// What turns about a body's middle.
+Reading turning(const sim::Cast& cast, const Vec3& middle, const Vec3& value) {
+  return {middle, value, cast.dimension == 2 ? value.z() : value.norm()};
+}
 
 /// The velocity of a point of a body.
 Vec3 velocity_at(const sim::Snapshot& now, int body, const Vec3& point) {
@@ -81,12 +84,12 @@ std::vector<Reading> readings(const Figure::Vector& vector, const sim::Cast& cas
     case Quantity::blast:
       return {{at, body.blast}};
     case Quantity::spin:
-      return {{body.position, Vec3::Zero(), body.spin.z()}};
+      return {turning(cast, body.position, body.spin)};
     case Quantity::torque: {
-      double torque = 0;
+      Vec3 torque = Vec3::Zero();
       for (const auto& all : {pulls(cast, now, vector.body), touches(now, vector.body, Quantity::contact)})
-        for (const Reading& each : all) torque += cross(each.tail - body.position, each.value);
-      return {{body.position, Vec3::Zero(), torque}};
+        for (const Reading& each : all) torque += (each.tail - body.position).cross(each.value);
+      return {turning(cast, body.position, torque)};
     }
     case Quantity::position:
       break;

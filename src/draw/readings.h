@@ -12,7 +12,7 @@ namespace obscura::draw {
 /// What an arrow shows, before it is scaled.
 struct Reading {
   sim::Vec3 tail, value;
-  double signed_value = 0;  // of what turns
+  double signed_value = 0;  // of what turns: in the plane counter-clockwise, in space how much about `value`
 };
 
 /// The arrows that a vector of a figure stands for at an instant: one a spring, one a thing touched.

@@ -137,10 +137,6 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
     if (position ? !vector.to && vector.body < 0 : vector.body < 0)
       complaints.add(node.place, position ? "a position needs 'to', a place, or 'of', a body"
                                           : "this vector needs 'of', the body that has it");
-    const bool turning = vector.quantity == draw::Quantity::spin || vector.quantity == draw::Quantity::torque;
-    if (D == 3 && turning)
-      complaints.add(its.place("quantity"),
-                     "arcs of spin and torque are of the plane; in space there are none yet");
     figure.vectors.push_back(vector);
   }
   for (const Node& node : tables(fields, "angle")) {

@@ -310,6 +310,55 @@ label = "F = {}"
   EXPECT_EQ(media::read_png(path("a.png")).image.width, 284);  // 283.5
 }
 
+// 3 rad/s about an axis through the eye's right: the arc's tip and the arrow's length by one scale are the
+// legend's
+TEST_F(Figure, InSpaceWhatTurnsHasAnArcAndArrowsHaveOneScale) {
+  scene(R"(
+duration = 1
+[room]
+size = [4, 3, 4]
+walls = "ground"
+gravity = [0, 0, 0]
+[[box]]
+name = "crate"
+size = [0.6, 0.4, 0.5]
+position = [0, 1.5, 0]
+spin = [0, 171.887338539, 0]
+velocity = [2, 0, 0]
+[[camera]]
+view = "side"
+projection = "orthographic"
+[film]
+size = [320, 240]
+[figure]
+at = 0
+[[figure.vector]]
+quantity = "spin"
+of = "crate"
+label = "\\omega = {}"
+[[figure.vector]]
+quantity = "velocity"
+of = "crate"
+)");
+  const Outcome drawn = obscura("figure scene.toml -o a.svg --dpi 60");
+  ASSERT_EQ(drawn.exit, 0) << drawn.err;
+  const std::string svg = contents(path("a.svg"));
+  EXPECT_THAT(svg, HasSubstr(">rad/s<"));
+  EXPECT_THAT(svg, HasSubstr("= 3 "));
+  EXPECT_THAT(svg, HasSubstr(">m/s<"));  // the legend's
+}
+
+TEST_F(Figure, TheHandoutIsAPdfWithItsFiguresAndItsType) {
+  OBSCURA_NEEDS(installed("pandoc"), "pandoc");
+  OBSCURA_NEEDS(installed("chromium-headless-shell") || installed("chromium"), "chromium-headless-shell");
+  OBSCURA_NEEDS(installed("pdftotext"), "poppler-utils");
+  const Outcome made = shell(OBSCURA_SOURCE_DIR "/script/handout handout.pdf");
+  ASSERT_EQ(made.exit, 0) << made.err;
+  const std::string text = shell("pdftotext handout.pdf -").out;
+  // of the words, of a figure in the plane and of one with pixels under its lines
+  for (const char* words : {"friction", "arctan", "swivel"}) EXPECT_THAT(text, HasSubstr(words));
+}
+
 // fonts are of this system's version, and pixels of its OpenGL
 std::string without_fonts(std::string svg) {
   if (const auto from = svg.find("<style>"), to = svg.find("</style>"); to != svg.npos)
