@@ -25,7 +25,7 @@ constexpr double kColumn = 84 * 72 / 25.4;   // pt
 constexpr double kGutter = 8, kLetter = 13;  // pt: between panels; above one, for its letter
 constexpr std::array<const char*, 5> kTold{"blue", "vermilion", "green", "purple",
                                            "orange"};  // lines of runs
-constexpr std::size_t kMostPanels = 100;
+constexpr std::int64_t kMostPanels = 100;
 constexpr int kMostExposures = 2000;
 constexpr double kFormula = 10;                       // pt, em
 constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
@@ -56,28 +56,17 @@ draw::Text words(const std::string& text, draw::Face face, double size, const dr
 
 Album::Album(const std::string& file, const std::vector<std::string>& sets, const AlbumOptions& options) {
   // one scene for each value, all combinations
-  std::vector<std::pair<std::vector<std::string>, std::string>> variants{{sets, ""}};
   std::vector<std::string> varies = options.vary;
   if (varies.empty() && file != "-")
     if (const std::string own = scene::read(file, sets).figure.vary; !own.empty()) varies = {own};
-  for (const std::string& vary : varies) {
-    std::vector<std::pair<std::vector<std::string>, std::string>> more;
-    for (const auto& [so_far, said] : variants) {
-      const Variation variation(vary);
-      for (const std::string& value : variation.values) {
-        const std::string text = variation.name() + " = " + value;
-        more.emplace_back(so_far, said.empty() ? text : said + ", " + text);
-        more.back().first.push_back(variation.path + "=" + value);
-      }
-    }
-    variants = std::move(more);
-  }
-  if (file == "-" && variants.size() > 1)
+  const Variations variants(varies);
+  if (file == "-" && variants.size > 1)
     throw UsageError("--vary reads its scene more than once: name a file");
 
   int wanted = 0;
-  for (const auto& [changes, said] : variants) {
-    scene::Scene scene = scene::read(file, changes);
+  for (std::int64_t run = 0; run < variants.size; ++run) {
+    const std::string said = variants.words(run);
+    scene::Scene scene = scene::read(file, variants.sets(run, sets));
     if (options.theme) scene.look.theme = *options.theme;
     const draw::Figure& figure = scene.figure;
     std::vector<sim::Rational> times = options.at.empty() ? figure.at : options.at;
@@ -94,15 +83,14 @@ Album::Album(const std::string& file, const std::vector<std::string>& sets, cons
     width_ = options.width.value_or(figure.width ? *figure.width * 72 / 25.4 : kColumn);
     every_ = options.every ? options.every : figure.every;
     wanted = options.columns ? *options.columns : figure.columns;
-    if (times.size() * variants.size() > kMostPanels)
+    if (const std::int64_t panels = std::int64_t(times.size()) * variants.size; panels > kMostPanels)
       throw UsageError(fmt::format("{}: {} panels are more than {}, the most a figure has", scene.file,
-                                   times.size() * variants.size(), kMostPanels));
+                                   panels, kMostPanels));
     if (every_ && sim::value(times.back()) / sim::value(*every_) > kMostExposures)
       throw UsageError(fmt::format("{}: {:.0f} exposures are more than {}, the most a panel has", scene.file,
                                    sim::value(times.back()) / sim::value(*every_), kMostExposures));
     take(scene, times, said);
-    const auto value = said.rfind(" = ");
-    variants_.push_back({scene, value == said.npos ? said : said.substr(value + 3)});
+    variants_.push_back({scene, variants.keys.empty() ? "" : variants[run].back()});
   }
   const int n = int(panels_.size()) *
                 (panels_.front().cast.dimension == 3 ? int(panels_.front().scene.cameras.size()) : 1);

@@ -22,6 +22,17 @@ void add_sets(CLI::App& command, std::vector<std::string>& sets) {
       ->take_all();
 }
 
+void add_progress(CLI::App& command, ProgressKind& kind) {
+  command.add_option("--progress", kind, "auto, plain, json (a line an event) or none [auto]")
+      ->type_name("KIND")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, ProgressKind>{{"auto", ProgressKind::automatic},
+                                                                      {"plain", ProgressKind::plain},
+                                                                      {"json", ProgressKind::json},
+                                                                      {"none", ProgressKind::none}})
+              .description(""));
+}
+
 sim::Rational parse_fps(const std::string& text) {
   const auto fps = sim::parse_rational(text);
   if (!fps || fps->num <= 0 || sim::value(*fps) > 1000)

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/progress.h"
 #include "sim/rational.h"
 
 namespace CLI {
@@ -17,6 +18,9 @@ void add_scene(CLI::App& command, std::string& file);
 
 /// --set, which every command that reads a scene has.
 void add_sets(CLI::App& command, std::vector<std::string>& sets);
+
+/// --progress.
+void add_progress(CLI::App& command, ProgressKind& kind);
 
 /// "60", "30000/1001": the frames per second that --fps says, above 0 and up to 1000. Throws UsageError.
 sim::Rational parse_fps(const std::string& text);

@@ -68,6 +68,7 @@ int main(int argc, const char* const* argv) {
       "  obscura render ball.toml --at 1.5       one picture of it\n"
       "  obscura figure ball.toml -o ball.pdf    a figure for print\n"
       "  obscura states ball.toml --every 0.1    where everything is, as data\n"
+      "  obscura sweep ball.toml --vary seed=1:100 --measure hash@end    many runs as a table\n"
       "  obscura export ball.toml                its motion as glTF, for another renderer\n"
       "  obscura compare old.png new.png         whether they are the same, and why not\n"
       "  obscura golden scenes                   check what scenes look like against references\n\n"
@@ -84,6 +85,7 @@ int main(int argc, const char* const* argv) {
   add_new(program, exit);
   add_check(program, exit);
   add_states(program, exit);
+  add_sweep(program, exit);
   add_export(program, exit);
   add_compare(program, exit);
   add_verify(program, exit);

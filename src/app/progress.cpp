@@ -23,9 +23,11 @@ void put(const std::string& text, std::FILE* to = stderr) { std::fputs(text.c_st
 
 }  // namespace
 
-Progress::Progress(ProgressKind kind, std::string what, std::int64_t frames, double frame_seconds)
+Progress::Progress(ProgressKind kind, std::string what, std::int64_t frames, double frame_seconds,
+                   std::string unit)
     : kind_(kind),
       what_(std::move(what)),
+      unit_(std::move(unit)),
       frames_(frames),
       frame_seconds_(frame_seconds),
       began_(std::chrono::steady_clock::now()),
@@ -60,21 +62,22 @@ void Progress::print(std::int64_t done, bool last) {
   }
   const double left = rate > 0 ? double(frames_ - done) / rate : 0;
   if (kind_ == ProgressKind::json) {
-    nlohmann::ordered_json line = {{"event", last ? "done" : "progress"},
-                                   {"output", what_},
-                                   {"frame", done},
-                                   {"frames", frames_},
-                                   {"fps", rate},
-                                   {"speed", rate * frame_seconds_},
-                                   {"elapsed", now}};
+    nlohmann::ordered_json line = {{"event", last ? "done" : "progress"}, {"output", what_}};
+    if (unit_ == "frames")
+      line.update({{"frame", done}, {"frames", frames_}, {"fps", rate}, {"speed", rate * frame_seconds_}});
+    else
+      line.update({{"done", done}, {unit_, frames_}, {"rate", rate}});
+    line["elapsed"] = now;
     if (!last) line["left"] = left;
     put(line.dump() + "\n");
   } else if (done == 0) {
     if (terminal_) put(fmt::format("\r\033[K{}  starting", what_));
   } else {
-    const std::string line = fmt::format("{}  {}/{} frames  {:.0f} %  {:.0f} fps  {:.1f}x real time  {} left",
-                                         what_, done, frames_, 100.0 * double(done) / double(frames_), rate,
-                                         rate * frame_seconds_, clock(left));
+    const std::string speed = unit_ == "frames"
+                                  ? fmt::format("{:.0f} fps  {:.1f}x real time", rate, rate * frame_seconds_)
+                                  : fmt::format("{:.3g} {}/s", rate, unit_);
+    const std::string line = fmt::format("{}  {}/{} {}  {:.0f} %  {}  {} left", what_, done, frames_, unit_,
+                                         100.0 * double(done) / double(frames_), speed, clock(left));
     put(fmt::format("{}{}{}", terminal_ ? "\r\033[K" : "", line, terminal_ ? "" : "\n"));
   }
   shown_ = terminal_;

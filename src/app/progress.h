@@ -12,8 +12,10 @@ enum class ProgressKind { automatic, plain, json, none };
 /// then elsewhere, JSON lines for programs.
 class Progress {
  public:
-  /// `what` is made; `frames` of it; a frame lasts `frame_seconds` of the film.
-  Progress(ProgressKind kind, std::string what, std::int64_t frames, double frame_seconds);
+  /// `what` is made; `frames` of it; a frame lasts `frame_seconds` of the film. `unit`: what is counted where
+  /// it is not frames, as in "runs"; `frame_seconds` is then of no matter.
+  Progress(ProgressKind kind, std::string what, std::int64_t frames, double frame_seconds,
+           std::string unit = "frames");
   ~Progress();
 
   /// So many frames are done.
@@ -29,7 +31,7 @@ class Progress {
 
   ProgressKind kind_;
   bool terminal_ = false, shown_ = false;
-  std::string what_;
+  std::string what_, unit_;
   std::int64_t frames_;
   double frame_seconds_;
   std::chrono::steady_clock::time_point began_, printed_;

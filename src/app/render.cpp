@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 
@@ -13,6 +12,7 @@
 #include "app/footage.h"
 #include "app/options.h"
 #include "app/origin.h"
+#include "app/shard.h"
 #include "app/trouble.h"
 #include "sim/run.h"
 
@@ -131,21 +131,12 @@ void suit_run(const Flags& flags, const scene::Scene& scene, Shots& shots) {
   }
 }
 
-// "2/4": i of n, from 1
-std::pair<int, int> parse_shard(const std::string& text) {
-  int i = 0, n = 0;
-  const char *begin = text.data(), *end = begin + text.size();
-  const auto first = std::from_chars(begin, end, i);
-  const bool slash = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
-  const auto second = slash ? std::from_chars(first.ptr + 1, end, n) : first;
-  if (!slash || second.ec != std::errc() || second.ptr != end || i < 1 || n < i)
-    throw UsageError(fmt::format("--shard {}: expected I/N, the I-th of N, as in 1/4", text));
-  return {i, n};
-}
-
 // what is made of a film, and from where
 void divide(Flags& flags, const Output& out) {
-  if (flags.shard) flags.film.shard = parse_shard(*flags.shard);
+  if (flags.shard) {
+    const Shard shard = parse_shard(*flags.shard);
+    flags.film.shard = {int(shard.number), int(shard.of)};
+  }
   if (flags.checkpoint_every)
     flags.film.checkpoint_every = seconds("--checkpoint-every", *flags.checkpoint_every);
   if (flags.checkpoint_every && flags.film.checkpoint_every.num == 0)
@@ -267,15 +258,7 @@ void add_render(CLI::App& program, int& exit) {
   command->add_flag("--native", flags->film.context.native,
                     "Draw with all of this processor's instructions: a tenth quicker, pixels may differ by a "
                     "level elsewhere");
-  command
-      ->add_option("--progress", flags->film.progress, "auto, plain, json (a line an event) or none [auto]")
-      ->type_name("KIND")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, ProgressKind>{{"auto", ProgressKind::automatic},
-                                                                      {"plain", ProgressKind::plain},
-                                                                      {"json", ProgressKind::json},
-                                                                      {"none", ProgressKind::none}})
-              .description(""));
+  add_progress(*command, flags->film.progress);
   command->footer(
       "Examples:\n"
       "  obscura render scenes/room.toml\n"

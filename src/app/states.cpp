@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/checkpoint.h"
+#include "app/columns.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/interrupt.h"
@@ -46,8 +47,6 @@ const std::string& name(const sim::Cast& cast, int body) { return cast.bodies[st
 std::string spin(const sim::Vec3& w, int dimension) {
   return dimension == 2 ? number(w.z()) : vector(w, dimension);
 }
-
-std::vector<double> numbers(const sim::Vec3& v, int dimension) { return {v.data(), v.data() + dimension}; }
 
 // "angle": rad; in space "orientation": a unit quaternion x, y, z, w
 std::string turn(const sim::Snapshot::Body& body, int dimension) {
@@ -105,55 +104,24 @@ std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::str
   return text + "]}";
 }
 
-// the columns are the paths that --set and --measure know, one row an instant
-std::string csv_header(const sim::Cast& cast) {
-  const bool space = cast.dimension == 3;
-  std::string line =
-      "time,step,hash,energy.kinetic,energy.potential,energy.total,energy.displacement,energy.impacts";
-  const auto vector = [&](const std::string& name) {
-    for (const char* axis : {"x", "y", "z"})
-      if (space || *axis != 'z') line += fmt::format(",{}.{}", name, axis);
-  };
-  const auto spin = [&](const std::string& name) { space ? vector(name) : void(line += "," + name); };
-  vector("momentum");
-  spin("angular_momentum");
-  line += ",contacts";
-  for (const auto& body : cast.bodies) {
-    vector(body.name + ".position");
-    if (space) {
-      for (const char* part : {"x", "y", "z", "w"})
-        line += fmt::format(",{}.orientation.{}", body.name, part);
-    } else {
-      line += fmt::format(",{}.angle", body.name);
-    }
-    vector(body.name + ".velocity");
-    spin(body.name + ".spin");
+// the columns are the paths that --set and --measure know, one row an instant; the hash stands third
+constexpr std::size_t kHash = 2;
+
+std::string csv_header(const std::vector<Column>& all) {
+  std::string line;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == kHash) line += ",hash";
+    line += (i ? "," : "") + all[i].name;
   }
-  for (const auto& joint : cast.joints) vector(joint.name + ".force");
   return line + "\n";
 }
 
-std::string csv_row(const sim::Snapshot& now, const std::string& hash, int dimension) {
-  const sim::Energies& e = now.energies;
-  std::string line = fmt::format("{},{},{}", number(now.time), now.step, hash);
-  const auto add = [&](const std::vector<double>& all) {
-    for (const double x : all) line += "," + number(x);
-  };
-  const auto spin = [&](const sim::Vec3& w) {
-    add(dimension == 2 ? std::vector<double>{w.z()} : numbers(w, dimension));
-  };
-  add({e.kinetic, e.potential(), e.total(), e.displacement, e.impacts});
-  add(numbers(now.momentum, dimension));
-  spin(now.angular_momentum);
-  line += fmt::format(",{}", now.contacts.size());
-  for (const auto& body : now.bodies) {
-    add(numbers(body.position, dimension));
-    const Eigen::Quaterniond& q = body.orientation;
-    add(dimension == 2 ? std::vector<double>{body.angle} : std::vector<double>{q.x(), q.y(), q.z(), q.w()});
-    add(numbers(body.velocity, dimension));
-    spin(body.spin);
+std::string csv_row(const sim::Snapshot& now, const std::string& hash, const std::vector<Column>& all) {
+  std::string line;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == kHash) line += "," + hash;
+    line += (i ? "," : "") + number(all[i].read(now));
   }
-  for (const auto& joint : now.joints) add(numbers(joint.force, dimension));
   return line + "\n";
 }
 
@@ -190,6 +158,7 @@ int states(const Flags& flags) {
                                  sim::value(run->now()), sim::value(times.front())));
   run->heed(interrupted);
   const bool as_json = flags.format == "json";
+  const std::vector<Column> all = columns(run->cast(), scene.axes);
   if (as_json) {
     put(
         fmt::format("{{\"version\": \"{}\", \"scene\": {}, \"scene_hash\": \"{}\", \"dimension\": {},\n"
@@ -199,7 +168,7 @@ int states(const Flags& flags) {
                     OBSCURA_VERSION, quoted(scene.file), hash(scene.text), run->cast().dimension,
                     std::visit([](const auto& world) { return solver_name(world.model); }, scene.world)));
   } else {
-    put(csv_header(run->cast()));
+    put(csv_header(all));
   }
   std::optional<sim::Trouble> trouble;
   bool first = true;
@@ -212,14 +181,15 @@ int states(const Flags& flags) {
     }
     if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
     auto& now = std::get<sim::Snapshot>(outcome);
-    // turned as it was typed, not as its principal axes lie
-    for (std::size_t i = 0; i < now.bodies.size(); ++i)
-      now.bodies[i].orientation = now.bodies[i].orientation * scene.axes[i].conjugate();
     const std::string state = state_hash(run->words());
-    if (as_json)
+    if (as_json) {
+      // turned as it was typed, not as its principal axes lie
+      for (std::size_t i = 0; i < now.bodies.size(); ++i)
+        now.bodies[i].orientation = now.bodies[i].orientation * scene.axes[i].conjugate();
       put((first ? "" : ",\n") + json(now, run->cast(), state));
-    else
-      put(csv_row(now, state, run->cast().dimension));
+    } else {
+      put(csv_row(now, state, all));
+    }
     first = false;
   }
   if (as_json) put("\n ]}\n");

@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace obscura::app {
 
-/// A key of the scene and the values that it takes in turn, as "crate.elasticity=0,0.5,1" says it.
+/// A key of the scene and the values that it takes in turn, as "crate.elasticity=0,0.5,1" says it, or with
+/// ranges, both ends counted: "0:1:0.1", "seed=1:100".
 struct Variation {
   /// Throws UsageError where it cannot be read.
   explicit Variation(std::string_view text);
@@ -18,6 +20,24 @@ struct Variation {
   std::string name() const;
   /// A value that is a number or a fraction. Throws UsageError where it is none.
   double number(const std::string& value) const;
+};
+
+/// Runs that differ in the values of keys: all combinations, the last key's values changing fastest.
+struct Variations {
+  static constexpr std::int64_t kMostRuns = 1'000'000'000;
+
+  /// Throws UsageError where one cannot be read, or is of the same key as another.
+  explicit Variations(const std::vector<std::string>& texts);
+
+  std::vector<Variation> keys;
+  std::int64_t size = 1;  // how many runs
+
+  /// The values of run `run`, from 0, one a key.
+  std::vector<std::string> operator[](std::int64_t run) const;
+  /// The same as --set takes them, after others.
+  std::vector<std::string> sets(std::int64_t run, std::vector<std::string> sets) const;
+  /// The same for a person: "elasticity = 0.1, seed = 3".
+  std::string words(std::int64_t run) const;
 };
 
 }  // namespace obscura::app
