@@ -15,6 +15,7 @@ void add_new(CLI::App& program, int& exit);
 void add_check(CLI::App& program, int& exit);
 void add_states(CLI::App& program, int& exit);
 void add_sweep(CLI::App& program, int& exit);
+void add_submit(CLI::App& program, int& exit);
 void add_export(CLI::App& program, int& exit);
 void add_figure(CLI::App& program, int& exit);
 void add_docs(CLI::App& program, int& exit);

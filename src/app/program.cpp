@@ -86,6 +86,7 @@ int main(int argc, const char* const* argv) {
   add_check(program, exit);
   add_states(program, exit);
   add_sweep(program, exit);
+  add_submit(program, exit);
   add_export(program, exit);
   add_compare(program, exit);
   add_verify(program, exit);

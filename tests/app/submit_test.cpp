@@ -1,0 +1,114 @@
+#include "with_slurm.h"
+
+namespace obscura::app {
+namespace {
+
+const std::string kSmall = " --set film.size=[160,90] --set film.fps=10";
+
+using Submit = Program;
+
+TEST_F(Submit, DryRunShowsScriptsThatAShellReadsAndNeedsNoSlurm) {
+  scene(kRoom, "a room.toml");
+  const Outcome run = shell("PATH=/nowhere " OBSCURA_BINARY
+                            " submit 'a room.toml' --tasks 4 --at-once 2 -o \"it's.mp4\" --dry-run "
+                            "--set ball.mass=2 -- -p long --time=1:00:00");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  for (const char* part :
+       {"#SBATCH -p long\n", "#SBATCH --time=1:00:00\n", "#SBATCH --requeue\n", "--array=1-4%2",
+        "--prepare 4", "--shard \"$shard/4\"", " join 'it'\\''s.mp4' &", "'a room.toml'",
+        "--dependency=afterok:$shards --kill-on-invalid-dep=yes", "it's.mp4.slurm/shards.sbatch\n"})
+    EXPECT_NE(run.out.find(part), std::string::npos) << part << "\n" << run.out;
+  std::ofstream(path("all.sh")) << run.out;
+  EXPECT_EQ(shell("sh -n all.sh").exit, 0) << contents(path("all.sh"));
+  EXPECT_FALSE(std::filesystem::exists(path("it's.mp4.slurm")));
+}
+
+TEST_F(Submit, RefusesWhatCannotBeSharedOut) {
+  scene(kRoom);
+  EXPECT_EQ(obscura("submit scene.toml --tasks 4 --dry-run -o -").exit, 2);
+  EXPECT_EQ(obscura("submit - --tasks 4 --dry-run <scene.toml").exit, 2);
+  EXPECT_EQ(obscura("submit scene.toml --tasks 4 --dry-run --measure hash@end -o a.mp4").exit, 2);
+  const Outcome none = shell("PATH=/nowhere " OBSCURA_BINARY " submit scene.toml --tasks 4");
+  EXPECT_EQ(none.exit, 4);
+  EXPECT_NE(none.err.find("no Slurm"), std::string::npos) << none.err;
+}
+
+class Slurm : public WithSlurm {};
+
+TEST_F(Slurm, FourShardsAndAJoinAreOneRun) {
+  scene(kRoom);
+  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + kSmall).exit, 0);
+  const Outcome run = obscura("submit scene.toml --tasks 4 -o room.mp4 --progress plain" + kSmall);
+  ASSERT_EQ(run.exit, 0) << run.err << contents(path("room.mp4.slurm/prepare.log"))
+                         << contents(path("room.mp4.slurm/shard-1.log"))
+                         << contents(path("room.mp4.slurm/join.log"));
+  EXPECT_NE(run.out.find("room.mp4: 100 frames, made by 4 tasks"), std::string::npos) << run.out;
+  EXPECT_EQ(contents(path("room.mp4")), contents(path("one.mp4")));
+  const Outcome again = obscura("submit scene.toml --tasks 4 -o room.mp4" + kSmall);
+  EXPECT_EQ(again.exit, 0);
+  EXPECT_NE(again.out.find("is whole"), std::string::npos) << again.out;
+
+  // arrays here end at task 8
+  const Outcome table =
+      obscura("submit scene.toml --tasks 20 --vary seed=1:10 --measure hash@1 -o runs.csv --progress none");
+  EXPECT_EQ(table.exit, 0) << table.err << contents(path("runs.csv.slurm/shard-1.log"));
+  EXPECT_NE(table.err.find("up to 8 tasks"), std::string::npos) << table.err;
+  EXPECT_EQ(contents(path("runs.csv")),
+            obscura("sweep scene.toml --vary seed=1:10 --measure hash@1 --progress none").out);
+}
+
+TEST_F(Slurm, AFailedTaskIsNamedWithItsLogAndRepairedBySubmittingAgain) {
+  scene(kRoom);
+  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + kSmall).exit, 0);
+  const std::string submit = "submit scene.toml --tasks 4 -o room.mp4 --progress none" + kSmall;
+  // the scripts are a person's to change: shard 3 is made to fail
+  ASSERT_EQ(obscura(submit + " --no-wait -- --hold").exit, 0);
+  ASSERT_EQ(
+      shell("scancel $(squeue -h -o %A); cd room.mp4.slurm; cp shards.sbatch good; "
+            "sed -i 's/^cores=.*/&\\n[ $shard != 3 ] || { echo the lamp broke; exit 9; }/' shards.sbatch")
+          .exit,
+      0);
+  ASSERT_TRUE(soon("test -z \"$(squeue -h -o %A)\""));
+  const Outcome failed = obscura(submit);
+  EXPECT_EQ(failed.exit, 4);
+  for (const char* part :
+       {"shard-3 failed, of 4 shards, FAILED", "room.mp4.slurm/shard-3.log: the lamp broke"})
+    EXPECT_NE(failed.err.find(part), std::string::npos) << failed.err;
+  EXPECT_FALSE(std::filesystem::exists(path("room.mp4")));
+
+  ASSERT_EQ(shell("cd room.mp4.slurm; mv good shards.sbatch; rm shard-[124].log").exit, 0);
+  const Outcome repaired = obscura(submit);
+  EXPECT_EQ(repaired.exit, 0) << repaired.err;
+  EXPECT_EQ(contents(path("room.mp4")), contents(path("one.mp4")));
+  EXPECT_FALSE(std::filesystem::exists(path("room.mp4.slurm/shard-1.log")));  // nobody made it again
+}
+
+TEST_F(Slurm, ATaskThatIsToldToStopAndANodeThatDiesLoseNothing) {
+  scene(kRoom);
+  const std::string sets = " --set film.size=[640,360] --set film.fps=60";
+  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + sets).exit, 0);
+  const std::string submit = "submit scene.toml --tasks 2 -o room.mp4 --progress none" + sets;
+  ASSERT_EQ(obscura(submit + " --no-wait").exit, 0);
+  const std::string array = "$(awk '$1 == \"shards\" { print $2 }' room.mp4.slurm/jobs)";
+
+  // task 1 gets SIGTERM when it has a part
+  ASSERT_TRUE(soon("ls room.mp4.parts/000000-*.mp4"));
+  ASSERT_EQ(shell("scancel --full --signal=TERM " + array + "_1").exit, 0);
+  ASSERT_TRUE(soon("squeue -h -r -j " + array + " -o '%K %T %r' | grep -qx '1 PENDING BeginTime'"))
+      << shell("squeue -t all -r").out << contents(path("room.mp4.slurm/shard-1.log"));
+  no_waiting();
+
+  // then the node dies, and comes back
+  ASSERT_TRUE(soon("squeue -h -r -t RUNNING -j " + array + " | grep -q ."));
+  kill_node();
+  ASSERT_TRUE(soon("sinfo -h -o %T | grep -q down")) << contents(path("slurmctld.log"));
+  start_node();
+  ASSERT_TRUE(soon("sinfo -h -o %T | grep -qx -e idle -e mixed -e allocated"));
+  no_waiting();
+  const Outcome followed = obscura(submit);
+  EXPECT_EQ(followed.exit, 0) << followed.err << contents(path("slurmctld.log"));
+  EXPECT_EQ(contents(path("room.mp4")), contents(path("one.mp4")));
+}
+
+}  // namespace
+}  // namespace obscura::app

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "needs.h"
+#include "program.h"
+
+namespace obscura::app {
+
+/// A whole Slurm of four processors on the loopback, in the test's own folder: munged, slurmctld, slurmd, as
+/// whoever runs the test.
+class WithSlurm : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    ::setenv("PATH", (std::string(std::getenv("PATH")) + ":/usr/sbin:/sbin").c_str(), 1);
+    const bool there =
+        installed("munged") && installed("slurmctld") && installed("slurmd") && installed("sbatch");
+    OBSCURA_NEEDS(there, "munge slurmctld slurmd slurm-client");
+    ::setenv("SLURM_CONF", path("slurm.conf").c_str(), 1);
+    std::ofstream(path("slurm.conf")) << configuration();
+    ASSERT_EQ(
+        shell("mkdir state spool; head -c 128 /dev/urandom >munge.key; chmod 600 munge.key; chmod 755 .")
+            .exit,
+        0);
+    munged_ = start(
+        "munged --foreground --force --socket=$PWD/munge.socket --key-file=$PWD/munge.key "
+        "--pid-file=$PWD/munged.pid --seed-file=$PWD/munge.seed --log-file=$PWD/munged.log");
+    ASSERT_TRUE(soon("test -S munge.socket")) << contents(path("munged.out"));
+    controller_ = start("slurmctld -D -i");
+    ASSERT_TRUE(soon("sinfo -h")) << contents(path("slurmctld.log"));
+    start_node();
+    ASSERT_TRUE(soon("sinfo -h -o %T | grep -qx -e idle")) << contents(path("slurmd.log"));
+  }
+  void TearDown() override {
+    if (!controller_.empty()) {
+      shell("scancel --full $(squeue -h -o %A); scancel $(squeue -h -o %A)");
+      soon("test -z \"$(squeue -h -o %A)\"");
+    }
+    for (const std::string* pid : {&node_, &controller_, &munged_})
+      if (!pid->empty()) shell("kill -KILL " + *pid);
+    Program::TearDown();
+  }
+
+  void start_node() { node_ = start("slurmd -D"); }
+
+  /// The node as after a power cut: nothing of it is left.
+  void kill_node() {
+    shell("kill -KILL " + node_ +
+          "; for p in /proc/[0-9]*; do "
+          "if tr '\\0' '\\n' <$p/environ 2>/dev/null | grep -qx \"SLURM_CONF=$SLURM_CONF\" && "
+          "{ grep -q ^slurmstepd $p/comm || tr '\\0' '\\n' <$p/environ | grep -q ^SLURM_JOB_ID=; }; "
+          "then kill -KILL ${p#/proc/}; fi; done");
+  }
+
+  /// Whether a command comes to succeed: a minute is more than any of them takes.
+  bool soon(const std::string& command) const {
+    for (int i = 0; i < 600; ++i) {
+      if (shell("{ " + command + "; } >/dev/null").exit == 0) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  }
+
+  /// Slurm lets what it queues again wait for two minutes; a test does not.
+  void no_waiting() const {
+    shell(
+        "for j in $(squeue -h -r -t PENDING -o '%A %r' | awk '$2 == \"BeginTime\" { print $1 }'); do "
+        "scontrol update jobid=$j starttime=now; done");
+  }
+
+ private:
+  std::string configuration() const {
+    const std::string host = shell("hostname -s").out.substr(0, shell("hostname -s").out.find('\n'));
+    const std::string user = shell("id -un").out.substr(0, shell("id -un").out.find('\n'));
+    const int port = 20000 + 2 * (::getpid() % 10000);
+    const std::string here = folder_.string() + "/";
+    return "ClusterName=obscura\nSlurmctldHost=" + host +
+           "(127.0.0.1)\nSlurmctldPort=" + std::to_string(port) + "\nSlurmdPort=" + std::to_string(port + 1) +
+           "\nAuthType=auth/munge\nAuthInfo=socket=" + here + "munge.socket\nSlurmUser=" + user +
+           "\nSlurmdUser=" + user + "\nStateSaveLocation=" + here + "state\nSlurmdSpoolDir=" + here +
+           "spool\nSlurmctldPidFile=" + here + "slurmctld.pid\nSlurmdPidFile=" + here +
+           "slurmd.pid\nSlurmctldLogFile=" + here + "slurmctld.log\nSlurmdLogFile=" + here +
+           "slurmd.log\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\n"
+           "JobAcctGatherType=jobacct_gather/none\nSelectType=select/cons_tres\nSelectTypeParameters=CR_CPU\nSwitchType=switch/"
+           "none\nMpiDefault=none\nReturnToService=2\n"
+           "MaxArraySize=9\nKillWait=2\nSlurmdTimeout=6\nSlurmdParameters=config_overrides\n"
+           "SchedulerParameters=batch_sched_delay=0,sched_min_interval=0\nNodeName=" +
+           host +
+           " NodeAddr=127.0.0.1 CPUs=4 RealMemory=1000 State=UNKNOWN\nPartitionName=all Nodes=" + host +
+           " Default=YES MaxTime=INFINITE State=UP\n";
+  }
+  /// A process that goes on, its words in a file; its number.
+  std::string start(const std::string& command) const {
+    const std::string name = command.substr(0, command.find(' '));
+    const std::string pid = shell(command + " >" + name + ".out 2>&1 & echo $!").out;
+    return pid.substr(0, pid.find('\n'));
+  }
+
+  std::string munged_, controller_, node_;
+};
+
+}  // namespace obscura::app
