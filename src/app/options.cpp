@@ -19,6 +19,7 @@ void add_sets(CLI::App& command, std::vector<std::string>& sets) {
                   "Change a key of the scene, as in --set crate.elasticity=0.5; may be given again")
       ->type_name("PATH=VALUE")
       ->expected(1)
+      ->allow_extra_args(false)  // else it swallows a -- behind it
       ->take_all();
 }
 

@@ -42,10 +42,11 @@ std::string body(const Errand& errand, const std::string& command, const std::st
       "echo $code >{}/{}.exit\n"
       "# told to stop, once (130) or twice (143), and not by scancel: it queues again and goes on from "
       "there\n"
-      "if { [ $code = 130 ] || [ $code = 143 ]; } && scontrol show job -o \"$SLURM_JOB_ID\" | grep -q ' "
-      "JobState=RUNNING '; then\n"
-      "  scontrol requeue \"$SLURM_JOB_ID\" && sleep 60\n"
-      "fi\n"
+      "case $code in 130 | 143)\n"
+      "  if scontrol show job -o \"$SLURM_JOB_ID\" | grep -q ' JobState=RUNNING '; then\n"
+      "    scontrol requeue \"$SLURM_JOB_ID\" && sleep 60\n"
+      "  fi ;;\n"
+      "esac\n"
       "exit $code\n",
       command, judged, shell_word(errand.folder), name);
 }

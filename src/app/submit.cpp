@@ -437,10 +437,12 @@ void add_submit(CLI::App& program, int& exit) {
   command->add_option("--vary", flags->vary, "A sweep instead of a film: as for sweep")
       ->type_name("PATH=VALUES")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   command->add_option("--measure", flags->measure, "What a sweep puts down: as for sweep")
       ->type_name("LIST")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   add_sets(*command, flags->sets);
   command->add_flag("--dry-run", flags->dry_run, "Show the scripts, and do nothing; needs no Slurm");

@@ -235,6 +235,7 @@ void add_sweep(CLI::App& program, int& exit) {
                    "given again, all combinations, the last key fastest")
       ->type_name("PATH=VALUES")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   command
       ->add_option("--measure", flags->measure,
@@ -242,6 +243,7 @@ void add_sweep(CLI::App& program, int& exit) {
                    "crate.position.y@max; also @min @mean @end @argmax @argmin; may be given again")
       ->type_name("LIST")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   add_sets(*command, flags->sets);
   command

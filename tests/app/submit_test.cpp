@@ -64,8 +64,9 @@ TEST_F(Slurm, AFailedTaskIsNamedWithItsLogAndRepairedBySubmittingAgain) {
   // the scripts are a person's to change: shard 3 is made to fail
   ASSERT_EQ(obscura(submit + " --no-wait -- --hold").exit, 0);
   ASSERT_EQ(
-      shell("scancel $(squeue -h -o %A); cd room.mp4.slurm; cp shards.sbatch good; "
-            "sed -i 's/^cores=.*/&\\n[ $shard != 3 ] || { echo the lamp broke; exit 9; }/' shards.sbatch")
+      shell(
+          "scancel $(squeue -h -o %A); cd room.mp4.slurm; sed -i /--hold/d *.sbatch; cp shards.sbatch good; "
+          "sed -i 's/^cores=.*/&\\n[ $shard != 3 ] || { echo the lamp broke; exit 9; }/' shards.sbatch")
           .exit,
       0);
   ASSERT_TRUE(soon("test -z \"$(squeue -h -o %A)\""));

@@ -86,7 +86,8 @@ class WithSlurm : public Program {
            "spool\nSlurmctldPidFile=" + here + "slurmctld.pid\nSlurmdPidFile=" + here +
            "slurmd.pid\nSlurmctldLogFile=" + here + "slurmctld.log\nSlurmdLogFile=" + here +
            "slurmd.log\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\n"
-           "JobAcctGatherType=jobacct_gather/none\nSelectType=select/cons_tres\nSelectTypeParameters=CR_CPU\nSwitchType=switch/"
+           "JobAcctGatherType=jobacct_gather/none\nSelectType=select/"
+           "cons_tres\nSelectTypeParameters=CR_CPU\nSwitchType=switch/"
            "none\nMpiDefault=none\nReturnToService=2\n"
            "MaxArraySize=9\nKillWait=2\nSlurmdTimeout=6\nSlurmdParameters=config_overrides\n"
            "SchedulerParameters=batch_sched_delay=0,sched_min_interval=0\nNodeName=" +
