@@ -66,11 +66,12 @@ class WithSlurm : public Program {
     return false;
   }
 
-  /// Slurm lets what it queues again wait for two minutes; a test does not.
-  void no_waiting() const {
-    shell(
-        "for j in $(squeue -h -r -t PENDING -o '%A %r' | awk '$2 == \"BeginTime\" { print $1 }'); do "
-        "scontrol update jobid=$j starttime=now; done");
+  /// Slurm lets what it queues again wait for two minutes; a test does not. Whether all tasks of an array
+  /// have begun.
+  bool begun(const std::string& array) const {
+    const std::string waiting = "$(squeue -h -r -t PENDING -j " + array + " -o %A)";
+    return soon("for j in " + waiting +
+                "; do scontrol update jobid=$j starttime=now; done; sleep 0.5; test -z \"" + waiting + "\"");
   }
 
  private:
