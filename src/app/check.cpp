@@ -3,6 +3,7 @@
 #include <array>
 #include <iterator>
 #include <memory>
+#include <thread>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -10,6 +11,8 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/film.h"
+#include "app/memory.h"
+#include "app/needs.h"
 #include "app/options.h"
 #include "app/shots.h"
 #include "media/error.h"
@@ -25,10 +28,8 @@ std::string count(std::size_t n, const char* one, const char* many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);
 }
 
-// what our pictures take on average: flat grounds with little that moves
-double movie_bytes(const scene::Film& film, std::int64_t frames) {
-  return double(frames) * film.width * film.height * 0.0016;
-}
+// how long the first steps are watched, s
+constexpr double kPatience = 0.2;
 
 // what holds bodies apart, and why that
 template <int D>
@@ -99,7 +100,15 @@ void report(const scene::Scene& scene, const sim::Model<D>& model) {
   fmt::print("  contact  {}\n", contact(model));
   fmt::print("  film     {} frames at {} fps, {}x{}\n", shots.size(), sim::text(scene.film.fps),
              scene.film.width, scene.film.height);
-  fmt::print("  disk     about {:.1f} MB as a movie\n", movie_bytes(scene.film, shots.size()) / 1e6);
+  const Needs film = needs(scene, shots, Output::Form::movie, kPatience);
+  const int cores = std::max(1, int(std::thread::hardware_concurrency()));
+  fmt::print("  disk     about {} as a movie\n", bytes_text(film.disk));
+  fmt::print("  memory   about {} with {}\n", bytes_text(film.memory(cores)),
+             count(std::size_t(cores), "worker", "workers"));
+  fmt::print("  takes    about {}, of which {} simulating: an estimate, from its first steps\n",
+             time_text(film.seconds(cores)), time_text(film.simulate));
+  if (film.memory(1) > memory_limit())
+    fmt::print("  warning  that is more memory than the {} it may have\n", bytes_text(memory_limit()));
   for (const sim::Trouble& ahead : scene.forebodings()) fmt::print("  warning  {}\n", ahead.likely);
 }
 
@@ -130,6 +139,7 @@ void add_check(CLI::App& program, int& exit) {
   auto sets = std::make_shared<std::vector<std::string>>();
   command->add_option("SCENE", *files, "Scenes to read")->required();
   add_sets(*command, *sets);
+  add_memory_limit(*command);
   command->footer("Examples:\n  obscura check scenes/room.toml\n  obscura check scenes/*.toml");
   command->callback([=, &exit] { exit = check(*files, *sets); });
 }

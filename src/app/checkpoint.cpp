@@ -63,7 +63,6 @@ void write_checkpoint(const std::string& path, const scene::Scene& scene, const 
                      {"time", sim::text(run.now())}, {"state", Json::binary(std::move(state))}};
   const std::vector<std::uint8_t> body = Json::to_cbor(json);
   const std::string head = kHeading + hash(body.data(), body.size()) + "\n";
-  media::make_folder_of(path);
   media::File file(path);
   file.write({reinterpret_cast<const std::uint8_t*>(head.data()), head.size()});
   file.write(body);

@@ -1,9 +1,20 @@
 #include "app/darkroom.h"
 
+#include "app/memory.h"
+
 namespace obscura::app {
 
+namespace {
+
+gl::Renderer opened(const scene::Film& film, const gl::ContextOptions& context) {
+  require_memory_to_draw(double(film.width) * film.height);
+  return gl::Renderer(film.width, film.height, context);
+}
+
+}  // namespace
+
 Darkroom::Darkroom(const scene::Scene& scene, const draw::Charts& charts, const gl::ContextOptions& context)
-    : renderer_(scene.film.width, scene.film.height, context), artist_(depictor(scene, charts)) {}
+    : renderer_(opened(scene.film, context)), artist_(depictor(scene, charts)) {}
 
 const media::Image& Darkroom::print(const Take& take, std::size_t frame, bool transparent) {
   const sim::Snapshot& instant = take.moments[frame];

@@ -11,6 +11,8 @@
 #include "app/exit.h"
 #include "app/interrupt.h"
 #include "app/mesh.h"
+#include "app/memory.h"
+#include "app/needs.h"
 #include "app/options.h"
 #include "app/trouble.h"
 #include "draw/theme.h"
@@ -153,8 +155,12 @@ int run(const Flags& flags) {
 
   const auto motion = scene.run();
   motion->heed(interrupted);
-  Stage stage(scene, motion->cast());
   const std::int64_t frames = sim::ceil(scene.duration * fps);
+  // a place and a turn of each node at each instant, in lists that grow, and then as a file
+  const sim::Cast& cast = motion->cast();
+  const double nodes = double(cast.bodies.size() + cast.springs.size() + cast.joints.size());
+  refuse_beyond_memory(scene, double(frames) * (nodes * 10 + 1) * sizeof(float) * 3);
+  Stage stage(scene, motion->cast());
   for (std::int64_t n = 0; n <= frames; ++n) {
     const sim::Rational at = n < frames ? sim::rational(n) / fps : scene.duration;
     const auto outcome = motion->at(at);
@@ -181,6 +187,7 @@ void add_export(CLI::App& program, int& exit) {
       ->type_name("OUT");
   command->add_option("--fps", flags->fps, "Instants per second [film.fps]")->type_name("RATE");
   add_sets(*command, flags->sets);
+  add_memory_limit(*command);
   command->footer(
       "One node a body, with its name, and a thin rod for each spring; metres, y up. At the instants "
       "themselves "

@@ -13,6 +13,7 @@
 #include "app/album.h"
 #include "app/commands.h"
 #include "app/exit.h"
+#include "app/memory.h"
 #include "app/options.h"
 #include "draw/solids.h"
 #include "draw/type.h"
@@ -86,6 +87,7 @@ Size size_at(const draw::Picture& picture, double width, double dpi) {
 
 // what is drawn by depth lies where the lines over it do, to the part of a pixel
 media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, const Size& size) {
+  require_memory_to_draw(double(size.width) * size.height);
   gl::Renderer renderer(size.width, size.height);
   draw::Picture exact;
   exact.aspect = double(size.width) / size.height;
@@ -206,6 +208,7 @@ void add_figure(CLI::App& program, int& exit) {
   command->add_option("--theme", flags->theme, "paper (white) or screen (dark) [paper]")
       ->check(CLI::IsMember({"paper", "screen"}));
   add_sets(*command, flags->sets);
+  add_memory_limit(*command);
   command->footer(
       "What is named, measured and drawn on it says the scene's [figure], see docs/scene.md.\n\n"
       "Examples:\n"

@@ -200,9 +200,9 @@ SimulationOptions Filming::simulating() {
   }
   how.every = options_.checkpoint_every;
   how.at_every = [this](const sim::Run& run, sim::Rational t) {
-    write_checkpoint(
-        (fs::path(output_.checkpoints()) / fmt::format("{:g}.checkpoint", sim::value(t))).string(), scene_,
-        run, true);
+    const fs::path file = fs::path(output_.checkpoints()) / fmt::format("{:g}.checkpoint", sim::value(t));
+    media::make_folder_of(file.string());
+    write_checkpoint(file.string(), scene_, run, true);
   };
   return how;
 }

@@ -21,7 +21,7 @@ void heed_interrupts() {
     // what a parent told us to ignore (nohup) stays ignored
     if (std::signal(signal, ask) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
-  std::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 bool interrupted() { return asked != 0; }

@@ -3,7 +3,7 @@
 namespace obscura::app {
 
 /// From now on SIGINT, SIGTERM and SIGHUP ask for an end instead of ending; the second one ends at once.
-/// SIGPIPE is left to the writer that meets it.
+/// SIGPIPE and SIGXFSZ (a file larger than it may be) are left to the writer that meets them.
 void heed_interrupts();
 
 /// Somebody has asked for an end. Safe from every thread.

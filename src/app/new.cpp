@@ -1,7 +1,6 @@
 // obscura new: a short commented scene to start from.
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/exit.h"
+#include "app/report.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "scene/keys.h"
@@ -24,10 +24,7 @@ int make(const std::string& name, const std::string& program) {
   if (path.stem().empty()) throw UsageError("new needs a name");
   if (fs::exists(path)) throw media::Error(fmt::format("{}: is there already", path.string()));
   media::make_folder_of(path.string());
-  std::ofstream file(path, std::ios::binary);
-  file << scene::new_scene(path.stem().string());
-  file.close();
-  if (!file) throw media::Error(fmt::format("{}: cannot be written", path.string()));
+  write_text(path.string(), scene::new_scene(path.stem().string()));
   const std::string name_in_shell =
       path.string().find(' ') == std::string::npos ? path.string() : "'" + path.string() + "'";
   fmt::print("{} is written. Film it: {} render {}\n", path.string(), program, name_in_shell);

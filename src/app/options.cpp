@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/exit.h"
+#include "app/memory.h"
 
 namespace obscura::app {
 
@@ -32,6 +33,14 @@ void add_progress(CLI::App& command, ProgressKind& kind) {
                                                                       {"json", ProgressKind::json},
                                                                       {"none", ProgressKind::none}})
               .description(""));
+}
+
+void add_memory_limit(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--memory-limit", [](const std::string& text) { hold_memory(parse_bytes(text)); },
+          "Never take more memory, as in 2GB [nine tenths of the machine's]")
+      ->type_name("SIZE");
 }
 
 sim::Rational parse_fps(const std::string& text) {

@@ -174,11 +174,7 @@ draw::Charts charts(const scene::Scene& scene) {
   draw::Palette colours = draw::palette(scene.look.theme);
   if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
   std::vector<draw::Plot> plots;
-  for (const draw::Chart& each : wanted) {
-    plots.push_back(draw::empty_plot(each, colours));
-    if (const draw::Measure* against = draw::measure(each.against))
-      plots.back().name = axis(against->label, against->unit);
-  }
+  for (const draw::Chart& each : wanted) plots.push_back(draw::empty_plot(each, colours));
 
   const auto run = scene.run();
   run->heed(interrupted);
@@ -186,13 +182,7 @@ draw::Charts charts(const scene::Scene& scene) {
     const auto found = run->at(t);
     if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();
     if (std::holds_alternative<sim::Trouble>(found)) break;
-    const auto& now = std::get<sim::Snapshot>(found);
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      add(now, wanted[i], plots[i]);
-      const draw::Measure* against = draw::measure(wanted[i].against);
-      for (draw::Series& line : plots[i].lines)
-        if (against) line.along.push_back(against->at(now, wanted[i].body));
-    }
+    for (std::size_t i = 0; i < wanted.size(); ++i) add(std::get<sim::Snapshot>(found), wanted[i], plots[i]);
   }
   if (plots[0].times.empty()) return {};
   const double aspect = double(scene.film.width) / scene.film.height;

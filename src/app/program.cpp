@@ -1,5 +1,8 @@
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <new>
+#include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -8,6 +11,7 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/interrupt.h"
+#include "app/memory.h"
 #include "app/trouble.h"
 #include "draw/error.h"
 #include "gl/error.h"
@@ -54,10 +58,14 @@ int complain(int code, const std::string& what) {
   return code;
 }
 
-}  // namespace
+// what was said is not said before it is written; a reader who has gone away has read enough
+int said(int code) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
+  if (errno == EPIPE || code != kDone) return code;
+  return complain(kFiles, fmt::format("standard output: cannot write: {}", std::strerror(errno)));
+}
 
-int main(int argc, const char* const* argv) {
-  heed_interrupts();
+int run(int argc, const char* const* argv) {
   CLI::App program(
       "Simulates a room of bodies that move, in the plane or in space, and films it without a window.",
       argc > 0 ? argv[0] : "obscura");
@@ -72,7 +80,8 @@ int main(int argc, const char* const* argv) {
       "  obscura export ball.toml                its motion as glTF, for another renderer\n"
       "  obscura compare old.png new.png         whether they are the same, and why not\n"
       "  obscura golden scenes                   check what scenes look like against references\n\n"
-      "Exit codes: 0 done, 1 pictures or states differ, 2 usage, 3 scene, 4 files or codec, 5 OpenGL, 6 the "
+      "Exit codes: 0 done, 1 pictures or states differ, 2 usage, 3 scene, 4 files, codec or memory, 5 "
+      "OpenGL, 6 the "
       "simulation diverged, 130 "
       "interrupted.");
   program.require_subcommand(1);
@@ -120,10 +129,25 @@ int main(int argc, const char* const* argv) {
   } catch (const draw::Error& error) {
     return complain(kFiles, error.what());
   } catch (const std::bad_alloc&) {
-    return complain(kFiles, "out of memory");
+    return complain(kFiles, out_of_memory());
+  } catch (const std::length_error&) {
+    return complain(kFiles, out_of_memory());
   } catch (const std::system_error& error) {
+    // a thread that cannot be had
+    if (error.code() == std::errc::resource_unavailable_try_again) return complain(kFiles, out_of_memory());
+    // nobody reads any more
+    if (error.code() == std::errc::broken_pipe) return kDone;
     return complain(kFiles, error.what());
   }
+}
+
+}  // namespace
+
+int main(int argc, const char* const* argv) {
+  heed_interrupts();
+  survive_libraries();
+  hold_memory(most_memory());
+  return said(run(argc, argv));
 }
 
 }  // namespace obscura::app

@@ -10,6 +10,8 @@
 #include "app/exit.h"
 #include "app/film.h"
 #include "app/footage.h"
+#include "app/memory.h"
+#include "app/needs.h"
 #include "app/options.h"
 #include "app/origin.h"
 #include "app/shard.h"
@@ -149,6 +151,18 @@ void divide(Flags& flags, const Output& out) {
     throw UsageError("--checkpoint-every needs an output with a name");
 }
 
+// what it needs is known before any of it is asked for; what takes longer than a minute is said
+void see_what_it_needs(const scene::Scene& scene, const Shots& shots, const Output& out, FilmOptions& film) {
+  constexpr double kPatience = 0.03, kLong = 60;
+  const Needs all = needs(scene, shots, out.form, kPatience);
+  film.workers = fitting_workers(scene, all, film.workers);
+  const double seconds = all.seconds(film.workers);
+  if (seconds < kLong || film.progress == ProgressKind::none) return;
+  if (film.progress == ProgressKind::json) return;  // says what is left as it goes
+  fmt::print(stderr, "{}: {} frames, about {}{}: an estimate, from its first steps\n", scene.file, all.frames,
+             time_text(seconds), all.disk > 0 ? " and " + bytes_text(all.disk) : "");
+}
+
 int render(Flags flags) {
   flags.film.overwrite = !flags.no_overwrite;
   scene::Scene scene = scene::read(flags.scene, flags.sets);
@@ -170,6 +184,7 @@ int render(Flags flags) {
   for (const sim::Trouble& ahead : scene.forebodings()) {
     fmt::print(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
   }
+  see_what_it_needs(scene, shots, out, flags.film);
   return each ? render_each(scene, shots, flags) : film(scene, shots, out, flags.film);
 }
 
@@ -244,6 +259,7 @@ void add_render(CLI::App& program, int& exit) {
       ->add_option("--from-checkpoint", flags->film.from_checkpoint,
                    "Begin with the state in this file; for --from at its time or later")
       ->type_name("FILE");
+  add_memory_limit(*command);
   command
       ->add_option("-j,--jobs", flags->film.workers, "Workers that draw and encode side by side [one a core]")
       ->check(CLI::Range(1, 256));

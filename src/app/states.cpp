@@ -13,6 +13,7 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/interrupt.h"
+#include "app/memory.h"
 #include "app/options.h"
 #include "app/origin.h"
 #include "app/shots.h"
@@ -214,6 +215,7 @@ void add_states(CLI::App& program, int& exit) {
       ->type_name("FILE");
   command->add_option("--format", flags->format, "json or csv [json]")->check(CLI::IsMember({"json", "csv"}));
   add_sets(*command, flags->sets);
+  add_memory_limit(*command);
   command->footer(
       "SI units; angles in radians, counter-clockwise; in space an orientation is a unit quaternion x, y, z, "
       "w, and a spin a vector, about axes of the room. Numbers have 17 significant digits: they read back to "

@@ -86,7 +86,8 @@ struct Store::Impl {
   // waits for nobody
   void take_lock(std::int64_t first, std::int64_t last) {
     const std::string path = at("lock");
-    lock = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    do lock = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    while (lock < 0 && errno == EINTR);
     if (lock < 0) throw media::Error(path + ": cannot write: " + std::generic_category().message(errno));
     struct flock range {};
     range.l_type = F_WRLCK, range.l_whence = SEEK_SET;

@@ -19,7 +19,7 @@ constexpr double kAround = 0.8;  // around a dot, points
 
 Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
                double aspect, double seconds)
-    : colours_(colours), seconds_(seconds) {
+    : colours_(colours) {
   const double width = 1080 * aspect, weight = std::min(1.0, std::sqrt(width / 1440));
   const double margin = kMargin * weight, inset = std::max(margin, 0.045 * width);
   double column = 0;
@@ -39,14 +39,13 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
       rect = {width - right_ + gap, beside, right_ - gap - inset, each - gap};
       beside += each;
     }
-    panels_.push_back(
-        {charts[i], plots[i], plot_area(plots[i], rect, kType * weight), measure(charts[i].against)});
-    if (!panels_.back().against) panels_.back().area.last = seconds;
+    panels_.push_back({charts[i], plots[i], plot_area(plots[i], rect, kType * weight)});
+    panels_.back().area.last = seconds;
   }
   // those above each other show one time at one place
   for (Panel& a : panels_) {
     for (const Panel& b : panels_) {
-      if (a.chart.place != b.chart.place || a.against || b.against) continue;
+      if (a.chart.place != b.chart.place) continue;
       a.area.left = std::max(a.area.left, b.area.left);
       a.area.right = std::min(a.area.right, b.area.right);
     }
@@ -67,24 +66,18 @@ void Charts::draw_lines(const sim::Snapshot& now, List& list) const {
     const auto& times = panel.plot.times;
     const auto end = std::lower_bound(times.begin(), times.end(), now.time);
     past.times.assign(times.begin(), end);
-    for (Series& line : past.lines) {
-      line.values.resize(past.times.size());
-      if (panel.against) line.along.resize(past.times.size());
-    }
-    const bool within = now.time <= seconds_;
-    const double here = panel.against ? panel.against->at(now, panel.chart.body) : now.time;
+    for (Series& line : past.lines) line.values.resize(past.times.size());
+    const bool within = now.time <= panel.area.last;
     const std::vector<const Measure*> measures = panel.chart.measures();
     if (within) {
       past.times.push_back(now.time);
-      for (std::size_t i = 0; i < measures.size(); ++i) {
+      for (std::size_t i = 0; i < measures.size(); ++i)
         past.lines[i].values.push_back(measures[i]->at(now, panel.chart.body));
-        if (panel.against) past.lines[i].along.push_back(here);
-      }
     }
     obscura::draw::draw_lines(past, panel.area, list);
     if (!within) continue;
     for (const Series& line : past.lines) {
-      const Point at = panel.area.at(here, line.values.back());
+      const Point at = panel.area.at(now.time, line.values.back());
       const double unit = panel.area.point;
       list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
     }

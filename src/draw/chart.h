@@ -9,12 +9,11 @@
 
 namespace obscura::draw {
 
-/// What a film's picture shows of its run over time or against a quantity, in step with it.
+/// What a film's picture shows of its run over time, in step with it.
 struct Chart : Measured {
   enum class Place { below, right };  // of the picture
   Place place = Place::below;
-  double share = 0.3;   // of the picture's height, or width
-  std::string against;  // a quantity, instead of time
+  double share = 0.3;  // of the picture's height, or width
 };
 
 /// The charts of a run on the page of its film: axes of the whole run, and on them what has happened up to
@@ -41,12 +40,10 @@ class Charts {
     Chart chart;
     Plot plot;
     PlotArea area;
-    const Measure* against = nullptr;  // null: time
   };
   std::vector<Panel> panels_;
   Palette colours_;
   double right_ = 0, below_ = 0;
-  double seconds_ = 0;
 };
 
 }  // namespace obscura::draw

@@ -24,6 +24,15 @@ namespace {
   throw Error(path + ": " + what + ": " + std::generic_category().message(code));
 }
 
+// a signal is no failure: asked again
+template <class Call>
+int again(Call&& call) {
+  int result;
+  while ((result = call()) < 0 && errno == EINTR) {
+  }
+  return result;
+}
+
 // hidden, in the same directory (rename does not cross file systems), told apart by process and by count
 std::string temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> count{0};
@@ -85,8 +94,9 @@ File::File(const std::string& path) : path_(path) {
   const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
   temporary_ = in_place ? target_ : temporary_beside(target);
   const int flags = O_RDWR | O_CLOEXEC | (in_place ? 0 : O_CREAT | O_EXCL);
-  descriptor_ = ::open(temporary_.c_str(), flags, 0666);
-  if (descriptor_ < 0 && in_place) descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC);
+  descriptor_ = again([&] { return ::open(temporary_.c_str(), flags, 0666); });
+  if (descriptor_ < 0 && in_place)
+    descriptor_ = again([&] { return ::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC); });
   if (descriptor_ < 0) fail(path, "cannot write", errno);
 }
 
@@ -109,10 +119,11 @@ void File::write(std::span<const std::uint8_t> bytes) {
 
 void File::place(bool durable, const std::string& instead) {
   // what cannot be synced (a pipe, a device) answers EINVAL or EROFS, and has no disk to wait for
-  if (durable && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) {
+  if (durable && again([&] { return ::fsync(descriptor_); }) != 0 && errno != EINVAL && errno != EROFS) {
     fail(path_, "cannot write to disk", errno);
   }
-  if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, "cannot close", errno);
+  // a close that a signal met has closed all the same
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(path_, "cannot close", errno);
   if (temporary_ != target_) {
     const std::string& final_name = instead.empty() ? target_ : instead;
     if (::rename(temporary_.c_str(), final_name.c_str()) != 0) {

@@ -88,6 +88,11 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
   };
   format_->pb = avio_alloc_context(buffer, kBuffer, 1, this, nullptr, write, on_seek);
 #endif
+  // a close that a signal met has closed all the same
+  format_->io_close2 = [](AVFormatContext*, AVIOContext* io) {
+    const int code = avio_close(io);
+    return code == AVERROR(EINTR) ? 0 : code;
+  };
   // +faststart reads the file again, by this name
   format_->url = av_strdup(("file:" + file_.temporary()).c_str());
   stream_ = avformat_new_stream(format, nullptr);

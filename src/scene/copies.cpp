@@ -53,6 +53,7 @@ std::optional<std::vector<int>> grid(const Fields& copies, std::int64_t so_far, 
   for (const Node& side : count->is_list() ? count->list() : Node::List{*count}) {
     sides.push_back(int(std::get<std::int64_t>(side.value)));
     all *= sides.back();
+    if (all > kMostBodies) break;  // before it is more than a number holds
   }
   if (so_far + all > kMostBodies) {
     complaints.add(count->place,

@@ -68,15 +68,6 @@ class Reader {
       complaints_.add(wanted->place, "'quantity': expected one at least, such as [\"energy\"]");
     return found;
   }
-  // what a plot goes against: a quantity; empty: time
-  std::string against(const Fields& fields, const draw::Measured& plot) const {
-    const Node* node = fields.given("against");
-    const std::string name = node ? node->text() : "";
-    if (const draw::Measure* other = draw::measure(name); other && other->of_body && plot.body < 0)
-      complaints_.add(fields.place("against"),
-                      fmt::format("a plot against '{}' needs 'of', the body that has it", name));
-    return name;
-  }
   static std::optional<draw::Color> color(const Fields& fields) {
     const Node* node = fields.given("color");
     return node && node->is_text() ? draw::color(node->text()) : std::nullopt;
@@ -180,7 +171,7 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
     plot.from = its.rational("from");
     plot.to = its.given("to") ? its.rational("to") : Fields(top, "").rational("duration");
     plot.height = its.number("height");
-    plot.against = read.against(its, plot);
+    if (const Node* against = its.given("against")) plot.against = against->text();
     plot.over = its.text("over");
     plot.reference = its.text("reference");
     plot.log = its.text("scale") == "log";
@@ -192,6 +183,9 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
       complaints.add(its.place("against"), "a plot is 'against' a quantity or 'over' a key, not both");
     if (its.given("reference") && !its.given("over"))
       complaints.add(its.place("reference"), "'reference' is for a plot 'over' a key");
+    if (const draw::Measure* other = draw::measure(plot.against); other && other->of_body && plot.body < 0)
+      complaints.add(its.place("against"),
+                     fmt::format("a plot against '{}' needs 'of', the body that has it", plot.against));
     if (!(plot.from < plot.to)) complaints.add(its.place("from"), "a plot needs 'from' before 'to'");
     figure.plots.push_back(plot);
   }
@@ -209,11 +203,9 @@ std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const
   double below = 0, right = 0;
   for (const Node& node : tables(fields, "plot")) {
     const Fields its(node, "film.plot");
-    draw::Chart chart;
-    static_cast<draw::Measured&>(chart) = read.measured(its);
+    draw::Chart chart{read.measured(its)};
     chart.place = its.text("place") == "right" ? draw::Chart::Place::right : draw::Chart::Place::below;
     chart.share = its.number("size") / 100;
-    chart.against = read.against(its, chart);
     if (chart.place == draw::Chart::Place::below) below += chart.share;
     if (chart.place == draw::Chart::Place::right) right = std::max(right, chart.share);
     if (std::max(below, right) > 0.75 && all.size() < 100)

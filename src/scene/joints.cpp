@@ -19,6 +19,9 @@ namespace {
 using sim::JointKind;
 
 constexpr std::size_t kMostJoints = 1'000'000;
+// of a lever, in the largest coordinate of a room or a body
+constexpr double kLongest = 100;
+
 constexpr double kRounding = 1e-9;  // of the room's size: places this near are one
 
 // in the plane a hinge is a pin; in space a pin is a ball joint
@@ -120,6 +123,14 @@ class Joining {
     const bool far = kind_ == JointKind::rod || kind_ == JointKind::rope;
     if (!far && !meet(it, a_says, b_says)) return {};
     if (far && !stretch(it, b_says)) return {};
+    // a lever out of all proportion makes motion of rounding
+    for (const End& end : {it.a, it.b}) {
+      const double lever = end.body < 0 ? 0 : end.local.stableNorm();
+      if (!(lever <= kLongest * (1 + size_)))
+        return refuse(fields_.given("at") ? fields_.place("at") : place,
+                      fmt::format("this is {:.3g} m from the middle of '{}': expected at most {:.3g}", lever,
+                                  world_.model.bodies[std::size_t(end.body)].name, kLongest * (1 + size_)));
+    }
     if (kind_ == JointKind::weld || kind_ == JointKind::slider || kind_ == JointKind::hinge) {
       for (const End& end : {it.a, it.b})
         if (end.body >= 0 && !world_.model.bodies[std::size_t(end.body)].turns())

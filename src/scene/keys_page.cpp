@@ -266,8 +266,7 @@ and `--to`; `--frames` counts the film's frames. A frame at f seconds of the fil
 where that is a fraction of whole numbers up to a million, and else to the nearest microsecond.
 
 A `[[film.plot]]` shows what happens over time below the picture, or at its right, while it happens: axes for all of the run, each line up to
-now with a dot at its end. The quantities are those of `[[figure.plot]]`; `against` sets one of them against another, and the dot goes along
-the line that they make: `quantity = ["vx"]` against `"x"` is a portrait in phase space.
+now with a dot at its end. The quantities are those of `[[figure.plot]]`.
 
 ```toml
 [[film.plot]]

@@ -82,6 +82,7 @@ struct Writer {
 struct Reader {
   std::span<const std::uint64_t> words;
   bool sound = true;
+  int states = 0;  // one within another; of what bonds make there is one, and it has none
 
   std::uint64_t next() {
     if (words.empty()) {
@@ -103,6 +104,11 @@ struct Reader {
     } else {
       fields(*this, it);
     }
+  }
+  template <int D>
+  void operator()(State<D>& it) {
+    sound = sound && ++states <= 2;
+    if (sound) fields(*this, it);
   }
   template <int N>
   void operator()(Eigen::Matrix<double, N, 1>& it) {

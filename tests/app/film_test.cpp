@@ -226,52 +226,5 @@ size     = 50
   EXPECT_EQ(axes, axes_too);
 }
 
-TEST_F(Film, APlotAgainstAQuantityHasItsDotWhereBothAre) {
-  // a quarter of a swing about x = 1 with the amplitude 0.5 and omega = 2: speed 2 (x - 1) behind, as a
-  // circle
-  scene(R"(
-duration = 3.141592
-[room]
-size  = [2, 1]
-walls = "none"
-gravity = [0, 0]
-[[particle]]
-name       = "ball"
-position   = [1.5, 0.5]
-mass       = 1
-color      = "blue"
-[[spring]]
-between   = ["ball", [1, 0.5]]
-stiffness = 4
-rest_length = 0
-[look]
-caption = false
-[[film.plot]]
-quantity = ["vx"]
-against  = "x"
-of       = "ball"
-size     = 50
-)");
-  // the last blue row under the picture: the dot's, when the speed is largest
-  const auto reach = [&](const char* at) {
-    EXPECT_EQ(obscura(std::string("render scene.toml --size 640x480 -o a.png --at ") + at).exit, 0);
-    const media::Image image = media::read_png(path("a.png")).image;
-    int left = image.width, low = -1;
-    for (int y = image.height / 2 + 12; y < image.height; ++y)
-      for (int x = 0; x < image.width * 85 / 100; ++x) {
-        const std::uint8_t* p = image.row(y) + 4 * x;
-        if (p[2] > p[0] + 60) left = std::min(left, x), low = std::max(low, y);
-      }
-    return std::pair(left, low);
-  };
-  const auto [start, top] = reach("0.523599");         // x = 1.25
-  const auto [middle, bottom] = reach("0.785398");     // x = 1, v_x = -1
-  const auto [end, same] = reach("1.570796");          // x = 0.5, v_x = 0
-  EXPECT_NEAR(2 * (start - middle), middle - end, 8);  // the dot's radius is 3 px
-  EXPECT_GT(start - middle, 100);
-  EXPECT_GT(bottom - top, 8);
-  EXPECT_NEAR(bottom, same, 4) << "what has happened stays";
-}
-
 }  // namespace
 }  // namespace obscura::app

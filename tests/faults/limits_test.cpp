@@ -1,0 +1,194 @@
+// What a machine refuses, and what a scene of a few bytes asks for: one line and exit code 4, and no crash.
+
+#include <map>
+
+#include "../app/program.h"
+
+namespace obscura::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Limits : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    scene(kCrateAndBall);
+  }
+
+  // how a run that fails ends: this exit code, one line that has these words, nothing else in the folder
+  void expect_refused(const Outcome& outcome, int exit, const std::string& words) const {
+    EXPECT_EQ(outcome.exit, exit) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  }
+
+  // what lies in the folder under a final name
+  std::vector<std::string> left() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+      const std::string name = fs::relative(entry.path(), folder_).string();
+      if (entry.is_regular_file() && name.find(".parts/") == std::string::npos && name != "scene.toml" &&
+          name != ".stderr")
+        names.push_back(name);
+    }
+    return names;
+  }
+};
+
+const std::string kRun = "timeout -s KILL 60 " OBSCURA_BINARY " ";
+
+TEST_F(Limits, AFileThatMayNotGrowIsAnErrorAndNoSignal) {
+  // SIGXFSZ kills who does not look out; a block is 512 bytes
+  for (const char* command : {"render scene.toml --size 64x36 --fps 5 --progress none -o a.mp4",
+                              "render scene.toml --at 0.5 --size 64x36 -o a.png",
+                              "figure scene.toml -o a.svg", "export scene.toml -o a.glb"}) {
+    expect_refused(shell("ulimit -f 1; " + kRun + command), 4, "a.");
+    EXPECT_EQ(left(), std::vector<std::string>{}) << command;
+  }
+  const Outcome out = shell("ulimit -f 1; " + kRun + "states scene.toml --every 0.1 > states.json");
+  expect_refused(out, 4, "standard output");
+}
+
+TEST_F(Limits, AFullStandardOutputIsNoSuccess) {
+  for (const char* command : {"states scene.toml", "check scene.toml", "docs keys", "docs schema",
+                              "render scene.toml --pipe rgba --size 64x36 --progress none -o -"}) {
+    const Outcome run = shell(kRun + command + " > /dev/full");
+    EXPECT_EQ(run.exit, 4) << command << "\n" << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+  // who reads no more has read enough
+  EXPECT_EQ(shell("{ " + kRun + "docs schema; echo $? > code; } | true; cat code").out, "0\n");
+}
+
+TEST_F(Limits, ADiskThatIsFullIsAnError) {
+  if (shell("mkdir disk && mount -t tmpfs -o size=16k none disk").exit != 0)
+    GTEST_SKIP() << "a small disk can be mounted by root alone";
+  const Outcome run = shell(kRun + "render scene.toml --size 320x180 --progress none -o disk/a.mp4");
+  const bool there = fs::exists(path("disk/a.mp4"));
+  shell("umount disk");
+  expect_refused(run, 4, "disk/a.mp4");
+  EXPECT_FALSE(there);
+}
+
+TEST_F(Limits, AFolderThatIsNoneOrGoesAwayIsAnError) {
+  shell("touch file");
+  expect_refused(shell(kRun + "render scene.toml --size 64x36 -o file/a.mp4"), 4, "file");
+  // it goes away once there is progress
+  const Outcome run =
+      shell("mkdir gone; " + kRun +
+            "render scene.toml --set duration=400 --size 64x36 --progress json -o "
+            "'gone/{frame}.png' 2> log & pid=$!; "
+            "for i in $(seq 600); do grep -q progress log 2> /dev/null && break; sleep 0.1; done; "
+            "mv gone away; wait $pid; code=$?; grep -v '^{' log >&2; exit $code");
+  expect_refused(run, 4, "gone/");
+}
+
+TEST_F(Limits, AMissingCodecIsToldBeforeAnythingIsSimulated) {
+  // a run of days
+  expect_refused(
+      shell(kRun + "render scene.toml --set duration=1e6 --set physics.rate=1e6 --codec none -o a.mp4 "
+                   "--progress none"),
+      4, "none");
+}
+
+TEST_F(Limits, SignalsEndItAndTheSecondAtOnce) {
+  for (const std::string signal : {"INT", "TERM", "HUP"}) {
+    const Outcome run =
+        shell("env --default-signal=" + signal +
+              " " OBSCURA_BINARY
+              " render scene.toml --set duration=4000 --size 64x36 --progress json -o a.mp4 2> log & pid=$!; "
+              "for i in $(seq 600); do grep -q progress log 2> /dev/null && break; sleep 0.1; done; "
+              "kill -" +
+              signal + " $pid; wait $pid");
+    EXPECT_EQ(run.exit, 130) << signal << contents(path("log"));
+    EXPECT_FALSE(fs::exists(path("a.mp4"))) << signal;
+    shell("rm -rf log a.*");
+  }
+}
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_F(Limits, WithoutMemoryItSaysSoAndNeverCrashes) {
+  // from where it just starts to where all is well; libraries that do not look are among those refused
+  int refused = 0, done = 0;
+  std::map<std::string, std::string> right;  // what each writes where there is no limit
+  for (int megabytes = 40; megabytes <= 1400; megabytes += megabytes < 400 ? 20 : 200) {
+    const std::string limit = "ulimit -v " + std::to_string(megabytes * 1000) + "; ";
+    if (shell(limit + OBSCURA_BINARY " docs keys > /dev/null").exit == 127) continue;  // the loader's
+    for (const char* command :
+         {"render scene.toml --size 640x360 --fps 10 --progress none -o a.mp4",
+          "render scene.toml --at 0.5 -o a.png", "figure scene.toml -o a.pdf", "states scene.toml"}) {
+      const auto made = [&] {
+        std::string all;
+        for (const std::string& name : left())
+          if (name != "out") all += contents(path(name));
+        return all;
+      };
+      if (!right.contains(command)) {
+        ASSERT_EQ(shell(kRun + command + " > out").exit, 0);
+        right[command] = made();
+        shell("rm -f a.*");
+      }
+      const Outcome run = shell(limit + kRun + command + " > out");
+      ASSERT_TRUE(run.exit == 0 || run.exit == 4 || run.exit == 5)
+          << megabytes << " MB, " << command << ": exit " << run.exit << "\n"
+          << run.err;
+      ++(run.exit == 0 ? done : refused);
+      ASSERT_EQ(made(), run.exit == 0 ? right.at(command) : "") << megabytes << " MB, " << command;
+      shell("rm -f a.*");
+    }
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(done, 0);
+}
+
+TEST_F(Limits, AFewBytesCannotAskForMoreMemoryThanTheyMayHave) {
+  const std::pair<const char*, int> scenes[] = {
+      {"[[ball]]\nposition = [1, 1]\ncopies = { count = 1000000000 }", 3},
+      {"[[ball]]\nposition = [1, 1]\ncopies = { count = [1000000, 1000000, 1000000, 1000000] }", 3},
+      {"[physics]\ncollision = \"handout\"\n[[particle]]\nposition = [1, 1]\ncopies = { count = 1000000 }",
+       4},
+      {"[film]\nsize = [16384, 16384]\n[[ball]]\nposition = [1, 1]", 4},
+      {"[look]\ntrails = 1e6\n[physics]\ncollision = \"handout\"\n[[particle]]\nposition = [1, 1]\n"
+       "copies = { count = 100 }",
+       4},
+      {"duration = 1e6\n[film]\nfps = 1000\n[[ball]]\nposition = [1, 1]", 4},
+  };
+  for (const auto& [text, exit] : scenes) {
+    scene(text, "few.toml");
+    const char* command = exit == 4 && std::string(text).find("fps") != std::string::npos
+                              ? "export few.toml --memory-limit 300MB"
+                              : "render few.toml --to 1000 --memory-limit 300MB --progress none";
+    const Outcome run = shell(kRun + command);
+    EXPECT_EQ(run.exit, exit) << text << "\n" << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_EQ(run.err.find("300.0 MB") != std::string::npos, exit == 4) << run.err;
+  }
+}
+#endif
+
+TEST_F(Limits, SizesOfMemoryAreReadOrRefused) {
+  for (const char* good : {"2GB", "500MB", "1.5GiB", "3000000000", "1T", "900 MB"})
+    EXPECT_EQ(obscura(std::string("check scene.toml --memory-limit '") + good + "'").exit, 0) << good;
+  for (const char* bad : {"", "GB", "-1GB", "2XB", "2GBs", "nan", "1e40"})
+    EXPECT_EQ(obscura(std::string("check scene.toml --memory-limit '") + bad + "'").exit, 2) << bad;
+}
+
+TEST_F(Limits, ALongFilmIsAnnouncedAndAShortOneIsNot) {
+  const Outcome check = obscura("check scene.toml --set duration=100000");
+  EXPECT_EQ(check.exit, 0) << check.err;
+  EXPECT_NE(check.out.find("6000000 frames"), std::string::npos) << check.out;
+  for (const char* word : {"disk     about", "memory   about", "takes    about", "an estimate"})
+    EXPECT_NE(check.out.find(word), std::string::npos) << word;
+  const Outcome film =
+      shell("env --default-signal=INT " OBSCURA_BINARY
+            " render scene.toml --set duration=100000 -o a.mp4 2> log & pid=$!; "
+            "for i in $(seq 600); do grep -q estimate log 2> /dev/null && break; sleep 0.1; done; "
+            "kill -INT $pid; wait $pid");
+  EXPECT_NE(contents(path("log")).find("6000000 frames, about"), std::string::npos) << contents(path("log"));
+  EXPECT_EQ(obscura("render scene.toml --size 64x36 --fps 5 -o b.mp4").err.find("estimate"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace obscura::app
