@@ -106,7 +106,9 @@ TEST_F(Slurm, ATaskThatIsToldToStopAndANodeThatDiesLoseNothing) {
   start_node();
   ASSERT_TRUE(soon("sinfo -h -o %T | grep -qx -e idle -e mixed -e allocated"));
   ASSERT_TRUE(begun(array)) << shell("squeue -t all -r").out;
-  const Outcome followed = obscura(submit);
+  Outcome followed = obscura(submit);
+  // Slurm may let the join fall with the node: then it is what is missing
+  if (followed.exit != 0) followed = obscura(submit);
   EXPECT_EQ(followed.exit, 0) << followed.err << contents(path("slurmctld.log"));
   EXPECT_TRUE(contents(path("room.mp4")) == contents(path("one.mp4")));
 }
