@@ -10,13 +10,14 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/interrupt.h"
-#include "app/mesh.h"
 #include "app/memory.h"
+#include "app/mesh.h"
 #include "app/needs.h"
 #include "app/options.h"
 #include "app/trouble.h"
 #include "draw/theme.h"
 #include "media/error.h"
+#include "media/file.h"
 #include "media/glb.h"
 #include "scene/scene.h"
 
@@ -170,6 +171,7 @@ int run(const Flags& flags) {
     stage.take(std::get<sim::Snapshot>(outcome));
   }
   stage.end();
+  media::make_folder_of(out);
   media::write_glb(out, stage.glb);
   fmt::print("{}: {} bodies, {} instants over {:g} s\n", out, motion->cast().bodies.size(), frames + 1,
              sim::value(scene.duration));

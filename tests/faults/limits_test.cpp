@@ -149,9 +149,6 @@ TEST_F(Limits, AFewBytesCannotAskForMoreMemoryThanTheyMayHave) {
       {"[physics]\ncollision = \"handout\"\n[[particle]]\nposition = [1, 1]\ncopies = { count = 1000000 }",
        4},
       {"[film]\nsize = [16384, 16384]\n[[ball]]\nposition = [1, 1]", 4},
-      {"[look]\ntrails = 1e6\n[physics]\ncollision = \"handout\"\n[[particle]]\nposition = [1, 1]\n"
-       "copies = { count = 100 }",
-       4},
       {"duration = 1e6\n[film]\nfps = 1000\n[[ball]]\nposition = [1, 1]", 4},
   };
   for (const auto& [text, exit] : scenes) {
