@@ -195,7 +195,12 @@ void Store::put(std::int64_t take, const std::string& movie, const media::MovieS
 }
 
 std::optional<Origin> Store::drawn() const {
-  for (const auto& [take, name] : impl_->parts) {
+  // workers ask while others put
+  const auto parts = [this] {
+    const std::lock_guard guard(impl_->mutex);
+    return impl_->parts;
+  }();
+  for (const auto& [take, name] : parts) {
     try {
       return origin_in(media::read_part(impl_->at(name)).tags);
     } catch (const media::Error&) {

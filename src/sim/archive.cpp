@@ -11,6 +11,8 @@ namespace obscura::sim {
 
 namespace {
 
+constexpr std::int64_t kMostSteps = std::int64_t(1) << 53;  // times of more would not be doubles
+
 // every field of what a state is made of, once, in the order in which it lies in a file
 template <class Visit, int D>
 void fields(Visit& visit, Grip<D>& it) {
@@ -156,9 +158,9 @@ bool fits(const State<D>& state, const Model<D>& model) {
   const auto body = [&](int i) { return i >= 0 && std::size_t(i) < bodies; };
   const auto wall = [&](int i) { return i >= 0 && std::size_t(i) < model.walls.size(); };
 
-  bool good = state.step >= 0 && state.beyond == 0 && state.x.size() == bodies && state.v.size() == bodies &&
-              state.turn.size() == turning && state.spin.size() == turning && finite<D>(state.x) &&
-              finite<D>(state.v) && finite<Turn<D>::RowsAtCompileTime>(state.turn) &&
+  bool good = state.step >= 0 && state.step < kMostSteps && state.beyond == 0 && state.x.size() == bodies &&
+              state.v.size() == bodies && state.turn.size() == turning && state.spin.size() == turning &&
+              finite<D>(state.x) && finite<D>(state.v) && finite<Turn<D>::RowsAtCompileTime>(state.turn) &&
               finite<kSpins<D>>(state.spin) && sized(state.own, turning) &&
               state.grips.size() == model.mice.size() && state.blasts.size() == model.explosions.size() &&
               state.postures.size() == model.chains.size() && state.holds.size() == model.bonds.size() &&

@@ -174,8 +174,10 @@ TEST_F(Render, AnInterruptLeavesAPlayablePartialMovie) {
   EXPECT_EQ(shell("ffmpeg -v error -i m.partial.mp4 -f null -").err, "");
   int others = 0;
   for (const auto& entry : fs::directory_iterator(folder_))
-    others += entry.path().filename().string().find(".mp4") != std::string::npos;
+    others += entry.is_regular_file() && entry.path().filename().string().find(".mp4") != std::string::npos;
   EXPECT_EQ(others, 1);
+  // and what --resume goes on from
+  EXPECT_TRUE(fs::is_directory(path("m.mp4.parts")));
 }
 
 TEST_F(Render, AnInterruptEndsAFrameThatTakesForever) {

@@ -330,8 +330,10 @@ TEST(Movie, RefusesASegmentOfOtherSettings) {
   Folder folder;
   MovieSpec other = spec_of(64, 64, 5);
   other.preset = "ultrafast";
-  const Segment segment = encoded(folder / "a.mp4", other, 0, 5);
-  EXPECT_THAT(message_of([&] { MovieWriter(folder / "a.mp4", spec_of(64, 64, 5)).add(segment); }),
+  const MovieSpec spec = spec_of(64, 64, 5);
+  MovieWriter writer(folder / "a.mp4", spec);
+  writer.add(encoded(folder / "a.mp4", spec, 0, 5));
+  EXPECT_THAT(message_of([&] { writer.add(encoded(folder / "a.mp4", other, 0, 5)); }),
               HasSubstr("a segment of other settings"));
 }
 
