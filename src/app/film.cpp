@@ -38,20 +38,6 @@ std::string size_text(std::uintmax_t bytes) {
   return fmt::format("{:.2f} GB", double(bytes) / 1e9);
 }
 
-int take_frames(const Output& output, const media::MovieSpec& spec) {
-  switch (output.form) {
-    case Output::Form::movie:
-      return media::segment_frames(spec);
-    case Output::Form::frames:
-      return 4;
-    case Output::Form::pipe:
-      return 2;
-    case Output::Form::still:
-      return 1;
-  }
-  return 1;
-}
-
 // Makes one film, or a share of it.
 class Filming {
  public:
@@ -108,7 +94,7 @@ Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& ou
   if (movie()) media::check(output.path, spec_);
   if (output.form == Output::Form::pipe && options.pipe == media::PipeFormat::y4m)
     media::check("pipe.y4m", spec_);
-  journal_.take_frames = take_frames(output, spec_);
+  journal_.take_frames = app::take_frames(output.form, spec_);
   journal_.takes = (shots.size() + journal_.take_frames - 1) / journal_.take_frames;
   last_ = journal_.takes;
   if (options.shard)
@@ -410,6 +396,20 @@ media::MovieSpec movie_spec(const scene::Scene& scene) {
   spec.fps_num = scene.film.fps.num, spec.fps_den = scene.film.fps.den;
   spec.codec = scene.film.codec, spec.preset = scene.film.preset, spec.crf = scene.film.crf;
   return spec;
+}
+
+int take_frames(Output::Form form, const media::MovieSpec& spec) {
+  switch (form) {
+    case Output::Form::movie:
+      return media::segment_frames(spec);
+    case Output::Form::frames:
+      return 4;
+    case Output::Form::pipe:
+      return 2;
+    case Output::Form::still:
+      return 1;
+  }
+  return 1;
 }
 
 int film(const scene::Scene& scene, const Shots& shots, const Output& output, const FilmOptions& options) {

@@ -33,6 +33,9 @@ struct FilmOptions {
 /// What libav is asked for by this scene.
 media::MovieSpec movie_spec(const scene::Scene& scene);
 
+/// How many frames of such an output one worker makes at a time.
+int take_frames(Output::Form form, const media::MovieSpec& spec);
+
 /// Simulates, draws and writes the shots of a scene. Returns an exit code; throws the errors of the rooms.
 int film(const scene::Scene& scene, const Shots& shots, const Output& output, const FilmOptions& options);
 

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "app/film.h"
 #include "app/memory.h"
 #include "media/error.h"
 
@@ -42,20 +43,6 @@ double size_of(const sim::World<D>& world) {
   return 3.0 *
          double(model.bodies.size() * (sizeof(sim::Body<D>) + 64 * D) +
                 model.springs.size() * sizeof(sim::Spring<D>) + model.joints.size() * sizeof(sim::Joint<D>));
-}
-
-int frames_of_take(Output::Form form, sim::Rational fps) {
-  switch (form) {
-    case Output::Form::movie:
-      return std::clamp(int(std::lround(sim::value(fps))), 1, 1000);
-    case Output::Form::frames:
-      return 4;
-    case Output::Form::pipe:
-      return 2;
-    case Output::Form::still:
-      return 1;
-  }
-  return 1;
 }
 
 struct Measured {
@@ -113,7 +100,7 @@ Needs needs(const scene::Scene& scene, const Shots& shots, Output::Form form, do
   all.disk = form == Output::Form::pipe ? 0 : double(all.frames) * pixels * (movie ? 0.0016 : 0.07);
 
   // in memory: a take for each worker and two more, the pictures of each worker, the ways that trails need
-  const double of_take = double(std::min<std::int64_t>(frames_of_take(form, scene.film.fps), all.frames)) *
+  const double of_take = double(std::min<std::int64_t>(take_frames(form, movie_spec(scene)), all.frames)) *
                          (run.moment + (scene.film.shutter > 0 ? kOpen : 0));
   double trails = 0;
   for (const draw::BodyLook& look : scene.look.bodies)
