@@ -16,6 +16,7 @@
 #include "app/exit.h"
 #include "app/interrupt.h"
 #include "app/join.h"
+#include "app/memory.h"
 #include "app/origin.h"
 #include "app/plots.h"
 #include "app/simulation.h"
@@ -31,12 +32,6 @@ namespace obscura::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string size_text(std::uintmax_t bytes) {
-  if (bytes < 1'000'000) return fmt::format("{:.0f} kB", double(bytes) / 1e3);
-  if (bytes < 1'000'000'000) return fmt::format("{:.1f} MB", double(bytes) / 1e6);
-  return fmt::format("{:.2f} GB", double(bytes) / 1e9);
-}
 
 // Makes one film, or a share of it.
 class Filming {
@@ -382,7 +377,7 @@ int Filming::finish(Progress& progress, const Simulation& simulation, std::int64
     summary =
         fmt::format("{}: {} frame{}, {:g} s at {:g} fps, {}x{}{}, made in {:.1f} s", made, frames,
                     frames == 1 ? "" : "s", seconds, sim::value(scene_.film.fps), spec_.width, spec_.height,
-                    movie() ? ", " + size_text(fs::file_size(made, error)) : "", progress.seconds());
+                    movie() ? ", " + bytes_text(double(fs::file_size(made, error))) : "", progress.seconds());
   }
   if (!summary.empty()) progress.finish(frames, summary, output_.form != Output::Form::pipe);
   return kDone;

@@ -348,8 +348,7 @@ of = "crate"
 }
 
 TEST_F(Figure, TheHandoutIsAPdfWithItsFiguresAndItsType) {
-  // large, and script/handout installs it where it is wanted
-  if (!installed("pandoc")) GTEST_SKIP() << "pandoc is not installed";
+  OBSCURA_NEEDS(installed("pandoc"), "pandoc");
   OBSCURA_NEEDS(installed("chromium-headless-shell") || installed("chromium"), "chromium-headless-shell");
   OBSCURA_NEEDS(installed("pdftotext"), "poppler-utils");
   const Outcome made = shell(OBSCURA_SOURCE_DIR "/script/handout handout.pdf");
