@@ -6,8 +6,8 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/film.h"
@@ -133,15 +133,14 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
 }  // namespace
 
 void add_check(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("check", "Read scenes and say what would be filmed, without drawing");
+  const Command command(program, exit, "check", "Read scenes and say what would be filmed, without drawing");
   auto files = std::make_shared<std::vector<std::string>>();
   auto sets = std::make_shared<std::vector<std::string>>();
-  command->add_option("SCENE", *files, "Scenes to read")->required();
-  add_sets(*command, *sets);
-  add_memory_limit(*command);
-  command->footer("Examples:\n  obscura check scenes/room.toml\n  obscura check scenes/*.toml");
-  command->callback([=, &exit] { exit = check(*files, *sets); });
+  command.option("SCENE", *files, "Scenes to read").required();
+  add_sets(command, *sets);
+  add_memory_limit(command);
+  command.footer("Examples:\n  obscura check scenes/room.toml\n  obscura check scenes/*.toml");
+  command.run([=] { return check(*files, *sets); });
 }
 
 }  // namespace obscura::app

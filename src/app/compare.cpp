@@ -6,8 +6,8 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/comparison.h"
 #include "app/exit.h"
@@ -75,24 +75,21 @@ int run(const Flags& flags) {
 }  // namespace
 
 void add_compare(CLI::App& program, int& exit) {
-  CLI::App* command = program.add_subcommand(
-      "compare", "Say whether two pictures, sequences or runs are the same, and why not");
+  const Command command(program, exit, "compare",
+                        "Say whether two pictures, sequences or runs are the same, and why not");
   auto flags = std::make_shared<Flags>();
-  command->add_option("A", flags->a, "A PNG, a folder of them, a movie, or a run as CSV: what is expected")
-      ->required();
-  command->add_option("B", flags->b, "The same again: what there is")->required();
-  command->add_option("--diff", flags->diff, "Write what differs, of a sequence in its worst frame")
-      ->type_name("OUT.png");
-  command->add_option("--report", flags->report, "Write a page with both, a slider and a blink")
-      ->type_name("OUT.html");
-  command->add_option("--format", flags->format, "text or json [text]")
-      ->check(CLI::IsMember({"text", "json"}));
-  command->add_option("--rtol", flags->rtol, "Of runs: relative tolerance, of A's value [0]")
-      ->check(CLI::Range(0.0, 1e300));
-  command->add_option("--atol", flags->atol, "Of runs: absolute tolerance, in the quantity's unit [0]")
-      ->check(CLI::Range(0.0, 1e300));
-  command->add_flag("--interpolate", flags->interpolate, "Of runs: straight lines between B's rows");
-  command->footer(
+  command.option("A", flags->a, "A PNG, a folder of them, a movie, or a run as CSV: what is expected")
+      .required();
+  command.option("B", flags->b, "The same again: what there is").required();
+  command.option("--diff", flags->diff, "Write what differs, of a sequence in its worst frame")
+      .type("OUT.png");
+  command.option("--report", flags->report, "Write a page with both, a slider and a blink").type("OUT.html");
+  command.option("--format", flags->format, "text or json [text]").one_of({"text", "json"});
+  command.option("--rtol", flags->rtol, "Of runs: relative tolerance, of A's value [0]").range(0.0, 1e300);
+  command.option("--atol", flags->atol, "Of runs: absolute tolerance, in the quantity's unit [0]")
+      .range(0.0, 1e300);
+  command.flag("--interpolate", flags->interpolate, "Of runs: straight lines between B's rows");
+  command.footer(
       "Files of the same bytes are the same. Else pixels are compared: how many differ, the largest "
       "difference "
       "of a channel, how many differ by more than an edge that moved by less than a pixel (solid), the box "
@@ -108,7 +105,7 @@ void add_compare(CLI::App& program, int& exit) {
       "  obscura compare frames/ again/ --report report.html\n"
       "  obscura compare room.mp4 again.mp4 --format json\n"
       "  obscura compare reference.csv student.csv --atol 1e-3");
-  command->callback([flags, &exit] { exit = run(*flags); });
+  command.run([flags] { return run(*flags); });
 }
 
 }  // namespace obscura::app

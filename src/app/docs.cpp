@@ -3,8 +3,8 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "scene/keys.h"
@@ -12,16 +12,15 @@
 namespace obscura::app {
 
 void add_docs(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("docs", "Print the reference of scene keys, or their JSON Schema");
+  const Command command(program, exit, "docs", "Print the reference of scene keys, or their JSON Schema");
   auto what = std::make_shared<std::string>();
-  command->add_option("WHAT", *what, "keys (a page in Markdown) or schema (for editors)")
-      ->required()
-      ->check(CLI::IsMember({"keys", "schema"}));
-  command->footer("Examples:\n  obscura docs keys\n  obscura docs schema > scene.schema.json");
-  command->callback([what, &exit] {
+  command.option("WHAT", *what, "keys (a page in Markdown) or schema (for editors)")
+      .required()
+      .one_of({"keys", "schema"});
+  command.footer("Examples:\n  obscura docs keys\n  obscura docs schema > scene.schema.json");
+  command.run([what] {
     fmt::print("{}", *what == "keys" ? scene::keys_page() : scene::json_schema());
-    exit = kDone;
+    return kDone;
   });
 }
 

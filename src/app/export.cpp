@@ -5,12 +5,11 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/interrupt.h"
-#include "app/memory.h"
 #include "app/mesh.h"
 #include "app/needs.h"
 #include "app/options.h"
@@ -181,23 +180,21 @@ int run(const Flags& flags) {
 }  // namespace
 
 void add_export(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("export", "Write a run as one animated glTF, for another renderer");
+  const Command command(program, exit, "export", "Write a run as one animated glTF, for another renderer");
   auto flags = std::make_shared<Flags>();
-  add_scene(*command, flags->scene);
-  command->add_option("-o,--output", flags->out, "Where to, a name that ends with .glb [SCENE.glb]")
-      ->type_name("OUT");
-  command->add_option("--fps", flags->fps, "Instants per second [film.fps]")->type_name("RATE");
-  add_sets(*command, flags->sets);
-  add_memory_limit(*command);
-  command->footer(
+  add_scene(command, flags->scene);
+  command.option("-o,--output", flags->out, "Where to, a name that ends with .glb [SCENE.glb]").type("OUT");
+  command.option("--fps", flags->fps, "Instants per second [film.fps]").type("RATE");
+  add_sets(command, flags->sets);
+  add_memory_limit(command);
+  command.footer(
       "One node a body, with its name, and a thin rod for each spring; metres, y up. At the instants "
       "themselves "
       "positions are the run's, between them lie straight lines.\n\n"
       "Examples:\n"
       "  obscura export scenes/room.toml\n"
       "  obscura export scenes/room.toml -o room.glb --fps 120");
-  command->callback([flags, &exit] { exit = run(*flags); });
+  command.run([flags] { return run(*flags); });
 }
 
 }  // namespace obscura::app

@@ -8,9 +8,9 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "app/album.h"
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/memory.h"
@@ -170,46 +170,42 @@ int run(const Flags& flags) {
 }  // namespace
 
 void add_figure(CLI::App& program, int& exit) {
-  CLI::App* command = program.add_subcommand("figure", "A figure for print: SVG, PDF or PNG");
+  const Command command(program, exit, "figure", "A figure for print: SVG, PDF or PNG");
   auto flags = std::make_shared<Flags>();
-  add_scene(*command, flags->scene);
+  add_scene(command, flags->scene);
   command
-      ->add_option("-o,--output", flags->out,
-                   "Where to: .svg or .pdf (vectors; type stays type) or .png [render_out/SCENE.svg]")
-      ->type_name("OUT");
+      .option("-o,--output", flags->out,
+              "Where to: .svg or .pdf (vectors; type stays type) or .png [render_out/SCENE.svg]")
+      .type("OUT");
   command
-      ->add_option(
-          "--at", flags->at,
-          "The instant (s); of several, as in 0,0.5,1 or 0:2:0.5, each has its panel [figure.at, or a "
-          "quarter of the duration]")
-      ->type_name("SECONDS");
+      .option("--at", flags->at,
+              "The instant (s); of several, as in 0,0.5,1 or 0:2:0.5, each has its panel [figure.at, or a "
+              "quarter of the duration]")
+      .type("SECONDS");
   command
-      ->add_option(
+      .option(
           "--width", flags->width,
           "Of the figure, as in 84mm, 3.3in or 240pt; type and lines keep their size [figure.width, 84mm]")
-      ->type_name("LENGTH");
+      .type("LENGTH");
   command
-      ->add_option("--every", flags->every,
-                   "Earlier exposures, one every so many seconds, fading [figure.every]")
-      ->type_name("SECONDS");
+      .option("--every", flags->every, "Earlier exposures, one every so many seconds, fading [figure.every]")
+      .type("SECONDS");
   command
-      ->add_option(
+      .option(
           "--vary", flags->vary,
           "A panel, and a line of each plot, for each value of a key, as in --vary crate.elasticity=0,0.5,1 "
           "[figure.vary]")
-      ->type_name("PATH=VALUES")
-      ->expected(1)
-      ->take_all();
-  command->add_option("--columns", flags->columns, "Of panels beside each other")->check(CLI::Range(1, 20));
-  command->add_option("--font", flags->font, "The family of words, as in 'Source Sans 3' [Inter]")
-      ->type_name("NAME");
-  command->add_option("--dpi", flags->dpi, "Pixels an inch of a PNG, and of what is lit in space [300]")
-      ->check(CLI::Range(10.0, 4800.0));
-  command->add_option("--theme", flags->theme, "paper (white) or screen (dark) [paper]")
-      ->check(CLI::IsMember({"paper", "screen"}));
-  add_sets(*command, flags->sets);
-  add_memory_limit(*command);
-  command->footer(
+      .type("PATH=VALUES")
+      .repeated();
+  command.option("--columns", flags->columns, "Of panels beside each other").range(1, 20);
+  command.option("--font", flags->font, "The family of words, as in 'Source Sans 3' [Inter]").type("NAME");
+  command.option("--dpi", flags->dpi, "Pixels an inch of a PNG, and of what is lit in space [300]")
+      .range(10.0, 4800.0);
+  command.option("--theme", flags->theme, "paper (white) or screen (dark) [paper]")
+      .one_of({"paper", "screen"});
+  add_sets(command, flags->sets);
+  add_memory_limit(command);
+  command.footer(
       "What is named, measured and drawn on it says the scene's [figure], see docs/scene.md.\n\n"
       "Examples:\n"
       "  obscura figure scenes/box.toml -o box.svg --at 0.8\n"
@@ -217,7 +213,7 @@ void add_figure(CLI::App& program, int& exit) {
       "  obscura figure scenes/box.toml -o box.png --at 0,0.4,0.8 --dpi 600\n"
       "  obscura figure scenes/box.toml -o e.pdf --vary 'box[0].elasticity=0,0.5,1' --width 174mm\n\n"
       "Exit codes: 0 done, 2 usage, 3 scene, 4 files, fonts, 5 OpenGL, 6 the simulation diverged.");
-  command->callback([flags, &exit] { exit = run(*flags); });
+  command.run([flags] { return run(*flags); });
 }
 
 }  // namespace obscura::app

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/conduct.h"
 #include "app/exit.h"
@@ -174,29 +174,28 @@ int golden(const Flags& flags) {
 }  // namespace
 
 void add_golden(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("golden", "Check what scenes look like, and their states, against references");
+  const Command command(program, exit, "golden",
+                        "Check what scenes look like, and their states, against references");
   auto flags = std::make_shared<Flags>();
-  command->add_option("SCENE", flags->scenes,
-                      "Scenes, or folders of them: there those with a [golden] table [scenes, or .]");
+  command.option("SCENE", flags->scenes,
+                 "Scenes, or folders of them: there those with a [golden] table [scenes, or .]");
   command
-      ->add_option("--references", flags->golden.references,
-                   "The folder of the references [golden/ beside each scene]")
-      ->type_name("DIR");
-  command->add_flag("--update", flags->golden.update, "Take what there is now as the reference");
+      .option("--references", flags->golden.references,
+              "The folder of the references [golden/ beside each scene]")
+      .type("DIR");
+  command.flag("--update", flags->golden.update, "Take what there is now as the reference");
   command
-      ->add_option("--actual", flags->golden.actual,
-                   "Where pictures of what fails go, and differences [render_out/golden]")
-      ->type_name("DIR");
-  command->add_option("--junit", flags->junit, "Write the outcome as JUnit's XML")->type_name("OUT.xml");
-  command->add_option("--report", flags->report, "Write a page with expected, actual and difference")
-      ->type_name("OUT.html");
-  command->add_flag("--other-gl-states", flags->golden.states_only_on_other_gl,
-                    "Where a reference was drawn by another OpenGL, compare states alone");
-  command->add_option("-j,--jobs", flags->workers, "Scenes side by side [one a core]")
-      ->check(CLI::Range(1, 256));
-  add_sets(*command, flags->sets);
-  command->footer(
+      .option("--actual", flags->golden.actual,
+              "Where pictures of what fails go, and differences [render_out/golden]")
+      .type("DIR");
+  command.option("--junit", flags->junit, "Write the outcome as JUnit's XML").type("OUT.xml");
+  command.option("--report", flags->report, "Write a page with expected, actual and difference")
+      .type("OUT.html");
+  command.flag("--other-gl-states", flags->golden.states_only_on_other_gl,
+               "Where a reference was drawn by another OpenGL, compare states alone");
+  command.option("-j,--jobs", flags->workers, "Scenes side by side [one a core]").range(1, 256);
+  add_sets(command, flags->sets);
+  command.footer(
       "A scene's [golden] table names the moments, the size, and what may differ, with a reason. States are "
       "compared first, then pixels. A reference is a PNG of render's, SCENE-SECONDS.png, and carries its "
       "origin: so the cause of a difference is named. A missing one fails, and the picture is written. "
@@ -207,7 +206,7 @@ void add_golden(CLI::App& program, int& exit) {
       "  obscura golden\n"
       "  obscura golden scenes/room.toml --report report.html\n"
       "  obscura golden scenes --references tests/golden --update");
-  command->callback([flags, &exit] { exit = golden(*flags); });
+  command.run([flags] { return golden(*flags); });
 }
 
 }  // namespace obscura::app

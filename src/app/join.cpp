@@ -6,8 +6,8 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/film.h"
@@ -122,19 +122,19 @@ int join_command(const Flags& flags) {
 }  // namespace
 
 void add_join(CLI::App& program, int& exit) {
-  CLI::App* command = program.add_subcommand("join", "Make the movie of the parts that shards have left");
+  const Command command(program, exit, "join", "Make the movie of the parts that shards have left");
   auto flags = std::make_shared<Flags>();
-  command->add_option("OUT", flags->out, "The movie, as `render -o` named it, or the pattern of its pictures")
-      ->required()
-      ->type_name("");
-  command->add_flag("--partial", flags->partial,
-                    "Join what there is, into a movie whose name says that it is partial");
-  command->footer(
+  command.option("OUT", flags->out, "The movie, as `render -o` named it, or the pattern of its pictures")
+      .required()
+      .type("");
+  command.flag("--partial", flags->partial,
+               "Join what there is, into a movie whose name says that it is partial");
+  command.footer(
       "Says what is missing, and which shard makes it; exit 4 then.\n\n"
       "Examples:\n"
       "  for i in 1 2 3 4; do obscura render scenes/room.toml -o room.mp4 --shard $i/4; done\n"
       "  obscura join room.mp4");
-  command->callback([flags, &exit] { exit = join_command(*flags); });
+  command.run([flags] { return join_command(*flags); });
 }
 
 }  // namespace obscura::app

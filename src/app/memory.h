@@ -2,10 +2,6 @@
 
 #include <string>
 
-namespace CLI {
-class App;
-}
-
 namespace obscura::app {
 
 /// From now on this process gets at most `bytes` of memory, or what it was allowed already if that is less:
@@ -28,9 +24,6 @@ std::string out_of_memory();
 /// Where memory ends inside a library that does not check for it, the program ends with that line and exit
 /// code 4 all the same.
 void survive_libraries();
-
-/// --memory-limit, which every command that simulates has; holds to it as soon as it is read.
-void add_memory_limit(CLI::App& command);
 
 /// "2GB", "1.5 GiB", "500M": bytes. Throws UsageError.
 double parse_bytes(const std::string& text);

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/report.h"
@@ -34,12 +34,11 @@ int make(const std::string& name, const std::string& program) {
 }  // namespace
 
 void add_new(CLI::App& program, int& exit) {
-  CLI::App* command = program.add_subcommand("new", "Write a short commented scene to start from");
+  const Command command(program, exit, "new", "Write a short commented scene to start from");
   auto name = std::make_shared<std::string>();
-  command->add_option("NAME", *name, "The scene's name: NAME.toml is written, never over another")
-      ->required();
-  command->footer("Examples:\n  obscura new ball\n  obscura new lectures/pendulum.toml");
-  command->callback([name, &exit, &program] { exit = make(*name, program.get_name()); });
+  command.option("NAME", *name, "The scene's name: NAME.toml is written, never over another").required();
+  command.footer("Examples:\n  obscura new ball\n  obscura new lectures/pendulum.toml");
+  command.run([name, command] { return make(*name, command.program()); });
 }
 
 }  // namespace obscura::app

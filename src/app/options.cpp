@@ -3,44 +3,39 @@
 #include <charconv>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "app/exit.h"
 #include "app/memory.h"
 
 namespace obscura::app {
 
-void add_scene(CLI::App& command, std::string& file) {
-  command.add_option("SCENE", file, "The scene, a TOML file; - for standard input")->required();
+void add_scene(const Command& command, std::string& file) {
+  command.option("SCENE", file, "The scene, a TOML file; - for standard input").required();
 }
 
-void add_sets(CLI::App& command, std::vector<std::string>& sets) {
+void add_sets(const Command& command, std::vector<std::string>& sets) {
   command
-      .add_option("--set", sets,
-                  "Change a key of the scene, as in --set crate.elasticity=0.5; may be given again")
-      ->type_name("PATH=VALUE")
-      ->expected(1)
-      ->allow_extra_args(false)  // else it swallows a -- behind it
-      ->take_all();
+      .option("--set", sets,
+              "Change a key of the scene, as in --set crate.elasticity=0.5; may be given again")
+      .type("PATH=VALUE")
+      .repeated();
 }
 
-void add_progress(CLI::App& command, ProgressKind& kind) {
-  command.add_option("--progress", kind, "auto, plain, json (a line an event) or none [auto]")
-      ->type_name("KIND")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, ProgressKind>{{"auto", ProgressKind::automatic},
-                                                                      {"plain", ProgressKind::plain},
-                                                                      {"json", ProgressKind::json},
-                                                                      {"none", ProgressKind::none}})
-              .description(""));
-}
-
-void add_memory_limit(CLI::App& command) {
+void add_progress(const Command& command, ProgressKind& kind) {
   command
-      .add_option_function<std::string>(
-          "--memory-limit", [](const std::string& text) { hold_memory(parse_bytes(text)); },
-          "Never take more memory, as in 2GB [nine tenths of the machine's]")
-      ->type_name("SIZE");
+      .choice("--progress", kind,
+              {{"auto", ProgressKind::automatic},
+               {"plain", ProgressKind::plain},
+               {"json", ProgressKind::json},
+               {"none", ProgressKind::none}},
+              "auto, plain, json (a line an event) or none [auto]")
+      .type("KIND");
+}
+
+void add_memory_limit(const Command& command) {
+  const auto hold = [](const std::string& text) { hold_memory(parse_bytes(text)); };
+  command.option("--memory-limit", hold, "Never take more memory, as in 2GB [nine tenths of the machine's]")
+      .type("SIZE");
 }
 
 sim::Rational parse_fps(const std::string& text) {

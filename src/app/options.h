@@ -4,23 +4,23 @@
 #include <utility>
 #include <vector>
 
+#include "app/command.h"
 #include "app/progress.h"
 #include "sim/rational.h"
-
-namespace CLI {
-class App;
-}
 
 namespace obscura::app {
 
 /// SCENE, of a command that reads one.
-void add_scene(CLI::App& command, std::string& file);
+void add_scene(const Command& command, std::string& file);
 
 /// --set, which every command that reads a scene has.
-void add_sets(CLI::App& command, std::vector<std::string>& sets);
+void add_sets(const Command& command, std::vector<std::string>& sets);
 
 /// --progress.
-void add_progress(CLI::App& command, ProgressKind& kind);
+void add_progress(const Command& command, ProgressKind& kind);
+
+/// --memory-limit, which every command that simulates has; holds to it as soon as it is read.
+void add_memory_limit(const Command& command);
 
 /// "60", "30000/1001": the frames per second that --fps says, above 0 and up to 1000. Throws UsageError.
 sim::Rational parse_fps(const std::string& text);

@@ -1,11 +1,11 @@
 // obscura render: a scene goes in, a movie, pictures, one picture or a stream comes out.
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/film.h"
@@ -191,91 +191,80 @@ int render(Flags flags) {
 }  // namespace
 
 void add_render(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("render", "Film a scene: a movie, a sequence of PNGs, one PNG or a stream");
+  const Command command(program, exit, "render",
+                        "Film a scene: a movie, a sequence of PNGs, one PNG or a stream");
   auto flags = std::make_shared<Flags>();
-  add_scene(*command, flags->scene);
+  add_scene(command, flags->scene);
   command
-      ->add_option(
+      .option(
           "-o,--output", flags->out,
           "Where to: its form chooses the output. movie.mp4 (.mkv .mov .webm .gif), frames/{frame:04}.png or "
           "frames/%04d.png, one picture.png with --at, - for a stream. Left out: render_out/SCENE.mp4")
-      ->type_name("OUT");
-  add_sets(*command, flags->sets);
+      .type("OUT");
+  add_sets(command, flags->sets);
   command
-      ->add_option("--camera", flags->camera,
-                   "Of several cameras this one alone; -o '{camera}.mp4' writes a file for each")
-      ->type_name("NAME");
-  command->add_option("--at", flags->at, "One picture, of this instant (s), be it after the duration")
-      ->type_name("SECONDS");
-  command->add_option("--from", flags->from, "The first instant (s of the run) that is filmed")
-      ->type_name("SECONDS");
-  command->add_option("--to", flags->to, "Where the film stops (s), not itself filmed")->type_name("SECONDS");
-  command->add_option("--frames", flags->frames, "Only these frames, counted from 0, as in 1,3,5..9")
-      ->type_name("LIST");
-  command->add_option("--size", flags->size, "Pixels, as in 1280x720; even for movies")->type_name("WxH");
-  command->add_option("--fps", flags->fps, "Frames per second, as in 60 or 30000/1001")->type_name("RATE");
-  command->add_option("--theme", flags->theme, "paper (white, for print) or screen (dark, for projectors)")
-      ->check(CLI::IsMember({"paper", "screen"}));
+      .option("--camera", flags->camera,
+              "Of several cameras this one alone; -o '{camera}.mp4' writes a file for each")
+      .type("NAME");
+  command.option("--at", flags->at, "One picture, of this instant (s), be it after the duration")
+      .type("SECONDS");
+  command.option("--from", flags->from, "The first instant (s of the run) that is filmed").type("SECONDS");
+  command.option("--to", flags->to, "Where the film stops (s), not itself filmed").type("SECONDS");
+  command.option("--frames", flags->frames, "Only these frames, counted from 0, as in 1,3,5..9").type("LIST");
+  command.option("--size", flags->size, "Pixels, as in 1280x720; even for movies").type("WxH");
+  command.option("--fps", flags->fps, "Frames per second, as in 60 or 30000/1001").type("RATE");
+  command.option("--theme", flags->theme, "paper (white, for print) or screen (dark, for projectors)")
+      .one_of({"paper", "screen"});
   command
-      ->add_option(
-          "--states", flags->states,
-          "Film this run of another program instead of simulating: a table as `obscura states --format "
-          "csv` writes it, names matched to the scene's bodies")
-      ->type_name("RUN.csv");
-  command->add_flag("--interpolate", flags->interpolate, "With --states: straight lines between its rows");
-  command->add_flag("--draft", flags->draft,
-                    "Small and quick: 480 lines, at most 30 frames per second, ultrafast");
-  command->add_flag("--transparent", flags->film.transparent, "PNG: leave the page's colour out");
-  command->add_flag("--no-overwrite", flags->no_overwrite, "Refuse to write over an earlier render");
-  command->add_option("--crf", flags->crf, "Quality of the movie, lower is better [18]")
-      ->check(CLI::Range(1.0, 63.0));
-  command->add_option("--preset", flags->preset,
-                      "x264's preset; left out: quick settings of medium's quality");
-  command->add_option("--codec", flags->codec,
-                      "An encoder by libavcodec's name, as in libx264 or libvpx-vp9");
-  command->add_option("--pipe", flags->film.pipe, "With -o -: y4m or rgba, raw frames [y4m]")
-      ->type_name("FORM")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, media::PipeFormat>{{"y4m", media::PipeFormat::y4m},
-                                                                           {"rgba", media::PipeFormat::rgba}})
-              .description(""));
-  command->add_flag("--resume", flags->film.resume,
-                    "Go on from what is whole of a film that was stopped, to the same bytes");
+      .option("--states", flags->states,
+              "Film this run of another program instead of simulating: a table as `obscura states --format "
+              "csv` writes it, names matched to the scene's bodies")
+      .type("RUN.csv");
+  command.flag("--interpolate", flags->interpolate, "With --states: straight lines between its rows");
+  command.flag("--draft", flags->draft,
+               "Small and quick: 480 lines, at most 30 frames per second, ultrafast");
+  command.flag("--transparent", flags->film.transparent, "PNG: leave the page's colour out");
+  command.flag("--no-overwrite", flags->no_overwrite, "Refuse to write over an earlier render");
+  command.option("--crf", flags->crf, "Quality of the movie, lower is better [18]").range(1.0, 63.0);
+  command.option("--preset", flags->preset, "x264's preset; left out: quick settings of medium's quality");
+  command.option("--codec", flags->codec, "An encoder by libavcodec's name, as in libx264 or libvpx-vp9");
   command
-      ->add_option("--shard", flags->shard,
-                   "Make this share of the film alone, as in 2/4; obscura join makes the movie of them")
-      ->type_name("I/N");
+      .choice("--pipe", flags->film.pipe,
+              {{"y4m", media::PipeFormat::y4m}, {"rgba", media::PipeFormat::rgba}},
+              "With -o -: y4m or rgba, raw frames [y4m]")
+      .type("FORM");
+  command.flag("--resume", flags->film.resume,
+               "Go on from what is whole of a film that was stopped, to the same bytes");
   command
-      ->add_option("--prepare", flags->film.prepare,
-                   "Draw nothing: simulate once, and leave the state that each of N shards begins with")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100000));
+      .option("--shard", flags->shard,
+              "Make this share of the film alone, as in 2/4; obscura join makes the movie of them")
+      .type("I/N");
   command
-      ->add_option("--checkpoint-every", flags->checkpoint_every,
-                   "Keep the whole state this often (s of the run), in OUT.checkpoints")
-      ->type_name("SECONDS");
+      .option("--prepare", flags->film.prepare,
+              "Draw nothing: simulate once, and leave the state that each of N shards begins with")
+      .type("N")
+      .range(1, 100000);
   command
-      ->add_option("--from-checkpoint", flags->film.from_checkpoint,
-                   "Begin with the state in this file; for --from at its time or later")
-      ->type_name("FILE");
-  add_memory_limit(*command);
+      .option("--checkpoint-every", flags->checkpoint_every,
+              "Keep the whole state this often (s of the run), in OUT.checkpoints")
+      .type("SECONDS");
   command
-      ->add_option("-j,--jobs", flags->film.workers, "Workers that draw and encode side by side [one a core]")
-      ->check(CLI::Range(1, 256));
+      .option("--from-checkpoint", flags->film.from_checkpoint,
+              "Begin with the state in this file; for --from at its time or later")
+      .type("FILE");
+  add_memory_limit(command);
+  command.option("-j,--jobs", flags->film.workers, "Workers that draw and encode side by side [one a core]")
+      .range(1, 256);
   command
-      ->add_option("--backend", flags->film.context.backend,
-                   "auto, osmesa or egl: who draws, never a GPU unless named [auto]")
-      ->type_name("NAME")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, gl::Backend>{{"auto", gl::Backend::automatic},
-                                                                             {"osmesa", gl::Backend::osmesa},
-                                                                             {"egl", gl::Backend::egl}})
-                      .description(""));
-  command->add_flag("--native", flags->film.context.native,
-                    "Draw with all of this processor's instructions: a tenth quicker, pixels may differ by a "
-                    "level elsewhere");
-  add_progress(*command, flags->film.progress);
-  command->footer(
+      .choice("--backend", flags->film.context.backend,
+              {{"auto", gl::Backend::automatic}, {"osmesa", gl::Backend::osmesa}, {"egl", gl::Backend::egl}},
+              "auto, osmesa or egl: who draws, never a GPU unless named [auto]")
+      .type("NAME");
+  command.flag("--native", flags->film.context.native,
+               "Draw with all of this processor's instructions: a tenth quicker, pixels may differ by a "
+               "level elsewhere");
+  add_progress(command, flags->film.progress);
+  command.footer(
       "Examples:\n"
       "  obscura render scenes/room.toml\n"
       "  obscura render scenes/room.toml -o room.mp4 --size 1280x720 --fps 30\n"
@@ -286,7 +275,7 @@ void add_render(CLI::App& program, int& exit) {
       "  obscura render scenes/room.toml -o - | ffplay -\n"
       "  obscura render scenes/room.toml --resume       after a power cut\n"
       "While a film is made, what is whole of it lies in OUT.parts: it plays, and --resume goes on from it.");
-  command->callback([flags, &exit] { exit = render(*flags); });
+  command.run([flags] { return render(*flags); });
 }
 
 }  // namespace obscura::app

@@ -5,15 +5,14 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/checkpoint.h"
 #include "app/columns.h"
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/interrupt.h"
-#include "app/memory.h"
 #include "app/options.h"
 #include "app/origin.h"
 #include "app/shots.h"
@@ -202,21 +201,21 @@ int states(const Flags& flags) {
 }  // namespace
 
 void add_states(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("states", "Print the state at given instants as data, without drawing");
+  const Command command(program, exit, "states",
+                        "Print the state at given instants as data, without drawing");
   auto flags = std::make_shared<Flags>();
-  add_scene(*command, flags->scene);
-  command->add_option("--at", flags->at, "Instants (s), as in 0,0.5,2 or 0:10:0.5")->type_name("LIST");
-  command->add_option("--every", flags->every, "Instants from 0 to the duration, this far apart (s) [1]")
-      ->type_name("SECONDS");
+  add_scene(command, flags->scene);
+  command.option("--at", flags->at, "Instants (s), as in 0,0.5,2 or 0:10:0.5").type("LIST");
+  command.option("--every", flags->every, "Instants from 0 to the duration, this far apart (s) [1]")
+      .type("SECONDS");
   command
-      ->add_option("--from-checkpoint", flags->from_checkpoint,
-                   "Begin with the state in this file (render --checkpoint-every)")
-      ->type_name("FILE");
-  command->add_option("--format", flags->format, "json or csv [json]")->check(CLI::IsMember({"json", "csv"}));
-  add_sets(*command, flags->sets);
-  add_memory_limit(*command);
-  command->footer(
+      .option("--from-checkpoint", flags->from_checkpoint,
+              "Begin with the state in this file (render --checkpoint-every)")
+      .type("FILE");
+  command.option("--format", flags->format, "json or csv [json]").one_of({"json", "csv"});
+  add_sets(command, flags->sets);
+  add_memory_limit(command);
+  command.footer(
       "SI units; angles in radians, counter-clockwise; in space an orientation is a unit quaternion x, y, z, "
       "w, and a spin a vector, about axes of the room. Numbers have 17 significant digits: they read back to "
       "the bit.\n"
@@ -230,7 +229,7 @@ void add_states(CLI::App& program, int& exit) {
       "  obscura states scenes/room.toml --at 0,0.5,2\n"
       "  obscura states scenes/room.toml --every 0.1 --format csv > room.csv\n"
       "  obscura states scenes/room.toml --at 5 --set physics.rate=1200");
-  command->callback([flags, &exit] { exit = states(*flags); });
+  command.run([flags] { return states(*flags); });
 }
 
 }  // namespace obscura::app

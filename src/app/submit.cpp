@@ -11,8 +11,8 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/film.h"
@@ -416,39 +416,32 @@ int submit(Flags flags) {
 }  // namespace
 
 void add_submit(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("submit", "Share a film, or a sweep, out among the tasks of a Slurm array");
+  const Command command(program, exit, "submit",
+                        "Share a film, or a sweep, out among the tasks of a Slurm array");
   auto flags = std::make_shared<Flags>();
-  add_scene(*command, flags->scene);
-  command->add_option("SBATCH", flags->options, "Behind --: options of sbatch, as in -- --partition=long");
-  command->add_option("--tasks", flags->tasks, "Shards, each a task of the array")
-      ->type_name("N")
-      ->required()
-      ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--at-once", flags->at_once, "So many tasks side by side at most")
-      ->type_name("K")
-      ->check(CLI::Range(1, 1'000'000));
+  add_scene(command, flags->scene);
+  command.option("SBATCH", flags->options, "Behind --: options of sbatch, as in -- --partition=long");
+  command.option("--tasks", flags->tasks, "Shards, each a task of the array")
+      .type("N")
+      .required()
+      .range(1, 1'000'000);
+  command.option("--at-once", flags->at_once, "So many tasks side by side at most")
+      .type("K")
+      .range(1, 1'000'000);
   command
-      ->add_option(
-          "-o,--output", flags->out,
-          "Where to, as for render: a movie or a sequence of PNGs [render_out/SCENE.mp4]; of a sweep "
-          "a table")
-      ->type_name("OUT");
-  command->add_option("--vary", flags->vary, "A sweep instead of a film: as for sweep")
-      ->type_name("PATH=VALUES")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
-  command->add_option("--measure", flags->measure, "What a sweep puts down: as for sweep")
-      ->type_name("LIST")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
-  add_sets(*command, flags->sets);
-  command->add_flag("--dry-run", flags->dry_run, "Show the scripts, and do nothing; needs no Slurm");
-  command->add_flag("--no-wait", flags->no_wait, "Hand it in and end");
-  add_progress(*command, flags->progress);
-  command->footer(
+      .option("-o,--output", flags->out,
+              "Where to, as for render: a movie or a sequence of PNGs [render_out/SCENE.mp4]; of a sweep "
+              "a table")
+      .type("OUT");
+  command.option("--vary", flags->vary, "A sweep instead of a film: as for sweep")
+      .type("PATH=VALUES")
+      .repeated();
+  command.option("--measure", flags->measure, "What a sweep puts down: as for sweep").type("LIST").repeated();
+  add_sets(command, flags->sets);
+  command.flag("--dry-run", flags->dry_run, "Show the scripts, and do nothing; needs no Slurm");
+  command.flag("--no-wait", flags->no_wait, "Hand it in and end");
+  add_progress(command, flags->progress);
+  command.footer(
       "Writes plain sbatch scripts into the folder OUT.slurm, where the logs go too: one simulates and "
       "leaves a "
       "checkpoint for every shard, an array draws the shards, one joins them. The bytes are those of one "
@@ -462,7 +455,7 @@ void add_submit(CLI::App& program, int& exit) {
       "  obscura submit scenes/room.toml --tasks 8 --vary seed=1:100 --measure hash@end -o room.csv\n\n"
       "Exit codes: 0 done, 2 usage, 3 scene, 4 files, Slurm or a task, 6 the simulation diverged, 130 "
       "interrupted (the jobs go on).");
-  command->callback([flags, &exit] { exit = submit(*flags); });
+  command.run([flags] { return submit(*flags); });
 }
 
 }  // namespace obscura::app

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/conduct.h"
 #include "app/exit.h"
@@ -225,44 +225,38 @@ int sweep(Flags flags) {
 }  // namespace
 
 void add_sweep(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("sweep", "Run a scene many times, and measure: a table, without drawing");
+  const Command command(program, exit, "sweep",
+                        "Run a scene many times, and measure: a table, without drawing");
   auto flags = std::make_shared<Flags>();
-  add_scene(*command, flags->scene);
+  add_scene(command, flags->scene);
   command
-      ->add_option("--vary", flags->vary,
-                   "A key and its values, as in crate.elasticity=0,0.5,1 or 0:1:0.1, seed=1:100 (both ends); "
-                   "given again, all combinations, the last key fastest")
-      ->type_name("PATH=VALUES")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
+      .option("--vary", flags->vary,
+              "A key and its values, as in crate.elasticity=0,0.5,1 or 0:1:0.1, seed=1:100 (both ends); "
+              "given again, all combinations, the last key fastest")
+      .type("PATH=VALUES")
+      .repeated();
   command
-      ->add_option("--measure", flags->measure,
-                   "Columns of the states, each at an instant (s) or over the run, as in energy.total@5, "
-                   "crate.position.y@max; also @min @mean @end @argmax @argmin; may be given again")
-      ->type_name("LIST")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
-  add_sets(*command, flags->sets);
+      .option("--measure", flags->measure,
+              "Columns of the states, each at an instant (s) or over the run, as in energy.total@5, "
+              "crate.position.y@max; also @min @mean @end @argmax @argmin; may be given again")
+      .type("LIST")
+      .repeated();
+  add_sets(command, flags->sets);
   command
-      ->add_option("-o,--output", flags->out,
-                   "Where to: .csv or .jsonl, a table; .png with --at, or .mp4 .mkv .mov .webm .gif: all "
-                   "runs beside each other [standard output]")
-      ->type_name("OUT");
-  command->add_option("--at", flags->at, "The instant (s) of a picture of all runs")->type_name("SECONDS");
-  command->add_option("--format", flags->format, "csv or jsonl [by OUT's ending, csv]")
-      ->check(CLI::IsMember({"csv", "jsonl"}));
-  command->add_option("-j,--jobs", flags->workers, "Runs side by side [one a core]")
-      ->check(CLI::Range(1, 1024));
+      .option("-o,--output", flags->out,
+              "Where to: .csv or .jsonl, a table; .png with --at, or .mp4 .mkv .mov .webm .gif: all "
+              "runs beside each other [standard output]")
+      .type("OUT");
+  command.option("--at", flags->at, "The instant (s) of a picture of all runs").type("SECONDS");
+  command.option("--format", flags->format, "csv or jsonl [by OUT's ending, csv]").one_of({"csv", "jsonl"});
+  command.option("-j,--jobs", flags->workers, "Runs side by side [one a core]").range(1, 1024);
   command
-      ->add_option("--shard", flags->shard,
-                   "Of N shares of the rows the i-th; the shares' tables, one after the other, are the whole")
-      ->type_name("i/N");
-  command->add_flag("--resume", flags->resume, "Go on with what an interrupted sweep left");
-  add_progress(*command, flags->progress);
-  command->footer(
+      .option("--shard", flags->shard,
+              "Of N shares of the rows the i-th; the shares' tables, one after the other, are the whole")
+      .type("i/N");
+  command.flag("--resume", flags->resume, "Go on with what an interrupted sweep left");
+  add_progress(command, flags->progress);
+  command.footer(
       "Each row has its run's number, the values of its keys, what was measured, and the trouble it met; a "
       "run "
       "that diverges does not end the sweep. The rows stand in order and are the same bytes for every -j.\n"
@@ -276,7 +270,7 @@ void add_sweep(CLI::App& program, int& exit) {
       "  obscura sweep scenes/room.toml --vary tumbler.elasticity=0:1:0.1 --at 5 -o room.png\n\n"
       "Exit codes: 0 done, 2 usage, 3 scene, 4 files, 6 some runs diverged (their rows say which), 130 "
       "interrupted.");
-  command->callback([flags, &exit] { exit = sweep(*flags); });
+  command.run([flags] { return sweep(*flags); });
 }
 
 }  // namespace obscura::app

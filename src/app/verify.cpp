@@ -8,9 +8,9 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "app/cause.h"
+#include "app/command.h"
 #include "app/commands.h"
 #include "app/comparison.h"
 #include "app/exit.h"
@@ -161,16 +161,15 @@ int verify(const Flags& flags) {
 }  // namespace
 
 void add_verify(CLI::App& program, int& exit) {
-  CLI::App* command =
-      program.add_subcommand("verify", "Make a picture or movie again from its origin: is it still true?");
+  const Command command(program, exit, "verify",
+                        "Make a picture or movie again from its origin: is it still true?");
   auto flags = std::make_shared<Flags>();
-  command->add_option("FILE", flags->files, "PNGs and movies that obscura wrote")->required();
-  command->add_option("--scene", flags->scene, "Hold it against this scene as it is now, not as it was")
-      ->type_name("SCENE");
-  command->add_flag("--states", flags->states, "Simulate, and draw nothing");
-  command->add_option("-j,--jobs", flags->film.workers, "Workers, of a movie [one a core]")
-      ->check(CLI::Range(1, 256));
-  command->footer(
+  command.option("FILE", flags->files, "PNGs and movies that obscura wrote").required();
+  command.option("--scene", flags->scene, "Hold it against this scene as it is now, not as it was")
+      .type("SCENE");
+  command.flag("--states", flags->states, "Simulate, and draw nothing");
+  command.option("-j,--jobs", flags->film.workers, "Workers, of a movie [one a core]").range(1, 256);
+  command.footer(
       "Every PNG and movie of obscura's carries its origin: the scene's text, what was set, the instant, the "
       "hash of the state, who drew it. verify simulates that again, compares the state, draws it again and "
       "compares pixels, of a movie bytes or else all frames.\n\n"
@@ -179,7 +178,7 @@ void add_verify(CLI::App& program, int& exit) {
       "  obscura verify room.png\n"
       "  obscura verify docs/*.png --states\n"
       "  obscura verify room.mp4 --scene scenes/room.toml");
-  command->callback([flags, &exit] { exit = verify(*flags); });
+  command.run([flags] { return verify(*flags); });
 }
 
 }  // namespace obscura::app

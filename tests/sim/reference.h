@@ -12,7 +12,7 @@ namespace obscura::sim {
 // The tables of tests/reference.
 
 inline std::ifstream open_reference(const std::string& name) {
-  std::ifstream file(std::string(OBSCURA_SOURCE_DIR) + "/tests/reference/" + name);
+  std::ifstream file(OBSCURA_SOURCE_DIR "/tests/reference/" + name);
   if (!file) throw std::runtime_error("no reference " + name);
   return file;
 }
