@@ -91,7 +91,7 @@ void suit(const Mosaic& mosaic, std::vector<Tile>& tiles) {
 /// Simulates all runs in step.
 class Runs {
  public:
-  Runs(const std::vector<Tile>& tiles, const Shots& shots, int frames) {
+  Runs(const std::vector<Tile>& tiles, const Shots& shots, int frames, int workers) : workers_(workers) {
     for (const Tile& tile : tiles)
       runs_.push_back(std::make_unique<Simulation>(tile.scene, shots, depictor(tile.scene, {}),
                                                    SimulationOptions{.frames = frames}));
@@ -101,13 +101,20 @@ class Runs {
   /// The next piece of all; none at the end, or where none of them can go on.
   std::optional<Together> next() {
     Together takes(runs_.size());
-    std::size_t frames = 0;
-    for (std::size_t i = 0; i < runs_.size(); ++i) {
-      if (std::optional<Take> take = runs_[i]->next()) takes[i] = std::move(*take);
-      if (interrupted()) return {};
-      frames = std::max(frames, takes[i].moments.size());
-      if (!takes[i].moments.empty()) last_[i] = takes[i].moments.back();
-    }
+    std::size_t asked = 0, had = 0, frames = 0;
+    Conduct<std::size_t, std::optional<Take>> pieces;
+    pieces.produce = [&] {
+      return asked < runs_.size() && !interrupted() ? std::optional(asked++) : std::nullopt;
+    };
+    pieces.hire = [&] { return [&](std::size_t i) { return runs_[i]->next(); }; };
+    pieces.consume = [&](std::optional<Take> take) {
+      if (take && !take->moments.empty()) last_[had] = take->moments.back();
+      if (take) takes[had] = std::move(*take);
+      frames = std::max(frames, takes[had++].moments.size());
+      return true;
+    };
+    conduct(pieces, std::min(workers_, int(runs_.size())));
+    if (interrupted()) return {};
     if (frames == 0) return {};
     // who cannot go on stands where it last was
     for (std::size_t i = 0; i < runs_.size(); ++i)
@@ -120,9 +127,14 @@ class Runs {
   }
 
  private:
+  int workers_;
   std::vector<std::unique_ptr<Simulation>> runs_;
   std::vector<std::optional<sim::Snapshot>> last_;
 };
+
+int crew(const MosaicOptions& options) {
+  return options.workers > 0 ? options.workers : std::max(1, int(std::thread::hardware_concurrency()));
+}
 
 int ended(const std::string& out, std::size_t runs, std::size_t trouble, const std::string& summary,
           Progress& progress, std::int64_t done) {
@@ -157,7 +169,7 @@ int mosaic_still(std::vector<Tile> tiles, sim::Rational at, const std::string& o
   suit(mosaic, tiles);
   media::make_folder_of(out);
   Progress progress(options.progress, out, 1, 0, "pictures");
-  Runs runs(tiles, Shots::still(at, film.fps, {}), 1);
+  Runs runs(tiles, Shots::still(at, film.fps, {}), 1, crew(options));
   const std::optional<Together> takes = runs.next();
   if (interrupted()) return kInterrupted;
   Wall wall(tiles, mosaic, film.width, film.height);
@@ -179,7 +191,7 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
   const Mosaic mosaic(int(tiles.size()), spec.width, spec.height);
   suit(mosaic, tiles);
 
-  Runs runs(tiles, shots, media::segment_frames(spec));
+  Runs runs(tiles, shots, media::segment_frames(spec), crew(options));
   media::MovieWriter movie(out, spec);
   Progress progress(options.progress, out, shots.size(), double(spec.fps_den) / double(spec.fps_num));
   std::int64_t done = 0;
@@ -202,9 +214,7 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
     return true;
   };
   parts.wait = [&] { progress.at(done); };
-  const int cores =
-      options.workers > 0 ? options.workers : std::max(1, int(std::thread::hardware_concurrency()));
-  conduct(parts, cores);
+  conduct(parts, crew(options));
 
   if (interrupted()) {
     const std::string partial = Output{Output::Form::movie, out}.partial();
