@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include <fmt/format.h>
@@ -117,11 +118,11 @@ struct Work {
   std::function<std::int64_t()> done;
 };
 
-std::int64_t count(const std::string& folder, const std::string& ending) {
+std::int64_t count(const std::string& folder, const std::function<bool(const fs::path&)>& fits) {
   std::int64_t n = 0;
   std::error_code none;
   for (fs::directory_iterator file(folder, none), end; !none && file != end; file.increment(none))
-    n += file->path().extension() == ending && file->path().filename().string()[0] != '.';
+    n += fits(file->path().filename());
   return n;
 }
 
@@ -138,10 +139,22 @@ void film_work(const Flags& flags, const scene::Scene& scene, const std::vector<
   work.made = movie ? out.path : out.file(shots[0].frame);
   work.parts = out.parts();
   work.size = shots.size(), work.frame_seconds = 1 / sim::value(scene.film.fps);
-  const std::string ending = movie ? fs::path(out.path).extension().string() : ".png";
-  const std::string where = movie ? work.parts : fs::path(out.path).parent_path().string();
-  const int each = movie ? media::segment_frames(spec) : 1;
-  work.done = [=, size = work.size] { return std::min(size, each * count(where, ending)); };
+  if (movie) {
+    const std::string ending = fs::path(out.path).extension().string();
+    const auto take = [ending](const fs::path& name) {
+      return name.extension() == ending && name.native()[0] != '.';
+    };
+    work.done = [=, folder = work.parts, size = work.size, each = media::segment_frames(spec)] {
+      return std::min(size, each * count(folder, take));
+    };
+  } else {
+    std::set<std::string> frames;
+    for (std::int64_t i = 0; i < shots.size(); ++i)
+      frames.insert(fs::path(out.file(shots[i].frame)).filename().string());
+    work.done = [frames, folder = ("." / fs::path(out.path).parent_path()).string()] {
+      return count(folder, [&](const fs::path& name) { return frames.contains(name.native()); });
+    };
+  }
 
   std::vector<std::string> render = program;
   for (const char* word : {"render", flags.scene.c_str(), "-o", out.path.c_str()}) render.push_back(word);

@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSmall = " --size 96x54 --fps 10 --progress none";
+constexpr const char* kSmallest = " --size 96x54 --fps 4 --progress none";
 
 using Resume = Program;
 using Shards = Program;
@@ -51,7 +52,7 @@ int kills(int usual) {
 
 TEST_F(Resume, OfAMovieThatWasKilledIsTheSameMovie) {
   scene(kRoom);
-  const std::string command = std::string("render scene.toml -o film.mp4 -j 2") + kSmall;
+  const std::string command = std::string("render scene.toml -o film.mp4 -j 2") + kSmallest;
   Outcome whole;
   const double takes = seconds_of([&] { whole = obscura(command); });
   ASSERT_EQ(whole.exit, 0) << whole.err;
@@ -83,7 +84,7 @@ TEST_F(Resume, OfAMovieThatWasKilledIsTheSameMovie) {
 
 TEST_F(Resume, OfPicturesThatWereKilledIsTheSamePictures) {
   scene(kRoom);
-  const std::string command = std::string("render scene.toml -o 'frames/{frame:03}.png' -j 2") + kSmall;
+  const std::string command = std::string("render scene.toml -o 'frames/{frame:03}.png' -j 2") + kSmallest;
   Outcome whole;
   const double takes = seconds_of([&] { whole = obscura(command); });
   ASSERT_EQ(whole.exit, 0) << whole.err;

@@ -63,7 +63,7 @@ class Faults : public Program {
                  command);
   }
 
-  /// Walks n = 1, 2, ... until no fault fires; by strides of 13 beyond the first, but for
+  /// Walks n = 1, 2, ... until no fault fires; by strides of 19 beyond the first, but for
   /// OBSCURA_TEST_FAULTS=all. `again`: what repairs a failed run; empty: the command itself.
   /// `over`: it writes over an earlier file.
   void walk(const std::string& command, const Way& way, const std::string& again, bool over) {
@@ -74,7 +74,7 @@ class Faults : public Program {
 
     long n = 1;
     const char* asked = std::getenv("OBSCURA_TEST_FAULTS");
-    const long stride = asked && std::string(asked) == "all" ? 1 : 13;
+    const long stride = asked && std::string(asked) == "all" ? 1 : 19;
     for (bool fired = true; fired; n += n < 3 ? 1 : stride) {
       ASSERT_LT(n, 2000) << "there is no end to it";
       // an earlier file is there in every second run: where there is none, folders are made
