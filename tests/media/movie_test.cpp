@@ -326,6 +326,64 @@ TEST(Movie, IsTheSameBytesTwiceAndFromSegmentsEncodedSideBySide) {
   }
 }
 
+// a disc with a soft edge that drifts over a flat ground: most of each frame is what it was
+Image quiet_picture(int width, int height, double t) {
+  Image image{width, height, std::vector<std::uint8_t>(std::size_t(4) * width * height)};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double from = std::hypot(x - 0.3 * width - 20 * t, y - 0.5 * height) - 0.2 * height;
+      const double ink = std::clamp(0.5 - from, 0.0, 1.0);
+      std::uint8_t* pixel = image.row(y) + 4 * x;
+      for (int c = 0; c < 3; ++c) pixel[c] = std::uint8_t(245 - ink * (60 + 50 * c));
+      pixel[3] = 255;
+    }
+  }
+  return image;
+}
+
+// what a film of segments of `each` frames loses: mean squared error of a channel, and its bytes
+std::pair<double, std::size_t> loss(const MovieSpec& spec, int frames, int each) {
+  const std::string path = testing::TempDir() + "/quiet.mp4";
+  const auto picture = [&](int n) {
+    return quiet_picture(spec.width, spec.height, n / double(spec.fps_num));
+  };
+  std::size_t bytes = 0;
+  MovieWriter writer(path, spec);
+  for (int from = 0; from < frames; from += each) {
+    SegmentEncoder encoder(path, spec);
+    for (int n = from; n < from + each; ++n) encoder.add(picture(n));
+    const Segment segment = encoder.finish();
+    for (const auto& packet : segment.packets) bytes += packet.bytes.size();
+    writer.add(segment);
+  }
+  writer.close();
+  MovieReader reader(path);
+  Image image;
+  double sum = 0;
+  for (int n = 0; reader.next(image); ++n) {
+    const Image right = picture(n);
+    for (int y = 0; y < spec.height; ++y) {
+      for (int i = 0; i < 4 * spec.width; ++i) {
+        const double off = image.row(y)[i] - right.row(y)[i];
+        sum += off * off;
+      }
+    }
+  }
+  return {sum / (3.0 * frames * spec.width * spec.height), bytes};
+}
+
+TEST(Movie, OfSegmentsIsAsGoodAsOfOneEncoder) {
+  MovieSpec spec = spec_of(320, 180, 30);
+  for (const char* preset : {"", "medium"}) {
+    spec.preset = preset;
+    const auto [one, one_bytes] = loss(spec, 120, 120);
+    const auto [segments, bytes] = loss(spec, 120, 30);
+    // a tenth of a decibel, for a twentieth more bytes and what x264 says of itself in each segment
+    EXPECT_LT(10 * std::log10(segments / one), 0.1) << preset;
+    EXPECT_LT(double(bytes), 1.05 * double(one_bytes) + 3 * 720) << preset;
+  }
+}
+
 TEST(Movie, RefusesASegmentOfOtherSettings) {
   Folder folder;
   MovieSpec other = spec_of(64, 64, 5);
