@@ -30,6 +30,15 @@ std::string elsewhere(std::string_view last) {
   return "";
 }
 
+// a kind of one of the tables, where it is written as a table of its own: "[[joint]], type = \"rod\""
+std::string kind_of(std::string_view word) {
+  for (const Key& each : keys())
+    if (each.last() == "type" &&
+        std::find(each.choices.begin(), each.choices.end(), word) != each.choices.end())
+      return fmt::format("{}, type = \"{}\"", owner_text(std::string(each.owner())), word);
+  return "";
+}
+
 // the tables of a scene: which keys each has, and that it has those it needs
 class Tables : private Faults {
  public:
@@ -130,6 +139,8 @@ class Tables : private Faults {
     std::string hint;
     if (const std::string plural = entry.key + 's'; owner.empty() && !elsewhere(plural).empty()) {
       hint = "; '" + plural + "': " + elsewhere(plural);
+    } else if (const std::string kind = kind_of(entry.key); owner.empty() && !kind.empty()) {
+      hint = "; did you mean " + kind + "?";
     } else if (!near.empty()) {
       hint = fmt::format("; did you mean '{}'?", near);
     } else if (const std::string other = elsewhere(entry.key); !other.empty()) {

@@ -42,6 +42,7 @@ TEST(Complaints, UnknownKeysSayWhatWasMeant) {
   refused("[[spring]]\nlength = 1\nbetween = [\"particle[0]\", [1, 1]]\n[[particle]]",
           "a.toml:2:1: unknown key 'length' in [[spring]]; did you mean 'rest_length'?");
   refused("[sprng]\n", "a.toml:1:2: unknown key 'sprng'; did you mean 'spring'?");
+  refused("[[rod]]\n", "a.toml:1:3: unknown key 'rod'; did you mean [[joint]], type = \"rod\"?");
   refused("[[box]]\ncopies = { count = 2, jiter = 1 }",
           "a.toml:2:23: unknown key 'jiter' in 'copies'; did you mean 'jitter'?");
 }
