@@ -26,4 +26,7 @@ inline std::int64_t within(const double* x, int n, double limit) {
 /// How far, and how fast in a second, a thing may get, in heights of the room.
 inline constexpr double kFarthest = 1e6;
 
+/// How far a step may turn what wobbles in space, rad: it is integrated in pieces of that (sim/tumble.h).
+inline constexpr double kFarthestTurn = 100;
+
 }  // namespace obscura::sim

@@ -8,6 +8,7 @@
 #include "sim/stepper.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -60,7 +61,10 @@ Stepper<D>::Stepper(const Model<D>& model)
   for (const Body<D>& body : model.bodies) {
     for (int axis = 0; axis < D; ++axis) drag_.push_back(body.drag / body.mass);
     drag = drag || body.drag != 0;
-    if (body.turns()) spin_limits_.push_back(fastest / reach(body.shape));
+    if (!body.turns()) continue;
+    spin_limits_.push_back(fastest / reach(body.shape));
+    if (wobbles<D>(body.inertia))
+      spin_limits_.back() = std::min(spin_limits_.back(), kFarthestTurn * value(model.rate));
   }
   if (!drag) drag_.clear();
   for (int body = 0; body < int(model.bodies.size()); ++body) {
@@ -276,11 +280,29 @@ bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
   for (int i = 0; i < block.count; ++i) {
     const int k = block.first + i;
     const int at = kSpins<D> * i;
-    give_spin<D>(state, k, Turn<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
+    const int pieces = wobbles<D>(inertia_[k]) ? pieces_of_turn<D>(state.spin[k], h) : 1;
+    if (pieces > 1)
+      spin(state, k, pieces, t, h);
+    else
+      give_spin<D>(state, k, Turn<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
     sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
     sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
   }
   return sound >= 0;
+}
+
+// the turn of one body in so many pieces
+template <int D>
+void Stepper<D>::spin(State<D>& state, int k, int pieces, double t, double h) {
+  Spin<D> base;
+  std::array<double, kSpins<D>> d, w;
+  for (int i = 0; i < pieces; ++i) {
+    take_spin(state, k, model_.integrator == Integrator::semi_implicit, base, w.data());
+    d.fill(0);
+    Spinning<D> spinning(std::span(&inertia_[k], 1), std::span(&base, 1));
+    integrate_(spinning, t + i * (h / pieces), h / pieces, d, w, stages_);
+    give_spin<D>(state, k, Turn<D>(state.turn[k]), d.data(), base, w.data());
+  }
 }
 
 template <int D>

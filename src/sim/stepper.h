@@ -56,6 +56,7 @@ class Stepper {
   bool sound(const State<D>& state) const;
   bool fly(State<D>& state, Block block, double t, double h);
   bool spin(State<D>& state, Block block, double t, double h);
+  void spin(State<D>& state, int k, int pieces, double t, double h);
   bool tied(State<D>& state, double t, double h);
 
   const Model<D>& model_;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sim/flight.h"
+#include "sim/stability.h"
 #include "sim/tumble.h"
 
 namespace obscura::sim {
@@ -78,6 +79,19 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
     if (grip.body < 0 || member_[grip.body] < 0) continue;
     ties_.push_back(
         {hold(state, {grip.body, grip.local}), {-1, mouse, Vec<D>::Zero()}, law(model_.mice[mouse])});
+  }
+
+  // who is not to be turned far: what wobbles, what is held off its centre, and links
+  wheels_.clear();
+  for (int i = 0; i < int(all_.size()); ++i) {
+    if (turning(state, all_[i]) < 0) continue;
+    if (i >= int(bodies_.size()) || wobbles<D>(model_.bodies[all_[i]].inertia)) wheels_.push_back(all_[i]);
+  }
+  for (const Tie& tie : ties_) {
+    for (const Hold& end : {tie.a, tie.b}) {
+      if (end.member >= 0 && !end.at.isZero(0) && turning(state, all_[end.member]) >= 0)
+        wheels_.push_back(all_[end.member]);
+    }
   }
 
   // under what
@@ -162,12 +176,29 @@ std::span<const double> Tied<D>::accelerations(const State<D>& state, double t) 
   return v_rate_;
 }
 
+// In how many pieces a step is made: as what turns most asks for. Not where the step is too long for a
+// spring: what that makes spin is to be told, not hidden.
+template <int D>
+int Tied<D>::pieces(const State<D>& state, double h) const {
+  int most = 1;
+  for (const int body : wheels_)
+    most = std::max(most, pieces_of_turn<D>(state.spin[turning(state, body)], h));
+  return most > 1 && tightest(model_, state.grips).body < 0 ? most : 1;
+}
+
 template <int D>
 void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System* with) {
-  const int n = int(bodies_.size()), still = n - turning_;
   if (all_.empty()) return;
+  const int n = pieces(state, h);
+  for (int i = 0; i < n; ++i) piece(integrate, state, t + i * (h / n), h / n, stages, with ? *with : *this);
+}
+
+template <int D>
+void Tied<D>::piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
+                    System& rates) {
+  const int n = int(bodies_.size()), still = n - turning_;
   load(state);
-  integrate(with ? *with : *this, t, h, d_, v_, stages);
+  integrate(rates, t, h, d_, v_, stages);
 
   for (int i = 0; i < n; ++i) {
     state.x[bodies_[i]] += Eigen::Map<const Vec<D>>(d_.data() + D * i);

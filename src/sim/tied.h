@@ -84,6 +84,8 @@ class Tied final : public System {
 
   Hold hold(const State<D>& state, const End<D>& end) const;
   void load(const State<D>& state);
+  int pieces(const State<D>& state, double h) const;
+  void piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System& rates);
   Moving moving(const Hold& hold, double t) const;
   void push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate);
   void push(int member, const Wrench<D>& by, std::span<double> v_rate);
@@ -104,6 +106,7 @@ class Tied final : public System {
   std::vector<Braked> braked_;          // those that stand on it
   std::vector<double> gravity_, drag_;  // a component each; drag_ empty where there is none
   int turning_ = 0;                     // how many turn
+  std::vector<int> wheels_;             // bodies that no step may turn far in one piece
 
   std::vector<Vec<D>> x_;  // where the step began
   std::vector<Turn<D>> turn_;

@@ -15,7 +15,7 @@
 #include "sim/runaway.h"
 #include "sim/shape.h"
 #include "sim/stability.h"
-#include "sim/turning.h"
+#include "sim/tumble.h"
 
 namespace obscura::sim {
 
@@ -61,6 +61,11 @@ std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const
     constexpr int kSpin = kSpins<D>;
     if (apart<kSpin>(state.spin[k], fastest)) {
       return trouble("spin", fate<kSpin>(state.spin[k], "1e6 room heights a second at a corner"));
+    }
+    if (const double most = kFarthestTurn * value(model_.rate);
+        wobbles<D>(model_.bodies[body].inertia) && apart<kSpin>(state.spin[k], most)) {
+      return Trouble{t, named(model_, body), "spin", "grew past 100 radians a step",
+                     "it turns too fast for the steps: raise physics.rate"};
     }
     constexpr int kTurn = Turn<D>::RowsAtCompileTime;
     if (apart<kTurn>(state.turn[k], kFarthest * kFarthest)) {

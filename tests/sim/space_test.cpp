@@ -62,6 +62,37 @@ TEST(FreeTop, KeepsItsMomentumAndEnergyOverAMinute) {
   EXPECT_NEAR(state.turn[0].norm(), 1, 1e-15);
 }
 
+TEST(FreeTop, KeepsItsMomentumAndEnergyWhereAStepTurnsItFar) {
+  // 2.9 rad a step: one Runge-Kutta step of that doubles the energy within three
+  for (const bool tied : {false, true}) {
+    World<3> world = racket(tied);
+    world.state.spin[0] *= 1000 * 2.9 / 5;
+    const double energy = kinetic(world.model, world.state, 0);
+    const Vec3 L = angular_momentum(world.model, world.state);
+    const State<3> state = stepped(world, 1000);
+    // in pieces of 0.1 rad, 29 a step: 1e-5/120 of each is the order's own, and most of it cancels
+    EXPECT_NEAR(kinetic(world.model, state, 0) / energy, 1, 1e-4) << tied;
+    EXPECT_LE((angular_momentum(world.model, state) - L).norm() / L.norm(), 1e-2) << tied;
+  }
+}
+
+TEST(FreeTop, ThatTurnsTooFarInAStepIsTold) {
+  World<3> world = racket(false);
+  world.model.scale = 1000;  // so that it is not its corners' speed
+  const auto after = [&](double turn) -> std::optional<Trouble> {
+    world.state.spin[0] = Vec3(0.01, 1, 0.02) * turn * 1000;
+    Stepper<3> stepper(world.model);
+    State<3> state = world.state;
+    stepper.begin(state);
+    return stepper.step(state);
+  };
+  EXPECT_FALSE(after(99));
+  const auto trouble = after(101);
+  ASSERT_TRUE(trouble);
+  EXPECT_EQ(trouble->quantity, "spin");
+  EXPECT_NE(trouble->likely.find("raise physics.rate"), std::string::npos);
+}
+
 TEST(FreeTop, OfASymmetricTopPrecessesAsEulerSays) {
   // I1 = I2: in the body w turns about the axis by (I3 - I1)/I1 w3
   World<3> world = space(Vec3::Zero());
