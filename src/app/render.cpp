@@ -34,8 +34,8 @@ struct Flags {
 
 sim::Rational seconds(const std::string& flag, const std::string& text) {
   const auto time = sim::parse_rational(text);
-  if (!time || *time < sim::Rational{0, 1})
-    throw UsageError(fmt::format("{} {}: expected seconds from 0", flag, text));
+  if (!time || *time < sim::Rational{0, 1} || kLongest < *time)
+    throw UsageError(fmt::format("{} {}: expected seconds from 0 to 1e6", flag, text));
   return *time;
 }
 

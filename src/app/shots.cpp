@@ -34,6 +34,7 @@ sim::Rational instant(std::string_view text, const std::string& list) {
   const auto time = sim::parse_rational(text);
   if (!time) throw UsageError(fmt::format("\"{}\": expected seconds, as in 0,0.5,2 or 0:10:0.5", list));
   if (*time < sim::Rational{0, 1}) throw UsageError(fmt::format("\"{}\": a run starts at 0 s", list));
+  if (kLongest < *time) throw UsageError(fmt::format("\"{}\": a run ends before 1e6 s", list));
   return *time;
 }
 

@@ -11,6 +11,9 @@
 
 namespace obscura::app {
 
+/// The longest duration that a scene may have, s.
+inline constexpr sim::Rational kLongest{1'000'000, 1};
+
 /// One frame to be made: its number in the whole film, and the exact instant it shows.
 struct Shot {
   std::int64_t frame = 0;

@@ -19,6 +19,7 @@
 #include "app/progress.h"
 #include "app/rows.h"
 #include "app/shard.h"
+#include "app/shots.h"
 #include "app/trouble.h"
 #include "app/variation.h"
 #include "media/error.h"
@@ -134,8 +135,8 @@ int pictures(const Flags& flags, bool still) {
     throw UsageError(still ? fmt::format("-o {}: --at says of which instant (s)", *flags.out)
                            : fmt::format("-o {}: --at is for a picture, which ends in .png", *flags.out));
   const auto at = sim::parse_rational(flags.at.value_or("0"));
-  if (!at || *at < sim::Rational{0, 1})
-    throw UsageError(fmt::format("--at {}: expected seconds from 0", *flags.at));
+  if (!at || *at < sim::Rational{0, 1} || kLongest < *at)
+    throw UsageError(fmt::format("--at {}: expected seconds from 0 to 1e6", *flags.at));
   const Variations variations(flags.vary);
   if (variations.size > kMostTiles)
     throw UsageError(fmt::format("-o {}: {} runs are more than {}, the most a picture has", *flags.out,

@@ -26,6 +26,14 @@ std::optional<Rational> reduce(Wide num, Wide den) {
   return Rational{std::int64_t(num), std::int64_t(den)};
 }
 
+// in lowest terms; what does not fit 64 bits, by what does and is near it
+Rational nearest(Wide num, Wide den) {
+  if (const auto exact = reduce(num, den)) return *exact;
+  if (den < 0) num = -num, den = -den;
+  while (num > kMost || num < -kMost || den > kMost) num /= 2, den = (den + 1) / 2;
+  return *reduce(num, den);
+}
+
 // an unsigned or signed decimal with an optional exponent, exactly
 std::optional<Rational> parse_decimal(std::string_view s) {
   bool negative = false;
@@ -68,7 +76,7 @@ std::optional<Rational> parse_decimal(std::string_view s) {
 
 }  // namespace
 
-Rational rational(std::int64_t num, std::int64_t den) { return *reduce(num, den); }
+Rational rational(std::int64_t num, std::int64_t den) { return nearest(num, den); }
 
 std::optional<Rational> parse_rational(std::string_view text) {
   const std::size_t slash = text.find('/');
@@ -94,11 +102,11 @@ std::string text(Rational r) {
 }
 
 Rational operator+(Rational a, Rational b) {
-  return *reduce(Wide(a.num) * b.den + Wide(b.num) * a.den, Wide(a.den) * b.den);
+  return nearest(Wide(a.num) * b.den + Wide(b.num) * a.den, Wide(a.den) * b.den);
 }
 Rational operator-(Rational a, Rational b) { return a + Rational{-b.num, b.den}; }
-Rational operator*(Rational a, Rational b) { return *reduce(Wide(a.num) * b.num, Wide(a.den) * b.den); }
-Rational operator/(Rational a, Rational b) { return *reduce(Wide(a.num) * b.den, Wide(a.den) * b.num); }
+Rational operator*(Rational a, Rational b) { return nearest(Wide(a.num) * b.num, Wide(a.den) * b.den); }
+Rational operator/(Rational a, Rational b) { return nearest(Wide(a.num) * b.den, Wide(a.den) * b.num); }
 bool operator<(Rational a, Rational b) { return Wide(a.num) * b.den < Wide(b.num) * a.den; }
 
 std::int64_t floor(Rational r) {

@@ -31,7 +31,7 @@ double value(Rational r);
 /// "30", "30000/1001".
 std::string text(Rational r);
 
-Rational operator+(Rational a, Rational b);
+Rational operator+(Rational a, Rational b);  // these: exact where that fits 64 bits, else near it
 Rational operator-(Rational a, Rational b);
 Rational operator*(Rational a, Rational b);
 Rational operator/(Rational a, Rational b);

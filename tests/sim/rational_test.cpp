@@ -49,6 +49,18 @@ TEST(Rational, ComputesExactly) {
                Rational{4611686018427387905, 4611686018427387907}));
 }
 
+TEST(Rational, ComputesNearlyWhatDoesNotFit) {
+  const std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  const Rational tiny{1, most}, odd{most - 1, most}, large{most, 1};
+  // 1/most + 1/2 is no fraction of 64 bits; a bit of 62 is lost
+  EXPECT_NEAR(value(tiny + Rational{1, 2}), 0.5, 1e-17);
+  EXPECT_NEAR(value(odd * odd), 1, 1e-17);
+  EXPECT_NEAR(value(large / tiny), double(most), 1);
+  EXPECT_NEAR(value(rational(-most) * large), -double(most), 1);
+  EXPECT_EQ(value(tiny * tiny), 0);
+  EXPECT_EQ(floor(tiny * Rational{60, 1}), 0);
+}
+
 TEST(Rational, RoundsDownAndUp) {
   EXPECT_EQ(floor(Rational{7, 2}), 3);
   EXPECT_EQ(floor(Rational{-7, 2}), -4);
