@@ -247,6 +247,7 @@ void Filming::shoot(Simulation& simulation, const draw::Charts& charts, Progress
   std::optional<media::PipeWriter> pipe;
   if (output_.form == Output::Form::pipe) pipe.emplace(STDOUT_FILENO, options_.pipe, spec_);
 
+  gl::ready(options_.context);
   Conduct<Take, Print> parts;
   parts.produce = [&] { return simulation.next(); };
   parts.wait = [&] { progress.at(drawn_); };

@@ -19,6 +19,7 @@
 #include "app/interrupt.h"
 #include "app/options.h"
 #include "app/trouble.h"
+#include "gl/context.h"
 #include "media/error.h"
 #include "scene/error.h"
 
@@ -152,6 +153,7 @@ int golden(const Flags& flags) {
     std::move(outcome.cases.begin(), outcome.cases.end(), std::back_inserter(cases));
     return true;
   };
+  gl::ready({});
   conduct(parts, workers);
   if (interrupted()) return kInterrupted;
 

@@ -214,6 +214,7 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
     return true;
   };
   parts.wait = [&] { progress.at(done); };
+  gl::ready({});
   conduct(parts, crew(options));
 
   if (interrupted()) {

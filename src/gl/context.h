@@ -26,8 +26,12 @@ struct ContextOptions {
   bool native = false;  // leave out GALLIUM_OVERRIDE_CPU_CAPS=sse2; the process's first context decides
 };
 
-/// Creates a context and makes it current. Throws gl::Error saying what was tried and which package has it.
-/// The first call sets Mesa's environment variables for the process, those that the user has not set.
+/// Sets Mesa's environment variables for the process, those that the user has not set; once. To be called
+/// before there are threads: whatever reads the environment while it is set may crash.
+void ready(const ContextOptions& options);
+
+/// Creates a context and makes it current. Throws gl::Error saying what was tried and which package has it,
+/// and std::bad_alloc where memory was wanting. Makes ready where nobody has.
 std::unique_ptr<Context> create(const ContextOptions& options);
 
 }  // namespace obscura::gl

@@ -27,7 +27,7 @@ struct Library {
   // opened and initialised once for the process, never terminated: other threads' contexts live on the same
   // display
   Library() {
-    void* handle = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
+    void* handle = opened("libEGL.so.1");
     if (!handle) throw Error("EGL: libEGL.so.1 cannot be opened (packages libegl1 and libgl1-mesa-dri)");
     const auto find = [&](auto& f, const char* name) {
       f = reinterpret_cast<std::decay_t<decltype(f)>>(dlsym(handle, name));

@@ -1,7 +1,9 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdint>
+#include <new>
 
 #include "gl/backends.h"
 #include "gl/error.h"
@@ -25,7 +27,7 @@ struct Library {
   Library() {
     void* handle = nullptr;
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so"}) {
-      if (!handle) handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+      if (!handle) handle = opened(name);
     }
     if (!handle) throw Error("OSMesa: libOSMesa.so.8 cannot be opened (package libosmesa6)");
     const auto find = [&](auto& f, const char* name) {
@@ -52,8 +54,10 @@ class OsMesa final : public Context {
     for (const auto& [major, minor] : {std::array{4, 5}, std::array{3, 3}}) {
       const int attributes[] = {kFormat,  kRgba,        kDepthBits, 0,     kStencilBits, 0,     kAccumBits, 0,
                                 kProfile, kCoreProfile, kMajor,     major, kMinor,       minor, 0};
+      errno = 0;
       if (!context_) context_ = lib_.create(attributes, nullptr);
     }
+    if (!context_ && errno == ENOMEM) throw std::bad_alloc();
     if (!context_) throw Error("OSMesa: no core context of OpenGL 3.3 or newer");
     try {
       make_current();

@@ -31,10 +31,20 @@ std::atomic<long> calls{0};
 
 bool starts(const char* text, const char* with) { return strncmp(text, with, strlen(with)) == 0; }
 
-bool is_under(const char* path) {
-  const char* folder = getenv("FAULTS_UNDER");
-  return folder && starts(path, folder);
+// read before there are threads: what sets the environment in one of them moves it under those who read
+struct Asked {
+  const char *under = getenv("FAULTS_UNDER"), *calls = getenv("FAULTS_CALLS"), *nth = getenv("FAULTS_NTH"),
+             *with = getenv("FAULTS_WITH"), *on = getenv("FAULTS_ON"), *log = getenv("FAULTS_LOG");
+};
+
+const Asked& asked() {
+  static const Asked once;
+  return once;
 }
+
+[[gnu::constructor]] void ask() { asked(); }
+
+bool is_under(const char* path) { return asked().under && starts(path, asked().under); }
 
 // the path of a call, seen from the folder of the process
 bool is_under_from(int at, const char* path) {
@@ -67,7 +77,7 @@ bool is_under(int descriptor) {
 }
 
 bool is_counted(const char* call) {
-  const char* wanted = getenv("FAULTS_CALLS");
+  const char* wanted = asked().calls;
   if (!wanted) return true;
   const size_t length = strlen(call);
   for (const char* at = wanted; (at = strstr(at, call)); at += length)
@@ -76,7 +86,7 @@ bool is_counted(const char* call) {
 }
 
 void tell(long n, const char* call) {
-  const char* log = getenv("FAULTS_LOG");
+  const char* log = asked().log;
   if (!log) return;
   char line[128];
   const int length = snprintf(line, sizeof line, "%ld %s\n", n, call);
@@ -89,11 +99,9 @@ void tell(long n, const char* call) {
 // Whether this call fails, once it is known to be one that counts. 0: it goes through; -1: a short write.
 int fault(const char* call) {
   if (!is_counted(call)) return 0;
-  const char* nth = getenv("FAULTS_NTH");
-  const char* with = getenv("FAULTS_WITH");
+  const char *nth = asked().nth, *with = asked().with, *on = asked().on;
   if (!nth || !with) return 0;
   const long n = ++calls, wanted = atol(nth);
-  const char* on = getenv("FAULTS_ON");
   if (n != wanted && !(on && n > wanted)) return 0;
   tell(n, call);
   if (strcmp(with, "short") == 0) return -1;
