@@ -13,6 +13,21 @@
 
 namespace obscura::app {
 
+namespace {
+
+// beyond what any file of ours says: a size, and frames of 1e6 s at 1000 a second a thousand times slowed
+// down
+constexpr std::int64_t kMostPixels = 1'000'000, kMostFrames = 1'000'000'000'000;
+
+}  // namespace
+
+std::optional<std::int64_t> whole(const nlohmann::json& json, std::int64_t least, std::int64_t most) {
+  if (!json.is_number_integer()) return {};
+  if (json.is_number_unsigned() && json.get<std::uint64_t>() > std::uint64_t(most)) return {};
+  const auto n = json.get<std::int64_t>();
+  return n < least || n > most ? std::nullopt : std::optional(n);
+}
+
 std::string hash(const void* bytes, std::size_t size) {
   const XXH128_hash_t h = XXH3_128bits(bytes, size);
   return fmt::format("{:016x}{:016x}", h.high64, h.low64);
@@ -114,13 +129,19 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
     const auto& scene = json.at("scene");
     scene.at("file").get_to(origin.scene_file), scene.at("hash").get_to(origin.scene_hash);
     scene.at("text").get_to(origin.scene_text), scene.at("set").get_to(origin.sets);
-    origin.width = json.at("size").at(0), origin.height = json.at("size").at(1);
+    const auto width = whole(json.at("size").at(0), 1, kMostPixels),
+               height = whole(json.at("size").at(1), 1, kMostPixels);
     json.at("theme").get_to(origin.theme), json.at("fps").get_to(origin.fps);
     origin.camera = json.value("camera", ""), origin.transparent = json.value("transparent", false);
     const auto time = sim::parse_rational(json.at("time").get<std::string>());
-    if (!time || !sim::parse_rational(origin.fps)) return {};
-    origin.shot = Shot{json.at("frame").get<std::int64_t>(), *time};
-    origin.frames = json.value("frames", std::int64_t(0)), origin.shots = json.value("shots", "");
+    const auto fps = sim::parse_rational(origin.fps);
+    const auto frame = whole(json.at("frame"), 0, kMostFrames),
+               frames = json.contains("frames") ? whole(json["frames"], 1, kMostFrames) : 0;
+    if (!width || !height || !time || *time < sim::Rational{} || !fps || fps->num <= 0 || !frame || !frames)
+      return {};
+    origin.width = int(*width), origin.height = int(*height);
+    origin.shot = Shot{*frame, *time};
+    origin.frames = *frames, origin.shots = json.value("shots", "");
     if (json.contains("encoder")) {
       const auto& encoder = json["encoder"];
       encoder.at("name").get_to(origin.encoder), encoder.at("preset").get_to(origin.preset);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "app/shots.h"
 #include "media/image.h"
 #include "scene/scene.h"
@@ -17,6 +19,9 @@ std::string hash(const std::string& text);
 
 /// The hash of a state's words (sim/state.h): equal exactly when the states are.
 std::string state_hash(const std::vector<std::uint64_t>& words);
+
+/// The whole number that a file holds, none where it is no such from `least` to `most`.
+std::optional<std::int64_t> whole(const nlohmann::json& json, std::int64_t least, std::int64_t most);
 
 /// What made a picture or a movie: enough to make it again, and to say why another one differs.
 struct Origin {

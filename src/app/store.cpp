@@ -28,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFormat = 1;
+constexpr std::int64_t kMostInATake = 1'000'000, kMostShards = 1'000'000;  // beyond what any journal says
 
 std::string text(const Journal& journal) {
   nlohmann::ordered_json json;
@@ -45,7 +46,12 @@ Journal journal_in(const std::string& path) {
     if (json.at("format") != kFormat) throw refuse("is of another version of obscura");
     const auto origin = origin_in({{"obscura", json.at("origin").dump()}});
     if (!origin) throw refuse("is damaged: it does not say which film this is");
-    return {*origin, json.at("takes"), json.at("take_frames"), json.value("shards", 0)};
+    const auto takes = whole(json.at("takes"), 1, origin->frames),
+               frames = whole(json.at("take_frames"), 1, kMostInATake),
+               shards = json.contains("shards") ? whole(json["shards"], 1, kMostShards) : 0;
+    if (!takes || !frames || !shards || *takes != (origin->frames + *frames - 1) / *frames)
+      throw refuse("is damaged: it does not say in which pieces the film is made");
+    return {*origin, *takes, *frames, int(*shards)};
   } catch (const nlohmann::json::exception&) {
     throw refuse("is damaged");
   }

@@ -207,6 +207,26 @@ TEST_F(Resume, TwoAtOnceOnOneFilmAreOne) {
   EXPECT_NE(both.err.find("another obscura is making this film"), std::string::npos) << both.err;
 }
 
+TEST_F(Shards, AJournalOfPiecesThatCannotBeIsRefusedAtOnce) {
+  scene(kRoom);
+  const std::string command = std::string("render scene.toml -o film.mp4 --to 1") + kSmall;
+  ASSERT_EQ(obscura(command + " --shard 1/2").exit, 0);
+  const std::string file = path("film.mp4.parts/journal.json"), whole = contents(file);
+  for (const auto& [right, wrong] : {std::pair{"\"takes\": 1,", "\"takes\": 1000000000000000,"},
+                                     {"\"takes\": 1,", "\"takes\": -1,"},
+                                     {"\"takes\": 1,", "\"takes\": 1e300,"},
+                                     {"\"take_frames\": 10,", "\"take_frames\": 0,"},
+                                     {"\"shards\": 2,", "\"shards\": 4000000000,"}}) {
+    std::string other = whole;
+    const auto at = other.find(right);
+    ASSERT_NE(at, std::string::npos) << right << whole;
+    std::ofstream(file) << other.replace(at, std::string(right).size(), wrong);
+    const Outcome joined = shell("timeout -s KILL 20 " OBSCURA_BINARY " join film.mp4");
+    EXPECT_EQ(joined.exit, 4) << wrong;
+    EXPECT_NE(joined.err.find("journal.json: is damaged"), std::string::npos) << wrong << joined.err;
+  }
+}
+
 TEST_F(Shards, JoinedAreTheFilmInOneGo) {
   scene(kRoom);
   for (const std::string out : {"film.mp4", "film.mkv", "film.webm", "film.gif"}) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/exit.h"
+#include "app/origin.h"
 
 namespace obscura::app {
 namespace {
@@ -91,8 +92,35 @@ TEST(Instants, ListsAndRangesAreExactAndForwards) {
   EXPECT_EQ(range[3], (Rational{3, 10}));
   EXPECT_EQ(range[10], (Rational{1, 1}));
   EXPECT_EQ(instants("0,0.5,2").size(), 3u);
-  for (const char* bad : {"", "x", "1,0", "-1", "0:1", "0:1:0", "0:1:-1"})
+  for (const char* bad : {"", "x", "1,0", "-1", "0:1", "0:1:0", "0:1:-1", "9223372036854775807"})
     EXPECT_THROW(instants(bad), UsageError) << bad;
+}
+
+TEST(Instants, OfTooManyDigitsFindAFrame) {
+  const auto odd = instants("1/9223372036854775807");
+  EXPECT_EQ(Shots::stills(odd, {60, 1})[0].frame, 0);
+}
+
+TEST(Origin, ThatNoFileOfOursHasIsNone) {
+  Origin origin;
+  origin.width = 64, origin.height = 36, origin.fps = "30";
+  origin.shot = Shot{};
+  const media::Tags tags = origin.tags("");
+  ASSERT_TRUE(origin_in(tags));
+  // each would be divided by, counted to, or asked for as memory
+  for (const auto& [right, wrong] : {std::pair{"\"30\"", "\"0\""},
+                                     {"\"30\"", "\"-1\""},
+                                     {"[64,36]", "[0,36]"},
+                                     {"[64,36]", "[64,1e300]"},
+                                     {"[64,36]", "[64,18446744073709551615]"},
+                                     {"\"frame\":0", "\"frame\":-1"},
+                                     {"\"frame\":0", "\"frame\":0,\"frames\":9000000000000000000"},
+                                     {"\"time\":\"0\"", "\"time\":\"-1\""}}) {
+    std::string json = tags.at("obscura");
+    const auto at = json.find(right);
+    ASSERT_NE(at, std::string::npos) << right << json;
+    EXPECT_FALSE(origin_in({{"obscura", json.replace(at, std::string(right).size(), wrong)}})) << wrong;
+  }
 }
 
 }  // namespace
