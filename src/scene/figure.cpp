@@ -162,7 +162,8 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
   }
   for (const Node& node : tables(fields, "label")) {
     const Fields its(node, "figure.label");
-    if (const auto at = read.site(its, "at")) figure.labels.push_back({*at, its.text("text")});
+    const auto at = read.site(its, "at");
+    if (at && its.given("text")) figure.labels.push_back({*at, its.text("text")});
   }
   for (const Node& node : tables(fields, "plot")) {
     const Fields its(node, "figure.plot");

@@ -378,7 +378,8 @@ void Pieces<D>::tell(State<D>& state) const {
 template <int D>
 bool Pieces<D>::fits(const State<D>& state) {
   gather(state);
-  return sim::fits(state.whole[0], whole_.model);
+  // at the same step: it would be stepped until it were
+  return state.whole[0].step == state.step && sim::fits(state.whole[0], whole_.model);
 }
 
 template <int D>

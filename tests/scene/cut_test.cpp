@@ -55,6 +55,9 @@ TEST(Cut, WordsThatAreNoStateOfTheSceneAreRefused) {
   std::vector<std::uint64_t> words = good;
   words.push_back(0);
   EXPECT_FALSE(scene.run(words));
+  // the first is the step: what bonds hold would be stepped until it has come there
+  words = good, ++words[0];
+  EXPECT_FALSE(scene.run(words));
   EXPECT_FALSE(read(OBSCURA_SOURCE_DIR "/scenes/room.toml").run(good));
   EXPECT_FALSE(read(OBSCURA_SOURCE_DIR "/scenes/racket.toml").run(good));
   for (std::size_t i = 0; i < good.size(); i += 1 + i / 64) {

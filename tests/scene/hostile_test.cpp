@@ -72,6 +72,17 @@ TEST(Hostile, BytesThatAreNoTextAreNamed) {
   EXPECT_EQ(complaint("title = \"Ångström\"\r\nseed = 1\r\n"), "");
 }
 
+TEST(Hostile, ATableWithoutWhatItNeedsIsTold) {
+  for (const char* path : {"room.walls",   "polygon",       "body",        "spring",       "net",
+                           "joint",        "chain",         "bond",        "explosion",    "mouse",
+                           "camera.keys",  "film.speed",    "film.plot",   "figure.point", "figure.vector",
+                           "figure.angle", "figure.length", "figure.cone", "figure.label", "figure.plot"})
+    EXPECT_THAT(complaint("[[" + std::string(path) + "]]"), HasSubstr("need")) << path;
+  // found by fuzzing: a label without its text was read all the same
+  EXPECT_THAT(complaint("[[figure.label]]\nat = [0, 0]"), HasSubstr("needs 'text'"));
+  EXPECT_THAT(complaint("[[figure.label]]\ntext = 'a'"), HasSubstr("needs 'at'"));
+}
+
 TEST(Hostile, WhatIsNotTomlIsOneLine) {
   EXPECT_THAT(complaint("title == 1"), StartsWith("a.toml:1:8: not TOML: "));
   EXPECT_THAT(complaint("[room"), StartsWith("a.toml:1:6: not TOML: "));
