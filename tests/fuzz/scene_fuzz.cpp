@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 
 #include "scene/error.h"
@@ -13,16 +11,15 @@
 #include "sim/energy.h"
 #include "sim/run.h"
 
+#include "../fuzz/rooms.h"
+
 namespace obscura {
 namespace {
 
+using fuzz::fail;
+
 constexpr int kSteps = 10;
 constexpr std::size_t kMostBodies = 60;  // more of them take longer and find nothing else
-
-[[noreturn]] void fail(const std::string& why) {
-  std::fprintf(stderr, "%s\n", why.c_str());
-  std::abort();
-}
 
 // bodies by the hundred thousand are read, slowly: another test's
 bool has_many_copies(const std::string& text) {
@@ -84,6 +81,7 @@ void watch(const scene::Scene& scene, const sim::World<D>& world) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace obscura;
+  using fuzz::fail;
   const std::string text(reinterpret_cast<const char*>(bytes), size);
   if (has_many_copies(text)) return -1;
   try {
