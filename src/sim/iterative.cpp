@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/blast.h"
+
 namespace obscura::sim {
 
 using sweep::Feature;
@@ -88,6 +90,7 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   } else if (!known) {
     seat(state, false);
   }
+  if (state.step == 0 && due && !exploding(state) && rest_.begin(state, pairs_, poses_, v_, movers_)) stand(state);
   blows_.begin();
   outran_ = false;
   const double part = h / stretches_;
@@ -96,13 +99,17 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   // the next step looks anyway, unless this was a part of one
   const bool whole = h * value(model_.rate) > 1 - 1e-9;
   if (outran_ && !(whole && (state.step + 1) % every_ == 0)) look(state, true);
-  if (due && rest_.freeze(state, pairs_.all(), seats_, linkage_, poses_, v_, movers_, part)) {
-    for (int i = 0; i < n; ++i) {
-      if (state.frozen[i]) v_[i] = {};
-    }
-    seat(state, true);
-  }
+  if (due && rest_.freeze(state, pairs_, seats_, linkage_, poses_, v_, movers_, part, span_)) stand(state);
   next_step_ = state.step + 1;
+}
+
+// who has just been frozen
+template <int D>
+void Iterative<D>::stand(const State<D>& state) {
+  for (std::size_t i = 0; i < turns_.size(); ++i) {
+    if (state.frozen[i]) v_[i] = {};
+  }
+  seat(state, true);
 }
 
 // from t to t + h, between two looks: forces stay in the seats until the last

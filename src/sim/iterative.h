@@ -38,6 +38,7 @@ class Iterative final : public ContactStep<D> {
   void stretch(State<D>& state, double t, double h, int which);
   void report(const sweep::Pair& pair, State<D>& state) const;
   void seat(const State<D>& state, bool known);
+  void stand(const State<D>& state);
   void take_seat(int pair, const State<D>& state);
   void sit(const sweep::Pair& pair, const State<D>& state);
   void guess(State<D>& state);

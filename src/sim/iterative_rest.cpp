@@ -1,6 +1,7 @@
 // A quiet island at rest needs forces with
 //   g + sum f / m = 0,  sum r x f = 0        each f in its friction cone
 // which sweeps look for as in a step of bodies without speed: what speed they leave, over h, is the residual.
+// Of small islands they are found exactly, at the beginning, and later where sweeps do not come near.
 
 #include "sim/iterative_rest.h"
 
@@ -16,10 +17,12 @@ constexpr double kHeld = 1e-6;      // of gravity
 constexpr int kPairSweeps = 40000;  // pairs times sweeps of an island at a time
 constexpr int kMostSweeps = 400;
 constexpr int kBetweenChecks = 10;
+constexpr double kClosed = 1e-6;  // of its thickness: no wider a gap bears
 
 }  // namespace
 
-Rest::Rest(const Model<2>& model, const Cores& cores) : model_(model), cores_(cores) {
+Rest::Rest(const Model<2>& model, const Cores& cores)
+    : model_(model), cores_(cores), statics_(model), turns_(model.bodies.size(), Rotation<2>::Identity()) {
   const std::size_t n = model.bodies.size();
   restless_.resize(n), marked_.assign(n, 0), v_.resize(n + 1), zero_.resize(n + 1);
 }
@@ -39,13 +42,108 @@ void Rest::unite_joined(const State<2>& state, Alike&& alike) {
   }
 }
 
-bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
-                  Linkage<2>& linkage, const std::vector<Pose>& poses, const std::vector<Motion>& v,
-                  const std::vector<char>& movers, double h) {
+void Rest::freeze(State<2>& state, int body) const {
+  state.frozen[body] = 1;
+  state.v[body].setZero();
+  if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
+}
+
+bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
+                const std::vector<Pose>& poses) {
+  touches_.clear(), bearing_.clear();
+  const auto moving = [&](int body) { return body >= 0 && free_[body] ? body : -1; };
+  for (const int i : of) {
+    const Pair& pair = pairs.all()[i];
+    double thin = cores_.inside[pair.a];
+    if (pair.b >= 0) thin = std::min(thin, cores_.inside[pair.b]);
+    for (int k = pair.first; k < pair.first + pair.touches; ++k) {
+      Contact<2>& contact = state.contacts[k];
+      const Feature feature = Feature::of(contact.key.feature);
+      if (feature.kind == Feature::none) continue;
+      const Place at = pairs.place(pair, poses, feature);
+      contact.point = {at.x, at.y}, contact.normal = {at.nx, at.ny}, contact.gap = at.gap;
+      if (at.gap > kClosed * thin) continue;
+      Statics<2>::Touch touch{.a = moving(pair.a), .b = moving(pair.b), .normal = contact.normal};
+      touch.arm_a = contact.point - state.x[pair.a], touch.friction = pair.friction;
+      if (pair.b >= 0) touch.arm_b = contact.point - state.x[pair.b];
+      touch.force = contact.force;
+      touches_.push_back(touch), bearing_.push_back(k);
+    }
+    if (touches_.size() > Statics<2>::kMost) return false;
+  }
+  if (!statics_.hold(touches_, turns_)) return false;
+  std::size_t bears = 0;
+  for (const int i : of) {
+    const Pair& pair = pairs.all()[i];
+    for (int k = pair.first; k < pair.first + pair.touches; ++k) {
+      const bool does = bears < bearing_.size() && bearing_[bears] == k;
+      Contact<2>& contact = state.contacts[k];
+      contact.force = does ? touches_[bears].force : Vec<2>(Vec<2>::Zero()), contact.impulse.setZero();
+      contact.touching = contact.force.dot(contact.normal) > 0 ? Touching::stick : Touching::open;
+      bears += does;
+    }
+  }
+  return true;
+}
+
+bool Rest::begin(State<2>& state, const Pairs& pairs, const std::vector<Pose>& poses,
+                 const std::vector<Motion>& v, const std::vector<char>& movers) {
+  const int n = int(model_.bodies.size());
+  islands_.reset(n);
+  std::fill(restless_.begin(), restless_.end(), 0);
+  free_.assign(n, 0);
+  for (int i = 0; i < n; ++i) free_[i] = v[i].im > 0;
+  order_.clear();
+  for (int i = 0; i < int(pairs.all().size()); ++i) {
+    const Pair& pair = pairs.all()[i];
+    if (pair.slot < 0) continue;
+    double gap = 1e300, thin = cores_.inside[pair.a];
+    if (pair.b >= 0) thin = std::min(thin, cores_.inside[pair.b]);
+    for (int k = 0; k < pair.touches; ++k) {
+      const Feature feature = Feature::of(state.contacts[pair.first + k].key.feature);
+      if (feature.kind != Feature::none) gap = std::min(gap, pairs.place(pair, poses, feature).gap);
+    }
+    if (gap > 1e-3 * thin) continue;
+    if (pair.b >= 0 && free_[pair.a] && free_[pair.b]) islands_.join(pair.a, pair.b);
+    order_.push_back(i);
+  }
+  const auto restless = [&](int body) {
+    if (body >= 0 && free_[body]) restless_[islands_.root(body)] = 1;
+  };
+  for (int i = 0; i < n; ++i) {
+    if (movers[i] || v[i].x != 0 || v[i].y != 0 || v[i].w != 0) restless(i);
+  }
+  for (const Joint<2>& joint : model_.joints) restless(joint.a.body), restless(joint.b.body);
+  const auto island = [&](int i) {
+    const Pair& pair = pairs.all()[i];
+    return islands_.root(free_[pair.a] ? pair.a : pair.b);
+  };
+  std::erase_if(order_, [&](int i) { return restless_[island(i)] != 0; });
+  std::stable_sort(order_.begin(), order_.end(), [&](int i, int j) { return island(i) < island(j); });
+
+  bool froze = false;
+  for (std::size_t first = 0, last = 0; first < order_.size(); first = last) {
+    const int which = island(order_[first]);
+    while (last < order_.size() && island(order_[last]) == which) ++last;
+    if (!held(state, pairs, {order_.data() + first, last - first}, poses)) continue;
+    for (int i = 0; i < n; ++i) {
+      if (free_[i] && islands_.root(i) == which) freeze(state, i), froze = true;
+    }
+  }
+  return froze;
+}
+
+bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats, Linkage<2>& linkage,
+                  const std::vector<Pose>& poses, const std::vector<Motion>& v,
+                  const std::vector<char>& movers, double h, double span) {
+  const std::vector<Pair>& pairs = found.all();
   const int n = int(model_.bodies.size());
   bool candidates = false;
   for (int i = 0; i < n; ++i) candidates = candidates || (v[i].im > 0 && state.quiet[i] >= kWait);
   if (!candidates) return false;
+
+  free_.assign(n, 0);
+  for (int i = 0; i < n; ++i) free_[i] = v[i].im > 0;
 
   // islands, and which of them will not rest
   islands_.reset(n);
@@ -159,7 +257,7 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
             worst, std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[members_[k].second]);
       }
     }
-    const bool held = worst <= kHeld * g * h;
+    bool held = worst <= kHeld * g * h;
     hold();
     finish(some_.data(), count, poses.data(), v_.data(), pace, state.contacts.data());
     for (Seats& g4 : some_) {
@@ -173,13 +271,17 @@ bool Rest::freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<S
       linkage.keep(state, h, &marked_);
       for (std::size_t k = first; k < last; ++k) marked_[members_[k].second] = 0;
     }
+    if (!held && parts_.empty()) {
+      // after one wait, two, four, ...
+      double quiet = 1e300;
+      for (std::size_t k = first; k < last; ++k) quiet = std::min(quiet, state.quiet[members_[k].second]);
+      double due = kWait;
+      while (2 * due <= quiet) due *= 2;
+      if (quiet - span < due) held = this->held(state, found, {order_.data() + begin, end - begin}, poses);
+    }
     for (std::size_t k = first; held && k < last; ++k) {
       const int body = members_[k].second;
-      if (state.frozen[body]) continue;
-      state.frozen[body] = 1, froze = true;
-      state.v[body].setZero();
-      if (const int turning = body - (n - int(state.turn.size())); turning >= 0)
-        state.spin[turning].setZero();
+      if (!state.frozen[body]) freeze(state, body), froze = true;
     }
   }
   return froze;

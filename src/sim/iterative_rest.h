@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sim/islands.h"
@@ -7,6 +8,7 @@
 #include "sim/iterative_pairs.h"
 #include "sim/iterative_rows.h"
 #include "sim/state.h"
+#include "sim/statics.h"
 
 namespace obscura::sim::sweep {
 
@@ -17,10 +19,16 @@ class Rest {
   Rest(const Model<2>& model, const Cores& cores);
 
   /// Freezes islands; forces of those that have waited but are not yet held are improved. `movers`: bodies
-  /// that springs and hands hold are never frozen. True where someone froze.
-  bool freeze(State<2>& state, const std::vector<Pair>& pairs, std::vector<Seats>& seats, Linkage<2>& linkage,
+  /// that springs and hands hold are never frozen. `span`: s since it was last asked. True where someone
+  /// froze.
+  bool freeze(State<2>& state, const Pairs& pairs, std::vector<Seats>& seats, Linkage<2>& linkage,
               const std::vector<Pose>& poses, const std::vector<Motion>& v, const std::vector<char>& movers,
-              double h);
+              double h, double span);
+
+  /// Freezes what begins without speed and in equilibrium, small islands without joints. True where someone
+  /// froze.
+  bool begin(State<2>& state, const Pairs& pairs, const std::vector<Pose>& poses,
+             const std::vector<Motion>& v, const std::vector<char>& movers);
 
   /// Wakes islands that something awake will touch within `span` s, and those of `movers`. True where someone
   /// woke.
@@ -28,12 +36,20 @@ class Rest {
             const std::vector<char>& movers, double span);
 
  private:
+  // the touches of these pairs, written where they are now, and whether exact forces hold them
+  bool held(State<2>& state, const Pairs& pairs, std::span<const int> of, const std::vector<Pose>& poses);
+  void freeze(State<2>& state, int body) const;
   bool joins(const Contact<2>& touch, const Pair& pair) const;
   template <class Alike>
   void unite_joined(const State<2>& state, Alike&& alike);
 
   const Model<2>& model_;
   const Cores& cores_;
+  Statics<2> statics_;
+  std::vector<Rotation<2>> turns_;  // one moment of inertia is the same in all
+  std::vector<Statics<2>::Touch> touches_;
+  std::vector<int> bearing_;  // their contacts
+  std::vector<char> free_;
   Islands islands_;
   std::vector<char> restless_;
   std::vector<int> order_;                    // pairs by island, then by seat

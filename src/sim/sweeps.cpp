@@ -16,6 +16,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/blast.h"
+
 namespace obscura::sim {
 
 namespace {
@@ -33,14 +35,15 @@ constexpr double kWait = 0.25;       // s
 constexpr double kHeld = 1e-6;       // of gravity
 constexpr int kRestSweeps = 400;     // of an island at a time
 constexpr int kBetweenChecks = 10;
-constexpr int kTempering = 5;   // rounds
-constexpr double kGain = 1e-9;  // of its kinetic energy: what an island may win by rounding
+constexpr double kClosed = 1e-6;  // of a body's reach: no wider a gap bears what rests
+constexpr int kTempering = 5;     // rounds
+constexpr double kGain = 1e-9;    // of its kinetic energy: what an island may win by rounding
 
 }  // namespace
 
 template <int D>
 Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), may_touch_(model), tied_(model, paths), linkage_(model) {
+    : model_(model), may_touch_(model), tied_(model, paths), linkage_(model), statics_(model) {
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
   g_ = std::sqrt(model.gravity.squaredNorm());
@@ -55,7 +58,7 @@ void Sweeps<D>::step(State<D>& state, double t, double h) {
   linkage_.ready(state);
   ready(state);
   find(h);
-  if (wake(state, h)) ready(state), find(h);
+  if (wake(state, h) || (state.step == 0 && stand(state, h))) ready(state), find(h);
   fall(state, t, h);
   begin(state, h);
   int sweeps = std::clamp(kTouchSweeps / std::max(1, int(touches_.size())), kFewestSweeps, kMostSweeps);
@@ -504,6 +507,75 @@ void Sweeps<D>::join(const State<D>& state) {
   }
 }
 
+// whether exact forces hold an island of bodies that stand still; its touches take them
+template <int D>
+bool Sweeps<D>::stands(int island, double h) {
+  const auto moving = [&](int body) { return body < int(still_.size()) && !still_[body] ? body : -1; };
+  exact_.clear(), bearing_.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    const Touch& touch = touches_[i];
+    const int a = moving(touch.a), b = moving(touch.b);
+    if ((a < 0 && b < 0) || islands_.root(a < 0 ? b : a) != island) continue;
+    bearing_.push_back(i);
+    if (touch.gap > kClosed * rims_[touch.a]) continue;
+    exact_.push_back({.a = a,
+                      .b = b,
+                      .normal = touch.n,
+                      .arm_a = touch.arm_a,
+                      .arm_b = touch.arm_b,
+                      .friction = touch.mu,
+                      .force = (touch.pressed * touch.n + touch.rubbed) / h});
+    if (exact_.size() > Statics<D>::kMost) return false;
+  }
+  rotations_.resize(stances_.size());
+  for (const auto& touch : exact_) {
+    for (const int body : {touch.a, touch.b}) {
+      if (body >= 0) rotations_[body] = stances_[body].room_from_body;
+    }
+  }
+  if (!statics_.hold(exact_, rotations_)) return false;
+  auto bears = exact_.begin();
+  for (const int i : bearing_) {
+    Touch& touch = touches_[i];
+    touch.pressed = 0, touch.rubbed.setZero(), touch.least = 0;
+    if (touch.gap > kClosed * rims_[touch.a]) continue;
+    touch.pressed = h * bears->force.dot(touch.n);
+    touch.rubbed = h * bears->force - touch.pressed * touch.n;
+    ++bears;
+  }
+  return true;
+}
+
+// freezes what begins without speed and in equilibrium, small islands without springs, hands and joints
+template <int D>
+bool Sweeps<D>::stand(State<D>& state, double h) {
+  if (exploding(state)) return false;
+  const int n = int(model_.bodies.size());
+  islands_.reset(n), ripe_.assign(n, 1);
+  for (const Touch& touch : touches_) {
+    if (touch.b < n && touch.gap < 1e-3 * rims_[touch.a] && !still_[touch.a] && !still_[touch.b])
+      islands_.join(touch.a, touch.b);
+  }
+  const auto restless = [&](int body) {
+    if (body >= 0) ripe_[islands_.root(body)] = 0;
+  };
+  for (int i = 0; i < n; ++i) {
+    if (!moving_[i].v.isZero(0) || !moving_[i].w.isZero(0)) restless(i);
+  }
+  for (const Spring<D>& spring : model_.springs) restless(spring.a.body), restless(spring.b.body);
+  for (const Grip<D>& grip : state.grips) restless(grip.body);
+  for (const Joint<D>& joint : model_.joints) restless(joint.a.body), restless(joint.b.body);
+  bool froze = false;
+  for (int root = 0; root < n; ++root) {
+    if (still_[root] || islands_.root(root) != root || !ripe_[root] || !stands(root, h)) continue;
+    for (int i = 0; i < n; ++i) {
+      if (!still_[i] && islands_.root(i) == root) state.frozen[i] = 1, froze = true;
+    }
+  }
+  if (froze) report(state, h);
+  return froze;
+}
+
 // A quiet island at rest needs forces that leave it there: sweeps look for them as in a step of bodies
 // without speed; what speed they leave, over h, is the residual. Forces found on the way are kept.
 template <int D>
@@ -581,6 +653,21 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
   left_.assign(n, 0);
   for (int i = 0; i < n; ++i) {
     if (resting(i)) left_[islands_.root(i)] = std::max(left_[islands_.root(i)], swiftness(i));
+  }
+  const auto on_joints = [&](int root) {
+    return std::any_of(linkage_.bodies().begin(), linkage_.bodies().end(),
+                       [&](int i) { return resting(i) && islands_.root(i) == root; });
+  };
+  for (int root = 0; root < n; ++root) {
+    if (!resting(root) || islands_.root(root) != root || on_joints(root)) continue;
+    if (left_[root] <= kHeld * g_ * h) continue;
+    // after one wait, two, four, ...
+    double quiet = 1e300, due = kWait;
+    for (int i = 0; i < n; ++i) {
+      if (!still_[i] && islands_.root(i) == root) quiet = std::min(quiet, state.quiet[i]);
+    }
+    while (2 * due <= quiet) due *= 2;
+    if (quiet - double(every_) * h < due && stands(root, h)) left_[root] = 0;
   }
   bool froze = false;
   for (int i = 0; i < n; ++i) {

@@ -8,6 +8,7 @@
 #include "sim/islands.h"
 #include "sim/iterative_joints.h"
 #include "sim/pairs.h"
+#include "sim/statics.h"
 #include "sim/tied.h"
 
 namespace obscura::sim {
@@ -75,6 +76,8 @@ class Sweeps final : public ContactStep<D> {
   void rejoin(State<D>& state, double h);
   void report(State<D>& state, double h) const;
   void join(const State<D>& state);
+  bool stands(int island, double h);
+  bool stand(State<D>& state, double h);
   bool rest(State<D>& state, double h);
   double swiftness(int body) const;
 
@@ -83,6 +86,10 @@ class Sweeps final : public ContactStep<D> {
   BroadPhase<D> broad_;
   Tied<D> tied_;
   Linkage<D> linkage_;
+  Statics<D> statics_;
+  std::vector<typename Statics<D>::Touch> exact_;
+  std::vector<int> bearing_;
+  std::vector<Rotation<D>> rotations_;
   Stages stages_;
   std::int64_t every_ = 1;  // steps between two looks for rest
   double g_ = 0, rest_speed_ = 0;
