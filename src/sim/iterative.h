@@ -39,6 +39,9 @@ class Iterative final : public ContactStep<D> {
   void report(const sweep::Pair& pair, State<D>& state) const;
   void seat(const State<D>& state, bool known);
   void stand(const State<D>& state);
+  bool reseat(const State<D>& state);
+  int colour(const sweep::Pair& pair);
+  void vacate(int slot);
   void take_seat(int pair, const State<D>& state);
   void sit(const sweep::Pair& pair, const State<D>& state);
   void guess(State<D>& state);
@@ -88,12 +91,13 @@ class Iterative final : public ContactStep<D> {
   std::vector<char> movers_;  // springs and hands hold them
 
   std::vector<std::uint64_t> colours_;  // used on each body
-  std::vector<int> count_;
+  std::vector<int> count_, begin_;      // of each colour; where its seats begin
   std::vector<sweep::Seats> seats_;
   std::vector<sweep::Projection> projections_;
   sweep::Found slow_, fast_;
-  std::vector<int> slots_;       // which pair sits where
-  std::int64_t next_step_ = -1;  // of the state that this has left
+  std::vector<int> slots_, next_slots_;  // which pair sits where
+  std::vector<int> moved_;               // pairs that take another seat
+  std::int64_t next_step_ = -1;          // of the state that this has left
   long version_ = -1;
   int awake_pairs_ = 0;
   double calmest_ = 0;  // m/s: if no point of a body is faster than half of it, all features stay

@@ -136,6 +136,7 @@ OBSCURA_INLINE void outdated_all(const Seats* seats, int count, const Motion* v,
   Meeting m;
   for (int i = 0; i < count; ++i) {
     const Seats& g = seats[i];
+    if (!g.taken) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&v->x, g.a + lane, a), gather(&v->x, g.b + lane, b);

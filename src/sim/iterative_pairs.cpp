@@ -135,6 +135,8 @@ bool Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span, b
       pair.fresh = true;
     }
     pair.first = first;
+    if (!known) continue;
+    pair.slot = known->slot, pair.colour = known->colour, pair.alone = known->alone, pair.blow = known->blow;
   }
   state.contacts.swap(contacts_);
   pairs_.swap(found_);

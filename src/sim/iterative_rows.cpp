@@ -154,6 +154,7 @@ OBSCURA_INLINE bool start_all(Seats* seats, int count, const Pose* poses, const 
   for (int i = 0; i < count; ++i) {
     Seats& g = seats[i];
     g.struck[0] = g.struck[1] = 0;
+    if (!g.taken) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
@@ -208,13 +209,14 @@ OBSCURA_INLINE void keep(const Seats& g, const Rows& rows, Contact<2>* contacts)
   }
 }
 
-template <class V, bool kLast>
+template <class V, bool kLast, bool kKeep>
 OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
                               Contact<2>* contacts) {
   const V per_h = V{} + 1 / pace.h, none{};
   for (Seats* g = seats; g < seats + count; ++g) {
+    if (!g->taken) continue;
     [[maybe_unused]] Rows kept;
-    if (kLast && contacts) {
+    if constexpr (kKeep) {
       // contacts are far apart in memory: ask for those of a later group
       if (g + kAhead < seats + count) {
         for (int lane = 0; lane < kLanes; ++lane) {
@@ -250,6 +252,8 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
             store<V>(g->q[0] + lane, fn0 * r0.ny + ft0 * r0.nx);
         store<V>(g->p[1] + lane, fn1 * r1.nx - ft1 * r1.ny),
             store<V>(g->q[1] + lane, fn1 * r1.ny + ft1 * r1.nx);
+      }
+      if constexpr (kKeep) {
         store<V>(kept.nx[0] + lane, r0.nx), store<V>(kept.ny[0] + lane, r0.ny);
         store<V>(kept.nx[1] + lane, r1.nx), store<V>(kept.ny[1] + lane, r1.ny);
         store<V>(kept.x[0] + lane, r0.x), store<V>(kept.y[0] + lane, r0.y),
@@ -260,7 +264,7 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
         store<V>(kept.na[1] + lane, l1), store<V>(kept.ta[1] + lane, t1);
       }
     }
-    if (kLast && contacts) keep(*g, kept, contacts);
+    if constexpr (kKeep) keep(*g, kept, contacts);
   }
 }
 
@@ -269,6 +273,7 @@ OBSCURA_INLINE void project_all(const Seats* seats, Projection* p, int count, co
                                 double share) {
   const V none{}, part = V{} + share;
   for (const Seats* g = seats; g < seats + count; ++g, ++p) {
+    if (!g->taken) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
@@ -296,11 +301,12 @@ OBSCURA_WIDE bool start_wide(Seats* s, int n, const Pose* at, const Motion* old,
   return start_all<V4>(s, n, at, old, v, pace, closing, blows);
 }
 OBSCURA_WIDE void sweep_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
-  sweep_all<V4, false>(s, n, at, v, pace, nullptr);
+  sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
 }
 OBSCURA_WIDE void finish_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace,
                               Contact<2>* contacts) {
-  sweep_all<V4, true>(s, n, at, v, pace, contacts);
+  contacts ? sweep_all<V4, true, true>(s, n, at, v, pace, contacts)
+           : sweep_all<V4, true, false>(s, n, at, v, pace, nullptr);
 }
 OBSCURA_WIDE void project_wide(const Seats* s, Projection* p, int n, const Pose* at, Motion* d,
                                double share) {
@@ -314,7 +320,7 @@ void copy_forces(const Seats& from, int i, Seats& to, int k) {
 }
 void copy_seat(const Seats& from, int i, Seats& to, int k) {
   to.a[k] = from.a[i], to.b[k] = from.b[i], to.pair[k] = from.pair[i], to.first[k] = from.first[i];
-  to.touches[k] = from.touches[i];
+  to.touches[k] = from.touches[i], to.taken = static_cast<unsigned char>(to.taken | 1 << k);
   to.mu[k] = from.mu[i], to.iia[k] = from.iia[i], to.iib[k] = from.iib[i];
   to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.blow[k] = from.blow[i],
   to.radius[k] = from.radius[i];
@@ -341,10 +347,12 @@ bool start(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const 
                : start_all<V2>(s, n, at, old, v, pace, closing, blows);
 }
 void sweep(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
-  kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false>(s, n, at, v, pace, nullptr);
+  kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
 }
 void finish(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace, Contact<2>* contacts) {
-  kWide ? finish_wide(s, n, at, v, pace, contacts) : sweep_all<V2, true>(s, n, at, v, pace, contacts);
+  if (kWide) return finish_wide(s, n, at, v, pace, contacts);
+  contacts ? sweep_all<V2, true, true>(s, n, at, v, pace, contacts)
+           : sweep_all<V2, true, false>(s, n, at, v, pace, nullptr);
 }
 void project(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share) {
   kWide ? project_wide(s, p, n, at, d, share) : project_all<V2>(s, p, n, at, d, share);

@@ -28,6 +28,7 @@ struct alignas(64) Seats {
   unsigned char corners[2];         // two corners touch
   unsigned char struck[2];          // met a blow in this step
   unsigned char boxes;              // both are boxes
+  unsigned char taken;              // somebody sits there
   unsigned short words[2][kLanes];  // of the features
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
   double calm[kLanes], far[kLanes];  // m/s up to which features stay; the farther reach of both, m

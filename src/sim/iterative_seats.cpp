@@ -19,6 +19,7 @@ namespace {
 constexpr double kCalm = 0.02;  // of its thickness: what a pair may move between two looks, features kept
 constexpr double kSoft = 0.05;  // of its thickness between two looks: slower inelastic closings are no blows
 constexpr int kColours = 40;    // seats of more colours hold one pair each
+constexpr int kPerSpare = 128;  // seats of a colour: one group more for so many
 constexpr int kAhead = 8;       // seats
 constexpr double kNowhere = 1e9;  // m: the gap of a touch that is none
 
@@ -35,8 +36,13 @@ void Iterative<D>::seat(const State<D>& state, bool known) {
     }
     return;
   }
+  version_ = pairs_.version();
+  if (known && frozen_ == state.frozen && reseat(state)) {
+    blows_.join(all, v_);
+    return;
+  }
   const int n = int(turns_.size());
-  version_ = pairs_.version(), frozen_ = state.frozen;
+  frozen_ = state.frozen;
   for (int i = 0; i < n; ++i) {
     const bool moves = !fixed_[i] && !state.frozen[i];
     v_[i].im = moves ? light_[i].im : 0, ii_[i] = moves ? light_[i].ii : 0;
@@ -46,35 +52,20 @@ void Iterative<D>::seat(const State<D>& state, bool known) {
   count_.assign(kColours + 1, 0);
   awake_pairs_ = 0;
   for (Pair& pair : all) {
-    const bool a = v_[pair.a].im > 0, b = pair.b >= 0 && v_[pair.b].im > 0;
-    pair.slot = -1;
-    if (!a && !b) continue;
-    ++awake_pairs_;
-    const std::uint64_t used = (a ? colours_[pair.a] : 0) | (b ? colours_[pair.b] : 0);
-    const int which = std::min(std::countr_one(used), kColours);
-    if (which < kColours) {
-      if (a) colours_[pair.a] |= std::uint64_t(1) << which;
-      if (b) colours_[pair.b] |= std::uint64_t(1) << which;
-    }
-    pair.slot = pair.colour = which;  // for now
-    pair.alone = which == kColours;
-    ++count_[which];
+    pair.slot = pair.colour = colour(pair);  // for now
+    pair.alone = pair.colour == kColours;
+    if (pair.slot >= 0) ++awake_pairs_, ++count_[pair.colour];
   }
 
-  // a colour begins with seats of its own
-  int begin = 0;
+  // a colour begins with seats of its own, and a large one has some to spare
+  begin_.assign(1, 0);
   for (int which = 0; which <= kColours; ++which) {
-    const int taken =
-        which < kColours ? (count_[which] + kLanes - 1) / kLanes * kLanes : count_[which] * kLanes;
-    count_[which] = begin, begin += taken;
+    const int many = count_[which];
+    const int groups = which < kColours ? (many + kLanes - 1) / kLanes + many / kPerSpare : many;
+    count_[which] = begin_.back(), begin_.push_back(begin_.back() + groups * kLanes);
   }
-  Seats empty{};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    empty.a[lane] = empty.b[lane] = n, empty.pair[lane] = empty.first[lane] = -1;
-    empty.d[0][lane] = empty.d[1][lane] = -kNowhere;
-  }
-  calmest_ = 1e300;
-  slots_.assign(begin, -1);
+  const int end = begin_.back();
+  slots_.assign(end, -1);
   for (int i = 0; i < int(all.size()); ++i) {
     Pair& pair = all[i];
     pair.fresh = false;
@@ -84,21 +75,104 @@ void Iterative<D>::seat(const State<D>& state, bool known) {
     slots_[pair.slot] = i;
   }
   // in the order of memory
-  seats_.resize(begin / kLanes), projections_.resize(begin / kLanes);
-  for (int slot = 0; slot < begin; ++slot) {
+  calmest_ = 1e300;
+  seats_.resize(end / kLanes), projections_.resize(end / kLanes);
+  for (int slot = 0; slot < end; ++slot) {
     // pairs and contacts are far apart in memory: ask for those of later seats
-    if (slot + 2 * kAhead < begin && slots_[slot + 2 * kAhead] >= 0) {
+    if (slot + 2 * kAhead < end && slots_[slot + 2 * kAhead] >= 0) {
       const char* at = reinterpret_cast<const char*>(&all[slots_[slot + 2 * kAhead]]);
       __builtin_prefetch(at), __builtin_prefetch(at + 64);
     }
-    if (slot + kAhead < begin && slots_[slot + kAhead] >= 0) {
+    if (slot + kAhead < end && slots_[slot + kAhead] >= 0) {
       const char* at = reinterpret_cast<const char*>(&state.contacts[all[slots_[slot + kAhead]].first]);
       __builtin_prefetch(at), __builtin_prefetch(at + 64), __builtin_prefetch(at + 128);
     }
-    if (slot % kLanes == 0) seats_[slot / kLanes] = empty;
-    if (slots_[slot] >= 0) take_seat(slots_[slot], state);
+    if (slots_[slot] < 0) {
+      vacate(slot);
+    } else {
+      take_seat(slots_[slot], state);
+    }
   }
   blows_.join(all, v_);
+}
+
+// The colour of a pair, the next in order; -1 where it is asleep.
+template <int D>
+int Iterative<D>::colour(const Pair& pair) {
+  const bool a = v_[pair.a].im > 0, b = pair.b >= 0 && v_[pair.b].im > 0;
+  if (!a && !b) return -1;
+  const std::uint64_t used = (a ? colours_[pair.a] : 0) | (b ? colours_[pair.b] : 0);
+  const int which = std::min(std::countr_one(used), kColours);
+  if (which == kColours) return which;
+  if (a) colours_[pair.a] |= std::uint64_t(1) << which;
+  if (b) colours_[pair.b] |= std::uint64_t(1) << which;
+  return which;
+}
+
+// Seats when some pairs have come and some have gone: whoever keeps its colour keeps its seat, for within a
+// colour the order is of no account. False where there are too few.
+template <int D>
+bool Iterative<D>::reseat(const State<D>& state) {
+  if (begin_.empty()) return false;
+  std::vector<Pair>& all = pairs_.all();
+  const int end = begin_.back(), count = int(all.size());
+  std::fill(colours_.begin(), colours_.end(), 0);
+  next_slots_.assign(end, -1), moved_.clear();
+  int awake = 0;
+  for (int i = 0; i < count; ++i) {
+    Pair& pair = all[i];
+    const int which = colour(pair);
+    if (which < 0) continue;
+    if (which == kColours || pair.alone) return false;
+    ++awake;
+    if (pair.slot >= 0 && pair.colour == which) {
+      next_slots_[pair.slot] = i;
+    } else {
+      pair.colour = which;
+      moved_.push_back(i);
+    }
+  }
+  count_.assign(begin_.begin(), begin_.end() - 1);
+  for (const int i : moved_) {
+    int &next = count_[all[i].colour], last = begin_[all[i].colour + 1];
+    while (next < last && next_slots_[next] >= 0) ++next;
+    if (next == last) return false;
+    all[i].slot = next, next_slots_[next++] = count + i;
+  }
+
+  awake_pairs_ = awake;
+  for (int slot = 0; slot < end; ++slot) {
+    if (slot + 2 * kAhead < end && next_slots_[slot + 2 * kAhead] >= 0)
+      __builtin_prefetch(&all[next_slots_[slot + 2 * kAhead] % count]);
+    int& i = next_slots_[slot];
+    if (i >= count) {
+      i -= count;
+      take_seat(i, state);
+    } else if (i >= 0) {
+      Seats& g = seats_[slot / kLanes];
+      g.pair[slot % kLanes] = i, g.first[slot % kLanes] = all[i].first;
+      if (all[i].fresh) sit(all[i], state);
+    } else if (slots_[slot] >= 0) {
+      vacate(slot);
+    }
+    if (i >= 0) all[i].fresh = false;
+  }
+  slots_.swap(next_slots_);
+  return true;
+}
+
+template <int D>
+void Iterative<D>::vacate(int slot) {
+  static const Seats empty = [] {
+    Seats made{};
+    for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -kNowhere;
+    return made;
+  }();
+  Seats& g = seats_[slot / kLanes];
+  const int lane = slot % kLanes, rest = ~(1 << lane), nobody = int(turns_.size());
+  copy_seat(empty, lane, g, lane);
+  g.a[lane] = g.b[lane] = nobody, g.pair[lane] = g.first[lane] = -1;
+  g.taken = static_cast<unsigned char>(g.taken & rest), g.boxes = static_cast<unsigned char>(g.boxes & rest);
 }
 
 // what stays as long as a pair has its seat
@@ -118,7 +192,9 @@ void Iterative<D>::take_seat(int i, const State<D>& state) {
     // features of round things may change at any time, if there are more than one
     round = (a.count == 1) != (b.count == 1);
   }
-  if (pairs_.boxes(pair)) g.boxes = static_cast<unsigned char>(g.boxes | 1 << lane);
+  const int bit = 1 << lane;
+  g.taken = static_cast<unsigned char>(g.taken | bit);
+  g.boxes = static_cast<unsigned char>(pairs_.boxes(pair) ? g.boxes | bit : g.boxes & ~bit);
   g.a[lane] = pair.a, g.iia[lane] = ii_[pair.a];
   g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
   g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
@@ -175,6 +251,9 @@ void Iterative<D>::sit(const Pair& pair, const State<D>& state) {
 }
 
 template void Iterative<2>::seat(const State<2>&, bool);
+template bool Iterative<2>::reseat(const State<2>&);
+template int Iterative<2>::colour(const Pair&);
+template void Iterative<2>::vacate(int);
 template void Iterative<2>::take_seat(int, const State<2>&);
 template void Iterative<2>::sit(const Pair&, const State<2>&);
 

@@ -229,6 +229,17 @@ TEST(Iterative, RunCutInTwoIsTheRunInOneAtALowRate) {
   expect_cut_is_whole(whole, {0.5, 1.25, 4.0});
 }
 
+// pairs that come and go leave the others in their seats, where a run that goes on seats them all anew
+TEST(Iterative, AHeapCutInTwoIsTheHeapInOne) {
+  Room whole;
+  whole.world.model.rate = {60, 1};
+  whole.floor();
+  for (int i = 0; i < 200; ++i)
+    whole.box({0.5, 0.5}, {0.7 * (i % 20) + 0.1 * (i / 20 % 3), 0.6 + 0.7 * (i / 20)}, 0.4, 0.2, {0, 0},
+              0.1 * (i % 7));
+  expect_cut_is_whole(whole, {0.5, 1.25, 4.0});
+}
+
 // forces from the top down are its equilibrium: it never moves by more than rounding, and freezes
 TEST(Iterative, PyramidOfBaseAHundredStandsAndFreezes) {
   Room r = pyramid(100);
