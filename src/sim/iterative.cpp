@@ -183,10 +183,10 @@ void Iterative<D>::report(const Pair& pair, State<D>& state) const {
 // pairs anew, who wakes by them, and seats for all
 template <int D>
 void Iterative<D>::look(State<D>& state, bool known) {
-  const bool all = state.step % (sweep::Near::kCalmLooks * every_) == 0 || state.contacts.empty();
-  bool changed = pairs_.find(state, poses_, span_, all);
+  const int patience = state.contacts.empty() ? 0 : sweep::Near::patience(state.step / every_);
+  bool changed = pairs_.find(state, poses_, span_, patience);
   if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) {
-    pairs_.find(state, poses_, span_, true);
+    pairs_.find(state, poses_, span_, 0);
     changed = true;
   }
   if (known && !changed && frozen_ == state.frozen) return;

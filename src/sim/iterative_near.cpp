@@ -10,7 +10,9 @@ namespace obscura::sim::sweep {
 
 namespace {
 
-constexpr double kCalm = 0.02;  // of the least thickness: how far a calm body may come
+constexpr double kCalm = 0.02;    // of the least thickness: how far a calm body may come
+constexpr double kSpare = 0.025;  // of the thickness of both: what they may come nearer by blows
+constexpr double kThrown = 1.25;  // times as fast as they are now, likewise
 
 }  // namespace
 
@@ -18,23 +20,26 @@ Near::Near(const Model<2>& model, const Cores& cores)
     : model_(model), cores_(cores), may_touch_(model), halves_(halves(cores)) {
   double thin = 1e300;
   for (const double inside : cores.inside) thin = std::min(thin, std::max(inside, 1e-3 * model.scale));
-  calm_ = kCalm * thin / kCalmLooks;
+  calm_ = kCalm * thin;
   const std::size_t n = model.bodies.size();
   movers_.resize(n), still_.resize(n), exposed_.resize(n);
   bounds_.resize(cores.all.size()), still_cores_.resize(cores.all.size());
   for (std::size_t i = 0; i < n; ++i) {
-    movers_[i].reach = cores.reach[i], movers_[i].inside = cores.inside[i];
+    movers_[i].reach = cores.reach[i];
+    movers_[i].thick = std::max(cores.inside[i], 1e-3 * model.scale);
     fixed_.push_back(model.bodies[i].fixed), handout_.push_back(model.bodies[i].handout);
+    elasticity_ = std::max(elasticity_, model.bodies[i].elasticity);
   }
+  for (const Wall<2>& wall : model.walls) elasticity_ = std::max(elasticity_, wall.elasticity.value_or(0));
 }
 
 double Near::spare(int body, double speed, double span) const {
-  const double inside = std::max(cores_.inside[body], 1e-3 * model_.scale);
-  return 0.05 * inside + std::min(0.2 * inside, speed * span);
+  const double thick = movers_[body].thick;
+  return 0.05 * thick + std::min(0.2 * thick, speed * span);
 }
 
 // who moves, how, and how far
-void Near::weigh(const State<2>& state, const std::vector<Pose>& poses, double span, bool all) {
+void Near::weigh(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
   const int n = int(movers_.size()), points = n - int(state.turn.size());
   const double falls = span * std::sqrt(model_.gravity.squaredNorm());
   for (int body = 0; body < n; ++body) {
@@ -42,11 +47,10 @@ void Near::weigh(const State<2>& state, const std::vector<Pose>& poses, double s
     m.x = poses[body].x, m.y = poses[body].y;
     m.vx = state.v[body][0], m.vy = state.v[body][1];
     m.swing = body >= points ? std::fabs(state.spin[body - points][0]) * m.reach : 0;
-    // of the fastest point, at most
-    const double speed = std::sqrt(m.vx * m.vx + m.vy * m.vy) + m.swing;
+    m.speed = std::sqrt(m.vx * m.vx + m.vy * m.vy) + m.swing;
     const bool rests = fixed_[body] || state.frozen[body];
-    still_[body] = rests || (!all && span * speed < calm_);
-    m.margin = rests ? 0 : span * (speed + falls) + spare(body, speed, span);
+    still_[body] = rests || (patience > 0 && patience * span * m.speed < calm_);
+    m.margin = rests ? 0 : span * (m.speed + falls) + spare(body, m.speed, span);
   }
 }
 
@@ -80,7 +84,9 @@ void Near::enclose(const std::vector<Pose>& poses) {
 }
 
 // Who may be struck within the span: who may reach another as both fly now, or a wall; and, since they may be
-// thrown about, their neighbours. Of two that fly side by side and cannot be struck, none will touch.
+// thrown about, their neighbours. Of two that fly side by side and cannot be struck, none will touch. Of two
+// of whom one is struck, the other comes on: then they near each other as fast as it flies, and faster if the
+// one bounces.
 void Near::expose(double span) {
   const int n = int(movers_.size());
   for (int a = 0; a < n; ++a) {
@@ -99,8 +105,12 @@ void Near::expose(double span) {
     const Mover &p = movers_[a], &q = movers_[b];
     const double vx = p.vx - q.vx, vy = p.vy - q.vy;
     const double passes = std::sqrt(vx * vx + vy * vy) + p.swing + q.swing;
-    const double margin = std::min(p.margin + q.margin, span * passes + falls + 0.1 * (p.inside + q.inside));
+    const double both = p.margin + q.margin, thick = p.thick + q.thick;
+    const double margin = std::min(both, span * passes + falls + 0.1 * thick);
     const double far = p.reach + q.reach + margin, dx = p.x - q.x, dy = p.y - q.y;
+    const double thrown = std::max(p.speed, q.speed) + elasticity_ * std::min(p.speed, q.speed);
+    candidates_[i].margin =
+        std::min(both, span * kThrown * std::max(passes, thrown) + falls + kSpare * thick);
     close_[i] = dx * dx + dy * dy <= far * far;
     if (close_[i]) exposed_[a] = exposed_[b] = 1;
   }
@@ -115,15 +125,15 @@ void Near::expose(double span) {
   candidates_.resize(kept);
 }
 
-bool Near::look(const State<2>& state, const std::vector<Pose>& poses, double span, bool all) {
-  weigh(state, poses, span, all);
+bool Near::look(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
+  weigh(state, poses, span, patience);
   candidates_.clear();
-  if (!all && std::find(still_.begin(), still_.end(), 0) == still_.end()) return false;
+  if (patience > 0 && std::find(still_.begin(), still_.end(), 0) == still_.end()) return false;
   enclose(poses);
   for (const auto& [i, j] : broad_.find(bounds_, still_cores_)) {
     const Core &p = cores_.all[i], &q = cores_.all[j];
     if (p.body == q.body || (p.count == 1 && q.count == 1 && p.radius + q.radius <= 0)) continue;
-    if (may_touch_(p.body, q.body)) candidates_.push_back({i, j, -1});
+    if (may_touch_(p.body, q.body)) candidates_.push_back({i, j, -1, 0});
   }
   expose(span);
 

@@ -15,16 +15,25 @@ class Near {
  public:
   Near(const Model<2>& model, const Cores& cores);
 
-  /// Two cores of different bodies, a < b. Of two boxes, where they meet: lane + kLanes * group; else -1.
+  /// Two cores of different bodies, a < b, and how near each other they may touch, m. Of two boxes, where
+  /// they meet: lane + kLanes * group; else -1.
   struct Candidate {
     int a, b;
     int meeting;
+    double margin;
   };
 
-  /// Looks for all that may touch within `span` s; not for those that rest nor, unless `all`, for those that
-  /// are calm: so slow that they come nowhere in kCalmLooks spans. False where there is nobody to look for.
-  bool look(const State<2>& state, const std::vector<Pose>& poses, double span, bool all);
+  /// Looks for all that may touch within `span` s; not for those that rest nor for those that are calm: so
+  /// slow that they come nowhere in `patience` spans. False where there is nobody to look for.
+  bool look(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
   static constexpr int kCalmLooks = 16;
+
+  /// For how many spans those must be calm whom look `number` leaves out: every other look is for the fast
+  /// alone, of the rest every other for the less fast too, and so on; each kCalmLooks-th is for all.
+  static int patience(long long number) {
+    number %= kCalmLooks;
+    return number == 0 ? 0 : 2 * int(number & -number);
+  }
 
   /// What the last look has found, ascending.
   const std::vector<Candidate>& candidates() const { return candidates_; }
@@ -52,10 +61,10 @@ class Near {
   // of a body, in one line of memory
   struct alignas(64) Mover {
     double x = 0, y = 0, vx = 0, vy = 0;
-    double margin = 0, swing = 0;  // m; m/s of its farthest point by its spin
-    double reach = 0, inside = 0;
+    double margin = 0, swing = 0, speed = 0;  // m; m/s of its farthest point, by its spin alone, and at most
+    double reach = 0, thick = 0;              // m
   };
-  void weigh(const State<2>& state, const std::vector<Pose>& poses, double span, bool all);
+  void weigh(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
   void enclose(const std::vector<Pose>& poses);
   void expose(double span);
   void meet(const std::vector<Pose>& poses);
@@ -74,7 +83,8 @@ class Near {
   std::vector<Candidate> candidates_;
   std::vector<char> close_;  // of candidates
   std::vector<Meeting> meetings_;
-  double calm_ = 0;  // m/s, times the span
+  double calm_ = 0;        // m: how far the calm may come
+  double elasticity_ = 0;  // the largest there is
 };
 
 }  // namespace obscura::sim::sweep

@@ -86,14 +86,13 @@ void Pairs::gather_found(const std::vector<Pose>& poses) {
     for (; next < candidates.size() && candidates[next].a < cores_.begin[a + 1]; ++next) {
       const Near::Candidate& c = candidates[next];
       const Core &p = cores_.all[c.a], &q = cores_.all[c.b];
-      const double margin = near_.margin(a) + near_.margin(q.body);
       if (c.meeting >= 0) {
         const Meeting& m = near_.meeting(c);
         const int lane = c.meeting % kLanes;
-        if (!(m.gap[lane] < margin)) continue;
+        if (!(m.gap[lane] < c.margin)) continue;
         found_.push_back(pair(a, q.body, c.a, c.b));
         found_.back().words[0] = m.words[0][lane], found_.back().words[1] = m.words[1][lane];
-      } else if (nearest(cores_, p, poses[a], q, poses[q.body], features, margin) < margin) {
+      } else if (nearest(cores_, p, poses[a], q, poses[q.body], features, c.margin) < c.margin) {
         add(pair(a, q.body, c.a, c.b));
       }
     }
@@ -101,8 +100,8 @@ void Pairs::gather_found(const std::vector<Pose>& poses) {
   }
 }
 
-bool Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span, bool all) {
-  if (!near_.look(state, poses, span, all)) return false;
+bool Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
+  if (!near_.look(state, poses, span, patience)) return false;
   gather_found(poses);
 
   // the same pairs: only what is new of their features

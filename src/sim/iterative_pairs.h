@@ -31,9 +31,9 @@ class Pairs {
   explicit Pairs(const Model<2>& model, const Cores& cores);
 
   /// Finds the pairs nearer than their bodies can come within `span` s, and writes their touches into
-  /// state.contacts; forces of the same touches stay. A pair whose two sides rest, or are calm and not `all`
-  /// looked for, stays as it is. False where nothing was changed.
-  bool find(State<2>& state, const std::vector<Pose>& poses, double span, bool all);
+  /// state.contacts; forces of the same touches stay. A pair whose two sides rest, or are calm for `patience`
+  /// spans, stays as it is. False where nothing was changed.
+  bool find(State<2>& state, const std::vector<Pose>& poses, double span, int patience);
 
   /// Makes the pairs those of state.contacts, where they are not already.
   void adopt(const State<2>& state);
