@@ -33,6 +33,7 @@ double hull_thickness(const Shape<2>&) { return 0; }
 constexpr double kCreep = 1e-6;      // of sqrt(g L)
 constexpr double kSunk = 0.1;        // of the thinnest: how far two may come into each other in one piece
 constexpr double kMostPieces = 200;  // of a step that is done roughly
+constexpr double kManyLooks = 3e5;   // at couples, before a step is
 
 // the least thickness of a shape, m
 template <int D>
@@ -139,7 +140,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   impulses_.clear(), contacts_ = state.contacts, joint_forces_ = state.joint_forces;
   double done = 0;
   forced_.clear();
-  rough_ = false, work_ = 0;
+  rough_ = false, work_ = 0, looks_ = 0;
   openings_ = most_openings_, let_go_.reset(), vague_.clear();
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
   for (int cuts = 0; done < h; ++cuts) {
@@ -152,7 +153,8 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     bool cut = true;
     double length = 0;
     bool held_again = false;  // what let go is to be held: the same instant once more
-    if (work_ > budget_ && cuts > 0) rough_ = true;
+    // what is as fast as 1e6 room heights a second has as many places to be looked for
+    if ((work_ > budget_ || looks_ > kManyLooks) && cuts > 0) rough_ = true;
     const bool chosen = !rough_ && choose(state, t + done);
     if (!chosen) rough_ = model_.collision != Collision::event;
     if (chosen && cuts < most_cuts_) {

@@ -204,6 +204,7 @@ class Direct final : public ContactStep<D>, private System {
   bool forced_again_ = false;
   bool rough_ = false;  // of this step: forces by sweeps from here on
   double work_ = 0;     // of this step: rows^3 solved
+  double looks_ = 0;    // of this step: how often more than once a stretch couples were looked at
   Motion begun_, saved_;
   std::vector<Vec<D>> placed_;                   // x before places are put right
   std::vector<Contact<D>> contacts_, impulses_;  // of this step

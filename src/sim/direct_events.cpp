@@ -150,6 +150,7 @@ double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
   const int looks = thin > 0 ? std::clamp(int(ways / (kFine * thin)) + 1, 1, kMostLooks) : 1;
   for (int i = 1; i <= looks; ++i) {
     const double part = double(i) / looks;
+    looks_ += i > 1;
     if (least(part) < -closed_) {
       high = part;
       break;

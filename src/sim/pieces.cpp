@@ -379,7 +379,7 @@ template <int D>
 bool Pieces<D>::fits(const State<D>& state) {
   gather(state);
   // at the same step: it would be stepped until it were
-  return state.whole[0].step == state.step && sim::fits(state.whole[0], whole_.model);
+  return state.whole[0].step == state.step && stepper_->fits(state.whole[0]);
 }
 
 template <int D>

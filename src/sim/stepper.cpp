@@ -109,7 +109,7 @@ void Stepper<D>::begin(State<D>& state) {
 
 template <int D>
 bool Stepper<D>::fits(const State<D>& state) {
-  return sim::fits(state, model_) && (!pieces_ || pieces_->fits(state));
+  return sim::fits(state, model_) && sound(state) && (!pieces_ || pieces_->fits(state));
 }
 
 template <int D>

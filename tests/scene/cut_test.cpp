@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <filesystem>
 
 #include "scene/scene.h"
@@ -57,6 +58,9 @@ TEST(Cut, WordsThatAreNoStateOfTheSceneAreRefused) {
   EXPECT_FALSE(scene.run(words));
   // the first is the step: what bonds hold would be stepped until it has come there
   words = good, ++words[0];
+  EXPECT_FALSE(scene.run(words));
+  // the fourth is where the first body is: a run that has come so far has ended
+  words = good, words[3] = std::bit_cast<std::uint64_t>(1e12);
   EXPECT_FALSE(scene.run(words));
   EXPECT_FALSE(read(OBSCURA_SOURCE_DIR "/scenes/room.toml").run(good));
   EXPECT_FALSE(read(OBSCURA_SOURCE_DIR "/scenes/racket.toml").run(good));

@@ -83,6 +83,15 @@ TEST(Hostile, ATableWithoutWhatItNeedsIsTold) {
   EXPECT_THAT(complaint("[[figure.label]]\ntext = 'a'"), HasSubstr("needs 'at'"));
 }
 
+TEST(Hostile, WhatIsFarTooFastIsStepped) {
+  // 1e4 widths a step: looked for in each of them at each of its cuts it took minutes
+  const Scene scene = parse(
+      "[room]\nsize = [4, 3, 4]\n[[box]]\nsize = [0.5, 0.5, 0.5]\nposition = [0, 0.25, 0]\n"
+      "[[box]]\nsize = [0.5, 0.5, 0.5]\nposition = [0, 0.75, 0]\nvelocity = [2.9e6, 1e5, 0]\n",
+      "a.toml");
+  EXPECT_TRUE(std::holds_alternative<sim::Snapshot>(scene.run()->at({1, 600})));
+}
+
 TEST(Hostile, WhatIsNotTomlIsOneLine) {
   EXPECT_THAT(complaint("title == 1"), StartsWith("a.toml:1:8: not TOML: "));
   EXPECT_THAT(complaint("[room"), StartsWith("a.toml:1:6: not TOML: "));
