@@ -90,8 +90,8 @@ class Iterative final : public ContactStep<D> {
   std::vector<Light> light_;
   std::vector<char> movers_;  // springs and hands hold them
 
-  std::vector<std::uint64_t> colours_;  // used on each body
-  std::vector<int> count_, begin_;      // of each colour; where its seats begin
+  std::vector<std::uint64_t> colours_;     // used on each body
+  std::vector<int> count_, begin_, ends_;  // of each colour; where its seats begin and end
   std::vector<sweep::Seats> seats_;
   std::vector<sweep::Projection> projections_;
   sweep::Found slow_, fast_;

@@ -15,6 +15,8 @@ namespace obscura::sim::sweep {
 
 namespace {
 
+constexpr std::size_t kAhead = 4;  // pairs
+
 // v_n of touch k
 double along(const Rows& r, int k, int lane, const Motion& a, const Motion& b) {
   return r.nx[k][lane] * (a.x - b.x) + r.ny[k][lane] * (a.y - b.y) +
@@ -188,6 +190,13 @@ void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<
   const std::size_t most = 40 * queue_.size() + 100;
   std::size_t at = 0;
   for (; at < queue_.size() && at < most; ++at) {
+    // pairs and their seats are far apart in memory: ask for those of later ones
+    if (at + 2 * kAhead < queue_.size()) __builtin_prefetch(&pairs[queue_[at + 2 * kAhead]]);
+    if (at + kAhead < queue_.size()) {
+      const Pair& later = pairs[queue_[at + kAhead]];
+      __builtin_prefetch(&now_[later.a]);
+      if (later.b >= 0) __builtin_prefetch(&now_[later.b]);
+    }
     const int i = queue_[at];
     waiting_[i] = 0;
     if (!hit(i, pairs, seats, poses, dv, pace)) continue;

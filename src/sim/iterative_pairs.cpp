@@ -118,25 +118,34 @@ bool Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span, i
   // both lists ascend: forces go over to the same pair
   contacts_.clear();
   std::size_t old = 0;
+  const Contact<2>*begin = nullptr, *end = nullptr;  // what goes over as it is
+  const auto copy = [&] {
+    contacts_.insert(contacts_.end(), begin, end);
+    begin = end = nullptr;
+  };
   for (Pair& pair : found_) {
     while (old < pairs_.size() && before(pairs_[old], pair)) ++old;
     const Pair* known = old < pairs_.size() && alike(pairs_[old], pair) ? &pairs_[old] : nullptr;
-    const int first = int(contacts_.size());
     const Contact<2>* from = known ? &state.contacts[known->first] : nullptr;
-    if (known && known->words[0] == pair.words[0] && (known->words[1] == pair.words[1] || pair.touches < 2)) {
-      contacts_.insert(contacts_.end(), from, from + pair.touches);
-      pair.fresh = false;
-    } else {
-      contacts_.resize(first + pair.touches);
-      for (int k = 0; k < pair.touches; ++k)
-        contacts_[first + k].key = {pair.a, pair.b, feature(pair, pair.words[k])};
-      if (known) inherit(pair, poses, from, known->touches, &contacts_[first]);
-      pair.fresh = true;
+    if (from != end) copy();
+    pair.first = int(contacts_.size()) + int(end - begin);
+    if (known)
+      pair.slot = known->slot, pair.colour = known->colour, pair.alone = known->alone,
+      pair.blow = known->blow;
+    pair.fresh =
+        !known || known->words[0] != pair.words[0] || (known->words[1] != pair.words[1] && pair.touches > 1);
+    if (!pair.fresh) {
+      if (begin == end) begin = from;
+      end = from + pair.touches;
+      continue;
     }
-    pair.first = first;
-    if (!known) continue;
-    pair.slot = known->slot, pair.colour = known->colour, pair.alone = known->alone, pair.blow = known->blow;
+    copy();
+    contacts_.resize(pair.first + pair.touches);
+    for (int k = 0; k < pair.touches; ++k)
+      contacts_[pair.first + k].key = {pair.a, pair.b, feature(pair, pair.words[k])};
+    if (known) inherit(pair, poses, from, known->touches, &contacts_[pair.first]);
   }
+  copy();
   state.contacts.swap(contacts_);
   pairs_.swap(found_);
   ++version_;

@@ -23,6 +23,8 @@ constexpr int kPerSpare = 128;  // seats of a colour: one group more for so many
 constexpr int kAhead = 8;       // seats
 constexpr double kNowhere = 1e9;  // m: the gap of a touch that is none
 
+bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind == Feature::corners; }
+
 }  // namespace
 
 // seats for the pairs that are awake: greedy colours, in the order of pairs
@@ -57,13 +59,15 @@ void Iterative<D>::seat(const State<D>& state, bool known) {
     if (pair.slot >= 0) ++awake_pairs_, ++count_[pair.colour];
   }
 
-  // a colour begins with seats of its own, and a large one has some to spare
+  // A colour begins with seats of its own, and a large one has some to spare. Where two corners meet sits
+  // behind them: that takes more arithmetic.
   begin_.assign(1, 0);
   for (int which = 0; which <= kColours; ++which) {
     const int many = count_[which];
     const int groups = which < kColours ? (many + kLanes - 1) / kLanes + many / kPerSpare : many;
     count_[which] = begin_.back(), begin_.push_back(begin_.back() + groups * kLanes);
   }
+  ends_.assign(begin_.begin() + 1, begin_.end());
   const int end = begin_.back();
   slots_.assign(end, -1);
   for (int i = 0; i < int(all.size()); ++i) {
@@ -71,7 +75,11 @@ void Iterative<D>::seat(const State<D>& state, bool known) {
     pair.fresh = false;
     if (pair.slot < 0) continue;
     const int which = pair.slot;
-    pair.slot = count_[which], count_[which] += which < kColours ? 1 : kLanes;
+    if (which < kColours && meets_corners(pair)) {
+      pair.slot = --ends_[which];
+    } else {
+      pair.slot = count_[which], count_[which] += which < kColours ? 1 : kLanes;
+    }
     slots_[pair.slot] = i;
   }
   // in the order of memory
@@ -132,12 +140,14 @@ bool Iterative<D>::reseat(const State<D>& state) {
       moved_.push_back(i);
     }
   }
-  count_.assign(begin_.begin(), begin_.end() - 1);
+  count_.assign(begin_.begin(), begin_.end() - 1), ends_.assign(begin_.begin() + 1, begin_.end());
   for (const int i : moved_) {
-    int &next = count_[all[i].colour], last = begin_[all[i].colour + 1];
+    int &next = count_[all[i].colour], &last = ends_[all[i].colour];
     while (next < last && next_slots_[next] >= 0) ++next;
+    while (next < last && next_slots_[last - 1] >= 0) --last;
     if (next == last) return false;
-    all[i].slot = next, next_slots_[next++] = count + i;
+    all[i].slot = meets_corners(all[i]) ? --last : next++;
+    next_slots_[all[i].slot] = count + i;
   }
 
   awake_pairs_ = awake;
