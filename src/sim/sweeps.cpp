@@ -43,7 +43,12 @@ constexpr double kGain = 1e-9;    // of its kinetic energy: what an island may w
 
 template <int D>
 Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), may_touch_(model), tied_(model, paths), linkage_(model), statics_(model) {
+    : model_(model),
+      may_touch_(model),
+      tied_(model, paths),
+      linkage_(model),
+      statics_(model),
+      account_(model) {
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
   g_ = std::sqrt(model.gravity.squaredNorm());
@@ -86,9 +91,10 @@ void Sweeps<D>::step(State<D>& state, double t, double h) {
       hold();
       sweep(all_, i % 2 != 0);
     }
+    advance(state, h);
     if (!temper(state)) break;
   }
-  advance(state, h);
+  arrive(state, h);
   part(state);
   if (!linkage_.empty()) rejoin(state, h);
   report(state, h);
@@ -250,7 +256,8 @@ void Sweeps<D>::fall(State<D>& state, double t, double h) {
   tied_.gather(state, true);
   stages_.reserve(std::size_t(tied_.size()));
   tied_.step(integrate(model_.integrator), state, t, h, stages_);
-  v_free_ = state.v, w_free_ = state.spin;
+  v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
+  account_.open(state);
   for (int i = 0; i < n; ++i) {
     if (still_[i]) continue;
     moving_[i].v = state.v[i];
@@ -334,7 +341,8 @@ void Sweeps<D>::hold() {
 }
 
 // Several blows in one instant, with friction or on joints, may leave more energy than was there if each
-// keeps its restitution (Kane and Levinson 1985); those of such an island keep less. With
+// keeps its restitution (Kane and Levinson 1985); those of such an island keep less. Energy is that of the
+// step's end: a body struck within it had not yet fallen all of its way. With
 //   dK = p . v' - p W p / 2
 // a share dK / p . v' less is enough where p stays; what stays of it is looked at again. True where there was
 // any.
@@ -343,6 +351,7 @@ bool Sweeps<D>::temper(const State<D>& state) {
   if (std::none_of(touches_.begin(), touches_.end(),
                    [](const Touch& touch) { return touch.least > 0 && touch.pressed > 0; }))
     return false;
+  account_.risen(state);
   const int n = int(model_.bodies.size());
   islands_.reset(n);
   const auto link = [&](int a, int b) {
@@ -359,13 +368,9 @@ bool Sweeps<D>::temper(const State<D>& state) {
   for (int i = 0; i < n; ++i) {
     const Moving& m = moving_[i];
     if (m.light == 0) continue;
-    double was = 0.5 * v_free_[i].squaredNorm() / m.light, is = 0.5 * m.v.squaredNorm() / m.light;
-    if (const int k = turning(state, i); k >= 0) {
-      const Rotation<D>& axes = stances_[i].room_from_body;
-      was += spin_energy<D>(model_.bodies[i].inertia, axes, w_free_[k]);
-      is += spin_energy<D>(model_.bodies[i].inertia, axes, m.w);
-    }
-    before_[islands_.root(i)] += was, gained_[islands_.root(i)] += is - was;
+    double moves = v_free_[i].squaredNorm();
+    if (const int k = turning(state, i); k >= 0) moves += rims_[i] * rims_[i] * w_free_[k].squaredNorm();
+    before_[islands_.root(i)] += 0.5 * moves / m.light, gained_[islands_.root(i)] += account_.gain(i);
   }
   const auto island = [&](const Touch& touch) {
     return islands_.root(moving_[touch.a].light > 0 ? touch.a : touch.b);
@@ -383,34 +388,45 @@ bool Sweeps<D>::temper(const State<D>& state) {
   return any;
 }
 
+// where everyone comes to, from where all would be without contacts
 template <int D>
 void Sweeps<D>::advance(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
     if (still_[i]) continue;
-    Moving& m = moving_[i];
+    const Moving& m = moving_[i];
     if (closing_[i]) {
       state.x[i] = x_[i] + h * m.v;
     } else {
-      state.x[i] += 0.5 * h * (m.v - v_free_[i]);
+      state.x[i] = x_free_[i] + 0.5 * h * (m.v - v_free_[i]);
     }
     state.v[i] = m.v;
-    double fast = m.v.squaredNorm();
+    const int k = turning(state, i);
+    if (k < 0) continue;
+    state.turn[k] = turn_free_[k], state.spin[k] = w_free_[k];
+    const Spin<D> change = m.w - w_free_[k];
+    if (change.isZero(0)) continue;
+    // pushes were reckoned with the body as it stood when the step began; it turns on, and its angular
+    // momentum stays
+    const Spin<D>& inertia = model_.bodies[i].inertia;
+    const Rotation<D> fallen = rotation<D>(turn_free_[k]);
+    state.turn[k] = closing_[i] ? turned<D>(turn_[k], Spin<D>(h * m.w))
+                                : turned<D>(turn_free_[k], Spin<D>(0.5 * h * change));
+    const Rotation<D> now = rotation<D>(state.turn[k]);
+    state.spin[k] = carried_spin<D>(inertia, fallen, now, w_free_[k]) +
+                    carried_spin<D>(inertia, stances_[i].room_from_body, now, change);
+  }
+}
+
+// how everyone moves there, and how long it has been quiet
+template <int D>
+void Sweeps<D>::arrive(State<D>& state, double h) {
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    if (still_[i]) continue;
+    double fast = state.v[i].squaredNorm();
     if (const int k = turning(state, i); k >= 0) {
-      const Spin<D> change = m.w - w_free_[k];
-      if (!change.isZero(0)) {
-        // pushes were reckoned with the body as it stood when the step began; it turns on, and its angular
-        // momentum stays
-        const Spin<D>& inertia = model_.bodies[i].inertia;
-        const Rotation<D> fallen = rotation<D>(state.turn[k]);
-        state.turn[k] = closing_[i] ? turned<D>(turn_[k], Spin<D>(h * m.w))
-                                    : turned<D>(state.turn[k], Spin<D>(0.5 * h * change));
-        const Rotation<D> now = rotation<D>(state.turn[k]);
-        m.w = carried_spin<D>(inertia, fallen, now, w_free_[k]) +
-              carried_spin<D>(inertia, stances_[i].room_from_body, now, change);
-        state.spin[k] = m.w;
-      }
-      fast += rims_[i] * rims_[i] * m.w.squaredNorm();
+      moving_[i].w = state.spin[k];
+      fast += rims_[i] * rims_[i] * state.spin[k].squaredNorm();
     }
     state.quiet[i] = fast < kQuiet * kQuiet ? state.quiet[i] + h : 0;
   }

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/account.h"
 #include "sim/contact_step.h"
 #include "sim/gap.h"
 #include "sim/islands.h"
@@ -72,6 +73,7 @@ class Sweeps final : public ContactStep<D> {
   void take(const std::vector<char>* of = nullptr);
   void hold();
   void advance(State<D>& state, double h);
+  void arrive(State<D>& state, double h);
   void part(State<D>& state);
   void rejoin(State<D>& state, double h);
   void report(State<D>& state, double h) const;
@@ -90,6 +92,7 @@ class Sweeps final : public ContactStep<D> {
   std::vector<typename Statics<D>::Touch> exact_;
   std::vector<int> bearing_;
   std::vector<Rotation<D>> rotations_;
+  Account<D> account_;
   Stages stages_;
   std::int64_t every_ = 1;  // steps between two looks for rest
   double g_ = 0, rest_speed_ = 0;
@@ -102,8 +105,8 @@ class Sweeps final : public ContactStep<D> {
   std::vector<Gap<D>> gaps_;
   std::vector<Touch> touches_;  // ascending by key
   std::vector<int> all_, some_;
-  std::vector<Vec<D>> x_, v_free_;
-  std::vector<Turn<D>> turn_;
+  std::vector<Vec<D>> x_, x_free_, v_free_;
+  std::vector<Turn<D>> turn_, turn_free_;
   std::vector<Spin<D>> w_free_;
   std::vector<char> closing_, ripe_, on_joints_;  // the last: of those that rest
   std::vector<int> parts_;                        // and of their joints

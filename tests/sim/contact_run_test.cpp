@@ -48,11 +48,10 @@ World<2> thrown(int seed, Collision collision) {
 }
 
 TEST(ContactRun, EnergyNeverRisesInRandomRooms) {
-  // flight keeps gravity's energy to rounding; what is put back onto its contacts errs by the closing
-  // tolerance, 4e-9 m
-  for (int seed = 0; seed < 10; ++seed) {
-    const World<2> world = thrown(seed, kModes[seed % 2]);
-    expect_no_gain(world, 900, 1e-9, "seed " + std::to_string(seed), std::abs(energy(world, world.state)));
+  // flight keeps gravity's energy to rounding, and contact is kept account of
+  for (const int seed : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 37}) {
+    const World<2> world = thrown(seed, kModes[seed > 9 ? 0 : seed % 2]);
+    expect_no_gain(world, 900, 1e-12, "seed " + std::to_string(seed), std::abs(energy(world, world.state)));
   }
 }
 

@@ -193,7 +193,7 @@ TEST(Contact, EnergyNeverRisesAmongTumblingBoxes) {
               {1.0 * (i % 3), -1.0 * seed}, 0.4 * i + seed, 3 - i, 0.6);
     }
     rub(world, 0.4);
-    ASSERT_NO_FATAL_FAILURE(expect_no_gain(world, 1200, 1e-9, "seed " + std::to_string(seed)));
+    ASSERT_NO_FATAL_FAILURE(expect_no_gain(world, 1200, 1e-12, "seed " + std::to_string(seed)));
   }
 }
 

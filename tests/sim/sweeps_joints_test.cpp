@@ -121,7 +121,7 @@ TEST(SweptJoints, ThrownDollsHangTogetherLoseEnergyAndLieStill) {
   Stepper<3> stepper(world.model);
   stepper.begin(state);
   const double begun = energy(world, state);
-  double least = begun;
+  double least = begun, gained = 0;
   int steps = 0;
   const auto asleep = [&] {
     return std::all_of(state.frozen.begin(), state.frozen.end(), [](char frozen) { return frozen != 0; });
@@ -130,10 +130,11 @@ TEST(SweptJoints, ThrownDollsHangTogetherLoseEnergyAndLieStill) {
     ASSERT_FALSE(stepper.step(state));
     ASSERT_LE(off(world, state), 1e-10) << steps;
     const double now = energy(world, state);
-    // impacts are of first order: what is struck turns on by w h, up to 0.02, before it is looked at again
-    ASSERT_LE(now, least + 2e-5 * begun) << steps;
+    gained = std::max(gained, now - least);
     least = std::min(least, now);
   }
+  // contact gives none; joints are of second order in w h, up to 0.02, and give and take
+  EXPECT_LE(gained, 2e-5 * begun);
   EXPECT_LT(steps, 6000) << "in ten seconds";
   const State<3> before = state;
   for (int i = 0; i < 60; ++i) ASSERT_FALSE(stepper.step(state));
