@@ -28,7 +28,9 @@ constexpr int kFewestSweeps = 4;     // of many
 constexpr int kTouchSweeps = 20000;  // touches times sweeps between
 constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
 constexpr double kSpare = 0.02;      // of their reach: what two may come nearer by being struck
-constexpr double kAllowed = 1e-4;    // of a body's reach: how deep is not too deep
+constexpr double kAllowed = 1e-6;    // of a body's reach: how deep is not too deep
+constexpr double kHung = 1e-4;       // the same on joints, which pushes strain
+constexpr double kDeepest = 2e-3;    // at rest
 constexpr double kPart = 0.1;        // of what is too deep, in a step
 constexpr double kQuiet = 0.02;      // m/s
 constexpr double kWait = 0.25;       // s
@@ -435,11 +437,15 @@ void Sweeps<D>::arrive(State<D>& state, double h) {
 // positions out of each other, a part of the way, by the same rows
 template <int D>
 void Sweeps<D>::part(State<D>& state) {
+  const int n = int(model_.bodies.size());
+  const auto hangs = [&](int body) { return body < n && linkage_.has(body); };
+  const auto allowed = [&](const Touch& touch) {
+    return (hangs(touch.a) || hangs(touch.b) ? kHung : kAllowed) * rims_[touch.a];
+  };
   some_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
     const Touch& touch = touches_[i];
-    const double far = rims_[touch.a];
-    if (touch.gap < -kAllowed * far) some_.push_back(i);
+    if (touch.gap < -allowed(touch)) some_.push_back(i);
   }
   if (some_.empty()) return;
   kept_ = moving_;
@@ -447,7 +453,7 @@ void Sweeps<D>::part(State<D>& state) {
   for (int round = 0; round < 4; ++round) {
     for (const int i : some_) {
       const Touch& touch = touches_[i];
-      const double wanted = kPart * (-touch.gap - kAllowed * rims_[touch.a]);
+      const double wanted = kPart * (-touch.gap - allowed(touch));
       const double left = wanted - touch.n.dot(slip(touch));
       if (left > 0) push(touch, left / touch.normal * touch.n);
     }
@@ -620,7 +626,7 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
     if (!resting(touch.a) && !resting(touch.b)) continue;
     // too deep to stay so, or awake beyond
     const int body = resting(touch.a) ? touch.a : touch.b;
-    if (touch.gap < -20 * kAllowed * rims_[touch.a]) ripe_[islands_.root(body)] = 0;
+    if (touch.gap < -kDeepest * rims_[touch.a]) ripe_[islands_.root(body)] = 0;
     some_.push_back(i);
   }
   std::erase_if(some_, [&](int i) { return !resting(touches_[i].a) && !resting(touches_[i].b); });

@@ -94,6 +94,20 @@ TEST(Sweeps, AHeapComesToRestAndCarriesItsWeight) {
   EXPECT_EQ(state.x, before.x);
 }
 
+TEST(Sweeps, ASmallHeapLiesInItselfByAMillionthAtMost) {
+  World<3> world = heap(12, 2, 0.5);
+  State<3> state = world.state;
+  Stepper<3> stepper(world.model);
+  stepper.begin(state);
+  const auto asleep = [&] {
+    return std::all_of(state.frozen.begin(), state.frozen.end(), [](char frozen) { return frozen != 0; });
+  };
+  for (int i = 0; i < 3000 && (i == 0 || !asleep()); ++i) ASSERT_FALSE(stepper.step(state));
+  EXPECT_TRUE(asleep());
+  EXPECT_GT(state.contacts.size(), 30u);
+  for (const Contact<3>& contact : state.contacts) EXPECT_GT(contact.gap, -1e-6 * 0.3);
+}
+
 TEST(Sweeps, ARunCutInTwoIsTheRunInOne) {
   const World<3> world = heap(12, 2, 0.5);
   const State<3> whole = stepped(world, 300);
