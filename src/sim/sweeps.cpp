@@ -36,6 +36,7 @@ constexpr double kQuiet = 0.02;      // m/s
 constexpr double kWait = 0.25;       // s
 constexpr double kHeld = 1e-6;       // of gravity
 constexpr int kRestSweeps = 400;     // of an island at a time
+constexpr int kFew = 32;             // touches of one that is solved exactly where these are too few
 constexpr int kBetweenChecks = 10;
 constexpr double kClosed = 1e-6;  // of a body's reach: no wider a gap bears what rests
 constexpr int kTempering = 5;     // rounds
@@ -531,7 +532,7 @@ void Sweeps<D>::join(const State<D>& state) {
 
 // whether exact forces hold an island of bodies that stand still; its touches take them
 template <int D>
-bool Sweeps<D>::stands(int island, double h) {
+bool Sweeps<D>::stands(int island, double h, int most) {
   const auto moving = [&](int body) { return body < int(still_.size()) && !still_[body] ? body : -1; };
   exact_.clear(), bearing_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
@@ -547,7 +548,7 @@ bool Sweeps<D>::stands(int island, double h) {
                       .arm_b = touch.arm_b,
                       .friction = touch.mu,
                       .force = (touch.pressed * touch.n + touch.rubbed) / h});
-    if (exact_.size() > Statics<D>::kMost) return false;
+    if (int(exact_.size()) > most) return false;
   }
   rotations_.resize(stances_.size());
   for (const auto& touch : exact_) {
@@ -589,7 +590,8 @@ bool Sweeps<D>::stand(State<D>& state, double h) {
   for (const Joint<D>& joint : model_.joints) restless(joint.a.body), restless(joint.b.body);
   bool froze = false;
   for (int root = 0; root < n; ++root) {
-    if (still_[root] || islands_.root(root) != root || !ripe_[root] || !stands(root, h)) continue;
+    if (still_[root] || islands_.root(root) != root || !ripe_[root] || !stands(root, h, Statics<D>::kMost))
+      continue;
     for (int i = 0; i < n; ++i) {
       if (!still_[i] && islands_.root(i) == root) state.frozen[i] = 1, froze = true;
     }
@@ -689,7 +691,7 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
       if (!still_[i] && islands_.root(i) == root) quiet = std::min(quiet, state.quiet[i]);
     }
     while (2 * due <= quiet) due *= 2;
-    if (quiet - double(every_) * h < due && stands(root, h)) left_[root] = 0;
+    if (quiet - double(every_) * h < due && stands(root, h, kFew)) left_[root] = 0;
   }
   bool froze = false;
   for (int i = 0; i < n; ++i) {

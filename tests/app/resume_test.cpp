@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSmall = " --size 96x54 --fps 10 --progress none";
-constexpr const char* kSmallest = " --size 96x54 --fps 4 --progress none";
+constexpr const char* kSmallest = " --size 96x54 --fps 4 --set physics.rate=120 --progress none";
 
 using Resume = Program;
 using Shards = Program;
