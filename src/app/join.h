@@ -11,7 +11,7 @@ namespace obscura::app {
 
 /// What of a film is made of its takes.
 struct Joining {
-  std::int64_t takes = 0;              // the first so many, those that are missing left out
+  std::int64_t takes = 0;                // the first so many, those that are missing left out
   std::optional<std::string> instead{};  // the name of a film that is not whole
   std::optional<std::string> cut{};      // a part that goes behind them
 };

@@ -15,7 +15,8 @@ struct StripVertex {
   float lateral = 0, past = 0, half = 0;  // distance to the middle line, past the end, half width
   draw::Color color;
   float tangent_x = 1, tangent_y = 0, butt = 0, side = 0;
-  float cut_x = 0, cut_y = 0, cut_normal_x = 0, cut_normal_y = 0;  // `cut_x`: of a whole stroke, half its length
+  float cut_x = 0, cut_y = 0, cut_normal_x = 0,
+        cut_normal_y = 0;  // `cut_x`: of a whole stroke, half its length
 };
 
 struct Strip {

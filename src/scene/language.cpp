@@ -13,9 +13,9 @@ constexpr Range kNotNegative{0};
 constexpr Range kUnit{0, 1};
 constexpr Range kSpeeds{0.001, 1000};
 
-const std::vector<std::string> kQuantities{"energy", "kinetic", "potential", "gravity", "springs", "x",
-                                           "height", "speed",   "vx",        "vy",      "angle",   "spin",
-                                           "length", "push"};
+const std::vector<std::string> kQuantities{"energy", "kinetic", "potential", "gravity", "springs",
+                                           "x",      "height",  "speed",     "vx",      "vy",
+                                           "angle",  "spin",    "length",    "push"};
 
 }  // namespace
 

@@ -182,7 +182,8 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
 
 std::unique_ptr<sim::Run> Scene::run(std::span<const std::uint64_t> saved) const {
   return std::visit(
-      [&](const auto& it) { return trajectory ? sim::playback(it, trajectory) : sim::run(it, saved); }, world);
+      [&](const auto& it) { return trajectory ? sim::playback(it, trajectory) : sim::run(it, saved); },
+      world);
 }
 
 std::vector<sim::Trouble> Scene::forebodings() const {

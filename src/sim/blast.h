@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "sim/shape.h"
 #include "sim/spatial.h"
 
@@ -11,13 +9,6 @@ namespace obscura::sim {
 /// centre itself, where it has no direction.
 template <int D>
 Vec<D> blast(const Explosion<D>& explosion, const Vec<D>& place);
-
-/// Whether one is under way.
-template <int D>
-bool exploding(const State<D>& state) {
-  return std::any_of(state.blasts.begin(), state.blasts.end(),
-                     [](const Blast<D>& one) { return one.on != 0; });
-}
 
 /// What explosions do to whole bodies: the force on each of a body's points (its tips), added up, and its
 /// torque about the centre of mass. Of n points a body feels about n times what a particle feels there, as

@@ -32,8 +32,8 @@ struct Crowd {
 template <int D>
 Crowd crowd(const Model<D>& model);
 
-/// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event` and
-/// chains are the direct one's.
+/// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event`
+/// and chains are the direct one's.
 template <int D>
 Solver solver(const Model<D>& model);
 

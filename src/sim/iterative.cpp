@@ -90,7 +90,8 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   } else if (!known) {
     seat(state, false);
   }
-  if (state.step == 0 && due && !exploding(state) && rest_.begin(state, pairs_, poses_, v_, movers_)) stand(state);
+  if (state.step == 0 && due && !blasting(state) && rest_.begin(state, pairs_, poses_, v_, movers_))
+    stand(state);
   blows_.begin();
   outran_ = false;
   const double part = h / stretches_;

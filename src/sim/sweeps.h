@@ -78,8 +78,8 @@ class Sweeps final : public ContactStep<D> {
   void rejoin(State<D>& state, double h);
   void report(State<D>& state, double h) const;
   void join(const State<D>& state);
-  bool stands(int island, double h, int most);
-  bool stand(State<D>& state, double h);
+  bool held(int island, double h, int most);
+  bool begin_still(State<D>& state, double h);
   bool rest(State<D>& state, double h);
   double swiftness(int body) const;
 

@@ -136,7 +136,8 @@ TEST_F(Golden, OnAnotherOpenGlStatesAreComparedAloneIfAskedFor) {
   EXPECT_THAT(run.out, HasSubstr("the state is the same; drawn by another OpenGL"));
   // on the same OpenGL it excuses nothing
   ASSERT_EQ(
-      obscura("render scene.toml --at 0 --size 160x90 --set ball.color=purple -o golden/scene-0.png").exit, 0);
+      obscura("render scene.toml --at 0 --size 160x90 --set ball.color=purple -o golden/scene-0.png").exit,
+      0);
   EXPECT_EQ(golden("--other-gl-states").exit, 1);
 }
 

@@ -208,7 +208,8 @@ using Help = Program;
 
 TEST_F(Help, OfEachCommandShowsExamples) {
   EXPECT_EQ(obscura("--help").exit, 0);
-  for (const char* command : {"render", "new", "check", "states", "sweep", "compare", "verify", "golden", "docs"}) {
+  for (const char* command :
+       {"render", "new", "check", "states", "sweep", "compare", "verify", "golden", "docs"}) {
     const Outcome run = obscura(std::string(command) + " --help");
     EXPECT_EQ(run.exit, 0);
     EXPECT_NE(run.out.find("Examples:"), std::string::npos) << command;

@@ -112,7 +112,7 @@ TEST_F(Limits, WithoutMemoryItSaysSoAndNeverCrashes) {
   // from where it just starts to where all is well; libraries that do not look are among those refused
   int refused = 0, done = 0;
   std::map<std::string, std::string> right;  // what each writes where there is no limit
-  for (int megabytes = 40; megabytes <= 1400; megabytes += megabytes < 400 ? 30 : 250) {
+  for (int megabytes = 40; megabytes <= 1400; megabytes += megabytes < 400 ? 20 : 200) {
     const std::string limit = "ulimit -v " + std::to_string(megabytes * 1000) + "; ";
     if (shell(limit + OBSCURA_BINARY " docs keys > /dev/null").exit == 127) continue;  // the loader's
     for (const char* command :

@@ -416,7 +416,8 @@ TEST(Cone, HoldRepeatsWhatSolveFound) {
 }
 
 TEST(Cone, SweepsComeNearTheForces) {
-  // a stack of three: what errors are left shrinks by a fixed part each sweep, below 1e-10 of the weight in 3,000
+  // a stack of three: what errors are left shrinks by a fixed part each sweep, below 1e-10 of the weight in
+  // 3,000
   const Heap heap = stack({1, 2, 1}, 0.5);
   const MatrixXd K = heap.K();
   const VectorXd b = heap.b();

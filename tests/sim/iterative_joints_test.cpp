@@ -221,7 +221,7 @@ TEST(IterativeJoints, TenFiguresInAHeapHangTogether) {
     EXPECT_LT(angle, joint.upper + 1e-3);
   }
   for (const Vec2& x : now.x) EXPECT_TRUE(x[0] > 0 && x[0] < 4 && x[1] > 0 && x[1] < 20) << x.transpose();
-  // a third of the thinnest limb: a heap that still settles, a few sweeps a step
+  // an eighth of the thinnest limb: a heap that still settles, a few sweeps a step
   EXPECT_LT(deepest(now), 1e-2);
 }
 
