@@ -124,7 +124,7 @@ bool Direct<D>::may_close(const State<D>& state, double h, Couple couple) const 
 // their stances.
 template <int D>
 double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
-  const auto [a, b] = couple;
+  const int a = couple.a, b = couple.b;  // no binding: lambdas of clang 14 cannot hold one
   const double ways = way(state, a, h) + way(state, b, h);
   const auto held = [&](const ContactKey& key) {
     for (const Held& one : held_) {
