@@ -66,6 +66,7 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
   if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
   if (!linkage_.empty()) linkage_.ready(state);
+  if (state.step == 0) linkage_.set_off(state);
 
   const bool due = state.step % every_ == 0;
 

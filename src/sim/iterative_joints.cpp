@@ -20,9 +20,13 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kRounds = 8;          // of Newton's
-constexpr int kBoundedRounds = 16;  // a sweep, of rows with bounds among themselves: they begin from nothing
-constexpr double kLocked = 1e-9;    // of a row's own: what it can move once joints have answered
+constexpr int kRounds = 8;           // of Newton's
+constexpr int kSearches = 30;        // the same, with a search along each
+constexpr double kLeastPart = 1e-3;  // of a way, in it
+constexpr double kPut = 1e-9;        // of the scene's size: how far off joints may stay
+constexpr int kBoundedRounds = 16;   // a sweep, of rows with bounds among themselves: they begin from nothing
+constexpr double kLocked = 1e-9;     // of a row's own: what it can move once joints have answered
+constexpr double kApart = 1e-9;      // 1/s, of the scene's size: slower at a joint is rounding
 constexpr double kEndless = 1e300;
 
 }  // namespace
@@ -329,6 +333,26 @@ void Linkage<D>::shift_bounded(const Bounded& bounded, double by) {
 }
 
 template <int D>
+void Linkage<D>::set_off(State<D>& state) {
+  if (bodies_.empty()) return;
+  gather(state);
+  for (const int i : bodies_) {
+    at_[i] = sim::stance(state, i);
+    if (const int k = turning(state, i); k >= 0) turn_[i] = state.turn[k];
+  }
+  lay();
+  double fastest = 0;
+  for (const Row<D>& row : rows_) fastest = std::max(fastest, std::fabs(speed(row, at_)));
+  if (fastest <= kApart * model_.scale) return;
+  agree();
+  for (const int i : bodies_) {
+    if (light_[i] == 0) continue;
+    state.v[i] = at_[i].v;
+    if (const int k = turning(state, i); k >= 0) state.spin[k] = at_[i].w;
+  }
+}
+
+template <int D>
 void Linkage<D>::begin(double h) {
   lay();
   bind(h);
@@ -378,6 +402,23 @@ void Linkage<D>::agree() {
   for (std::size_t r = 0; r < rows_.size(); ++r) push(rows_[r], rhs_[r]);
 }
 
+// how far joints are off, at most; into rhs_ what would bring each row back
+template <int D>
+double Linkage<D>::astray() {
+  double worst = 0;
+  for (int k = 0; k < int(held_.size()); ++k) {
+    const Joint<D>& joint = model_.joints[held_[k]];
+    Row<D> out[kMostHeld<D>];
+    double off[kMostHeld<D>];
+    const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off);
+    for (int i = 0; i < n; ++i) {
+      rhs_[factors_.first(k) + i] = -off[i];
+      worst = std::max(worst, std::fabs(off[i]));
+    }
+  }
+  return worst;
+}
+
 // places back onto what joints keep, and within what they let
 template <int D>
 void Linkage<D>::put_back(double h) {
@@ -385,37 +426,52 @@ void Linkage<D>::put_back(double h) {
     if (double off = 0; left(bounded_[k], off) && off < 0)
       shift_bounded(bounded_[k], -off * bounded_[k].give);
   }
+  begun_at_ = at_, begun_turn_ = turn_;
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
-  const double close = 1e-15 * model_.scale;
-  double before = kEndless;
-  for (int round = 0; round < kRounds; ++round) {
-    double worst = 0;
-    for (int k = 0; k < int(held_.size()); ++k) {
-      const Joint<D>& joint = model_.joints[held_[k]];
-      Row<D> out[kMostHeld<D>];
-      double off[kMostHeld<D>];
-      const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off);
-      for (int i = 0; i < n; ++i) {
-        rhs_[factors_.first(k) + i] = -off[i];
-        worst = std::max(worst, std::fabs(off[i]));
-      }
-    }
-    if (worst <= close || worst > 0.9 * before) break;
+  const double close = 1e-15 * model_.scale, enough = kPut * model_.scale;
+  double worst = astray(), before = kEndless;
+  for (int round = 0; round < kRounds && worst > close && worst <= 0.9 * before; ++round) {
     before = worst;
     factors_.solve(rhs_.data());
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       shifts_[r] += rhs_[r];
       shift(rows_[r], rhs_[r]);
     }
+    worst = astray();
   }
   for (double& s : shifts_) s /= h;
+  old_rows_ = rows_;
+  if (worst <= enough) return;
+  at_.swap(begun_at_), turn_.swap(begun_turn_);
+  std::fill(shifts_.begin(), shifts_.end(), 0.0);
+  search();
+}
+
+// the same where the factors at hand lead astray, as on levers that turn far in a step: anew in each round,
+// and no farther than it helps. Velocities know nothing of it
+template <int D>
+void Linkage<D>::search() {
+  double worst = astray();
+  for (int round = 0; round < kSearches && worst > kPut * model_.scale; ++round) {
+    lay();
+    astray();
+    factors_.solve(rhs_.data());
+    begun_at_ = at_, begun_turn_ = turn_, ways_ = rhs_;
+    const double before = worst;
+    for (double part = 1; part > kLeastPart; part /= 2) {
+      at_ = begun_at_, turn_ = begun_turn_;
+      for (std::size_t r = 0; r < rows_.size(); ++r) shift(rows_[r], part * ways_[r]);
+      worst = astray();
+      if (worst < (1 - part / 4) * before) break;
+    }
+    if (worst >= before) break;
+  }
 }
 
 template <int D>
 void Linkage<D>::finish(double h) {
   if (bodies_.empty()) return;
   put_back(h);
-  rows_.swap(old_rows_);
   lay();
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     push(old_rows_[r], shifts_[r] - 0.5 * impulses_[r]);

@@ -34,6 +34,10 @@ class Linkage {
   /// Which joints hold in this state.
   void gather(const State<D>& state);
 
+  /// Before the first step: velocities with which no joint comes apart, by the impulses of its joints. A step
+  /// goes half its way with the velocities it begins with.
+  void set_off(State<D>& state);
+
   /// Rows of a step of h (s) where bodies stand now. All forces begin at zero.
   void begin(double h);
 
@@ -88,7 +92,9 @@ class Linkage {
   void push_bounded(int part);
   void shift_bounded(const Bounded& bounded, double by);
   bool left(const Bounded& bounded, double& off) const;
+  double astray();
   void put_back(double h);
+  void search();
 
   const Model<D>& model_;
   Stance<D> room_;
@@ -96,6 +102,8 @@ class Linkage {
   std::vector<char> member_;
   std::vector<Stance<D>> at_;
   std::vector<Turn<D>> turn_;
+  std::vector<Stance<D>> begun_at_;  // before they are put back
+  std::vector<Turn<D>> begun_turn_;
   std::vector<double> light_;  // 1/kg; 0 of what cannot move
 
   std::vector<char> broken_, frozen_;  // that the plan is of
@@ -105,7 +113,7 @@ class Linkage {
   std::vector<int> part_of_body_;
   Blocks<kMostHeld<D>> factors_;  // of K = J M^-1 J'
   std::vector<Row<D>> rows_, old_rows_;
-  std::vector<double> impulses_, totals_, rhs_, shifts_;
+  std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
   std::vector<Bounded> bounded_;  // the first `active_`
   std::size_t active_ = 0;
   std::vector<int> by_part_, part_first_;  // of them, those of part -1 first; where each part's begin

@@ -55,6 +55,7 @@ void Sweeps<D>::step(State<D>& state, double t, double h) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n);
   linkage_.ready(state);
+  if (state.step == 0) linkage_.set_off(state);
   ready(state);
   find(h);
   if (wake(state, h) || (state.step == 0 && begin_still(state, h))) ready(state), find(h);
