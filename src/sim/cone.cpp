@@ -16,6 +16,8 @@ namespace {
 constexpr double kSoftness[] = {1e-7, 1e-4, 1e-3};
 constexpr double kExact = 1e-14;  // no better is to be had
 constexpr int kTurns = 30;        // Newton steps for directions of slip
+constexpr int kPatience = 8;      // of them, in which the residual shall halve
+constexpr double kNear = 1e-6;    // no other set of modes is nearer
 constexpr int kSmall = 64;        // rows: so few that a factorisation costs nothing
 constexpr int kSweeps[] = {200, 1000};
 constexpr long kMostSets = 5000;  // of modes, tried one by one
@@ -84,11 +86,13 @@ bool Cone<D>::attempt(std::span<const ConeBlock<D>> blocks, int switches) {
     balance(blocks, trial_);
     double residual = check(blocks, trial_);
     if constexpr (D > 2) {
-      for (int k = 0; k < kTurns && residual > kExact; ++k) {
+      double aim = residual / 2;
+      for (int k = 0, left = kPatience; k < kTurns && residual > kExact && left > 0; ++k, --left) {
         const double before = residual;
         if (!turn(blocks, trial_)) break;
         residual = check(blocks, trial_);
         if (residual <= kTolerance && residual >= before / 2) break;
+        if (residual <= aim) aim = residual / 2, left = kPatience + 1;
       }
     }
     if (residual < best_residual_) best_residual_ = residual, best_ = trial_, best_g_ = g_;
@@ -142,6 +146,7 @@ bool Cone<D>::enumerate(std::span<const ConeBlock<D>> blocks) {
       trial_[i] = fit(blocks[i], mode);
     }
     if (attempt(blocks, 0)) return true;
+    if (tries_ > patience) return false;
   }
   return false;
 }
@@ -161,16 +166,16 @@ ConeReport Cone<D>::solve(const Eigen::Ref<const Eigen::MatrixXd>& K,
 
   // as sweeps leave it
   for (const int sweeps : kSweeps) {
-    if (found || best_residual_ <= enough) break;
+    if (found || best_residual_ <= enough || tries_ > patience) break;
     sweep(K, b, blocks, trial_, f, sweeps);
     for (std::size_t i = 0; i < blocks.size(); ++i) trial_[i] = fit(blocks[i], trial_[i]);
     found = attempt(blocks, 6);
   }
 
   // as softer rows have it
-  const bool all = thorough || n_ <= kSmall;
+  const bool all = (thorough || n_ <= kSmall) && tries_ <= patience;
   found = found || best_residual_ <= enough;
-  for (std::size_t i = 0; i < (all ? std::size(kSoftness) : 1) && !found; ++i) {
+  for (std::size_t i = 0; i < (all ? std::size(kSoftness) : 1) && !found && tries_ <= patience; ++i) {
     if (i == 0) guess_.begin(K_, b_, blocks, first_, sigma_);
     const int systems = guess_.systems();
     const bool there = guess_.guess(kSoftness[i], trial_, all);
@@ -178,7 +183,7 @@ ConeReport Cone<D>::solve(const Eigen::Ref<const Eigen::MatrixXd>& K,
     if (!there && !all) break;
     found = attempt(blocks, all ? 20 : 6);
   }
-  if (!found && all) found = enumerate(blocks);
+  if (!found && all && best_residual_ > kNear && tries_ <= patience) found = enumerate(blocks);
   found = found || best_residual_ <= enough;
 
   for (int i = 0; i < n_; ++i) f[i] = sigma_[i] * best_g_[i];

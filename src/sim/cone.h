@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,8 @@ class Cone {
 
   /// The residual that is good enough once nothing better was met.
   double enough = kTolerance;
+  /// Systems solved after which it begins no other way to look.
+  int patience = std::numeric_limits<int>::max();
 
   /// Answers w this small, in b's unit, are rounding: for rows whose every term is.
   double negligible = 0;

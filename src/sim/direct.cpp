@@ -33,6 +33,8 @@ double hull_thickness(const Shape<2>&) { return 0; }
 constexpr double kCreep = 1e-6;      // of sqrt(g L)
 constexpr double kSunk = 0.1;        // of the thinnest: how far two may come into each other in one piece
 constexpr double kMostPieces = 200;  // of a step that is done roughly
+constexpr double kTiny = 1e-6;       // of a step: a cut that leads nowhere
+constexpr int kStuck = 16;           // such cuts, one after another
 constexpr double kManyLooks = 3e5;   // at couples, before a step is
 
 // the least thickness of a shape, m
@@ -139,6 +141,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   ready(state);
   impulses_.clear(), contacts_ = state.contacts, joint_forces_ = state.joint_forces;
   double done = 0;
+  int tiny = 0;  // cuts in a row that led nowhere
   forced_.clear();
   rough_ = false, work_ = 0, looks_ = 0;
   openings_ = most_openings_, let_go_.reset(), vague_.clear();
@@ -157,7 +160,8 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     if ((work_ > budget_ || looks_ > kManyLooks) && cuts > 0) rough_ = true;
     const bool chosen = !rough_ && choose(state, t + done);
     if (!chosen) rough_ = model_.collision != Collision::event;
-    if (chosen && cuts < most_cuts_) {
+    const bool stuck = tiny > kStuck;
+    if (chosen && cuts < most_cuts_ && !stuck) {
       if (let_go_) part_ways();
       remember();
       if (coming_apart()) project(state);
@@ -179,7 +183,10 @@ void Direct<D>::step(State<D>& state, double t, double h) {
       settle(state, t + done, length);
       cut = length < h - done;
     }
-    if (length > 0) forced_.clear(), forced_again_ = false;
+    if (length > 0) {
+      forced_.clear(), forced_again_ = false;
+      tiny = length < kTiny * h ? tiny + 1 : 0;
+    }
     done = cut ? done + length : h;
     // ever faster impacts count as rest, so that what bounces ever faster comes to an end
     if (cuts > patience_ && cuts % 2 == 0) rest_ = std::min(fastest, 2 * rest_);

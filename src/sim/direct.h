@@ -101,6 +101,7 @@ class Direct final : public ContactStep<D>, private System {
   void split();
   void assemble();
   bool solve();
+  void sweep(int sweeps);
   void hold();
   void least();
   template <class Solve>

@@ -69,17 +69,25 @@ void Direct<D>::assemble() {
 // f_ and modes_ of all rows under b_, exactly; false where a part has none. Or roughly
 template <int D>
 bool Direct<D>::solve() {
+  if (rough_) {
+    sweep(kSweeps);
+    return true;
+  }
   bool found = true;
   each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
-    if (rough_)
-      cone_.sweep(K_, part_b_, part_blocks_, modes, part_f_, kSweeps);
-    else {
-      const ConeReport report = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_);
-      found = report.found && found;
-      work_ += double(report.tries) * part_rows_.size() * part_rows_.size() * part_rows_.size();
-    }
+    const ConeReport report = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_);
+    found = report.found && found;
+    work_ += double(report.tries) * part_rows_.size() * part_rows_.size() * part_rows_.size();
   });
   return found;
+}
+
+// the same, roughly
+template <int D>
+void Direct<D>::sweep(int sweeps) {
+  each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
+    cone_.sweep(K_, part_b_, part_blocks_, modes, part_f_, sweeps);
+  });
 }
 
 // f_ where what holds goes on holding
@@ -141,10 +149,12 @@ void Direct<D>::least() {
 
 template void Direct<2>::split();
 template bool Direct<2>::solve();
+template void Direct<2>::sweep(int);
 template void Direct<2>::hold();
 template void Direct<2>::least();
 template void Direct<3>::split();
 template bool Direct<3>::solve();
+template void Direct<3>::sweep(int);
 template void Direct<3>::hold();
 template void Direct<3>::least();
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/direct.h"
 
@@ -16,6 +17,11 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kSlow = 8;  // of what friction takes away from the slip in a step; four corners share a body
+// of what aims: its ways are wanted, not its forces, and four corners that turn about one of them at a crawl
+// have those only after a thousand attempts
+constexpr double kEnough = 1e-7;
+constexpr int kPatience = 300;
+constexpr int kSweeps = 200;  // where it finds none
 
 }  // namespace
 
@@ -49,7 +55,10 @@ void Direct<D>::aim_slow_slides(State<D>& state, double t, double h) {
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(i, rate) + rows_[i].drift);
   guess(h);
-  solve();
+  const double enough = std::exchange(cone_.enough, kEnough);
+  const int patience = std::exchange(cone_.patience, kPatience);
+  if (!solve()) sweep(kSweeps);
+  cone_.enough = enough, cone_.patience = patience;
   for (Held& held : held_) {
     if (!held.slow) continue;
     Vec<D> drag = Vec<D>::Zero();

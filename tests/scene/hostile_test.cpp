@@ -312,5 +312,25 @@ TEST(Hostile, AHundredThousandBodiesAreRead) {
   EXPECT_EQ(it.plane().model.bodies.size(), 100'000u);
 }
 
+// Friction stops and turns these two ten thousand times within a thousandth of a step, and four level corners
+// that turn about one of them have their directions only by a long search: a minute for a second, once.
+TEST(Hostile, TwoThatCrawlInCornersByEventsComeToTheEnd) {
+  const Scene it = parse(
+      "[room]\nsize = [1, 1, 1]\n[physics]\ncollision = \"event\"\n"
+      "[[capsule]]\nposition = [0.25, 0.25, 0.25]\nvelocity = [2.998, 0.831, 1.822]\nradius = 0.065\n"
+      "length = 0.291\nspin = [360.2, 9.1, -127.9]\nelasticity = 0\nfriction = 0.2\n"
+      "[[box]]\nposition = [-0.25, 0.25, -0.25]\nvelocity = [2.226, -0.816, 2.591]\n"
+      "size = [0.162, 0.097, 0.055]\nspin = [407.8, -76.4, 384.1]\nelasticity = 0\nfriction = 0.2",
+      "crawl.toml");
+  const auto run = it.run();
+  double before = std::get<sim::Snapshot>(run->at({0, 1})).energies.total();
+  for (int k = 1; k <= 10; ++k) {
+    const auto now = std::get<sim::Snapshot>(run->at({k, 10}));
+    EXPECT_LE(now.energies.total(), before + 1e-9) << k;
+    for (const auto& contact : now.contacts) EXPECT_GE(contact.gap, -1e-9) << k;
+    before = now.energies.total();
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene
