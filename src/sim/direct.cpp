@@ -158,10 +158,9 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     bool held_again = false;  // what let go is to be held: the same instant once more
     // what is as fast as 1e6 room heights a second has as many places to be looked for
     if ((work_ > budget_ || looks_ > kManyLooks) && cuts > 0) rough_ = true;
-    const bool chosen = !rough_ && choose(state, t + done);
+    const bool chosen = !rough_ && choose(state, t + done) && !jammed();
     if (!chosen) rough_ = model_.collision != Collision::event;
-    const bool stuck = tiny > kStuck;
-    if (chosen && cuts < most_cuts_ && !stuck) {
+    if (chosen && cuts < most_cuts_ && tiny <= kStuck) {
       if (let_go_) part_ways();
       remember();
       if (coming_apart()) project(state);

@@ -74,6 +74,7 @@ class Direct final : public ContactStep<D>, private System {
   void lay_rows(Held& held, const Spin<D>& turn);
   void lay_blocks(bool impulses);
   bool choose(State<D>& state, double t);
+  bool jammed() const;
   void guess(double h);
   bool acts(const Held& held) const;
   double moves(int row) const;

@@ -12,6 +12,12 @@
 
 namespace obscura::sim {
 
+namespace {
+
+constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: a stack's floor bears it once
+
+}  // namespace
+
 template <int D>
 void Direct<D>::stand(const State<D>& state) {
   stances_.resize(model_.bodies.size());
@@ -274,6 +280,25 @@ bool Direct<D>::choose(State<D>& state, double t) {
     mode.hold = Hold::slide, mode.along = block.sliding ? block.direction : Tangent<D>::Zero();
   }
   return found;
+}
+
+// Whether a slide presses what it rubs on out of all proportion to what there is to bear: near the angle at
+// which it locks forces grow without bound, and what holds them as equalities throws bodies away. An impact
+// ends that.
+template <int D>
+bool Direct<D>::jammed() const {
+  double most = 0, load = 0;
+  for (const Held& held : held_) {
+    if (held.kind != Held::Kind::contact || modes_[held.block].hold != Hold::slide) continue;
+    most = std::max(most, f_[held.first]);
+  }
+  if (most == 0) return false;
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  for (int i = 0; i < int(light_.size()); ++i) load += light_[i] > 0 ? g / light_[i] : 0;
+  for (int i = 0; i < int(rows_.size()); ++i) {
+    if (const double k = answer(i); k > 0) load += std::fabs(b_[i]) / k;
+  }
+  return most > kJam * load;
 }
 
 template <int D>

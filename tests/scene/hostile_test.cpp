@@ -332,5 +332,34 @@ TEST(Hostile, TwoThatCrawlInCornersByEventsComeToTheEnd) {
   }
 }
 
+// Two boxes on a rod wedge themselves in after three seconds: near the angle at which friction locks, the
+// forces that would keep their slides grow without bound, and threw them out of all places.
+TEST(Hostile, WhatJamsIsStopped) {
+  const Scene it = parse(
+      "[room]\nsize = [3, 3]\n[physics]\nrate = 240\nsolver = \"direct\"\nimpacts = \"sequential\"\n"
+      "[[box]]\nname = \"b0\"\nposition = [0.75, 0.75]\nvelocity = [-2.173, -3.496]\nsize = [0.221, 0.11]\n"
+      "angle = 190.5\nspin = -295.9\nmass = 1\nelasticity = 0\nfriction = 0.5\n"
+      "[[box]]\nname = \"b1\"\nposition = [1.25, 2.75]\nvelocity = [-1.432, 1.226]\nsize = [0.193, 0.145]\n"
+      "angle = 134.2\nspin = -424.8\nmass = 10\nelasticity = 0\nfriction = 0.5\n"
+      "[[box]]\nposition = [2.25, 1.25]\nvelocity = [1.842, 2.804]\nsize = [0.057, 0.062]\n"
+      "angle = 223.8\nspin = -386.3\nmass = 1\nelasticity = 0\nfriction = 0.5\n"
+      "[[ball]]\nposition = [2.25, 0.75]\nvelocity = [3.806, 2.649]\nradius = 0.040\nspin = 440.7\n"
+      "mass = 1\nelasticity = 0\nfriction = 0.5\n"
+      "[[polygon]]\nposition = [2.75, 1.75]\nvelocity = [2.931, 3.082]\nangle = 13\nmass = 1\n"
+      "points = [[-0.15, -0.1], [0.15, -0.1], [0.1, 0.15], [-0.05, 0.18]]\nelasticity = 0\nfriction = 0.5\n"
+      "[[joint]]\ntype = \"rod\"\nbetween = [\"b1\", \"b0\"]",
+      "jam.toml");
+  const auto run = it.run();
+  double before = std::get<sim::Snapshot>(run->at({0, 1})).energies.total();
+  const double begun = before;
+  for (int k = 1; k <= 40; ++k) {
+    const auto moment = run->at({k, 10});
+    ASSERT_TRUE(std::holds_alternative<sim::Snapshot>(moment)) << k;
+    const double now = std::get<sim::Snapshot>(moment).energies.total();
+    EXPECT_LE(now, before + 1e-9 * begun) << k;
+    before = now;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene
