@@ -18,6 +18,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kFlight = 1e-9;     // of its motion: more no body gains alone
+constexpr double kJointed = 1e-3;    // the same on joints, by the error of a step
 constexpr double kRounding = 1e-13;  // of all that is in motion or may fall
 
 template <int D>
@@ -95,11 +96,12 @@ template <int D>
 void Account<D>::gather(const State<D>& state) {
   const int n = int(weights_.size());
   const auto counts = [&](int body) { return body >= 0 && weights_[body].mass > 0; };
-  tied_.assign(n, 0);
+  tied_.assign(n, 0), jointed_.assign(n, 0);
+  const bool exact = model_.integrator == Integrator::rk4;  // others may win by their law
   groups_.reset(n), bound_.assign(n, {}), sums_.assign(n, {});
   const auto link = [&](int a, int b, bool fast) {
     for (const int body : {a, b}) {
-      if (counts(body)) tied_[body] = 1;
+      if (counts(body)) (exact && fast ? jointed_ : tied_)[body] = 1;
     }
     if (counts(a) && counts(b)) {
       islands_.join(a, b);
@@ -136,7 +138,7 @@ void Account<D>::gather(const State<D>& state) {
     group.lift -= m * model_.gravity.dot(state.x[i] - x_[i]), group.mass += m;
     group.held = group.held || bound_[i].held;
     it.touched = it.touched || touched_[i], it.driven = blasting;
-    it.tied = it.tied || tied_[i];
+    it.tied = it.tied || tied_[i], it.jointed = it.jointed || jointed_[i];
     it.rooted = it.rooted || rooted_[i] || (frozen && state.frozen[i]);
   }
   for (int i = 0; i < n; ++i) {
@@ -158,7 +160,8 @@ void Account<D>::gather(const State<D>& state) {
   }
   // who was held back before it met anything, or by what is no longer near
   for (Island& it : sums_) {
-    if (!it.touched && !it.tied && it.gain > kFlight * it.kinetic) it.touched = it.rooted = true;
+    if (!it.touched && !it.tied && it.gain > (it.jointed ? kJointed : kFlight) * it.kinetic)
+      it.touched = it.rooted = true;
   }
 }
 

@@ -46,7 +46,8 @@ class Account {
     double gain = 0, granted = 0, kinetic = 0, mass = 0,
            height = 0;                                          // J, J, J, kg; J of new height of what rose
     Vec<D> momentum = Vec<D>::Zero(), middle = Vec<D>::Zero();  // kg m/s; kg m
-    bool touched = false, rooted = false, chained = false, driven = false, tied = false;
+    bool touched = false, rooted = false, chained = false, driven = false;
+    bool tied = false, jointed = false;  // by springs; by joints
     // as it moves as one: about its middle
     Spin<D> turning = Spin<D>::Zero();  // angular momentum, then spin
     Eigen::Matrix<double, kSpins<D>, kSpins<D>> inertia = Eigen::Matrix<double, kSpins<D>, kSpins<D>>::Zero();
@@ -70,7 +71,7 @@ class Account {
   std::vector<double> before_, now_;                  // one a body, J
   std::vector<double> springs_before_, springs_now_;  // J
   Islands islands_, groups_;
-  std::vector<char> touched_, rooted_, tied_;
+  std::vector<char> touched_, rooted_, tied_, jointed_;
   std::vector<double> granted_;  // one a body
   std::vector<Island> sums_;     // at the lowest of their bodies
   std::vector<Bound> bound_;     // likewise

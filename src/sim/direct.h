@@ -207,7 +207,8 @@ class Direct final : public ContactStep<D>, private System {
   bool rough_ = false;  // of this step: forces by sweeps from here on
   double work_ = 0;     // of this step: rows^3 solved
   double looks_ = 0;    // of this step: how often more than once a stretch couples were looked at
-  Motion begun_, saved_;
+  Motion begun_, saved_, put_;
+  Eigen::VectorXd ways_;
   std::vector<Vec<D>> placed_;                   // x before places are put right
   std::vector<Contact<D>> contacts_, impulses_;  // of this step
   std::vector<Vec<D>> joint_forces_;             // of this step

@@ -14,6 +14,7 @@ namespace obscura::sim {
 
 namespace {
 
+constexpr double kLeastPart = 1e-3;  // of the way back to where joints belong
 constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: a stack's floor bears it once
 
 }  // namespace
@@ -349,9 +350,8 @@ void Direct<D>::project(State<D>& state) {
     }
     reach();
   };
-  placed_ = state.x;
-  double moved = 0;
-  for (int round = 0; round < 3; ++round) {
+  // how far they are off, at most; into b_ what would bring each row back
+  const auto astray = [&] {
     again();
     chosen_.clear();
     double worst = 0;
@@ -364,17 +364,37 @@ void Direct<D>::project(State<D>& state) {
         worst = std::max(worst, std::abs(b_[held.first + i]));
       }
     }
-    if (worst <= 1e-14 * model_.scale) break;
+    return worst;
+  };
+  placed_ = state.x;
+  double moved = 0, worst = astray();
+  for (int round = 0; round < 3 && worst > 1e-14 * model_.scale; ++round) {
     moved = std::max(moved, worst);
     least();
-    jump(state, true);
-    if (worst <= 1e-9 * model_.scale) break;
+    if (worst <= 1e-9 * model_.scale) {
+      jump(state, true);
+      break;
+    }
+    // rows that turn far, or hardly move what they hold, lead astray: no farther than it helps
+    keep(state, put_);
+    ways_ = f_;
+    double left = worst;
+    for (double part = 1; part > kLeastPart; part /= 2) {
+      f_ = part * ways_;
+      jump(state, true);
+      left = astray();
+      if (left <= worst) break;
+      restore(put_, state);
+      again();
+    }
+    if (left > worst) break;
+    worst = left;
   }
   if (moved > closed_ && !rough_) pay_for(state);
 
   again();
   chosen_.clear();
-  double worst = 0;
+  worst = 0;
   b_.setZero(rows_.size());
   for (const Held& held : held_) {
     if (!acts(held)) continue;

@@ -441,6 +441,7 @@ void solid_gaps(const Couple& couple, double margin, std::vector<Gap<3>>& out) {
   const bool base_is_b = b.faces() && by_b.value >= by_a.value;
   const Touching touching{base_is_b ? b : a, base_is_b ? a : b, base_is_b, base_is_b ? by_b : by_a,
                           std::max({by_a.value, by_b.value, by_edges.value})};
+  if (touching.by.face < 0) return;  // what stands nowhere, of a state that is no more
   if (touching.other.edges() == 0) {
     const double slack = kAligned * touching.base.girth();
     if (touching.best <= 0 ||

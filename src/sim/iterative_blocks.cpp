@@ -1,12 +1,16 @@
 // L D L' by blocks. For each k in the order of elimination, of the entries A_ik below it
 //   L_ik = A_ik D_k^-1,   A_ij -= L_ik A_jk'
-// and a solution by L y = x, z = D^-1 y, L' x = z.
+// and a solution by L y = x, z = D^-1 y, L' x = z. Where rows imply others A has no inverse: with S = (A +
+// e)^-1, which has, over and over
+//   x := x + S A S (b - A x)
+// which finds what A can reach of b, and nothing along what it cannot.
 
 #include "sim/iterative_blocks.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "sim/islands.h"
@@ -16,15 +20,20 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kSlight = 1e-12;  // of a block's own size, added to its diagonal
+constexpr double kImplied = 1e-9;  // of it: pivots as small are of rows that others imply
+constexpr double kStiff = 1e-7;    // of it: added where there are such
+constexpr int kRefinements = 4;    // there
 
 // the inverse of a symmetric positive block of n rows, by Gauss and Jordan without pivoting
 template <int M>
-void invert(const std::array<double, M * M>& a, int n, double least, std::array<double, M * M>& out) {
+double invert(const std::array<double, M * M>& a, int n, double least, std::array<double, M * M>& out) {
   std::array<double, M* M> m = a;
   out = {};
+  double smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < n; ++i) out[i * M + i] = 1, m[i * M + i] += least;
   for (int k = 0; k < n; ++k) {
     const double pivot = 1 / std::max(m[k * M + k], least);
+    smallest = std::min(smallest, m[k * M + k]);
     for (int j = 0; j < n; ++j) m[k * M + j] *= pivot, out[k * M + j] *= pivot;
     for (int i = 0; i < n; ++i) {
       if (i == k) continue;
@@ -32,6 +41,7 @@ void invert(const std::array<double, M * M>& a, int n, double least, std::array<
       for (int j = 0; j < n; ++j) m[i * M + j] -= by * m[k * M + j], out[i * M + j] -= by * out[k * M + j];
     }
   }
+  return smallest;
 }
 
 }  // namespace
@@ -39,7 +49,7 @@ void invert(const std::array<double, M * M>& a, int n, double least, std::array<
 template <int M>
 void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& pairs) {
   const int n = int(sizes.size());
-  sizes_ = sizes;
+  sizes_ = sizes, pairs_ = pairs;
   first_.resize(n), rows_ = 0;
   for (int i = 0; i < n; ++i) first_[i] = rows_, rows_ += sizes[i];
   diagonal_.assign(n, {}), inverse_.assign(n, {}), entries_.assign(pairs.size(), {});
@@ -110,6 +120,14 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
 
 template <int M>
 void Blocks<M>::factorise() {
+  implied_.assign(parts(), 0);
+  if (eliminate()) eliminate();
+}
+
+// L and D; true where rows turned out to be implied by others
+template <int M>
+bool Blocks<M>::eliminate() {
+  bool found = false;
   for (Below& below : below_) below.l = {};
   for (const Source& source : sources_) {
     const Block& from = entries_[source.pair];
@@ -126,7 +144,9 @@ void Blocks<M>::factorise() {
     double own = 0;
     for (int i = 0; i < n; ++i) own = std::max(own, diagonal_[k][i * M + i]);
     const Block pivot = d[k];
-    invert<M>(pivot, n, kSlight * own, d[k]);
+    char& implied = implied_[part_[k]];
+    const double least = invert<M>(pivot, n, (implied ? kStiff : kSlight) * own, d[k]);
+    if (!implied && least < kImplied * own) implied = 1, found = true;
     for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
       const int rows = sizes_[below_[e].block];
       const Block a = below_[e].l;
@@ -154,6 +174,7 @@ void Blocks<M>::factorise() {
       below_[e].l = l;
     }
   }
+  return found;
 }
 
 template <int M>
@@ -163,6 +184,44 @@ void Blocks<M>::solve(double* x) const {
 
 template <int M>
 void Blocks<M>::solve(double* x, int part) const {
+  if (!implied_[part]) return substitute(x, part);
+  const auto each = [&](auto&& act) {
+    for (int p = parts_[part]; p < parts_[part + 1]; ++p) {
+      for (int r = first_[order_[p]]; r < first_[order_[p]] + sizes_[order_[p]]; ++r) act(r);
+    }
+  };
+  right_.resize(rows_), rest_.resize(rows_), way_.resize(rows_);
+  each([&](int r) { right_[r] = x[r], x[r] = 0; });
+  for (int round = 0; round < kRefinements; ++round) {
+    each([&](int r) { rest_[r] = right_[r], way_[r] = 0; });
+    take_product(x, rest_.data(), part);
+    substitute(rest_.data(), part);
+    take_product(rest_.data(), way_.data(), part);
+    substitute(way_.data(), part);
+    each([&](int r) { x[r] -= way_[r]; });
+  }
+}
+
+// y := y - A x
+template <int M>
+void Blocks<M>::take_product(const double* x, double* y, int part) const {
+  const auto take = [&](const Block& a, int i, int j, bool turned) {
+    for (int r = 0; r < sizes_[i]; ++r) {
+      for (int c = 0; c < sizes_[j]; ++c)
+        y[first_[i] + r] -= (turned ? a[c * M + r] : a[r * M + c]) * x[first_[j] + c];
+    }
+  };
+  for (int p = parts_[part]; p < parts_[part + 1]; ++p)
+    take(diagonal_[order_[p]], order_[p], order_[p], false);
+  for (std::size_t e = 0; e < pairs_.size(); ++e) {
+    const auto [i, j] = pairs_[e];
+    if (part_[i] == part) take(entries_[e], i, j, false), take(entries_[e], j, i, true);
+  }
+}
+
+// by L and D alone
+template <int M>
+void Blocks<M>::substitute(double* x, int part) const {
   for (int p = parts_[part]; p < parts_[part + 1]; ++p) {
     const int k = order_[p], n = sizes_[k];
     const double* from = x + first_[k];

@@ -34,7 +34,8 @@ class Blocks {
   Block& diagonal(int block) { return diagonal_[block]; }
   Block& entry(int e) { return entries_[e]; }
 
-  /// Blocks without a pivot, of rows that others imply, are taken as a little stiffer than nothing.
+  /// Rows that others imply, as of a door on two hinges, are told by their pivots: what solves a part with
+  /// such is the least, nearly, and misses what is right by nothing that moves.
   void factorise();
 
   /// x := A^-1 x; of one part only.
@@ -42,6 +43,10 @@ class Blocks {
   void solve(double* x, int part) const;
 
  private:
+  bool eliminate();
+  void substitute(double* x, int part) const;
+  void take_product(const double* x, double* y, int part) const;
+
   struct Below {
     int block;
     Block l;
@@ -53,6 +58,9 @@ class Blocks {
 
   std::vector<int> sizes_, first_, part_, parts_ = {0}, order_;
   int rows_ = 0;
+  std::vector<std::pair<int, int>> pairs_;
+  std::vector<char> implied_;  // of each part: whether rows of it imply others
+  mutable std::vector<double> right_, rest_, way_;
   std::vector<Block> diagonal_, entries_, inverse_;
   std::vector<int> begin_;  // of below_, by place
   std::vector<Below> below_;

@@ -165,9 +165,10 @@ std::string too_long(const Model<D>& model, const Tightness& oscillator) {
   } else {
     text += " of " + std::to_string(oscillator.ties) + " springs, the strongest " + strongest + ",";
   }
-  text += " on " + named(model, oscillator.body) + ": raise physics.rate above " +
-          std::to_string(std::int64_t(std::ceil(1 / limit)));
-  return text;
+  text += " on " + named(model, oscillator.body) + ": ";
+  const double rate = std::ceil(1 / limit);
+  return text + (rate < 1e15 ? "raise physics.rate above " + std::to_string(std::int64_t(rate))
+                             : "it is too stiff for any physics.rate");
 }
 
 template <int D>

@@ -181,6 +181,34 @@ TEST(SweptJoints, ALongLeverStaysOnItsJoints) {
   }
 }
 
+// the second hinge says nothing that the first has not said, but for how they share a load; nor does a weld
+// say more with a slider beside it
+TEST(SweptJoints, WhatIsHeldTwiceMovesAsHeldOnce) {
+  const auto moved = [](std::vector<std::pair<JointKind, double>> kinds) {
+    World<3> world = swept(space());
+    world.model.collision = Collision::contact, world.model.rate = {600, 1};
+    add_solid(world, brick({0.2, 0.2, 0.2}), 5, {0, 0, 0}, {1, 0, 0.3}, upright<3>(), {1.7, 3.5, 0.9});
+    add_solid(world, brick({0.2, 0.15, 0.1}), 0.5, {0.5, 0.2, 0.1});
+    for (const auto& [kind, height] : kinds) {
+      Joint<3> joint;
+      joint.kind = kind, joint.axis = {0, 1, 0};
+      joint.a = {0, {0.25, 0.1 + height, 0.05}}, joint.b = {1, {-0.25, -0.1 + height, -0.05}};
+      world.model.joints.push_back(joint);
+    }
+    const State<3> now = stepped(world, 600);
+    EXPECT_LE(off(world, now), 1e-9);
+    return now;
+  };
+  using enum JointKind;
+  for (const auto& [once, twice] : {std::pair{moved({{hinge, 0}}), moved({{hinge, -0.2}, {hinge, 0.2}})},
+                                    {moved({{weld, 0}}), moved({{weld, 0}, {slider, 0}})}}) {
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_NEAR((once.x[i] - twice.x[i]).norm(), 0, 1e-6) << i;  // the scheme's order, along other rows
+      EXPECT_NEAR((once.v[i] - twice.v[i]).norm(), 0, 1e-5) << i;
+    }
+  }
+}
+
 TEST(SweptJoints, AJointBreaksByItsLoad) {
   World<3> world = swept(space());
   world.model.collision = Collision::contact, world.model.scale = 4, world.model.rate = {600, 1};
