@@ -54,7 +54,7 @@ TEST_F(Resume, OfAMovieThatWasKilledIsTheSameMovie) {
   scene(kRoom);
   const std::string command = std::string("render scene.toml -o film.mp4 -j 2") + kSmallest;
   Outcome whole;
-  const double takes = seconds_of([&] { whole = obscura(command); });
+  double takes = seconds_of([&] { whole = obscura(command); });
   ASSERT_EQ(whole.exit, 0) << whole.err;
   const std::string bytes = contents(path("film.mp4"));
   EXPECT_FALSE(fs::exists(path("film.mp4.parts")));
@@ -71,6 +71,8 @@ TEST_F(Resume, OfAMovieThatWasKilledIsTheSameMovie) {
     }
     const int before = parts_in(path("film.mp4.parts"));
     part_way += before > 0;
+    // a machine that has less to do, or more, than when the film was timed
+    if (before == 0) takes *= fs::exists(path("film.mp4")) ? 0.95 : 1.02;
     const Outcome rest = obscura(command + " --resume");
     ASSERT_EQ(rest.exit, 0) << "killed at " << at << ": " << rest.err;
     ASSERT_EQ(contents(path("film.mp4")), bytes) << "killed at " << at << " with " << before << " parts";
@@ -78,7 +80,7 @@ TEST_F(Resume, OfAMovieThatWasKilledIsTheSameMovie) {
     ASSERT_EQ(shell("ls -A | grep tmp").out, "");
   }
   if (kills(50) >= 50) {
-    EXPECT_GT(part_way, 3);
+    EXPECT_GT(part_way, 3) << "of 50 kills within " << takes << " s";
   }
 }
 
