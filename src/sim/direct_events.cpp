@@ -157,7 +157,8 @@ double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
   double high = kNever, before = 0;
   const double thin =
       b < 0 ? 0 : std::min(thin_[a] > 0 ? thin_[a] : thin_[b], thin_[b] > 0 ? thin_[b] : thin_[a]);
-  const int looks = thin > 0 ? std::clamp(int(ways / (kFine * thin)) + 1, 1, kMostLooks) : 1;
+  const double pieces = thin > 0 ? ways / (kFine * thin) : 0;
+  const int looks = pieces >= kMostLooks ? kMostLooks : pieces > 0 ? int(pieces) + 1 : 1;
   for (int i = 1; i <= looks; ++i) {
     const double part = double(i) / looks;
     looks_ += i > 1;
