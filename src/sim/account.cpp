@@ -73,7 +73,7 @@ bool Account<D>::risen(const State<D>& state) {
   }
   if (!(sum > kRounding * (motion + size_))) return false;
   islands_.reset(n);
-  touched_.assign(n, 0), rooted_.assign(n, 0), granted_.assign(n, 0);
+  touched_.assign(n, 0), rooted_.assign(n, 0), granted_.assign(n, 0), parts_.assign(n, 0);
   return true;
 }
 
@@ -132,7 +132,7 @@ void Account<D>::gather(const State<D>& state) {
     Island& it = island(i);
     const double m = weights_[i].mass;
     it.gain += gain(i), it.kinetic += kinetic(state, i), it.mass += m;
-    it.granted += granted_[i] * m * g_ * model_.scale;
+    it.granted += granted_[i] * m * g_ * model_.scale + parts_[i] * kinetic(state, i);
     it.momentum += m * state.v[i], it.middle += m * state.x[i];
     Bound& group = bound_[groups_.root(i)];
     group.lift -= m * model_.gravity.dot(state.x[i] - x_[i]), group.mass += m;

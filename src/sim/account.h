@@ -27,8 +27,8 @@ class Account {
   /// Where it has risen: a and b (a body; below zero a wall) have touched in the step.
   void touch(int a, int b);
   /// Where it has risen: what this body's island has gained is granted up to `share` of what the body could
-  /// fall through the room for.
-  void excuse(int body, double share) { granted_[body] = share; }
+  /// fall through the room for, and of its motion's energy up to `part`.
+  void excuse(int body, double share, double part = 0) { granted_[body] = share, parts_[body] = part; }
   /// Takes from each island of what touched what it has gained: of its motion, in proportion; of what touches
   /// nothing that stays, of its motion against each other, so that momentum and angular momentum stay. Where
   /// there is not so much it lies as much lower. Islands that hands, motors or blasts work on keep what they
@@ -72,9 +72,9 @@ class Account {
   std::vector<double> springs_before_, springs_now_;  // J
   Islands islands_, groups_;
   std::vector<char> touched_, rooted_, tied_, jointed_;
-  std::vector<double> granted_;  // one a body
-  std::vector<Island> sums_;     // at the lowest of their bodies
-  std::vector<Bound> bound_;     // likewise
+  std::vector<double> granted_, parts_;  // one a body
+  std::vector<Island> sums_;             // at the lowest of their bodies
+  std::vector<Bound> bound_;             // likewise
 };
 
 }  // namespace obscura::sim

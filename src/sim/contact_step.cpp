@@ -12,7 +12,9 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kAll = 1e300;
-constexpr double kSinks = 1e-6;  // of what it could fall for
+constexpr double kSinks = 1e-6;   // of what it could fall for
+constexpr double kHangs = 1e-6;   // the same on joints
+constexpr double kSwings = 1e-2;  // of its motion there: the error of a step of second order
 
 // a solver's steps, none of which leaves more energy than there was
 template <int D>
@@ -44,7 +46,7 @@ class Passive final : public ContactStep<D> {
     for (const Joint<D>& joint : model_.joints) {
       if (direct_) break;
       for (const int body : {joint.a.body, joint.b.body}) {
-        if (body >= 0) account_.excuse(body, kAll);
+        if (body >= 0 && state.step > 0) account_.excuse(body, kHangs, kSwings);
       }
     }
     account_.take_back(state);
