@@ -21,7 +21,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr int kRounds = 8;           // of Newton's
-constexpr int kSearches = 30;        // the same, with a search along each
+constexpr int kSearches = 12;        // the same, with a search along each
 constexpr double kLeastPart = 1e-3;  // of a way, in it
 constexpr double kPut = 1e-9;        // of the scene's size: how far off joints may stay
 constexpr int kBoundedRounds = 16;   // a sweep, of rows with bounds among themselves: they begin from nothing
@@ -423,8 +423,13 @@ double Linkage<D>::astray() {
 template <int D>
 void Linkage<D>::put_back(double h) {
   for (std::size_t k = 0; k < active_; ++k) {
-    if (double off = 0; left(bounded_[k], off) && off < 0)
-      shift_bounded(bounded_[k], -off * bounded_[k].give);
+    double off = 0;
+    if (!left(bounded_[k], off) || off >= 0) continue;
+    const double strayed = astray();
+    begun_at_ = at_, begun_turn_ = turn_;
+    shift_bounded(bounded_[k], -off * bounded_[k].give);
+    // what joints hardly let it do throws them far
+    if (astray() > strayed - off) at_.swap(begun_at_), turn_.swap(begun_turn_);
   }
   begun_at_ = at_, begun_turn_ = turn_;
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
@@ -464,7 +469,7 @@ void Linkage<D>::search() {
       worst = astray();
       if (worst < (1 - part / 4) * before) break;
     }
-    if (worst >= before) break;
+    if (worst > 0.9 * before) break;
   }
 }
 
