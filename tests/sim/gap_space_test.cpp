@@ -359,5 +359,15 @@ TEST(SpaceGaps, OfACompoundAreThoseOfItsTurnedParts) {
   EXPECT_EQ(wall.size(), 7u);
 }
 
+// found by fuzzing states: no face is the nearest to what is turned by no number
+TEST(SpaceGaps, WhatStandsNowhereTouchesNothing) {
+  Stance<3> nowhere = placed({0, 0, 0});
+  nowhere.room_from_body.setConstant(std::nan(""));
+  const Shape<3> box = brick({0.2, 0.2, 0.2});
+  EXPECT_TRUE(found(box, nowhere, box, placed({0, 0.1, 0}), 1).empty());
+  EXPECT_TRUE(found(box, placed({0, 0.1, 0}), box, nowhere, 1).empty());
+  EXPECT_TRUE(found(ball_shape<3>(0.1), placed({0, 0.1, 0}), box, nowhere, 1).empty());
+}
+
 }  // namespace
 }  // namespace obscura::sim

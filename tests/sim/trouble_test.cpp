@@ -220,6 +220,14 @@ TEST(Foreboding, NamesBodySpringAndRate) {
   EXPECT_THAT(all[0].likely, HasSubstr("spring[0] on ball: raise physics.rate above 71"));
 }
 
+TEST(Foreboding, OfWhatNoRateCanFollowNamesNone) {
+  World<2> world = stiff(60);
+  world.model.springs[0].stiffness = 1e36;
+  const auto all = forebodings(world.model);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_THAT(all[0].likely, HasSubstr("spring[0] on ball: it is too stiff for any physics.rate"));
+}
+
 TEST(Foreboding, TakesAQuarterOfTheMassAtASquaresCorner) {
   for (const auto& [local, rate] : {std::pair{Vec2(0, 0), 36}, {Vec2(0.2, 0.2), 71}}) {
     // m = 0.4: 2.828 sqrt(0.4/4000) = 0.0283 at the centre, half of it at the corner
