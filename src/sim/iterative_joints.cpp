@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kRounds = 8;           // of Newton's
 constexpr int kSearches = 12;        // the same, with a search along each
+constexpr double kStride = 0.1;      // rad, and of the scene's size: farther nothing is put in a step
 constexpr double kLeastPart = 1e-3;  // of a way, in it
 constexpr double kPut = 1e-9;        // of the scene's size: how far off joints may stay
 constexpr int kBoundedRounds = 16;   // a sweep, of rows with bounds among themselves: they begin from nothing
@@ -419,6 +420,16 @@ double Linkage<D>::astray() {
   return worst;
 }
 
+// whether all are near where they stood before they were put back
+template <int D>
+bool Linkage<D>::near() const {
+  for (const int i : bodies_) {
+    if ((at_[i].x - begun_at_[i].x).norm() > kStride * model_.scale) return false;
+    if ((at_[i].room_from_body - begun_at_[i].room_from_body).norm() > kStride) return false;
+  }
+  return true;
+}
+
 // places back onto what joints keep, and within what they let
 template <int D>
 void Linkage<D>::put_back(double h) {
@@ -429,7 +440,7 @@ void Linkage<D>::put_back(double h) {
     begun_at_ = at_, begun_turn_ = turn_;
     shift_bounded(bounded_[k], -off * bounded_[k].give);
     // what joints hardly let it do throws them far
-    if (astray() > strayed - off) at_.swap(begun_at_), turn_.swap(begun_turn_);
+    if (!near() || astray() > strayed - off) at_.swap(begun_at_), turn_.swap(begun_turn_);
   }
   begun_at_ = at_, begun_turn_ = turn_;
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
@@ -446,7 +457,7 @@ void Linkage<D>::put_back(double h) {
   }
   for (double& s : shifts_) s /= h;
   old_rows_ = rows_;
-  if (worst <= enough) return;
+  if (worst <= enough && near()) return;
   at_.swap(begun_at_), turn_.swap(begun_turn_);
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
   search();
@@ -463,13 +474,15 @@ void Linkage<D>::search() {
     factors_.solve(rhs_.data());
     begun_at_ = at_, begun_turn_ = turn_, ways_ = rhs_;
     const double before = worst;
-    for (double part = 1; part > kLeastPart; part /= 2) {
+    bool helped = false;
+    for (double part = 1; !helped && part > kLeastPart; part /= 2) {
       at_ = begun_at_, turn_ = begun_turn_;
       for (std::size_t r = 0; r < rows_.size(); ++r) shift(rows_[r], part * ways_[r]);
       worst = astray();
-      if (worst < (1 - part / 4) * before) break;
+      helped = worst < (1 - part / 4) * before && near();
     }
-    if (worst > 0.9 * before) break;
+    if (!helped) at_ = begun_at_, turn_ = begun_turn_;
+    if (!helped || worst > 0.9 * before) break;
   }
 }
 

@@ -93,6 +93,7 @@ class Linkage {
   void shift_bounded(const Bounded& bounded, double by);
   bool left(const Bounded& bounded, double& off) const;
   double astray();
+  bool near() const;
   void put_back(double h);
   void search();
 
