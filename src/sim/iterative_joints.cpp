@@ -26,7 +26,7 @@ constexpr double kStride = 0.1;      // rad, and of the scene's size: farther no
 constexpr double kLeastPart = 1e-3;  // of a way, in it
 constexpr double kPut = 1e-9;        // of the scene's size: how far off joints may stay
 constexpr int kBoundedRounds = 16;   // a sweep, of rows with bounds among themselves: they begin from nothing
-constexpr double kLocked = 1e-9;     // of a row's own: what it can move once joints have answered
+constexpr double kLocked = 1e-6;     // of a row's own: what it can move once joints have answered
 constexpr double kApart = 1e-9;      // 1/s, of the scene's size: slower at a joint is rounding
 constexpr double kEndless = 1e300;
 
