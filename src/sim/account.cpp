@@ -52,9 +52,11 @@ double Account<D>::kinetic(const State<D>& state, int body) const {
 template <int D>
 void Account<D>::open(const State<D>& state) {
   const int n = int(weights_.size());
-  x_ = state.x, before_.resize(n), now_.resize(n);
-  for (int i = 0; i < n; ++i)
-    before_[i] = kinetic(state, i) - weights_[i].mass * model_.gravity.dot(state.x[i]);
+  x_ = state.x, moved_.resize(n), before_.resize(n), now_.resize(n);
+  for (int i = 0; i < n; ++i) {
+    moved_[i] = kinetic(state, i);
+    before_[i] = moved_[i] - weights_[i].mass * model_.gravity.dot(state.x[i]);
+  }
   for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = stored(model_, state, i);
 }
 
@@ -132,7 +134,7 @@ void Account<D>::gather(const State<D>& state) {
     Island& it = island(i);
     const double m = weights_[i].mass;
     it.gain += gain(i), it.kinetic += kinetic(state, i), it.mass += m;
-    it.granted += granted_[i] * m * g_ * model_.scale + parts_[i] * kinetic(state, i);
+    it.granted += granted_[i] * m * g_ * model_.scale + parts_[i] * moved_[i];
     it.momentum += m * state.v[i], it.middle += m * state.x[i];
     Bound& group = bound_[groups_.root(i)];
     group.lift -= m * model_.gravity.dot(state.x[i] - x_[i]), group.mass += m;
@@ -160,8 +162,8 @@ void Account<D>::gather(const State<D>& state) {
   }
   // who was held back before it met anything, or by what is no longer near
   for (Island& it : sums_) {
-    if (!it.touched && !it.tied && it.gain > (it.jointed ? kJointed : kFlight) * it.kinetic)
-      it.touched = it.rooted = true;
+    if (it.touched || (it.tied && !it.jointed)) continue;
+    if (it.gain > (it.jointed ? kJointed : kFlight) * it.kinetic) it.touched = it.rooted = true;
   }
 }
 

@@ -27,7 +27,8 @@ class Account {
   /// Where it has risen: a and b (a body; below zero a wall) have touched in the step.
   void touch(int a, int b);
   /// Where it has risen: what this body's island has gained is granted up to `share` of what the body could
-  /// fall through the room for, and of its motion's energy up to `part`.
+  /// fall through the room for, and up to `part` of the energy of
+  /// its motion before the step.
   void excuse(int body, double share, double part = 0) { granted_[body] = share, parts_[body] = part; }
   /// Takes from each island of what touched what it has gained: of its motion, in proportion; of what touches
   /// nothing that stays, of its motion against each other, so that momentum and angular momentum stay. Where
@@ -68,7 +69,7 @@ class Account {
   std::vector<Weight> weights_;
   double size_ = 0;  // J: m g times the room's height
   std::vector<Vec<D>> x_;
-  std::vector<double> before_, now_;                  // one a body, J
+  std::vector<double> moved_, before_, now_;          // one a body, J
   std::vector<double> springs_before_, springs_now_;  // J
   Islands islands_, groups_;
   std::vector<char> touched_, rooted_, tied_, jointed_;
