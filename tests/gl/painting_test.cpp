@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "gl/back_ends.h"
 #include "gl/error.h"
 #include "gl/renderer.h"
 
@@ -132,6 +133,7 @@ TEST(Painting, SeveralThreadsDrawTheSameBytes) {
 }
 
 TEST(Painting, BothBackEndsDrawTheSameBytes) {
+  OBSCURA_NEEDS_BOTH_BACK_ENDS();
   Renderer osmesa(216, 108, {.backend = Backend::osmesa});
   Renderer egl(216, 108, {.backend = Backend::egl});
   EXPECT_EQ(drawn(egl, everything()), drawn(osmesa, everything()));

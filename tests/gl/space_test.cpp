@@ -6,6 +6,7 @@
 #include "draw/depict.h"
 #include "draw/light.h"
 #include "draw/solids.h"
+#include "gl/back_ends.h"
 #include "gl/pictures.h"
 
 namespace obscura::gl {
@@ -281,6 +282,7 @@ TEST(Space, ABoxThrowsItsShadowOnAnother) {
 }
 
 TEST(Space, TheSameBytesTwiceAndFromBothBackEnds) {
+  OBSCURA_NEEDS_BOTH_BACK_ENDS();
   Renderer osmesa(320, 180, {.backend = Backend::osmesa});
   Renderer egl(320, 180, {.backend = Backend::egl});
   const Made made = everything();
