@@ -209,6 +209,22 @@ TEST(SweptJoints, WhatIsHeldTwiceMovesAsHeldOnce) {
   }
 }
 
+// a rope beside a weld, a millimetre too short: nothing gives, and so it pulls at nothing
+TEST(SweptJoints, ARopeThatJointsDoNotLetGiveIsLeft) {
+  World<3> world = swept(space());
+  world.model.collision = Collision::contact, world.model.scale = 4, world.model.rate = {600, 1};
+  add_solid(world, brick({0.2, 0.2, 0.2}), 2, {0, 0, 0});
+  Joint<3> weld, rope;
+  weld.kind = JointKind::weld, weld.a = {0, {0.1, 0.1, 0}}, weld.b = {-1, {0.1, 0.1, 0}};
+  rope.kind = JointKind::rope, rope.a = {0, {-0.1, 0.1, 0}}, rope.b = {-1, {-0.7, 0.5, 0.3}};
+  rope.length = std::sqrt(0.36 + 0.16 + 0.09) - 1e-3;
+  world.model.joints = {weld, rope};
+  const State<3> now = stepped(world, 60);
+  EXPECT_NEAR(now.x[0].norm(), 0, 1e-12);
+  EXPECT_EQ(now.joint_forces[1], Vec3::Zero());
+  EXPECT_NEAR((now.joint_forces[0] - Vec3(0, 2 * 9.81, 0)).norm(), 0, 1e-9);
+}
+
 TEST(SweptJoints, AJointBreaksByItsLoad) {
   World<3> world = swept(space());
   world.model.collision = Collision::contact, world.model.scale = 4, world.model.rate = {600, 1};
