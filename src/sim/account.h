@@ -27,8 +27,7 @@ class Account {
   /// Where it has risen: a and b (a body; below zero a wall) have touched in the step.
   void touch(int a, int b);
   /// Where it has risen: what this body's island has gained is granted up to `share` of what the body could
-  /// fall through the room for, and up to `part` of the energy of
-  /// its motion before the step.
+  /// fall through the room for, and up to `part` of the energy of its motion before the step.
   void excuse(int body, double share, double part = 0) { granted_[body] = share, parts_[body] = part; }
   /// Takes from each island of what touched what it has gained: of its motion, in proportion; of what touches
   /// nothing that stays, of its motion against each other, so that momentum and angular momentum stay. Where

@@ -125,11 +125,6 @@ struct Reader {
   }
 };
 
-template <int D>
-bool finite(const std::vector<Eigen::Matrix<double, D, 1>>& all) {
-  return std::all_of(all.begin(), all.end(), [](const auto& one) { return one.allFinite(); });
-}
-
 }  // namespace
 
 template <int D>
@@ -160,9 +155,8 @@ bool fits(const State<D>& state, const Model<D>& model) {
 
   bool good = state.step >= 0 && state.step < kMostSteps && state.beyond == 0 && state.x.size() == bodies &&
               state.v.size() == bodies && state.turn.size() == turning && state.spin.size() == turning &&
-              finite<D>(state.x) && finite<D>(state.v) && finite<Turn<D>::RowsAtCompileTime>(state.turn) &&
-              finite<kSpins<D>>(state.spin) && sized(state.own, turning) &&
-              state.grips.size() == model.mice.size() && state.blasts.size() == model.explosions.size() &&
+              finite(state) && sized(state.own, turning) && state.grips.size() == model.mice.size() &&
+              state.blasts.size() == model.explosions.size() &&
               state.postures.size() == model.chains.size() && state.holds.size() == model.bonds.size() &&
               state.whole.size() == std::size_t(!model.bonds.empty()) &&
               state.seats.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&

@@ -36,6 +36,7 @@ class Cone {
 
   /// The residual that is good enough once nothing better was met.
   double enough = kTolerance;
+
   /// Systems solved after which it begins no other way to look.
   int patience = std::numeric_limits<int>::max();
 

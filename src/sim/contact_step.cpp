@@ -13,8 +13,7 @@ namespace {
 
 constexpr double kAll = 1e300;
 constexpr double kSinks = 1e-6;   // of what it could fall for
-constexpr double kHangs = 1e-6;   // the same on joints
-constexpr double kSwings = 1e-2;  // of its motion there: the error of a step of second order
+constexpr double kSwings = 1e-2;  // of its motion on joints: the error of a step of second order
 
 // a solver's steps, none of which leaves more energy than there was
 template <int D>
@@ -46,7 +45,7 @@ class Passive final : public ContactStep<D> {
     for (const Joint<D>& joint : model_.joints) {
       if (direct_) break;
       for (const int body : {joint.a.body, joint.b.body}) {
-        if (body >= 0 && state.step > 0) account_.excuse(body, kHangs, kSwings);
+        if (body >= 0 && state.step > 0) account_.excuse(body, kSinks, kSwings);
       }
     }
     account_.take_back(state);

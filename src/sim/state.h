@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -120,6 +121,15 @@ struct State {
 /// The state as 64-bit words in a fixed order, -0 as 0: what a state hash is taken of.
 template <int D>
 std::vector<std::uint64_t> words(const State<D>& state);
+
+/// Whether every place, velocity, turn and spin is a finite number.
+template <int D>
+bool finite(const State<D>& state) {
+  const auto all = [](const auto& of) {
+    return std::all_of(of.begin(), of.end(), [](const auto& one) { return one.array().isFinite().all(); });
+  };
+  return all(state.x) && all(state.v) && all(state.turn) && all(state.spin);
+}
 
 template <int D>
 struct World {
