@@ -151,6 +151,32 @@ bool Cone<D>::enumerate(std::span<const ConeBlock<D>> blocks) {
   return false;
 }
 
+// other modes than those at hand
+template <int D>
+bool Cone<D>::search(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
+                     std::span<const ConeBlock<D>> blocks, Eigen::Ref<Eigen::VectorXd> f) {
+  // as sweeps leave it
+  for (const int sweeps : kSweeps) {
+    if (best_residual_ <= enough || tries_ > patience) break;
+    sweep(K, b, blocks, trial_, f, sweeps);
+    for (std::size_t i = 0; i < blocks.size(); ++i) trial_[i] = fit(blocks[i], trial_[i]);
+    if (attempt(blocks, 6)) return true;
+  }
+
+  // as softer rows have it
+  const bool all = (thorough || n_ <= kSmall) && tries_ <= patience;
+  if (best_residual_ <= enough) return true;
+  for (std::size_t i = 0; i < (all ? std::size(kSoftness) : 1) && tries_ <= patience; ++i) {
+    if (i == 0) guess_.begin(K_, b_, blocks, first_, sigma_);
+    const int systems = guess_.systems();
+    const bool there = guess_.guess(kSoftness[i], trial_, all);
+    tries_ += guess_.systems() - systems;
+    if (!there && !all) break;
+    if (attempt(blocks, all ? 20 : 6)) return true;
+  }
+  return all && best_residual_ > kNear && tries_ <= patience && enumerate(blocks);
+}
+
 template <int D>
 ConeReport Cone<D>::solve(const Eigen::Ref<const Eigen::MatrixXd>& K,
                           const Eigen::Ref<const Eigen::VectorXd>& b, std::span<const ConeBlock<D>> blocks,
@@ -164,26 +190,8 @@ ConeReport Cone<D>::solve(const Eigen::Ref<const Eigen::MatrixXd>& K,
   for (std::size_t i = 0; i < blocks.size(); ++i) trial_[i] = fit(blocks[i], modes[i]);
   bool found = attempt(blocks, n_ <= kSmall ? 6 : 1);
 
-  // as sweeps leave it
-  for (const int sweeps : kSweeps) {
-    if (found || best_residual_ <= enough || tries_ > patience) break;
-    sweep(K, b, blocks, trial_, f, sweeps);
-    for (std::size_t i = 0; i < blocks.size(); ++i) trial_[i] = fit(blocks[i], trial_[i]);
-    found = attempt(blocks, 6);
-  }
-
-  // as softer rows have it
-  const bool all = (thorough || n_ <= kSmall) && tries_ <= patience;
-  found = found || best_residual_ <= enough;
-  for (std::size_t i = 0; i < (all ? std::size(kSoftness) : 1) && !found && tries_ <= patience; ++i) {
-    if (i == 0) guess_.begin(K_, b_, blocks, first_, sigma_);
-    const int systems = guess_.systems();
-    const bool there = guess_.guess(kSoftness[i], trial_, all);
-    tries_ += guess_.systems() - systems;
-    if (!there && !all) break;
-    found = attempt(blocks, all ? 20 : 6);
-  }
-  if (!found && all && best_residual_ > kNear && tries_ <= patience) found = enumerate(blocks);
+  // joints that contradict one another, as loops do at their dead centre, are not helped by contacts
+  if (!found && !(best_residual_ > kNear && contradiction(blocks) > kNear)) found = search(K, b, blocks, f);
   found = found || best_residual_ <= enough;
 
   for (int i = 0; i < n_; ++i) f[i] = sigma_[i] * best_g_[i];

@@ -82,6 +82,8 @@ class Cone {
              std::span<const ConeBlock<D>> blocks);
   bool attempt(std::span<const ConeBlock<D>> blocks, int switches);
   bool enumerate(std::span<const ConeBlock<D>> blocks);
+  bool search(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
+              std::span<const ConeBlock<D>> blocks, Eigen::Ref<Eigen::VectorXd> f);
 
   // cone_balance.cpp: modes as equalities
   void balance(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
@@ -94,6 +96,7 @@ class Cone {
   void refine(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
   void answer();
   double misfit() const;
+  double contradiction(std::span<const ConeBlock<D>> blocks);
 
   // cone_check.cpp: the laws looked at
   double check(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);

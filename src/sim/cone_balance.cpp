@@ -254,6 +254,23 @@ bool Cone<D>::turn(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> 
   return true;
 }
 
+// What joints miss at least, contacts or not: those push upon joints only as they could themselves. The
+// forces at hand are lost.
+template <int D>
+double Cone<D>::contradiction(std::span<const ConeBlock<D>> blocks) {
+  std::fill(g_.begin(), g_.end(), 0.0);
+  unknowns_.clear();
+  for (int i = 0; i < int(blocks.size()); ++i) {
+    for (int k = 0; k < blocks[i].rows() && blocks[i].law == Law::equal; ++k)
+      unknowns_.push_back({Unknown::Kind::row, first_[i] + k, i});
+  }
+  if (unknowns_.empty()) return 0;
+  factor_symmetric();
+  for (int i = 0; i < kRefinements; ++i) refine(blocks, trial_);
+  answer();
+  return misfit();
+}
+
 template <int D>
 ConeReport Cone<D>::hold(const Eigen::Ref<const Eigen::MatrixXd>& K,
                          const Eigen::Ref<const Eigen::VectorXd>& b, std::span<const ConeBlock<D>> blocks,

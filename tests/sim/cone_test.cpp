@@ -377,6 +377,24 @@ TEST(Cone, SaysWhereASlidingRodHasNone) {
   EXPECT_EQ(none, 1);
 }
 
+// a rod held on a line by both its ends, and thrown off it: no force keeps both ends, and no contact helps
+TEST(Cone, SaysAtOnceWhereJointsContradictOneAnother) {
+  Heap rod;
+  rod.box(1, {2, 0}, {0, 0});
+  ConeBlock<2> equal;
+  equal.law = Law::equal;
+  for (const double end : {-1.0, 1.0}) rod.row(0, -1, {end, 0}, {1, 0}, equal);
+  for (const double end : {-1.0, -0.5, 0.5, 1.0}) rod.contact(0, -1, {end, 0}, {0, 1}, 0.5);
+  VectorXd b = rod.b();
+  b[0] += 3, b[1] -= 3;  // one row as the other
+  std::vector<ConeMode<2>> modes(rod.blocks.size());
+  VectorXd f = VectorXd::Zero(b.size());
+  Cone<2> cone;
+  const ConeReport report = cone.solve(rod.K(), b, rod.blocks, modes, f);
+  EXPECT_FALSE(report.found);
+  EXPECT_LT(report.tries, 20);
+}
+
 TEST(Cone, JointsHoldWithinTheirBounds) {
   // a hanging pair of links, a motor with little force between them, a rope that is slack and one that is
   // taut
