@@ -19,6 +19,7 @@ constexpr double kNever = 2;        // a part of the stretch
 constexpr double kAtOnce = 1e-9;    // a part too short to go
 constexpr double kFine = 0.25;      // of the thinner body: how far two may move between two looks
 constexpr int kMostLooks = 200000;  // of a couple in a stretch
+constexpr double kSteepest = 2.5;   // of its way: how fast one goes in its stretch, at most (Hermite's cubic)
 constexpr int kMostRoots = 100;
 constexpr double kStraight = 0.8;  // how far a straight line is right about when a force has gone, at least
 constexpr double kSlight = 1e-6;   // of the largest force: what may pull before it lets go
@@ -147,8 +148,8 @@ double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
   double high = kNever, before = 0;
   const double thin =
       b < 0 ? 0 : std::min(thin_[a] > 0 ? thin_[a] : thin_[b], thin_[b] > 0 ? thin_[b] : thin_[a]);
-  const double pieces = thin > 0 ? ways / (kFine * thin) : 0;
-  const int looks = pieces >= kMostLooks ? kMostLooks : pieces > 0 ? int(pieces) + 1 : 1;
+  const double pieces = thin > 0 && std::isfinite(ways) ? ways / (kFine * thin) : 0;
+  const int looks = int(std::min<double>(pieces, kMostLooks - 1)) + 1;
   for (int i = 1; i <= looks; ++i) {
     const double part = double(i) / looks;
     looks_ += i > 1;
@@ -156,7 +157,12 @@ double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
       high = part;
       break;
     }
-    before = part;
+    // no look is needed before what is between them can be used up
+    const double apart =
+        b < 0 ? 0 : std::sqrt((stances_[a].x - stances_[b].x).squaredNorm()) - rims_[a] - rims_[b];
+    const double spare = apart / (kSteepest * ways) * looks - 1;
+    if (spare >= 1) i += int(std::min(spare, double(looks - i)));
+    before = double(i) / looks;
   }
   if (high == kNever) return kNever;
 
