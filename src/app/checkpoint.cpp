@@ -10,6 +10,7 @@
 #include "app/origin.h"
 #include "media/error.h"
 #include "media/file.h"
+#include "scene/complaints.h"
 #include "scene/difference.h"
 #include "scene/error.h"
 
@@ -92,7 +93,7 @@ std::unique_ptr<sim::Run> run_from(const std::string& path, const scene::Scene& 
   }
   if (version != OBSCURA_VERSION)
     refuse(path, fmt::format("is of obscura {}, and this is {}: another version may go on differently",
-                             version, OBSCURA_VERSION));
+                             scene::one_line(version), OBSCURA_VERSION));
   if (const std::string why = other_scene(of, scene); !why.empty()) refuse(path, why);
   auto run = words.empty() ? nullptr : scene.run(words);
   if (!run) refuse(path, "holds no state of this scene");

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/exit.h"
+#include "scene/complaints.h"
 #include "scene/difference.h"
 #include "scene/error.h"
 
@@ -125,7 +126,8 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
   try {
     const auto json = nlohmann::json::parse(found->second);
     Origin origin;
-    json.at("version").get_to(origin.version);
+    const auto word = [](const nlohmann::json& of) { return scene::one_line(of.get<std::string>()); };
+    origin.version = word(json.at("version"));
     const auto& scene = json.at("scene");
     scene.at("file").get_to(origin.scene_file), scene.at("hash").get_to(origin.scene_hash);
     scene.at("text").get_to(origin.scene_text), scene.at("set").get_to(origin.sets);
@@ -144,13 +146,13 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
     origin.frames = *frames, origin.shots = json.value("shots", "");
     if (json.contains("encoder")) {
       const auto& encoder = json["encoder"];
-      encoder.at("name").get_to(origin.encoder), encoder.at("preset").get_to(origin.preset);
+      origin.encoder = word(encoder.at("name")), origin.preset = word(encoder.at("preset"));
       if (encoder.contains("crf")) origin.crf = encoder["crf"].get<double>();
     }
     json.at("state").get_to(origin.state);
     origin.trajectory = json.value("trajectory", "");
     const auto& gl = json.at("gl");
-    gl.at("version").get_to(origin.gl_version), gl.at("renderer").get_to(origin.gl_renderer);
+    origin.gl_version = word(gl.at("version")), origin.gl_renderer = word(gl.at("renderer"));
     origin.native = gl.value("native", false);
     return origin;
   } catch (const nlohmann::json::exception&) {

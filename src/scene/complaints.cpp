@@ -31,13 +31,19 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string one_line(std::string_view text) {
+  std::string line(text);
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+  }
+  return line;
+}
+
 std::string quoted(std::string_view word) {
   // cut where a code point ends
   std::size_t most = std::min(word.size(), kLongestWord);
   while (most > 0 && most < word.size() && (static_cast<unsigned char>(word[most]) & 0xC0) == 0x80) --most;
-  std::string text = "'";
-  for (const char c : word.substr(0, most)) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  return text + (word.size() > most ? "...'" : "'");
+  return "'" + one_line(word.substr(0, most)) + (word.size() > most ? "...'" : "'");
 }
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& words) {

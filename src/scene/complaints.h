@@ -37,6 +37,9 @@ class Complaints {
   std::vector<std::pair<Place, std::string>> found_;
 };
 
+/// With a space for each control byte: what is said of a file is one line, and no terminal's command.
+std::string one_line(std::string_view text);
+
 /// "'ball'", cut where it is long: a word of the scene as a complaint quotes it.
 std::string quoted(std::string_view word);
 

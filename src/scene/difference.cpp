@@ -12,7 +12,7 @@ namespace obscura::scene {
 
 namespace {
 
-// a value as TOML, on one line; long ones are cut
+// a value as TOML
 std::string literal(const Node& node) {
   if (node.is_text()) return "\"" + node.text() + "\"";
   if (const double* real = std::get_if<double>(&node.value)) return fmt::format("{}", *real);
@@ -30,9 +30,10 @@ std::string literal(const Node& node) {
   return described(node);
 }
 
-// enough of it to be known again
-std::string cut(std::string text) {
+// enough of it, on one line, to be known again
+std::string cut(const std::string& value) {
   constexpr std::size_t kMost = 60;
+  const std::string text = one_line(value);
   return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
 }
 
@@ -92,7 +93,7 @@ void compare(const std::string& path, const Node* a, const Node* b, std::vector<
     return compare_tables(path, a ? *a : none, b ? *b : none, found);
   }
   const std::string left = a ? cut(literal(*a)) : "", right = b ? cut(literal(*b)) : "";
-  if (a && b ? literal(*a) != literal(*b) : a != b) found.push_back({path, left, right});
+  if (a && b ? literal(*a) != literal(*b) : a != b) found.push_back({one_line(path), left, right});
 }
 
 Node read(const Source& source, Complaints& complaints) {

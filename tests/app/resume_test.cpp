@@ -6,6 +6,9 @@
 #include <functional>
 #include <random>
 
+#include <nlohmann/json.hpp>
+
+#include "app/origin.h"
 #include "program.h"
 
 namespace obscura::app {
@@ -330,6 +333,13 @@ TEST_F(Checkpoints, ThatAreDamagedOrForeignAreRefusedWithTheReason) {
   scene(bytes.substr(0, bytes.size() - 9), "short");
   refused("short", "damaged checkpoint");
   refused("scene.toml", "is no checkpoint");
+  // found by fuzzing: of another version that has a line's end in its name
+  auto of = nlohmann::json::from_cbor(bytes.substr(bytes.find('\n') + 1));
+  of["version"] = "0.2\n\x1b[2J";
+  const std::vector<std::uint8_t> cbor = nlohmann::json::to_cbor(of);
+  const std::string body(cbor.begin(), cbor.end());
+  scene("obscura checkpoint 1 " + hash(body) + "\n" + body, "later");
+  refused("later", "is of obscura 0.2  [2J, and this is ");
   refused("nobody", "cannot be read");
   refused(file + " --set ball.mass=2", "is of another scene: there ball.mass is not said, and here 2");
   // what only the picture knows may be another

@@ -36,6 +36,11 @@ TEST(KeyDifferences, NameWhatIsThereOnce) {
               ElementsAre("look.trails: 1 | ", "a: { name = \"a\" } | ", "b:  | { name = \"b\" }"));
 }
 
+TEST(KeyDifferences, AreToldOnOneLine) {
+  EXPECT_THAT(told({"title = \"\"\"a\nb\"\"\"\n", {}}, {"title = \"a\\u001B[2J\"\n", {}}),
+              ElementsAre("title: \"a b\" | \"a [2J\""));
+}
+
 TEST(KeyDifferences, SeeWhatIsSetFromOutside) {
   EXPECT_THAT(told({"[[box]]\nmass = 2\n", {}}, {"[[box]]\nmass = 1\n", {"box[0].mass=2"}}), IsEmpty());
   EXPECT_THAT(told({"duration = 2\n", {}}, {"duration = 2\n", {"look.theme=screen"}}),
