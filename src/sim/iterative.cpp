@@ -140,7 +140,7 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
   }
 
   fall(state, t, h);
-  const sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm())};
+  const sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm()), cores_.allowed};
   const int count = int(seats_.size());
   const bool deep =
       sweep::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
@@ -336,7 +336,7 @@ void Iterative<D>::project() {
       push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
     }
     sweep::project(seats_.data(), projections_.data(), int(seats_.size()), poses_.data(), push_.data(),
-                   kProject);
+                   kProject, cores_.allowed);
   }
 }
 

@@ -14,6 +14,9 @@ namespace obscura::sim::sweep {
 
 namespace {
 
+constexpr double kLeastAllowed = 5e-7, kMostAllowed = 1e-2;  // of a reach
+constexpr double kFew = 50, kMany = 200;                     // bodies that move, beside points
+
 struct Point {
   double x, y;
 };
@@ -132,6 +135,11 @@ double at_corner(const Cores& cores, const Core& round, const Pose& at_round, co
 }  // namespace
 
 Cores::Cores(const Model<2>& model) {
+  const auto moving = std::count_if(model.bodies.begin(), model.bodies.end(), [](const Body<2>& body) {
+    return !body.fixed && body.shape.kind != ShapeKind::point;
+  });
+  const double crowded = std::clamp((double(moving) - kFew) / (kMany - kFew), 0.0, 1.0);
+  allowed = kLeastAllowed + (kMostAllowed - kLeastAllowed) * crowded * crowded * crowded;
   const auto add = [&](int body, int part, const Shape<2>& shape) {
     Core core;
     core.body = body, core.part = part, core.first = int(x.size());

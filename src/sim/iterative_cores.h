@@ -36,6 +36,11 @@ struct Cores {
   std::vector<double> x, y;           // corners in the body's frame, m
   std::vector<double> nx, ny, d;      // faces: outward normal and its distance from the body's centre
   std::vector<double> reach, inside;  // of bodies, m
+  /// Of the farther reach of two: how deep one may lie in the other for good. Where few lie it is next to
+  /// nothing. The few sweeps that many have leave some of those apart that they push out of one another, and
+  /// who stands apart bears nothing until it has fallen back: a heap that is put right to the last creeps for
+  /// ever.
+  double allowed = 0;
 };
 
 /// Which features touch. `none` pads a pair whose two cores have one touch only.

@@ -165,7 +165,7 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats
     const int body = v[pair.a].im > 0 ? pair.a : pair.b;
     bool deep = false;
     for (int k = 0; k < pair.touches; ++k)
-      deep = deep || state.contacts[pair.first + k].gap < -2 * kAllowed * cores_.reach[body];
+      deep = deep || state.contacts[pair.first + k].gap < -2 * cores_.allowed * cores_.reach[body];
     if (deep) restless_[islands_.root(body)] = 1;
     order_.push_back(i);
   }
@@ -304,7 +304,13 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
     const double comes =
         span * (std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[other]) + falls;
     double gap = 1e300;
-    for (int k = 0; k < pair.touches; ++k) gap = std::min(gap, state.contacts[pair.first + k].gap);
+    bool bears = false;
+    for (int k = 0; k < pair.touches; ++k) {
+      const Contact<2>& contact = state.contacts[pair.first + k];
+      gap = std::min(gap, contact.gap), bears = bears || joins(contact, pair);
+    }
+    // two that lie beside each other and have been still in turns would wake each other in turns
+    if (!bears && state.quiet[other] >= kWait) continue;
     if (gap < comes) restless_[sleeper] = 1, any = true;
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {

@@ -161,7 +161,7 @@ OBSCURA_INLINE bool start_all(Seats* seats, int count, const Pose* poses, const 
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
-      const V sight = load<V>(g.sight + lane), allowed = kAllowed * load<V>(g.far + lane);
+      const V sight = load<V>(g.sight + lane), allowed = pace.allowed * load<V>(g.far + lane);
       Mask<V> slow{}, fast{};
       for (int k = 0; k < 2; ++k) {
         Row<V> r;
@@ -270,7 +270,7 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
 
 template <class V>
 OBSCURA_INLINE void project_all(const Seats* seats, Projection* p, int count, const Pose* poses, Motion* d,
-                                double share) {
+                                double share, double deep) {
   const V none{}, part = V{} + share;
   for (const Seats* g = seats; g < seats + count; ++g, ++p) {
     if (!g->taken) continue;
@@ -280,7 +280,7 @@ OBSCURA_INLINE void project_all(const Seats* seats, Projection* p, int count, co
       Row<V> r0, r1;
       make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
       Two<V> two(*g, lane, d);
-      const V mu = load<V>(g->mu + lane), allowed = kAllowed * load<V>(g->far + lane);
+      const V mu = load<V>(g->mu + lane), allowed = deep * load<V>(g->far + lane);
       V l0 = load<V>(p->push[0] + lane), l1 = load<V>(p->push[1] + lane);
       V t0 = load<V>(p->side[0] + lane), t1 = load<V>(p->side[1] + lane);
       rub<V>(two, r0, mu * l0, t0);
@@ -308,9 +308,9 @@ OBSCURA_WIDE void finish_wide(Seats* s, int n, const Pose* at, Motion* v, const 
   contacts ? sweep_all<V4, true, true>(s, n, at, v, pace, contacts)
            : sweep_all<V4, true, false>(s, n, at, v, pace, nullptr);
 }
-OBSCURA_WIDE void project_wide(const Seats* s, Projection* p, int n, const Pose* at, Motion* d,
-                               double share) {
-  project_all<V4>(s, p, n, at, d, share);
+OBSCURA_WIDE void project_wide(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share,
+                               double deep) {
+  project_all<V4>(s, p, n, at, d, share, deep);
 }
 
 }  // namespace
@@ -354,8 +354,8 @@ void finish(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace, Contac
   contacts ? sweep_all<V2, true, true>(s, n, at, v, pace, contacts)
            : sweep_all<V2, true, false>(s, n, at, v, pace, nullptr);
 }
-void project(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share) {
-  kWide ? project_wide(s, p, n, at, d, share) : project_all<V2>(s, p, n, at, d, share);
+void project(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share, double allowed) {
+  kWide ? project_wide(s, p, n, at, d, share, allowed) : project_all<V2>(s, p, n, at, d, share, allowed);
 }
 
 }  // namespace obscura::sim::sweep

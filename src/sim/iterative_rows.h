@@ -58,9 +58,10 @@ using Found = std::vector<int>;
 
 /// Constants of a step.
 struct Pace {
-  double h = 0;      // s
-  double creep = 0;  // m/s: slower approaches are none
-  double gain = 0;   // m/s that gravity may add in the step
+  double h = 0;        // s
+  double creep = 0;    // m/s: slower approaches are none
+  double gain = 0;     // m/s that gravity may add in the step
+  double allowed = 0;  // of the farther reach: what is deeper is to be put right
 };
 
 /// One pair to another seat; the forces alone.
@@ -80,10 +81,9 @@ void sweep(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pa
 /// The last one of a stretch: forces into the seats and, where there are some, into the contacts.
 void finish(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace, Contact<2>* contacts);
 
-/// One sweep over positions: `share` of what is deeper than `kAllowed` of the farther reach is to go.
-/// Friction holds there too, or piles would slide apart by being mended.
-inline constexpr double kAllowed = 5e-7;
+/// One sweep over positions: `share` of what is deeper than `allowed` of the farther reach is to go. Friction
+/// holds there too, or piles would slide apart by being mended.
 void project(const Seats* seats, Projection* projections, int count, const Pose* poses, Motion* d,
-             double share);
+             double share, double allowed);
 
 }  // namespace obscura::sim::sweep

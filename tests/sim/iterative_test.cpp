@@ -240,6 +240,23 @@ TEST(Iterative, AHeapCutInTwoIsTheHeapInOne) {
   expect_cut_is_whole(whole, {0.5, 1.25, 4.0});
 }
 
+// 400 boxes dropped come to rest and stay there to the bit, each at most a hundredth of its reach in another. Put
+// right to the last they crept for ever: their sweeps are few
+TEST(Iterative, AHeapOfHundredsComesToRest) {
+  Room r;
+  r.world.model.rate = {60, 1};
+  r.floor(), add_wall(r.world, {0, 0}, {1, 0}), add_wall(r.world, {40, 0}, {-1, 0});
+  for (int i = 0; i < 400; ++i)
+    r.box({0.5, 0.5}, {2 + 0.9 * (i % 20) + 0.03 * (i / 20), 1 + 0.9 * (i / 20) + 0.01 * (i % 20)}, 0.6, 0,
+          {0, 0}, 0.12 * (i % 7));
+  r.run(15);
+  EXPECT_EQ(std::count(r.state().frozen.begin(), r.state().frozen.end(), 1), 400);
+  for (const Contact<2>& contact : r.state().contacts) EXPECT_GT(contact.gap, -1.1e-2 * std::sqrt(0.125));
+  const auto before = r.state().x;
+  r.run(5);
+  EXPECT_EQ(r.state().x, before);
+}
+
 // forces from the top down are its equilibrium: it never moves by more than rounding, and freezes
 TEST(Iterative, PyramidOfBaseAHundredStandsAndFreezes) {
   Room r = pyramid(100);
