@@ -225,9 +225,10 @@ class Joining {
     if (!length) return true;
     const double slack = length->number() - apart, rounding = kRounding * (1 + size_);
     if (slack < -rounding || (kind_ == JointKind::rod && slack > rounding)) {
-      complaints_.add(length->place,
-                      fmt::format("'length' is {} m and its ends are {:.6g} m apart at the start",
-                                  length->number(), apart));
+      complaints_.add(
+          length->place,
+          fmt::format("'length' is {} m and its ends are {:.6g} m apart at the start; move an end",
+                      length->number(), apart));
       return false;
     }
     it.length = length->number();

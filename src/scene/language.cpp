@@ -237,7 +237,7 @@ std::vector<Key> rows() {
        .doc = "Of a slider: its way; of a hinge in space: what it turns about. As seen in the room at the start; it goes with the second end.",
        .example = "[0, 1]"},
       {.path = "joint.length", .form = number, .unit = "m", .absent = "as long as it is at the start", .range = kPositive,
-       .doc = "Of a rope: it may be longer than it is at the start. Of a rod: for the record.", .example = "0.5"},
+       .doc = "Of a rope: it may be longer than it is at the start. Of a rod: that of the start, or it is refused; to change it, move an end.", .example = "0.5"},
       {.path = "joint.limits", .form = limits, .absent = "none",
        .doc = "Lowest and highest angle of a pin, in space of a hinge, (degrees) or way of a slider (metres), of the first end against the second, 0 at the start.",
        .example = "[-30, 45]"},

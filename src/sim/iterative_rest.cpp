@@ -215,6 +215,10 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats
     }
     while (end < order_.size() && island(order_[end]) == which) ++end;
     if (begin == end && parts_.empty()) continue;
+    double quiet = 1e300;
+    for (std::size_t k = first; k < last; ++k) quiet = std::min(quiet, state.quiet[members_[k].second]);
+    // a trial leaves other forces behind, to which joints have to settle again
+    if (!parts_.empty() && std::floor(quiet / kWait) == std::floor((quiet - span) / kWait)) continue;
     std::sort(parts_.begin(), parts_.end());
     parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
 
@@ -273,8 +277,6 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats
     }
     if (!held && parts_.empty()) {
       // after one wait, two, four, ...
-      double quiet = 1e300;
-      for (std::size_t k = first; k < last; ++k) quiet = std::min(quiet, state.quiet[members_[k].second]);
       double due = kWait;
       while (2 * due <= quiet) due *= 2;
       if (quiet - span < due) held = this->held(state, found, {order_.data() + begin, end - begin}, poses);

@@ -180,9 +180,9 @@ TEST(Complaints, JointsSayWhereTheyAre) {
   refused(two + "type = \"pin\"\nbetween = [\"a\", \"room\"]\nlength = 2",
           "a.toml:15:10: 'length' is that of a rod or a rope; a pin has none");
   refused(two + "type = \"rod\"\nbetween = [\"a\", \"b\"]\nlength = 2",
-          "a.toml:15:10: 'length' is 2 m and its ends are 1 m apart at the start");
+          "a.toml:15:10: 'length' is 2 m and its ends are 1 m apart at the start; move an end");
   refused(two + "type = \"rope\"\nbetween = [\"a\", \"b\"]\nlength = 0.9",
-          "a.toml:15:10: 'length' is 0.9 m and its ends are 1 m apart at the start");
+          "a.toml:15:10: 'length' is 0.9 m and its ends are 1 m apart at the start; move an end");
   refused(two + "type = \"rope\"\nbetween = [\"a\", \"room\"]",
           "a.toml:14:11: where in the room? A rope needs a place [x, y]");
   refused(two + "type = \"weld\"\nbetween = [\"p\", \"a\"]\nat = [2, 1]",
