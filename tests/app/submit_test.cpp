@@ -86,7 +86,8 @@ TEST_F(Slurm, AFailedTaskIsNamedWithItsLogAndRepairedBySubmittingAgain) {
 
 TEST_F(Slurm, ATaskThatIsToldToStopAndANodeThatDiesLoseNothing) {
   scene(kRoom);
-  const std::string sets = " --set film.size=[640,360] --set film.fps=60";
+  // so large that some of it is still to be made when the node dies
+  const std::string sets = " --set film.size=[1920,1080] --set film.fps=60";
   ASSERT_EQ(obscura("render scene.toml -o one.mp4" + sets).exit, 0);
   const std::string submit = "submit scene.toml --tasks 2 -o room.mp4 --progress none" + sets;
   ASSERT_EQ(obscura(submit + " --no-wait").exit, 0);
