@@ -311,8 +311,9 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
       const Contact<2>& contact = state.contacts[pair.first + k];
       gap = std::min(gap, contact.gap), bears = bears || joins(contact, pair);
     }
-    // two that lie beside each other and have been still in turns would wake each other in turns
-    if (!bears && state.quiet[other] >= kWait) continue;
+    // who has been still between two looks does not fall; two that lie beside each other would wake each
+    // other in turns
+    if (!bears && state.quiet[other] > span) continue;
     if (gap < comes) restless_[sleeper] = 1, any = true;
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {

@@ -90,6 +90,14 @@ TEST(Hostile, WhatIsFarTooFastIsStepped) {
       "[[box]]\nsize = [0.5, 0.5, 0.5]\nposition = [0, 0.75, 0]\nvelocity = [2.9e6, 1e5, 0]\n",
       "a.toml");
   EXPECT_TRUE(std::holds_alternative<sim::Snapshot>(scene.run()->at({1, 600})));
+  // one that has flown past three is in sight of all of them for good: 600,000 looks a step, minutes a second
+  const Scene past = parse(
+      "[room]\nsize = [4, 3, 4]\nwalls = \"none\"\ngravity = [0, 0, 0]\n[physics]\ncollision = \"event\"\n"
+      "[[box]]\nsize = [0.5, 0.5, 0.5]\nposition = [-1, 0.25, 0]\ncopies = { count = 3, offset = [0, 1, 0] "
+      "}\n"
+      "[[ball]]\nradius = 0.1\nposition = [1, 1, 1]\nvelocity = [2.9e6, 1e5, 0]\n",
+      "past.toml");
+  EXPECT_TRUE(std::holds_alternative<sim::Snapshot>(past.run()->at({1, 1})));
 }
 
 TEST(Hostile, WhatIsNotTomlIsOneLine) {

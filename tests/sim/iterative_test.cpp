@@ -240,8 +240,8 @@ TEST(Iterative, AHeapCutInTwoIsTheHeapInOne) {
   expect_cut_is_whole(whole, {0.5, 1.25, 4.0});
 }
 
-// 400 boxes dropped come to rest and stay there to the bit, each at most a hundredth of its reach in another. Put
-// right to the last they crept for ever: their sweeps are few
+// 400 boxes dropped come to rest and stay there to the bit, each at most a hundredth of its reach in another.
+// Put right to the last they crept for ever: their sweeps are few
 TEST(Iterative, AHeapOfHundredsComesToRest) {
   Room r;
   r.world.model.rate = {60, 1};
@@ -255,6 +255,22 @@ TEST(Iterative, AHeapOfHundredsComesToRest) {
   const auto before = r.state().x;
   r.run(5);
   EXPECT_EQ(r.state().x, before);
+}
+
+// half a millimetre apart they bear nothing of one another: who has lain still need not wake the other
+TEST(Iterative, TwoThatLieBesideEachOtherLetEachOtherSleep) {
+  for (int height = 1; height <= 12; ++height) {
+    Room r;
+    r.world.model.rate = {60, 1};
+    r.floor();
+    r.box({0.5, 0.5}, {0, 0.25}, 0.6);
+    r.box({0.5, 0.5}, {0.5005, 0.25 + 0.04 * height}, 0.6);
+    r.run(4);
+    for (int i = 0; i < 60; ++i) {
+      r.run(1.0 / 60);
+      ASSERT_EQ(r.state().frozen, std::vector<char>({1, 1})) << height << " at " << i;
+    }
+  }
 }
 
 // forces from the top down are its equilibrium: it never moves by more than rounding, and freezes
