@@ -78,17 +78,19 @@ std::string submit(const std::string& script, const std::vector<std::string>& op
   return job;
 }
 
-bool states(const std::vector<std::string>& jobs, std::map<std::string, std::string>& found) {
+bool states(const std::vector<std::string>& jobs, std::map<std::string, State>& found) {
   for (const std::string& job : jobs) {
     const Said said =
-        ask({"squeue", "--noheader", "--array", "--states=all", "--jobs=" + job, "--format=%i %T"});
+        ask({"squeue", "--noheader", "--array", "--states=all", "--jobs=" + job, "--format=%i %T %r"});
     if (said.exit != 0) {
       // a job that ended long ago is forgotten
       if (said.text.find("Invalid job id") != said.text.npos) continue;
       return false;
     }
     std::istringstream lines(said.text);
-    for (std::string name, state; lines >> name >> state;) found[name] = state;
+    std::string name;
+    for (State state; lines >> name >> state.name && std::getline(lines >> std::ws, state.reason);)
+      found[name] = state;
   }
   return true;
 }
@@ -97,10 +99,17 @@ void cancel(const std::vector<std::string>& jobs) {
   for (const std::string& job : jobs) (void)ask({"scancel", job});
 }
 
-bool lives(const std::string& state) {
+bool lives(const State& job) {
+  const std::string& state = job.name;
   return state == "PENDING" || state == "RUNNING" || state == "CONFIGURING" || state == "COMPLETING" ||
          state == "SUSPENDED" || state == "STOPPED" || state == "SIGNALING" || state == "STAGE_OUT" ||
          state == "RESIZING" || state.starts_with("REQUEUE") || state == "SPECIAL_EXIT";
+}
+
+bool held(const State& state) {
+  // "JobHeldUser", "JobHeldAdmin", "job requeued in held state", "launch failed requeued held"
+  return state.name == "PENDING" &&
+         (state.reason.find("held") != state.reason.npos || state.reason.find("Held") != state.reason.npos);
 }
 
 }  // namespace obscura::app::slurm

@@ -16,14 +16,23 @@ int last_task();
 /// sbatch says.
 std::string submit(const std::string& script, const std::vector<std::string>& options);
 
-/// The states of jobs, as "RUNNING", under "12", or "12_3" for task 3 of an array. What Slurm has forgotten
-/// is not there. False: Slurm does not answer now.
-bool states(const std::vector<std::string>& jobs, std::map<std::string, std::string>& found);
+/// What Slurm says of a job: "RUNNING", and why it waits, as "launch failed requeued held"; "None" where it
+/// does not.
+struct State {
+  std::string name, reason;
+};
+
+/// The states of jobs, under "12", or "12_3" for task 3 of an array. What Slurm has forgotten is not there.
+/// False: Slurm does not answer now.
+bool states(const std::vector<std::string>& jobs, std::map<std::string, State>& found);
 
 /// Ends jobs.
 void cancel(const std::vector<std::string>& jobs);
 
 /// Whether such a job may still do something.
-bool lives(const std::string& state);
+bool lives(const State& state);
+
+/// Whether it does nothing until somebody releases it.
+bool held(const State& state);
 
 }  // namespace obscura::app::slurm

@@ -295,7 +295,7 @@ Jobs earlier_jobs(const Folder& folder) {
   return jobs;
 }
 
-using States = std::map<std::string, std::string>;
+using States = std::map<std::string, slurm::State>;
 
 bool any_lives(const States& states) {
   return std::any_of(states.begin(), states.end(),
@@ -311,8 +311,8 @@ std::vector<std::pair<std::string, std::string>> failures(const Work& work, cons
     const auto state = states.find(job);
     // what never began is not to blame
     const bool began = folder.exit(step) || fs::exists(folder.file(step + ".log"));
-    if (began || (state != states.end() && !state->second.starts_with("CANCELLED")))
-      found.emplace_back(step, state == states.end() ? "" : state->second);
+    if (began || (state != states.end() && !state->second.name.starts_with("CANCELLED")))
+      found.emplace_back(step, state == states.end() ? "" : state->second.name);
   };
   if (const auto job = jobs.find("prepare"); job != jobs.end()) look("prepare", job->second);
   if (const auto job = jobs.find("shards"); job != jobs.end())
@@ -341,11 +341,20 @@ int report(const Work& work, const Folder& folder, const Jobs& jobs, const State
   return code && *code >= kDiffers && *code <= kDiverged ? *code : kFiles;
 }
 
+/// Says of jobs that wait for a person, once of each.
+void tell_held(const Work& work, const States& states, std::set<std::string>& told) {
+  for (const auto& [job, state] : states)
+    if (slurm::held(state) && told.insert(job).second)
+      fmt::print(stderr, "obscura: {}: Slurm holds job {} ({}); scontrol release {} lets it go on\n",
+                 work.errand.made, job, state.reason, job);
+}
+
 int follow(const Work& work, const Folder& folder, const Jobs& jobs, ProgressKind kind) {
   constexpr auto kPause = std::chrono::milliseconds(200);
   constexpr int kAsk = 10;  // pauses from one question to Slurm to the next
   Progress progress(kind, work.errand.made, work.size, work.frame_seconds, work.unit);
   States states;
+  std::set<std::string> told;
   for (bool lives = true; lives;) {
     if (interrupted()) {
       progress.finish(
@@ -359,6 +368,7 @@ int follow(const Work& work, const Folder& folder, const Jobs& jobs, ProgressKin
     if (slurm::states(numbers(jobs), now)) {
       for (const auto& [job, state] : now) states[job] = state;
       lives = any_lives(now);
+      tell_held(work, now, told);
     }
     progress.at(work.done());
     for (int i = 0; lives && i < kAsk && !interrupted(); ++i) std::this_thread::sleep_for(kPause);

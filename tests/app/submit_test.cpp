@@ -84,6 +84,17 @@ TEST_F(Slurm, AFailedTaskIsNamedWithItsLogAndRepairedBySubmittingAgain) {
   EXPECT_FALSE(std::filesystem::exists(path("room.mp4.slurm/shard-1.log")));  // nobody made it again
 }
 
+TEST_F(Slurm, WhoFollowsIsToldWhatIsHeld) {
+  scene(kRoom);
+  const std::string submit = "submit scene.toml --tasks 2 -o room.mp4 --progress none" + kSmall;
+  ASSERT_EQ(obscura(submit + " --no-wait -- --hold").exit, 0);
+  shell("{ " OBSCURA_BINARY " " + submit + "; echo $?; } >followed 2>&1 & true");
+  ASSERT_TRUE(soon("grep -q 'holds job 3 (.*); scontrol release 3 ' followed")) << contents(path("followed"));
+  ASSERT_EQ(shell("scontrol release 1 2 3").exit, 0);
+  ASSERT_TRUE(soon("tail -n 1 followed | grep -qx 0")) << contents(path("followed")) << story();
+  EXPECT_TRUE(std::filesystem::exists(path("room.mp4")));
+}
+
 TEST_F(Slurm, ATaskThatIsToldToStopAndANodeThatDiesLoseNothing) {
   scene(kRoom);
   // so large that some of it is still to be made when the node dies
@@ -97,20 +108,20 @@ TEST_F(Slurm, ATaskThatIsToldToStopAndANodeThatDiesLoseNothing) {
   ASSERT_TRUE(soon("ls room.mp4.parts/*000000-*.mp4"));
   ASSERT_EQ(shell("scancel --full --signal=TERM " + array + "_1").exit, 0);
   ASSERT_TRUE(soon("squeue -h -r -j " + array + " -o '%K %T %r' | grep -qx '1 PENDING BeginTime'"))
-      << shell("squeue -t all -r").out << contents(path("room.mp4.slurm/shard-1.log"));
-  ASSERT_TRUE(begun(array)) << shell("squeue -t all -r").out;
+      << story() << contents(path("room.mp4.slurm/shard-1.log"));
+  ASSERT_TRUE(begun(array)) << story();
 
   // then the node dies, and comes back
   ASSERT_TRUE(soon("squeue -h -r -t RUNNING -j " + array + " | grep -q ."));
   kill_node();
-  ASSERT_TRUE(soon("sinfo -h -o %T | grep -q down")) << contents(path("slurmctld.log"));
+  ASSERT_TRUE(soon("sinfo -h -o %T | grep -q down")) << story();
   start_node();
   ASSERT_TRUE(soon("sinfo -h -o %T | grep -qx -e idle -e mixed -e allocated"));
-  ASSERT_TRUE(begun(array)) << shell("squeue -t all -r").out;
+  ASSERT_TRUE(begun(array)) << story();
   Outcome followed = obscura(submit);
   // Slurm may let the join fall with the node: then it is what is missing
   if (followed.exit != 0) followed = obscura(submit);
-  EXPECT_EQ(followed.exit, 0) << followed.err << contents(path("slurmctld.log"));
+  EXPECT_EQ(followed.exit, 0) << followed.err << story();
   EXPECT_TRUE(contents(path("room.mp4")) == contents(path("one.mp4")));
 }
 

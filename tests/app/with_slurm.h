@@ -57,7 +57,12 @@ class WithSlurm : public Program {
           "; for p in /proc/[0-9]*; do "
           "if tr '\\0' '\\n' <$p/environ 2>/dev/null | grep -qx \"SLURM_CONF=$SLURM_CONF\" && "
           "{ grep -q ^slurmstepd $p/comm || tr '\\0' '\\n' <$p/environ | grep -q ^SLURM_JOB_ID=; }; "
-          "then kill -KILL ${p#/proc/}; fi; done");
+          "then kill -KILL ${p#/proc/}; fi; done; rm -rf spool; mkdir spool");
+  }
+
+  /// What Slurm knows, for one who asks why.
+  std::string story() const {
+    return shell("squeue -t all -r").out + contents(path("slurmctld.log")) + contents(path("slurmd.log"));
   }
 
   /// Whether a command comes to succeed: a minute is more than any of them takes.
@@ -69,12 +74,15 @@ class WithSlurm : public Program {
     return false;
   }
 
-  /// Slurm lets what it queues again wait for two minutes; a test does not. Whether all tasks of an array
-  /// have begun.
+  /// Slurm lets what it queues again wait for two minutes; a test waits for two seconds. Not for less: what
+  /// is launched in the second in which it ended is refused, its credential being counted as the old one's,
+  /// and held. Whether all tasks of an array have begun.
   bool begun(const std::string& array) const {
-    const std::string waiting = "$(squeue -h -r -t PENDING -j " + array + " -o %A)";
-    return soon("for j in " + waiting +
-                "; do scontrol update jobid=$j starttime=now; done; sleep 0.5; test -z \"" + waiting + "\"");
+    const std::string waiting = "squeue -h -r -t PENDING -j " + array;
+    return soon("sleep 2; for j in $(" + waiting +
+                " -o '%A %r' | awk '$2 == \"BeginTime\" { print $1 }'); "
+                "do scontrol update jobid=$j starttime=now; done; sleep 1; test -z \"$(" +
+                waiting + " -o %A)\"");
   }
 
  private:
