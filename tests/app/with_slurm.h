@@ -65,9 +65,10 @@ class WithSlurm : public Program {
     return shell("squeue -t all -r").out + contents(path("slurmctld.log")) + contents(path("slurmd.log"));
   }
 
-  /// Whether a command comes to succeed: a minute is more than any of them takes.
+  /// Whether a command comes to succeed: two minutes are more than any of them takes.
   bool soon(const std::string& command) const {
-    for (int i = 0; i < 600; ++i) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (std::chrono::steady_clock::now() < end) {
       if (shell("{ " + command + "; } >/dev/null").exit == 0) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
@@ -76,12 +77,13 @@ class WithSlurm : public Program {
 
   /// Slurm lets what it queues again wait for two minutes; a test waits for two seconds. Not for less: what
   /// is launched in the second in which it ended is refused, its credential being counted as the old one's,
-  /// and held. Whether all tasks of an array have begun.
+  /// and may be held. Whether all tasks of an array have begun.
   bool begun(const std::string& array) const {
     const std::string waiting = "squeue -h -r -t PENDING -j " + array;
-    return soon("sleep 2; for j in $(" + waiting +
-                " -o '%A %r' | awk '$2 == \"BeginTime\" { print $1 }'); "
-                "do scontrol update jobid=$j starttime=now; done; sleep 1; test -z \"$(" +
+    return soon("sleep 2; " + waiting +
+                " -o '%A %r' | while read j why; do case $why in "
+                "BeginTime) scontrol update jobid=$j starttime=now ;; *held) scontrol release $j ;; "
+                "esac; done; sleep 1; test -z \"$(" +
                 waiting + " -o %A)\"");
   }
 
