@@ -2,7 +2,7 @@
 // its end
 //   v*  = v + h a + M^-1 J l              l: J v* = 0, in sweeps with the contacts
 //   x'  = x + h (v + v*) / 2 + M^-1 J s   s: g(x') = 0, Newton with the factors at hand
-//   v'  = v* + M^-1 (J (s / h - l / 2) + J' m)     m: J' v' = 0
+//   v'  = v* + M^-1 (J (s / h - l / 2) + J' m)     m: J' v' = 0, and motors hold their speed there
 // in space with angular momenta for spins, so that what turns on in the step keeps its own;
 // which is of second order, and no joint drifts. A row with bounds beside them: a unit of its impulse is
 // answered by c = -K^-1 J M^-1 r of the joints, so that
@@ -246,12 +246,8 @@ void Linkage<D>::bind(double h) {
     }
 
     answer(b);
-    const double own = couple(b.row, b.row);
-    double gives = own;
-    for (const auto& [k, fast] : b.felt) gives += fast * b.answer[k];
-    if (gives <= kLocked * own) return;
-    b.give = 1 / gives;
-    ++active_;
+    b.give = give(b);
+    active_ += b.give > 0;
   };
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
@@ -277,6 +273,15 @@ void Linkage<D>::answer(Bounded& b) {
   });
   factors_.solve(rhs_.data(), b.part);
   each_row(b.part, [&](int, int r) { b.answer.push_back(rhs_[r]); });
+}
+
+// zero where joints leave it nothing to move
+template <int D>
+double Linkage<D>::give(const Bounded& b) const {
+  const double own = couple(b.row, b.row);
+  double gives = own;
+  for (const auto& [k, fast] : b.felt) gives += fast * b.answer[k];
+  return gives > kLocked * own ? 1 / gives : 0;
 }
 
 // by parts, and how they move each other
@@ -497,8 +502,34 @@ void Linkage<D>::finish(double h) {
     push(rows_[r], half);
     totals_[r] = 2 * half;
   }
+  if (rebind()) {
+    sweep();
+    return;
+  }
   agree();
   for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
+}
+
+// Motors where bodies now stand, with what they have left to give; what else has bounds has done its part.
+// False where there are none.
+template <int D>
+bool Linkage<D>::rebind() {
+  bool any = false;
+  for (std::size_t k = 0; k < active_; ++k) {
+    Bounded& b = bounded_[k];
+    if (b.load != motor) {
+      b.least = b.most = b.impulse;
+      continue;
+    }
+    any = true;
+    const Joint<D>& joint = model_.joints[b.joint];
+    double way = 0;
+    free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), b.row, way);
+    answer(b);
+    b.give = give(b);
+  }
+  if (any) couple_bounded();
+  return any;
 }
 
 template <int D>

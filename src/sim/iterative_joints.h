@@ -88,6 +88,8 @@ class Linkage {
   void each_row(int part, Act&& act) const;
   void bind(double h);
   void answer(Bounded& bounded);
+  double give(const Bounded& bounded) const;
+  bool rebind();
   void couple_bounded();
   void push_bounded(int part);
   void shift_bounded(const Bounded& bounded, double by);

@@ -1,0 +1,218 @@
+// Problems of the textbooks and their closed forms, whole: nothing here is made for one part of the solvers.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "sim/jointed.h"
+#include "sim/space_rooms.h"
+#include "sim/touching.h"
+
+namespace obscura::sim {
+namespace {
+
+constexpr double kG = 9.81, kPi = std::numbers::pi;
+
+void add_floor(World<2>& world, double friction) {
+  world.model.walls.push_back({{0, 0}, {0, 1}, {}, friction});
+}
+
+// how far the body has sunk after two seconds, by either solver
+double sinks(World<2> world, int body, Solver solver) {
+  world.model.solver = solver;
+  return world.state.x[body].y() - stepped(world, 1200).x[body].y();
+}
+
+class Stands : public testing::TestWithParam<Solver> {};
+
+INSTANTIATE_TEST_SUITE_P(Solvers, Stands, testing::Values(Solver::direct, Solver::iterative),
+                         [](const auto& it) { return it.param == Solver::direct ? "Direct" : "Iterative"; });
+
+// Galperin 2003: a block of 100^k kg pushes one of 1 kg towards a wall, and the blows count the digits of pi:
+// floor(pi / atan 10^-k). In (v, 10^k V) each pair of blows is a turn by twice that angle, so that the speeds
+// after all of them are as the count says. A step's many blows are each at its own time.
+TEST(Classics, BlocksAndAWallCountTheDigitsOfPi) {
+  for (const int digits : {1, 2, 3}) {
+    const double ratio = std::pow(10, digits), mass = ratio * ratio, angle = std::atan(1 / ratio);
+    World<2> world = touching_room(Collision::event, {0, 0});
+    add_wall(world, {0, 0}, {1, 0});
+    add_particle(world, {1, 0}, {0, 0}, 1, 1, 0.1), add_particle(world, {2, 0}, {-1, 0}, mass, 1, 0.2);
+    rub(world, 0);
+    const int blows = int(kPi / angle);
+    // counted from -V: odd blows are between the two, even ones with the wall
+    const double turned = blows * angle;
+    const State<2> now = stepped(world, 600 * 20);
+    EXPECT_EQ(blows, int(kPi * ratio));
+    const double slow = -std::cos(blows % 2 == 0 ? turned : turned + angle);
+    const double fast = ratio * std::fabs(std::sin(blows % 2 == 0 ? turned : turned + angle));
+    EXPECT_NEAR(now.v[1].x(), slow, 1e-9) << digits;
+    EXPECT_NEAR(now.v[0].x(), fast, 1e-9 * ratio) << digits;
+  }
+}
+
+// a block slides down a wedge that slides away: A = m g sin cos / (M + m sin^2)
+TEST_P(Stands, AWedgeGivesWayAsMomentaSay) {
+  const double angle = kPi / 6, M = 3, m = 1, wide = 4, high = wide * std::tan(angle);
+  World<2> world = touching_room();
+  world.model.solver = GetParam();
+  add_floor(world, 0);
+  const Vec2 down(std::cos(angle), -std::sin(angle)), out(std::sin(angle), std::cos(angle));
+  add_polygon(world, {{0, 0}, {wide, 0}, {0, high}}, M, {0, 0}, {0, 0}, 0, 0, 0);
+  add_box(world, {0.2, 0.2}, m, Vec2(0, high) + 0.5 * down + 0.1 * out, {0, 0}, -angle, 0, 0);
+  rub(world, 0);
+  const State<2> now = stepped(world, 300);
+  const double a = m * kG * std::sin(angle) * std::cos(angle) / (M + m * std::pow(std::sin(angle), 2));
+  EXPECT_NEAR(now.v[0].x(), -0.5 * a, 1e-12);
+  EXPECT_NEAR(now.v[1].x(), 0.5 * a * M / m, 1e-12);
+  EXPECT_NEAR(energy(world, now), energy(world, world.state), 1e-11);
+}
+
+// One pipe upon two: its touches make 30 degrees with the upright, and force and friction of a lower pipe,
+// which meet where it touches the floor, half of that: tan 15 between pipes; on the floor a third of it
+TEST_P(Stands, ThreePipesNeedTheirFriction) {
+  const double r = 0.3, between = std::tan(kPi / 12), floor = between / 3;
+  for (const auto& [pipes, ground, stands] :
+       {std::tuple{1.02 * between, 2 * floor, true}, std::tuple{0.98 * between, 2 * floor, false},
+        std::tuple{2 * between, 1.02 * floor, true}, std::tuple{2 * between, 0.98 * floor, false}}) {
+    World<2> world = touching_room();
+    add_floor(world, ground * ground / pipes);  // the root of the product is the pair's
+    for (const Vec2& at : {Vec2(-r, r), Vec2(r, r), Vec2(0, r + r * std::sqrt(3.0))})
+      add_ball(world, r, 1, at, {0, 0}, 0, 0);
+    rub(world, pipes);
+    const double fall = sinks(world, 2, GetParam());
+    EXPECT_TRUE(stands ? fall == 0 : fall > 0.01) << pipes << " " << ground << ": " << fall;
+  }
+}
+
+// a ladder at a rough wall slips where tan(angle) < (1 - mu mu') / (2 mu): 0.05 degrees to either side
+TEST_P(Stands, ALadderSlipsBelowItsAngle) {
+  const double mu = 0.4, wall = 0.3, length = 2, thick = 1e-4;
+  for (const double off : {0.05, -0.05}) {
+    const double angle = std::atan((1 - mu * wall) / (2 * mu)) + off * kPi / 180;
+    World<2> world = touching_room();
+    add_floor(world, mu * mu / 0.5);
+    world.model.walls.push_back({{0, 0}, {1, 0}, {}, wall * wall / 0.5});
+    add_box(world, {length, thick}, 1,
+            {(length * std::cos(angle) + thick * std::sin(angle)) / 2,
+             (length * std::sin(angle) + thick * std::cos(angle)) / 2},
+            {0, 0}, -angle, 0, 0);
+    rub(world, 0.5);
+    const double fall = sinks(world, 0, GetParam());
+    EXPECT_TRUE(off > 0 ? fall == 0 : fall > 0.01) << off << ": " << fall;
+  }
+}
+
+// Eight blocks reach beyond a table's edge by half of 1 + 1/2 + ... + 1/8 of their length, and not by a
+// thousandth more
+TEST_P(Stands, BlocksOverhangByTheHarmonicSum) {
+  for (const double part : {0.999, 1.001}) {
+    World<2> world = touching_room();
+    add_box(world, {1, 1}, 1, {0, 0.5});
+    world.model.bodies[0].fixed = true;
+    double beyond = 0;  // of a block's right end from that of what it lies on
+    for (int k = 8; k >= 1; --k) {
+      beyond += part / (2 * k);
+      add_box(world, {1, 0.1}, 1, {beyond, 1 + 0.1 * (8 - k) + 0.05}, {0, 0}, 0, 0, 0);
+    }
+    rub(world, 0.6);
+    const double fall = sinks(world, 8, GetParam());
+    EXPECT_TRUE(part < 1 ? fall == 0 : fall > 0.01) << part << ": " << fall;
+  }
+}
+
+// Housner 1963: a slender block rocks. After each blow of its foot it turns 1 - 3/2 sin^2 of its half angle
+// as fast, for angular momentum about the new foot is kept; how far it then tilts is as energy says. Order:
+// of a step's second power in the time of the blow
+TEST(Classics, ARockingBlockLosesWhatHousnerSays) {
+  const double half = 15 * kPi / 180, tilt = 5 * kPi / 180, R = 1;
+  const double b = R * std::sin(half), h = R * std::cos(half);
+  for (const auto collision : {Collision::contact, Collision::event}) {
+    World<2> world = touching_room(collision);
+    add_floor(world, 2);
+    add_box(world, {2 * b, 2 * h}, 1, rotation<2>(Turn<2>(-tilt)) * Vec2(-b, h), {0, 0}, -tilt, 0, 0);
+    rub(world, 2);
+    // w^2 / 2 = p^2 (cos(half - angle) - cos half), p^2 = 3 g / 4 R
+    const double keeps = 1 - 1.5 * std::pow(std::sin(half), 2);
+    const double lost = keeps * keeps * (std::cos(half - tilt) - std::cos(half));
+    const double swings = half - std::acos(std::cos(half) + lost);
+    double farthest = 0;
+    State<2> state = world.state;
+    Stepper<2> stepper(world.model);
+    stepper.begin(state);
+    for (int i = 0; i < 500; ++i) {
+      ASSERT_FALSE(stepper.step(state));
+      farthest = std::max(farthest, state.turn[0][0]);
+    }
+    // the largest angle is seen within half a step of its time: 3/8 g sin(10 deg) h^2 / R
+    EXPECT_NEAR(farthest, swings, 2e-6);
+    EXPECT_LE(farthest, swings + 1e-9);
+  }
+}
+
+// A plank across two rollers that turn towards each other, 2 a apart, swings: x'' = -mu g x / (a - mu e), its
+// lower face e below its middle
+TEST(Classics, APlankOnTwoRollersSwings) {
+  const double a = 0.5, mu = 0.3, e = 0.01, begun = 0.1;
+  World<2> world = touching_room();
+  for (const double side : {-1.0, 1.0}) {
+    const int i = add_ball(world, 0.2, 1, {side * a, 1}, {0, 0}, 0, 0);
+    Joint<2> hinge = pin({i, {0, 0}}, {-1, {side * a, 1}});
+    hinge.motor = Joint<2>::Motor{side * 60, 1e4};
+    world.model.joints.push_back(hinge);
+  }
+  add_box(world, {3, 2 * e}, 1, {begun, 1.2 + e}, {0, 0}, 0, 0, 0);
+  rub(world, mu);
+  const double w = std::sqrt(mu * kG / (a - mu * e));
+  for (const int steps : {400, 777, 1554}) {
+    EXPECT_NEAR(stepped(world, steps).x[2].x(), begun * std::cos(w * steps / 600), 1e-11) << steps;
+  }
+}
+
+// a small ball upon a large one, dropped: (3 M - m) / (M + m) of the speed they land with
+TEST(Classics, ASmallBallFliesOffALargeOne) {
+  for (const auto collision : {Collision::contact, Collision::event}) {
+    World<2> world = touching_room(collision);
+    add_floor(world, 0);
+    add_ball(world, 0.3, 1, {0, 1.3}), add_ball(world, 0.1, 0.1, {0, 1.3 + 0.4 + 1e-3});
+    rub(world, 0);
+    const double falls = std::sqrt(2 / kG), v = std::sqrt(2 * kG) * (3 - 0.1) / 1.1;
+    const State<2> now = stepped(world, 300);
+    // that it comes a millimetre later costs it the square of that; contact locates blows to 1e-9 m
+    EXPECT_NEAR(now.v[1].y(), v - kG * (0.5 - falls), collision == Collision::event ? 1e-9 : 1e-8);
+  }
+}
+
+// a billiard ball that is struck aslant slides along a parabola, for its slip keeps its direction: from u it
+// rolls after 2 u / (7 mu g)
+TEST(Classics, AMasseShotIsAParabolaUntilItRolls) {
+  const double r = 0.1, mu = 0.2;
+  const Vec3 v(2, 0, 0.5), spin(30, 0, 20), foot(0, -r, 0);
+  const Vec3 slip = v + spin.cross(foot), brake = -mu * kG * slip.normalized();
+  const double slides = 2 * slip.norm() / (7 * mu * kG);
+  for (const auto solver : {Solver::direct, Solver::iterative}) {
+    World<3> world = space();
+    world.model.collision = Collision::contact, world.model.rate = {600, 1}, world.model.solver = solver;
+    world.model.scale = 4;
+    add_wall(world, {0, 0, 0}, {0, 1, 0});
+    add_solid(world, ball_shape<3>(r), 1, {0, r, 0}, v, upright<3>(), spin, 0);
+    world.model.bodies[0].friction = mu;
+    const Vec3 rolls = v + slides * brake;
+    const auto at = [&](double t) {
+      const double s = std::min(t, slides);
+      return Vec3(Vec3(0, r, 0) + s * v + 0.5 * s * s * brake + (t - s) * rolls);
+    };
+    for (const int steps : {200, 700}) {
+      const State<3> now = stepped(world, steps);
+      // the sweeps' step in which it comes to roll is of first order
+      const double near = solver == Solver::direct || steps / 600.0 < slides ? 1e-8 : 1e-6;
+      EXPECT_NEAR((now.x[0] - at(steps / 600.0)).norm(), 0, near) << steps;
+    }
+    EXPECT_NEAR((stepped(world, 700).v[0] - rolls).norm(), 0, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace obscura::sim
