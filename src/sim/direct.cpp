@@ -35,6 +35,7 @@ constexpr double kSunk = 0.1;        // of the thinnest: how far two may come in
 constexpr double kMostPieces = 200;  // of a step that is done roughly
 constexpr double kTiny = 1e-6;       // of a step: a cut that leads nowhere
 constexpr int kStuck = 16;           // such cuts, one after another
+constexpr int kThorough = 32;        // steps: in each such one what is not found is looked for everywhere
 constexpr double kManyLooks = 3e5;   // at couples, before a step is
 
 // the least thickness of a shape, m
@@ -90,7 +91,6 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
   patience_ = exact ? 8 + int(model.bodies.size()) : 4;
   short_ = exact ? 1.0 / 64 : 1.0 / 4;
   budget_ = exact ? 1e300 : 1e7;
-  cone_.thorough = exact;
   if (!exact) cone_.enough = 1e-7;
   for (const Joint<D>& joint : model.joints) row_joints_ += !joint.linked;
   for (const Body<D>& body : model.bodies) {
@@ -144,6 +144,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   int tiny = 0;  // cuts in a row that led nowhere
   forced_.clear();
   rough_ = false, work_ = 0, looks_ = 0;
+  cone_.thorough = model_.collision == Collision::event || state.step % kThorough == 0;
   openings_ = most_openings_, let_go_.reset(), vague_.clear();
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
   for (int cuts = 0; done < h; ++cuts) {

@@ -1,5 +1,7 @@
 // Rows that share no body do not know of one another: K falls into parts, each solved alone.
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "sim/direct.h"
@@ -8,7 +10,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kSweeps = 40;  // of a rough solve
+constexpr int kSweeps = 40;        // of a rough solve
+constexpr double kThorough = 5e8;  // of the size of all systems that a thorough one solves
 
 }  // namespace
 
@@ -75,9 +78,14 @@ bool Direct<D>::solve() {
   }
   bool found = true;
   each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
+    const double size = std::pow(double(part_rows_.size()), 3);
+    const int patience = cone_.patience;
+    if (cone_.thorough && model_.collision != Collision::event)
+      cone_.patience = int(std::min<double>(patience, kThorough / size));
     const ConeReport report = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_);
+    cone_.patience = patience;
     found = report.found && found;
-    work_ += double(report.tries) * part_rows_.size() * part_rows_.size() * part_rows_.size();
+    work_ += report.tries * size;
   });
   return found;
 }
