@@ -1,7 +1,6 @@
 // Rows that share no body do not know of one another: K falls into parts, each solved alone.
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "sim/direct.h"
@@ -78,7 +77,7 @@ bool Direct<D>::solve() {
   }
   bool found = true;
   each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
-    const double size = std::pow(double(part_rows_.size()), 3);
+    const double rows = double(part_rows_.size()), size = rows * rows * rows;
     const int patience = cone_.patience;
     if (cone_.thorough && model_.collision != Collision::event)
       cone_.patience = int(std::min<double>(patience, kThorough / size));

@@ -29,6 +29,8 @@ constexpr double kLooks = 60;       // a second: how often pairs are looked for
 constexpr double kStretches = 240;  // a second, at least
 constexpr int kMostSweeps = 40;     // of few pairs
 constexpr int kJointSweeps = 16;    // where there are joints: those are solved exactly in each
+constexpr int kStrainSweeps = 64;   // where they press something far into another
+constexpr double kStrained = 0.02;  // of its thickness: how far that is
 constexpr int kPairSweeps = 2000;   // pairs times sweeps where there are more; at least one sweep
 constexpr int kFirstSweeps = 100;   // of the first step, which knows no forces
 constexpr double kProject = 0.2;    // of a penetration each time pairs are looked for
@@ -144,14 +146,19 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
   const int count = int(seats_.size());
   const bool deep =
       sweep::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
-  blows_.run(fast_, pairs_.all(), seats_, poses_, old_, dv_, v_, pace);
+  if (!linkage_.empty()) {
+    lend();
+    linkage_.lay();
+  }
+  blows_.run(fast_, pairs_.all(), seats_, poses_, old_, dv_, v_, pace, linkage_);
   int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
   if (state.step == 0 && first) sweeps = kFirstSweeps;
   if (!linkage_.empty()) {
     lend();
     linkage_.begin(h);
     take();
-    sweeps = count == 0 && linkage_.plain() ? 1 : std::clamp(4 * sweeps, 4, kJointSweeps);
+    const int most = strained(state) ? kStrainSweeps : kJointSweeps;
+    sweeps = count == 0 && linkage_.plain() ? 1 : std::clamp(most / 4 * sweeps, 4, most);
   }
   for (int i = 1; i < sweeps; ++i) {
     hold();
@@ -164,6 +171,19 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
   advance(state, h, first && deep);
   if (!linkage_.empty()) rejoin(state, h);
   outran_ = outran(h, (1 - share) * span_);
+}
+
+// Whether joints press something that is awake far into another: pushes by contacts alone, each with its own
+// body's mass, hardly move it then.
+template <int D>
+bool Iterative<D>::strained(const State<D>& state) const {
+  const auto far = [&](int body) { return kStrained * cores_.inside[body]; };
+  return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact<D>& c) {
+    const int a = c.key.a, b = c.key.b;
+    const bool awake = v_[a].im > 0 || (b >= 0 && v_[b].im > 0);
+    const bool tied = linkage_.has(a) || (b >= 0 && linkage_.has(b));
+    return awake && tied && c.gap < -(b < 0 ? far(a) : std::min(far(a), far(b)));
+  });
 }
 
 // a pair's forces, from its seat

@@ -36,6 +36,7 @@ class Iterative final : public ContactStep<D> {
 
   bool gather(const State<D>& state);
   void stretch(State<D>& state, double t, double h, int which);
+  bool strained(const State<D>& state) const;
   void report(const sweep::Pair& pair, State<D>& state) const;
   void seat(const State<D>& state, bool known);
   void stand(const State<D>& state);

@@ -16,6 +16,7 @@ namespace obscura::sim::sweep {
 namespace {
 
 constexpr std::size_t kAhead = 4;  // pairs
+constexpr double kLocked = 1e-9;   // of what a push moves without joints
 
 // v_n of touch k
 double along(const Rows& r, int k, int lane, const Motion& a, const Motion& b) {
@@ -91,7 +92,8 @@ double Blows::closing(int i, const std::vector<Pair>& pairs, const std::vector<S
 
 // one pair, both touches together; false where it does not approach
 bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
-                const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) {
+                const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
+                Linkage<2>& linkage) {
   const Pair& pair = pairs[i];
   const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   // too slow for a blow however they meet: most are, and their seats are far away in memory
@@ -103,11 +105,6 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   Seats& g = seats[group];
   const Rows& r = rows(group, seats, poses);
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
-  const auto push = [&](double dx, double dy, double ra, double rb, double l) {
-    now_[a].x += dx * (ima * l), now_[a].y += dy * (ima * l), now_[a].w += iia * (ra * l);
-    now_[b].x -= dx * (imb * l), now_[b].y -= dy * (imb * l), now_[b].w -= iib * (rb * l);
-  };
-
   // which touches close, and when
   double e[2] = {1e300, 1e300};
   bool closes[2] = {false, false}, fast[2] = {false, false};
@@ -122,6 +119,45 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   if (!fast[0] && !fast[1]) return false;
   const double when = closing(i, pairs, seats, poses, dv, pace);
   reach(a, when, dv, pace), reach(b, when, dv, pace);
+
+  // what hangs on joints is struck with all that hangs there
+  bool tied = false;
+  for (const int body : {pair.a, pair.b}) {
+    const int part = body < 0 || linkage.empty() ? -1 : linkage.part(body);
+    if (part < 0) continue;
+    tied = true;
+    for (const int member : linkage.members(part)) reach(member, when, dv, pace);
+  }
+  // each is rubbed where it is touched: by then they have come together
+  double ta[2], tb[2];
+  for (int k = 0; k < 2; ++k) {
+    const double apart = 0.5 * std::max(0.0, r.gap[k][lane]);
+    ta[k] = r.ta[k][lane] + apart, tb[k] = r.tb[k][lane] - apart;
+    if (!tied || !closes[k]) continue;
+    for (int across = 0; across < 2; ++across) {
+      Linkage<2>::Echo& echo = echoes_[across][k];
+      const Vec<2> n(r.nx[k][lane], r.ny[k][lane]);
+      echo.row.a = pair.a, echo.row.b = pair.b;
+      echo.row.along = across ? Vec<2>(-n[1], n[0]) : n;
+      echo.row.turn_a[0] = across ? ta[k] : r.na[k][lane],
+      echo.row.turn_b[0] = across ? tb[k] : r.nb[k][lane];
+      linkage.hear(echo);
+    }
+    // joints may leave it nothing to move
+    closes[k] = linkage.couple(echoes_[0][k], echoes_[0][k]) > kLocked * (ima + imb);
+  }
+  const auto push = [&](bool across, int k, double l) {
+    if (tied) {
+      linkage.each_push(echoes_[across][k], l, [&](int body, const Vec<2>& dv_, const Spin<2>& dw) {
+        now_[body].x += dv_[0], now_[body].y += dv_[1], now_[body].w += dw[0];
+      });
+      return;
+    }
+    const double dx = across ? -r.ny[k][lane] : r.nx[k][lane], dy = across ? r.nx[k][lane] : r.ny[k][lane];
+    const double ra = across ? ta[k] : r.na[k][lane], rb = across ? tb[k] : r.nb[k][lane];
+    now_[a].x += dx * (ima * l), now_[a].y += dy * (ima * l), now_[a].w += iia * (ra * l);
+    now_[b].x -= dx * (imb * l), now_[b].y -= dy * (imb * l), now_[b].w -= iib * (rb * l);
+  };
   for (int k = 0; k < 2; ++k) {
     if (closes[k]) e[k] = (1 + pair.elasticity) * along(r, k, lane, now_[a], now_[b]);
   }
@@ -130,6 +166,7 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
 
   // impulses l >= 0 with e + K l >= 0
   const auto yields = [&](int p, int q) {
+    if (tied) return closes[p] && closes[q] ? linkage.couple(echoes_[0][p], echoes_[0][q]) : 0.0;
     return (ima + imb) * (r.nx[p][lane] * r.nx[q][lane] + r.ny[p][lane] * r.ny[q][lane]) +
            (iia * (r.na[p][lane] * r.na[q][lane]) + iib * (r.nb[p][lane] * r.nb[q][lane]));
   };
@@ -148,19 +185,19 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
     if (!closes[k]) continue;
     g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
     blow.met[k] = true, blow.n[k] += l[k];
-    push(r.nx[k][lane], r.ny[k][lane], r.na[k][lane], r.nb[k][lane], l[k]);
+    push(false, k, l[k]);
   }
 
   // friction
   for (int k = 0; k < 2; ++k) {
     if (!closes[k]) continue;
-    const double tx = -r.ny[k][lane], ty = r.nx[k][lane], ta = r.ta[k][lane], tb = r.tb[k][lane];
-    const double vt =
-        tx * (now_[a].x - now_[b].x) + ty * (now_[a].y - now_[b].y) + (ta * now_[a].w - tb * now_[b].w);
+    const double vt = -r.ny[k][lane] * (now_[a].x - now_[b].x) + r.nx[k][lane] * (now_[a].y - now_[b].y) +
+                      (ta[k] * now_[a].w - tb[k] * now_[b].w);
+    const double yield = tied ? linkage.couple(echoes_[1][k], echoes_[1][k])
+                              : ima + imb + (iia * ta[k] * ta[k] + iib * tb[k] * tb[k]);
     const double most = pair.friction * blow.n[k];
-    const double next =
-        std::clamp(blow.t[k] - vt / (ima + imb + (iia * ta * ta + iib * tb * tb)), -most, most);
-    push(tx, ty, ta, tb, next - blow.t[k]);
+    const double next = std::clamp(yield > 0 ? blow.t[k] - vt / yield : 0.0, -most, most);
+    push(true, k, next - blow.t[k]);
     blow.t[k] = next;
   }
   return true;
@@ -168,7 +205,7 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
 
 void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
                 const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
-                std::vector<Motion>& v, const Pace& pace) {
+                std::vector<Motion>& v, const Pace& pace, Linkage<2>& linkage) {
   for (const int body : bodies_) when_[body] = -1;
   for (const Blow& blow : blows_) {
     if (blow.pair < int(blow_.size())) blow_[blow.pair] = -1;
@@ -199,14 +236,21 @@ void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<
     }
     const int i = queue_[at];
     waiting_[i] = 0;
-    if (!hit(i, pairs, seats, poses, dv, pace)) continue;
-    for (const int body : {pairs[i].a, pairs[i].b}) {
-      if (body < 0 || now_[body].im == 0) continue;
-      for (int k = around_start_[body]; k < around_start_[body + 1]; ++k) {
-        const int next = around_[k];
+    if (!hit(i, pairs, seats, poses, dv, pace, linkage)) continue;
+    const auto ask = [&](int body) {
+      for (const int next : around(body)) {
         if (waiting_[next]) continue;
         waiting_[next] = 1;
         queue_.push_back(next);
+      }
+    };
+    for (const int body : {pairs[i].a, pairs[i].b}) {
+      if (body < 0 || now_[body].im == 0) continue;
+      const int part = linkage.empty() ? -1 : linkage.part(body);
+      if (part < 0) {
+        ask(body);
+      } else {
+        for (const int member : linkage.members(part)) ask(member);
       }
     }
   }

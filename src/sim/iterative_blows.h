@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/iterative_joints.h"
 #include "sim/iterative_pairs.h"
 #include "sim/iterative_rows.h"
 #include "sim/state.h"
@@ -12,7 +13,7 @@ namespace obscura::sim::sweep {
 
 /// Blows: touches that close within a step faster than the resting speed. Newton's law with Coulomb friction,
 /// both touches of a pair together, from pair to pair until none approaches, in the order in which they come
-/// up.
+/// up. Bodies on joints are struck as one with all that hangs on them.
 class Blows {
  public:
   explicit Blows(const Cores& cores);
@@ -24,7 +25,7 @@ class Blows {
   /// without contacts; v gains what the blows do. Marks seats as struck.
   void run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
-           std::vector<Motion>& v, const Pace& pace);
+           std::vector<Motion>& v, const Pace& pace, Linkage<2>& linkage);
 
   /// Forgets the impulses of the step before.
   void begin() { struck_.clear(); }
@@ -60,7 +61,8 @@ class Blows {
   double closing(int pair, const std::vector<Pair>& pairs, const std::vector<Seats>& seats,
                  const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace);
   bool hit(int pair, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
-           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace);
+           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
+           Linkage<2>& linkage);
   const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
 
   std::vector<double> reach_;               // of bodies, and of walls, m
@@ -78,6 +80,7 @@ class Blows {
   std::vector<int> known_;  // of groups: place in rows_, or -1
   std::vector<int> groups_;
   std::vector<Rows> rows_;
+  Linkage<2>::Echo echoes_[2][2];  // of normals, and of tangents
 };
 
 }  // namespace obscura::sim::sweep

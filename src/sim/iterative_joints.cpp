@@ -58,7 +58,7 @@ template <int D>
 void Linkage<D>::gather(const State<D>& state) {
   if (planned_ && broken_ == state.broken && frozen_ == state.frozen) return;
   planned_ = true, broken_ = state.broken, frozen_ = state.frozen;
-  for (const int i : bodies_)
+  for (std::size_t i = 0; i < light_.size(); ++i)
     light_[i] = model_.bodies[i].fixed || state.frozen[i] ? 0 : 1 / model_.bodies[i].mass;
   plan();
 }
@@ -100,6 +100,10 @@ void Linkage<D>::plan() {
   factors_.plan(sizes, pairs_);
   for (std::size_t body = 0; body < of.size(); ++body)
     part_of_body_[body] = of[body].empty() ? -1 : factors_.part(of[body].front());
+  members_.assign(std::size_t(parts()), {});
+  for (const int i : bodies_) {
+    if (part_of_body_[i] >= 0) members_[part_of_body_[i]].push_back(i);
+  }
   rows_.resize(factors_.rows()), old_rows_.resize(factors_.rows());
   for (auto* numbers : {&impulses_, &totals_, &rhs_, &shifts_}) numbers->resize(factors_.rows());
 }
@@ -133,13 +137,8 @@ double Linkage<D>::couple(const Row<D>& p, const Row<D>& q) const {
 // M^-1 r p onto velocities
 template <int D>
 void Linkage<D>::push(const Row<D>& row, double impulse) {
-  const auto side = [&](int body, const Spin<D>& turn, double p) {
-    if (light(body) == 0) return;
-    const Body<D>& b = model_.bodies[body];
-    at_[body].v += p * light_[body] * row.along;
-    if (b.turns()) at_[body].w += p * spun<D>(b.inertia, at_[body].room_from_body, turn);
-  };
-  side(row.a, row.turn_a, impulse), side(row.b, row.turn_b, -impulse);
+  each_push(row, impulse,
+            [&](int body, const Vec<D>& v, const Spin<D>& w) { at_[body].v += v, at_[body].w += w; });
 }
 
 // and onto places: angular momentum stays
@@ -157,18 +156,6 @@ void Linkage<D>::shift(const Row<D>& row, double by) {
     at.w = carried_spin<D>(b.inertia, from, at.room_from_body, at.w);
   };
   side(row.a, row.turn_a, by), side(row.b, row.turn_b, -by);
-}
-
-// rows of a part in the order of elimination: the k-th of it is row r
-template <int D>
-template <class Act>
-void Linkage<D>::each_row(int part, Act&& act) const {
-  if (part < 0) return;
-  int k = 0;
-  for (int place = factors_.begin(part); place < factors_.end(part); ++place) {
-    const int block = factors_.at(place), first = factors_.first(block);
-    for (int r = first; r < first + factors_.size(block); ++r) act(k++, r);
-  }
 }
 
 // rows where everyone stands, and their factors
@@ -221,8 +208,6 @@ void Linkage<D>::bind(double h) {
     Bounded& b = bounded_[active_];
     b.joint = i, b.load = load;
     b.impulse = 0;
-    b.part = joint.a.body >= 0 ? part_of_body_[joint.a.body] : -1;
-    if (b.part < 0 && joint.b.body >= 0) b.part = part_of_body_[joint.b.body];
 
     Row<D> out[kMostHeld<D>];
     double offs[kMostHeld<D>];
@@ -245,7 +230,7 @@ void Linkage<D>::bind(double h) {
       if (load == motor) b.target = joint.motor->speed;
     }
 
-    answer(b);
+    hear(b);
     b.give = give(b);
     active_ += b.give > 0;
   };
@@ -261,26 +246,42 @@ void Linkage<D>::bind(double h) {
   }
 }
 
-// what the joints answer to a unit of it
 template <int D>
-void Linkage<D>::answer(Bounded& b) {
-  b.answer.clear(), b.felt.clear();
-  if (b.part < 0) return;
-  each_row(b.part, [&](int k, int r) {
-    const double fast = couple(rows_[r], b.row);
-    rhs_[r] = -fast;
-    if (fast != 0) b.felt.emplace_back(k, fast);
-  });
-  factors_.solve(rhs_.data(), b.part);
-  each_row(b.part, [&](int, int r) { b.answer.push_back(rhs_[r]); });
+void Linkage<D>::hear(Echo& echo) {
+  const auto part = [&](int body) { return body < 0 ? -1 : part_of_body_[body]; };
+  int* const parts = echo.parts;
+  parts[0] = part(echo.row.a), parts[1] = part(echo.row.b);
+  if (parts[0] < 0) std::swap(parts[0], parts[1]);
+  if (parts[1] == parts[0]) parts[1] = -1;
+  for (int s = 0; s < 2; ++s) {
+    echo.answer[s].clear(), echo.felt[s].clear();
+    if (parts[s] < 0) continue;
+    each_row(parts[s], [&](int k, int r) {
+      const double fast = couple(rows_[r], echo.row);
+      rhs_[r] = -fast;
+      if (fast != 0) echo.felt[s].emplace_back(k, fast);
+    });
+    factors_.solve(rhs_.data(), parts[s]);
+    each_row(parts[s], [&](int, int r) { echo.answer[s].push_back(rhs_[r]); });
+  }
+}
+
+template <int D>
+double Linkage<D>::couple(const Echo& p, const Echo& q) const {
+  double sum = couple(p.row, q.row);
+  for (int s = 0; s < 2; ++s) {
+    for (int r = 0; r < 2 && p.parts[s] >= 0; ++r) {
+      if (q.parts[r] != p.parts[s]) continue;
+      for (const auto& [k, fast] : p.felt[s]) sum += fast * q.answer[r][k];
+    }
+  }
+  return sum;
 }
 
 // zero where joints leave it nothing to move
 template <int D>
 double Linkage<D>::give(const Bounded& b) const {
-  const double own = couple(b.row, b.row);
-  double gives = own;
-  for (const auto& [k, fast] : b.felt) gives += fast * b.answer[k];
+  const double own = couple(b.row, b.row), gives = couple(b, b);
   return gives > kLocked * own ? 1 / gives : 0;
 }
 
@@ -289,10 +290,10 @@ template <int D>
 void Linkage<D>::couple_bounded() {
   // part_first_[p + 1] begins part p, the next one ends it
   part_first_.assign(parts() + 2, 0), by_part_.resize(active_);
-  for (std::size_t k = 0; k < active_; ++k) ++part_first_[bounded_[k].part + 1];
+  for (std::size_t k = 0; k < active_; ++k) ++part_first_[bounded_[k].parts[0] + 1];
   int before = 0;
   for (int& first : part_first_) before += std::exchange(first, before);
-  for (std::size_t k = 0; k < active_; ++k) by_part_[part_first_[bounded_[k].part + 1]++] = int(k);
+  for (std::size_t k = 0; k < active_; ++k) by_part_[part_first_[bounded_[k].parts[0] + 1]++] = int(k);
   for (std::size_t p = part_first_.size(); p-- > 1;) part_first_[p] = part_first_[p - 1];
   part_first_[0] = 0;
 
@@ -302,12 +303,7 @@ void Linkage<D>::couple_bounded() {
     for (int i = begin; i < end; ++i) {
       Bounded& b = bounded_[by_part_[i]];
       b.first = int(yields_.size());
-      for (int j = begin; j < end; ++j) {
-        const Bounded& other = bounded_[by_part_[j]];
-        double sum = couple(b.row, other.row);
-        for (const auto& [k, fast] : b.felt) sum += fast * other.answer[k];
-        yields_.push_back(sum);
-      }
+      for (int j = begin; j < end; ++j) yields_.push_back(couple(b, bounded_[by_part_[j]]));
     }
   }
 }
@@ -325,7 +321,7 @@ void Linkage<D>::push_bounded(int part) {
   if (!any) return;
   each_row(part, [&](int k, int r) {
     double sum = 0;
-    for (int i = begin; i < end; ++i) sum += bounded_[by_part_[i]].answer[k] * changes_[i];
+    for (int i = begin; i < end; ++i) sum += bounded_[by_part_[i]].answer[0][k] * changes_[i];
     impulses_[r] += sum, totals_[r] += sum;
     push(rows_[r], sum);
   });
@@ -335,7 +331,7 @@ void Linkage<D>::push_bounded(int part) {
 template <int D>
 void Linkage<D>::shift_bounded(const Bounded& bounded, double by) {
   shift(bounded.row, by);
-  each_row(bounded.part, [&](int k, int r) { shift(rows_[r], bounded.answer[k] * by); });
+  each_row(bounded.parts[0], [&](int k, int r) { shift(rows_[r], bounded.answer[0][k] * by); });
 }
 
 template <int D>
@@ -360,7 +356,6 @@ void Linkage<D>::set_off(State<D>& state) {
 
 template <int D>
 void Linkage<D>::begin(double h) {
-  lay();
   bind(h);
   couple_bounded();
   std::fill(impulses_.begin(), impulses_.end(), 0.0), std::fill(totals_.begin(), totals_.end(), 0.0);
@@ -525,7 +520,7 @@ bool Linkage<D>::rebind() {
     const Joint<D>& joint = model_.joints[b.joint];
     double way = 0;
     free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), b.row, way);
-    answer(b);
+    hear(b);
     b.give = give(b);
   }
   if (any) couple_bounded();

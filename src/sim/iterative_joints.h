@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/iterative_blocks.h"
@@ -38,7 +40,9 @@ class Linkage {
   /// goes half its way with the velocities it begins with.
   void set_off(State<D>& state);
 
-  /// Rows of a step of h (s) where bodies stand now. All forces begin at zero.
+  /// Rows where bodies stand now.
+  void lay();
+  /// A step of h (s) from there. All forces begin at zero.
   void begin(double h);
 
   /// Velocities under which no joint comes apart: of all, or of one part. What shares no body that moves is a
@@ -50,6 +54,29 @@ class Linkage {
   int parts() const { return factors_.parts(); }
   /// The part that a body's joints are of, or -1.
   int part(int body) const { return part_of_body_[body]; }
+  /// The bodies of a part, ascending.
+  std::span<const int> members(int part) const { return members_[part]; }
+
+  /// A push of two bodies along a row, and what the joints answer to a unit of it. A body without joints may
+  /// be pushed too: its stance is the caller's to write, where that has a say.
+  struct Echo {
+    Row<D> row;
+    int parts[2] = {-1, -1};                      // of its bodies; the second, if it is another
+    std::vector<double> answer[2];                // impulses of the rows of each, in the order of elimination
+    std::vector<std::pair<int, double>> felt[2];  // which of them it moves by a unit, and how fast
+  };
+  /// Fills in what is not the row, once rows are laid.
+  void hear(Echo& echo);
+  /// How fast the row of one moves by a unit of the other, joints answering, 1/kg.
+  double couple(const Echo& p, const Echo& q) const;
+  /// act(body, change of its velocity, of its spin) for an impulse, and for what answers it.
+  template <class Act>
+  void each_push(const Echo& echo, double impulse, Act&& act) const {
+    each_push(echo.row, impulse, act);
+    for (int s = 0; s < 2; ++s) {
+      each_row(echo.parts[s], [&](int k, int r) { each_push(rows_[r], echo.answer[s][k] * impulse, act); });
+    }
+  }
 
   /// After a step: places back onto the joints, velocities along them where bodies now stand.
   void finish(double h);
@@ -63,31 +90,44 @@ class Linkage {
  private:
   // what keeps within bounds
   enum Load { lower, upper, motor, friction };  // a rope is an upper
-  struct Bounded {
+  struct Bounded : Echo {
     int joint = 0;
     Load load = lower;
-    int part = -1;
-    Row<D> row;
     double least = 0, most = 0, target = 0;  // N s or N m s; m/s or rad/s
     double give = 0;                         // what a unit of impulse changes, joints answering, inverted
     double impulse = 0;
-    std::vector<double> answer;  // impulses of the rows of its part to a unit, in the order of elimination
-    std::vector<std::pair<int, double>> felt;  // what rows of its part it moves by a unit, and how fast
-    int first = 0;                             // of its row in yields_
+    int first = 0;  // of its row in yields_
   };
 
   void plan();
-  void lay();
   Spin<D> turn_between(const Joint<D>& joint) const;
   const Stance<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
   double light(int body) const { return body < 0 ? 0 : light_[body]; }
   double couple(const Row<D>& p, const Row<D>& q) const;
   void push(const Row<D>& row, double impulse);
-  void shift(const Row<D>& row, double by);
   template <class Act>
-  void each_row(int part, Act&& act) const;
+  void each_push(const Row<D>& row, double impulse, Act&& act) const {
+    const auto side = [&](int body, const Spin<D>& turn, double p) {
+      if (light(body) == 0) return;
+      const Body<D>& b = model_.bodies[body];
+      const Spin<D> spin =
+          b.turns() ? Spin<D>(p * spun<D>(b.inertia, at_[body].room_from_body, turn)) : Spin<D>::Zero();
+      act(body, Vec<D>(p * light_[body] * row.along), spin);
+    };
+    side(row.a, row.turn_a, impulse), side(row.b, row.turn_b, -impulse);
+  }
+  void shift(const Row<D>& row, double by);
+  // rows of a part in the order of elimination: the k-th of it is row r
+  template <class Act>
+  void each_row(int part, Act&& act) const {
+    if (part < 0) return;
+    int k = 0;
+    for (int place = factors_.begin(part); place < factors_.end(part); ++place) {
+      const int block = factors_.at(place), first = factors_.first(block);
+      for (int r = first; r < first + factors_.size(block); ++r) act(k++, r);
+    }
+  }
   void bind(double h);
-  void answer(Bounded& bounded);
   double give(const Bounded& bounded) const;
   bool rebind();
   void couple_bounded();
@@ -114,7 +154,8 @@ class Linkage {
   std::vector<int> held_;                   // joints with equalities: the blocks
   std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
   std::vector<int> part_of_body_;
-  Blocks<kMostHeld<D>> factors_;  // of K = J M^-1 J'
+  std::vector<std::vector<int>> members_;  // of parts
+  Blocks<kMostHeld<D>> factors_;           // of K = J M^-1 J'
   std::vector<Row<D>> rows_, old_rows_;
   std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
   std::vector<Bounded> bounded_;  // the first `active_`

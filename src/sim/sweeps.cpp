@@ -78,6 +78,7 @@ void Sweeps<D>::step(State<D>& state, double t, double h) {
       if (linkage_.part(i) >= 0 && parts_[linkage_.part(i)]) closing_[i] = 1;
     }
     lend();
+    linkage_.lay();
     linkage_.begin(h);
     if (touches_.empty() && linkage_.plain()) sweeps = 1;
   }
@@ -181,7 +182,9 @@ void Sweeps<D>::add(const Gap<D>& gap, double mu, double bounce) {
   Touch touch;
   touch.key = gap.key, touch.a = a, touch.b = b;
   touch.n = now.normal, touch.point = now.point, touch.gap = now.value;
-  touch.arm_a = now.point - stances_[a].x, touch.arm_b = now.point - at_b.x;
+  // each is pushed on its own skin: by the time they touch those have come together
+  const Vec<D> apart = 0.5 * std::max(0.0, now.value) * now.normal;
+  touch.arm_a = now.point + apart - stances_[a].x, touch.arm_b = now.point - apart - at_b.x;
   touch.mu = mu, touch.bounce = bounce;
 
   // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
