@@ -345,7 +345,7 @@ template <int D>
 void Iterative<D>::project() {
   std::fill(projections_.begin(), projections_.end(), sweep::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
-  const int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 2, kMostSweeps);
+  const int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
   for (int i = 0; i < sweeps; ++i) {
     // joints go along
     for (const int k : linkage_.bodies())
