@@ -90,6 +90,33 @@ double Blows::closing(int i, const std::vector<Pair>& pairs, const std::vector<S
   return when;
 }
 
+// whether one of a pair hangs on joints: what hangs there with it meets the blow too
+bool Blows::tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
+                const Linkage<2>& linkage) {
+  bool tied = false;
+  for (const int body : {pair.a, pair.b}) {
+    const int part = body < 0 ? -1 : linkage.part(body);
+    if (part < 0) continue;
+    tied = true;
+    for (const int member : linkage.members(part)) reach(member, when, dv, pace);
+  }
+  return tied;
+}
+
+// what joints answer to pushes of those touches that close
+void Blows::hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], Linkage<2>& linkage) {
+  for (int across = 0; across < 2; ++across) {
+    for (int k = 0; k < 2; ++k) {
+      if (!closes[k]) continue;
+      const Push& push = pushes[across][k];
+      Row<2>& row = echoes_[across][k].row;
+      row.a = pair.a, row.b = pair.b;
+      row.along = {push.x, push.y}, row.turn_a[0] = push.a, row.turn_b[0] = push.b;
+      linkage.hear(echoes_[across][k]);
+    }
+  }
+}
+
 // one pair, both touches together; false where it does not approach
 bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
                 const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
@@ -104,9 +131,8 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
   Seats& g = seats[group];
   const Rows& r = rows(group, seats, poses);
-  const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
+
   // which touches close, and when
-  double e[2] = {1e300, 1e300};
   bool closes[2] = {false, false}, fast[2] = {false, false};
   const Blow* known = blow_[i] >= 0 ? &blows_[blow_[i]] : nullptr;
   for (int k = 0; k < pair.touches; ++k) {
@@ -120,44 +146,34 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   const double when = closing(i, pairs, seats, poses, dv, pace);
   reach(a, when, dv, pace), reach(b, when, dv, pace);
 
-  // what hangs on joints is struck with all that hangs there
-  bool tied = false;
-  for (const int body : {pair.a, pair.b}) {
-    const int part = body < 0 || linkage.empty() ? -1 : linkage.part(body);
-    if (part < 0) continue;
-    tied = true;
-    for (const int member : linkage.members(part)) reach(member, when, dv, pace);
-  }
-  // each is rubbed where it is touched: by then they have come together
-  double ta[2], tb[2];
+  Push pushes[2][2];
   for (int k = 0; k < 2; ++k) {
+    const double nx = r.nx[k][lane], ny = r.ny[k][lane];
+    // each is rubbed where it is touched: by then they have come together
     const double apart = 0.5 * std::max(0.0, r.gap[k][lane]);
-    ta[k] = r.ta[k][lane] + apart, tb[k] = r.tb[k][lane] - apart;
-    if (!tied || !closes[k]) continue;
-    for (int across = 0; across < 2; ++across) {
-      Linkage<2>::Echo& echo = echoes_[across][k];
-      const Vec<2> n(r.nx[k][lane], r.ny[k][lane]);
-      echo.row.a = pair.a, echo.row.b = pair.b;
-      echo.row.along = across ? Vec<2>(-n[1], n[0]) : n;
-      echo.row.turn_a[0] = across ? ta[k] : r.na[k][lane],
-      echo.row.turn_b[0] = across ? tb[k] : r.nb[k][lane];
-      linkage.hear(echo);
-    }
-    // joints may leave it nothing to move
-    closes[k] = linkage.couple(echoes_[0][k], echoes_[0][k]) > kLocked * (ima + imb);
+    pushes[0][k] = {nx, ny, r.na[k][lane], r.nb[k][lane]};
+    pushes[1][k] = {-ny, nx, r.ta[k][lane] + apart, r.tb[k][lane] - apart};
   }
-  const auto push = [&](bool across, int k, double l) {
+  const bool tied = !linkage.empty() && tie(pair, when, dv, pace, linkage);
+  const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
+  if (tied) {
+    hear(pair, pushes, closes, linkage);
+    // joints may leave it nothing to move
+    for (int k = 0; k < 2; ++k)
+      closes[k] = closes[k] && linkage.couple(echoes_[0][k], echoes_[0][k]) > kLocked * (ima + imb);
+  }
+  const auto push = [&](int across, int k, double l) {
     if (tied) {
-      linkage.each_push(echoes_[across][k], l, [&](int body, const Vec<2>& dv_, const Spin<2>& dw) {
-        now_[body].x += dv_[0], now_[body].y += dv_[1], now_[body].w += dw[0];
+      linkage.each_push(echoes_[across][k], l, [&](int body, const Vec<2>& v, const Spin<2>& w) {
+        now_[body].x += v[0], now_[body].y += v[1], now_[body].w += w[0];
       });
       return;
     }
-    const double dx = across ? -r.ny[k][lane] : r.nx[k][lane], dy = across ? r.nx[k][lane] : r.ny[k][lane];
-    const double ra = across ? ta[k] : r.na[k][lane], rb = across ? tb[k] : r.nb[k][lane];
-    now_[a].x += dx * (ima * l), now_[a].y += dy * (ima * l), now_[a].w += iia * (ra * l);
-    now_[b].x -= dx * (imb * l), now_[b].y -= dy * (imb * l), now_[b].w -= iib * (rb * l);
+    const Push& p = pushes[across][k];
+    now_[a].x += p.x * (ima * l), now_[a].y += p.y * (ima * l), now_[a].w += iia * (p.a * l);
+    now_[b].x -= p.x * (imb * l), now_[b].y -= p.y * (imb * l), now_[b].w -= iib * (p.b * l);
   };
+  double e[2] = {1e300, 1e300};
   for (int k = 0; k < 2; ++k) {
     if (closes[k]) e[k] = (1 + pair.elasticity) * along(r, k, lane, now_[a], now_[b]);
   }
@@ -165,10 +181,10 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   Blow& blow = blows_[blow_[i]];
 
   // impulses l >= 0 with e + K l >= 0
-  const auto yields = [&](int p, int q) {
-    if (tied) return closes[p] && closes[q] ? linkage.couple(echoes_[0][p], echoes_[0][q]) : 0.0;
-    return (ima + imb) * (r.nx[p][lane] * r.nx[q][lane] + r.ny[p][lane] * r.ny[q][lane]) +
-           (iia * (r.na[p][lane] * r.na[q][lane]) + iib * (r.nb[p][lane] * r.nb[q][lane]));
+  const auto yields = [&](int i0, int i1) {
+    if (tied) return closes[i0] && closes[i1] ? linkage.couple(echoes_[0][i0], echoes_[0][i1]) : 0.0;
+    const Push &p = pushes[0][i0], &q = pushes[0][i1];
+    return (ima + imb) * (p.x * q.x + p.y * q.y) + (iia * (p.a * q.a) + iib * (p.b * q.b));
   };
   const double k11 = yields(0, 0), k22 = yields(1, 1), k12 = yields(0, 1), det = k11 * k22 - k12 * k12;
   double l[2] = {0, 0};
@@ -185,19 +201,20 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
     if (!closes[k]) continue;
     g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
     blow.met[k] = true, blow.n[k] += l[k];
-    push(false, k, l[k]);
+    push(0, k, l[k]);
   }
 
   // friction
   for (int k = 0; k < 2; ++k) {
     if (!closes[k]) continue;
-    const double vt = -r.ny[k][lane] * (now_[a].x - now_[b].x) + r.nx[k][lane] * (now_[a].y - now_[b].y) +
-                      (ta[k] * now_[a].w - tb[k] * now_[b].w);
-    const double yield = tied ? linkage.couple(echoes_[1][k], echoes_[1][k])
-                              : ima + imb + (iia * ta[k] * ta[k] + iib * tb[k] * tb[k]);
+    const Push& p = pushes[1][k];
+    const double vt =
+        p.x * (now_[a].x - now_[b].x) + p.y * (now_[a].y - now_[b].y) + (p.a * now_[a].w - p.b * now_[b].w);
+    const double yield =
+        tied ? linkage.couple(echoes_[1][k], echoes_[1][k]) : ima + imb + (iia * p.a * p.a + iib * p.b * p.b);
     const double most = pair.friction * blow.n[k];
     const double next = std::clamp(yield > 0 ? blow.t[k] - vt / yield : 0.0, -most, most);
-    push(true, k, next - blow.t[k]);
+    push(1, k, next - blow.t[k]);
     blow.t[k] = next;
   }
   return true;

@@ -57,12 +57,19 @@ class Blows {
     bool met[2] = {false, false};
     double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
   };
+  // a direction, and the moments of a push along it about both bodies, m
+  struct Push {
+    double x, y, a, b;
+  };
   void reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace);
   double closing(int pair, const std::vector<Pair>& pairs, const std::vector<Seats>& seats,
                  const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace);
   bool hit(int pair, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
            Linkage<2>& linkage);
+  bool tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
+           const Linkage<2>& linkage);
+  void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], Linkage<2>& linkage);
   const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
 
   std::vector<double> reach_;               // of bodies, and of walls, m
