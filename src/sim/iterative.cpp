@@ -167,7 +167,7 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
   hold();
   sweep::finish(seats_.data(), count, poses_.data(), v_.data(), pace, last ? state.contacts.data() : nullptr);
   blows_.note(pairs_.all(), state.contacts, seats_);
-  if (first && deep) project();
+  if (first && deep) project(state);
   advance(state, h, first && deep);
   if (!linkage_.empty()) rejoin(state, h);
   outran_ = outran(h, (1 - share) * span_);
@@ -342,10 +342,11 @@ void Iterative<D>::rejoin(State<D>& state, double h) {
 
 // positions out of each other, a part of the way
 template <int D>
-void Iterative<D>::project() {
+void Iterative<D>::project(const State<D>& state) {
   std::fill(projections_.begin(), projections_.end(), sweep::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
-  const int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  if (!linkage_.empty() && strained(state)) sweeps = kStrainSweeps;
   for (int i = 0; i < sweeps; ++i) {
     // joints go along
     for (const int k : linkage_.bodies())

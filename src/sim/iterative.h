@@ -51,7 +51,7 @@ class Iterative final : public ContactStep<D> {
   void take();
   void hold();
   void rejoin(State<D>& state, double h);
-  void project();
+  void project(const State<D>& state);
   void advance(State<D>& state, double h, bool look);
   void look(State<D>& state, bool known);
   bool outran(double h, double left) const;

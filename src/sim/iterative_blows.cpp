@@ -11,6 +11,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/trig.h"
+
 namespace obscura::sim::sweep {
 
 namespace {
@@ -85,6 +87,18 @@ double Blows::closing(int i, const std::vector<Pair>& pairs, const std::vector<S
     const double dvn = along(r, k, lane, dv[g.a[lane]], dv[g.b[lane]]);
     if (gap > g.sight[lane] || !(vn < g.blow[lane])) continue;
     const double left = std::max(0.0, gap);
+    // two corners: |l n + v t| = radius, if they do not pass
+    if (g.corners[k] >> lane & 1) {
+      const Motion &a = now_[g.a[lane]], &b = now_[g.b[lane]];
+      const double vt = r.nx[k][lane] * (a.y - b.y) - r.ny[k][lane] * (a.x - b.x) +
+                        (r.ta[k][lane] * a.w - r.tb[k][lane] * b.w);
+      const double p = (left + g.radius[lane]) * vn, q = left * (left + 2 * g.radius[lane]);
+      const double under = p * p - (vn * vn + vt * vt) * q;
+      if (under > 0) {
+        when = std::min(when, q / (std::sqrt(under) - p));
+        continue;
+      }
+    }
     when = std::min(when, left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn)));
   }
   return when;
@@ -101,6 +115,42 @@ bool Blows::tie(const Pair& pair, double when, const std::vector<Motion>& dv, co
     for (const int member : linkage.members(part)) reach(member, when, dv, pace);
   }
   return tied;
+}
+
+// The pushes of a pair that meets. Where two corners do, as balls, they stand otherwise by then.
+void Blows::aim(const Pair& pair, const Seats& g, const Rows& r, const std::vector<Pose>& poses, double when,
+                const std::vector<Motion>& dv, const Pace& pace, Push (&pushes)[2][2]) {
+  int lane = pair.slot % kLanes;
+  const Rows* at = &r;
+  Rows then;
+  if ((g.corners[0] | g.corners[1]) >> lane & 1) {
+    Pose moved[3];
+    const int bodies[] = {g.a[lane], g.b[lane]};
+    for (int side = 0; side < 2; ++side) {
+      const int body = bodies[side];
+      const Motion& v = now_[body];
+      Pose& pose = moved[side] = poses[body];
+      if (v.im == 0) continue;
+      // it has the velocity of then
+      const double half = 0.5 * when / pace.h;
+      pose.x += when * (v.x - half * dv[body].x), pose.y += when * (v.y - half * dv[body].y);
+      const SinCos turn = sin_cos(when * (v.w - half * dv[body].w));
+      const double c = pose.c;
+      pose.c = c * turn.cos - pose.s * turn.sin, pose.s = pose.s * turn.cos + c * turn.sin;
+    }
+    for (int k = 0; k < kLanes; ++k) one_.a[k] = one_.b[k] = 2;
+    copy_seat(g, lane, one_, 0);
+    one_.a[0] = 0, one_.b[0] = 1;
+    expand(one_, moved, then);
+    at = &then, lane = 0;
+  }
+  for (int k = 0; k < 2; ++k) {
+    const double nx = at->nx[k][lane], ny = at->ny[k][lane];
+    // each is rubbed where it is touched: by then they have come together
+    const double apart = 0.5 * std::max(0.0, at->gap[k][lane]);
+    pushes[0][k] = {nx, ny, at->na[k][lane], at->nb[k][lane]};
+    pushes[1][k] = {-ny, nx, at->ta[k][lane] + apart, at->tb[k][lane] - apart};
+  }
 }
 
 // what joints answer to pushes of those touches that close
@@ -146,14 +196,14 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   const double when = closing(i, pairs, seats, poses, dv, pace);
   reach(a, when, dv, pace), reach(b, when, dv, pace);
 
-  Push pushes[2][2];
-  for (int k = 0; k < 2; ++k) {
-    const double nx = r.nx[k][lane], ny = r.ny[k][lane];
-    // each is rubbed where it is touched: by then they have come together
-    const double apart = 0.5 * std::max(0.0, r.gap[k][lane]);
-    pushes[0][k] = {nx, ny, r.na[k][lane], r.nb[k][lane]};
-    pushes[1][k] = {-ny, nx, r.ta[k][lane] + apart, r.tb[k][lane] - apart};
+  if (!known) {
+    blow_[i] = int(blows_.size());
+    blows_.emplace_back();
+    blows_.back().pair = i;
+    aim(pair, g, r, poses, when, dv, pace, blows_.back().pushes);
   }
+  Blow& blow = blows_[blow_[i]];
+  const auto& pushes = blow.pushes;
   const bool tied = !linkage.empty() && tie(pair, when, dv, pace, linkage);
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
   if (tied) {
@@ -173,12 +223,14 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
     now_[a].x += p.x * (ima * l), now_[a].y += p.y * (ima * l), now_[a].w += iia * (p.a * l);
     now_[b].x -= p.x * (imb * l), now_[b].y -= p.y * (imb * l), now_[b].w -= iib * (p.b * l);
   };
+  const auto speed = [&](const Push& p) {
+    return p.x * (now_[a].x - now_[b].x) + p.y * (now_[a].y - now_[b].y) +
+           (p.a * now_[a].w - p.b * now_[b].w);
+  };
   double e[2] = {1e300, 1e300};
   for (int k = 0; k < 2; ++k) {
-    if (closes[k]) e[k] = (1 + pair.elasticity) * along(r, k, lane, now_[a], now_[b]);
+    if (closes[k]) e[k] = (1 + pair.elasticity) * speed(pushes[0][k]);
   }
-  if (!known) blow_[i] = int(blows_.size()), blows_.push_back({i, {false, false}, {0, 0}, {0, 0}});
-  Blow& blow = blows_[blow_[i]];
 
   // impulses l >= 0 with e + K l >= 0
   const auto yields = [&](int i0, int i1) {
@@ -208,8 +260,7 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   for (int k = 0; k < 2; ++k) {
     if (!closes[k]) continue;
     const Push& p = pushes[1][k];
-    const double vt =
-        p.x * (now_[a].x - now_[b].x) + p.y * (now_[a].y - now_[b].y) + (p.a * now_[a].w - p.b * now_[b].w);
+    const double vt = speed(p);
     const double yield =
         tied ? linkage.couple(echoes_[1][k], echoes_[1][k]) : ima + imb + (iia * p.a * p.a + iib * p.b * p.b);
     const double most = pair.friction * blow.n[k];
@@ -283,12 +334,10 @@ void Blows::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& 
                  [[maybe_unused]] const std::vector<Seats>& seats) {
   for (const Blow& blow : blows_) {
     const Pair& pair = pairs[blow.pair];
-    const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
-    assert(seats[group].pair[lane] == blow.pair);
-    const Rows& r = rows_[known_[group]];
+    assert(seats[pair.slot / kLanes].pair[pair.slot % kLanes] == blow.pair);
     for (int k = 0; k < pair.touches; ++k) {
       if (!blow.met[k]) continue;
-      const double nx = r.nx[k][lane], ny = r.ny[k][lane];
+      const double nx = blow.pushes[0][k].x, ny = blow.pushes[0][k].y;
       struck_.push_back({contacts[pair.first + k].key,
                          {blow.n[k] * nx - blow.t[k] * ny, blow.n[k] * ny + blow.t[k] * nx},
                          blow.n[k] > 0});

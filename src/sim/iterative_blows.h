@@ -52,14 +52,15 @@ class Blows {
     Vec<2> impulse;  // on a, N s
     bool pushed;
   };
+  // a direction, and the moments of a push along it about both bodies, m
+  struct Push {
+    double x, y, a, b;
+  };
   struct Blow {
     int pair = -1;
     bool met[2] = {false, false};
     double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
-  };
-  // a direction, and the moments of a push along it about both bodies, m
-  struct Push {
-    double x, y, a, b;
+    Push pushes[2][2] = {};               // along normals and across them, of each touch
   };
   void reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace);
   double closing(int pair, const std::vector<Pair>& pairs, const std::vector<Seats>& seats,
@@ -69,6 +70,8 @@ class Blows {
            Linkage<2>& linkage);
   bool tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
            const Linkage<2>& linkage);
+  void aim(const Pair& pair, const Seats& seats, const Rows& r, const std::vector<Pose>& poses, double when,
+           const std::vector<Motion>& dv, const Pace& pace, Push (&pushes)[2][2]);
   void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], Linkage<2>& linkage);
   const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
 
@@ -87,6 +90,7 @@ class Blows {
   std::vector<int> known_;  // of groups: place in rows_, or -1
   std::vector<int> groups_;
   std::vector<Rows> rows_;
+  Seats one_{};                    // a pair alone
   Linkage<2>::Echo echoes_[2][2];  // of normals, and of tangents
 };
 

@@ -253,6 +253,23 @@ TEST_P(EitherSolver, ASpinningDiscBouncesAside) {
   }
 }
 
+// A disc that spins strikes another aside of its centre: along the line of centres of then, and across it
+TEST_P(EitherSolver, DiscsMeetAside) {
+  const double r = 0.1, aside = 0.12, e = 0.9, mu = 0.15, v = 2, spin = 8, heavy = 2;
+  World<2> world = touching_room(Collision::contact, {0, 0});
+  world.model.solver = GetParam();
+  add_ball(world, r, 1, {-0.5, aside}, {v, 0}, spin, e), add_ball(world, r, heavy, {0, 0}, {0, 0}, 0, e);
+  rub(world, mu);
+  const Vec2 n(-std::sqrt(1 - std::pow(aside / (2 * r), 2)), aside / (2 * r)), t(-n.y(), n.x());
+  const double ease = 1 + 1 / heavy, l = -(1 + e) * v * n.x() / ease;
+  const double slip = v * t.x() - spin * r, across = std::clamp(-slip / (3 * ease), -mu * l, mu * l);
+  const State<2> now = stepped(world, 360);
+  EXPECT_NEAR((now.v[0] - Vec2(v, 0) - l * n - across * t).norm(), 0, 1e-12);
+  EXPECT_NEAR((heavy * now.v[1] + l * n + across * t).norm(), 0, 1e-12);
+  EXPECT_NEAR(now.spin[0][0], spin - 2 * across / r, 1e-12);
+  EXPECT_NEAR(now.spin[1][0], -2 * across / (heavy * r), 1e-12);
+}
+
 // a block on a spring, rubbed dry: every half swing takes 2 mu m g / k of it, until it stays
 TEST_P(EitherSolver, ARubbedSpringLosesEvenly) {
   const double k = 50, mu = 0.1, begun = 1, loses = 2 * mu * kG / k;
