@@ -8,6 +8,7 @@
 
 #include "needs.h"
 #include "program.h"
+#include "where.h"
 
 namespace obscura::app {
 namespace {

@@ -12,6 +12,7 @@
 #include "needs.h"
 #include "page/page.h"
 #include "program.h"
+#include "where.h"
 
 namespace obscura::app {
 namespace {

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "where.h"
+
 namespace obscura::app {
 
 struct Outcome {

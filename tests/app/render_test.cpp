@@ -8,6 +8,7 @@
 
 #include "media/png.h"
 #include "program.h"
+#include "where.h"
 
 namespace obscura::app {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "app/origin.h"
 #include "program.h"
+#include "where.h"
 
 namespace obscura::app {
 namespace {

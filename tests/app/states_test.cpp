@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program.h"
+#include "where.h"
 
 namespace obscura::app {
 namespace {

@@ -1,3 +1,4 @@
+#include "where.h"
 #include "with_slurm.h"
 
 namespace obscura::app {

@@ -8,6 +8,7 @@
 #include "app/mosaic.h"
 #include "media/png.h"
 #include "program.h"
+#include "where.h"
 
 namespace obscura::app {
 namespace {

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "where.h"
+
 namespace obscura::architecture {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "../app/program.h"
+#include "where.h"
 
 namespace obscura::app {
 namespace {

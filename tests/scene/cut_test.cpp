@@ -13,6 +13,7 @@
 #include "sim/contact_step.h"
 #include "sim/energy.h"
 #include "sim/stepper.h"
+#include "where.h"
 
 namespace obscura::scene {
 namespace {

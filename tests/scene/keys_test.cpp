@@ -12,6 +12,7 @@
 #include "scene/document.h"
 #include "scene/scene.h"
 #include "scene/table.h"
+#include "where.h"
 
 namespace obscura::scene {
 namespace {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "scene/keys.h"
+#include "where.h"
 
 namespace obscura::scene {
 namespace {

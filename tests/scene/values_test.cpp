@@ -8,6 +8,7 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "where.h"
 
 namespace obscura::scene {
 namespace {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "where.h"
+
 namespace obscura::sim {
 
 // The tables of tests/reference.

@@ -10,6 +10,8 @@
 #include <set>
 #include <string>
 
+#include "where.h"
+
 namespace obscura::sim {
 namespace {
 
