@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include <fmt/format.h>
@@ -79,11 +80,34 @@ std::vector<std::string> files(const Flags& flags) {
   return all;
 }
 
+// each scene has its own references and its own pictures of what fails, and the two do not meet
+void know_apart(const std::vector<std::string>& all, const GoldenOptions& options) {
+  const auto full = [](const std::string& path) { return fs::weakly_canonical(path); };
+  std::map<std::string, std::string> names;
+  std::set<fs::path> references;
+  for (const std::string& file : all) {
+    const std::string name = golden_name(file, options);
+    references.insert(full(references_of(file, options)));
+    const auto [other, fresh] = names.emplace(name, file);
+    if (fresh) continue;
+    if (full(file) == full(other->second)) throw UsageError(file + ": is named twice");
+    const bool folders = full(file).parent_path() != full(other->second).parent_path();
+    throw UsageError(
+        fmt::format("{} and {} are both called {}: {}", other->second, file, name,
+                    folders ? "name a folder that holds both with --root" : "rename one of them"));
+  }
+  for (const std::string& file : all) {
+    if (references.contains(full(actual_of(file, options))))
+      throw UsageError(
+          fmt::format("--actual {}: the references are there, and would be overwritten", options.actual));
+  }
+}
+
 Outcome check(const std::string& file, const Flags& flags) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point began = Clock::now();
   Outcome outcome;
-  outcome.name = fs::path(file).stem().string();
+  outcome.name = golden_name(file, flags.golden);
   try {
     outcome.cases = check_golden(scene::read(file, flags.sets), flags.golden);
   } catch (const scene::Error& error) {
@@ -135,6 +159,7 @@ void write_page(const std::string& path, const std::vector<GoldenCase>& cases) {
 
 int golden(const Flags& flags) {
   const std::vector<std::string> all = files(flags);
+  know_apart(all, flags.golden);
   const int cores = std::max(1, int(std::thread::hardware_concurrency()));
   const int workers = std::min<int>(flags.workers > 0 ? flags.workers : cores, int(all.size()));
   const auto began = std::chrono::steady_clock::now();
@@ -185,6 +210,8 @@ void add_golden(CLI::App& program, int& exit) {
       .option("--references", flags->golden.references,
               "The folder of the references [golden/ beside each scene]")
       .type("DIR");
+  command.option("--root", flags->golden.root, "Call scenes by their path from here [the current folder]")
+      .type("DIR");
   command.flag("--update", flags->golden.update, "Take what there is now as the reference");
   command
       .option("--actual", flags->golden.actual,
@@ -201,13 +228,15 @@ void add_golden(CLI::App& program, int& exit) {
       "A scene's [golden] table names the moments, the size, and what may differ, with a reason. States are "
       "compared first, then pixels. A reference is a PNG of render's, SCENE-SECONDS.png, and carries its "
       "origin: so the cause of a difference is named. A missing one fails, and the picture is written. "
+      "With --references, and for pictures of what fails, a scene is called by its path from --root, "
+      "without .toml. "
       "docs/golden.md has recipes.\n\n"
       "Exit codes: 0 all are the same, 1 something differs or is missing, 3 a scene cannot be read, 6 one "
       "diverged.\n\n"
       "Examples:\n"
       "  obscura golden\n"
       "  obscura golden scenes/room.toml --report report.html\n"
-      "  obscura golden scenes --references tests/golden --update");
+      "  obscura golden scenes --root scenes --references tests/golden --update");
   command.run([flags] { return golden(*flags); });
 }
 

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <charconv>
 #include <filesystem>
 
 #include "app/cause.h"
 #include "app/comparison.h"
+#include "app/exit.h"
 #include "media/file.h"
 #include "media/pixels.h"
 #include "media/png.h"
@@ -24,13 +27,14 @@ void write(const std::string& path, const Pictured& made) {
 }
 
 // leaves the picture of what fails, and the difference, for a person to look at
-void leave_evidence(const Pictured& made, const GoldenOptions& options, GoldenCase& it) {
-  const fs::path folder = options.actual, stem = fs::path(it.file).stem();
-  const std::string actual = (folder / (stem.string() + ".png")).string();
+void leave_evidence(const std::string& made_of, const Pictured& made, const GoldenOptions& options,
+                    GoldenCase& it) {
+  const std::string stem = actual_of(made_of, options) + "-" + it.time;
+  const std::string actual = stem + ".png";
   write(actual, made);
   it.attachments.push_back(actual);
   if (!it.expected) return;
-  const std::string difference = (folder / (stem.string() + ".difference.png")).string();
+  const std::string difference = stem + ".difference.png";
   media::write_png(difference, media::difference_picture(*it.expected, made.image));
   it.attachments.push_back(difference);
 }
@@ -100,30 +104,81 @@ void sweep(const scene::Scene& scene, const std::string& folder, const std::vect
   }
 }
 
+// removes the pictures that an earlier check left of this scene: what lies there is of this one
+void remove_evidence(const std::string& scene_file, const GoldenOptions& options) {
+  const fs::path actual = actual_of(scene_file, options);
+  const std::string start = actual.filename().string() + "-";
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(actual.parent_path(), none)) {
+    std::string name = entry.path().filename().string();
+    if (!name.starts_with(start) || !name.ends_with(".png")) continue;
+    name = name.substr(start.size(), name.size() - start.size() - 4);
+    if (name.ends_with(".difference")) name.resize(name.size() - 11);
+    double time = 0;
+    const char* end = name.data() + name.size();
+    if (name.empty() || !std::isdigit(static_cast<unsigned char>(name[0]))) continue;
+    if (const auto parsed = std::from_chars(name.data(), end, time);
+        parsed.ec == std::errc() && parsed.ptr == end)
+      fs::remove(entry.path(), none);
+  }
+}
+
+fs::path stem_of(const std::string& scene_file) {
+  return scene_file == "-" ? "scene" : fs::path(scene_file).stem();
+}
+
+fs::path whole_path(const fs::path& folder) { return fs::weakly_canonical(folder.empty() ? "." : folder); }
+
 }  // namespace
 
+std::string golden_name(const std::string& scene_file, const GoldenOptions& options) {
+  const fs::path stem = stem_of(scene_file);
+  if (scene_file == "-") return stem.string();
+  const fs::path inside =
+      (whole_path(fs::path(scene_file).parent_path()) / stem).lexically_relative(whole_path(options.root));
+  if (!inside.empty() && *inside.begin() != "..") return inside.generic_string();
+  if (!options.root.empty())
+    throw UsageError(fmt::format("--root {}: {} lies outside of it", options.root, scene_file));
+  if (!options.references.empty())
+    throw UsageError(
+        fmt::format("{} lies outside of the current folder: name the folder from which scenes are "
+                    "called with --root, so that two of one name have references of their own",
+                    scene_file));
+  return stem.string();
+}
+
 std::string references_of(const std::string& scene_file, const GoldenOptions& options) {
-  return options.references.empty() ? (fs::path(scene_file).parent_path() / "golden").string()
-                                    : options.references;
+  if (options.references.empty())
+    return (fs::path(scene_file).parent_path() / "golden" / stem_of(scene_file)).string();
+  return (fs::path(options.references) / golden_name(scene_file, options)).string();
+}
+
+std::string actual_of(const std::string& scene_file, const GoldenOptions& options) {
+  return (fs::path(options.actual) / golden_name(scene_file, options)).string();
 }
 
 std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOptions& options) {
+  remove_evidence(scene.file, options);
   scene::Scene small = scene;
   small.film.width = scene.golden.width, small.film.height = scene.golden.height;
   const std::vector<Pictured> made =
       pictures(small, Shots::stills(scene.golden.at, scene.film.fps, scene.film.speed), options.picture);
 
-  const fs::path folder = references_of(scene.file, options);
+  const std::string references = references_of(scene.file, options), name = golden_name(scene.file, options);
   std::vector<GoldenCase> cases;
   for (std::size_t i = 0; i < made.size(); ++i) {
     GoldenCase it;
-    it.scene = scene.name;
+    it.scene = name;
     it.time = fmt::format("{}", sim::value(scene.golden.at[i]));
-    it.file = (folder / fmt::format("{}-{}.png", scene.name, it.time)).string();
+    it.file = fmt::format("{}-{}.png", references, it.time);
     it.actual = made[i].image;
     if (!fs::exists(it.file)) {
       it.state = "missing";
       it.lines.push_back(it.file + ": there is no such reference");
+      const fs::path flat = fs::path(options.references) / fs::path(it.file).filename();
+      if (!options.references.empty() && flat != it.file && fs::exists(flat))
+        it.lines.push_back(fmt::format("{} would be it with --root {}", flat.string(),
+                                       fs::path(scene.file).parent_path().string()));
     } else {
       media::Png reference = media::read_png(it.file);
       judge(scene.golden, reference, made[i], options, it);
@@ -134,12 +189,13 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
       it.state = "updated";
       write(it.file, made[i]);
     } else if (!it.good()) {
-      leave_evidence(made[i], options, it);
+      leave_evidence(scene.file, made[i], options, it);
       it.lines.push_back(it.attachments.front() + " is what there is now; --update takes it");
     }
     cases.push_back(std::move(it));
   }
-  if (!cases.empty()) sweep(scene, folder.string(), cases, options, cases.back().lines);
+  if (!cases.empty())
+    sweep(scene, fs::path(references).parent_path().string(), cases, options, cases.back().lines);
   return cases;
 }
 

@@ -11,7 +11,7 @@ namespace obscura::app {
 
 /// One moment of a scene, held against its reference.
 struct GoldenCase {
-  std::string scene;                     // its name
+  std::string scene;                     // its name, of golden_name
   std::string time;                      // "2.5"
   std::string state;                     // "same", "tolerated", "differs", "missing", "updated", "failed"
   std::string file;                      // the reference
@@ -25,7 +25,8 @@ struct GoldenCase {
 };
 
 struct GoldenOptions {
-  std::string references;                    // a folder; empty: golden/ beside the scene
+  std::string root;        // the folder that scenes' names begin from; empty: the current one
+  std::string references;  // a folder; empty: golden/ beside the scene
   std::string actual = "render_out/golden";  // where pictures of what fails go
   bool update = false;
   bool states_only_on_other_gl = false;  // where the reference was drawn by another OpenGL
@@ -36,8 +37,15 @@ struct GoldenOptions {
 /// that is asked for, and of what fails the picture and the difference.
 std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOptions& options);
 
-/// The folder of its references.
+/// What a scene is called among others: its path from the root, without its ending, as in "wheels/car".
+/// Outside of the current folder, where no root is given, the file's stem. Throws UsageError where the scene
+/// lies outside of the root, or --references needs a root to tell scenes apart.
+std::string golden_name(const std::string& scene_file, const GoldenOptions& options);
+
+/// A scene's references, and pictures of what fails, without "-SECONDS.png": "golden/car",
+/// "render_out/golden/wheels/car".
 std::string references_of(const std::string& scene_file, const GoldenOptions& options);
+std::string actual_of(const std::string& scene_file, const GoldenOptions& options);
 
 /// All cases as JUnit's XML.
 std::string junit(const std::vector<GoldenCase>& cases);

@@ -123,6 +123,96 @@ TEST_F(Golden, OfAFolderTakesTheScenesWithATable) {
   EXPECT_TRUE(std::filesystem::exists(path("scenes/golden/one-0.png")));
 }
 
+// Two scenes of one name in two folders: each has references and pictures of what fails of its own.
+class TwoOfOneName : public Golden {
+ protected:
+  void SetUp() override {
+    Golden::SetUp();
+    for (const char* folder : {"one", "two", "build"}) std::filesystem::create_directories(path(folder));
+    scene(kScene, "one/x.toml");
+    std::string other = kScene;
+    other.replace(other.find("green"), 5, "purple");
+    scene(other, "two/x.toml");
+  }
+  bool is_there(const std::string& name) const { return std::filesystem::exists(path(name)); }
+};
+
+TEST_F(TwoOfOneName, HaveReferencesOfTheirOwnHoweverTheyAreNamed) {
+  ASSERT_EQ(obscura("golden one/x.toml --references kept --update").exit, 0);
+  ASSERT_EQ(obscura("golden two --references kept --update").exit, 0);
+  EXPECT_TRUE(is_there("kept/one/x-0.png") && is_there("kept/two/x-0.png"));
+  const Outcome run = obscura("golden \"$PWD/one\" ./two/../two/x.toml --references kept");
+  EXPECT_EQ(run.exit, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("one/x "));
+  EXPECT_THAT(run.out, HasSubstr("two/x "));
+  EXPECT_THAT(run.out, HasSubstr("2 scenes, 4 moments, 4 same"));
+}
+
+TEST_F(TwoOfOneName, LeavePicturesOfTheirOwn) {
+  EXPECT_EQ(obscura("golden one two").exit, 1);
+  EXPECT_TRUE(is_there("render_out/golden/one/x-0.png") && is_there("render_out/golden/two/x-0.png"));
+  EXPECT_NE(contents(path("render_out/golden/one/x-0.png")), contents(path("render_out/golden/two/x-0.png")));
+}
+
+TEST_F(TwoOfOneName, AreRefusedWhereTheyWouldMeet) {
+  Outcome run = shell("cd build && " OBSCURA_BINARY " golden ../one ../two");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("../one/x.toml and ../two/x.toml are both called x: "
+                                 "name a folder that holds both with --root"));
+  run = shell("cd build && " OBSCURA_BINARY " golden ../one --references ../kept --update");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("../one/x.toml lies outside of the current folder"));
+  EXPECT_FALSE(is_there("kept"));
+  run = shell("cd build && " OBSCURA_BINARY " golden ../one ../two --root .. --references ../kept --update");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_TRUE(is_there("kept/one/x-0.png") && is_there("kept/two/x-0.png"));
+  run = obscura("golden one two --root two");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("--root two: one/x.toml lies outside of it"));
+  run = obscura("golden one one/x.toml");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("one/x.toml: is named twice"));
+  scene(kScene, "one/x.scene");
+  run = obscura("golden one/x.toml one/x.scene");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("one/x.toml and one/x.scene are both called one/x: rename one of them"));
+}
+
+TEST_F(TwoOfOneName, AReferenceThatLiesWhereTheRootWasOnceIsPointedAt) {
+  ASSERT_EQ(obscura("golden one --root one --references kept --update").exit, 0);
+  EXPECT_TRUE(is_there("kept/x-0.png"));
+  const Outcome run = obscura("golden one --references kept");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("kept/x-0.png would be it with --root one"));
+}
+
+TEST_F(Golden, PicturesOfAnEarlierFailureGo) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  change("\"green\"", "\"purple\"");
+  ASSERT_EQ(golden().exit, 1);
+  ASSERT_TRUE(std::filesystem::exists(path("render_out/golden/scene-0.5.difference.png")));
+  // what is of other scenes, or no picture of a moment, stays
+  for (const char* name : {"scene-1-0.png", "scene-0.5.txt", "scene-nan.png", "scenery-0.png"})
+    std::ofstream(path(std::string("render_out/golden/") + name)) << "mine";
+  scene(kScene);
+  ASSERT_EQ(golden().exit, 0);
+  std::vector<std::string> left;
+  for (const auto& entry : std::filesystem::directory_iterator(path("render_out/golden")))
+    left.push_back(entry.path().filename().string());
+  EXPECT_THAT(left, testing::UnorderedElementsAre("scene-1-0.png", "scene-0.5.txt", "scene-nan.png",
+                                                  "scenery-0.png"));
+}
+
+TEST_F(Golden, PicturesOfWhatFailsDoNotGoWhereTheReferencesAre) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  const std::string reference = contents(path("golden/scene-0.png"));
+  change("\"green\"", "\"purple\"");
+  const Outcome run = golden("--actual golden");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("--actual golden: the references are there, and would be overwritten"));
+  EXPECT_EQ(contents(path("golden/scene-0.png")), reference);
+}
+
 TEST_F(Golden, OnAnotherOpenGlStatesAreComparedAloneIfAskedFor) {
   ASSERT_EQ(golden("--update").exit, 0);
   // drawn with other instructions it is another OpenGL's; the colour is what that one would do otherwise
