@@ -47,11 +47,13 @@ void write_report(const Comparison& found, const std::string& path) {
       lines.insert(lines.end(), found.cause->lines.begin(), found.cause->lines.end());
     if (findings.empty()) lines.insert(lines.end(), found.plain.begin(), found.plain.end());
     const char* mark = found.still ? "" : i == found.first ? ", the first" : ", the worst";
-    findings.push_back({frame.name + mark, "differs", lines, frame.a, frame.b});
+    const auto by = [](const std::optional<Origin>& origin) { return origin ? origin->drawn_by() : ""; };
+    findings.push_back(
+        {frame.name + mark, "differs", lines, frame.a, frame.b, by(frame.origin_a), by(frame.origin_b), ""});
   }
   if (findings.empty())
-    findings.push_back({found.a, found.same() ? "same" : "differs", {text(found)}, {}, {}});
-  write_text(path, report(fmt::format("{} and {}", found.a, found.b), findings));
+    findings.push_back({found.a, found.same() ? "same" : "differs", {text(found)}, {}, {}, "", "", ""});
+  write_text(path, report({fmt::format("{} and {}", found.a, found.b), ""}, findings));
 }
 
 int run(const Flags& flags) {

@@ -148,13 +148,19 @@ void print(const Outcome& outcome) {
 void write_page(const std::string& path, const std::vector<GoldenCase>& cases) {
   std::vector<Finding> findings;
   for (const GoldenCase& it : cases) {
-    Finding finding{it.time.empty() ? it.scene : fmt::format("{}, t = {} s", it.scene, it.time), it.state,
-                    it.lines, it.expected, it.actual};
+    Finding finding{it.time.empty() ? it.scene : fmt::format("{}, t = {} s", it.scene, it.time),
+                    it.state,
+                    it.lines,
+                    it.expected,
+                    it.actual,
+                    it.expected_by,
+                    it.actual_by,
+                    ""};
     findings.push_back(std::move(finding));
   }
   // what asks for eyes comes first
   std::stable_partition(findings.begin(), findings.end(), [](const Finding& f) { return f.state != "same"; });
-  write_text(path, report("Golden images", findings));
+  write_text(path, report({"Golden images", ""}, findings));
 }
 
 int golden(const Flags& flags) {

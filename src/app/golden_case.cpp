@@ -171,7 +171,7 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
     it.scene = name;
     it.time = fmt::format("{}", sim::value(scene.golden.at[i]));
     it.file = fmt::format("{}-{}.png", references, it.time);
-    it.actual = made[i].image;
+    it.actual = made[i].image, it.actual_by = made[i].origin.drawn_by();
     if (!fs::exists(it.file)) {
       it.state = "missing";
       it.lines.push_back(it.file + ": there is no such reference");
@@ -182,6 +182,7 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
     } else {
       media::Png reference = media::read_png(it.file);
       judge(scene.golden, reference, made[i], options, it);
+      if (const auto origin = origin_in(reference.tags)) it.expected_by = origin->drawn_by();
       it.expected = std::move(reference.image);
     }
     if (!it.good() && options.update) {

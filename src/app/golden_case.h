@@ -18,6 +18,7 @@ struct GoldenCase {
   std::vector<std::string> lines;        // what is to be said, the verdict first
   std::vector<std::string> attachments;  // pictures that were written of it
   std::optional<media::Image> expected, actual;
+  std::string expected_by, actual_by;  // what drew them
   double seconds = 0;  // its share of the time that its scene took
   int exit = 0;        // of "failed": the exit code
 

@@ -40,6 +40,11 @@ std::string state_hash(const std::vector<std::uint64_t>& words) {
   return hash(words.data(), words.size() * sizeof(std::uint64_t));
 }
 
+std::string Origin::drawn_by() const {
+  return fmt::format("obscura {}, OpenGL {}, {}{}", version, gl_version, gl_renderer,
+                     native ? ", --native" : "");
+}
+
 media::Tags Origin::tags(const std::string& title) const {
   nlohmann::ordered_json json;
   json["version"] = version;

@@ -42,6 +42,9 @@ struct Origin {
   std::optional<double> crf;
   std::string trajectory;  // the file of another program's run, where that is shown
 
+  /// What drew it: "obscura 0.2.0, OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (LLVM 15.0.6, 256 bits)".
+  std::string drawn_by() const;
+
   /// As the tags of a file: "Software", "Title", and the whole as JSON under "obscura".
   media::Tags tags(const std::string& title) const;
 };

@@ -65,6 +65,55 @@ Difference difference(const Image& expected, const Image& actual, int level) {
   return d;
 }
 
+std::vector<Box> difference_boxes(const Image& expected, const Image& actual, std::size_t most) {
+  assert(expected.width == actual.width && expected.height == actual.height);
+  struct Cell {
+    int left = 0, top = 0, right = -1, bottom = -1;  // around its pixels that differ, right and bottom within
+    bool any() const { return right >= left; }
+    void join(const Cell& o) {
+      if (!any()) *this = o;
+      left = std::min(left, o.left), right = std::max(right, o.right);
+      top = std::min(top, o.top), bottom = std::max(bottom, o.bottom);
+    }
+    Box box() const { return {left, top, right - left + 1, bottom - top + 1}; }
+  };
+  const int cell = std::max(8, std::max(expected.width, expected.height) / 64);
+  const int columns = (expected.width + cell - 1) / cell, rows = (expected.height + cell - 1) / cell;
+  std::vector<Cell> cells(std::size_t(columns) * rows);
+  for (int y = 0; y < expected.height; ++y) {
+    const std::uint8_t *a = expected.row(y), *b = actual.row(y);
+    if (std::memcmp(a, b, std::size_t(4) * expected.width) == 0) continue;
+    for (int x = 0; x < expected.width; ++x)
+      if (std::memcmp(a + 4 * x, b + 4 * x, 4) != 0)
+        cells[std::size_t(y / cell) * columns + x / cell].join({x, y, x, y});
+  }
+
+  // cells that touch, by a corner too, are one place
+  std::vector<Box> boxes;
+  Cell all;
+  std::vector<std::size_t> next;
+  for (std::size_t start = 0; start < cells.size(); ++start) {
+    if (!cells[start].any()) continue;
+    Cell place;
+    next = {start};
+    while (!next.empty()) {
+      const std::size_t at = next.back();
+      next.pop_back();
+      if (!cells[at].any()) continue;
+      place.join(cells[at]);
+      cells[at] = {};
+      const int column = int(at % columns), row = int(at / columns);
+      for (int j = std::max(0, row - 1); j <= std::min(rows - 1, row + 1); ++j)
+        for (int i = std::max(0, column - 1); i <= std::min(columns - 1, column + 1); ++i)
+          next.push_back(std::size_t(j) * columns + i);
+    }
+    all.join(place);
+    boxes.push_back(place.box());
+  }
+  if (boxes.size() > most) boxes = {all.box()};
+  return boxes;
+}
+
 Image difference_picture(const Image& expected, const Image& actual) {
   Image out;
   out.width = std::max(expected.width, actual.width), out.height = std::max(expected.height, actual.height);

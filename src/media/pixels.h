@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "media/image.h"
 
@@ -23,6 +24,17 @@ struct Difference {
 
 /// Compares pixel by pixel, alpha too; `level`: what `beyond` is counted from. Requires one size.
 Difference difference(const Image& expected, const Image& actual, int level = 0);
+
+/// A rectangle of pixels.
+struct Box {
+  int left = 0, top = 0, width = 0, height = 0;
+  bool operator==(const Box&) const = default;
+};
+
+/// Boxes around what differs, one for each place where it does: pixels less than eight apart, in large
+/// pictures than a 64th of their longer side, are of one place. More than `most` are one box around all.
+/// Requires one size.
+std::vector<Box> difference_boxes(const Image& expected, const Image& actual, std::size_t most);
 
 /// What differs, on the expected picture made pale: solid differences in vermilion, those of edges in blue.
 /// Pictures of two sizes: as large as either, what only one of them has in vermilion.

@@ -48,6 +48,22 @@ TEST(Pixels, OneIsFoundWithItsPlaceAndLevel) {
   EXPECT_FALSE(d.alpha_only);
 }
 
+TEST(Pixels, WhatDiffersIsBoxedPlaceByPlace) {
+  const Image one = flat(100, 80, 100);
+  Image other = one;
+  EXPECT_TRUE(difference_boxes(one, other, 12).empty());
+  other.row(4)[4 * 13] = 101;
+  EXPECT_EQ(difference_boxes(one, other, 12), (std::vector<Box>{{13, 4, 1, 1}}));
+  // across cells' edges, and by their corners
+  set(other, 17, 7, 0);
+  set(other, 25, 8, 0);
+  EXPECT_EQ(difference_boxes(one, other, 12), (std::vector<Box>{{13, 4, 13, 5}}));
+  // the last pixel, in a cell that is cut, is another place; of more than are asked for all are one
+  other.row(79)[4 * 99 + 3] = 0;
+  EXPECT_EQ(difference_boxes(one, other, 2), (std::vector<Box>{{13, 4, 13, 5}, {99, 79, 1, 1}}));
+  EXPECT_EQ(difference_boxes(one, other, 1), (std::vector<Box>{{13, 4, 87, 76}}));
+}
+
 TEST(Pixels, AlphaAloneIsSaidSo) {
   Image other = flat(20, 10, 100);
   other.row(0)[3] = 254;
