@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace obscura::sim {
 
@@ -57,15 +58,18 @@ Articulated<D>::Articulated(const Model<D>& model) : model_(model), places_(mode
     trees_.push_back({&of, true, 0, 0, chain.home(), chain.home(), zeros, zeros, zeros, ChainStance<D>(chain),
                       ChainDynamics<D>(chain)});
   }
-  gather({});
+  std::vector<int> all(trees_.size());
+  std::iota(all.begin(), all.end(), 0);
+  gather({}, all);
 }
 
 template <int D>
-void Articulated<D>::gather(const State<D>& state) {
+void Articulated<D>::gather(const State<D>& state, std::span<const int> chains) {
+  for (const int body : links_) places_[body] = -1;
   links_.clear(), where_.clear();
-  std::fill(places_.begin(), places_.end(), -1);
   size_ = 0;
-  for (int i = 0; i < int(trees_.size()); ++i) {
+  for (Tree& tree : trees_) tree.awake = false;
+  for (const int i : chains) {
     Tree& tree = trees_[i];
     const std::vector<int>& bodies = tree.of->bodies;
     tree.awake = state.frozen.empty() || !state.frozen[bodies[0]];

@@ -37,8 +37,9 @@ class Articulated {
   /// Kept by reference.
   explicit Articulated(const Model<D>& model);
 
-  /// Who is awake: the chains that are frozen in `state` are left out of all that follows.
-  void gather(const State<D>& state);
+  /// Chains that take part in all that follows: those of `chains` (numbers in the model) that are not frozen
+  /// in `state`.
+  void gather(const State<D>& state, std::span<const int> chains);
 
   /// The bodies of the chains that are awake, chain after chain.
   const std::vector<int>& links() const { return links_; }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sim/energy.h"
 
@@ -37,6 +38,9 @@ constexpr double kTiny = 1e-6;       // of a step: a cut that leads nowhere
 constexpr int kStuck = 16;           // such cuts, one after another
 constexpr int kThorough = 32;        // steps: in each such one what is not found is looked for everywhere
 constexpr double kManyLooks = 3e5;   // at couples, before a step is
+constexpr int kMostRounds = 8;       // of stepping again what got farther than expected
+constexpr int kMostLoneCuts =
+    50000;  // of a step, by a body that meets walls alone: a bounce takes microseconds
 
 // the least thickness of a shape, m
 template <int D>
@@ -106,48 +110,151 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
       if (may_touch(a, b)) couples_.push_back({a, b});
     }
   }
+  const auto number = [](std::vector<int>& list, std::size_t size) {
+    list.resize(size);
+    std::iota(list.begin(), list.end(), 0);
+  };
+  number(every_body_, model.bodies.size()), number(every_joint_, model.joints.size());
+  number(every_spring_, model.springs.size()), number(every_chain_, model.chains.size());
+  reach_.resize(model.bodies.size());
+  groups_.reserve(model.bodies.size());
 }
 
 template <int D>
 void Direct<D>::keep(const State<D>& state, Motion& motion) const {
-  motion.x = state.x, motion.v = state.v, motion.turn = state.turn, motion.spin = state.spin;
-  motion.own = state.own, motion.postures = state.postures;
+  motion.x.resize(state.x.size()), motion.v.resize(state.v.size());
+  motion.turn.resize(state.turn.size()), motion.spin.resize(state.spin.size());
+  motion.own.resize(state.own.size()), motion.postures.resize(state.postures.size());
+  for (const int body : active_.subset.bodies) {
+    motion.x[body] = state.x[body], motion.v[body] = state.v[body];
+    const int k = turning(state, body);
+    if (k < 0) continue;
+    motion.turn[k] = state.turn[k], motion.spin[k] = state.spin[k];
+    if (std::size_t(k) < state.own.size()) motion.own[k] = state.own[k];
+  }
+  for (const int chain : active_.subset.chains) motion.postures[chain] = state.postures[chain];
 }
 
 template <int D>
 void Direct<D>::restore(const Motion& motion, State<D>& state) const {
-  state.x = motion.x, state.v = motion.v, state.turn = motion.turn, state.spin = motion.spin;
-  state.own = motion.own, state.postures = motion.postures;
+  for (const int body : active_.subset.bodies) {
+    state.x[body] = motion.x[body], state.v[body] = motion.v[body];
+    const int k = turning(state, body);
+    if (k < 0) continue;
+    state.turn[k] = motion.turn[k], state.spin[k] = motion.spin[k];
+    if (std::size_t(k) < state.own.size()) state.own[k] = motion.own[k];
+  }
+  for (const int chain : active_.subset.chains) state.postures[chain] = motion.postures[chain];
 }
 
+// whether every number of the bodies at hand is finite
+template <int D>
+bool Direct<D>::sound(const State<D>& state) const {
+  for (const int body : active_.subset.bodies) {
+    if (!state.x[body].array().isFinite().all() || !state.v[body].array().isFinite().all()) return false;
+    const int k = turning(state, body);
+    if (k >= 0 && !(state.turn[k].array().isFinite().all() && state.spin[k].array().isFinite().all()))
+      return false;
+  }
+  return true;
+}
+
+// kinetic energy of the bodies at hand, J
+template <int D>
+double Direct<D>::motion(const State<D>& state) const {
+  double sum = 0;
+  for (const int body : active_.subset.bodies) {
+    if (!model_.bodies[body].fixed) sum += kinetic(model_, state, body);
+  }
+  return sum;
+}
+
+// collects the bodies at hand, whatever of them is awake
 template <int D>
 void Direct<D>::ready(State<D>& state) {
-  const std::size_t n = model_.bodies.size();
-  state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
-  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
-  light_.resize(n);
   double fastest = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    light_[i] = model_.bodies[i].fixed || state.frozen[i] ? 0 : 1 / model_.bodies[i].mass;
-    fastest = std::max(fastest, state.v[i].squaredNorm());
+  for (const int body : active_.subset.bodies) {
+    light_[body] = model_.bodies[body].fixed || state.frozen[body] ? 0 : 1 / model_.bodies[body].mass;
+    fastest = std::max(fastest, state.v[body].squaredNorm());
   }
   still_ = 1e-11 * std::max(pace_, std::sqrt(fastest));
-  free_.gather(state, true);
+  free_.gather(state, active_.subset);
   stages_.reserve(std::size_t(free_.size()));
 }
 
 template <int D>
 void Direct<D>::step(State<D>& state, double t, double h) {
+  const std::size_t n = model_.bodies.size();
+  state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
+  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+  light_.resize(n), stances_.resize(n), part_of_.resize(n);
+  roots_.reset(int(n));
+  all_contacts_.clear(), all_impulses_.clear();
+  joint_forces_ = state.joint_forces;
+  cone_.thorough = model_.collision == Collision::event || state.step % kThorough == 0;
+
+  enter_all();
   ready(state);
-  impulses_.clear(), contacts_ = state.contacts, joint_forces_ = state.joint_forces;
+  keep(state, first_);
+  frozen_then_ = state.frozen, quiet_then_ = state.quiet;
+  bound_ways(state, t, h);
+  near_.reset(int(n)), old_root_.assign(n, -1), strayed_.assign(n, 0.0), spent_.assign(n, 0);
+  for (int round = 0; round < kMostRounds; ++round) {
+    // bodies that got farther than expected, into the reach of others, are stepped again together with them
+    join_near(state);
+    bool any = false;
+    list_groups(state);
+    for (const Group& group : groups_) {
+      bool known = old_root_[group.root] == group.root;
+      for (const int body : group.subset.bodies) known = known && old_root_[body] == group.root;
+      if (known) continue;
+      any = true;
+      enter(group);
+      if (round > 0) {
+        restore(first_, state);
+        for (const int body : group.subset.bodies)
+          state.frozen[body] = frozen_then_[body], state.quiet[body] = quiet_then_[body];
+        const auto of_group = [&](const Contact<D>& c) {
+          return group_of_[c.key.a] == group_of_[group.root];
+        };
+        std::erase_if(all_contacts_, of_group), std::erase_if(all_impulses_, of_group);
+      }
+      for (const int body : group.subset.bodies) old_root_[body] = group.root, spent_[body] = 0;
+      advance(state, t, h);
+      all_contacts_.insert(all_contacts_.end(), contacts_.begin(), contacts_.end());
+      all_impulses_.insert(all_impulses_.end(), impulses_.begin(), impulses_.end());
+    }
+    if (!any) break;
+  }
+  contacts_.swap(all_contacts_), impulses_.swap(all_impulses_);
+  const auto sooner = [](const auto& p, const auto& q) { return p.key < q.key; };
+  std::sort(contacts_.begin(), contacts_.end(), sooner);
+
+  enter_all();
+  ready(state);
+  report(state);
+  rest(state, t + h, h);
+  report(state);
+  break_joints(state);
+}
+
+// moves the group at hand from t to t + h
+template <int D>
+void Direct<D>::advance(State<D>& state, double t, double h) {
+  ready(state);
+  contacts_.clear(), impulses_.clear();
+  known_ = &state.contacts;
   double done = 0;
   int tiny = 0;  // cuts in a row that led nowhere
-  forced_.clear();
+  forced_.clear(), forced_again_ = false;
   rough_ = false, work_ = 0, looks_ = 0;
-  cone_.thorough = model_.collision == Collision::event || state.step % kThorough == 0;
   openings_ = most_openings_, let_go_.reset(), vague_.clear();
+  const bool exact = model_.collision == Collision::event;
+  const int most_cuts = exact ? most_cuts_ : active_.lone ? kMostLoneCuts : most_cuts_;
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
-  for (int cuts = 0; done < h; ++cuts) {
+  int grown = 0;  // cuts at which rest has grown
+  // `event` counts all cuts of the group, whoever they are of
+  for (int spent = 0; done < h; spent = exact ? spent + 1 : most_spent()) {
     find(state, closed_);
     if (wake(state)) {
       ready(state);
@@ -158,10 +265,10 @@ void Direct<D>::step(State<D>& state, double t, double h) {
     double length = 0;
     bool held_again = false;  // what let go is to be held: the same instant once more
     // what is as fast as 1e6 room heights a second has as many places to be looked for
-    if ((work_ > budget_ || looks_ > kManyLooks) && cuts > 0) rough_ = true;
+    if ((work_ > budget_ || looks_ > kManyLooks) && done > 0) rough_ = true;
     const bool chosen = !rough_ && choose(state, t + done) && !jammed();
-    if (!chosen) rough_ = model_.collision != Collision::event;
-    if (chosen && cuts < most_cuts_ && tiny <= kStuck) {
+    if (!chosen) rough_ = !exact;
+    if (chosen && spent < most_cuts && tiny <= kStuck) {
       if (let_go_) part_ways();
       remember();
       if (coming_apart()) project(state);
@@ -175,21 +282,27 @@ void Direct<D>::step(State<D>& state, double t, double h) {
       length = stretch(state, t + done, h - done, cut);
       held_again = forced_.size() > forced && !forced_again_;
       if (length > 0) project(state);
+      if (cut) charge(charged_.a, charged_.b);
     }
     if (length == 0 && !held_again) {
       // no way to go on but a short one at once
-      length = std::min(cuts < most_cuts_ && !rough_ ? short_ * h : std::max(h / kMostPieces, unseen(state)),
+      length = std::min(spent < most_cuts && !rough_ ? short_ * h : std::max(h / kMostPieces, unseen(state)),
                         h - done);
       settle(state, t + done, length);
       cut = length < h - done;
+      charge(-1, -1);
     }
     if (length > 0) {
+      measure_ways(state);
       forced_.clear(), forced_again_ = false;
       tiny = length < kTiny * h ? tiny + 1 : 0;
     }
     done = cut ? done + length : h;
     // ever faster impacts count as rest, so that what bounces ever faster comes to an end
-    if (cuts > patience_ && cuts % 2 == 0) rest_ = std::min(fastest, 2 * rest_);
+    if (spent > patience_ && spent % 2 == 0 && spent > grown) {
+      rest_ = std::min(fastest, 2 * rest_);
+      grown = spent;
+    }
   }
   rest_ = slowest;
   find(state, closed_);
@@ -199,11 +312,11 @@ void Direct<D>::step(State<D>& state, double t, double h) {
   }
   collide(state);
   // the forces that joints are shown with and break by are those of the end
-  if (!model_.joints.empty() && choose(state, t + h)) remember();
-  report(state);
-  rest(state, t + h, h);
-  report(state);
-  break_joints(state);
+  if (!active_.joints.empty() && choose(state, t + h)) remember();
+  // what was pushed out of another has another gap now than when its force was found
+  if (!rough_) return;
+  stand(state);
+  for (Contact<D>& contact : contacts_) contact.gap = gap_of(contact.key, contact.gap);
 }
 
 // what the last stretch ended by lets go, or slips, if it bears next to nothing more now
@@ -231,11 +344,11 @@ void Direct<D>::part_ways() {
 template <int D>
 double Direct<D>::unseen(const State<D>& state) const {
   double least = 1e300;
-  for (int body = 0; body < int(thin_.size()); ++body) {
+  for (const int body : active_.subset.bodies) {
     if (thin_[body] > 0) least = std::min(least, thin_[body]);
   }
   double fastest = 0;
-  for (int body = 0; body < int(thin_.size()); ++body) {
+  for (const int body : active_.subset.bodies) {
     if (light(body) == 0) continue;
     double speed = std::sqrt(state.v[body].squaredNorm());
     if (const int k = turning(state, body); k >= 0)
@@ -271,8 +384,8 @@ void Direct<D>::rates(double t, std::span<const double> d, std::span<const doubl
 // contacts and joints and their forces as they were chosen last; joints of what is frozen keep theirs
 template <int D>
 void Direct<D>::remember() {
-  contacts_.clear();
-  for (std::size_t i = 0; i < joint_forces_.size(); ++i) {
+  contacts_.clear(), known_ = &contacts_;
+  for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
     if (light(joint.a.body) > 0 || light(joint.b.body) > 0) joint_forces_[i].setZero();
   }
@@ -327,12 +440,6 @@ void Direct<D>::report(State<D>& state) {
     } else {
       contacts_.insert(at, struck);
     }
-  }
-  // what was pushed out of another has another gap now than when its force was found
-  if (rough_) stand(state);
-  for (Contact<D>& contact : contacts_) {
-    if (!rough_) break;
-    contact.gap = gap_of(contact.key, contact.gap);
   }
   // what was frozen keeps its forces
   std::size_t kept = 0;
@@ -401,7 +508,7 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
     if (held.kind == Held::Kind::rope || held.kind == Held::Kind::lower || held.kind == Held::Kind::upper)
       modes_[held.block].hold = held.off < -closed_ ? Hold::free : Hold::at_lower;
   }
-  project(state);
+  project(state, true);
 }
 
 template class Direct<2>;

@@ -15,7 +15,8 @@ namespace obscura::sim {
 
 /// The direct solver: contact and joint forces are part of the Runge-Kutta stages, found exactly
 /// (sim/cone.h). A step is cut where something closes, opens, slips or stops: in `event` always, in `contact`
-/// where it closes or stops, and a bounded number of times. For scenes of up to some hundred rows.
+/// where it closes or stops, and a bounded number of times for each body. Bodies that cannot meet in a step
+/// are stepped apart, so that the cuts of one are none of the other's. For scenes of up to some hundred rows.
 template <int D>
 class Direct final : public ContactStep<D>, private System {
  public:
@@ -54,10 +55,22 @@ class Direct final : public ContactStep<D>, private System {
     int a, b;
   };
 
+  // a part of the room that nothing joins to the rest in this step; its members lie in the lists of group_*
+  struct Group {
+    int root = 0;  // the lowest of its bodies, which tells it from others
+    Subset subset;
+    std::span<const int> joints;
+    std::span<const Couple> couples;
+    bool lone = false;  // one body, that nothing but walls can meet
+  };
+
   // direct.cpp
+  void advance(State<D>& state, double t, double h);
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
   void ready(State<D>& state);
+  bool sound(const State<D>& state) const;
+  double motion(const State<D>& state) const;
   void keep(const State<D>& state, Motion& motion) const;
   void restore(const Motion& motion, State<D>& state) const;
   void settle(State<D>& state, double t, double h);
@@ -66,6 +79,16 @@ class Direct final : public ContactStep<D>, private System {
   void remember();
   void part_ways();
   void break_joints(State<D>& state);
+
+  // direct_groups.cpp
+  void bound_ways(const State<D>& state, double t, double h);
+  void join_near(const State<D>& state);
+  void list_groups(const State<D>& state);
+  void enter(const Group& group);
+  void enter_all();
+  void measure_ways(const State<D>& state);
+  void charge(int a, int b);
+  int most_spent() const;
 
   // direct_hold.cpp
   void stand(const State<D>& state);
@@ -81,7 +104,7 @@ class Direct final : public ContactStep<D>, private System {
   double along(int row, std::span<const double> rate) const;
   void push(int row, double f, std::span<double> rate) const;
   void jump(State<D>& state, const Row<D>& row, double p, bool places) const;
-  void project(State<D>& state);
+  void project(State<D>& state, bool impacts_follow = false);
   void pay_for(State<D>& state);
 
   // direct_chains.cpp
@@ -124,10 +147,10 @@ class Direct final : public ContactStep<D>, private System {
   // direct_events.cpp
   double stretch(State<D>& state, double t, double h, bool& cut);
   void smooth(State<D>& state, double t, double h);
-  double crossing(const State<D>& state, double h);
+  double crossing(const State<D>& state, double h, Couple& first);
   double closing(const State<D>& state, double h, Couple couple);
-  double tightening(const State<D>& state, double h);
-  double stopping() const;
+  double tightening(const State<D>& state, double h, Couple& first);
+  double stopping(Couple& first) const;
   double grasp(const Held& held, const Eigen::VectorXd& f) const;
   double letting_go(const Held*& which);
   double way(const State<D>& state, int body, double h) const;
@@ -156,14 +179,32 @@ class Direct final : public ContactStep<D>, private System {
   double rest_ = 0;              // m/s: slower impacts do not bounce
   double pace_ = 0;              // m/s: sqrt(g L), or L a second
   double still_ = 0;             // m/s: slower is not at all, at the speeds at hand
-  int most_cuts_ = 0;            // of a step
+  int most_cuts_ = 0;            // of a step, by one body among others
   int most_openings_ = 0;        // cuts of a step by what lets go
-  int patience_ = 0;             // cuts of a step before rest begins to grow
+  int patience_ = 0;             // cuts of a step by one body before rest begins to grow
   double budget_ = 0;            // rows^3 that a step may solve before it is done roughly
   double short_ = 0;             // of a step: what is done at once where there is no other way
   std::vector<double> rims_;     // how far each body reaches, m
   std::vector<double> thin_;     // the least thickness of each body, m; 0 of a point
-  std::vector<Couple> couples_;  // who may touch whom
+  std::vector<Couple> couples_;  // bodies that may touch others, or walls
+
+  // groups of a step: the members of each lie side by side in these lists
+  Group active_;  // that is stepped
+  std::vector<Group> groups_;
+  std::vector<int> every_body_, every_joint_, every_spring_, every_chain_;
+  std::vector<int> group_bodies_, group_joints_, group_springs_, group_chains_;
+  std::vector<Couple> group_couples_;
+  Islands near_;
+  std::vector<int> group_of_, old_root_;  // one a body: its group, and the root of the one it was stepped in
+  std::vector<int> group_sizes_, group_ends_;
+  std::vector<char> kinds_;
+  Couple charged_{-1, -1};       // who the last stretch was cut by
+  std::vector<double> reach_;    // m: how far from where the step began each body may get
+  std::vector<double> strayed_;  // m: how far each has got
+  std::vector<int> spent_;       // one a body: cuts of this step that it took part in
+  std::vector<char> frozen_then_;
+  std::vector<double> quiet_then_;
+  Motion first_;  // where the step began
 
   // of the instant at hand
   std::vector<Stance<D>> stances_;  // one a body
@@ -209,9 +250,11 @@ class Direct final : public ContactStep<D>, private System {
   double looks_ = 0;    // of this step: how often more than once a stretch couples were looked at
   Motion begun_, saved_, put_;
   Eigen::VectorXd ways_;
-  std::vector<Vec<D>> placed_;                   // x before places are put right
-  std::vector<Contact<D>> contacts_, impulses_;  // of this step
-  std::vector<Vec<D>> joint_forces_;             // of this step
+  std::vector<Vec<D>> placed_;  // x before places are put right
+  // of the group at hand, then of the step. known_: sorted contacts to begin with
+  std::vector<Contact<D>> contacts_, impulses_, all_contacts_, all_impulses_;
+  const std::vector<Contact<D>>* known_ = nullptr;
+  std::vector<Vec<D>> joint_forces_;  // of this step
 };
 
 }  // namespace obscura::sim

@@ -64,7 +64,7 @@ template <int D>
 void Direct<D>::find(const State<D>& state, double margin) {
   stand(state);
   gaps_.clear();
-  for (const Couple& couple : couples_) {
+  for (const Couple& couple : active_.couples) {
     if (light(couple.a) == 0 && light(couple.b) == 0) continue;
     near(stances_, couple, margin, [&](const Gap<D>& gap) { gaps_.push_back(gap); });
   }
@@ -199,9 +199,9 @@ double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
   return touching && high < kAtOnce ? force() : 0.5 * (low + high);
 }
 
-// the part of the stretch at which the first of what slides has stopped, by a straight line
+// the part of the stretch at which the first of what slides has stopped, by a straight line; and whose slide
 template <int D>
-double Direct<D>::stopping() const {
+double Direct<D>::stopping(Couple& which) const {
   double first = kNever;
   for (const Held& held : held_) {
     double begun = 0, now = 0;
@@ -223,7 +223,9 @@ double Direct<D>::stopping() const {
     } else {
       continue;
     }
-    if (now < -still_) first = std::min(first, begun / (begun - now));
+    if (!(now < -still_ && begun / (begun - now) < first)) continue;
+    first = begun / (begun - now);
+    which = {rows_[held.first].a, rows_[held.first].b};
   }
   return first;
 }
@@ -257,9 +259,10 @@ double Direct<D>::letting_go(const Held*& which) {
   return first;
 }
 
-// the part of the stretch from begun_ to `state` at which the first thing happens; kNever: nothing does
+// the part of the stretch from begun_ to `state` at which the first thing happens, and to whom; kNever:
+// nothing does
 template <int D>
-double Direct<D>::crossing(const State<D>& state, double h) {
+double Direct<D>::crossing(const State<D>& state, double h, Couple& which) {
   // what slides, by its rows at the end
   stand(state);
   rows_.clear();
@@ -267,13 +270,14 @@ double Direct<D>::crossing(const State<D>& state, double h) {
     lay_rows(held, held.kind == Held::Kind::contact ? Spin<D>::Zero().eval()
                                                     : turn_between(state, model_.joints[held.of]));
   }
-  double first = stopping();
+  double first = stopping(which);
 
   // ropes and limits that are not held, and so have no row, by theirs
-  first = std::min(first, tightening(state, h));
-  for (const Couple& couple : couples_) {
+  Couple joint{-1, -1};
+  if (const double part = tightening(state, h, joint); part < first) first = part, which = joint;
+  for (const Couple& couple : active_.couples) {
     if (!may_close(state, h, couple)) continue;
-    first = std::min(first, closing(state, h, couple));
+    if (const double part = closing(state, h, couple); part < first) first = part, which = couple;
     stances_[couple.a] = stance(state, couple.a);
     if (couple.b >= 0) stances_[couple.b] = stance(state, couple.b);
   }
@@ -293,7 +297,7 @@ Spin<D> Direct<D>::turn_part(const State<D>& state, const Joint<D>& joint, doubl
 
 // ropes that become tight and limits that are met
 template <int D>
-double Direct<D>::tightening(const State<D>& state, double h) {
+double Direct<D>::tightening(const State<D>& state, double h, Couple& which) {
   using Kind = typename Held::Kind;
   double first = kNever;
   const auto look = [&](Kind kind, int joint) {
@@ -312,6 +316,7 @@ double Direct<D>::tightening(const State<D>& state, double h) {
       return held.off;
     };
     double high = 1, at_high = left(1);
+    const double before = first;
     if (at_high < -closed_) {
       double low = 0, at_low = left(0);
       for (int i = 0; i < 60 && at_low <= 0; ++i) {
@@ -328,11 +333,12 @@ double Direct<D>::tightening(const State<D>& state, double h) {
         first = std::min(first, high);
       }
     }
+    if (first < before) which = {model_.joints[joint].a.body, model_.joints[joint].b.body};
     for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
       if (light(body) > 0) stances_[body] = stance(state, body);
     }
   };
-  for (int i = 0; i < int(model_.joints.size()); ++i) {
+  for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
     if (joint.kind == JointKind::rope) look(Kind::rope, i);
@@ -350,12 +356,12 @@ double Direct<D>::stretch(State<D>& state, double t, double h, bool& cut) {
   slips_.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) slips_[i] = moves(i);
   double length = h;
-  cut = false;
+  cut = false, charged_ = {-1, -1};
   pressed_ = f_;
   for (int tries = 0; tries < 20; ++tries) {
     smooth(state, t, length);
     // a force may grow without bound within a stretch
-    if (!finite(state)) {
+    if (!sound(state)) {
       restore(begun_, state);
       stand(state);
       cut = true;
@@ -365,11 +371,16 @@ double Direct<D>::stretch(State<D>& state, double t, double h, bool& cut) {
     double opens = openings_ > 0 ? letting_go(which) : kNever;
     // a force that comes down as far in a shorter time is one of many that may bear the same load
     if (let_go_ && opens < kStraight) vague_.push_back(gaps_[which->of].key), opens = kNever;
-    const double part = std::min(opens, crossing(state, length));
+    Couple meets{-1, -1};
+    const double part = std::min(opens, crossing(state, length, meets));
     if (part > 1) return length;
     cut = true;
     let_go_.reset();
-    if (part == opens) let_go_ = gaps_[which->of].key, grasp_at_let_go_ = grasp(*which, pressed_);
+    if (part == opens) {
+      let_go_ = gaps_[which->of].key, grasp_at_let_go_ = grasp(*which, pressed_);
+      meets = {let_go_->a, let_go_->b};
+    }
+    charged_ = meets;
     restore(begun_, state);
     stand(state);
     if (part * length < 1e-14 * h) return 0;

@@ -21,8 +21,7 @@ constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: 
 
 template <int D>
 void Direct<D>::stand(const State<D>& state) {
-  stances_.resize(model_.bodies.size());
-  for (int body = 0; body < int(stances_.size()); ++body) stances_[body] = stance(state, body);
+  for (const int body : active_.subset.bodies) stances_[body] = stance(state, body);
   free_.chains().stand(state);
 }
 
@@ -112,7 +111,7 @@ void Direct<D>::gather(const State<D>& state, bool all) {
     }
     held_.push_back(held);
   };
-  for (int i = 0; i < int(model_.joints.size()); ++i) {
+  for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
     const Spin<D> turn = turn_between(state, joint);
@@ -242,9 +241,9 @@ void Direct<D>::guess(double h) {
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact) continue;
     const ContactKey& key = gaps_[held.of].key;
-    const auto known = std::lower_bound(contacts_.begin(), contacts_.end(), key,
+    const auto known = std::lower_bound(known_->begin(), known_->end(), key,
                                         [](const Contact<D>& c, const ContactKey& k) { return c.key < k; });
-    if (known == contacts_.end() || known->key != key) continue;
+    if (known == known_->end() || known->key != key) continue;
     for (int i = 0; i < D; ++i) warm_[held.first + i] = h * known->force.dot(rows_[held.first + i].along);
     ConeMode<D>& mode = modes_[held.block];
     if (known->touching == Touching::open) mode.hold = Hold::open;
@@ -295,7 +294,7 @@ bool Direct<D>::jammed() const {
   }
   if (most == 0) return false;
   const double g = std::sqrt(model_.gravity.squaredNorm());
-  for (int i = 0; i < int(light_.size()); ++i) load += light_[i] > 0 ? g / light_[i] : 0;
+  for (const int body : active_.subset.bodies) load += light_[body] > 0 ? g / light_[body] : 0;
   for (int i = 0; i < int(rows_.size()); ++i) {
     if (const double k = answer(i); k > 0) load += std::fabs(b_[i]) / k;
   }
@@ -328,18 +327,19 @@ void Direct<D>::pay_for(State<D>& state) {
     state.v[body] *= left(more, has);
     if (const int k = turning(state, body); k >= 0) state.spin[k] *= left(more, has);
   }
-  for (std::size_t i = 0; i < model_.chains.size(); ++i) {
+  for (const int i : active_.subset.chains) {
     double more = 0, has = 0;
     for (const int body : model_.chains[i].bodies) more += lifted(body), has += kinetic(model_, state, body);
     if (more <= 0 || has <= 0) continue;
     for (double& v : state.postures[i].v) v *= left(more, has);
   }
-  if (!model_.chains.empty()) free_.chains().follow(state);
+  if (!active_.subset.chains.empty()) free_.chains().follow(state);
 }
 
-// puts what is held back to where it belongs: places first, then velocities
+// puts what is held back to where it belongs: places first, then velocities. `impacts_follow`: contacts that
+// approach as in an impact keep their velocities, for the impact to come
 template <int D>
-void Direct<D>::project(State<D>& state) {
+void Direct<D>::project(State<D>& state, bool impacts_follow) {
   using Kind = typename Held::Kind;
   const auto again = [&] {
     stand(state);
@@ -366,7 +366,8 @@ void Direct<D>::project(State<D>& state) {
     }
     return worst;
   };
-  placed_ = state.x;
+  placed_.resize(state.x.size());
+  for (const int body : active_.subset.bodies) placed_[body] = state.x[body];
   double moved = 0, worst = astray();
   for (int round = 0; round < 3 && worst > 1e-14 * model_.scale; ++round) {
     moved = std::max(moved, worst);
@@ -399,6 +400,7 @@ void Direct<D>::project(State<D>& state) {
   for (const Held& held : held_) {
     if (!acts(held)) continue;
     const Hold hold = modes_[held.block].hold;
+    if (impacts_follow && held.kind == Kind::contact && moves(held.first) < -rest_) continue;
     const int n = held.kind != Kind::contact ? held.rows : hold == Hold::slide ? 1 : D;
     for (int i = 0; i < n; ++i) {
       const int row = held.first + i;

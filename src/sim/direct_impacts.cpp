@@ -94,7 +94,7 @@ void Direct<D>::strike(State<D>& state, double bounce) {
   split();
   b_.resize(Eigen::Index(rows_.size()));
   keep(state, saved_);
-  const double before = moving(model_, state);
+  const double before = motion(state);
   double low = 0, high = bounce;
   for (int tries = 0; tries < 30; ++tries) {
     for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i);
@@ -107,7 +107,7 @@ void Direct<D>::strike(State<D>& state, double bounce) {
     bool found = solve();
     if (!found && model_.collision != Collision::event) rough_ = true, found = solve();
     jump(state, false);
-    const double after = moving(model_, state);
+    const double after = motion(state);
     if ((found && after <= before * (1 + 1e-13)) || bounce == 0) break;
     // too much: less of e, at most half as often as it takes to know how much to 1e-6
     high = bounce;

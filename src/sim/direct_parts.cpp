@@ -17,15 +17,16 @@ constexpr double kThorough = 5e8;  // of the size of all systems that a thorough
 // what of held_ belongs together, by the bodies it moves
 template <int D>
 void Direct<D>::split() {
-  roots_.reset(int(model_.bodies.size()));
-  for (const Articulation<D>& chain : model_.chains) {
+  roots_.reset(active_.subset.bodies);
+  for (const int number : active_.subset.chains) {
+    const Articulation<D>& chain = model_.chains[number];
     for (const int body : chain.bodies) roots_.join(body, chain.bodies[0]);
   }
   for (const Held& held : held_) {
     const Row<D>& row = rows_[held.first];
     if (light(row.a) > 0 && light(row.b) > 0) roots_.join(row.a, row.b);
   }
-  part_of_.assign(model_.bodies.size(), -1);
+  for (const int body : active_.subset.bodies) part_of_[body] = -1;
   parts_ = 0;
   for (const Held& held : held_) {
     const Row<D>& row = rows_[held.first];

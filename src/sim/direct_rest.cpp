@@ -39,7 +39,8 @@ void Direct<D>::join(const State<D>& state) {
 // thaws what something awake touches or holds, with all that it is joined to. True where it did
 template <int D>
 bool Direct<D>::wake(State<D>& state) {
-  if (std::none_of(state.frozen.begin(), state.frozen.end(), [](char frozen) { return frozen != 0; }))
+  const auto& bodies = active_.subset.bodies;
+  if (std::none_of(bodies.begin(), bodies.end(), [&](int body) { return state.frozen[body] != 0; }))
     return false;
   chosen_.clear();
   const auto meet = [&](int a, int b) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace obscura::sim {
@@ -15,6 +16,11 @@ class Islands {
   void reset(int n) {
     parent_.resize(n);
     std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  /// Makes sets of one member each of `members`, who must not have been joined to others; n as before.
+  void reset(std::span<const int> members) {
+    for (const int i : members) parent_[i] = i;
   }
 
   /// The lowest member of i's set.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sim/flight.h"
 #include "sim/stability.h"
@@ -23,6 +24,11 @@ template <int D>
 Tied<D>::Tied(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model), paths_(paths), chains_(model), blasts_(model), tips_(model.bodies) {
   member_.assign(model.bodies.size(), -1);
+  const std::size_t counts[] = {model.bodies.size(), model.springs.size(), model.chains.size()};
+  for (int i = 0; i < 3; ++i) {
+    numbers_[i].resize(counts[i]);
+    std::iota(numbers_[i].begin(), numbers_[i].end(), 0);
+  }
   ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty() || !model.chains.empty();
   for (const Body<D>& body : model.bodies) ever_ = ever_ || body.ground_drag != 0;
 }
@@ -37,31 +43,43 @@ typename Tied<D>::Hold Tied<D>::hold(const State<D>& state, const End<D>& end) c
 
 template <int D>
 void Tied<D>::gather(const State<D>& state, bool everyone) {
-  // who: bodies with a spring, and those in a hand
-  std::fill(member_.begin(), member_.end(), -1);
+  const Subset all{numbers_[0], numbers_[1], numbers_[2]};
+  if (everyone || blasting(state)) return gather(state, all);
+  // bodies with a spring, those that the mouse holds, and those that the ground brakes
+  for (const int body : all_) member_[body] = -1;
   const auto mark = [&](int body) {
     if (body >= 0 && !model_.bodies[body].fixed && !model_.bodies[body].linked) member_[body] = 0;
   };
-  if (everyone || blasting(state)) {
-    for (int body = 0; body < int(member_.size()); ++body) {
-      if (state.frozen.empty() || !state.frozen[body]) mark(body);
-    }
-  } else {
-    for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
-    for (const Grip<D>& grip : state.grips) mark(grip.body);
-    for (int body = 0; body < int(member_.size()); ++body) {
-      if (model_.bodies[body].ground_drag != 0 && (state.frozen.empty() || !state.frozen[body])) mark(body);
-    }
-  }
-  bodies_.clear();
+  for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
+  for (const Grip<D>& grip : state.grips) mark(grip.body);
   for (int body = 0; body < int(member_.size()); ++body) {
+    if (model_.bodies[body].ground_drag != 0 && (state.frozen.empty() || !state.frozen[body])) mark(body);
+  }
+  gather_marked(state, all);
+}
+
+template <int D>
+void Tied<D>::gather(const State<D>& state, const Subset& of) {
+  for (const int body : all_) member_[body] = -1;
+  for (const int body : of.bodies) {
+    const bool frozen = !state.frozen.empty() && state.frozen[body];
+    if (!frozen && !model_.bodies[body].fixed && !model_.bodies[body].linked) member_[body] = 0;
+  }
+  gather_marked(state, of);
+}
+
+// gathers the bodies of a part of the model whose member_ is not below zero
+template <int D>
+void Tied<D>::gather_marked(const State<D>& state, const Subset& of) {
+  bodies_.clear();
+  for (const int body : of.bodies) {
     if (member_[body] < 0) continue;
     member_[body] = int(bodies_.size());
     bodies_.push_back(body);
   }
   turning_ = 0;
   for (const int body : bodies_) turning_ += turning(state, body) >= 0;
-  chains_.gather(state);
+  chains_.gather(state, of.chains);
   all_ = bodies_;
   for (const int body : chains_.links()) {
     member_[body] = int(all_.size());
@@ -70,7 +88,8 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
 
   // by what
   ties_.clear();
-  for (const Spring<D>& spring : model_.springs) {
+  for (const int number : of.springs) {
+    const Spring<D>& spring = model_.springs[number];
     const Tie tie{hold(state, spring.a), hold(state, spring.b), law(spring)};
     if (tie.a.member >= 0 || tie.b.member >= 0) ties_.push_back(tie);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sim/articulated.h"
@@ -10,6 +11,12 @@
 #include "sim/turning.h"
 
 namespace obscura::sim {
+
+/// Part of a model that moves by itself for a while, by number, ascending: bodies, the springs that end at
+/// them, and the chains whose links they are.
+struct Subset {
+  std::span<const int> bodies, springs, chains;
+};
 
 /// The bodies that springs and hands hold, and the links of chains, gathered into one system: first the
 /// centres, then the turns of those that turn, then the joints of the chains. In space d and v of a turn are
@@ -29,6 +36,8 @@ class Tied final : public System {
   /// an explosion acts. What the ground brakes counts as tied. To be called whenever a grip changes, or who
   /// is frozen, or what explodes.
   void gather(const State<D>& state, bool everyone = false);
+  /// The same for a part of the model: all else stays out of it.
+  void gather(const State<D>& state, const Subset& of);
 
   bool has(int body) const { return member_[body] >= 0; }
   const std::vector<int>& bodies() const { return bodies_; }
@@ -83,6 +92,7 @@ class Tied final : public System {
   };
 
   Hold hold(const State<D>& state, const End<D>& end) const;
+  void gather_marked(const State<D>& state, const Subset& of);
   void load(const State<D>& state);
   int pieces(const State<D>& state, double h) const;
   void piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System& rates);
@@ -93,10 +103,11 @@ class Tied final : public System {
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
   Articulated<D> chains_;
-  std::vector<int> bodies_;  // ascending: those that turn come last
-  std::vector<int> member_;  // a body's place in bodies_, a link's after them, or -1
-  std::vector<int> all_;     // bodies_ and the links
-  std::vector<Tie> ties_;    // springs in order, then mice in order
+  std::vector<int> bodies_;      // ascending: those that turn come last
+  std::vector<int> member_;      // a body's place in bodies_, a link's after them, or -1
+  std::vector<int> all_;         // bodies_ and the links
+  std::vector<int> numbers_[3];  // of all bodies, springs, chains
+  std::vector<Tie> ties_;        // springs in order, then mice in order
   bool ever_ = false;
   Blasts<D> blasts_;
   Tips<D> tips_;
