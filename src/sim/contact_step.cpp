@@ -5,6 +5,7 @@
 #include "sim/account.h"
 #include "sim/direct.h"
 #include "sim/iterative.h"
+#include "sim/lone.h"
 #include "sim/sweeps.h"
 
 namespace obscura::sim {
@@ -19,11 +20,13 @@ constexpr double kSwings = 1e-2;  // of its motion on joints: the error of a ste
 template <int D>
 class Passive final : public ContactStep<D> {
  public:
-  Passive(const Model<D>& model, std::unique_ptr<ContactStep<D>> solver)
+  Passive(const Model<D>& model, const std::vector<Path<D>>& paths, std::unique_ptr<ContactStep<D>> solver)
       : model_(model),
         solver_(std::move(solver)),
         account_(model),
-        direct_(sim::solver(model) == Solver::direct) {}
+        direct_(sim::solver(model) == Solver::direct) {
+    if (!direct_) lone_ = std::make_unique<Lone<D>>(model, paths);
+  }
 
   void step(State<D>& state, double t, double h) override {
     // what lets go within the step is no longer told after it
@@ -33,7 +36,9 @@ class Passive final : public ContactStep<D> {
       touched_.emplace_back(contact.key.a, contact.key.b);
     }
     account_.open(state);
+    if (lone_) lone_->find(state, h);
     solver_->step(state, t, h);
+    if (lone_) lone_->step(state, t, h);
     // what overlaps at the start is to be lifted apart
     if (model_.overlap == Overlap::separate || !account_.risen(state)) return;
     for (const auto& [a, b] : touched_) account_.touch(a, b);
@@ -56,6 +61,7 @@ class Passive final : public ContactStep<D> {
   std::unique_ptr<ContactStep<D>> solver_;
   Account<D> account_;
   bool direct_;
+  std::unique_ptr<Lone<D>> lone_;  // beside a solver for many
   std::vector<std::pair<int, int>> touched_;
 };
 
@@ -94,7 +100,7 @@ std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::v
     all = std::make_unique<Direct<D>>(model, paths);
   else
     all = iterative(model, paths);
-  return std::make_unique<Passive<D>>(model, std::move(all));
+  return std::make_unique<Passive<D>>(model, paths, std::move(all));
 }
 
 template Crowd crowd<2>(const Model<2>&);

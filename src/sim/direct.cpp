@@ -82,7 +82,7 @@ double thickness(const Shape<D>& shape) {
 }  // namespace
 
 template <int D>
-Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
+Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
     : model_(model), integrate_(sim::integrate(model.integrator)), free_(model, paths) {
   const double g = std::sqrt(model.gravity.squaredNorm()), h = 1 / value(model.rate);
   const bool exact = model.collision == Collision::event;
@@ -102,7 +102,8 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths)
     thin_.push_back(thickness(body.shape));
   }
   for (int a = 0; a < int(model.bodies.size()); ++a) {
-    if (model.bodies[a].handout) continue;
+    if (whom == Serves::lone && model.bodies[a].fixed) fixed_.push_back(a);
+    if (whom == Serves::lone || model.bodies[a].handout) continue;
     if (!model.bodies[a].fixed) {
       for (int wall = 0; wall < int(model.walls.size()); ++wall) couples_.push_back({a, -1 - wall});
     }
@@ -185,10 +186,7 @@ void Direct<D>::ready(State<D>& state) {
 template <int D>
 void Direct<D>::step(State<D>& state, double t, double h) {
   const std::size_t n = model_.bodies.size();
-  state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
-  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
-  light_.resize(n), stances_.resize(n), part_of_.resize(n);
-  roots_.reset(int(n));
+  begin_groups(state);
   all_contacts_.clear(), all_impulses_.clear();
   joint_forces_ = state.joint_forces;
   cone_.thorough = model_.collision == Collision::event || state.step % kThorough == 0;

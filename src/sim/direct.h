@@ -20,11 +20,18 @@ namespace obscura::sim {
 template <int D>
 class Direct final : public ContactStep<D>, private System {
  public:
+  /// Whom it serves: all bodies, or single ones of a model that another solver serves.
+  enum class Serves { all, lone };
+
   /// Both are kept by reference.
-  Direct(const Model<D>& model, const std::vector<Path<D>>& paths);
+  Direct(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom = Serves::all);
 
   /// Moves `state` from t to t + h: its bodies, contacts, and who is frozen.
   void step(State<D>& state, double t, double h) override;
+
+  /// Moves one body that meets nothing but walls and fixed bodies, and tells its contacts in `state` that are
+  /// there already what they bear. Of Serves::lone.
+  void step_alone(State<D>& state, int body, double t, double h);
 
  private:
   // something that keeps rows at the instant at hand
@@ -86,6 +93,7 @@ class Direct final : public ContactStep<D>, private System {
   void list_groups(const State<D>& state);
   void enter(const Group& group);
   void enter_all();
+  void begin_groups(State<D>& state);
   void measure_ways(const State<D>& state);
   void charge(int a, int b);
   int most_spent() const;
@@ -194,6 +202,7 @@ class Direct final : public ContactStep<D>, private System {
   std::vector<int> every_body_, every_joint_, every_spring_, every_chain_;
   std::vector<int> group_bodies_, group_joints_, group_springs_, group_chains_;
   std::vector<Couple> group_couples_;
+  std::vector<int> lone_body_, fixed_;  // of Serves::lone: the body at hand; the fixed ones
   Islands near_;
   std::vector<int> group_of_, old_root_;  // one a body: its group, and the root of the one it was stepped in
   std::vector<int> group_sizes_, group_ends_;

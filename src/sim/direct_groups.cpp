@@ -180,6 +180,48 @@ void Direct<D>::list_groups(const State<D>& state) {
       [&](int i) { return couples_[i]; }, [](Group& group, auto list) { group.couples = list; });
 }
 
+// sizes what groups need of a state
+template <int D>
+void Direct<D>::begin_groups(State<D>& state) {
+  const std::size_t n = model_.bodies.size();
+  state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
+  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+  light_.resize(n), stances_.resize(n), part_of_.resize(n);
+  roots_.reset(int(n));
+}
+
+template <int D>
+void Direct<D>::step_alone(State<D>& state, int body, double t, double h) {
+  if (light_.size() != model_.bodies.size()) {
+    begin_groups(state);
+    strayed_.resize(light_.size()), spent_.resize(light_.size());
+    for (const int fixed : fixed_) stances_[fixed] = stance(state, fixed);
+  }
+  lone_body_.assign(1, body), group_couples_.clear();
+  for (int wall = 0; wall < int(model_.walls.size()); ++wall) group_couples_.push_back({body, -1 - wall});
+  for (const int fixed : fixed_) {
+    const auto [a, b] = std::minmax(body, fixed);
+    if (may_touch(a, b)) group_couples_.push_back({a, b});
+  }
+  active_ = {};
+  active_.root = body, active_.lone = true;
+  active_.subset.bodies = lone_body_, active_.couples = group_couples_;
+  strayed_[body] = 0, spent_[body] = 0;
+  cone_.thorough = model_.collision == Collision::event;
+  keep(state, first_);
+  advance(state, t, h);
+  for (Contact<D>& contact : state.contacts) {
+    if (contact.key.a != body && contact.key.b != body) continue;
+    contact.force.setZero(), contact.impulse.setZero();
+    for (const Contact<D>& now : contacts_) {
+      if (now.key == contact.key) contact = now;
+    }
+    for (const Contact<D>& struck : impulses_) {
+      if (struck.key == contact.key) contact.impulse = struck.impulse;
+    }
+  }
+}
+
 // what follows is of this group
 template <int D>
 void Direct<D>::enter(const Group& group) {
@@ -225,6 +267,8 @@ int Direct<D>::most_spent() const {
   template void Direct<D>::join_near(const State<D>&);                  \
   template void Direct<D>::list_groups(const State<D>&);                \
   template void Direct<D>::enter(const Group&);                         \
+  template void Direct<D>::begin_groups(State<D>&);                     \
+  template void Direct<D>::step_alone(State<D>&, int, double, double);  \
   template void Direct<D>::enter_all();                                 \
   template void Direct<D>::measure_ways(const State<D>&);               \
   template void Direct<D>::charge(int, int);                            \

@@ -1,5 +1,5 @@
-// Every impact counts: bodies that have nothing to do with one another bounce as each of them alone, in the
-// plane and in space, at every rate, and however many fall into one step.
+// Every impact counts: bodies that have nothing to do with one another bounce as each of them alone, by both
+// solvers, in the plane and in space, at every rate, and however many fall into one step.
 
 #include <gtest/gtest.h>
 
@@ -98,9 +98,17 @@ void expect_rain(int many, int rate) {
     SCOPED_TRACE("direct, points, " + what);
     expect_rain<D>(Solver::direct, many, rate, 0);
   }
+  {
+    SCOPED_TRACE("iterative, points, " + what);
+    expect_rain<D>(Solver::iterative, many, rate, 0);
+  }
   if (many <= 100) {
     SCOPED_TRACE("direct, balls, " + what);
     expect_rain<D>(Solver::direct, many, rate, 0.1);
+  }
+  {
+    SCOPED_TRACE("iterative, balls, " + what);
+    expect_rain<D>(Solver::iterative, many, rate, 0.1);
   }
 }
 
@@ -134,7 +142,7 @@ void expect_volley(Solver solver, int rate) {
 
 TEST(EveryImpact, OfAVolleyOnAWallComesBack) {
   for (const int rate : {60, 600, 6000}) {
-    for (const Solver solver : {Solver::direct}) {
+    for (const Solver solver : {Solver::direct, Solver::iterative}) {
       SCOPED_TRACE(std::to_string(rate) + (solver == Solver::direct ? " direct" : " iterative"));
       expect_volley<2>(solver, rate);
       expect_volley<3>(solver, rate);
@@ -167,7 +175,7 @@ void expect_gas(Solver solver, int many, double speed, double width, int rate, i
 }
 
 TEST(EveryImpact, OfAGasOfPointsKeepsItsEnergy) {
-  for (const Solver solver : {Solver::direct}) {
+  for (const Solver solver : {Solver::direct, Solver::iterative}) {
     for (const double speed : {8.0, 15.0, 60.0}) {
       SCOPED_TRACE(std::to_string(speed) + (solver == Solver::direct ? " direct" : " iterative"));
       expect_gas<2>(solver, 400, speed, 2, 600, 120, 1e-6);
@@ -179,7 +187,7 @@ TEST(EveryImpact, OfAGasOfPointsKeepsItsEnergy) {
 
 // many times through the room in a step
 TEST(EveryImpact, OfABulletKeepsItsSpeed) {
-  for (const Solver solver : {Solver::direct}) {
+  for (const Solver solver : {Solver::direct, Solver::iterative}) {
     for (const double speed : {1e3, 1e4, 1e5}) {
       SCOPED_TRACE(std::to_string(speed) + (solver == Solver::direct ? " direct" : " iterative"));
       expect_gas<2>(solver, 1, speed, 2, 600, 60, 1e-4);
