@@ -1,0 +1,156 @@
+// The impacts of every shipped scene, against the closed form of each: a ball in flight that meets one wall
+// falls along a parabola, strikes where the parabola meets the wall, and comes back with e times its speed.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "sim/shape.h"
+#include "sim/stepper.h"
+#include "where.h"
+
+namespace obscura::scene {
+namespace {
+
+struct Count {
+  int foreseen = 0, right = 0;
+};
+
+// what ties a body, or pulls at it in another way than gravity does
+template <int D>
+std::vector<char> tied(const sim::Model<D>& model) {
+  std::vector<char> all(model.bodies.size(), 0);
+  const auto tie = [&](int body) {
+    if (body >= 0) all[body] = 1;
+  };
+  for (const auto& spring : model.springs) tie(spring.a.body), tie(spring.b.body);
+  for (const auto& joint : model.joints) tie(joint.a.body), tie(joint.b.body);
+  for (int i = 0; i < int(all.size()); ++i) {
+    const auto& body = model.bodies[i];
+    const bool round = body.shape.kind == sim::ShapeKind::point || body.shape.kind == sim::ShapeKind::ball;
+    if (!round || body.fixed || body.handout || body.linked || body.drag != 0 || body.ground_drag != 0)
+      tie(i);
+  }
+  return all;
+}
+
+// Steps a scene through `seconds`, foresees the impacts of balls that are alone with one wall, and counts
+// those that come out so.
+template <int D>
+Count impacts(const sim::World<D>& world, double seconds) {
+  const sim::Model<D>& model = world.model;
+  Count count;
+  if (model.collision == sim::Collision::handout || !model.bonds.empty()) return count;
+  const std::vector<char> skip = tied(model);
+  if (std::count(skip.begin(), skip.end(), 0) == 0) return count;
+  const double h = 1 / value(model.rate), g = std::sqrt(model.gravity.squaredNorm());
+  sim::State<D> state = world.state;
+  sim::Stepper<D> stepper(model);
+  stepper.begin(state);
+  for (int step = 0; step < int(seconds / h); ++step) {
+    const sim::State<D> before = state;
+    if (stepper.step(state)) break;
+    const bool blasting =
+        std::any_of(before.blasts.begin(), before.blasts.end(), [](const auto& b) { return b.on; });
+    for (int i = 0; i < int(skip.size()) && !blasting; ++i) {
+      if (skip[i] || before.frozen[i]) continue;
+      const double rim = sim::reach(model.bodies[i].shape);
+      const bool held = std::any_of(before.grips.begin(), before.grips.end(),
+                                    [&](const auto& grip) { return grip.body == i; });
+      // alone: nothing else within thrice what both go
+      bool alone = !held;
+      for (int j = 0; j < int(skip.size()) && alone; ++j) {
+        if (j == i) continue;
+        const double ways =
+            3 * h * (std::sqrt(before.v[i].squaredNorm()) + std::sqrt(before.v[j].squaredNorm()) + g * h);
+        const double far = rim + sim::reach(model.bodies[j].shape) + ways;
+        alone = (before.x[i] - before.x[j]).squaredNorm() > far * far;
+      }
+      if (!alone) continue;
+      // which walls the parabola meets:  gap + u t + a t^2 / 2 = 0
+      int met = 0, wall = -1;
+      double when = 0, least = 1e300;
+      for (int w = 0; w < int(model.walls.size()); ++w) {
+        const auto& it = model.walls[w];
+        const double gap = (before.x[i] - it.point).dot(it.normal) - rim, u = before.v[i].dot(it.normal);
+        const double a = model.gravity.dot(it.normal), end = gap + u * h + 0.5 * a * h * h;
+        least = std::min(least, gap);
+        if (end > 0) continue;
+        const double root = std::sqrt(std::max(0.0, u * u - 2 * a * gap));
+        ++met, wall = w, when = 2 * gap / (root - u);
+      }
+      if (met != 1 || least < 1e-6 * model.scale) continue;
+      const auto& it = model.walls[wall];
+      const double a = model.gravity.dot(it.normal), strikes = before.v[i].dot(it.normal) + a * when;
+      if (strikes > -4 * g * h) continue;  // as slow as what rests
+      const double e =
+          it.elasticity ? std::sqrt(model.bodies[i].elasticity * *it.elasticity) : model.bodies[i].elasticity;
+      ++count.foreseen;
+      const double want = -e * strikes + a * (h - when);
+      if (std::abs(state.v[i].dot(it.normal) - want) <= 1e-6 * -strikes) ++count.right;
+    }
+  }
+  return count;
+}
+
+TEST(Impacts, OfEveryShippedSceneAreThoseOfTheClosedForm) {
+  int foreseen = 0, scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(OBSCURA_SOURCE_DIR "/scenes")) {
+    // bounce's balls begin in one place: see below
+    if (entry.path().extension() != ".toml" || entry.path().stem() == "bounce") continue;
+    // of scenes by the handout's recipe, that finds impacts at the ends of steps, as they are by forces
+    const std::string file = entry.path().string();
+    Scene scene = read(file);
+    const bool recipe = std::visit(
+        [](const auto& world) { return world.model.collision == sim::Collision::handout; }, scene.world);
+    if (recipe) scene = read(file, {"physics.collision=contact", "physics.rate=600"});
+    const Count count = std::visit([](const auto& world) { return impacts(world, 4); }, scene.world);
+    EXPECT_EQ(count.right, count.foreseen) << entry.path();
+    foreseen += count.foreseen, scenes += count.foreseen > 0;
+    RecordProperty(entry.path().stem().string(), count.foreseen);
+  }
+  // so that the count is one of something
+  EXPECT_GE(foreseen, 50);
+  EXPECT_GE(scenes, 5);
+}
+
+// bounce.toml by forces: ball k of elasticity e strikes the floor n times faster than `slowest` in 8 s,
+//   t_1 = sqrt(2 H / g),   v_n = e^(n-1) g t_1,   2 e v_n / g between two
+TEST(Impacts, OfFiveElasticitiesAreAsManyAsTheClosedFormHas) {
+  constexpr double kSlowest = 0.5;
+  for (const std::string solver : {"direct", "iterative"}) {
+    for (const std::string rate : {"60", "600", "6000"}) {
+      const Scene scene = read(OBSCURA_SOURCE_DIR "/scenes/bounce.toml",
+                               {"physics.collision=contact", "physics.rate=" + rate,
+                                "physics.solver=" + solver, "room.size=[20,6]", "ball.copies.offset=[3,0]"});
+      const sim::World<2>& world = scene.plane();
+      sim::State<2> state = world.state;
+      sim::Stepper<2> stepper(world.model);
+      stepper.begin(state);
+      const double h = 1 / value(world.model.rate), g = -world.model.gravity[1];
+      std::vector<int> struck(state.x.size(), 0), want(state.x.size(), 0);
+      for (int step = 0; step < int(8 / h + 0.5); ++step) {
+        const std::vector<sim::Vec<2>> before = state.v;
+        ASSERT_FALSE(stepper.step(state));
+        for (std::size_t i = 0; i < struck.size(); ++i)
+          struck[i] += before[i][1] < -kSlowest && state.v[i][1] > 0;
+      }
+      for (std::size_t i = 0; i < struck.size(); ++i) {
+        const auto& body = world.model.bodies[i];
+        double t = std::sqrt(2 * (world.state.x[i][1] - body.shape.radius) / g), v = g * t;
+        // one within a step of the slowest, or of the end, may be counted or not
+        for (; t < 8 && v > kSlowest + 1.5 * g * h; t += 2 * v / g) ++want[i], v *= body.elasticity;
+        EXPECT_NEAR(struck[i], want[i], v > kSlowest && t < 8 + 2 * h ? 1 : 0)
+            << solver << " at " << rate << ", ball " << i;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace obscura::scene
