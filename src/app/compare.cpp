@@ -11,6 +11,8 @@
 #include "app/commands.h"
 #include "app/comparison.h"
 #include "app/exit.h"
+#include "app/format.h"
+#include "app/github.h"
 #include "app/interrupt.h"
 #include "app/report.h"
 #include "app/runs.h"
@@ -21,7 +23,8 @@ namespace obscura::app {
 namespace {
 
 struct Flags {
-  std::string a, b, format = "text";
+  std::string a, b;
+  Format format = Format::text;
   std::optional<std::string> diff, report;
   std::optional<double> rtol, atol;
   bool interpolate = false;
@@ -29,11 +32,24 @@ struct Flags {
 
 bool is_table(const std::string& path) { return std::filesystem::path(path).extension() == ".csv"; }
 
+// what a person or a program is told; GitHub beside it where the two are not the same
+void tell(const Flags& flags, bool same, const std::string& text, const std::string& json) {
+  if (flags.format != Format::github) {
+    fmt::print("{}", flags.format == Format::json ? json : text);
+    return;
+  }
+  fmt::print("{}", github::verbatim(text));
+  if (!same) fmt::print("{}", github::command({.title = "compare", .message = text}));
+  github::add_to_summary(fmt::format("### {} and {} {}\n\n", github::escaped(flags.a),
+                                     github::escaped(flags.b), same ? "are the same" : "differ") +
+                         (same ? "" : github::quoted(text)));
+}
+
 int compare_runs(const Flags& flags) {
   if (flags.diff || flags.report) throw UsageError("--diff and --report are for pictures, not for tables");
   const Tolerance tolerance{flags.rtol.value_or(0), flags.atol.value_or(0)};
   const RunComparison found = compare(read_table(flags.a), read_table(flags.b), tolerance, flags.interpolate);
-  fmt::print("{}", flags.format == "json" ? json(found) : text(found, tolerance));
+  tell(flags, found.same(), text(found, tolerance), json(found));
   return found.same() ? kDone : kDiffers;
 }
 
@@ -65,7 +81,7 @@ int run(const Flags& flags) {
     throw UsageError("--rtol, --atol and --interpolate are for tables (.csv)");
   const Comparison found = compare(flags.a, flags.b);
   if (interrupted()) return kInterrupted;
-  fmt::print("{}", flags.format == "json" ? json(found) : text(found));
+  tell(flags, found.same(), text(found), json(found));
   if (flags.diff && found.worst >= 0) {
     const Comparison::Frame& worst = found.differing[std::size_t(found.worst)];
     media::write_png(*flags.diff, media::difference_picture(worst.a, worst.b));
@@ -86,7 +102,7 @@ void add_compare(CLI::App& program, int& exit) {
   command.option("--diff", flags->diff, "Write what differs, of a sequence in its worst frame")
       .type("OUT.png");
   command.option("--report", flags->report, "Write a page with both, a slider and a blink").type("OUT.html");
-  command.option("--format", flags->format, "text or json [text]").one_of({"text", "json"});
+  add_format(command, flags->format);
   command.option("--rtol", flags->rtol, "Of runs: relative tolerance, of A's value [0]").range(0.0, 1e300);
   command.option("--atol", flags->atol, "Of runs: absolute tolerance, in the quantity's unit [0]")
       .range(0.0, 1e300);

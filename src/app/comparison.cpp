@@ -8,6 +8,7 @@
 #include <set>
 
 #include "app/exit.h"
+#include "app/format.h"
 #include "app/frames.h"
 #include "app/interrupt.h"
 #include "media/error.h"
@@ -209,24 +210,19 @@ std::string text(const Comparison& comparison) {
 
 std::string json(const Comparison& comparison) {
   const Comparison& c = comparison;
-  nlohmann::ordered_json top;
+  nlohmann::ordered_json top = json_head("compare", c.same() ? kDone : kDiffers);
   top["a"] = c.a, top["b"] = c.b;
   top["same"] = c.same(), top["same_bytes"] = c.same_bytes;
   top["frames"] = c.compared;
   top["differing"] = nlohmann::ordered_json::array();
   for (const Frame& frame : c.differing) {
-    const media::Difference& d = frame.difference;
     nlohmann::ordered_json it;
     it["frame"] = frame.number, it["name"] = frame.name;
     if (frame.time) it["time"] = *frame.time;
     if (frame.sizes) {
       it["sizes"] = {frame.size_a, frame.size_b};
     } else {
-      it["pixels"] = d.pixels, it["solid"] = d.solid, it["largest"] = d.largest;
-      it["alpha_only"] = d.alpha_only;
-      it["box"] = {
-          {"x", d.left}, {"y", d.top}, {"width", d.right - d.left + 1}, {"height", d.bottom - d.top + 1}};
-      it["at"] = {d.x, d.y};
+      it.update(json_of(frame.difference));
     }
     top["differing"].push_back(std::move(it));
   }
@@ -235,15 +231,8 @@ std::string json(const Comparison& comparison) {
     top["worst"] = c.differing[std::size_t(c.worst)].number;
   }
   top["plain"] = c.plain, top["others"] = c.others;
-  if (c.cause) {
-    top["cause"] = {{"kind", name(c.cause->kind)}, {"lines", c.cause->lines}};
-    if (const auto& parting = c.cause->states)
-      top["cause"]["states"] = {{"step", parting->step},
-                                {"time", parting->time},
-                                {"body", parting->body},
-                                {"quantity", parting->quantity}};
-  }
-  return top.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (c.cause) top["cause"] = json_of(*c.cause);
+  return text_of(top);
 }
 
 }  // namespace obscura::app

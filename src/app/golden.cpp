@@ -16,12 +16,16 @@
 #include "app/commands.h"
 #include "app/conduct.h"
 #include "app/exit.h"
+#include "app/format.h"
+#include "app/github.h"
 #include "app/golden_case.h"
+#include "app/golden_output.h"
 #include "app/interrupt.h"
 #include "app/options.h"
 #include "app/trouble.h"
 #include "gl/context.h"
 #include "media/error.h"
+#include "scene/complaints.h"
 #include "scene/error.h"
 
 namespace obscura::app {
@@ -31,7 +35,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Flags {
-  std::vector<std::string> scenes, sets;
+  std::vector<std::string> scenes, sets, only;
+  Format format = Format::text;
   std::optional<std::string> junit, report;
   int workers = 0;
   GoldenOptions golden;
@@ -44,9 +49,9 @@ struct Outcome {
   double seconds = 0;
 };
 
-GoldenCase failed(const std::string& scene, int exit, const std::string& why) {
+GoldenCase failed(const std::string& scene, const std::string& file, int exit, const std::string& why) {
   GoldenCase it;
-  it.scene = scene, it.state = "failed", it.file = scene, it.exit = exit;
+  it.scene = scene, it.state = "failed", it.file = scene, it.exit = exit, it.scene_file = file;
   it.lines = {why};
   return it;
 }
@@ -103,6 +108,51 @@ void know_apart(const std::vector<std::string>& all, const GoldenOptions& option
   }
 }
 
+// of these scenes those that --only names a moment of
+std::vector<std::string> chosen(const std::vector<std::string>& all, const GoldenOptions& options) {
+  if (options.only.empty()) return all;
+  std::map<std::string, std::string> files;
+  for (const std::string& file : all) files[golden_name(file, options)] = file;
+  std::vector<std::string> names;
+  for (const GoldenChoice& each : options.only) {
+    if (!files.contains(each.scene)) {
+      std::vector<std::string_view> known;
+      for (const auto& [name, file] : files) known.push_back(name);
+      throw UsageError(fmt::format("--only {0}@{1}: there is no scene '{0}' among these{2}", each.scene,
+                                   sim::value(each.time), scene::did_you_mean(each.scene, known)));
+    }
+    names.push_back(each.scene);
+  }
+  std::vector<std::string> some;
+  for (const std::string& file : all)
+    if (std::find(names.begin(), names.end(), golden_name(file, options)) != names.end())
+      some.push_back(file);
+  return some;
+}
+
+// a word of a shell
+std::string word(const std::string& text) {
+  static constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!text.empty() && text.find_first_not_of(plain) == text.npos) return text;
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+// the command that makes what a report's reader approves the references: --only follows
+std::string update_command(const Flags& flags) {
+  std::string text = "obscura golden";
+  const auto option = [&](const char* name, const std::string& value) {
+    if (!value.empty()) text += fmt::format(" {} {}", name, word(value));
+  };
+  for (const std::string& scene : flags.scenes) text += " " + word(scene);
+  option("--root", flags.golden.root);
+  option("--references", flags.golden.references);
+  for (const std::string& set : flags.sets) option("--set", set);
+  return text + " --update";
+}
+
 Outcome check(const std::string& file, const Flags& flags) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point began = Clock::now();
@@ -111,11 +161,12 @@ Outcome check(const std::string& file, const Flags& flags) {
   try {
     outcome.cases = check_golden(scene::read(file, flags.sets), flags.golden);
   } catch (const scene::Error& error) {
-    outcome.cases = {failed(outcome.name, kScene, error.what())};
+    outcome.cases = {failed(outcome.name, file, kScene, error.what())};
+    outcome.cases[0].error = error;
   } catch (const TroubleError& error) {
-    outcome.cases = {failed(outcome.name, kDiverged, error.what())};
+    outcome.cases = {failed(outcome.name, file, kDiverged, error.what())};
   } catch (const media::Error& error) {
-    outcome.cases = {failed(outcome.name, kFiles, error.what())};
+    outcome.cases = {failed(outcome.name, file, kFiles, error.what())};
   }
   outcome.seconds = std::chrono::duration<double>(Clock::now() - began).count();
   for (GoldenCase& it : outcome.cases) it.seconds = outcome.seconds / double(outcome.cases.size());
@@ -123,29 +174,37 @@ Outcome check(const std::string& file, const Flags& flags) {
 }
 
 // a row a scene; under it what is not as it was
-void print(const Outcome& outcome) {
+std::string text(const Outcome& outcome) {
   std::map<std::string, int> states;
   for (const GoldenCase& it : outcome.cases) ++states[it.state];
-  std::string word;
+  std::string word, all;
   for (const auto& [state, count] : states)
     word += (word.empty() ? "" : ", ") + (states.size() == 1 ? state : fmt::format("{} {}", count, state));
-  fmt::print("{:<18} {:>2} {:<8} {:<22} {:6.2f} s\n", outcome.name, outcome.cases.size(),
-             outcome.cases.size() == 1 ? "moment" : "moments", word, outcome.seconds);
+  all = fmt::format("{:<18} {:>2} {:<8} {:<22} {:6.2f} s\n", outcome.name, outcome.cases.size(),
+                    outcome.cases.size() == 1 ? "moment" : "moments", word, outcome.seconds);
   // one of the two, by whether ctest may ask somebody
   const bool ctest = std::getenv("CTEST_INTERACTIVE_DEBUG_MODE") != nullptr ||
                      std::getenv("DASHBOARD_TEST_FROM_CTEST") != nullptr;
   for (const GoldenCase& it : outcome.cases) {
     for (std::size_t i = 0; i < it.lines.size(); ++i)
-      fmt::print("    {}{}\n", i == 0 && !it.time.empty() ? "t = " + it.time + " s: " : "  ", it.lines[i]);
+      all += fmt::format("    {}{}\n", i == 0 && !it.time.empty() ? "t = " + it.time + " s: " : "  ",
+                         it.lines[i]);
     if (ctest)
       for (const std::string& file : it.attachments)
-        fmt::print("<CTestMeasurementFile type=\"image/png\" name=\"{}\">{}</CTestMeasurementFile>\n",
-                   fs::path(file).stem().string(), fs::absolute(file).string());
+        all += fmt::format("<CTestMeasurementFile type=\"image/png\" name=\"{}\">{}</CTestMeasurementFile>\n",
+                           fs::path(file).stem().string(), fs::absolute(file).string());
   }
+  return all;
+}
+
+// nothing but the object itself goes to standard output where that is JSON
+void print(Format format, const std::string& text) {
+  if (format == Format::json) return;
+  fmt::print("{}", format == Format::github ? github::verbatim(text) : text);
   std::fflush(stdout);
 }
 
-void write_page(const std::string& path, const std::vector<GoldenCase>& cases) {
+void write_page(const Flags& flags, const std::vector<GoldenCase>& cases) {
   std::vector<Finding> findings;
   for (const GoldenCase& it : cases) {
     Finding finding{it.time.empty() ? it.scene : fmt::format("{}, t = {} s", it.scene, it.time),
@@ -155,17 +214,19 @@ void write_page(const std::string& path, const std::vector<GoldenCase>& cases) {
                     it.actual,
                     it.expected_by,
                     it.actual_by,
-                    ""};
+                    it.good() ? std::string() : it.choice};
     findings.push_back(std::move(finding));
   }
   // what asks for eyes comes first
   std::stable_partition(findings.begin(), findings.end(), [](const Finding& f) { return f.state != "same"; });
-  write_text(path, report({"Golden images", ""}, findings));
+  write_text(*flags.report, report({"Golden images", update_command(flags)}, findings));
 }
 
-int golden(const Flags& flags) {
-  const std::vector<std::string> all = files(flags);
-  know_apart(all, flags.golden);
+int golden(Flags& flags) {
+  for (const std::string& each : flags.only) flags.golden.only.push_back(GoldenChoice::parse(each));
+  const std::vector<std::string> named = files(flags);
+  know_apart(named, flags.golden);
+  const std::vector<std::string> all = chosen(named, flags.golden);
   const int cores = std::max(1, int(std::thread::hardware_concurrency()));
   const int workers = std::min<int>(flags.workers > 0 ? flags.workers : cores, int(all.size()));
   const auto began = std::chrono::steady_clock::now();
@@ -180,7 +241,7 @@ int golden(const Flags& flags) {
   parts.hire = [&] { return [&](std::string file) { return check(file, flags); }; };
   parts.consume = [&](Outcome outcome) {
     if (interrupted()) return false;
-    print(outcome);
+    print(flags.format, text(outcome));
     std::move(outcome.cases.begin(), outcome.cases.end(), std::back_inserter(cases));
     return true;
   };
@@ -197,10 +258,14 @@ int golden(const Flags& flags) {
   }
   std::string sum;
   for (const auto& [state, count] : states) sum += fmt::format(", {} {}", count, state);
-  fmt::print("{} scenes, {} moments{}; {:.1f} s\n", all.size(), cases.size(), sum,
-             std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+  print(flags.format,
+        fmt::format("{} scenes, {} moments{}; {:.1f} s\n", all.size(), cases.size(), sum,
+                    std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()));
+  if (flags.format == Format::json) fmt::print("{}", golden_json(cases, exit));
+  if (flags.format == Format::github) fmt::print("{}", golden_annotations(cases));
   if (flags.junit) write_text(*flags.junit, junit(cases));
-  if (flags.report) write_page(*flags.report, cases);
+  if (flags.report) write_page(flags, cases);
+  if (flags.format == Format::github) github::add_to_summary(golden_summary(cases));
   return exit;
 }
 
@@ -220,12 +285,22 @@ void add_golden(CLI::App& program, int& exit) {
       .type("DIR");
   command.flag("--update", flags->golden.update, "Take what there is now as the reference");
   command
+      .option("--only", flags->only,
+              "Only this moment of this scene, as in room@2.5; of --report, only if it is still that "
+              "picture; may "
+              "be given again")
+      .type("SCENE@SECONDS")
+      .repeated();
+  command
       .option("--actual", flags->golden.actual,
               "Where pictures of what fails go, and differences [render_out/golden]")
       .type("DIR");
   command.option("--junit", flags->junit, "Write the outcome as JUnit's XML").type("OUT.xml");
-  command.option("--report", flags->report, "Write a page with expected, actual and difference")
+  command
+      .option("--report", flags->report,
+              "Write a page with expected, actual and difference, where single pictures are approved")
       .type("OUT.html");
+  add_format(command, flags->format);
   command.flag("--other-gl-states", flags->golden.states_only_on_other_gl,
                "Where a reference was drawn by another OpenGL, compare states alone");
   command.option("-j,--jobs", flags->workers, "Scenes side by side [one a core]").range(1, 256);

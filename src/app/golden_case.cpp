@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <filesystem>
@@ -52,6 +53,7 @@ void judge(const scene::Golden& golden, const media::Png& reference, const Pictu
   const media::Difference d =
       sizes ? media::difference(reference.image, made.image, golden.level) : media::Difference{};
   it.state = "same";
+  if (!d.same()) it.difference = d;
   if (!sizes)
     it.lines.push_back(fmt::format("other sizes: {}x{} and {}x{} pixels", reference.image.width,
                                    reference.image.height, made.image.width, made.image.height));
@@ -80,8 +82,8 @@ void judge(const scene::Golden& golden, const media::Png& reference, const Pictu
   }
   it.state = "differs";
   if (origin) {
-    const Cause why = cause(origin, made.origin);
-    it.lines.insert(it.lines.end(), why.lines.begin(), why.lines.end());
+    it.cause = cause(origin, made.origin);
+    it.lines.insert(it.lines.end(), it.cause->lines.begin(), it.cause->lines.end());
   }
 }
 
@@ -123,6 +125,35 @@ void remove_evidence(const std::string& scene_file, const GoldenOptions& options
   }
 }
 
+// a short name of a picture and its state
+std::string picture_name(const Pictured& made) {
+  const media::Image& image = made.image;
+  return hash(fmt::format("{}x{} {} {}", image.width, image.height,
+                          hash(image.pixels.data(), image.pixels.size()), made.origin.state))
+      .substr(0, 16);
+}
+
+// what --only says of a moment; none where it is not among those
+const GoldenChoice* chosen(const std::string& name, sim::Rational time, const GoldenOptions& options) {
+  for (const GoldenChoice& each : options.only)
+    if (each.scene == name && sim::value(each.time) == sim::value(time)) return &each;
+  return nullptr;
+}
+
+// leaves those moments of a scene that --only names, each of which it has
+void choose(const std::string& name, const GoldenOptions& options, std::vector<sim::Rational>& at) {
+  if (options.only.empty()) return;
+  std::string known;
+  for (const sim::Rational& time : at)
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", sim::value(time));
+  std::erase_if(at, [&](const sim::Rational& time) { return !chosen(name, time, options); });
+  for (const GoldenChoice& each : options.only) {
+    const auto its = [&](const sim::Rational& time) { return sim::value(time) == sim::value(each.time); };
+    if (each.scene == name && std::none_of(at.begin(), at.end(), its))
+      throw UsageError(fmt::format("--only {}@{}: its moments are {}", name, sim::value(each.time), known));
+  }
+}
+
 fs::path stem_of(const std::string& scene_file) {
   return scene_file == "-" ? "scene" : fs::path(scene_file).stem();
 }
@@ -130,6 +161,16 @@ fs::path stem_of(const std::string& scene_file) {
 fs::path whole_path(const fs::path& folder) { return fs::weakly_canonical(folder.empty() ? "." : folder); }
 
 }  // namespace
+
+GoldenChoice GoldenChoice::parse(const std::string& text) {
+  const std::size_t at = text.rfind('@'), colon = at == text.npos ? text.npos : text.find(':', at);
+  if (at != text.npos && at > 0) {
+    const std::string seconds = text.substr(at + 1, colon == text.npos ? text.npos : colon - at - 1);
+    if (const auto time = sim::parse_rational(seconds))
+      return {text.substr(0, at), *time, colon == text.npos ? "" : text.substr(colon + 1)};
+  }
+  throw UsageError(fmt::format("--only {}: expected SCENE@SECONDS, as in room@2.5", text));
+}
 
 std::string golden_name(const std::string& scene_file, const GoldenOptions& options) {
   const fs::path stem = stem_of(scene_file);
@@ -161,15 +202,20 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
   remove_evidence(scene.file, options);
   scene::Scene small = scene;
   small.film.width = scene.golden.width, small.film.height = scene.golden.height;
-  const std::vector<Pictured> made =
-      pictures(small, Shots::stills(scene.golden.at, scene.film.fps, scene.film.speed), options.picture);
-
   const std::string references = references_of(scene.file, options), name = golden_name(scene.file, options);
+  std::vector<sim::Rational>& at = small.golden.at;
+  choose(name, options, at);
+  const std::vector<Pictured> made =
+      pictures(small, Shots::stills(at, scene.film.fps, scene.film.speed), options.picture);
+
   std::vector<GoldenCase> cases;
   for (std::size_t i = 0; i < made.size(); ++i) {
     GoldenCase it;
     it.scene = name;
-    it.time = fmt::format("{}", sim::value(scene.golden.at[i]));
+    it.scene_file = scene.file, it.line = scene.golden.line;
+    it.time = fmt::format("{}", sim::value(at[i]));
+    const std::string picture = picture_name(made[i]);
+    it.choice = fmt::format("{}@{}:{}", name, it.time, picture);
     it.file = fmt::format("{}-{}.png", references, it.time);
     it.actual = made[i].image, it.actual_by = made[i].origin.drawn_by();
     if (!fs::exists(it.file)) {
@@ -185,7 +231,11 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
       if (const auto origin = origin_in(reference.tags)) it.expected_by = origin->drawn_by();
       it.expected = std::move(reference.image);
     }
-    if (!it.good() && options.update) {
+    const GoldenChoice* choice = chosen(name, at[i], options);
+    const bool another = choice && !choice->hash.empty() && choice->hash != picture;
+    if (!it.good() && another)
+      it.lines.insert(it.lines.begin(), "it is not the picture that was approved: look at it again");
+    if (!it.good() && options.update && !another) {
       it.lines.front() = (it.state == "missing" ? "new: " + it.file : it.file + ": " + it.lines.front());
       it.state = "updated";
       write(it.file, made[i]);
@@ -195,7 +245,7 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
     }
     cases.push_back(std::move(it));
   }
-  if (!cases.empty())
+  if (!cases.empty() && options.only.empty())
     sweep(scene, fs::path(references).parent_path().string(), cases, options, cases.back().lines);
   return cases;
 }

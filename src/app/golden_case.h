@@ -3,8 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "app/cause.h"
 #include "app/pictures.h"
 #include "app/report.h"
+#include "media/pixels.h"
+#include "scene/error.h"
 #include "scene/scene.h"
 
 namespace obscura::app {
@@ -18,11 +21,27 @@ struct GoldenCase {
   std::vector<std::string> lines;        // what is to be said, the verdict first
   std::vector<std::string> attachments;  // pictures that were written of it
   std::optional<media::Image> expected, actual;
-  std::string expected_by, actual_by;  // what drew them
-  double seconds = 0;  // its share of the time that its scene took
-  int exit = 0;        // of "failed": the exit code
+  std::string expected_by, actual_by;           // what drew them
+  std::string choice;                           // what --only takes to mean this picture: "room@2.5:0f3a..."
+  std::string scene_file;                       // as it was named
+  int line = 0;                                 // of its [golden]; 0: it has none
+  std::optional<media::Difference> difference;  // where pictures of one size differ
+  std::optional<Cause> cause;
+  std::optional<scene::Error> error;  // of "failed": what is wrong with the scene
+  double seconds = 0;                 // its share of the time that its scene took
+  int exit = 0;                       // of "failed": the exit code
 
   bool good() const { return state == "same" || state == "tolerated" || state == "updated"; }
+};
+
+/// A moment that --only names, and the picture that is meant.
+struct GoldenChoice {
+  std::string scene;  // its name, of golden_name
+  sim::Rational time;
+  std::string hash;  // of the picture and its state, as in a report; empty: whatever it is
+
+  /// "room@2.5", "room@2.5:0f3a...". Throws UsageError.
+  static GoldenChoice parse(const std::string& text);
 };
 
 struct GoldenOptions {
@@ -30,12 +49,14 @@ struct GoldenOptions {
   std::string references;  // a folder; empty: golden/ beside the scene
   std::string actual = "render_out/golden";  // where pictures of what fails go
   bool update = false;
+  std::vector<GoldenChoice> only;        // moments; empty: all
   bool states_only_on_other_gl = false;  // where the reference was drawn by another OpenGL
   PictureOptions picture;
 };
 
 /// Draws the moments of a scene and compares each with its reference, states first. Writes references where
-/// that is asked for, and of what fails the picture and the difference.
+/// that is asked for, and of what fails the picture and the difference. Throws UsageError where `only` names
+/// a moment that the scene has not.
 std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOptions& options);
 
 /// What a scene is called among others: its path from the root, without its ending, as in "wheels/car".

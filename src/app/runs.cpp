@@ -8,6 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/exit.h"
+#include "app/format.h"
+
 namespace obscura::app {
 
 namespace {
@@ -206,7 +209,7 @@ std::string text(const RunComparison& c, const Tolerance& tolerance) {
 }
 
 std::string json(const RunComparison& c) {
-  nlohmann::ordered_json top;
+  nlohmann::ordered_json top = json_head("compare", c.same() ? kDone : kDiffers);
   top["a"] = c.a, top["b"] = c.b, top["same"] = c.same(), top["times"] = c.times;
   if (const auto& p = c.place)
     top["part"] = {{"time", p->time}, {"line_a", p->line_a},     {"line_b", p->line_b},
@@ -220,7 +223,7 @@ std::string json(const RunComparison& c) {
     top["quantities"].push_back(std::move(it));
   }
   top["plain"] = c.plain, top["others"] = c.others;
-  return top.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return text_of(top);
 }
 
 }  // namespace obscura::app

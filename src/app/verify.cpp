@@ -8,6 +8,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/cause.h"
 #include "app/command.h"
@@ -15,7 +16,9 @@
 #include "app/comparison.h"
 #include "app/exit.h"
 #include "app/film.h"
+#include "app/format.h"
 #include "app/frames.h"
+#include "app/github.h"
 #include "app/interrupt.h"
 #include "app/pictures.h"
 #include "app/trouble.h"
@@ -33,6 +36,7 @@ struct Flags {
   std::vector<std::string> files;
   std::optional<std::string> scene;
   bool states = false;
+  Format format = Format::text;
   FilmOptions film;
 };
 
@@ -139,8 +143,42 @@ Verdict judge(const std::string& file, const Flags& flags) {
   return verdict;
 }
 
+// what was found of each file, in the order of the line
+struct Findings {
+  struct Of {
+    std::string file, text;
+    Verdict verdict;
+  };
+  std::vector<Of> all;
+
+  std::string json(int exit) const {
+    auto top = json_head("verify", exit);
+    top["files"] = nlohmann::ordered_json::array();
+    for (const Of& each : all)
+      top["files"].push_back(
+          {{"file", each.file}, {"good", each.verdict.good}, {"lines", each.verdict.lines}});
+    return text_of(top);
+  }
+
+  // an annotation for each that is not true any more, and all in the summary
+  void tell_github() const {
+    std::string wrong;
+    std::size_t number = 0;
+    for (const Of& each : all) {
+      if (each.verdict.good) continue;
+      ++number, wrong += each.text;
+      fmt::print("{}", github::command({.file = each.file, .title = "verify", .message = each.text}));
+    }
+    github::add_to_summary(
+        number == 0 ? fmt::format("### Verified: {} still true\n\n", all.size())
+                    : fmt::format("### Verified: {} of {} no longer true\n\n", number, all.size()) +
+                          github::quoted(wrong));
+  }
+};
+
 int verify(const Flags& flags) {
   int exit = kDone;
+  Findings findings;
   for (const std::string& file : flags.files) {
     Verdict verdict;
     try {
@@ -151,10 +189,15 @@ int verify(const Flags& flags) {
       verdict.no(error.what());
     }
     if (interrupted()) return kInterrupted;
-    fmt::print("{}: {}\n", file, verdict.good ? "still true" : "no longer true");
-    for (const std::string& line : verdict.lines) fmt::print("  {}\n", line);
+    std::string text = fmt::format("{}: {}\n", file, verdict.good ? "still true" : "no longer true");
+    for (const std::string& line : verdict.lines) text += "  " + line + "\n";
+    if (flags.format != Format::json)
+      fmt::print("{}", flags.format == Format::github ? github::verbatim(text) : text);
     if (!verdict.good) exit = kDiffers;
+    findings.all.push_back({file, text, std::move(verdict)});
   }
+  if (flags.format == Format::json) fmt::print("{}", findings.json(exit));
+  if (flags.format == Format::github) findings.tell_github();
   return exit;
 }
 
@@ -168,6 +211,7 @@ void add_verify(CLI::App& program, int& exit) {
   command.option("--scene", flags->scene, "Hold it against this scene as it is now, not as it was")
       .type("SCENE");
   command.flag("--states", flags->states, "Simulate, and draw nothing");
+  add_format(command, flags->format);
   command.option("-j,--jobs", flags->film.workers, "Workers, of a movie [one a core]").range(1, 256);
   command.footer(
       "Every PNG and movie of obscura's carries its origin: the scene's text, what was set, the instant, the "

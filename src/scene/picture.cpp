@@ -196,6 +196,7 @@ Golden golden(const Node& top, sim::Rational duration, Complaints& complaints) {
   };
   Golden golden;
   golden.given = top.find("golden") != nullptr;
+  if (golden.given && fields.place().set == 0) golden.line = fields.place().line;
   if (const Node* at = fields.given("at")) {
     const Node::List one{*at};
     for (const Node& each : at->is_list() ? at->list() : one) {

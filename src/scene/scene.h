@@ -40,6 +40,7 @@ struct Golden {
   bool states = true;  // must be the same
   std::string reason;  // why anything is let pass
   bool given = false;  // the scene has a [golden]
+  int line = 0;        // of it in the file; 0: not in the file
 };
 
 /// A scene, read, checked and built: what happens, what it looks like, how it is filmed.

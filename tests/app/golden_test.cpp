@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "driven.h"
+#include "needs.h"
 #include "program.h"
 
 namespace obscura::app {
@@ -225,6 +227,75 @@ TEST_F(Golden, OnAnotherOpenGlStatesAreComparedAloneIfAskedFor) {
       obscura("render scene.toml --at 0 --size 160x90 --set ball.color=purple -o golden/scene-0.png").exit,
       0);
   EXPECT_EQ(golden("--other-gl-states").exit, 1);
+}
+
+TEST_F(Golden, OnlyTheMomentThatIsNamedIsTaken) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  std::filesystem::copy_file(path("golden/scene-0.png"), path("golden/scene-1.75.png"));
+  change("\"green\"", "\"purple\"");
+  const std::string before = contents(path("golden/scene-0.png"));
+  Outcome run = golden("--update --only scene@0.5");
+  EXPECT_EQ(run.exit, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("1 moments, 1 updated"));
+  EXPECT_EQ(contents(path("golden/scene-0.png")), before);
+  EXPECT_TRUE(std::filesystem::exists(path("golden/scene-1.75.png"))) << "what was not named is left alone";
+  run = golden();
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("1 differs, 1 same"));
+  EXPECT_EQ(golden("--only scene@1/2").exit, 0);
+}
+
+TEST_F(Golden, AMomentThatIsNotThereIsAUsageError) {
+  Outcome run = golden("--only scene@0.7");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("--only scene@0.7: its moments are 0, 0.5"));
+  run = golden("--only scone@0.5");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("did you mean 'scene'?"));
+  for (const char* wrong : {"scene", "@0.5", "scene@", "scene@x"}) {
+    run = golden(std::string("--only ") + wrong);
+    EXPECT_EQ(run.exit, 2) << wrong;
+    EXPECT_THAT(run.err, HasSubstr("expected SCENE@SECONDS, as in room@2.5")) << wrong;
+  }
+}
+
+TEST_F(Golden, WhatIsApprovedOnThePageIsWrittenAndNothingElse) {
+  OBSCURA_NEEDS(media::browser(), "chromium-headless-shell");
+  const std::string name = "it's a scene.toml", reference = path("golden/it's a scene-0.5.png");
+  const auto colored = [&](const std::string& color) {
+    std::string text = kScene;
+    scene(text.replace(text.find("green"), 5, color), name);
+  };
+  colored("green");
+  ASSERT_EQ(obscura("golden \"it's a scene.toml\" --update").exit, 0);
+  colored("purple");
+  ASSERT_EQ(obscura("golden \"it's a scene.toml\" --report report.html").exit, 1);
+  // the second of two
+  const std::string said = drive(contents(path("report.html")), R"js(
+    many(".take input")[1].click();
+    more = btoa(one(".approve code").textContent);
+  )js",
+                                 folder_.string());
+  ASSERT_EQ(said.substr(0, 5), "PASS ") << said;
+  const std::string encoded = said.substr(5, said.find(' ', 5) - 5);
+  const std::string run =
+      "obscura() { " OBSCURA_BINARY " \"$@\"; }; eval \"$(echo " + encoded + " | base64 -d)\"";
+
+  // meanwhile there is another picture: that one was not approved
+  const std::string before = contents(reference);
+  colored("orange");
+  Outcome outcome = shell(run);
+  EXPECT_EQ(outcome.exit, 1) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("it is not the picture that was approved: look at it again"));
+  EXPECT_EQ(contents(reference), before);
+
+  colored("purple");
+  outcome = shell(run);
+  EXPECT_EQ(outcome.exit, 0) << outcome.out << outcome.err;
+  EXPECT_NE(contents(reference), before);
+  outcome = obscura("golden \"it's a scene.toml\"");
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("1 differs, 1 same"));
 }
 
 TEST_F(Golden, ThePageHasEveryMomentWhatDiffersFirst) {

@@ -2,14 +2,10 @@
 
 #include "app/report.h"
 
-#include <fstream>
-
 #include <gmock/gmock.h>
 
-#include "media/browser.h"
+#include "driven.h"
 #include "needs.h"
-#include "page/markup.h"
-#include "page/sha256.h"
 #include "program.h"
 
 namespace obscura::app {
@@ -47,41 +43,11 @@ Finding same(const std::string& name, media::Image image) {
   return finding;
 }
 
-/// What every script of these tests has: check(good, what), and a verdict at its end.
-const char* const kBefore = R"js(addEventListener("load", async () => {
-  const wrong = [], say = (verdict) => console.log("OBSCURA " + verdict);
-  const check = (good, what) => { if (!good) wrong.push(what); };
-  const one = (query) => document.querySelector(query), many = (query) => [...document.querySelectorAll(query)];
-  const frame = () => new Promise((go) => setTimeout(go, 20));
-  const rect = (query) => one(query).getBoundingClientRect();
-  const orange = (image) => {
-    const canvas = document.createElement("canvas");
-    canvas.width = image.naturalWidth, canvas.height = image.naturalHeight;
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const data = context.getImageData(0, 0, canvas.width, canvas.height).data;
-    for (let i = 0; i < data.length; i += 4) if (data[i] === 213 && data[i + 1] === 94 && data[i + 2] === 0) return true;
-    return false;
-  };
-  try {
-)js";
-const char* const kAfter = R"js(
-  } catch (error) { wrong.push(error.stack); }
-  say(wrong.length ? "FAIL " + wrong.join("; ") : "PASS");
-});)js";
-
 class Report : public Program {
  protected:
   // what a browser finds of `checks` on the page
   std::string verdict(const ReportTitle& title, const std::vector<Finding>& findings, const char* checks) {
-    const auto program = media::browser();
-    const std::string script = std::string(kBefore) + checks + kAfter;
-    std::string page = report(title, findings);
-    const std::size_t policy = page.find("script-src ") + 11, end = page.rfind("</body>");
-    page.insert(end, "<script>" + script + "</script>");
-    page.insert(policy, "'sha256-" + page::base64(page::sha256(script)) + "' ");
-    std::ofstream(path("page.html")) << page;
-    return media::verdict(*program, folder_.string());
+    return drive(report(title, findings), checks, folder_.string());
   }
   const bool there_ = media::browser().has_value();
 };
@@ -207,6 +173,33 @@ TEST_F(Report, FiltersSlidesAndBlinks) {
     dispatchEvent(new KeyboardEvent("keydown", { key: "k" }));
     check(differs.classList.contains("at"), "k does not go back");
     check(!document.documentElement.innerHTML.match(/(src|href)="(?!data:|#)/), "the page needs another file");
+  )js"),
+              StartsWith("PASS"));
+}
+
+TEST_F(Report, WhatIsApprovedBecomesACommandThatAShellReads) {
+  OBSCURA_NEEDS(there_, "chromium-headless-shell");
+  const media::Image image = flat(40, 30);
+  std::vector<Finding> findings;
+  for (const char* choice : {"room@2.5:0f", "it's a room; rm x@1:2a", ""}) {
+    findings.push_back(pair("a", image, with_pixel(image, 3, 3, 0)));
+    findings.back().choice = choice;
+  }
+  EXPECT_THAT(verdict({"T", "obscura golden 'my scenes' --update"}, findings, R"js(
+    const bar = one(".approve"), code = one(".approve code");
+    check(many(".take").length === 2, "what cannot be approved can");
+    check(bar.hidden, "a command without a choice");
+    one(".take input").click();
+    check(!bar.hidden && code.textContent === "obscura golden 'my scenes' --update --only room@2.5:0f", code.textContent);
+    many(".take input")[1].click();
+    check(code.textContent.endsWith(" --only room@2.5:0f --only 'it'\\''s a room; rm x@1:2a'"), code.textContent);
+    check(one(".approve output").textContent === "2 of 2", one(".approve output").textContent);
+    one(".none").click();
+    check(bar.hidden, "none is still some");
+    dispatchEvent(new KeyboardEvent("keydown", { key: "a" }));
+    check(one(".take input").checked && !bar.hidden, "a key does not approve");
+    one(".every").click();
+    check(many(".take input").every((each) => each.checked), "not all shown are approved");
   )js"),
               StartsWith("PASS"));
 }
