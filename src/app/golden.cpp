@@ -149,7 +149,6 @@ std::string update_command(const Flags& flags) {
   for (const std::string& scene : flags.scenes) text += " " + word(scene);
   option("--root", flags.golden.root);
   option("--references", flags.golden.references);
-  for (const std::string& set : flags.sets) option("--set", set);
   return text + " --update";
 }
 
@@ -205,6 +204,8 @@ void print(Format format, const std::string& text) {
 }
 
 void write_page(const Flags& flags, const std::vector<GoldenCase>& cases) {
+  // what --set changed is no reference of the scene as it is written
+  const auto approvable = [&](const GoldenCase& it) { return !it.good() && flags.sets.empty(); };
   std::vector<Finding> findings;
   for (const GoldenCase& it : cases) {
     Finding finding{it.time.empty() ? it.scene : fmt::format("{}, t = {} s", it.scene, it.time),
@@ -214,7 +215,7 @@ void write_page(const Flags& flags, const std::vector<GoldenCase>& cases) {
                     it.actual,
                     it.expected_by,
                     it.actual_by,
-                    it.good() ? std::string() : it.choice};
+                    approvable(it) ? it.choice : std::string()};
     findings.push_back(std::move(finding));
   }
   // what asks for eyes comes first

@@ -298,6 +298,14 @@ TEST_F(Golden, WhatIsApprovedOnThePageIsWrittenAndNothingElse) {
   EXPECT_THAT(outcome.out, HasSubstr("1 differs, 1 same"));
 }
 
+TEST_F(Golden, WhatSetChangedIsNotApprovedOnThePage) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  ASSERT_EQ(golden("--set ball.color=purple --report report.html").exit, 1);
+  const std::string page = contents(path("report.html"));
+  EXPECT_THAT(page, HasSubstr("data-state=\"differs\""));
+  EXPECT_THAT(page, Not(HasSubstr("type=\"checkbox\"")));
+}
+
 TEST_F(Golden, ThePageHasEveryMomentWhatDiffersFirst) {
   ASSERT_EQ(golden("--update").exit, 0);
   // later, when the second moment shows it, the ball is elsewhere

@@ -78,13 +78,16 @@ TEST_F(Pytest, ShowsTheCauseAndThePicture) {
 
 TEST_F(Pytest, TakesItsSettingsFromTheProject) {
   OBSCURA_NEEDS(python_, "python3-pytest");
-  scene("[pytest]\nobscura_references = references\nobscura_arguments = --set ball.color=purple\n",
+  scene("[pytest]\nobscura_references = references\nobscura_arguments = --actual 'what fails'\n",
         "pytest.ini");
   EXPECT_EQ(pytest("--obscura-update").exit, 0);
   EXPECT_TRUE(std::filesystem::exists(path("references/scenes/ball-0.5.png")));
   EXPECT_EQ(pytest().exit, 0);
-  scene("[pytest]\nobscura_references = references\n", "pytest.ini");
-  EXPECT_EQ(pytest().exit, 1);
+  ball("purple");
+  const Outcome run = pytest();
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("expected    " + path("references/scenes/ball-0.5.png")));
+  EXPECT_TRUE(std::filesystem::exists(path("what fails/scenes/ball-0.5.png")));
 }
 
 TEST_F(Pytest, SaysWhatIsWrongWithASceneAndWithTheProgram) {
@@ -135,7 +138,7 @@ TEST_F(Action, InputsAreWordsAndNotCommands) {
   std::filesystem::rename(path("scenes"), path("my $(touch hacked) scenes"));
   const std::string environment =
       "OBSCURA_SCENES='  my $(touch hacked) scenes  \n\n' OBSCURA_REFERENCES='r $(touch hacked)' "
-      "OBSCURA_ARGUMENTS='--update\n --set ball.color=purple'";
+      "OBSCURA_ARGUMENTS='--update\n --jobs 1'";
   Outcome run = action(environment);
   EXPECT_EQ(run.exit, 0) << run.out << run.err;
   EXPECT_FALSE(std::filesystem::exists(path("hacked")));
