@@ -356,7 +356,16 @@ const char* const kNotes[][2] = {
     {"physics",
      "In the plane, balls, polygons and bodies of several shapes need `collision = \"contact\"` or "
      "`\"event\"`; in space `handout` has bodies of every form, which meet walls alone. Joints, friction and "
-     "bodies that meet other bodies need `contact` or `event` in both."},
+     "bodies that meet other bodies need `contact` or `event` in both.\n\n"
+     "In `contact` and `event` a body comes to rest, to the bit, where contacts and joints hold it; what "
+     "they "
+     "leave free goes on: a puck on ice, a ball that rolls, a pendulum. With g for gravity and L for the "
+     "room's height, a body rests once it and all that it touches have been slower than 0.002 s g for a "
+     "quarter of a second, forces within the laws leave it less than g / 1,000,000 of acceleration, and less "
+     "than 1e-8 sqrt(g L) of its velocity is motion that those contacts and joints leave free, or that "
+     "friction, beside what it bears, would not stop within 0.01 s. The direct solver asks for less: no "
+     "velocity above 1e-8 sqrt(g L), no acceleration above 1e-10 g. All of it scales with the scene; without "
+     "gravity only what does not move at all rests."},
     {"mouse",
      "The reference pixel is 1/480 of the room's height, so that a larger picture shows the same motion."},
     {"camera",

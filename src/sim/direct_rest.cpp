@@ -1,20 +1,20 @@
-// Rest. What has been still for a while, with all that it touches, and would not accelerate if it stood still
-// altogether, is frozen: its velocity becomes zero exactly and steps leave it alone, until something awake
-// touches it or pulls at it. Stillness alone proves nothing: a block that has just begun to slide is slow
-// too.
+// Rest, by the rule of sim/rest.h. What has been still for a while, with all that it touches, and would not
+// accelerate if it stood still altogether, is frozen: its velocity becomes zero exactly and steps leave it
+// alone, until something awake touches it or pulls at it. Stillness alone proves nothing: a block that has
+// just begun to slide is slow too. Here velocities are exact, so that only what has none to speak of is
+// asked, and nothing is left that contacts would have to hold.
 
 #include <algorithm>
 #include <cmath>
 
 #include "sim/direct.h"
+#include "sim/rest.h"
 
 namespace obscura::sim {
 
 namespace {
 
-constexpr double kQuiet = 0.25;    // s of stillness before rest is looked for
 constexpr double kStatic = 1e-10;  // of g: what rest may accelerate by
-constexpr double kStill = 1e-8;    // of sqrt(g L): faster is not still
 
 }  // namespace
 
@@ -65,15 +65,15 @@ bool Direct<D>::wake(State<D>& state) {
 // freezes what rests, at time t after a step of h
 template <int D>
 void Direct<D>::rest(State<D>& state, double t, double h) {
-  const double g = pace_ * pace_ / model_.scale;
+  const double g = std::sqrt(model_.gravity.squaredNorm()), none = slow(model_).none;
   const int n = int(model_.bodies.size());
   bool ripe = false;
   for (int i = 0; i < n; ++i) {
     if (light_[i] == 0) continue;
     double fast = std::sqrt(state.v[i].squaredNorm());
     if (const int k = turning(state, i); k >= 0) fast += rims_[i] * std::sqrt(state.spin[k].squaredNorm());
-    state.quiet[i] = fast <= kStill * pace_ ? state.quiet[i] + h : 0;
-    ripe = ripe || state.quiet[i] >= kQuiet;
+    state.quiet[i] = fast <= none ? state.quiet[i] + h : 0;
+    ripe = ripe || state.quiet[i] >= kWait;
   }
   if (!ripe) return;
 
@@ -81,7 +81,7 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
   join(state);
   ripe_.assign(n, 1);
   for (int i = 0; i < n; ++i) {
-    if (light_[i] > 0 && state.quiet[i] < kQuiet) ripe_[islands_.root(i)] = 0;
+    if (light_[i] > 0 && state.quiet[i] < kWait) ripe_[islands_.root(i)] = 0;
   }
   for (const Grip<D>& grip : state.grips) {
     if (grip.body >= 0) ripe_[islands_.root(grip.body)] = 0;
@@ -133,7 +133,7 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
     }
     state.v[body] = begun_.v[body];
     if (const int k = turning(state, body); k >= 0) state.spin[k] = begun_.spin[k];
-    if (state.quiet[body] >= kQuiet) state.quiet[body] = 0;
+    if (state.quiet[body] >= kWait) state.quiet[body] = 0;
   };
   for (const int body : members) decide(body);
   for (const int body : links) decide(body);

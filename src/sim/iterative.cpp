@@ -52,6 +52,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
   span_ = double(every_) * h;
   stretches_ = std::max(1, int(std::ceil(kStretches * h - 1e-9)));
   rest_speed_ = 2 * h / stretches_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
+  asked_ = slow(model).asked;
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
   v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
   closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);

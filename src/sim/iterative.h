@@ -73,6 +73,7 @@ class Iterative final : public ContactStep<D> {
   int stretches_ = 1;       // of a step
   bool outran_ = false;     // someone came farther than pairs foresaw
   double rest_speed_ = 0;   // m/s: slower approaches do not bounce
+  double asked_ = 0;        // m/s: who is slower may rest (sim/rest.h)
   bool drag_ = false;
 
   // of bodies; one more that never moves, for walls

@@ -22,7 +22,7 @@ void Iterative<D>::advance(State<D>& state, double h, bool look) {
   for (const int i : slow_)
     closing_[seats_[i / kLanes].a[i % kLanes]] = closing_[seats_[i / kLanes].b[i % kLanes]] = 1;
 
-  const double quiet_speed = 0.02;
+  const double asked2 = asked_ * asked_;
   for (int i = 0; i < n; ++i) {
     if (v_[i].im == 0) continue;
     const Motion &v = v_[i], &o = old_[i];
@@ -40,7 +40,7 @@ void Iterative<D>::advance(State<D>& state, double h, bool look) {
       state.spin[i - still][0] = v.w;
       state.turn[i - still][0] = turns_[i] += d.w;
     }
-    const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (reach * reach) < quiet_speed * quiet_speed;
+    const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (reach * reach) <= asked2;
     state.quiet[i] = quiet ? state.quiet[i] + h : 0;
   }
   sweep::turn_all(turns_.data() + still, poses_.data() + still, n - still);

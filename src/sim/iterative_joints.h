@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -81,6 +84,21 @@ class Linkage {
   /// After a step: places back onto the joints, velocities along them where bodies now stand.
   void finish(double h);
 
+  /// act(row, how much faster it could make it within the step, beside what it bears) for each row of a part
+  /// that bears something: without end of what joints keep and of limits and ropes that are pulled at.
+  template <class Act>
+  void each_bearing(int part, Act&& act) const {
+    each_row(part, [&](int, int r) { act(rows_[r], kWithoutEnd); });
+    for (int i = part_first_[part + 1]; i < part_first_[part + 2]; ++i) {
+      const Bounded& b = bounded_[by_part_[i]];
+      if (b.load == lower || b.load == upper) {
+        if (b.impulse > 0) act(b.row, kWithoutEnd);
+      } else {
+        act(b.row, std::max(0.0, b.most - std::fabs(b.impulse)) / b.give);
+      }
+    }
+  }
+
   /// Forces of the step into the state; only of joints of the bodies marked in `of`, where that is given.
   void keep(State<D>& state, double h, const std::vector<char>* of = nullptr) const;
 
@@ -88,6 +106,8 @@ class Linkage {
   bool break_joints(State<D>& state) const;
 
  private:
+  static constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
+
   // what keeps within bounds
   enum Load { lower, upper, motor, friction };  // a rope is an upper
   struct Bounded : Echo {

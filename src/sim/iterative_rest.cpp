@@ -12,7 +12,6 @@ namespace obscura::sim::sweep {
 
 namespace {
 
-constexpr double kWait = 0.25;      // s
 constexpr double kHeld = 1e-6;      // of gravity
 constexpr int kPairSweeps = 40000;  // pairs times sweeps of an island at a time
 constexpr int kMostSweeps = 400;
@@ -22,7 +21,11 @@ constexpr double kClosed = 1e-6;  // of its thickness: no wider a gap bears
 }  // namespace
 
 Rest::Rest(const Model<2>& model, const Cores& cores)
-    : model_(model), cores_(cores), statics_(model), turns_(model.bodies.size(), Rotation<2>::Identity()) {
+    : model_(model),
+      cores_(cores),
+      statics_(model),
+      mobility_(model),
+      turns_(model.bodies.size(), Rotation<2>::Identity()) {
   const std::size_t n = model.bodies.size();
   restless_.resize(n), marked_.assign(n, 0), v_.resize(n + 1), zero_.resize(n + 1);
 }
@@ -84,6 +87,31 @@ bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
     }
   }
   return true;
+}
+
+// whether what bears an island leaves its motion `v` any freedom
+Mobile Rest::mobile(const State<2>& state, const Pairs& pairs, const Linkage<2>& linkage,
+                    std::span<const int> of, std::span<const std::pair<int, int>> members,
+                    const std::vector<Motion>& v, double h) {
+  mobility_.clear();
+  for (const auto& member : members) {
+    const int i = member.second;
+    mobility_.add(i, {v[i].x, v[i].y}, Spin<2>(v[i].w), Rotation<2>::Identity());
+  }
+  for (const int i : of) {
+    const Pair& pair = pairs.all()[i];
+    for (int k = pair.first; k < pair.first + pair.touches; ++k) {
+      const Contact<2>& contact = state.contacts[k];
+      Statics<2>::Touch touch{.a = pair.a, .b = pair.b, .normal = contact.normal};
+      touch.arm_a = contact.point - state.x[pair.a], touch.friction = pair.friction;
+      if (pair.b >= 0) touch.arm_b = contact.point - state.x[pair.b];
+      touch.force = contact.force;
+      mobility_.hold(touch);
+    }
+  }
+  for (const int part : parts_)
+    linkage.each_bearing(part, [&](const Row<2>& row, double gain) { mobility_.hold(row, gain / h); });
+  return mobility_.mobile();
 }
 
 bool Rest::begin(State<2>& state, const Pairs& pairs, const std::vector<Pose>& poses,
@@ -281,8 +309,12 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats
       while (2 * due <= quiet) due *= 2;
       if (quiet - span < due) held = this->held(state, found, {order_.data() + begin, end - begin}, poses);
     }
-    for (std::size_t k = first; held && k < last; ++k) {
+    if (!held) continue;
+    const Mobile moves = mobile(state, found, linkage, {order_.data() + begin, end - begin},
+                                {members_.data() + first, last - first}, v, h);
+    for (std::size_t k = first; k < last; ++k) {
       const int body = members_[k].second;
+      if (moves != Mobile::no) continue;
       if (!state.frozen[body]) freeze(state, body), froze = true;
     }
   }
@@ -303,18 +335,20 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
     if (model_.bodies[pair.a].fixed || model_.bodies[pair.b].fixed) continue;
     const int sleeper = state.frozen[pair.a] ? pair.a : pair.b, other = pair.a + pair.b - sleeper;
     const Motion& m = v[other];
-    const double comes =
-        span * (std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[other]) + falls;
-    double gap = 1e300;
+    const double fast = std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[other];
+    double gap = 1e300, nears = 0;
     bool bears = false;
     for (int k = 0; k < pair.touches; ++k) {
       const Contact<2>& contact = state.contacts[pair.first + k];
       gap = std::min(gap, contact.gap), bears = bears || joins(contact, pair);
+      const Vec<2> arm = contact.point - state.x[other];
+      const double along = contact.normal.dot(Vec<2>(m.x - m.w * arm[1], m.y + m.w * arm[0]));
+      nears = std::max(nears, other == pair.a ? -along : along);
     }
-    // who has been still between two looks does not fall; two that lie beside each other would wake each
-    // other in turns
-    if (!bears && state.quiet[other] > span) continue;
-    if (gap < comes) restless_[sleeper] = 1, any = true;
+    // who has been slow between two looks does not fall; two that lie beside each other would wake each
+    // other in turns. It may come nearer all the same
+    const bool slow = !bears && state.quiet[other] > span;
+    if (gap < (slow ? span * nears : span * fast + falls)) restless_[sleeper] = 1, any = true;
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const int a = model_.joints[i].a.body, b = model_.joints[i].b.body;

@@ -7,13 +7,13 @@
 #include "sim/iterative_joints.h"
 #include "sim/iterative_pairs.h"
 #include "sim/iterative_rows.h"
+#include "sim/rest.h"
 #include "sim/state.h"
 #include "sim/statics.h"
 
 namespace obscura::sim::sweep {
 
-/// Who may rest. Bodies that touch are an island. One that has been quiet for a while freezes if forces are
-/// found that hold it still: static equilibrium is the certificate, no speed is.
+/// Who may rest, by the rule of sim/rest.h. Bodies that touch are an island.
 class Rest {
  public:
   Rest(const Model<2>& model, const Cores& cores);
@@ -40,12 +40,15 @@ class Rest {
   bool held(State<2>& state, const Pairs& pairs, std::span<const int> of, const std::vector<Pose>& poses);
   void freeze(State<2>& state, int body) const;
   bool joins(const Contact<2>& touch, const Pair& pair) const;
+  Mobile mobile(const State<2>& state, const Pairs& pairs, const Linkage<2>& linkage, std::span<const int> of,
+                std::span<const std::pair<int, int>> members, const std::vector<Motion>& v, double h);
   template <class Alike>
   void unite_joined(const State<2>& state, Alike&& alike);
 
   const Model<2>& model_;
   const Cores& cores_;
   Statics<2> statics_;
+  Mobility<2> mobility_;
   std::vector<Rotation<2>> turns_;  // one moment of inertia is the same in all
   std::vector<Statics<2>::Touch> touches_;
   std::vector<int> bearing_;  // their contacts

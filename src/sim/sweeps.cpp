@@ -29,7 +29,6 @@ constexpr double kSpare = 0.02;      // of their reach: what two may come nearer
 constexpr double kAllowed = 1e-6;    // of a body's reach: how deep is not too deep
 constexpr double kHung = 1e-4;       // the same on joints, which pushes strain
 constexpr double kPart = 0.1;        // of what is too deep, in a step
-constexpr double kQuiet = 0.02;      // m/s
 constexpr int kTempering = 5;        // rounds
 constexpr double kGain = 1e-9;       // of its kinetic energy: what an island may win by rounding
 
@@ -42,11 +41,13 @@ Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
       tied_(model, paths),
       linkage_(model),
       statics_(model),
+      mobility_(model),
       account_(model) {
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
   g_ = std::sqrt(model.gravity.squaredNorm());
   rest_speed_ = 2 * h * g_ + 1e-9 * model.scale;
+  asked_ = slow(model).asked;
   for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
 }
 
@@ -385,7 +386,7 @@ void Sweeps<D>::arrive(State<D>& state, double h) {
       moving_[i].w = state.spin[k];
       fast += rims_[i] * rims_[i] * state.spin[k].squaredNorm();
     }
-    state.quiet[i] = fast < kQuiet * kQuiet ? state.quiet[i] + h : 0;
+    state.quiet[i] = fast <= asked_ * asked_ ? state.quiet[i] + h : 0;
   }
 }
 

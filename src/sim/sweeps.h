@@ -9,6 +9,7 @@
 #include "sim/islands.h"
 #include "sim/iterative_joints.h"
 #include "sim/pairs.h"
+#include "sim/rest.h"
 #include "sim/statics.h"
 #include "sim/tied.h"
 
@@ -79,6 +80,7 @@ class Sweeps final : public ContactStep<D> {
   void report(State<D>& state, double h) const;
   void join(const State<D>& state);
   bool held(int island, double h, int most);
+  Mobile mobile(int island, double h);
   bool begin_still(State<D>& state, double h);
   bool rest(State<D>& state, double h);
   double swiftness(int body) const;
@@ -89,6 +91,7 @@ class Sweeps final : public ContactStep<D> {
   Tied<D> tied_;
   Linkage<D> linkage_;
   Statics<D> statics_;
+  Mobility<D> mobility_;
   std::vector<typename Statics<D>::Touch> exact_;
   std::vector<int> bearing_;
   std::vector<Rotation<D>> rotations_;
@@ -96,6 +99,7 @@ class Sweeps final : public ContactStep<D> {
   Stages stages_;
   std::int64_t every_ = 1;  // steps between two looks for rest
   double g_ = 0, rest_speed_ = 0;
+  double asked_ = 0;  // m/s: who is slower may rest
   std::vector<double> rims_;
 
   std::vector<Stance<D>> stances_;
@@ -114,6 +118,7 @@ class Sweeps final : public ContactStep<D> {
   std::vector<Moving> kept_;
   std::vector<double> before_, gained_, returned_;  // of each island's blows, J
   std::vector<double> left_;                        // of each island's fastest point, m/s
+  std::vector<Mobile> moves_;                       // of each island that is in balance
 };
 
 }  // namespace obscura::sim

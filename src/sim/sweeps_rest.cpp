@@ -14,7 +14,6 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kDeepest = 2e-3;  // of a body's reach: deeper nothing rests
-constexpr double kWait = 0.25;     // s
 constexpr double kHeld = 1e-6;     // of gravity
 constexpr int kRestSweeps = 400;   // of an island at a time
 constexpr int kFew = 32;           // touches of one that is solved exactly where these are too few
@@ -121,6 +120,32 @@ bool Sweeps<D>::held(int island, double h, int most) {
   return true;
 }
 
+// whether what bears an island leaves its motion any freedom: that is in kept_, while the trial of rest has
+// moving_
+template <int D>
+Mobile Sweeps<D>::mobile(int island, double h) {
+  const int n = int(model_.bodies.size());
+  mobility_.clear();
+  const auto member = [&](int body) { return body < n && !still_[body] && islands_.root(body) == island; };
+  for (int i = 0; i < n; ++i) {
+    if (member(i)) mobility_.add(i, kept_[i].v, kept_[i].w, stances_[i].room_from_body);
+  }
+  for (const int i : some_) {
+    const Touch& touch = touches_[i];
+    if (!member(touch.a) && !member(touch.b)) continue;
+    mobility_.hold({.a = touch.a,
+                    .b = touch.b < n ? touch.b : -1,
+                    .normal = touch.n,
+                    .arm_a = touch.arm_a,
+                    .arm_b = touch.arm_b,
+                    .friction = touch.mu,
+                    .force = (touch.pressed * touch.n + touch.rubbed) / h});
+  }
+  for (const int part : parts_)
+    linkage_.each_bearing(part, [&](const Row<D>& row, double gain) { mobility_.hold(row, gain / h); });
+  return mobility_.mobile();
+}
+
 // freezes what begins without speed and in equilibrium, small islands without springs, hands and joints
 template <int D>
 bool Sweeps<D>::begin_still(State<D>& state, double h) {
@@ -158,7 +183,7 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   bool ripe = false;
   for (int i = 0; i < n; ++i) ripe = ripe || (!still_[i] && state.quiet[i] >= kWait);
-  if (!ripe) return false;
+  if (!ripe || blasting(state)) return false;
   join(state);
   ripe_.assign(n, 1);
   for (int i = 0; i < n; ++i) {
@@ -244,9 +269,15 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
     while (2 * due <= quiet) due *= 2;
     if (quiet - double(every_) * h < due && held(root, h, kFew)) left_[root] = 0;
   }
+  moves_.assign(n, Mobile::unknown);
+  for (int root = 0; root < n; ++root) {
+    if (resting(root) && islands_.root(root) == root && left_[root] <= kHeld * g_ * h)
+      moves_[root] = mobile(root, h);
+  }
   bool froze = false;
   for (int i = 0; i < n; ++i) {
-    if (!resting(i) || left_[islands_.root(i)] > kHeld * g_ * h) continue;
+    if (!resting(i)) continue;
+    if (moves_[islands_.root(i)] != Mobile::no) continue;
     state.frozen[i] = 1, froze = true;
     state.v[i].setZero();
     if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();

@@ -1,0 +1,370 @@
+// What moves and is not held goes on moving, however slowly; what is held comes to rest.
+
+#include "sim/rest.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "sim/space_rooms.h"
+#include "sim/touching.h"
+
+namespace obscura::sim {
+namespace {
+
+constexpr double kG = 9.81;
+
+// a vector of the plane, in space with what it is along z
+template <int D>
+Vec<D> at(double x, double y, double z = 0) {
+  Vec<D> it = Vec<D>::Zero();
+  it[0] = x, it[1] = y;
+  if constexpr (D == 3) it[2] = z;
+  return it;
+}
+
+// a spin about z
+template <int D>
+Spin<D> about_z(double w) {
+  return Spin<D>::Unit(kSpins<D> - 1) * w;
+}
+
+// a room of 4 m; its floor, if there is gravity
+template <int D>
+World<D> quiet_room(Solver solver, double g, int rate = 600) {
+  World<D> world;
+  world.model.gravity = at<D>(0, -g);
+  world.model.rate = {rate, 1};
+  world.model.collision = Collision::contact, world.model.solver = solver;
+  world.model.scale = 4;
+  if (g > 0) world.model.walls.push_back({at<D>(0, 0), at<D>(0, 1), {}, {}});
+  return world;
+}
+
+template <int D>
+int add(World<D>& world, const Shape<D>& shape, Vec<D> x, Vec<D> v, double mu, double e = 0,
+        Spin<D> w = Spin<D>::Zero()) {
+  Body<D> body;
+  body.name = "body[" + std::to_string(world.model.bodies.size()) + "]";
+  body.shape = shape, body.mass = 1, body.friction = mu, body.elasticity = e;
+  body.inertia = solid_inertia(shape, 1);
+  world.model.bodies.push_back(body);
+  world.state.x.push_back(x), world.state.v.push_back(v);
+  world.state.turn.push_back(upright<D>()), world.state.spin.push_back(w);
+  return int(world.model.bodies.size()) - 1;
+}
+
+template <int D>
+Shape<D> round_shape(double radius) {
+  return ball_shape<D>(radius);
+}
+
+template <int D>
+Shape<D> block(double width, double height) {
+  Shape<D> shape;
+  shape.kind = ShapeKind::box;
+  shape.half = at<D>(width / 2, height / 2, width / 2);
+  return shape;
+}
+
+// act(dimension, solver) for both of both
+template <class Act>
+void each(Act&& act) {
+  for (const Solver solver : {Solver::direct, Solver::iterative}) {
+    const std::string by = solver == Solver::direct ? "direct" : "iterative";
+    {
+      SCOPED_TRACE("plane, " + by);
+      act(std::integral_constant<int, 2>(), solver);
+    }
+    {
+      SCOPED_TRACE("space, " + by);
+      act(std::integral_constant<int, 3>(), solver);
+    }
+  }
+}
+
+struct Crowd {
+  int rate, count;
+  double speed, seconds;
+};
+
+TEST(Rest, WhatFliesWithoutGravityFliesOn) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    for (const Crowd& it : {Crowd{60, 1, 0.015, 100}, Crowd{60, 1, 1e-9, 10}, Crowd{60, 7, 0.015, 10},
+                            Crowd{60, 20, 1e-4, 3}, Crowd{60, 100, 0.015, 1}, Crowd{60, 1000, 0.015, 1},
+                            Crowd{600, 7, 0.015, 2}, Crowd{6000, 1, 1e-6, 1}, Crowd{6000, 7, 0.015, 0.5}}) {
+      if (solver == Solver::direct && it.count > 100) continue;
+      World<D> world = quiet_room<D>(solver, 0, it.rate);
+      for (int i = 0; i < it.count; ++i) {
+        const double way = 0.7 * i;
+        add<D>(world, round_shape<D>(0.1), at<D>(0.5 * (i % 32), 0.5 * (i / 32)),
+               it.speed * at<D>(std::cos(way), std::sin(way), 0.1), 0.5, 0.8);
+      }
+      // what comes nearer to its neighbour than they are apart would touch it
+      ASSERT_LT(2 * it.speed * it.seconds, it.count > 1 ? 0.305 : 1e300);
+      const State<D> now = stepped(world, int(it.rate * it.seconds));
+      for (int i = 0; i < it.count; ++i) {
+        const Vec<D> v = world.state.v[i], x = world.state.x[i] + it.seconds * v;
+        EXPECT_EQ(now.v[i], v) << i << " of " << it.count;
+        EXPECT_LE((now.x[i] - x).norm(), 1e-12 * (1 + x.norm())) << i << " of " << it.count;
+        EXPECT_FALSE(now.frozen[i]) << i << " of " << it.count;
+      }
+    }
+  });
+}
+
+TEST(Rest, WhatTouchesAndFliesAlongWithoutGravityFliesOn) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    World<D> world = quiet_room<D>(solver, 0);
+    for (int i = 0; i < 7; ++i) add<D>(world, block<D>(0.2, 0.2), at<D>(0.2 * i, 0), at<D>(0.005, 0.01), 0.5);
+    const State<D> now = stepped(world, 1200);
+    for (int i = 0; i < 7; ++i) {
+      EXPECT_LE((now.v[i] - world.state.v[i]).norm(), 1e-12) << i;
+      EXPECT_LE((now.x[i] - world.state.x[i] - 2 * world.state.v[i]).norm(), 1e-9) << i;
+    }
+  });
+}
+
+TEST(Rest, PucksSlideOnWithoutFriction) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    for (const Crowd& it :
+         {Crowd{60, 1, 0.015, 60}, Crowd{60, 1, 1e-6, 20}, Crowd{60, 20, 0.01, 5}, Crowd{60, 1000, 0.01, 0.5},
+          Crowd{600, 7, 0.003, 1}, Crowd{6000, 1, 0.015, 0.4}}) {
+      if (solver == Solver::direct && it.count > 20) continue;
+      World<D> world = quiet_room<D>(solver, kG, it.rate);
+      for (int i = 0; i < it.count; ++i)
+        add<D>(world, block<D>(0.2, 0.1), at<D>(0.5 * i, 0.05), at<D>(it.speed, 0, 0.3 * it.speed), 0);
+      const State<D> now = stepped(world, int(it.rate * it.seconds));
+      for (int i = 0; i < it.count; ++i) {
+        const Vec<D> x = world.state.x[i] + it.seconds * world.state.v[i];
+        EXPECT_LE((now.v[i] - world.state.v[i]).norm(), 1e-9 * it.speed) << i << " of " << it.count;
+        EXPECT_LE((now.x[i] - x).norm(), 1e-9) << i << " of " << it.count;
+      }
+    }
+  });
+}
+
+TEST(Rest, WhatRollsRollsOn) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    for (const Crowd& it : {Crowd{60, 1, 0.01, 120}, Crowd{60, 1, 1e-6, 20}, Crowd{60, 20, 0.01, 5},
+                            Crowd{60, 1000, 0.01, 0.5}, Crowd{600, 7, 0.015, 1}, Crowd{6000, 1, 0.01, 0.4}}) {
+      if (solver == Solver::direct && it.count > 20) continue;
+      World<D> world = quiet_room<D>(solver, kG, it.rate);
+      for (int i = 0; i < it.count; ++i)
+        add<D>(world, round_shape<D>(0.1), at<D>(0.5 * i, 0.1), at<D>(it.speed, 0), 0.5, 0,
+               about_z<D>(-it.speed / 0.1));
+      const State<D> now = stepped(world, int(it.rate * it.seconds));
+      for (int i = 0; i < it.count; ++i) {
+        EXPECT_NEAR(now.v[i][0], it.speed, 1e-9 * it.speed) << i << " of " << it.count;
+        EXPECT_NEAR(now.x[i][0], world.state.x[i][0] + it.speed * it.seconds, 1e-9)
+            << i << " of " << it.count;
+      }
+    }
+  });
+}
+
+// nothing brakes a turn about the one point it stands on
+TEST(Rest, ABallThatTurnsAboutTheUprightTurnsOn) {
+  for (const Solver solver : {Solver::direct, Solver::iterative}) {
+    World<3> world = quiet_room<3>(solver, kG);
+    add<3>(world, round_shape<3>(0.1), {0, 0.1, 0}, {0, 0, 0}, 0.5, 0, {0, 0.1, 0});
+    const State<3> now = stepped(world, 3000);
+    EXPECT_NEAR(now.spin[0][1], 0.1, 1e-12);
+  }
+}
+
+TEST(Rest, APendulumSwingsOn) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    for (const double wide : {1e-3, 1e-5}) {
+      World<D> world = quiet_room<D>(solver, kG);
+      add<D>(world, round_shape<D>(0.1), at<D>(wide, 2), at<D>(0, 0), 0.5);
+      Joint<D> rod;
+      rod.kind = JointKind::rod, rod.length = std::hypot(1, wide);
+      rod.a = {0, Vec<D>::Zero()}, rod.b = {-1, at<D>(0, 3)};
+      world.model.joints.push_back(rod);
+      State<D> state = world.state;
+      Stepper<D> stepper(world.model);
+      stepper.begin(state);
+      for (int i = 0; i < 12000; ++i) {
+        ASSERT_FALSE(stepper.step(state));
+        ASSERT_FALSE(state.frozen[0]) << wide << " at step " << i;
+      }
+      const double swing = std::hypot(state.x[0][0], state.v[0][0] / std::sqrt(kG));
+      EXPECT_NEAR(swing, wide, 0.02 * wide);
+    }
+  });
+}
+
+// the last part of a slide, v^2 / (2 mu g) long
+TEST(Rest, ASlideUnderLittleFrictionIsAsLongAsItIs) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    for (const int rate : {60, 600, 6000}) {
+      World<D> world = quiet_room<D>(solver, kG, rate);
+      const double v = 0.015, mu = 0.002, way = v * v / (2 * mu * kG);
+      add<D>(world, block<D>(0.2, 0.1), at<D>(0, 0.05), at<D>(v, 0), mu);
+      const State<D> now = stepped(world, int(1.5 * rate));
+      EXPECT_NEAR(now.x[0][0], way, 0.01 * way) << rate;
+      EXPECT_TRUE(now.frozen[0]) << rate;
+    }
+  });
+}
+
+// on a slope on which friction all but holds them
+TEST(Rest, ABlockRestsBelowTheAngleOfFrictionAndSlidesAboveIt) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    const double slope = 0.3;
+    for (const double more : {-1e-3, -1e-4, 1e-4, 1e-3}) {
+      World<D> world = quiet_room<D>(solver, 0);
+      world.model.gravity = at<D>(kG * std::sin(slope), -kG * std::cos(slope));
+      world.model.walls.push_back({at<D>(0, 0), at<D>(0, 1), {}, {}});
+      add<D>(world, block<D>(0.2, 0.1), at<D>(0, 0.05), at<D>(0, 0), std::tan(slope) - more);
+      const State<D> now = stepped(world, 600);
+      const double a = more * kG * std::cos(slope);
+      EXPECT_NEAR(now.x[0][0], std::max(0.0, 0.5 * a), 0.1 * std::fabs(a)) << more;
+      EXPECT_EQ(now.frozen[0] != 0, more < 0) << more;
+    }
+  });
+}
+
+TEST(Rest, WhatAWeakBlastPushesGoesOn) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    for (const double g : {0.0, kG}) {
+      World<D> world = quiet_room<D>(solver, g);
+      for (int i = 0; i < 7; ++i)
+        add<D>(world, block<D>(0.1, 0.1), at<D>(0.4 + 0.3 * i, 0.05), at<D>(0, 0), 0);
+      Explosion<D> weak;
+      weak.strength = 1e-3, weak.center = at<D>(-1, 0.05), weak.duration = {2, 1};
+      world.model.explosions.push_back(weak);
+      const State<D> soon = stepped(world, 1210), late = stepped(world, 2410);
+      for (int i = 0; i < 7; ++i) {
+        const double r = 1.4 + 0.3 * i, v = 2 * (1 << D) * 1e-3 / (r * r);  // each corner is pushed
+        EXPECT_NEAR(soon.v[i][0], v, 0.02 * v) << i << ", g " << g;
+        EXPECT_NEAR(late.v[i][0], soon.v[i][0], 1e-9 * v) << i << ", g " << g;
+        EXPECT_NEAR(late.x[i][0], soon.x[i][0] + 2 * soon.v[i][0], 1e-9) << i << ", g " << g;
+      }
+    }
+  });
+}
+
+// what stands still is as heavy for a slow body as for a fast one
+TEST(Rest, WhatComesSlowlyGivesItsMomentum) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    for (const double g : {0.0, kG}) {
+      World<D> world = quiet_room<D>(solver, g);
+      add<D>(world, block<D>(0.2, 0.1), at<D>(0, 0.05), at<D>(0.01, 0), 0);
+      add<D>(world, block<D>(0.2, 0.1), at<D>(0.21, 0.05), at<D>(0, 0), 0);
+      const State<D> before = stepped(world, 500), after = stepped(world, 1200);
+      EXPECT_NEAR(before.x[0][0], 0.01 * 500 / 600, 1e-9) << g;
+      EXPECT_TRUE(before.frozen[1] || g == 0) << g;
+      EXPECT_NEAR(after.v[0][0], 0.005, 1e-6) << g;
+      EXPECT_NEAR(after.v[1][0], 0.005, 1e-6) << g;
+    }
+  });
+}
+
+TEST(Rest, WhatIsHeldComesToRest) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    for (const int rate : {60, 600, 6000}) {
+      World<D> world = quiet_room<D>(solver, kG, rate);
+      // a stack, a block that slides, a ball in a corner of two blocks
+      for (int i = 0; i < 5; ++i)
+        add<D>(world, block<D>(0.3, 0.2), at<D>(0, 0.1 + 0.2 * i), at<D>(0, 0), 0.5);
+      add<D>(world, block<D>(0.3, 0.2), at<D>(1, 0.1), at<D>(0.2, 0), 0.5);
+      const State<D> now = stepped(world, rate);
+      for (int i = 0; i < 6; ++i) {
+        EXPECT_TRUE(now.frozen[i]) << i << " at " << rate;
+        EXPECT_EQ(now.v[i], at<D>(0, 0)) << i << " at " << rate;
+      }
+    }
+  });
+}
+
+// lengths and gravity 2^k times as large: the same run, every number 2^k times as large
+template <int D>
+World<D> scaled(const World<D>& world, int k) {
+  World<D> it = world;
+  const double s = std::ldexp(1.0, k);
+  it.model.gravity *= s, it.model.scale *= s;
+  for (Body<D>& body : it.model.bodies) body.shape.radius *= s, body.shape.half *= s, body.inertia *= s * s;
+  for (Vec<D>& x : it.state.x) x *= s;
+  for (Vec<D>& v : it.state.v) v *= s;
+  return it;
+}
+
+TEST(Rest, ARoomScaledInLengthsAndGravityRestsAlike) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    World<D> world = quiet_room<D>(solver, 10);
+    for (int i = 0; i < 3; ++i) add<D>(world, block<D>(0.3, 0.2), at<D>(0, 0.1 + 0.2 * i), at<D>(0, 0), 0.5);
+    add<D>(world, block<D>(0.3, 0.2), at<D>(1, 0.1), at<D>(0.2, 0), 0.5);
+    add<D>(world, round_shape<D>(0.1), at<D>(2, 0.1), at<D>(0.01, 0), 0.5, 0, about_z<D>(-0.1));
+    add<D>(world, block<D>(0.3, 0.2), at<D>(3, 0.1), at<D>(0.015, 0), 0);
+    add<D>(world, block<D>(0.3, 0.2), at<D>(4, 0.1), at<D>(0.015, 0), 0.001);
+    add<D>(world, block<D>(0.3, 0.2), at<D>(5, 0.15), at<D>(0, 0), 0.5, 0.5);
+    const State<D> want = stepped(world, 400);
+    const std::vector<char> rests = {1, 1, 1, 1, 0, 0, 0, 1};
+    EXPECT_EQ(want.frozen, rests);
+    for (const int k : {-20, -13, -7, -1, 1, 7, 13, 20}) {
+      const World<D> other = scaled(world, k);
+      const State<D> now = stepped(other, 400);
+      const double s = std::ldexp(1.0, k);
+      EXPECT_EQ(now.frozen, rests) << k;
+      for (int i = 0; i < int(rests.size()); ++i) {
+        EXPECT_EQ(now.x[i], Vec<D>(s * want.x[i])) << i << ", 2^" << k;
+        EXPECT_EQ(now.v[i], Vec<D>(s * want.v[i])) << i << ", 2^" << k;
+        EXPECT_EQ(now.spin[i], want.spin[i]) << i << ", 2^" << k;
+      }
+    }
+  });
+}
+
+// --- what contacts and joints leave free
+
+template <int D>
+typename Statics<D>::Touch touch(int a, int b, Vec<D> normal, Vec<D> arm_a, double mu, double force,
+                                 Vec<D> arm_b = Vec<D>::Zero()) {
+  return {.a = a,
+          .b = b,
+          .normal = normal,
+          .arm_a = arm_a,
+          .arm_b = arm_b,
+          .friction = mu,
+          .force = force * normal};
+}
+
+TEST(Mobility, ABallOnTheFloorRollsFreelyAndDoesNotSlip) {
+  World<3> world = quiet_room<3>(Solver::iterative, kG);
+  add<3>(world, round_shape<3>(0.1), {0, 0.1, 0}, {0, 0, 0}, 0.5);
+  Mobility<3> mobility(world.model);
+  const auto moves = [&](const Vec3& v, const Vec3& w, double mu) {
+    mobility.clear();
+    mobility.add(0, v, w, Rotation<3>::Identity());
+    mobility.hold(touch<3>(0, -1, {0, 1, 0}, {0, -0.1, 0}, mu, kG));
+    return mobility.mobile();
+  };
+  EXPECT_EQ(moves({0.01, 0, 0}, {0, 0, -0.1}, 0.5), Mobile::yes);
+  EXPECT_EQ(moves({0, 0, 0}, {0, 0.1, 0}, 0.5), Mobile::yes);
+  EXPECT_EQ(moves({0, 0.01, 0}, {0, 0, 0}, 0.5), Mobile::no);
+  EXPECT_EQ(moves({0.01, 0, 0}, {0, 0, 0}, 0), Mobile::yes);
+  // what the point on the floor does friction takes: v + w x r along the floor, and of the ball I / (I + m
+  // r^2) of its turn
+  EXPECT_EQ(moves({0.01, 0, 0}, {0, 0, 0.25}, 0.5), Mobile::no);
+  EXPECT_EQ(moves({0.01, 0, 0}, {0, 0, 0.26}, 0.5), Mobile::yes);
+}
+
+}  // namespace
+}  // namespace obscura::sim
