@@ -19,6 +19,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <string_view>
 
 #include "media/error.h"
 #include "media/file.h"
@@ -151,6 +152,16 @@ bool read_rows(Reading& file, Call&, Image* image, png_bytepp rows) {
   return true;
 }
 
+// the file that git keeps in place of a picture where git-LFS has not fetched it
+bool is_lfs_pointer(std::FILE* file) {
+  constexpr std::string_view kBegins = "version https://git-lfs";
+  char begins[kBegins.size()];
+  const bool is = std::fread(begins, 1, sizeof begins, file) == sizeof begins &&
+                  std::string_view(begins, sizeof begins) == kBegins;
+  std::rewind(file);
+  return is;
+}
+
 std::vector<std::uint8_t> encode(const Image& image, const PngOptions& options, const std::string& path) {
   if (image.width <= 0 || image.height <= 0) throw Error(path + ": a picture without pixels");
   // tags, in the order of their keywords
@@ -207,6 +218,9 @@ Png read_png(const std::string& path) {
   std::fseek(call.in, 0, SEEK_END);
   const long bytes = std::ftell(call.in);
   std::rewind(call.in);
+  if (is_lfs_pointer(call.in))
+    throw Error(path +
+                ": not a readable PNG: it is a pointer of git-LFS; `git lfs pull` fetches the picture");
 
   Reading file;
   file.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &call, on_error, on_warning);

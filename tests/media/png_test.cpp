@@ -138,6 +138,14 @@ TEST(Png, ReadingNamesThePathOfWhatIsMissingOrDamaged) {
   EXPECT_THAT(damaged("flipped.png", flipped), HasSubstr("flipped.png: not a readable PNG"));
 }
 
+TEST(Png, OfAPointerOfGitLfsSaysHowThePictureIsFetched) {
+  Folder folder;
+  std::ofstream(folder / "pointer.png")
+      << "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2\nsize 12345\n";
+  EXPECT_THAT(message_of_reading(folder / "pointer.png"),
+              HasSubstr("pointer.png: not a readable PNG: it is a pointer of git-LFS; `git lfs pull`"));
+}
+
 TEST(Png, AShortFileThatPromisesAVastPictureTakesNoMemory) {
   Folder folder;
   auto bytes = encode_png(random_image(1, 1, 5));
