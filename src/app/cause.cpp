@@ -145,7 +145,9 @@ Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b) {
       return it.trajectory.empty() ? "the simulation" : it.trajectory + ", another program's run";
     };
     cause.kind = Cause::Kind::state;
-    cause.lines.push_back(fmt::format("other state: A shows {}, B {}", shows(*a), shows(*b)));
+    cause.lines.push_back(a->trajectory == b->trajectory
+                              ? fmt::format("other state: {} has other numbers there", shows(*a))
+                              : fmt::format("other state: A shows {}, B {}", shows(*a), shows(*b)));
   } else if (a->scene_text != b->scene_text || a->sets != b->sets) {
     judge_scenes(*a, *b, cause);
   } else if (!other_time && a->state != b->state) {

@@ -149,6 +149,7 @@ std::string update_command(const Flags& flags) {
   for (const std::string& scene : flags.scenes) text += " " + word(scene);
   option("--root", flags.golden.root);
   option("--references", flags.golden.references);
+  option("--states", flags.golden.states);
   return text + " --update";
 }
 
@@ -228,6 +229,11 @@ int golden(Flags& flags) {
   const std::vector<std::string> named = files(flags);
   know_apart(named, flags.golden);
   const std::vector<std::string> all = chosen(named, flags.golden);
+  if (!flags.golden.states.empty() && all.size() > 1)
+    throw UsageError(fmt::format(
+        "--states {} is one scene's run, and there are {}: name the scene, or say [golden] states = "
+        "\"{}\" in it",
+        flags.golden.states, all.size(), flags.golden.states));
   const int cores = std::max(1, int(std::thread::hardware_concurrency()));
   const int workers = std::min<int>(flags.workers > 0 ? flags.workers : cores, int(all.size()));
   const auto began = std::chrono::steady_clock::now();
@@ -284,6 +290,10 @@ void add_golden(CLI::App& program, int& exit) {
       .type("DIR");
   command.option("--root", flags->golden.root, "Call scenes by their path from here [the current folder]")
       .type("DIR");
+  command
+      .option("--states", flags->golden.states,
+              "Another program's run, which is shown and held instead of the simulation's [golden.states]")
+      .type("RUN.csv");
   command.flag("--update", flags->golden.update, "Take what there is now as the reference");
   command
       .option("--only", flags->only,
@@ -313,11 +323,12 @@ void add_golden(CLI::App& program, int& exit) {
       "With --references, and for pictures of what fails, a scene is called by its path from --root, "
       "without .toml. "
       "docs/golden.md has recipes.\n\n"
-      "Exit codes: 0 all are the same, 1 something differs or is missing, 3 a scene cannot be read, 6 one "
-      "diverged.\n\n"
+      "Exit codes: 0 all are the same, 1 something differs or is missing, 3 a scene cannot be read, 4 a "
+      "reference or run cannot, 6 one diverged.\n\n"
       "Examples:\n"
       "  obscura golden\n"
       "  obscura golden scenes/room.toml --report report.html\n"
+      "  obscura golden room.toml --states student.csv\n"
       "  obscura golden scenes --root scenes --references tests/golden --update");
   command.run([flags] { return golden(*flags); });
 }

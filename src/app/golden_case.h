@@ -14,11 +14,12 @@ namespace obscura::app {
 
 /// One moment of a scene, held against its reference.
 struct GoldenCase {
-  std::string scene;                     // its name, of golden_name
-  std::string time;                      // "2.5"
-  std::string state;                     // "same", "tolerated", "differs", "missing", "updated", "failed"
-  std::string file;                      // the reference
-  std::vector<std::string> lines;        // what is to be said, the verdict first
+  std::string scene;               // its name, of golden_name
+  std::string time;                // "2.5"
+  std::string state;               // "same", "tolerated", "differs", "missing", "unreadable", "updated",
+                                   // "failed"
+  std::string file;                // the reference: a picture, or the record of a scene that keeps hashes
+  std::vector<std::string> lines;  // what is to be said, the verdict first
   std::vector<std::string> attachments;  // pictures that were written of it
   std::optional<media::Image> expected, actual;
   std::string expected_by, actual_by;           // what drew them
@@ -29,7 +30,7 @@ struct GoldenCase {
   std::optional<Cause> cause;
   std::optional<scene::Error> error;  // of "failed": what is wrong with the scene
   double seconds = 0;                 // its share of the time that its scene took
-  int exit = 0;                       // of "failed": the exit code
+  int exit = 0;                       // of "failed" and "unreadable": the exit code
 
   bool good() const { return state == "same" || state == "tolerated" || state == "updated"; }
 };
@@ -48,15 +49,17 @@ struct GoldenOptions {
   std::string root;        // the folder that scenes' names begin from; empty: the current one
   std::string references;  // a folder; empty: golden/ beside the scene
   std::string actual = "render_out/golden";  // where pictures of what fails go
+  std::string states;                        // the CSV of another program's run; empty: what the scene says
   bool update = false;
   std::vector<GoldenChoice> only;        // moments; empty: all
   bool states_only_on_other_gl = false;  // where the reference was drawn by another OpenGL
   PictureOptions picture;
 };
 
-/// Draws the moments of a scene and compares each with its reference, states first. Writes references where
-/// that is asked for, and of what fails the picture and the difference. Throws UsageError where `only` names
-/// a moment that the scene has not.
+/// Draws the moments of a scene, or of another program's run of it, and compares each with its reference,
+/// states first. Writes references where that is asked for, and of what fails the picture and the difference.
+/// Throws UsageError where `only` names a moment that the scene has not, media::Error where the run has no
+/// row at a moment.
 std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOptions& options);
 
 /// What a scene is called among others: its path from the root, without its ending, as in "wheels/car".

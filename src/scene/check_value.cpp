@@ -47,6 +47,7 @@ class Values : private Faults {
       case Form::thing:
         return is(node.is_text());
       case Form::which:
+      case Form::states:
         return is(std::holds_alternative<bool>(node.value) || node.is_text());
       case Form::number:
         return key.varies && !node.is_number() ? varied(node, key) : number(node, key);

@@ -443,6 +443,8 @@ std::string type(const Key& key) {
       return "number, or a list of them";
     case Form::trails:
       return "number, or table of them";
+    case Form::states:
+      return "true, false, or a file";
   }
   return "";
 }

@@ -491,8 +491,11 @@ std::vector<Key> rows() {
        .doc = "The difference of a channel, of 255, that is let pass everywhere.", .example = "2"},
       {.path = "golden.pixels", .form = integer, .fallback = "0", .range = kNotNegative,
        .doc = "How many pixels may differ by more.", .example = "20"},
-      {.path = "golden.states", .form = boolean, .fallback = "true", .doc = "Whether states must be the same to the bit.",
-       .example = "false"},
+      {.path = "golden.states", .form = states, .fallback = "true",
+       .doc = "Whether states must be the same to the bit. Or the CSV of another program's run, beside the scene: its states are shown and held.",
+       .example = "\"run.csv\""},
+      {.path = "golden.keep", .form = choice, .fallback = "\"pictures\"", .choices = {"pictures", "hash"},
+       .doc = "What git keeps as reference: pictures, or their hashes and those of states in some hundred bytes.", .example = "\"hash\""},
       {.path = "golden.reason", .form = text, .fallback = "\"\"", .doc = "Why anything is let pass: needed where it is.",
        .example = "\"drawn on two versions of Mesa\""},
   };

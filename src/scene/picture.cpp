@@ -212,7 +212,14 @@ Golden golden(const Node& top, sim::Rational duration, Complaints& complaints) {
   const sim::Vec<2> size = fields.vector<2>("size");
   golden.width = int(size.x()), golden.height = int(size.y());
   golden.level = whole("level"), golden.pixels = whole("pixels");
-  golden.states = fields.flag("states");
+  const Node& states = fields.node("states");
+  if (states.is_text() && states.text().empty())
+    complaints.add(states.place, "'states': expected the file of a run (CSV), got an empty name");
+  if (states.is_text())
+    golden.run = states.text();
+  else
+    golden.states = fields.flag("states");
+  golden.hashes = fields.text("keep") == "hash";
   golden.reason = fields.text("reason");
   const bool lenient = golden.level > 0 || golden.pixels > 0 || !golden.states;
   if (lenient && golden.reason.empty())

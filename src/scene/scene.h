@@ -35,12 +35,14 @@ struct Film {
 struct Golden {
   std::vector<sim::Rational> at;  // s, increasing
   int width = 320, height = 180;
-  int level = 0;       // difference of a channel that is let pass everywhere
-  int pixels = 0;      // how many may differ by more
-  bool states = true;  // must be the same
-  std::string reason;  // why anything is let pass
-  bool given = false;  // the scene has a [golden]
-  int line = 0;        // of it in the file; 0: not in the file
+  int level = 0;        // difference of a channel that is let pass everywhere
+  int pixels = 0;       // how many may differ by more
+  bool states = true;   // must be the same
+  std::string run;      // the CSV of another program's run, as seen from the scene's folder; empty: simulated
+  bool hashes = false;  // kept as references instead of pictures
+  std::string reason;   // why anything is let pass
+  bool given = false;   // the scene has a [golden]
+  int line = 0;         // of it in the file; 0: not in the file
 };
 
 /// A scene, read, checked and built: what happens, what it looks like, how it is filmed.

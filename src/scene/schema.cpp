@@ -115,6 +115,7 @@ Json value(const Key& key) {
     case Form::offset:
       return any_of({vector(), list_of(vector(), 1, 3)});
     case Form::which:
+    case Form::states:
       return any_of({{{"type", "boolean"}}, string});
     case Form::points:
       return list_of(vector({}, key.dimension), 3, 0);

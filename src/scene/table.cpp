@@ -200,6 +200,8 @@ std::string expected(const Key& key, int dimension) {
       return "a number" + of + ", or a list of them";
     case Form::trails:
       return "a number of seconds, or a table of them by body";
+    case Form::states:
+      return "true, false, or the file of a run (CSV)";
   }
   return "";
 }

@@ -44,6 +44,7 @@ enum class Form {
   place,    // one end of a spring: a body, a point of one, a place
   times,    // an exact time, or a list of them
   trails,   // seconds, or a table of them by body
+  states,   // true, false, or the file of another program's run
 };
 
 struct Range {

@@ -443,6 +443,16 @@ TEST(Complaints, OneThingIsSaidOnce) {
           "a.toml:2:32: times must increase from key to key, got 1 after 1");
 }
 
+TEST(Complaints, OfGoldenStatesAndWhatIsKept) {
+  const auto refused = [](const std::string& text, const std::string& line) {
+    EXPECT_THAT(wrong("[golden]\n" + text), ElementsAre(line)) << text;
+  };
+  refused("states = 2", "a.toml:2:10: 'states': expected true, false, or the file of a run (CSV), got 2");
+  refused("states = \"\"", "a.toml:2:10: 'states': expected the file of a run (CSV), got an empty name");
+  refused("keep = \"hashes\"",
+          "a.toml:2:8: 'keep': expected one of pictures, hash, got 'hashes'; did you mean 'hash'?");
+}
+
 TEST(Complaints, AllComeInOneGoInTheOrderOfTheFile) {
   EXPECT_THAT(
       wrong("[[spring]]\nbetween = [\"a\", \"b\"]\n[room]\nsize = [-1, 2]\n[[box]]\nmas = 2\ntitle = 2\n"),

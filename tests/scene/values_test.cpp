@@ -222,6 +222,17 @@ TEST(Copies, SomeMayBeHeld) {
   EXPECT_THAT(held, ElementsAre(true, false, true, true, false));
 }
 
+TEST(GoldenTable, StatesAreHeldOrLetPassOrThoseOfARun) {
+  EXPECT_TRUE(scene("[golden]").golden.states);
+  EXPECT_FALSE(scene("[golden]\nstates = false\nreason = \"\"\"two compilers\"\"\"").golden.states);
+  const Golden run = scene("[golden]\nstates = \"run.csv\"").golden;
+  EXPECT_TRUE(run.states);
+  EXPECT_EQ(run.run, "run.csv");
+  EXPECT_FALSE(run.hashes);
+  EXPECT_TRUE(scene("[golden]\nkeep = \"hash\"").golden.hashes);
+  EXPECT_EQ(scene("[[box]]", {"golden.states=other.csv"}).golden.run, "other.csv");
+}
+
 TEST(Springs, RestAsLongAsTheyAreAtTheStart) {
   const Scene it = scene(
       "[[box]]\nname = \"crate\"\nsize = [2, 1]\nangle = 90\nposition = [4, 2]\n[[spring]]\nbetween = [{ "
