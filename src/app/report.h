@@ -11,7 +11,7 @@ namespace obscura::app {
 /// One pair of pictures in a report.
 struct Finding {
   std::string name;   // "room, t = 2.5 s"
-  std::string state;  // "same", "differs", "missing", "updated", "failed": what the page filters by
+  std::string state;  // "same", "differs", "missing", "unreadable", ...: what the page filters by
   std::vector<std::string> lines;  // what is to be said of it, the verdict first
   std::optional<media::Image> expected, actual;
   std::string expected_by, actual_by;  // "obscura 0.2.0, OpenGL 4.5 (Mesa 22.3.6)"

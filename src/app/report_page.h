@@ -45,7 +45,7 @@ h2 { font-size: 1.05rem; font-weight: 600; margin: 0; overflow-wrap: anywhere; }
 h2 a { color: inherit; text-decoration: none; } h2 a:hover { text-decoration: underline; }
 .state { font-size: .78rem; font-weight: 600; padding: .05rem .55rem; border-radius: 1rem; border: 1px solid currentColor; color: var(--quiet); }
 [data-state=differs] .state, [data-state=failed] .state { color: var(--solid); }
-[data-state=missing] .state { color: var(--warn); }
+[data-state=missing] .state, [data-state=unreadable] .state { color: var(--warn); }
 [data-state=same] .state { color: var(--good); }
 .take { margin-left: auto; font-size: .87rem; display: inline-flex; gap: .45rem; align-items: center; cursor: pointer; }
 .take input { width: 1.05rem; height: 1.05rem; margin: 0; accent-color: var(--good); }
