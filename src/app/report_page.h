@@ -95,7 +95,7 @@ let current = null;
 
 // one picture of a view and all that shows the same place of it: a section's scale, and the place in its middle
 const cases = sections.map((section) => {
-  const it = { section, s: 1, x: .5, y: .5, views: all(".view", section), boxes: [], cut: 50 };
+  const it = { section, s: 1, x: .5, y: .5, across: 0, views: all(".view", section), boxes: [], cut: 50 };
   const pictures = section.querySelector(".pictures");
   if (!pictures) return it;
   it.width = Number(pictures.dataset.width), it.height = Number(pictures.dataset.height);
@@ -142,10 +142,13 @@ function cut(it) {
 
 const bounded = (x, low, high) => Math.min(Math.max(x, low), high);
 // pixels of the screen that one of the picture takes
-const magnified = (it) => {
-  const view = it.views.find((each) => each.clientWidth > 0);
-  return view && it.width ? it.s * view.clientWidth / it.width : 0;
-};
+const magnified = (it) => it.width ? it.s * it.across / it.width : 0;
+
+// all widths are asked for before anything is placed: each time that both alternate the page is laid out anew
+function place_all() {
+  for (const it of cases) it.across = Math.max(0, ...it.views.map((view) => view.clientWidth));
+  cases.forEach(place);
+}
 
 function place(it) {
   it.s = bounded(it.s, 1, most);
@@ -262,6 +265,7 @@ const filters = all("[data-show]");
 for (const button of filters) button.addEventListener("click", () => {
   for (const other of filters) other.classList.toggle("on", other === button);
   for (const section of sections) section.hidden = button.dataset.show !== "" && section.dataset.state !== button.dataset.show;
+  place_all();
 });
 
 // how pairs are shown
@@ -271,7 +275,8 @@ function view(how) {
   body.dataset.view = how;
   for (const button of views) button.classList.toggle("on", button.dataset.how === how);
   clearInterval(blinking);
-  for (const it of cases) cut(it), place(it);
+  cases.forEach(cut);
+  place_all();
   if (how === "blink") blinking = setInterval(blink, 500), blink();
 }
 let seen = 0;
@@ -335,7 +340,7 @@ addEventListener("keydown", (event) => {
   event.preventDefault();
 });
 
-addEventListener("resize", () => cases.forEach(place));
+addEventListener("resize", place_all);
 view("beside");
 if (cases.length) choose(cases.find((it) => it.boxes.length) || cases[0]);
 )js";

@@ -138,6 +138,7 @@ TEST_F(Report, FiltersSlidesAndBlinks) {
     check(button("differs").textContent === "differs 2", "wrong counts");
     button("differs").click();
     check(same.hidden && !differs.hidden, "the filter does not filter");
+    check(one(".scale").textContent === Math.round(one(".expected .view").clientWidth / 1.6) + " %", "a scale of " + one(".scale").textContent);
     button("").click();
     check(!same.hidden && !differs.hidden, "the filter does not let all through");
     check(same.querySelectorAll("img").length === 1, "what is the same is there twice");
