@@ -1,6 +1,7 @@
 #include "scene/check_value.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 // keys.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 

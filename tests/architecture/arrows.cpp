@@ -44,6 +44,15 @@ const std::map<std::string, Names> kLibraries = {
     {"hb", {"draw", "gl", "page"}},
 };
 
+// names, and the header that has them in every version of their library
+const std::map<std::string, std::string> kHeaders = {
+    {"fmt::join(", "fmt/ranges.h"},  {"std::this_thread::", "thread"}, {"std::thread ", "thread"},
+    {"std::jthread ", "thread"},     {"std::all_of(", "algorithm"},    {"std::any_of(", "algorithm"},
+    {"std::none_of(", "algorithm"},  {"std::clamp(", "algorithm"},     {"std::count(", "algorithm"},
+    {"std::count_if(", "algorithm"}, {"std::find(", "algorithm"},      {"std::find_if(", "algorithm"},
+    {"std::sort(", "algorithm"},
+};
+
 // the physics knows Eigen, the standard library, and the processor
 bool known_to_sim(const std::string& header) {
   return header.rfind("Eigen/", 0) == 0 || header == "immintrin.h" ||
@@ -55,17 +64,21 @@ bool may(const std::string& from, const std::string& to) {
   return from == to || (room != kArrows.end() && room->second.contains(to));
 }
 
-}  // namespace
-
-Complaints wrong_includes(const std::filesystem::path& src) {
-  static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+// the sources under a folder, in the order of their names
+std::vector<std::filesystem::path> sources(const std::filesystem::path& src) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(src))
     if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
+  return files;
+}
 
+}  // namespace
+
+Complaints wrong_includes(const std::filesystem::path& src) {
+  static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
   Complaints wrong;
-  for (const auto& file : files) {
+  for (const auto& file : sources(src)) {
     const auto name = file.lexically_relative(src);
     const std::string room = name.begin()->string();
     if (!kArrows.contains(room)) wrong.push_back(name.string() + ": " + room + " is no room of the picture");
@@ -95,6 +108,25 @@ Complaints wrong_includes(const std::filesystem::path& src) {
     }
   }
   return wrong;
+}
+
+Complaints missing_includes(const std::filesystem::path& src) {
+  Complaints missing;
+  for (const auto& file : sources(src)) {
+    std::ifstream in(file);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    for (const auto& [name, header] : kHeaders) {
+      std::size_t at = text.find(name);
+      while (at != text.npos && at > 0 && text[at - 1] == '"')
+        at = text.find(name, at + 1);  // as a word only
+      if (at == text.npos || text.find("#include <" + header + ">") != text.npos) continue;
+      missing.push_back(
+          file.lexically_relative(src).string() + ":" +
+          std::to_string(1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n')) + ": " +
+          name + " without <" + header + ">");
+    }
+  }
+  return missing;
 }
 
 Complaints wrong_links(const std::filesystem::path& cmake_lists) {

@@ -13,6 +13,10 @@ using Complaints = std::vector<std::string>;
 /// Reads every #include of every .h and .cpp under `src`, whose folders are the rooms.
 Complaints wrong_includes(const std::filesystem::path& src);
 
+/// Names used without their header, where some versions of a library include it by another header and some
+/// do not.
+Complaints missing_includes(const std::filesystem::path& src);
+
 /// Reads what each obscura_room(...) of src/CMakeLists.txt links.
 Complaints wrong_links(const std::filesystem::path& cmake_lists);
 

@@ -38,6 +38,21 @@ TEST(Arrows, EveryIncludeFollowsThem) { EXPECT_THAT(wrong_includes(kTop / "src")
 
 TEST(Arrows, EveryLinkFollowsThem) { EXPECT_THAT(wrong_links(kTop / "src" / "CMakeLists.txt"), IsEmpty()); }
 
+TEST(Headers, EachFileIncludesThoseThatOnlySomeVersionsOfALibraryIncludeForIt) {
+  EXPECT_THAT(missing_includes(kTop / "src"), IsEmpty());
+  EXPECT_THAT(missing_includes(kTop / "tests"), IsEmpty());
+}
+
+TEST_F(Planted, ANameWithoutItsHeaderIsFound) {
+  const std::string join = "fmt::join(words, \", \");\n";
+  plant("app/rows.cpp", "#include <fmt/format.h>\n" + join);
+  plant("app/table.cpp", "#include <fmt/ranges.h>\n" + join);
+  const std::string sort = "sort(begin, end);\n";
+  plant("sim/order.h", "const char* word = \"sort\";\nstd::" + sort);
+  EXPECT_THAT(missing_includes(src_), ElementsAre("app/rows.cpp:2: fmt::join( without <fmt/ranges.h>",
+                                                  testing::StartsWith("sim/order.h:2: ")));
+}
+
 TEST_F(Planted, AnIncludeAgainstAnArrowIsFound) {
   plant("sim/step.cpp", "#include \"sim/step.h\"\n#include <cmath>\n  #  include \"draw/list.h\"\n");
   plant("draw/deep/list.h", "#include \"sim/snapshot.h\"\n#include \"media/image.h\"\n");

@@ -1,6 +1,7 @@
 // Every call that writes fails once, or from then on: nobody is told of a success that is none, and nothing
 // wrong stands under a final name.
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 

@@ -1,5 +1,6 @@
 // What a machine refuses, and what a scene of a few bytes asks for: one line and exit code 4, and no crash.
 
+#include <algorithm>
 #include <map>
 
 #include "../app/program.h"

@@ -2,6 +2,8 @@
 
 #include "media/pixels.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "media/pictures.h"
