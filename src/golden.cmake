@@ -48,6 +48,6 @@ function(obscura_add_golden_tests)
     add_test(NAME golden.${name}
              COMMAND $<TARGET_FILE:obscura::program> golden ${path} --root ${home} ${references} --actual ${folder}
                      --junit ${folder}/junit.xml --report ${folder}/report.html -j 1 ${GOLDEN_ARGUMENTS})
-    set_tests_properties(golden.${name} PROPERTIES LABELS golden TIMEOUT 600)
+    set_tests_properties(golden.${name} PROPERTIES LABELS golden TIMEOUT 1800)
   endforeach()
 endfunction()

@@ -13,6 +13,9 @@
 
 #include "where.h"
 
+// every test that comes to its end comes to it by itself: this one ends what hangs, and not what is slow
+#define OBSCURA_NOT_FOR_EVER "timeout -s KILL 1500 "
+
 namespace obscura::app {
 
 struct Outcome {
@@ -54,6 +57,20 @@ class Program : public ::testing::Test {
     return outcome;
   }
   Outcome obscura(const std::string& arguments) const { return shell(OBSCURA_BINARY " " + arguments); }
+
+  /// The program, with a fault or a signal at the n-th of its calls that change what lies in out/: what
+  /// `with`, `calls` and the rest are, tests/faults/preload/faults.cpp says. The call that met it is told in
+  /// the file met.
+  std::string meeting(const std::string& with, long n, const std::string& calls = "",
+                      const std::string& more = "") const {
+    std::filesystem::remove(path("met"));
+    return "env --default-signal=INT,TERM,HUP FAULTS_UNDER='" + path("out") + "' FAULTS_LOG='" + path("met") +
+           "' FAULTS_WITH=" + with + " FAULTS_NTH=" + std::to_string(n) +
+           (calls.empty() ? "" : " FAULTS_CALLS=" + calls) + (more.empty() ? "" : " " + more) +
+           " ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0 LD_PRELOAD=" OBSCURA_FAULTS
+           " " OBSCURA_BINARY " ";
+  }
+  bool met() const { return std::filesystem::exists(path("met")); }
 
   /// Writes a scene of `text` and returns its name.
   std::string scene(const std::string& text, const std::string& name = "scene.toml") const {

@@ -1,10 +1,7 @@
 // A film that is stopped, divided or moved to another day is the film: the same bytes as in one go.
 
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
 #include <functional>
-#include <random>
 
 #include <nlohmann/json.hpp>
 
@@ -20,7 +17,13 @@ namespace fs = std::filesystem;
 constexpr const char* kSmall = " --size 96x54 --fps 10 --progress none";
 constexpr const char* kSmallest = " --size 96x54 --fps 4 --set physics.rate=120 --progress none";
 
-using Resume = Program;
+class Resume : public Program {
+ protected:
+  /// Kills `command` at each change that it makes in out/, until it comes to its end: `begin` comes before
+  /// each run and `left` after it, with its number.
+  void kill_everywhere(const std::string& command, const std::function<void()>& begin,
+                       const std::function<void(long)>& left);
+};
 using Shards = Program;
 using Checkpoints = Program;
 
@@ -42,107 +45,104 @@ int parts_in(const std::string& folder) {
   return n;
 }
 
-double seconds_of(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-// how many kills: OBSCURA_TEST_KILLS, or as few as show it
-int kills(int usual) {
-  const char* asked = std::getenv("OBSCURA_TEST_KILLS");
-  return asked ? std::max(1, std::atoi(asked) * usual / 100) : usual;
+void Resume::kill_everywhere(const std::string& command, const std::function<void()>& begin,
+                             const std::function<void(long)>& left) {
+  // between two of these calls a kill leaves the same behind, wherever it comes
+  constexpr const char* kChanges = "write,open,rename,mkdir,unlink,ftruncate";
+  for (long n = 1; !HasFatalFailure(); ++n) {
+    begin();
+    const Outcome run = shell(meeting("KILL", n, kChanges) + command);
+    if (!met()) {
+      ASSERT_EQ(run.exit, 0) << run.err;
+      ASSERT_GT(n, 10) << "nothing was killed";
+      return;
+    }
+    ASSERT_NE(run.exit, 0) << "the call " << contents(path("met"));
+    left(n);
+  }
 }
 
 TEST_F(Resume, OfAMovieThatWasKilledIsTheSameMovie) {
   scene(kRoom);
-  const std::string command = std::string("render scene.toml -o film.mp4 -j 2") + kSmallest;
-  Outcome whole;
-  double takes = seconds_of([&] { whole = obscura(command); });
+  const std::string command = std::string("render scene.toml -o out/film.mp4 --to 2 -j 2") + kSmallest;
+  const Outcome whole = obscura(command);
   ASSERT_EQ(whole.exit, 0) << whole.err;
-  const std::string bytes = contents(path("film.mp4"));
-  EXPECT_FALSE(fs::exists(path("film.mp4.parts")));
+  const std::string film = path("out/film.mp4"), bytes = contents(film);
+  EXPECT_FALSE(fs::exists(film + ".parts"));
 
-  std::mt19937 dice(1);
   int part_way = 0;
-  for (int i = 0; i < kills(50); ++i) {
-    fs::remove(path("film.mp4"));
-    const double at = std::uniform_real_distribution(0.0, takes)(dice);
-    shell("timeout -s KILL " + std::to_string(at) + " " OBSCURA_BINARY " " + command);
-    // what is whole is neither lost nor wrong, and nothing stands under the film's name that is not the film
-    if (fs::exists(path("film.mp4"))) {
-      EXPECT_EQ(contents(path("film.mp4")), bytes);
-    }
-    const int before = parts_in(path("film.mp4.parts"));
-    part_way += before > 0;
-    // a machine that has less to do, or more, than when the film was timed
-    if (before == 0) takes *= fs::exists(path("film.mp4")) ? 0.95 : 1.02;
-    const Outcome rest = obscura(command + " --resume");
-    ASSERT_EQ(rest.exit, 0) << "killed at " << at << ": " << rest.err;
-    ASSERT_EQ(contents(path("film.mp4")), bytes) << "killed at " << at << " with " << before << " parts";
-    ASSERT_FALSE(fs::exists(path("film.mp4.parts")));
-    ASSERT_EQ(shell("ls -A | grep tmp").out, "");
-  }
-  if (kills(50) >= 50) {
-    EXPECT_GT(part_way, 3) << "of 50 kills within " << takes << " s";
-  }
+  kill_everywhere(
+      command, [&] { fs::remove_all(path("out")); },
+      [&](long n) {
+        // what is whole is neither lost nor wrong, and nothing stands under the film's name that is not the
+        // film
+        if (fs::exists(film)) {
+          EXPECT_EQ(contents(film), bytes);
+        }
+        const int before = parts_in(film + ".parts");
+        part_way += before > 0;
+        const Outcome rest = obscura(command + " --resume");
+        ASSERT_EQ(rest.exit, 0) << "killed at " << n << ": " << rest.err;
+        ASSERT_EQ(contents(film), bytes) << "killed at " << n << " with " << before << " parts";
+        ASSERT_FALSE(fs::exists(film + ".parts"));
+        ASSERT_EQ(shell("ls -A out | grep tmp").out, "");
+      });
+  EXPECT_GT(part_way, 10);
 }
 
 TEST_F(Resume, OfPicturesThatWereKilledIsTheSamePictures) {
   scene(kRoom);
-  const std::string command = std::string("render scene.toml -o 'frames/{frame:03}.png' -j 2") + kSmallest;
-  Outcome whole;
-  const double takes = seconds_of([&] { whole = obscura(command); });
+  const std::string command =
+      std::string("render scene.toml -o 'out/{frame:03}.png' --to 2 -j 2") + kSmallest;
+  const Outcome whole = obscura(command);
   ASSERT_EQ(whole.exit, 0) << whole.err;
-  const std::string bytes = all_of(path("frames"));
+  const std::string bytes = all_of(path("out"));
 
-  std::mt19937 dice(2);
-  for (int i = 0; i < kills(30); ++i) {
-    fs::remove_all(path("frames"));
-    const double at = std::uniform_real_distribution(0.0, takes)(dice);
-    shell("timeout -s KILL " + std::to_string(at) + " " OBSCURA_BINARY " " + command);
-    // every picture that is there is whole
-    for (int n = 0; n < 100; ++n) {
-      const std::string name =
-          path("frames/" + std::string(n < 10 ? "00" : "0") + std::to_string(n) + ".png");
-      if (fs::exists(name)) {
-        ASSERT_EQ(contents(name).substr(contents(name).size() - 8, 4), "IEND");
-      }
-    }
-    const Outcome rest = obscura(command + " --resume");
-    ASSERT_EQ(rest.exit, 0) << "killed at " << at << ": " << rest.err;
-    ASSERT_EQ(all_of(path("frames")), bytes) << "killed at " << at;
-  }
+  int part_way = 0;
+  kill_everywhere(
+      command, [&] { fs::remove_all(path("out")); },
+      [&](long n) {
+        // every picture that is there is whole
+        int there = 0;
+        for (int i = 0; i < 8; ++i) {
+          const std::string name = path("out/00" + std::to_string(i) + ".png");
+          if (!fs::exists(name)) continue;
+          ++there;
+          ASSERT_EQ(contents(name).substr(contents(name).size() - 8, 4), "IEND");
+        }
+        part_way += there > 0 && there < 8;
+        const Outcome rest = obscura(command + " --resume");
+        ASSERT_EQ(rest.exit, 0) << "killed at " << n << ": " << rest.err;
+        ASSERT_EQ(all_of(path("out")), bytes) << "killed at " << n;
+      });
+  EXPECT_GT(part_way, 10);
 }
 
 TEST_F(Resume, AJoinThatWasKilledIsDoneAgain) {
   scene(kRoom);
-  const std::string command = std::string("render scene.toml -o film.mp4") + kSmall;
+  const std::string command = std::string("render scene.toml -o out/film.mp4 --to 3") + kSmallest;
   ASSERT_EQ(obscura(command).exit, 0);
-  const std::string bytes = contents(path("film.mp4"));
-  fs::remove(path("film.mp4"));
+  const std::string film = path("out/film.mp4"), bytes = contents(film);
+  fs::remove(film);
   for (const char* shard : {" --shard 1/2", " --shard 2/2"}) ASSERT_EQ(obscura(command + shard).exit, 0);
-  shell("cp -r film.mp4.parts kept");
-
-  std::mt19937 dice(3);
-  Outcome joined;
-  const double takes = seconds_of([&] { joined = obscura("join film.mp4"); });
+  shell("cp -r out/film.mp4.parts kept");
+  const auto begin = [&] { shell("rm -rf out; mkdir out; cp -r kept out/film.mp4.parts"); };
+  begin();
+  const Outcome joined = obscura("join out/film.mp4");
   ASSERT_EQ(joined.exit, 0) << joined.err;
-  ASSERT_EQ(contents(path("film.mp4")), bytes);
-  for (int i = 0; i < kills(20); ++i) {
-    shell("rm -rf film.mp4 film.mp4.parts; cp -r kept film.mp4.parts");
-    const double at = std::uniform_real_distribution(0.0, takes)(dice);
-    shell("timeout -s KILL " + std::to_string(at) + " " OBSCURA_BINARY " join film.mp4");
-    if (fs::exists(path("film.mp4"))) {
-      ASSERT_EQ(contents(path("film.mp4")), bytes);
+  ASSERT_EQ(contents(film), bytes);
+
+  kill_everywhere("join out/film.mp4", begin, [&](long n) {
+    if (fs::exists(film)) {
+      ASSERT_EQ(contents(film), bytes);
     }
     // it goes on either way
-    const Outcome rest = i % 2 ? obscura(command + " --resume") : obscura("join film.mp4");
+    const Outcome rest = n % 2 ? obscura(command + " --resume") : obscura("join out/film.mp4");
     if (rest.exit != 0) {
-      ASSERT_FALSE(fs::exists(path("film.mp4.parts/journal.json"))) << rest.err;
+      ASSERT_FALSE(fs::exists(film + ".parts/journal.json")) << rest.err;
     }
-    ASSERT_EQ(contents(path("film.mp4")), bytes) << "killed at " << at;
-  }
+    ASSERT_EQ(contents(film), bytes) << "killed at " << n;
+  });
 }
 
 TEST_F(Resume, IsRefusedForAnotherFilm) {
@@ -177,39 +177,37 @@ TEST_F(Resume, MendsADamagedPart) {
 
 TEST_F(Resume, AnInterruptLeavesAPlayableBeginningAndTheRest) {
   scene(kRoom);
-  // a pipe that nobody reads holds the film up: it is interrupted in the middle for certain
-  const std::string command = "render scene.toml -o film.mp4 -j 1 --size 640x360 --fps 30 --progress none";
+  const std::string command = "render scene.toml -o out/film.mp4 -j 1 --size 160x90 --fps 30 --progress none";
   ASSERT_EQ(obscura(command).exit, 0);
-  const std::string bytes = contents(path("film.mp4"));
-  fs::remove(path("film.mp4"));
-  const Outcome cut =
-      shell(OBSCURA_BINARY " " + command +
-            " & p=$!; until ls film.mp4.parts/take-000001-* 2>/dev/null; do sleep 0.01; done; "
-            "kill -TERM $p; wait $p");
+  const std::string film = path("out/film.mp4"), bytes = contents(film);
+  fs::remove(film);
+  // when its twelfth file is placed: two or three a take, in whichever order, and few takes are under way
+  const Outcome cut = shell(meeting("TERM", 12, "rename") + command);
   EXPECT_EQ(cut.exit, 130) << cut.err;
-  const int parts = parts_in(path("film.mp4.parts"));
+  const int parts = parts_in(film + ".parts");
   ASSERT_GE(parts, 2);
   ASSERT_LT(parts, 10);
   const Outcome frames = shell(
-      "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 film.partial.mp4");
+      "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 out/film.partial.mp4");
   EXPECT_GE(std::atoi(frames.out.c_str()), 30 * parts) << frames.err;
   // each part plays by itself
   const Outcome part = shell(
       "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 "
-      "film.mp4.parts/take-000001-*");
+      "out/film.mp4.parts/take-000001-*");
   EXPECT_EQ(std::atoi(part.out.c_str()), 30) << part.err;
   ASSERT_EQ(obscura(command + " --resume").exit, 0);
-  EXPECT_EQ(contents(path("film.mp4")), bytes);
+  EXPECT_EQ(contents(film), bytes);
 }
 
 TEST_F(Resume, TwoAtOnceOnOneFilmAreOne) {
   scene(kRoom);
-  const Outcome both = shell(OBSCURA_BINARY
-                             " render scene.toml -o film.mp4 --size 640x360 --progress none & p=$!; "
-                             "until [ -e film.mp4.parts/journal.json ]; do sleep 0.01; done; " OBSCURA_BINARY
-                             " render scene.toml -o film.mp4 --size 640x360 --progress none; echo second $?; "
-                             "kill -INT $p; wait $p");
-  EXPECT_EQ(both.out, "second 4\n") << both.out;
+  const std::string command = std::string("render scene.toml -o out/film.mp4") + kSmall;
+  // the first stands still where it places its third file, until the second has been told of it
+  const Outcome both =
+      shell(meeting("STOP", 3, "rename") + command +
+            " & p=$!; for i in $(seq 60000); do [ -s met ] && break; sleep 0.01; done; " OBSCURA_BINARY " " +
+            command + "; echo second $?; kill -CONT $p; wait $p; echo first $?");
+  EXPECT_EQ(both.out, "second 4\nfirst 0\n") << both.err;
   EXPECT_NE(both.err.find("another obscura is making this film"), std::string::npos) << both.err;
 }
 
@@ -227,7 +225,7 @@ TEST_F(Shards, AJournalOfPiecesThatCannotBeIsRefusedAtOnce) {
     const auto at = other.find(right);
     ASSERT_NE(at, std::string::npos) << right << whole;
     std::ofstream(file) << other.replace(at, std::string(right).size(), wrong);
-    const Outcome joined = shell("timeout -s KILL 20 " OBSCURA_BINARY " join film.mp4");
+    const Outcome joined = shell(OBSCURA_NOT_FOR_EVER OBSCURA_BINARY " join film.mp4");
     EXPECT_EQ(joined.exit, 4) << wrong;
     EXPECT_NE(joined.err.find("journal.json: is damaged"), std::string::npos) << wrong << joined.err;
   }

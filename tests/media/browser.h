@@ -68,7 +68,7 @@ inline std::string verdict(const std::string& program, const std::string& folder
   ::close(ends[1]);
 
   std::string said, result;
-  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(20);
   while (result.empty() && std::chrono::steady_clock::now() < until) {
     pollfd reading{ends[0], POLLIN, 0};
     if (::poll(&reading, 1, 500) == 0) continue;

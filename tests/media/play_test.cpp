@@ -74,7 +74,7 @@ function look(video, name, fps, time) {
 // seeks, and waits until the frame there is shown: "seeked" may come before it
 async function seek(video, name, fps, time) {
   const shown = new Promise((resolve) => {
-    const late = setTimeout(() => { wrong.push(`${name} at ${time}: the frame is not shown`); resolve(); }, 10000);
+    const late = setTimeout(() => { wrong.push(`${name} at ${time}: the frame is not shown`); resolve(); }, 600000);
     const step = (now, frame) => {
       if (Math.abs(frame.mediaTime + 0.5 / fps - time) < 0.1 / fps) { clearTimeout(late); resolve(); }
       else video.requestVideoFrameCallback(step);

@@ -1,10 +1,13 @@
-// A library that is loaded before libc (LD_PRELOAD) and lets one call of a program fail: the n-th of those
-// that change what is under a folder. What is asked for comes by the environment:
+// A library that is loaded before libc (LD_PRELOAD) and lets one call of a program fail, or ends or stops the
+// program there: the n-th of the calls that change what is under a folder. What is asked for comes by the
+// environment:
 //
 //   FAULTS_UNDER   the folder, an absolute path; calls elsewhere are let through and are not counted
 //   FAULTS_CALLS   which are counted, as in "write,fsync"; left out: all
 //   FAULTS_NTH     which of them fails, from 1
-//   FAULTS_WITH    ENOSPC, EIO, EINTR, or "short": a write of half of what there is
+//   FAULTS_WITH    ENOSPC, EIO, EINTR, or "short": a write of half of what there is; or a signal that the
+//   process
+//                  gets before the call, which is made if it lives: KILL, STOP, INT, TERM, HUP
 //   FAULTS_ON      "from": it and all after it; left out: it alone
 //   FAULTS_LOG     a file that gets a line for the call that failed
 //
@@ -13,6 +16,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -96,6 +100,17 @@ void tell(long n, const char* call) {
   syscall(SYS_close, file);
 }
 
+// the signal of this name; 0: it is none
+int signal_of(const char* name) {
+  constexpr struct {
+    const char* name;
+    int number;
+  } all[] = {{"KILL", SIGKILL}, {"STOP", SIGSTOP}, {"INT", SIGINT}, {"TERM", SIGTERM}, {"HUP", SIGHUP}};
+  for (const auto& one : all)
+    if (strcmp(name, one.name) == 0) return one.number;
+  return 0;
+}
+
 // Whether this call fails, once it is known to be one that counts. 0: it goes through; -1: a short write.
 int fault(const char* call) {
   if (!is_counted(call)) return 0;
@@ -104,6 +119,10 @@ int fault(const char* call) {
   const long n = ++calls, wanted = atol(nth);
   if (n != wanted && !(on && n > wanted)) return 0;
   tell(n, call);
+  if (const int signal = signal_of(with)) {
+    raise(signal);  // to this thread: it is delivered before the call goes on
+    return 0;
+  }
   if (strcmp(with, "short") == 0) return -1;
   return strcmp(with, "EIO") == 0 ? EIO : strcmp(with, "EINTR") == 0 ? EINTR : ENOSPC;
 }
