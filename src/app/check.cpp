@@ -17,6 +17,7 @@
 #include "app/memory.h"
 #include "app/needs.h"
 #include "app/options.h"
+#include "app/say.h"
 #include "app/shots.h"
 #include "media/error.h"
 #include "scene/error.h"
@@ -204,7 +205,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
               said = text(scene, world.model, made);
           },
           scene.world);
-      fmt::print("{}", format == Format::github ? github::verbatim(said) : said);
+      say_lines(stdout, format == Format::github ? github::verbatim(said) : said);
       if (format != Format::github) continue;
       for (const std::string& warning : made.warnings)
         fmt::print("{}", github::command({.level = github::Annotation::Level::warning,
@@ -219,7 +220,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
         continue;
       }
       std::fflush(stdout);
-      fmt::print(stderr, "{}\n", error.what());
+      say_lines(stderr, error.what());
       if (format != Format::github) continue;
       fmt::print("{}", github::commands(error));
       summary += github::quoted(error.what());

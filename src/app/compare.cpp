@@ -16,6 +16,7 @@
 #include "app/interrupt.h"
 #include "app/report.h"
 #include "app/runs.h"
+#include "app/say.h"
 #include "media/png.h"
 
 namespace obscura::app {
@@ -35,10 +36,10 @@ bool is_table(const std::string& path) { return std::filesystem::path(path).exte
 // what a person or a program is told; GitHub beside it where the two are not the same
 void tell(const Flags& flags, bool same, const std::string& text, const std::string& json) {
   if (flags.format != Format::github) {
-    fmt::print("{}", flags.format == Format::json ? json : text);
+    say_lines(stdout, flags.format == Format::json ? json : text);
     return;
   }
-  fmt::print("{}", github::verbatim(text));
+  say_lines(stdout, github::verbatim(text));
   if (!same) fmt::print("{}", github::command({.title = "compare", .message = text}));
   github::add_to_summary(fmt::format("### {} and {} {}\n\n", github::escaped(flags.a),
                                      github::escaped(flags.b), same ? "are the same" : "differ") +

@@ -13,6 +13,7 @@
 #include "app/mesh.h"
 #include "app/needs.h"
 #include "app/options.h"
+#include "app/say.h"
 #include "app/trouble.h"
 #include "draw/theme.h"
 #include "media/error.h"
@@ -57,7 +58,7 @@ void settle(std::vector<T>& values) {
 class Stage {
  public:
   Stage(const scene::Scene& scene, const sim::Cast& cast) : cast_(cast), depth_(cast.scale / 12) {
-    glb.name = scene.name, glb.generator = fmt::format("obscura {}", OBSCURA_VERSION);
+    glb.name = scene::one_line(scene.name), glb.generator = fmt::format("obscura {}", OBSCURA_VERSION);
     int next = 0;
     for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
       const sim::Cast::Body& body = cast.bodies[i];
@@ -172,8 +173,8 @@ int run(const Flags& flags) {
   stage.end();
   media::make_folder_of(out);
   media::write_glb(out, stage.glb);
-  fmt::print("{}: {} bodies, {} instants over {:g} s\n", out, motion->cast().bodies.size(), frames + 1,
-             sim::value(scene.duration));
+  say(stdout, "{}: {} bodies, {} instants over {:g} s\n", out, motion->cast().bodies.size(), frames + 1,
+      sim::value(scene.duration));
   return kDone;
 }
 

@@ -15,6 +15,7 @@
 #include "app/exit.h"
 #include "app/memory.h"
 #include "app/options.h"
+#include "app/say.h"
 #include "draw/solids.h"
 #include "draw/type.h"
 #include "gl/renderer.h"
@@ -163,7 +164,7 @@ int run(const Flags& flags) {
     }
     write(out, page::page(made.picture, *page::form(ending(out)), sheet, raster));
   }
-  fmt::print("{}: {}\n", out, size);
+  say(stdout, "{}: {}\n", out, size);
   return kDone;
 }
 

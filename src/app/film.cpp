@@ -19,6 +19,7 @@
 #include "app/memory.h"
 #include "app/origin.h"
 #include "app/plots.h"
+#include "app/say.h"
 #include "app/simulation.h"
 #include "app/store.h"
 #include "app/trouble.h"
@@ -114,7 +115,11 @@ Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& ou
     throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", first));
   media::make_folder_of(first);
   if (output.form == Output::Form::still || already_whole()) return;
-  store_.emplace(output, journal_, first_, last_, options.resume || options.shard || options.prepare);
+  store_.emplace(output, journal_, first_, last_,
+                 options.anew                                         ? Earlier::discard
+                 : options.resume || options.shard || options.prepare ? Earlier::go_on
+                                                                      : Earlier::replace);
+  if (!store_->note().empty()) say(stderr, "{}\n", store_->note());
   clear_leftovers();
 }
 
@@ -257,6 +262,7 @@ void Filming::shoot(Simulation& simulation, const draw::Charts& charts, Progress
       if (open_ && !pipe->write(image)) open_ = false;
     }
     done_ += print.frames;
+    if (store_) store_->worked();
     if (movie() && !print.whole) cut_ = print.number;
     if (store_ && !options_.shard)
       store_->forget_before(simulation.step_before(shots_[print.number * journal_.take_frames].time));
@@ -310,7 +316,7 @@ int Filming::prepare(Simulation& simulation) {
 
 int Filming::run() {
   if (already_whole()) {
-    fmt::print("{}: is whole already\n", output_.path);
+    say(stdout, "{}: is whole already\n", output_.path);
     return kDone;
   }
   const draw::Charts charts = app::charts(scene_);

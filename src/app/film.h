@@ -24,6 +24,7 @@ struct FilmOptions {
   bool transparent = false;  // PNG with the ground left out
 
   bool resume = false;                       // go on from what is whole
+  bool anew = false;                         // whatever is there
   std::optional<std::pair<int, int>> shard;  // i of n, from 1: only this share, not joined
   std::optional<int> prepare;                // draw nothing: leave what so many shards begin with
   sim::Rational checkpoint_every{0, 1};      // s; 0: none are kept when the film is whole

@@ -122,7 +122,7 @@ void show_run(const Table& table, bool interpolate, scene::Scene& scene, std::ve
     notes.push_back(fmt::format("left out, for the scene has no such body: {}", several(strangers)));
 
   scene.trajectory = std::move(trajectory);
-  scene.trajectory_file = std::filesystem::path(table.file).filename().string();
+  scene.trajectory_file = scene::one_line(std::filesystem::path(table.file).filename().string());
 }
 
 }  // namespace obscura::app

@@ -22,6 +22,7 @@
 #include "app/golden_output.h"
 #include "app/interrupt.h"
 #include "app/options.h"
+#include "app/say.h"
 #include "app/trouble.h"
 #include "gl/context.h"
 #include "media/error.h"
@@ -52,7 +53,7 @@ struct Outcome {
 GoldenCase failed(const std::string& scene, const std::string& file, int exit, const std::string& why) {
   GoldenCase it;
   it.scene = scene, it.state = "failed", it.file = scene, it.exit = exit, it.scene_file = file;
-  it.lines = {why};
+  it.lines = lines(why);
   return it;
 }
 
@@ -200,7 +201,7 @@ std::string text(const Outcome& outcome) {
 // nothing but the object itself goes to standard output where that is JSON
 void print(Format format, const std::string& text) {
   if (format == Format::json) return;
-  fmt::print("{}", format == Format::github ? github::verbatim(text) : text);
+  say_lines(stdout, format == Format::github ? github::verbatim(text) : text);
   std::fflush(stdout);
 }
 

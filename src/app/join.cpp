@@ -2,6 +2,7 @@
 
 #include "app/join.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -12,6 +13,8 @@
 #include "app/exit.h"
 #include "app/film.h"
 #include "app/output.h"
+#include "app/say.h"
+#include "app/scripts.h"
 #include "media/error.h"
 #include "media/part.h"
 
@@ -75,9 +78,20 @@ std::string missing(const Journal& journal, const std::vector<std::int64_t>& tak
   return text;
 }
 
+// the shards that make these takes
+std::vector<int> shards_of(const Journal& journal, const std::vector<std::int64_t>& takes) {
+  std::vector<int> shards;
+  for (int k = 1; k <= journal.shards; ++k) {
+    const auto [from, to] = Store::share(journal.takes, k, journal.shards);
+    const auto first = std::lower_bound(takes.begin(), takes.end(), from);
+    if (first != takes.end() && *first < to) shards.push_back(k);
+  }
+  return shards;
+}
+
 struct Flags {
   std::string out;
-  bool partial = false;
+  bool partial = false, missing = false;
 };
 
 int join_command(const Flags& flags) {
@@ -104,17 +118,25 @@ int join_command(const Flags& flags) {
       absent.push_back(take);
     }
   }
+  if (flags.missing) {
+    if (journal.shards == 0)
+      throw media::Error(
+          fmt::format("{}: is not made in shards; --resume of its render does what is missing", flags.out));
+    const std::vector<int> shards = shards_of(journal, absent);
+    if (!shards.empty()) say(stdout, "{}\n", ranges(shards));
+    return kDone;
+  }
   if (!absent.empty() && !flags.partial)
     throw media::Error(fmt::format("{}: missing: {}", flags.out, missing(journal, absent)));
   if (pictures) {
-    fmt::print("{}: all {} frames are there\n", flags.out, journal.origin.frames);
+    say(stdout, "{}: all {} frames are there\n", flags.out, journal.origin.frames);
     store.remove();
     return kDone;
   }
   Joining joining{.takes = journal.takes};
   if (!absent.empty()) joining.instead = out.partial();
   const std::int64_t frames = join(store, out.path, joining);
-  fmt::print("{}: {} of {} frames\n", joining.instead.value_or(out.path), frames, journal.origin.frames);
+  say(stdout, "{}: {} of {} frames\n", joining.instead.value_or(out.path), frames, journal.origin.frames);
   if (absent.empty()) store.remove();
   return kDone;
 }
@@ -129,11 +151,14 @@ void add_join(CLI::App& program, int& exit) {
       .type("");
   command.flag("--partial", flags->partial,
                "Join what there is, into a movie whose name says that it is partial");
+  command.flag("--missing", flags->missing,
+               "Join nothing: print the shards that are missing, as --array of sbatch takes them");
   command.footer(
       "Says what is missing, and which shard makes it; exit 4 then.\n\n"
       "Examples:\n"
       "  for i in 1 2 3 4; do obscura render scenes/room.toml -o room.mp4 --shard $i/4; done\n"
-      "  obscura join room.mp4");
+      "  obscura join room.mp4\n"
+      "  sbatch --array=$(obscura join room.mp4 --missing) room.mp4.slurm/shards.sbatch");
   command.run([flags] { return join_command(*flags); });
 }
 

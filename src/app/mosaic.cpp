@@ -13,6 +13,7 @@
 #include "app/film.h"
 #include "app/interrupt.h"
 #include "app/output.h"
+#include "app/say.h"
 #include "app/shots.h"
 #include "app/simulation.h"
 #include "draw/theme.h"
@@ -140,7 +141,7 @@ int ended(const std::string& out, std::size_t runs, std::size_t trouble, const s
           Progress& progress, std::int64_t done) {
   progress.finish(done, fmt::format("{}: {}", out, summary), true);
   if (trouble == 0) return kDone;
-  fmt::print(stderr, "obscura: {}: {} of {} runs diverged, and stand still\n", out, trouble, runs);
+  say(stderr, "obscura: {}: {} of {} runs diverged, and stand still\n", out, trouble, runs);
   return kDiverged;
 }
 

@@ -9,9 +9,11 @@
 #include "app/commands.h"
 #include "app/exit.h"
 #include "app/report.h"
+#include "app/say.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "scene/keys.h"
+#include "scene/utf8.h"
 
 namespace obscura::app {
 
@@ -20,14 +22,17 @@ namespace {
 int make(const std::string& name, const std::string& program) {
   namespace fs = std::filesystem;
   fs::path path(name);
-  if (path.extension() != ".toml") path += ".toml";
-  if (path.stem().empty()) throw UsageError("new needs a name");
+  if (path.extension() == ".toml") path.replace_extension();
+  if (path.filename().empty()) throw UsageError("new needs a name, as in ball or lectures/pendulum");
+  if (!scene::is_path_name(path.filename().string()))
+    throw UsageError(fmt::format("new {}: expected {}", name, scene::kPathName));
+  path += ".toml";
   if (fs::exists(path)) throw media::Error(fmt::format("{}: is there already", path.string()));
   media::make_folder_of(path.string());
   write_text(path.string(), scene::new_scene(path.stem().string()));
   const std::string name_in_shell =
       path.string().find(' ') == std::string::npos ? path.string() : "'" + path.string() + "'";
-  fmt::print("{} is written. Film it: {} render {}\n", path.string(), program, name_in_shell);
+  say(stdout, "{} is written. Film it: {} render {}\n", path.string(), program, name_in_shell);
   return kDone;
 }
 

@@ -67,7 +67,8 @@ media::Tags Origin::tags(const std::string& title) const {
   json["state"] = state;
   if (!trajectory.empty()) json["trajectory"] = trajectory;
   json["gl"] = {{"version", gl_version}, {"renderer", gl_renderer}, {"native", native}};
-  media::Tags tags = {{"Software", "obscura " OBSCURA_VERSION}, {"obscura", json.dump()}};
+  media::Tags tags = {{"Software", "obscura " OBSCURA_VERSION},
+                      {"obscura", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}};
   if (!title.empty()) tags["Title"] = title;
   return tags;
 }
@@ -115,7 +116,7 @@ Origin origin_of(const scene::Scene& scene) {
   Origin origin;
   origin.version = OBSCURA_VERSION;
   origin.scene_hash = hash(scene.text);
-  origin.scene_file = std::filesystem::path(scene.file).filename().string();
+  origin.scene_file = scene::one_line(std::filesystem::path(scene.file).filename().string());
   origin.scene_text = scene.text, origin.sets = scene.sets;
   origin.width = scene.film.width, origin.height = scene.film.height;
   origin.theme = scene.look.theme == draw::Theme::paper ? "paper" : "screen";
@@ -134,12 +135,14 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
     const auto word = [](const nlohmann::json& of) { return scene::one_line(of.get<std::string>()); };
     origin.version = word(json.at("version"));
     const auto& scene = json.at("scene");
-    scene.at("file").get_to(origin.scene_file), scene.at("hash").get_to(origin.scene_hash);
+    origin.scene_file = std::filesystem::path(word(scene.at("file"))).filename().string();
+    origin.scene_hash = word(scene.at("hash"));
     scene.at("text").get_to(origin.scene_text), scene.at("set").get_to(origin.sets);
     const auto width = whole(json.at("size").at(0), 1, kMostPixels),
                height = whole(json.at("size").at(1), 1, kMostPixels);
-    json.at("theme").get_to(origin.theme), json.at("fps").get_to(origin.fps);
-    origin.camera = json.value("camera", ""), origin.transparent = json.value("transparent", false);
+    origin.theme = word(json.at("theme")), origin.fps = word(json.at("fps"));
+    if (json.contains("camera")) origin.camera = word(json["camera"]);
+    origin.transparent = json.value("transparent", false);
     const auto time = sim::parse_rational(json.at("time").get<std::string>());
     const auto fps = sim::parse_rational(origin.fps);
     const auto frame = whole(json.at("frame"), 0, kMostFrames),
@@ -148,14 +151,15 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
       return {};
     origin.width = int(*width), origin.height = int(*height);
     origin.shot = Shot{*frame, *time};
-    origin.frames = *frames, origin.shots = json.value("shots", "");
+    origin.frames = *frames;
+    if (json.contains("shots")) origin.shots = word(json["shots"]);
     if (json.contains("encoder")) {
       const auto& encoder = json["encoder"];
       origin.encoder = word(encoder.at("name")), origin.preset = word(encoder.at("preset"));
       if (encoder.contains("crf")) origin.crf = encoder["crf"].get<double>();
     }
-    json.at("state").get_to(origin.state);
-    origin.trajectory = json.value("trajectory", "");
+    origin.state = word(json.at("state"));
+    if (json.contains("trajectory")) origin.trajectory = word(json["trajectory"]);
     const auto& gl = json.at("gl");
     origin.gl_version = word(gl.at("version")), origin.gl_renderer = word(gl.at("renderer"));
     origin.native = gl.value("native", false);

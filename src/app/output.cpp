@@ -50,7 +50,7 @@ std::string ending(const std::string& path) {
 }  // namespace
 
 std::string Output::file(std::int64_t n) const {
-  const auto p = pattern(path);
+  const auto p = plain ? std::nullopt : pattern(path);
   if (!p) return path;
   return path.substr(0, p->begin) + fmt::format("{:0{}}", n, std::max(1, p->width)) + path.substr(p->end);
 }
@@ -62,21 +62,22 @@ std::string Output::partial() const {
 
 namespace {
 
-std::string beside(const std::string& path, const char* ending) {
-  const auto p = pattern(path);
+std::string beside(const Output& output, const char* ending) {
+  const std::string& path = output.path;
+  const auto p = output.plain ? std::nullopt : pattern(path);
   return (p ? path.substr(0, p->begin) + "frame" + path.substr(p->end) : path) + ending;
 }
 
 }  // namespace
 
-std::string Output::parts() const { return beside(path, ".parts"); }
-std::string Output::checkpoints() const { return beside(path, ".checkpoints"); }
+std::string Output::parts() const { return beside(*this, ".parts"); }
+std::string Output::checkpoints() const { return beside(*this, ".checkpoints"); }
 
 Output output(const std::optional<std::string>& out, const std::string& name, bool still,
               std::int64_t frames) {
   if (!out) {
     return {still ? Output::Form::still : Output::Form::movie,
-            fmt::format("render_out/{}.{}", name, still ? "png" : "mp4")};
+            fmt::format("render_out/{}.{}", name, still ? "png" : "mp4"), true};
   }
   std::string path = *out;
   if (path == "-") return {Output::Form::pipe, path};

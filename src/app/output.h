@@ -10,7 +10,8 @@ namespace obscura::app {
 struct Output {
   enum class Form { movie, frames, still, pipe };
   Form form = Form::movie;
-  std::string path;  // of frames: with its pattern, {frame:04} or %04d
+  std::string path;    // of frames: with its pattern, {frame:04} or %04d
+  bool plain = false;  // the path has no pattern, whatever stands in it
 
   /// The file of frame n. Requires: frames or still.
   std::string file(std::int64_t n) const;

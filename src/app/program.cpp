@@ -13,6 +13,7 @@
 #include "app/exit.h"
 #include "app/interrupt.h"
 #include "app/memory.h"
+#include "app/say.h"
 #include "app/trouble.h"
 #include "draw/error.h"
 #include "gl/error.h"
@@ -23,6 +24,7 @@
 #include "page/page.h"
 #include "scene/complaints.h"
 #include "scene/error.h"
+#include "scene/input.h"
 
 namespace obscura::app {
 
@@ -55,7 +57,7 @@ void know_command(const CLI::App& program, int argc, const char* const* argv) {
 }
 
 int complain(int code, const std::string& what) {
-  std::fputs(fmt::format("obscura: {}\n", what).c_str(), stderr);
+  say(stderr, "obscura: {}\n", what);
   return code;
 }
 
@@ -115,7 +117,7 @@ int run(int argc, const char* const* argv) {
   } catch (const UsageError& error) {
     return complain(kUsage, error.what());
   } catch (const scene::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    say_lines(stderr, error.what());
     return kScene;
   } catch (const TroubleError& error) {
     return complain(kDiverged, error.what());
@@ -126,6 +128,8 @@ int run(int argc, const char* const* argv) {
   } catch (const page::Error& error) {
     return complain(kFiles, error.what());
   } catch (const Interrupted&) {
+    return kInterrupted;
+  } catch (const scene::Stopped&) {
     return kInterrupted;
   } catch (const draw::Error& error) {
     return complain(kFiles, error.what());
@@ -146,6 +150,7 @@ int run(int argc, const char* const* argv) {
 
 int main(int argc, const char* const* argv) {
   heed_interrupts();
+  scene::heed(interrupted);
   survive_libraries();
   hold_memory(most_memory());
   return said(run(argc, argv));

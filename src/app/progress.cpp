@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/say.h"
+
 namespace obscura::app {
 
 namespace {
@@ -26,7 +28,7 @@ void put(const std::string& text, std::FILE* to = stderr) { std::fputs(text.c_st
 Progress::Progress(ProgressKind kind, std::string what, std::int64_t frames, double frame_seconds,
                    std::string unit)
     : kind_(kind),
-      what_(std::move(what)),
+      what_(scene::one_line(what)),
       unit_(std::move(unit)),
       frames_(frames),
       frame_seconds_(frame_seconds),
@@ -95,7 +97,7 @@ void Progress::finish(std::int64_t done, const std::string& summary, bool to_std
   if (kind_ == ProgressKind::json) {
     print(done, true);
   } else {
-    put(summary + "\n", to_stdout ? stdout : stderr);
+    say(to_stdout ? stdout : stderr, "{}\n", summary);
   }
 }
 

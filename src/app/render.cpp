@@ -14,6 +14,7 @@
 #include "app/needs.h"
 #include "app/options.h"
 #include "app/origin.h"
+#include "app/say.h"
 #include "app/shard.h"
 #include "app/trouble.h"
 #include "sim/run.h"
@@ -39,14 +40,21 @@ sim::Rational seconds(const std::string& flag, const std::string& text) {
   return *time;
 }
 
-// small and quick, where no flag says otherwise: 480 lines, at most 30 frames a second, the quickest encoder
+// small, where no flag says otherwise: 480 lines, at most 30 frames a second
 void make_draft(const Flags& flags, scene::Film& film) {
   if (!flags.size && film.height > 480) {
     film.width = std::max(2, int(std::lround(480.0 * film.width / film.height / 2)) * 2);
     film.height = 480;
   }
   while (!flags.fps && 30 < sim::value(film.fps)) film.fps = film.fps / sim::rational(2);
-  if (!flags.preset) film.preset = "ultrafast";
+}
+
+// and quick: the quickest preset of an encoder that has presets
+void make_quick(const Flags& flags, const Output& out, scene::Scene& scene) {
+  if (flags.preset || out.form != Output::Form::movie) return;
+  scene.film.preset.clear();
+  const std::string encoder = media::codec_name(out.path, movie_spec(scene));
+  if (encoder == "libx264" || encoder == "libx265") scene.film.preset = "ultrafast";
 }
 
 // flags override the scene
@@ -63,6 +71,8 @@ void override_film(const Flags& flags, scene::Scene& scene) {
 // a file for each camera: their names in OUT's {camera}
 int render_each(const scene::Scene& scene, const Shots& shots, const Flags& flags) {
   for (const draw::Camera& camera : scene.cameras) {
+    if (camera.name.empty())
+      throw UsageError(fmt::format("-o {}: the scene's camera has no name", *flags.out));
     scene::Scene one = scene;
     one.cameras = {camera};
     std::string name = *flags.out;
@@ -80,7 +90,7 @@ void suit_gif(const std::string& out, scene::Film& film) {
     if (sim::floor(film.fps) < fps) continue;
     if (film.fps == sim::rational(fps)) return;
     film.fps = sim::rational(fps);
-    fmt::print(stderr, "{}: at {} frames per second, for GIF counts in hundredths of a second\n", out, fps);
+    say(stderr, "{}: at {} frames per second, for GIF counts in hundredths of a second\n", out, fps);
     return;
   }
 }
@@ -109,7 +119,7 @@ void take_run(const Flags& flags, scene::Scene& scene) {
     notes.push_back(
         fmt::format("{} has no instants between its rows: filmed without motion blur", *flags.states));
   scene.film.shutter = 0;
-  for (const std::string& note : notes) fmt::print(stderr, "{}\n", note);
+  for (const std::string& note : notes) say(stderr, "{}\n", note);
 }
 
 // what it has no rows of cannot be filmed
@@ -145,8 +155,11 @@ void divide(Flags& flags, const Output& out) {
     throw UsageError("--checkpoint-every 0: expected seconds above 0");
   if (flags.film.shard && flags.film.prepare) throw UsageError("--shard and --prepare exclude each other");
   const bool whole = out.form == Output::Form::pipe || out.form == Output::Form::still;
-  if (whole && (flags.film.shard || flags.film.prepare || flags.film.resume))
-    throw UsageError("--resume, --shard and --prepare are for movies and sequences of pictures");
+  if (whole && (flags.film.shard || flags.film.prepare || flags.film.resume || flags.film.anew))
+    throw UsageError("--resume, --anew, --shard and --prepare are for movies and sequences of pictures");
+  if (flags.film.resume && flags.film.anew) throw UsageError("--resume and --anew exclude each other");
+  if (flags.film.shard && flags.film.anew)
+    throw UsageError("--anew throws away what all shards made: it is for --prepare, or for the whole film");
   if (out.form == Output::Form::pipe && flags.checkpoint_every)
     throw UsageError("--checkpoint-every needs an output with a name");
 }
@@ -159,8 +172,8 @@ void see_what_it_needs(const scene::Scene& scene, const Shots& shots, const Outp
   const double seconds = all.seconds(film.workers);
   if (seconds < kLong || film.progress == ProgressKind::none) return;
   if (film.progress == ProgressKind::json) return;  // says what is left as it goes
-  fmt::print(stderr, "{}: {} frames, about {}{}: an estimate, from its first steps\n", scene.file, all.frames,
-             time_text(seconds), all.disk > 0 ? " and " + bytes_text(all.disk) : "");
+  say(stderr, "{}: {} frames, about {}{}: an estimate, from its first steps\n", scene.file, all.frames,
+      time_text(seconds), all.disk > 0 ? " and " + bytes_text(all.disk) : "");
 }
 
 int render(Flags flags) {
@@ -180,9 +193,10 @@ int render(Flags flags) {
   if (flags.film.transparent && out.form != Output::Form::frames && out.form != Output::Form::still) {
     throw UsageError("--transparent is for PNG: movies and streams have no alpha");
   }
+  if (flags.draft) make_quick(flags, out, scene);
   divide(flags, out);
   for (const sim::Trouble& ahead : scene.forebodings()) {
-    fmt::print(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
+    say(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
   }
   see_what_it_needs(scene, shots, out, flags.film);
   return each ? render_each(scene, shots, flags) : film(scene, shots, out, flags.film);
@@ -235,6 +249,8 @@ void add_render(CLI::App& program, int& exit) {
       .type("FORM");
   command.flag("--resume", flags->film.resume,
                "Go on from what is whole of a film that was stopped, to the same bytes");
+  command.flag("--anew", flags->film.anew,
+               "Begin anew whatever an earlier render left, shards and hours of work too");
   command
       .option("--shard", flags->shard,
               "Make this share of the film alone, as in 2/4; obscura join makes the movie of them")

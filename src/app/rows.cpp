@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/needs.h"
 #include "app/output.h"
 #include "media/error.h"
 #include "media/file.h"
@@ -55,7 +56,7 @@ std::string row(RowForm form, const std::vector<std::string>& heads, const std::
   return line + "}\n";
 }
 
-RowFile::RowFile(const std::optional<std::string>& path, bool go_on) {
+RowFile::RowFile(const std::optional<std::string>& path, Begin begin) {
   if (!path || *path == "-") {
     name_ = "standard output", descriptor_ = STDOUT_FILENO;
     return;
@@ -76,15 +77,24 @@ RowFile::RowFile(const std::optional<std::string>& path, bool go_on) {
 
   // what was left, up to its last whole line
   off_t good = 0;
-  if (go_on) {
-    std::ifstream in(name_, std::ios::binary);
-    std::string line;
-    while (std::getline(in, line) && !in.eof()) {
-      good += off_t(line.size()) + 1;
-      if (earlier_.lines++ == 0) earlier_.first = line;
-      earlier_.last = line;
-    }
+  std::ifstream in(name_, std::ios::binary);
+  std::string line;
+  while (std::getline(in, line) && !in.eof()) {
+    good += off_t(line.size()) + 1;
+    if (earlier_.lines++ == 0) earlier_.first = line;
+    earlier_.last = line;
   }
+  const std::filesystem::path partial(name_);
+  spent_.emplace((partial.parent_path() / ("." + partial.filename().string() + ".seconds")).string());
+  if (begin == Begin::fresh && good > 0 && spent_->before().value_or(2 * kWorthKeeping) > kWorthKeeping) {
+    ::close(descriptor_);
+    throw media::Error(fmt::format(
+        "{}: holds {} lines of a sweep that is not whole{}: --resume goes on from there, "
+        "--anew throws them away",
+        name_, earlier_.lines, spent_->before() ? ", " + time_text(*spent_->before()) + " of work" : ""));
+  }
+  if (begin != Begin::go_on) good = 0, earlier_ = {};
+  spent_->begin(good > 0 ? spent_->before().value_or(0) : 0);
   if (::ftruncate(descriptor_, good) != 0 || ::lseek(descriptor_, good, SEEK_SET) < 0)
     fail(name_, "cannot write", errno);
 }
@@ -97,10 +107,12 @@ void RowFile::add(const std::string& line) {
   if (const int code =
           media::write_all(descriptor_, {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()}))
     fail(name_, "cannot write", code);
+  if (spent_) spent_->note();
 }
 
 void RowFile::finish() {
   if (path_.empty()) return;
+  spent_->remove();
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(name_, "cannot write to disk", errno);
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(name_, "cannot close", errno);
   if (::rename(name_.c_str(), path_.c_str()) != 0) fail(path_, "cannot rename into place", errno);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/spent.h"
+
 namespace obscura::app {
 
 /// How the rows of a sweep are written: for tables (RFC 4180, with line feeds alone), or one JSON object a
@@ -23,8 +25,10 @@ std::string head(RowForm form, const std::vector<std::string>& heads);
 /// refused. Every failure throws media::Error naming the file.
 class RowFile {
  public:
-  /// None: standard output. `go_on`: with the whole rows that an earlier process left; else without them.
-  RowFile(const std::optional<std::string>& path, bool go_on);
+  /// None: standard output. `go_on`: with the whole rows that an earlier process left; else without them, and
+  /// unless `anew` they are refused to be lost where they are more than a minute of work.
+  enum class Begin { fresh, go_on, anew };
+  RowFile(const std::optional<std::string>& path, Begin begin);
   ~RowFile();
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;
@@ -45,6 +49,7 @@ class RowFile {
   std::string path_, name_;
   Earlier earlier_;
   int descriptor_ = -1;
+  std::optional<Spent> spent_;
 };
 
 }  // namespace obscura::app

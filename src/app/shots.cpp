@@ -154,6 +154,9 @@ std::vector<sim::Rational> instants(const std::string& list) {
                           by = instant(ends[2], list);
       if (by.num == 0)
         throw UsageError(fmt::format("\"{}\": the last number of a range is its stride, above 0", list));
+      if (to < from)
+        throw UsageError(fmt::format("\"{}\": the range {}:{}:{} runs backwards: expected from:to:stride",
+                                     list, ends[0], ends[1], ends[2]));
       const std::int64_t n = sim::floor((to - from) / by);
       if (n > 10'000'000) throw UsageError(fmt::format("\"{}\": {} instants are too many", list, n));
       for (std::int64_t i = 0; i <= n; ++i) times.push_back(from + by * sim::rational(i));

@@ -2,6 +2,7 @@
 // back.
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "app/shots.h"
 #include "app/trouble.h"
 #include "media/error.h"
+#include "media/file.h"
 #include "scene/scene.h"
 #include "sim/contact_step.h"
 #include "sim/run.h"
@@ -34,12 +36,31 @@ std::string vector(const sim::Vec3& v, int dimension) {
   return text + "]";
 }
 
-std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
-
-void put(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
-    throw media::Error("standard output cannot be written");
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
+
+// standard output, or a file that has its name when it is whole
+class Sink {
+ public:
+  explicit Sink(const std::optional<std::string>& path) {
+    if (!path || *path == "-") return;
+    media::make_folder_of(*path);
+    file_.emplace(*path);
+  }
+  void put(const std::string& text) {
+    if (file_) return file_->write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+      throw media::Error("standard output cannot be written");
+  }
+  void finish() {
+    if (file_) return file_->place(false);
+    if (std::fflush(stdout) != 0) throw media::Error("standard output cannot be written");
+  }
+
+ private:
+  std::optional<media::File> file_;
+};
 
 const std::string& name(const sim::Cast& cast, int body) { return cast.bodies[std::size_t(body)].name; }
 
@@ -133,10 +154,20 @@ const char* solver_name(const sim::Model<D>& model) {
 }
 
 struct Flags {
-  std::string scene, format = "json";
-  std::optional<std::string> at, every, from_checkpoint;
+  std::string scene;
+  std::optional<std::string> at, every, from_checkpoint, format, out;
   std::vector<std::string> sets;
 };
+
+// as asked for, or by the ending of the file
+std::string form(const Flags& flags) {
+  if (flags.format) return *flags.format;
+  if (!flags.out || *flags.out == "-") return "json";
+  const std::string ending = std::filesystem::path(*flags.out).extension().string();
+  if (ending == ".csv" || ending == ".json") return ending.substr(1);
+  throw UsageError(
+      fmt::format("-o {}: expected a name that ends with .csv or .json, or --format", *flags.out));
+}
 
 std::vector<sim::Rational> times_of(const Flags& flags, const scene::Scene& scene) {
   if (flags.at && flags.every) throw UsageError("--at and --every exclude each other");
@@ -157,7 +188,9 @@ int states(const Flags& flags) {
     throw UsageError(fmt::format("{}: is of t = {:g} s, after {:g} s", *flags.from_checkpoint,
                                  sim::value(run->now()), sim::value(times.front())));
   run->heed(interrupted);
-  const bool as_json = flags.format == "json";
+  const bool as_json = form(flags) == "json";
+  Sink sink(flags.out);
+  const auto put = [&](const std::string& text) { sink.put(text); };
   const std::vector<Column> all = columns(run->cast(), scene.axes);
   if (as_json) {
     put(
@@ -193,8 +226,11 @@ int states(const Flags& flags) {
     first = false;
   }
   if (as_json) put("\n ]}\n");
-  if (std::fflush(stdout) != 0) throw media::Error("standard output cannot be written");
-  if (trouble) throw TroubleError(scene.file, *trouble, "");
+  if (trouble) {
+    std::fflush(stdout);
+    throw TroubleError(scene.file, *trouble, "");
+  }
+  sink.finish();
   return kDone;
 }
 
@@ -212,7 +248,9 @@ void add_states(CLI::App& program, int& exit) {
       .option("--from-checkpoint", flags->from_checkpoint,
               "Begin with the state in this file (render --checkpoint-every)")
       .type("FILE");
-  command.option("--format", flags->format, "json or csv [json]").one_of({"json", "csv"});
+  command.option("-o,--output", flags->out, "Where to: a name that ends with .json or .csv [standard output]")
+      .type("OUT");
+  command.option("--format", flags->format, "json or csv [by OUT's ending, json]").one_of({"json", "csv"});
   add_sets(command, flags->sets);
   add_memory_limit(command);
   command.footer(
@@ -227,7 +265,7 @@ void add_states(CLI::App& program, int& exit) {
       "start.\n\n"
       "Examples:\n"
       "  obscura states scenes/room.toml --at 0,0.5,2\n"
-      "  obscura states scenes/room.toml --every 0.1 --format csv > room.csv\n"
+      "  obscura states scenes/room.toml --every 0.1 -o room.csv\n"
       "  obscura states scenes/room.toml --at 5 --set physics.rate=1200");
   command.run([flags] { return states(*flags); });
 }

@@ -13,10 +13,13 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/checkpoint.h"
 #include "app/frames.h"
+#include "app/needs.h"
+#include "app/spent.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "media/part.h"
@@ -39,11 +42,23 @@ std::string text(const Journal& journal) {
   return json.dump(1) + "\n";
 }
 
+// of one that cannot be read
+struct Damaged : media::Error {
+  using media::Error::Error;
+};
+
 Journal journal_in(const std::string& path) {
-  const auto refuse = [&](const char* why) { return media::Error(path + ": " + why); };
+  const auto refuse = [&](const char* why) {
+    return Damaged(
+        fmt::format("{}: {}; the same render with --resume writes it anew and keeps the parts that "
+                    "are whole",
+                    path, why));
+  };
   try {
     const auto json = nlohmann::json::parse(file_bytes(path));
-    if (json.at("format") != kFormat) throw refuse("is of another version of obscura");
+    if (json.at("format") != kFormat)
+      throw media::Error(path +
+                         ": is of another version of obscura; render --anew begins anew with this one");
     const auto origin = origin_in({{"obscura", json.at("origin").dump()}});
     if (!origin) throw refuse("is damaged: it does not say which film this is");
     const auto takes = whole(json.at("takes"), 1, origin->frames),
@@ -81,8 +96,10 @@ struct Store::Impl {
   std::string folder;
   Journal journal;
   int lock = -1;
-  std::mutex mutex;                                        // of parts
+  std::mutex mutex;                                        // of parts, and of spent
   std::map<std::int64_t, std::string> parts, checkpoints;  // names, by take and by step
+  std::optional<Spent> spent;
+  std::string note;
 
   ~Impl() {
     if (lock >= 0) ::close(lock);
@@ -124,32 +141,121 @@ struct Store::Impl {
     }
     parts.clear(), checkpoints.clear();
   }
+
+  // why a film is not this one; which OpenGL draws is not known yet: each part tells
+  std::string discord_with(const Origin& there) const {
+    Origin ours = journal.origin;
+    ours.gl_version = there.gl_version, ours.gl_renderer = there.gl_renderer;
+    return discord(there, ours);
+  }
+  [[noreturn]] void refuse_other(const std::string& why) const {
+    throw media::Error(
+        fmt::format("{}: holds parts of another film: {}; --anew throws them away", folder, why));
+  }
+
+  // the parts say themselves which film they are of
+  void refuse_other_parts() const {
+    for (const auto& [take, name] : parts) {
+      std::optional<Origin> there;
+      try {
+        there = origin_in(media::read_part(at(name)).tags);
+      } catch (const media::Error&) {
+        continue;  // a damaged one is thrown away later
+      }
+      if (!there) continue;
+      if (const std::string why = discord_with(*there); !why.empty()) refuse_other(why);
+    }
+  }
+
+  // "20 of 100 frames, work of 4 shards, 12 s of work"
+  std::string held(const Journal& there) const {
+    std::vector<std::string> all;
+    std::int64_t frames = 0;
+    for (const auto& [take, name] : parts)
+      frames +=
+          std::clamp<std::int64_t>(there.origin.frames - take * there.take_frames, 0, there.take_frames);
+    if (frames > 0) all.push_back(fmt::format("{} of {} frames", frames, there.origin.frames));
+    if (there.shards > 0)
+      all.push_back(fmt::format("{} {} shards", frames > 0 ? "work of" : "the states of", there.shards));
+    if (const auto seconds = spent->before(); seconds && *seconds >= 1)
+      all.push_back(time_text(*seconds) + " of work");
+    return all.empty() ? "the beginning" : fmt::format("{}", fmt::join(all, ", "));
+  }
+
+  // throws away what an earlier process left, where that may be
+  void replace(const std::optional<Journal>& there) {
+    const bool any = !parts.empty() || !checkpoints.empty() || (there && there->shards > 0) ||
+                     spent->before().value_or(0) > kWorthKeeping;
+    if (!any) return clear();
+    if (!there)
+      throw media::Error(
+          fmt::format("{}: holds parts, and its journal.json cannot be read: --resume goes on with "
+                      "those that are of this film, --anew throws them away",
+                      folder));
+    const std::string why = discord_with(there->origin);
+    const bool much = spent->before().value_or(2 * kWorthKeeping) > kWorthKeeping;
+    const bool edited =
+        there->origin.scene_file == journal.origin.scene_file &&
+        (there->origin.scene_hash != journal.origin.scene_hash || there->origin.sets != journal.origin.sets);
+    if (there->shards > 0 || (much && !edited))
+      throw media::Error(
+          why.empty()
+              ? fmt::format("{}: holds {}: --resume goes on from there, --anew throws it away", folder,
+                            held(*there))
+              : fmt::format(
+                    "{}: holds {} of another film: {}; --anew throws it away, --resume goes on from there "
+                    "with the scene and flags that it was begun with",
+                    folder, held(*there), why));
+    if (!why.empty()) note = fmt::format("{}: replaces {} of an earlier film: {}", folder, held(*there), why);
+    clear();
+  }
+
+  // goes on with what an earlier process left
+  void go_on(std::optional<Journal>& there, bool damaged) {
+    if (there) {
+      if (const std::string why = discord_with(there->origin); !why.empty()) refuse_other(why);
+    }
+    if (there && there->take_frames == journal.take_frames) {
+      journal.shards = std::max(journal.shards, there->shards);
+      return;
+    }
+    refuse_other_parts();
+    if (damaged) note = fmt::format("{}: was damaged, and is written anew", at("journal.json"));
+    // of states nothing says that they are of this film
+    std::error_code ignored;
+    for (const auto& [step, name] : checkpoints) fs::remove(at(name), ignored);
+    checkpoints.clear(), there.reset();
+  }
 };
 
 Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 
-Store::Store(const Output& output, const Journal& journal, std::int64_t first, std::int64_t last, bool keep)
+Store::Store(const Output& output, const Journal& journal, std::int64_t first, std::int64_t last,
+             Earlier earlier)
     : impl_(std::make_unique<Impl>()) {
   Impl& it = *impl_;
   it.folder = output.parts(), it.journal = journal;
   const std::string path = it.at("journal.json");
   media::make_folder_of(path);
   it.take_lock(first, last);
-  if (keep && fs::exists(path)) {
-    const Journal there = journal_in(path);
-    // what draws is not known yet: each part tells
-    Origin ours = journal.origin;
-    ours.gl_version = there.origin.gl_version, ours.gl_renderer = there.origin.gl_renderer;
-    if (const std::string why = discord(there.origin, ours); !why.empty())
-      throw media::Error(
-          fmt::format("{}: holds parts of another film: {}; remove it to begin anew", it.folder, why));
-    it.journal.shards = std::max(journal.shards, there.shards);
-    it.look();
-    if (it.journal.shards == there.shards) return;
-  } else {
-    it.clear();
+  it.look();
+  it.spent.emplace(it.at("seconds"));
+  std::optional<Journal> there;
+  bool damaged = false;
+  try {
+    if (earlier != Earlier::discard && fs::exists(path)) there = journal_in(path);
+  } catch (const Damaged&) {
+    damaged = true;
   }
+  if (earlier == Earlier::go_on)
+    it.go_on(there, damaged);
+  else if (earlier == Earlier::replace)
+    it.replace(there);
+  else
+    it.clear();
+  it.spent->begin(earlier == Earlier::go_on ? it.spent->before().value_or(0) : 0);
+  if (earlier == Earlier::go_on && there && there->shards == it.journal.shards) return;
   const std::string words = text(it.journal);
   media::File file(path);
   file.write({reinterpret_cast<const std::uint8_t*>(words.data()), words.size()});
@@ -167,6 +273,7 @@ Store::Store(const Output& output) : impl_(std::make_unique<Impl>()) {
   it.look();
 }
 
+const std::string& Store::note() const { return impl_->note; }
 const std::string& Store::folder() const { return impl_->folder; }
 const Journal& Store::journal() const { return impl_->journal; }
 
@@ -198,6 +305,12 @@ void Store::put(std::int64_t take, const std::string& movie, const media::MovieS
     throw media::Error(whole + ": cannot rename into place: " + std::generic_category().message(errno));
   const std::lock_guard guard(impl_->mutex);
   impl_->parts[take] = name;
+  if (impl_->spent) impl_->spent->note();
+}
+
+void Store::worked() {
+  const std::lock_guard guard(impl_->mutex);
+  if (impl_->spent) impl_->spent->note();
 }
 
 std::optional<Origin> Store::drawn() const {
@@ -249,6 +362,7 @@ std::unique_ptr<sim::Run> Store::run_between(const scene::Scene& scene, std::int
 }
 
 void Store::remove() {
+  if (impl_->spent) impl_->spent->remove();
   impl_->clear();
   std::error_code ignored;
   fs::remove(impl_->at("lock"), ignored);

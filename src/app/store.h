@@ -23,20 +23,31 @@ struct Journal {
   int shards = 0;                // how many were prepared for; 0: none
 };
 
+/// What becomes of what an earlier process left of a film that is not whole.
+enum class Earlier {
+  go_on,    // it is gone on with
+  replace,  // it is thrown away where not much is lost, else that is refused
+  discard,  // it is thrown away
+};
+
 /// The folder of a film in the making, and what of it is whole: a journal, each take that is done as a part
 /// (media/part.h), checkpoints to go on from. All of it is written whole or not at all, a part's name holds
 /// the hash of its bytes, and nobody else makes the same takes at the same time: they are locked, on shared
 /// file systems too.
 class Store {
  public:
-  /// Makes or opens the folder for the takes [first, last). Of another film: what is there is thrown away, or
-  /// with `keep` it is refused. Throws media::Error, also where somebody makes these takes already.
-  Store(const Output& output, const Journal& journal, std::int64_t first, std::int64_t last, bool keep);
+  /// Makes or opens the folder for the takes [first, last). Throws media::Error: where somebody makes these
+  /// takes already; where `go_on` finds parts of another film; where `replace` would lose shards, prepared
+  /// states, or more than a minute of work, but for those of one process alone at a scene that was edited
+  /// since.
+  Store(const Output& output, const Journal& journal, std::int64_t first, std::int64_t last, Earlier earlier);
   /// Opens the folder of a film for somebody who takes all of it. Throws media::Error where there is none.
   explicit Store(const Output& output);
   ~Store();
   Store(Store&&) noexcept;
 
+  /// What is to be said of what was there: that it was replaced, or mended. Empty: nothing.
+  const std::string& note() const;
   const std::string& folder() const;
   const Journal& journal() const;
   /// The takes of shard i of n, counted from 1: [first, last).
@@ -60,6 +71,8 @@ class Store {
   std::unique_ptr<sim::Run> run_between(const scene::Scene& scene, std::int64_t since,
                                         std::int64_t until) const;
 
+  /// Some of the work is done: puts down how long it took so far.
+  void worked();
   /// Removes the folder: the film is whole.
   void remove();
 

@@ -22,9 +22,11 @@
 #include "app/options.h"
 #include "app/origin.h"
 #include "app/output.h"
+#include "app/say.h"
 #include "app/scripts.h"
 #include "app/shots.h"
 #include "app/slurm.h"
+#include "app/sweep.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "media/movie.h"
@@ -41,7 +43,7 @@ struct Flags {
   std::vector<std::string> sets, vary, measure, options;
   std::optional<std::string> out;
   int tasks = 0, at_once = 0;
-  bool dry_run = false, no_wait = false;
+  bool dry_run = false, no_wait = false, anew = false;
   ProgressKind progress = ProgressKind::automatic;
 };
 
@@ -92,17 +94,53 @@ std::string words(const std::vector<std::string>& all) {
   return line;
 }
 
+// Options of sbatch that would undo what the scripts and their submission rest on: where jobs run and in
+// which order, what an array is, where logs and exit codes lie, how SIGTERM comes.
+struct Needed {
+  std::string_view name;
+  char letter;  // 0: none
+};
+constexpr Needed kNeeded[] = {
+    {"array", 'a'},    {"chdir", 'D'},   {"dependency", 'd'}, {"error", 'e'},  {"kill-on-invalid-dep", 0},
+    {"no-requeue", 0}, {"open-mode", 0}, {"output", 'o'},     {"parsable", 0}, {"signal", 0},
+    {"test-only", 0},  {"wait", 'W'},    {"wrap", 0}};
+
+// letters of sbatch's that take no value: others may stand behind them
+constexpr std::string_view kFlags = "HOQksv";
+
+[[noreturn]] void refuse_needed(const std::string& option, std::string_view name) {
+  throw UsageError(fmt::format("-- {}: --{} is not for sbatch here: submit needs it itself{}", option, name,
+                               name == "array" ? "; --tasks and --at-once say how many" : ""));
+}
+
+// sbatch takes the beginning of a name for it: --dep
+void refuse_needed(const std::string& option) {
+  if (option.starts_with("--")) {
+    const std::string name = option.substr(2, option.find('=') - 2);
+    for (const Needed& each : kNeeded)
+      if (!name.empty() && each.name.starts_with(name)) refuse_needed(option, each.name);
+    return;
+  }
+  for (std::size_t i = 1; i < option.size(); ++i) {
+    for (const Needed& each : kNeeded)
+      if (option[i] == each.letter) refuse_needed(option, each.name);
+    if (kFlags.find(option[i]) == kFlags.npos) return;
+  }
+}
+
 // "-p debug" is one option
 std::vector<std::string> option_lines(const std::vector<std::string>& options) {
   std::vector<std::string> lines;
   for (const std::string& option : options) {
-    if (option.starts_with('-'))
+    if (option.starts_with('-')) {
+      refuse_needed(option);
       lines.push_back(shell_word(option));
-    else if (lines.empty())
+    } else if (lines.empty()) {
       throw UsageError(
           fmt::format("{}: options of sbatch stand behind --, as in -- --partition=long", option));
-    else
+    } else {
       lines.back() += " " + shell_word(option);
+    }
   }
   return lines;
 }
@@ -173,6 +211,7 @@ void sweep_work(const Flags& flags, const std::vector<std::string>& program, Wor
   const std::string ending = fs::path(out).extension().string();
   if (ending != ".csv" && ending != ".jsonl")
     throw UsageError("a sweep is shared out into a table: -o with a name that ends with .csv or .jsonl");
+  check_sweep(flags.scene, flags.sets, flags.vary, flags.measure, out);
   work.made = out;
   work.parts = out + ".parts";
   work.unit = "shards", work.size = work.errand.tasks;
@@ -193,6 +232,15 @@ void sweep_work(const Flags& flags, const std::vector<std::string>& program, Wor
 
 Work work_of(const Flags& flags, int tasks) {
   if (flags.scene == "-") throw UsageError("the tasks read the scene each for itself: name a file");
+  // the scripts' comments and #SBATCH lines would end at such a character, and what follows be commands
+  const auto refuse_controls = [](const std::string& text) {
+    const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+    if (std::any_of(text.begin(), text.end(), control))
+      throw UsageError(fmt::format("{}: has a control character, which no script can carry", text));
+  };
+  for (const std::string& text : {flags.scene, flags.out.value_or(""), fs::current_path().string()})
+    refuse_controls(text);
+  for (const std::string& option : flags.options) refuse_controls(option);
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
   std::error_code none;
   const fs::path self = fs::read_symlink("/proc/self/exe", none);
@@ -237,7 +285,8 @@ void show(const Work& work) {
   for (int i = 0; i < errand.tasks; ++i) all[std::size_t(i)] = i + 1;
   std::string after;
   const auto step = [&](const std::string& name, const std::string& script, const std::string& flags) {
-    fmt::print("# {}/{}.sbatch\n{}\n", errand.folder, name, script);
+    say(stdout, "# {}/{}.sbatch\n", errand.folder, name);
+    say_lines(stdout, script + "\n");
     return fmt::format("{}=$(sbatch --parsable{}{}{} {}/{}.sbatch)\n", name, flags, after, options,
                        shell_word(errand.folder), name);
   };
@@ -249,7 +298,7 @@ void show(const Work& work) {
   lines += step("shards", shards_script(errand), " " + array(errand, all));
   after = " --dependency=afterok:$shards --kill-on-invalid-dep=yes";
   lines += step("join", join_script(errand), "");
-  fmt::print("# and then\n{}", lines);
+  say_lines(stdout, "# and then\n" + lines);
 }
 
 std::vector<std::string> numbers(const Jobs& jobs) {
@@ -338,7 +387,7 @@ int report(const Work& work, const Folder& folder, const Jobs& jobs, const State
   line += said.empty() ? fmt::format("; its log: {}", folder.file(log))
                        : fmt::format("; the last line of {}: {}", folder.file(log), said);
   if (failed.size() > 1) line += fmt::format("; {} more failed", failed.size() - 1);
-  fmt::print(stderr, "obscura: {}; submit again does what is missing\n", line);
+  say(stderr, "obscura: {}; submit again does what is missing\n", line);
   return code && *code >= kDiffers && *code <= kDiverged ? *code : kFiles;
 }
 
@@ -346,8 +395,8 @@ int report(const Work& work, const Folder& folder, const Jobs& jobs, const State
 void tell_held(const Work& work, const States& states, std::set<std::string>& told) {
   for (const auto& [job, state] : states)
     if (slurm::held(state) && told.insert(job).second)
-      fmt::print(stderr, "obscura: {}: Slurm holds job {} ({}); scontrol release {} lets it go on\n",
-                 work.errand.made, job, state.reason, job);
+      say(stderr, "obscura: {}: Slurm holds job {} ({}); scontrol release {} lets it go on\n",
+          work.errand.made, job, state.reason, job);
 }
 
 int follow(const Work& work, const Folder& folder, const Jobs& jobs, ProgressKind kind) {
@@ -386,15 +435,15 @@ int follow(const Work& work, const Folder& folder, const Jobs& jobs, ProgressKin
 }
 
 int submit(Flags flags) {
-  int tasks = flags.tasks;
+  // what is wrong with it is told before Slurm is asked for anything
+  Work work = work_of(flags, flags.tasks);
   if (!flags.dry_run) {
-    if (const int most = slurm::last_task(); tasks > most) {
-      fmt::print(stderr, "obscura: --tasks {}: arrays have up to {} tasks here: {} it is\n", tasks, most,
-                 most);
-      tasks = most;
+    if (const int most = slurm::last_task(); flags.tasks > most) {
+      say(stderr, "obscura: --tasks {}: arrays have up to {} tasks here: {} it is\n", flags.tasks, most,
+          most);
+      work = work_of(flags, most);
     }
   }
-  const Work work = work_of(flags, tasks);
   if (flags.dry_run) {
     show(work);
     return kDone;
@@ -413,8 +462,10 @@ int submit(Flags flags) {
         fmt::format("{}: jobs of an earlier submit, not of the same, still run: scancel {} ends them",
                     errand.made, fmt::join(numbers(before), " ")));
   if (living) return follow(work, folder, before, flags.progress);
-  if (same && folder.exit("join") == 0 && fs::exists(work.made)) {
-    fmt::print("{}: is whole; without {} it is made anew\n", errand.made, folder.file("plan"));
+  if (flags.anew) {
+    fs::remove_all(work.parts);
+  } else if (same && folder.exit("join") == 0 && fs::exists(work.made)) {
+    say(stdout, "{}: is whole; without {} it is made anew\n", errand.made, folder.file("plan"));
     return kDone;
   }
   if (!same || !fs::exists(work.parts)) {
@@ -431,7 +482,8 @@ int submit(Flags flags) {
   }
   const Jobs jobs = hand_in(work, folder, flags.options);
   if (flags.no_wait) {
-    fmt::print("{}: jobs {}; submit again follows them\n", errand.made, fmt::join(numbers(jobs), " "));
+    say(stdout, "{}: jobs {}; submit again follows them\n", errand.made,
+        fmt::format("{}", fmt::join(numbers(jobs), " ")));
     return kDone;
   }
   return follow(work, folder, jobs, flags.progress);
@@ -462,6 +514,7 @@ void add_submit(CLI::App& program, int& exit) {
       .repeated();
   command.option("--measure", flags->measure, "What a sweep puts down: as for sweep").type("LIST").repeated();
   add_sets(command, flags->sets);
+  command.flag("--anew", flags->anew, "Begin anew whatever an earlier submit left, whole shards too");
   command.flag("--dry-run", flags->dry_run, "Show the scripts, and do nothing; needs no Slurm");
   command.flag("--no-wait", flags->no_wait, "Hand it in and end");
   add_progress(command, flags->progress);

@@ -1,5 +1,7 @@
 // obscura sweep: many runs that differ in the values of keys, and what is measured of each, as a table.
 
+#include "app/sweep.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
@@ -36,7 +38,7 @@ struct Flags {
   std::string scene;
   std::vector<std::string> sets, vary, measure;
   std::optional<std::string> out, format, shard, at;
-  bool resume = false;
+  bool resume = false, anew = false;
   int workers = 0;
   ProgressKind progress = ProgressKind::automatic;
 };
@@ -63,6 +65,9 @@ class Sweep {
   /// Reads the scene; run 0 must be one, and have what is asked. Throws UsageError, scene::Error.
   explicit Sweep(const Flags& flags)
       : file_(flags.scene), sets_(flags.sets), form_(form(flags)), variations_(flags.vary) {
+    if (flags.measure.empty())
+      throw UsageError(
+          "--measure says what is put down of each run, as in --measure energy.total@5,crate.position.y@max");
     for (const std::string& list : flags.measure)
       for (Question& each : questions(list)) asked_.push_back(std::move(each));
     heads_.push_back("run");
@@ -118,7 +123,7 @@ std::int64_t earlier(const Sweep& sweep, const RowFile& file, std::int64_t from,
   if (left.lines == 0) return 0;
   const std::int64_t heads = head.empty() ? 0 : 1, rows = left.lines - heads;
   const auto refuse = [&](const std::string& why) {
-    throw media::Error(fmt::format("{}: {}; without --resume it is made anew", file.name(), why));
+    throw media::Error(fmt::format("{}: {}; --anew in place of --resume throws it away", file.name(), why));
   };
   if (heads && left.first + "\n" != head) refuse("it has other columns");
   if (rows > 0 && sweep.row(from + rows - 1).line != left.last + "\n")
@@ -128,9 +133,9 @@ std::int64_t earlier(const Sweep& sweep, const RowFile& file, std::int64_t from,
 
 // all runs in one picture, or one movie
 int pictures(const Flags& flags, bool still) {
-  if (!flags.measure.empty() || flags.shard || flags.resume || flags.format)
+  if (!flags.measure.empty() || flags.shard || flags.resume || flags.anew || flags.format)
     throw UsageError(
-        fmt::format("-o {}: --measure, --shard, --resume and --format are for tables", *flags.out));
+        fmt::format("-o {}: --measure, --shard, --resume, --anew and --format are for tables", *flags.out));
   if (still != flags.at.has_value())
     throw UsageError(still ? fmt::format("-o {}: --at says of which instant (s)", *flags.out)
                            : fmt::format("-o {}: --at is for a picture, which ends in .png", *flags.out));
@@ -167,9 +172,6 @@ int sweep(Flags flags) {
   if (flags.at)
     throw UsageError(
         "--at is for a picture: -o with a name that ends in .png; of a table it is --measure NAME@SECONDS");
-  if (flags.measure.empty())
-    throw UsageError(
-        "--measure says what is put down of each run, as in --measure energy.total@5,crate.position.y@max");
   const Sweep all(flags);
 
   // the share of a shard; the first one's table has the heads, so that all of them in order are one table
@@ -178,7 +180,10 @@ int sweep(Flags flags) {
   const std::int64_t begin = from, end = shard.end(all.size());
   const std::string head = shard.number == 1 ? all.head() : "";
   if (flags.resume && !flags.out) throw UsageError("--resume needs -o: a stream is not gone on with");
-  RowFile file(flags.out, flags.resume);
+  if (flags.resume && flags.anew) throw UsageError("--resume and --anew exclude each other");
+  RowFile file(flags.out, flags.resume ? RowFile::Begin::go_on
+                          : flags.anew ? RowFile::Begin::anew
+                                       : RowFile::Begin::fresh);
   from += earlier(all, file, from, head);
   if (file.earlier().lines == 0 && !head.empty()) file.add(head);
 
@@ -225,6 +230,14 @@ int sweep(Flags flags) {
 
 }  // namespace
 
+void check_sweep(const std::string& scene, const std::vector<std::string>& sets,
+                 const std::vector<std::string>& vary, const std::vector<std::string>& measure,
+                 const std::string& out) {
+  Flags flags;
+  flags.scene = scene, flags.sets = sets, flags.vary = vary, flags.measure = measure, flags.out = out;
+  const Sweep sweep(flags);
+}
+
 void add_sweep(CLI::App& program, int& exit) {
   const Command command(program, exit, "sweep",
                         "Run a scene many times, and measure: a table, without drawing");
@@ -256,6 +269,7 @@ void add_sweep(CLI::App& program, int& exit) {
               "Of N shares of the rows the i-th; the shares' tables, one after the other, are the whole")
       .type("i/N");
   command.flag("--resume", flags->resume, "Go on with what an interrupted sweep left");
+  command.flag("--anew", flags->anew, "Begin anew whatever an interrupted sweep left");
   add_progress(command, flags->progress);
   command.footer(
       "Each row has its run's number, the values of its keys, what was measured, and the trouble it met; a "

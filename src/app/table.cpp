@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string_view>
+#include <system_error>
 
 #include "media/error.h"
+#include "scene/input.h"
 
 namespace obscura::app {
 
@@ -49,9 +50,10 @@ std::optional<std::size_t> Table::column(const std::string& name) const {
   return std::size_t(found - columns.begin());
 }
 
-Table read_table(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw media::Error(file + ": cannot be read");
+namespace {
+
+Table table_in(const std::string& file) {
+  scene::Input in(file);
   Table table;
   table.file = file;
   std::vector<bool> numeric;
@@ -98,6 +100,16 @@ Table read_table(const std::string& file) {
   }
   if (table.rows.empty()) throw media::Error(file + ": has no rows of numbers");
   return table;
+}
+
+}  // namespace
+
+Table read_table(const std::string& file) {
+  try {
+    return table_in(file);
+  } catch (const std::system_error& error) {
+    throw media::Error(fmt::format("{}: cannot be read: {}", file, error.code().message()));
+  }
 }
 
 bool same_time(double a, double b) { return std::abs(a - b) <= kInstant; }

@@ -21,6 +21,7 @@
 #include "app/github.h"
 #include "app/interrupt.h"
 #include "app/pictures.h"
+#include "app/say.h"
 #include "app/trouble.h"
 #include "media/error.h"
 #include "scene/document.h"
@@ -192,7 +193,7 @@ int verify(const Flags& flags) {
     std::string text = fmt::format("{}: {}\n", file, verdict.good ? "still true" : "no longer true");
     for (const std::string& line : verdict.lines) text += "  " + line + "\n";
     if (flags.format != Format::json)
-      fmt::print("{}", flags.format == Format::github ? github::verbatim(text) : text);
+      say_lines(stdout, flags.format == Format::github ? github::verbatim(text) : text);
     if (!verdict.good) exit = kDiffers;
     findings.all.push_back({file, text, std::move(verdict)});
   }

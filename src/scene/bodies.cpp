@@ -86,8 +86,8 @@ void add(Making<D>& making, const Fields& fields, const std::string& kind, const
                                          : kind == "ball" || kind == "capsule" ? "radius"
                                          : kind == "body"                      ? "shapes"
                                                                                : "points"),
-                            fmt::format("the {}'s moment of inertia, {} kg m^2, cannot be reckoned with",
-                                        kind, fmt::join(body.inertia, ", ")));
+                            fmt::format("the {}'s moment of inertia is too {} to be reckoned with", kind,
+                                        body.inertia.array().isInf().any() ? "large" : "small"));
     const sim::Turn<D> turn = sim::composed<D>(start.turn, seat.axes);
     if (rotates(making, fields, kind)) {
       state.turn.push_back(turn);

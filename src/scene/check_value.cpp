@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "draw/color.h"
+#include "scene/utf8.h"
 #include "sim/rational.h"
 
 namespace obscura::scene {
@@ -81,6 +82,8 @@ class Values : private Faults {
         return trails(node, key);
       case Form::name:
         return name(node, key);
+      case Form::label:
+        return label(node, key);
       case Form::things:
         return things(node, key);
       case Form::pairs:
@@ -321,6 +324,11 @@ class Values : private Faults {
       return wrong(
           node, fmt::format("'{}': {} is a word of the language; choose another", key.last(), quoted(text)));
     return true;
+  }
+
+  bool label(const Node& node, const Key& key) {
+    if (!node.is_text()) return mistyped(node, key);
+    return is_path_name(node.text()) || instead(node, key, kPathName, quoted(node.text()));
   }
 
   bool things(const Node& node, const Key& key) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "scene/utf8.h"
+
 namespace obscura::scene {
 
 namespace {
@@ -32,9 +34,12 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string one_line(std::string_view text) {
-  std::string line(text);
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+  std::string line;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t bytes = code_point(text.substr(i));
+    const std::string_view point = text.substr(i, std::max<std::size_t>(1, bytes));
+    line += bytes == 0 ? "?" : is_control(point) ? " " : point;
+    i += point.size();
   }
   return line;
 }

@@ -37,7 +37,8 @@ class Complaints {
   std::vector<std::pair<Place, std::string>> found_;
 };
 
-/// With a space for each control byte: what is said of a file is one line, and no terminal's command.
+/// With a space for each control character and a question mark for each byte that is not UTF-8: what is said
+/// of a file is one line, and no terminal's command.
 std::string one_line(std::string_view text);
 
 /// "'ball'", cut where it is long: a word of the scene as a complaint quotes it.

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
 #include <iterator>
+#include <system_error>
+
+#include "scene/complaints.h"
+#include "scene/input.h"
+#include "scene/utf8.h"
 
 namespace obscura::scene {
 
@@ -34,26 +37,6 @@ struct Cursor {
     }
   }
 };
-
-// how many bytes the code point at the front takes, 0 where it is not UTF-8
-std::size_t code_point(std::string_view s) {
-  const auto at = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
-  const auto tail = [&](std::size_t i) { return (at(i) & 0xC0u) == 0x80u; };
-  const unsigned c = at(0);
-  if (c < 0x80) return 1;
-  if (c >= 0xC2 && c <= 0xDF) return tail(1) ? 2 : 0;
-  if (c >= 0xE0 && c <= 0xEF) {
-    if (!tail(1) || !tail(2)) return 0;
-    const unsigned point = (c & 0x0Fu) << 12 | (at(1) & 0x3Fu) << 6 | (at(2) & 0x3Fu);
-    return point >= 0x800 && (point < 0xD800 || point > 0xDFFF) ? 3 : 0;
-  }
-  if (c >= 0xF0 && c <= 0xF4) {
-    if (!tail(1) || !tail(2) || !tail(3)) return 0;
-    const unsigned point = (c & 0x07u) << 18 | (at(1) & 0x3Fu) << 12 | (at(2) & 0x3Fu) << 6 | (at(3) & 0x3Fu);
-    return point >= 0x10000 && point <= 0x10FFFF ? 4 : 0;
-  }
-  return 0;
-}
 
 void refuse_what_is_not_text(std::string_view text, const std::string& file) {
   Cursor here;
@@ -150,13 +133,6 @@ Node copied(const toml::node& from) {
   return node;
 }
 
-// on one line
-std::string lined(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  return text;
-}
-
 // the parser's first sentence says where it was, its second what it met
 std::string lowered(std::string_view description) {
   std::string text(description);
@@ -232,15 +208,75 @@ std::string forgotten(std::string_view text, int line, int column) {
   return {};
 }
 
-std::string slurp(std::istream& in, const std::string& file) {
+std::string slurp(const std::string& file) {
   std::string text(kMostBytes + 1, '\0');
-  in.read(text.data(), std::streamsize(text.size()));
-  text.resize(std::size_t(in.gcount()));
-  if (in.bad()) refuse(file, 0, 0, "cannot be read");
+  try {
+    Input in(file);
+    in.read(text.data(), std::streamsize(text.size()));
+    text.resize(std::size_t(in.gcount()));
+  } catch (const std::system_error& error) {
+    refuse(file, 0, 0, "cannot be read: " + error.code().message());
+  }
   if (text.size() > kMostBytes)
     refuse(file, 0, 0,
            fmt::format("is longer than {} MiB; copies say many bodies in one line", kMostBytes >> 20));
   return text;
+}
+
+std::string_view trimmed(std::string_view s) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!s.empty() && blank(s.front())) s.remove_prefix(1);
+  while (!s.empty() && blank(s.back())) s.remove_suffix(1);
+  return s;
+}
+
+// a key as it means the same however it is typed: without blanks and quotes
+std::string bare(std::string_view key) {
+  std::string name;
+  for (const char c : key)
+    if (c != ' ' && c != '\t' && c != '"' && c != '\'') name += c;
+  return name;
+}
+
+// the name in a table's header: "[look]", "[[ room.walls ]]"
+std::string header_name(std::string_view line) {
+  const std::size_t from = line.find_first_not_of("[ \t"), to = line.find(']');
+  return from < to && to != line.npos ? bare(line.substr(from, to - from)) : std::string();
+}
+
+// a table or a key that is there already, and where; empty where the parser met something else
+std::string repeated(std::string_view text, int line, std::string_view description) {
+  const std::size_t at = description.find("cannot redefine existing "), open = description.find('\'', at),
+                    close = description.rfind('\'');
+  if (at == description.npos || open == description.npos || close == open) return {};
+  std::vector<std::string_view> lines;
+  for (std::size_t i = 0; i < text.size() && int(lines.size()) < line;) {
+    const std::size_t end = std::min(text.find('\n', i), text.size());
+    lines.push_back(trimmed(text.substr(i, end - i)));
+    i = end + 1;
+  }
+  if (line < 1 || int(lines.size()) < line) return {};
+  const std::string_view here = lines.back();
+  const bool header = here.starts_with('[');
+  const std::string name = header ? header_name(here) : bare(description.substr(open + 1, close - open - 1));
+  const bool other_kind = description.substr(close).find(" as ") != description.npos;
+
+  // the last one before: of a key within the same table
+  int first = 0;
+  for (int i = line - 1; i >= 1 && first == 0; --i) {
+    const std::string_view one = lines[std::size_t(i - 1)];
+    if (one.starts_with('[')) {
+      if (!header) break;
+      if (header_name(one) == name) first = i;
+    } else if (const std::size_t equals = one.find('='); equals != one.npos) {
+      const std::string key = bare(one.substr(0, equals));
+      if (key == name || key.starts_with(name + ".")) first = i;
+    }
+  }
+  const std::string where = first > 0 ? fmt::format("; the first is in line {}", first) : "";
+  if (!header) return fmt::format("{} is given a second time{}", scene::quoted(name), where);
+  return fmt::format("{} is given a second time{}{}", one_line(here.substr(0, here.rfind(']') + 1)), where,
+                     other_kind ? "" : ": put its keys together");
 }
 
 }  // namespace
@@ -267,7 +303,7 @@ std::string described(const Node& node) {
                : fmt::format("{}", node.number());
   if (const bool* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
   if (node.is_text())
-    return node.text().size() <= 40 ? fmt::format("the string \"{}\"", lined(node.text())) : "a string";
+    return node.text().size() <= 40 ? fmt::format("the string \"{}\"", one_line(node.text())) : "a string";
   if (node.is_list()) return "a list";
   if (node.is_table()) return "a table";
   return "a date or time";
@@ -285,21 +321,21 @@ Node document(std::string_view text, const std::string& file) {
     return top;
   } catch (const toml::parse_error& error) {
     const Place place = place_of(error.source());
+    if (const std::string twice = repeated(text, place.line, error.description()); !twice.empty())
+      refuse(file, place.line, place.column, twice);
     const std::string likely = forgotten(text, place.line, place.column);
     refuse(file, place.line, place.column,
-           "not TOML: " + lined(likely.empty() ? lowered(error.description()) : likely));
+           "not TOML: " + one_line(likely.empty() ? lowered(error.description()) : likely));
   }
 }
 
 std::string contents(const std::string& file) {
-  if (file == "-") return slurp(std::cin, file);
+  if (file == "-") return slurp(file);
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found) refuse(file, 0, 0, "no such file");
   if (std::filesystem::is_directory(status)) refuse(file, 0, 0, "is a folder, not a scene");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(file, 0, 0, "cannot be opened");
-  return slurp(in, file);
+  return slurp(file);
 }
 
 }  // namespace obscura::scene

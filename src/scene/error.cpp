@@ -1,5 +1,7 @@
 #include "scene/error.h"
 
+#include "scene/complaints.h"
+
 namespace obscura::scene {
 
 namespace {
@@ -16,8 +18,8 @@ std::string join(const std::vector<Complaint>& all) {
 }  // namespace
 
 std::string Complaint::text() const {
-  if (line <= 0) return file + ": " + message;
-  return file + ':' + std::to_string(line) + ':' + std::to_string(column) + ": " + message;
+  const std::string at = line <= 0 ? "" : ':' + std::to_string(line) + ':' + std::to_string(column);
+  return one_line(file + at + ": " + message);
 }
 
 Error::Error(std::vector<Complaint> all) : std::runtime_error(join(all)), complaints(std::move(all)) {}

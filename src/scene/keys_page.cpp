@@ -398,6 +398,7 @@ std::string type(const Key& key) {
     case Form::text:
       return "string";
     case Form::name:
+    case Form::label:
     case Form::thing:
       return "name";
     case Form::things:

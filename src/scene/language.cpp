@@ -305,7 +305,7 @@ std::vector<Key> rows() {
 
       {.path = "camera", .form = cameras,
        .doc = "What the picture shows. Left out: the room, as large as it fits. In space, `[[camera]]`s show one run beside each other."},
-      {.path = "camera.name", .form = text, .absent = "its view", .dimension = 3, .doc = "Over its part of the picture; what `--camera` calls it.",
+      {.path = "camera.name", .form = label, .absent = "its view", .dimension = 3, .doc = "Over its part of the picture; what `--camera` calls it, and `{camera}` in the name of a file.",
        .example = "\"from above\""},
       {.path = "camera.view", .form = choice, .fallback = "\"slant\"", .dimension = 3, .choices = {"slant", "side", "front", "top"},
        .doc = "Where it stands, unless other keys say otherwise. `side` and `slant` are the explosion paper's: from the front and almost level, and from the right and above.",

@@ -85,7 +85,9 @@ void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaint
             "'{}' and '{}' overlap by {:.3g} m at the start{}; move them apart, or let them be pushed: "
             "[physics] overlap = \"separate\"",
             model.bodies[std::size_t(its.a)].name, model.bodies[std::size_t(its.b)].name, its.depth,
-            its.more > 0 ? fmt::format(", and {} more pairs do", its.more) : ""));
+            its.more == 0   ? ""
+            : its.more == 1 ? ", and another pair does"
+                            : fmt::format(", and {} more pairs do", its.more)));
   }
 }
 

@@ -82,6 +82,11 @@ Json value(const Key& key) {
       return list_of(string, 1, 0);
     case Form::name:
       return {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_-]*$"}};
+    case Form::label:
+      return {
+          {"type", "string"},
+          {"pattern",
+           R"(^[^\u0000-\u001f\u007f-\u009f/\\:*?"<>|%{}. -]([^\u0000-\u001f\u007f-\u009f/\\:*?"<>|%{}]*[^\u0000-\u001f\u007f-\u009f/\\:*?"<>|%{}. ])?$)"}};
     case Form::rational:
       return any_of({number, {{"type", "string"}, {"pattern", "^[0-9.]+(/[0-9.]+)?$"}}});
     case Form::speeds:

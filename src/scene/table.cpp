@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "scene/utf8.h"
+
 namespace obscura::scene {
 
 namespace {
@@ -155,6 +157,8 @@ std::string expected(const Key& key, int dimension) {
       return "a string";
     case Form::name:
       return "a name: a string of letters, digits, _ and -";
+    case Form::label:
+      return kPathName;
     case Form::rational:
       return "a number" + of + ", or a fraction such as \"30000/1001\"";
     case Form::choice:

@@ -20,6 +20,7 @@ enum class Form {
   boolean,
   text,
   name,      // of a thing: letters, digits, _ and -
+  label,     // words to be shown that become part of a path too (scene/utf8.h)
   rational,  // a number, or "30000/1001": where time is exact
   choice,
   choices,  // one word, a list of words

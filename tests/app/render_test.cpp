@@ -62,6 +62,21 @@ TEST_F(Render, TheStateAtFiveSecondsIsOneForAllRatesSizesAndCameras) {
   EXPECT_EQ(states["states"][2]["hash"], hash);
 }
 
+TEST_F(Render, ADraftTakesPresetsOnlyWhereThereAreSome) {
+  scene(kCrateAndBall);
+  for (const char* out : {"a.webm", "a.mp4", "a.gif", "a.mkv"}) {
+    const Outcome run =
+        obscura(std::string("render scene.toml --draft --size 96x54 --to 0.2 --progress none -o ") + out);
+    EXPECT_EQ(run.exit, 0) << run.err;
+  }
+  ASSERT_EQ(obscura("render scene.toml --preset ultrafast --fps 30 --size 96x54 --to 0.2 -o b.mp4").exit, 0);
+  EXPECT_EQ(contents(path("a.mp4")), contents(path("b.mp4")));
+  // one that was given is still told
+  const Outcome run = obscura("render scene.toml --draft --preset slow --size 96x54 -o b.webm");
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_NE(run.err.find("presets are those of libx264 and libx265"), std::string::npos) << run.err;
+}
+
 TEST_F(Render, TwiceGivesTheSameBytesOnOneWorkerAndThree) {
   scene(kRoom);
   for (const char* flags : {"a.mp4 -j 1", "b.mp4 -j 3", "c.mp4 -j 3"}) {

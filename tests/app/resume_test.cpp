@@ -156,9 +156,9 @@ TEST_F(Resume, IsRefusedForAnotherFilm) {
   const Outcome size = obscura(command + " --resume --theme screen");
   EXPECT_EQ(size.exit, 4);
   EXPECT_NE(size.err.find("the theme is paper there, and screen here"), std::string::npos) << size.err;
-  // what was there is there still, and a film from the beginning takes its place
+  // what was there is there still, and a film from the beginning takes its place where that is asked for
   EXPECT_EQ(parts_in(path("film.mp4.parts")), 2);
-  EXPECT_EQ(obscura(command + " --set crate.mass=3").exit, 0);
+  EXPECT_EQ(obscura(command + " --set crate.mass=3 --anew").exit, 0);
 }
 
 TEST_F(Resume, MendsADamagedPart) {

@@ -87,6 +87,7 @@ TEST(Shots, OfAFilmThatChangesItsSpeedAllFramesAndNoOthersLieWithin) {
 }
 
 TEST(Instants, ListsAndRangesAreExactAndForwards) {
+  EXPECT_THROW(instants("1:0:0.1"), UsageError);
   const auto range = instants("0:1:0.1");
   ASSERT_EQ(range.size(), 11u);
   EXPECT_EQ(range[3], (Rational{3, 10}));

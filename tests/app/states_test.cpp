@@ -54,6 +54,37 @@ TEST_F(States, NumbersReadBackToTheBit) {
   EXPECT_EQ(std::strtod(cells[13].c_str(), nullptr), x);
 }
 
+TEST_F(States, GoIntoAFileWhoseEndingIsTheFormat) {
+  scene(kFlight);
+  const std::string csv = obscura("states scene.toml --every 1 --format csv").out,
+                    json = obscura("states scene.toml --every 1").out;
+  const Outcome run = obscura("states scene.toml --every 1 -o new/folder/a.csv");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(contents(path("new/folder/a.csv")), csv);
+  EXPECT_EQ(obscura("states scene.toml --every 1 -o a.json").exit, 0);
+  EXPECT_EQ(contents(path("a.json")), json);
+  EXPECT_EQ(obscura("states scene.toml --every 1 -o a.txt --format csv").exit, 0);
+  EXPECT_EQ(contents(path("a.txt")), csv);
+  EXPECT_EQ(obscura("states scene.toml --every 1 -o -").out, json);
+  EXPECT_EQ(obscura("states scene.toml -o a.png").exit, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+  // of a run that cannot go on there is no file
+  scene(kTorn, "torn.toml");
+  EXPECT_EQ(obscura("states torn.toml -o torn.csv").exit, 6);
+  EXPECT_FALSE(std::filesystem::exists(path("torn.csv")));
+}
+
+TEST_F(States, ARangeThatRunsBackwardsIsRefused) {
+  scene(kFlight);
+  const Outcome run = obscura("states scene.toml --at 1:0:0.1");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_EQ(run.out, "");
+  EXPECT_NE(run.err.find("the range 1:0:0.1 runs backwards: expected from:to:stride"), std::string::npos)
+      << run.err;
+  EXPECT_EQ(obscura("states scene.toml --at 1:1:0.1").exit, 0);
+}
+
 TEST_F(States, CsvHasOneRowAnInstantUnderThePathsOfTheLanguage) {
   scene(kFlight);
   const Outcome run = obscura("states scene.toml --every 0.1 --format csv");

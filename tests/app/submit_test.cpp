@@ -1,3 +1,5 @@
+#include <gmock/gmock.h>
+
 #include "where.h"
 #include "with_slurm.h"
 
@@ -32,6 +34,71 @@ TEST_F(Submit, RefusesWhatCannotBeSharedOut) {
   const Outcome none = shell("PATH=/nowhere " OBSCURA_BINARY " submit scene.toml --tasks 4");
   EXPECT_EQ(none.exit, 4);
   EXPECT_NE(none.err.find("no Slurm"), std::string::npos) << none.err;
+}
+
+TEST_F(Submit, TellsWhatIsWrongWithASweepBeforeItAsksSlurm) {
+  scene(kRoom);
+  const std::string submit = "submit scene.toml --tasks 4 -o a.csv ";
+  for (const auto& [flags, told] : {std::pair{"--measure nobody.position.x@1", "nobody"},
+                                    {"--measure hash", "hash"},
+                                    {"--vary seed=1:3", "--measure says what is put down of each run"},
+                                    {"--vary nobody.mass=1,2 --measure hash@end", "nobody"},
+                                    {"--vary seed=3:1 --measure hash@end", "runs backwards"},
+                                    {"--vary seed=1:3 --measure hash@end,hash@end", "two columns"}}) {
+    for (const char* how : {"--dry-run", "--no-wait"}) {
+      const Outcome run = shell("PATH=/usr/bin:/bin; " OBSCURA_BINARY " " + submit + how + " " + flags);
+      EXPECT_THAT(run.exit, testing::AnyOf(2, 3)) << flags;
+      EXPECT_THAT(run.err, testing::HasSubstr(told)) << flags;
+      EXPECT_EQ(run.out, "");
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("a.csv.slurm")));
+}
+
+TEST_F(Submit, RefusesOptionsOfSbatchThatItNeedsItself) {
+  scene(kRoom);
+  const std::string submit = "submit scene.toml --tasks 4 --dry-run -- ";
+  for (const auto& [option, name] : {std::pair{"--array=1-3", "--array"},
+                                     {"-a 1-3", "--array"},
+                                     {"-a1-3", "--array"},
+                                     {"--arr=1", "--array"},
+                                     {"-p debug --dependency=afterok:1", "--dependency"},
+                                     {"--dep afterok:1", "--dependency"},
+                                     {"-d afterok:1", "--dependency"},
+                                     {"-Ho out", "--output"},
+                                     {"--output=a.log", "--output"},
+                                     {"-e err", "--error"},
+                                     {"-D /tmp", "--chdir"},
+                                     {"--chdir /tmp", "--chdir"},
+                                     {"--wrap=true", "--wrap"},
+                                     {"-W", "--wait"},
+                                     {"--signal=B:USR1", "--signal"},
+                                     {"--no-requeue", "--no-requeue"},
+                                     {"--parsable", "--parsable"},
+                                     {"--test-only", "--test-only"},
+                                     {"--open-mode=truncate", "--open-mode"}}) {
+    const Outcome run = obscura(submit + option);
+    EXPECT_EQ(run.exit, 2) << option;
+    EXPECT_THAT(run.err,
+                testing::HasSubstr(std::string(name) + " is not for sbatch here: submit needs it itself"))
+        << option << run.err;
+  }
+  for (const char* option :
+       {"-p debug", "-pdebug", "--partition=a", "--hold", "-H", "--exclude=a", "--export=ALL",
+        "--wait-all-nodes=1", "-J name", "-HJd", "--mem=4G", "-t 1:00", "--requeue", "-c 2"}) {
+    const Outcome run = obscura(submit + option);
+    EXPECT_EQ(run.exit, 0) << option << run.err;
+  }
+}
+
+TEST_F(Submit, WritesNoCommandsThatANameBringsAlong) {
+  scene(kRoom);
+  for (const char* arguments :
+       {"-o \"$(printf 'a\\ntouch evil\\n.mp4')\"", "-- \"$(printf -- '--comment=a\\ntouch evil')\""}) {
+    const Outcome run = obscura(std::string("submit scene.toml --tasks 4 --dry-run ") + arguments);
+    EXPECT_EQ(run.exit, 2) << run.out;
+    EXPECT_THAT(run.err, testing::HasSubstr("has a control character"));
+  }
 }
 
 class Slurm : public WithSlurm {};

@@ -126,6 +126,13 @@ TEST(Complaints, TimesAreExactOrRefused) {
           "of whole numbers up to a million");
 }
 
+TEST(Complaints, WhatIsTooSmallOrTooLargeToTurnSaysWhich) {
+  refused("[[box]]\nsize = [1e-200, 1e-200]\nposition = [1, 1]",
+          "a.toml:2:8: the box's moment of inertia is too small to be reckoned with");
+  refused("[[box]]\nsize = [1e-170, 1e-170]\nposition = [1, 1]\nmass = 1",
+          "a.toml:2:8: the box's moment of inertia is too small to be reckoned with");
+}
+
 TEST(Complaints, WordsComeFromTheirList) {
   refused("[look]\ntheme = \"papr\"",
           "a.toml:2:9: 'theme': expected one of paper, screen, got 'papr'; did you mean 'paper'?");
@@ -213,6 +220,10 @@ TEST(Complaints, OverlapsNameThePairAndTheDepth) {
           "a.toml:10:12: 'a' and 'b' overlap by 0.1 m at the start; move them apart, or let them be pushed: "
           "[physics] "
           "overlap = \"separate\"");
+  refused(
+      kContact + "[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 3, offset = [0.3, 0] }",
+      "a.toml:5:12: 'ball[0]' and 'ball[1]' overlap by 0.1 m at the start, and another pair does; move them "
+      "apart, or let them be pushed: [physics] overlap = \"separate\"");
   refused(
       kContact + "[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 4, offset = [0.3, 0] }",
       "a.toml:5:12: 'ball[0]' and 'ball[1]' overlap by 0.1 m at the start, and 2 more pairs do; move them "

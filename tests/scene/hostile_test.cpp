@@ -103,13 +103,33 @@ TEST(Hostile, WhatIsFarTooFastIsStepped) {
 TEST(Hostile, WhatIsNotTomlIsOneLine) {
   EXPECT_THAT(complaint("title == 1"), StartsWith("a.toml:1:8: not TOML: "));
   EXPECT_THAT(complaint("[room"), StartsWith("a.toml:1:6: not TOML: "));
-  EXPECT_THAT(complaint("[room]\n[room]"), StartsWith("a.toml:2:1: not TOML: "));
-  for (const std::string text : {"title = 1\ntitle = 2", "a = [1, 2", "a = \"b",
-                                 "seed = 99999999999999999999", "= 1", "a = 1 b = 2"}) {
+  for (const std::string text :
+       {"a = [1, 2", "a = \"b", "seed = 99999999999999999999", "= 1", "a = 1 b = 2"}) {
     const std::string line = complaint(text);
     EXPECT_THAT(line, HasSubstr("not TOML")) << text;
     EXPECT_EQ(line.find('\n'), std::string::npos);
   }
+}
+
+TEST(Hostile, WhatIsGivenTwiceIsNoSyntaxErrorAndSaysWhereItWasFirst) {
+  EXPECT_EQ(complaint("[room]\n[room]"),
+            "a.toml:2:1: [room] is given a second time; the first is in line 1: put its keys together");
+  EXPECT_EQ(
+      complaint(
+          "title = \"[look]\"\n[look]\ntheme = \"paper\"\n[room]\n\n [ \"look\" ] # more\ncaption = true"),
+      "a.toml:6:2: [ \"look\" ] is given a second time; the first is in line 2: put its keys together");
+  EXPECT_EQ(complaint("[look]\n[[look]]"),
+            "a.toml:2:1: [[look]] is given a second time; the first is in line 1");
+  EXPECT_EQ(complaint("[[box]]\n[[box]]\n[box]"),
+            "a.toml:3:1: [box] is given a second time; the first is in line 2");
+  EXPECT_EQ(complaint("look.theme = \"paper\"\n[look]\ncaption = true"),
+            "a.toml:2:1: [look] is given a second time; the first is in line 1: put its keys together");
+  EXPECT_EQ(complaint("title = 1\nseed = 1\ntitle = 2"),
+            "a.toml:3:9: 'title' is given a second time; the first is in line 1");
+  // of the same table, not of the one before
+  EXPECT_EQ(complaint("[[box]]\nmass = 1\n[[box]]\nsize = [1, 1]\nmass = 1\nmass = 2"),
+            "a.toml:6:8: 'mass' is given a second time; the first is in line 5");
+  EXPECT_EQ(complaint("camera = { width = 1, width = 2 }"), "a.toml:1:31: 'width' is given a second time");
 }
 
 TEST(Hostile, WhatIsForgottenIsNamed) {

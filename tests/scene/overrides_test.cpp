@@ -105,7 +105,7 @@ TEST(Overrides, AreCheckedAsTheFileIs) {
       "--set =3: is not a path; expected one such as crate.elasticity, room.gravity or ball[3].position.y");
   refused({"seed="}, "--set seed=: expected a value after =");
   refused({"room.size=[1"}, "--set room.size=[1: not TOML: a bracket is opened here and not closed");
-  refused({"seed=1\nduration=2"}, "--set seed=1\nduration=2: expected one value after =");
+  refused({"seed=1\nduration=2"}, "--set seed=1 duration=2: expected one value after =");
   refused({"crate.position.z=1"}, "--set crate.position.z=1: a list has no 'z'; expected x or y");
   refused({"seed.x=1"}, "--set seed.x=1: 'x' is asked of 0, which is no table");
   refused({"crate=3"}, "--set crate=3: expected a key of 'crate', such as crate.position=...");

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+namespace obscura::app {
+
+/// Work of so many seconds is not thrown away without being asked.
+inline constexpr double kWorthKeeping = 60;
+
+/// How long was worked at a thing that is not whole yet, in a small file beside it: what says whether it may
+/// be thrown away. That it cannot be written stops nobody's work.
+class Spent {
+ public:
+  /// What an earlier process put down in the file.
+  explicit Spent(std::string path);
+  ~Spent();
+  Spent(const Spent&) = delete;
+  Spent& operator=(const Spent&) = delete;
+
+  /// Of earlier processes, s; none where they did not say.
+  std::optional<double> before() const { return before_; }
+  /// Work begins: from now on the time is counted, on top of `before`.
+  void begin(double before);
+  /// Puts down how long it is by now, once a second.
+  void note();
+  /// The file goes: the thing is whole, or gone.
+  void remove();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void write();
+
+  std::string path_;
+  std::optional<double> before_;
+  bool counting_ = false;
+  Clock::time_point began_, written_;
+};
+
+}  // namespace obscura::app

@@ -1,0 +1,44 @@
+// What an end that is asked for ends.
+
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+using Interrupt = Program;
+
+// starts a command that reads `pipe`, waits until it heeds SIGTERM, sends one, and lets the pipe end
+std::string interrupted_at(const std::string& command) {
+  return "mkfifo pipe; " + command +
+         " & p=$!; exec 3>pipe; printf 'what is no scene, nor a table' >&3;"
+         // SIGTERM is the 15th bit of the signals that it catches
+         " until [ $(( 0x$(sed -n 's/^SigCgt:[[:space:]]*//p' /proc/$p/status) >> 14 & 1 )) = 1 ]; do sleep "
+         "0.01; done;"
+         " kill -TERM $p; exec 3>&-; wait $p; echo $?";
+}
+
+TEST_F(Interrupt, TheFirstSigtermEndsAReadOfAnIdlePipe) {
+  for (const char* command : {"check - <pipe", "check pipe", "render scene.toml --states pipe -o a.mp4"}) {
+    scene(kCrateAndBall);
+    std::filesystem::remove(path("pipe"));
+    const Outcome run = shell(interrupted_at(std::string(OBSCURA_BINARY " ") + command));
+    EXPECT_EQ(run.out, "130\n") << command << run.err;
+    EXPECT_EQ(run.err, "") << command;
+  }
+}
+
+TEST_F(Interrupt, ASceneIsReadFromAPipeToItsEnd) {
+  scene(kCrateAndBall);
+  std::string as_file = obscura("states scene.toml --at 0.5").out;
+  for (const char* command :
+       {"cat scene.toml | " OBSCURA_BINARY " states - --at 0.5",
+        "mkfifo pipe; { cat scene.toml >pipe & } ; " OBSCURA_BINARY " states pipe --at 0.5"}) {
+    const Outcome run = shell(command);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    EXPECT_EQ(run.out.substr(run.out.find("\"states\"")), as_file.substr(as_file.find("\"states\"")))
+        << command;
+  }
+}
+
+}  // namespace
+}  // namespace obscura::app
