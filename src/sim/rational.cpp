@@ -34,6 +34,49 @@ Rational nearest(Wide num, Wide den) {
   return *reduce(num, den);
 }
 
+// The simplest fraction of [a, b] = [a_num / a_den, b_num / b_den], 0 < a <= b: the first of the Stern-Brocot
+// tree, found by the continued fractions of both ends as far as they agree.
+std::optional<Rational> simplest(Wide a_num, Wide a_den, Wide b_num, Wide b_den) {
+  const Wide whole = a_num / a_den, rest = a_num % a_den;
+  if (rest == 0) return reduce(whole, 1);
+  if ((whole + 1) * b_den <= b_num) return reduce(whole + 1, 1);
+  const auto below = simplest(b_den, b_num - whole * b_den, a_den, rest);
+  if (!below || whole > kMost) return {};
+  return reduce(whole * below->num + below->den, below->num);
+}
+
+// the simplest fraction whose nearest double is x; none where its ends do not fit
+std::optional<Rational> simplest(double x) {
+  int exponent = 0;
+  const double mantissa = std::frexp(std::abs(x), &exponent);
+  // |x| = m / 2^k, with ends half a unit of m away
+  const Wide m = Wide(std::ldexp(mantissa, 53));
+  const int k = 53 - exponent;
+  if (x == 0 || k > 110 || k < 0) return {};
+  const Wide den = Wide(1) << (k + 1);
+  const auto found = simplest(2 * m - 1, den, 2 * m + 1, den);
+  if (!found || value(*found) != std::abs(x)) return {};
+  return x < 0 ? Rational{-found->num, found->den} : *found;
+}
+
+// whether a decimal has a fraction and so many digits that it is a double which was printed
+bool printed(std::string_view s) {
+  constexpr std::size_t kDigits = 15;
+  std::size_t digits = 0, zeros = 0;
+  bool fraction = false;
+  for (const char c : s) {
+    if (c == 'e' || c == 'E') {
+      fraction = true;
+      break;
+    }
+    if (c == '.') fraction = true;
+    if (c < '0' || c > '9' || (c == '0' && digits == 0)) continue;
+    ++digits;
+    zeros = c == '0' ? zeros + 1 : 0;
+  }
+  return fraction && digits - zeros >= kDigits;
+}
+
 // an unsigned or signed decimal with an optional exponent, exactly
 std::optional<Rational> parse_decimal(std::string_view s) {
   bool negative = false;
@@ -80,7 +123,16 @@ Rational rational(std::int64_t num, std::int64_t den) { return nearest(num, den)
 
 std::optional<Rational> parse_rational(std::string_view text) {
   const std::size_t slash = text.find('/');
-  if (slash == std::string_view::npos) return parse_decimal(text);
+  if (slash == std::string_view::npos) {
+    const auto exact = parse_decimal(text);
+    if (!printed(text)) return exact;
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double x = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+    if (error != std::errc() || end != text.data() + text.size()) return exact;
+    const auto found = simplest(x);
+    return found ? found : exact;
+  }
   const auto num = parse_decimal(text.substr(0, slash));
   const auto den = parse_decimal(text.substr(slash + 1));
   if (!num || !den || den->num == 0) return {};
@@ -92,7 +144,7 @@ std::optional<Rational> from_double(double x) {
   char digits[64];
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, x);
   if (error != std::errc()) return {};
-  return parse_decimal({digits, std::size_t(end - digits)});
+  return parse_rational({digits, std::size_t(end - digits)});
 }
 
 double value(Rational r) { return double(r.num) / double(r.den); }

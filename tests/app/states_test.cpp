@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -83,6 +84,32 @@ TEST_F(States, ARangeThatRunsBackwardsIsRefused) {
   EXPECT_NE(run.err.find("the range 1:0:0.1 runs backwards: expected from:to:stride"), std::string::npos)
       << run.err;
   EXPECT_EQ(obscura("states scene.toml --at 1:1:0.1").exit, 0);
+}
+
+TEST_F(States, TimesThatItPrintsItTakesBack) {
+  scene(kCrateAndBall);
+  for (const char* every : {"1/60", "1/7", "0.1", "1001/30000", "1/300", "0.0123"}) {
+    const Outcome printed = obscura(std::string("states scene.toml --format csv --every ") + every);
+    ASSERT_EQ(printed.exit, 0) << every;
+    std::istringstream lines(printed.out);
+    std::string line, times;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) times += (times.empty() ? "" : ",") + line.substr(0, line.find(','));
+    const Outcome again = obscura("states scene.toml --format csv --at " + times);
+    EXPECT_EQ(again.out, printed.out) << every << again.err;
+  }
+  // a measure's time is one too: when the crate is highest
+  const Outcome when =
+      obscura("sweep scene.toml --vary seed=1 --measure crate.position.y@argmax,crate.position.y@max");
+  std::istringstream cells(when.out.substr(when.out.find('\n') + 1));
+  std::string run, seed, t, most;
+  for (std::string* cell : {&run, &seed, &t, &most}) std::getline(cells, *cell, ',');
+  const auto json = nlohmann::json::parse(obscura("states scene.toml --at " + t).out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << t << when.err;
+  for (const auto& body : json["states"][0]["bodies"]) {
+    if (body["name"] != "crate") continue;
+    EXPECT_EQ(body["position"][1].get<double>(), std::stod(most));
+  }
 }
 
 TEST_F(States, CsvHasOneRowAnInstantUnderThePathsOfTheLanguage) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace obscura::sim {
@@ -28,6 +29,31 @@ TEST(Rational, IsNotReadFromWhatIsNoNumber) {
                            "99999999999999999999"}) {
     EXPECT_FALSE(parse_rational(text)) << '"' << text << '"';
   }
+}
+
+TEST(Rational, OfADecimalAsADoubleIsPrintedIsTheFractionThatItWas) {
+  EXPECT_EQ(parse_rational("0.016666666666666666"), (Rational{1, 60}));
+  EXPECT_EQ(parse_rational("0.0033333333333333335"), (Rational{1, 300}));
+  EXPECT_EQ(parse_rational("0.10000000000000001"), (Rational{1, 10}));
+  EXPECT_EQ(parse_rational("-5.016666666666667"), (Rational{-301, 60}));
+  EXPECT_EQ(parse_rational("6.6666666666666669e-06"), (Rational{1, 150000}));
+  EXPECT_EQ(from_double(59.94005994005994), (Rational{60000, 1001}));
+  // every frame and every step of an hour, as states prints them
+  for (const Rational rate : {Rational{60, 1}, Rational{30000, 1001}, Rational{600, 1}, Rational{6000, 7}}) {
+    for (std::int64_t n = 1; n < 2'000'000; n += 997) {
+      const Rational t = rational(n) / rate;
+      char text[40];
+      std::snprintf(text, sizeof text, "%.17g", value(t));
+      ASSERT_EQ(parse_rational(text), t) << text;
+    }
+  }
+  // digits beyond what a double has, and fewer, as they stand
+  EXPECT_EQ(parse_rational("0.1000000000000000055511151231257827"), (Rational{1, 10}));
+  EXPECT_EQ(parse_rational("0.33333"), (Rational{33333, 100000}));
+  EXPECT_EQ(parse_rational("9007199254740993"), (Rational{9007199254740993, 1}));
+  EXPECT_EQ(parse_rational("1234567890123456789/1000000000000000007"),
+            (Rational{1234567890123456789, 1000000000000000007}));
+  EXPECT_FALSE(parse_rational("1.2345678901234567e-300"));
 }
 
 TEST(Rational, OfADoubleIsTheDecimalAPersonTyped) {
