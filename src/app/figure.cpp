@@ -34,6 +34,7 @@ struct Flags {
   std::optional<std::string> out, at, width, font, theme, every;
   std::optional<int> columns;
   double dpi = 300;
+  gl::ContextOptions context;
 };
 
 constexpr double kMillimetre = 72 / 25.4;  // pt
@@ -87,9 +88,10 @@ Size size_at(const draw::Picture& picture, double width, double dpi) {
 }
 
 // what is drawn by depth lies where the lines over it do, to the part of a pixel
-media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, const Size& size) {
+media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, const Size& size,
+                    const gl::ContextOptions& context) {
   require_memory_to_draw(double(size.width) * size.height);
-  gl::Renderer renderer(size.width, size.height);
+  gl::Renderer renderer(size.width, size.height, context);
   draw::Picture exact;
   exact.aspect = double(size.width) / size.height;
   exact.ground = picture.ground;
@@ -109,10 +111,10 @@ media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, c
 }
 
 // what is lit, at its places on the page's ground
-media::Image lit_pixels(const Page& page, const Size& size) {
+media::Image lit_pixels(const Page& page, const Size& size, const gl::ContextOptions& context) {
   draw::Picture blank;
   blank.ground = page.picture.ground;
-  return pixels(blank, page.lit, size);
+  return pixels(blank, page.lit, size, context);
 }
 
 int run(const Flags& flags) {
@@ -142,7 +144,8 @@ int run(const Flags& flags) {
   const double width = album.width(), height = width / made.picture.aspect;
   std::string size = fmt::format("{:.1f} x {:.1f} mm", width / kMillimetre, height / kMillimetre);
   if (ending(out) == "png") {
-    const media::Image image = pixels(made.picture, made.lit, size_at(made.picture, width, flags.dpi));
+    const media::Image image =
+        pixels(made.picture, made.lit, size_at(made.picture, width, flags.dpi), flags.context);
     media::Tags tags{{"Software", "obscura " OBSCURA_VERSION}};
     if (!album.title().empty()) tags["Title"] = album.title();
     media::write_png(out, image, {.per_metre = flags.dpi / 0.0254, .tags = tags});
@@ -158,7 +161,7 @@ int run(const Flags& flags) {
       grid.per_unit = std::ceil(rows * grid.per_unit) / rows;
       grid.width = int(std::ceil(1080 * made.picture.aspect * grid.per_unit));
       grid.height = int(std::ceil(1080 * grid.per_unit));
-      under = lit_pixels(made, grid);
+      under = lit_pixels(made, grid, flags.context);
       raster = page::Raster{under.width, under.height, height / 1080 / grid.per_unit, under.pixels.data(),
                             media::encode_png(under)};
     }
@@ -204,6 +207,7 @@ void add_figure(CLI::App& program, int& exit) {
       .range(10.0, 4800.0);
   command.option("--theme", flags->theme, "paper (white) or screen (dark) [paper]")
       .one_of({"paper", "screen"});
+  add_backend(command, flags->context.backend);
   add_sets(command, flags->sets);
   add_memory_limit(command);
   command.footer(

@@ -226,6 +226,8 @@ void write_page(const Flags& flags, const std::vector<GoldenCase>& cases) {
 }
 
 int golden(Flags& flags) {
+  if (flags.golden.update && !flags.sets.empty())
+    throw UsageError("--update takes the scenes as their files are: leave --set out, or write it into them");
   for (const std::string& each : flags.only) flags.golden.only.push_back(GoldenChoice::parse(each));
   const std::vector<std::string> named = files(flags);
   know_apart(named, flags.golden);
@@ -253,7 +255,7 @@ int golden(Flags& flags) {
     std::move(outcome.cases.begin(), outcome.cases.end(), std::back_inserter(cases));
     return true;
   };
-  gl::ready({});
+  gl::ready(flags.golden.picture.context);
   conduct(parts, workers);
   if (interrupted()) return kInterrupted;
 
@@ -316,6 +318,7 @@ void add_golden(CLI::App& program, int& exit) {
   command.flag("--other-gl-states", flags->golden.states_only_on_other_gl,
                "Where a reference was drawn by another OpenGL, compare states alone");
   command.option("-j,--jobs", flags->workers, "Scenes side by side [one a core]").range(1, 256);
+  add_backend(command, flags->golden.picture.context.backend);
   add_sets(command, flags->sets);
   command.footer(
       "A scene's [golden] table names the moments, the size, and what may differ, with a reason. States are "

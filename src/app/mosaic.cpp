@@ -35,8 +35,9 @@ using Together = std::vector<Take>;
 // puts the runs' pictures beside each other; used from one thread
 class Wall {
  public:
-  Wall(const std::vector<Tile>& tiles, const Mosaic& mosaic, int width, int height)
-      : mosaic_(mosaic), renderer_(mosaic.width, mosaic.height) {
+  Wall(const std::vector<Tile>& tiles, const Mosaic& mosaic, int width, int height,
+       const gl::ContextOptions& context)
+      : mosaic_(mosaic), renderer_(mosaic.width, mosaic.height, context) {
     for (const Tile& tile : tiles) artists_.push_back(depictor(tile.scene, {}));
 
     // the ground, and the words, which are the same in every frame
@@ -56,7 +57,7 @@ class Wall {
       line.spans[0].size *= std::min(1.0, room);
       ground.moving.add(line);
     }
-    gl::Renderer(width, height).draw(ground, whole_);
+    gl::Renderer(width, height, context).draw(ground, whole_);
   }
 
   const media::Image& frame(const Together& takes, std::size_t n) {
@@ -173,7 +174,7 @@ int mosaic_still(std::vector<Tile> tiles, sim::Rational at, const std::string& o
   Runs runs(tiles, Shots::still(at, film.fps, {}), 1, crew(options));
   const std::optional<Together> takes = runs.next();
   if (interrupted()) return kInterrupted;
-  Wall wall(tiles, mosaic, film.width, film.height);
+  Wall wall(tiles, mosaic, film.width, film.height, options.context);
   media::write_png(out, wall.frame(takes.value_or(Together(tiles.size())), 0),
                    {.tags = {{"Software", "obscura " OBSCURA_VERSION}}});
   return ended(
@@ -199,7 +200,7 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
   Conduct<Together, media::Segment> parts;
   parts.produce = [&] { return runs.next(); };
   parts.hire = [&] {
-    auto wall = std::make_shared<Wall>(tiles, mosaic, spec.width, spec.height);
+    auto wall = std::make_shared<Wall>(tiles, mosaic, spec.width, spec.height, options.context);
     return [&, wall](const Together& takes) {
       media::SegmentEncoder encoder(out, spec);
       std::size_t frames = 0;
@@ -215,7 +216,7 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
     return true;
   };
   parts.wait = [&] { progress.at(done); };
-  gl::ready({});
+  gl::ready(options.context);
   conduct(parts, crew(options));
 
   if (interrupted()) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/progress.h"
+#include "gl/context.h"
 #include "scene/scene.h"
 #include "sim/rational.h"
 
@@ -31,6 +32,7 @@ struct Mosaic {
 struct MosaicOptions {
   int workers = 0;  // 0: one a core
   ProgressKind progress = ProgressKind::automatic;
+  gl::ContextOptions context;
 };
 
 /// All runs at one instant as a PNG, as large as the first one's film.

@@ -38,6 +38,14 @@ void add_memory_limit(const Command& command) {
       .type("SIZE");
 }
 
+void add_backend(const Command& command, gl::Backend& backend) {
+  command
+      .choice("--backend", backend,
+              {{"auto", gl::Backend::automatic}, {"osmesa", gl::Backend::osmesa}, {"egl", gl::Backend::egl}},
+              "auto, osmesa or egl: who draws, never a GPU unless named [auto]")
+      .type("NAME");
+}
+
 sim::Rational parse_fps(const std::string& text) {
   const auto fps = sim::parse_rational(text);
   if (!fps || fps->num <= 0 || sim::value(*fps) > 1000)

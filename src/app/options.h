@@ -6,6 +6,7 @@
 
 #include "app/command.h"
 #include "app/progress.h"
+#include "gl/context.h"
 #include "sim/rational.h"
 
 namespace obscura::app {
@@ -21,6 +22,9 @@ void add_progress(const Command& command, ProgressKind& kind);
 
 /// --memory-limit, which every command that simulates has; holds to it as soon as it is read.
 void add_memory_limit(const Command& command);
+
+/// --backend, which every command that draws with OpenGL has.
+void add_backend(const Command& command, gl::Backend& backend);
 
 /// "60", "30000/1001": the frames per second that --fps says, above 0 and up to 1000. Throws UsageError.
 sim::Rational parse_fps(const std::string& text);

@@ -271,11 +271,7 @@ void add_render(CLI::App& program, int& exit) {
   add_memory_limit(command);
   command.option("-j,--jobs", flags->film.workers, "Workers that draw and encode side by side [one a core]")
       .range(1, 256);
-  command
-      .choice("--backend", flags->film.context.backend,
-              {{"auto", gl::Backend::automatic}, {"osmesa", gl::Backend::osmesa}, {"egl", gl::Backend::egl}},
-              "auto, osmesa or egl: who draws, never a GPU unless named [auto]")
-      .type("NAME");
+  add_backend(command, flags->film.context.backend);
   command.flag("--native", flags->film.context.native,
                "Draw with all of this processor's instructions: a tenth quicker, pixels may differ by a "
                "level elsewhere");

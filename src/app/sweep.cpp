@@ -41,6 +41,7 @@ struct Flags {
   bool resume = false, anew = false;
   int workers = 0;
   ProgressKind progress = ProgressKind::automatic;
+  gl::ContextOptions context;  // of pictures
 };
 
 // a run's row, and how the run ended
@@ -154,7 +155,7 @@ int pictures(const Flags& flags, bool still) {
                      variations.words(run)});
     text = tiles.back().scene.text;
   }
-  const MosaicOptions options{flags.workers, flags.progress};
+  const MosaicOptions options{flags.workers, flags.progress, flags.context};
   return still ? mosaic_still(std::move(tiles), *at, *flags.out, options)
                : mosaic_movie(std::move(tiles), *flags.out, options);
 }
@@ -270,6 +271,7 @@ void add_sweep(CLI::App& program, int& exit) {
       .type("i/N");
   command.flag("--resume", flags->resume, "Go on with what an interrupted sweep left");
   command.flag("--anew", flags->anew, "Begin anew whatever an interrupted sweep left");
+  add_backend(command, flags->context.backend);
   add_progress(command, flags->progress);
   command.footer(
       "Each row has its run's number, the values of its keys, what was measured, and the trouble it met; a "

@@ -101,6 +101,13 @@ TEST_F(Golden, WhatIsLetPassNeedsAReasonAndPassesWithIt) {
   EXPECT_THAT(run.out, HasSubstr("tolerated: another compiler"));
 }
 
+TEST_F(Golden, ReferencesAreOfScenesAsTheyStandInTheirFiles) {
+  const Outcome run = golden("--update --set ball.color=purple");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("--set"));
+  EXPECT_FALSE(std::filesystem::exists(path("golden")));
+}
+
 TEST_F(Golden, AReferenceOfNoMomentIsToldAndSweptByUpdate) {
   ASSERT_EQ(golden("--update").exit, 0);
   change("[0, 0.5]", "[0]");
