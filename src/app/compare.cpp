@@ -31,6 +31,22 @@ struct Flags {
   bool interpolate = false;
 };
 
+// whether a file that is to be written is one of those that are read: A, B, or a picture in either folder
+void spare_inputs(const Flags& flags) {
+  namespace fs = std::filesystem;
+  for (const auto& [name, out] : {std::pair("--diff", flags.diff), {"--report", flags.report}}) {
+    if (!out || !fs::exists(*out)) continue;
+    for (const std::string& in : {flags.a, flags.b}) {
+      std::error_code none;
+      const bool inside = fs::is_directory(in, none) && fs::path(*out).extension() == ".png" &&
+                          fs::equivalent(fs::absolute(*out).parent_path(), in, none);
+      if (inside || fs::equivalent(*out, in, none))
+        throw UsageError(fmt::format("{} {}: would be written over {}, which is compared", name, *out,
+                                     inside ? "a picture of " + in : in));
+    }
+  }
+}
+
 bool is_table(const std::string& path) { return std::filesystem::path(path).extension() == ".csv"; }
 
 // what a person or a program is told; GitHub beside it where the two are not the same
@@ -80,6 +96,7 @@ int run(const Flags& flags) {
   if (is_table(flags.a)) return compare_runs(flags);
   if (flags.rtol || flags.atol || flags.interpolate)
     throw UsageError("--rtol, --atol and --interpolate are for tables (.csv)");
+  spare_inputs(flags);
   const Comparison found = compare(flags.a, flags.b);
   if (interrupted()) return kInterrupted;
   tell(flags, found.same(), text(found), json(found));
@@ -117,7 +134,9 @@ void add_compare(CLI::App& program, int& exit) {
       "scene, other state (both are simulated again, and the step, body and quantity where they part are "
       "told), other look, other OpenGL, or pixels only.\n"
       "Runs are tables as `obscura states --format csv` writes them. A is the reference: its columns and its "
-      "times must be in B. Times are one within half a microsecond; |b - a| <= atol + rtol |a|.\n\n"
+      "times must be in B. Times are one within half a microsecond; |b - a| <= atol + rtol |a|; inf and nan "
+      "are the "
+      "same as themselves alone.\n\n"
       "Exit codes: 0 the same, 1 they differ, 2 usage, 4 something is not readable.\n\n"
       "Examples:\n"
       "  obscura compare old.png new.png --diff difference.png\n"

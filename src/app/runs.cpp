@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <nlohmann/json.hpp>
@@ -49,6 +50,14 @@ Column named(const std::string& name) {
   return column;
 }
 
+// infinite of one sign, or both no number; of finite ones equal
+bool the_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+// JSON has no word for what is not finite
+nlohmann::ordered_json json_of(double x) {
+  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(fmt::format("{}", x));
+}
+
 // a row of b at time t; between two rows on the straight line, where that is asked for
 std::optional<std::vector<double>> row_at(const Table& b, double t, bool interpolate, int& line) {
   const auto next = std::lower_bound(b.rows.begin(), b.rows.end(), t,
@@ -63,7 +72,8 @@ std::optional<std::vector<double>> row_at(const Table& b, double t, bool interpo
   const auto before = next - 1;
   const double s = (t - (*before)[b.time_column]) / ((*next)[b.time_column] - (*before)[b.time_column]);
   std::vector<double> row = at(before);
-  for (std::size_t i = 0; i < row.size(); ++i) row[i] += s * ((*next)[i] - row[i]);
+  for (std::size_t i = 0; i < row.size(); ++i)
+    if (!the_same(row[i], (*next)[i])) row[i] += s * ((*next)[i] - row[i]);
   return row;
 }
 
@@ -80,6 +90,7 @@ std::string joined(const std::string& body, const std::string& quantity) {
 }  // namespace
 
 bool Tolerance::holds(double a, double b) const {
+  if (!std::isfinite(a) || !std::isfinite(b)) return the_same(a, b);
   return a == b || std::abs(b - a) <= absolute + relative * std::abs(a);
 }
 
@@ -145,7 +156,8 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
       const Column& column = columns[k];
       const double x = a.rows[i][column.a];
       double y = (*row)[column.b];
-      if (column.quantity == "angle") y = x + std::remainder(y - x, 2 * std::numbers::pi);
+      if (column.quantity == "angle" && std::isfinite(x) && std::isfinite(y))
+        y = x + std::remainder(y - x, 2 * std::numbers::pi);
       if (column.quantity == "orientation") {
         double dot = 0;
         for (const Column& other : columns)
@@ -153,9 +165,10 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
         if (dot < 0) y = -y;
       }
       auto& quantity = found.quantities[column.group];
-      const double off = std::abs(y - x);
-      if (off > quantity.largest || (std::isnan(off) && !std::isnan(quantity.largest)))
-        quantity.largest = off, quantity.at = t;
+      const double off = the_same(x, y)                         ? 0
+                         : std::isfinite(x) && std::isfinite(y) ? std::abs(y - x)
+                                                                : std::numeric_limits<double>::infinity();
+      if (off > quantity.largest) quantity.largest = off, quantity.at = t;
       if (tolerance.holds(x, y)) continue;
       if (!quantity.parts) quantity.parts = true, quantity.first = t;
       if (!found.place) {
@@ -181,10 +194,14 @@ std::string text(const RunComparison& c, const Tolerance& tolerance) {
     const auto& p = *c.place;
     const std::string what =
         is_body(p.body) ? fmt::format("body {}, {}", p.body, p.quantity) : joined(p.body, p.quantity);
-    all = fmt::format("{} and {} part first at t = {:g} s (lines {} and {}): {}: {} and {}, off by {:.3g}",
-                      c.a, c.b, p.time, p.line_a, p.line_b, what, p.a, p.b, std::abs(p.b - p.a));
+    all = fmt::format("{} and {} part first at t = {:g} s (lines {} and {}): {}: {} and {}", c.a, c.b, p.time,
+                      p.line_a, p.line_b, what, p.a, p.b);
     const double allowed = tolerance.absolute + tolerance.relative * std::abs(p.a);
-    all += allowed > 0 ? fmt::format(", allowed {:.3g}\n", allowed) : "\n";
+    if (!std::isfinite(p.a) || !std::isfinite(p.b))
+      all += "; what is not finite is the same as itself alone\n";
+    else
+      all += fmt::format(", off by {:.3g}{}\n", std::abs(p.b - p.a),
+                         allowed > 0 ? fmt::format(", allowed {:.3g}", allowed) : "");
   } else if (c.same()) {
     double most = 0;
     for (const auto& q : c.quantities) most = std::max(most, q.largest);
@@ -212,14 +229,13 @@ std::string json(const RunComparison& c) {
   nlohmann::ordered_json top = json_head("compare", c.same() ? kDone : kDiffers);
   top["a"] = c.a, top["b"] = c.b, top["same"] = c.same(), top["times"] = c.times;
   if (const auto& p = c.place)
-    top["part"] = {{"time", p->time}, {"line_a", p->line_a},     {"line_b", p->line_b},
-                   {"body", p->body}, {"quantity", p->quantity}, {"a", p->a},
-                   {"b", p->b}};
+    top["part"] = {{"time", p->time},         {"line_a", p->line_a}, {"line_b", p->line_b}, {"body", p->body},
+                   {"quantity", p->quantity}, {"a", json_of(p->a)},  {"b", json_of(p->b)}};
   top["quantities"] = nlohmann::ordered_json::array();
   for (const auto& q : c.quantities) {
     nlohmann::ordered_json it = {{"name", joined(q.body, q.name)}, {"parts", q.parts}};
     if (q.parts) it["first"] = q.first;
-    it["largest"] = q.largest, it["at"] = q.at;
+    it["largest"] = json_of(q.largest), it["at"] = q.at;
     top["quantities"].push_back(std::move(it));
   }
   top["plain"] = c.plain, top["others"] = c.others;

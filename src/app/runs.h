@@ -11,7 +11,8 @@ namespace obscura::app {
 /// How far apart two values may be.
 struct Tolerance {
   double relative = 0, absolute = 0;  // of the first; in the quantity's unit
-  /// Whether `b` may stand for `a`: |b - a| <= absolute + relative |a|.
+  /// Whether `b` may stand for `a`: |b - a| <= absolute + relative |a|. An infinite one, or one that is no
+  /// number, is as itself alone.
   bool holds(double a, double b) const;
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string_view>
 #include <system_error>
 
@@ -32,6 +34,11 @@ std::vector<std::string_view> cells(std::string_view line) {
     if (comma == std::string_view::npos) return all;
     line.remove_prefix(comma + 1);
   }
+}
+
+// "run.csv:17:42": where a cell begins, from 1
+std::string place(const std::string& file, int line, const std::string& text, std::string_view cell) {
+  return fmt::format("{}:{}:{}", file, line, cell.data() - text.data() + 1);
 }
 
 std::optional<double> number(std::string_view text) {
@@ -68,8 +75,10 @@ Table table_in(const std::string& file) {
         numeric.push_back(name != "hash");
         if (!numeric.back()) continue;
         if (table.column(std::string(name)))
-          throw media::Error(fmt::format("{}:{}: two columns are called '{}'", file, at, name));
+          throw media::Error(
+              fmt::format("{}: two columns are called '{}'", place(file, at, line, name), name));
         table.columns.emplace_back(name);
+        table.cells.push_back(numeric.size() - 1);
       }
       const auto time = table.column("time");
       if (!time)
@@ -77,7 +86,7 @@ Table table_in(const std::string& file) {
             fmt::format("{}:{}: no column is called 'time'; the first line names the columns, "
                         "as `obscura states --format csv` writes them",
                         file, at));
-      table.time_column = *time;
+      table.time_column = *time, table.head = at;
       continue;
     }
     if (row.size() != numeric.size())
@@ -88,13 +97,14 @@ Table table_in(const std::string& file) {
       if (!numeric[i]) continue;
       const auto x = number(row[i]);
       if (!x)
-        throw media::Error(fmt::format("{}:{}: '{}' under {} is no number", file, at, row[i],
-                                       table.columns[numbers.size()]));
+        throw media::Error(fmt::format("{}: '{}' under {} is no number", place(file, at, line, row[i]),
+                                       row[i], table.columns[numbers.size()]));
       numbers.push_back(*x);
     }
     const double time = numbers[table.time_column];
     if (!std::isfinite(time) || (!table.rows.empty() && time <= table.time(table.rows.size() - 1)))
-      throw media::Error(fmt::format("{}:{}: times must increase from row to row, got {}", file, at, time));
+      throw media::Error(fmt::format("{}: times must increase from row to row, got {}",
+                                     place(file, at, line, row[table.cells[table.time_column]]), time));
     table.rows.push_back(std::move(numbers));
     table.lines.push_back(at);
   }
@@ -110,6 +120,20 @@ Table read_table(const std::string& file) {
   } catch (const std::system_error& error) {
     throw media::Error(fmt::format("{}: cannot be read: {}", file, error.code().message()));
   }
+}
+
+std::string place(const Table& table, int line, std::size_t column) {
+  std::error_code none;
+  std::ifstream in;
+  // a pipe has nothing left, and would be waited for
+  if (std::filesystem::is_regular_file(table.file, none)) in.open(table.file, std::ios::binary);
+  std::string text;
+  for (int at = 0; at < line; ++at)
+    if (!std::getline(in, text)) return fmt::format("{}:{}", table.file, line);
+  const auto all = cells(text);
+  const std::size_t cell = table.cells[column];
+  if (cell >= all.size()) return fmt::format("{}:{}", table.file, line);
+  return place(table.file, line, text, all[cell]);
 }
 
 bool same_time(double a, double b) { return std::abs(a - b) <= kInstant; }

@@ -12,7 +12,9 @@ struct Table {
   std::string file;
   std::vector<std::string> columns;  // without "hash", which is no number
   std::vector<std::vector<double>> rows;
-  std::vector<int> lines;  // of the file, from 1, one a row
+  std::vector<int> lines;          // of the file, from 1, one a row
+  int head = 1;                    // the line of names
+  std::vector<std::size_t> cells;  // which of a line's cells each column is
 
   /// Where a column is; none where there is no such.
   std::optional<std::size_t> column(const std::string& name) const;
@@ -21,8 +23,12 @@ struct Table {
 };
 
 /// Reads numbers separated by commas under one line of names; lines that begin with # and empty ones are
-/// skipped. Times must increase. Throws media::Error with the line where something is no number or missing.
+/// skipped. Times must increase. Throws media::Error with the place where something is no number or missing.
 Table read_table(const std::string& file);
+
+/// Where a column's cell in a line of the file is: "run.csv:17:42". Of a file that cannot be read again, as
+/// from a pipe, "run.csv:17".
+std::string place(const Table& table, int line, std::size_t column);
 
 /// Two times, s, that are one: within half a microsecond.
 bool same_time(double a, double b);

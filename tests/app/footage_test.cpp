@@ -60,7 +60,10 @@ TEST_F(Footage, NeedsThePlacesOfTheScenesBodiesAndSaysWhatItLeavesOut) {
   scene("time,crate.position.x,crate.position.y,bell.position.x,bell.position.y\n0,1,1,3,1\n", "run.csv");
   Outcome run = obscura("render scene.toml --at 0 --states run.csv -o a.png");
   EXPECT_EQ(run.exit, 4);
-  EXPECT_THAT(run.err, HasSubstr("run.csv: has no position of ball; did you mean 'bell'?"));
+  EXPECT_THAT(
+      run.err,
+      HasSubstr(
+          "run.csv:1: has no column ball.position.x, ball.position.y; is its 'bell' the scene's 'ball'?"));
   scene(
       "time,crate.position.x,crate.position.y,ball.position.x,ball.position.y,cat.position.x\n0,1,1,3,1,0\n",
       "run.csv");
@@ -68,6 +71,72 @@ TEST_F(Footage, NeedsThePlacesOfTheScenesBodiesAndSaysWhatItLeavesOut) {
   EXPECT_EQ(run.exit, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("left out, for the scene has no such body: cat"));
   EXPECT_THAT(run.err, HasSubstr("does not say how ball, crate turns"));
+}
+
+/// Names of columns that do not fit the scene, and cells that no body can be at.
+class HandMade : public Footage {
+ protected:
+  std::string refused(const std::string& table, const std::string& scene = "scene.toml") const {
+    this->scene(table, "hand.csv");
+    const Outcome run = obscura("render " + scene + " --at 0 --size 160x90 --states hand.csv -o a.png");
+    EXPECT_EQ(run.exit, 4) << table << run.err;
+    EXPECT_FALSE(std::filesystem::exists(path("a.png"))) << table;
+    return run.err;
+  }
+  const std::string head_ = "time,crate.position.x,crate.position.y,ball.position.x,ball.position.y";
+};
+
+TEST_F(HandMade, WhatIsNotFiniteIsRefusedAtItsCell) {
+  for (const char* bad : {"nan", "inf", "-inf", "-nan"}) {
+    const std::string told = refused("# by hand\n" + head_ + "\n0, 1,1,3,1\n1, 1," + bad + ",3,1\n");
+    EXPECT_THAT(told, HasSubstr("hand.csv:4:6: ")) << bad;
+  }
+  EXPECT_THAT(refused(head_ + ",ball.angle\n0,1,1,3,1,nan\n"), HasSubstr("hand.csv:2:11: ball.angle is nan"));
+  // what is not filmed may be what it likes
+  scene(head_ + ",ball.heat\n0,1,1,3,1,nan\n", "hand.csv");
+  const Outcome run = obscura("render scene.toml --at 0 --size 160x90 --states hand.csv -o a.png");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("left out, for a film does not show it: ball.heat"));
+}
+
+TEST_F(HandMade, MisspeltAndMissingColumnsAreRefusedByName) {
+  EXPECT_THAT(refused("time,crate.position.x,crate.position.y,ball.position.x\n0,1,1,3\n"),
+              HasSubstr("hand.csv:1: has no column ball.position.y\n"));
+  EXPECT_THAT(refused(head_ + ",ball.velocity.x\n0,1,1,3,1,0\n"),
+              HasSubstr("hand.csv:1: has no column ball.velocity.y\n"));
+  EXPECT_THAT(refused(head_ + ",ball.anlge\n0,1,1,3,1,0\n"),
+              HasSubstr("hand.csv:1:72: a body has no 'ball.anlge'; did you mean 'ball.angle'?"));
+  EXPECT_THAT(refused(head_ + ",ball.Velocity.x,ball.velocity.y\n0,1,1,3,1,0,0\n"),
+              HasSubstr("did you mean 'ball.velocity.x'?"));
+}
+
+TEST_F(HandMade, OfThreeDimensionsItIsRefusedInThePlaneWhereItWouldLoseOne) {
+  EXPECT_THAT(refused(head_ + ",ball.position.z\n0,1,1,3,1,0\n1,1,1,3,1,0.25\n"),
+              HasSubstr("hand.csv:3:11: ball.position.z is 0.25: the scene is in the plane"));
+  EXPECT_THAT(refused(head_ + ",ball.spin.z\n0,1,1,3,1,0\n"), HasSubstr("where ball.spin is one number"));
+  EXPECT_THAT(refused(head_ + ",ball.orientation.x\n0,1,1,3,1,0\n"),
+              HasSubstr("where a body turns by its angle"));
+  scene(head_ + ",ball.position.z,crate.velocity.z\n0,1,1,3,1,0,-0\n", "hand.csv");
+  const Outcome run = obscura("render scene.toml --at 0 --size 160x90 --states hand.csv -o a.png");
+  EXPECT_EQ(run.exit, 0) << "nothing is lost: " << run.err;
+}
+
+TEST_F(HandMade, InSpaceItNeedsOrientationsOfLengthOneAndAllThreePlaces) {
+  scene("duration = 1\n[room]\nsize = [4, 2.25, 4]\n[[box]]\nname = \"b\"\nsize = [1, 1, 1]\n", "space.toml");
+  const std::string head = "time,b.position.x,b.position.y,b.position.z";
+  const std::string turn = ",b.orientation.x,b.orientation.y,b.orientation.z,b.orientation.w\n";
+  EXPECT_THAT(refused(head + turn + "0,0,1,0,0,0,0,0\n", "space.toml"),
+              HasSubstr("hand.csv:2:9: b.orientation.x and so on are a quaternion of length 0"));
+  EXPECT_THAT(refused(head + turn + "0,0,1,0,1,0,0,1\n", "space.toml"),
+              HasSubstr("quaternion of length 1.41"));
+  EXPECT_THAT(refused("time,b.position.x,b.position.y\n0,0,1\n", "space.toml"),
+              HasSubstr("has no column b.position.z\n"));
+  EXPECT_THAT(refused(head + ",b.angle\n0,0,1,0,1\n", "space.toml"), HasSubstr("the scene is in space"));
+  // a pipe cannot be read again: its line is told
+  scene(head + turn + "0,0,1,0,0,0,0,0\n", "hand.csv");
+  EXPECT_THAT(
+      shell("cat hand.csv | " OBSCURA_BINARY " render space.toml --at 0 --states /dev/stdin -o a.png").err,
+      HasSubstr("/dev/stdin:2: b.orientation.x"));
 }
 
 }  // namespace
