@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/exit.h"
 #include "app/interrupt.h"
 #include "app/trouble.h"
@@ -12,7 +14,7 @@ namespace obscura::app {
 
 namespace {
 
-constexpr std::size_t kMostKeys = 6;
+constexpr std::size_t kMostKeys = 6, kMostBodies = 6;
 
 std::string or_absent(const std::string& value) { return value.empty() ? "left out" : value; }
 
@@ -68,8 +70,9 @@ void judge_one_scene(const Origin& a, const Origin& b, Cause& cause) {
   cause.kind = Cause::Kind::state;
   cause.lines.push_back("other state of the same scene");
   try {
-    const auto again = state_again(a);
-    const bool mine = again && *again == a.state, yours = again && *again == b.state;
+    if (const std::string line = first_difference(a, b); !line.empty()) cause.lines.push_back(line);
+    const auto again = simulated(a);
+    const bool mine = again && same_states(*again, a), yours = again && same_states(*again, b);
     cause.lines.push_back(fmt::format("this obscura ({}) simulates {}; A is by {}, B by {}", OBSCURA_VERSION,
                                       mine    ? "A's state"
                                       : yours ? "B's state"
@@ -77,6 +80,8 @@ void judge_one_scene(const Origin& a, const Origin& b, Cause& cause) {
                                       a.version, b.version));
   } catch (const scene::Error& error) {
     cause.lines.push_back(fmt::format("this obscura does not read the scene: {}", error.what()));
+  } catch (const UsageError& error) {
+    cause.lines.push_back(error.what());
   }
 }
 
@@ -85,19 +90,20 @@ void judge_scenes(const Origin& a, const Origin& b, Cause& cause) {
   cause.kind = Cause::Kind::scene;
   cause.lines.push_back(scene_line(a, b));
   if (a.shot->time != b.shot->time) return;
-  if (a.state == b.state && a.frames == 0) {
+  if (same_states(a, b) && (a.frames == 0 || (a.states && b.states && a.shots == b.shots))) {
     cause.lines.push_back("states are the same: it is how they are shown");
     return;
   }
   try {
-    // a movie tells the state of its first frame: the rest of its film is looked at too
+    // the rest of a movie's film is looked at too
     const scene::Scene left = scene_of(a), right = scene_of(b);
     const Shots shots = shots_of(a, left);
     const sim::Rational until = shots[shots.size() - 1].time;
+    if (const std::string line = first_difference(a, b); !line.empty()) cause.lines.push_back(line);
     cause.states = parting(left, right, until);
     if (cause.states)
       cause.lines.push_back(cause.states->text());
-    else if (a.state == b.state)
+    else if (same_states(a, b))
       cause.lines.push_back("states are the same: it is how they are shown");
     else
       cause.lines.push_back(
@@ -150,7 +156,7 @@ Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b) {
                               : fmt::format("other state: A shows {}, B {}", shows(*a), shows(*b)));
   } else if (a->scene_text != b->scene_text || a->sets != b->sets) {
     judge_scenes(*a, *b, cause);
-  } else if (!other_time && a->state != b->state) {
+  } else if (!other_time && !same_states(*a, *b)) {
     judge_one_scene(*a, *b, cause);
   }
   if (other_time) {
@@ -171,13 +177,68 @@ Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b) {
   return cause;
 }
 
-std::optional<std::string> state_again(const Origin& origin) {
+bool same_states(const Origin& a, const Origin& b) {
+  if (a.state != b.state) return false;
+  return !a.states || !b.states || a.shots != b.shots || a.fps != b.fps || *a.states == *b.states;
+}
+
+std::string first_difference(const Origin& a, const Origin& b) {
+  if (!a.states || !b.states || a.shots != b.shots || a.fps != b.fps) return "";
+  const auto apart = Checksums::apart(*a.states, *b.states);
+  if (!apart) return "";
+  if (!apart->first) return "states differ in frames that have no checksums of their own";
+  const scene::Scene scene = scene_of(a);
+  const Shots shots = shots_of(a, scene);
+  const auto frame = [&](std::int64_t i) {
+    const Shot shot = shots[std::clamp<std::int64_t>(i, 0, shots.size() - 1)];
+    return fmt::format("frame {} (t = {:g} s)", shot.frame, sim::value(shot.time));
+  };
+  if (apart->ended) return "one of the runs ends before " + frame(*apart->first);
+  // a still is one frame, and is known to differ: it is its bodies that can be told
+  if (a.frames == 0 && !apart->bodies_known) return "";
+  std::string text = "states differ";
+  if (a.frames > 0 && (*apart->first == 0 || apart->same == *apart->first - 1))
+    text += fmt::format(" from {} on", frame(*apart->first));
+  else if (a.frames > 0)
+    text += fmt::format(", first between {} and {}", frame(std::max<std::int64_t>(0, apart->same)),
+                        frame(*apart->first));
+  if (!apart->bodies_known) return text;
+  if (apart->bodies.empty()) return text + ": no body is anywhere else, or moves otherwise";
+  const auto run = scene.run();
+  std::string names;
+  std::size_t told = 0;
+  for (const std::size_t body : apart->bodies) {
+    if (body >= run->cast().bodies.size()) return text;
+    if (told == kMostBodies) break;
+    names += (told++ ? ", " : "") + run->cast().bodies[body].name;
+  }
+  if (apart->bodies.size() > told) names += fmt::format(" and {} more", apart->bodies.size() - told);
+  if (apart->bodies_at != *apart->first) text += fmt::format("; at {}", frame(apart->bodies_at));
+  return fmt::format("{}: {} {}", text, apart->bodies.size() == 1 ? "body" : "bodies", names);
+}
+
+std::optional<Origin> simulated(const Origin& origin) {
   const scene::Scene scene = scene_of(origin);
+  const Shots shots = shots_of(origin, scene);
   const auto run = scene.run();
   run->heed(interrupted);
-  const auto moment = run->at(origin.shot->time);
-  if (!std::holds_alternative<sim::Snapshot>(moment)) return {};
-  return state_hash(run->words());
+  // of a film that was cut short as much as there is; of one that tells no more its first state alone
+  const std::int64_t count = origin.states ? std::min(origin.states->frames(), shots.size()) : 1;
+  Origin again = origin;
+  again.states.reset();
+  Checksums states(shots.size(), run->cast().bodies.size());
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto found = run->at(i == 0 ? origin.shot->time : shots[i].time);
+    const auto* moment = std::get_if<sim::Snapshot>(&found);
+    if (!moment && i == 0) return {};
+    if (!moment) break;
+    const std::string state = state_hash(run->words());
+    if (i == 0) again.state = state;
+    states.add(i, state, *moment);
+  }
+  states.close();
+  if (origin.states) again.states = states;
+  return again;
 }
 
 }  // namespace obscura::app

@@ -24,8 +24,15 @@ const char* name(Cause::Kind kind);
 /// about its look; another OpenGL; or pixels alone. Simulates both scenes again where their states differ.
 Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b);
 
-/// The hash of the state at an origin's instant, simulated again by this program. Throws scene::Error; none
-/// where the run ends before it.
-std::optional<std::string> state_again(const Origin& origin);
+/// Whether two origins tell of the same states: of the first they show, and of all where both tell of all.
+bool same_states(const Origin& a, const Origin& b);
+
+/// Of two that do not: the frame where they part, and the bodies that do there, as far as their checksums
+/// tell: "states differ from frame 137 on (t = 2.283 s): body ball". Empty where they tell nothing.
+std::string first_difference(const Origin& a, const Origin& b);
+
+/// An origin with the states of its frames as this program simulates them, up to where the run ends. Throws
+/// scene::Error and UsageError; none where it ends before the first.
+std::optional<Origin> simulated(const Origin& origin);
 
 }  // namespace obscura::app

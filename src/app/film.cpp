@@ -163,7 +163,7 @@ bool Filming::has_frames(std::int64_t take) const {
 }
 
 SimulationOptions Filming::simulating() {
-  SimulationOptions how{.frames = int(journal_.take_frames), .hash_each = pictures()};
+  SimulationOptions how{.frames = int(journal_.take_frames), .hash_each = movie() || pictures()};
   how.first = first_, how.last = last_;
   how.skip = [this](std::int64_t take) { return whole(take); };
   const bool asked = options_.from_checkpoint.has_value();
@@ -186,7 +186,7 @@ SimulationOptions Filming::simulating() {
   }
   how.every = options_.checkpoint_every;
   how.at_every = [this](const sim::Run& run, sim::Rational t) {
-    const fs::path file = fs::path(output_.checkpoints()) / fmt::format("{:g}.checkpoint", sim::value(t));
+    const fs::path file = fs::path(output_.checkpoints()) / fmt::format("{}.checkpoint", sim::value(t));
     media::make_folder_of(file.string());
     write_checkpoint(file.string(), scene_, run, true);
   };
@@ -211,6 +211,8 @@ Filming::Print Filming::print(Take take, Darkroom& darkroom) {
   Origin origin = journal_.origin;
   origin.gl_version = darkroom.renderer().version(), origin.gl_renderer = darkroom.renderer().device();
   origin.shot = take.shots[0], origin.state = take.states[0];
+  const std::size_t bodies = take.moments[0].bodies.size();
+  Checksums states(shots_.size(), bodies);
   std::optional<media::SegmentEncoder> encoder;
   if (movie()) encoder.emplace(output_.path, spec_);
   for (std::size_t i = 0; i < take.shots.size(); ++i) {
@@ -219,11 +221,15 @@ Filming::Print Filming::print(Take take, Darkroom& darkroom) {
       break;
     }
     const media::Image& image = darkroom.print(take, i, pictures() && options_.transparent);
-    if (encoder) encoder->add(image);
+    if (encoder) {
+      encoder->add(image);
+      states.add(take.number * journal_.take_frames + std::int64_t(i), take.states[i], take.moments[i]);
+    }
     if (output_.form == Output::Form::pipe) print.images.push_back(image);
     if (pictures()) {
       Origin of_frame = origin;
       of_frame.shot = take.shots[i], of_frame.state = take.states[i], of_frame.frames = 0;
+      of_frame.states = checksums(take.states[i], take.moments[i]);
       media::write_png(output_.file(take.shots[i].frame), image,
                        {.alpha = options_.transparent, .tags = of_frame.tags(scene_.look.title)});
     }
@@ -233,6 +239,7 @@ Filming::Print Filming::print(Take take, Darkroom& darkroom) {
   if (encoder) {
     // an interrupt, or trouble on the way, leaves fewer frames than the take is to have
     print.whole = print.whole && print.frames == frames_of(take.number);
+    origin.states = states;
     media::MovieSpec spec = spec_;
     spec.tags = origin.tags(scene_.look.title);
     const media::Segment segment = encoder->finish();

@@ -20,32 +20,68 @@
 
 namespace obscura::app {
 
+namespace {
+
+constexpr std::size_t kMostOfMov = 60'000;  // bytes of an origin, with what stands around it
+
+Origin origin_of_part(const std::string& path, const media::Tags& tags) {
+  auto origin = origin_in(tags);
+  if (!origin) throw media::Error(path + ": does not say what film it is of");
+  return std::move(*origin);
+}
+
+// what all parts show, for the movie's own origin stands before its frames; none where one has none
+std::optional<Checksums> states_of(const std::vector<std::string>& parts) {
+  std::optional<Checksums> all;
+  for (const std::string& path : parts) {
+    const Origin origin = origin_of_part(path, media::part_tags(path));
+    if (!origin.states) return {};
+    if (all)
+      all->append(*origin.states);
+    else
+      all = origin.states;
+  }
+  if (all) all->close();
+  return all;
+}
+
+}  // namespace
+
 std::int64_t join(Store& store, const std::string& movie, const Joining& joining) {
+  std::vector<std::string> parts;
+  bool gaps = false;  // behind one that is missing frames have other numbers
+  for (std::int64_t take = 0; take < joining.takes; ++take) {
+    if (const auto path = store.part(take))
+      parts.push_back(*path), gaps = gaps || std::int64_t(parts.size()) != take + 1;
+  }
+  if (joining.cut) parts.push_back(*joining.cut);
+
   std::optional<media::MovieWriter> writer;
   std::optional<Origin> first;
   media::MovieSpec spec;
   const auto add = [&](const std::string& path) {
     const media::Part part = media::read_part(path);
-    const auto origin = origin_in(part.tags);
-    if (!origin) throw media::Error(path + ": does not say what film it is of");
+    const Origin origin = origin_of_part(path, part.tags);
     if (!first) {
       first = origin;
-      const sim::Rational fps = sim::parse_rational(origin->fps).value_or(sim::Rational{60, 1});
-      spec.width = origin->width, spec.height = origin->height;
+      first->states = gaps ? std::nullopt : states_of(parts);
+      const sim::Rational fps = sim::parse_rational(origin.fps).value_or(sim::Rational{60, 1});
+      spec.width = origin.width, spec.height = origin.height;
       spec.fps_num = fps.num, spec.fps_den = fps.den;
-      spec.codec = origin->encoder, spec.preset = origin->preset, spec.crf = origin->crf;
+      spec.codec = origin.encoder, spec.preset = origin.preset, spec.crf = origin.crf;
       const auto title = part.tags.find("Title");
-      spec.tags = origin->tags(title == part.tags.end() ? "" : title->second);
+      const auto tags = [&] { return first->tags(title == part.tags.end() ? "" : title->second); };
+      spec.tags = tags();
+      // QuickTime leaves out what is too long: rather the checksums than all of the origin
+      if (std::filesystem::path(movie).extension() == ".mov" && spec.tags.at("obscura").size() > kMostOfMov)
+        first->states.reset(), spec.tags = tags();
       writer.emplace(movie, spec);
     }
-    if (const std::string why = discord(*first, *origin); !why.empty())
+    if (const std::string why = discord(*first, origin); !why.empty())
       throw media::Error(fmt::format("{}: cannot go behind the parts before it: {}", path, why));
     writer->add(part.segment);
   };
-  for (std::int64_t take = 0; take < joining.takes; ++take) {
-    if (const auto path = store.part(take)) add(*path);
-  }
-  if (joining.cut) add(*joining.cut);
+  for (const std::string& path : parts) add(path);
   if (!writer) throw media::Error(store.folder() + ": no part is whole yet");
   const std::int64_t frames = writer->frames();
   writer->close(joining.instead);

@@ -65,6 +65,7 @@ media::Tags Origin::tags(const std::string& title) const {
     if (crf) json["encoder"]["crf"] = *crf;
   }
   json["state"] = state;
+  if (states) json["states"] = states->json();
   if (!trajectory.empty()) json["trajectory"] = trajectory;
   json["gl"] = {{"version", gl_version}, {"renderer", gl_renderer}, {"native", native}};
   media::Tags tags = {{"Software", "obscura " OBSCURA_VERSION},
@@ -159,6 +160,7 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
       if (encoder.contains("crf")) origin.crf = encoder["crf"].get<double>();
     }
     origin.state = word(json.at("state"));
+    if (json.contains("states")) origin.states = Checksums::read(json["states"]);
     if (json.contains("trajectory")) origin.trajectory = word(json["trajectory"]);
     const auto& gl = json.at("gl");
     origin.gl_version = word(gl.at("version")), origin.gl_renderer = word(gl.at("renderer"));

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "app/checksums.h"
 #include "app/shots.h"
 #include "media/image.h"
 #include "scene/scene.h"
@@ -34,11 +35,12 @@ struct Origin {
   bool transparent = false;
   std::string gl_version, gl_renderer;
   bool native = false;
-  std::optional<Shot> shot;     // of a still or a frame; of a movie its first frame
-  std::string state;            // the hash of the state it shows
-  std::int64_t frames = 0;      // of a movie
-  std::string shots;            // of a movie: which frames of the film (Shots::text)
-  std::string encoder, preset;  // of a movie
+  std::optional<Shot> shot;         // of a still or a frame; of a movie its first frame
+  std::string state;                // the hash of the state it shows
+  std::optional<Checksums> states;  // of all that it shows; origins before 0.2 have none
+  std::int64_t frames = 0;          // of a movie
+  std::string shots;                // of a movie: which frames of the film (Shots::text)
+  std::string encoder, preset;      // of a movie
   std::optional<double> crf;
   std::string trajectory;  // the file of another program's run, where that is shown
 

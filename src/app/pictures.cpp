@@ -19,6 +19,7 @@ std::vector<Pictured> pictures(const scene::Scene& scene, const Shots& shots, co
     one.origin.gl_version = darkroom.renderer().version();
     one.origin.gl_renderer = darkroom.renderer().device();
     one.origin.shot = take->shots[0], one.origin.state = take->states[0];
+    one.origin.states = checksums(take->states[0], take->moments[0]);
     one.image = darkroom.print(*take, 0, options.transparent);
     // a file without alpha reads as opaque
     if (!options.transparent)

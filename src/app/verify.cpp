@@ -20,12 +20,14 @@
 #include "app/frames.h"
 #include "app/github.h"
 #include "app/interrupt.h"
+#include "app/options.h"
 #include "app/pictures.h"
 #include "app/say.h"
 #include "app/trouble.h"
 #include "media/error.h"
 #include "scene/document.h"
 #include "scene/error.h"
+#include "scene/scene.h"
 
 namespace obscura::app {
 
@@ -36,6 +38,7 @@ namespace fs = std::filesystem;
 struct Flags {
   std::vector<std::string> files;
   std::optional<std::string> scene;
+  std::string scene_text;  // of it
   bool states = false;
   Format format = Format::text;
   FilmOptions film;
@@ -53,6 +56,7 @@ struct Workbench {
 
 struct Verdict {
   bool good = true;
+  std::string only;  // what of it alone is known to be true
   std::vector<std::string> lines;
   void no(std::string line) { good = false, lines.push_back(std::move(line)); }
 };
@@ -63,8 +67,10 @@ gl::ContextOptions context_of(const Origin& origin, const Flags& flags) {
   return context;
 }
 
+// the cause of other pixels is told where other states have not told it
 void judge_still(const media::Image& image, const Origin& origin, const Origin& now, const Flags& flags,
                  Verdict& verdict) {
+  const bool told = !verdict.good;
   const scene::Scene scene = scene_of(now);
   const auto again = pictures(scene, shots_of(now, scene),
                               {.context = context_of(origin, flags), .transparent = origin.transparent});
@@ -76,18 +82,47 @@ void judge_still(const media::Image& image, const Origin& origin, const Origin& 
   const media::Difference d = media::difference(image, made.image);
   if (d.same()) return verdict.lines.push_back("pixels: the same");
   verdict.no("pixels: " + sentence(d));
+  if (told) return;
   for (const std::string& line : cause(origin, made.origin).lines) verdict.lines.push_back("  " + line);
 }
 
-void judge_movie(const std::string& file, const Origin& now, const Flags& flags, Verdict& verdict) {
-  const Workbench bench;
+// the states that a file's origin tells of, and those that are there now
+void judge_states(const Origin& origin, const Origin& now, Verdict& verdict) {
+  const bool still = origin.frames == 0;
+  const std::string first = fmt::format("state at t = {:g} s", sim::value(origin.shot->time));
+  const std::string what =
+      still || !origin.states ? first : fmt::format("states of {} frames", origin.states->frames());
+  if (same_states(origin, now)) {
+    verdict.lines.push_back(what + ": the same");
+  } else {
+    verdict.no(origin.state == now.state ? what + ": others"
+                                         : fmt::format("{}: {}, and now {}", first, origin.state, now.state));
+    if (origin.scene_text == now.scene_text) {
+      if (const std::string line = first_difference(origin, now); !line.empty())
+        verdict.lines.push_back("  " + line);
+      verdict.lines.push_back(
+          fmt::format("  it is by obscura {}, and this is {}", origin.version, OBSCURA_VERSION));
+    } else {
+      for (const std::string& line : cause(origin, now).lines) verdict.lines.push_back("  " + line);
+    }
+  }
+  if (!still && !origin.states) verdict.only = first + ", which is all that its origin tells of its states";
+}
+
+// makes the movie anew, at another place; `now` becomes its origin
+bool film_again(const std::string& file, const Flags& flags, const std::string& again, Origin& now) {
   scene::Scene scene = scene_of(now);
-  const std::string again = (bench.folder / fs::path(file).filename()).string();
   if (fs::path(file).extension() == ".gif") scene.film.codec.clear();
   FilmOptions options = flags.film;
   options.progress = ProgressKind::none;
   options.context = context_of(now, flags);
-  if (film(scene, shots_of(now, scene), {Output::Form::movie, again}, options) != kDone) return;
+  if (film(scene, shots_of(now, scene), {Output::Form::movie, again}, options) != kDone) return false;
+  if (const auto made = Frames(again).origin()) now.state = made->state, now.states = made->states;
+  return true;
+}
+
+void judge_movie(const std::string& file, const std::string& again, Verdict& verdict) {
+  const bool told = !verdict.good;
   const Comparison found = compare(file, again);
   if (found.same_bytes) return verdict.lines.push_back("movie: the same, byte by byte");
   if (found.same()) return verdict.lines.push_back("movie: the same pixels in all frames");
@@ -97,14 +132,14 @@ void judge_movie(const std::string& file, const Origin& now, const Flags& flags,
     const auto& worst = found.differing[std::size_t(found.worst)];
     verdict.lines.push_back(fmt::format("  worst is {}: {}", worst.name, sentence(worst)));
   }
-  if (found.cause)
+  if (found.cause && !told)
     for (const std::string& line : found.cause->lines) verdict.lines.push_back("  " + line);
 }
 
 Verdict judge(const std::string& file, const Flags& flags) {
   Frames frames(file);
   if (frames.kind() == Frames::Kind::folder)
-    throw UsageError(file + ": is a folder; name its pictures, as in frames/*.png");
+    throw media::Error(file + ": is a folder; name its pictures, as in frames/*.png");
   media::Image image;
   if (!frames.next(image)) throw media::Error(file + ": has no picture in it");
   if (!frames.origin()) throw media::Error(file + ": carries no origin of obscura's: nothing to verify");
@@ -118,29 +153,26 @@ Verdict judge(const std::string& file, const Flags& flags) {
     verdict.no("scene: its text is not the one that its hash was taken of");
   Origin now = origin;
   if (flags.scene) {
-    now.scene_text = scene::contents(*flags.scene);
+    now.scene_text = flags.scene_text;
     now.scene_hash = hash(now.scene_text);
   }
-  const std::string when = fmt::format("state at t = {:g} s", sim::value(origin.shot->time));
-  const auto state = state_again(now);
-  if (interrupted()) return verdict;
-  if (!state) {
-    verdict.no(when + ": the run ends before it");
+  if (flags.states || frames.kind() == Frames::Kind::still) {
+    const auto again = simulated(now);
+    if (interrupted()) return verdict;
+    if (!again) {
+      verdict.no(fmt::format("state at t = {:g} s: the run ends before it", sim::value(origin.shot->time)));
+      return verdict;
+    }
+    judge_states(origin, *again, verdict);
+    if (!flags.states) judge_still(image, origin, now, flags, verdict);
     return verdict;
   }
-  if (*state == origin.state)
-    verdict.lines.push_back(when + ": the same");
-  else
-    verdict.no(fmt::format("{}: {}, and now {}", when, origin.state, *state));
-  if (flags.states && *state != origin.state) {
-    now.state = *state;
-    for (const std::string& line : cause(origin, now).lines) verdict.lines.push_back("  " + line);
-  }
-  if (flags.states) return verdict;
-  if (frames.kind() == Frames::Kind::still)
-    judge_still(image, origin, now, flags, verdict);
-  else
-    judge_movie(file, now, flags, verdict);
+  const Workbench bench;
+  const std::string again = (bench.folder / fs::path(file).filename()).string();
+  if (!film_again(file, flags, again, now)) return verdict;
+  judge_states(origin, now, verdict);
+  verdict.only.clear();
+  judge_movie(file, again, verdict);
   return verdict;
 }
 
@@ -171,13 +203,25 @@ struct Findings {
       fmt::print("{}", github::command({.file = each.file, .title = "verify", .message = each.text}));
     }
     github::add_to_summary(
-        number == 0 ? fmt::format("### Verified: {} still true\n\n", all.size())
-                    : fmt::format("### Verified: {} of {} no longer true\n\n", number, all.size()) +
-                          github::quoted(wrong));
+        number == 0
+            ? fmt::format("### Verified: {} still true\n\n", all.size())
+            : fmt::format("### Verified: {} of {} no longer true, or not readable\n\n", number, all.size()) +
+                  github::quoted(wrong));
   }
 };
 
-int verify(const Flags& flags) {
+// The scene that all of them are held against: what is wrong with it is no verdict on a file.
+std::string scene_text(const std::string& file) {
+  std::error_code none;
+  if (file != "-" && !fs::exists(file, none))
+    throw media::Error(fmt::format("--scene {}: there is no such file", file));
+  std::string text = scene::contents(file);
+  (void)scene::parse(text, file, {});
+  return text;
+}
+
+int verify(Flags flags) {
+  if (flags.scene) flags.scene_text = scene_text(*flags.scene);
   int exit = kDone;
   Findings findings;
   for (const std::string& file : flags.files) {
@@ -188,13 +232,25 @@ int verify(const Flags& flags) {
       verdict.no(fmt::format("this obscura does not read its scene: {}", error.what()));
     } catch (const TroubleError& error) {
       verdict.no(error.what());
+    } catch (const UsageError& error) {
+      // frames or a camera that the scene no longer has
+      verdict.no(error.what());
+    } catch (const media::Error& error) {
+      // no verdict on this file; the others have theirs
+      std::fflush(stdout);
+      fmt::print(stderr, "obscura: {}\n", error.what());
+      exit = kFiles;
+      verdict.no(error.what());
+      findings.all.push_back({file, fmt::format("cannot be verified: {}\n", error.what()), verdict});
+      continue;
     }
     if (interrupted()) return kInterrupted;
-    std::string text = fmt::format("{}: {}\n", file, verdict.good ? "still true" : "no longer true");
+    std::string text = fmt::format("{}: {}{}\n", file, verdict.good ? "still true" : "no longer true",
+                                   verdict.good && !verdict.only.empty() ? " of its " + verdict.only : "");
     for (const std::string& line : verdict.lines) text += "  " + line + "\n";
     if (flags.format != Format::json)
       say_lines(stdout, flags.format == Format::github ? github::verbatim(text) : text);
-    if (!verdict.good) exit = kDiffers;
+    if (!verdict.good && exit == kDone) exit = kDiffers;
     findings.all.push_back({file, text, std::move(verdict)});
   }
   if (flags.format == Format::json) fmt::print("{}", findings.json(exit));
@@ -214,11 +270,13 @@ void add_verify(CLI::App& program, int& exit) {
   command.flag("--states", flags->states, "Simulate, and draw nothing");
   add_format(command, flags->format);
   command.option("-j,--jobs", flags->film.workers, "Workers, of a movie [one a core]").range(1, 256);
+  add_backend(command, flags->film.context.backend);
   command.footer(
       "Every PNG and movie of obscura's carries its origin: the scene's text, what was set, the instant, the "
       "hash of the state, who drew it. verify simulates that again, compares the state, draws it again and "
       "compares pixels, of a movie bytes or else all frames.\n\n"
-      "Exit codes: 0 all are still true, 1 one is not, 4 one is not readable or has no origin.\n\n"
+      "Exit codes: 0 all are still true, 1 one is not, 4 one is not readable or has no origin, or SCENE is "
+      "missing; the others are verified all the same.\n\n"
       "Examples:\n"
       "  obscura verify room.png\n"
       "  obscura verify docs/*.png --states\n"

@@ -24,15 +24,27 @@ struct CloseInput {
   void operator()(AVFormatContext* format) const { avformat_close_input(&format); }
 };
 
+using Input = std::unique_ptr<AVFormatContext, CloseInput>;
+
+void require(int code, const std::string& path) {
+  if (code < 0) throw Error(fmt::format("{}: no part of a movie: {}", path, complaint(code)));
+}
+
+Input open(const std::string& path) {
+  listen();
+  AVFormatContext* opened = nullptr;
+  require(avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr), path);
+  return Input(opened);
+}
+
+Tags tags_of(const AVFormatContext& format) {
+  const AVDictionaryEntry* said = av_dict_get(format.metadata, "comment", nullptr, 0);
+  return tags_of_comment(said ? said->value : "");
+}
+
 // every packet as it lies in the file: nothing is decoded
 Part packets_of(const std::string& path) {
-  listen();
-  const auto require = [&](int code) {
-    if (code < 0) throw Error(fmt::format("{}: no part of a movie: {}", path, complaint(code)));
-  };
-  AVFormatContext* opened = nullptr;
-  require(avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr));
-  const std::unique_ptr<AVFormatContext, CloseInput> format(opened);
+  const Input format = open(path);
   if (format->nb_streams != 1) throw Error(path + ": no part of a movie");
   const AVStream& stream = *format->streams[0];
   const AVRational frame = av_inv_q(stream.avg_frame_rate);
@@ -40,8 +52,7 @@ Part packets_of(const std::string& path) {
 
   Part part;
   Segment& segment = part.segment;
-  const AVDictionaryEntry* said = av_dict_get(format->metadata, "comment", nullptr, 0);
-  part.tags = tags_of_comment(said ? said->value : "");
+  part.tags = tags_of(*format);
   const AVCodecParameters& codec = *stream.codecpar;
   segment.extradata.assign(codec.extradata, codec.extradata + codec.extradata_size);
   const Packet packet = make_packet();
@@ -54,7 +65,7 @@ Part packets_of(const std::string& path) {
                                (packet->flags & AV_PKT_FLAG_KEY) != 0});
     av_packet_unref(packet.get());
   }
-  if (code != AVERROR_EOF) require(code);
+  if (code != AVERROR_EOF) require(code, path);
   segment.frames = int(segment.packets.size());
   if (segment.frames == 0 || segment.frames != stream.nb_frames) throw Error(path + ": is not whole");
   return part;
@@ -75,6 +86,10 @@ Part read_part(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(file)), {});
   return gif_part(path, bytes);
+}
+
+Tags part_tags(const std::string& path) {
+  return container(path).ending == "gif" ? read_part(path).tags : tags_of(*open(path));
 }
 
 }  // namespace obscura::media

@@ -162,6 +162,39 @@ TEST_F(Compare, MoviesAgreeOrSayWhichFrameParts) {
               HasSubstr("a.mp4 has 10 frames and shorter.mp4 has 9"));
 }
 
+TEST_F(Compare, WritesOverNoneOfItsInputs) {
+  still("a.png");
+  still("b.png", "--theme screen");
+  ASSERT_EQ(
+      shell("mkdir left right && cp a.png left/0.png && cp b.png right/0.png && ln -s a.png link.png").exit,
+      0);
+  const std::string before = contents(path("a.png"));
+  for (const char* flags :
+       {"a.png b.png --diff a.png", "a.png b.png --diff ./b.png", "a.png b.png --diff link.png",
+        "a.png b.png --report b.png", "left right --diff left/0.png"}) {
+    const Outcome run = obscura(std::string("compare ") + flags);
+    EXPECT_EQ(run.exit, 2) << flags;
+    EXPECT_THAT(run.err, HasSubstr("which is compared")) << flags;
+  }
+  EXPECT_EQ(contents(path("a.png")), before);
+  EXPECT_EQ(contents(path("left/0.png")), before);
+  EXPECT_EQ(obscura("compare left right --diff left.png").exit, 1);
+}
+
+TEST_F(Compare, WhoeverDrawsCanBeToldWithWhat) {
+  // EGL without a library of its own cannot be had: whoever takes it says so
+  const std::string without =
+      "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null __EGL_VENDOR_LIBRARY_DIRS=/nonexistent " OBSCURA_BINARY " ";
+  still("a.png", "--backend osmesa");
+  scene(text_ + "[golden]\nat = [0.5]\nsize = [160, 90]\n");
+  for (const char* command :
+       {"verify a.png", "golden scene.toml --update", "figure scene.toml -o f.png --dpi 50",
+        "sweep scene.toml --vary seed=1,2 --at 0 -o s.png"}) {
+    EXPECT_EQ(shell(without + command + " --backend osmesa").exit, 0) << command;
+    EXPECT_EQ(shell(without + command + " --backend egl").exit, 5) << command;
+  }
+}
+
 using Runs = Compare;
 
 TEST_F(Runs, OfOneSceneAgreeAndOfAnotherPartAtABodyAndAQuantity) {
@@ -202,6 +235,29 @@ TEST_F(Runs, TakeAWholeTurnAndTheOtherQuaternionForTheSame) {
   EXPECT_EQ(obscura("compare a.csv b.csv --atol 1e-12").exit, 0);
 }
 
+TEST_F(Runs, WhatIsNotFiniteIsTheSameAsItselfAloneAtAnyTolerance) {
+  const auto table = [&](const std::string& value, const std::string& name) {
+    scene("time,ball.position.x,ball.angle\n0,0,0\n1," + value + "," + value + "\n2,0,0\n", name);
+  };
+  const std::vector<std::string> values = {"inf", "-inf", "nan", "1", "1e+300"};
+  for (const std::string& a : values) {
+    for (const std::string& b : values) {
+      table(a, "a.csv"), table(b, "b.csv");
+      const bool finite = a.find('n') == a.npos && b.find('n') == b.npos;
+      const int exit = a == b || finite ? 0 : 1;
+      const Outcome run = obscura("compare a.csv b.csv --rtol 2 --atol 1e300");
+      EXPECT_EQ(run.exit, exit) << a << " " << b << run.out;
+      if (exit == 0) continue;
+      EXPECT_THAT(run.out, HasSubstr(a + " and " + b + "; what is not finite is the same as itself alone"));
+      const Json json = compared("a.csv b.csv --rtol 1e300", 1);
+      EXPECT_EQ(json["part"]["body"], "ball");
+      EXPECT_EQ(json["quantities"][0]["largest"], "inf");
+    }
+  }
+  table("-nan", "a.csv"), table("nan", "b.csv");
+  EXPECT_THAT(obscura("compare a.csv b.csv").out, HasSubstr("exactly"));
+}
+
 TEST_F(Runs, SayWhatIsWrongWithATable) {
   scene("time,ball.position.x\n0,0\n", "a.csv");
   const auto told = [&](const std::string& text) {
@@ -211,9 +267,9 @@ TEST_F(Runs, SayWhatIsWrongWithATable) {
     return run.err;
   };
   EXPECT_THAT(told("time,ball.position.x\n0,zero\n"),
-              HasSubstr("b.csv:2: 'zero' under ball.position.x is no number"));
+              HasSubstr("b.csv:2:3: 'zero' under ball.position.x is no number"));
   EXPECT_THAT(told("time,ball.position.x\n0\n"), HasSubstr("b.csv:2: 1 cells under 2 columns"));
-  EXPECT_THAT(told("time,ball.position.x\n1,0\n1,0\n"), HasSubstr("b.csv:3: times must increase"));
+  EXPECT_THAT(told("time,ball.position.x\n1,0\n1,0\n"), HasSubstr("b.csv:3:1: times must increase"));
   EXPECT_THAT(told("t,ball.position.x\n1,0\n"), HasSubstr("no column is called 'time'"));
   EXPECT_EQ(obscura("compare a.csv a.png").exit, 2);
 }
@@ -239,12 +295,134 @@ TEST_F(Verify, AgainstASceneThatHasChangedItIsTrueNoLonger) {
   EXPECT_THAT(run.out, HasSubstr("crate.mass is 1.5 and 2.5"));
 }
 
+TEST_F(Verify, AMovieWhoseStatesPartLaterThanItsFirstFrameIsTrueNoLonger) {
+  // the ball strikes the wall after 0.8 s
+  for (const char* movie : {"a.mp4", "a.gif", "a.webm"})
+    ASSERT_EQ(obscura(std::string("render scene.toml --size 160x90 --fps 10 -o ") + movie).exit, 0);
+  Outcome run = obscura("verify a.mp4 a.gif a.webm --states");
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("states of 10 frames: the same"));
+  scene(
+      std::string(text_).replace(text_.find("position = [3, 1]"), 17, "elasticity = 0.1\nposition = [3, 1]"));
+  run = obscura("verify a.mp4 a.gif a.webm --states --scene scene.toml");
+  EXPECT_EQ(run.exit, 1);
+  for (const char* movie : {"a.mp4", "a.gif", "a.webm"})
+    EXPECT_THAT(run.out, HasSubstr(std::string(movie) + ": no longer true"));
+  // what was named is where the tables part
+  const auto at = [&](int frame, const std::string& set) {
+    const Json all = Json::parse(
+        obscura("states scene.toml --at " + std::to_string(frame) + "/10 --set ball.elasticity=" + set).out);
+    return std::string(all["states"][0]["hash"]);
+  };
+  int first = 0;
+  while (first < 10 && at(first, "0.1") == at(first, "0.5")) ++first;
+  ASSERT_GT(first, 0);
+  ASSERT_LT(first, 10);
+  EXPECT_THAT(run.out, HasSubstr("states differ from frame " + std::to_string(first) + " (t = 0." +
+                                 std::to_string(first) + " s) on: bod"));
+  EXPECT_THAT(run.out, HasSubstr("body ball, position and velocity"));
+  // drawn, it is found as well
+  run = obscura("verify a.mp4 --scene scene.toml");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("states differ from frame"));
+}
+
+TEST_F(Verify, AnotherSimulatorsMovieIsToldByFrameAndBody) {
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o a.mp4").exit, 0);
+  const std::string bytes = contents(path("a.mp4"));
+  // as if frame 7 had shown another place of the second body, the crate
+  std::string other = bytes;
+  const auto change = [&](const std::string& key, std::size_t letter) {
+    const std::size_t at = other.find("\"" + key + "\":{");
+    ASSERT_NE(at, std::string::npos) << key;
+    const std::size_t sums = other.find("\"sums\":\"", at) + 8 + letter;
+    other[sums] = other[sums] == 'A' ? 'B' : 'A';
+  };
+  change("of_frames", 2 * 7);
+  change("of_bodies", 2 * (2 * 7 + 1));
+  scene(other, "a.mp4");
+  const Outcome run = obscura("verify a.mp4 --states");
+  EXPECT_EQ(run.exit, 1) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("states of 10 frames: others"));
+  EXPECT_THAT(run.out, HasSubstr("states differ from frame 7 (t = 0.7 s) on: body crate"));
+  EXPECT_THAT(run.out, HasSubstr("it is by obscura"));
+  // pixels are the same, and so said; the verdict is no
+  const Outcome drawn = obscura("verify a.mp4");
+  EXPECT_EQ(drawn.exit, 1);
+  EXPECT_THAT(drawn.out, HasSubstr("movie: the same pixels in all frames"));
+  scene(bytes, "b.mp4");
+  EXPECT_THAT(obscura("compare b.mp4 a.mp4").out, HasSubstr("states differ from frame 7"));
+}
+
+TEST_F(Verify, OfAnOldOriginTheFirstStateAloneIsKnownAndThatIsSaid) {
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o a.mp4").exit, 0);
+  std::string bytes = contents(path("a.mp4"));
+  bytes.replace(bytes.find("\"states\":"), 9, "\"status\":");
+  scene(bytes, "a.mp4");
+  Outcome run = obscura("verify a.mp4 --states");
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.out,
+              HasSubstr("a.mp4: still true of its state at t = 0 s, which is all that its origin tells"));
+  run = obscura("verify a.mp4");
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.out, HasSubstr("a.mp4: still true\n"));
+}
+
+TEST_F(Verify, FilmsInSharesAndThoseThatWereStoppedTellOfTheSameStates) {
+  const std::string film = "render scene.toml --size 160x90 --fps 30 --set duration=3 -o ";
+  ASSERT_EQ(obscura(film + "a.mp4").exit, 0);
+  for (const char* shard : {"3/3", "1/3", "2/3"}) ASSERT_EQ(obscura(film + "b.mp4 --shard " + shard).exit, 0);
+  ASSERT_EQ(obscura("join b.mp4").exit, 0);
+  EXPECT_EQ(compared("a.mp4 b.mp4", 0)["same_bytes"], true);
+  // a part that is missing leaves no states that could be told
+  ASSERT_EQ(obscura(film + "c.mp4 --shard 3/3").exit, 0);
+  ASSERT_EQ(obscura("join c.mp4 --partial").exit, 0);
+  const Outcome run = obscura("verify b.mp4 c.partial.mp4 --states");
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("states of 90 frames: the same"));
+  EXPECT_THAT(run.out, HasSubstr("c.partial.mp4: still true of its state at t = 2 s, which is all"));
+}
+
 TEST_F(Verify, APictureWithoutAnOriginCannotBe) {
   still("a.png");
   ASSERT_EQ(obscura("compare a.png " + still("b.png", "--theme screen") + " --diff d.png").exit, 1);
   const Outcome run = obscura("verify d.png");
   EXPECT_EQ(run.exit, 4);
   EXPECT_THAT(run.err, HasSubstr("d.png: carries no origin"));
+}
+
+TEST_F(Verify, OneFileThatIsNotReadableDoesNotEndTheList) {
+  still("a.png");
+  scene("no picture", "cut.png");
+  std::filesystem::create_directory(path("folder"));
+  const Outcome run = obscura("verify cut.png none.png folder a.png --states");
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_THAT(run.out, HasSubstr("a.png: still true"));
+  EXPECT_THAT(run.err, HasSubstr("cut.png"));
+  EXPECT_THAT(run.err, HasSubstr("none.png: there is no such file"));
+  EXPECT_THAT(run.err, HasSubstr("folder: has no PNG in it"));
+}
+
+TEST_F(Verify, ASceneThatIsNotThereOrNoneIsNoVerdict) {
+  still("a.png");
+  Outcome run = obscura("verify a.png --scene typo.toml");
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr("--scene typo.toml: there is no such file"));
+  scene("[[bal]]\n", "broken.toml");
+  run = obscura("verify a.png --scene broken.toml");
+  EXPECT_EQ(run.exit, 3);
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(shell("cat scene.toml | " OBSCURA_BINARY " verify a.png a.png --states --scene -").exit, 0);
+}
+
+TEST_F(Verify, FramesThatASceneNoLongerHasAreAVerdict) {
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 10 -o a.mp4 --frames 2..9").exit, 0);
+  scene(std::string(text_).replace(text_.find("duration = 1"), 12, "duration = 0.5"));
+  const Outcome run = obscura("verify a.mp4 --scene scene.toml");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("a.mp4: no longer true"));
+  EXPECT_THAT(run.out, HasSubstr("the film has frames 0 to 4"));
 }
 
 }  // namespace
