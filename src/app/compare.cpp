@@ -47,7 +47,10 @@ void spare_inputs(const Flags& flags) {
   }
 }
 
-bool is_table(const std::string& path) { return std::filesystem::path(path).extension() == ".csv"; }
+bool is_table(const std::string& path) {
+  const auto ending = std::filesystem::path(path).extension();
+  return ending == ".csv" || ending == ".json";
+}
 
 // what a person or a program is told; GitHub beside it where the two are not the same
 void tell(const Flags& flags, bool same, const std::string& text, const std::string& json) {
@@ -95,7 +98,7 @@ int run(const Flags& flags) {
                                  is_table(flags.a) ? flags.b : flags.a));
   if (is_table(flags.a)) return compare_runs(flags);
   if (flags.rtol || flags.atol || flags.interpolate)
-    throw UsageError("--rtol, --atol and --interpolate are for tables (.csv)");
+    throw UsageError("--rtol, --atol and --interpolate are for tables (.csv, .json)");
   spare_inputs(flags);
   const Comparison found = compare(flags.a, flags.b);
   if (interrupted()) return kInterrupted;
@@ -114,7 +117,7 @@ void add_compare(CLI::App& program, int& exit) {
   const Command command(program, exit, "compare",
                         "Say whether two pictures, sequences or runs are the same, and why not");
   auto flags = std::make_shared<Flags>();
-  command.option("A", flags->a, "A PNG, a folder of them, a movie, or a run as CSV: what is expected")
+  command.option("A", flags->a, "A PNG, a folder of them, a movie, or a run as CSV or JSON: what is expected")
       .required();
   command.option("B", flags->b, "The same again: what there is").required();
   command.option("--diff", flags->diff, "Write what differs, of a sequence in its worst frame")
@@ -133,7 +136,8 @@ void add_compare(CLI::App& program, int& exit) {
       "other "
       "scene, other state (both are simulated again, and the step, body and quantity where they part are "
       "told), other look, other OpenGL, or pixels only.\n"
-      "Runs are tables as `obscura states --format csv` writes them. A is the reference: its columns and its "
+      "Runs are tables as `obscura states` writes them, as CSV or JSON. A is the reference: its columns and "
+      "its "
       "times must be in B. Times are one within half a microsecond; |b - a| <= atol + rtol |a|; inf and nan "
       "are the "
       "same as themselves alone.\n\n"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string_view>
 #include <system_error>
 
@@ -69,6 +70,8 @@ Table table_in(const std::string& file) {
     if (at == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     const std::string_view text = trimmed(line);
     if (text.empty() || text.front() == '#') continue;
+    if (numeric.empty() && text.front() == '{')
+      return table_of_json(file, line + "\n" + std::string(std::istreambuf_iterator<char>(in), {}));
     const auto row = cells(line);
     if (numeric.empty()) {
       for (const std::string_view name : row) {
@@ -102,11 +105,9 @@ Table table_in(const std::string& file) {
       numbers.push_back(*x);
     }
     const double time = numbers[table.time_column];
-    if (!std::isfinite(time) || (!table.rows.empty() && time <= table.time(table.rows.size() - 1)))
+    if (!add_row(std::move(numbers), at, table))
       throw media::Error(fmt::format("{}: times must increase from row to row, got {}",
                                      place(file, at, line, row[table.cells[table.time_column]]), time));
-    table.rows.push_back(std::move(numbers));
-    table.lines.push_back(at);
   }
   if (table.rows.empty()) throw media::Error(file + ": has no rows of numbers");
   return table;
@@ -122,7 +123,17 @@ Table read_table(const std::string& file) {
   }
 }
 
+bool add_row(std::vector<double> numbers, int line, Table& table) {
+  const double time = numbers[table.time_column];
+  if (!std::isfinite(time) || (!table.rows.empty() && time <= table.time(table.rows.size() - 1)))
+    return false;
+  table.rows.push_back(std::move(numbers));
+  table.lines.push_back(line);
+  return true;
+}
+
 std::string place(const Table& table, int line, std::size_t column) {
+  if (table.json) return fmt::format("{}, state {}", table.file, line);
   std::error_code none;
   std::ifstream in;
   // a pipe has nothing left, and would be waited for

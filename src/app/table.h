@@ -20,14 +20,22 @@ struct Table {
   std::optional<std::size_t> column(const std::string& name) const;
   double time(std::size_t row) const { return rows[row][time_column]; }
   std::size_t time_column = 0;
+  bool json = false;  // `lines` are the numbers of its states, from 1
 };
 
-/// Reads numbers separated by commas under one line of names; lines that begin with # and empty ones are
-/// skipped. Times must increase. Throws media::Error with the place where something is no number or missing.
+/// Reads a run as `obscura states` writes it, as CSV or as JSON; in CSV numbers separated by commas under one
+/// line of names; lines that begin with # and empty ones are skipped. Times must increase. Throws
+/// media::Error with the place where something is no number or missing.
 Table read_table(const std::string& file);
 
+/// The same of JSON.
+Table table_of_json(const std::string& file, const std::string& text);
+
+/// Adds a row. False, and nothing is added, where its time is not finite or not after the last one's.
+bool add_row(std::vector<double> numbers, int line, Table& table);
+
 /// Where a column's cell in a line of the file is: "run.csv:17:42". Of a file that cannot be read again, as
-/// from a pipe, "run.csv:17".
+/// from a pipe, "run.csv:17"; of JSON "run.json, state 3".
 std::string place(const Table& table, int line, std::size_t column);
 
 /// Two times, s, that are one: within half a microsecond.

@@ -273,7 +273,8 @@ void add_verify(CLI::App& program, int& exit) {
   add_backend(command, flags->film.context.backend);
   command.footer(
       "Every PNG and movie of obscura's carries its origin: the scene's text, what was set, the instant, the "
-      "hash of the state, who drew it. verify simulates that again, compares the state, draws it again and "
+      "hash of the state, who drew it. verify simulates that again, compares the states of all frames, draws "
+      "it again and "
       "compares pixels, of a movie bytes or else all frames.\n\n"
       "Exit codes: 0 all are still true, 1 one is not, 4 one is not readable or has no origin, or SCENE is "
       "missing; the others are verified all the same.\n\n"

@@ -235,6 +235,28 @@ TEST_F(Runs, TakeAWholeTurnAndTheOtherQuaternionForTheSame) {
   EXPECT_EQ(obscura("compare a.csv b.csv --atol 1e-12").exit, 0);
 }
 
+TEST_F(Runs, AreTakenAsJsonTooAsStatesWritesIt) {
+  const std::string states = "states scene.toml --every 0.1 ";
+  ASSERT_EQ(obscura(states + "--format csv > a.csv").exit, 0);
+  ASSERT_EQ(obscura(states + "> a.json").exit, 0);
+  ASSERT_EQ(obscura(states + "--set crate.mass=3 > b.json").exit, 0);
+  Outcome run = obscura("compare a.csv a.json");
+  EXPECT_EQ(run.exit, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("exactly"));
+  EXPECT_EQ(obscura("compare a.json b.json").exit, 1);
+  ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 160x90 -o a.png").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 160x90 -o b.png --states a.json").exit, 0);
+  EXPECT_EQ(obscura("compare a.png b.png").exit, 0);
+  for (const char* bad : {"{", "{\"states\": [{}]}", "{\"states\": []}", "{\"states\": [{\"time\": \"x\"}]}",
+                          "{\"states\": [{\"time\": 1}, {\"time\": 0}]}",
+                          "{\"states\": [{\"time\": 1}, {\"time\": 2, \"step\": 1}]}"}) {
+    scene(bad, "b.json");
+    run = obscura("compare a.csv b.json");
+    EXPECT_EQ(run.exit, 4) << bad;
+    EXPECT_THAT(run.err, HasSubstr("b.json")) << bad;
+  }
+}
+
 TEST_F(Runs, WhatIsNotFiniteIsTheSameAsItselfAloneAtAnyTolerance) {
   const auto table = [&](const std::string& value, const std::string& name) {
     scene("time,ball.position.x,ball.angle\n0,0,0\n1," + value + "," + value + "\n2,0,0\n", name);
