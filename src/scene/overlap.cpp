@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cstdint>
+#include <map>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "scene/meetings.h"
 #include "sim/gap.h"
 #include "sim/shape.h"
 #include "sim/turning.h"
@@ -16,7 +19,9 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr double kAllowed = 1e-6;  // of the smaller body's size: what the first step puts right
+constexpr double kAllowed = 1e-6;               // of the smaller body's size: what the first step puts right
+constexpr std::int64_t kMostCounted = 100'000;  // overlaps: nobody wants to know of more
+constexpr std::int64_t kMostLooked = 20'000'000;  // pairs that are near each other: each takes 500 bytes
 
 std::pair<int, int> ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -26,56 +31,76 @@ struct Found {
   int more = 0;
 };
 
+// what a body is, as far as it says which others it need not keep apart from
+struct Kind {
+  bool point = false, fixed = false;
+  int group = 0;
+
+  auto operator<=>(const Kind&) const = default;
+};
+
+std::string more_text(int more, bool counted) {
+  if (more == 0) return "";
+  return fmt::format(", and {}{} more {}", counted ? "" : "at least ", more,
+                     more == 1 ? "pair does" : "pairs do");
+}
+
 }  // namespace
 
 template <int D>
 void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaints& complaints) {
   const sim::Model<D>& model = world.model;
+  const bool refuse = model.overlap == sim::Overlap::refuse;
   std::set<std::pair<int, int>> joined, ignored;
   for (const sim::Joint<D>& joint : model.joints)
     if (!joint.touching) joined.insert(ordered(joint.a.body, joint.b.body));
   for (const auto& [a, b] : model.ignore) ignored.insert(ordered(a, b));
-  const auto keep_apart = [&](int a, int b) {
-    const sim::Body<D>&one = model.bodies[std::size_t(a)], &other = model.bodies[std::size_t(b)];
-    const bool points = one.shape.kind == sim::ShapeKind::point && other.shape.kind == sim::ShapeKind::point;
-    return !points && !one.handout && !other.handout && !(one.fixed && other.fixed) &&
-           !ignored.contains(ordered(one.group, other.group)) && !joined.contains(ordered(a, b));
-  };
 
-  // neighbours by sweeping along x
+  // kinds of bodies, and the boxes around them
   const int n = int(model.bodies.size());
+  std::vector<Kind> kinds;
+  std::map<Kind, int> index;
+  std::vector<int> kind_of(static_cast<std::size_t>(n), -1), group_of(static_cast<std::size_t>(n), 0);
   std::vector<sim::Bounds<D>> boxes;
-  for (int i = 0; i < n; ++i)
-    boxes.push_back(sim::bounds(model.bodies[std::size_t(i)].shape, sim::stance(world.state, i)));
-  std::vector<int> order(static_cast<std::size_t>(n));
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return std::pair(boxes[std::size_t(a)].lower.x(), a) < std::pair(boxes[std::size_t(b)].lower.x(), b);
-  });
-  std::vector<Found> found(roster.groups.size());
-  std::vector<int> group_of(static_cast<std::size_t>(n), 0);
+  for (int i = 0; i < n; ++i) {
+    const sim::Body<D>& body = model.bodies[std::size_t(i)];
+    boxes.push_back(sim::bounds(body.shape, sim::stance(world.state, i)));
+    if (body.handout) continue;
+    const Kind kind{body.shape.kind == sim::ShapeKind::point, body.fixed, body.group};
+    const auto [known, fresh] = index.emplace(kind, int(kinds.size()));
+    if (fresh) kinds.push_back(kind);
+    kind_of[std::size_t(i)] = known->second;
+  }
   for (std::size_t g = 0; g < roster.groups.size(); ++g)
     std::fill_n(group_of.begin() + roster.groups[g].first, roster.groups[g].count, int(g));
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (std::size_t k = i + 1; k < order.size(); ++k) {
-      const auto [a, b] = ordered(order[i], order[k]);
-      if (boxes[std::size_t(order[k])].lower.x() > boxes[std::size_t(order[i])].upper.x()) break;
-      if (!boxes[std::size_t(a)].meets(boxes[std::size_t(b)]) || !keep_apart(a, b)) continue;
-      const sim::Shape<D>&one = model.bodies[std::size_t(a)].shape,
-            &other = model.bodies[std::size_t(b)].shape;
-      const double depth =
-          -sim::separation(one, sim::stance(world.state, a), other, sim::stance(world.state, b));
-      const double size = 2 * std::max(std::min(sim::reach(one), sim::reach(other)),
-                                       1e-3 * std::max(sim::reach(one), sim::reach(other)));
-      if (!(depth > kAllowed * size)) continue;
-      Found& its = found[std::size_t(group_of[std::size_t(b)])];
-      if (its.a < 0 || ordered(b, a) < ordered(its.b, its.a)) {
-        its = {a, b, depth, its.a < 0 ? 0 : its.more + 1};
-      } else {
-        ++its.more;
-      }
+  const auto keep_apart = [&](int k, int l) {
+    const Kind &one = kinds[std::size_t(k)], &other = kinds[std::size_t(l)];
+    return !(one.point && other.point) && !(one.fixed && other.fixed) &&
+           !ignored.contains(ordered(one.group, other.group));
+  };
+
+  std::vector<Found> found(roster.groups.size());
+  std::int64_t looked = 0, overlapping = 0;
+  meetings<D>(boxes, kind_of, keep_apart, [&](int a, int b) {
+    if (++looked > kMostLooked) return false;
+    if (!refuse) return true;
+    if (!joined.empty() && joined.contains({a, b})) return true;
+    const sim::Shape<D>&one = model.bodies[std::size_t(a)].shape, &other = model.bodies[std::size_t(b)].shape;
+    const double depth =
+        -sim::separation(one, sim::stance(world.state, a), other, sim::stance(world.state, b));
+    const double size = 2 * std::max(std::min(sim::reach(one), sim::reach(other)),
+                                     1e-3 * std::max(sim::reach(one), sim::reach(other)));
+    if (!(depth > kAllowed * size)) return true;
+    ++overlapping;
+    Found& its = found[std::size_t(group_of[std::size_t(b)])];
+    if (its.a < 0 || ordered(b, a) < ordered(its.b, its.a)) {
+      its = {a, b, depth, its.a < 0 ? 0 : its.more + 1};
+    } else {
+      ++its.more;
     }
-  }
+    return overlapping < kMostCounted;
+  });
+
   for (std::size_t g = 0; g < found.size(); ++g) {
     const Found& its = found[g];
     if (its.a < 0) continue;
@@ -85,10 +110,12 @@ void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaint
             "'{}' and '{}' overlap by {:.3g} m at the start{}; move them apart, or let them be pushed: "
             "[physics] overlap = \"separate\"",
             model.bodies[std::size_t(its.a)].name, model.bodies[std::size_t(its.b)].name, its.depth,
-            its.more == 0   ? ""
-            : its.more == 1 ? ", and another pair does"
-                            : fmt::format(", and {} more pairs do", its.more)));
+            more_text(its.more, overlapping < kMostCounted)));
   }
+  if (looked > kMostLooked)
+    complaints.add({}, fmt::format("more than {} pairs of bodies are near each other at the start, too many "
+                                   "to be simulated; move them apart",
+                                   kMostLooked));
 }
 
 template void refuse_overlaps<2>(const Roster&, const sim::World<2>&, Complaints&);

@@ -143,10 +143,8 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   scene.film.charts = charts<D>(top, roster, world, complaints);
 
   // overlaps may come of other mistakes: they are told where there are none
-  if (complaints.none() && model.collision != sim::Collision::handout &&
-      model.overlap == sim::Overlap::refuse) {
+  if (complaints.none() && model.collision != sim::Collision::handout)
     refuse_overlaps(roster, world, complaints);
-  }
   return world;
 }
 
