@@ -41,8 +41,8 @@ struct Kind {
 
 std::string more_text(int more, bool counted) {
   if (more == 0) return "";
-  return fmt::format(", and {}{} more {}", counted ? "" : "at least ", more,
-                     more == 1 ? "pair does" : "pairs do");
+  if (more == 1 && counted) return ", and another pair does";
+  return fmt::format(", and {}{} more pairs do", counted ? "" : "at least ", more);
 }
 
 }  // namespace

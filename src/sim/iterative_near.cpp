@@ -24,6 +24,7 @@ Near::Near(const Model<2>& model, const Cores& cores)
   const std::size_t n = model.bodies.size();
   movers_.resize(n), still_.resize(n), exposed_.resize(n);
   bounds_.resize(cores.all.size()), still_cores_.resize(cores.all.size());
+  for (const Core& core : cores.all) points_.push_back(core.count == 1 && core.radius <= 0);
   for (std::size_t i = 0; i < n; ++i) {
     movers_[i].reach = cores.reach[i];
     movers_[i].thick = std::max(cores.inside[i], 1e-3 * model.scale);
@@ -130,9 +131,9 @@ bool Near::look(const State<2>& state, const std::vector<Pose>& poses, double sp
   candidates_.clear();
   if (patience > 0 && std::find(still_.begin(), still_.end(), 0) == still_.end()) return false;
   enclose(poses);
-  for (const auto& [i, j] : broad_.find(bounds_, still_cores_)) {
+  for (const auto& [i, j] : broad_.find(bounds_, still_cores_, {}, points_)) {
     const Core &p = cores_.all[i], &q = cores_.all[j];
-    if (p.body == q.body || (p.count == 1 && q.count == 1 && p.radius + q.radius <= 0)) continue;
+    if (p.body == q.body) continue;
     if (may_touch_(p.body, q.body)) candidates_.push_back({i, j, -1, 0});
   }
   expose(span);

@@ -78,7 +78,7 @@ class Near {
   std::vector<Bounds<2>> bounds_;      // of cores
   std::vector<char> fixed_, handout_;  // bodies: what of the model is asked for often
   std::vector<char> still_;            // bodies
-  std::vector<char> still_cores_;
+  std::vector<char> still_cores_, points_;
   std::vector<char> exposed_;  // bodies that may be struck within the span
   std::vector<Candidate> candidates_;
   std::vector<char> close_;  // of candidates

@@ -1,7 +1,9 @@
 // A sweep along x over horizontal bands. Bodies enter in the order of their lower ends; each looks only at
-// those in its own bands that the sweep has not yet left. Bands are as high as two bodies and wrap around, as
-// a hash would, so that one body far away does not spoil them; a pair is told in the first band that both
-// share. The order along x is nearly that of the last step, so that sorting it by insertion is linear.
+// those in its own bands that the sweep has not yet left; those of a band are kept in four lists, moving or
+// still and points or not, so that it passes over the lists that cannot concern it. Bands are as high as two
+// bodies and wrap around, as a hash would, so that one body far away does not spoil them; a pair is told in
+// the first band that both share. The order along x is nearly that of the last step, so that sorting it by
+// insertion is linear.
 
 #include "sim/pairs.h"
 
@@ -15,6 +17,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr int kBands = 256;        // a power of two
+constexpr int kKinds = 4;          // of bodies: moving, still, moving points, still points
 constexpr double kFarthest = 1e9;  // bands; beyond, all share one
 
 // sorts as the number does, and NaN somewhere
@@ -86,14 +89,16 @@ bool MayTouch<D>::operator()(int a, int b) const {
 template <int D>
 const std::vector<std::pair<int, int>>& BroadPhase<D>::find(std::span<const Bounds<D>> bounds,
                                                             std::span<const char> still,
-                                                            const std::function<bool(int, int)>& wanted) {
-  assert(bounds.size() == still.size());
+                                                            const std::function<bool(int, int)>& wanted,
+                                                            std::span<const char> points) {
+  assert(bounds.size() == still.size() && (points.empty() || points.size() == still.size()));
   found_.clear();
   pairs_.clear();
+  compared_ = 0;
   if (std::find(still.begin(), still.end(), 0) == still.end()) return pairs_;
   sort_along_x(bounds);
-  lay_bands(bounds);
-  sweep(bounds, still, wanted);
+  lay_bands(bounds, still, points);
+  sweep(bounds, wanted, points.empty() ? 2 : kKinds);
   sort_pairs(int(bounds.size()));
   return pairs_;
 }
@@ -122,63 +127,72 @@ void BroadPhase<D>::sort_along_x(std::span<const Bounds<D>> bounds) {
 }
 
 template <int D>
-void BroadPhase<D>::lay_bands(std::span<const Bounds<D>> bounds) {
+void BroadPhase<D>::lay_bands(std::span<const Bounds<D>> bounds, std::span<const char> still,
+                              std::span<const char> points) {
   const double usual = usual_height<D>(bounds);
   const double bands_per_metre = usual > 0 ? 0.5 / usual : 1;
   spans_.resize(bounds.size());
-  starts_.assign(kBands + 1, 0);
-  lengths_.assign(kBands, 0);
+  kinds_.resize(bounds.size());
+  starts_.assign(kBands * kKinds + 1, 0);
+  lengths_.assign(kBands * kKinds, 0);
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const int first = band(bounds[i].lower[1] * bands_per_metre);
     const int last = std::min(band(bounds[i].upper[1] * bands_per_metre), first + kBands - 1);
     spans_[i] = {first, last};
-    for (int k = first; k <= last; ++k) ++starts_[(k & (kBands - 1)) + 1];
+    kinds_[i] = char((still[i] ? 1 : 0) + (!points.empty() && points[i] ? 2 : 0));
+    for (int k = first; k <= last; ++k) ++starts_[(k & (kBands - 1)) * kKinds + kinds_[i] + 1];
   }
-  for (int k = 0; k < kBands; ++k) starts_[k + 1] += starts_[k];
+  for (int k = 0; k < kBands * kKinds; ++k) starts_[k + 1] += starts_[k];
   near_.resize(bounds.size());
-  if (active_.size() < std::size_t(starts_[kBands])) active_.resize(starts_[kBands] + starts_[kBands] / 2);
+  const int all = starts_.back();
+  if (active_.size() < std::size_t(all)) active_.resize(all + all / 2);
 }
 
 template <int D>
-void BroadPhase<D>::sweep(std::span<const Bounds<D>> bounds, std::span<const char> still,
-                          const std::function<bool(int, int)>& wanted) {
+void BroadPhase<D>::sweep(std::span<const Bounds<D>> bounds, const std::function<bool(int, int)>& wanted,
+                          int kinds) {
   Entry* const active = active_.data();
   const int* const starts = starts_.data();
   const Span* const spans = spans_.data();
   int *const lengths = lengths_.data(), *const near_bodies = near_.data();
   for (const Place& place : order_) {
-    const int body = place.body;
+    const int body = place.body, kind = kinds_[body];
     const Bounds<D>& own = bounds[body];
     const Span span = spans[body];
     const double left = own.lower[0], low = own.lower[1], high = own.upper[1];
     for (int k = span.first; k <= span.last; ++k) {
-      const int wrapped = k & (kBands - 1);
-      Entry* const in_band = active + starts[wrapped];
-      const int length = lengths[wrapped];
+      const int lists = (k & (kBands - 1)) * kKinds;
+      for (int of = 0; of < kinds; ++of) {
+        // two that are still, or points, do not concern each other
+        if ((of & kind) != 0) continue;
+        const int list = lists + of, length = lengths[list];
+        Entry* const in_band = active + starts[list];
 
-      // forgets those that the sweep has left, and collects the near, without a branch to guess
-      int kept = 0, near = 0;
-      for (int i = 0; i < length; ++i) {
-        const Entry other = in_band[i];
-        const bool entered = other.right >= left;
-        in_band[kept] = other;
-        kept += entered;
-        near_bodies[near] = other.body;
-        near += entered & (low <= other.high) & (other.low <= high);
-      }
-      in_band[kept] = {own.upper[0], low, high, body};
-      lengths[wrapped] = kept + 1;
-
-      for (int i = 0; i < near; ++i) {
-        const int other = near_bodies[i];
-        if (still[body] && still[other]) continue;
-        if (((std::max(span.first, spans[other].first) - k) & (kBands - 1)) != 0) continue;
-        if constexpr (D > 2) {
-          if (!own.meets(bounds[other])) continue;
+        // forgets those that the sweep has left, and collects the near, without a branch to guess
+        int kept = 0, near = 0;
+        for (int i = 0; i < length; ++i) {
+          const Entry other = in_band[i];
+          const bool entered = other.right >= left;
+          in_band[kept] = other;
+          kept += entered;
+          near_bodies[near] = other.body;
+          near += entered & (low <= other.high) & (other.low <= high);
         }
-        const auto [a, b] = std::minmax(body, other);
-        if (!wanted || wanted(a, b)) found_.emplace_back(a, b);
+        lengths[list] = kept;
+        compared_ += length;
+
+        for (int i = 0; i < near; ++i) {
+          const int other = near_bodies[i];
+          if (((std::max(span.first, spans[other].first) - k) & (kBands - 1)) != 0) continue;
+          if constexpr (D > 2) {
+            if (!own.meets(bounds[other])) continue;
+          }
+          const auto [a, b] = std::minmax(body, other);
+          if (!wanted || wanted(a, b)) found_.emplace_back(a, b);
+        }
       }
+      const int list = lists + kind;
+      active[starts[list] + lengths[list]++] = {own.upper[0], low, high, body};
     }
   }
 }

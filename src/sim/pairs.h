@@ -33,11 +33,16 @@ class MayTouch {
 template <int D>
 class BroadPhase {
  public:
-  /// All (a, b), a < b, sorted, whose bounds meet, not both still, and for which `wanted` holds (empty: all).
-  /// Bounds with a NaN meet nothing. Nearly linear for bodies of like size wherever they are; those much
-  /// taller or wider than most cost more. Allocates nothing once warm. Valid until the next call.
+  /// All (a, b), a < b, sorted, whose bounds meet, not both still nor both points, and for which `wanted`
+  /// holds (empty: all). `points`: one a body, or empty: none is. Bounds with a NaN meet nothing. Nearly
+  /// linear for bodies of like size wherever they are, and for points and still bodies even where they all
+  /// lie at one place; bodies much taller or wider than most cost more. Allocates nothing once warm. Valid
+  /// until the next call.
   const std::vector<std::pair<int, int>>& find(std::span<const Bounds<D>> bounds, std::span<const char> still,
-                                               const std::function<bool(int, int)>& wanted = {});
+                                               const std::function<bool(int, int)>& wanted = {},
+                                               std::span<const char> points = {});
+  /// How many pairs the last call compared.
+  std::int64_t compared() const { return compared_; }
 
  private:
   struct Place {
@@ -57,18 +62,20 @@ class BroadPhase {
   };
 
   void sort_along_x(std::span<const Bounds<D>> bounds);
-  void lay_bands(std::span<const Bounds<D>> bounds);
-  void sweep(std::span<const Bounds<D>> bounds, std::span<const char> still,
-             const std::function<bool(int, int)>& wanted);
+  void lay_bands(std::span<const Bounds<D>> bounds, std::span<const char> still,
+                 std::span<const char> points);
+  void sweep(std::span<const Bounds<D>> bounds, const std::function<bool(int, int)>& wanted, int kinds);
   void sort_pairs(int bodies);
 
   std::vector<Place> order_;           // the memory of the last call
   std::vector<Span> spans_;            // one a body
-  std::vector<int> starts_, lengths_;  // of each band in active_
+  std::vector<char> kinds_;            // one a body: bit 0 still, bit 1 a point
+  std::vector<int> starts_, lengths_;  // of each kind in each band, in active_
   std::vector<Entry> active_;          // band by band, those the sweep has entered and not left
   std::vector<int> near_;              // those in one band that one body's bounds may meet
   std::vector<std::pair<int, int>> found_, pairs_;
   std::vector<int> offsets_;  // of each a in pairs_
+  std::int64_t compared_ = 0;
 };
 
 }  // namespace obscura::sim

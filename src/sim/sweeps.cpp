@@ -48,7 +48,10 @@ Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
   g_ = std::sqrt(model.gravity.squaredNorm());
   rest_speed_ = 2 * h * g_ + 1e-9 * model.scale;
   asked_ = slow(model).asked;
-  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
+  for (const Body<D>& body : model.bodies) {
+    rims_.push_back(reach(body.shape));
+    points_.push_back(body.shape.kind == ShapeKind::point);
+  }
 }
 
 template <int D>
@@ -136,12 +139,10 @@ void Sweeps<D>::find(double h) {
     const Vec<D> more = Vec<D>::Constant(margin(i));
     bounds_[i].lower -= more, bounds_[i].upper += more;
   }
-  const auto& pairs = broad_.find(bounds_, still_, [&](int a, int b) {
-    const Body<D>&p = model_.bodies[a], &q = model_.bodies[b];
-    if (p.handout || q.handout) return false;
-    if (p.shape.kind == ShapeKind::point && q.shape.kind == ShapeKind::point) return false;
-    return may_touch_(a, b);
-  });
+  const auto wanted = [&](int a, int b) {
+    return !model_.bodies[a].handout && !model_.bodies[b].handout && may_touch_(a, b);
+  };
+  const auto& pairs = broad_.find(bounds_, still_, wanted, points_);
 
   // ascending: of a body first its walls, from the last
   auto pair = pairs.begin();

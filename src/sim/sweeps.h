@@ -105,7 +105,7 @@ class Sweeps final : public ContactStep<D> {
   std::vector<Stance<D>> stances_;
   std::vector<Moving> moving_;
   std::vector<Bounds<D>> bounds_;
-  std::vector<char> still_;
+  std::vector<char> still_, points_;
   std::vector<Gap<D>> gaps_;
   std::vector<Touch> touches_;  // ascending by key
   std::vector<int> all_, some_;

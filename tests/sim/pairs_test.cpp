@@ -73,6 +73,39 @@ TEST(BroadPhase, FindsTheSameWhateverCameBefore) {
   }
 }
 
+TEST(BroadPhase, TellsNoPairOfPointsNorOfStillBodies) {
+  ShapeDice dice(3);
+  BroadPhase<2> phase;
+  for (int n = 0; n < 60; ++n) {
+    const Crowd all = crowd(dice, 1 + dice.below(300), dice.between(1, 20));
+    std::vector<char> points;
+    for (std::size_t i = 0; i < all.bounds.size(); ++i) points.push_back(dice.below(3) == 0);
+    Found right = all_pairs(all.bounds, all.still);
+    std::erase_if(right, [&](const auto& pair) { return points[pair.first] && points[pair.second]; });
+    EXPECT_EQ(phase.find(all.bounds, all.still, {}, points), right) << n;
+  }
+}
+
+// how many pairs are compared of n boxes at one place, all but ten of them points, or still
+std::int64_t compared_at_one_place(int n, bool points) {
+  std::vector<Bounds<2>> bounds(n, {{0, 0}, {1, 1}});
+  std::vector<char> odd(n, 1), none(n, 0);
+  for (int i = 0; i < 10; ++i) odd[i] = 0;
+  BroadPhase<2> phase;
+  const auto& pairs = points ? phase.find(bounds, none, {}, odd) : phase.find(bounds, odd);
+  EXPECT_EQ(int(pairs.size()), 10 * (n - 10) + 45);
+  return phase.compared();
+}
+
+TEST(BroadPhase, IsLinearInPointsAndStillBodiesAtOnePlace) {
+  for (const bool points : {true, false}) {
+    const std::int64_t some = compared_at_one_place(1000, points),
+                       twice = compared_at_one_place(2000, points);
+    EXPECT_LE(some, 20'000) << points;
+    EXPECT_LE(twice, 5 * some / 2) << points;
+  }
+}
+
 TEST(BroadPhase, TellsTouchingBoundsAndNeverNaN) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Bounds<2>> bounds = {
