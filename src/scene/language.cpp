@@ -53,7 +53,7 @@ std::vector<Key> rows() {
        .doc = "Of the walls. Given, a wall and a body have the root of the product of theirs.", .example = "0.8"},
       {.path = "room.walls", .form = walls, .absent = "those of `size`", .choices = {"ground", "none"},
        .doc = "`\"ground\"`: of `size` only the floor, for ever; `\"none\"`: no walls, and `size` is what is shown. Or tables: walls at any "
-              "angle, beside those of `size` or instead of them.",
+              "angle, beside those of `size` or instead of them: up to 1000, and no more than eight in one plane.",
        .example = "\"ground\""},
       {.path = "room.walls.point", .form = vector, .unit = "m", .required = true, .doc = "Any point on the wall.",
        .example = "[6, 0]"},

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <vector>
+
 #include "scene/fields.h"
 
 namespace obscura::scene {
@@ -39,6 +42,27 @@ std::vector<Side<3>> sides(const Node* walls) {
   return {kSpace, kSpace + n};
 }
 
+// more walls, or more of them in one plane, take contacts and pictures longer than anybody waits
+constexpr std::size_t kMostWalls = 1000;
+constexpr int kMostAlike = 8;
+
+// the first wall that lies in one plane with as many others before it; -1: none does
+template <int D>
+int crowded(const std::vector<sim::Wall<D>>& walls) {
+  constexpr double kAlike = 1e-9;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    int alike = 0;
+    for (std::size_t k = 0; k < i; ++k) {
+      const sim::Vec<D> aside = walls[i].normal - walls[k].normal;
+      if (aside.squaredNorm() > kAlike * kAlike) continue;
+      const double apart = std::abs((walls[i].point - walls[k].point).dot(walls[i].normal));
+      if (apart <= kAlike * (1 + walls[i].point.cwiseAbs().maxCoeff())) ++alike;
+    }
+    if (alike >= kMostAlike) return int(i);
+  }
+  return -1;
+}
+
 // the origin is the left end of the floor in the plane, its middle in space
 sim::Vec<2> corner(const sim::Vec<2>&) { return {0, 0}; }
 sim::Vec<3> corner(const sim::Vec<3>& size) { return {-size.x() / 2, 0, -size.z() / 2}; }
@@ -74,6 +98,11 @@ Room<D> room(const Node& top, Complaints& complaints) {
   }
 
   // walls at any angle
+  if (listed && walls->list().size() > kMostWalls) {
+    complaints.add(walls->place, fmt::format("'walls': {} walls are more than {}, the most a room may have",
+                                             walls->list().size(), kMostWalls));
+    return room;
+  }
   for (std::size_t i = 0; listed && i < walls->list().size(); ++i) {
     const Fields its(walls->list()[i], "room.walls");
     if (!its.given("point") || !its.given("normal")) continue;
@@ -84,6 +113,13 @@ Room<D> room(const Node& top, Complaints& complaints) {
     room.walls.push_back(wall);
     room.names.push_back(fmt::format("room.walls[{}]", i));
     room.places.push_back(its.place());
+  }
+
+  if (const int one_too_many = crowded(room.walls); one_too_many >= 0) {
+    complaints.add(room.places[std::size_t(one_too_many)],
+                   fmt::format("{} lies in one plane with {} others: expected fewer; leave it out",
+                               room.names[std::size_t(one_too_many)], kMostAlike));
+    return room;
   }
 
   const Left<D> inside = left(room.walls);

@@ -333,6 +333,40 @@ TEST(Hostile, ALeverOutOfAllProportionIsRefused) {
             "a.toml:8:6: this is 1e+06 m from the middle of 'arm': expected at most 900");
 }
 
+TEST(Hostile, AHundredThousandBallsAtOnePlaceAreToldAndNotCounted) {
+  const std::string text = "[[ball]]\nposition = [1, 1]\nradius = 0.1\ncopies = { count = 100000 }\n";
+  EXPECT_EQ(
+      complaint(text),
+      "a.toml:2:12: 'ball[0][0]' and 'ball[0][1]' overlap by 0.2 m at the start, and at least 99999 more "
+      "pairs do; move them apart, or let them be pushed: [physics] overlap = \"separate\"");
+  // nor can so many be pushed apart
+  EXPECT_EQ(complaint(text + "[physics]\noverlap = \"separate\""),
+            "a.toml: more than 20000000 pairs of bodies are near each other at the start, too many to be "
+            "simulated; move them apart");
+}
+
+TEST(Hostile, AHundredThousandParticlesAtOnePlaceAreStepped) {
+  // points do not touch each other
+  for (const std::string z : {"", ", 1"}) {
+    const Scene it =
+        parse("[[particle]]\nposition = [1, 1" + z + "]\ncopies = { count = 100000 }\n[[ball]]\n" +
+                  "position = [3, 1" + z + "]\ncopies = { count = 30, offset = [0.05, 0" +
+                  (z.empty() ? "" : ", 0") + "] }\nradius = 0.02",
+              "a.toml");
+    EXPECT_TRUE(std::holds_alternative<sim::Snapshot>(it.run()->at({1, 600})));
+  }
+}
+
+TEST(Hostile, TwentyThousandWallsAreRefused) {
+  const std::string wall = "[[room.walls]]\npoint = [0, 0]\nnormal = [0, 1]\n",
+                    ball = "[[ball]]\nposition = [0, 2]";
+  EXPECT_EQ(complaint("[room]\n" + repeated(wall, 20'000) + ball),
+            "a.toml:2:1: 'walls': 20000 walls are more than 1000, the most a room may have");
+  EXPECT_EQ(complaint("[room]\n" + repeated(wall, 1000) + ball),
+            "a.toml:26:1: room.walls[8] lies in one plane with 8 others: expected fewer; leave it out");
+  EXPECT_EQ(complaint("[room]\n" + repeated(wall, 8) + ball), "");
+}
+
 TEST(Hostile, AHundredThousandBodiesAreRead) {
   const Scene it = parse(
       "[[particle]]\nposition = [1, 1]\ncopies = { count = [400, 250], offset = [[0.01, 0], [0, 0.01]] }",
