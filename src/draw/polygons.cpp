@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "draw/common.h"
 #include "draw/convex.h"
 #include "draw/stage.h"
 
@@ -73,6 +74,15 @@ Form form(const Part& part, std::uint64_t seams, const View& view, const sim::Sn
 
 /// The part within its outline.
 std::vector<Point> inner(const Form& form, double line) {
+  // of many edges they are not cut one after the other
+  if (form.corners.size() > kMostEdges) {
+    std::vector<HalfPlane> edges;
+    for (std::size_t i = 0; i < form.corners.size(); ++i) {
+      const bool seam = i < kMostEdges && (form.seams >> i & 1);
+      edges.push_back(moved(within(form.corners, i), seam ? -line : line));
+    }
+    return within_all(edges);
+  }
   Point low = form.corners[0], high = form.corners[0];
   for (const Point& p : form.corners) low = low.cwiseMin(p), high = high.cwiseMax(p);
   Convex left =

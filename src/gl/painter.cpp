@@ -221,25 +221,24 @@ void Painter::add(const draw::List& list, const draw::Stroke& stroke, Damage& da
 void Painter::add(const draw::List& list, const draw::Polygon& polygon, Damage& damage) {
   constexpr float far = std::numeric_limits<float>::infinity();
   Bounds bounds{far, far, -far, -far};
-  const std::size_t first = edges_.size();
   const int count = polygon.end - polygon.begin;
+  outline_.clear();
   for (int i = 0; i < count; ++i) {
     const draw::Point p = list.points[std::size_t(polygon.begin + i)] * scale_;
     const draw::Point q = list.points[std::size_t(polygon.begin + (i + 1) % count)] * scale_;
-    const float edge[] = {float(p.x()), float(p.y()), float(q.x()), float(q.y())};
-    edges_.insert(edges_.end(), std::begin(edge), std::end(edge));
-    bounds = {std::min(bounds.x0, edge[0]), std::min(bounds.y0, edge[1]), std::max(bounds.x1, edge[0]),
-              std::max(bounds.y1, edge[1])};
+    const Edge edge{float(p.x()), float(p.y()), float(q.x()), float(q.y())};
+    outline_.push_back(edge);
+    bounds = {std::min(bounds.x0, edge.px), std::min(bounds.y0, edge.py), std::max(bounds.x1, edge.px),
+              std::max(bounds.y1, edge.py)};
   }
   bounds = {bounds.x0 - 0.5f, bounds.y0 - 0.5f, bounds.x1 + 0.5f, bounds.y1 + 0.5f};
-  if (!touches(bounds, damage)) {
-    edges_.resize(first);
-    return;
-  }
+  if (!touches(bounds, damage)) return;
   const Bounds page = bounds & Bounds{-1, -1, float(width_ + 1), float(height_ + 1)};
-  polygons_.push_back({page.x0, page.y0, page.x1, page.y1, float(first / 4), float(count), polygon.fill});
-  const int end = int(polygons_.size());
-  run(Shape::polygon, end - 1, end);
+  const int first = int(polygons_.size());
+  for (const Band& band : banded(outline_, page.y0, page.y1, edges_))
+    polygons_.push_back(
+        {page.x0, band.y0, page.x1, band.y1, float(band.first), float(band.count), polygon.fill});
+  run(Shape::polygon, first, int(polygons_.size()));
 }
 
 void Painter::add(const draw::Text& text, Damage& damage) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "draw/list.h"
+#include "gl/bands.h"
 #include "gl/buffer.h"
 #include "gl/damage.h"
 #include "gl/glyphs.h"
@@ -88,7 +89,7 @@ class Painter {
   std::vector<int> layers_;       // boxes that lie on each other, by tile
   Strip strip_;
   std::vector<Polygon> polygons_;
-  std::vector<float> edges_;  // four an edge
+  std::vector<Edge> edges_, outline_;  // of all polygons, band by band; of the one at hand
   std::vector<Glyph> glyphs_;
 
  public:

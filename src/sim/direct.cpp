@@ -56,16 +56,21 @@ double thickness(const Shape<D>& shape) {
     case ShapeKind::box:
       return shape.half.minCoeff();
     case ShapeKind::polygon: {
-      // the least half width across an edge
+      // the least half width across an edge: the vertex farthest from an edge comes after that of the edge
+      // before
       double least = 1e300;
       const std::size_t n = shape.vertices.size();
+      std::size_t farthest = 0;
       for (std::size_t i = 0; i < n; ++i) {
         const Vec<D> edge = shape.vertices[(i + 1) % n] - shape.vertices[i];
-        double most = 0;
-        for (const Vec<D>& v : shape.vertices) {
-          const Vec<D> d = v - shape.vertices[i];
-          most = std::max(most, std::abs(edge[0] * d[1] - edge[1] * d[0]) / edge.norm());
-        }
+        const double length = edge.norm();
+        const auto across = [&](std::size_t k) {
+          const Vec<D> d = shape.vertices[k % n] - shape.vertices[i];
+          return std::abs(edge[0] * d[1] - edge[1] * d[0]) / length;
+        };
+        farthest = std::max(farthest, i + 1);
+        double most = across(farthest);
+        for (double next; farthest < i + n && (next = across(farthest + 1)) >= most; ++farthest) most = next;
         least = std::min(least, 0.5 * most);
       }
       return least;

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace obscura::gl {
+
+/// An edge of a polygon from p to q, px.
+struct Edge {
+  float px, py, qx, qy;
+};
+
+/// Rows [y0, y1) of a polygon, and which edges cross them: [first, first + count) of a list.
+struct Band {
+  float y0 = 0, y1 = 0;
+  int first = 0, count = 0;
+};
+
+/// Appends to `list` the edges of a polygon whose rows are [y0, y1), and returns its bands. Each pixel adds
+/// up all edges of its band, so a polygon of many edges has many bands, whole rows each; those with few edges
+/// have one. An edge outside of a row adds nothing there, so the bands do not show.
+std::vector<Band> banded(std::span<const Edge> edges, float y0, float y1, std::vector<Edge>& list);
+
+}  // namespace obscura::gl
