@@ -19,6 +19,7 @@
 #include "app/options.h"
 #include "app/say.h"
 #include "app/shots.h"
+#include "app/waiting.h"
 #include "media/error.h"
 #include "scene/error.h"
 #include "sim/contact_step.h"
@@ -194,6 +195,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
   std::string summary;
   for (const std::string& file : files) {
     try {
+      doing("reading " + file);
       const scene::Scene scene = scene::read(file, sets);
       const Plan made = plan(scene);
       std::string said;
@@ -205,6 +207,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
               said = text(scene, world.model, made);
           },
           scene.world);
+      clear_waiting();
       say_lines(stdout, format == Format::github ? github::verbatim(said) : said);
       if (format != Format::github) continue;
       for (const std::string& warning : made.warnings)

@@ -6,6 +6,8 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include "app/options.h"
+#include "app/waiting.h"
 #include "scene/complaints.h"
 
 namespace obscura::app {
@@ -87,7 +89,14 @@ Option Command::choose(const char* names, std::vector<std::pair<std::string, int
 
 void Command::footer(const std::string& text) const { app_->footer(text); }
 void Command::run(std::function<int()> what) const {
-  app_->callback([what = std::move(what), exit = exit_] { *exit = what(); });
+  if (!app_->get_option_no_throw("--memory-limit")) add_memory_limit(*this);
+  app_->callback([what = std::move(what), exit = exit_, app = app_] {
+    // a progress of another kind than on a terminal, or none, is asked for
+    const CLI::Option* progress = app->get_option_no_throw("--progress");
+    const bool shown = !progress || progress->count() == 0 || progress->results().front() == "auto";
+    const Waiting waiting(shown ? app->get_name() : "");
+    *exit = what();
+  });
 }
 std::string Command::program() const { return app_->get_parent()->get_name(); }
 

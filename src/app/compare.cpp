@@ -17,6 +17,7 @@
 #include "app/report.h"
 #include "app/runs.h"
 #include "app/say.h"
+#include "app/waiting.h"
 #include "media/png.h"
 
 namespace obscura::app {
@@ -55,6 +56,7 @@ bool is_table(const std::string& path) {
 // what a person or a program is told; GitHub beside it where the two are not the same
 void tell(const Flags& flags, bool same, const std::string& text, const std::string& json) {
   if (flags.format != Format::github) {
+    clear_waiting();
     say_lines(stdout, flags.format == Format::json ? json : text);
     return;
   }

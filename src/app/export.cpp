@@ -15,6 +15,7 @@
 #include "app/options.h"
 #include "app/say.h"
 #include "app/trouble.h"
+#include "app/waiting.h"
 #include "draw/theme.h"
 #include "media/error.h"
 #include "media/file.h"
@@ -164,6 +165,7 @@ int run(const Flags& flags) {
   Stage stage(scene, motion->cast());
   for (std::int64_t n = 0; n <= frames; ++n) {
     const sim::Rational at = n < frames ? sim::rational(n) / fps : scene.duration;
+    doing("simulating", double(n), double(frames), "frames");
     const auto outcome = motion->at(at);
     if (const auto* trouble = std::get_if<sim::Trouble>(&outcome))
       throw TroubleError(scene.file, *trouble, "");

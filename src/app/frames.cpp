@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "app/waiting.h"
 #include "media/error.h"
 #include "media/png.h"
 #include "media/read.h"
@@ -94,6 +95,7 @@ const std::optional<Origin>& Frames::origin() const { return impl_->origin; }
 
 bool Frames::next(media::Image& image) {
   Impl& it = *impl_;
+  if (it.read > 0) doing("reading frame " + std::to_string(it.read));
   if (it.kind == Kind::movie) {
     if (!it.movie->next(image)) return false;
     it.name = fmt::format("frame {}", it.read++);

@@ -24,6 +24,7 @@
 #include "app/options.h"
 #include "app/say.h"
 #include "app/trouble.h"
+#include "app/waiting.h"
 #include "gl/context.h"
 #include "media/error.h"
 #include "scene/complaints.h"
@@ -201,6 +202,7 @@ std::string text(const Outcome& outcome) {
 // nothing but the object itself goes to standard output where that is JSON
 void print(Format format, const std::string& text) {
   if (format == Format::json) return;
+  clear_waiting();
   say_lines(stdout, format == Format::github ? github::verbatim(text) : text);
   std::fflush(stdout);
 }
@@ -246,6 +248,7 @@ int golden(Flags& flags) {
   Conduct<std::string, Outcome> parts;
   parts.produce = [&]() -> std::optional<std::string> {
     if (next >= all.size() || interrupted()) return {};
+    doing(all[next], double(next), double(all.size()), "scenes");
     return all[next++];
   };
   parts.hire = [&] { return [&](std::string file) { return check(file, flags); }; };

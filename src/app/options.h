@@ -20,7 +20,8 @@ void add_sets(const Command& command, std::vector<std::string>& sets);
 /// --progress.
 void add_progress(const Command& command, ProgressKind& kind);
 
-/// --memory-limit, which every command that simulates has; holds to it as soon as it is read.
+/// --memory-limit, which every command has: Command::run() adds it where it stands nowhere before. Held to as
+/// soon as it is read.
 void add_memory_limit(const Command& command);
 
 /// --backend, which every command that draws with OpenGL has.

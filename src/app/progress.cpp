@@ -35,6 +35,7 @@ Progress::Progress(ProgressKind kind, std::string what, std::int64_t frames, dou
       began_(std::chrono::steady_clock::now()),
       printed_(began_) {
   terminal_ = kind == ProgressKind::automatic && isatty(STDERR_FILENO) == 1;
+  if (kind != ProgressKind::none) hushed_.emplace();
 }
 
 Progress::~Progress() { clear(); }
@@ -44,7 +45,7 @@ double Progress::seconds() const {
 }
 
 void Progress::at(std::int64_t done) {
-  if (kind_ == ProgressKind::none) return;
+  if (kind_ == ProgressKind::none) return doing("", double(done), double(frames_), unit_);
   const auto now = std::chrono::steady_clock::now();
   if (first_ < 0 && done > 0) first_ = done, first_at_ = now;
   const double since = std::chrono::duration<double>(now - printed_).count();

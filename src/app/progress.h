@@ -2,7 +2,10 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
+
+#include "app/waiting.h"
 
 namespace obscura::app {
 
@@ -31,6 +34,7 @@ class Progress {
 
   ProgressKind kind_;
   bool terminal_ = false, shown_ = false;
+  std::optional<Hushed> hushed_;  // while it shows something
   std::string what_, unit_;
   std::int64_t frames_;
   double frame_seconds_;

@@ -8,6 +8,7 @@
 #include "app/interrupt.h"
 #include "app/origin.h"
 #include "app/trouble.h"
+#include "app/waiting.h"
 
 namespace obscura::app {
 
@@ -38,6 +39,7 @@ draw::Depictor depictor(const scene::Scene& scene, const draw::Charts& charts) {
 }
 
 sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene) {
+  doing("simulating", sim::value(t), sim::value(scene.duration), "s");
   auto found = run.at(t);
   if (const auto* trouble = std::get_if<sim::Trouble>(&found)) throw TroubleError(scene.file, *trouble, "");
   if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();

@@ -1,6 +1,8 @@
 // obscura states: where everything is, as data, without GL. 17 significant digits, so that every double reads
 // back.
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -18,6 +20,7 @@
 #include "app/origin.h"
 #include "app/shots.h"
 #include "app/trouble.h"
+#include "app/waiting.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "scene/scene.h"
@@ -50,6 +53,7 @@ class Sink {
   }
   void put(const std::string& text) {
     if (file_) return file_->write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    clear_waiting();
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
       throw media::Error("standard output cannot be written");
   }
@@ -191,6 +195,9 @@ int states(const Flags& flags) {
   const bool as_json = form(flags) == "json";
   Sink sink(flags.out);
   const auto put = [&](const std::string& text) { sink.put(text); };
+  // rows that run over the terminal are progress enough
+  std::optional<Hushed> rows;
+  if (isatty(STDOUT_FILENO) == 1 && !flags.out) rows.emplace();
   const std::vector<Column> all = columns(run->cast(), scene.axes);
   if (as_json) {
     put(
@@ -207,6 +214,7 @@ int states(const Flags& flags) {
   bool first = true;
   for (const sim::Rational t : times) {
     if (interrupted()) return kInterrupted;
+    doing("simulating", sim::value(run->now()), sim::value(times.back()), "s");
     auto outcome = run->at(t);
     if (const auto* bad = std::get_if<sim::Trouble>(&outcome)) {
       trouble = *bad;

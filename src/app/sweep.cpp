@@ -2,10 +2,13 @@
 
 #include "app/sweep.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -192,6 +195,8 @@ int sweep(Flags flags) {
   const ProgressKind kind =
       !flags.out && flags.progress == ProgressKind::automatic ? ProgressKind::none : flags.progress;
   Progress progress(kind, flags.out.value_or("sweep"), end - begin, 0, "runs");
+  std::optional<Hushed> rows;
+  if (!flags.out && isatty(STDOUT_FILENO) == 1) rows.emplace();
   std::int64_t next = from, done = from;
   std::int64_t diverged = 0, refused = 0;
   Conduct<std::int64_t, Row> parts;

@@ -24,6 +24,7 @@
 #include "app/pictures.h"
 #include "app/say.h"
 #include "app/trouble.h"
+#include "app/waiting.h"
 #include "media/error.h"
 #include "scene/document.h"
 #include "scene/error.h"
@@ -248,6 +249,7 @@ int verify(Flags flags) {
     std::string text = fmt::format("{}: {}{}\n", file, verdict.good ? "still true" : "no longer true",
                                    verdict.good && !verdict.only.empty() ? " of its " + verdict.only : "");
     for (const std::string& line : verdict.lines) text += "  " + line + "\n";
+    clear_waiting();
     if (flags.format != Format::json)
       say_lines(stdout, flags.format == Format::github ? github::verbatim(text) : text);
     if (!verdict.good && exit == kDone) exit = kDiffers;

@@ -167,6 +167,42 @@ TEST_F(Limits, AFewBytesCannotAskForMoreMemoryThanTheyMayHave) {
     EXPECT_EQ(run.err.find("300.0 MB") != std::string::npos, exit == 4) << run.err;
   }
 }
+
+TEST_F(Limits, AHundredThousandBodiesAreCheckedInAGigabyte) {
+  shell(
+      "awk 'BEGIN { print \"[room]\\nsize = [100, 100]\"; for (i = 0; i < 100000; ++i) "
+      "printf \"[[ball]]\\nradius = 0.1\\nposition = [%g, %g]\\n\", 0.2 + 0.3 * (i % 317), "
+      "0.2 + 0.3 * int(i / 317) }' > tables.toml");
+  scene(
+      "[room]\nsize = [100, 100]\n[[box]]\nsize = [0.2, 0.2]\nposition = [0.2, 0.2]\n"
+      "copies = { count = [400, 250], offset = [[0.24, 0], [0, 0.24]] }",
+      "plane.toml");
+  scene(
+      "[room]\nsize = [100, 100, 100]\n[[ball]]\nradius = 0.1\nposition = [-40, 0.2, -40]\n"
+      "copies = { count = [50, 50, 40], offset = [[0.3, 0, 0], [0, 0.3, 0], [0, 0, 0.3]] }",
+      "space.toml");
+  for (const std::string name : {"tables", "plane", "space"}) {
+    const Outcome run = shell(OBSCURA_BINARY " check --memory-limit 1GB " + name + ".toml");
+    EXPECT_EQ(run.exit, 0) << name << "\n" << run.err;
+    EXPECT_NE(run.out.find("100000"), std::string::npos) << run.out;
+  }
+}
+
+TEST_F(Limits, EveryCommandHoldsToAMemoryLimit) {
+  for (const char* command : {"render", "join", "figure", "new", "check", "states", "sweep", "submit",
+                              "export", "compare", "verify", "golden", "docs"})
+    EXPECT_NE(obscura(std::string(command) + " --help").out.find("--memory-limit"), std::string::npos)
+        << command;
+  // two pictures of 16 MB each
+  for (const char* at : {"0", "1"})
+    ASSERT_EQ(
+        obscura(std::string("render scene.toml --size 2000x2000 --at ") + at + " -o " + at + ".png").exit, 0);
+  for (const char* command : {"compare 0.png 1.png", "golden scene.toml"}) {
+    const Outcome run = shell(kRun + command + " --memory-limit 30MB");
+    EXPECT_EQ(run.exit, 4) << command << "\n" << run.err;
+    EXPECT_NE(run.err.find("30.0 MB"), std::string::npos) << command << "\n" << run.err;
+  }
+}
 #endif
 
 TEST_F(Limits, SizesOfMemoryAreReadOrRefused) {
@@ -174,6 +210,23 @@ TEST_F(Limits, SizesOfMemoryAreReadOrRefused) {
     EXPECT_EQ(obscura(std::string("check scene.toml --memory-limit '") + good + "'").exit, 0) << good;
   for (const char* bad : {"", "GB", "-1GB", "2XB", "2GBs", "nan", "1e40"})
     EXPECT_EQ(obscura(std::string("check scene.toml --memory-limit '") + bad + "'").exit, 2) << bad;
+}
+
+TEST_F(Limits, WhatTakesLongSaysSoOnATerminalAndNowhereElse) {
+  if (shell("command -v script").exit != 0) GTEST_SKIP() << "there is no terminal to be had";
+  // two that wait for what is written into pipes, until the one on a terminal has said so
+  const Outcome run =
+      shell("mkfifo one two; script -qfec '" OBSCURA_BINARY
+            " check one' log < /dev/null > /dev/null & a=$!; " OBSCURA_BINARY
+            " check two > out 2> err & b=$!; exec 3> one 4> two; "
+            "for i in $(seq 600); do grep -q 'check  reading one' log && break; sleep 0.1; done; "
+            "cat scene.toml >&3; cat scene.toml >&4; exec 3>&- 4>&-; wait $a && wait $b");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  const std::string log = contents(path("log"));
+  EXPECT_NE(log.find("check  reading one"), std::string::npos) << log;
+  EXPECT_NE(log.find("one: good"), std::string::npos) << log;
+  EXPECT_NE(contents(path("out")).find("two: good"), std::string::npos);
+  EXPECT_EQ(contents(path("err")), "");
 }
 
 TEST_F(Limits, ALongFilmIsAnnouncedAndAShortOneIsNot) {
