@@ -36,7 +36,7 @@ std::string count(std::size_t n, const char* one, const char* many) {
 }
 
 // how long the first steps are watched, s
-constexpr double kPatience = 0.2;
+constexpr double kPatience = 0.5;
 
 // what holds bodies apart, and why that
 template <int D>
@@ -120,7 +120,8 @@ struct Plan {
 
 Plan plan(const scene::Scene& scene) {
   const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
-  Plan it{shots, needs(scene, shots, Output::Form::movie, kPatience), 1, {}};
+  doing("measuring the first steps of " + scene.file);
+  Plan it{shots, needs(scene, shots, {Output::Form::movie, scene.name + ".mp4"}, kPatience), 1, {}};
   it.cores = std::max(1, int(std::thread::hardware_concurrency()));
   if (it.film.memory(1) > memory_limit())
     it.warnings.push_back(

@@ -1,22 +1,32 @@
-// What a film takes, by what films took on machines like ours (1080p, two cores), in bytes and ns a pixel:
-//                    disk    drawing and encoding
-//   movie            0.0016  6
-//   picture          0.07    12
-//   in space         the same, and 8 more
+// What a film takes, by what the shipped scenes take, from drafts to 4k, in bytes and ns:
+//   disk, a movie    u (90 H a second, of space half as much again, + 9.3 L^0.63 a frame)
+//         a GIF      0.08 (space 0.25) a pixel once a second, + 22 L^0.63 a frame
+//         pictures   0.058 (space 0.1) a pixel, + 3.5 a px of outlines
+//                      H  lines of the picture
+//                      L  px of outlines of bodies and springs, times the px that they move from frame to
+//                         frame, 20 at most: what is encoded anew
+//                      u  2 of the quickest presets, times 2^((18 - crf) / 6)
+//   drawing          9 a pixel (quick presets 5, GIF 20, pictures 12); space 20 (GIF 25) and 6 ms a frame;
+//                    and 0.3 s to begin with
+// on a processor that takes kReference for a loop of known work; others are as much slower or faster.
 // A worker has three layers of its picture, what was read back, and the encoder's: 60 bytes a pixel at most.
 
 #include "app/needs.h"
 
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/film.h"
+#include "app/interrupt.h"
 #include "app/memory.h"
 #include "media/error.h"
+#include "sim/shape.h"
 
 namespace obscura::app {
 
@@ -46,43 +56,146 @@ double size_of(const sim::World<D>& world) {
 }
 
 struct Measured {
-  double step = 0;    // s
-  double moment = 0;  // bytes of an instant
+  double step = 0;      // s
+  double moment = 0;    // bytes of an instant
+  double outlines = 0;  // px of outlines, all
+  double moving = 0;    // px of outlines times px that they move from one frame to the next, mean
 };
+
+// The outlines of a scene's bodies and springs on the picture, and how far they move from frame to frame.
+class Outlines {
+ public:
+  explicit Outlines(const scene::Scene& scene) : fps_(sim::value(scene.film.fps)) {
+    const sim::Vec3 size = scene.extent.high - scene.extent.low;
+    scale_ =
+        std::min(scene.film.width / std::max(size.x(), 1e-9), scene.film.height / std::max(size.y(), 1e-9));
+    const auto add = [&](const auto& world) {
+      for (const auto& body : world.model.bodies)
+        reach_.push_back(std::max(sim::reach(body.shape), kSmallest / scale_));
+    };
+    std::visit(add, scene.world);
+  }
+
+  double all() const {
+    double sum = 0;
+    for (const double reach : reach_) sum += 6 * reach * scale_;
+    return sum;
+  }
+
+  double moving(const sim::Snapshot& now) const {
+    const auto speed = [&](int body) {  // px a frame
+      if (body < 0 || std::size_t(body) >= reach_.size()) return 0.0;
+      const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
+      const double fastest = it.velocity.norm() + it.spin.norm() * reach_[std::size_t(body)];
+      return std::min(kFarthest, fastest * scale_ / fps_);
+    };
+    double sum = 0;
+    for (int i = 0; i < int(now.bodies.size()); ++i) sum += 6 * reach_[std::size_t(i)] * scale_ * speed(i);
+    for (const sim::Snapshot::Spring& spring : now.springs)
+      sum += (spring.b - spring.a).norm() * scale_ * std::max(speed(spring.holds_a), speed(spring.holds_b));
+    return sum;
+  }
+
+ private:
+  static constexpr double kSmallest = 3, kFarthest = 20;  // px
+
+  double fps_, scale_ = 1;     // px a metre
+  std::vector<double> reach_;  // m, one a body
+};
+
+// Time that this thread has had, s: what other programs take of the processor does not count.
+double own_time() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+// how many times as long this processor takes for the same as the one whose times the model has
+double slowness() {
+  constexpr double kReference = 0.4e-3;  // s
+  static const double found = [] {
+    std::vector<float> pixels(1 << 16, 0.5f);
+    double least = 1e300;
+    for (int round = 0; round < 8; ++round) {
+      const double began = own_time();
+      for (int pass = 0; pass < 16; ++pass)
+        for (float& pixel : pixels) pixel = pixel * 0.999f + 0.001f * float(pass);
+      volatile float kept = pixels[std::size_t(round)];
+      (void)kept;
+      least = std::min(least, own_time() - began);
+    }
+    return std::clamp(least / kReference, 0.1, 20.0);
+  }();
+  return found;
+}
 
 // the first steps, as many as there is patience for
 Measured measure(const scene::Scene& scene, std::int64_t steps, double patience) {
-  using Clock = std::chrono::steady_clock;
+  const Outlines outlines(scene);
   const auto run = scene.run();
   Measured found;
+  found.outlines = outlines.all();
   const auto start = run->at({0, 1});
   if (const auto* now = std::get_if<sim::Snapshot>(&start)) found.moment = size_of(*now);
   if (scene.trajectory) return found;
-  const Clock::time_point began = Clock::now();
-  const auto since = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
+  const double began = own_time();
+  const auto since = [&] { return own_time() - began; };
   std::int64_t done = 0;
-  run->heed([&] { return done > 0 && since() > patience; });
-  for (std::int64_t stride = 1; done < steps && since() < patience; stride *= 2) {
+  double moved = 0;
+  run->heed([&] { return interrupted() || (done > 0 && since() > patience); });
+  const std::int64_t longest = std::max<std::int64_t>(1, steps / 64);
+  for (std::int64_t stride = 1; done < steps && since() < patience; stride = std::min(2 * stride, longest)) {
     const std::int64_t to = std::min(done + stride, steps);
     const auto moment = run->at(sim::rational(to) / run->rate());
     const auto* now = std::get_if<sim::Snapshot>(&moment);
     if (!now) break;
+    moved += outlines.moving(*now) * double(to - done);
     done = to;
     found.step = since() / double(done);
     found.moment = std::max(found.moment, size_of(*now));
+    found.moving = moved / double(done);
   }
   return found;
 }
 
+// what is made, as far as it decides what that takes
+struct Kind {
+  bool movie = false, gif = false, pipe = false, quick = false, space = false;
+
+  Kind(const scene::Scene& scene, const Output& output)
+      : movie(output.form == Output::Form::movie),
+        gif(movie && output.path.ends_with(".gif")),
+        pipe(output.form == Output::Form::pipe),
+        quick(movie && (scene.film.preset == "ultrafast" || scene.film.preset == "superfast")),
+        space(scene.dimension() == 3) {}
+};
+
+double disk(const Kind& kind, const scene::Film& film, double frames, const Measured& run) {
+  const double pixels = double(film.width) * film.height, seconds = frames / sim::value(film.fps);
+  const double anew = std::pow(run.moving, 0.63);
+  if (kind.pipe) return 0;
+  if (kind.gif) return std::max(seconds, 1.0) * pixels * (kind.space ? 0.25 : 0.08) + frames * 22 * anew;
+  if (!kind.movie) return frames * (pixels * (kind.space ? 0.1 : 0.058) + 3.5 * run.outlines);
+  const double quality = (kind.quick ? 2 : 1) * std::exp2((18 - film.crf.value_or(18)) / 6);
+  return quality * (std::max(seconds, 1.0) * 90 * film.height * (kind.space ? 1.5 : 1) + frames * 9.3 * anew);
+}
+
+// s of drawing and encoding a picture
+double drawing(const Kind& kind, const scene::Film& film, const Measured& run) {
+  double nanoseconds = kind.gif ? 20 : kind.quick ? 5 : kind.movie ? 9 : 12;
+  if (kind.space) nanoseconds = kind.gif ? 25 : 20;
+  return 1e-9 * nanoseconds * film.width * film.height + (kind.space ? 6e-3 : 0) + 1e-6 * (run.moment / 200);
+}
+
 }  // namespace
 
-double Needs::seconds(int workers) const { return std::max(simulate, (simulate + draw) / workers); }
+double Needs::seconds(int workers) const { return begin + std::max(simulate, (simulate + draw) / workers); }
 
-Needs needs(const scene::Scene& scene, const Shots& shots, Output::Form form, double patience) {
+Needs needs(const scene::Scene& scene, const Shots& shots, const Output& output, double patience) {
   Needs all;
   all.frames = shots.size();
   if (all.frames == 0) return all;
-  const bool movie = form == Output::Form::movie, space = scene.dimension() == 3;
+  const Kind kind(scene, output);
   const double pixels = double(scene.film.width) * scene.film.height;
 
   // the run, up to the last instant that is shown
@@ -95,13 +208,14 @@ Needs needs(const scene::Scene& scene, const Shots& shots, Output::Form form, do
   all.simulate = run.step * (steps + charts);
 
   const double moments = scene.film.shutter > 0 ? 8 : 1;
-  all.draw = double(all.frames) * moments *
-             (pixels * 1e-9 * ((movie ? 6 : 12) + (space ? 8 : 0)) + 1e-6 * (run.moment / 200));
-  all.disk = form == Output::Form::pipe ? 0 : double(all.frames) * pixels * (movie ? 0.0016 : 0.07);
+  all.begin = 0.3 * slowness();
+  all.draw = slowness() * double(all.frames) * moments * drawing(kind, scene.film, run);
+  all.disk = disk(kind, scene.film, double(all.frames), run);
 
   // in memory: a take for each worker and two more, the pictures of each worker, the ways that trails need
-  const double of_take = double(std::min<std::int64_t>(take_frames(form, movie_spec(scene)), all.frames)) *
-                         (run.moment + (scene.film.shutter > 0 ? kOpen : 0));
+  const double of_take =
+      double(std::min<std::int64_t>(take_frames(output.form, movie_spec(scene)), all.frames)) *
+      (run.moment + (scene.film.shutter > 0 ? kOpen : 0));
   double trails = 0;
   for (const draw::BodyLook& look : scene.look.bodies)
     trails += std::min(look.trail, sim::value(end)) * kTrackRate * kTrackPoint;

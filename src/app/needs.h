@@ -15,6 +15,7 @@ struct Needs {
   double disk = 0;      // bytes
   double simulate = 0;  // s, as its first steps let expect: what piles up later takes longer
   double draw = 0;      // s of one core, encoding included
+  double begin = 0;     // s until a worker draws
   double fixed = 0;     // bytes of memory, however many workers there are
   double worker = 0;    // bytes for each worker more
 
@@ -24,8 +25,9 @@ struct Needs {
   double seconds(int workers) const;
 };
 
-/// Of these shots. Takes `patience` seconds (and a step at least) to see how long steps take.
-Needs needs(const scene::Scene& scene, const Shots& shots, Output::Form form, double patience);
+/// Of these shots, put there. Takes `patience` seconds of this thread (and a step at least) to see how long
+/// steps take and how much moves.
+Needs needs(const scene::Scene& scene, const Shots& shots, const Output& output, double patience);
 
 /// So many workers (0: one a core), or as many as fit into the memory that this process may have. Throws
 /// media::Error that says what is needed where not even one does.

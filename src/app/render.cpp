@@ -167,7 +167,7 @@ void divide(Flags& flags, const Output& out) {
 // what it needs is known before any of it is asked for; what takes longer than a minute is said
 void see_what_it_needs(const scene::Scene& scene, const Shots& shots, const Output& out, FilmOptions& film) {
   constexpr double kPatience = 0.03, kLong = 60;
-  const Needs all = needs(scene, shots, out.form, kPatience);
+  const Needs all = needs(scene, shots, out, kPatience);
   film.workers = fitting_workers(scene, all, film.workers);
   const double seconds = all.seconds(film.workers);
   if (seconds < kLong || film.progress == ProgressKind::none) return;
