@@ -39,6 +39,7 @@ Lone<D>::Lone(const Model<D>& model, const std::vector<Path<D>>& paths)
   for (int i = 0; i < n; ++i) {
     const Body<D>& body = model.bodies[i];
     rims_.push_back(reach(body.shape));
+    points_.push_back(body.shape.kind == ShapeKind::point);
     if (body.fixed) fixed_.push_back(i);
     if (body.fixed || body.handout || body.linked) tie(i);
   }
@@ -94,7 +95,7 @@ void Lone<D>::leave_out_near(const State<D>& state) {
     const Vec<D> far = Vec<D>::Constant(rims_[i] + ways_[i]);
     bounds_[i] = {state.x[i] - far, state.x[i] + far};
   }
-  for (const auto& [a, b] : broad_.find(bounds_, still_)) {
+  for (const auto& [a, b] : broad_.find(bounds_, still_, {}, points_)) {
     if (!model_.bodies[a].fixed && !model_.bodies[b].fixed && !apart(a, b)) still_[a] = still_[b] = 1;
   }
   std::erase_if(candidates_, [&](int i) { return still_[i] != 0; });
