@@ -1,7 +1,7 @@
 // What a film takes, by what the shipped scenes take, from drafts to 4k, in bytes and ns:
 //   disk, a movie    u (90 H a second, of space half as much again, + 9.3 L^0.63 a frame)
 //         a GIF      0.08 (space 0.25) a pixel once a second, + 22 L^0.63 a frame
-//         pictures   0.058 (space 0.1) a pixel, + 3.5 a px of outlines
+//         pictures   0.058 a pixel, + 3.5 a px of outlines; space 0.062 a pixel, + 93 H, + 2 a px of outlines
 //                      H  lines of the picture
 //                      L  px of outlines of bodies and springs, times the px that they move from frame to
 //                         frame, 20 at most: what is encoded anew
@@ -175,7 +175,9 @@ double disk(const Kind& kind, const scene::Film& film, double frames, const Meas
   const double anew = std::pow(run.moving, 0.63);
   if (kind.pipe) return 0;
   if (kind.gif) return std::max(seconds, 1.0) * pixels * (kind.space ? 0.25 : 0.08) + frames * 22 * anew;
-  if (!kind.movie) return frames * (pixels * (kind.space ? 0.1 : 0.058) + 3.5 * run.outlines);
+  if (!kind.movie)
+    return frames * (kind.space ? 0.062 * pixels + 93 * film.height + 2 * run.outlines
+                                : 0.058 * pixels + 3.5 * run.outlines);
   const double quality = (kind.quick ? 2 : 1) * std::exp2((18 - film.crf.value_or(18)) / 6);
   return quality * (std::max(seconds, 1.0) * 90 * film.height * (kind.space ? 1.5 : 1) + frames * 9.3 * anew);
 }
