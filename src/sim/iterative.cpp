@@ -143,7 +143,7 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
   }
 
   fall(state, t, h);
-  const sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm()), cores_.allowed};
+  sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm()), cores_.allowed};
   const int count = int(seats_.size());
   const bool deep =
       sweep::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
@@ -152,6 +152,7 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
     linkage_.lay();
   }
   blows_.run(fast_, pairs_.all(), seats_, poses_, old_, dv_, v_, pace, linkage_);
+  pace.least = blows_.least();
   int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
   if (state.step == 0 && first) sweeps = kFirstSweeps;
   if (!linkage_.empty()) {

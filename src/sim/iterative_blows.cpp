@@ -1,8 +1,8 @@
-// A blow, handout §3.5, of both touches of a pair:
-//   v_n' = -e v_n,  l >= 0               l = -K^-1 (1 + e) v_n,  or one touch alone
-//   lt = clamp(-v_t / K_t, -mu l, mu l)
-// at the time tau at which the first of them closes: until then the body flies with the velocity it had,
-//   g + v_n tau + a_n tau^2 / 2 = 0
+// A blow, handout §3.5, of both touches of a pair, normals and friction together (sim/pair_impact.h):
+//   v_n' = -e v_n,  l >= 0,  |lt| <= mu l
+// at the time tau at which the first of them closes, and where the bodies stand then: until then a body flies
+// with the velocity it had,
+//   g(x + v tau + a tau^2 / 2) = 0
 // after it with the one it got. An elastic ball keeps its energy to rounding.
 
 #include "sim/iterative_blows.h"
@@ -11,19 +11,27 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/pair_impact.h"
 #include "sim/trig.h"
 
 namespace obscura::sim::sweep {
 
 namespace {
 
-constexpr std::size_t kAhead = 4;  // pairs
-constexpr double kLocked = 1e-9;   // of what a push moves without joints
+constexpr std::size_t kAhead = 4;   // pairs
+constexpr double kLocked = 1e-9;    // of what a push moves without joints
+constexpr double kTogether = 1e-6;  // of the farther reach: no wider open, a touch meets with the other
+constexpr int kTimes = 8;           // Newton steps for the time of a blow
+constexpr double kInTime = 1e-9;    // of the step: the next would be by its square
+constexpr double kLatest = 1.5;     // steps: so late a touch may close that its tangent would close in one
 
-// v_n of touch k
+// v_n of a touch
 double along(const Rows& r, int k, int lane, const Motion& a, const Motion& b) {
   return r.nx[k][lane] * (a.x - b.x) + r.ny[k][lane] * (a.y - b.y) +
          (r.na[k][lane] * a.w - r.nb[k][lane] * b.w);
+}
+double along(const TouchRow& r, const Motion& a, const Motion& b) {
+  return r.nx * (a.x - b.x) + r.ny * (a.y - b.y) + (r.na * a.w - r.nb * b.w);
 }
 
 }  // namespace
@@ -54,6 +62,7 @@ void Blows::join(const std::vector<Pair>& pairs, const std::vector<Motion>& v) {
   waiting_.assign(pairs.size(), 0), blow_.assign(pairs.size(), -1);
 }
 
+// as the step begins
 const Rows& Blows::rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses) {
   if (known_[group] < 0) {
     known_[group] = int(groups_.size());
@@ -74,34 +83,165 @@ void Blows::reach(int body, double when, const std::vector<Motion>& dv, const Pa
   before_[body] = now_[body];
 }
 
-// when the first touch of a pair closes with a blow, s; the step's length where none does
-double Blows::closing(int i, const std::vector<Pair>& pairs, const std::vector<Seats>& seats,
-                      const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) {
-  const Pair& pair = pairs[i];
-  const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
-  const Seats& g = seats[group];
-  const Rows& r = rows(group, seats, poses);
-  double when = pace.h;
+// where a body is at a time after its last blow, and how it moves there
+void Blows::move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                 const Pace& pace, Pose& pose, Motion& v) const {
+  pose = poses[body], v = now_[body];
+  if (v.im == 0) return;
+  const Motion& gain = dv[body];
+  double x = 0, y = 0, w = 0;
+  const auto fly = [&](const Motion& from, double time) {
+    const double half = 0.5 * time / pace.h;
+    x += time * (from.x + half * gain.x), y += time * (from.y + half * gain.y);
+    w += time * (from.w + half * gain.w);
+  };
+  if (when_[body] < 0) {
+    fly(v, when);
+    const double part = when / pace.h;
+    v.x += part * gain.x, v.y += part * gain.y, v.w += part * gain.w;
+  } else {
+    const double part = when_[body] / pace.h;
+    const Motion& to = before_[body];
+    fly({to.x - part * gain.x, to.y - part * gain.y, to.w - part * gain.w, 0}, when_[body]);
+    fly(v, when - when_[body]);
+  }
+  pose.x += x, pose.y += y;
+  if (w == 0) return;
+  const SinCos turn = sin_cos(w);
+  const double c = pose.c;
+  pose.c = c * turn.cos - pose.s * turn.sin, pose.s = pose.s * turn.cos + c * turn.sin;
+}
+
+// a pair at a time
+Blows::Standing Blows::stand(const Pair& pair, double when, const Seats& g, const std::vector<Pose>& poses,
+                             const std::vector<Motion>& dv, const Pace& pace) const {
+  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
+  Standing at;
+  at.when = when;
+  Pose pose_a, pose_b;
+  const bool start = when == 0;
+  if (start)
+    at.a = now_[a], at.b = now_[b];
+  else
+    move(a, when, poses, dv, pace, pose_a, at.a), move(b, when, poses, dv, pace, pose_b, at.b);
+  for (int k = 0; k < pair.touches; ++k)
+    at.rows[k] = row(g, lane, k, start ? poses[a] : pose_a, start ? poses[b] : pose_b);
+  return at;
+}
+
+// when a touch closes with a blow, by its course from where it stands, s; never: 1e300
+double Blows::closing(const Pair& pair, int k, const Seats& g, const Standing& at,
+                      const std::vector<Motion>& dv, const Pace& pace) const {
+  const int lane = pair.slot % kLanes;
+  const Motion &a = at.a, &b = at.b, &gain_a = dv[g.a[lane]], &gain_b = dv[g.b[lane]];
+  const TouchRow& r = at.rows[k];
+  const double vn = along(r, a, b), gap = r.gap;
+  if (gap > g.sight[lane] || !(vn < g.blow[lane])) return 1e300;
+  const double dvn = along(r, gain_a, gain_b), left = std::max(0.0, gap);
+  // two corners: |l n + v t| = radius, if they do not pass
+  if (g.corners[k] >> lane & 1) {
+    const double vt = r.nx * (a.y - b.y) - r.ny * (a.x - b.x) + (r.ta * a.w - r.tb * b.w);
+    const double p = (left + g.radius[lane]) * vn, q = left * (left + 2 * g.radius[lane]);
+    const double under = p * p - (vn * vn + vt * vt) * q;
+    if (under > 0) return at.when + q / (std::sqrt(under) - p);
+  }
+  return at.when + left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn));
+}
+
+// The same where its bodies stand by then: Newton's method along the course; where the bodies turn so far
+// that this misleads, by halving.
+double Blows::meeting(const Pair& pair, int k, const Seats& g, const Standing& start,
+                      const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) const {
+  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
+  const TouchRow& r = start.rows[k];
+  const double from = start.when;
+  double when = closing(pair, k, g, start, dv, pace);
+  if (when == 1e300 || r.gap <= 0) return when;
+  const double vn = along(r, start.a, start.b), dvn = along(r, dv[a], dv[b]);
+  const bool closes = r.gap + (pace.h - from) * (vn + 0.5 * dvn) < 0;
+  double low = from, high = -1;
+  for (int i = 0; i < kTimes && when <= from + kLatest * pace.h; ++i) {
+    const Standing at = stand(pair, when, g, poses, dv, pace);
+    const double gap = at.rows[k].gap, speed = along(at.rows[k], at.a, at.b);
+    if (gap > 0 && !(speed < 0)) {
+      // it has come nearest before: was it closed then?
+      for (double parts = when; parts - low > kInTime * pace.h && high < 0;) {
+        const double mid = 0.5 * (low + parts);
+        const Standing then = stand(pair, mid, g, poses, dv, pace);
+        if (then.rows[k].gap <= 0)
+          high = mid;
+        else
+          (along(then.rows[k], then.a, then.b) < 0 ? low : parts) = mid;
+      }
+      if (high < 0) return 1e300;
+      break;
+    }
+    if (!(speed < g.blow[lane])) break;
+    const double next = when - gap / speed;
+    if (std::fabs(next - when) <= kInTime * pace.h) return closes || when <= pace.h ? when : 1e300;
+    when = std::clamp(next, from, from + kLatest * pace.h);
+  }
+  if (high < 0) {
+    if (from >= pace.h || stand(pair, pace.h, g, poses, dv, pace).rows[k].gap > 0) return 1e300;
+    high = pace.h;
+  }
+  while (high - low > kInTime * pace.h) {
+    when = 0.5 * (low + high);
+    (stand(pair, when, g, poses, dv, pace).rows[k].gap > 0 ? low : high) = when;
+  }
+  const Standing at = stand(pair, low, g, poses, dv, pace);
+  return along(at.rows[k], at.a, at.b) < g.blow[lane] ? low : 1e300;
+}
+
+// Whether a pair may meet with a blow in the step, as its rows were when it began: most do not.
+bool Blows::may_meet(const Pair& pair, const Seats& g, const Rows& r, const std::vector<Motion>& dv,
+                     const Pace& pace) const {
+  const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
+  const Motion &va = now_[a], &vb = now_[b];
+  double spare = -1;  // what it may come nearer than by these rows and velocities, m
   for (int k = 0; k < pair.touches; ++k) {
-    const double vn = along(r, k, lane, now_[g.a[lane]], now_[g.b[lane]]), gap = r.gap[k][lane];
-    const double dvn = along(r, k, lane, dv[g.a[lane]], dv[g.b[lane]]);
-    if (gap > g.sight[lane] || !(vn < g.blow[lane])) continue;
-    const double left = std::max(0.0, gap);
-    // two corners: |l n + v t| = radius, if they do not pass
-    if (g.corners[k] >> lane & 1) {
-      const Motion &a = now_[g.a[lane]], &b = now_[g.b[lane]];
-      const double vt = r.nx[k][lane] * (a.y - b.y) - r.ny[k][lane] * (a.x - b.x) +
-                        (r.ta[k][lane] * a.w - r.tb[k][lane] * b.w);
-      const double p = (left + g.radius[lane]) * vn, q = left * (left + 2 * g.radius[lane]);
-      const double under = p * p - (vn * vn + vt * vt) * q;
-      if (under > 0) {
-        when = std::min(when, q / (std::sqrt(under) - p));
-        continue;
+    // seats are far away in memory
+    const double vn = along(r, k, lane, va, vb);
+    if (vn > -pair.blow) continue;
+    const double left = r.gap[k][lane] + pace.h * (vn + 0.5 * along(r, k, lane, dv[a], dv[b]));
+    if (left >= 0 && spare < 0) {
+      spare = 0.5 * pace.h * pace.h * std::max(reach_[a], reach_[b]) * (va.w * va.w + vb.w * vb.w);
+      for (const int body : {a, b}) {
+        if (!(when_[body] > 0)) continue;
+        const Motion &p = before_[body], &q = now_[body];
+        spare +=
+            when_[body] * (std::fabs(q.x - p.x) + std::fabs(q.y - p.y) + std::fabs(q.w - p.w) * reach_[body]);
       }
     }
-    when = std::min(when, left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn)));
+    if (left >= 0 && left >= spare) continue;
+    if (r.gap[k][lane] <= g.sight[lane] && vn < g.blow[lane]) return true;
   }
-  return when;
+  return false;
+}
+
+// When and where a pair meets with a blow in the step, into `blow`; false where it does not.
+bool Blows::meet(const Pair& pair, Blow& blow, const Seats& g, const std::vector<Pose>& poses,
+                 const std::vector<Motion>& dv, const Pace& pace) const {
+  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
+  const double from = std::max({0.0, when_[a], when_[b]});
+  Standing at = stand(pair, from, g, poses, dv, pace);
+  double when = 1e300;
+  for (int k = 0; k < pair.touches; ++k) when = std::min(when, meeting(pair, k, g, at, poses, dv, pace));
+  if (when == 1e300) return false;
+  if (when != from) at = stand(pair, when, g, poses, dv, pace);
+  blow.when = when;
+  bool any = false;
+  for (int k = 0; k < pair.touches; ++k) {
+    const TouchRow& r = at.rows[k];
+    blow.gap[k] = r.gap, blow.met[k] = r.gap <= kTogether * g.far[lane];
+    // what meets is pushed in one point, so that angular momentum stays; what is to come together yet is
+    // rubbed where it is touched
+    const double apart = blow.met[k] ? 0 : 0.5 * r.gap;
+    blow.pushes[0][k] = {r.nx, r.ny, r.na, r.nb};
+    blow.pushes[1][k] = {-r.ny, r.nx, r.ta + apart, r.tb - apart};
+    any = any || (blow.met[k] && along(r, at.a, at.b) < g.blow[lane]);
+  }
+  return any;
 }
 
 // whether one of a pair hangs on joints: what hangs there with it meets the blow too
@@ -115,42 +255,6 @@ bool Blows::tie(const Pair& pair, double when, const std::vector<Motion>& dv, co
     for (const int member : linkage.members(part)) reach(member, when, dv, pace);
   }
   return tied;
-}
-
-// The pushes of a pair that meets. Where two corners do, as balls, they stand otherwise by then.
-void Blows::aim(const Pair& pair, const Seats& g, const Rows& r, const std::vector<Pose>& poses, double when,
-                const std::vector<Motion>& dv, const Pace& pace, Push (&pushes)[2][2]) {
-  int lane = pair.slot % kLanes;
-  const Rows* at = &r;
-  Rows then;
-  if ((g.corners[0] | g.corners[1]) >> lane & 1) {
-    Pose moved[3];
-    const int bodies[] = {g.a[lane], g.b[lane]};
-    for (int side = 0; side < 2; ++side) {
-      const int body = bodies[side];
-      const Motion& v = now_[body];
-      Pose& pose = moved[side] = poses[body];
-      if (v.im == 0) continue;
-      // it has the velocity of then
-      const double half = 0.5 * when / pace.h;
-      pose.x += when * (v.x - half * dv[body].x), pose.y += when * (v.y - half * dv[body].y);
-      const SinCos turn = sin_cos(when * (v.w - half * dv[body].w));
-      const double c = pose.c;
-      pose.c = c * turn.cos - pose.s * turn.sin, pose.s = pose.s * turn.cos + c * turn.sin;
-    }
-    for (int k = 0; k < kLanes; ++k) one_.a[k] = one_.b[k] = 2;
-    copy_seat(g, lane, one_, 0);
-    one_.a[0] = 0, one_.b[0] = 1;
-    expand(one_, moved, then);
-    at = &then, lane = 0;
-  }
-  for (int k = 0; k < 2; ++k) {
-    const double nx = at->nx[k][lane], ny = at->ny[k][lane];
-    // each is rubbed where it is touched: by then they have come together
-    const double apart = 0.5 * std::max(0.0, at->gap[k][lane]);
-    pushes[0][k] = {nx, ny, at->na[k][lane], at->nb[k][lane]};
-    pushes[1][k] = {-ny, nx, at->ta[k][lane] + apart, at->tb[k][lane] - apart};
-  }
 }
 
 // what joints answer to pushes of those touches that close
@@ -179,32 +283,35 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
       pair.blow)
     return false;
   const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
-  Seats& g = seats[group];
-  const Rows& r = rows(group, seats, poses);
+  const Seats& g = seats[group];
 
-  // which touches close, and when
-  bool closes[2] = {false, false}, fast[2] = {false, false};
-  const Blow* known = blow_[i] >= 0 ? &blows_[blow_[i]] : nullptr;
-  for (int k = 0; k < pair.touches; ++k) {
-    const double vn = along(r, k, lane, now_[a], now_[b]), dvn = along(r, k, lane, dv[a], dv[b]),
-                 gap = r.gap[k][lane];
-    if (gap > g.sight[lane]) continue;
-    closes[k] = gap + pace.h * (vn + 0.5 * dvn) < 0 || (known && known->met[k]);
-    fast[k] = closes[k] && vn < g.blow[lane];
-  }
-  if (!fast[0] && !fast[1]) return false;
-  const double when = closing(i, pairs, seats, poses, dv, pace);
-  reach(a, when, dv, pace), reach(b, when, dv, pace);
-
-  if (!known) {
-    blow_[i] = int(blows_.size());
-    blows_.emplace_back();
-    blows_.back().pair = i;
-    aim(pair, g, r, poses, when, dv, pace, blows_.back().pushes);
+  // when, and which touches
+  bool closes[2] = {false, false};
+  if (blow_[i] < 0) {
+    Blow blow;
+    if (!may_meet(pair, g, rows(group, seats, poses), dv, pace)) return false;
+    if (!meet(pair, blow, g, poses, dv, pace)) {
+      passing_.push_back(i);
+      return false;
+    }
+    blow.pair = i, blow_[i] = int(blows_.size());
+    blows_.push_back(blow);
+    reach(a, blow.when, dv, pace), reach(b, blow.when, dv, pace);
+    closes[0] = blow.met[0], closes[1] = blow.met[1];
+  } else {
+    // again, after others: what has met and does not part, and what comes together now
+    const Blow& blow = blows_[blow_[i]];
+    bool any = false;
+    for (int k = 0; k < pair.touches; ++k) {
+      const double vn = speed(blow.pushes[0][k], a, b);
+      const bool fast = vn < g.blow[lane] && (blow.met[k] || blow.gap[k] + (pace.h - blow.when) * vn < 0);
+      closes[k] = fast || (blow.met[k] && vn < -g.blow[lane]), any = any || fast;
+    }
+    if (!any) return false;
   }
   Blow& blow = blows_[blow_[i]];
   const auto& pushes = blow.pushes;
-  const bool tied = !linkage.empty() && tie(pair, when, dv, pace, linkage);
+  const bool tied = !linkage.empty() && tie(pair, blow.when, dv, pace, linkage);
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
   if (tied) {
     hear(pair, pushes, closes, linkage);
@@ -212,6 +319,25 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
     for (int k = 0; k < 2; ++k)
       closes[k] = closes[k] && linkage.couple(echoes_[0][k], echoes_[0][k]) > kLocked * (ima + imb);
   }
+
+  PairImpact impact;
+  impact.mu = pair.friction;
+  for (int r = 0; r < 4; ++r) {
+    if (!closes[r / 2]) continue;
+    impact.closed[r / 2] = true;
+    const Push& p = pushes[r % 2][r / 2];
+    impact.v[r] = speed(p, a, b);
+    if (r % 2 == 0) impact.e[r / 2] = impact.v[r] < g.blow[lane] ? pair.elasticity : 0;
+    for (int c = 0; c <= r; ++c) {
+      if (!closes[c / 2]) continue;
+      const Push& q = pushes[c % 2][c / 2];
+      impact.K[r][c] = impact.K[c][r] =
+          tied ? linkage.couple(echoes_[r % 2][r / 2], echoes_[c % 2][c / 2])
+               : (ima + imb) * (p.x * q.x + p.y * q.y) + (iia * (p.a * q.a) + iib * (p.b * q.b));
+    }
+  }
+  double impulses[4];
+  solve(impact, impulses);
   const auto push = [&](int across, int k, double l) {
     if (tied) {
       linkage.each_push(echoes_[across][k], l, [&](int body, const Vec<2>& v, const Spin<2>& w) {
@@ -223,52 +349,47 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
     now_[a].x += p.x * (ima * l), now_[a].y += p.y * (ima * l), now_[a].w += iia * (p.a * l);
     now_[b].x -= p.x * (imb * l), now_[b].y -= p.y * (imb * l), now_[b].w -= iib * (p.b * l);
   };
-  const auto speed = [&](const Push& p) {
-    return p.x * (now_[a].x - now_[b].x) + p.y * (now_[a].y - now_[b].y) +
-           (p.a * now_[a].w - p.b * now_[b].w);
-  };
-  double e[2] = {1e300, 1e300};
-  for (int k = 0; k < 2; ++k) {
-    if (closes[k]) e[k] = (1 + pair.elasticity) * speed(pushes[0][k]);
-  }
-
-  // impulses l >= 0 with e + K l >= 0
-  const auto yields = [&](int i0, int i1) {
-    if (tied) return closes[i0] && closes[i1] ? linkage.couple(echoes_[0][i0], echoes_[0][i1]) : 0.0;
-    const Push &p = pushes[0][i0], &q = pushes[0][i1];
-    return (ima + imb) * (p.x * q.x + p.y * q.y) + (iia * (p.a * q.a) + iib * (p.b * q.b));
-  };
-  const double k11 = yields(0, 0), k22 = yields(1, 1), k12 = yields(0, 1), det = k11 * k22 - k12 * k12;
-  double l[2] = {0, 0};
-  if (closes[0] && closes[1] && det > 1e-8 * k11 * k22) {
-    l[0] = -(k22 * e[0] - k12 * e[1]) / det, l[1] = -(k11 * e[1] - k12 * e[0]) / det;
-  }
-  if (!(closes[0] && closes[1] && det > 1e-8 * k11 * k22 && l[0] >= 0 && l[1] >= 0)) {
-    const double only0 = closes[0] ? std::max(0.0, -e[0] / k11) : 0;
-    const double only1 = closes[1] ? std::max(0.0, -e[1] / k22) : 0;
-    const bool first = e[1] + k12 * only0 >= e[0] + k12 * only1;
-    l[0] = first ? only0 : 0, l[1] = first ? 0 : only1;
-  }
   for (int k = 0; k < 2; ++k) {
     if (!closes[k]) continue;
-    g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
-    blow.met[k] = true, blow.n[k] += l[k];
-    push(0, k, l[k]);
-  }
-
-  // friction
-  for (int k = 0; k < 2; ++k) {
-    if (!closes[k]) continue;
-    const Push& p = pushes[1][k];
-    const double vt = speed(p);
-    const double yield =
-        tied ? linkage.couple(echoes_[1][k], echoes_[1][k]) : ima + imb + (iia * p.a * p.a + iib * p.b * p.b);
-    const double most = pair.friction * blow.n[k];
-    const double next = std::clamp(yield > 0 ? blow.t[k] - vt / yield : 0.0, -most, most);
-    push(1, k, next - blow.t[k]);
-    blow.t[k] = next;
+    const double n = impulses[2 * k], t = impulses[2 * k + 1];
+    blow.met[k] = true, blow.n[k] += n, blow.t[k] += t;
+    push(0, k, n), push(1, k, t);
   }
   return true;
+}
+
+// What is left to the sweeps of pairs that met, in their rows, of the step's start: of what met that it does
+// not come nearer than the blow left it; of the other touch that it does not close in what is left of the
+// step.
+void Blows::leave(const std::vector<Pair>& pairs, std::vector<Seats>& seats, const std::vector<Pose>& poses,
+                  const Pace& pace) {
+  if (least_.size() < seats.size()) least_.resize(seats.size());
+  const int room = int(now_.size()) - 1;
+  for (const int i : passing_) {
+    const Pair& pair = pairs[i];
+    const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
+    Seats& g = seats[group];
+    const Rows& r = rows(group, seats, poses);
+    for (int k = 0; k < pair.touches; ++k) {
+      if (!(along(r, k, lane, now_[pair.a], now_[b]) < g.blow[lane]) || r.gap[k][lane] <= 0) continue;
+      g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
+      least_[group].n[k][lane] = -1e9;
+    }
+  }
+  for (const Blow& blow : blows_) {
+    const Pair& pair = pairs[blow.pair];
+    const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
+    Seats& g = seats[group];
+    const Rows& r = rows(group, seats, poses);
+    const double left = pace.h - blow.when;
+    for (int k = 0; k < pair.touches; ++k) {
+      double& least = least_[group].n[k][lane];
+      g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
+      least = along(r, k, lane, now_[pair.a], now_[b]) - speed(blow.pushes[0][k], pair.a, b);
+      if (blow.met[k] || blow.gap[k] <= 0) continue;
+      least = left > kInTime * pace.h ? least - blow.gap[k] / left : -1e9;
+    }
+  }
 }
 
 void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
@@ -278,16 +399,22 @@ void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<
   for (const Blow& blow : blows_) {
     if (blow.pair < int(blow_.size())) blow_[blow.pair] = -1;
   }
-  bodies_.clear(), blows_.clear(), queue_.clear(), rows_.clear(), groups_.clear();
+  bodies_.clear(), blows_.clear(), queue_.clear(), passing_.clear(), rows_.clear(), groups_.clear();
   if (found.empty()) return;
-  known_.assign(seats.size(), -1);
   std::copy(old.begin(), old.end(), now_.begin());
+
+  known_.assign(seats.size(), -1);
 
   // in the order of time, then of pairs
   first_.clear();
   for (const int seat : found) {
-    const int i = seats[seat / kLanes].pair[seat % kLanes];
-    first_.emplace_back(closing(i, pairs, seats, poses, dv, pace), i);
+    const Seats& g = seats[seat / kLanes];
+    const int i = g.pair[seat % kLanes];
+    const Pair& pair = pairs[i];
+    const Standing at = stand(pair, 0, g, poses, dv, pace);
+    double when = 1e300;
+    for (int k = 0; k < pair.touches; ++k) when = std::min(when, closing(pair, k, g, at, dv, pace));
+    first_.emplace_back(when, i);
   }
   std::sort(first_.begin(), first_.end());
   for (const auto& [when, i] : first_) queue_.push_back(i);
@@ -328,6 +455,7 @@ void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<
     const Motion &p = before_[body], &q = now_[body];
     v[body].x += q.x - p.x, v[body].y += q.y - p.y, v[body].w += q.w - p.w;
   }
+  leave(pairs, seats, poses, pace);
 }
 
 void Blows::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,

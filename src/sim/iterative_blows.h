@@ -12,8 +12,9 @@
 namespace obscura::sim::sweep {
 
 /// Blows: touches that close within a step faster than the resting speed. Newton's law with Coulomb friction,
-/// both touches of a pair together, from pair to pair until none approaches, in the order in which they come
-/// up. Bodies on joints are struck as one with all that hangs on them.
+/// normals and friction of a pair together, where its bodies stand when they meet; from pair to pair until
+/// none approaches, in the order in which they come up. Bodies on joints are struck as one with all that
+/// hangs on them.
 class Blows {
  public:
   explicit Blows(const Cores& cores);
@@ -22,10 +23,14 @@ class Blows {
   void join(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
 
   /// Beginning with the seats in `found`. `old`: velocities at the start; dv: what the step adds to them
-  /// without contacts; v gains what the blows do. Marks seats as struck.
+  /// without contacts; v gains what the blows do. Marks seats as struck, and says of those what is left to
+  /// the sweeps: least().
   void run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
            std::vector<Motion>& v, const Pace& pace, Linkage<2>& linkage);
+
+  /// By group: the least normal speeds (m/s) that sweeps leave the seats that are struck.
+  const Least* least() const { return least_.data(); }
 
   /// Forgets the impulses of the step before.
   void begin() { struck_.clear(); }
@@ -58,21 +63,43 @@ class Blows {
   };
   struct Blow {
     int pair = -1;
+    double when = 0;  // s: the rows are those of then
     bool met[2] = {false, false};
+    double gap[2] = {0, 0};               // m
     double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
     Push pushes[2][2] = {};               // along normals and across them, of each touch
   };
+  // a pair as it stands at a time, and how its bodies move
+  struct Standing {
+    double when = 0;
+    Motion a, b;
+    TouchRow rows[2];
+  };
   void reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace);
-  double closing(int pair, const std::vector<Pair>& pairs, const std::vector<Seats>& seats,
-                 const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace);
+  void move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+            const Pace& pace, Pose& pose, Motion& v) const;
+  Standing stand(const Pair& pair, double when, const Seats& seats, const std::vector<Pose>& poses,
+                 const std::vector<Motion>& dv, const Pace& pace) const;
+  double closing(const Pair& pair, int k, const Seats& seats, const Standing& at,
+                 const std::vector<Motion>& dv, const Pace& pace) const;
+  double meeting(const Pair& pair, int k, const Seats& seats, const Standing& start,
+                 const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) const;
+  bool may_meet(const Pair& pair, const Seats& seats, const Rows& rows, const std::vector<Motion>& dv,
+                const Pace& pace) const;
+  bool meet(const Pair& pair, Blow& blow, const Seats& seats, const std::vector<Pose>& poses,
+            const std::vector<Motion>& dv, const Pace& pace) const;
   bool hit(int pair, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
            Linkage<2>& linkage);
   bool tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
            const Linkage<2>& linkage);
-  void aim(const Pair& pair, const Seats& seats, const Rows& r, const std::vector<Pose>& poses, double when,
-           const std::vector<Motion>& dv, const Pace& pace, Push (&pushes)[2][2]);
   void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], Linkage<2>& linkage);
+  double speed(const Push& push, int a, int b) const {
+    return push.x * (now_[a].x - now_[b].x) + push.y * (now_[a].y - now_[b].y) +
+           (push.a * now_[a].w - push.b * now_[b].w);
+  }
+  void leave(const std::vector<Pair>& pairs, std::vector<Seats>& seats, const std::vector<Pose>& poses,
+             const Pace& pace);
   const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
 
   std::vector<double> reach_;               // of bodies, and of walls, m
@@ -87,10 +114,11 @@ class Blows {
   std::vector<int> blow_;      // of pairs: place in blows_, or -1
   std::vector<Blow> blows_;
   std::vector<Struck> struck_;
-  std::vector<int> known_;  // of groups: place in rows_, or -1
+  std::vector<int> passing_;  // pairs that come near without a blow
+  std::vector<int> known_;    // of groups: place in rows_, or -1
   std::vector<int> groups_;
   std::vector<Rows> rows_;
-  Seats one_{};                    // a pair alone
+  std::vector<Least> least_;       // of groups
   Linkage<2>::Echo echoes_[2][2];  // of normals, and of tangents
 };
 

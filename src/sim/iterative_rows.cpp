@@ -2,7 +2,7 @@
 //   friction   lt' = clamp(lt - v_t / K_t, -mu ln, mu ln)
 //   normals    ln >= 0,  v_n + K (ln' - ln) - target >= 0,  one of both zero in each touch
 // the second by its cases: both press, one presses. Where rounding leaves no case, the one less violated. A
-// target is -g / h where the touch is open, else zero.
+// target is -g / h where the touch is open, else zero; of a pair that met a blow what that says.
 //
 // Written once in vectors of the compiler; two lanes are SSE2, four AVX2. No operation differs, so the bits
 // are the same.
@@ -150,6 +150,7 @@ template <class V>
 OBSCURA_INLINE bool start_all(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v,
                               const Pace& pace, Found& closing, Found& blows) {
   const V h = V{} + pace.h, creep = V{} - pace.creep, gain = V{} + pace.gain, none{};
+  const V bend = 0.5 * (h * h);
   Mask<V> deep{};
   for (int i = 0; i < count; ++i) {
     Seats& g = seats[i];
@@ -169,7 +170,9 @@ OBSCURA_INLINE bool start_all(Seats* seats, int count, const Pose* poses, const 
         const V vn = before.along(r.nx, r.ny, r.na, r.nb);
         deep |= r.gap < -allowed;
         slow |= (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
-        fast |= (vn < load<V>(g.blow + lane)) & (r.gap + h * (vn - gain) < none) & (r.gap <= sight);
+        // a corner of a body that turns may come sooner than along its tangent, by far (h w)^2 / 2
+        const V turns = bend * load<V>(g.far + lane) * (before.a.z * before.a.z + before.b.z * before.b.z);
+        fast |= (vn < load<V>(g.blow + lane)) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
         const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
         const V ln = larger<V>(h * (px * r.nx + py * r.ny), none), most = mu * ln;
         const V lt = larger<V>(smaller<V>(h * (py * r.nx - px * r.ny), most), -most);
@@ -239,8 +242,12 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
       const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
       const V open0 = pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none));
       const V open1 = pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none));
-      const V target0 = pick<V>(mask<V>(g->struck[0], lane), none, open0);
-      const V target1 = pick<V>(mask<V>(g->struck[1], lane), none, open1);
+      V target0 = open0, target1 = open1;
+      if (g->struck[0] | g->struck[1]) {
+        const Least& least = pace.least[g - seats];
+        target0 = pick<V>(mask<V>(g->struck[0], lane), load<V>(least.n[0] + lane), open0);
+        target1 = pick<V>(mask<V>(g->struck[1], lane), load<V>(least.n[1] + lane), open1);
+      }
       press<V>(two, r0, r1, target0, target1, l0, l1);
       two.back(*g, lane, v);
       if constexpr (!kLast) {
@@ -340,6 +347,35 @@ void copy_seat(const Seats& from, int i, Seats& to, int k) {
 void expand(const Seats& s, const Pose* at, Rows& out) {
   kWide ? expand_wide(s, at, out) : expand_one<V2>(s, at, out);
 }
+
+TouchRow row(const Seats& g, int lane, int k, const Pose& a, const Pose& b) {
+  const bool swapped = g.of_b[k] >> lane & 1;
+  const Pose &p = swapped ? b : a, &q = swapped ? a : b;
+  const double cx = g.cx[k][lane], cy = g.cy[k][lane], fx = g.fx[k][lane], fy = g.fy[k][lane];
+  const double d = g.d[k][lane], radius = g.radius[lane];
+  const double x = p.x + (p.c * cx - p.s * cy), y = p.y + (p.s * cx + p.c * cy);
+  const double nx = q.c * fx - q.s * fy, ny = q.s * fx + q.c * fy;
+  TouchRow r;
+  if (g.corners[k] >> lane & 1) {
+    const double ox = q.x + nx, oy = q.y + ny, ux = x - ox, uy = y - oy;
+    const double l = std::sqrt(ux * ux + uy * uy);
+    const bool apart =
+        l > 1e-12 * (d + radius + std::fabs(fx) + std::fabs(fy) + std::fabs(cx) + std::fabs(cy));
+    r.nx = apart ? ux / l : 0, r.ny = apart ? uy / l : 1, r.gap = l - radius;
+    const double along = d + 0.5 * r.gap;
+    r.x = ox + r.nx * along, r.y = oy + r.ny * along;
+  } else {
+    r.gap = nx * (x - q.x) + ny * (y - q.y) - d - radius;
+    const double back = radius + 0.5 * r.gap;
+    r.x = x - nx * back, r.y = y - ny * back;
+    r.nx = swapped ? -nx : nx, r.ny = swapped ? -ny : ny;
+  }
+  const double ax = r.x - a.x, ay = r.y - a.y, bx = r.x - b.x, by = r.y - b.y;
+  r.na = ax * r.ny - ay * r.nx, r.nb = bx * r.ny - by * r.nx;
+  r.ta = ax * r.nx + ay * r.ny, r.tb = bx * r.nx + by * r.ny;
+  return r;
+}
+
 bool start(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace, Found& closing,
            Found& blows) {
   closing.clear(), blows.clear();

@@ -26,7 +26,7 @@ struct alignas(64) Seats {
   unsigned char touches[kLanes];
   unsigned char of_b[2];            // a bit a lane: the corner is b's
   unsigned char corners[2];         // two corners touch
-  unsigned char struck[2];          // met a blow in this step
+  unsigned char struck[2];          // of a pair that met a blow in this step
   unsigned char boxes;              // both are boxes
   unsigned char taken;              // somebody sits there
   unsigned short words[2][kLanes];  // of the features
@@ -56,12 +56,18 @@ struct alignas(64) Projection {
 /// Which pairs a pass has found, as numbers of seats: lane + kLanes * group.
 using Found = std::vector<int>;
 
+/// Of a group: normal speeds that a sweep leaves, at least, m/s.
+struct alignas(32) Least {
+  double n[2][kLanes];
+};
+
 /// Constants of a step.
 struct Pace {
-  double h = 0;        // s
-  double creep = 0;    // m/s: slower approaches are none
-  double gain = 0;     // m/s that gravity may add in the step
-  double allowed = 0;  // of the farther reach: what is deeper is to be put right
+  double h = 0;                  // s
+  double creep = 0;              // m/s: slower approaches are none
+  double gain = 0;               // m/s that gravity may add in the step
+  double allowed = 0;            // of the farther reach: what is deeper is to be put right
+  const Least* least = nullptr;  // by group, of seats that are struck
 };
 
 /// One pair to another seat; the forces alone.
@@ -70,6 +76,13 @@ void copy_forces(const Seats& from, int i, Seats& to, int k);
 
 /// Rows of one group.
 void expand(const Seats& seats, const Pose* poses, Rows& out);
+
+/// The row of a touch, as one lane of Rows.
+struct TouchRow {
+  double nx, ny, x, y, gap, na, nb, ta, tb;
+};
+/// Touch k of one seat, whose bodies stand at these poses.
+TouchRow row(const Seats& seats, int lane, int k, const Pose& a, const Pose& b);
 
 /// Makes impulses of the forces and applies them to v. `old`: velocities at the start. Which close slowly in
 /// the step, and which with a blow. True where something is deeper than project() lets it.
