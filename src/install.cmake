@@ -42,6 +42,10 @@ set(OBSCURA_REQUIRES "eigen3 libpng freetype2 harfbuzz harfbuzz-subset fmt tomlp
 if(CAIRO_FOUND)
   string(APPEND OBSCURA_REQUIRES " cairo cairo-ft cairo-pdf")
 endif()
+# a definition with quotes does not outlive a shell's $(pkg-config --cflags): a header makes it
+if(Eigen3_VERSION VERSION_GREATER_EQUAL 3.4.90)
+  set(OBSCURA_SUMS " -include sim/order.h")
+endif()
 # wherever it is installed, pkg-config looks from where the file is
 file(RELATIVE_PATH OBSCURA_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(obscura.pc.in ${CMAKE_CURRENT_BINARY_DIR}/obscura.pc @ONLY)

@@ -204,12 +204,20 @@ bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const Stance<D>& 
   G.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SparseMatrix<double> GG = G * Eigen::SparseMatrix<double>(G.transpose());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(GG);
-  const Eigen::MatrixXd z = G.transpose() * factor.solve(want);
+  const Eigen::MatrixXd give = factor.solve(want);
+  // (G' give): a column of G has few entries; Eigen's own product adds them as its version likes
+  const auto load = [&](int column, int of) {
+    double sum = 0;
+    for (Eigen::SparseMatrix<double>::InnerIterator it(G, column); it; ++it)
+      sum += it.value() * give(it.row(), of);
+    return sum;
+  };
 
   bool any = false;
   for (int b = 0; b < int(bonds.size()); ++b) {
     const Bond<D>& bond = model_.bonds[bonds[b]];
-    const Eigen::VectorXd all = z.block(rows * b, 0, rows, 1) + z.block(rows * b, 1, rows, 1) / bond.blow;
+    Eigen::VectorXd all(rows);
+    for (int r = 0; r < rows; ++r) all[r] = load(rows * b + r, 0) + load(rows * b + r, 1) / bond.blow;
     loads_[bonds[b]] = std::sqrt(all.squaredNorm());
     if (loads_[bonds[b]] > bond.strength) state.holds[bonds[b]] = 0, any = true;
   }

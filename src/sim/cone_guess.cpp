@@ -9,7 +9,6 @@
 
 #include "sim/cone_guess.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

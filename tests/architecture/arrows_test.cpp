@@ -64,10 +64,12 @@ TEST_F(Planted, ALibraryInTheWrongRoomIsFound) {
   plant("app/render.cpp", "#include <CLI/CLI.hpp>\n#include <GL/gl.h>\n#include <libavutil/frame.h>\n");
   plant("media/png.cpp", "#include <png.h>\n#include <toml++/toml.h>\n");
   plant("sim/world.h", "#include <Eigen/Core>\n#include <vector>\n#include <fmt/core.h>\n");
+  plant("sim/solver.cpp", "#include <Eigen/Geometry>\n#include <Eigen/LU>\n");
   EXPECT_THAT(wrong_includes(src_),
               ElementsAre("app/render.cpp:2: app may not include <GL/gl.h>",
                           "app/render.cpp:3: app may not include <libavutil/frame.h>",
                           "media/png.cpp:2: media may not include <toml++/toml.h>",
+                          "sim/solver.cpp:2: sim factors by itself, not by <Eigen/LU>",
                           "sim/world.h:3: sim knows only Eigen and std, not <fmt/core.h>"));
 }
 
