@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/exit.h"
+#include "app/footage.h"
 #include "scene/complaints.h"
 #include "scene/difference.h"
 #include "scene/error.h"
@@ -178,6 +179,12 @@ scene::Scene scene_of(const Origin& origin) {
   scene.film.preset = origin.preset, scene.film.crf = origin.crf, scene.film.codec = origin.encoder;
   scene.look.theme = origin.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
   if (!origin.camera.empty() && scene.cameras.size() > 1) choose_camera(origin.camera, scene);
+  if (origin.run) {
+    // a frame between two rows was asked for when it was made
+    std::vector<std::string> notes;
+    show_run(*origin.run, true, scene, notes);
+    scene.film.shutter = 0;
+  }
   return scene;
 }
 

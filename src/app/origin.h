@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 
 #include "app/checksums.h"
 #include "app/shots.h"
+#include "app/table.h"
 #include "media/image.h"
 #include "scene/scene.h"
 
@@ -42,7 +44,8 @@ struct Origin {
   std::string shots;                // of a movie: which frames of the film (Shots::text)
   std::string encoder, preset;      // of a movie
   std::optional<double> crf;
-  std::string trajectory;  // the file of another program's run, where that is shown
+  std::string trajectory;            // the file of another program's run, where that is shown
+  std::shared_ptr<const Table> run;  // that run, where it is at hand; not in the file
 
   /// What drew it: "obscura 0.2.0, OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (LLVM 15.0.6, 256 bits)".
   std::string drawn_by() const;
@@ -61,8 +64,9 @@ Origin origin_of(const scene::Scene& scene);
 /// The origin that a file's tags carry; none where they carry none, or not all of it.
 std::optional<Origin> origin_in(const media::Tags& tags);
 
-/// The scene as it was filmed: its text, what was set, its size, theme, frame rate and camera. Throws
-/// scene::Error where this obscura does not read it.
+/// The scene as it was filmed: its text, what was set, its size, theme, frame rate and camera, and another
+/// program's run where that is at hand. Throws scene::Error where this obscura does not read it, media::Error
+/// where the run is not one of it.
 scene::Scene scene_of(const Origin& origin);
 
 /// The shots of it that a movie shows, or the one of a still. Throws UsageError where the scene has no such.

@@ -23,6 +23,7 @@
 #include "app/options.h"
 #include "app/pictures.h"
 #include "app/say.h"
+#include "app/table.h"
 #include "app/trouble.h"
 #include "app/waiting.h"
 #include "media/error.h"
@@ -38,6 +39,7 @@ namespace fs = std::filesystem;
 
 struct Flags {
   std::vector<std::string> files;
+  std::vector<std::shared_ptr<const Table>> runs;  // tables among the files
   std::optional<std::string> scene;
   std::string scene_text;  // of it
   bool states = false;
@@ -137,6 +139,16 @@ void judge_movie(const std::string& file, const std::string& again, Verdict& ver
     for (const std::string& line : found.cause->lines) verdict.lines.push_back("  " + line);
 }
 
+// the table of the run that a file shows: the one of its name, or the only one
+std::shared_ptr<const Table> run_of(const std::string& file, const Origin& origin, const Flags& flags) {
+  for (const auto& run : flags.runs)
+    if (fs::path(run->file).filename() == origin.trajectory || flags.runs.size() == 1) return run;
+  throw media::Error(fmt::format(
+      "{0}: shows {1}, another program's run, which cannot be simulated again: name its table too, "
+      "as in `obscura verify {0} {1}`",
+      file, origin.trajectory));
+}
+
 Verdict judge(const std::string& file, const Flags& flags) {
   Frames frames(file);
   if (frames.kind() == Frames::Kind::folder)
@@ -145,14 +157,11 @@ Verdict judge(const std::string& file, const Flags& flags) {
   if (!frames.next(image)) throw media::Error(file + ": has no picture in it");
   if (!frames.origin()) throw media::Error(file + ": carries no origin of obscura's: nothing to verify");
   const Origin& origin = *frames.origin();
-  if (!origin.trajectory.empty())
-    throw media::Error(fmt::format("{}: shows {}, another program's run, which cannot be simulated again",
-                                   file, origin.trajectory));
-
   Verdict verdict;
   if (hash(origin.scene_text) != origin.scene_hash)
     verdict.no("scene: its text is not the one that its hash was taken of");
   Origin now = origin;
+  if (!origin.trajectory.empty()) now.run = run_of(file, origin, flags);
   if (flags.scene) {
     now.scene_text = flags.scene_text;
     now.scene_hash = hash(now.scene_text);
@@ -223,6 +232,15 @@ std::string scene_text(const std::string& file) {
 
 int verify(Flags flags) {
   if (flags.scene) flags.scene_text = scene_text(*flags.scene);
+  const auto is_run = [](const std::string& file) {
+    const fs::path ending = fs::path(file).extension();
+    return ending == ".csv" || ending == ".json";
+  };
+  for (const std::string& file : flags.files)
+    if (is_run(file)) flags.runs.push_back(std::make_shared<Table>(read_table(file)));
+  std::erase_if(flags.files, is_run);
+  if (flags.files.empty())
+    throw UsageError("a table is no picture or movie: name those that show its run too");
   int exit = kDone;
   Findings findings;
   for (const std::string& file : flags.files) {
@@ -266,7 +284,11 @@ void add_verify(CLI::App& program, int& exit) {
   const Command command(program, exit, "verify",
                         "Make a picture or movie again from its origin: is it still true?");
   auto flags = std::make_shared<Flags>();
-  command.option("FILE", flags->files, "PNGs and movies that obscura wrote").required();
+  command
+      .option("FILE", flags->files,
+              "PNGs and movies that obscura wrote; the tables (.csv) of the runs that they show, where "
+              "those are another program's")
+      .required();
   command.option("--scene", flags->scene, "Hold it against this scene as it is now, not as it was")
       .type("SCENE");
   command.flag("--states", flags->states, "Simulate, and draw nothing");
@@ -283,7 +305,8 @@ void add_verify(CLI::App& program, int& exit) {
       "Examples:\n"
       "  obscura verify room.png\n"
       "  obscura verify docs/*.png --states\n"
-      "  obscura verify room.mp4 --scene scenes/room.toml");
+      "  obscura verify room.mp4 --scene scenes/room.toml\n"
+      "  obscura verify student.mp4 student.csv");
   command.run([flags] { return verify(*flags); });
 }
 

@@ -24,7 +24,38 @@ TEST_F(Footage, OfASimulationsOwnTableIsTheSimulationsPicture) {
   ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 160x90 -o b.png --states run.csv").exit, 0);
   const Outcome run = obscura("compare a.png b.png");
   EXPECT_EQ(run.exit, 0) << run.out;
-  EXPECT_EQ(obscura("verify b.png").exit, 4) << "nobody can simulate it again";
+  const Outcome verified = obscura("verify b.png");
+  EXPECT_EQ(verified.exit, 4) << "nobody can simulate it again";
+  EXPECT_THAT(verified.err, HasSubstr("name its table too, as in `obscura verify b.png run.csv`"));
+}
+
+TEST_F(Footage, IsVerifiedAgainstItsTable) {
+  ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 160x90 -o a.png --states run.csv").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --size 160x90 --fps 20 -o a.mp4 --states run.csv --interpolate").exit,
+            0);
+  Outcome run = obscura("verify a.png a.mp4 run.csv");
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("a.png: still true"));
+  EXPECT_THAT(run.out, HasSubstr("pixels: the same"));
+  EXPECT_THAT(run.out, HasSubstr("a.mp4: still true"));
+  EXPECT_EQ(obscura("verify a.png a.mp4 --states run.csv").exit, 0);
+  // a table under another name will do; in its last row the ball is a decimetre farther on
+  ASSERT_EQ(
+      shell("awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == \"ball.position.x\") k = i } "
+            "NR == 12 { $k += 0.1 } 1' run.csv > new.csv")
+          .exit,
+      0);
+  ASSERT_NE(contents(path("new.csv")), contents(path("run.csv")));
+  run = obscura("verify --states a.png a.mp4 new.csv");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("a.png: still true"));
+  EXPECT_THAT(run.out, HasSubstr("a.mp4: no longer true"));
+  EXPECT_EQ(obscura("verify a.mp4 new.csv").exit, 1);
+  // of several the one of its name
+  EXPECT_EQ(obscura("verify --states a.png a.mp4 new.csv run.csv").exit, 0);
+  run = obscura("verify run.csv");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("a table is no picture or movie"));
 }
 
 TEST_F(Footage, InSpaceTakesOrientationsAsStatesWritesThem) {
