@@ -1,15 +1,16 @@
 // One step of many bodies with contacts, from v to v':
 //   1. all gaps that may close within the step, and who wakes by them
 //   2. free motion, by Runge-Kutta: v -> v_free
-//   3. forces of the last step, then sweeps from gap to gap, over and over:
+//   3. impacts of few, each at its time (sim/sweeps_impacts.cpp)
+//   4. forces of the last step, then sweeps from gap to gap, over and over:
 //        v_n' >= -g / h,  of what closes fast  v_n' >= -e v_n         p_n >= 0
 //        p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
 //      a step along the velocity and not by the inverse block: cut back, that would brake a sliding box with
 //      less than mu g
 //      and, exactly, of joints together  J v' = 0
-//   4. positions: by the mean of old and new velocity; by the new one where a slow touch closed
-//   5. out of each other, a part of the way; joints back onto their places (sim/iterative_joints.h)
-//   6. rest: what is quiet and found in static equilibrium freezes
+//   5. positions: by the mean of old and new velocity; by the new one where a slow touch closed
+//   6. out of each other, a part of the way; joints back onto their places (sim/iterative_joints.h)
+//   7. rest: what is quiet and found in static equilibrium freezes
 
 #include "sim/sweeps.h"
 
@@ -28,6 +29,7 @@ constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
 constexpr double kSpare = 0.02;      // of their reach: what two may come nearer by being struck
 constexpr double kAllowed = 1e-6;    // of a body's reach: how deep is not too deep
 constexpr double kHung = 1e-4;       // the same on joints, which pushes strain
+constexpr int kPartRounds = 2000;    // gaps times rounds of pushing apart; 4 to 16 rounds
 constexpr double kPart = 0.1;        // of what is too deep, in a step
 constexpr int kTempering = 5;        // rounds
 constexpr double kGain = 1e-9;       // of its kinetic energy: what an island may win by rounding
@@ -48,10 +50,7 @@ Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
   g_ = std::sqrt(model.gravity.squaredNorm());
   rest_speed_ = 2 * h * g_ + 1e-9 * model.scale;
   asked_ = slow(model).asked;
-  for (const Body<D>& body : model.bodies) {
-    rims_.push_back(reach(body.shape));
-    points_.push_back(body.shape.kind == ShapeKind::point);
-  }
+  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
 }
 
 template <int D>
@@ -64,6 +63,7 @@ void Sweeps<D>::step(State<D>& state, double t, double h) {
   find(h);
   if (wake(state, h) || (state.step == 0 && begin_still(state, h))) ready(state), find(h);
   fall(state, t, h);
+  strike(state, h);
   begin(state, h);
   int sweeps = std::clamp(kTouchSweeps / std::max(1, int(touches_.size())), kFewestSweeps, kMostSweeps);
   if (state.step == 0) sweeps = kFirstSweeps;
@@ -133,16 +133,18 @@ void Sweeps<D>::find(double h) {
   const auto margin = [&](int body) {
     return still_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * rims_[body];
   };
-  bounds_.resize(n), touches_.clear();
+  bounds_.resize(n), touches_.clear(), features_.clear();
   for (int i = 0; i < n; ++i) {
     bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
     const Vec<D> more = Vec<D>::Constant(margin(i));
     bounds_[i].lower -= more, bounds_[i].upper += more;
   }
-  const auto wanted = [&](int a, int b) {
-    return !model_.bodies[a].handout && !model_.bodies[b].handout && may_touch_(a, b);
-  };
-  const auto& pairs = broad_.find(bounds_, still_, wanted, points_);
+  const auto& pairs = broad_.find(bounds_, still_, [&](int a, int b) {
+    const Body<D>&p = model_.bodies[a], &q = model_.bodies[b];
+    if (p.handout || q.handout) return false;
+    if (p.shape.kind == ShapeKind::point && q.shape.kind == ShapeKind::point) return false;
+    return may_touch_(a, b);
+  });
 
   // ascending: of a body first its walls, from the last
   auto pair = pairs.begin();
@@ -204,7 +206,7 @@ void Sweeps<D>::add(const Gap<D>& gap, double mu, double bounce) {
     const double p = touch.across, q = answer(u, u), r = answer(t, u), half = 0.5 * (p - q);
     touch.across = 0.5 * (p + q) + std::sqrt(half * half + r * r);
   }
-  touches_.push_back(touch);
+  touches_.push_back(touch), features_.push_back(gap);
 }
 
 // where and how fast everyone would be without contacts
@@ -236,11 +238,14 @@ void Sweeps<D>::begin(const State<D>& state, double h) {
     all_.push_back(i);
     const Stance<D>& b = touch.b == n ? room : stances_[touch.b];
     const double before = touch.n.dot(stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b));
-    touch.least = std::min(-touch.gap / h, 0.0);
-    if (before < -rest_speed_ && touch.gap + h * (before - g_ * h) < 0) {
-      touch.least = -touch.bounce * before;
-      touch.closing = touch.bounce == 0;
+    if (touch.after) {
+      // what is left of the step
+    } else if (before < -rest_speed_ && touch.gap + h * (before - g_ * h) < 0) {
+      touch.least = touch.passes ? -1e9 : -touch.bounce * before;
+      touch.bounces = !touch.passes && touch.bounce > 0;
+      touch.closing = !touch.passes && touch.bounce == 0;
     } else {
+      touch.least = std::min(-touch.gap / h, 0.0);
       touch.closing = before < -0.05 * rest_speed_ && touch.gap + h * before < 0;
     }
     if (touch.closing) closing_[touch.a] = closing_[touch.b] = 1;
@@ -308,7 +313,7 @@ void Sweeps<D>::hold() {
 template <int D>
 bool Sweeps<D>::temper(const State<D>& state) {
   if (std::none_of(touches_.begin(), touches_.end(),
-                   [](const Touch& touch) { return touch.least > 0 && touch.pressed > 0; }))
+                   [](const Touch& touch) { return touch.bounces && touch.least > 0 && touch.pressed > 0; }))
     return false;
   account_.risen(state);
   const int n = int(model_.bodies.size());
@@ -335,11 +340,12 @@ bool Sweeps<D>::temper(const State<D>& state) {
     return islands_.root(moving_[touch.a].light > 0 ? touch.a : touch.b);
   };
   for (const Touch& touch : touches_) {
-    if (touch.least > 0 && touch.pressed > 0) returned_[island(touch)] += touch.pressed * touch.least;
+    if (touch.bounces && touch.least > 0 && touch.pressed > 0)
+      returned_[island(touch)] += touch.pressed * touch.least;
   }
   bool any = false;
   for (Touch& touch : touches_) {
-    if (!(touch.least > 0 && touch.pressed > 0)) continue;
+    if (!(touch.bounces && touch.least > 0 && touch.pressed > 0)) continue;
     const int of = island(touch);
     if (gained_[of] <= kGain * before_[of]) continue;
     touch.least *= std::max(0.0, 1 - 1.5 * gained_[of] / returned_[of]), any = true;
@@ -354,7 +360,8 @@ void Sweeps<D>::advance(State<D>& state, double h) {
   for (int i = 0; i < n; ++i) {
     if (still_[i]) continue;
     const Moving& m = moving_[i];
-    if (closing_[i]) {
+    const bool closing = closing_[i] && when_[i] < 0;
+    if (closing) {
       state.x[i] = x_[i] + h * m.v;
     } else {
       state.x[i] = x_free_[i] + 0.5 * h * (m.v - v_free_[i]);
@@ -369,8 +376,8 @@ void Sweeps<D>::advance(State<D>& state, double h) {
     // momentum stays
     const Spin<D>& inertia = model_.bodies[i].inertia;
     const Rotation<D> fallen = rotation<D>(turn_free_[k]);
-    state.turn[k] = closing_[i] ? turned<D>(turn_[k], Spin<D>(h * m.w))
-                                : turned<D>(turn_free_[k], Spin<D>(0.5 * h * change));
+    state.turn[k] =
+        closing ? turned<D>(turn_[k], Spin<D>(h * m.w)) : turned<D>(turn_free_[k], Spin<D>(0.5 * h * change));
     const Rotation<D> now = rotation<D>(state.turn[k]);
     state.spin[k] = carried_spin<D>(inertia, fallen, now, w_free_[k]) +
                     carried_spin<D>(inertia, stances_[i].room_from_body, now, change);
@@ -407,7 +414,8 @@ void Sweeps<D>::part(State<D>& state) {
   if (some_.empty()) return;
   kept_ = moving_;
   for (Moving& m : moving_) m.v.setZero(), m.w.setZero();
-  for (int round = 0; round < 4; ++round) {
+  const int rounds = std::clamp(kPartRounds / int(some_.size()), 4, 16);
+  for (int round = 0; round < rounds; ++round) {
     for (const int i : some_) {
       const Touch& touch = touches_[i];
       const double wanted = kPart * (-touch.gap - allowed(touch));
@@ -457,11 +465,13 @@ void Sweeps<D>::report(State<D>& state, double h) const {
     contact.key = touch.key, contact.point = touch.point, contact.normal = touch.n, contact.gap = touch.gap;
     const Vec<D> impulse = touch.pressed * touch.n + touch.rubbed;
     contact.force = impulse / h;
-    if (touch.least > 0) contact.impulse = impulse;
+    if (touch.bounces && touch.least > 0) contact.impulse = impulse;
+    contact.impulse += touch.struck;
     contact.touching = touch.pressed <= 0 ? Touching::open
                        : std::sqrt(touch.rubbed.squaredNorm()) < touch.mu * touch.pressed * (1 - 1e-9)
                            ? Touching::stick
                            : Touching::slide;
+    if (contact.touching == Touching::open && !touch.struck.isZero(0)) contact.touching = Touching::slide;
     state.contacts.push_back(contact);
   }
   std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),

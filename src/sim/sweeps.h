@@ -4,20 +4,22 @@
 #include <vector>
 
 #include "sim/account.h"
+#include "sim/cone.h"
 #include "sim/contact_step.h"
 #include "sim/gap.h"
 #include "sim/islands.h"
 #include "sim/iterative_joints.h"
 #include "sim/pairs.h"
 #include "sim/rest.h"
+#include "sim/row.h"
 #include "sim/statics.h"
 #include "sim/tied.h"
 
 namespace obscura::sim {
 
 /// Contact for hundreds of bodies of space: all that may touch within a step is found anew in each, forces by
-/// warm sweeps over it, joints exactly in each sweep. All that is carried from step to step is in the state,
-/// so a run cut in two is the run in one.
+/// warm sweeps over it, impacts of few exactly and at their time, joints exactly in each sweep. All that is
+/// carried from step to step is in the state, so a run cut in two is the run in one.
 template <int D>
 class Sweeps final : public ContactStep<D> {
  public:
@@ -48,7 +50,28 @@ class Sweeps final : public ContactStep<D> {
     double least = 0;                // of the normal speed after the step, m/s
     double pressed = 0;              // impulse along n, N s
     Vec<D> rubbed = Vec<D>::Zero();  // and across it
+    Vec<D> struck = Vec<D>::Zero();  // impulse of impacts within the step, N s
+    bool after = false;              // of a body that had one
+    bool passes = false;             // however it looks, it does not close with an impact
+    bool bounces = false;            // an impact that is left to the sweeps
     bool closing = false;            // slowly
+  };
+
+  // a body at a time within the step
+  struct Flown {
+    Stance<D> stance;
+    Turn<D> turn = upright<D>();
+  };
+  // a gap then
+  struct Instant {
+    Stance<D> a, b;
+    Meeting<D> now;
+    double speed = 0;  // m/s
+  };
+  // an impact that is due; no longer so once one of its bodies had another
+  struct Due {
+    double when = 0;
+    int touch = 0, rounds = 0;
   };
 
   void ready(const State<D>& state);
@@ -56,6 +79,12 @@ class Sweeps final : public ContactStep<D> {
   void add(const Gap<D>& gap, double mu, double bounce);
   bool wake(State<D>& state, double h);
   void fall(State<D>& state, double t, double h);
+  void strike(State<D>& state, double h);
+  Flown flown(int body, double t, double h) const;
+  Instant instant(int touch, double t, double h) const;
+  double closing_time(int touch, double h) const;
+  bool gather_impact(int touch, double t, double h);
+  bool solve_impact(double t, double h);
   void begin(const State<D>& state, double h);
   void sweep(const std::vector<int>& order, bool back);
   // an impulse on a, and back on b
@@ -105,9 +134,10 @@ class Sweeps final : public ContactStep<D> {
   std::vector<Stance<D>> stances_;
   std::vector<Moving> moving_;
   std::vector<Bounds<D>> bounds_;
-  std::vector<char> still_, points_;
+  std::vector<char> still_;
   std::vector<Gap<D>> gaps_;
-  std::vector<Touch> touches_;  // ascending by key
+  std::vector<Touch> touches_;    // ascending by key
+  std::vector<Gap<D>> features_;  // theirs
   std::vector<int> all_, some_;
   std::vector<Vec<D>> x_, x_free_, v_free_;
   std::vector<Turn<D>> turn_, turn_free_;
@@ -117,8 +147,22 @@ class Sweeps final : public ContactStep<D> {
   Islands islands_;
   std::vector<Moving> kept_;
   std::vector<double> before_, gained_, returned_;  // of each island's blows, J
-  std::vector<double> left_;                        // of each island's fastest point, m/s
-  std::vector<Mobile> moves_;                       // of each island that is in balance
+  bool struck_ = false;                             // somebody, within this step
+  std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
+  std::vector<Flown> flown_;                        // after it, or as the step began
+  std::vector<Due> due_;
+  std::vector<int> rounds_;                 // impacts of each body
+  std::vector<int> around_, around_start_;  // touches of each body
+  std::vector<int> meets_, changed_;        // touches of an impact, and of all that it moves
+  Cone<D> cone_;
+  std::vector<ConeBlock<D>> blocks_;
+  std::vector<ConeMode<D>> modes_;
+  std::vector<Row<D>> impact_rows_;
+  std::vector<Spin<D>> eased_[2];
+  Eigen::MatrixXd K_;
+  Eigen::VectorXd b_, p_, speeds_;
+  std::vector<double> left_;   // of each island's fastest point, m/s
+  std::vector<Mobile> moves_;  // of each island that is in balance
 };
 
 }  // namespace obscura::sim
