@@ -136,7 +136,8 @@ std::string encoder_name(const std::string& path, const MovieSpec& spec,
     if (!name.empty()) return name;
     // what else could be written here
     std::string hint = "install an FFmpeg that has one";
-    const Container& other = container(kind.ending == "webm" ? "a.mp4" : "a.webm");
+    const std::string likely = kind.ending == "webm" ? "a.mp4" : "a.webm";
+    const Container& other = container(likely);
     if (!first_of(other.encoders).empty()) {
       hint += fmt::format(", or write {} ({})",
                           std::filesystem::path(path).filename().replace_extension(other.ending).string(),

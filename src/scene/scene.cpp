@@ -67,7 +67,8 @@ Eigen::Quaterniond quaternion(const sim::Turn<3>& turn) { return {turn[3], turn[
 // groups that do not touch, as the bodies number them
 template <int D>
 void ignore(const Node& top, const Roster& roster, sim::Model<D>& model, Complaints& complaints) {
-  for (const Node& pair : Fields::of(top, "contact").node("ignore").list()) {
+  const Fields contact = Fields::of(top, "contact");
+  for (const Node& pair : contact.node("ignore").list()) {
     int groups[2] = {0, 0};
     for (std::size_t k = 0; k < 2; ++k) {
       const Node& word = pair.list()[k];
