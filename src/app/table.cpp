@@ -118,6 +118,9 @@ Table table_in(const std::string& file) {
 Table read_table(const std::string& file) {
   try {
     return table_in(file);
+  } catch (const media::Error&) {
+    scene::stop_if_asked();
+    throw;
   } catch (const std::system_error& error) {
     throw media::Error(fmt::format("{}: cannot be read: {}", file, error.code().message()));
   }

@@ -23,6 +23,10 @@ bool (*asked_to_stop)() = nullptr;
 
 void heed(bool (*stop)()) { asked_to_stop = stop; }
 
+void stop_if_asked() {
+  if (asked_to_stop && asked_to_stop()) throw Stopped{};
+}
+
 class Input::Buffer : public std::streambuf {
  public:
   // a named pipe that nobody writes to yet would hold up open() itself
@@ -46,7 +50,11 @@ class Input::Buffer : public std::streambuf {
         setg(bytes_.data(), bytes_.data(), bytes_.data() + n);
         return traits_type::to_int_type(bytes_[0]);
       }
-      if (n == 0) return traits_type::eof();
+      if (n == 0) {
+        // the end of a pipe whose writer the same signal ended
+        stop_if_asked();
+        return traits_type::eof();
+      }
       if (errno != EINTR && errno != EAGAIN) unreadable();
     }
   }
@@ -56,7 +64,7 @@ class Input::Buffer : public std::streambuf {
   // it is asked again from time to time
   void wait() const {
     for (;;) {
-      if (asked_to_stop && asked_to_stop()) throw Stopped{};
+      stop_if_asked();
       struct pollfd one {
         descriptor_, POLLIN, 0
       };

@@ -6,14 +6,18 @@
 
 namespace obscura::scene {
 
-/// Thrown where the wait for a pipe was ended.
+/// Thrown where reading a pipe was ended.
 struct Stopped {};
 
 /// What an idle pipe asks ten times a second: true ends the wait. Set once, before anything is read; none: it
 /// waits for ever.
 void heed(bool (*stop)());
 
-/// A file, a named pipe, or standard input ("-"), as a stream. Its functions throw Stopped where the wait for
+/// Throws Stopped where an end has been asked for: before what was read is judged, for a pipe that the same
+/// signal has closed is cut short.
+void stop_if_asked();
+
+/// A file, a named pipe, or standard input ("-"), as a stream. Its functions throw Stopped where reading
 /// a pipe is ended, and std::system_error where it cannot be read.
 class Input : public std::istream {
  public:

@@ -15,6 +15,7 @@
 #include "scene/explosions.h"
 #include "scene/fields.h"
 #include "scene/figure.h"
+#include "scene/input.h"
 #include "scene/joints.h"
 #include "scene/links.h"
 #include "scene/overlap.h"
@@ -190,7 +191,12 @@ std::vector<sim::Trouble> Scene::forebodings() const {
 }
 
 Scene read(const std::string& file, const std::vector<std::string>& sets) {
-  return parse(contents(file), file, sets);
+  try {
+    return parse(contents(file), file, sets);
+  } catch (const Error&) {
+    stop_if_asked();
+    throw;
+  }
 }
 
 }  // namespace obscura::scene

@@ -1,5 +1,7 @@
 // What an end that is asked for ends.
 
+#include <gmock/gmock.h>
+
 #include "program.h"
 
 namespace obscura::app {
@@ -7,8 +9,8 @@ namespace {
 
 using Interrupt = Program;
 
-// starts a command that reads `pipe`, waits until it heeds SIGTERM, sends one, and waits for its end while the
-// pipe stays open
+// starts a command that reads `pipe`, waits until it heeds SIGTERM, sends one, and waits for its end while
+// the pipe stays open
 std::string interrupted_at(const std::string& command) {
   return "mkfifo pipe; " + command +
          " & p=$!; exec 3>pipe; printf 'what is no scene, nor a table' >&3;"
@@ -25,6 +27,34 @@ TEST_F(Interrupt, TheFirstSigtermEndsAReadOfAnIdlePipe) {
     const Outcome run = shell(interrupted_at(std::string(OBSCURA_BINARY " ") + command));
     EXPECT_EQ(run.out, "130\n") << command << run.err;
     EXPECT_EQ(run.err, "") << command;
+  }
+}
+
+// a pipe that is closed by what wrote to it, with half a scene, or half a table
+TEST_F(Interrupt, AtWhateverMomentOfReadingASignalComesTheEndIsSilent) {
+  scene(kCrateAndBall);
+  std::filesystem::create_directories(path("out"));
+  for (const auto& [command, moments] : {std::pair{"check - <out/pipe", 8},
+                                         {"check out/pipe", 9},
+                                         {"render scene.toml --states out/pipe -o a.mp4", 9}}) {
+    for (const std::string signal : {"TERM", "INT"}) {
+      int n = 0;
+      for (bool came = true; came;) {
+        std::filesystem::remove(path("out/pipe"));
+        const Outcome run = shell("mkfifo out/pipe; { printf 'time, half' >out/pipe; } & " +
+                                  meeting(signal, ++n, "poll,after-poll,read,after-read,close") + command);
+        came = met();
+        const std::string when = signal + ", " + contents(path("met")) + command;
+        if (!came) {
+          EXPECT_THAT(run.exit, testing::AnyOf(3, 4)) << when;
+          continue;
+        }
+        EXPECT_EQ(run.exit, 130) << when;
+        EXPECT_EQ(run.err, "") << when;
+      }
+      // what there is, and the end of it: before and after a wait and a read of each
+      EXPECT_GT(n, moments) << command;
+    }
   }
 }
 

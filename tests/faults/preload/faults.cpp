@@ -3,7 +3,9 @@
 // environment:
 //
 //   FAULTS_UNDER   the folder, an absolute path; calls elsewhere are let through and are not counted
-//   FAULTS_CALLS   which are counted, as in "write,fsync"; left out: all
+//   FAULTS_CALLS   which are counted, as in "write,fsync"; left out: all. Where a named pipe in the folder is
+//                  read: "poll", "after-poll", "read", "after-read", "close"; these get signals and do not
+//                  fail
 //   FAULTS_NTH     which of them fails, from 1
 //   FAULTS_WITH    ENOSPC, EIO, EINTR, or "short": a write of half of what there is; or a signal that the
 //   process
@@ -16,6 +18,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -68,10 +71,12 @@ bool is_under_from(int at, const char* path) {
   return is_under(whole);
 }
 
-bool is_under(int descriptor) {
+mode_t mode_of(int descriptor) {
   struct stat facts;
-  if (syscall(SYS_newfstatat, descriptor, "", &facts, AT_EMPTY_PATH) != 0) return false;
-  if (!S_ISREG(facts.st_mode) && !S_ISDIR(facts.st_mode)) return false;
+  return syscall(SYS_newfstatat, descriptor, "", &facts, AT_EMPTY_PATH) == 0 ? facts.st_mode : 0;
+}
+
+bool has_path_under(int descriptor) {
   char link[64], path[PATH_MAX];
   snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
   const ssize_t n = readlink(link, path, sizeof path - 1);
@@ -79,6 +84,13 @@ bool is_under(int descriptor) {
   path[n] = 0;
   return is_under(path);
 }
+
+bool is_under(int descriptor) {
+  const mode_t mode = mode_of(descriptor);
+  return (S_ISREG(mode) || S_ISDIR(mode)) && has_path_under(descriptor);
+}
+
+bool is_pipe_under(int descriptor) { return S_ISFIFO(mode_of(descriptor)) && has_path_under(descriptor); }
 
 bool is_counted(const char* call) {
   const char* wanted = asked().calls;
@@ -134,6 +146,13 @@ bool fails(bool ours, const char* call) {
   return error > 0;
 }
 
+// a moment of reading a pipe: signals come here, faults do not
+void pass(bool ours, const char* moment) {
+  const int keep = errno;
+  if (ours) fault(moment);
+  errno = keep;
+}
+
 template <class F>
 F* next(const char* name) {
   return reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
@@ -174,6 +193,24 @@ ssize_t writev(int descriptor, const iovec* parts, int count) {
   return real(descriptor, parts, error < 0 && count > 1 ? 1 : count);
 }
 
+ssize_t read(int descriptor, void* bytes, size_t size) {
+  NEXT(read);
+  const bool ours = is_pipe_under(descriptor);
+  pass(ours, "read");
+  const ssize_t n = real(descriptor, bytes, size);
+  pass(ours, "after-read");
+  return n;
+}
+
+int poll(pollfd* all, nfds_t count, int milliseconds) {
+  NEXT(poll);
+  const bool ours = count == 1 && is_pipe_under(all->fd);
+  pass(ours, "poll");
+  const int n = real(all, count, milliseconds);
+  pass(ours, "after-poll");
+  return n;
+}
+
 int fsync(int descriptor) {
   NEXT(fsync);
   return fails(is_under(descriptor), "fsync") ? -1 : real(descriptor);
@@ -186,6 +223,7 @@ int fdatasync(int descriptor) {
 // as on Linux: the descriptor is gone, whatever close says
 int close(int descriptor) {
   NEXT(close);
+  pass(is_pipe_under(descriptor), "close");
   if (!fails(is_under(descriptor), "close")) return real(descriptor);
   const int error = errno;
   real(descriptor);
