@@ -47,7 +47,7 @@ if(CAIRO_FOUND)
 endif()
 # a definition with quotes does not outlive a shell's $(pkg-config --cflags): a header makes it
 if(OBSCURA_SUMS)
-  set(OBSCURA_PC_SUMS " -include sim/order.h")
+  set(OBSCURA_PC_SUMS " -include sim/math/order.h")
 endif()
 # wherever it is installed, pkg-config looks from where the file is
 file(RELATIVE_PATH OBSCURA_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)

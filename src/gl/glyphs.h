@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "draw/type.h"
+#include "draw/picture/type.h"
 #include "gl/functions.h"
 
 namespace obscura::gl {

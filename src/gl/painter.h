@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "draw/list.h"
+#include "draw/picture/list.h"
 #include "gl/bands.h"
 #include "gl/buffer.h"
 #include "gl/damage.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "draw/list.h"
+#include "draw/picture/list.h"
 #include "gl/context.h"
 #include "media/image.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "draw/solids.h"
+#include "draw/picture/solids.h"
 #include "gl/buffer.h"
 #include "gl/damage.h"
 #include "gl/program.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "draw/list.h"
+#include "draw/picture/list.h"
 #include "gl/damage.h"
 
 namespace obscura::gl {

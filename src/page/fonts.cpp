@@ -10,7 +10,7 @@
 #include <array>
 #include <memory>
 
-#include "draw/type.h"
+#include "draw/picture/type.h"
 #include "page/error.h"
 
 namespace obscura::page {

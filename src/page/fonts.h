@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "draw/list.h"
+#include "draw/picture/list.h"
 
 namespace obscura::page {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "draw/list.h"
+#include "draw/picture/list.h"
 
 namespace obscura::page {
 

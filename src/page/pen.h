@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "draw/list.h"
-#include "draw/type.h"
+#include "draw/picture/list.h"
+#include "draw/picture/type.h"
 #include "page/page.h"
 
 namespace obscura::page {

@@ -12,8 +12,8 @@
 #include "scene/fields.h"
 #include "scene/path.h"
 #include "scene/solid.h"
-#include "sim/shape.h"
-#include "sim/turning.h"
+#include "sim/model/stance.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::scene {
 

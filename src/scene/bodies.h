@@ -3,14 +3,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "draw/look.h"
+#include "draw/picture/look.h"
 #include "scene/complaints.h"
 #include "scene/dimension.h"
 #include "scene/document.h"
 #include "scene/overrides.h"
 #include "scene/room.h"
 #include "scene/roster.h"
-#include "sim/state.h"
+#include "sim/model/state.h"
 
 namespace obscura::scene {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "scene/fields.h"
-#include "sim/gap.h"
-#include "sim/shape.h"
-#include "sim/turning.h"
+#include "sim/collide/narrow_phase.h"
+#include "sim/model/stance.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::scene {
 

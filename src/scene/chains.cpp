@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scene/fields.h"
-#include "sim/articulated.h"
+#include "sim/multibody/chains.h"
 
 namespace obscura::scene {
 

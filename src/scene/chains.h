@@ -3,7 +3,7 @@
 #include "scene/complaints.h"
 #include "scene/document.h"
 #include "scene/roster.h"
-#include "sim/state.h"
+#include "sim/model/state.h"
 
 namespace obscura::scene {
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "draw/color.h"
+#include "draw/picture/color.h"
 #include "scene/utf8.h"
-#include "sim/rational.h"
+#include "sim/math/rational.h"
 
 namespace obscura::scene {
 

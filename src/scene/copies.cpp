@@ -11,7 +11,7 @@
 
 #include "scene/random.h"
 #include "scene/roster.h"
-#include "sim/exponential.h"
+#include "sim/math/exponential.h"
 
 namespace obscura::scene {
 

@@ -7,7 +7,7 @@
 
 #include "scene/complaints.h"
 #include "scene/fields.h"
-#include "sim/turning.h"
+#include "sim/math/orientation.h"
 
 namespace obscura::scene {
 

@@ -2,7 +2,7 @@
 
 #include "scene/complaints.h"
 #include "scene/document.h"
-#include "sim/state.h"
+#include "sim/model/state.h"
 
 namespace obscura::scene {
 

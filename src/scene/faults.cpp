@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/rational.h"
+#include "sim/math/rational.h"
 
 namespace obscura::scene {
 

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "sim/exponential.h"
+#include "sim/math/exponential.h"
 
 namespace obscura::scene {
 

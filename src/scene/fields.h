@@ -5,8 +5,8 @@
 
 #include "scene/document.h"
 #include "scene/table.h"
-#include "sim/rational.h"
-#include "sim/vec.h"
+#include "sim/math/rational.h"
+#include "sim/math/vec.h"
 
 namespace obscura::scene {
 

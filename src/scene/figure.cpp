@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "draw/color.h"
+#include "draw/picture/color.h"
 #include "scene/fields.h"
 #include "scene/links.h"
 

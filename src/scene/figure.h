@@ -1,11 +1,11 @@
 #pragma once
 
-#include "draw/chart.h"
-#include "draw/figure.h"
+#include "draw/page/chart.h"
+#include "draw/page/figure.h"
 #include "scene/complaints.h"
 #include "scene/document.h"
 #include "scene/roster.h"
-#include "sim/state.h"
+#include "sim/model/state.h"
 
 namespace obscura::scene {
 

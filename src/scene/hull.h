@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "sim/model.h"
+#include "sim/model/model.h"
 
 namespace obscura::scene {
 

@@ -9,8 +9,8 @@
 
 #include "scene/fields.h"
 #include "scene/links.h"
-#include "sim/exponential.h"
-#include "sim/turning.h"
+#include "sim/math/exponential.h"
+#include "sim/math/orientation.h"
 
 namespace obscura::scene {
 

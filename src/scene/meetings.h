@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "sim/shape.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::scene {
 

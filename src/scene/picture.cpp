@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "draw/camera.h"
+#include "draw/space/camera.h"
 #include "scene/fields.h"
-#include "sim/shape.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::scene {
 

@@ -6,7 +6,7 @@
 
 #include "scene/complaints.h"
 #include "scene/document.h"
-#include "sim/model.h"
+#include "sim/model/model.h"
 
 namespace obscura::scene {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scene/path.h"
+#include "sim/model/stance.h"
 
 namespace obscura::scene {
 

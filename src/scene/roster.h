@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "scene/complaints.h"
-#include "sim/state.h"
-#include "sim/turning.h"
+#include "sim/math/orientation.h"
+#include "sim/model/state.h"
 
 namespace obscura::scene {
 

@@ -22,7 +22,8 @@
 #include "scene/overrides.h"
 #include "scene/picture.h"
 #include "scene/room.h"
-#include "sim/trig.h"
+#include "sim/math/trig.h"
+#include "sim/motion/stability.h"
 
 namespace obscura::scene {
 
@@ -186,8 +187,8 @@ std::unique_ptr<sim::Run> Scene::run(std::span<const std::uint64_t> saved) const
       world);
 }
 
-std::vector<sim::Trouble> Scene::forebodings() const {
-  return std::visit([](const auto& it) { return sim::forebodings(it.model); }, world);
+std::vector<sim::Trouble> Scene::stability_warnings() const {
+  return std::visit([](const auto& it) { return sim::stability_warnings(it.model); }, world);
 }
 
 Scene read(const std::string& file, const std::vector<std::string>& sets) {

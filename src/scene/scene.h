@@ -9,14 +9,14 @@
 #include <variant>
 #include <vector>
 
-#include "draw/depict.h"
-#include "draw/figure.h"
-#include "draw/look.h"
-#include "draw/pace.h"
-#include "sim/playback.h"
-#include "sim/rational.h"
-#include "sim/run.h"
-#include "sim/state.h"
+#include "draw/compose/depict.h"
+#include "draw/page/figure.h"
+#include "draw/picture/look.h"
+#include "draw/picture/pace.h"
+#include "sim/math/rational.h"
+#include "sim/model/state.h"
+#include "sim/step/playback.h"
+#include "sim/step/run.h"
 
 namespace obscura::scene {
 
@@ -66,9 +66,9 @@ struct Scene {
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
   /// A run of it from its start, or from a state that was saved of one; none where that is no state of this
-  /// scene. What is known to go wrong before it does. See sim/run.h.
+  /// scene. What is known to go wrong before it does. See sim/step/run.h.
   std::unique_ptr<sim::Run> run(std::span<const std::uint64_t> saved = {}) const;
-  std::vector<sim::Trouble> forebodings() const;
+  std::vector<sim::Trouble> stability_warnings() const;
 
   /// The world of a scene in the plane, of one in space.
   const sim::World<2>& plane() const { return std::get<sim::World<2>>(world); }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scene/hull.h"
-#include "sim/turning.h"
+#include "sim/math/orientation.h"
 
 namespace obscura::scene {
 

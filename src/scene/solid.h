@@ -4,7 +4,7 @@
 
 #include "scene/complaints.h"
 #include "scene/fields.h"
-#include "sim/shape.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::scene {
 

@@ -1,10 +1,10 @@
-#include "app/checksums.h"
+#include "app/run/checksums.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/origin.h"
+#include "app/run/origin.h"
 
 namespace obscura::app {
 namespace {

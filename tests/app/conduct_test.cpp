@@ -1,4 +1,4 @@
-#include "app/conduct.h"
+#include "app/film/ordered_pipeline.h"
 
 #include <gtest/gtest.h>
 

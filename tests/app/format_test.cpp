@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "app/github.h"
+#include "app/compare/github.h"
 #include "program.h"
 #include "where.h"
 

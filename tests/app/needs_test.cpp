@@ -1,10 +1,10 @@
 // What films are said to take against what they take. Of time nothing is held here: a clock would decide.
 
-#include "app/needs.h"
+#include "app/film/estimate.h"
 
 #include <filesystem>
 
-#include "app/film.h"
+#include "app/film/film.h"
 #include "program.h"
 
 namespace obscura::app {

@@ -1,8 +1,8 @@
-#include "app/output.h"
+#include "app/film/output.h"
 
 #include <gtest/gtest.h>
 
-#include "app/exit.h"
+#include "app/console/exit.h"
 
 namespace obscura::app {
 namespace {

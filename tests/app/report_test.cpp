@@ -1,6 +1,6 @@
 // The page of a report, in a browser: it is driven by a script that its content security policy is told of.
 
-#include "app/report.h"
+#include "app/compare/report.h"
 
 #include <gmock/gmock.h>
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/origin.h"
+#include "app/run/origin.h"
 #include "program.h"
 #include "where.h"
 

@@ -1,9 +1,9 @@
-#include "app/shots.h"
+#include "app/run/shots.h"
 
 #include <gtest/gtest.h>
 
-#include "app/exit.h"
-#include "app/origin.h"
+#include "app/console/exit.h"
+#include "app/run/origin.h"
 
 namespace obscura::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/mosaic.h"
+#include "app/study/mosaic.h"
 #include "media/png.h"
 #include "program.h"
 #include "where.h"

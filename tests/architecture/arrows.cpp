@@ -23,6 +23,20 @@ const std::map<std::string, Names> kArrows = {
     {"sim", {}},
 };
 
+// the second level of the picture: the folders of a room, each of which includes itself and those before it
+const std::map<std::string, std::vector<std::string>> kSubRooms = {
+    {"sim",
+     {"math", "model", "shape", "collide", "force", "multibody", "constraint", "motion", "energy", "solve",
+      "solve/exact", "solve/iterate", "handout", "fracture", "step"}},
+    {"draw", {"picture", "page", "plane", "space", "compose"}},
+    {"app", {"console", "run", "film", "study", "compare", "figure", "cluster", "commands"}},
+};
+
+// the folder of a file within its room: of "sim/solve/exact/cone.h" "solve/exact"
+std::string sub_room(const std::filesystem::path& name) {
+  return name.parent_path().lexically_relative(*name.begin()).string();
+}
+
 // whose headers are whose: the beginning of a name in angle brackets, and the rooms that may say it
 const std::map<std::string, Names> kLibraries = {
     {"GL/", {"gl"}},
@@ -62,11 +76,17 @@ bool known_to_sim(const std::string& header) {
 // Another version of Eigen may factor in another order, and states would no longer be the same bits: the
 // physics has factors of its own, but for these, whose bits tests/sim/sums_test.cpp compares.
 const std::map<std::string, std::string> kFactors = {
-    {"sim/bond_load.cpp", "Eigen/SparseCholesky"},
-    {"sim/complementary.cpp", "Eigen/QR"},
+    {"sim/fracture/bond_load.cpp", "Eigen/SparseCholesky"},
+    {"sim/math/lcp.cpp", "Eigen/QR"},
 };
 bool factors(const std::string& header) {
   return header.rfind("Eigen/", 0) == 0 && header != "Eigen/Core" && header != "Eigen/Geometry";
+}
+
+// the place of a folder in its room's list, which ends where it is not in it
+std::ptrdiff_t place(const std::string& room, const std::string& folder) {
+  const auto& list = kSubRooms.at(room);
+  return std::find(list.begin(), list.end(), folder) - list.begin();
 }
 
 bool may(const std::string& from, const std::string& to) {
@@ -93,6 +113,12 @@ Complaints wrong_includes(const std::filesystem::path& src) {
     const std::string room = name.begin()->string();
     if (!kArrows.contains(room)) wrong.push_back(name.string() + ": " + room + " is no room of the picture");
 
+    const bool has_sub_rooms = kSubRooms.contains(room);
+    const std::string own = sub_room(name);
+    if (has_sub_rooms && place(room, own) == std::ssize(kSubRooms.at(room)) && name != "app/main.cpp")
+      wrong.push_back(name.string() + ": " + (own == "." ? room : room + "/" + own) +
+                      " is no sub-room of the picture");
+
     std::ifstream in(file);
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
@@ -108,6 +134,8 @@ Complaints wrong_includes(const std::filesystem::path& src) {
           complain("\"" + header + "\" does not say its room");
         else if (!may(room, to))
           complain(room + " may not include " + header);
+        else if (to == room && has_sub_rooms && place(room, sub_room(header)) > place(room, own))
+          complain(room + "/" + own + " may not include " + header);
         continue;
       }
       for (const auto& [prefix, rooms] : kLibraries)

@@ -7,7 +7,7 @@
 namespace obscura::architecture {
 
 /// One line of a source file that goes against the picture: "sim/step.cpp:3: sim may not include
-/// draw/list.h".
+/// draw/picture/list.h".
 using Complaints = std::vector<std::string>;
 
 /// Reads every #include of every .h and .cpp under `src`, whose folders are the rooms.

@@ -48,29 +48,54 @@ TEST_F(Planted, ANameWithoutItsHeaderIsFound) {
   plant("app/rows.cpp", "#include <fmt/format.h>\n" + join);
   plant("app/table.cpp", "#include <fmt/ranges.h>\n" + join);
   const std::string sort = "sort(begin, end);\n";
-  plant("sim/order.h", "const char* word = \"sort\";\nstd::" + sort);
+  plant("sim/math/order.h", "const char* word = \"sort\";\nstd::" + sort);
   EXPECT_THAT(missing_includes(src_), ElementsAre("app/rows.cpp:2: fmt::join( without <fmt/ranges.h>",
-                                                  testing::StartsWith("sim/order.h:2: ")));
+                                                  testing::StartsWith("sim/math/order.h:2: ")));
 }
 
 TEST_F(Planted, AnIncludeAgainstAnArrowIsFound) {
-  plant("sim/step.cpp", "#include \"sim/step.h\"\n#include <cmath>\n  #  include \"draw/list.h\"\n");
-  plant("draw/deep/list.h", "#include \"sim/snapshot.h\"\n#include \"media/image.h\"\n");
-  EXPECT_THAT(wrong_includes(src_), ElementsAre("draw/deep/list.h:2: draw may not include media/image.h",
-                                                "sim/step.cpp:3: sim may not include draw/list.h"));
+  plant("sim/step/step.cpp",
+        "#include \"sim/step/step.h\"\n#include <cmath>\n  #  include \"draw/list.h\"\n");
+  plant("draw/page/list.h", "#include \"sim/model/snapshot.h\"\n#include \"media/image.h\"\n");
+  EXPECT_THAT(wrong_includes(src_), ElementsAre("draw/page/list.h:2: draw may not include media/image.h",
+                                                "sim/step/step.cpp:3: sim may not include draw/list.h"));
+}
+
+TEST_F(Planted, AnIncludeOfALaterSubRoomIsFound) {
+  plant("sim/math/vec.h", "#include \"sim/model/state.h\"\n");
+  plant("sim/solve/exact/cone.cpp",
+        "#include \"sim/solve/exact/cone.h\"\n#include \"sim/solve/iterate/space.h\"\n");
+  plant("sim/solve/iterate/space.cpp",
+        "#include \"sim/solve/exact/statics.h\"\n#include \"sim/math/vec.h\"\n");
+  plant("app/film/film.cpp", "#include \"app/console/exit.h\"\n#include \"app/commands/render.h\"\n");
+  EXPECT_THAT(
+      wrong_includes(src_),
+      ElementsAre("app/film/film.cpp:2: app/film may not include app/commands/render.h",
+                  "sim/math/vec.h:1: sim/math may not include sim/model/state.h",
+                  "sim/solve/exact/cone.cpp:2: sim/solve/exact may not include sim/solve/iterate/space.h"));
+}
+
+TEST_F(Planted, AFolderThatIsNoSubRoomAndAFileOutsideAllAreFound) {
+  plant("app/main.cpp", "#include \"app/console/commands.h\"\n");
+  plant("sim/joints/hinge.h", "#pragma once\n");
+  plant("sim/step.cpp", "#pragma once\n");
+  EXPECT_THAT(wrong_includes(src_),
+              ElementsAre("sim/joints/hinge.h: sim/joints is no sub-room of the picture",
+                          "sim/step.cpp: sim is no sub-room of the picture"));
 }
 
 TEST_F(Planted, ALibraryInTheWrongRoomIsFound) {
-  plant("app/render.cpp", "#include <CLI/CLI.hpp>\n#include <GL/gl.h>\n#include <libavutil/frame.h>\n");
+  plant("app/commands/render.cpp",
+        "#include <CLI/CLI.hpp>\n#include <GL/gl.h>\n#include <libavutil/frame.h>\n");
   plant("media/png.cpp", "#include <png.h>\n#include <toml++/toml.h>\n");
-  plant("sim/world.h", "#include <Eigen/Core>\n#include <vector>\n#include <fmt/core.h>\n");
-  plant("sim/solver.cpp", "#include <Eigen/Geometry>\n#include <Eigen/LU>\n");
+  plant("sim/model/world.h", "#include <Eigen/Core>\n#include <vector>\n#include <fmt/core.h>\n");
+  plant("sim/solve/solver.cpp", "#include <Eigen/Geometry>\n#include <Eigen/LU>\n");
   EXPECT_THAT(wrong_includes(src_),
-              ElementsAre("app/render.cpp:2: app may not include <GL/gl.h>",
-                          "app/render.cpp:3: app may not include <libavutil/frame.h>",
+              ElementsAre("app/commands/render.cpp:2: app may not include <GL/gl.h>",
+                          "app/commands/render.cpp:3: app may not include <libavutil/frame.h>",
                           "media/png.cpp:2: media may not include <toml++/toml.h>",
-                          "sim/solver.cpp:2: sim factors by itself, not by <Eigen/LU>",
-                          "sim/world.h:3: sim knows only Eigen and std, not <fmt/core.h>"));
+                          "sim/model/world.h:3: sim knows only Eigen and std, not <fmt/core.h>",
+                          "sim/solve/solver.cpp:2: sim factors by itself, not by <Eigen/LU>"));
 }
 
 TEST_F(Planted, AnIncludeWithoutItsRoomAndAFolderThatIsNoRoomAreFound) {

@@ -17,9 +17,9 @@
 #include <ode/ode.h>
 #endif
 
-#include "sim/exponential.h"
-#include "sim/shape.h"
-#include "sim/stepper.h"
+#include "sim/math/exponential.h"
+#include "sim/shape/shape.h"
+#include "sim/step/stepper.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <vector>
 
-#include "sim/stepper.h"
+#include "sim/step/stepper.h"
 
 namespace {
 

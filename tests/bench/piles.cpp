@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/iterative.h"
-#include "sim/shape.h"
+#include "sim/shape/shape.h"
+#include "sim/solve/iterate/plane.h"
 
 namespace {
 

@@ -3,9 +3,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "draw/camera.h"
-#include "draw/depict.h"
-#include "draw/solids.h"
+#include "draw/compose/depict.h"
+#include "draw/picture/solids.h"
+#include "draw/space/camera.h"
 #include "gl/renderer.h"
 
 namespace {

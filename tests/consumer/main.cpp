@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <variant>
 
-#include "app/pictures.h"
+#include "app/film/pictures.h"
 #include "scene/scene.h"
 
 int main(int argc, char** argv) {

@@ -1,4 +1,4 @@
-#include "draw/camera.h"
+#include "draw/space/camera.h"
 
 #include <gtest/gtest.h>
 

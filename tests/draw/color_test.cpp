@@ -1,4 +1,4 @@
-#include "draw/color.h"
+#include "draw/picture/color.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What many half planes have in common, all at once against one cut after the other.
 
-#include "draw/common.h"
+#include "draw/picture/common.h"
 
 #include <gtest/gtest.h>
 

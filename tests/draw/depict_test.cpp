@@ -1,12 +1,12 @@
-#include "draw/depict.h"
+#include "draw/compose/depict.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "draw/layout.h"
 #include "draw/made.h"
+#include "draw/page/layout.h"
 
 namespace obscura::draw {
 namespace {

@@ -1,10 +1,10 @@
-#include "draw/formula.h"
+#include "draw/picture/formula.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "draw/placing.h"
-#include "draw/plot.h"
+#include "draw/page/placing.h"
+#include "draw/page/plot.h"
 
 namespace obscura::draw {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "draw/camera.h"
-#include "draw/layout.h"
 #include "draw/made.h"
+#include "draw/page/layout.h"
+#include "draw/space/camera.h"
 
 namespace obscura::draw {
 namespace {

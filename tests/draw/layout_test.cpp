@@ -1,4 +1,4 @@
-#include "draw/layout.h"
+#include "draw/page/layout.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "draw/made.h"
-#include "draw/type.h"
+#include "draw/picture/type.h"
 
 namespace obscura::draw {
 namespace {

@@ -1,11 +1,11 @@
-#include "draw/lens.h"
+#include "draw/picture/lens.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "draw/camera.h"
+#include "draw/space/camera.h"
 
 namespace obscura::draw {
 namespace {

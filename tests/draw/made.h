@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "draw/depict.h"
+#include "draw/compose/depict.h"
 
 namespace obscura::draw {
 

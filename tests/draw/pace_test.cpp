@@ -1,10 +1,10 @@
-#include "draw/pace.h"
+#include "draw/picture/pace.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "draw/camera.h"
+#include "draw/space/camera.h"
 
 namespace obscura::draw {
 namespace {

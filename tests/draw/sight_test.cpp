@@ -1,11 +1,11 @@
-#include "draw/sight.h"
+#include "draw/space/sight.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "draw/camera.h"
+#include "draw/space/camera.h"
 
 namespace obscura::draw {
 namespace {

@@ -1,4 +1,4 @@
-#include "draw/springs.h"
+#include "draw/plane/springs.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "draw/layout.h"
 #include "draw/made.h"
+#include "draw/page/layout.h"
 
 namespace obscura::draw {
 namespace {

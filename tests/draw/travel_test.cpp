@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "draw/camera.h"
 #include "draw/made.h"
+#include "draw/space/camera.h"
 
 namespace obscura::draw {
 namespace {

@@ -1,4 +1,4 @@
-#include "draw/type.h"
+#include "draw/picture/type.h"
 
 #include <gtest/gtest.h>
 

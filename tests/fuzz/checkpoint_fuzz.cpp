@@ -12,9 +12,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/checkpoint.h"
-#include "app/frames.h"
-#include "app/origin.h"
+#include "app/run/checkpoint.h"
+#include "app/run/frames.h"
+#include "app/run/origin.h"
 #include "media/error.h"
 
 #include "../fuzz/rooms.h"

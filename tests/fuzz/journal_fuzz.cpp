@@ -10,10 +10,10 @@
 #include <fstream>
 #include <string>
 
-#include "app/exit.h"
-#include "app/frames.h"
-#include "app/shots.h"
-#include "app/store.h"
+#include "app/console/exit.h"
+#include "app/film/store.h"
+#include "app/run/frames.h"
+#include "app/run/shots.h"
 #include "media/error.h"
 #include "scene/error.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "sim/run.h"
+#include "sim/step/run.h"
 
 namespace obscura::fuzz {
 

@@ -9,8 +9,8 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
-#include "sim/energy.h"
-#include "sim/run.h"
+#include "sim/energy/energy.h"
+#include "sim/step/run.h"
 
 #include "../fuzz/rooms.h"
 
@@ -63,7 +63,7 @@ void watch(const scene::Scene& scene, const sim::World<D>& world) {
   const auto start = run->at({0, 1});
   if (!std::holds_alternative<sim::Snapshot>(start)) return;
   const auto& before = std::get<sim::Snapshot>(start);
-  const bool closed = !is_driven(model) && scene.forebodings().empty();
+  const bool closed = !is_driven(model) && scene.stability_warnings().empty();
 
   for (int k = 1; k <= kSteps; ++k) {
     const auto moment = run->at(sim::rational(k) / run->rate());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "draw/list.h"
+#include "draw/picture/list.h"
 #include "gl/renderer.h"
 #include "media/image.h"
 

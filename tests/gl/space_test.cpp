@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "draw/camera.h"
-#include "draw/depict.h"
-#include "draw/light.h"
-#include "draw/solids.h"
+#include "draw/compose/depict.h"
+#include "draw/picture/solids.h"
+#include "draw/space/camera.h"
+#include "draw/space/light.h"
 #include "gl/back_ends.h"
 #include "gl/pictures.h"
 

@@ -7,8 +7,8 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
-#include "sim/chain.h"
-#include "sim/contact_step.h"
+#include "sim/multibody/chain.h"
+#include "sim/solve/contact_solver.h"
 
 namespace obscura::scene {
 namespace {

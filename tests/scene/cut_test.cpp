@@ -9,10 +9,10 @@
 #include <filesystem>
 
 #include "scene/scene.h"
-#include "sim/blast.h"
-#include "sim/contact_step.h"
-#include "sim/energy.h"
-#include "sim/stepper.h"
+#include "sim/energy/energy.h"
+#include "sim/force/explosion.h"
+#include "sim/solve/contact_solver.h"
+#include "sim/step/stepper.h"
 #include "where.h"
 
 namespace obscura::scene {

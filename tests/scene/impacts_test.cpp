@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "sim/shape.h"
-#include "sim/stepper.h"
+#include "sim/shape/shape.h"
+#include "sim/step/stepper.h"
 #include "where.h"
 
 namespace obscura::scene {

@@ -7,7 +7,7 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
-#include "sim/trig.h"
+#include "sim/math/trig.h"
 
 namespace obscura::scene {
 namespace {

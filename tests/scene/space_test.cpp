@@ -9,8 +9,8 @@
 #include "scene/error.h"
 #include "scene/hull.h"
 #include "scene/scene.h"
-#include "sim/exponential.h"
-#include "sim/shape.h"
+#include "sim/math/exponential.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::scene {
 namespace {

@@ -1,13 +1,13 @@
 // Chains in the room: what the Stepper makes of them, told by their links' bodies.
 
-#include "sim/articulated.h"
+#include "sim/multibody/chains.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "sim/allocations.h"
-#include "sim/energy.h"
+#include "sim/energy/energy.h"
 #include "sim/reference.h"
 #include "sim/space_rooms.h"
 

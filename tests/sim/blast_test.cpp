@@ -1,4 +1,4 @@
-#include "sim/blast.h"
+#include "sim/force/explosion.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "chain_cases.h"
 #include "reference.h"
-#include "sim/energy.h"
+#include "sim/energy/energy.h"
 #include "space_rooms.h"
 
 namespace obscura::sim {

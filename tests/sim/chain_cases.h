@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/chain_dynamics.h"
 #include "sim/dice.h"
-#include "sim/integrator.h"
+#include "sim/motion/integrator.h"
+#include "sim/multibody/articulated_body.h"
 
 namespace obscura::sim {
 

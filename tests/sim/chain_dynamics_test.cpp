@@ -1,4 +1,4 @@
-#include "sim/chain_dynamics.h"
+#include "sim/multibody/articulated_body.h"
 
 #include <gtest/gtest.h>
 

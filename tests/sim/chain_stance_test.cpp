@@ -1,4 +1,4 @@
-#include "sim/chain_stance.h"
+#include "sim/multibody/forward_kinematics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/complementary.h"
+#include "sim/math/lcp.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/cone.h"
+#include "sim/solve/exact/cone.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "sim/allocations.h"
-#include "sim/vec.h"
+#include "sim/math/vec.h"
 
 namespace obscura::sim {
 namespace {

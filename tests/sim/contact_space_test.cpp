@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/contact_step.h"
 #include "sim/solids.h"
+#include "sim/solve/contact_solver.h"
 #include "sim/space_rooms.h"
 #include "sim/touching.h"
 

@@ -1,4 +1,4 @@
-#include "sim/exponential.h"
+#include "sim/math/exponential.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/constraint/row.h"
 #include "sim/gaps.h"
-#include "sim/row.h"
 #include "sim/solids.h"
 
 namespace obscura::sim {

@@ -1,6 +1,6 @@
 // Gaps against brute force, and stacks that keep their features.
 
-#include "sim/gap.h"
+#include "sim/collide/narrow_phase.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "sim/gap.h"
+#include "sim/collide/narrow_phase.h"
 
 namespace obscura::sim {
 

@@ -1,13 +1,13 @@
 // Boxes that meet four at a time: against one pair after another.
 
-#include "sim/iterative_boxes.h"
+#include "sim/solve/iterate/box_pairs.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "rooms.h"
-#include "sim/trig.h"
+#include "sim/math/trig.h"
 
 namespace obscura::sim {
 namespace {

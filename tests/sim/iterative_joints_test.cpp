@@ -1,15 +1,15 @@
 // Joints by sweeps: against tables, closed forms, and the direct solver.
 
-#include "sim/iterative_joints.h"
+#include "sim/solve/iterate/joint_solver.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "allocations.h"
-#include "sim/iterative.h"
 #include "sim/jointed.h"
 #include "sim/reference.h"
+#include "sim/solve/iterate/plane.h"
 #include "sim/touching.h"
 
 namespace obscura::sim {

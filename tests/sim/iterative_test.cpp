@@ -1,6 +1,6 @@
 // Contact by sweeps: against closed forms, statics, and itself.
 
-#include "sim/iterative.h"
+#include "sim/solve/iterate/plane.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 
 #include "allocations.h"
 #include "rooms.h"
-#include "sim/energy.h"
-#include "sim/iterative_turns.h"
-#include "sim/trig.h"
+#include "sim/energy/energy.h"
+#include "sim/math/trig.h"
+#include "sim/solve/iterate/wide_sin_cos.h"
 
 namespace obscura::sim {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "sim/articulated.h"
-#include "sim/energy.h"
+#include "sim/energy/energy.h"
 #include "sim/jointed.h"
+#include "sim/multibody/chains.h"
 #include "sim/space_rooms.h"
 
 namespace obscura::sim {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "sim/grip.h"
-#include "sim/path.h"
+#include "sim/force/mouse.h"
+#include "sim/model/path.h"
+#include "sim/model/script.h"
 #include "sim/rooms.h"
-#include "sim/script.h"
 
 namespace obscura::sim {
 namespace {

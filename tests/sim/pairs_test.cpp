@@ -1,6 +1,6 @@
 // Pairs against all pairs.
 
-#include "sim/pairs.h"
+#include "sim/collide/broad_phase.h"
 
 #include <gtest/gtest.h>
 

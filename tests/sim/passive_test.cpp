@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "sim/account.h"
+#include "sim/energy/energy_guard.h"
 #include "sim/space_rooms.h"
 #include "sim/touching.h"
 

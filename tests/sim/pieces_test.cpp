@@ -1,10 +1,10 @@
-#include "sim/pieces.h"
+#include "sim/step/bonded_bodies.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sim/energy.h"
+#include "sim/energy/energy.h"
 #include "space_rooms.h"
 
 namespace obscura::sim {

@@ -1,4 +1,4 @@
-#include "sim/rational.h"
+#include "sim/math/rational.h"
 
 #include <gtest/gtest.h>
 

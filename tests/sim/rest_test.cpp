@@ -1,6 +1,6 @@
 // What moves and is not held goes on moving, however slowly; what is held comes to rest.
 
-#include "sim/rest.h"
+#include "sim/constraint/mobility.h"
 
 #include <gtest/gtest.h>
 
@@ -335,8 +335,8 @@ TEST(Rest, ARoomScaledInLengthsAndGravityRestsAlike) {
 // --- what contacts and joints leave free
 
 template <int D>
-typename Statics<D>::Touch touch(int a, int b, Vec<D> normal, Vec<D> arm_a, double mu, double force,
-                                 Vec<D> arm_b = Vec<D>::Zero()) {
+BearingContact<D> touch(int a, int b, Vec<D> normal, Vec<D> arm_a, double mu, double force,
+                        Vec<D> arm_b = Vec<D>::Zero()) {
   return {.a = a,
           .b = b,
           .normal = normal,

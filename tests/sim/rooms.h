@@ -7,10 +7,10 @@
 #include <variant>
 #include <vector>
 
-#include "sim/run.h"
-#include "sim/shape.h"
-#include "sim/state.h"
-#include "sim/stepper.h"
+#include "sim/model/state.h"
+#include "sim/shape/shape.h"
+#include "sim/step/run.h"
+#include "sim/step/stepper.h"
 
 namespace obscura::sim {
 

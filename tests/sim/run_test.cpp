@@ -1,6 +1,6 @@
 // One loop: time, frames, words, ways.
 
-#include "sim/run.h"
+#include "sim/step/run.h"
 
 #include <gtest/gtest.h>
 

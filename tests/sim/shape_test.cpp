@@ -1,6 +1,6 @@
 // What shapes weigh, and how far they reach.
 
-#include "sim/shape.h"
+#include "sim/shape/shape.h"
 
 #include <gtest/gtest.h>
 

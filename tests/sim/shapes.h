@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/dice.h"
-#include "sim/shape.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::sim {
 

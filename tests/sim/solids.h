@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/exponential.h"
+#include "sim/math/exponential.h"
 #include "sim/shapes.h"
 
 namespace obscura::sim {

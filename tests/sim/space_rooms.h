@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/energy.h"
-#include "sim/exponential.h"
+#include "sim/energy/energy.h"
+#include "sim/math/exponential.h"
 #include "sim/rooms.h"
 #include "sim/solids.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "reference.h"
-#include "sim/energy.h"
-#include "sim/show.h"
+#include "sim/energy/energy.h"
+#include "sim/step/snapshots.h"
 #include "space_rooms.h"
 
 namespace obscura::sim {

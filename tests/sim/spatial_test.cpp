@@ -1,4 +1,4 @@
-#include "sim/spatial.h"
+#include "sim/math/spatial.h"
 
 #include <gtest/gtest.h>
 

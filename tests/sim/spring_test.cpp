@@ -1,6 +1,6 @@
 // Springs against closed forms and tables, handout §2.2.
 
-#include "sim/spring.h"
+#include "sim/force/spring.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // What decides the last bits of a state: in which order numbers are added. Eigen's own order differs between
 // its versions, so that each expression the physics uses has it given here, and is the same on every system.
 
-#include "sim/vec.h"
+#include "sim/math/vec.h"
 
 #include <Eigen/QR>
 #include <Eigen/SparseCholesky>
@@ -144,7 +144,7 @@ struct Bits {
 };
 
 // what Eigen does by itself: rotations of quaternions and back, the inverse of an inertia, and the factors of
-// sim/complementary.cpp and sim/bond_load.cpp. A version that comes to other numbers is told here by name
+// sim/math/lcp.cpp and sim/fracture/bond_load.cpp. A version that comes to other numbers is told here by name
 TEST(Sums, InWhatEigenFactorsAreThoseOfItsVersion34) {
   Dice dice(5);
   Bits turns, back, inverses, spread, borne;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/constraint/row.h"
 #include "sim/jointed.h"
-#include "sim/row.h"
 #include "sim/space_rooms.h"
 
 namespace obscura::sim {

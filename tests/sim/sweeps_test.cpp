@@ -1,6 +1,6 @@
 // Many bodies of space by sweeps, against closed forms and sums.
 
-#include "sim/sweeps.h"
+#include "sim/solve/iterate/space.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/math/trig.h"
 #include "sim/rooms.h"
-#include "sim/trig.h"
 
 namespace obscura::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/trig.h"
+#include "sim/math/trig.h"
 
 #include <gtest/gtest.h>
 

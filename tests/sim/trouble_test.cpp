@@ -1,6 +1,6 @@
 // Runs that cannot go on say so, with the body and the likely cause; the others are left alone.
 
-#include "sim/trouble.h"
+#include "sim/model/trouble.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <limits>
 #include <optional>
 
+#include "sim/math/limits.h"
+#include "sim/motion/stability.h"
 #include "sim/rooms.h"
-#include "sim/runaway.h"
-#include "sim/stability.h"
 
 namespace obscura::sim {
 namespace {
@@ -146,7 +146,7 @@ TEST(Trouble, IsNotWhatIsOnlyLively) {
     mouse.path.push_back({rational(i, 2), {2 + 1.5 * (i % 2), 1.0 + 0.5 * (i % 3)}});
   world.model.mice.push_back(mouse);
   EXPECT_FALSE(trouble(world, {60, 1}));
-  EXPECT_TRUE(forebodings(world.model).empty());
+  EXPECT_TRUE(stability_warnings(world.model).empty());
 }
 
 TEST(Trouble, IsNotASpringAtRest) {
@@ -209,12 +209,12 @@ TEST(LongestStep, IsWhereAnOscillatorBeginsToGrow) {
 }
 
 TEST(Foreboding, IsNoneWhereTheStepIsShortEnough) {
-  EXPECT_TRUE(forebodings(stiff(72).model).empty());
-  EXPECT_FALSE(forebodings(stiff(70).model).empty());
+  EXPECT_TRUE(stability_warnings(stiff(72).model).empty());
+  EXPECT_FALSE(stability_warnings(stiff(70).model).empty());
 }
 
 TEST(Foreboding, NamesBodySpringAndRate) {
-  const auto all = forebodings(stiff(60).model);
+  const auto all = stability_warnings(stiff(60).model);
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].body, "ball");
   EXPECT_THAT(all[0].likely, HasSubstr("spring[0] on ball: raise physics.rate above 71"));
@@ -223,7 +223,7 @@ TEST(Foreboding, NamesBodySpringAndRate) {
 TEST(Foreboding, OfWhatNoRateCanFollowNamesNone) {
   World<2> world = stiff(60);
   world.model.springs[0].stiffness = 1e36;
-  const auto all = forebodings(world.model);
+  const auto all = stability_warnings(world.model);
   ASSERT_EQ(all.size(), 1u);
   EXPECT_THAT(all[0].likely, HasSubstr("spring[0] on ball: it is too stiff for any physics.rate"));
 }
@@ -235,19 +235,19 @@ TEST(Foreboding, TakesAQuarterOfTheMassAtASquaresCorner) {
     add_box(world, {0.4, 0.4}, 0.4, {0, 0});
     add_spring(world, {0, local}, {-1, {2, 2}}, 4000, 0.1);
     world.model.rate = {rate - 1, 1};
-    EXPECT_FALSE(forebodings(world.model).empty()) << rate;
+    EXPECT_FALSE(stability_warnings(world.model).empty()) << rate;
     world.model.rate = {rate, 1};
-    EXPECT_TRUE(forebodings(world.model).empty()) << rate;
+    EXPECT_TRUE(stability_warnings(world.model).empty()) << rate;
   }
 }
 
 TEST(Foreboding, AddsTheSpringsOfABody) {
   World<2> world = stiff(80);
-  EXPECT_TRUE(forebodings(world.model).empty());
+  EXPECT_TRUE(stability_warnings(world.model).empty());
   add_spring(world, {0, {0, 0}}, {-1, {1, 1}}, 4000, 0.1);  // sqrt(2) less: 1/101 would do
-  ASSERT_EQ(forebodings(world.model).size(), 1u);
-  EXPECT_THAT(forebodings(world.model)[0].likely, HasSubstr("2 springs"));
-  EXPECT_THAT(forebodings(world.model)[0].likely, HasSubstr("above 100"));
+  ASSERT_EQ(stability_warnings(world.model).size(), 1u);
+  EXPECT_THAT(stability_warnings(world.model)[0].likely, HasSubstr("2 springs"));
+  EXPECT_THAT(stability_warnings(world.model)[0].likely, HasSubstr("above 100"));
 }
 
 TEST(Foreboding, LooksAtTheMice) {
@@ -255,8 +255,8 @@ TEST(Foreboding, LooksAtTheMice) {
   world.model.rate = {60, 1};
   add_particle(world, {0, 0}, {0, 0}, 0.1);
   world.model.mice.push_back({{{{1, 1}, {0, 0}}, {{2, 1}, {1, 0}}}, 0.1, 4000, 0});
-  ASSERT_EQ(forebodings(world.model).size(), 1u);
-  EXPECT_THAT(forebodings(world.model)[0].likely, HasSubstr("mouse[0]"));
+  ASSERT_EQ(stability_warnings(world.model).size(), 1u);
+  EXPECT_THAT(stability_warnings(world.model)[0].likely, HasSubstr("mouse[0]"));
 }
 
 TEST(Foreboding, LooksAtDashpotsAndDrag) {
@@ -264,9 +264,9 @@ TEST(Foreboding, LooksAtDashpotsAndDrag) {
   world.model.rate = {60, 1};
   add_particle(world, {0, 0}, {0, 0}, 0.01);
   world.model.bodies[0].drag = 5;  // 2.785 m / c = 0.0056 s
-  ASSERT_EQ(forebodings(world.model).size(), 1u);
-  EXPECT_THAT(forebodings(world.model)[0].likely, HasSubstr("of the drag"));
-  EXPECT_THAT(forebodings(world.model)[0].likely, HasSubstr("above 180"));
+  ASSERT_EQ(stability_warnings(world.model).size(), 1u);
+  EXPECT_THAT(stability_warnings(world.model)[0].likely, HasSubstr("of the drag"));
+  EXPECT_THAT(stability_warnings(world.model)[0].likely, HasSubstr("above 180"));
 }
 
 }  // namespace

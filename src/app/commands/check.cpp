@@ -1,0 +1,261 @@
+// obscura check: reads, validates and builds scenes without opening GL; says what a render would do.
+
+#include <array>
+#include <iterator>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/compare/format.h"
+#include "app/compare/github.h"
+#include "app/console/command.h"
+#include "app/console/commands.h"
+#include "app/console/exit.h"
+#include "app/console/memory.h"
+#include "app/console/options.h"
+#include "app/console/say.h"
+#include "app/console/waiting.h"
+#include "app/film/estimate.h"
+#include "app/film/film.h"
+#include "app/run/shots.h"
+#include "media/error.h"
+#include "scene/error.h"
+#include "sim/solve/contact_solver.h"
+#include "sim/step/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string count(std::size_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+// how long the first steps are watched, s
+constexpr double kPatience = 0.5;
+
+// what holds bodies apart, and why that
+template <int D>
+std::string contact(const sim::Model<D>& model) {
+  if (model.collision == sim::Collision::handout) return "the handout's: walls alone, put back and pushed";
+  const bool direct = sim::solver(model) == sim::Solver::direct;
+  const sim::Crowd crowd = sim::crowd(model);
+  std::string why;
+  if (model.collision == sim::Collision::event)
+    why = "every event at its own time";
+  else if (!model.chains.empty())
+    why = count(model.chains.size(), "chain", "chains");
+  else if (!model.joints.empty())
+    why = count(model.joints.size(), "joint", "joints");
+  else if (model.solver != sim::Solver::automatic)
+    why = "as the scene says";
+  else
+    why = fmt::format("{} and {} that move; up to {} and {} it is the direct one",
+                      count(std::size_t(crowd.bodies), "body", "bodies"),
+                      count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies<D>,
+                      sim::kMostPoints);
+  return fmt::format("{} solver: {}{}", direct ? "direct" : "iterative", why,
+                     direct ? "" : "; impacts go from pair to pair");
+}
+
+// as sim::ShapeKind counts them
+constexpr const char* kKinds[][2] = {{"particle", "particles"},
+                                     {"ball", "balls"},
+                                     {"box", "boxes"},
+                                     {"polygon", "polygons"},
+                                     {"body of several shapes", "bodies of several shapes"},
+                                     {"capsule", "capsules"},
+                                     {"hull", "hulls"}};
+
+// how many there are of each kind; bodies by what they are made of
+template <int D>
+std::array<std::size_t, std::size(kKinds)> numbers_of(const sim::Model<D>& model) {
+  using sim::ShapeKind;
+  std::array<std::size_t, std::size(kKinds)> numbers{};
+  for (const sim::Body<D>& body : model.bodies) {
+    ShapeKind kind = body.shape.kind;
+    // what stands askew and does not turn is a body of one part
+    if (kind == ShapeKind::compound && body.shape.parts.size() == 1) kind = body.shape.parts[0].kind;
+    if (kind == ShapeKind::ball && !body.turns()) kind = ShapeKind::point;
+    ++numbers[std::size_t(kind)];
+  }
+  return numbers;
+}
+
+template <int D>
+std::size_t links_of(const sim::Model<D>& model) {
+  std::size_t links = 0;
+  for (const sim::Articulation<D>& chain : model.chains) links += chain.bodies.size();
+  return links;
+}
+
+// "2 particles, 1 ball, 12 boxes", those kinds that there are
+template <int D>
+std::string bodies(const sim::Model<D>& model) {
+  const auto numbers = numbers_of(model);
+  std::string text = count(numbers[0], kKinds[0][0], kKinds[0][1]);
+  for (std::size_t k = 1; k < numbers.size(); ++k) {
+    if (numbers[k] > 0) text += ", " + count(numbers[k], kKinds[k][0], kKinds[k][1]);
+  }
+  text += ", " + count(model.springs.size(), "spring", "springs");
+  if (!model.joints.empty()) text += ", " + count(model.joints.size(), "joint", "joints");
+  const std::size_t links = links_of(model);
+  if (links > 0)
+    text += ", " + count(model.chains.size(), "chain", "chains") + " with " + count(links, "link", "links");
+  return text + ", " + count(model.walls.size(), "wall", "walls") + ", " +
+         count(model.mice.size(), "mouse", "mice");
+}
+
+// what a render of it would be
+struct Plan {
+  Shots shots;
+  Needs film;
+  int cores = 1;
+  std::vector<std::string> warnings;
+};
+
+Plan plan(const scene::Scene& scene) {
+  const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
+  doing("measuring the first steps of " + scene.file);
+  Plan it{shots, needs(scene, shots, {Output::Form::movie, scene.name + ".mp4"}, kPatience), 1, {}};
+  it.cores = std::max(1, int(std::thread::hardware_concurrency()));
+  if (it.film.memory(1) > memory_limit())
+    it.warnings.push_back(
+        fmt::format("that is more memory than the {} it may have", bytes_text(memory_limit())));
+  for (const sim::Trouble& ahead : scene.stability_warnings()) it.warnings.push_back(ahead.likely);
+  try {
+    media::check(scene.name + ".mp4", movie_spec(scene));
+  } catch (const media::Error& error) {
+    it.warnings.push_back(error.what());
+  }
+  return it;
+}
+
+template <int D>
+std::string text(const scene::Scene& scene, const sim::Model<D>& model, const Plan& plan) {
+  std::string all = fmt::format("{}: good\n", scene.file);
+  const auto row = [&](const char* name, const std::string& value) {
+    all += fmt::format("  {:<8} {}\n", name, value);
+  };
+  row("bodies", bodies(model));
+  row("time", fmt::format("{:g} s in {} steps of 1/{} s", sim::value(scene.duration),
+                          sim::ceil(scene.duration * model.rate), sim::text(model.rate)));
+  row("contact", contact(model));
+  row("film", fmt::format("{} frames at {} fps, {}x{}", plan.shots.size(), sim::text(scene.film.fps),
+                          scene.film.width, scene.film.height));
+  row("disk", fmt::format("about {} as a movie", bytes_text(plan.film.disk)));
+  row("memory", fmt::format("about {} with {}", bytes_text(plan.film.memory(plan.cores)),
+                            count(std::size_t(plan.cores), "worker", "workers")));
+  row("takes", fmt::format("about {}, of which {} simulating: an estimate, from its first steps",
+                           time_text(plan.film.seconds(plan.cores)), time_text(plan.film.simulate)));
+  for (const std::string& warning : plan.warnings) row("warning", warning);
+  return all;
+}
+
+template <int D>
+Json json(const scene::Scene& scene, const sim::Model<D>& model, const Plan& plan) {
+  Json bodies = Json::object();
+  const auto numbers = numbers_of(model);
+  for (std::size_t k = 0; k < numbers.size(); ++k) bodies[kKinds[k][1]] = numbers[k];
+  return {{"file", scene.file},
+          {"good", true},
+          {"dimension", D},
+          {"bodies", bodies},
+          {"springs", model.springs.size()},
+          {"joints", model.joints.size()},
+          {"chains", model.chains.size()},
+          {"links", links_of(model)},
+          {"walls", model.walls.size()},
+          {"mice", model.mice.size()},
+          {"duration", sim::value(scene.duration)},
+          {"steps", sim::ceil(scene.duration * model.rate)},
+          {"rate", sim::value(model.rate)},
+          {"contact", contact(model)},
+          {"film",
+           {{"frames", plan.shots.size()},
+            {"fps", sim::value(scene.film.fps)},
+            {"width", scene.film.width},
+            {"height", scene.film.height}}},
+          {"estimate",
+           {{"disk", plan.film.disk},
+            {"memory", plan.film.memory(plan.cores)},
+            {"workers", plan.cores},
+            {"seconds", plan.film.seconds(plan.cores)},
+            {"simulate", plan.film.simulate}}},
+          {"warnings", plan.warnings},
+          {"errors", Json::array()}};
+}
+
+int check(const std::vector<std::string>& files, const std::vector<std::string>& sets, Format format) {
+  int exit = kDone;
+  Json scenes = Json::array();
+  std::string summary;
+  for (const std::string& file : files) {
+    try {
+      doing("reading " + file);
+      const scene::Scene scene = scene::read(file, sets);
+      const Plan made = plan(scene);
+      std::string said;
+      std::visit(
+          [&](const auto& world) {
+            if (format == Format::json)
+              scenes.push_back(json(scene, world.model, made));
+            else
+              said = text(scene, world.model, made);
+          },
+          scene.world);
+      clear_waiting();
+      say_lines(stdout, format == Format::github ? github::verbatim(said) : said);
+      if (format != Format::github) continue;
+      for (const std::string& warning : made.warnings)
+        fmt::print("{}", github::command({.level = github::Annotation::Level::warning,
+                                          .file = file,
+                                          .title = "check",
+                                          .message = warning}));
+    } catch (const scene::Error& error) {
+      exit = kScene;
+      if (format == Format::json) {
+        scenes.push_back(
+            {{"file", file}, {"good", false}, {"warnings", Json::array()}, {"errors", json_of(error)}});
+        continue;
+      }
+      std::fflush(stdout);
+      say_lines(stderr, error.what());
+      if (format != Format::github) continue;
+      fmt::print("{}", github::commands(error));
+      summary += github::quoted(error.what());
+    }
+  }
+  if (format == Format::json) {
+    Json top = json_head("check", exit);
+    top["scenes"] = std::move(scenes);
+    fmt::print("{}", text_of(top));
+  }
+  if (format == Format::github)
+    github::add_to_summary(
+        fmt::format("### Scenes checked: {}\n\n",
+                    summary.empty() ? fmt::format("{}, all good", files.size()) : "not all good") +
+        summary);
+  return exit;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, int& exit) {
+  const Command command(program, exit, "check", "Read scenes and say what would be filmed, without drawing");
+  auto files = std::make_shared<std::vector<std::string>>();
+  auto sets = std::make_shared<std::vector<std::string>>();
+  command.option("SCENE", *files, "Scenes to read").required();
+  auto format = std::make_shared<Format>(Format::text);
+  add_sets(command, *sets);
+  add_format(command, *format);
+  add_memory_limit(command);
+  command.footer("Examples:\n  obscura check scenes/room.toml\n  obscura check scenes/*.toml");
+  command.run([=] { return check(*files, *sets, *format); });
+}
+
+}  // namespace obscura::app

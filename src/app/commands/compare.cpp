@@ -1,0 +1,155 @@
+// obscura compare: two pictures, two sequences of them, or two runs as tables: whether they are the same,
+// where they are not, and why.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/compare/comparison.h"
+#include "app/compare/format.h"
+#include "app/compare/github.h"
+#include "app/compare/report.h"
+#include "app/compare/runs.h"
+#include "app/console/command.h"
+#include "app/console/commands.h"
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/console/say.h"
+#include "app/console/waiting.h"
+#include "media/png.h"
+
+namespace obscura::app {
+
+namespace {
+
+struct Flags {
+  std::string a, b;
+  Format format = Format::text;
+  std::optional<std::string> diff, report;
+  std::optional<double> rtol, atol;
+  bool interpolate = false;
+};
+
+// whether a file that is to be written is one of those that are read: A, B, or a picture in either folder
+void spare_inputs(const Flags& flags) {
+  namespace fs = std::filesystem;
+  for (const auto& [name, out] : {std::pair("--diff", flags.diff), {"--report", flags.report}}) {
+    if (!out || !fs::exists(*out)) continue;
+    for (const std::string& in : {flags.a, flags.b}) {
+      std::error_code none;
+      const bool inside = fs::is_directory(in, none) && fs::path(*out).extension() == ".png" &&
+                          fs::equivalent(fs::absolute(*out).parent_path(), in, none);
+      if (inside || fs::equivalent(*out, in, none))
+        throw UsageError(fmt::format("{} {}: would be written over {}, which is compared", name, *out,
+                                     inside ? "a picture of " + in : in));
+    }
+  }
+}
+
+bool is_table(const std::string& path) {
+  const auto ending = std::filesystem::path(path).extension();
+  return ending == ".csv" || ending == ".json";
+}
+
+// what a person or a program is told; GitHub beside it where the two are not the same
+void tell(const Flags& flags, bool same, const std::string& text, const std::string& json) {
+  if (flags.format != Format::github) {
+    clear_waiting();
+    say_lines(stdout, flags.format == Format::json ? json : text);
+    return;
+  }
+  say_lines(stdout, github::verbatim(text));
+  if (!same) fmt::print("{}", github::command({.title = "compare", .message = text}));
+  github::add_to_summary(fmt::format("### {} and {} {}\n\n", github::escaped(flags.a),
+                                     github::escaped(flags.b), same ? "are the same" : "differ") +
+                         (same ? "" : github::quoted(text)));
+}
+
+int compare_runs(const Flags& flags) {
+  if (flags.diff || flags.report) throw UsageError("--diff and --report are for pictures, not for tables");
+  const Tolerance tolerance{flags.rtol.value_or(0), flags.atol.value_or(0)};
+  const RunComparison found = compare(read_table(flags.a), read_table(flags.b), tolerance, flags.interpolate);
+  tell(flags, found.same(), text(found, tolerance), json(found));
+  return found.same() ? kDone : kDiffers;
+}
+
+void write_report(const Comparison& found, const std::string& path) {
+  std::vector<Finding> findings;
+  for (const int i : {found.first, found.worst}) {
+    if (i < 0 || (!findings.empty() && found.first == found.worst)) continue;
+    const Comparison::Frame& frame = found.differing[std::size_t(i)];
+    std::vector<std::string> lines = {sentence(frame)};
+    if (findings.empty() && found.cause)
+      lines.insert(lines.end(), found.cause->lines.begin(), found.cause->lines.end());
+    if (findings.empty()) lines.insert(lines.end(), found.plain.begin(), found.plain.end());
+    const char* mark = found.still ? "" : i == found.first ? ", the first" : ", the worst";
+    const auto by = [](const std::optional<Origin>& origin) { return origin ? origin->drawn_by() : ""; };
+    findings.push_back(
+        {frame.name + mark, "differs", lines, frame.a, frame.b, by(frame.origin_a), by(frame.origin_b), ""});
+  }
+  if (findings.empty())
+    findings.push_back({found.a, found.same() ? "same" : "differs", {text(found)}, {}, {}, "", "", ""});
+  write_text(path, report({fmt::format("{} and {}", found.a, found.b), ""}, findings));
+}
+
+int run(const Flags& flags) {
+  if (is_table(flags.a) != is_table(flags.b))
+    throw UsageError(fmt::format("{} is a table and {} is not", is_table(flags.a) ? flags.a : flags.b,
+                                 is_table(flags.a) ? flags.b : flags.a));
+  if (is_table(flags.a)) return compare_runs(flags);
+  if (flags.rtol || flags.atol || flags.interpolate)
+    throw UsageError("--rtol, --atol and --interpolate are for tables (.csv, .json)");
+  spare_inputs(flags);
+  const Comparison found = compare(flags.a, flags.b);
+  if (interrupted()) return kInterrupted;
+  tell(flags, found.same(), text(found), json(found));
+  if (flags.diff && found.worst >= 0) {
+    const Comparison::Frame& worst = found.differing[std::size_t(found.worst)];
+    media::write_png(*flags.diff, media::difference_picture(worst.a, worst.b));
+  }
+  if (flags.report) write_report(found, *flags.report);
+  return found.same() ? kDone : kDiffers;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program, int& exit) {
+  const Command command(program, exit, "compare",
+                        "Say whether two pictures, sequences or runs are the same, and why not");
+  auto flags = std::make_shared<Flags>();
+  command.option("A", flags->a, "A PNG, a folder of them, a movie, or a run as CSV or JSON: what is expected")
+      .required();
+  command.option("B", flags->b, "The same again: what there is").required();
+  command.option("--diff", flags->diff, "Write what differs, of a sequence in its worst frame")
+      .type("OUT.png");
+  command.option("--report", flags->report, "Write a page with both, a slider and a blink").type("OUT.html");
+  add_format(command, flags->format);
+  command.option("--rtol", flags->rtol, "Of runs: relative tolerance, of A's value [0]").range(0.0, 1e300);
+  command.option("--atol", flags->atol, "Of runs: absolute tolerance, in the quantity's unit [0]")
+      .range(0.0, 1e300);
+  command.flag("--interpolate", flags->interpolate, "Of runs: straight lines between B's rows");
+  command.footer(
+      "Files of the same bytes are the same. Else pixels are compared: how many differ, the largest "
+      "difference "
+      "of a channel, how many differ by more than an edge that moved by less than a pixel (solid), the box "
+      "around them. Where both carry their origin, as all that obscura writes does, the cause is named: "
+      "other "
+      "scene, other state (both are simulated again, and the step, body and quantity where they part are "
+      "told), other look, other OpenGL, or pixels only.\n"
+      "Runs are tables as `obscura states` writes them, as CSV or JSON. A is the reference: its columns and "
+      "its "
+      "times must be in B. Times are one within half a microsecond; |b - a| <= atol + rtol |a|; inf and nan "
+      "are the "
+      "same as themselves alone.\n\n"
+      "Exit codes: 0 the same, 1 they differ, 2 usage, 4 something is not readable.\n\n"
+      "Examples:\n"
+      "  obscura compare old.png new.png --diff difference.png\n"
+      "  obscura compare frames/ again/ --report report.html\n"
+      "  obscura compare room.mp4 again.mp4 --format json\n"
+      "  obscura compare reference.csv student.csv --atol 1e-3");
+  command.run([flags] { return run(*flags); });
+}
+
+}  // namespace obscura::app

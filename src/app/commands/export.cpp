@@ -1,0 +1,203 @@
+// obscura export: a run as one animated glTF, for those who light it in another renderer.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/commands/mesh.h"
+#include "app/console/command.h"
+#include "app/console/commands.h"
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/console/options.h"
+#include "app/console/say.h"
+#include "app/console/waiting.h"
+#include "app/film/estimate.h"
+#include "app/run/trouble.h"
+#include "draw/picture/theme.h"
+#include "media/error.h"
+#include "media/file.h"
+#include "media/glb.h"
+#include "scene/scene.h"
+
+namespace obscura::app {
+
+namespace {
+
+using media::Glb;
+using sim::Vec3;
+
+// of colours as screens have them, what light is reckoned with
+float linear(std::uint8_t c) {
+  const double x = c / 255.0;
+  return float(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+}
+
+std::array<float, 4> linear(draw::Color c) { return {linear(c.r), linear(c.g), linear(c.b), 1}; }
+
+std::array<float, 3> narrow(const Vec3& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
+
+// of the two quaternions of one turn the one nearer to that before: between them turns are short
+std::array<float, 4> narrow(Eigen::Quaterniond q, const std::vector<std::array<float, 4>>& before) {
+  if (!before.empty()) {
+    const auto& b = before.back();
+    if (b[0] * q.x() + b[1] * q.y() + b[2] * q.z() + b[3] * q.w() < 0) q.coeffs() *= -1;
+  }
+  return {float(q.x()), float(q.y()), float(q.z()), float(q.w())};
+}
+
+// one value where all are one
+template <class T>
+void settle(std::vector<T>& values) {
+  if (std::all_of(values.begin(), values.end(), [&](const T& each) { return each == values.front(); }))
+    values.resize(std::min<std::size_t>(1, values.size()));
+}
+
+// meshes, each once, and the nodes that show them
+class Stage {
+ public:
+  Stage(const scene::Scene& scene, const sim::Cast& cast) : cast_(cast), depth_(cast.scale / 12) {
+    glb.name = scene::one_line(scene.name), glb.generator = fmt::format("obscura {}", OBSCURA_VERSION);
+    int next = 0;
+    for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
+      const sim::Cast::Body& body = cast.bodies[i];
+      const auto own = i < scene.look.bodies.size() ? scene.look.bodies[i].color : std::nullopt;
+      const draw::Color color = own          ? *own
+                                : body.fixed ? draw::neutral(scene.look.theme)
+                                             : draw::turn(next++);
+      Glb::Mesh mesh = surface(body, depth_);
+      mesh.name = body.name, mesh.color = linear(color);
+      add(body.name, std::move(mesh));
+    }
+    const draw::Palette palette = draw::palette(scene.look.theme);
+    const auto rods = [&](std::size_t n, const std::string& name, draw::Color color) {
+      for (std::size_t i = 0; i < n; ++i) {
+        Glb::Mesh mesh = rod();
+        mesh.name = name, mesh.color = linear(color);
+        add(fmt::format("{}[{}]", name, i), std::move(mesh));
+      }
+    };
+    rods(cast.springs.size(), "spring", palette.spring);
+    for (const sim::Cast::Joint& joint : cast.joints)
+      if (far(joint)) rods(1, joint.name, palette.ink);
+    for (const sim::Cast::Wall& wall : cast.walls) {
+      if (cast.dimension != 3 || wall.normal != Vec3::UnitY()) continue;
+      Glb::Mesh mesh = floor(scene.extent.low, scene.extent.high);
+      mesh.name = "floor", mesh.color = linear(palette.room);
+      add("floor", std::move(mesh));
+      glb.nodes.back().translations = {narrow(Vec3(0, wall.point.y(), 0))};
+      break;
+    }
+  }
+
+  void take(const sim::Snapshot& now) {
+    glb.times.push_back(float(now.time));
+    std::size_t node = 0;
+    for (const auto& body : now.bodies) {
+      Glb::Node& it = glb.nodes[node++];
+      it.translations.push_back(narrow(body.position));
+      it.rotations.push_back(narrow(body.orientation, it.rotations));
+    }
+    for (const auto& spring : now.springs) stretch(glb.nodes[node++], spring.a, spring.b, true);
+    for (std::size_t i = 0; i < now.joints.size(); ++i)
+      if (far(cast_.joints[i]))
+        stretch(glb.nodes[node++], now.joints[i].a, now.joints[i].b, !now.joints[i].broken);
+  }
+
+  void end() {
+    for (Glb::Node& node : glb.nodes) settle(node.translations), settle(node.rotations), settle(node.scales);
+  }
+
+  Glb glb;
+
+ private:
+  static bool far(const sim::Cast::Joint& joint) {
+    return joint.kind == sim::JointKind::rod || joint.kind == sim::JointKind::rope;
+  }
+
+  void add(const std::string& name, Glb::Mesh mesh) {
+    const auto same = std::find_if(glb.meshes.begin(), glb.meshes.end(), [&](const Glb::Mesh& each) {
+      return each.color == mesh.color && each.triangles == mesh.triangles && each.positions == mesh.positions;
+    });
+    Glb::Node node;
+    node.name = name, node.mesh = int(same - glb.meshes.begin());
+    if (same == glb.meshes.end()) glb.meshes.push_back(std::move(mesh));
+    glb.nodes.push_back(std::move(node));
+  }
+
+  // a rod from a to b; what is broken is too small to be seen
+  void stretch(Glb::Node& node, const Vec3& a, const Vec3& b, bool whole) const {
+    const Vec3 way = b - a;
+    const double length = way.norm(), thick = whole ? depth_ / 20 : 0;
+    node.translations.push_back(narrow(Vec3((a + b) / 2)));
+    node.rotations.push_back(
+        narrow(Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), length > 0 ? way : Vec3(Vec3::UnitY())),
+               node.rotations));
+    node.scales.push_back(narrow(Vec3(thick, whole ? length : 0, thick)));
+  }
+
+  const sim::Cast& cast_;
+  double depth_;  // m
+};
+
+struct Flags {
+  std::string scene;
+  std::optional<std::string> out, fps;
+  std::vector<std::string> sets;
+};
+
+int run(const Flags& flags) {
+  const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  const sim::Rational fps = flags.fps ? parse_fps(*flags.fps) : scene.film.fps;
+  const std::string out = flags.out.value_or(scene.name + ".glb");
+  if (!out.ends_with(".glb"))
+    throw UsageError(fmt::format("-o {}: expected a name that ends with .glb", out));
+
+  const auto motion = scene.run();
+  motion->heed(interrupted);
+  const std::int64_t frames = sim::ceil(scene.duration * fps);
+  // a place and a turn of each node at each instant, in lists that grow, and then as a file
+  const sim::Cast& cast = motion->cast();
+  const double nodes = double(cast.bodies.size() + cast.springs.size() + cast.joints.size());
+  refuse_beyond_memory(scene, double(frames) * (nodes * 10 + 1) * sizeof(float) * 3);
+  Stage stage(scene, motion->cast());
+  for (std::int64_t n = 0; n <= frames; ++n) {
+    const sim::Rational at = n < frames ? sim::rational(n) / fps : scene.duration;
+    doing("simulating", double(n), double(frames), "frames");
+    const auto outcome = motion->at(at);
+    if (const auto* trouble = std::get_if<sim::Trouble>(&outcome))
+      throw TroubleError(scene.file, *trouble, "");
+    if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
+    stage.take(std::get<sim::Snapshot>(outcome));
+  }
+  stage.end();
+  media::make_folder_of(out);
+  media::write_glb(out, stage.glb);
+  say(stdout, "{}: {} bodies, {} instants over {:g} s\n", out, motion->cast().bodies.size(), frames + 1,
+      sim::value(scene.duration));
+  return kDone;
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, int& exit) {
+  const Command command(program, exit, "export", "Write a run as one animated glTF, for another renderer");
+  auto flags = std::make_shared<Flags>();
+  add_scene(command, flags->scene);
+  command.option("-o,--output", flags->out, "Where to, a name that ends with .glb [SCENE.glb]").type("OUT");
+  command.option("--fps", flags->fps, "Instants per second [film.fps]").type("RATE");
+  add_sets(command, flags->sets);
+  add_memory_limit(command);
+  command.footer(
+      "One node a body, with its name, and a thin rod for each spring; metres, y up. At the instants "
+      "themselves "
+      "positions are the run's, between them lie straight lines.\n\n"
+      "Examples:\n"
+      "  obscura export scenes/room.toml\n"
+      "  obscura export scenes/room.toml -o room.glb --fps 120");
+  command.run([flags] { return run(*flags); });
+}
+
+}  // namespace obscura::app

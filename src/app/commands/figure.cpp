@@ -1,0 +1,224 @@
+// obscura figure: one picture for print: vectors as SVG or PDF, pixels as PNG.
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/console/command.h"
+#include "app/console/commands.h"
+#include "app/console/exit.h"
+#include "app/console/memory.h"
+#include "app/console/options.h"
+#include "app/console/say.h"
+#include "app/figure/figure_builder.h"
+#include "draw/picture/solids.h"
+#include "draw/picture/type.h"
+#include "gl/renderer.h"
+#include "media/error.h"
+#include "media/file.h"
+#include "media/png.h"
+#include "page/page.h"
+
+namespace obscura::app {
+
+namespace {
+
+struct Flags {
+  std::string scene;
+  std::vector<std::string> sets, vary;
+  std::optional<std::string> out, at, width, font, theme, every;
+  std::optional<int> columns;
+  double dpi = 300;
+  gl::ContextOptions context;
+};
+
+constexpr double kMillimetre = 72 / 25.4;  // pt
+
+// "84mm", "3.3in", "240pt"; a bare number is of millimetres
+double points(const std::string& text) {
+  double value = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string unit(read.ptr, text.data() + text.size());
+  const double each = unit.empty() || unit == "mm" ? kMillimetre
+                      : unit == "cm"               ? 10 * kMillimetre
+                      : unit == "in"               ? 72
+                      : unit == "pt"               ? 1
+                                                   : 0;
+  const double width = value * each;
+  if (read.ec != std::errc() || !(width >= 20 * kMillimetre && width <= 1000 * kMillimetre))
+    throw UsageError(fmt::format("--width {}: expected 20mm to 1000mm, as in 84mm, 3.3in or 240pt", text));
+  return width;
+}
+
+std::string ending(const std::string& name) {
+  const std::string end = std::filesystem::path(name).extension().string();
+  return end.empty() ? "" : end.substr(1);
+}
+
+void check_ending(const std::string& out) {
+  const std::string end = ending(out);
+  if (end == "png") return;
+  const auto form = page::form(end);
+  if (!form) throw UsageError(fmt::format("-o {}: expected a name that ends with .svg, .pdf or .png", out));
+  if (!page::writes(*form))
+    throw UsageError(fmt::format(
+        "-o {}: this obscura was built without Cairo and writes no PDF; .svg and .png it does", out));
+}
+
+void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {
+  media::File file(out);
+  file.write(bytes);
+  file.place(false);
+}
+
+struct Size {
+  int width, height;
+  double per_unit;  // pixels a page unit
+};
+
+// a page's size at a density: exactly so many pixels a point, the last ones cut where it ends between two
+Size size_at(const draw::Picture& picture, double width, double dpi) {
+  const double across = width / 72 * dpi, down = across / picture.aspect;
+  return {std::max(1, int(std::ceil(across - 0.01))), std::max(1, int(std::ceil(down - 0.01))), down / 1080};
+}
+
+// what is drawn by depth lies where the lines over it do, to the part of a pixel
+media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, const Size& size,
+                    const gl::ContextOptions& context) {
+  require_memory_to_draw(double(size.width) * size.height);
+  gl::Renderer renderer(size.width, size.height, context);
+  draw::Picture exact;
+  exact.aspect = double(size.width) / size.height;
+  exact.ground = picture.ground;
+  exact.transparent = picture.transparent;
+  const double k = size.per_unit * 1080 / size.height;
+  draw::List still;
+  for (const Lit& each : lit) {
+    const double scale = k * each.where.height / 1080;
+    const draw::Point at(k * each.where.x, k * each.where.y);
+    still.add(*each.picture.still, scale, at);
+    for (const auto& solids : each.picture.solids)
+      exact.solids.push_back(std::make_shared<const draw::Solids>(draw::placed(*solids, scale, at)));
+  }
+  exact.still = std::make_shared<const draw::List>(std::move(still));
+  exact.moving.add(picture.moving, k, {0, 0});
+  return renderer.draw(exact);
+}
+
+// what is lit, at its places on the page's ground
+media::Image lit_pixels(const Page& page, const Size& size, const gl::ContextOptions& context) {
+  draw::Picture blank;
+  blank.ground = page.picture.ground;
+  return pixels(blank, page.lit, size, context);
+}
+
+int run(const Flags& flags) {
+  if (flags.out) check_ending(*flags.out);
+  const std::string first = flags.scene == "-" ? "scene" : std::filesystem::path(flags.scene).stem().string();
+  const std::string out = flags.out.value_or("render_out/" + first + ".svg");
+
+  AlbumOptions options;
+  if (flags.at) options.at = instants(*flags.at);
+  if (flags.width) options.width = points(*flags.width);
+  if (flags.every) {
+    options.every = sim::parse_rational(*flags.every);
+    if (!options.every || options.every->num <= 0)
+      throw UsageError(fmt::format("--every {}: expected seconds above 0", *flags.every));
+  }
+  options.columns = flags.columns;
+  options.vary = flags.vary;
+  if (flags.theme) options.theme = *flags.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
+  if (flags.font) {
+    ::setenv("OBSCURA_FONT", flags.font->c_str(), 1);
+    (void)draw::font_file(draw::Face::regular);  // throws where there is none
+  }
+
+  const Album album(flags.scene, flags.sets, options);
+  media::make_folder_of(out);
+  const Page made = album.page();
+  const double width = album.width(), height = width / made.picture.aspect;
+  std::string size = fmt::format("{:.1f} x {:.1f} mm", width / kMillimetre, height / kMillimetre);
+  if (ending(out) == "png") {
+    const media::Image image =
+        pixels(made.picture, made.lit, size_at(made.picture, width, flags.dpi), flags.context);
+    media::Tags tags{{"Software", "obscura " OBSCURA_VERSION}};
+    if (!album.title().empty()) tags["Title"] = album.title();
+    media::write_png(out, image, {.per_metre = flags.dpi / 0.0254, .tags = tags});
+    size += fmt::format(", {} x {} px at {:g} dpi", image.width, image.height, flags.dpi);
+  } else {
+    const page::Sheet sheet{width, album.title()};
+    std::optional<page::Raster> raster;
+    media::Image under;
+    if (!made.lit.empty()) {
+      // so many pixels that a panel has whole ones: its lines, which are vectors, then lie on its edges
+      Size grid = size_at(made.picture, width, flags.dpi);
+      const double rows = made.lit.front().where.height;
+      grid.per_unit = std::ceil(rows * grid.per_unit) / rows;
+      grid.width = int(std::ceil(1080 * made.picture.aspect * grid.per_unit));
+      grid.height = int(std::ceil(1080 * grid.per_unit));
+      under = lit_pixels(made, grid, flags.context);
+      raster = page::Raster{under.width, under.height, height / 1080 / grid.per_unit, under.pixels.data(),
+                            media::encode_png(under)};
+    }
+    write(out, page::page(made.picture, *page::form(ending(out)), sheet, raster));
+  }
+  say(stdout, "{}: {}\n", out, size);
+  return kDone;
+}
+
+}  // namespace
+
+void add_figure(CLI::App& program, int& exit) {
+  const Command command(program, exit, "figure", "A figure for print: SVG, PDF or PNG");
+  auto flags = std::make_shared<Flags>();
+  add_scene(command, flags->scene);
+  command
+      .option("-o,--output", flags->out,
+              "Where to: .svg or .pdf (vectors; type stays type) or .png [render_out/SCENE.svg]")
+      .type("OUT");
+  command
+      .option("--at", flags->at,
+              "The instant (s); of several, as in 0,0.5,1 or 0:2:0.5, each has its panel [figure.at, or a "
+              "quarter of the duration]")
+      .type("SECONDS");
+  command
+      .option(
+          "--width", flags->width,
+          "Of the figure, as in 84mm, 3.3in or 240pt; type and lines keep their size [figure.width, 84mm]")
+      .type("LENGTH");
+  command
+      .option("--every", flags->every, "Earlier exposures, one every so many seconds, fading [figure.every]")
+      .type("SECONDS");
+  command
+      .option(
+          "--vary", flags->vary,
+          "A panel, and a line of each plot, for each value of a key, as in --vary crate.elasticity=0,0.5,1 "
+          "[figure.vary]")
+      .type("PATH=VALUES")
+      .repeated();
+  command.option("--columns", flags->columns, "Of panels beside each other").range(1, 20);
+  command.option("--font", flags->font, "The family of words, as in 'Source Sans 3' [Inter]").type("NAME");
+  command.option("--dpi", flags->dpi, "Pixels an inch of a PNG, and of what is lit in space [300]")
+      .range(10.0, 4800.0);
+  command.option("--theme", flags->theme, "paper (white) or screen (dark) [paper]")
+      .one_of({"paper", "screen"});
+  add_backend(command, flags->context.backend);
+  add_sets(command, flags->sets);
+  add_memory_limit(command);
+  command.footer(
+      "What is named, measured and drawn on it says the scene's [figure], see docs/scene.md.\n\n"
+      "Examples:\n"
+      "  obscura figure scenes/box.toml -o box.svg --at 0.8\n"
+      "  obscura figure scenes/bounce.toml -o bounce.pdf --at 1.2 --every 0.1 --width 120mm\n"
+      "  obscura figure scenes/box.toml -o box.png --at 0,0.4,0.8 --dpi 600\n"
+      "  obscura figure scenes/box.toml -o e.pdf --vary 'box[0].elasticity=0,0.5,1' --width 174mm\n\n"
+      "Exit codes: 0 done, 2 usage, 3 scene, 4 files, fonts, 5 OpenGL, 6 the simulation diverged.");
+  command.run([flags] { return run(*flags); });
+}
+
+}  // namespace obscura::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "media/glb.h"
+#include "sim/model/snapshot.h"
+
+namespace obscura::app {
+
+/// The surface of a body in its own frame. What has no depth gets `depth` (m): bodies of the plane; what has
+/// no size, a point, is a small ball of a tenth of it.
+media::Glb::Mesh surface(const sim::Cast::Body& body, double depth);
+
+/// A round rod along y from -1/2 to 1/2, of radius one: a spring or a rod between two places is one, scaled.
+media::Glb::Mesh rod();
+
+/// A rectangle at y = 0, seen from above, that ends where `low` and `high` say in x and z.
+media::Glb::Mesh floor(const sim::Vec3& low, const sim::Vec3& high);
+
+}  // namespace obscura::app

@@ -1,0 +1,293 @@
+// obscura render: a scene goes in, a movie, pictures, one picture or a stream comes out.
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "app/console/command.h"
+#include "app/console/commands.h"
+#include "app/console/exit.h"
+#include "app/console/memory.h"
+#include "app/console/options.h"
+#include "app/console/say.h"
+#include "app/film/estimate.h"
+#include "app/film/film.h"
+#include "app/run/imported_run.h"
+#include "app/run/origin.h"
+#include "app/run/shard.h"
+#include "app/run/trouble.h"
+#include "sim/step/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+struct Flags {
+  std::string scene;
+  std::vector<std::string> sets;
+  std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec, camera, states;
+  std::optional<std::string> shard, checkpoint_every;
+  std::optional<double> crf;
+  bool draft = false, no_overwrite = false, interpolate = false;
+  FilmOptions film;
+};
+
+sim::Rational seconds(const std::string& flag, const std::string& text) {
+  const auto time = sim::parse_rational(text);
+  if (!time || *time < sim::Rational{0, 1} || kLongest < *time)
+    throw UsageError(fmt::format("{} {}: expected seconds from 0 to 1e6", flag, text));
+  return *time;
+}
+
+// small, where no flag says otherwise: 480 lines, at most 30 frames a second
+void make_draft(const Flags& flags, scene::Film& film) {
+  if (!flags.size && film.height > 480) {
+    film.width = std::max(2, int(std::lround(480.0 * film.width / film.height / 2)) * 2);
+    film.height = 480;
+  }
+  while (!flags.fps && 30 < sim::value(film.fps)) film.fps = film.fps / sim::rational(2);
+}
+
+// and quick: the quickest preset of an encoder that has presets
+void make_quick(const Flags& flags, const Output& out, scene::Scene& scene) {
+  if (flags.preset || out.form != Output::Form::movie) return;
+  scene.film.preset.clear();
+  const std::string encoder = media::codec_name(out.path, movie_spec(scene));
+  if (encoder == "libx264" || encoder == "libx265") scene.film.preset = "ultrafast";
+}
+
+// flags override the scene
+void override_film(const Flags& flags, scene::Scene& scene) {
+  if (flags.draft) make_draft(flags, scene.film);
+  if (flags.size) std::tie(scene.film.width, scene.film.height) = parse_size(*flags.size);
+  if (flags.fps) scene.film.fps = parse_fps(*flags.fps);
+  if (flags.theme) scene.look.theme = *flags.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
+  if (flags.crf) scene.film.crf = flags.crf;
+  if (flags.preset) scene.film.preset = *flags.preset;
+  if (flags.codec) scene.film.codec = *flags.codec;
+}
+
+// a file for each camera: their names in OUT's {camera}
+int render_each(const scene::Scene& scene, const Shots& shots, const Flags& flags) {
+  for (const draw::Camera& camera : scene.cameras) {
+    if (camera.name.empty())
+      throw UsageError(fmt::format("-o {}: the scene's camera has no name", *flags.out));
+    scene::Scene one = scene;
+    one.cameras = {camera};
+    std::string name = *flags.out;
+    name.replace(name.find("{camera}"), 8, camera.name);
+    const Output out = output(name, scene.name, flags.at.has_value(), shots.size());
+    if (const int exit = film(one, shots, out, flags.film); exit != kDone) return exit;
+  }
+  return kDone;
+}
+
+// GIF counts in hundredths of a second: a rate that is none of them becomes the next below, and that is said
+void suit_gif(const std::string& out, scene::Film& film) {
+  if (!out.ends_with(".gif")) return;
+  for (const int fps : {50, 25, 20, 10}) {
+    if (sim::floor(film.fps) < fps) continue;
+    if (film.fps == sim::rational(fps)) return;
+    film.fps = sim::rational(fps);
+    say(stderr, "{}: at {} frames per second, for GIF counts in hundredths of a second\n", out, fps);
+    return;
+  }
+}
+
+Shots shots_of(const Flags& flags, const scene::Scene& scene) {
+  if (flags.at) {
+    if (flags.frames || flags.from || flags.to)
+      throw UsageError("--at names one instant: leave out --frames, --from and --to");
+    return Shots::still(seconds("--at", *flags.at), scene.film.fps, scene.film.speed);
+  }
+  Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
+  if (shots.size() == 0) throw UsageError(fmt::format("{}: a film of 0 s has no frames", scene.file));
+  if (flags.from || flags.to) {
+    shots.between(flags.from ? seconds("--from", *flags.from) : sim::Rational{0, 1},
+                  flags.to ? seconds("--to", *flags.to) : scene.duration);
+  }
+  if (flags.frames) shots.only(*flags.frames);
+  return shots;
+}
+
+// another program's run instead of the simulation
+void take_run(const Flags& flags, scene::Scene& scene) {
+  std::vector<std::string> notes;
+  show_run(read_table(*flags.states), flags.interpolate, scene, notes);
+  if (scene.film.shutter > 0)
+    notes.push_back(
+        fmt::format("{} has no instants between its rows: filmed without motion blur", *flags.states));
+  scene.film.shutter = 0;
+  for (const std::string& note : notes) say(stderr, "{}\n", note);
+}
+
+// what it has no rows of cannot be filmed
+void suit_run(const Flags& flags, const scene::Scene& scene, Shots& shots) {
+  const sim::Trajectory& run = *scene.trajectory;
+  if (!flags.at && !flags.to) {
+    // up to its last row
+    const draw::Pace& speed = scene.film.speed;
+    const double end = sim::value(speed.film(sim::rational(std::llround(run.times.back() * 1e6), 1'000'000)));
+    const auto last = std::int64_t(std::floor(end * sim::value(scene.film.fps) + 1e-6));
+    shots.between({0, 1}, speed.world(sim::rational(last + 1) / scene.film.fps));
+  }
+  for (std::int64_t i = 0; i < shots.size(); ++i) {
+    const double t = sim::value(shots[i].time);
+    if (run.has(t)) continue;
+    const bool outside = t < run.times.front() || t > run.times.back();
+    throw UsageError(fmt::format(
+        "{} has no row at t = {:g} s (frame {}){}", *flags.states, t, shots[i].frame,
+        outside ? fmt::format("; it goes from {:g} s to {:g} s", run.times.front(), run.times.back())
+                : "; --interpolate takes straight lines between rows, --fps films its own"));
+  }
+}
+
+// what is made of a film, and from where
+void divide(Flags& flags, const Output& out) {
+  if (flags.shard) {
+    const Shard shard = parse_shard(*flags.shard);
+    flags.film.shard = {int(shard.number), int(shard.of)};
+  }
+  if (flags.checkpoint_every)
+    flags.film.checkpoint_every = seconds("--checkpoint-every", *flags.checkpoint_every);
+  if (flags.checkpoint_every && flags.film.checkpoint_every.num == 0)
+    throw UsageError("--checkpoint-every 0: expected seconds above 0");
+  if (flags.film.shard && flags.film.prepare) throw UsageError("--shard and --prepare exclude each other");
+  const bool whole = out.form == Output::Form::pipe || out.form == Output::Form::still;
+  if (whole && (flags.film.shard || flags.film.prepare || flags.film.resume || flags.film.anew))
+    throw UsageError("--resume, --anew, --shard and --prepare are for movies and sequences of pictures");
+  if (flags.film.resume && flags.film.anew) throw UsageError("--resume and --anew exclude each other");
+  if (flags.film.shard && flags.film.anew)
+    throw UsageError("--anew throws away what all shards made: it is for --prepare, or for the whole film");
+  if (out.form == Output::Form::pipe && flags.checkpoint_every)
+    throw UsageError("--checkpoint-every needs an output with a name");
+}
+
+// what it needs is known before any of it is asked for; what takes longer than a minute is said
+void see_what_it_needs(const scene::Scene& scene, const Shots& shots, const Output& out, FilmOptions& film) {
+  constexpr double kPatience = 0.03, kLong = 60;
+  const Needs all = needs(scene, shots, out, kPatience);
+  film.workers = fitting_workers(scene, all, film.workers);
+  const double seconds = all.seconds(film.workers);
+  if (seconds < kLong || film.progress == ProgressKind::none) return;
+  if (film.progress == ProgressKind::json) return;  // says what is left as it goes
+  say(stderr, "{}: {} frames, about {}{}: an estimate, from its first steps\n", scene.file, all.frames,
+      time_text(seconds), all.disk > 0 ? " and " + bytes_text(all.disk) : "");
+}
+
+int render(Flags flags) {
+  flags.film.overwrite = !flags.no_overwrite;
+  scene::Scene scene = scene::read(flags.scene, flags.sets);
+  override_film(flags, scene);
+  if (flags.out && !flags.fps) suit_gif(*flags.out, scene.film);
+  if (flags.interpolate && !flags.states) throw UsageError("--interpolate is for --states");
+  if (flags.states) take_run(flags, scene);
+  Shots shots = shots_of(flags, scene);
+  if (flags.states) suit_run(flags, scene, shots);
+  if (flags.camera) choose_camera(*flags.camera, scene);
+  // a draft never takes the film's place
+  const bool each = flags.out && flags.out->find("{camera}") != std::string::npos;
+  const Output out =
+      output(flags.out, flags.draft ? scene.name + ".draft" : scene.name, flags.at.has_value(), shots.size());
+  if (flags.film.transparent && out.form != Output::Form::frames && out.form != Output::Form::still) {
+    throw UsageError("--transparent is for PNG: movies and streams have no alpha");
+  }
+  if (flags.draft) make_quick(flags, out, scene);
+  divide(flags, out);
+  for (const sim::Trouble& ahead : scene.stability_warnings()) {
+    say(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
+  }
+  see_what_it_needs(scene, shots, out, flags.film);
+  return each ? render_each(scene, shots, flags) : film(scene, shots, out, flags.film);
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, int& exit) {
+  const Command command(program, exit, "render",
+                        "Film a scene: a movie, a sequence of PNGs, one PNG or a stream");
+  auto flags = std::make_shared<Flags>();
+  add_scene(command, flags->scene);
+  command
+      .option(
+          "-o,--output", flags->out,
+          "Where to: its form chooses the output. movie.mp4 (.mkv .mov .webm .gif), frames/{frame:04}.png or "
+          "frames/%04d.png, one picture.png with --at, - for a stream. Left out: render_out/SCENE.mp4")
+      .type("OUT");
+  add_sets(command, flags->sets);
+  command
+      .option("--camera", flags->camera,
+              "Of several cameras this one alone; -o '{camera}.mp4' writes a file for each")
+      .type("NAME");
+  command.option("--at", flags->at, "One picture, of this instant (s), be it after the duration")
+      .type("SECONDS");
+  command.option("--from", flags->from, "The first instant (s of the run) that is filmed").type("SECONDS");
+  command.option("--to", flags->to, "Where the film stops (s), not itself filmed").type("SECONDS");
+  command.option("--frames", flags->frames, "Only these frames, counted from 0, as in 1,3,5..9").type("LIST");
+  command.option("--size", flags->size, "Pixels, as in 1280x720; even for movies").type("WxH");
+  command.option("--fps", flags->fps, "Frames per second, as in 60 or 30000/1001").type("RATE");
+  command.option("--theme", flags->theme, "paper (white, for print) or screen (dark, for projectors)")
+      .one_of({"paper", "screen"});
+  command
+      .option("--states", flags->states,
+              "Film this run of another program instead of simulating: a table as `obscura states --format "
+              "csv` writes it, names matched to the scene's bodies")
+      .type("RUN.csv");
+  command.flag("--interpolate", flags->interpolate, "With --states: straight lines between its rows");
+  command.flag("--draft", flags->draft,
+               "Small and quick: 480 lines, at most 30 frames per second, ultrafast");
+  command.flag("--transparent", flags->film.transparent, "PNG: leave the page's colour out");
+  command.flag("--no-overwrite", flags->no_overwrite, "Refuse to write over an earlier render");
+  command.option("--crf", flags->crf, "Quality of the movie, lower is better [18]").range(1.0, 63.0);
+  command.option("--preset", flags->preset, "x264's preset; left out: quick settings of medium's quality");
+  command.option("--codec", flags->codec, "An encoder by libavcodec's name, as in libx264 or libvpx-vp9");
+  command
+      .choice("--pipe", flags->film.pipe,
+              {{"y4m", media::PipeFormat::y4m}, {"rgba", media::PipeFormat::rgba}},
+              "With -o -: y4m or rgba, raw frames [y4m]")
+      .type("FORM");
+  command.flag("--resume", flags->film.resume,
+               "Go on from what is whole of a film that was stopped, to the same bytes");
+  command.flag("--anew", flags->film.anew,
+               "Begin anew whatever an earlier render left, shards and hours of work too");
+  command
+      .option("--shard", flags->shard,
+              "Make this share of the film alone, as in 2/4; obscura join makes the movie of them")
+      .type("I/N");
+  command
+      .option("--prepare", flags->film.prepare,
+              "Draw nothing: simulate once, and leave the state that each of N shards begins with")
+      .type("N")
+      .range(1, 100000);
+  command
+      .option("--checkpoint-every", flags->checkpoint_every,
+              "Keep the whole state this often (s of the run), in OUT.checkpoints")
+      .type("SECONDS");
+  command
+      .option("--from-checkpoint", flags->film.from_checkpoint,
+              "Begin with the state in this file; for --from at its time or later")
+      .type("FILE");
+  add_memory_limit(command);
+  command.option("-j,--jobs", flags->film.workers, "Workers that draw and encode side by side [one a core]")
+      .range(1, 256);
+  add_backend(command, flags->film.context.backend);
+  command.flag("--native", flags->film.context.native,
+               "Draw with all of this processor's instructions: a tenth quicker, pixels may differ by a "
+               "level elsewhere");
+  add_progress(command, flags->film.progress);
+  command.footer(
+      "Examples:\n"
+      "  obscura render scenes/room.toml\n"
+      "  obscura render scenes/room.toml -o room.mp4 --size 1280x720 --fps 30\n"
+      "  obscura render scenes/room.toml --at 2.5 -o room.png --theme screen\n"
+      "  obscura render scenes/room.toml -o 'frames/{frame:04}.png' --from 2 --to 3\n"
+      "  obscura render scenes/room.toml --draft --set ball.elasticity=1\n"
+      "  obscura render scenes/room.toml --states student.csv --fps 30\n"
+      "  obscura render scenes/room.toml -o - | ffplay -\n"
+      "  obscura render scenes/room.toml --resume       after a power cut\n"
+      "While a film is made, what is whole of it lies in OUT.parts: it plays, and --resume goes on from it.");
+  command.run([flags] { return render(*flags); });
+}
+
+}  // namespace obscura::app

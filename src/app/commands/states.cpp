@@ -1,0 +1,281 @@
+// obscura states: where everything is, as data, without GL. 17 significant digits, so that every double reads
+// back.
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/console/command.h"
+#include "app/console/commands.h"
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/console/options.h"
+#include "app/console/waiting.h"
+#include "app/run/checkpoint.h"
+#include "app/run/columns.h"
+#include "app/run/origin.h"
+#include "app/run/shots.h"
+#include "app/run/trouble.h"
+#include "media/error.h"
+#include "media/file.h"
+#include "scene/scene.h"
+#include "sim/solve/contact_solver.h"
+#include "sim/step/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+std::string number(double x) { return fmt::format("{:.17g}", x == 0 ? 0.0 : x); }
+
+std::string vector(const sim::Vec3& v, int dimension) {
+  std::string text = "[" + number(v.x()) + ", " + number(v.y());
+  if (dimension == 3) text += ", " + number(v.z());
+  return text + "]";
+}
+
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+// standard output, or a file that has its name when it is whole
+class Sink {
+ public:
+  explicit Sink(const std::optional<std::string>& path) {
+    if (!path || *path == "-") return;
+    media::make_folder_of(*path);
+    file_.emplace(*path);
+  }
+  void put(const std::string& text) {
+    if (file_) return file_->write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    clear_waiting();
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+      throw media::Error("standard output cannot be written");
+  }
+  void finish() {
+    if (file_) return file_->place(false);
+    if (std::fflush(stdout) != 0) throw media::Error("standard output cannot be written");
+  }
+
+ private:
+  std::optional<media::File> file_;
+};
+
+const std::string& name(const sim::Cast& cast, int body) { return cast.bodies[std::size_t(body)].name; }
+
+// a spin or turning momentum: one number in the plane
+std::string spin(const sim::Vec3& w, int dimension) {
+  return dimension == 2 ? number(w.z()) : vector(w, dimension);
+}
+
+// "angle": rad; in space "orientation": a unit quaternion x, y, z, w
+std::string turn(const sim::Snapshot::Body& body, int dimension) {
+  if (dimension == 2) return "\"angle\": " + number(body.angle);
+  const Eigen::Quaterniond& q = body.orientation;
+  return fmt::format("\"orientation\": [{}, {}, {}, {}]", number(q.x()), number(q.y()), number(q.z()),
+                     number(q.w()));
+}
+
+// one instant as a JSON object
+std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::string& hash) {
+  const int d = cast.dimension;
+  const sim::Energies& e = now.energies;
+  std::string text = fmt::format(
+      "    {{\"time\": {}, \"step\": {}, \"hash\": \"{}\",\n"
+      "     \"energy\": {{\"kinetic\": {}, \"potential\": {}, \"gravity\": {}, \"springs\": {}, \"total\": "
+      "{}, "
+      "\"displacement\": {}, \"impacts\": {}}},\n"
+      "     \"momentum\": {}, \"angular_momentum\": {},\n     \"bodies\": [",
+      number(now.time), now.step, hash, number(e.kinetic), number(e.potential()), number(e.gravity),
+      number(e.springs), number(e.total()), number(e.displacement), number(e.impacts),
+      vector(now.momentum, d), spin(now.angular_momentum, d));
+  for (std::size_t i = 0; i < now.bodies.size(); ++i) {
+    const auto& body = now.bodies[i];
+    text += fmt::format(
+        "{}\n       {{\"name\": {}, \"position\": {}, {}, \"velocity\": {}, \"spin\": {}, "
+        "\"at_rest\": "
+        "{}}}",
+        i ? "," : "", quoted(cast.bodies[i].name), vector(body.position, d), turn(body, d),
+        vector(body.velocity, d), spin(body.spin, d), body.at_rest);
+  }
+  text += "],\n     \"contacts\": [";
+  for (std::size_t i = 0; i < now.contacts.size(); ++i) {
+    const auto& contact = now.contacts[i];
+    text += fmt::format(
+        "{}\n       {{\"body\": {}, {}, \"point\": {}, \"normal\": {}, \"gap\": {}, \"force\": {}, "
+        "\"impulse\": "
+        "{}, \"mode\": \"{}\"}}",
+        i ? "," : "", quoted(name(cast, contact.body)),
+        contact.other < 0 ? fmt::format("\"wall\": {}", contact.wall)
+                          : fmt::format("\"other\": {}", quoted(name(cast, contact.other))),
+        vector(contact.point, d), vector(contact.normal, d), number(contact.gap), vector(contact.force, d),
+        vector(contact.impulse, d),
+        !contact.holds    ? "bouncing"
+        : contact.sliding ? "sliding"
+                          : "sticking");
+  }
+  text += "],\n     \"joints\": [";
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const auto& joint = now.joints[i];
+    text += fmt::format("{}\n       {{\"name\": {}, \"a\": {}, \"b\": {}, \"force\": {}, \"broken\": {}}}",
+                        i ? "," : "", quoted(cast.joints[i].name), vector(joint.a, d), vector(joint.b, d),
+                        vector(joint.force, d), joint.broken);
+  }
+  return text + "]}";
+}
+
+// the columns are the paths that --set and --measure know, one row an instant; the hash stands third
+constexpr std::size_t kHash = 2;
+
+std::string csv_header(const std::vector<Column>& all) {
+  std::string line;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == kHash) line += ",hash";
+    line += (i ? "," : "") + all[i].name;
+  }
+  return line + "\n";
+}
+
+std::string csv_row(const sim::Snapshot& now, const std::string& hash, const std::vector<Column>& all) {
+  std::string line;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == kHash) line += "," + hash;
+    line += (i ? "," : "") + number(all[i].read(now));
+  }
+  return line + "\n";
+}
+
+// who finds the forces; none does in the handout's mode
+template <int D>
+const char* solver_name(const sim::Model<D>& model) {
+  if (model.collision == sim::Collision::handout) return "null";
+  return sim::solver(model) == sim::Solver::direct ? "\"direct\"" : "\"iterative\"";
+}
+
+struct Flags {
+  std::string scene;
+  std::optional<std::string> at, every, from_checkpoint, format, out;
+  std::vector<std::string> sets;
+};
+
+// as asked for, or by the ending of the file
+std::string form(const Flags& flags) {
+  if (flags.format) return *flags.format;
+  if (!flags.out || *flags.out == "-") return "json";
+  const std::string ending = std::filesystem::path(*flags.out).extension().string();
+  if (ending == ".csv" || ending == ".json") return ending.substr(1);
+  throw UsageError(
+      fmt::format("-o {}: expected a name that ends with .csv or .json, or --format", *flags.out));
+}
+
+std::vector<sim::Rational> times_of(const Flags& flags, const scene::Scene& scene) {
+  if (flags.at && flags.every) throw UsageError("--at and --every exclude each other");
+  if (flags.at) return instants(*flags.at);
+  const sim::Rational every =
+      flags.every ? sim::parse_rational(*flags.every).value_or(sim::Rational{0, 1}) : sim::rational(1);
+  if (!(sim::Rational{0, 1} < every))
+    throw UsageError(fmt::format("--every {}: expected seconds above 0", *flags.every));
+  return instants(fmt::format("0:{}:{}", sim::text(scene.duration), sim::text(every)));
+}
+
+int states(const Flags& flags) {
+  const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  auto times = times_of(flags, scene);
+  const auto run = flags.from_checkpoint ? run_from(*flags.from_checkpoint, scene) : scene.run();
+  std::erase_if(times, [&](sim::Rational t) { return !flags.at && t < run->now(); });
+  if (!times.empty() && times.front() < run->now())
+    throw UsageError(fmt::format("{}: is of t = {:g} s, after {:g} s", *flags.from_checkpoint,
+                                 sim::value(run->now()), sim::value(times.front())));
+  run->heed(interrupted);
+  const bool as_json = form(flags) == "json";
+  Sink sink(flags.out);
+  const auto put = [&](const std::string& text) { sink.put(text); };
+  // rows that run over the terminal are progress enough
+  std::optional<Hushed> rows;
+  if (isatty(STDOUT_FILENO) == 1 && !flags.out) rows.emplace();
+  const std::vector<Column> all = columns(run->cast(), scene.axes);
+  if (as_json) {
+    put(
+        fmt::format("{{\"version\": \"{}\", \"scene\": {}, \"scene_hash\": \"{}\", \"dimension\": {},\n"
+                    " \"units\": {{\"length\": \"m\", \"time\": \"s\", \"angle\": \"rad\", \"energy\": "
+                    "\"J\", \"force\": \"N\", \"impulse\": \"N s\"}},\n"
+                    " \"solver\": {},\n \"states\": [\n",
+                    OBSCURA_VERSION, quoted(scene.file), hash(scene.text), run->cast().dimension,
+                    std::visit([](const auto& world) { return solver_name(world.model); }, scene.world)));
+  } else {
+    put(csv_header(all));
+  }
+  std::optional<sim::Trouble> trouble;
+  bool first = true;
+  for (const sim::Rational t : times) {
+    if (interrupted()) return kInterrupted;
+    doing("simulating", sim::value(run->now()), sim::value(times.back()), "s");
+    auto outcome = run->at(t);
+    if (const auto* bad = std::get_if<sim::Trouble>(&outcome)) {
+      trouble = *bad;
+      break;
+    }
+    if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
+    auto& now = std::get<sim::Snapshot>(outcome);
+    const std::string state = state_hash(run->words());
+    if (as_json) {
+      // turned as it was typed, not as its principal axes lie
+      for (std::size_t i = 0; i < now.bodies.size(); ++i)
+        now.bodies[i].orientation = now.bodies[i].orientation * scene.axes[i].conjugate();
+      put((first ? "" : ",\n") + json(now, run->cast(), state));
+    } else {
+      put(csv_row(now, state, all));
+    }
+    first = false;
+  }
+  if (as_json) put("\n ]}\n");
+  if (trouble) {
+    std::fflush(stdout);
+    throw TroubleError(scene.file, *trouble, "");
+  }
+  sink.finish();
+  return kDone;
+}
+
+}  // namespace
+
+void add_states(CLI::App& program, int& exit) {
+  const Command command(program, exit, "states",
+                        "Print the state at given instants as data, without drawing");
+  auto flags = std::make_shared<Flags>();
+  add_scene(command, flags->scene);
+  command.option("--at", flags->at, "Instants (s), as in 0,0.5,2 or 0:10:0.5").type("LIST");
+  command.option("--every", flags->every, "Instants from 0 to the duration, this far apart (s) [1]")
+      .type("SECONDS");
+  command
+      .option("--from-checkpoint", flags->from_checkpoint,
+              "Begin with the state in this file (render --checkpoint-every)")
+      .type("FILE");
+  command.option("-o,--output", flags->out, "Where to: a name that ends with .json or .csv [standard output]")
+      .type("OUT");
+  command.option("--format", flags->format, "json or csv [by OUT's ending, json]").one_of({"json", "csv"});
+  add_sets(command, flags->sets);
+  add_memory_limit(command);
+  command.footer(
+      "SI units; angles in radians, counter-clockwise; in space an orientation is a unit quaternion x, y, z, "
+      "w, and a spin a vector, about axes of the room. Numbers have 17 significant digits: they read back to "
+      "the bit.\n"
+      "A contact is where a body touches a wall (floor, left, right, ceiling, then the scene's own: 0, 1, "
+      "...) or "
+      "an other body; normal, force (N) and the impulse (N s) of the last step are towards and on the body. "
+      "A joint's force is that on the first of its two. at_rest: proved to stay.\n"
+      "energy.displacement and energy.impacts are what collision = \"handout\" gained and lost since the "
+      "start.\n\n"
+      "Examples:\n"
+      "  obscura states scenes/room.toml --at 0,0.5,2\n"
+      "  obscura states scenes/room.toml --every 0.1 -o room.csv\n"
+      "  obscura states scenes/room.toml --at 5 --set physics.rate=1200");
+  command.run([flags] { return states(*flags); });
+}
+
+}  // namespace obscura::app

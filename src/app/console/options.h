@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/console/command.h"
+#include "app/console/progress.h"
+#include "gl/context.h"
+#include "sim/math/rational.h"
+
+namespace obscura::app {
+
+/// SCENE, of a command that reads one.
+void add_scene(const Command& command, std::string& file);
+
+/// --set, which every command that reads a scene has.
+void add_sets(const Command& command, std::vector<std::string>& sets);
+
+/// --progress.
+void add_progress(const Command& command, ProgressKind& kind);
+
+/// --memory-limit, which every command has: Command::run() adds it where it stands nowhere before. Held to as
+/// soon as it is read.
+void add_memory_limit(const Command& command);
+
+/// --backend, which every command that draws with OpenGL has.
+void add_backend(const Command& command, gl::Backend& backend);
+
+/// "60", "30000/1001": the frames per second that --fps says, above 0 and up to 1000. Throws UsageError.
+sim::Rational parse_fps(const std::string& text);
+
+/// "1920x1080". Throws UsageError.
+std::pair<int, int> parse_size(const std::string& text);
+
+}  // namespace obscura::app

@@ -1,0 +1,301 @@
+#include "app/figure/figure_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/run/plots.h"
+#include "app/run/simulation.h"
+#include "app/run/variation.h"
+#include "draw/compose/annotate.h"
+#include "draw/compose/depict.h"
+#include "draw/page/sheet.h"
+#include "draw/picture/formula.h"
+#include "sim/step/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+constexpr double kColumn = 84 * 72 / 25.4;   // pt
+constexpr double kGutter = 8, kLetter = 13;  // pt: between panels; above one, for its letter
+constexpr std::array<const char*, 5> kTold{"blue", "vermilion", "green", "purple",
+                                           "orange"};  // lines of runs
+constexpr std::int64_t kMostPanels = 100;
+constexpr int kMostExposures = 2000;
+constexpr double kFormula = 10;                       // pt, em
+constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
+
+// the end of the first step in which the figure's body is struck
+sim::Rational impact(const scene::Scene& scene) {
+  const auto run = scene.run();
+  run->heed(interrupted);
+  const int body = scene.figure.impact;
+  for (std::int64_t step = 1; sim::rational(step) / run->rate() <= scene.duration; ++step) {
+    const sim::Rational t = sim::rational(step) / run->rate();
+    const sim::Snapshot now = moment(*run, t, scene);
+    for (const sim::Snapshot::Contact& each : now.contacts)
+      if ((each.body == body || each.other == body) && each.impulse.norm() > 0) return t;
+  }
+  throw UsageError(fmt::format("{}: {} strikes nothing within the duration", scene.file,
+                               run->cast().bodies[std::size_t(body)].name));
+}
+
+draw::Text words(const std::string& text, draw::Face face, double size, const draw::Point& at,
+                 draw::Color color, draw::Align align = draw::Align::left) {
+  return {at,
+          align,
+          {{.text = text, .face = face, .size = size * draw::kPoint, .color = color, .tabular = true}}};
+}
+
+}  // namespace
+
+Album::Album(const std::string& file, const std::vector<std::string>& sets, const AlbumOptions& options) {
+  // one scene for each value, all combinations
+  std::vector<std::string> varies = options.vary;
+  if (varies.empty() && file != "-")
+    if (const std::string own = scene::read(file, sets).figure.vary; !own.empty()) varies = {own};
+  const Variations variants(varies);
+  if (file == "-" && variants.size > 1)
+    throw UsageError("--vary reads its scene more than once: name a file");
+
+  int wanted = 0;
+  for (std::int64_t run = 0; run < variants.size; ++run) {
+    const std::string said = variants.words(run);
+    scene::Scene scene = scene::read(file, variants.sets(run, sets));
+    if (options.theme) scene.look.theme = *options.theme;
+    const draw::Figure& figure = scene.figure;
+    std::vector<sim::Rational> times = options.at.empty() ? figure.at : options.at;
+    if (figure.impact >= 0) {
+      const sim::Rational struck = impact(scene);
+      if (times.empty()) times = {{0, 1}};
+      for (sim::Rational& time : times) {
+        time = struck + time;
+        if (time < sim::Rational{0, 1}) time = {0, 1};
+      }
+    }
+    if (times.empty()) times = {scene.duration / sim::rational(4)};
+    std::sort(times.begin(), times.end(), [](auto a, auto b) { return a < b; });
+    width_ = options.width.value_or(figure.width ? *figure.width * 72 / 25.4 : kColumn);
+    every_ = options.every ? options.every : figure.every;
+    wanted = options.columns ? *options.columns : figure.columns;
+    if (const std::int64_t panels = std::int64_t(times.size()) * variants.size; panels > kMostPanels)
+      throw UsageError(fmt::format("{}: {} panels are more than {}, the most a figure has", scene.file,
+                                   panels, kMostPanels));
+    if (every_ && sim::value(times.back()) / sim::value(*every_) > kMostExposures)
+      throw UsageError(fmt::format("{}: {:.0f} exposures are more than {}, the most a panel has", scene.file,
+                                   sim::value(times.back()) / sim::value(*every_), kMostExposures));
+    take(scene, times, said);
+    variants_.push_back({scene, variants.keys.empty() ? "" : variants[run].back()});
+  }
+  const int n = int(panels_.size()) *
+                (panels_.front().cast.dimension == 3 ? int(panels_.front().scene.cameras.size()) : 1);
+  columns_ = std::min(n, wanted > 0 ? wanted : n <= 4 ? n : int(std::ceil(std::sqrt(n))));
+}
+
+void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& times,
+                 const std::string& said) {
+  const auto run = scene.run();
+  run->heed(interrupted);
+  std::vector<int> trailed;
+  for (std::size_t i = 0; i < scene.look.bodies.size(); ++i)
+    if (scene.look.bodies[i].trail > 0) trailed.push_back(int(i));
+  run->track(trailed);
+
+  const auto at = [&](sim::Rational t) { return moment(*run, t, scene); };
+  std::vector<sim::Snapshot> before;
+  std::vector<std::shared_ptr<const sim::Track>> ways;
+  sim::Rational next;
+  for (const sim::Rational& time : times) {
+    for (; every_ && next < time; next = next + *every_) before.push_back(at(next));
+    Panel panel{scene, run->cast(), at(time), before, {}, said};
+    ways.push_back(std::make_shared<const sim::Track>(run->take_track()));
+    panel.ways = ways;
+    if (times.size() > 1)
+      panel.words += (said.empty() ? "" : ", ") + fmt::format("t = {:g} s", sim::value(time));
+    panels_.push_back(std::move(panel));
+  }
+}
+
+std::vector<Album::Cell> Album::cells() const {
+  const std::vector<draw::Camera>& cameras = panels_.front().scene.cameras;
+  const int seen = panels_.front().cast.dimension == 3 ? int(cameras.size()) : 1;
+  std::vector<Cell> all;
+  for (int camera = 0; camera < seen; ++camera) {
+    for (const Panel& panel : panels_) {
+      const std::string name = seen > 1 ? cameras[std::size_t(camera)].name : "";
+      all.push_back({&panel, camera, name + (name.empty() || panel.words.empty() ? "" : ", ") + panel.words});
+    }
+  }
+  return all;
+}
+
+Page Album::page() const {
+  const std::vector<Cell> cells = this->cells();
+  const bool space = panels_.front().cast.dimension == 3;
+  const int columns = std::min(columns_, int(cells.size()));
+  const double each = (width_ - kGutter * (columns - 1)) / columns;
+  const draw::Palette colours = draw::palette(panels_.front().scene.look.theme);
+
+  // one scale for the arrows of all panels
+  const draw::Figure& figure = panels_.front().scene.figure;
+  std::vector<sim::Snapshot> moments;
+  for (const Panel& panel : panels_) moments.push_back(panel.now);
+  const draw::Depictor first = depictor(cells.front(), each);
+  draw::Rect window;
+  double scale = 1;  // page units a metre
+  if (space) {
+    const draw::Lens lens = first.lens(moments.front());
+    const double k = each * draw::kPoint / lens.window.width;
+    window = {0, 0, k * lens.window.width, k * lens.window.height}, scale = k * lens.scale;
+  } else {
+    window = first.layout().window, scale = first.layout().scale;
+  }
+  const draw::Scales scales = draw::scales(figure, panels_.front().cast, moments, window, scale);
+
+  Page page;
+  draw::List all;
+  double top = 0;
+  if (!figure.formula.empty()) {
+    const draw::Formula formula = draw::formula(figure.formula, kFormula * draw::kPoint, colours.ink);
+    top += draw::kPoint * 3 + formula.ascent;
+    draw::add(formula, {draw::kPoint * 2, top}, all);
+    top += formula.descent + draw::kPoint * 5;
+  }
+  double row_height = 0;
+  for (std::size_t i = 0; figure.room && i < cells.size(); ++i) {
+    const int column = int(i) % columns;
+    if (column == 0) top += row_height, row_height = 0;
+    double height = 0;
+    const draw::Point corner(column * (each + kGutter) * draw::kPoint, top);
+    const draw::Depictor artist = depictor(cells[i], each);
+    draw::List list;
+    if (space) {
+      Lit lit;
+      list = in_space(artist, cells[i], scales, each, height, lit);
+      lit.where.x += corner.x(), lit.where.y += corner.y();
+      page.lit.push_back(std::move(lit));
+    } else {
+      list = in_plane(artist, cells[i], scales, height);
+    }
+    if (cells.size() > 1) {
+      const double baseline = 9 * draw::kPoint;
+      list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9,
+                     {2 * draw::kPoint, baseline}, colours.ink));
+      list.add(words(cells[i].words, draw::Face::regular, 8.5, {18 * draw::kPoint, baseline}, colours.ink));
+    }
+    all.add(list, 1, corner);
+    row_height = std::max(row_height, height);
+  }
+  top += row_height;
+  if (figure.room && draw::has_legend(figure)) {
+    // in space a panel reaches to the page's edges, and the scale is that where its camera looks
+    double left = 2 * draw::kPoint, right = width_ * draw::kPoint - left;
+    if (!space) {
+      const draw::Layout& layout = first.layout();
+      const double margin = layout.clipped ? 2 * draw::kPoint : layout.weight * draw::kBand;
+      left = layout.window.x + margin, right = width_ * draw::kPoint - margin;
+    }
+    top += 10 * draw::kPoint;
+    draw::draw_legend(figure, scales, colours, scale, left, right, top, all);
+    top += 4 * draw::kPoint;
+  }
+  // plots below each other, as wide as the figure
+  const std::vector<draw::Plot> plots = this->plots();
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    if (top > 0) top += 4 * draw::kPoint;
+    const double height = figure.plots[i].height * 72 / 25.4 * draw::kPoint;
+    draw::draw_plot(plots[i], colours, {2 * draw::kPoint, top, (width_ - 4) * draw::kPoint, height}, all);
+    top += height;
+  }
+  const double unit = 1080 / top;
+  page.picture.aspect = width_ * draw::kPoint / top;
+  page.picture.ground = colours.ground;
+  page.picture.moving.add(all, unit, {0, 0});
+  for (Lit& lit : page.lit)
+    lit.where = {unit * lit.where.x, unit * lit.where.y, unit * lit.where.width, unit * lit.where.height};
+  return page;
+}
+
+// of several runs, their lines in one plot, each with the value that sets it apart
+std::vector<draw::Plot> Album::plots() const {
+  std::vector<double> marks;
+  if (panels_.front().scene.figure.room)
+    for (const Panel& panel : panels_) marks.push_back(panel.now.time);
+  std::vector<draw::Plot> all = app::plots(variants_.front().scene, marks);
+  if (variants_.size() == 1) return all;
+  const draw::Color ink = draw::palette(variants_.front().scene.look.theme).ink;
+  for (draw::Plot& plot : all) plot.lines.clear();
+  for (std::size_t v = 0; v < variants_.size(); ++v) {
+    const std::vector<draw::Plot> own = app::plots(variants_[v].scene, marks);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (draw::Series line : own[i].lines) {
+        const std::string what = own[i].lines.size() > 1 ? line.label + " " : "";
+        line.label = what + "\"" + variants_[v].name + "\"";
+        line.color = draw::mix(*draw::color(kTold[all[i].lines.size() % kTold.size()]), ink, 0.2);
+        all[i].lines.push_back(std::move(line));
+      }
+    }
+  }
+  return all;
+}
+
+draw::Depictor Album::depictor(const Cell& cell, double width) const {
+  const Panel& panel = *cell.panel;
+  draw::Look look = panel.scene.look;
+  look.caption = false;
+  if (panel.cast.dimension == 3) {
+    const scene::Film& film = panel.scene.film;
+    return {panel.cast, look, panel.scene.cameras[std::size_t(cell.camera)], panel.scene.extent,
+            double(film.width) / film.height};
+  }
+  const draw::Figure& figure = panel.scene.figure;
+  draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? kLetter : 0};
+  if (figure.axes) sheet.below = draw::kRulerBelow, sheet.left = draw::kRulerLeft;
+  if (figure.low && figure.high) sheet.region = draw::Extent{*figure.low, *figure.high};
+  return {panel.cast, look, panel.scene.extent, sheet};
+}
+
+draw::List Album::in_plane(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+                           double& height) const {
+  const Panel& panel = *cell.panel;
+  const draw::Palette colours = draw::palette(panel.scene.look.theme);
+
+  // what stands still, earlier exposures from the oldest on, the instant itself, what is said of it
+  draw::Picture picture = depictor.depict(panel.now, panel.ways);
+  draw::List list = *picture.still;
+  for (std::size_t k = 0; k < panel.before.size(); ++k) {
+    const double age = double(k) / double(panel.before.size());
+    depictor.ghosts(panel.before[k], kFaintest + (kStrongest - kFaintest) * age, list);
+  }
+  list.add(picture.moving, 1, {0, 0});
+  const draw::View view = depictor.view(panel.now.time);
+  draw::annotate(panel.scene.figure, scales, panel.cast, colours, draw::Projection(view), panel.now, list);
+  if (panel.scene.figure.axes) draw::draw_rulers(depictor.layout(), view, colours, list);
+  height = depictor.layout().height;
+  return list;
+}
+
+// a camera's picture, as wide as the panel, under the panel's letter
+draw::List Album::in_space(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+                           double width, double& height, Lit& lit) const {
+  const Panel& panel = *cell.panel;
+  const draw::Palette colours = draw::palette(panel.scene.look.theme);
+  lit.picture = depictor.depict(panel.now, panel.ways);
+  const double scale = width * draw::kPoint / (1080 * lit.picture.aspect);
+  const draw::Point corner(0, panels_.size() * panel.scene.cameras.size() > 1 ? kLetter * draw::kPoint : 0);
+  lit.where = {corner.x(), corner.y(), 1080 * lit.picture.aspect * scale, 1080 * scale};
+  height = corner.y() + lit.where.height;
+  draw::List list;
+  list.add(lit.picture.moving, scale, corner);
+  lit.picture.moving = {};
+  draw::annotate(panel.scene.figure, scales, panel.cast, colours,
+                 draw::Projection(depictor.lens(panel.now), scale, corner), panel.now, list);
+  return list;
+}
+
+}  // namespace obscura::app

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/shots.h"
+#include "draw/compose/annotate.h"
+#include "draw/compose/depict.h"
+#include "draw/page/plot.h"
+#include "draw/picture/list.h"
+#include "draw/picture/look.h"
+#include "scene/scene.h"
+#include "sim/model/snapshot.h"
+
+namespace obscura::app {
+
+/// What the command line says of a figure; what it leaves out the scene's [figure] says.
+struct AlbumOptions {
+  std::vector<sim::Rational> at;  // s, one a panel
+  std::optional<double> width;    // pt
+  std::optional<sim::Rational> every;
+  std::optional<int> columns;
+  std::vector<std::string> vary;  // "crate.elasticity=0,0.5,1"
+  std::optional<draw::Theme> theme;
+};
+
+/// What of a page no vector says: surfaces, their light and their shadows.
+struct Lit {
+  draw::Rect where;       // in the page's units
+  draw::Picture picture;  // without what moves
+};
+
+/// A figure: its picture is what is drawn on what is lit.
+struct Page {
+  draw::Picture picture;
+  std::vector<Lit> lit;
+};
+
+/// The instants that a figure shows, simulated: one panel for each, of one run or of several that differ in a
+/// value; in space one for each by each camera.
+class Album {
+ public:
+  /// Reads the scene and runs it as far as the figure needs. Throws UsageError, scene::Error, TroubleError.
+  Album(const std::string& scene, const std::vector<std::string>& sets, const AlbumOptions& options);
+
+  Page page() const;
+  double width() const { return width_; }  // pt
+  std::string title() const { return panels_.front().scene.look.title; }
+
+ private:
+  struct Panel {
+    scene::Scene scene;
+    sim::Cast cast;
+    sim::Snapshot now;
+    std::vector<sim::Snapshot> before;                    // exposures, oldest first
+    std::vector<std::shared_ptr<const sim::Track>> ways;  // of trails
+    std::string words;                                    // what sets it apart from the others
+  };
+  void take(const scene::Scene& scene, const std::vector<sim::Rational>& times, const std::string& words);
+  /// What stands at one place of the page.
+  struct Cell {
+    const Panel* panel = nullptr;
+    int camera = 0;
+    std::string words;
+  };
+  std::vector<Cell> cells() const;
+  draw::Depictor depictor(const Cell& cell, double width) const;
+  draw::List in_plane(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+                      double& height) const;
+  draw::List in_space(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+                      double width, double& height, Lit& lit) const;
+
+  /// One of the runs that differ in a value, and what it is called in a plot.
+  struct Variant {
+    scene::Scene scene;
+    std::string name;
+  };
+  std::vector<draw::Plot> plots() const;
+
+  std::vector<Panel> panels_;
+  std::vector<Variant> variants_;
+  double width_ = 0;
+  int columns_ = 1;
+  std::optional<sim::Rational> every_;
+};
+
+}  // namespace obscura::app

@@ -1,0 +1,428 @@
+#include "app/film/film.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <set>
+#include <thread>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/console/memory.h"
+#include "app/console/say.h"
+#include "app/film/frame_renderer.h"
+#include "app/film/join.h"
+#include "app/film/ordered_pipeline.h"
+#include "app/film/store.h"
+#include "app/run/checkpoint.h"
+#include "app/run/origin.h"
+#include "app/run/plots.h"
+#include "app/run/simulation.h"
+#include "app/run/trouble.h"
+#include "media/error.h"
+#include "media/file.h"
+#include "media/part.h"
+#include "media/png.h"
+
+namespace obscura::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Makes one film, or a share of it.
+class Filming {
+ public:
+  Filming(const scene::Scene& scene, const Shots& shots, const Output& output, const FilmOptions& options);
+  int run();
+
+ private:
+  // a take, drawn
+  struct Print {
+    std::int64_t number = 0;
+    int frames = 0;
+    bool whole = true;                 // false: an interrupt cut it short
+    std::vector<media::Image> images;  // of a pipe
+  };
+
+  bool movie() const { return output_.form == Output::Form::movie; }
+  bool pictures() const {
+    return output_.form == Output::Form::frames || output_.form == Output::Form::still;
+  }
+  int frames_of(std::int64_t take) const {
+    return int(std::min<std::int64_t>(journal_.take_frames, shots_.size() - take * journal_.take_frames));
+  }
+  bool whole(std::int64_t take);
+  bool has_frames(std::int64_t take) const;
+  bool already_whole() const;
+  void clear_leftovers() const;
+  SimulationOptions simulating();
+  int prepare(Simulation& simulation);
+  std::function<Print(Take)> hire(const draw::Charts& charts);
+  Print print(Take take, Darkroom& darkroom);
+  void shoot(Simulation& simulation, const draw::Charts& charts, Progress& progress);
+  int finish(Progress& progress, const Simulation& simulation, std::int64_t wanted);
+  std::string cut_part() const {
+    return (fs::path(store_->folder()) / ("cut." + media::part_ending(output_.path))).string();
+  }
+
+  const scene::Scene& scene_;
+  const Shots& shots_;
+  const Output& output_;
+  const FilmOptions& options_;
+  media::MovieSpec spec_;
+  Journal journal_;
+  std::int64_t first_ = 0, last_ = 0;  // takes that are wanted: [first_, last_)
+  std::optional<Store> store_;
+  std::optional<std::int64_t> cut_;    // the take that an interrupt cut short
+  std::int64_t done_ = 0, found_ = 0;  // frames: made, and there before
+  std::atomic<std::int64_t> drawn_ = 0;
+  bool open_ = true;  // the pipe's other end
+};
+
+Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& output,
+                 const FilmOptions& options)
+    : scene_(scene), shots_(shots), output_(output), options_(options), spec_(movie_spec(scene)) {
+  if (movie()) media::check(output.path, spec_);
+  if (output.form == Output::Form::pipe && options.pipe == media::PipeFormat::y4m)
+    media::check("pipe.y4m", spec_);
+  journal_.take_frames = app::take_frames(output.form, spec_);
+  journal_.takes = (shots.size() + journal_.take_frames - 1) / journal_.take_frames;
+  last_ = journal_.takes;
+  if (options.shard)
+    std::tie(first_, last_) = Store::share(last_, options.shard->first, options.shard->second);
+  journal_.shards = options.prepare.value_or(options.shard ? options.shard->second : 0);
+
+  Origin& origin = journal_.origin;
+  origin = origin_of(scene);
+  origin.native = options.context.native, origin.transparent = options.transparent;
+  origin.shots = shots.text(), origin.shot = shots[0];
+  origin.frames = shots.size();
+  if (movie()) {
+    // by its name, for a part may lie in another container
+    origin.encoder = spec_.codec = media::codec_name(output.path, spec_);
+    origin.preset = spec_.preset, origin.crf = spec_.crf;
+  }
+
+  // what stands in the way of the files is told before anything is simulated
+  if (output.form == Output::Form::pipe) return;
+  const std::string first = movie() ? output.path : output.file(shots[0].frame);
+  if (!options.overwrite && fs::exists(first))
+    throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", first));
+  media::make_folder_of(first);
+  if (output.form == Output::Form::still || already_whole()) return;
+  store_.emplace(output, journal_, first_, last_,
+                 options.anew                                         ? Earlier::discard
+                 : options.resume || options.shard || options.prepare ? Earlier::go_on
+                                                                      : Earlier::replace);
+  if (!store_->note().empty()) say(stderr, "{}\n", store_->note());
+  clear_leftovers();
+}
+
+// whoever wrote these files before us was killed: we have the lock of them
+void Filming::clear_leftovers() const {
+  std::set<std::string> names;
+  if (movie() && last_ - first_ == journal_.takes) names.insert(fs::path(output_.path).filename().string());
+  for (std::int64_t i = first_ * journal_.take_frames; pictures() && i < shots_.size(); ++i) {
+    if (i / journal_.take_frames >= last_) break;
+    names.insert(fs::path(output_.file(shots_[i].frame)).filename().string());
+  }
+  media::remove_leftovers(fs::path(output_.path).parent_path().string(),
+                          [&](const std::string& name) { return names.contains(name); });
+}
+
+// whether a take needs not be made
+bool Filming::whole(std::int64_t take) {
+  if (!store_ || (!options_.resume && !options_.shard)) return false;
+  if (!(movie() ? store_->part(take).has_value() : has_frames(take))) return false;
+  found_ += frames_of(take), drawn_ += frames_of(take);
+  return true;
+}
+
+// whether all frames of a take are there, of this film
+bool Filming::has_frames(std::int64_t take) const {
+  for (int i = 0; i < frames_of(take); ++i) {
+    const Shot shot = shots_[take * journal_.take_frames + i];
+    const std::string file = output_.file(shot.frame);
+    if (!fs::exists(file)) return false;
+    try {
+      const auto there = origin_in(media::read_png(file).tags);
+      if (!there || there->shot->frame != shot.frame) return false;
+      Origin here = journal_.origin;
+      here.shots = there->shots, here.gl_version = there->gl_version, here.gl_renderer = there->gl_renderer;
+      if (!discord(*there, here).empty()) return false;
+    } catch (const media::Error&) {
+      return false;
+    }
+  }
+  return true;
+}
+
+SimulationOptions Filming::simulating() {
+  SimulationOptions how{.frames = int(journal_.take_frames), .hash_each = movie() || pictures()};
+  how.first = first_, how.last = last_;
+  how.skip = [this](std::int64_t take) { return whole(take); };
+  const bool asked = options_.from_checkpoint.has_value();
+  how.nearer = [this, asked](std::int64_t since, std::int64_t until) -> std::unique_ptr<sim::Run> {
+    if (asked && since == 0) {
+      auto run = run_from(*options_.from_checkpoint, scene_);
+      if (sim::floor(run->now() * run->rate()) <= until) return run;
+      throw UsageError(fmt::format("{}: is of t = {:g} s, too late for the first frame{}: --from films later",
+                                   *options_.from_checkpoint, sim::value(run->now()),
+                                   until < 0 ? " and its trails" : ""));
+    }
+    return store_ ? store_->run_between(scene_, since, until) : nullptr;
+  };
+  if (store_) {
+    // once a second of film
+    const std::int64_t each = std::max<std::int64_t>(1, media::segment_frames(spec_) / journal_.take_frames);
+    how.begin_take = [this, each, n = std::int64_t(0)](const sim::Run& run) mutable {
+      if (n++ % each == 0) store_->keep(scene_, run);
+    };
+  }
+  how.every = options_.checkpoint_every;
+  how.at_every = [this](const sim::Run& run, sim::Rational t) {
+    const fs::path file = fs::path(output_.checkpoints()) / fmt::format("{}.checkpoint", sim::value(t));
+    media::make_folder_of(file.string());
+    write_checkpoint(file.string(), scene_, run, true);
+  };
+  return how;
+}
+
+// a worker: a context of its own, and for each take a closed piece of film
+std::function<Filming::Print(Take)> Filming::hire(const draw::Charts& charts) {
+  auto darkroom = std::make_shared<Darkroom>(scene_, charts, options_.context);
+  if (const auto before = store_ ? store_->drawn() : std::nullopt) {
+    Origin here = journal_.origin;
+    here.gl_version = darkroom->renderer().version(), here.gl_renderer = darkroom->renderer().device();
+    if (const std::string why = discord(*before, here); !why.empty())
+      throw media::Error(fmt::format("{}: holds parts that cannot go with these: {}", store_->folder(), why));
+  }
+  return [this, darkroom](Take take) { return print(std::move(take), *darkroom); };
+}
+
+Filming::Print Filming::print(Take take, Darkroom& darkroom) {
+  Print print;
+  print.number = take.number;
+  Origin origin = journal_.origin;
+  origin.gl_version = darkroom.renderer().version(), origin.gl_renderer = darkroom.renderer().device();
+  origin.shot = take.shots[0], origin.state = take.states[0];
+  const std::size_t bodies = take.moments[0].bodies.size();
+  Checksums states(shots_.size(), bodies);
+  std::optional<media::SegmentEncoder> encoder;
+  if (movie()) encoder.emplace(output_.path, spec_);
+  for (std::size_t i = 0; i < take.shots.size(); ++i) {
+    if (interrupted() && i > 0) {
+      print.whole = false;
+      break;
+    }
+    const media::Image& image = darkroom.print(take, i, pictures() && options_.transparent);
+    if (encoder) {
+      encoder->add(image);
+      states.add(take.number * journal_.take_frames + std::int64_t(i), take.states[i], take.moments[i]);
+    }
+    if (output_.form == Output::Form::pipe) print.images.push_back(image);
+    if (pictures()) {
+      Origin of_frame = origin;
+      of_frame.shot = take.shots[i], of_frame.state = take.states[i], of_frame.frames = 0;
+      of_frame.states = checksums(take.states[i], take.moments[i]);
+      media::write_png(output_.file(take.shots[i].frame), image,
+                       {.alpha = options_.transparent, .tags = of_frame.tags(scene_.look.title)});
+    }
+    ++print.frames;
+    ++drawn_;
+  }
+  if (encoder) {
+    // an interrupt, or trouble on the way, leaves fewer frames than the take is to have
+    print.whole = print.whole && print.frames == frames_of(take.number);
+    origin.states = states;
+    media::MovieSpec spec = spec_;
+    spec.tags = origin.tags(scene_.look.title);
+    const media::Segment segment = encoder->finish();
+    if (print.whole)
+      store_->put(take.number, output_.path, spec, segment);
+    else
+      media::write_part(cut_part(), spec, segment);
+  }
+  return print;
+}
+
+// simulates, draws and writes what is wanted
+void Filming::shoot(Simulation& simulation, const draw::Charts& charts, Progress& progress) {
+  const int cores = std::max(1, int(std::thread::hardware_concurrency()));
+  const int workers =
+      int(std::min<std::int64_t>(options_.workers > 0 ? options_.workers : cores, last_ - first_));
+  std::optional<media::PipeWriter> pipe;
+  if (output_.form == Output::Form::pipe) pipe.emplace(STDOUT_FILENO, options_.pipe, spec_);
+
+  gl::ready(options_.context);
+  Conduct<Take, Print> parts;
+  parts.produce = [&] { return simulation.next(); };
+  parts.wait = [&] { progress.at(drawn_); };
+  parts.hire = [&] { return hire(charts); };
+  parts.consume = [&](Print print) {
+    for (const media::Image& image : print.images) {
+      if (open_ && !pipe->write(image)) open_ = false;
+    }
+    done_ += print.frames;
+    if (store_) store_->worked();
+    if (movie() && !print.whole) cut_ = print.number;
+    if (store_ && !options_.shard)
+      store_->forget_before(simulation.step_before(shots_[print.number * journal_.take_frames].time));
+    return print.whole && open_;
+  };
+  conduct(parts, workers);
+}
+
+// whether --resume finds the film whole: nobody left parts, and the movie is this one
+bool Filming::already_whole() const {
+  if (!options_.resume || !movie() || options_.shard || options_.prepare) return false;
+  if (fs::exists(output_.parts()) || !fs::exists(output_.path)) return false;
+  try {
+    const auto there = origin_in(media::read_part(output_.path).tags);
+    if (!there) return false;
+    Origin here = journal_.origin;
+    here.gl_version = there->gl_version, here.gl_renderer = there->gl_renderer;
+    return there->frames == here.frames && discord(*there, here).empty();
+  } catch (const media::Error&) {
+    return false;
+  }
+}
+
+// nothing is drawn: the states that shards begin with
+int Filming::prepare(Simulation& simulation) {
+  auto run = scene_.run();
+  run->heed(interrupted);
+  const auto here = [&] { return sim::floor(run->now() * run->rate()); };
+  const int n = *options_.prepare;
+  Progress progress(options_.progress, store_->folder(), shots_.size(), 1 / sim::value(scene_.film.fps));
+  for (int i = 2; i <= n; ++i) {
+    const std::int64_t first = Store::share(journal_.takes, i, n).first * journal_.take_frames;
+    if (first >= shots_.size()) break;
+    const std::int64_t step = simulation.step_before(shots_[first].time);
+    if (step <= here() || store_->kept(step)) continue;
+    if (auto nearer = store_->run_between(scene_, here(), step)) {
+      run = std::move(nearer);
+      run->heed(interrupted);
+    }
+    moment(*run, sim::rational(step) / run->rate(), scene_);
+    store_->keep(scene_, *run);
+    progress.at(first);
+  }
+  progress.finish(
+      shots_.size(),
+      fmt::format("{}: ready for {} shards of {} frames: --shard 1/{} and on, then obscura join {}",
+                  store_->folder(), n, shots_.size(), n, output_.path),
+      true);
+  return kDone;
+}
+
+int Filming::run() {
+  if (already_whole()) {
+    say(stdout, "{}: is whole already\n", output_.path);
+    return kDone;
+  }
+  const draw::Charts charts = app::charts(scene_);
+  Simulation simulation(scene_, shots_, depictor(scene_, charts), simulating());
+  if (options_.prepare) return prepare(simulation);
+  std::int64_t wanted = 0;
+  for (std::int64_t take = first_; take < last_; ++take) wanted += frames_of(take);
+  Progress progress(options_.progress, output_.path == "-" ? "standard output" : output_.path, wanted,
+                    1 / sim::value(scene_.film.fps));
+  try {
+    shoot(simulation, charts, progress);
+  } catch (const media::Error& error) {
+    // what is whole waits for another try
+    if (!store_ || done_ + found_ == 0) throw;
+    throw media::Error(
+        fmt::format("{}; {} frames are whole: --resume goes on", error.what(), done_ + found_));
+  }
+  return finish(progress, simulation, wanted);
+}
+
+// a film that ended early stands under a name that says so
+int Filming::finish(Progress& progress, const Simulation& simulation, std::int64_t wanted) {
+  const bool whole = !interrupted() && !simulation.trouble() && open_;
+  std::string made = output_.path;
+  std::int64_t frames = done_ + found_;
+  if (movie() && !options_.shard) {
+    Joining joining{.takes = journal_.takes};
+    if (!whole) {
+      // up to the first that is missing
+      joining.takes = 0;
+      while (joining.takes < journal_.takes && store_->part(joining.takes)) ++joining.takes;
+      if (cut_ == joining.takes) joining.cut = cut_part();
+      joining.instead = made = output_.partial();
+    }
+    frames = joining.takes > 0 || joining.cut ? join(*store_, output_.path, joining) : 0;
+  }
+  if (store_ && !options_.shard && (whole || simulation.trouble())) store_->remove();
+
+  if (simulation.trouble()) {
+    progress.finish(frames, "", false);
+    throw TroubleError(scene_.file, *simulation.trouble(),
+                       frames > 0 && output_.form != Output::Form::pipe
+                           ? fmt::format("{} frame{} up to then {} in {}", frames, frames == 1 ? "" : "s",
+                                         frames == 1 ? "is" : "are", made)
+                           : "");
+  }
+  if (interrupted()) {
+    progress.finish(frames,
+                    frames > 0 ? fmt::format("interrupted: {} of {} frames are in {}{}", frames, wanted, made,
+                                             store_ ? "; --resume goes on" : "")
+                               : "interrupted: nothing was written",
+                    false);
+    return kInterrupted;
+  }
+  std::string summary;
+  std::error_code error;
+  if (options_.shard) {
+    summary = fmt::format("{}: shard {} of {} is whole, {} frames, made in {:.1f} s", store_->folder(),
+                          options_.shard->first, options_.shard->second, wanted, progress.seconds());
+  } else if (output_.form == Output::Form::still) {
+    summary = fmt::format("{}: {}x{} at t = {:g} s", output_.file(shots_[0].frame), spec_.width, spec_.height,
+                          sim::value(shots_[0].time));
+  } else if (open_) {
+    const double seconds = double(frames) / sim::value(scene_.film.fps);
+    summary =
+        fmt::format("{}: {} frame{}, {:g} s at {:g} fps, {}x{}{}, made in {:.1f} s", made, frames,
+                    frames == 1 ? "" : "s", seconds, sim::value(scene_.film.fps), spec_.width, spec_.height,
+                    movie() ? ", " + bytes_text(double(fs::file_size(made, error))) : "", progress.seconds());
+  }
+  if (!summary.empty()) progress.finish(frames, summary, output_.form != Output::Form::pipe);
+  return kDone;
+}
+
+}  // namespace
+
+media::MovieSpec movie_spec(const scene::Scene& scene) {
+  media::MovieSpec spec;
+  spec.width = scene.film.width, spec.height = scene.film.height;
+  spec.fps_num = scene.film.fps.num, spec.fps_den = scene.film.fps.den;
+  spec.codec = scene.film.codec, spec.preset = scene.film.preset, spec.crf = scene.film.crf;
+  return spec;
+}
+
+int take_frames(Output::Form form, const media::MovieSpec& spec) {
+  switch (form) {
+    case Output::Form::movie:
+      return media::segment_frames(spec);
+    case Output::Form::frames:
+      return 4;
+    case Output::Form::pipe:
+      return 2;
+    case Output::Form::still:
+      return 1;
+  }
+  return 1;
+}
+
+int film(const scene::Scene& scene, const Shots& shots, const Output& output, const FilmOptions& options) {
+  return Filming(scene, shots, output, options).run();
+}
+
+}  // namespace obscura::app

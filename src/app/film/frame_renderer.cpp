@@ -1,0 +1,32 @@
+#include "app/film/frame_renderer.h"
+
+#include "app/console/memory.h"
+
+namespace obscura::app {
+
+namespace {
+
+gl::Renderer opened(const scene::Film& film, const gl::ContextOptions& context) {
+  require_memory_to_draw(double(film.width) * film.height);
+  return gl::Renderer(film.width, film.height, context);
+}
+
+}  // namespace
+
+Darkroom::Darkroom(const scene::Scene& scene, const draw::Charts& charts, const gl::ContextOptions& context)
+    : renderer_(opened(scene.film, context)), artist_(depictor(scene, charts)) {}
+
+const media::Image& Darkroom::print(const Take& take, std::size_t frame, bool transparent) {
+  const sim::Snapshot& instant = take.moments[frame];
+  const auto draw = [&](const sim::Snapshot& moment) -> const media::Image& {
+    draw::Picture picture = artist_.depict(moment, take.ways, instant);
+    picture.transparent = transparent;
+    return renderer_.draw(picture);
+  };
+  const std::vector<sim::Snapshot>& open = take.open[frame];
+  if (open.empty()) return draw(instant);
+  for (const sim::Snapshot& moment : open) exposure_.add(draw(moment));
+  return exposure_.develop();
+}
+
+}  // namespace obscura::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/first_difference.h"
+#include "app/run/origin.h"
+
+namespace obscura::app {
+
+/// Why two pictures differ, as their origins tell.
+struct Cause {
+  enum class Kind { scene, state, look, gl, pixels, unknown };
+  Kind kind = Kind::unknown;
+  std::vector<std::string> lines;  // a sentence each, the cause first
+  std::optional<Parting> states;   // where they part
+};
+
+/// "scene", "state", "look", "gl", "pixels", "unknown".
+const char* name(Cause::Kind kind);
+
+/// Looks for the cause: another scene, whose states part or not; another state of one scene; other flags
+/// about its look; another OpenGL; or pixels alone. Simulates both scenes again where their states differ.
+Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b);
+
+/// Whether two origins tell of the same states: of the first they show, and of all where both tell of all.
+bool same_states(const Origin& a, const Origin& b);
+
+/// Of two that do not: the frame where they part, and the bodies that do there, as far as their checksums
+/// tell: "states differ from frame 137 on (t = 2.283 s): body ball". Empty where they tell nothing.
+std::string first_difference(const Origin& a, const Origin& b);
+
+/// An origin with the states of its frames as this program simulates them, up to where the run ends. Throws
+/// scene::Error and UsageError; none where it ends before the first.
+std::optional<Origin> simulated(const Origin& origin);
+
+}  // namespace obscura::app

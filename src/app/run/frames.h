@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/origin.h"
+#include "media/image.h"
+
+namespace obscura::app {
+
+/// The pictures of a file or folder in their order: one still, the PNGs of a folder, the frames of a movie.
+class Frames {
+ public:
+  enum class Kind { still, folder, movie };
+
+  /// Throws media::Error naming the path where there is nothing of the kind.
+  explicit Frames(const std::string& path);
+  ~Frames();
+  Frames(Frames&&) noexcept;
+
+  Kind kind() const;
+  /// Of a folder the names of its PNGs, numbers in them by their value; else empty.
+  const std::vector<std::string>& names() const;
+  /// Of a folder: only these, in this order.
+  void only(std::vector<std::string> names);
+
+  /// The next picture. False after the last. Throws media::Error.
+  bool next(media::Image& image);
+  /// Of the last picture: its file's name, or "frame 12"; its time (s) where that is known; its origin, or
+  /// that of the whole movie.
+  std::string name() const;
+  std::optional<double> time() const;
+  const std::optional<Origin>& origin() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A file's bytes, and their hash. Throws media::Error.
+std::string file_bytes(const std::string& path);
+std::string file_hash(const std::string& path);
+
+}  // namespace obscura::app

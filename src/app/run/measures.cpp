@@ -1,0 +1,193 @@
+#include "app/run/measures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/run/columns.h"
+#include "app/run/origin.h"
+#include "draw/page/measure.h"
+#include "scene/complaints.h"
+#include "sim/step/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+using Over = Question::Over;
+
+constexpr std::array<std::pair<std::string_view, Over>, 6> kOver{{{"end", Over::end},
+                                                                  {"max", Over::max},
+                                                                  {"min", Over::min},
+                                                                  {"mean", Over::mean},
+                                                                  {"argmax", Over::argmax},
+                                                                  {"argmin", Over::argmin}}};
+constexpr std::string_view kHash = "hash";
+// what plots know of a body and no column says
+constexpr std::array<std::string_view, 3> kPlotted{"speed", "length", "push"};
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+bool over_run(Over over) { return over != Over::at && over != Over::end; }
+
+Question question(std::string_view text) {
+  Question asked;
+  asked.text = text;
+  const auto sign = text.rfind('@');
+  if (sign == text.npos || sign == 0 || sign + 1 == text.size())
+    throw UsageError(
+        fmt::format("--measure {}: expected NAME@WHEN, as in energy.total@5 or crate.position.y@max", text));
+  asked.path = trimmed(text.substr(0, sign));
+  const std::string_view when = trimmed(text.substr(sign + 1));
+  if (const auto time = sim::parse_rational(when); time && !(*time < sim::Rational{0, 1})) {
+    asked.over = Over::at, asked.at = *time;
+    return asked;
+  }
+  std::vector<std::string_view> names;
+  for (const auto& [name, over] : kOver) {
+    names.push_back(name);
+    if (name == when) asked.over = over;
+  }
+  if (std::find(names.begin(), names.end(), when) == names.end())
+    throw UsageError(fmt::format("--measure {}: @{} is neither an instant (s) nor one of {}{}", text, when,
+                                 fmt::join(names, ", "), scene::did_you_mean(when, names)));
+  if (asked.path == kHash && over_run(asked.over))
+    throw UsageError(fmt::format("--measure {}: a hash is of an instant, as in hash@end", text));
+  return asked;
+}
+
+// how a number is read from an instant; nothing of a hash
+std::function<double(const sim::Snapshot&)> reader(const Question& asked, const sim::Cast& cast,
+                                                   const std::vector<Column>& all) {
+  if (asked.path == kHash) return {};
+  for (const Column& column : all)
+    if (column.name == asked.path) return column.read;
+
+  // of a body, what a plot calls so
+  std::vector<std::string> more{std::string(kHash)};
+  for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
+    const int body = int(i);
+    const bool sprung = std::any_of(cast.springs.begin(), cast.springs.end(),
+                                    [&](const auto& spring) { return spring.a == body || spring.b == body; });
+    for (const std::string_view name : kPlotted) {
+      if (name != "speed" && !sprung) continue;
+      more.push_back(cast.bodies[i].name + "." + std::string(name));
+      if (more.back() == asked.path)
+        return [measure = draw::measure(name), body](const sim::Snapshot& now) {
+          return measure->at(now, body);
+        };
+    }
+  }
+  std::vector<std::string_view> names(more.begin(), more.end());
+  for (const Column& column : all) names.push_back(column.name);
+  std::string meant = scene::did_you_mean(asked.path, names);
+  if (meant.empty()) meant = "; `obscura states --format csv` heads its columns with the names";
+  throw UsageError(fmt::format("--measure {}: states have no '{}'{}", asked.text, asked.path, meant));
+}
+
+// what the instants so far come to
+struct Tally {
+  bool any = false;
+  double extreme = 0, when = 0;       // the extreme, and when first
+  double area = 0, last = 0, at = 0;  // of the mean: the area so far, the last value, its time
+
+  void add(Over over, double value, double t) {
+    const bool least = over == Over::min || over == Over::argmin;
+    if (!any || (least ? value < extreme : value > extreme)) extreme = value, when = t;
+    if (any) area += (t - at) * (last + value) / 2;
+    any = true, last = value, at = t;
+  }
+  double result(Over over) const {
+    if (over == Over::mean) return at > 0 ? area / at : last;
+    return over == Over::argmax || over == Over::argmin ? when : extreme;
+  }
+};
+
+std::string text(double x) { return fmt::format("{}", x == 0 ? 0.0 : x); }
+
+}  // namespace
+
+std::vector<Question> questions(const std::string& list) {
+  std::vector<Question> all;
+  for (std::size_t from = 0; from <= list.size();) {
+    const std::size_t comma = std::min(list.find(',', from), list.size());
+    all.push_back(question(trimmed(std::string_view(list).substr(from, comma - from))));
+    from = comma + 1;
+  }
+  return all;
+}
+
+void check(const std::vector<Question>& asked, const scene::Scene& scene) {
+  const auto run = scene.run();
+  const std::vector<Column> all = columns(run->cast(), scene.axes);
+  for (const Question& each : asked) (void)reader(each, run->cast(), all);
+}
+
+Answers answers(const scene::Scene& scene, const std::vector<Question>& asked) {
+  const auto run = scene.run();
+  run->heed(interrupted);
+  const std::vector<Column> all = columns(run->cast(), scene.axes);
+  std::vector<std::function<double(const sim::Snapshot&)>> readers;
+  for (const Question& each : asked) readers.push_back(reader(each, run->cast(), all));
+
+  // the instants asked for, in the order of time
+  std::vector<std::pair<sim::Rational, std::size_t>> instants;
+  bool steps = false;
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    if (over_run(asked[k].over))
+      steps = true;
+    else
+      instants.emplace_back(asked[k].over == Over::end ? scene.duration : asked[k].at, k);
+  }
+  std::stable_sort(instants.begin(), instants.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+
+  Answers found;
+  found.values.resize(asked.size());
+  std::vector<Tally> tallies(asked.size());
+  const auto at = [&](sim::Rational t) -> std::optional<sim::Snapshot> {
+    auto outcome = run->at(t);
+    if (std::holds_alternative<sim::Stopped>(outcome)) throw Interrupted();
+    if (const auto* bad = std::get_if<sim::Trouble>(&outcome)) {
+      found.trouble = *bad;
+      return {};
+    }
+    return std::get<sim::Snapshot>(std::move(outcome));
+  };
+
+  // both at once: ends of steps up to the duration, and the instants
+  std::int64_t step = 0;
+  std::size_t next = 0;
+  while (steps || next < instants.size()) {
+    const sim::Rational beat = std::min(sim::rational(step) / run->rate(), scene.duration,
+                                        [](sim::Rational a, sim::Rational b) { return a < b; });
+    const bool is_beat = steps && (next == instants.size() || beat <= instants[next].first);
+    const sim::Rational t = is_beat ? beat : instants[next].first;
+    const auto now = at(t);
+    if (!now) return found;
+    if (is_beat) {
+      for (std::size_t k = 0; k < asked.size(); ++k)
+        if (over_run(asked[k].over)) tallies[k].add(asked[k].over, readers[k](*now), now->time);
+      ++step;
+      steps = beat < scene.duration;
+    }
+    for (; next < instants.size() && instants[next].first == t; ++next) {
+      const std::size_t k = instants[next].second;
+      found.values[k] = readers[k] ? text(readers[k](*now)) : state_hash(run->words());
+    }
+  }
+  for (std::size_t k = 0; k < asked.size(); ++k)
+    if (over_run(asked[k].over)) found.values[k] = text(tallies[k].result(asked[k].over));
+  return found;
+}
+
+}  // namespace obscura::app

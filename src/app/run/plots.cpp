@@ -1,0 +1,192 @@
+#include "app/run/plots.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/run/simulation.h"
+#include "app/run/variation.h"
+#include "draw/page/measure.h"
+#include "scene/table.h"
+#include "sim/step/run.h"
+
+namespace obscura::app {
+
+namespace {
+
+constexpr std::int64_t kPoints = 480;   // of a line
+constexpr std::int64_t kPixels = 1920;  // of a line in a film
+
+// what a run gives at one more instant
+void add(const sim::Snapshot& now, const draw::Measured& measured, draw::Plot& plot) {
+  plot.times.push_back(now.time);
+  const std::vector<const draw::Measure*> measures = measured.measures();
+  for (std::size_t k = 0; k < measures.size(); ++k)
+    plot.lines[k].values.push_back(measures[k]->at(now, measured.body));
+}
+
+// the instants of a run that a chart is made of: ends of steps, which cost nothing beside the run; of another
+// program's run its rows
+std::vector<sim::Rational> beats(const scene::Scene& scene, sim::Rational rate) {
+  std::vector<sim::Rational> times;
+  if (scene.trajectory) {
+    const std::vector<double>& rows = scene.trajectory->times;
+    const std::size_t stride = rows.size() / std::size_t(kPixels) + 1;
+    for (std::size_t i = 0; i < rows.size(); i += stride)
+      if (const auto exact = sim::from_double(rows[i]); exact && *exact <= scene.duration)
+        times.push_back(*exact);
+    return times;
+  }
+  const std::int64_t steps = sim::floor(scene.duration * rate), stride = steps / kPixels + 1;
+  for (std::int64_t k = 0; k <= steps; k += stride) times.push_back(sim::rational(k) / rate);
+  if (times.back() < scene.duration) times.push_back(scene.duration);
+  return times;
+}
+
+// a name over its unit, as mathematics
+std::string axis(const std::string& name, const std::string& unit) {
+  if (unit.empty()) return name;
+  if (unit.starts_with("1/")) return name + " / \"" + unit.substr(2) + "\"^{-1}";
+  return name + " / \"" + (unit == "°" ? "deg" : unit) + "\"";
+}
+
+// the same scene with more set
+scene::Scene with(const scene::Scene& scene, const std::vector<std::string>& more) {
+  if (scene.file == "-") throw UsageError("a plot over a key reads its scene more than once: name a file");
+  std::vector<std::string> sets = scene.sets;
+  sets.insert(sets.end(), more.begin(), more.end());
+  return scene::read(scene.file, sets);
+}
+
+// the values of what is plotted at the end of a run
+std::vector<double> ends(const scene::Scene& scene, const draw::Figure::Plot& wanted,
+                         const std::vector<const draw::Measure*>& all) {
+  const auto run = scene.run();
+  run->heed(interrupted);
+  const sim::Snapshot now = moment(*run, wanted.to, scene);
+  std::vector<double> found;
+  for (const draw::Measure* each : all) found.push_back(each->at(now, wanted.body));
+  return found;
+}
+
+// the exponent p of y = c x^p that fits best
+double slope(const std::vector<double>& x, const std::vector<double>& y) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!(x[i] > 0 && y[i] > 0)) continue;
+    const double a = std::log(x[i]), b = std::log(y[i]);
+    n += 1, sx += a, sy += b, sxx += a * a, sxy += a * b;
+  }
+  return n < 2 ? 0 : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+// a point for each value of a key: the end of its run, or how far that is from another's
+void plot_over(const scene::Scene& scene, const draw::Figure::Plot& wanted,
+               const std::vector<const draw::Measure*>& all, draw::Plot& plot) {
+  std::vector<double> truth(all.size(), 0);
+  if (!wanted.reference.empty()) {
+    std::vector<std::string> sets;
+    std::string_view rest = wanted.reference;
+    while (!rest.empty()) {
+      const auto end = std::min(rest.find(';'), rest.size());
+      std::string_view set = rest.substr(0, end);
+      set.remove_prefix(std::min(set.find_first_not_of(' '), set.size()));
+      sets.emplace_back(set);
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    truth = ends(with(scene, sets), wanted, all);
+  }
+  const Variation over(wanted.over);
+  for (const std::string& value : over.values) {
+    const std::vector<double> found = ends(with(scene, {over.path + "=" + value}), wanted, all);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      plot.lines[k].along.push_back(over.number(value));
+      plot.lines[k].values.push_back(wanted.reference.empty() ? found[k] : std::abs(found[k] - truth[k]));
+    }
+  }
+  const scene::Key* key = scene::key(over.path);
+  plot.name = axis("\"" + over.name() + "\"", key ? key->unit : "");
+  plot.dotted = true;
+  if (!wanted.log) return;
+  for (draw::Series& line : plot.lines) {
+    const double exponent = slope(line.along, line.values);
+    line.note = fmt::format("\", slope {}{:.2f}\"", exponent < 0 ? "\u2212" : "", std::abs(exponent));
+  }
+}
+
+// the instants of several panels, by their letters
+void point_out(const std::vector<double>& marks, draw::Plot& plot) {
+  for (std::size_t m = 0; m < marks.size() && marks.size() > 1; ++m) {
+    const auto far = [&](double t) { return std::abs(t - marks[m]); };
+    const auto at = std::size_t(std::min_element(plot.times.begin(), plot.times.end(),
+                                                 [&](double a, double b) { return far(a) < far(b); }) -
+                                plot.times.begin());
+    for (const draw::Series& line : plot.lines)
+      plot.dots.push_back(
+          {line.along[at], line.values[at], fmt::format("\"({})\"", char('a' + int(m) % 26))});
+  }
+}
+
+}  // namespace
+
+std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<double>& marks) {
+  const draw::Palette colours = draw::palette(scene.look.theme);
+  std::vector<draw::Plot> all;
+  for (const draw::Figure::Plot& wanted : scene.figure.plots) {
+    draw::Plot plot = draw::empty_plot(wanted, colours);
+    plot.log = wanted.log;
+    if (!wanted.over.empty()) {
+      plot_over(scene, wanted, wanted.measures(), plot);
+      all.push_back(std::move(plot));
+      continue;
+    }
+
+    const draw::Measure* against = draw::measure(wanted.against);
+    std::vector<double> way;
+    const auto run = scene.run();
+    run->heed(interrupted);
+    const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
+    for (std::int64_t i = 0; i <= kPoints; ++i) {
+      const sim::Rational t = i < kPoints ? wanted.from + sim::rational(i) * stride : wanted.to;
+      const sim::Snapshot now = moment(*run, t, scene);
+      add(now, wanted, plot);
+      if (against) way.push_back(against->at(now, wanted.body));
+    }
+    if (against) {
+      plot.name = axis(against->label, against->unit);
+      for (draw::Series& line : plot.lines) line.along = way;
+      point_out(marks, plot);
+    } else {
+      plot.marks = marks;
+    }
+    all.push_back(std::move(plot));
+  }
+  return all;
+}
+
+draw::Charts charts(const scene::Scene& scene) {
+  const std::vector<draw::Chart>& wanted = scene.film.charts;
+  if (wanted.empty()) return {};
+  draw::Palette colours = draw::palette(scene.look.theme);
+  if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
+  std::vector<draw::Plot> plots;
+  for (const draw::Chart& each : wanted) plots.push_back(draw::empty_plot(each, colours));
+
+  const auto run = scene.run();
+  run->heed(interrupted);
+  for (const sim::Rational t : beats(scene, run->rate())) {
+    const auto found = run->at(t);
+    if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();
+    if (std::holds_alternative<sim::Trouble>(found)) break;
+    for (std::size_t i = 0; i < wanted.size(); ++i) add(std::get<sim::Snapshot>(found), wanted[i], plots[i]);
+  }
+  if (plots[0].times.empty()) return {};
+  const double aspect = double(scene.film.width) / scene.film.height;
+  return {wanted, plots, colours, aspect, sim::value(scene.duration)};
+}
+
+}  // namespace obscura::app

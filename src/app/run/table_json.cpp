@@ -1,0 +1,83 @@
+// A run as `obscura states` prints it by itself, as JSON: the same table as its CSV.
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/run/table.h"
+#include "media/error.h"
+
+namespace obscura::app {
+
+namespace {
+
+using Json = nlohmann::json;
+using Cells = std::vector<std::pair<std::string, double>>;
+
+// a number, or several under x, y, z, w
+void add(const std::string& name, const Json& value, Cells& cells) {
+  constexpr const char* kAxes[] = {"x", "y", "z", "w"};
+  if (!value.is_array()) {
+    cells.emplace_back(name, value.get<double>());
+    return;
+  }
+  for (std::size_t k = 0; k < value.size() && k < std::size(kAxes); ++k)
+    cells.emplace_back(name + "." + kAxes[k], value[k].get<double>());
+}
+
+// what CSV has of an instant too
+Cells cells_of(const Json& state) {
+  Cells cells;
+  for (const char* name : {"time", "step"})
+    if (state.contains(name)) add(name, state[name], cells);
+  if (state.contains("energy"))
+    for (const auto& [kind, value] : state["energy"].items()) add("energy." + kind, value, cells);
+  for (const char* name : {"momentum", "angular_momentum"})
+    if (state.contains(name)) add(name, state[name], cells);
+  if (state.contains("contacts")) cells.emplace_back("contacts", double(state["contacts"].size()));
+  for (const Json& body : state.value("bodies", Json::array()))
+    for (const char* quantity : {"position", "orientation", "angle", "velocity", "spin"})
+      if (body.contains(quantity))
+        add(body.at("name").get<std::string>() + "." + quantity, body[quantity], cells);
+  for (const Json& joint : state.value("joints", Json::array()))
+    if (joint.contains("force")) add(joint.at("name").get<std::string>() + ".force", joint["force"], cells);
+  return cells;
+}
+
+}  // namespace
+
+Table table_of_json(const std::string& file, const std::string& text) {
+  Table table;
+  table.file = file, table.json = true;
+  try {
+    const Json top = Json::parse(text);
+    for (const Json& state : top.at("states")) {
+      const int number = int(table.rows.size()) + 1;
+      const Cells cells = cells_of(state);
+      if (table.rows.empty()) {
+        for (const auto& [name, value] : cells) {
+          if (table.column(name)) throw media::Error(fmt::format("{}: there are two of '{}'", file, name));
+          table.cells.push_back(table.columns.size());
+          table.columns.push_back(name);
+        }
+        const auto time = table.column("time");
+        if (!time) throw media::Error(fmt::format("{}: its states have no time", file));
+        table.time_column = *time;
+      }
+      std::vector<double> numbers;
+      for (std::size_t i = 0; i < cells.size() && i < table.columns.size(); ++i)
+        if (cells[i].first == table.columns[i]) numbers.push_back(cells[i].second);
+      if (cells.size() != table.columns.size() || numbers.size() != cells.size())
+        throw media::Error(
+            fmt::format("{}, state {}: has not the numbers that the first one has", file, number));
+      if (!add_row(std::move(numbers), number, table))
+        throw media::Error(fmt::format("{}, state {}: times must increase", file, number));
+    }
+  } catch (const Json::exception& error) {
+    throw media::Error(fmt::format("{}: is not as `obscura states` writes it: {}", file, error.what()));
+  }
+  if (table.rows.empty()) throw media::Error(file + ": has no states");
+  return table;
+}
+
+}  // namespace obscura::app

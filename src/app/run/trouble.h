@@ -1,0 +1,19 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "sim/model/trouble.h"
+
+namespace obscura::app {
+
+/// "at t = 1.234 s the velocity of crate is not a number", with its likely cause.
+std::string text(const sim::Trouble& trouble);
+
+/// A run that could not go on.
+struct TroubleError : std::runtime_error {
+  /// `kept`: what of the film is there, or nothing.
+  TroubleError(const std::string& scene, const sim::Trouble& trouble, const std::string& kept);
+};
+
+}  // namespace obscura::app

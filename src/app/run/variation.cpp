@@ -1,0 +1,121 @@
+#include "app/run/variation.h"
+
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "app/console/exit.h"
+#include "sim/math/rational.h"
+
+namespace obscura::app {
+
+namespace {
+
+constexpr std::int64_t kMostValues = 1'000'000;  // of a key
+
+// "0.3" as a person types it, "1/3" as the nearest number
+std::string typed(sim::Rational r) {
+  return r.den == 1 ? fmt::format("{}", r.num) : fmt::format("{}", sim::value(r));
+}
+
+// "0:1:0.1", "1:100": a range with both ends; nothing where it is another value
+std::optional<std::vector<std::string>> range(std::string_view value, std::string_view text) {
+  std::vector<sim::Rational> parts;
+  for (std::string_view rest = value;;) {
+    const auto colon = rest.find(':');
+    const auto part = sim::parse_rational(rest.substr(0, colon));
+    if (!part) return {};
+    parts.push_back(*part);
+    if (colon == rest.npos) break;
+    rest.remove_prefix(colon + 1);
+  }
+  if (parts.size() == 1) return {};
+  if (parts.size() > 3)
+    throw UsageError(fmt::format("--vary {}: a range is from:to or from:to:stride", text));
+  const sim::Rational from = parts[0], to = parts[1], by = parts.size() == 3 ? parts[2] : sim::rational(1);
+  if (by.num == 0) throw UsageError(fmt::format("--vary {}: a range's stride is not 0", text));
+  const double n = (sim::value(to) - sim::value(from)) / sim::value(by);
+  if (n < 0)
+    throw UsageError(fmt::format("--vary {}: {} runs backwards: with a stride {} 0 it would not", text, value,
+                                 by.num < 0 ? "above" : "below"));
+  if (n > double(kMostValues))
+    throw UsageError(
+        fmt::format("--vary {}: {} has {:.0f} values, more than {}", text, value, n, kMostValues));
+  std::vector<std::string> values;
+  for (std::int64_t i = 0, last = sim::floor((to - from) / by); i <= last; ++i)
+    values.push_back(typed(from + sim::rational(i) * by));
+  return values;
+}
+
+}  // namespace
+
+Variation::Variation(std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == 0 || equals == text.npos || equals + 1 == text.size())
+    throw UsageError(
+        fmt::format("--vary {}: expected PATH=VALUES, as in crate.elasticity=0,0.5,1 or seed=1:100", text));
+  path = text.substr(0, equals);
+  const std::string_view list = text.substr(equals + 1);
+  // commas within brackets are a value's own
+  std::size_t depth = 0, from = 0;
+  for (std::size_t i = 0; i <= list.size(); ++i) {
+    if (i < list.size() && list[i] == '[') ++depth;
+    if (i < list.size() && list[i] == ']' && depth > 0) --depth;
+    if (i < list.size() && (list[i] != ',' || depth > 0)) continue;
+    const std::string_view value = list.substr(from, i - from);
+    if (const auto several = range(value, text))
+      values.insert(values.end(), several->begin(), several->end());
+    else
+      values.emplace_back(value);
+    from = i + 1;
+  }
+}
+
+Variations::Variations(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) {
+    const Variation one(text);
+    for (const Variation& other : keys)
+      if (other.path == one.path) throw UsageError(fmt::format("--vary {}: it is varied twice", one.path));
+    if (one.values.empty()) throw UsageError(fmt::format("--vary {}: it has no values", text));
+    if (size > kMostRuns / std::int64_t(one.values.size()))
+      throw UsageError(fmt::format("--vary: more than {} runs", kMostRuns));
+    size *= std::int64_t(one.values.size());
+    keys.push_back(one);
+  }
+}
+
+std::vector<std::string> Variations::operator[](std::int64_t run) const {
+  std::vector<std::string> values(keys.size());
+  for (std::size_t k = keys.size(); k-- > 0;) {
+    const auto n = std::int64_t(keys[k].values.size());
+    values[k] = keys[k].values[std::size_t(run % n)];
+    run /= n;
+  }
+  return values;
+}
+
+std::vector<std::string> Variations::sets(std::int64_t run, std::vector<std::string> sets) const {
+  const std::vector<std::string> values = (*this)[run];
+  for (std::size_t k = 0; k < keys.size(); ++k) sets.push_back(keys[k].path + "=" + values[k]);
+  return sets;
+}
+
+std::string Variations::words(std::int64_t run) const {
+  const std::vector<std::string> values = (*this)[run];
+  std::string text;
+  for (std::size_t k = 0; k < keys.size(); ++k) text += (k ? ", " : "") + keys[k].name() + " = " + values[k];
+  return text;
+}
+
+std::string Variation::name() const {
+  const auto dot = path.rfind('.');
+  return dot == path.npos ? path : path.substr(dot + 1);
+}
+
+double Variation::number(const std::string& value) const {
+  const auto found = sim::parse_rational(value);
+  if (!found) throw UsageError(fmt::format("a plot over {}: {} is no number", path, value));
+  return sim::value(*found);
+}
+
+}  // namespace obscura::app

@@ -1,0 +1,253 @@
+#include "draw/compose/depict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "draw/compose/travel.h"
+#include "draw/page/sheet.h"
+#include "draw/plane/stage.h"
+#include "draw/space/camera.h"
+#include "draw/space/space.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
+
+bool is_point(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::point; }
+
+}  // namespace
+
+std::vector<char> knots(const sim::Cast& cast) {
+  std::vector<int> count(cast.bodies.size(), 0);
+  for (const sim::Cast::Spring& spring : cast.springs) {
+    for (int body : {spring.a, spring.b}) {
+      if (body >= 0 && !cast.bodies[body].turns) ++count[body];
+    }
+  }
+  std::vector<char> knot(cast.bodies.size(), 0);
+  for (const sim::Cast::Spring& spring : cast.springs) {
+    for (auto [body, other] : {std::pair(spring.a, spring.b), std::pair(spring.b, spring.a)}) {
+      if (body >= 0 && (count[body] >= 3 || (count[body] == 2 && other >= 0 && count[other] >= 3)))
+        knot[body] = 1;
+    }
+  }
+  return knot;
+}
+
+double newton(const sim::Cast& cast) {
+  // the heaviest, and all of them: a stack's lowest contacts carry much more than its highest
+  double heaviest = 0, all = 0;
+  for (const sim::Cast::Body& body : cast.bodies) {
+    if (body.fixed) continue;
+    heaviest = std::max(heaviest, body.mass), all += body.mass;
+  }
+  const double g = cast.gravity.norm() > 0 ? cast.gravity.norm() : 10;
+  const double usual = g * std::sqrt(heaviest * std::max(heaviest, all / 4));
+  return usual > 0 ? kForceArrow * cast.scale / usual : 0;
+}
+
+Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, const Layout& page,
+             const Charts& beside)
+    : cast(who), look(looks_), camera(camera_), colours(palette(looks_.theme)), layout(page), charts(beside) {
+  const std::vector<char> net = knots(cast);
+  auto knot = [&](int body) { return body >= 0 && net[body]; };
+
+  // springs: coils, or lines where they make a net or are many
+  auto in_net = [&](const sim::Cast::Spring& spring) { return knot(spring.a) || knot(spring.b); };
+  const auto loose =
+      std::count_if(cast.springs.begin(), cast.springs.end(), [&](const auto& s) { return !in_net(s); });
+  double mesh = 1e300;  // a net's shortest spring, page units
+  std::vector<char> tied(cast.bodies.size(), 0);
+  for (const sim::Cast::Spring& spring : cast.springs) {
+    const bool line = look.springs == Look::Springs::lines ||
+                      (look.springs == Look::Springs::automatic && (loose > kMany || in_net(spring)));
+    const double rest = spring.rest_length * layout.scale;
+    // a spring without a rest length still needs turns
+    Coil form = coil(std::max(rest, 0.12 * cast.scale * layout.scale), layout.weight);
+    if (line) form.turns = 0, form.rest = rest;
+    coils.push_back(form);
+    if (!line) continue;
+    if (rest > 0) mesh = std::min(mesh, rest);
+    for (int body : {spring.a, spring.b}) {
+      if (body >= 0) tied[body] = 1;
+    }
+  }
+  force_scale = look.force_scale > 0 ? look.force_scale : newton(cast);
+  for (const sim::Cast::Mouse& mouse : cast.mice) {
+    // the hand's rest length is short and its pull long: turns for a pull across a part of the room
+    const double rest = std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale;
+    hands.push_back(coil(rest, 0.82 * layout.weight));
+    hands.back().line = 0.86 * kSpringLine * layout.weight;
+  }
+
+  // bodies: the scene's colour, grey for what is held or knots a net, else the next of the palette
+  const auto points = std::count_if(cast.bodies.begin(), cast.bodies.end(), is_point);
+  const double dot =
+      kDot * layout.weight * std::min(1.0, std::cbrt(60.0 / double(std::max<std::ptrdiff_t>(points, 1))));
+  int taken = 0;
+  for (int i = 0; i < int(cast.bodies.size()); ++i) {
+    const sim::Cast::Body& body = cast.bodies[i];
+    const BodyLook own = looks(i);
+    const bool quiet = body.fixed || knot(i);
+    paints.push_back(paint(own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++), look.theme));
+    dots.push_back(is_point(body) ? std::max(tied[i] ? std::min(dot, 0.2 * mesh) : dot, 1.6 * layout.weight)
+                                  : 0);
+    switch (body.kind) {
+      case sim::ShapeKind::box:
+        boxes.push_back(i);
+        break;
+      case sim::ShapeKind::polygon:
+      case sim::ShapeKind::compound:
+      case sim::ShapeKind::capsule:
+      case sim::ShapeKind::hull:
+        polygons.push_back(i);
+        break;
+      case sim::ShapeKind::point:
+      case sim::ShapeKind::ball:
+        rounds.push_back(i);
+        break;
+    }
+    seams.push_back(seams_of(body));
+    if (own.velocity) arrows.push_back(i);
+  }
+}
+
+// Of a run in the plane.
+struct Depictor::Plan {
+  Stage stage;
+  // the last still list, and the view it is of
+  mutable std::mutex mutex;
+  mutable View seen;
+  mutable std::shared_ptr<const List> still;
+
+  View view(const sim::Snapshot& now) const {
+    View view = view_at(stage.camera, stage.layout, now.time);
+    if (stage.camera.follow) {
+      const sim::Vec3& middle = now.bodies[*stage.camera.follow].position;
+      view.origin = stage.layout.middle - view.scale * Point(middle.x(), -middle.y());
+    }
+    return view;
+  }
+
+  std::shared_ptr<const List> still_of(const View& view) const {
+    const std::lock_guard lock(mutex);
+    if (!still || seen.origin != view.origin || seen.scale != view.scale) {
+      auto list = std::make_shared<List>();
+      draw_still(stage, view, *list);
+      still = std::move(list);
+      seen = view;
+    }
+    return still;
+  }
+};
+
+Depictor::Depictor(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
+                   double aspect)
+    : Depictor(cast, look, std::vector{camera}, extent, aspect) {}
+
+Depictor::Depictor(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras,
+                   const Extent& extent, double aspect, const Charts& charts)
+    : look_(look) {
+  if (cast.dimension == 3) {
+    space_ = std::make_shared<const SpaceStage>(cast, look, cameras, extent, aspect, charts);
+    return;
+  }
+  const Camera& camera = cameras.at(0);
+  const Layout layout = lay_out(cast, look, camera, extent, aspect, charts.right(), charts.below());
+  plan_.reset(new Plan{Stage(cast, look, camera, layout, charts), {}, {}, {}});
+}
+
+Depictor::Depictor(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet)
+    : look_(look), plan_(new Plan{Stage(cast, look, {}, lay_out(cast, look, extent, sheet)), {}, {}, {}}) {}
+
+const Layout& Depictor::layout() const { return plan_->stage.layout; }
+
+View Depictor::view(double t) const { return view_at(plan_->stage.camera, plan_->stage.layout, t); }
+
+Lens Depictor::lens(const sim::Snapshot& now, int panel) const { return lens_of(space_->panels[panel], now); }
+
+Picture Depictor::depict(const sim::Snapshot& now,
+                         std::span<const std::shared_ptr<const sim::Track>> ways) const {
+  return depict(now, ways, now);
+}
+
+Picture Depictor::depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
+                         const sim::Snapshot& frame) const {
+  if (space_) return depict_space(*space_, now, ways, frame);
+  const Stage& stage = plan_->stage;
+  const View view = plan_->view(now);
+  Picture picture;
+  picture.aspect = stage.layout.aspect;
+  picture.ground = stage.colours.ground;
+  picture.still = plan_->still_of(view);
+
+  List& list = picture.moving;
+  if (stage.layout.clipped) list.clip(view.window);
+  draw_trails(stage, view, now, ways, list);
+  draw_ways(stage, view, now, list);
+  draw_rails(stage, view, now, list);
+  draw_springs(stage, view, now, false, list);
+  draw_boxes(stage, view, now, list);
+  draw_polygons(stage, view, now, list);
+  draw_springs(stage, view, now, true, list);
+  draw_rods(stage, view, now, list);
+  draw_rounds(stage, view, now, list);
+  draw_pins(stage, view, now, list);
+  draw_contacts(stage, view, now, list);
+  draw_velocities(stage, view, now, list);
+  draw_labels(stage, view, now, list);
+  draw_hands(stage, view, now, list);
+  list.unclip();
+  if (stage.layout.caption && stage.look.clock) {
+    Text clock = stage.layout.clock;
+    clock.spans[0].text = clock_text(frame.time);
+    list.add(clock);
+  }
+  stage.charts.draw_lines(frame, list);
+  return picture;
+}
+
+double Depictor::travel(const sim::Snapshot& now, double seconds) const {
+  const sim::Snapshot then = later(now, seconds);
+  if (space_) return draw::travel(*space_, now, then);
+  return draw::travel(plan_->stage, plan_->view(now), plan_->view(then), now, then);
+}
+
+void Depictor::ghosts(const sim::Snapshot& then, double strength, List& list) const {
+  Stage faded = plan_->stage;
+  faded.look.axes = false;
+  for (Paint& paint : faded.paints) {
+    for (Color* color : {&paint.fill, &paint.outline, &paint.axis})
+      *color = mix(faded.colours.room, *color, strength);
+  }
+  // what is held is where it was
+  const auto still = [&](int body) { return faded.cast.bodies[std::size_t(body)].fixed; };
+  std::erase_if(faded.boxes, still);
+  std::erase_if(faded.polygons, still);
+  std::erase_if(faded.rounds, still);
+  const View view = view_at(faded.camera, faded.layout, then.time);
+  if (faded.layout.clipped) list.clip(view.window);
+  draw_boxes(faded, view, then, list);
+  draw_polygons(faded, view, then, list);
+  draw_rounds(faded, view, then, list);
+  list.unclip();
+}
+
+double Depictor::longest_trail() const {
+  double longest = 0;
+  for (const BodyLook& body : look_.bodies) longest = std::max(longest, body.trail);
+  return longest;
+}
+
+std::vector<int> Depictor::trailed() const {
+  std::vector<int> bodies;
+  for (std::size_t i = 0; i < look_.bodies.size(); ++i) {
+    if (look_.bodies[i].trail > 0) bodies.push_back(int(i));
+  }
+  return bodies;
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,98 @@
+// The line under a picture that says how long a metre and how strong an arrow is; and how long arrows are.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "draw/compose/annotate.h"
+#include "draw/compose/readings.h"
+#include "draw/page/sheet.h"
+#include "draw/picture/formula.h"
+#include "draw/plane/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kSmall = 8.5 * kPoint;               // em
+constexpr double kLongest = 0.34;                     // of the picture's shorter side
+constexpr double kArrow = 1.1 * kPoint / kArrowLine;  // weight at which a shaft is 1.1 pt
+
+}  // namespace
+
+double round_below(double x) {
+  if (!(x > 0)) return 0;
+  const double power = std::pow(10, std::floor(std::log10(x)));
+  for (const double digit : {5.0, 2.0})
+    if (digit * power <= x * (1 + 1e-12)) return digit * power;
+  return power;
+}
+
+Scales scales(const Figure& figure, const sim::Cast& cast, std::span<const sim::Snapshot> moments,
+              const Rect& window, double scale) {
+  Scales longest;
+  for (const sim::Snapshot& now : moments) {
+    for (const Figure::Vector& vector : figure.vectors) {
+      double* most = scale_of(vector.quantity, longest);
+      if (!most) continue;
+      for (const Reading& each : readings(vector, cast, now)) *most = std::max(*most, each.value.norm());
+    }
+  }
+  const double room = kLongest * std::min(window.width, window.height) / scale;
+  const auto of = [&](double most) { return most > 1e-9 ? room / most : 0; };
+  return {of(longest.velocity), of(longest.force), of(longest.impulse)};
+}
+
+bool has_legend(const Figure& figure) {
+  Scales any;
+  return figure.scale_bar || std::any_of(figure.vectors.begin(), figure.vectors.end(),
+                                         [&](const auto& v) { return scale_of(v.quantity, any) != nullptr; });
+}
+
+void draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
+                 double left, double right, double baseline, List& list) {
+  const double middle = baseline - 0.24 * kSmall;
+  const auto write = [&](const std::string& text, double x, Color ink) {
+    const Formula f = formula(text, kSmall, ink);
+    add(f, {x, baseline}, list);
+    return f.width;
+  };
+  // the room's scale at the left
+  if (figure.scale_bar) {
+    const double metres = round_below(0.25 * (right - left) / scale), length = metres * scale;
+    const double tick = 2 * kPoint;
+    const auto line = [&](const Point& a, const Point& b) {
+      list.add({{a, 0.7 * kPoint, colours.ink}, {b, 0.7 * kPoint, colours.ink}}, Cap::butt);
+    };
+    line({left, middle}, {left + length, middle});
+    for (const double x : {left, left + length}) line({x, middle - tick}, {x, middle + tick});
+    write(fmt::format("{:g} \"m\"", metres), left + length + 3 * kPoint, colours.ink);
+  }
+  // from the right: an arrow of each kind
+  double x = right;
+  struct Each {
+    double scale;
+    const char* unit;
+    Quantity quantity;
+  };
+  for (const Each& kind :
+       {Each{scales.impulse, "N s", Quantity::impulse}, Each{scales.force, "N", Quantity::contact},
+        Each{scales.velocity, "m/s", Quantity::velocity}}) {
+    if (!(kind.scale > 0)) continue;
+    const double value = round_below(32 * kPoint / (kind.scale * scale));
+    const double length = value * kind.scale * scale;
+    const Formula f = formula(fmt::format("{:g} \"{}\"", value, kind.unit), kSmall, colours.ink);
+    x -= f.width;
+    add(f, {x, baseline}, list);
+    x -= 3 * kPoint;
+    std::vector<Arrow> arrows;
+    offer({x - length, middle}, {x, middle}, {left, middle - length, right - left, 2 * length}, kArrow,
+          arrows);
+    Figure::Vector of;
+    of.quantity = kind.quantity;
+    draw_arrows(arrows, kArrow, colours.ground, color_of(of, colours), list);
+    x -= length + 10 * kPoint;
+  }
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,57 @@
+// Rulers of a sheet, outside the room's hatching: thin lines with ticks at round metres.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "draw/compose/annotate.h"
+#include "draw/page/plot.h"
+#include "draw/page/sheet.h"
+#include "draw/picture/formula.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kType = 8.5 * kPoint, kTick = 2.5 * kPoint, kLine = 0.6 * kPoint;
+constexpr double kOff = 3 * kPoint;                        // from the picture
+constexpr double kFar = 26 * kPoint, kNear = 18 * kPoint;  // between numbers beside and above each other
+
+}  // namespace
+
+void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list) {
+  const Rect& w = layout.window;
+  // what is shown of the world: inside the hatching
+  const double band = layout.clipped ? 0 : kBand * layout.weight + 2 * kPoint;
+  const double left = w.x + band, right = w.x + w.width - band;
+  const double top = w.y + band, bottom = w.y + w.height - band;
+  const double x_low = (left - view.origin.x()) / view.scale, x_high = (right - view.origin.x()) / view.scale;
+  const double y_low = (view.origin.y() - bottom) / view.scale, y_high = (view.origin.y() - top) / view.scale;
+  const double under = w.y + w.height + kOff, beside = w.x - kOff;
+  const auto line = [&](const Point& a, const Point& b) {
+    list.add({{a, kLine, colours.ink}, {b, kLine, colours.ink}}, Cap::butt);
+  };
+  const auto write = [&](const std::string& text, const Point& at, double align) {
+    const Formula f = formula(text, kType, colours.ink);
+    add(f, {at.x() - align * f.width, at.y()}, list);
+    return f.width;
+  };
+  const auto number = [](double x) { return fmt::format("{:g}", std::abs(x) < 1e-9 ? 0.0 : x); };
+
+  line({left, under}, {right, under});
+  const double base = under + kTick + 7.5 * kPoint;
+  const double name = write("x / \"m\"", {right, base}, 1);
+  for (const double x : ticks(x_low, x_high, int((right - left) / kFar))) {
+    const double at = view.page({x, 0, 0}).x();
+    line({at, under}, {at, under + kTick});
+    if (at < right - name - 6 * kPoint) write(number(x), {at, base}, 0.5);
+  }
+  line({beside, top}, {beside, bottom});
+  write("y / \"m\"", {beside - kTick - 1.5 * kPoint, top + 0.5 * kType}, 1);
+  for (const double y : ticks(y_low, y_high, int((bottom - top) / kNear))) {
+    const double at = view.page({0, y, 0}).y();
+    line({beside, at}, {beside - kTick, at});
+    if (at > top + 1.4 * kType) write(number(y), {beside - kTick - 1.5 * kPoint, at + 0.24 * kType}, 1);
+  }
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "draw/page/measure.h"
+#include "draw/page/plot.h"
+#include "draw/picture/list.h"
+#include "draw/picture/theme.h"
+
+namespace obscura::draw {
+
+/// What a film's picture shows of its run over time, in step with it.
+struct Chart : Measured {
+  enum class Place { below, right };  // of the picture
+  Place place = Place::below;
+  double share = 0.3;  // of the picture's height, or width
+};
+
+/// The charts of a run on the page of its film: axes of the whole run, and on them what has happened up to
+/// now.
+class Charts {
+ public:
+  Charts() = default;
+  /// `plots`: one a chart, of a run of `seconds`, which the axes span. `aspect`: of the page.
+  Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
+         double aspect, double seconds);
+
+  bool empty() const { return panels_.empty(); }
+  /// How much of the page they take, page units.
+  double right() const { return right_; }
+  double below() const { return below_; }
+
+  /// Axes, ticks and names: what stands still.
+  void draw_still(List& list) const;
+  /// The lines up to `now`, and where they are now.
+  void draw_lines(const sim::Snapshot& now, List& list) const;
+
+ private:
+  struct Panel {
+    Chart chart;
+    Plot plot;
+    PlotArea area;
+  };
+  std::vector<Panel> panels_;
+  Palette colours_;
+  double right_ = 0, below_ = 0;
+};
+
+}  // namespace obscura::draw

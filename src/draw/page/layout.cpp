@@ -1,0 +1,237 @@
+// The page. In units of weight, from the top: caption (baseline 50, of its second line 84), band of the
+// hatching, room, band, margin. A room that is too wide to fill the height is centred with its caption.
+
+#include "draw/page/layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "draw/picture/type.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kTitle = 34, kSubtitle = 26.5, kClock = 28.5;   // em
+constexpr double kStrip = 76, kSecondLine = 36, kBaseline = 50;  // heights
+constexpr double kMargin = 36, kTitleGap = 18, kClockGap = 44;
+constexpr double kSmallestType = 0.82;  // before the caption takes another line
+
+}  // namespace
+
+Fitted fitted_world(const sim::Cast& cast, const Extent& extent) {
+  Fitted f{false, extent.low.cwiseMin(extent.high), extent.low.cwiseMax(extent.high)};
+  const double reach = 1e4 * std::max({cast.scale, (f.high - f.low).norm(), 1e-9});
+  const Point about = ((f.low + f.high) / 2).head<2>();
+  Convex room = border({about.x() - reach, about.y() - reach, 2 * reach, 2 * reach});
+  for (std::size_t i = 0; i < cast.walls.size(); ++i) {
+    room = cut(room, {cast.walls[i].point.head<2>(), cast.walls[i].normal.head<2>()}, int(i));
+  }
+  if (room.closed()) {
+    f.closed = true;
+    f.low.head<2>() = f.high.head<2>() = room.corners[0].at;
+    for (const Convex::Corner& c : room.corners) {
+      f.low.head<2>() = f.low.head<2>().cwiseMin(c.at);
+      f.high.head<2>() = f.high.head<2>().cwiseMax(c.at);
+    }
+    return f;
+  }
+
+  // a picture without a ground says less: take in walls that are not farther than the extent is wide
+  const double near = std::max((f.high - f.low).head<2>().maxCoeff(), 0.25 * cast.scale);
+  for (const sim::Cast::Wall& wall : cast.walls) {
+    const sim::Vec3 center = (f.low + f.high) / 2;
+    const double distance = (center - wall.point).dot(wall.normal);
+    if (distance <= 0 || distance > 1.5 * near) continue;
+    const sim::Vec3 foot = center - distance * wall.normal;
+    f.low = f.low.cwiseMin(foot);
+    f.high = f.high.cwiseMax(foot);
+  }
+  // one body at rest is not looked at with a microscope
+  const double least = 0.25 * cast.scale;
+  for (int i = 0; i < 2; ++i) {
+    const double missing = least - (f.high[i] - f.low[i]);
+    if (missing > 0) f.low[i] -= missing / 2, f.high[i] += missing / 2;
+  }
+  return f;
+}
+
+namespace {
+
+/// How the caption's words are set: their size, and in how many lines.
+struct Setting {
+  double size = 1;
+  int lines = 1;
+  double span = 0;  // width they take
+};
+
+Setting set_words(const Look& look, double weight, double room, double page) {
+  const double title = width_of(look.title, Face::bold, kTitle * weight);
+  const double subtitle = width_of(look.subtitle, Face::medium, kSubtitle * weight);
+  const double clock = look.clock ? width_of(clock_text(88.88), Face::medium, kClock * weight, true) : 0;
+  const double gap = weight * kClockGap;
+  const double top = title + (title > 0 && clock > 0 ? gap : 0) + clock;
+  const double all =
+      subtitle > 0 ? top + subtitle + weight * kTitleGap + (title > 0 || clock == 0 ? 0 : gap) : top;
+
+  // one line within the room's width; else the subtitle under the title; a narrow room's caption reaches
+  // beyond it
+  if (all * kSmallestType <= room) return {std::min(1.0, room / all), 1, room};
+  const int lines = subtitle > 0 && top > 0 ? 2 : 1;
+  const double longest = lines == 2 ? std::max(top, subtitle) : all;
+  const double span = std::min(page, std::max(room, longest));
+  return {std::clamp(span / longest, kSmallestType, 1.0), lines, span};
+}
+
+void write_caption(Layout& layout, const Look& look, const Palette& colours, const Setting& setting,
+                   double left, double right, double top) {
+  const double unit = layout.weight * setting.size;
+  const double baseline = top + layout.weight * kBaseline;
+  const double below = baseline + layout.weight * kSecondLine;
+  const double span = right - left;
+
+  double clock = 0;
+  if (look.clock) {
+    clock = width_of(clock_text(88.88), Face::medium, kClock * unit, true) + kClockGap * unit;
+    layout.clock = {
+        {right, baseline},
+        Align::right,
+        {{.text = "", .face = Face::medium, .size = kClock * unit, .color = colours.ink, .tabular = true}}};
+  }
+
+  const std::string title = fitted(look.title, Face::bold, kTitle * unit, span - clock);
+  if (!title.empty()) {
+    layout.words.push_back(
+        {{left, baseline},
+         Align::left,
+         {{.text = title, .face = Face::bold, .size = kTitle * unit, .color = colours.ink}}});
+  }
+  if (look.subtitle.empty()) return;
+  const Span quiet{
+      .text = look.subtitle, .face = Face::medium, .size = kSubtitle * unit, .color = colours.quiet};
+  const bool beside = setting.lines == 1;
+  const double taken = title.empty() ? 0 : width_of(title, Face::bold, kTitle * unit) + kTitleGap * unit;
+  Text line{beside ? Point{left + taken, baseline} : Point{left, below}, Align::left, {quiet}};
+  line.spans[0].text = fitted(look.subtitle, Face::medium, quiet.size, beside ? span - clock - taken : span);
+  if (!line.spans[0].text.empty()) layout.words.push_back(line);
+}
+
+}  // namespace
+
+double width_of(const std::string& words, Face face, double size, bool tabular) {
+  if (words.empty()) return 0;
+  return shape({{0, 0}, Align::left, {{.text = words, .face = face, .size = size, .tabular = tabular}}})
+      .width;
+}
+
+std::string clock_text(double time) {
+  return fmt::format("t = {:.2f} s", std::abs(time) < 0.005 ? 0.0 : time);
+}
+
+std::vector<HalfPlane> half_planes(const sim::Cast& cast, const View& view) {
+  std::vector<HalfPlane> halves;
+  halves.reserve(cast.walls.size());
+  for (const sim::Cast::Wall& wall : cast.walls) {
+    halves.push_back({view.page(wall.point), Point(wall.normal.x(), -wall.normal.y()).normalized()});
+  }
+  return halves;
+}
+
+bool outside(const Rect& r, const Point& p, double reach) {
+  return p.x() + reach < r.x || p.x() - reach > r.x + r.width || p.y() + reach < r.y ||
+         p.y() - reach > r.y + r.height;
+}
+
+std::string fitted(const std::string& words, Face face, double size, double width) {
+  if (words.empty() || width_of(words, face, size) <= width) return words;
+  // the ends of its characters
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 1; i <= words.size(); ++i) {
+    if (i == words.size() || (static_cast<unsigned char>(words[i]) & 0xC0) != 0x80) ends.push_back(i);
+  }
+  auto with_ellipsis = [&](std::size_t characters) {
+    std::size_t end = characters == 0 ? 0 : ends[characters - 1];
+    while (end > 0 && (words[end - 1] == ' ' || words[end - 1] == ',')) --end;
+    return words.substr(0, end) + "…";
+  };
+  std::size_t low = 0, high = ends.size();
+  while (low < high) {
+    const std::size_t half = (low + high + 1) / 2;
+    if (width_of(with_ellipsis(half), face, size) <= width)
+      low = half;
+    else
+      high = half - 1;
+  }
+  return low == 0 ? std::string() : with_ellipsis(low);
+}
+
+double lay_caption(Layout& layout, const Look& look) {
+  const double w = layout.weight;
+  layout.caption = look.caption && (look.clock || !look.title.empty() || !look.subtitle.empty());
+  if (!layout.caption) return 0;
+  const double page = layout.width - 2 * std::max(w * kMargin, 0.045 * layout.width);
+  const Setting setting = set_words(look, w, page, page);
+  write_caption(layout, look, palette(look.theme), setting, (layout.width - page) / 2,
+                (layout.width + page) / 2, 0);
+  return w * (kStrip + (setting.lines - 1) * kSecondLine);
+}
+
+Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
+               double aspect, double right, double below) {
+  Layout layout;
+  layout.width = 1080 * aspect;
+  layout.aspect = layout.width / 1080;
+  layout.weight = std::min(1.0, std::sqrt(layout.width / 1440));
+  layout.width -= right, layout.height -= below;
+  const double w = layout.weight;
+  const Fitted world = fitted_world(cast, extent);
+  layout.closed = world.closed;
+  layout.center = (world.low + world.high) / 2;
+  layout.caption = look.caption && (look.clock || !look.title.empty() || !look.subtitle.empty());
+
+  // the largest scale at which the world fits under a strip of this height
+  const double band = cast.walls.empty() ? 0 : w * (look.hatching ? kBand : kWallLine);
+  const double around = w * kMargin + band;
+  const Point size = (world.high - world.low).head<2>();
+  auto scale = [&](double strip) {
+    const double wide = std::max(1.0, layout.width - 2 * around),
+                 high = std::max(1.0, layout.height - strip - band - around);
+    return std::min(wide / size.x(), high / size.y());
+  };
+
+  // the caption's lines depend on the room's width, which depends on the strip's height
+  double strip = w * kMargin;
+  Setting setting;
+  const double page = layout.width - 2 * std::max(w * kMargin, 0.045 * layout.width);
+  if (layout.caption) {
+    auto room = [&] { return world.closed ? scale(strip) * size.x() + 2 * w * kWallLine : page; };
+    strip = w * kStrip;
+    setting = set_words(look, w, room(), page);
+    if (setting.lines == 2) {
+      strip += w * kSecondLine;
+      setting = set_words(look, w, room(), page);
+      setting.lines = 2;
+    }
+  }
+  layout.scale = scale(strip);
+
+  // what height is left over goes above and below alike; a camera that moves, or a world without an end,
+  // keeps the caption at the top
+  const double spare = layout.height - strip - 2 * band - w * kMargin - layout.scale * size.y();
+  const bool still = camera.keys.empty() && !camera.follow;
+  const double above = world.closed && still ? spare / 2 : 0;
+  layout.clipped = !(world.closed && still);
+  const double top = layout.caption ? strip + above - 0.12 * w * kStrip : 0;
+  layout.window = {0, top, layout.width, layout.height - top};
+  layout.middle = {layout.width / 2, strip + spare / 2 + band + layout.scale * size.y() / 2};
+
+  if (layout.caption) {
+    const double half = setting.span / 2;
+    write_caption(layout, look, palette(look.theme), setting, layout.width / 2 - half,
+                  layout.width / 2 + half, above);
+  }
+  return layout;
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "draw/picture/convex.h"
+#include "draw/picture/theme.h"
+#include "draw/picture/view.h"
+
+namespace obscura::draw {
+
+/// Where things lie on the page, once for a whole run: the caption strip, the window below it that shows the
+/// world, and how large the world is where the camera fits it.
+struct Layout {
+  double width = 1920;            // of the page, less what charts take of it
+  double height = 1080;           // the same; a sheet's is another, see draw/page/sheet.h
+  double aspect = 1920 / 1080.0;  // of the page, width over height
+  double weight = 1;              // of lines and type: 1 on a landscape page, less where the page is narrow
+  Rect window;                    // shows the world
+  bool clipped = false;           // the world may reach over the window's edge
+  double scale = 1;               // page units a metre, where the camera fits
+  Point middle;                   // where the centre of what is fitted lies
+  sim::Vec3 center = sim::Vec3::Zero();  // and which place of the world it is
+  bool closed = false;                   // the walls close
+  bool caption = false;
+  std::vector<Text> words;  // title and subtitle
+  Text clock;               // its span's text is the instant's
+};
+
+/// What is fitted: the room where its walls close, else the extent, and the ground near it.
+struct Fitted {
+  bool closed = false;
+  sim::Vec3 low, high;
+};
+Fitted fitted_world(const sim::Cast& cast, const Extent& extent);
+
+/// Lays the page out: the caption above, aligned to the room's edges, the room centred and as large as
+/// caption and hatching allow. Throws draw::Error where a font is missing.
+/// `right` and `below` are left free at those edges, page units.
+Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
+               double aspect, double right = 0, double below = 0);
+
+/// Writes the caption over a page without a room on it, and says how high its strip is.
+double lay_caption(Layout& layout, const Look& look);
+
+/// How wide words are set, page units; `tabular`: with figures of equal width.
+double width_of(const std::string& words, Face face, double size, bool tabular = false);
+
+/// "t = 3.42 s"
+std::string clock_text(double time);
+
+/// The walls as half planes of the page, as `view` shows them.
+std::vector<HalfPlane> half_planes(const sim::Cast& cast, const View& view);
+
+/// Nothing within `reach` of p lies in the rectangle.
+bool outside(const Rect& rect, const Point& p, double reach);
+
+/// As much of `words` as fits `width`, with an ellipsis where something is left out.
+std::string fitted(const std::string& words, Face face, double size, double width);
+
+}  // namespace obscura::draw

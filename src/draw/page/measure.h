@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "draw/page/plot.h"
+#include "sim/model/snapshot.h"
+
+namespace obscura::draw {
+
+/// A quantity of an instant that plots show over time.
+struct Measure {
+  std::string_view name;     // as a scene calls it
+  const char *label, *unit;  // what its line is called, as mathematics; of its values
+  std::string_view color;    // of the palette; empty: ink
+  bool of_body;              // else of all the room
+  double (*read)(const sim::Snapshot& now, int body);
+
+  /// Its value; `body` is the one that has it.
+  double at(const sim::Snapshot& now, int body) const;
+};
+
+/// The measure of a name; none where there is no such.
+const Measure* measure(std::string_view name);
+
+/// Which quantities a plot shows.
+struct Measured {
+  std::vector<std::string> quantities;
+  int body = -1;  // who has them, where it is not all the room
+
+  std::vector<const Measure*> measures() const;
+};
+
+/// A plot of them before anything is measured: lines with names and colours, and the unit that all share.
+Plot empty_plot(const Measured& measured, const Palette& colours);
+
+}  // namespace obscura::draw

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "draw/page/layout.h"
+#include "draw/picture/formula.h"
+
+namespace obscura::draw {
+
+/// Finds room for words: beside what they name, over no line and no other word where that can be; with a
+/// leader line where they must stand farther off.
+class Placing {
+ public:
+  explicit Placing(const Rect& page) : page_(page) {}
+
+  /// What words should not lie on; a heavier line is avoided more.
+  void avoid(const Point& a, const Point& b, double weight);
+  void avoid(const Rect& rect) { taken_.push_back(rect); }
+
+  /// A place for a label, and how good: candidates are tried from the first on.
+  struct Candidate {
+    Point center;
+    double cost = 0;  // of its own: how far from what is usual
+    bool leader = false;
+  };
+  /// The centre of a label of `size` that lies best; it is taken from then on.
+  Candidate place(const Point& size, const std::vector<Candidate>& candidates);
+
+  /// Places around a point, and farther off with a leader; beside an arrow.
+  static std::vector<Candidate> around(const Point& at, double gap, const Point& size, double unit);
+  static std::vector<Candidate> along(const Point& tail, const Point& tip, double gap, const Point& size,
+                                      double unit);
+
+ private:
+  double cost(const Rect& rect) const;
+
+  struct Line {
+    Point a, b;
+    double weight;
+  };
+  Rect page_;
+  std::vector<Line> lines_;
+  std::vector<Rect> taken_;
+};
+
+}  // namespace obscura::draw

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "draw/picture/list.h"
+
+namespace obscura::draw {
+
+/// What has (p - point) . normal >= 0.
+struct HalfPlane {
+  Point point;
+  Point normal;  // unit
+};
+
+/// A convex polygon whose edges know what they belong to.
+struct Convex {
+  struct Corner {
+    Point at;
+    int side = -1;  // whose the edge from here to the next corner is; -1: the border it was cut from
+  };
+  std::vector<Corner> corners;
+
+  bool empty() const { return corners.size() < 3; }
+  /// No edge is of the border.
+  bool closed() const;
+  std::vector<Point> outline() const;
+};
+
+/// A rectangle, of border edges.
+Convex border(const Rect& rect);
+
+/// What of `shape` lies in `half`; the new edge belongs to `side`.
+Convex cut(const Convex& shape, const HalfPlane& half, int side = -1);
+
+/// Moved inwards by `distance` (negative: outwards).
+HalfPlane moved(const HalfPlane& half, double distance);
+
+}  // namespace obscura::draw

@@ -1,0 +1,116 @@
+#include "draw/picture/list.h"
+
+#include "draw/picture/solids.h"
+
+namespace obscura::draw {
+
+void List::mark(Kind kind, int end) {
+  if (!batches.empty() && batches.back().kind == kind && batches.back().clip == clip_) {
+    batches.back().end = end;
+  } else {
+    batches.push_back({kind, end - 1, end, clip_});
+  }
+}
+
+void List::add(const Disc& disc) {
+  discs.push_back(disc);
+  mark(Kind::disc, int(discs.size()));
+}
+
+void List::add(const Box& box) {
+  boxes.push_back(box);
+  mark(Kind::box, int(boxes.size()));
+}
+
+void List::add(const Text& text) {
+  texts.push_back(text);
+  mark(Kind::text, int(texts.size()));
+}
+
+void List::add(const std::vector<Node>& line, Cap cap, Blend blend, bool closed) {
+  if (line.size() < 2) return;
+  const int begin = int(nodes.size());
+  nodes.insert(nodes.end(), line.begin(), line.end());
+  strokes.push_back({begin, int(nodes.size()), closed, cap, blend});
+  mark(Kind::stroke, int(strokes.size()));
+}
+
+void List::add(const std::vector<Point>& outline, Color fill) {
+  if (outline.size() < 3) return;
+  const int begin = int(points.size());
+  points.insert(points.end(), outline.begin(), outline.end());
+  polygons.push_back({begin, int(points.size()), fill});
+  mark(Kind::polygon, int(polygons.size()));
+}
+
+void List::clip(const Rect& rect) {
+  clips.push_back(rect);
+  clip_ = int(clips.size()) - 1;
+}
+
+void List::unclip() { clip_ = -1; }
+
+void List::add(const List& list, double k, const Point& at) {
+  const auto moved = [&](const Point& p) { return Point(at + k * p); };
+  for (const Batch& batch : list.batches) {
+    if (batch.clip >= 0) {
+      const Rect& r = list.clips[std::size_t(batch.clip)];
+      clip({at.x() + k * r.x, at.y() + k * r.y, k * r.width, k * r.height});
+    } else {
+      unclip();
+    }
+    for (int i = batch.begin; i < batch.end; ++i) {
+      const auto n = std::size_t(i);
+      switch (batch.kind) {
+        case Kind::disc: {
+          Disc disc = list.discs[n];
+          disc.center = moved(disc.center), disc.radius *= k, disc.line *= k;
+          add(disc);
+          break;
+        }
+        case Kind::box: {
+          Box box = list.boxes[n];
+          box.center = moved(box.center), box.half *= k, box.line *= k, box.axis *= k, box.axis_line *= k;
+          add(box);
+          break;
+        }
+        case Kind::stroke: {
+          const Stroke& stroke = list.strokes[n];
+          std::vector<Node> line(list.nodes.begin() + stroke.begin, list.nodes.begin() + stroke.end);
+          for (Node& node : line) node.at = moved(node.at), node.width *= k;
+          add(line, stroke.cap, stroke.blend, stroke.closed);
+          break;
+        }
+        case Kind::polygon: {
+          const Polygon& polygon = list.polygons[n];
+          std::vector<Point> outline(list.points.begin() + polygon.begin, list.points.begin() + polygon.end);
+          for (Point& p : outline) p = moved(p);
+          add(outline, polygon.fill);
+          break;
+        }
+        case Kind::text: {
+          Text text = list.texts[n];
+          text.at = moved(text.at);
+          for (Span& span : text.spans) span.size *= k, span.rise *= k, span.lead *= k;
+          add(text);
+          break;
+        }
+      }
+    }
+  }
+  unclip();
+}
+
+Solids placed(Solids solids, double k, const Point& at) {
+  const auto moved = [&](const Point& p) { return Point(at + k * p); };
+  const Rect& w = solids.window;
+  solids.window = {at.x() + k * w.x, at.y() + k * w.y, k * w.width, k * w.height};
+  for (Solids::Vertex& v : solids.vertices) {
+    v.at[0] = float(k * v.at[0] + at.x() * v.at[3]);
+    v.at[1] = float(k * v.at[1] + at.y() * v.at[3]);
+  }
+  for (Point& p : solids.points) p = moved(p);
+  return solids;
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,149 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "draw/picture/color.h"
+
+namespace obscura::draw {
+
+// The picture as data. Coordinates are page units: one unit is 1/1080 of the picture's height, x to the right
+// from the left edge, y down from the top edge. Depict has put the world through the camera already, so that
+// GL and Cairo only put down what is here, in this order.
+
+using Point = Eigen::Vector2d;
+
+/// A disc with an outline drawn inside its rim.
+struct Disc {
+  Point center;
+  double radius = 0;  // to the outer rim
+  double line = 0;    // outline width, 0: none
+  Color fill{}, outline{};
+};
+
+/// A rectangle turned about its centre, with an outline drawn inside its edges, and the two axes of its own
+/// frame, which leave its centre of mass in a dot three times as wide as they are.
+struct Box {
+  Point center;
+  Point x_axis;          // unit, page frame: the body's x
+  Point half;            // to the outer edges
+  double line = 0;       // outline width
+  double axis = 0;       // length of the frame's two axes, 0: none
+  double axis_line = 0;  // their width
+  Color fill{}, outline{}, axis_color{};
+};
+
+/// A vertex of a stroke.
+struct Node {
+  Point at;
+  double width = 1;
+  Color color{};
+};
+
+enum class Cap : std::uint8_t { butt, round };
+enum class Blend : std::uint8_t {
+  over,  // alpha over
+  // Per-channel minimum, maximum with what lies below: overlapping pieces leave no beads. A colour's alpha
+  // says how far it is from Picture::ground; in a transparent picture, the most opaque wins.
+  darken,
+  lighten,
+};
+
+/// An open or closed line through nodes [begin, end) of List::nodes, width and colour linear in between,
+/// joints mitred.
+struct Stroke {
+  int begin = 0, end = 0;
+  bool closed = false;
+  Cap cap = Cap::round;
+  Blend blend = Blend::over;
+};
+
+/// A filled polygon through points [begin, end) of List::points, star-shaped about its first point's
+/// neighbourhood (arrow heads, pointers, wall grounds): every point is visible from their mean.
+struct Polygon {
+  int begin = 0, end = 0;
+  Color fill{};
+};
+
+enum class Face : std::uint8_t { regular, medium, bold, math, math_italic, math_bold_italic };
+enum class Align : std::uint8_t { left, center, right };
+
+/// A piece of a line of type in one face.
+struct Span {
+  std::string text;  // UTF-8
+  Face face = Face::regular;
+  double size = 24;  // em, page units
+  Color color{};
+  double rise = 0;       // page units up from the baseline
+  double lead = 0;       // space before it, page units
+  bool tabular = false;  // figures of equal width
+};
+
+/// A line of type on a baseline.
+struct Text {
+  Point at;
+  Align align = Align::left;
+  std::vector<Span> spans;
+};
+
+enum class Kind : std::uint8_t { disc, box, stroke, polygon, text };
+
+/// Consecutive things of one kind: what is drawn in one go.
+struct Batch {
+  Kind kind;
+  int begin = 0, end = 0;  // into the list of that kind
+  int clip = -1;           // index into List::clips, -1: the page
+};
+
+struct Rect {
+  double x = 0, y = 0, width = 0, height = 0;  // page units
+};
+
+struct List {
+  std::vector<Batch> batches;  // in painter's order
+  std::vector<Disc> discs;
+  std::vector<Box> boxes;
+  std::vector<Stroke> strokes;
+  std::vector<Polygon> polygons;
+  std::vector<Text> texts;
+  std::vector<Node> nodes;
+  std::vector<Point> points;
+  std::vector<Rect> clips;
+
+  void add(const Disc& disc);
+  void add(const Box& box);
+  void add(const Text& text);
+  /// A stroke through `line`.
+  void add(const std::vector<Node>& line, Cap cap = Cap::round, Blend blend = Blend::over,
+           bool closed = false);
+  /// A filled polygon.
+  void add(const std::vector<Point>& outline, Color fill);
+  /// What follows is clipped to `rect` until the next call of clip or unclip.
+  void clip(const Rect& rect);
+  void unclip();
+  /// Another list on top of this one: each of its lengths times `scale`, its origin at `at`.
+  void add(const List& list, double scale, const Point& at);
+
+ private:
+  int clip_ = -1;
+  void mark(Kind kind, int end);
+};
+
+struct Solids;
+
+/// One frame: a ground, what stands still (shared by all frames that have it, so that it is drawn once), what
+/// is drawn by depth in space, what moves.
+struct Picture {
+  double aspect = 16.0 / 9;  // width over height
+  Color ground;
+  bool transparent = false;  // leave the ground out
+  std::shared_ptr<const List> still;
+  std::vector<std::shared_ptr<const Solids>> solids;  // one a panel
+  List moving;
+};
+
+}  // namespace obscura::draw

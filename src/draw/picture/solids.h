@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "draw/picture/color.h"
+#include "draw/picture/list.h"
+
+namespace obscura::draw {
+
+// What is drawn by depth, as one camera sees it: triangles that hide each other, each with the colour that it
+// has in the light and the one in shadow; what casts shadows, as the light sees it; and the shadows on the
+// ground, already on the page. Edges, trails and arrows are no part of it: depict has found which of them is
+// seen, and they are strokes of the list that is drawn after.
+
+/// How many rays stand for the light: a shadow's edge has so many steps.
+inline constexpr int kRays = 32;
+
+/// Texels a side of the map in which the light sees what casts shadows on bodies.
+inline constexpr int kMap = 1024;
+
+struct Solids {
+  struct Vertex {
+    std::array<float, 4> at;  // (x w, y w, z w, w): page units, z from 0 at the farthest to 1
+    Color lit, shaded;        // opaque
+    std::array<float, 3>
+        light;  // where the light sees it: 0 to 1 over Solids' shadow map, the third away from it
+    std::array<float, 2> slope;  // how the third grows with the first and second along the surface
+  };
+  /// A convex shadow on the ground that some of the light's rays draw.
+  struct Shade {
+    int begin = 0, end = 0;  // into points
+    std::uint32_t rays = 0;  // one bit a ray
+  };
+
+  Rect window;
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> triangles;       // that nothing can throw a shadow on
+  std::vector<std::uint32_t> shadowed;        // that something may
+  std::vector<std::array<float, 3>> casters;  // triangles turned away from the light, as `light` of a vertex
+  std::vector<Shade> shades;
+  std::vector<Point> points;  // page units
+  Color shade{0, 0, 0, 0};    // laid over the ground where no ray reaches it
+};
+
+/// The same on a larger page: each of its lengths times `scale`, its origin at `at`.
+Solids placed(Solids solids, double scale, const Point& at);
+
+}  // namespace obscura::draw

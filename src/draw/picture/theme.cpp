@@ -1,0 +1,57 @@
+#include "draw/picture/theme.h"
+
+#include <array>
+
+namespace obscura::draw {
+
+namespace {
+
+constexpr Color kWhite{0xFF, 0xFF, 0xFF}, kBlack{0, 0, 0};
+
+}  // namespace
+
+Palette palette(Theme theme) {
+  const Color green = *color("green");
+  if (theme == Theme::paper) {
+    return {.ground = kWhite,
+            .room = kWhite,
+            .ink = {0x1F, 0x23, 0x28},
+            .wall = {0x1F, 0x23, 0x28},
+            .quiet = {0x66, 0x6F, 0x78},
+            .spring = {0x4A, 0x51, 0x59},
+            .way = {0x88, 0x8E, 0x95},
+            .hatch = {0x8B, 0x94, 0x9E},
+            .velocity = green,
+            .force = *color("vermilion")};
+  }
+  return {.ground = {0x0E, 0x13, 0x18},
+          .room = {0x13, 0x1A, 0x21},
+          .ink = {0xE8, 0xED, 0xF2},
+          .wall = {0xD7, 0xDE, 0xE5},
+          .quiet = {0x8A, 0x97, 0xA4},
+          .spring = {0xB3, 0xBD, 0xC7},
+          .way = {0x72, 0x7E, 0x8A},
+          .hatch = {0x5A, 0x67, 0x74},
+          // lighter, to be seen on a green body
+          .velocity = mix(green, kWhite, 0.4),
+          .force = mix(*color("vermilion"), kWhite, 0.25)};
+}
+
+Paint paint(Color own, Theme theme) {
+  if (theme == Theme::paper) {
+    const Color dark = mix(own, kBlack, 0.3);
+    return {mix(own, kWhite, 0.62), dark, dark, mix(kWhite, own, 0.52)};
+  }
+  // axes darker than the fill: lighter ones were too faint
+  return {own, mix(own, kWhite, 0.25), mix(own, kBlack, 0.6), mix(palette(theme).room, own, 0.72)};
+}
+
+Color turn(int index) {
+  static const std::array<Color, 6> order{*color("sky"),    *color("orange"), *color("green"),
+                                          *color("purple"), *color("blue"),   *color("yellow")};
+  return order[std::size_t(index) % order.size()];
+}
+
+Color neutral(Theme theme) { return theme == Theme::paper ? *color("grey") : Color{0x9A, 0xA7, 0xB4}; }
+
+}  // namespace obscura::draw

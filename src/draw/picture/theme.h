@@ -1,0 +1,48 @@
+#pragma once
+
+#include "draw/picture/color.h"
+#include "draw/picture/look.h"
+
+namespace obscura::draw {
+
+/// The colours of a theme: two grounds, and inks from loud to quiet.
+struct Palette {
+  Color ground;  // of the page
+  Color room;    // of the room's inside: what trails fade into and halos are made of
+  Color ink;     // title, time, pointer
+  Color wall;
+  Color quiet;  // subtitle
+  Color spring;
+  Color way;  // the hand's dotted path
+  Color hatch;
+  Color velocity;  // arrows of velocity
+  Color force;     // and of forces
+};
+
+/// The colours of one body.
+struct Paint {
+  Color fill, outline, axis, trail;
+};
+
+/// Weights in page units at the weight 1 of a landscape page (layout.h), as in print on a slide.
+inline constexpr double kWallLine = 3.2, kOutline = 2.8, kAxisLine = 2.4, kSpringLine = 3.2,
+                        kThinSpring = 2.2, kNetLine = 2.0, kArrowLine = 4.0, kHatchLine = 1.6, kRod = 5.2,
+                        kRope = 2.4, kTrailLine = 6.4;
+inline constexpr double kHatchStep = 14,
+                        kBand = 24;  // along an upright wall; from the wall to the band's edge
+inline constexpr double kDot = 8, kJoint = 5,
+                        kPin = 7;  // radius of a point, of where a spring is made fast, of a pin
+
+/// The colours of the paper or of the screen.
+Palette palette(Theme theme);
+
+/// Fill, outline, axes and trail of a body of this colour.
+Paint paint(Color color, Theme theme);
+
+/// The colours that bodies without one take in turn. Vermilion is left to forces.
+Color turn(int index);
+
+/// The grey of what is not a body to look at: a net's knots, what is held fast.
+Color neutral(Theme theme);
+
+}  // namespace obscura::draw

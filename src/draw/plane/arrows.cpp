@@ -1,0 +1,103 @@
+// An arrow: a shaft of even width and a head with swept barbs, all heads of one size; an arrow shorter than
+// its head shrinks as a whole. One that would leave the window has its head at the edge.
+
+#include <algorithm>
+#include <cmath>
+
+#include "draw/plane/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kHead = 24, kHeadHalf = 8.6, kNotch = 17;  // tip to barbs, half across, tip to notch
+constexpr double kHalo = 2.4;
+constexpr double kWhole = 1.5;  // heads long: from here on the head is full
+constexpr double kEdge = 8;     // page units from a window's edge to a head
+
+/// The head, larger by `halo` all around.
+std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
+  const Point u = (arrow.tip - arrow.tail).normalized(), v(-u.y(), u.x());
+  const double g = arrow.grow * weight, slant = halo * kHead / kHeadHalf;
+  const double tip = std::min(slant, 2.2 * halo), back = kHead * g + halo, side = kHeadHalf * g + halo;
+  return {arrow.tip + u * tip, arrow.tip - u * back + v * side, arrow.tip - u * (kNotch * g + halo),
+          arrow.tip - u * back - v * side};
+}
+
+}  // namespace
+
+void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows) {
+  // how much of its way lies in the window, if it begins there
+  const Point low = Point(window.x, window.y).array() + kEdge * weight;
+  const Point high = Point(window.x + window.width, window.y + window.height).array() - kEdge * weight;
+  if ((tail.array() >= low.array()).all() && (tail.array() <= high.array()).all()) {
+    double part = 1;
+    for (int i = 0; i < 2; ++i) {
+      const double edge = tip[i] < tail[i] ? low[i] : high[i];
+      if (std::abs(tip[i] - tail[i]) > std::abs(edge - tail[i]))
+        part = std::min(part, (edge - tail[i]) / (tip[i] - tail[i]));
+    }
+    tip = tail + part * (tip - tail);
+  }
+  const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
+  if (grow > 0.2) arrows.push_back({tail, tip, grow});
+}
+
+// one kind after another: few batches
+void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list) {
+  auto shaft = [&](const Arrow& a, double halo, Color ink) {
+    const Point u = (a.tip - a.tail).normalized();
+    const double width = kArrowLine * weight * a.grow + 2 * halo;
+    list.add({{a.tail, width, ink}, {a.tip - u * (kNotch - 1) * weight * a.grow, width, ink}}, Cap::butt);
+  };
+  for (const Arrow& a : arrows) shaft(a, kHalo * weight * a.grow, room);
+  for (const Arrow& a : arrows) list.add(head(a, weight, kHalo * weight * a.grow), room);
+  for (const Arrow& a : arrows) shaft(a, 0, color);
+  for (const Arrow& a : arrows) list.add(head(a, weight, 0), color);
+}
+
+void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  std::vector<Arrow> arrows;
+  for (int i : stage.arrows) {
+    const sim::Snapshot::Body& body = now.bodies[i];
+    offer(view.page(body.position), view.page(body.position + stage.look.velocity_scale * body.velocity),
+          view.window, stage.layout.weight, arrows);
+  }
+  draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.velocity, list);
+}
+
+std::vector<Push> pushes(const sim::Cast& cast, const Look& look, const sim::Snapshot& now) {
+  std::vector<Push> found;
+  const auto wanted = [&](int body) { return body < int(look.bodies.size()) && look.bodies[body].contact; };
+  const sim::Vec3 up = cast.gravity.norm() > 0 ? sim::Vec3(-cast.gravity) : sim::Vec3::UnitY();
+  for (std::size_t i = 0; i < now.contacts.size();) {
+    // all that one gives to another, and where it acts: corners that press harder count for more
+    const sim::Snapshot::Contact& first = now.contacts[i];
+    sim::Vec3 force = sim::Vec3::Zero(), point = sim::Vec3::Zero();
+    double pressed = 0;
+    for (; i < now.contacts.size(); ++i) {
+      const sim::Snapshot::Contact& each = now.contacts[i];
+      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
+      const double weight = std::max(each.force.dot(each.normal), 0.0);
+      force += each.force, point += weight * each.point, pressed += weight;
+    }
+    const bool on_body = wanted(first.body);
+    const bool on_other = first.other >= 0 && wanted(first.other);
+    if ((!on_body && !on_other) || !(pressed > 0)) continue;
+    point /= pressed;
+    // of the two, the one that is carried
+    if (!on_body || (on_other && force.dot(up) < 0)) force = -force;
+    found.push_back({point, force});
+  }
+  return found;
+}
+
+void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  std::vector<Arrow> arrows;
+  for (const Push& push : pushes(stage.cast, stage.look, now)) {
+    offer(view.page(push.point), view.page(push.point + stage.force_scale * push.force), view.window,
+          stage.layout.weight, arrows);
+  }
+  draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.force, list);
+}
+
+}  // namespace obscura::draw

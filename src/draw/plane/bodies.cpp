@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <cmath>
+
+#include "draw/plane/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kLeast = 1.6;  // radius of what is too small to see
+
+/// How a ball that turns stands: a radius, as the axes of a box are.
+void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  const auto each = [&](auto&& mark) {
+    for (int i : stage.rounds) {
+      const double radius = view.scale * stage.cast.bodies[i].radius;
+      const Point center = view.page(now.bodies[i].position);
+      if (!stage.cast.bodies[i].turns || radius < 7 * weight || outside(view.window, center, radius))
+        continue;
+      const double width = std::min(kAxisLine * weight, 0.14 * radius);
+      mark(center, radius, width, now.bodies[i].angle, stage.paints[i].axis);
+    }
+  };
+  each([&](const Point& center, double radius, double width, double angle, Color color) {
+    const Point rim = center + (radius - width) * Point(std::cos(angle), -std::sin(angle));
+    list.add({{center, width, color}, {rim, width, color}}, Cap::butt);
+  });
+  each([&](const Point& center, double, double width, double, Color color) {
+    list.add(Disc{center, 1.5 * width, 0, color, color});
+  });
+}
+
+}  // namespace
+
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  list.boxes.reserve(stage.boxes.size());
+  for (int i : stage.boxes) {
+    const sim::Snapshot::Body& body = now.bodies[i];
+    const Point half = view.scale * stage.cast.bodies[i].half.head<2>();
+    const Point center = view.page(body.position);
+    if (outside(view.window, center, half.norm())) continue;
+    const double shorter = half.minCoeff();
+    Box box;
+    box.center = center;
+    box.x_axis = {std::cos(body.angle), -std::sin(body.angle)};
+    box.half = half.cwiseMax(0.8 * weight);
+    box.line = std::min(kOutline * weight, 0.35 * shorter);
+    if (stage.look.axes && !stage.cast.bodies[i].fixed && shorter > 18 * weight) {
+      box.axis = std::min(0.56 * shorter, 44 * weight);
+      box.axis_line = std::min(kAxisLine * weight, 0.16 * box.axis);
+    }
+    box.fill = stage.paints[i].fill;
+    box.outline = stage.paints[i].outline;
+    box.axis_color = stage.paints[i].axis;
+    list.add(box);
+  }
+}
+
+void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  list.discs.reserve(list.discs.size() + stage.rounds.size());
+  for (int i : stage.rounds) {
+    const Point center = view.page(now.bodies[i].position);
+    const double own = stage.dots[i] > 0 ? stage.dots[i] : view.scale * stage.cast.bodies[i].radius;
+    const double radius = std::max(own, kLeast * weight);
+    if (outside(view.window, center, radius)) continue;
+    const Paint& paint = stage.paints[i];
+    // small ones are all outline: a pale fill would be lost
+    if (radius < 3.2 * weight) {
+      list.add(Disc{center, radius, 0, paint.outline, paint.outline});
+    } else {
+      list.add(Disc{center, radius, std::min(kOutline * weight, 0.32 * radius), paint.fill, paint.outline});
+    }
+  }
+  if (stage.look.axes) mark_turns(stage, view, now, list);
+}
+
+}  // namespace obscura::draw

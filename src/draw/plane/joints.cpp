@@ -1,0 +1,127 @@
+// What joints look like. A rope that is longer than the way between its ends hangs in a parabola of its
+// length,
+//   p(u) = a + u (b - a) + 4 s u (1 - u) d        d  down, s  how far it sags
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "draw/plane/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kStop = 9;   // page units: half a rail's end
+constexpr int kPieces = 24;   // of a rope that sags
+constexpr double kFar = 1e4;  // page units: a rail without an end
+
+using sim::JointKind;
+
+Point hanging(const Point& a, const Point& b, const Point& down, double sag, double u) {
+  return a + u * (b - a) + 4 * sag * u * (1 - u) * down;
+}
+
+double length(const Point& a, const Point& b, const Point& down, double sag) {
+  double sum = 0;
+  for (int i = 0; i < kPieces; ++i)
+    sum += (hanging(a, b, down, sag, double(i + 1) / kPieces) - hanging(a, b, down, sag, double(i) / kPieces))
+               .norm();
+  return sum;
+}
+
+/// How far a rope of this length sags, by halves; all in page units.
+double sag(const Point& a, const Point& b, const Point& down, double rope) {
+  double low = 0, high = rope;
+  for (int i = 0; i < 40; ++i) {
+    const double half = (low + high) / 2;
+    (length(a, b, down, half) < rope ? low : high) = half;
+  }
+  return low;
+}
+
+/// Half the narrowest of the bodies at a joint, page units: what is drawn on them is not larger.
+double room_for(const Stage& stage, const View& view, const sim::Cast::Joint& joint) {
+  double least = 1e300;
+  for (int i : {joint.a, joint.b}) {
+    if (i < 0) continue;
+    const sim::Cast::Body& body = stage.cast.bodies[i];
+    if (body.kind == sim::ShapeKind::box) least = std::min(least, body.half.head<2>().minCoeff());
+    if (body.kind == sim::ShapeKind::ball) least = std::min(least, body.radius);
+  }
+  return view.scale * least;
+}
+
+}  // namespace
+
+void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const sim::Cast::Joint& joint = stage.cast.joints[i];
+    if (joint.kind != JointKind::slider || now.joints[i].broken) continue;
+    const double angle = joint.b < 0 ? 0 : now.bodies[joint.b].angle;
+    const double s = std::sin(angle), c = std::cos(angle);
+    const Point along(c * joint.axis.x() - s * joint.axis.y(), -(s * joint.axis.x() + c * joint.axis.y()));
+    const Point across(-along.y(), along.x()), home = view.page(now.joints[i].b);
+    const Color color = stage.colours.hatch;
+    const auto end = [&](double limit) { return std::clamp(limit * view.scale, -kFar, kFar); };
+    const Point from = home + end(joint.lower) * along, to = home + end(joint.upper) * along;
+    const double width = kSpringLine * weight;
+    list.add({{from, width, color}, {to, width, color}}, Cap::butt);
+    for (const auto& [limit, at] : {std::pair(joint.lower, from), std::pair(joint.upper, to)}) {
+      if (std::abs(limit) * view.scale >= kFar) continue;
+      const Point half = kStop * weight * across;
+      list.add({{at - half, width, color}, {at + half, width, color}}, Cap::butt);
+    }
+  }
+}
+
+void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  const Color color = stage.colours.spring;
+  Point down = Point(stage.cast.gravity.x(), -stage.cast.gravity.y());
+  down = down.norm() > 0 ? down.normalized() : Point(0, 1);
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const sim::Cast::Joint& joint = stage.cast.joints[i];
+    const bool rope = joint.kind == JointKind::rope;
+    if ((joint.kind != JointKind::rod && !rope) || now.joints[i].broken) continue;
+    const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
+    const double width = (rope ? kRope : kRod) * weight, whole = joint.length * view.scale;
+    nodes.clear();
+    if (rope && whole > (b - a).norm() + 0.05) {
+      const double s = sag(a, b, down, whole);
+      for (int k = 0; k <= kPieces; ++k)
+        nodes.push_back({hanging(a, b, down, s, double(k) / kPieces), width, color});
+    } else {
+      nodes = {{a, width, color}, {b, width, color}};
+    }
+    list.add(nodes, Cap::round);
+  }
+  // made fast to the room, or to a point of a body
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const sim::Cast::Joint& joint = stage.cast.joints[i];
+    if ((joint.kind != JointKind::rod && joint.kind != JointKind::rope) || now.joints[i].broken) continue;
+    for (const auto& [body, at] :
+         {std::pair(joint.a, now.joints[i].a), std::pair(joint.b, now.joints[i].b)}) {
+      const double radius = (body < 0 ? kPin : kJoint) * weight;
+      if (body < 0 || stage.solid(body)) list.add(Disc{view.page(at), radius, 0, color, color});
+    }
+  }
+}
+
+void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const sim::Cast::Joint& joint = stage.cast.joints[i];
+    if (joint.kind != JointKind::pin || now.joints[i].broken) continue;
+    const Point at = view.page(now.joints[i].a);
+    const double radius = std::max(std::min(kPin * weight, 0.7 * room_for(stage, view, joint)), 1.6 * weight);
+    if (outside(view.window, at, radius)) continue;
+    // a ring; filled where it is fast to the room
+    const bool fast = joint.b < 0;
+    const Color color = stage.colours.spring;
+    list.add(Disc{at, radius, 0.38 * radius, fast ? color : stage.colours.room, color});
+  }
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "draw/page/chart.h"
+#include "draw/page/layout.h"
+#include "draw/picture/theme.h"
+#include "draw/picture/view.h"
+#include "draw/plane/springs.h"
+
+namespace obscura::draw {
+
+/// What the pictures of one run have in common, and the layers they are made of.
+struct Stage {
+  sim::Cast cast;
+  Look look;
+  Camera camera;
+  Palette colours;
+  Layout layout;
+  Charts charts;
+  std::vector<Paint> paints;                      // one a body
+  std::vector<double> dots;                       // radius in page units of a body without one, 0 for others
+  std::vector<int> boxes, polygons, rounds;       // bodies by form; a compound is among the polygons
+  std::vector<std::vector<std::uint64_t>> seams;  // of each body's parts: bit e of part p is set where its
+                                                  // edge e lies within another part
+  std::vector<int> arrows;                        // bodies with velocity arrows
+  double force_scale = 0;                         // m/N
+  std::vector<Coil> coils;                        // one a spring; turns 0: a plain line
+  std::vector<Coil> hands;                        // one a mouse
+
+  Stage(const sim::Cast& cast, const Look& look, const Camera& camera, const Layout& layout,
+        const Charts& charts = {});
+
+  /// The looks of a body, also where the scene says nothing.
+  BodyLook looks(int body) const { return body < int(look.bodies.size()) ? look.bodies[body] : BodyLook{}; }
+
+  /// Whether a body has points of its own to be held at.
+  bool solid(int body) const { return body >= 0 && cast.bodies[body].turns; }
+};
+
+/// Of each part of a body, which of its edges lie within another part, see draw/plane/polygons.cpp.
+std::vector<std::uint64_t> seams_of(const sim::Cast::Body& body);
+
+using Ways = std::span<const std::shared_ptr<const sim::Track>>;
+
+/// The way of a body since `from` (s), up to now.
+std::vector<sim::Track::Point> way_of(int body, double from, const sim::Snapshot& now, Ways ways);
+
+/// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on
+/// one.
+std::vector<char> knots(const sim::Cast& cast);
+
+/// How long the arrow of a newton is, m.
+double newton(const sim::Cast& cast);
+
+/// More springs than these, nets apart, are drawn as lines.
+inline constexpr int kMany = 12;
+
+/// An arrow from `tail` to `tip` on the page.
+struct Arrow {
+  Point tail, tip;
+  double grow = 1;  // of its head and shaft
+};
+
+/// An arrow large enough to be seen. What begins in the window ends there.
+void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows);
+
+/// Halos of all below all arrows.
+void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list);
+
+/// A force where two touch: all that one gives to the other, at their centre of pressure.
+struct Push {
+  sim::Vec3 point, force;
+};
+
+/// The forces of contacts that the look asks for.
+std::vector<Push> pushes(const sim::Cast& cast, const Look& look, const sim::Snapshot& now);
+
+/// The pointer of a hand, its tip at `at`.
+void draw_pointer(const Point& at, double alpha, double weight, const Palette& colours, List& list);
+
+/// How strongly a hand is shown at a time: it appears before the press and leaves after the release.
+double shown(const sim::Cast::Mouse& mouse, double time);
+
+/// Where the hand is then, also before the press and after the release.
+sim::Vec3 pointer(const sim::Cast::Mouse& mouse, const sim::Snapshot::Mouse& now, double time);
+
+/// Hatching, room, walls, title: what stands still while the camera does.
+void draw_still(const Stage& stage, const View& view, List& list);
+
+void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now, Ways ways, List& list);
+
+/// Springs that no body with points of its own holds, drawn behind the bodies, or those that one does, in
+/// front of the boxes; with a dot where they are made fast.
+void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool solids, List& list);
+
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The words of bodies that have some, over all of them.
+void draw_labels(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The forces where bodies touch that have such arrows: one arrow for two that touch, at their centre of
+/// pressure, the force on the one that is pushed up.
+void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The rails of sliders, behind the bodies; rods and ropes, in front of boxes; pins, in front of all.
+void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The dotted paths of the mice, and, in front of everything, their springs and pointers.
+void draw_ways(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+}  // namespace obscura::draw

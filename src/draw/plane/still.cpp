@@ -1,0 +1,160 @@
+// The walls. The room is what of the page lies in every half plane; the band is what of the page lies in
+// every half plane moved outwards by its depth, less the room. A hatching line is a strip cut by the band's
+// outer border and, on either side of the room, by the wall where it meets it: all convex, all exact.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "draw/plane/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kBeyond = 80;  // page units: how far walls run on outside the window
+
+Convex cut_all(const Rect& rect, const std::vector<HalfPlane>& walls, double distance) {
+  Convex shape = border(rect);
+  for (std::size_t i = 0; i < walls.size() && !shape.empty(); ++i)
+    shape = cut(shape, moved(walls[i], distance), int(i));
+  return shape;
+}
+
+/// Along the hatching: at 45 degrees, unless a wall runs so too.
+Point hatch_direction(const std::vector<HalfPlane>& walls) {
+  constexpr std::array<double, 8> angles{45, 135, 60, 120, 30, 150, 90, 0};
+  Point best = {std::numbers::sqrt2 / 2, -std::numbers::sqrt2 / 2};
+  double widest = 0;
+  for (double angle : angles) {
+    const double a = angle * std::numbers::pi / 180;
+    const Point u(std::cos(a), -std::sin(a));
+    double least = 1;  // sine of the least angle with a wall
+    for (const HalfPlane& wall : walls) least = std::min(least, std::abs(u.dot(wall.normal)));
+    if (least > std::sin(20 * std::numbers::pi / 180)) return u;
+    if (least > widest) widest = least, best = u;
+  }
+  return best;
+}
+
+/// Where the line p + s u enters and leaves a convex shape: the distances, and the sides it meets.
+struct Chord {
+  double from = 0, to = 0;
+  int in = -1, out = -1;
+};
+
+std::optional<Chord> chord(const Convex& shape, const Point& p, const Point& u) {
+  const Point v(-u.y(), u.x());
+  std::optional<Chord> found;
+  const std::size_t n = shape.corners.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Convex::Corner& a = shape.corners[i];
+    const Point& b = shape.corners[(i + 1) % n].at;
+    const double d = (a.at - p).dot(v), e = (b - p).dot(v);
+    if ((d >= 0) == (e >= 0)) continue;
+    const double s = (a.at + (b - a.at) * (d / (d - e)) - p).dot(u);
+    if (!found) {
+      found = {s, s, a.side, a.side};
+    } else if (s < found->from) {
+      found->from = s, found->in = a.side;
+    } else {
+      found->to = s, found->out = a.side;
+    }
+  }
+  return found;
+}
+
+/// A sharp corner's band is cut off before it becomes a thorn.
+void blunt(Convex& band, const Convex& room, const std::vector<HalfPlane>& walls, double depth) {
+  const std::size_t n = room.corners.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const int before = room.corners[(i + n - 1) % n].side, after = room.corners[i].side;
+    if (before < 0 || after < 0 || before == after) continue;
+    const Point inwards = (walls[before].normal + walls[after].normal).normalized();
+    band = cut(band, {room.corners[i].at - 1.5 * depth * inwards, inwards});
+  }
+}
+
+void hatch(const std::vector<HalfPlane>& walls, const View& view, const Rect& page, double weight,
+           Color color, List& list) {
+  const double depth = kBand * weight, half = kHatchLine * weight / 2;
+  const Convex room = cut_all(page, walls, -kWallLine * weight / 2);
+  if (room.empty()) return;
+  Convex band = cut_all(page, walls, -depth);
+  blunt(band, room, walls, depth);
+
+  // lines at fixed distances from the world's origin, so that they do not swim
+  const Point u = hatch_direction(walls), v(-u.y(), u.x());
+  const double step = kHatchStep * weight * std::numbers::sqrt2 / 2;
+  double low = 1e300, high = -1e300;
+  for (const Convex::Corner& c : band.corners) {
+    low = std::min(low, (c.at - view.origin).dot(v));
+    high = std::max(high, (c.at - view.origin).dot(v));
+  }
+  const auto last = std::int64_t(std::floor(high / step));
+  for (auto k = std::int64_t(std::ceil(low / step)); k <= last; ++k) {
+    const Point p = view.origin + double(k) * step * v;
+    const Convex strip = cut(cut(band, {p - half * v, v}), {p + half * v, -v});
+    if (strip.empty()) continue;
+    const auto inside = chord(room, p, u);
+    if (!inside) {
+      list.add(strip.outline(), color);
+      continue;
+    }
+    for (int side : {inside->in, inside->out}) {
+      if (side < 0) continue;
+      const HalfPlane wall = moved(walls[side], -kWallLine * weight / 2);
+      list.add(cut(strip, {wall.point, -wall.normal}).outline(), color);
+    }
+  }
+}
+
+/// The walls' lines, whole chains at once, so that their corners are mitred.
+void draw_walls(const Convex& room, double width, Color color, List& list) {
+  const std::size_t n = room.corners.size();
+  if (room.closed()) {
+    std::vector<Node> line;
+    for (const Convex::Corner& c : room.corners) line.push_back({c.at, width, color});
+    list.add(line, Cap::butt, Blend::over, true);
+    return;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    // a chain begins where the border ends
+    if (room.corners[i].side < 0 || room.corners[(i + n - 1) % n].side >= 0) continue;
+    std::vector<Node> line{{room.corners[i].at, width, color}};
+    for (std::size_t k = i; room.corners[k % n].side >= 0; ++k)
+      line.push_back({room.corners[(k + 1) % n].at, width, color});
+    list.add(line, Cap::butt);
+  }
+}
+
+}  // namespace
+
+void draw_still(const Stage& stage, const View& view, List& list) {
+  const double weight = stage.layout.weight;
+  const Rect& w = view.window;
+  if (!stage.cast.walls.empty()) {
+    const Rect page{w.x - kBeyond, w.y - kBeyond, w.width + 2 * kBeyond, w.height + 2 * kBeyond};
+    const std::vector<HalfPlane> walls = half_planes(stage.cast, view);
+    const Convex room = cut_all(page, walls, -kWallLine * weight / 2);
+    if (stage.layout.clipped) list.clip(w);
+    if (!(stage.colours.room == stage.colours.ground)) list.add(room.outline(), stage.colours.room);
+    if (stage.look.hatching) hatch(walls, view, page, weight, stage.colours.hatch, list);
+    if (!room.empty()) draw_walls(room, kWallLine * weight, stage.colours.wall, list);
+    list.unclip();
+
+    // where the strip cuts the room a thin line says so
+    if (stage.layout.clipped && stage.layout.caption) {
+      double over = 0;
+      for (const Convex::Corner& c : room.corners) over = std::max(over, w.y - c.at.y());
+      Color rule = stage.colours.hatch;
+      rule.a = std::uint8_t(160 * std::clamp(over / 40, 0.0, 1.0));
+      if (rule.a > 0)
+        list.add({{{0, w.y}, 1.4 * weight, rule}, {{w.width, w.y}, 1.4 * weight, rule}}, Cap::butt);
+    }
+  }
+  for (const Text& text : stage.layout.words) list.add(text);
+  stage.charts.draw_still(list);
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,91 @@
+// A trail of duration T: a body's way from t - T to t, at age a as wide as W (0.25 + 0.75 s) and as strong as
+// s^1.3, s = 1 - a / T. Its nodes are chosen on the physics clock, the first point of each T/240 and every
+// cusp, so that they do not wander from frame to frame. Drawn by minimum or maximum: where pieces overlap
+// nothing shows.
+
+#include <algorithm>
+#include <cmath>
+
+#include "draw/plane/stage.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr int kPieces = 240;
+constexpr double kCusp = 0.9;   // cosine of a turn that breaks the line
+constexpr double kClose = 0.5;  // page units: nearer points are one
+
+using Way = std::vector<sim::Track::Point>;
+
+}  // namespace
+
+Way way_of(int body, double from, const sim::Snapshot& now, Ways ways) {
+  Way way;
+  for (const auto& track : ways) {
+    const auto at = std::find(track->bodies.begin(), track->bodies.end(), body);
+    if (at == track->bodies.end()) continue;
+    const Way& points = track->points[at - track->bodies.begin()];
+    auto first = std::lower_bound(points.begin(), points.end(), from,
+                                  [](const sim::Track::Point& p, double t) { return p.time < t; });
+    // the piece across the border is cut there
+    if (first != points.begin() && first != points.end() && way.empty()) --first;
+    for (; first != points.end() && first->time < now.time; ++first) {
+      if (way.empty() || first->time > way.back().time) way.push_back(*first);
+    }
+  }
+  way.push_back({now.time, now.bodies[body].position});
+  if (way.size() > 1 && way[0].time < from) {
+    const double part = (from - way[0].time) / (way[1].time - way[0].time);
+    way[0] = {from, way[0].place + part * (way[1].place - way[0].place)};
+  }
+  return way;
+}
+
+void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now, Ways ways, List& list) {
+  const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
+  std::vector<Node> line;
+  for (std::size_t i = 0; i < stage.look.bodies.size() && i < now.bodies.size(); ++i) {
+    const double lasting = stage.look.bodies[i].trail;
+    if (!(lasting > 0)) continue;
+    const Way way = way_of(int(i), now.time - lasting, now, ways);
+    const double own = stage.dots[i] > 0 ? stage.dots[i] : view.scale * stage.cast.bodies[i].radius;
+    const sim::ShapeKind kind = stage.cast.bodies[i].kind;
+    const bool round = kind == sim::ShapeKind::point || kind == sim::ShapeKind::ball;
+    const double widest = std::min(kTrailLine * stage.layout.weight, round ? std::max(1.5 * own, 1.2) : 1e9);
+    const Color strong = stage.paints[i].trail;
+    auto node = [&](const sim::Track::Point& p) {
+      const double s = std::clamp(1 - (now.time - p.time) / lasting, 0.0, 1.0);
+      return Node{view.page(p.place), widest * (0.25 + 0.75 * s),
+                  mix(stage.colours.room, strong, std::pow(s, 1.3))};
+    };
+
+    line.clear();
+    std::int64_t piece = 0;
+    for (std::size_t k = 0; k < way.size(); ++k) {
+      const auto here = std::int64_t(std::floor(way[k].time * kPieces / lasting));
+      bool cusp = false;
+      if (k > 0 && k + 1 < way.size()) {
+        const Point in = (way[k].place - way[k - 1].place).head<2>(),
+                    out = (way[k + 1].place - way[k].place).head<2>();
+        cusp = in.dot(out) < kCusp * in.norm() * out.norm();
+      }
+      const bool last = k + 1 == way.size();
+      if (k > 0 && !last && !cusp && here == piece) continue;
+      piece = here;
+      Node next = node(way[k]);
+      if (!line.empty() && (next.at - line.back().at).norm() < kClose) {
+        if (last && line.size() > 1) line.back() = next;
+        continue;
+      }
+      line.push_back(next);
+      // a bounce is a corner with round ends, not a mitre
+      if (cusp && !last) {
+        list.add(line, Cap::round, blend);
+        line.assign(1, next);
+      }
+    }
+    list.add(line, Cap::round, blend);
+  }
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,308 @@
+// Bodies in space: triangles for what faces the eye, and outlines and creases as lines where they are seen.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "draw/space/space.h"
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+constexpr double kEdgeLine = 2.3;   // page units
+constexpr double kThinEdge = 0.11;  // of a body's thickness: an outline is not wider
+constexpr double kCrease = 0.94;    // cosine of a turn between faces that shows as an edge
+constexpr double kAround = 60;      // page units outside the window where things are still drawn
+constexpr double kLeast = 1.6;      // radius of what is too small to see
+
+Vec3 placed(const sim::Snapshot::Body& body, const Vec3& local) {
+  return body.position + body.orientation * local;
+}
+
+/// Whether a ball around a place may be seen.
+bool in_window(const Lens& lens, const Vec3& center, double reach) {
+  const double near = lens.depth(center) - lens.per_distance * reach;
+  if (lens.perspective() && lens.depth(center) + lens.per_distance * reach <= 0) return false;
+  if (near < 1e-3) return true;
+  return !outside(lens.window, lens.page(center), reach * lens.scale / near + kAround);
+}
+
+void begin(Scenery& s, const Vec3& center, double reach, int piece) {
+  s.chunks.push_back({s.triangles.size(), 0, center, reach, piece});
+}
+void end(Scenery& s) { s.chunks.back().end = s.triangles.size(); }
+
+std::uint32_t corner(Scenery& s, const Vec3& place, const Vec3& normal, const Shaded& color) {
+  s.corners.push_back({place, normal, color});
+  return std::uint32_t(s.corners.size() - 1);
+}
+
+/// The faces of a polyhedron that look at the eye.
+void add_faces(Scenery& s, const Polyhedron& body, Color own) {
+  for (const Polyhedron::Face& face : body.faces) {
+    const Vec3& place = body.vertices[face.loop[0]];
+    if (face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) <= 0) continue;
+    const Shaded color = shade(own, s.stage.look.theme, s.stage.light, face.normal);
+    const auto first = std::uint32_t(s.corners.size());
+    for (int v : face.loop) corner(s, body.vertices[v], face.normal, color);
+    for (std::uint32_t i = 2; i < face.loop.size(); ++i)
+      for (std::uint32_t k : {first, first + i - 1, first + i}) s.triangles.push_back(k);
+  }
+}
+
+/// The half of a ball that looks at the eye: rings around the sight line, down to the contour.
+void add_cap(Scenery& s, const Vec3& center, double radius, Color own) {
+  const Lens& lens = s.lens;
+  const double page = radius * lens.scale_at(center);
+  const int around = std::clamp(roundness(page), 8, 64), rings = std::max(2, around / 5);
+  const Vec3 sight = lens.sight(center), side = lens.up.cross(sight).normalized(), up = sight.cross(side);
+  const double last = lens.perspective() ? std::acos(std::min(radius / (lens.eye() - center).norm(), 1.0))
+                                         : std::numbers::pi / 2;
+  const auto at = [&](int ring, int k) {
+    const double polar = last * ring / rings, turn = 2 * std::numbers::pi * k / around;
+    const Vec3 n = std::cos(polar) * sight + std::sin(polar) * (std::cos(turn) * side + std::sin(turn) * up);
+    return corner(s, center + radius * n, n, shade(own, s.stage.look.theme, s.stage.light, n));
+  };
+  const std::uint32_t pole = at(0, 0);
+  std::uint32_t above = pole;
+  for (int ring = 1; ring <= rings; ++ring) {
+    const auto first = std::uint32_t(s.corners.size());
+    for (int k = 0; k < around; ++k) at(ring, k);
+    for (int k = 0; k < around; ++k) {
+      const auto a = first + std::uint32_t(k), b = first + std::uint32_t((k + 1) % around);
+      if (ring == 1) {
+        for (std::uint32_t i : {pole, a, b}) s.triangles.push_back(i);
+      } else {
+        const auto c = above + std::uint32_t(k), d = above + std::uint32_t((k + 1) % around);
+        for (std::uint32_t i : {c, a, b, c, b, d}) s.triangles.push_back(i);
+      }
+    }
+    above = first;
+  }
+}
+
+/// A tube along `way` without ends, its rings carried along so that it does not twist.
+void add_rings(Scenery& s, const std::vector<Vec3>& way, double radius, Color own) {
+  const double page = radius * s.lens.scale_at(way[way.size() / 2]);
+  const int around = std::clamp(roundness(page) / 2 * 2, 6, 48);
+  Vec3 side = Vec3::Zero();
+  std::uint32_t above = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const Vec3 before = i > 0 ? Vec3((way[i] - way[i - 1]).normalized()) : Vec3::Zero();
+    const Vec3 after = i + 1 < way.size() ? Vec3((way[i + 1] - way[i]).normalized()) : Vec3::Zero();
+    const Vec3 tangent = (before + after).normalized();
+    if (i == 0) side = tangent.unitOrthogonal();
+    side = (side - tangent * tangent.dot(side)).normalized();
+    const Vec3 up = tangent.cross(side);
+    const auto first = std::uint32_t(s.corners.size());
+    for (int k = 0; k < around; ++k) {
+      const double a = 2 * std::numbers::pi * k / around;
+      const Vec3 n = std::cos(a) * side + std::sin(a) * up;
+      corner(s, way[i] + radius * n, n, shade(own, s.stage.look.theme, s.stage.light, n));
+    }
+    for (int k = 0; k < around && i > 0; ++k) {
+      const auto a = first + std::uint32_t(k), b = first + std::uint32_t((k + 1) % around),
+                 c = above + std::uint32_t(k), d = above + std::uint32_t((k + 1) % around);
+      for (std::uint32_t v : {c, a, b, c, b, d}) s.triangles.push_back(v);
+    }
+    above = first;
+  }
+}
+
+double line_width(const Scenery& s, const Vec3& center, double least) {
+  const double weight = s.stage.layout.weight;
+  return std::clamp(2 * kThinEdge * least * s.lens.scale_at(center), 0.5 * weight, kEdgeLine * weight);
+}
+
+/// The outline of a capsule on the page: of its two ends' contours, the hull.
+std::vector<Vec3> outline(const Lens& lens, const Vec3& a, const Vec3& b, double radius) {
+  struct Place {
+    Point page;
+    Vec3 world;
+  };
+  std::vector<Place> places;
+  for (const Vec3& end : {a, b}) {
+    const int count = std::max(roundness(radius * lens.scale_at(end)), 24);
+    for (const Vec3& p : contour(lens, end, radius, count)) {
+      if (lens.depth(p) < 1e-3) return {};
+      places.push_back({lens.page(p), p});
+    }
+  }
+  std::sort(places.begin(), places.end(), [](const Place& p, const Place& q) {
+    return p.page.x() != q.page.x() ? p.page.x() < q.page.x() : p.page.y() < q.page.y();
+  });
+  std::vector<Place> hull;
+  const auto chain = [&](auto from, auto to) {
+    const std::size_t first = hull.size();
+    for (auto p = from; p != to; ++p) {
+      while (hull.size() >= first + 2) {
+        const Point u = hull.back().page - hull[hull.size() - 2].page,
+                    v = p->page - hull[hull.size() - 2].page;
+        if (u.x() * v.y() - u.y() * v.x() > 1e-12) break;
+        hull.pop_back();
+      }
+      hull.push_back(*p);
+    }
+    hull.pop_back();
+  };
+  chain(places.begin(), places.end());
+  chain(places.rbegin(), places.rend());
+  std::vector<Vec3> line;
+  for (const Place& p : hull) line.push_back(p.world);
+  return line;
+}
+
+}  // namespace
+
+void add_ball(Scenery& s, const Vec3& center, double radius, Color color, int number) {
+  if (!in_window(s.lens, center, radius) || s.lens.depth(center) < 1e-3) return;
+  begin(s, center, radius, number);
+  add_cap(s, center, radius, color);
+  end(s);
+  s.sight.add_disc(contour(s.lens, center, radius, std::min(roundness(radius * s.lens.scale_at(center)), 32)),
+                   center, number);
+}
+
+void add_tube(Scenery& s, const std::vector<Vec3>& way, double radius, Color color, int number) {
+  if (way.size() < 2) return;
+  Vec3 low = way[0], high = way[0];
+  for (const Vec3& p : way) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const Vec3 center = (low + high) / 2;
+  const double reach = (high - low).norm() / 2 + radius;
+  if (!in_window(s.lens, center, reach)) return;
+  for (const Vec3& p : way) {
+    if (s.lens.depth(p) < 1e-3) return;
+  }
+  begin(s, center, reach, number);
+  add_rings(s, way, radius, color);
+  add_cap(s, way.front(), radius, color);
+  add_cap(s, way.back(), radius, color);
+  end(s);
+  for (std::size_t i = 1; i < way.size(); ++i) s.sight.add_rod(way[i - 1], way[i], radius, radius, number);
+}
+
+void add_bodies(Scenery& s) {
+  const auto& pieces = s.stage.pieces;
+  s.placed.resize(pieces.size());
+  for (int i = 0; i < int(pieces.size()); ++i) {
+    const Piece& piece = pieces[i];
+    const sim::Snapshot::Body& body = s.now.bodies[piece.body];
+    const Color own = s.stage.own[piece.body];
+    switch (piece.form) {
+      case Piece::Form::polyhedron: {
+        s.placed[i] = piece.flat.placed(body.orientation.toRotationMatrix(), body.position);
+        Vec3 middle = Vec3::Zero();
+        for (const Vec3& v : s.placed[i].vertices) middle += v / double(s.placed[i].vertices.size());
+        begin(s, middle, piece.reach, i);
+        if (in_window(s.lens, middle, piece.reach)) {
+          add_faces(s, s.placed[i], own);
+          s.sight.add(s.placed[i], i);
+        }
+        end(s);
+        break;
+      }
+      case Piece::Form::ball: {
+        const Vec3 center = placed(body, piece.a);
+        if (s.lens.depth(center) < 1e-3) break;
+        const double page = s.lens.scale_at(center);
+        const double own_radius =
+            s.stage.dots[piece.body] > 0 ? s.stage.dots[piece.body] / s.lens.scale : piece.radius;
+        add_ball(s, center, std::max(own_radius, kLeast * s.stage.layout.weight / page), own, i);
+        break;
+      }
+      case Piece::Form::capsule: {
+        const Vec3 a = placed(body, piece.a), b = placed(body, piece.b);
+        if (s.lens.depth(a) < 1e-3 || s.lens.depth(b) < 1e-3) break;
+        add_tube(s, {a, b}, piece.radius, own, i);
+        for (const Vec3& end : {a, b}) s.sight.add_disc(contour(s.lens, end, piece.radius, 24), end, i);
+        break;
+      }
+    }
+  }
+}
+
+void trace(Scenery& s, const std::vector<Vec3>& way, bool closed, int own, int too, double width,
+           Color color) {
+  if (way.size() < 2) return;
+  Sight::Parts parts;
+  std::vector<Trace> found;
+  Trace line;
+  bool whole = closed;
+  const auto flush = [&] {
+    if (line.nodes.size() > 1) found.push_back(line);
+    line = {};
+  };
+  const std::size_t count = closed ? way.size() : way.size() - 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 &a = way[i], &b = way[(i + 1) % way.size()];
+    s.sight.seen(a, b, own, too, parts);
+    if (parts.size() != 1 || parts[0].first > 0 || parts[0].second < 1) whole = false;
+    if (parts.empty()) {
+      flush();
+      continue;
+    }
+    const Point p = s.lens.page(a), q = s.lens.page(b);
+    for (const auto& [from, to] : parts) {
+      if (from > 0) flush();
+      if (line.nodes.empty()) line.nodes.push_back({p + from * (q - p), width, color});
+      line.nodes.push_back({p + to * (q - p), width, color});
+      if (to < 1) flush();
+    }
+  }
+  if (whole) {
+    line.nodes.pop_back();
+    line.closed = true;
+  }
+  flush();
+  double near = 0;
+  for (const Vec3& p : way) near += s.lens.seen(p).z() / double(way.size());
+  for (Trace& l : found) {
+    l.near = near;
+    s.lines.push_back(std::move(l));
+  }
+}
+
+void trace_edges(Scenery& s) {
+  const auto& pieces = s.stage.pieces;
+  std::vector<char> front;
+  for (int i = 0; i < int(pieces.size()); ++i) {
+    const Piece& piece = pieces[i];
+    const sim::Snapshot::Body& body = s.now.bodies[piece.body];
+    const Color color = edge(s.stage.own[piece.body], s.stage.look.theme);
+    if (piece.form == Piece::Form::polyhedron) {
+      const Polyhedron& flat = s.placed[i];
+      if (!in_window(s.lens, body.position, piece.reach)) continue;
+      front.clear();
+      for (const Polyhedron::Face& face : flat.faces) {
+        const Vec3& place = flat.vertices[face.loop[0]];
+        front.push_back(face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) > 0);
+      }
+      const double width = line_width(s, body.position, piece.least);
+      for (const Polyhedron::Edge& e : flat.edges) {
+        const bool left = front[e.left], right = e.right >= 0 && front[e.right];
+        if (!left && !right) continue;
+        if (left && right && flat.faces[e.left].normal.dot(flat.faces[e.right].normal) > kCrease) continue;
+        trace(s, {flat.vertices[e.a], flat.vertices[e.b]}, false, i, -1, width, color);
+      }
+      continue;
+    }
+    const Vec3 a = placed(body, piece.a), b = placed(body, piece.b);
+    const double radius =
+        s.stage.dots[piece.body] > 0 ? s.stage.dots[piece.body] / s.lens.scale : piece.radius;
+    if (!in_window(s.lens, a, radius) && !in_window(s.lens, b, radius)) continue;
+    if (s.lens.depth(a) < 1e-3 || s.lens.depth(b) < 1e-3) continue;
+    const double page = radius * s.lens.scale_at(a);
+    if (page < 2.2) continue;
+    const double width = line_width(s, a, radius);
+    // the line lies inside the rim
+    if (piece.form == Piece::Form::ball)
+      trace(s, contour(s.lens, a, radius * (1 - 0.25 * width / page), roundness(page)), true, i, -1, width,
+            color);
+    else
+      trace(s, outline(s.lens, a, b, radius), true, i, -1, width, color);
+  }
+}
+
+}  // namespace obscura::draw

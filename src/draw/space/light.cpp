@@ -1,0 +1,163 @@
+// Light and shadow.
+//   lit     s = s0 + s1 (1 + n_y)/2 + s2 max(0, n . l)         n  normal, l  to the light
+//   shaded  s = s0 + s1 (1 + n_y)/2 + s3 max(0, n . l)         s3 < s2: round things stay round in the shadow
+//   colour  from dark to bright along s, through the body's own
+// A shadow on the ground is drawn ray by ray: each casts the body's corners on the plane, their hull is dark
+// for that ray, and a place is as dark as the share of rays that do not reach it. So a shadow is sharp where
+// a body stands on the ground and soft where it flies.
+
+#include "draw/space/light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+constexpr double kSpread = 0.10;  // radius of the light's disc at distance 1
+constexpr double kNear = 1e-3;    // least depth over the target's
+constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
+constexpr double kLevel = 0.05;   // light that comes from lower throws no shadows on the ground
+
+double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The hull of `points`, in order. Andrew's chain.
+void hull(std::vector<Point>& points, std::vector<Point>& out) {
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  out.clear();
+  const auto chain = [&](auto begin, auto end) {
+    const std::size_t first = out.size();
+    for (auto p = begin; p != end; ++p) {
+      while (out.size() >= first + 2 &&
+             cross(out.back() - out[out.size() - 2], *p - out[out.size() - 2]) <= 1e-9)
+        out.pop_back();
+      out.push_back(*p);
+    }
+    out.pop_back();
+  };
+  chain(points.begin(), points.end());
+  chain(points.rbegin(), points.rend());
+}
+
+/// (x w, y w, w) of a place, see Lens::homogeneous.
+Vec3 seen_at(const Lens& lens, const Vec3& place) {
+  const Eigen::Vector4d h = lens.homogeneous(place);
+  return {h.x(), h.y(), h.w()};
+}
+
+}  // namespace
+
+Light light(const Vec3& toward) {
+  Light l;
+  l.toward = toward.normalized();
+  const Vec3 side =
+      (std::abs(l.toward.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitX()).cross(l.toward).normalized();
+  const Vec3 up = l.toward.cross(side);
+  for (int i = 0; i < kRays; ++i) {
+    // a sunflower: even over the disc, without rows
+    const double r = kSpread * std::sqrt((i + 0.5) / kRays), a = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    l.rays[i] = l.toward + r * (std::cos(a) * side + std::sin(a) * up);
+  }
+  return l;
+}
+
+Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
+  const double sky = (1 + normal.y()) / 2, sun = std::max(0.0, normal.dot(light.toward));
+  const auto tone = [&](double s) {
+    s = std::clamp(s, 0.0, 1.0);
+    if (theme == Theme::paper) {
+      const Color dark = mix(own, {0x18, 0x1C, 0x22}, 0.52), bright = mix(own, {255, 255, 255}, 0.5);
+      return mix(dark, bright, s);
+    }
+    const Color dark = mix(own, {0x08, 0x0C, 0x12}, 0.72), bright = mix(own, {255, 255, 255}, 0.14);
+    return mix(dark, bright, s);
+  };
+  const double base = 0.27 + 0.13 * sky;
+  return {tone(base + 0.60 * sun), tone(base + 0.12 * sun)};
+}
+
+Color edge(Color own, Theme theme) {
+  return theme == Theme::paper ? mix(own, {0x10, 0x13, 0x18}, 0.58) : mix(own, {0x06, 0x09, 0x0D}, 0.80);
+}
+
+std::uint32_t stopped(double share) {
+  std::uint32_t rays = 0;
+  for (int i = 0; i < kRays; ++i)
+    if (std::floor((i + 1) * share) > std::floor(i * share)) rays |= 1u << i;
+  return share < 1 ? rays : ~0u;
+}
+
+Fall::Fall(const Ground& ground, const Light& light, const Lens& lens)
+    : ground_(ground), light_(light), lens_(lens), slope_(light.toward.dot(ground.normal)) {
+  if (slope_ <= kLevel) return;
+  for (int i = 0; i < kRays; ++i) rays_[i] = ray(light.rays[i]);
+  rays_[kRays] = ray(light.toward);
+}
+
+Fall::Ray Fall::ray(const Vec3& along) const {
+  // a ball's shadow is an ellipse: its axis along the light is longer
+  const double down = along.dot(ground_.normal);
+  const Vec3 flat = along - ground_.normal * down;
+  const Vec3 u = flat.norm() > 1e-9 ? Vec3(flat.normalized()) : ground_.normal.unitOrthogonal();
+  const Vec3 v = ground_.normal.cross(u);
+  const auto seen = [&](const Vec3& way) {
+    return Vec3(seen_at(lens_, lens_.target + way) - seen_at(lens_, lens_.target));
+  };
+  Ray r{seen(-along / down), {}};
+  for (int k = 0; k < kRim; ++k) {
+    const double a = 2 * std::numbers::pi * k / kRim;
+    r.round[k] = seen(along.norm() / down * std::cos(a) * u + std::sin(a) * v);
+  }
+  return r;
+}
+
+void Fall::cast(std::span<const Vec3> corners, double radius, bool many, std::uint32_t rays, Solids& solids) {
+  if (slope_ <= kLevel) return;
+  // what is under the ground casts nothing on it
+  double high = -1e300;
+  seen_.clear(), heights_.clear();
+  for (const Vec3& c : corners) {
+    const double h = (c - ground_.point).dot(ground_.normal);
+    high = std::max(high, h + radius);
+    heights_.push_back(std::max(h, 0.0));
+    seen_.push_back(seen_at(lens_, c));
+  }
+  if (high <= 0) return;
+
+  // a sharp shadow takes one ray for all, a soft one each
+  const double depth = std::max((seen_[0] + heights_[0] * rays_[kRays].down).z(), kNear);
+  const double soft = 2 * kSpread * high / (slope_ * slope_) * lens_.scale / depth;
+  const int share = soft < kSharp ? kRays : soft < 4 * kSharp ? 4 : soft < 16 * kSharp || many ? 2 : 1;
+  for (int i = 0; i < kRays; i += share) {
+    const std::uint32_t own = share == kRays ? ~0u : ((1u << share) - 1) << i;
+    if (!(own & rays)) continue;
+    const Ray& ray = rays_[share == kRays ? kRays : i];
+    cast_.clear();
+    bool behind = false;
+    const auto add = [&](const Vec3& place) {
+      behind = behind || place.z() < kNear;
+      cast_.push_back(place.head<2>() / place.z());
+    };
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      const Vec3 place = seen_[k] + heights_[k] * ray.down;
+      if (radius <= 0) {
+        add(place);
+      } else {
+        for (const Vec3& rim : ray.round) add(place + radius * rim);
+      }
+    }
+    // shadows that reach behind the eye are far outside the page or all over it
+    if (behind || cast_.size() < 3) continue;
+    hull(cast_, outline_);
+    if (outline_.size() < 3) continue;
+    const int begin = int(solids.points.size());
+    solids.points.insert(solids.points.end(), outline_.begin(), outline_.end());
+    solids.shades.push_back({begin, int(solids.points.size()), own & rays});
+  }
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "draw/picture/lens.h"
+#include "draw/picture/look.h"
+#include "draw/picture/solids.h"
+#include "draw/space/polyhedron.h"
+
+namespace obscura::draw {
+
+/// A far, round light: the same direction everywhere, and rays that stand for its disc.
+struct Light {
+  sim::Vec3 toward;                   // the light, unit
+  std::array<sim::Vec3, kRays> rays;  // towards places of its disc, not unit
+};
+
+/// `toward`: a direction to the light; from above.
+Light light(const sim::Vec3& toward);
+
+/// What a surface looks like in the light and out of it.
+struct Shaded {
+  Color lit, shaded;
+};
+
+/// The colour of a body's surface with this normal (unit, world). Brightest where it faces the light, and
+/// never black: the sky lights what looks up a little more than what looks down.
+Shaded shade(Color own, Theme theme, const Light& light, const sim::Vec3& normal);
+
+/// The colour of edges on a body.
+Color edge(Color own, Theme theme);
+
+/// A plane of the ground, as far as it takes shadows.
+struct Ground {
+  sim::Vec3 point = sim::Vec3::Zero(), normal = sim::Vec3::UnitY();
+};
+
+/// Which of the light's rays a body stops that is matter in this share of its form: a coil lets light
+/// through.
+std::uint32_t stopped(double share);
+
+/// How the light falls on the ground, as one camera sees it.
+class Fall {
+ public:
+  Fall(const Ground& ground, const Light& light, const Lens& lens);
+
+  /// Adds the shadow of a convex body that has these corners, each a ball of `radius`, and stops `rays`.
+  /// Where there are `many` bodies every second ray will do.
+  void cast(std::span<const sim::Vec3> corners, double radius, bool many, std::uint32_t rays, Solids& solids);
+
+ private:
+  static constexpr int kRim = 14;
+  // in (x w, y w, w) of the page, see Lens::homogeneous
+  struct Ray {
+    sim::Vec3 down;                     // what a metre of height moves a corner by
+    std::array<sim::Vec3, kRim> round;  // the rim of the shadow of a ball of 1 m
+  };
+  Ray ray(const sim::Vec3& along) const;
+
+  Ground ground_;
+  Light light_;
+  Lens lens_;
+  double slope_;                     // how straight the light comes down
+  std::array<Ray, kRays + 1> rays_;  // the last one the light's middle
+  std::vector<sim::Vec3> seen_;
+  std::vector<double> heights_;
+  std::vector<Point> cast_, outline_;
+};
+
+}  // namespace obscura::draw

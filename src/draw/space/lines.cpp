@@ -1,0 +1,140 @@
+// Trails, arrows and hands in space. Trails are hidden by what lies before them; arrows and pointers, which
+// are said about the picture, lie over it.
+
+#include <algorithm>
+#include <cmath>
+
+#include "draw/space/space.h"
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+constexpr int kPieces = 120;   // of a trail
+constexpr double kCusp = 0.9;  // cosine of a turn that is kept
+constexpr double kStep = 14, kWayDot = 2.1;
+
+}  // namespace
+
+void trace_trails(Scenery& s, Ways ways) {
+  const SpaceStage& stage = s.stage;
+  const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
+  Sight::Parts parts;
+  for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
+    const double lasting = stage.look.bodies[i].trail;
+    if (!(lasting > 0)) continue;
+    const auto way = way_of(int(i), s.now.time - lasting, s.now, ways);
+    const Color strong = paint(stage.own[i], stage.look.theme).trail;
+    const auto age = [&](const sim::Track::Point& p) {
+      return std::clamp(1 - (s.now.time - p.time) / lasting, 0.0, 1.0);
+    };
+    const auto node = [&](const Point& at, double strength, double depth) {
+      const double width = kTrailLine * stage.layout.weight * std::clamp(1 / depth, 0.3, 1.6);
+      return Node{at, width * (0.25 + 0.75 * strength),
+                  mix(stage.colours.room, strong, std::pow(strength, 1.3))};
+    };
+
+    // points at fixed times, cusps and the last
+    std::vector<sim::Track::Point> chosen;
+    std::int64_t piece = 0;
+    for (std::size_t k = 0; k < way.size(); ++k) {
+      const auto here = std::int64_t(std::floor(way[k].time * kPieces / lasting));
+      bool cusp = false;
+      if (k > 0 && k + 1 < way.size()) {
+        const Vec3 in = way[k].place - way[k - 1].place, out = way[k + 1].place - way[k].place;
+        cusp = in.dot(out) < kCusp * in.norm() * out.norm();
+      }
+      if (k > 0 && k + 1 < way.size() && !cusp && here == piece) continue;
+      piece = here;
+      chosen.push_back(way[k]);
+    }
+
+    std::vector<Node> line;
+    const auto flush = [&] {
+      s.list.add(line, Cap::round, blend);
+      line.clear();
+    };
+    for (std::size_t k = 0; k + 1 < chosen.size(); ++k) {
+      const Vec3 &a = chosen[k].place, &b = chosen[k + 1].place;
+      s.sight.seen(a, b, -1, -1, parts);
+      if (parts.empty()) {
+        flush();
+        continue;
+      }
+      const Point p = s.lens.page(a), q = s.lens.page(b);
+      const double from_age = age(chosen[k]), to_age = age(chosen[k + 1]), da = s.lens.depth(a),
+                   db = s.lens.depth(b);
+      const auto at = [&](double t) {
+        return node(p + t * (q - p), from_age + t * (to_age - from_age), da + t * (db - da));
+      };
+      for (const auto& [from, to] : parts) {
+        if (from > 0) flush();
+        if (line.empty()) line.push_back(at(from));
+        line.push_back(at(to));
+        if (to < 1) flush();
+      }
+    }
+    flush();
+  }
+}
+
+void draw_space_arrows(Scenery& s) {
+  // the lines that are seen, the farthest first
+  std::stable_sort(s.lines.begin(), s.lines.end(),
+                   [](const Trace& a, const Trace& b) { return a.near < b.near; });
+  for (const Trace& line : s.lines) s.list.add(line.nodes, Cap::round, Blend::over, line.closed);
+
+  const SpaceStage& stage = s.stage;
+  const double weight = stage.layout.weight;
+  std::vector<Arrow> arrows;
+  const auto arrow = [&](const Vec3& tail, const Vec3& tip) {
+    if (s.lens.depth(tail) < 1e-2 || s.lens.depth(tip) < 1e-2) return;
+    offer(s.lens.page(tail), s.lens.page(tip), s.lens.window, weight, arrows);
+  };
+  for (const Push& push : pushes(stage.cast, stage.look, s.now))
+    arrow(push.point, push.point + stage.force_scale * push.force);
+  draw_arrows(arrows, weight, stage.colours.room, stage.colours.force, s.list);
+  arrows.clear();
+  for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
+    if (!stage.look.bodies[i].velocity) continue;
+    const sim::Snapshot::Body& body = s.now.bodies[i];
+    arrow(body.position, body.position + stage.look.velocity_scale * body.velocity);
+  }
+  draw_arrows(arrows, weight, stage.colours.room, stage.colours.velocity, s.list);
+}
+
+void draw_space_hands(Scenery& s) {
+  const SpaceStage& stage = s.stage;
+  if (!stage.look.pointer) return;
+  const double weight = stage.layout.weight;
+  for (std::size_t i = 0; i < s.now.mice.size() && i < stage.cast.mice.size(); ++i) {
+    const sim::Cast::Mouse& mouse = stage.cast.mice[i];
+    if (mouse.path.empty()) continue;
+    const double alpha = shown(mouse, s.now.time);
+    if (alpha <= 0) continue;
+
+    // its way, dotted where it is seen
+    double gone = 0, next = 0;
+    const std::size_t n = mouse.path.size();
+    for (std::size_t k = 0; k + 1 < n; ++k) {
+      const Vec3 &a = mouse.path[k], &b = mouse.path[k + 1];
+      if (s.lens.depth(a) < 1e-2 || s.lens.depth(b) < 1e-2) continue;
+      const Point p = s.lens.page(a), q = s.lens.page(b);
+      const double length = (q - p).norm();
+      for (; next <= gone + length && length > 0; next += kStep * weight) {
+        const double part = (next - gone) / length;
+        if (!s.sight.seen(a + part * (b - a), -1)) continue;
+        const double when = mouse.press + (mouse.release - mouse.press) * (double(k) + part) / double(n - 1);
+        Color color = stage.colours.way;
+        color.a = std::uint8_t(std::lround(255 * alpha * (when <= s.now.time ? 1 : 0.5)));
+        s.list.add(Disc{p + part * (q - p), kWayDot * weight, 0, color, color});
+      }
+      gone += length;
+    }
+    const Vec3 tip = pointer(mouse, s.now.mice[i], s.now.time);
+    if (s.lens.depth(tip) > 1e-2) draw_pointer(s.lens.page(tip), alpha, weight, stage.colours, s.list);
+  }
+}
+
+}  // namespace obscura::draw

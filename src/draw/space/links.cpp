@@ -1,0 +1,153 @@
+// Springs, rods and ropes as round rods in space. A coil of n turns and radius A about the way from a to b is
+//   p(s) = a + along(s) d + A e(s) (cos(2 pi s) u + sin(2 pi s) v)        s  in [0, n], d, u, v  a frame
+// with e rising from 0 over the first part of a turn, so that its leads run on the axis.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "draw/space/space.h"
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+constexpr double kRise = 0.5;  // turns over which a coil leaves its axis
+constexpr int kNodes = 14;     // a turn
+constexpr int kSag = 20;       // pieces of a rope that sags
+
+double smooth(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * (3 - 2 * u);
+}
+
+/// A frame's second axis that does not jump while the first moves a little: the horizontal one.
+Vec3 beside(const Vec3& d) {
+  const Vec3 level = Vec3::UnitY().cross(d);
+  return level.norm() > 0.05 ? Vec3(level.normalized()) : Vec3((Vec3::UnitX() - d * d.x()).normalized());
+}
+
+std::vector<Vec3> helix(const Coil& form, const Vec3& a, const Vec3& b, double wire, double radius) {
+  const double length = (b - a).norm();
+  if (form.turns == 0 || length < 1e-9) return {a, b};
+  const Vec3 d = (b - a) / length, u = beside(d), v = d.cross(u);
+  const double lead = std::min(std::clamp(0.085 * length, 2 * wire, 14 * wire), 0.2 * length), n = form.turns;
+  std::vector<Vec3> way{a};
+  for (int i = 0; i <= form.turns * kNodes; ++i) {
+    const double s = double(i) / kNodes, turn = 2 * std::numbers::pi * s;
+    const double rise = smooth(s / kRise) * smooth((n - s) / kRise);
+    way.push_back(a + d * (lead + (length - 2 * lead) * s / n) +
+                  radius * rise * (std::cos(turn) * u + std::sin(turn) * v));
+  }
+  way.push_back(b);
+  return way;
+}
+
+void add_coil(Scenery& s, const Coil& form, const Vec3& a, const Vec3& b, int number) {
+  const double page = s.lens.scale;  // page units a metre, where the camera looks
+  const double length = (b - a).norm();
+  const double weight = s.stage.layout.weight;
+  if (form.turns == 0) {
+    const double radius = 0.5 * kNetLine * weight * s.zoom / page;
+    add_tube(s, {a, b}, radius, s.stage.colours.spring, number);
+    s.rods.push_back({a, b, radius});
+    return;
+  }
+  const double wire = 0.6 * line_width(form, length * page, s.zoom) / page;
+  const double wide = amplitude(form, length * page, s.zoom) / page;
+  const std::vector<Vec3> way = helix(form, a, b, wire, wide);
+  add_tube(s, way, wire, s.stage.colours.spring, number);
+  if (length < 1e-9) return;
+  // its leads, and what it winds around, of which its wire covers a part
+  double wound = 0;
+  for (std::size_t i = 2; i + 2 < way.size(); ++i) wound += (way[i + 1] - way[i]).norm();
+  const Vec3 from = a + (b - a) * ((way[1] - a).dot(b - a) / (length * length)), to = a + b - from;
+  s.rods.push_back({a, from, wire});
+  s.rods.push_back({to, b, wire});
+  s.rods.push_back(
+      {from, to, wide + wire, std::min(1.0, wound * wire / ((to - from).norm() * (wide + wire)))});
+}
+
+/// A rope of this length from a to b, longer than the way: a parabola.
+std::vector<Vec3> hanging(const Vec3& a, const Vec3& b, const Vec3& down, double rope) {
+  const auto way = [&](double sag) {
+    std::vector<Vec3> points;
+    for (int i = 0; i <= kSag; ++i) {
+      const double u = double(i) / kSag;
+      points.push_back(a + u * (b - a) + 4 * sag * u * (1 - u) * down);
+    }
+    return points;
+  };
+  double low = 0, high = rope;
+  for (int i = 0; i < 40; ++i) {
+    const double half = (low + high) / 2;
+    const std::vector<Vec3> points = way(half);
+    double length = 0;
+    for (int k = 0; k < kSag; ++k) length += (points[k + 1] - points[k]).norm();
+    (length < rope ? low : high) = half;
+  }
+  return way(low);
+}
+
+}  // namespace
+
+void add_links(Scenery& s) {
+  const sim::Cast& cast = s.stage.cast;
+  const double weight = s.stage.layout.weight, metre = s.zoom / s.lens.scale;  // m a fitted page unit
+  const Color color = s.stage.colours.spring;
+  int number = int(s.stage.pieces.size());
+  const auto knob = [&](int body, const Vec3& at, double radius) {
+    if (body < 0 || cast.bodies[body].turns) add_ball(s, at, radius * weight * metre, color, number);
+  };
+  for (std::size_t i = 0; i < s.now.springs.size() && i < cast.springs.size(); ++i, ++number) {
+    const auto& at = s.now.springs[i];
+    add_coil(s, s.stage.coils[i], at.a, at.b, number);
+    const double joint = (s.stage.coils[i].turns == 0 ? 0.75 : 1) * kJoint;
+    knob(cast.springs[i].a, at.a, joint);
+    knob(cast.springs[i].b, at.b, joint);
+  }
+  for (std::size_t i = 0; i < s.now.joints.size() && i < cast.joints.size(); ++i, ++number) {
+    const sim::Cast::Joint& joint = cast.joints[i];
+    const sim::Snapshot::Joint& at = s.now.joints[i];
+    if (at.broken) continue;
+    switch (joint.kind) {
+      case sim::JointKind::rod:
+      case sim::JointKind::rope: {
+        const bool rope = joint.kind == sim::JointKind::rope;
+        const double radius = 0.5 * (rope ? kRope : kRod) * weight * metre;
+        const Vec3 down = cast.gravity.norm() > 0 ? Vec3(cast.gravity.normalized()) : Vec3(-Vec3::UnitY());
+        const bool slack = rope && joint.length > (at.b - at.a).norm() * (1 + 1e-6);
+        const std::vector<Vec3> way =
+            slack ? hanging(at.a, at.b, down, joint.length) : std::vector<Vec3>{at.a, at.b};
+        add_tube(s, way, radius, color, number);
+        for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
+        knob(joint.a, at.a, kJoint);
+        knob(joint.b, at.b, joint.b < 0 ? kPin : kJoint);
+        break;
+      }
+      case sim::JointKind::slider: {
+        const Eigen::Matrix3d turn = joint.b < 0 ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+                                                 : s.now.bodies[joint.b].orientation.toRotationMatrix();
+        const Vec3 along = turn * joint.axis;
+        const double far = 2 * s.lens.window.width / s.lens.scale;
+        add_tube(s,
+                 {at.b + std::clamp(joint.lower, -far, far) * along,
+                  at.b + std::clamp(joint.upper, -far, far) * along},
+                 0.5 * kSpringLine * weight * metre, s.stage.colours.hatch, number);
+        break;
+      }
+      default:
+        add_ball(s, at.a, 0.8 * kPin * weight * metre, color, number);
+        break;
+    }
+  }
+  for (std::size_t i = 0; i < s.now.mice.size() && s.stage.look.pointer; ++i, ++number) {
+    const sim::Snapshot::Mouse& mouse = s.now.mice[i];
+    if (!mouse.pressed || mouse.body < 0) continue;
+    add_coil(s, s.stage.hands[i], mouse.held, mouse.pointer, number);
+    add_ball(s, mouse.held, kJoint * weight * metre, color, number);
+  }
+}
+
+}  // namespace obscura::draw

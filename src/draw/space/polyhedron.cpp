@@ -1,0 +1,131 @@
+#include "draw/space/polyhedron.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+/// Newell's normal of a loop: right for any flat polygon, and a mean for one that is not quite flat.
+Vec3 normal_of(const std::vector<Vec3>& vertices, const std::vector<int>& loop) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    sum += vertices[loop[i]].cross(vertices[loop[(i + 1) % loop.size()]]);
+  const double length = sum.norm();
+  return length > 0 ? Vec3(sum / length) : Vec3::UnitY();
+}
+
+/// Fills in normals and edges. Vertices that faces do not meet at one edge are left without a neighbour.
+void join(Polyhedron& body) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& v : body.vertices) middle += v / double(body.vertices.size());
+  std::vector<Vec3> about;
+  about.reserve(body.vertices.size());
+  for (const Vec3& v : body.vertices) about.push_back(v - middle);
+
+  std::map<std::pair<int, int>, int> known;  // an edge's vertices, the lower first -> edge
+  for (int f = 0; f < int(body.faces.size()); ++f) {
+    Polyhedron::Face& face = body.faces[f];
+    face.normal = normal_of(about, face.loop);
+    for (std::size_t i = 0; i < face.loop.size(); ++i) {
+      const int a = face.loop[i], b = face.loop[(i + 1) % face.loop.size()];
+      const auto [at, fresh] = known.try_emplace({std::min(a, b), std::max(a, b)}, int(body.edges.size()));
+      if (fresh)
+        body.edges.push_back({a, b, f, -1});
+      else
+        body.edges[at->second].right = f;
+    }
+  }
+}
+
+}  // namespace
+
+Polyhedron Polyhedron::placed(const Eigen::Matrix3d& turn, const Vec3& at) const {
+  Polyhedron body = *this;
+  for (Vec3& v : body.vertices) v = turn * v + at;
+  for (Face& face : body.faces) face.normal = turn * face.normal;
+  return body;
+}
+
+Polyhedron box(const Vec3& half) {
+  Polyhedron body;
+  for (int i = 0; i < 8; ++i)
+    body.vertices.push_back(half.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+  for (const auto& loop :
+       {std::vector<int>{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}})
+    body.faces.push_back({loop, Vec3::Zero(), -1});
+  join(body);
+  return body;
+}
+
+Polyhedron polyhedron(std::span<const Vec3> vertices, std::span<const std::vector<int>> faces) {
+  Polyhedron body;
+  body.vertices.assign(vertices.begin(), vertices.end());
+  for (const std::vector<int>& loop : faces) {
+    if (loop.size() >= 3) body.faces.push_back({loop, Vec3::Zero(), -1});
+  }
+  join(body);
+  return body;
+}
+
+Polyhedron cut(const Polyhedron& body, const Vec3& point, const Vec3& normal, int side) {
+  std::vector<double> height;
+  height.reserve(body.vertices.size());
+  bool all = true;
+  for (const Vec3& v : body.vertices) {
+    height.push_back((v - point).dot(normal));
+    all = all && height.back() >= 0;
+  }
+  if (all) return body;
+
+  // what is kept of each face; where an edge is cut, a new vertex
+  Polyhedron left;
+  std::vector<int> kept(body.vertices.size(), -1);
+  std::map<std::pair<int, int>, int> crossings;
+  const auto keep = [&](int v) {
+    if (kept[v] < 0) kept[v] = int(left.vertices.size()), left.vertices.push_back(body.vertices[v]);
+    return kept[v];
+  };
+  const auto crossing = [&](int a, int b) {
+    const auto [at, fresh] =
+        crossings.try_emplace({std::min(a, b), std::max(a, b)}, int(left.vertices.size()));
+    if (fresh) {
+      const double s = height[a] / (height[a] - height[b]);
+      left.vertices.push_back(body.vertices[a] + s * (body.vertices[b] - body.vertices[a]));
+    }
+    return at->second;
+  };
+  std::map<int, int> after;  // along the new face: each new vertex's next
+  for (const Polyhedron::Face& face : body.faces) {
+    std::vector<int> loop;
+    int out = -1, in = -1;
+    for (std::size_t i = 0; i < face.loop.size(); ++i) {
+      const int a = face.loop[i], b = face.loop[(i + 1) % face.loop.size()];
+      if (height[a] >= 0) loop.push_back(keep(a));
+      if ((height[a] >= 0) == (height[b] >= 0)) continue;
+      loop.push_back(crossing(a, b));
+      (height[a] >= 0 ? out : in) = loop.back();
+    }
+    if (loop.size() < 3) continue;
+    left.faces.push_back({loop, face.normal, face.side});
+    if (out >= 0 && in >= 0) after[in] = out;
+  }
+  if (after.size() >= 3) {
+    std::vector<int> loop;
+    int at = after.begin()->first;
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      loop.push_back(at);
+      const auto next = after.find(at);
+      if (next == after.end()) break;
+      at = next->second;
+    }
+    left.faces.push_back({loop, -normal, side});
+  }
+  join(left);
+  return left;
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/math/vec.h"
+
+namespace obscura::draw {
+
+/// A convex body of flat faces.
+struct Polyhedron {
+  struct Face {
+    std::vector<int> loop;  // vertices, counter-clockwise seen from outside
+    sim::Vec3 normal;       // unit, outwards
+    int side = -1;          // of a room cut from space: the wall it is of
+  };
+  struct Edge {
+    int a = 0, b = 0;          // vertices
+    int left = 0, right = -1;  // faces; along the left one's loop it runs from a to b
+  };
+  std::vector<sim::Vec3> vertices;
+  std::vector<Face> faces;
+  std::vector<Edge> edges;
+
+  bool empty() const { return faces.empty(); }
+  /// The same, turned and then moved.
+  Polyhedron placed(const Eigen::Matrix3d& turn, const sim::Vec3& at) const;
+};
+
+/// A box about the origin.
+Polyhedron box(const sim::Vec3& half);
+
+/// By its faces, see sim::Cast::Body.
+Polyhedron polyhedron(std::span<const sim::Vec3> vertices, std::span<const std::vector<int>> faces);
+
+/// What of `body` has (p - point) . normal >= 0; the new face is of `side`.
+Polyhedron cut(const Polyhedron& body, const sim::Vec3& point, const sim::Vec3& normal, int side);
+
+}  // namespace obscura::draw

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "draw/picture/lens.h"
+#include "draw/space/polyhedron.h"
+
+namespace obscura::draw {
+
+/// What is seen of lines in a space of convex bodies. Everything is in the coordinates of Lens::seen, where
+/// sight lines are parallel to the third axis and the nearer of two points has the larger third.
+class Sight {
+ public:
+  explicit Sight(const Lens& lens);
+
+  /// A body hides what lies behind it. `body` is the number of this convex piece, for `seen`. Pieces that
+  /// reach behind the eye are left out.
+  void add(const Polyhedron& body, int number);
+  /// `rim`: the ball's contour (see `contour`).
+  void add_disc(const std::vector<sim::Vec3>& rim, const sim::Vec3& center, int number);
+  /// A round rod from a to b, of these radii (m), without its ends.
+  void add_rod(const sim::Vec3& a, const sim::Vec3& b, double radius_a, double radius_b, int number);
+  /// To be called once, when all are added.
+  void finish();
+
+  using Parts = std::vector<std::pair<double, double>>;
+  /// The parts of the line from a to b (world) that no piece hides but those numbered `own` and `too`, each
+  /// as its ends between 0 and 1 along the line's picture on the page. Empty too where a or b is behind the
+  /// eye.
+  void seen(const sim::Vec3& a, const sim::Vec3& b, int own, int too, Parts& parts) const;
+  /// Whether a place is seen.
+  bool seen(const sim::Vec3& place, int own, int too = -1) const;
+
+ private:
+  /// What has n . (x, y, z) < d for all of its planes is hidden; outlines are planes along the third axis.
+  struct Piece {
+    int number = 0;
+    int begin = 0, end = 0;  // into planes_
+    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  };
+  void close(Piece piece);
+
+  Lens lens_;
+  std::vector<Eigen::Vector4d> planes_;
+  std::vector<Piece> pieces_;
+  int columns_ = 1, rows_ = 1;
+  std::vector<std::vector<int>> cells_;
+  // scratch
+  mutable std::vector<int> stamp_;
+  mutable int stamps_ = 0;
+  mutable Parts hidden_;
+};
+
+/// Where sight lines touch a ball: `count` places on a circle, counter-clockwise as seen.
+std::vector<sim::Vec3> contour(const Lens& lens, const sim::Vec3& center, double radius, int count);
+
+/// How many pieces make a circle of this radius on the page round to the eye.
+int roundness(double page_radius);
+
+}  // namespace obscura::draw

@@ -1,0 +1,272 @@
+#include "draw/space/space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+constexpr double kStripGap = 8, kPanelGap = 22;      // page units
+constexpr double kPanelName = 24, kPanelStrip = 44;  // em of a panel's name, and the height that it takes
+constexpr double kFar = 200;                         // of the scale: how far an open room is cut off
+constexpr double kRoundMargin = 1.12;                // bodies without walls around them get this much room
+
+Piece ball(int body, const Vec3& at, double radius) {
+  Piece piece;
+  piece.form = Piece::Form::ball, piece.body = body, piece.a = piece.b = at;
+  piece.radius = radius, piece.reach = at.norm() + radius, piece.least = radius;
+  return piece;
+}
+
+Piece capsule(int body, const Vec3& a, const Vec3& b, double radius) {
+  Piece piece;
+  piece.form = Piece::Form::capsule, piece.body = body, piece.a = a, piece.b = b;
+  piece.radius = radius, piece.reach = std::max(a.norm(), b.norm()) + radius, piece.least = radius;
+  return piece;
+}
+
+Piece flat(int body, Polyhedron form) {
+  Piece piece;
+  piece.form = Piece::Form::polyhedron, piece.body = body;
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& v : form.vertices) middle += v / double(form.vertices.size());
+  for (const Vec3& v : form.vertices) piece.reach = std::max({piece.reach, v.norm(), (v - middle).norm()});
+  // the least distance from its middle to a face
+  piece.least = piece.reach;
+  for (const Polyhedron::Face& face : form.faces)
+    piece.least = std::min(piece.least, face.normal.dot(form.vertices[face.loop[0]] - middle));
+  piece.flat = std::move(form);
+  return piece;
+}
+
+/// What a shape is made of, placed in its body by `turn` and `center`.
+template <class Form>
+void add_pieces(int body, const Form& form, const Eigen::Matrix3d& turn, const Vec3& center,
+                std::vector<Piece>& pieces) {
+  switch (form.kind) {
+    case sim::ShapeKind::point:
+    case sim::ShapeKind::ball:
+      pieces.push_back(ball(body, center, form.radius));
+      break;
+    case sim::ShapeKind::box:
+      pieces.push_back(flat(body, box(form.half).placed(turn, center)));
+      break;
+    case sim::ShapeKind::capsule: {
+      const Vec3 axis = turn * Vec3(0, form.half.y(), 0);
+      pieces.push_back(capsule(body, center - axis, center + axis, form.radius));
+      break;
+    }
+    case sim::ShapeKind::hull:
+      pieces.push_back(flat(body, polyhedron(form.vertices, form.faces)));
+      break;
+    case sim::ShapeKind::polygon:
+    case sim::ShapeKind::compound:
+      break;
+  }
+}
+
+/// What the cameras fit: the room, or the bodies and what of the ground is under them.
+std::vector<Vec3> fitted_corners(const SpaceStage& stage, const Extent& extent) {
+  if (stage.closed) return stage.room.vertices;
+  Vec3 low = extent.low.cwiseMin(extent.high), high = extent.low.cwiseMax(extent.high);
+  const double least = 0.25 * stage.cast.scale;
+  for (int i = 0; i < 3; ++i) {
+    const double missing = least - (high[i] - low[i]);
+    if (missing > 0) low[i] -= missing / 2, high[i] += missing / 2;
+  }
+  const Vec3 middle = (low + high) / 2, half = kRoundMargin * (high - low) / 2;
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(middle + half.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+  return corners;
+}
+
+/// Windows for so many panels under a strip: rows and columns that leave them about half again as wide as
+/// high.
+std::vector<Rect> windows(int count, double width, double top, double bottom, bool named, double weight) {
+  if (count == 1) return {{0, top, width, bottom - top}};
+  int best = 1;
+  double least = 1e300;
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    const double off = std::abs(std::log(width / columns / ((bottom - top) / rows) / 1.5));
+    if (off < least) least = off, best = columns;
+  }
+  const int rows = (count + best - 1) / best;
+  const double gap = kPanelGap * weight, name = named ? kPanelStrip * weight : 0;
+  const double w = (width - gap * (best - 1)) / best, h = (bottom - top - gap * (rows - 1)) / rows;
+  std::vector<Rect> found;
+  for (int i = 0; i < count; ++i) {
+    const int column = i % best, row = i / best;
+    found.push_back({column * (w + gap), top + row * (h + gap) + name, w, h - name});
+  }
+  return found;
+}
+
+bool same(const Lens& a, const Lens& b) {
+  return a.target == b.target && a.back == b.back && a.right == b.right && a.up == b.up &&
+         a.scale == b.scale && a.per_distance == b.per_distance && a.middle == b.middle;
+}
+
+}  // namespace
+
+SpaceStage::SpaceStage(const sim::Cast& who, const Look& looks_, const std::vector<Camera>& cameras,
+                       const Extent& extent, double aspect, const Charts& beside)
+    : cast(who),
+      look(looks_),
+      colours(palette(looks_.theme)),
+      charts(beside),
+      light(draw::light(looks_.light)) {
+  layout.width = 1080 * aspect;
+  layout.aspect = layout.width / 1080;
+  layout.weight = std::min(1.0, std::sqrt(layout.width / 1440));
+  layout.width -= charts.right(), layout.height -= charts.below();
+  const double w = layout.weight;
+  // the ground has no edge: one colour for the page and the room
+  colours.ground = colours.room;
+
+  // the room, cut from a large block
+  const Vec3 about = (extent.low + extent.high) / 2;
+  const double far = kFar * std::max({cast.scale, (extent.high - extent.low).norm(), 1e-9});
+  room = box(Vec3::Constant(far)).placed(Eigen::Matrix3d::Identity(), about);
+  for (std::size_t i = 0; i < cast.walls.size() && !room.empty(); ++i)
+    room = cut(room, cast.walls[i].point, cast.walls[i].normal.normalized(), int(i));
+  closed = !room.empty();
+  double level = 0.5;
+  for (std::size_t f = 0; f < room.faces.size(); ++f) {
+    closed = closed && room.faces[f].side >= 0;
+    const Vec3 normal = -room.faces[f].normal;
+    if (room.faces[f].side < 0 || normal.y() <= level) continue;
+    level = normal.y();
+    ground = Ground{cast.walls[room.faces[f].side].point, normal};
+    ground_face = int(f);
+  }
+
+  // bodies, piece by piece
+  const std::vector<char> net = knots(cast);
+  const auto knot = [&](int body) { return body >= 0 && net[body]; };
+  const auto points = std::count_if(cast.bodies.begin(), cast.bodies.end(),
+                                    [](const sim::Cast::Body& b) { return b.kind == sim::ShapeKind::point; });
+  const double dot = kDot * w * std::min(1.0, std::cbrt(60.0 / double(std::max<std::ptrdiff_t>(points, 1))));
+  int taken = 0;
+  for (int i = 0; i < int(cast.bodies.size()); ++i) {
+    const sim::Cast::Body& body = cast.bodies[i];
+    const bool quiet = body.fixed || knot(i);
+    own.push_back(looks(i).color ? *looks(i).color : quiet ? neutral(look.theme) : turn(taken++));
+    dots.push_back(body.kind == sim::ShapeKind::point ? dot : 0);
+    add_pieces(i, body, Eigen::Matrix3d::Identity(), Vec3::Zero(), pieces);
+    for (const sim::Cast::Part& part : body.parts)
+      add_pieces(i, part, part.turn.toRotationMatrix(), part.center, pieces);
+  }
+
+  // the page: caption, then a window for each camera
+  const double strip = lay_caption(layout, look);
+  const bool several = cameras.size() > 1;
+  const double top = strip > 0 ? strip + (several ? kStripGap * w : -0.12 * strip) : 0;
+  const bool named =
+      several && std::any_of(cameras.begin(), cameras.end(), [](const Camera& c) { return !c.name.empty(); });
+  const std::vector<Rect> rects = windows(int(cameras.size()), layout.width, top, layout.height, named, w);
+  const std::vector<Vec3> corners = fitted_corners(*this, extent);
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    Panel panel{cameras[i], rects[i], aim(cameras[i], corners, rects[i]), {}};
+    if (several && !cameras[i].name.empty()) {
+      const double size = kPanelName * w, inset = std::max(w * 36, 0.045 * layout.width);
+      const double left = rects[i].x + (rects[i].x == 0 ? inset : 0);
+      panel.words.push_back(
+          {{left, rects[i].y - 14 * w},
+           Align::left,
+           {{.text = cameras[i].name, .face = Face::medium, .size = size, .color = colours.quiet}}});
+    }
+    panels.push_back(panel);
+  }
+  layout.window = rects[0];
+  layout.scale = rects[0].width / panels[0].aim.width;
+
+  // springs: coils, or lines where they make a net or are many
+  const auto in_net = [&](const sim::Cast::Spring& spring) { return knot(spring.a) || knot(spring.b); };
+  const auto loose =
+      std::count_if(cast.springs.begin(), cast.springs.end(), [&](const auto& s) { return !in_net(s); });
+  for (const sim::Cast::Spring& spring : cast.springs) {
+    const bool line = look.springs == Look::Springs::lines ||
+                      (look.springs == Look::Springs::automatic && (loose > kMany || in_net(spring)));
+    Coil form = coil(std::max(spring.rest_length, 0.12 * cast.scale) * layout.scale, w);
+    if (line) form.turns = 0;
+    coils.push_back(form);
+  }
+  for (const sim::Cast::Mouse& mouse : cast.mice)
+    hands.push_back(coil(std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale, 0.82 * w));
+  force_scale = look.force_scale > 0 ? look.force_scale : newton(cast);
+}
+
+Lens lens_of(const Panel& panel, const sim::Snapshot& now) {
+  std::optional<Vec3> followed;
+  if (panel.camera.follow) followed = now.bodies[*panel.camera.follow].position;
+  return lens_at(panel.camera, panel.aim, panel.window, now.time, followed);
+}
+
+Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways,
+                     const sim::Snapshot& frame) {
+  Picture picture;
+  picture.aspect = stage.layout.aspect;
+  picture.ground = stage.colours.ground;
+  std::vector<Lens> lenses;
+  for (const Panel& panel : stage.panels) lenses.push_back(lens_of(panel, now));
+  {
+    const std::lock_guard lock(stage.mutex);
+    if (!stage.still ||
+        !std::equal(lenses.begin(), lenses.end(), stage.seen.begin(), stage.seen.end(), same)) {
+      auto list = std::make_shared<List>();
+      draw_space_still(stage, lenses, *list);
+      stage.still = std::move(list);
+      stage.seen = lenses;
+    }
+    picture.still = stage.still;
+  }
+
+  for (std::size_t i = 0; i < stage.panels.size(); ++i) {
+    const Panel& panel = stage.panels[i];
+    const Lens& lens = lenses[i];
+    Scenery scenery{stage,
+                    panel,
+                    lens,
+                    now,
+                    picture.moving,
+                    lens.scale * panel.aim.width / panel.window.width,
+                    Sight(lens),
+                    {},
+                    {},
+                    {},
+                    {},
+                    {},
+                    {},
+                    {}};
+    scenery.solids.window = panel.window;
+    picture.moving.clip(panel.window);
+    // what hides, then what is seen
+    add_bodies(scenery);
+    add_links(scenery);
+    scenery.sight.finish();
+    add_shadows(scenery);
+    trace_trails(scenery, ways);
+    trace_edges(scenery);
+    draw_room_front(stage, lens, picture.moving);
+    draw_space_arrows(scenery);
+    draw_space_labels(scenery);
+    draw_space_hands(scenery);
+    picture.moving.unclip();
+    picture.solids.push_back(std::make_shared<const Solids>(std::move(scenery.solids)));
+  }
+  if (stage.layout.caption && stage.look.clock) {
+    Text clock = stage.layout.clock;
+    clock.spans[0].text = clock_text(frame.time);
+    picture.moving.add(clock);
+  }
+  stage.charts.draw_lines(frame, picture.moving);
+  return picture;
+}
+
+}  // namespace obscura::draw

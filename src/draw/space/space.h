@@ -1,0 +1,147 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "draw/picture/solids.h"
+#include "draw/plane/stage.h"
+#include "draw/space/camera.h"
+#include "draw/space/light.h"
+#include "draw/space/polyhedron.h"
+#include "draw/space/sight.h"
+
+namespace obscura::draw {
+
+/// A convex piece of a body, in the body's frame.
+struct Piece {
+  enum class Form { polyhedron, ball, capsule };
+  Form form = Form::ball;
+  int body = 0;
+  Polyhedron flat;                         // of a polyhedron
+  sim::Vec3 a = sim::Vec3::Zero(), b = a;  // a ball's centre; the ends of a capsule's axis
+  double radius = 0;                       // m; 0: a point, drawn as a dot
+  double reach = 0;                        // from the body's centre, m
+  double least = 0;                        // half its thickness, m
+};
+
+/// A window on the page and the camera that looks out of it.
+struct Panel {
+  Camera camera;
+  Rect window;
+  Aim aim;
+  std::vector<Text> words;
+};
+
+/// What the pictures of one run in space have in common.
+struct SpaceStage {
+  sim::Cast cast;
+  Look look;
+  Palette colours;
+  Layout layout;  // the caption, weights
+  Charts charts;
+  std::vector<Panel> panels;
+  Light light;
+  std::vector<Piece> pieces;  // by body
+  std::vector<Color> own;     // one a body
+  std::vector<double> dots;   // as Stage's
+  Polyhedron room;            // what the walls leave of space
+  bool closed = false;
+  std::optional<Ground> ground;
+  int ground_face = -1;  // of the room
+  double reach = 1;      // m: how far what is fitted is across
+  double force_scale = 0;
+  std::vector<Coil> coils, hands;  // turns 0: a plain line
+
+  SpaceStage(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras,
+             const Extent& extent, double aspect, const Charts& charts = {});
+  BodyLook looks(int body) const { return body < int(look.bodies.size()) ? look.bodies[body] : BodyLook{}; }
+
+  // the last still list, and what it is of
+  mutable std::mutex mutex;
+  mutable std::vector<Lens> seen;
+  mutable std::shared_ptr<const List> still;
+};
+
+/// How a panel sees space at an instant.
+Lens lens_of(const Panel& panel, const sim::Snapshot& now);
+
+/// `frame`: of which the clock and the charts are.
+Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways,
+                     const sim::Snapshot& frame);
+
+/// A stroke, and how near it is: the farther is drawn first.
+struct Trace {
+  std::vector<Node> nodes;
+  bool closed = false;
+  double near = 0;
+};
+
+/// Triangles of one thing.
+struct Chunk {
+  std::size_t begin = 0, end = 0;  // into Scenery::triangles
+  sim::Vec3 center = sim::Vec3::Zero();
+  double reach = 0;  // of a ball around it, m
+  int piece = -1;    // a thing's own number: -1 casts nothing on others
+};
+
+/// A corner of a triangle before the light has seen it.
+struct Corner {
+  sim::Vec3 place, normal;
+  Shaded color;
+};
+
+/// What a spring, rod or rope throws on the ground: the shadow of a round rod that stops a share of the
+/// light.
+struct Rod {
+  sim::Vec3 a, b;
+  double radius = 0, share = 1;
+};
+
+/// One panel at one instant, while it is drawn.
+struct Scenery {
+  const SpaceStage& stage;
+  const Panel& panel;
+  const Lens lens;
+  const sim::Snapshot& now;
+  List& list;
+  double zoom;  // page scale over the fitted one
+  Sight sight;
+  Solids solids;
+  std::vector<Polyhedron> placed;  // polyhedra in the world, one a piece; empty ones of other forms
+  std::vector<Corner> corners;
+  std::vector<std::uint32_t> triangles;  // into corners
+  std::vector<Chunk> chunks;
+  std::vector<Trace> lines;
+  std::vector<Rod> rods;
+};
+
+/// Grid, room, caption: what stands still while the camera does.
+void draw_space_still(const SpaceStage& stage, const std::vector<Lens>& lenses, List& list);
+
+/// The hairlines of the room that lie between it and the eye.
+void draw_room_front(const SpaceStage& stage, const Lens& lens, List& list);
+
+/// A round rod along `way`, of this radius (m), into the solids; `number`: in sight.
+void add_tube(Scenery& scenery, const std::vector<sim::Vec3>& way, double radius, Color color, int number);
+void add_ball(Scenery& scenery, const sim::Vec3& center, double radius, Color color, int number);
+
+/// Bodies: what hides, then what is seen of them.
+void add_bodies(Scenery& scenery);
+/// Springs, rods, ropes, pins, the hands' springs; before lines are traced, since they hide them.
+void add_links(Scenery& scenery);
+/// The edges of bodies that are seen.
+void trace_edges(Scenery& scenery);
+void trace_trails(Scenery& scenery, Ways ways);
+/// The shadows on the ground and on each other.
+void add_shadows(Scenery& scenery);
+/// The lines that were traced, the farthest first, and arrows over them.
+void draw_space_arrows(Scenery& scenery);
+void draw_space_labels(Scenery& scenery);
+void draw_space_hands(Scenery& scenery);
+
+/// The parts of a line through `way` that are seen, as lines of this width and colour.
+void trace(Scenery& scenery, const std::vector<sim::Vec3>& way, bool closed, int own, int too, double width,
+           Color color);
+
+}  // namespace obscura::draw

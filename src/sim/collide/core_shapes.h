@@ -1,0 +1,75 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/model/model.h"
+#include "sim/model/state.h"
+
+// The iterative solver looks at every shape as convex cores in flat arrays: a polygon of corners and faces,
+// or one corner, rounded by a radius. Two cores touch at features,
+//   g = n . (p - x) - d - r        a corner p at a face (n, d) of the other
+//   g = |p_a - p_b| - r_a - r_b    two corners
+// so that a contact is told by the numbers of its features and its gap needs nothing else than two poses.
+
+namespace obscura::sim::sweep {
+
+/// Where a body stands: its centre (m), and cosine and sine of its turn.
+struct alignas(32) Pose {
+  double x = 0, y = 0, c = 1, s = 0;
+};
+
+struct Core {
+  int body = 0, part = 0;
+  int first = 0, count = 0;   // corners, counter-clockwise; face i goes from corner i to the next
+  double radius = 0;          // m
+  double inside = 0;          // about how thick it is, m
+  double reach = 0;           // from the body's centre, m
+  double wide = 0, high = 0;  // of a box about the body's centre: half its sides, m; else 0
+};
+
+/// All cores of a model, those of a body side by side.
+struct Cores {
+  explicit Cores(const Model<2>& model);
+
+  std::vector<Core> all;
+  std::vector<int> begin;             // a body's first core; one more at the end
+  std::vector<double> x, y;           // corners in the body's frame, m
+  std::vector<double> nx, ny, d;      // faces: outward normal and its distance from the body's centre
+  std::vector<double> reach, inside;  // of bodies, m
+  /// Of the farther reach of two: how deep one may lie in the other for good. Where few lie it is next to
+  /// nothing. The few sweeps that many have leave some of those apart that they push out of one another, and
+  /// who stands apart bears nothing until it has fallen back: a heap that is put right to the last creeps for
+  /// ever.
+  double allowed = 0;
+};
+
+/// Which features touch. `none` pads a pair whose two cores have one touch only.
+struct Feature {
+  enum Kind { corner_of_a, corner_of_b, corners, none };
+  static constexpr int kMostCorners = 127, kMostParts = 127;
+
+  Kind kind = none;
+  int corner = 0, face = 0;  // `corners`: of a, and of b
+
+  int word() const { return int(kind) << 14 | corner << 7 | face; }
+  static Feature of(int word) { return {Kind(word >> 14 & 3), word >> 7 & 127, word & 127}; }
+  bool operator==(const Feature&) const = default;
+};
+
+/// Where two features are: point (m), normal from b to a, gap (m).
+struct Place {
+  double x = 0, y = 0, nx = 0, ny = 1, gap = 0;
+};
+
+/// The features nearest to each other: two where a corner of each end of two faces that lie on each other,
+/// else one and `none`. Returns a lower bound of the distance, m; from `margin` on features may be left out.
+double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
+               Feature out[2], double margin = 1e300);
+Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
+            Feature feature);
+
+/// Of a wall: the two corners that lie lowest.
+double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Wall<2>& wall, Feature out[2]);
+Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Wall<2>& wall, Feature feature);
+
+}  // namespace obscura::sim::sweep

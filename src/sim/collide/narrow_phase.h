@@ -1,0 +1,166 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/model/contact.h"
+#include "sim/model/stance.h"
+#include "sim/shape/shape.h"
+
+namespace obscura::sim {
+
+// Every shape is a convex core of corners and faces, in space of edges too, rounded by a radius: a point and
+// a ball have one corner, a capsule one edge, a box, a polygon and a hull no radius. Where two shapes touch,
+// a corner of one lies at a face of the other, or two corners lie at each other; in space two edges cross, or
+// a corner lies at an edge. What keeps them apart is a function of their poses,
+//   g = n . (p - p_face) - r_a - r_b        corner at a face, n turning with the face's body
+//   g = |p_a - p_b| - r_a - r_b             corner at a corner
+//   g = n . (p_a - p_b) - r_a - r_b         edges that cross, n = e_a x e_b / |e_a x e_b|, turning with both
+//   g = |d - e e . d| - r_a - r_b           corner at an edge along e, d from a place on it to the corner
+// which holds through a step, while the features stay the same.
+
+/// One such function, and what it was when it was found.
+template <int D>
+struct Gap {
+  enum class Kind : std::uint8_t {
+    corner_of_a,       // at a face of b
+    corner_of_b,       // at a face of a
+    corners,           // at each other
+    edges,             // crossing
+    corner_at_edge_b,  // a's
+    corner_at_edge_a   // b's
+  };
+
+  ContactKey key;
+  Kind kind = Kind::corner_of_a;
+  Vec<D> on_a = Vec<D>::Zero();  // a's corner or a point of its face or edge, in a's frame
+  Vec<D> on_b = Vec<D>::Zero();  // b's, in b's frame; of a wall, in the room
+  Vec<D> normal =
+      Vec<D>::Zero();  // of the face, outward, in the frame of its body (or the room); else unused
+  Vec<D> edge_a = Vec<D>::Zero();     // along a's edge, unit, in a's frame; of two edges, so that their cross
+  Vec<D> edge_b = Vec<D>::Zero();     // product leads from b to a. Else unused
+  double radius_a = 0, radius_b = 0;  // m
+  double value = 0;                   // g, m
+};
+
+/// How far along their edges, from on_a and on_b, two edges come nearest to each other: where pa + s ea and
+/// pb + t eb have nothing between them along either, d = pa - pb. Edges that are parallel have no such place.
+struct Crossing {
+  double s = 0, t = 0;  // m
+};
+inline Crossing crossing(const Vec<3>& d, const Vec<3>& edge_a, const Vec<3>& edge_b) {
+  const double c = edge_a.dot(edge_b), da = d.dot(edge_a), db = d.dot(edge_b);
+  const double s = (c * db - da) / edge_a.cross(edge_b).squaredNorm();
+  return {s, db + s * c};
+}
+
+/// A unit vector across another, the same for the same.
+template <int D>
+Vec<D> perpendicular(const Vec<D>& n) {
+  if constexpr (D == 2) {
+    return {-n[1], n[0]};
+  } else {
+    // the axis after the one that n follows most: it stays the same about every axis
+    int axis = 0;
+    n.cwiseAbs().maxCoeff(&axis);
+    return Vec<D>::Unit((axis + 1) % D).cross(n).normalized();
+  }
+}
+
+/// A gap at some instant.
+template <int D>
+struct Meeting {
+  double value = 0;                 // g, m; negative: inside
+  Vec<D> point = Vec<D>::Zero();    // world frame, midway between the two surfaces
+  Vec<D> normal = Vec<D>::Unit(0);  // world frame, unit, from b to a
+};
+
+/// What a gap is where its bodies stand so; of a wall, b stands still at the origin. Its rate is the normal's
+/// component of the velocity of a's material at `point` against b's, exactly: both turn about it, and a shift
+/// along the normal changes nothing. Corners that coincide part along x.
+template <int D>
+Meeting<D> evaluate(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b) {
+  const Vec<D> on_a = a.x + a.arm(gap.on_a), on_b = b.x + b.arm(gap.on_b), apart = on_a - on_b;
+  Meeting<D> now;
+  switch (gap.kind) {
+    case Gap<D>::Kind::corner_of_a:
+      now.normal = b.arm(gap.normal);
+      now.value = now.normal.dot(apart) - gap.radius_a - gap.radius_b;
+      now.point = on_a - now.normal * (gap.radius_a + now.value / 2);
+      break;
+    case Gap<D>::Kind::corner_of_b:
+      now.normal = -a.arm(gap.normal);
+      now.value = now.normal.dot(apart) - gap.radius_a - gap.radius_b;
+      now.point = on_b + now.normal * (gap.radius_b + now.value / 2);
+      break;
+    case Gap<D>::Kind::corners: {
+      const double length = apart.norm();
+      if (length > 0) now.normal = apart / length;
+      now.value = length - gap.radius_a - gap.radius_b;
+      now.point = on_b + now.normal * (gap.radius_b + now.value / 2);
+      break;
+    }
+    case Gap<D>::Kind::corner_at_edge_b:
+    case Gap<D>::Kind::corner_at_edge_a: {
+      const bool mine = gap.kind == Gap<D>::Kind::corner_at_edge_b;
+      const Vec<D> edge = mine ? b.arm(gap.edge_b) : a.arm(gap.edge_a);
+      const Vec<D> across = apart - edge * edge.dot(apart);
+      const double length = across.norm();
+      now.normal = length > 0 ? Vec<D>(across / length) : perpendicular<D>(edge);
+      now.value = length - gap.radius_a - gap.radius_b;
+      if (mine) {
+        now.point = on_a - now.normal * (gap.radius_a + now.value / 2);
+      } else {
+        now.point = on_b + now.normal * (gap.radius_b + now.value / 2);
+      }
+      break;
+    }
+    case Gap<D>::Kind::edges:
+      if constexpr (D == 3) {
+        const Vec<D> edge_a = a.arm(gap.edge_a), edge_b = b.arm(gap.edge_b);
+        now.normal = edge_a.cross(edge_b).normalized();
+        now.value = now.normal.dot(apart) - gap.radius_a - gap.radius_b;
+        now.point =
+            on_a + crossing(apart, edge_a, edge_b).s * edge_a - now.normal * (gap.radius_a + now.value / 2);
+      }
+      break;
+  }
+  return now;
+}
+
+/// The gaps below `margin` (m) between two shapes, nearest features only: two for faces that lie on each
+/// other, one otherwise, none where they are farther apart; of compounds, those of all their parts. Appends
+/// to `out`, with a and b for the key. A corner that lies deep inside is told by the face it is nearest to.
+/// In the plane, the two are the corners that bound what the touching faces share, be they a's or b's; where
+/// corners of both lie at one place (within 1e-6 of the face) a's is taken. Corner at corner only where no
+/// face is nearer: where a ball takes part, or shapes are apart. Parallel faces in line with each other's
+/// ends pass by, within 1e-6 of the face: a box slides over a row of boxes. Two points never touch. Depends
+/// on nothing but the two poses; `feature` counts kind, parts, and the corner or face of each.
+///
+/// In space, of faces that lie on each other all the corners that bound what they share: a's, b's, and the
+/// crossings of their edges, which are gaps between edges; of crossings under 3 degrees the place on the one
+/// edge is taken as a corner. Of parallel edges that are nearest the ends of what they share, as corners at
+/// edges.
+template <int D>
+void gaps(int a, const Shape<D>& shape_a, const Stance<D>& at_a, int b, const Shape<D>& shape_b,
+          const Stance<D>& at_b, double margin, std::vector<Gap<D>>& out);
+
+/// The gaps below `margin` between a shape and a wall: of every corner.
+template <int D>
+void gaps(int a, const Shape<D>& shape, const Stance<D>& at, int wall, const Wall<D>& half_space,
+          double margin, std::vector<Gap<D>>& out);
+
+/// Distance (m) between two shapes; where they overlap minus the depth.
+template <int D>
+double separation(const Shape<D>& a, const Stance<D>& at_a, const Shape<D>& b, const Stance<D>& at_b);
+
+// of space, gap_space.cpp
+template <>
+void gaps(int a, const Shape<3>& shape_a, const Stance<3>& at_a, int b, const Shape<3>& shape_b,
+          const Stance<3>& at_b, double margin, std::vector<Gap<3>>& out);
+template <>
+void gaps(int a, const Shape<3>& shape, const Stance<3>& at, int wall, const Wall<3>& half_space,
+          double margin, std::vector<Gap<3>>& out);
+template <>
+double separation(const Shape<3>& a, const Stance<3>& at_a, const Shape<3>& b, const Stance<3>& at_b);
+
+}  // namespace obscura::sim

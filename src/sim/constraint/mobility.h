@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/constraint/row.h"
+
+namespace obscura::sim {
+
+// When bodies are set at rest: one rule for all solvers, in proportion to gravity g and to the room's height
+// L, so that a room scaled in both rests alike. Without gravity nothing presses a contact, and only what does
+// not move at all rests. An island is
+//   asked     where no point has been faster than Slow::asked for kWait
+//   balanced  where forces within the laws of contacts and joints leave no acceleration
+//   held      where those contacts and joints leave its motion no freedom (Mobility)
+// and then set at rest. Balance alone proves nothing of motion: a ball that rolls is balanced too.
+
+inline constexpr double kWait = 0.25;  // s
+
+/// Speeds that rest goes by, m/s.
+struct Slow {
+  double asked = 0;  // what gravity gives in a five-hundredth of a second
+  double none = 0;   // 1e-8 sqrt(g L): slower than this is no motion
+};
+
+template <int D>
+Slow slow(const Model<D>& model);
+
+/// A contact of two bodies, for what asks whether it bears or holds them.
+template <int D>
+struct BearingContact {
+  int a = -1, b = -1;                                     // bodies that would move; -1: none
+  Vec<D> normal = Vec<D>::Zero();                         // unit, towards a
+  Vec<D> arm_a = Vec<D>::Zero(), arm_b = Vec<D>::Zero();  // from their centres, m
+  double friction = 0;
+  Vec<D> force = Vec<D>::Zero();  // on a, N; a first guess, and what is found
+};
+
+/// Whether a point of a set of bodies moves freely, by more than Slow::none; unknown where some hundred
+/// rounds do not tell.
+enum class Mobile { no, yes, unknown };
+
+/// The motion that contacts and joints leave free: of bodies that move by v,
+///   v_free = v - M^-1 J' l,   J v_free = 0
+/// J the rows of what holds: joints; of a contact that presses, its normal, and its tangents where friction
+/// stops the slip at once, beside what it bears.
+template <int D>
+class Mobility {
+ public:
+  /// Kept by reference.
+  explicit Mobility(const Model<D>& model);
+
+  /// Forgets all bodies and rows.
+  void clear();
+
+  /// A body that moves, at its turn. Rows of other bodies than those added hold onto the room.
+  void add(int body, const Vec<D>& v, const Spin<D>& w, const Rotation<D>& room_from_body);
+
+  /// After all bodies: a contact with its force. One that does not press holds nothing.
+  void hold(const BearingContact<D>& touch);
+
+  /// A row of a joint. One with bounds holds where it moves by no more than `spare`, the acceleration (m/s^2
+  /// or rad/s^2) that it could give beside what it bears, stops at once.
+  void hold(const Row<D>& row, double spare);
+
+  Mobile mobile();
+
+ private:
+  static constexpr int kWays = D + kSpins<D>;
+  using Way = Eigen::Matrix<double, kWays, 1>;
+
+  // what a row pushes one of its bodies with, and how that answers
+  struct Side {
+    int column = -1;
+    Way push = Way::Zero(), answer = Way::Zero();
+  };
+  struct Held {
+    std::array<Side, 2> sides;
+    double give = 0;                  // 1 / (J M^-1 J')
+    double off = 0, way = 0, by = 0;  // of conjugate gradients: J v; direction; J M^-1 J' direction
+  };
+  struct Moving {
+    int body;
+    Rotation<D> room_from_body;
+    Way v, change;
+  };
+
+  Side side(int body, const Vec<D>& along, const Spin<D>& turn) const;
+  double moves(const Held& row) const;
+  void keep(Held row);
+  double fastest() const;
+
+  const Model<D>& model_;
+  Slow slow_;
+  double g_ = 0;
+  std::vector<double> rims_;
+  std::vector<int> columns_;  // of a body in bodies_, or -1
+  std::vector<Moving> bodies_;
+  std::vector<Held> rows_;
+};
+
+}  // namespace obscura::sim

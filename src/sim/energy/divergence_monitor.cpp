@@ -1,0 +1,140 @@
+// Energy out of nowhere. Kinetic energy, springs, and gravity's potential above its start stay below what
+// could be there,
+//   fund = what they were + what displacing gave + sum over bodies of m g L + m u^2
+//        + sum over springs of k (L/10)^2 / 2 + sum over hands of k (4 L + way)^2 / 2
+//     L  room's height, u  speed of the fastest hand, but L/10 a second at least
+// unless the step feeds them. A hundred times the fund is proof; four times, where the step is longer than
+// the integrator stands.
+
+#include "sim/energy/divergence_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy/energy.h"
+#include "sim/math/lie_step.h"
+#include "sim/math/limits.h"
+#include "sim/motion/stability.h"
+#include "sim/shape/shape.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kProof = 100, kSuspect = 4;
+
+template <int D>
+bool apart(const Eigen::Matrix<double, D, 1>& numbers, double limit) {
+  return within(numbers.data(), D, limit) < 0;
+}
+
+template <int D>
+std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit) {
+  for (int i = 0; i < D; ++i) {
+    if (std::isnan(numbers[i])) return "is not a number";
+  }
+  for (int i = 0; i < D; ++i) {
+    if (std::isinf(numbers[i])) return "is infinite";
+  }
+  return std::string("grew past ") + limit;
+}
+
+}  // namespace
+
+template <int D>
+Watch<D>::Watch(const Model<D>& model, const std::vector<Path<D>>& paths) : model_(model), paths_(paths) {}
+
+template <int D>
+std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const {
+  const double limit = kFarthest * model_.scale;
+  for (int body = 0; body < int(model_.bodies.size()); ++body) {
+    const auto trouble = [&](const char* quantity, std::string what) {
+      return Trouble{t, named(model_, body), quantity, std::move(what), likely(state, body)};
+    };
+    if (apart<D>(state.x[body], limit))
+      return trouble("position", fate<D>(state.x[body], "1e6 room heights"));
+    if (apart<D>(state.v[body], limit))
+      return trouble("velocity", fate<D>(state.v[body], "1e6 room heights a second"));
+    const int k = turning(state, body);
+    if (k < 0) continue;
+    const double fastest = limit / reach(model_.bodies[body].shape);
+    constexpr int kSpin = kSpins<D>;
+    if (apart<kSpin>(state.spin[k], fastest)) {
+      return trouble("spin", fate<kSpin>(state.spin[k], "1e6 room heights a second at a corner"));
+    }
+    if (const double most = kFarthestTurn * value(model_.rate);
+        wobbles<D>(model_.bodies[body].inertia) && apart<kSpin>(state.spin[k], most)) {
+      return Trouble{t, named(model_, body), "spin", "grew past 100 radians a step",
+                     "it turns too fast for the steps: raise physics.rate"};
+    }
+    constexpr int kTurn = Turn<D>::RowsAtCompileTime;
+    if (apart<kTurn>(state.turn[k], kFarthest * kFarthest)) {
+      return trouble(D == 2 ? "angle" : "orientation", fate<kTurn>(state.turn[k], "1e12 radians"));
+    }
+  }
+  return {};
+}
+
+template <int D>
+void Watch<D>::start(State<D>& state, double t) const {
+  const Energies e = energies(model_, state, paths_, t);
+  double fund = e.kinetic + e.springs;
+  const double little = 0.1 * model_.scale;
+  double fastest = little;
+  for (const Mouse<D>& mouse : model_.mice) {
+    double way = 4 * model_.scale;
+    for (std::size_t i = 1; i < mouse.path.size(); ++i) {
+      const Knot<D>&from = mouse.path[i - 1], &to = mouse.path[i];
+      const double piece = std::sqrt((to.place - from.place).squaredNorm());
+      way += piece;
+      fastest = std::max(fastest, piece / (value(to.time) - value(from.time)));
+    }
+    fund += 0.5 * mouse.stiffness * way * way;
+  }
+  for (const Spring<D>& spring : model_.springs) fund += 0.5 * spring.stiffness * little * little;
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  for (const Body<D>& body : model_.bodies) {
+    if (!body.fixed) fund += body.mass * (g * model_.scale + fastest * fastest);
+  }
+  state.fund = {e.gravity + state.ledger.displacement, fund};
+}
+
+template <int D>
+std::optional<Trouble> Watch<D>::energy(const State<D>& state, double t) const {
+  const Energies e = energies(model_, state, paths_, t);
+  const double fund = state.fund.amount + std::max(0.0, state.ledger.displacement);
+  const double now = e.kinetic + e.springs + e.gravity - state.fund.level;
+  if (now <= kSuspect * fund) return {};
+  const Tightness worst = tightest(model_, state.grips);
+  if (now <= kProof * fund && worst.body < 0) return {};
+
+  // whose it is: the one that moves most
+  int body = 0;
+  double most = -1;
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    if (model_.bodies[i].fixed) continue;
+    const double moving = kinetic(model_, state, i);
+    if (moving > most) most = moving, body = i;
+  }
+  return Trouble{t, named(model_, body), "energy", "grew far beyond what was put in", likely(state, body)};
+}
+
+template <int D>
+std::string Watch<D>::likely(const State<D>& state, int body) const {
+  if (const Tightness worst = tightest(model_, state.grips); worst.body >= 0) return too_long(model_, worst);
+  bool tied = false;
+  for (const Spring<D>& s : model_.springs) tied = tied || s.a.body == body || s.b.body == body;
+  for (const Grip<D>& grip : state.grips) tied = tied || grip.body == body;
+  if (tied) {
+    const bool feeds = model_.integrator == Integrator::euler || model_.integrator == Integrator::midpoint;
+    return std::string(feeds ? spelled(model_.integrator) : "the step") +
+           " feeds its springs: raise physics.rate" + (feeds ? ", or take rk4 or semi-implicit" : "");
+  }
+  if (model_.walls.empty()) return "nothing stops it: the room has no walls";
+  return "nothing stops it: no wall lies on its way, or it started too fast";
+}
+
+template class Watch<2>;
+template class Watch<3>;
+
+}  // namespace obscura::sim

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sim/model/path.h"
+#include "sim/model/state.h"
+#include "sim/model/trouble.h"
+
+namespace obscura::sim {
+
+/// Looks for what has gone wrong, and says why. Looking for numbers that ran away costs the step nothing
+/// (sim/math/limits.h); this is for naming them, and for energy out of nowhere.
+template <int D>
+class Watch {
+ public:
+  /// Both are kept by reference.
+  Watch(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+  /// The first body whose numbers ran away, in a state at time t (s).
+  std::optional<Trouble> ran_away(const State<D>& state, double t) const;
+
+  /// Takes this state at time t as the start: what energy there is comes from it and from the hands.
+  void start(State<D>& state, double t) const;
+
+  /// Whether the springs hold far more energy than could have come from anywhere. Only springs can make it
+  /// so.
+  std::optional<Trouble> energy(const State<D>& state, double t) const;
+
+ private:
+  std::string likely(const State<D>& state, int body) const;
+
+  const Model<D>& model_;
+  const std::vector<Path<D>>& paths_;
+};
+
+}  // namespace obscura::sim

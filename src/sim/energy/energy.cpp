@@ -1,0 +1,114 @@
+#include "sim/energy/energy.h"
+
+#include "sim/force/spring.h"
+#include "sim/model/stance.h"
+
+namespace obscura::sim {
+
+template <int D>
+Vec<D> place(const State<D>& state, const End<D>& end) {
+  if (end.body < 0) return end.local;
+  const Stance<D> at = stance(state, end.body);
+  return at.x + at.arm(end.local);
+}
+
+template <int D>
+double kinetic(const Model<D>& model, const State<D>& state, int body) {
+  const Body<D>& b = model.bodies[body];
+  double energy = 0.5 * b.mass * state.v[body].squaredNorm();
+  if (const int k = turning(state, body); k >= 0) {
+    energy += spin_energy<D>(b.inertia, rotation<D>(state.turn[k]), state.spin[k]);
+  }
+  return energy;
+}
+
+template <int D>
+double moving(const Model<D>& model, const State<D>& state) {
+  double sum = 0;
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    if (!model.bodies[body].fixed) sum += kinetic(model, state, body);
+  }
+  return sum;
+}
+
+template <int D>
+double lifted(const Model<D>& model, const State<D>& state, int body) {
+  return -model.bodies[body].mass * model.gravity.dot(state.x[body]);
+}
+
+template <int D>
+double stored(const Model<D>& model, const State<D>& state, int spring) {
+  const Spring<D>& s = model.springs[spring];
+  return stored<D>(law(s), place(state, s.a), place(state, s.b));
+}
+
+template <int D>
+double stored(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths, int mouse,
+              double t) {
+  const Grip<D>& grip = state.grips[mouse];
+  if (grip.body < 0) return 0;
+  return stored<D>(law(model.mice[mouse]), place(state, End<D>{grip.body, grip.local}),
+                   paths[mouse].place(t));
+}
+
+template <int D>
+Energies energies(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths, double t) {
+  Energies sum;
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    if (model.bodies[body].fixed) continue;
+    sum.kinetic += kinetic(model, state, body);
+    sum.gravity += lifted(model, state, body);
+  }
+  for (int spring = 0; spring < int(model.springs.size()); ++spring)
+    sum.springs += stored(model, state, spring);
+  for (int mouse = 0; mouse < int(model.mice.size()); ++mouse)
+    sum.springs += stored(model, state, paths, mouse, t);
+  sum.displacement = state.ledger.displacement;
+  sum.impacts = state.ledger.impacts;
+  return sum;
+}
+
+template <int D>
+Vec<D> momentum(const Model<D>& model, const State<D>& state) {
+  Vec<D> sum = Vec<D>::Zero();
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    if (!model.bodies[body].fixed) sum += model.bodies[body].mass * state.v[body];
+  }
+  return sum;
+}
+
+template <int D>
+Spin<D> angular_momentum(const Model<D>& model, const State<D>& state) {
+  Spin<D> sum = Spin<D>::Zero();
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    const Body<D>& b = model.bodies[body];
+    if (b.fixed) continue;
+    sum += b.mass * moment<D>(state.x[body], state.v[body]);
+    if (const int k = turning(state, body); k >= 0) {
+      const Rotation<D> axes = D == 2 ? Rotation<D>(Rotation<D>::Identity()) : rotation<D>(state.turn[k]);
+      sum += spinning<D>(b.inertia, axes, state.spin[k]);
+    }
+  }
+  return sum;
+}
+
+template Vec<2> place<2>(const State<2>&, const End<2>&);
+template double kinetic<2>(const Model<2>&, const State<2>&, int);
+template double moving<2>(const Model<2>&, const State<2>&);
+template double lifted<2>(const Model<2>&, const State<2>&, int);
+template double stored<2>(const Model<2>&, const State<2>&, int);
+template double stored<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, int, double);
+template Energies energies<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, double);
+template Vec<2> momentum<2>(const Model<2>&, const State<2>&);
+template Spin<2> angular_momentum<2>(const Model<2>&, const State<2>&);
+template Vec<3> place<3>(const State<3>&, const End<3>&);
+template double kinetic<3>(const Model<3>&, const State<3>&, int);
+template double moving<3>(const Model<3>&, const State<3>&);
+template double lifted<3>(const Model<3>&, const State<3>&, int);
+template double stored<3>(const Model<3>&, const State<3>&, int);
+template double stored<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, int, double);
+template Energies energies<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, double);
+template Vec<3> momentum<3>(const Model<3>&, const State<3>&);
+template Spin<3> angular_momentum<3>(const Model<3>&, const State<3>&);
+
+}  // namespace obscura::sim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/model/path.h"
+#include "sim/model/snapshot.h"
+#include "sim/model/state.h"
+
+namespace obscura::sim {
+
+// What a state holds. Fixed bodies are part of the room: they hold nothing.
+
+/// Where end `end` is, m.
+template <int D>
+Vec<D> place(const State<D>& state, const End<D>& end);
+
+/// Kinetic energy of one body, J.
+template <int D>
+double kinetic(const Model<D>& model, const State<D>& state, int body);
+
+/// Kinetic energy of all bodies that are not fixed, J.
+template <int D>
+double moving(const Model<D>& model, const State<D>& state);
+
+/// Gravity's potential of one body relative to the origin, -m g . x, J.
+template <int D>
+double lifted(const Model<D>& model, const State<D>& state, int body);
+
+/// Energy in spring `spring`, J.
+template <int D>
+double stored(const Model<D>& model, const State<D>& state, int spring);
+
+/// Energy in the spring of mouse `mouse` at time t, J; none where it holds nothing.
+template <int D>
+double stored(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths, int mouse,
+              double t);
+
+/// All of it, with the ledger, at time t (s).
+template <int D>
+Energies energies(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths, double t);
+
+/// Sum of m v, kg m/s.
+template <int D>
+Vec<D> momentum(const Model<D>& model, const State<D>& state);
+
+/// About the origin, kg m^2/s.
+template <int D>
+Spin<D> angular_momentum(const Model<D>& model, const State<D>& state);
+
+}  // namespace obscura::sim

@@ -1,0 +1,247 @@
+// E = sum m v^2 / 2 + w I w / 2 - m g x + springs        before a step, and after it
+// An island that has gained dE keeps of its velocities, or of those against its motion as one,
+//   u = v - V - W x (x - c),   V = P / M,   W = J^-1 L    P, L, J  momentum, angular momentum and inertia
+// the part s that leaves it with what it had
+//   K_u s^2 = K_u - dE
+// and where that is too little, what rose in the step comes down again by a part of its way.
+
+#include "sim/energy/energy_guard.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy/energy.h"
+#include "sim/model/stance.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kFlight = 1e-9;     // of its motion: more no body gains alone
+constexpr double kJointed = 1e-3;    // the same on joints, by the error of a step
+constexpr double kRounding = 1e-13;  // of all that is in motion or may fall
+
+template <int D>
+Rotation<D> axes(const State<D>& state, int k) {
+  return D == 2 ? Rotation<D>(Rotation<D>::Identity()) : rotation<D>(state.turn[k]);
+}
+
+}  // namespace
+
+template <int D>
+Account<D>::Account(const Model<D>& model) : model_(model), g_(std::sqrt(model.gravity.squaredNorm())) {
+  for (const Body<D>& body : model.bodies) {
+    Weight weight;
+    if (!body.fixed && !body.handout) weight = {body.mass, body.inertia};
+    weights_.push_back(weight);
+    size_ += weight.mass * g_ * model.scale;
+  }
+  sums_.reserve(weights_.size()), bound_.reserve(weights_.size());
+  springs_before_.resize(model.springs.size()), springs_now_.resize(model.springs.size());
+}
+
+template <int D>
+double Account<D>::kinetic(const State<D>& state, int body) const {
+  const Weight& weight = weights_[body];
+  double sum = 0.5 * weight.mass * state.v[body].squaredNorm();
+  if (const int k = turning(state, body); k >= 0 && weight.mass > 0)
+    sum += spin_energy<D>(weight.inertia, axes<D>(state, k), state.spin[k]);
+  return sum;
+}
+
+template <int D>
+void Account<D>::open(const State<D>& state) {
+  const int n = int(weights_.size());
+  x_ = state.x, moved_.resize(n), before_.resize(n), now_.resize(n);
+  for (int i = 0; i < n; ++i) {
+    moved_[i] = kinetic(state, i);
+    before_[i] = moved_[i] - weights_[i].mass * model_.gravity.dot(state.x[i]);
+  }
+  for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = stored(model_, state, i);
+}
+
+template <int D>
+bool Account<D>::risen(const State<D>& state) {
+  const int n = int(weights_.size());
+  double sum = 0, motion = 0;
+  for (int i = 0; i < n; ++i) {
+    const double moves = kinetic(state, i);
+    now_[i] = moves - weights_[i].mass * model_.gravity.dot(state.x[i]);
+    sum += now_[i] - before_[i], motion += moves;
+  }
+  for (int i = 0; i < int(springs_now_.size()); ++i) {
+    springs_now_[i] = stored(model_, state, i);
+    sum += springs_now_[i] - springs_before_[i], motion += springs_now_[i];
+  }
+  if (!(sum > kRounding * (motion + size_))) return false;
+  islands_.reset(n);
+  touched_.assign(n, 0), rooted_.assign(n, 0), granted_.assign(n, 0), parts_.assign(n, 0);
+  return true;
+}
+
+template <int D>
+void Account<D>::touch(int a, int b) {
+  const bool stays = b < 0 || weights_[b].mass == 0;
+  if (weights_[a].mass == 0) {
+    if (!stays) touched_[b] = rooted_[b] = 1;
+    return;
+  }
+  touched_[a] = 1;
+  if (stays)
+    rooted_[a] = 1;
+  else
+    touched_[b] = 1, islands_.join(a, b);
+}
+
+// islands, by joints, springs and chains too, and what each has
+template <int D>
+void Account<D>::gather(const State<D>& state) {
+  const int n = int(weights_.size());
+  const auto counts = [&](int body) { return body >= 0 && weights_[body].mass > 0; };
+  tied_.assign(n, 0), jointed_.assign(n, 0);
+  const bool exact = model_.integrator == Integrator::rk4;  // others may win by their law
+  groups_.reset(n), bound_.assign(n, {}), sums_.assign(n, {});
+  const auto link = [&](int a, int b, bool fast) {
+    for (const int body : {a, b}) {
+      if (counts(body)) (exact && fast ? jointed_ : tied_)[body] = 1;
+    }
+    if (counts(a) && counts(b)) {
+      islands_.join(a, b);
+      if (fast) groups_.join(a, b);
+    } else if (counts(a) || counts(b)) {
+      const int body = counts(a) ? a : b;
+      rooted_[body] = 1, bound_[body].held = bound_[body].held || fast;
+    }
+  };
+  for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body, false);
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (i >= state.broken.size() || !state.broken[i]) link(joint.a.body, joint.b.body, true);
+  }
+  for (const Articulation<D>& chain : model_.chains) {
+    for (const int body : chain.bodies) link(body, chain.bodies[0], true), bound_[body].held = true;
+  }
+
+  const auto island = [&](int body) -> Island& { return sums_[islands_.root(body)]; };
+  const bool frozen = !state.frozen.empty(), blasting = [&] {
+    for (const Blast<D>& blast : state.blasts) {
+      if (blast.on) return true;
+    }
+    return false;
+  }();
+  for (int i = 0; i < n; ++i) {
+    if (!counts(i)) continue;
+    Island& it = island(i);
+    const double m = weights_[i].mass;
+    it.gain += gain(i), it.kinetic += kinetic(state, i), it.mass += m;
+    it.granted += granted_[i] * m * g_ * model_.scale + parts_[i] * moved_[i];
+    it.momentum += m * state.v[i], it.middle += m * state.x[i];
+    Bound& group = bound_[groups_.root(i)];
+    group.lift -= m * model_.gravity.dot(state.x[i] - x_[i]), group.mass += m;
+    group.held = group.held || bound_[i].held;
+    it.touched = it.touched || touched_[i], it.driven = blasting;
+    it.tied = it.tied || tied_[i], it.jointed = it.jointed || jointed_[i];
+    it.rooted = it.rooted || rooted_[i] || (frozen && state.frozen[i]);
+  }
+  for (int i = 0; i < n; ++i) {
+    const Bound& group = bound_[i];
+    if (group.mass > 0 && !group.held) island(i).height += std::max(0.0, group.lift);
+  }
+  for (std::size_t i = 0; i < model_.springs.size(); ++i) {
+    const Spring<D>& spring = model_.springs[i];
+    const int body = counts(spring.a.body) ? spring.a.body : spring.b.body;
+    if (counts(body)) island(body).gain += springs_now_[i] - springs_before_[i];
+  }
+  for (const Joint<D>& joint : model_.joints) {
+    const int body = counts(joint.a.body) ? joint.a.body : joint.b.body;
+    if (joint.motor && counts(body)) island(body).driven = true;
+  }
+  for (const Articulation<D>& chain : model_.chains) island(chain.bodies[0]).chained = true;
+  for (const Grip<D>& grip : state.grips) {
+    if (counts(grip.body)) island(grip.body).driven = true;
+  }
+  // who was held back before it met anything, or by what is no longer near
+  for (Island& it : sums_) {
+    if (it.touched || (it.tied && !it.jointed)) continue;
+    if (it.gain > (it.jointed ? kJointed : kFlight) * it.kinetic) it.touched = it.rooted = true;
+  }
+}
+
+// of islands that nothing holds: how they move as one, and what energy is left beside that
+template <int D>
+void Account<D>::move_as_one(const State<D>& state) {
+  const int n = int(weights_.size());
+  const auto each = [&](const auto& act) {
+    for (int i = 0; i < n; ++i) {
+      Island& it = sums_[islands_.root(i)];
+      if (weights_[i].mass > 0 && it.touched && !it.rooted) act(i, it);
+    }
+  };
+  const auto arm = [&](const Island& it, int i) -> Vec<D> { return state.x[i] - it.middle / it.mass; };
+  each([&](int i, Island& it) {
+    const double m = weights_[i].mass;
+    const Vec<D> r = arm(it, i);
+    it.turning += m * moment<D>(r, state.v[i]);
+    const int k = turning(state, i);
+    const bool turns = k >= 0 && model_.bodies[i].turns();
+    const Rotation<D> at = turns ? axes<D>(state, k) : Rotation<D>(Rotation<D>::Identity());
+    if (turns) it.turning += spinning<D>(weights_[i].inertia, at, state.spin[k]);
+    for (int axis = 0; axis < kSpins<D>; ++axis) {
+      const Spin<D> unit = Spin<D>::Unit(axis);
+      it.inertia.col(axis) += m * moment<D>(r, swing<D>(unit, r));
+      if (turns) it.inertia.col(axis) += spinning<D>(weights_[i].inertia, at, unit);
+    }
+  });
+  for (Island& it : sums_) {
+    if (!it.touched || it.rooted) continue;
+    // of points in a line nothing turns about it
+    const double least = 1e-12 * it.inertia.trace();
+    for (int axis = 0; axis < kSpins<D>; ++axis) it.inertia(axis, axis) += least;
+    const Spin<D> w = least > 0 ? Spin<D>(it.inertia.inverse() * it.turning) : Spin<D>(Spin<D>::Zero());
+    const double apart = it.kinetic - 0.5 * it.momentum.squaredNorm() / it.mass - 0.5 * w.dot(it.turning);
+    // who was held back on its way by what goes along with it pays all alone
+    if (apart > it.gain)
+      it.kinetic = apart, it.turning = w;
+    else
+      it.rooted = true;
+  }
+}
+
+template <int D>
+void Account<D>::take_back(State<D>& state) {
+  gather(state);
+  move_as_one(state);
+  for (Island& it : sums_) {
+    it.gain -= it.granted;
+    if (!it.touched || it.driven || (it.chained && !it.rooted) || !(it.gain > 0)) continue;
+    const double has = std::max(it.kinetic, 0.0);
+    it.keeps = has > it.gain ? std::sqrt(1 - it.gain / has) : 0;
+    if (it.rooted && it.gain > has && it.height > 0) it.lowers = std::min(1.0, (it.gain - has) / it.height);
+  }
+  const double g2 = model_.gravity.squaredNorm();
+  for (int i = 0; i < int(weights_.size()); ++i) {
+    const Island& it = sums_[islands_.root(i)];
+    if (weights_[i].mass == 0 || it.keeps == 1) continue;
+    Vec<D> common = Vec<D>::Zero();
+    Spin<D> spin = Spin<D>::Zero();
+    if (!it.rooted) {
+      spin = it.turning;
+      common = it.momentum / it.mass + swing<D>(spin, Vec<D>(state.x[i] - it.middle / it.mass));
+    }
+    state.v[i] = common + it.keeps * (state.v[i] - common);
+    if (const int k = turning(state, i); k >= 0) state.spin[k] = spin + it.keeps * (state.spin[k] - spin);
+    const Bound& group = bound_[groups_.root(i)];
+    if (it.lowers > 0 && !group.held && group.lift > 0)
+      state.x[i] += it.lowers * group.lift / (group.mass * g2) * model_.gravity;
+  }
+  for (std::size_t i = 0; i < model_.chains.size(); ++i) {
+    const Island& it = sums_[islands_.root(model_.chains[i].bodies[0])];
+    if (it.keeps == 1) continue;
+    for (double& v : state.postures[i].v) v *= it.keeps;
+  }
+}
+
+template class Account<2>;
+template class Account<3>;
+
+}  // namespace obscura::sim

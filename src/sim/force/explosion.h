@@ -1,0 +1,46 @@
+#pragma once
+
+#include "sim/math/spatial.h"
+#include "sim/shape/shape.h"
+
+namespace obscura::sim {
+
+/// Force (N) of an explosion on a point: F = S r / (|r|^2 + eps^2)^(3/2), r from its centre. Nothing at the
+/// centre itself, where it has no direction.
+template <int D>
+Vec<D> blast(const Explosion<D>& explosion, const Vec<D>& place);
+
+/// What explosions do to whole bodies: the force on each of a body's points (its tips), added up, and its
+/// torque about the centre of mass. Of n points a body feels about n times what a particle feels there, as
+/// the explosion paper has it.
+template <int D>
+class Blasts {
+ public:
+  /// The model is kept by reference.
+  explicit Blasts(const Model<D>& model);
+
+  /// On body `body` that stands so, in the room's frame.
+  Wrench<D> push(const Explosion<D>& explosion, int body, const Stance<D>& at) const;
+
+  /// Lets explosion `explosion` begin, or its next interval: what is held through it is taken anew. At the
+  /// beginning what has come to rest wakes.
+  void begin(State<D>& state, int explosion) const;
+
+  /// Ends it.
+  void end(State<D>& state, int explosion) const;
+
+ private:
+  const Model<D>& model_;
+  Tips<D> tips_;
+};
+
+/// Whether any explosion acts.
+template <int D>
+bool blasting(const State<D>& state) {
+  for (const Blast<D>& it : state.blasts) {
+    if (it.on) return true;
+  }
+  return false;
+}
+
+}  // namespace obscura::sim

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/math/lcp.h"
+#include "sim/model/path.h"
+#include "sim/model/stance.h"
+#include "sim/shape/shape.h"
+
+namespace obscura::sim {
+
+/// Collisions with the walls as the handout has them, §2.5 and §3.5: after integrating, what is on the wrong
+/// side of a wall and moves the wrong way is put back on the wall and given an impulse; repeated until
+/// nothing is and does.
+template <int D>
+class Handout {
+ public:
+  /// Both are kept by reference. `paths`: the way of each mouse.
+  Handout(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+  /// Appends to `suspects` who of bodies first .. first + count may have come through a wall.
+  void look(const State<D>& state, int first, int count, std::vector<int>& suspects);
+
+  /// Lets the suspects collide at time t. Adds their touches and what became of the energy to the state.
+  void collide(State<D>& state, std::span<const int> suspects, double t);
+
+ private:
+  // a body as the walls meet it
+  struct Striker {
+    const Body<D>* body = nullptr;
+    Stance<D> at;
+    double speed = 0;  // square of how fast any of its points came, m^2/s^2
+    std::span<const Tip<D>> tips;
+    bool centred = false;  // a particle: all it has is its centre, and a radius
+  };
+  // the impulses of one point at one wall
+  struct Hit {
+    int wall, point;
+    Vec<D> impulse;
+  };
+  // a point at a wall that both takes part in one solution
+  struct Row {
+    int wall, point;
+    Vec<D> arm;
+    Spin<D> turn;  // arm x normal
+  };
+
+  Vec<D> arm(const Striker& s, int point, const Wall<D>& wall) const;
+  double elasticity(const Body<D>& body, const Wall<D>& wall) const;
+  double springs(const State<D>& state, int body, double t) const;
+  bool particle_like(int body) const;
+  bool bounce(State<D>& state, int body) const;
+  bool particle(Striker& s);
+  bool extended(Striker& s);
+  bool meet(Striker& s, int wall);
+  void meet_all(Striker& s);
+  void strike(Striker& s, const Row* rows, int n, int rank);
+  void put_inside(Striker& s) const;
+  void hit(int wall, int point, const Vec<D>& impulse);
+
+  const Model<D>& model_;
+  const std::vector<Path<D>>& paths_;
+  std::vector<double> rims_;  // how far each body reaches, m
+  Tips<D> tips_;
+  std::vector<std::vector<int>> springs_;  // of each body
+  std::vector<std::int64_t> signs_;        // a block's: negative where somebody is outside
+  std::vector<Hit> hits_;                  // of the body at hand
+  std::vector<Vec<D>> arms_;               // of its tips, from its centre, m
+  std::vector<double> distances_;          // of its tips from the wall at hand, m
+  std::vector<char> striking_;
+  std::vector<int> met_;  // tips that meet it in one instant
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,257 @@
+// L D L' by blocks. For each k in the order of elimination, of the entries A_ik below it
+//   L_ik = A_ik D_k^-1,   A_ij -= L_ik A_jk'
+// and a solution by L y = x, z = D^-1 y, L' x = z. Where rows imply others A has no inverse: with S = (A +
+// e)^-1, which has, over and over
+//   x := x + S A S (b - A x)
+// which finds what A can reach of b, and nothing along what it cannot.
+
+#include "sim/math/block_factors.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "sim/math/islands.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kSlight = 1e-12;  // of a block's own size, added to its diagonal
+constexpr double kImplied = 1e-9;  // of it: pivots as small are of rows that others imply
+constexpr double kStiff = 1e-7;    // of it: added where there are such
+constexpr int kRefinements = 4;    // there
+
+// the inverse of a symmetric positive block of n rows, by Gauss and Jordan without pivoting
+template <int M>
+double invert(const std::array<double, M * M>& a, int n, double least, std::array<double, M * M>& out) {
+  std::array<double, M* M> m = a;
+  out = {};
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < n; ++i) out[i * M + i] = 1, m[i * M + i] += least;
+  for (int k = 0; k < n; ++k) {
+    const double pivot = 1 / std::max(m[k * M + k], least);
+    smallest = std::min(smallest, m[k * M + k]);
+    for (int j = 0; j < n; ++j) m[k * M + j] *= pivot, out[k * M + j] *= pivot;
+    for (int i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const double by = m[i * M + k];
+      for (int j = 0; j < n; ++j) m[i * M + j] -= by * m[k * M + j], out[i * M + j] -= by * out[k * M + j];
+    }
+  }
+  return smallest;
+}
+
+}  // namespace
+
+template <int M>
+void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& pairs) {
+  const int n = int(sizes.size());
+  sizes_ = sizes, pairs_ = pairs;
+  first_.resize(n), rows_ = 0;
+  for (int i = 0; i < n; ++i) first_[i] = rows_, rows_ += sizes[i];
+  diagonal_.assign(n, {}), inverse_.assign(n, {}), entries_.assign(pairs.size(), {});
+
+  // parts, each told by its lowest block
+  Islands parts;
+  parts.reset(n);
+  std::vector<std::set<int>> near(n);
+  for (const auto& [i, j] : pairs) {
+    near[i].insert(j), near[j].insert(i);
+    parts.join(i, j);
+  }
+  std::vector<std::vector<int>> members(n);
+  for (int i = 0; i < n; ++i) members[parts.root(i)].push_back(i);
+
+  // whoever has the fewest neighbours left goes first, then by number
+  part_.assign(n, 0), parts_.assign(1, 0), order_.clear();
+  std::vector<int> place(n, -1);
+  std::vector<std::vector<int>> left(n);
+  for (int r = 0; r < n; ++r) {
+    if (members[r].empty()) continue;
+    std::set<std::pair<int, int>> queue;
+    for (const int i : members[r]) queue.emplace(int(near[i].size()), i), part_[i] = int(parts_.size()) - 1;
+    while (!queue.empty()) {
+      const int k = queue.begin()->second;
+      queue.erase(queue.begin());
+      place[k] = int(order_.size()), order_.push_back(k);
+      left[k].assign(near[k].begin(), near[k].end());
+      for (const int i : left[k]) queue.erase({int(near[i].size()), i});
+      for (const int i : left[k]) {
+        near[i].erase(k);
+        for (const int j : left[k]) {
+          if (i != j) near[i].insert(j);
+        }
+      }
+      for (const int i : left[k]) queue.emplace(int(near[i].size()), i);
+    }
+    parts_.push_back(int(order_.size()));
+  }
+
+  // entries below each, in the order of elimination
+  begin_.assign(1, 0), below_.clear(), sources_.clear(), updates_.clear();
+  for (const int k : order_) {
+    std::sort(left[k].begin(), left[k].end(), [&](int i, int j) { return place[i] < place[j]; });
+    for (const int i : left[k]) below_.push_back({i, {}});
+    begin_.push_back(int(below_.size()));
+  }
+  const auto slot = [&](int row, int column) {
+    const int p = place[column];
+    int e = begin_[p];
+    while (below_[e].block != row) ++e;
+    assert(e < begin_[p + 1]);
+    return e;
+  };
+  for (int e = 0; e < int(pairs.size()); ++e) {
+    const auto [i, j] = pairs[e];
+    // an entry has i's rows; below stands who goes later
+    const bool turned = place[i] < place[j];
+    sources_.push_back({e, turned ? slot(j, i) : slot(i, j), turned});
+  }
+  for (int p = 0; p < n; ++p) {
+    for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
+      for (int f = begin_[p]; f <= e; ++f)
+        updates_.push_back(f == e ? -1 - below_[e].block : slot(below_[e].block, below_[f].block));
+    }
+  }
+}
+
+template <int M>
+void Blocks<M>::factorise() {
+  implied_.assign(parts(), 0);
+  if (eliminate()) eliminate();
+}
+
+// L and D; true where rows turned out to be implied by others
+template <int M>
+bool Blocks<M>::eliminate() {
+  bool found = false;
+  for (Below& below : below_) below.l = {};
+  for (const Source& source : sources_) {
+    const Block& from = entries_[source.pair];
+    Block& to = below_[source.below].l;
+    for (int i = 0; i < M; ++i) {
+      for (int j = 0; j < M; ++j) to[i * M + j] = source.turned ? from[j * M + i] : from[i * M + j];
+    }
+  }
+  std::size_t update = 0;
+  std::vector<Block>& d = inverse_;  // the diagonal first, then its inverse
+  std::copy(diagonal_.begin(), diagonal_.end(), d.begin());
+  for (int p = 0; p < int(order_.size()); ++p) {
+    const int k = order_[p], n = sizes_[k];
+    double own = 0;
+    for (int i = 0; i < n; ++i) own = std::max(own, diagonal_[k][i * M + i]);
+    const Block pivot = d[k];
+    char& implied = implied_[part_[k]];
+    const double least = invert<M>(pivot, n, (implied ? kStiff : kSlight) * own, d[k]);
+    if (!implied && least < kImplied * own) implied = 1, found = true;
+    for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
+      const int rows = sizes_[below_[e].block];
+      const Block a = below_[e].l;
+      Block l{};
+      for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < n; ++j) {
+          double sum = 0;
+          for (int m = 0; m < n; ++m) sum += a[i * M + m] * d[k][m * M + j];
+          l[i * M + j] = sum;
+        }
+      }
+      // those before it have become L already: L_e A_f' = A_e L_f'
+      for (int f = begin_[p]; f <= e; ++f, ++update) {
+        const Block& other = f == e ? l : below_[f].l;
+        const int columns = sizes_[below_[f].block], to = updates_[update];
+        Block& target = to < 0 ? d[-1 - to] : below_[to].l;
+        for (int i = 0; i < rows; ++i) {
+          for (int j = 0; j < columns; ++j) {
+            double sum = 0;
+            for (int m = 0; m < n; ++m) sum += a[i * M + m] * other[j * M + m];
+            target[i * M + j] -= sum;
+          }
+        }
+      }
+      below_[e].l = l;
+    }
+  }
+  return found;
+}
+
+template <int M>
+void Blocks<M>::solve(double* x) const {
+  for (int part = 0; part + 1 < int(parts_.size()); ++part) solve(x, part);
+}
+
+template <int M>
+void Blocks<M>::solve(double* x, int part) const {
+  if (!implied_[part]) return substitute(x, part);
+  const auto each = [&](auto&& act) {
+    for (int p = parts_[part]; p < parts_[part + 1]; ++p) {
+      for (int r = first_[order_[p]]; r < first_[order_[p]] + sizes_[order_[p]]; ++r) act(r);
+    }
+  };
+  right_.resize(rows_), rest_.resize(rows_), way_.resize(rows_);
+  each([&](int r) { right_[r] = x[r], x[r] = 0; });
+  for (int round = 0; round < kRefinements; ++round) {
+    each([&](int r) { rest_[r] = right_[r], way_[r] = 0; });
+    take_product(x, rest_.data(), part);
+    substitute(rest_.data(), part);
+    take_product(rest_.data(), way_.data(), part);
+    substitute(way_.data(), part);
+    each([&](int r) { x[r] -= way_[r]; });
+  }
+}
+
+// y := y - A x
+template <int M>
+void Blocks<M>::take_product(const double* x, double* y, int part) const {
+  const auto take = [&](const Block& a, int i, int j, bool turned) {
+    for (int r = 0; r < sizes_[i]; ++r) {
+      for (int c = 0; c < sizes_[j]; ++c)
+        y[first_[i] + r] -= (turned ? a[c * M + r] : a[r * M + c]) * x[first_[j] + c];
+    }
+  };
+  for (int p = parts_[part]; p < parts_[part + 1]; ++p)
+    take(diagonal_[order_[p]], order_[p], order_[p], false);
+  for (std::size_t e = 0; e < pairs_.size(); ++e) {
+    const auto [i, j] = pairs_[e];
+    if (part_[i] == part) take(entries_[e], i, j, false), take(entries_[e], j, i, true);
+  }
+}
+
+// by L and D alone
+template <int M>
+void Blocks<M>::substitute(double* x, int part) const {
+  for (int p = parts_[part]; p < parts_[part + 1]; ++p) {
+    const int k = order_[p], n = sizes_[k];
+    const double* from = x + first_[k];
+    for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
+      const Below& below = below_[e];
+      double* to = x + first_[below.block];
+      for (int i = 0; i < sizes_[below.block]; ++i) {
+        for (int j = 0; j < n; ++j) to[i] -= below.l[i * M + j] * from[j];
+      }
+    }
+  }
+  for (int p = parts_[part + 1]; p-- > parts_[part];) {
+    const int k = order_[p], n = sizes_[k];
+    double* to = x + first_[k];
+    double z[M] = {};
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) z[i] += inverse_[k][i * M + j] * to[j];
+    }
+    for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
+      const Below& below = below_[e];
+      const double* from = x + first_[below.block];
+      for (int i = 0; i < sizes_[below.block]; ++i) {
+        for (int j = 0; j < n; ++j) z[j] -= below.l[i * M + j] * from[i];
+      }
+    }
+    for (int i = 0; i < n; ++i) to[i] = z[i];
+  }
+}
+
+template class Blocks<3>;
+template class Blocks<6>;
+
+}  // namespace obscura::sim

@@ -1,0 +1,97 @@
+#include <bit>
+
+#include "sim/model/state.h"
+
+namespace obscura::sim {
+
+namespace {
+
+struct Words {
+  std::vector<std::uint64_t> all;
+
+  void integer(std::int64_t n) { all.push_back(std::uint64_t(n)); }
+  void number(double x) { all.push_back(x == 0 ? 0 : std::bit_cast<std::uint64_t>(x)); }
+  template <int N>
+  void numbers(const Eigen::Matrix<double, N, 1>& v) {
+    for (int i = 0; i < N; ++i) number(v[i]);
+  }
+  template <int N>
+  void list(const std::vector<Eigen::Matrix<double, N, 1>>& vectors) {
+    integer(std::int64_t(vectors.size()));
+    for (const auto& v : vectors) numbers<N>(v);
+  }
+};
+
+}  // namespace
+
+template <int D>
+std::vector<std::uint64_t> words(const State<D>& state) {
+  Words w;
+  w.integer(state.step);
+  w.number(state.beyond);
+  w.list(state.x);
+  w.list(state.v);
+  w.list(state.turn);
+  w.list(state.spin);
+  w.integer(std::int64_t(state.grips.size()));
+  for (const Grip<D>& grip : state.grips) {
+    w.integer(grip.body);
+    w.template numbers<D>(grip.local);
+  }
+  w.integer(std::int64_t(state.touches.size()));
+  for (const Touch<D>& touch : state.touches) {
+    w.integer(touch.body);
+    w.integer(touch.wall);
+    w.template numbers<D>(touch.point);
+    w.template numbers<D>(touch.impulse);
+  }
+  w.integer(std::int64_t(state.contacts.size()));
+  for (const Contact<D>& contact : state.contacts) {
+    w.integer(contact.key.a);
+    w.integer(contact.key.b);
+    w.integer(contact.key.feature);
+    w.integer(std::int64_t(contact.touching));
+    w.template numbers<D>(contact.force);
+    w.template numbers<D>(contact.impulse);
+  }
+  w.integer(std::int64_t(state.frozen.size()));
+  for (std::size_t i = 0; i < state.frozen.size(); ++i) {
+    w.integer(state.frozen[i]);
+    w.number(state.quiet[i]);
+  }
+  w.integer(std::int64_t(state.broken.size()));
+  for (const char broken : state.broken) w.integer(broken);
+  w.list(state.joint_forces);
+  if constexpr (D == 3) {
+    for (const OwnSpin<D>& own : state.own) {
+      w.template numbers<kSpins<D>>(own.w);
+      w.template numbers<kSpins<D>>(own.rest);
+    }
+  }
+  for (const Blast<D>& blast : state.blasts) {
+    w.integer(blast.on);
+    w.list(blast.forces);
+    w.list(blast.torques);
+  }
+  for (const Posture& posture : state.postures) {
+    for (const double x : posture.q) w.number(x);
+    for (const double x : posture.v) w.number(x);
+  }
+  for (const char holds : state.holds) w.integer(holds);
+  for (const Seat<D>& seat : state.seats) {
+    w.template numbers<D>(seat.x);
+    w.template numbers<Turn<D>::RowsAtCompileTime>(seat.turn);
+  }
+  for (const State<D>& whole : state.whole) {
+    const std::vector<std::uint64_t> more = words(whole);
+    w.all.insert(w.all.end(), more.begin(), more.end());
+  }
+  w.number(state.ledger.displacement);
+  w.number(state.ledger.impacts);
+  return w.all;
+}
+
+template std::vector<std::uint64_t> words<2>(const State<2>&);
+template std::vector<std::uint64_t> words<3>(const State<3>&);
+
+}  // namespace obscura::sim

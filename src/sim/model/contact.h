@@ -1,0 +1,40 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+#include "sim/math/vec.h"
+
+namespace obscura::sim {
+
+/// Which touch this is: it stays the same while the same features touch.
+struct ContactKey {
+  int a = -1, b = -1;  // bodies, a < b where both are; b = -1 - wall for a wall
+  int feature = 0;     // which corner and face, see sim/collide/narrow_phase.h
+
+  auto operator<=>(const ContactKey&) const = default;
+};
+
+/// What a contact does at an instant.
+enum class Touching : std::uint8_t {
+  open,
+  stick,
+  brink,  // holds with all the friction there is
+  slide
+};
+
+/// A contact as the state keeps it. Forces, not impulses: a partial step then starts rightly from them.
+template <int D>
+struct Contact {
+  ContactKey key;
+  Touching touching = Touching::open;
+  Vec<D> point = Vec<D>::Zero();    // world frame, m
+  Vec<D> normal = Vec<D>::Zero();   // unit, from b to a
+  double gap = 0;                   // m, negative: inside
+  Vec<D> force = Vec<D>::Zero();    // on a, N
+  Vec<D> impulse = Vec<D>::Zero();  // on a, N s, of the impacts in the last step
+
+  bool operator==(const Contact&) const = default;
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,205 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/math/rational.h"
+#include "sim/math/vec.h"
+
+namespace obscura::sim {
+
+enum class Integrator { rk4, midpoint, euler, semi_implicit };
+
+/// What happens where things touch. `contact` and `event` hold bodies apart by forces, see
+/// sim/model/contact.h; `event` locates every impact and every change of a contact in time, `contact` a
+/// bounded number a step.
+enum class Collision { handout, contact, event };
+
+/// Who finds the forces of `contact`: see sim/model/contact.h. `automatic` decides from the scene.
+enum class Solver { automatic, direct, iterative };
+
+/// Which law holds for impacts in one instant: solved together, or one pair after another until none
+/// approaches.
+enum class Impacts { simultaneous, sequential };
+
+/// What is done with bodies that overlap at the start: they are refused, or gently pushed apart.
+enum class Overlap { refuse, separate };
+
+/// A polygon is of the plane, a hull of space.
+enum class ShapeKind { point, ball, box, polygon, compound, capsule, hull };
+
+/// The form of a body about its centre of mass, in its own frame.
+template <int D>
+struct Shape {
+  ShapeKind kind = ShapeKind::point;
+  double radius = 0;               // ball, capsule, m
+  Vec<D> half = Vec<D>::Zero();    // box: half its sides, m; capsule: its axis goes from -half[1] to half[1]
+                                   // along y
+  Vec<D> center = Vec<D>::Zero();  // of a ball, box or capsule that is a part, m
+  std::vector<Vec<D>> vertices;    // polygon: convex, counter-clockwise; hull: convex; m
+  std::vector<Shape> parts;        // compound: in the body's frame, m
+  std::vector<std::vector<int>> faces = {};  // hull: loops of vertices, counter-clockwise seen from outside
+  Turn<D> turn = upright<D>();               // of a box or capsule that is a part
+};
+
+/// What stays true of a body while the room moves. A particle is a point or a ball that does not turn; a
+/// rigid body is a particle that also turns.
+template <int D>
+struct Body {
+  std::string name;
+  Shape<D> shape;
+  double mass = 1;                    // kg
+  Spin<D> inertia = Spin<D>::Zero();  // principal moments, kg m^2; zero: does not turn
+  double elasticity = 1;              // the handout's e, 0 <= e <= 1
+  double friction = 0;                // Coulomb's mu >= 0; of a pair, the root of the product
+  double drag = 0;                    // c of f = -c v at the centre of mass, N s/m
+  double ground_drag = 0;             // the same along the ground while it stands there, beside mu; N s/m
+  int group = 0;                      // for Model::ignore
+  bool fixed = false;                 // held where it starts; as heavy as the room
+  bool linked = false;                // a link of a chain, which moves it
+  bool handout = false;  // meets walls by the handout's law, and no bodies, whatever `collision` says
+
+  bool turns() const { return inertia != Spin<D>::Zero(); }
+};
+
+/// An immobile half space: what has (q - point) . normal < 0 is on the wrong side. Handout §2.3.
+template <int D>
+struct Wall {
+  Vec<D> point = Vec<D>::Zero();
+  Vec<D> normal = Vec<D>::Unit(1);   // unit, into the room
+  std::optional<double> elasticity;  // none: the body's own holds
+  std::optional<double> friction;    // none: the body's own holds
+};
+
+/// One end of a spring: a point of a body, or a place in the room.
+template <int D>
+struct End {
+  int body = -1;                  // index; -1: the room
+  Vec<D> local = Vec<D>::Zero();  // in the body's frame from its centre; for the room, the place
+};
+
+/// f = -(k (l - l_rest) + c dl/dt) d, handout §2.2 with a dashpot along the axis.
+template <int D>
+struct Spring {
+  End<D> a, b;
+  double rest_length = 0;  // m
+  double stiffness = 0;    // k, N/m
+  double damping = 0;      // c, N s/m
+};
+
+/// What two ends may not do against each other. Of the rows: weld D + D(D-1)/2, pin D, slider and hinge those
+/// of a weld but one, rod and rope one. A pin of space is a ball joint; in the plane a pin and a hinge are
+/// one.
+enum class JointKind { pin, weld, slider, rod, rope, hinge };
+
+/// A joint between two bodies, or a body and the room, as it stood at the start.
+template <int D>
+struct Joint {
+  struct Motor {
+    double speed = 0;  // rad/s of a hinge, m/s of a slider: of a against b
+    double most = 0;   // N m or N
+  };
+
+  std::string name;
+  JointKind kind = JointKind::pin;
+  End<D> a, b;
+  Vec<D> axis = Vec<D>::Unit(0);   // slider: the way of a; hinge of space: what it turns about. Unit, in
+                                   // b's frame
+  Spin<D> turn = Spin<D>::Zero();  // weld, slider: the turn of a against b to be kept; hinge: where its
+                                   // angle is zero, rad. In space a rotation vector in b's frame
+  double length = 0;               // rod: the distance; rope: the largest, m
+  double lower = -1e300, upper = 1e300;  // of a hinge's angle (rad, in space within pi) or a slider's way (m)
+  std::optional<Motor> motor;
+  double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider
+  double breaks = 1e300;  // N: a larger force on the joint breaks it
+  bool touching = false;  // whether the two bodies may touch each other
+  bool linked = false;    // a chain holds it: of its own it has limits, a motor and friction
+};
+
+/// Makes two bodies one as they stand at the start, until it is loaded beyond its strength: see
+/// sim/fracture/bond_load.h.
+template <int D>
+struct Bond {
+  int a = -1, b = -1;       // bodies; b = -1: the room
+  double strength = 1e300;  // N
+  double blow = 0.001;      // s: how long an impact is taken to last
+};
+
+/// The hand of the scripted mouse: pressed at the first knot, released at the last.
+template <int D>
+struct Knot {
+  Rational time;  // s
+  Vec<D> place;
+};
+
+/// A spring from a moving pointer to the closest particle or box vertex, taken once, when pressed. Handout
+/// §2.2.
+template <int D>
+struct Mouse {
+  std::vector<Knot<D>> path;  // at least two, times strictly increasing
+  double rest_length = 0;     // m
+  double stiffness = 0;       // N/m
+  double damping = 0;         // N s/m
+};
+
+/// A force from a point, F = S r / (|r|^2 + eps^2)^(3/2), on each point of each body: see
+/// sim/force/explosion.h.
+template <int D>
+struct Explosion {
+  /// How the force goes with the motion: as the integrator sees it, or held through each interval as the
+  /// explosion paper does.
+  enum class Scheme { smooth, paper };
+
+  Vec<D> center = Vec<D>::Zero();
+  double strength = 0;                                              // S, N m^2
+  Rational start = {0, 1}, duration = {1, 1}, interval = {1, 100};  // s
+  double softening = 0;                                             // eps, m: 0 is singular at the centre
+  Scheme scheme = Scheme::smooth;
+};
+
+template <int D>
+class Chain;
+
+/// A tree of links in reduced coordinates, whose joints hold exactly: see sim/multibody/chains.h. A link's
+/// frame is its body's.
+template <int D>
+struct Articulation {
+  std::shared_ptr<const Chain<D>> tree;
+  std::vector<int> bodies;      // one a link, each `linked`
+  std::vector<int> joints;      // one a link: the joint of the model that holds it to its parent, or -1
+  std::vector<double> offsets;  // one a link, in the plane: its angle where all q are zero, rad
+};
+
+/// What does not change while the room runs. Bodies are ordered: those that do not turn first, then those
+/// that do; a body's index here is its index everywhere.
+template <int D>
+struct Model {
+  Rational rate = {600, 1};  // steps per second
+  Integrator integrator = Integrator::rk4;
+  Collision collision = Collision::handout;
+  Solver solver = Solver::automatic;
+  Impacts impacts = Impacts::simultaneous;
+  Overlap overlap = Overlap::refuse;
+  Vec<D> gravity = Vec<D>::Unit(1) * -9.81;  // m/s^2
+  double scale = 1;                          // the room's height, m: what "far" and "fast" are measured by
+  std::vector<Body<D>> bodies;
+  std::vector<Wall<D>> walls;
+  std::vector<Spring<D>> springs;
+  std::vector<Mouse<D>> mice;
+  std::vector<Joint<D>> joints;
+  std::vector<Explosion<D>> explosions;
+  std::vector<Bond<D>> bonds;
+  std::vector<Articulation<D>> chains;      // none where there are bonds
+  std::vector<std::pair<int, int>> ignore;  // groups that do not touch each other
+
+  int particles() const {  // bodies that do not turn
+    int n = 0;
+    while (n < int(bodies.size()) && !bodies[n].turns()) ++n;
+    return n;
+  }
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/math/vec.h"
+#include "sim/model/model.h"
+
+namespace obscura::sim {
+
+// One instant, without a dimension: above it nothing knows D. The plane lies at z = 0, seen from +z.
+
+/// What is the same at every instant: who is in the room and what they look like to a measuring eye.
+struct Cast {
+  /// A piece of a body of several, in the body's frame.
+  struct Part {
+    ShapeKind kind = ShapeKind::ball;
+    double radius = 0;           // m
+    Vec3 half = Vec3::Zero();    // m
+    Vec3 center = Vec3::Zero();  // of a ball, box or capsule, m
+    std::vector<Vec3> vertices;  // of a polygon, counter-clockwise, or a hull; in the body's frame, m
+    std::vector<std::vector<int>> faces = {};                  // of a hull, as a body's
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  // of a box or capsule
+  };
+  struct Body {
+    std::string name;
+    ShapeKind kind = ShapeKind::point;
+    double radius = 0;         // m
+    Vec3 half = Vec3::Zero();  // m
+    double mass = 0;           // kg
+    bool fixed = false;
+    bool turns = false;
+    std::vector<Vec3> vertices;  // of a polygon or hull, in its own frame from its centre of mass, m
+    std::vector<Part> parts;     // of a compound
+    std::vector<std::vector<int>> faces = {};  // of a hull: loops of vertices, counter-clockwise from outside
+    double friction = 0;                       // Coulomb's mu
+  };
+  struct Wall {
+    Vec3 point, normal;
+    std::optional<double> friction{};  // none: the body's own holds
+  };
+  struct Spring {
+    int a = -1, b = -1;  // bodies; -1: the room
+    double rest_length = 0, stiffness = 0;
+  };
+  struct Joint {
+    std::string name;
+    JointKind kind = JointKind::pin;
+    int a = -1, b = -1;                    // bodies; -1: the room
+    double length = 0;                     // of a rod or rope, m
+    Vec3 axis = Vec3::UnitX();             // of a slider, in b's frame
+    double lower = -1e300, upper = 1e300;  // of a slider's way, m
+  };
+  struct Mouse {
+    double press = 0, release = 0;  // s
+    double rest_length = 0;
+    std::vector<Vec3> path;  // the whole way of the hand, finely sampled, equal times
+  };
+
+  int dimension = 2;
+  double scale = 1;  // the room's height, m
+  Vec3 gravity = Vec3::Zero();
+  std::vector<Body> bodies;
+  std::vector<Wall> walls;
+  std::vector<Spring> springs;
+  std::vector<Mouse> mice;
+  std::vector<Joint> joints;
+};
+
+struct Energies {
+  double kinetic = 0, gravity = 0, springs = 0;  // J; springs: those of the scene and of pressed mice
+  double displacement = 0, impacts = 0;          // the ledger of `handout`, J since t = 0
+  double potential() const { return gravity + springs; }
+  double total() const { return kinetic + potential(); }
+};
+
+struct Snapshot {
+  struct Body {
+    Vec3 position = Vec3::Zero();
+    Vec3 velocity = Vec3::Zero();
+    Vec3 spin = Vec3::Zero();  // rad/s; in the plane (0, 0, w)
+    Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+    double angle = 0;           // plane: rad, not wrapped
+    bool at_rest = false;       // frozen: steps leave it alone
+    Vec3 blast = Vec3::Zero();  // what explosions push it with, N
+  };
+  struct Spring {
+    Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
+    int holds_a = -1, holds_b = -1;           // bodies; -1: the room
+    double push = 0;                          // of its stiffness, N; negative: it pulls
+  };
+  struct Mouse {
+    bool pressed = false;
+    Vec3 pointer = Vec3::Zero();
+    int body = -1;             // what it holds
+    Vec3 held = Vec3::Zero();  // the point of the body it holds
+  };
+  struct Joint {
+    Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
+    Vec3 force = Vec3::Zero();                // on its a, N
+    bool broken = false;
+  };
+  struct Contact {
+    int body = -1, wall = -1;                          // wall: -1 where `other` is what it touches
+    Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  // towards `body`
+    Vec3 impulse = Vec3::Zero();                       // on `body`, N s, in the last step
+    double gap = 0;                                    // m, negative when inside
+    int other = -1;                                    // a body
+    Vec3 force = Vec3::Zero();                         // on `body`, N
+    bool sliding = false;
+    bool holds = false;  // false: an impact alone
+  };
+
+  double time = 0;           // s
+  std::int64_t step = 0;     // whole steps done
+  std::vector<Body> bodies;  // as in the Cast
+  std::vector<Spring> springs;
+  std::vector<Mouse> mice;
+  std::vector<Joint> joints;
+  std::vector<Contact> contacts;
+  Energies energies;
+  Vec3 momentum = Vec3::Zero();          // kg m/s
+  Vec3 angular_momentum = Vec3::Zero();  // about the origin, kg m^2/s; in the plane (0, 0, L)
+};
+
+/// Coulomb's mu between the two that touch.
+double friction(const Cast& cast, const Snapshot::Contact& contact);
+
+/// The ways of chosen bodies on the physics clock, the same for every frame rate: what a trail is drawn from.
+/// Points come at equal steps and at each impact, so that a bounce keeps its cusp.
+struct Track {
+  struct Point {
+    double time = 0;
+    Vec3 place = Vec3::Zero();
+  };
+  std::vector<int> bodies;
+  std::vector<std::vector<Point>> points;  // one list a body of `bodies`, times increasing
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,323 @@
+// Bodies under springs, handout §2.2, §3.2.
+//   dv/dt = g - (c/m) v - (c_g/m) v_g + sum f / m          v_g  along the ground, for what stands on it
+//   dw/dt = I^-1 (sum r x f - w x I w)          in the body's axes
+
+#include "sim/motion/forward_dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/math/lie_step.h"
+#include "sim/model/own_spin.h"
+#include "sim/motion/free_motion.h"
+#include "sim/motion/stability.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stands on it
+
+}  // namespace
+
+template <int D>
+Tied<D>::Tied(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model), paths_(paths), chains_(model), blasts_(model), tips_(model.bodies) {
+  member_.assign(model.bodies.size(), -1);
+  const std::size_t counts[] = {model.bodies.size(), model.springs.size(), model.chains.size()};
+  for (int i = 0; i < 3; ++i) {
+    numbers_[i].resize(counts[i]);
+    std::iota(numbers_[i].begin(), numbers_[i].end(), 0);
+  }
+  ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty() || !model.chains.empty();
+  for (const Body<D>& body : model.bodies) ever_ = ever_ || body.ground_drag != 0;
+}
+
+template <int D>
+typename Tied<D>::Hold Tied<D>::hold(const State<D>& state, const End<D>& end) const {
+  if (end.body < 0) return {-1, -1, end.local};
+  if (member_[end.body] >= 0) return {member_[end.body], -1, end.local};
+  const Stance<D> at = stance(state, end.body);  // what does not move: its point stays
+  return {-1, -1, at.x + at.arm(end.local)};
+}
+
+template <int D>
+void Tied<D>::gather(const State<D>& state, bool everyone) {
+  const Subset all{numbers_[0], numbers_[1], numbers_[2]};
+  if (everyone || blasting(state)) return gather(state, all);
+  // bodies with a spring, those that the mouse holds, and those that the ground brakes
+  for (const int body : all_) member_[body] = -1;
+  const auto mark = [&](int body) {
+    if (body >= 0 && !model_.bodies[body].fixed && !model_.bodies[body].linked) member_[body] = 0;
+  };
+  for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
+  for (const Grip<D>& grip : state.grips) mark(grip.body);
+  for (int body = 0; body < int(member_.size()); ++body) {
+    if (model_.bodies[body].ground_drag != 0 && (state.frozen.empty() || !state.frozen[body])) mark(body);
+  }
+  gather_marked(state, all);
+}
+
+template <int D>
+void Tied<D>::gather(const State<D>& state, const Subset& of) {
+  for (const int body : all_) member_[body] = -1;
+  for (const int body : of.bodies) {
+    const bool frozen = !state.frozen.empty() && state.frozen[body];
+    if (!frozen && !model_.bodies[body].fixed && !model_.bodies[body].linked) member_[body] = 0;
+  }
+  gather_marked(state, of);
+}
+
+// gathers the bodies of a part of the model whose member_ is not below zero
+template <int D>
+void Tied<D>::gather_marked(const State<D>& state, const Subset& of) {
+  bodies_.clear();
+  for (const int body : of.bodies) {
+    if (member_[body] < 0) continue;
+    member_[body] = int(bodies_.size());
+    bodies_.push_back(body);
+  }
+  turning_ = 0;
+  for (const int body : bodies_) turning_ += turning(state, body) >= 0;
+  chains_.gather(state, of.chains);
+  all_ = bodies_;
+  for (const int body : chains_.links()) {
+    member_[body] = int(all_.size());
+    all_.push_back(body);
+  }
+
+  // by what
+  ties_.clear();
+  for (const int number : of.springs) {
+    const Spring<D>& spring = model_.springs[number];
+    const Tie tie{hold(state, spring.a), hold(state, spring.b), law(spring)};
+    if (tie.a.member >= 0 || tie.b.member >= 0) ties_.push_back(tie);
+  }
+  for (int mouse = 0; mouse < int(state.grips.size()); ++mouse) {
+    const Grip<D>& grip = state.grips[mouse];
+    if (grip.body < 0 || member_[grip.body] < 0) continue;
+    ties_.push_back(
+        {hold(state, {grip.body, grip.local}), {-1, mouse, Vec<D>::Zero()}, law(model_.mice[mouse])});
+  }
+
+  // who is not to be turned far: what wobbles, what is held off its centre, and links
+  wheels_.clear();
+  for (int i = 0; i < int(all_.size()); ++i) {
+    if (turning(state, all_[i]) < 0) continue;
+    if (i >= int(bodies_.size()) || wobbles<D>(model_.bodies[all_[i]].inertia)) wheels_.push_back(all_[i]);
+  }
+  for (const Tie& tie : ties_) {
+    for (const Hold& end : {tie.a, tie.b}) {
+      if (end.member >= 0 && !end.at.isZero(0) && turning(state, all_[end.member]) >= 0)
+        wheels_.push_back(all_[end.member]);
+    }
+  }
+
+  // under what
+  gravity_.clear(), drag_.clear();
+  bool drag = false;
+  for (const int body : bodies_) {
+    const Body<D>& b = model_.bodies[body];
+    for (int axis = 0; axis < D; ++axis) {
+      gravity_.push_back(model_.gravity[axis]);
+      drag_.push_back(b.drag / b.mass);
+    }
+    drag = drag || b.drag != 0;
+  }
+  if (!drag) drag_.clear();
+
+  dragged_.clear();
+  for (int i = 0; i < int(all_.size()); ++i) {
+    if (model_.bodies[all_[i]].ground_drag != 0) dragged_.push_back(i);
+  }
+  braked_.reserve(dragged_.size());
+
+  const std::size_t n = std::size_t(chain_start() + chains_.size());
+  x_.resize(bodies_.size()), stances_.assign(all_.size(), {}), turn_.resize(turning_), base_.resize(turning_);
+  d_.resize(n), v_.resize(n), d_rate_.resize(n), v_rate_.resize(n);
+}
+
+// the tied bodies of a state as d = 0 and v
+template <int D>
+void Tied<D>::load(const State<D>& state) {
+  const int n = int(bodies_.size()), still = n - turning_;
+  for (int i = 0; i < n; ++i) {
+    x_[i] = state.x[bodies_[i]];
+    std::copy_n(state.v[bodies_[i]].data(), D, v_.data() + D * i);
+  }
+  for (int i = 0; i < turning_; ++i) {
+    const int k = turning(state, bodies_[still + i]);
+    turn_[i] = state.turn[k];
+    take_spin(state, k, model_.integrator == Integrator::semi_implicit, base_[i],
+              v_.data() + D * n + kSpins<D> * i);
+  }
+  chains_.load(state, std::span<double>(v_).subspan(std::size_t(chain_start())));
+  std::fill(d_.begin(), d_.end(), 0.0);
+
+  // what explodes
+  acting_.clear(), held_.clear();
+  for (int i = 0; i < int(state.blasts.size()); ++i) {
+    const Blast<D>& blast = state.blasts[i];
+    if (!blast.on) continue;
+    if (blast.forces.empty()) {
+      acting_.push_back(i);
+      continue;
+    }
+    held_.resize(all_.size());
+    for (std::size_t k = 0; k < all_.size(); ++k)
+      held_[k] += Wrench<D>{blast.torques[all_[k]], blast.forces[all_[k]]};
+  }
+
+  // what the ground brakes
+  braked_.clear();
+  for (const int member : dragged_) {
+    const Stance<D> at = stance(state, all_[member]);
+    const Body<D>& body = model_.bodies[all_[member]];
+    const double h = 1 / value(model_.rate), g = std::sqrt(model_.gravity.squaredNorm());
+    // as far as it falls between two impacts of the handout's rest
+    const double near = kOnGround * model_.scale + g * h * h;
+    for (const Wall<D>& wall : model_.walls) {
+      if (g > 0 && !(wall.normal.dot(model_.gravity) < 0)) continue;
+      double least = 1e300;
+      for (const Tip<D>& tip : tips_[all_[member]])
+        least = std::min(least, (at.x + at.arm(tip.at) - wall.point).dot(wall.normal) - tip.radius);
+      if (least > near) continue;
+      braked_.push_back({member, body.ground_drag / body.mass, wall.normal});
+      break;
+    }
+  }
+}
+
+template <int D>
+std::span<const double> Tied<D>::accelerations(const State<D>& state, double t) {
+  load(state);
+  rates(t, d_, v_, d_rate_, v_rate_);
+  return v_rate_;
+}
+
+// In how many pieces a step is made: as what turns most asks for. Not where the step is too long for a
+// spring: what that makes spin is to be told, not hidden.
+template <int D>
+int Tied<D>::pieces(const State<D>& state, double h) const {
+  int most = 1;
+  for (const int body : wheels_)
+    most = std::max(most, pieces_of_turn<D>(state.spin[turning(state, body)], h));
+  return most > 1 && tightest(model_, state.grips).body < 0 ? most : 1;
+}
+
+template <int D>
+void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System* with) {
+  if (all_.empty()) return;
+  const int n = pieces(state, h);
+  for (int i = 0; i < n; ++i) piece(integrate, state, t + i * (h / n), h / n, stages, with ? *with : *this);
+}
+
+template <int D>
+void Tied<D>::piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
+                    System& rates) {
+  const int n = int(bodies_.size()), still = n - turning_;
+  load(state);
+  integrate(rates, t, h, d_, v_, stages);
+
+  for (int i = 0; i < n; ++i) {
+    state.x[bodies_[i]] += Eigen::Map<const Vec<D>>(d_.data() + D * i);
+    state.v[bodies_[i]] = Eigen::Map<const Vec<D>>(v_.data() + D * i);
+  }
+  for (int i = 0; i < turning_; ++i) {
+    const int k = turning(state, bodies_[still + i]), at = D * n + kSpins<D> * i;
+    give_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
+  }
+  const std::size_t chains = std::size_t(chain_start());
+  chains_.give(std::span<const double>(d_).subspan(chains), std::span<const double>(v_).subspan(chains),
+               state);
+}
+
+template <int D>
+typename Tied<D>::Moving Tied<D>::moving(const Hold& hold, double t) const {
+  if (hold.mouse >= 0) {
+    const auto hand = paths_[hold.mouse].at(t);
+    return {Vec<D>::Zero(), hand.place, hand.velocity};
+  }
+  if (hold.member < 0) return {Vec<D>::Zero(), hold.at, Vec<D>::Zero()};
+  const Stance<D>& at = stances_[hold.member];
+  const Vec<D> arm = at.arm(hold.at);
+  return {arm, at.x + arm, at.velocity(arm)};
+}
+
+template <int D>
+void Tied<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) {
+  if (hold.member >= 0) push(hold.member, {moment<D>(arm, force), force}, v_rate);
+}
+
+// by a force at the centre and a torque, in the room's frame
+template <int D>
+void Tied<D>::push(int member, const Wrench<D>& by, std::span<double> v_rate) {
+  const int n = int(bodies_.size()), spinning = member - (n - turning_);
+  if (member >= n) return chains_.pull(member - n, by);
+  const Body<D>& body = model_.bodies[bodies_[member]];
+  Eigen::Map<Vec<D>>(v_rate.data() + D * member) += by.f / body.mass;
+  if (spinning < 0) return;
+  Eigen::Map<Spin<D>>(v_rate.data() + D * n + kSpins<D> * spinning) +=
+      from_room<D>(stances_[member].room_from_body, by.n).cwiseQuotient(body.inertia);
+}
+
+template <int D>
+void Tied<D>::rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
+                    std::span<double> v_rate) {
+  const int n = int(bodies_.size()), still = n - turning_;
+
+  // what needs no spring: x' = v, v' = g - (c/m) v
+  std::copy_n(v.begin(), D * n, d_rate.begin());
+  fall(gravity_, drag_, v.first(D * n), v_rate.first(D * n));
+
+  // where everyone is at this stage, and how it turns by itself
+  for (int i = 0; i < n; ++i) {
+    stances_[i].x = x_[i] + Eigen::Map<const Vec<D>>(d.data() + D * i);
+    stances_[i].v = Eigen::Map<const Vec<D>>(v.data() + D * i);
+  }
+  for (int i = 0; i < turning_; ++i) {
+    const int at = D * n + kSpins<D> * i;
+    const Spin<D> by = Eigen::Map<const Spin<D>>(d.data() + at);
+    const Spin<D> w = whole_spin<D>(base_[i], Spin<D>(Eigen::Map<const Spin<D>>(v.data() + at)));
+    Stance<D>& it = stances_[still + i];
+    it.room_from_body = rotation<D>(displaced<D>(turn_[i], by));
+    it.w = to_room<D>(it.room_from_body, w);
+    Eigen::Map<Spin<D>>(d_rate.data() + at) = displacing<D>(by, w);
+    Eigen::Map<Spin<D>>(v_rate.data() + at) = gyration<D>(model_.bodies[bodies_[still + i]].inertia, w);
+  }
+  const std::size_t chains = std::size_t(chain_start());
+  const int links = int(chains_.links().size());
+  if (links > 0) chains_.stand(d.subspan(chains), v.subspan(chains)), chains_.let_go();
+  for (int k = 0; k < links; ++k) {
+    stances_[n + k] = chains_.stance(k);
+    chains_.pull(k, {Spin<D>::Zero(), -model_.bodies[all_[n + k]].drag * stances_[n + k].v});
+  }
+
+  for (const Tie& tie : ties_) {
+    const Moving a = moving(tie.a, t), b = moving(tie.b, t);
+    const Vec<D> force = pull<D>(tie.law, a.place, a.velocity, b.place, b.velocity);
+    push(tie.a, a.arm, force, v_rate);
+    push(tie.b, b.arm, -force, v_rate);
+  }
+  for (const int explosion : acting_) {
+    for (int i = 0; i < int(all_.size()); ++i)
+      push(i, blasts_.push(model_.explosions[explosion], all_[i], stances_[i]), v_rate);
+  }
+  for (int i = 0; i < int(held_.size()); ++i) push(i, held_[i], v_rate);
+  for (const Braked& it : braked_) {
+    const Vec<D>& speed = stances_[it.member].v;
+    const Vec<D> rate = it.rate * (speed - it.normal * it.normal.dot(speed));
+    if (it.member < n)
+      Eigen::Map<Vec<D>>(v_rate.data() + D * it.member) -= rate;
+    else
+      push(it.member, {Spin<D>::Zero(), -model_.bodies[all_[it.member]].mass * rate}, v_rate);
+  }
+  if (links > 0)
+    chains_.rates(d.subspan(chains), v.subspan(chains), d_rate.subspan(chains), v_rate.subspan(chains));
+}
+
+template class Tied<2>;
+template class Tied<3>;
+
+}  // namespace obscura::sim

@@ -1,0 +1,229 @@
+// Which steps an integrator stands, on x'' = -w^2 x - g x'.
+//   roots  z = h (-g/2 +- sqrt(g^2/4 - w^2))
+//   growth of a step  R(z) = 1 + z (Euler), 1 + z + z^2/2 (midpoint), 1 + z + z^2/2 + z^3/6 + z^4/24
+//   (Runge-Kutta) semi-implicit: the eigenvalues of a matrix of trace 2 - h g - h^2 w^2 and determinant 1 - h
+//   g
+// Without damping: Runge-Kutta stands h w <= 2 sqrt 2, semi-implicit h w <= 2, midpoint and Euler grow at any
+// step.
+
+#include "sim/motion/stability.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+#include "sim/force/spring.h"
+#include "sim/math/rational.h"
+
+namespace obscura::sim {
+
+namespace {
+
+struct Complex {
+  double re = 0, im = 0;
+};
+Complex operator*(Complex a, Complex b) { return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re}; }
+double square(Complex a) { return a.re * a.re + a.im * a.im; }
+
+// 1 + z (1 + z/2 (1 + z/3 (...))), `order` terms
+Complex series(Complex z, int order) {
+  Complex sum{1, 0};
+  for (int i = order; i >= 1; --i) {
+    const Complex term = z * sum;
+    sum = {1 + term.re / i, term.im / i};
+  }
+  return sum;
+}
+
+// the roots of z^2 - trace z + det, larger square of their magnitude
+double larger_root(double trace, double det) {
+  const double half = 0.5 * trace, disc = half * half - det;
+  if (disc < 0) return det;
+  const double root = std::fabs(half) + std::sqrt(disc);
+  return root * root;
+}
+
+// square of the factor by which a step grows
+double growth(Integrator integrator, double w2, double g, double h) {
+  if (integrator == Integrator::semi_implicit) return larger_root(2 - h * g - h * h * w2, 1 - h * g);
+  const int order = integrator == Integrator::rk4 ? 4 : integrator == Integrator::midpoint ? 2 : 1;
+  const double disc = 0.25 * g * g - w2;
+  if (disc < 0) return square(series({-0.5 * g * h, std::sqrt(-disc) * h}, order));
+  const double root = std::sqrt(disc);
+  return std::max(square(series({(-0.5 * g - root) * h, 0}, order)),
+                  square(series({(-0.5 * g + root) * h, 0}, order)));
+}
+
+bool grows(Integrator integrator, double w2, double g, double h) {
+  const bool has_limit = integrator == Integrator::rk4 || integrator == Integrator::semi_implicit;
+  return !(growth(integrator, w2, g, h) - 1 <= (has_limit ? 1e-9 : 2 * h));
+}
+
+template <int D>
+double yielding(const Model<D>& model, const End<D>& end) {
+  if (end.body < 0 || model.bodies[end.body].fixed) return 0;
+  const Body<D>& body = model.bodies[end.body];
+  double sum = 1 / body.mass;
+  if (body.turns()) sum += end.local.squaredNorm() / body.inertia.minCoeff();
+  return sum;
+}
+
+std::string brief(double x) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, x, std::chars_format::general, 3).ptr;
+  return {digits, end};
+}
+
+}  // namespace
+
+template <int D>
+std::string named(const Model<D>& model, int body) {
+  const std::string& name = model.bodies[body].name;
+  return name.empty() ? "body " + std::to_string(body) : name;
+}
+
+const char* spelled(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::rk4:
+      return "rk4";
+    case Integrator::midpoint:
+      return "midpoint";
+    case Integrator::euler:
+      return "explicit Euler";
+    case Integrator::semi_implicit:
+      return "semi-implicit Euler";
+  }
+  return "";
+}
+
+template <int D>
+std::vector<Tightness> tightness(const Model<D>& model, const std::vector<Grip<D>>& grips) {
+  std::vector<Tightness> all(model.bodies.size());
+  std::vector<double> most(model.bodies.size(), -1);
+  for (int body = 0; body < int(all.size()); ++body) {
+    all[body].body = body;
+    all[body].damping = (model.bodies[body].drag + model.bodies[body].ground_drag) / model.bodies[body].mass;
+  }
+  const auto add = [&](int body, const SpringLaw& s, double yields, bool hand, int index) {
+    if (body < 0 || model.bodies[body].fixed) return;
+    Tightness& sum = all[body];
+    sum.stiffness += s.stiffness * yields, sum.damping += s.damping * yields, ++sum.ties;
+    if (s.stiffness * yields > most[body]) {
+      most[body] = s.stiffness * yields;
+      sum.hand = hand, sum.strongest = index;
+    }
+  };
+  for (int i = 0; i < int(model.springs.size()); ++i) {
+    const Spring<D>& s = model.springs[i];
+    if (s.a.body == s.b.body) continue;
+    const double yields = yielding(model, s.a) + yielding(model, s.b);
+    add(s.a.body, law(s), yields, false, i);
+    add(s.b.body, law(s), yields, false, i);
+  }
+  for (int i = 0; i < int(grips.size()); ++i) {
+    if (grips[i].body < 0) continue;
+    add(grips[i].body, law(model.mice[i]), yielding(model, End<D>{grips[i].body, grips[i].local}), true, i);
+  }
+  return all;
+}
+
+bool grows(Integrator integrator, const Tightness& oscillator, double h) {
+  return grows(integrator, oscillator.stiffness, oscillator.damping, h);
+}
+
+double longest_step(Integrator integrator, const Tightness& oscillator, double h) {
+  if (!grows(integrator, oscillator, h)) return h;
+  double stands = 0, falls = h;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (stands + falls);
+    (grows(integrator, oscillator, middle) ? falls : stands) = middle;
+  }
+  return stands;
+}
+
+template <int D>
+std::string too_long(const Model<D>& model, const Tightness& oscillator) {
+  const double h = 1 / value(model.rate);
+  if (!grows(model.integrator, oscillator, h)) return {};
+  const double limit = longest_step(model.integrator, oscillator, h);
+  std::string text = "step " + sim::text(Rational{model.rate.den, model.rate.num}) + " s is longer than ";
+  const bool undamped = oscillator.damping * oscillator.damping < 1e-4 * oscillator.stiffness;
+  if (model.integrator == Integrator::rk4 && undamped) {
+    text += "2.828 sqrt(m/k) = " + brief(limit) + " s";
+  } else if (model.integrator == Integrator::semi_implicit && undamped) {
+    text += "2 sqrt(m/k) = " + brief(limit) + " s";
+  } else {
+    text += brief(limit) + " s, what " + std::string(spelled(model.integrator)) + " stands";
+  }
+  const std::string strongest =
+      (oscillator.hand ? "mouse[" : "spring[") + std::to_string(oscillator.strongest) + "]";
+  if (oscillator.ties == 0) {
+    text += " of the drag";
+  } else if (oscillator.ties == 1) {
+    text += " of " + strongest;
+  } else {
+    text += " of " + std::to_string(oscillator.ties) + " springs, the strongest " + strongest + ",";
+  }
+  text += " on " + named(model, oscillator.body) + ": ";
+  const double rate = std::ceil(1 / limit);
+  return text + (rate < 1e15 ? "raise physics.rate above " + std::to_string(std::int64_t(rate))
+                             : "it is too stiff for any physics.rate");
+}
+
+template <int D>
+Tightness tightest(const Model<D>& model, const std::vector<Grip<D>>& grips) {
+  Tightness worst;
+  const double h = 1 / value(model.rate);
+  double shortest = h;
+  for (const Tightness& here : tightness(model, grips)) {
+    if (model.bodies[here.body].fixed) continue;
+    const double limit = longest_step(model.integrator, here, h);
+    if (limit < shortest) shortest = limit, worst = here;
+  }
+  return worst;
+}
+
+namespace {
+
+template <int D>
+std::vector<Trouble> foreseen(const Model<D>& model) {
+  const std::vector<Grip<D>> none(model.mice.size());
+  const std::vector<Tightness> all = tightness(model, none);
+  Tightness worst = tightest(model, none);
+  const double h = 1 / value(model.rate);
+  double shortest = worst.body >= 0 ? longest_step(model.integrator, worst, h) : h;
+
+  // a hand may take any body
+  for (int mouse = 0; mouse < int(model.mice.size()); ++mouse) {
+    for (const Tightness& free : all) {
+      const Body<D>& body = model.bodies[free.body];
+      if (body.fixed) continue;
+      Tightness held = free;
+      const double yields = yielding(model, End<D>{free.body, body.shape.half});
+      held.stiffness += model.mice[mouse].stiffness * yields,
+          held.damping += model.mice[mouse].damping * yields;
+      ++held.ties, held.hand = true, held.strongest = mouse;
+      const double limit = longest_step(model.integrator, held, h);
+      if (limit < shortest) shortest = limit, worst = held;
+    }
+  }
+  if (worst.body < 0) return {};
+  return {{0, named(model, worst.body), "energy", "will grow from nowhere", too_long(model, worst)}};
+}
+
+}  // namespace
+
+std::vector<Trouble> stability_warnings(const Model<2>& model) { return foreseen(model); }
+std::vector<Trouble> stability_warnings(const Model<3>& model) { return foreseen(model); }
+
+template std::string named<2>(const Model<2>&, int);
+template std::vector<Tightness> tightness<2>(const Model<2>&, const std::vector<Grip<2>>&);
+template std::string too_long<2>(const Model<2>&, const Tightness&);
+template Tightness tightest<2>(const Model<2>&, const std::vector<Grip<2>>&);
+template std::string named<3>(const Model<3>&, int);
+template std::vector<Tightness> tightness<3>(const Model<3>&, const std::vector<Grip<3>>&);
+template std::string too_long<3>(const Model<3>&, const Tightness&);
+template Tightness tightest<3>(const Model<3>&, const std::vector<Grip<3>>&);
+
+}  // namespace obscura::sim

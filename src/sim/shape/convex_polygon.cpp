@@ -1,0 +1,144 @@
+// Separating axes of convex polygons.
+//   s(face) = min over the other's corners p of n . (p - p_face)        s = max over the faces of both
+// Where s < 0 they overlap, and -s is the least depth: a shift of -s along that n parts them. Where s > 0
+// they are apart. Then s is their distance when the corner lies over the face; otherwise every axis falls
+// short of it, and the distance is between two corners.
+
+#include "sim/shape/convex_polygon.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace obscura::sim {
+
+namespace {
+
+// distance from p to the segment of face i
+double distance(const Outline& outline, int i, const Vec<2>& p) {
+  const Vec<2> from = outline.corner(i), along = outline.corner(outline.next(i)) - from;
+  const double s = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - from - s * along).norm();
+}
+
+double nearest(const Outline& outline, const Outline& other, const Lie& lies) {
+  double least = 1e300;
+  for (int i = 0; i < outline.faces(); ++i) {
+    for (int k = 0; k < other.corners(); ++k) {
+      least = std::min(least, distance(outline, i, lies * other.corner(k)));
+    }
+  }
+  return least;
+}
+
+// the same as by corners, for the two axes of a box at once
+Separation of_boxes(const Outline& of, const Outline& other, const Lie& lies) {
+  const Vec<2> away = lies * other.middle() - of.middle();
+  const Vec<2> s = away.cwiseAbs() - of.half() - lies.turn.cwiseAbs() * other.half();
+  const int upright = away[1] > 0 ? 2 : 0, across = away[0] < 0 ? 3 : 1;
+  if (s[0] == s[1]) return {s[0], std::min(upright, across)};
+  return s[1] > s[0] ? Separation{s[1], upright} : Separation{s[0], across};
+}
+
+}  // namespace
+
+Outline::Outline(const Shape<2>& shape) : shape_(&shape) {
+  assert(shape.kind != ShapeKind::compound);
+  switch (shape.kind) {
+    case ShapeKind::ball:
+      radius_ = shape.radius;
+      middle_ = shape.center;
+      break;
+    case ShapeKind::box:
+      corners_ = 4;
+      middle_ = shape.center;
+      girth_ = shape.half.norm();
+      break;
+    case ShapeKind::polygon:
+      corners_ = int(shape.vertices.size());
+      for (const Vec<2>& vertex : shape.vertices) middle_ += vertex / corners_;
+      for (const Vec<2>& vertex : shape.vertices) {
+        girth_ = std::max(girth_, (vertex - middle_).squaredNorm());
+      }
+      girth_ = std::sqrt(girth_);
+      break;
+    case ShapeKind::point:
+    case ShapeKind::compound:
+    case ShapeKind::capsule:
+    case ShapeKind::hull:
+      break;
+  }
+}
+
+int Outline::farthest(const Vec<2>& d) const {
+  if (corners_ == 1) return 0;
+  if (is_box()) {
+    if (d[1] > 0) return d[0] > 0 ? 2 : 3;
+    return d[0] > 0 ? 1 : 0;
+  }
+  int best = 0;
+  double most = d.dot(shape_->vertices[0]);
+  for (int i = 1; i < corners_; ++i) {
+    const double here = d.dot(shape_->vertices[i]);
+    if (here > most) {
+      most = here;
+      best = i;
+    }
+  }
+  return best;
+}
+
+int Outline::facing(const Vec<2>& d) const {
+  if (is_box()) {
+    const int upright = d[1] > 0 ? 2 : 0, across = d[0] < 0 ? 3 : 1;
+    const double height = std::abs(d[1]), width = std::abs(d[0]);
+    if (height == width) return std::min(upright, across);
+    return height > width ? upright : across;
+  }
+  int best = 0;
+  double most = -1e300;
+  for (int i = 0; i < corners_; ++i) {
+    const double along = d.dot(normal(i));
+    if (along > most) {
+      most = along;
+      best = i;
+    }
+  }
+  return best;
+}
+
+Lie lie(const Stance<2>& a, const Stance<2>& b) {
+  const Rotation<2> b_from_room = b.room_from_body.transpose();
+  return {b_from_room * (a.x - b.x), b_from_room * a.room_from_body};
+}
+
+Lie inverse(const Lie& of) {
+  const Rotation<2> back = of.turn.transpose();
+  return {-(back * of.x), back};
+}
+
+Separation greatest_separation(const Outline& of, const Outline& other, const Lie& lies, double enough) {
+  if (of.is_box() && other.is_box()) return of_boxes(of, other, lies);
+  Separation best{-1e300, 0};
+  for (int i = 0; i < of.faces(); ++i) {
+    const Vec<2> n = of.normal(i);
+    const Vec<2> down = -(lies.turn.transpose() * n);
+    const Vec<2> deepest = lies * other.corner(other.farthest(down));
+    const double value = n.dot(deepest - of.corner(i));
+    if (value > best.value) best = {value, i};
+    if (value > enough) break;
+  }
+  return best;
+}
+
+double core_separation(const Outline& a, const Outline& b, const Lie& a_in_b) {
+  if (a.faces() + b.faces() == 0) return (a_in_b * a.corner(0) - b.corner(0)).norm();
+  const Lie b_in_a = inverse(a_in_b);
+  double s = -1e300;
+  if (b.faces()) s = std::max(s, greatest_separation(b, a, a_in_b, 1e300).value);
+  if (a.faces()) s = std::max(s, greatest_separation(a, b, b_in_a, 1e300).value);
+  if (s <= 0) return s;
+  return std::min(nearest(b, a, a_in_b), nearest(a, b, b_in_a));
+}
+
+}  // namespace obscura::sim

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "sim/shape/shape.h"
+
+namespace obscura::sim {
+
+/// The convex core of a point, ball, box or polygon of the plane, seen in the frame of its body: its corners
+/// counter-clockwise, and the radius that rounds it. Corner i of a box counts around it from the lower left.
+/// Face i runs from corner i to the next. A point and a ball have one corner and no face. Refers to the
+/// shape, which must live longer.
+class Outline {
+ public:
+  /// Requires any kind but compound.
+  explicit Outline(const Shape<2>& shape);
+
+  int corners() const { return corners_; }
+  int faces() const { return corners_ > 1 ? corners_ : 0; }
+  int next(int i) const { return i + 1 < corners_ ? i + 1 : 0; }
+  double radius() const { return radius_; }
+  Vec<2> corner(int i) const {
+    if (corners_ == 1) return middle_;
+    if (!is_box()) return shape_->vertices[i];
+    return {middle_[0] + (i == 1 || i == 2 ? half()[0] : -half()[0]),
+            middle_[1] + (i >= 2 ? half()[1] : -half()[1])};
+  }
+
+  /// Outward unit normal of face i.
+  Vec<2> normal(int i) const {
+    if (is_box()) return i % 2 ? Vec<2>(2 - i, 0) : Vec<2>(0, i - 1);
+    const Vec<2> along = shape_->vertices[next(i)] - shape_->vertices[i];
+    return Vec<2>(along[1], -along[0]) / along.norm();
+  }
+
+  /// A circle that holds the core without its radius, around `middle`.
+  Vec<2> middle() const { return middle_; }
+  double girth() const { return girth_; }
+
+  /// Which corner lies farthest along d, the first of equals.
+  int farthest(const Vec<2>& d) const;
+
+  /// Which face's normal lies most along d, the first of equals. Requires faces.
+  int facing(const Vec<2>& d) const;
+
+  bool is_box() const { return shape_->kind == ShapeKind::box; }
+  const Vec<2>& half() const { return shape_->half; }  // of a box
+
+ private:
+  const Shape<2>* shape_;
+  int corners_ = 1;
+  double radius_ = 0, girth_ = 0;
+  Vec<2> middle_ = Vec<2>::Zero();
+};
+
+/// Parts of a shape that each have an outline: those of a compound, or itself.
+inline int parts(const Shape<2>& shape) {
+  return shape.kind == ShapeKind::compound ? int(shape.parts.size()) : 1;
+}
+inline const Shape<2>& part(const Shape<2>& shape, int i) {
+  return shape.kind == ShapeKind::compound ? shape.parts[i] : shape;
+}
+
+/// How a lies in the frame of b.
+struct Lie {
+  Vec<2> x = Vec<2>::Zero();
+  Rotation<2> turn = Rotation<2>::Identity();
+
+  Vec<2> operator*(const Vec<2>& local) const { return x + turn * local; }
+};
+Lie lie(const Stance<2>& a, const Stance<2>& b);
+Lie inverse(const Lie& of);
+
+/// A face of one outline and how far the corners of the other stay from it, m.
+struct Separation {
+  double value = 0;
+  int face = -1;
+};
+
+/// The face of `of` that the other outline, lying so in its frame, keeps the greatest separation from, the
+/// first of equals. Stops at the first face beyond `enough`. Requires faces.
+Separation greatest_separation(const Outline& of, const Outline& other, const Lie& lies, double enough);
+
+/// Distance (m) between two outlines without their radii, a lying so in b's frame; where they overlap minus
+/// the depth.
+double core_separation(const Outline& a, const Outline& b, const Lie& a_in_b);
+
+}  // namespace obscura::sim

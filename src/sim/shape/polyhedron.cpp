@@ -1,0 +1,380 @@
+// Separating axes of convex polyhedra.
+//   s(face)  = min over the other's corners p of n . (p - p_face)
+//   s(edges) = n . (p_a - p_b)       n = +-(e_a x e_b) / |e_a x e_b|, where both edges are farthest along it
+//   s        = max over the faces of both and all pairs of edges
+// Where s < 0 they overlap, and -s is the least depth. Where s > 0 they are apart; then s is their distance
+// when the nearest places are a corner over a face or lie within two edges, and otherwise falls short of it.
+//
+// An edge e with faces L and R at its left and right is farthest along n, n across e, where n leads out of
+// both: n . (L x e) <= 0 and n . (e x R) <= 0.
+
+#include "sim/shape/polyhedron.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kSkew = 1e-6;  // sine between two edges: below, they have no common normal
+
+// corners of a box count by the axes on whose positive side they lie; face 2 k + 1 is the positive one of
+// axis k; edge 4 k + i + 2 j runs along k on the sides i and j of the next two axes
+constexpr int kBoxLoops[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                 {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+constexpr Solid::Edge box_edge(int number) {
+  const int axis = number / 4, next = (axis + 1) % 3, last = (axis + 2) % 3;
+  const int i = number & 1, j = number >> 1 & 1;
+  const int from = i << next | j << last;
+  const int beside_next = 2 * next + i, beside_last = 2 * last + j;
+  return i == j ? Solid::Edge{from, from | 1 << axis, beside_next, beside_last}
+                : Solid::Edge{from, from | 1 << axis, beside_last, beside_next};
+}
+
+// of a loop, by Newell: every corner has its say
+Vec<3> loop_normal(const Shape<3>& hull, int face) {
+  const std::vector<int>& loop = hull.faces[face];
+  const Vec<3>& first = hull.vertices[loop[0]];
+  Vec<3> sum = Vec<3>::Zero();
+  for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+    sum += (hull.vertices[loop[i]] - first).cross(hull.vertices[loop[i + 1]] - first);
+  }
+  return sum / std::sqrt(sum.squaredNorm());
+}
+
+}  // namespace
+
+Solid::Solid(const Shape<3>& shape, const Stance<3>& at, const Vec<3>& origin)
+    : shape_(&shape), x_(at.x - origin), turn_(at.room_from_body) {
+  assert(shape.kind != ShapeKind::compound && shape.kind != ShapeKind::polygon);
+  middle_ = x_;
+  if (!shape.center.isZero(0)) middle_ += turn_ * shape.center;
+  switch (shape.kind) {
+    case ShapeKind::ball:
+      radius_ = shape.radius;
+      break;
+    case ShapeKind::box:
+      corners_ = 8, edges_ = 12, faces_ = 6;
+      girth_ = std::sqrt(shape.half.squaredNorm());
+      break;
+    case ShapeKind::capsule:
+      corners_ = 2, edges_ = 1;
+      radius_ = shape.radius, girth_ = shape.half[1];
+      break;
+    case ShapeKind::hull: {
+      corners_ = int(shape.vertices.size()), faces_ = int(shape.faces.size());
+      Vec<3> middle = Vec<3>::Zero();
+      for (const Vec<3>& vertex : shape.vertices) middle += vertex;
+      middle /= corners_;
+      for (const Vec<3>& vertex : shape.vertices) {
+        girth_ = std::max(girth_, (vertex - middle).squaredNorm());
+      }
+      girth_ = std::sqrt(girth_);
+      middle_ = x_ + turn_ * middle;
+      find_edges();
+      break;
+    }
+    default:
+      break;
+  }
+  if (shape.kind == ShapeKind::box || shape.kind == ShapeKind::capsule) {
+    axes_ = shape.turn == upright<3>() ? turn_ : Rotation<3>(turn_ * rotation<3>(shape.turn));
+    arms_ = axes_ * shape.half.asDiagonal();
+  }
+}
+
+// of a hull: each side of a loop once, from its lower corner, with the face on whose loop it runs back
+void Solid::find_edges() {
+  const auto add = [&](const Edge& edge) {
+    if (edges_ < kFewEdges) {
+      few_[edges_] = edge;
+    } else {
+      many_.push_back(edge);
+    }
+    ++edges_;
+  };
+  const auto behind = [&](int from, int to) {
+    for (int face = 0; face < faces_; ++face) {
+      const std::vector<int>& loop = shape_->faces[face];
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        if (loop[i] == to && loop[i + 1 < loop.size() ? i + 1 : 0] == from) return face;
+      }
+    }
+    return -1;
+  };
+  for (int face = 0; face < faces_; ++face) {
+    const std::vector<int>& loop = shape_->faces[face];
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const int from = loop[i], to = loop[i + 1 < loop.size() ? i + 1 : 0];
+      if (from < to) add({from, to, face, behind(from, to)});
+    }
+  }
+}
+
+Solid::Edge Solid::edge(int i) const {
+  if (is_box()) return box_edge(i);
+  if (faces_ == 0) return {0, 1, -1, -1};
+  return i < kFewEdges ? few_[i] : many_[i - kFewEdges];
+}
+
+std::span<const int> Solid::loop(int face) const {
+  if (is_box()) return kBoxLoops[face];
+  return shape_->faces[face];
+}
+
+Vec<3> Solid::normal(int face) const {
+  if (is_box()) return (face & 1 ? 1 : -1) * axes_.col(face >> 1);
+  return turn_ * loop_normal(*shape_, face);
+}
+
+Vec<3> Solid::along(int edge) const {
+  if (is_box()) return axes_.col(edge >> 2);
+  if (faces_ == 0) return axes_.col(1);
+  const Edge of = this->edge(edge);
+  const Vec<3> way = shape_->vertices[of.to] - shape_->vertices[of.from];
+  return turn_ * (way / std::sqrt(way.squaredNorm()));
+}
+
+int Solid::edge_between(int corner, int other) const {
+  if (is_box()) {
+    const int axis = (corner ^ other) >> 1, next = (axis + 1) % 3, last = (axis + 2) % 3;
+    return 4 * axis + (corner >> next & 1) + 2 * (corner >> last & 1);
+  }
+  for (int i = 0; i < edges_; ++i) {
+    const Edge of = edge(i);
+    if ((of.from == corner && of.to == other) || (of.from == other && of.to == corner)) return i;
+  }
+  return -1;
+}
+
+Vec<3> Solid::own_corner(int i) const {
+  Vec<3> place = Vec<3>::Zero();
+  switch (shape_->kind) {
+    case ShapeKind::hull:
+      return shape_->vertices[i];
+    case ShapeKind::box:
+      place = sim::corner(*shape_, i);
+      break;
+    case ShapeKind::capsule:
+      place[1] = i ? shape_->half[1] : -shape_->half[1];
+      break;
+    default:
+      break;
+  }
+  if (shape_->turn != upright<3>()) place = rotation<3>(shape_->turn) * place;
+  return shape_->center + place;
+}
+
+int Solid::farthest(const Vec<3>& d) const {
+  if (corners_ == 1) return 0;
+  if (is_box()) {
+    const Vec<3> own = axes_.transpose() * d;
+    return (own[0] > 0 ? 1 : 0) | (own[1] > 0 ? 2 : 0) | (own[2] > 0 ? 4 : 0);
+  }
+  if (faces_ == 0) return axes_.col(1).dot(d) > 0 ? 1 : 0;
+  const Vec<3> own = turn_.transpose() * d;
+  int best = 0;
+  double most = own.dot(shape_->vertices[0]);
+  for (int i = 1; i < corners_; ++i) {
+    const double here = own.dot(shape_->vertices[i]);
+    if (here > most) {
+      most = here;
+      best = i;
+    }
+  }
+  return best;
+}
+
+int Solid::facing(int corner, const Vec<3>& d) const {
+  if (is_box()) {
+    const Vec<3> own = axes_.transpose() * d;
+    int best = 0;
+    double most = -1e300;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int side = corner >> axis & 1;
+      const double here = side ? own[axis] : -own[axis];
+      if (here > most) {
+        most = here;
+        best = 2 * axis + side;
+      }
+    }
+    return best;
+  }
+  int best = 0;
+  double most = -1e300;
+  for (int face = 0; face < faces_; ++face) {
+    const std::span<const int> around = loop(face);
+    if (std::find(around.begin(), around.end(), corner) == around.end()) continue;
+    const double here = normal(face).dot(d);
+    if (here > most) {
+      most = here;
+      best = face;
+    }
+  }
+  return best;
+}
+
+namespace {
+
+// by the three axes of a box at once
+FaceAxis of_box(const Solid& of, const Solid& other) {
+  const Vec<3> away = of.axes().transpose() * (other.middle() - of.middle());
+  const Rotation<3> seen = of.axes().transpose() * other.arms();
+  const Vec<3> s = away.cwiseAbs() - of.half() - seen.cwiseAbs().rowwise().sum();
+  int axis = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (s[k] > s[axis]) axis = k;
+  }
+  const int face = 2 * axis + (away[axis] > 0 ? 1 : 0);
+  return {s[axis], face, other.farthest(-of.normal(face))};
+}
+
+// by the nine common normals of two boxes' axes; the edges are those that face each other
+EdgeAxis of_boxes(const Solid& a, const Solid& b, double enough) {
+  const Vec<3> away = a.middle() - b.middle();
+  EdgeAxis best;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      Vec<3> n = a.axes().col(i).cross(b.axes().col(j));
+      const double sine = std::sqrt(n.squaredNorm());
+      if (sine < kSkew) continue;
+      n /= away.dot(n) < 0 ? -sine : sine;
+      const Vec<3> over_a = a.arms().transpose() * n, over_b = b.arms().transpose() * n;
+      double value = away.dot(n);
+      for (int k = 0; k < 3; ++k) {
+        if (k != i) value -= std::fabs(over_a[k]);
+        if (k != j) value -= std::fabs(over_b[k]);
+      }
+      if (!(value > best.value)) continue;
+      const auto edge = [](int axis, const Vec<3>& low) {
+        return 4 * axis + (low[(axis + 1) % 3] < 0 ? 1 : 0) + (low[(axis + 2) % 3] < 0 ? 2 : 0);
+      };
+      best = {value, edge(i, over_a), edge(j, Vec<3>(-over_b)), n};
+      if (value > enough) return best;
+    }
+  }
+  return best;
+}
+
+// an edge, and the ways from it into its faces
+struct Wedge {
+  Vec<3> place, along, left = Vec<3>::Zero(), right = Vec<3>::Zero();
+
+  Wedge(const Solid& of, int number) : along(of.along(number)) {
+    const Solid::Edge edge = of.edge(number);
+    place = of.corner(edge.from);
+    if (edge.left >= 0) left = of.normal(edge.left).cross(along);
+    if (edge.right >= 0) right = along.cross(of.normal(edge.right));
+  }
+};
+
+}  // namespace
+
+FaceAxis greatest_separation(const Solid& of, const Solid& other, double enough) {
+  if (of.is_box() && other.is_box()) return of_box(of, other);
+  FaceAxis best;
+  for (int face = 0; face < of.faces(); ++face) {
+    const Vec<3> n = of.normal(face);
+    const int deepest = other.farthest(-n);
+    const double value = n.dot(other.corner(deepest) - of.corner(of.loop(face)[0]));
+    if (value > best.value) best = {value, face, deepest};
+    if (value > enough) break;
+  }
+  return best;
+}
+
+EdgeAxis greatest_edge_separation(const Solid& a, const Solid& b, double enough) {
+  if (a.is_box() && b.is_box()) return of_boxes(a, b, enough);
+  constexpr double kLevel = 1e-12;  // rounding of what lies in a face
+  EdgeAxis best;
+  for (int i = 0; i < a.edges(); ++i) {
+    const Wedge of_a(a, i);
+    for (int j = 0; j < b.edges(); ++j) {
+      const Wedge of_b(b, j);
+      Vec<3> n = of_a.along.cross(of_b.along);
+      const double sine = std::sqrt(n.squaredNorm());
+      if (sine < kSkew) continue;
+      n /= sine;
+      const double ways[4] = {n.dot(of_a.left), n.dot(of_a.right), -n.dot(of_b.left), -n.dot(of_b.right)};
+      const bool up = *std::min_element(ways, ways + 4) >= -kLevel;
+      const bool down = *std::max_element(ways, ways + 4) <= kLevel;
+      const double along = n.dot(of_a.place - of_b.place);
+      const bool back = up && down ? along < 0 : down;
+      if (!up && !down) continue;
+      const double value = back ? -along : along;
+      if (value > best.value) best = {value, i, j, back ? Vec<3>(-n) : n};
+      if (value > enough) return best;
+    }
+  }
+  return best;
+}
+
+// Ericson, Real-Time Collision Detection, 2005, §5.1.9
+Nearest nearest(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0, const Vec<3>& q1) {
+  const Vec<3> d = p1 - p0, e = q1 - q0, r = p0 - q0;
+  const double dd = d.squaredNorm(), ee = e.squaredNorm(), er = e.dot(r), dr = d.dot(r);
+  double s = 0, t = 0;
+  if (dd > 0 && ee > 0) {
+    const double de = d.dot(e), denominator = d.cross(e).squaredNorm();
+    if (denominator > 0) s = std::clamp((de * er - dr * ee) / denominator, 0.0, 1.0);
+    t = (de * s + er) / ee;
+    if (t < 0) {
+      t = 0;
+      s = std::clamp(-dr / dd, 0.0, 1.0);
+    } else if (t > 1) {
+      t = 1;
+      s = std::clamp((de - dr) / dd, 0.0, 1.0);
+    }
+  } else if (dd > 0) {
+    s = std::clamp(-dr / dd, 0.0, 1.0);
+  } else if (ee > 0) {
+    t = std::clamp(er / ee, 0.0, 1.0);
+  }
+  return {s, t, std::sqrt((r + s * d - t * e).squaredNorm())};
+}
+
+bool over(const Solid& solid, int face, const Vec<3>& place, double slack) {
+  const std::span<const int> loop = solid.loop(face);
+  const Vec<3> n = solid.normal(face);
+  Vec<3> from = solid.corner(loop.back());
+  for (const int corner : loop) {
+    const Vec<3> to = solid.corner(corner), inward = n.cross(to - from);
+    if (inward.dot(place - from) < -slack * std::sqrt(inward.squaredNorm())) return false;
+    from = to;
+  }
+  return true;
+}
+
+double core_separation(const Solid& a, const Solid& b) {
+  const double s = std::max({greatest_separation(a, b, 1e300).value, greatest_separation(b, a, 1e300).value,
+                             greatest_edge_separation(a, b, 1e300).value});
+  if (s <= 0 && a.faces() + b.faces() > 0) return s;
+
+  // apart: corners over faces, and edges with their ends
+  double least = 1e300;
+  const auto corners_over = [&](const Solid& base, const Solid& other) {
+    for (int face = 0; face < base.faces(); ++face) {
+      const Vec<3> n = base.normal(face), origin = base.corner(base.loop(face)[0]);
+      for (int i = 0; i < other.corners(); ++i) {
+        const Vec<3> place = other.corner(i);
+        const double height = n.dot(place - origin);
+        if (height >= 0 && height < least && over(base, face, place, 0)) least = height;
+      }
+    }
+  };
+  corners_over(a, b), corners_over(b, a);
+  for (int i = 0; i < std::max(1, a.edges()); ++i) {
+    const Solid::Edge p = a.edges() ? a.edge(i) : Solid::Edge{};
+    for (int j = 0; j < std::max(1, b.edges()); ++j) {
+      const Solid::Edge q = b.edges() ? b.edge(j) : Solid::Edge{};
+      least =
+          std::min(least, nearest(a.corner(p.from), a.corner(p.to), b.corner(q.from), b.corner(q.to)).apart);
+    }
+  }
+  return least;
+}
+
+}  // namespace obscura::sim

@@ -1,0 +1,189 @@
+// Moments of inertia about the centre, handout §3.1; where a shape reaches.
+//   I = m K / A        A  content,   K  second moment: sim/shape/mass_properties.cpp
+
+#include "sim/shape/shape.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obscura::sim {
+
+template <int D>
+Spin<D> solid_inertia(const Shape<D>& shape, double mass) {
+  // the handout's own words for a box, to the bit
+  if (shape.kind == ShapeKind::box) {
+    const Vec<D> side = 2 * shape.half;
+    Spin<D> moments;
+    for (int axis = 0; axis < kSpins<D>; ++axis) {
+      const double x = side[(axis + 1) % D], y = side[(axis + 2) % D];
+      moments[axis] =
+          D == 2 ? mass * (side[0] * side[0] + side[1] * side[1]) / 12 : mass * (x * x + y * y) / 12;
+    }
+    return moments;
+  }
+  if (shape.kind == ShapeKind::ball) {
+    return Spin<D>::Constant(D == 2 ? mass * shape.radius * shape.radius / 2
+                                    : 2 * mass * shape.radius * shape.radius / 5);
+  }
+  const Bulk<D> whole = bulk(shape);
+  return whole.content > 0 ? Spin<D>(mass * whole.second / whole.content) : Spin<D>::Zero();
+}
+
+template <int D>
+Spin<D> inertia(const Shape<D>& shape, double mass) {
+  const bool particle = shape.kind == ShapeKind::point || shape.kind == ShapeKind::ball;
+  return particle ? Spin<D>::Zero() : solid_inertia(shape, mass);
+}
+
+template <int D>
+Shape<D> seated(const Shape<D>& shape, const Bulk<D>& bulk) {
+  Shape<D> out = shape;
+  const bool turns = bulk.axes != upright<D>();
+  const Rotation<D> back = turns ? Rotation<D>(rotation<D>(bulk.axes).transpose()) : Rotation<D>::Identity();
+  const auto seen = [&](Vec<D>& place) {
+    place -= bulk.center;
+    if (turns) place = (back * place).eval();
+  };
+  for (Vec<D>& vertex : out.vertices) seen(vertex);
+  for (Shape<D>& part : out.parts) part = seated(part, bulk);
+  if (out.kind == ShapeKind::ball || out.kind == ShapeKind::box || out.kind == ShapeKind::capsule) {
+    seen(out.center);
+    if (turns) out.turn = composed<D>(undone<D>(bulk.axes), out.turn);
+  }
+  return out;
+}
+
+namespace {
+
+template <int D>
+void add_tips(const Shape<D>& shape, std::vector<Tip<D>>& all) {
+  const auto placed = [&](const Vec<D>& own) {
+    if (shape.turn == upright<D>()) return Vec<D>(shape.center + own);
+    return Vec<D>(shape.center + rotation<D>(shape.turn) * own);
+  };
+  switch (shape.kind) {
+    case ShapeKind::point:
+    case ShapeKind::ball:
+      all.push_back({shape.center, shape.radius});
+      break;
+    case ShapeKind::box:
+      for (int i = 0; i < kCorners<D>; ++i) all.push_back({placed(corner(shape, i)), 0});
+      break;
+    case ShapeKind::capsule:
+      for (const double end : {-shape.half[1], shape.half[1]})
+        all.push_back({placed(Vec<D>::Unit(1) * end), shape.radius});
+      break;
+    case ShapeKind::polygon:
+    case ShapeKind::hull:
+      for (const Vec<D>& vertex : shape.vertices) all.push_back({vertex, 0});
+      break;
+    case ShapeKind::compound:
+      for (const Shape<D>& part : shape.parts) add_tips(part, all);
+      break;
+  }
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Tip<D>> tips(const Shape<D>& shape) {
+  std::vector<Tip<D>> all;
+  add_tips(shape, all);
+  return all;
+}
+
+template <int D>
+Tips<D>::Tips(const std::vector<Body<D>>& bodies) {
+  for (const Body<D>& body : bodies) {
+    first_.push_back(int(all_.size()));
+    add_tips(body.shape, all_);
+  }
+  first_.push_back(int(all_.size()));
+}
+
+template <int D>
+int Tips<D>::most() const {
+  int most = 0;
+  for (std::size_t i = 1; i < first_.size(); ++i) most = std::max(most, first_[i] - first_[i - 1]);
+  return most;
+}
+
+template <int D>
+double reach(const Shape<D>& shape) {
+  double most = 0;
+  switch (shape.kind) {
+    case ShapeKind::point:
+      break;
+    case ShapeKind::ball:
+      return shape.center.norm() + shape.radius;
+    case ShapeKind::box:
+      if (shape.turn == upright<D>()) return (shape.center.cwiseAbs() + shape.half).norm();
+      [[fallthrough]];
+    case ShapeKind::capsule:
+    case ShapeKind::polygon:
+    case ShapeKind::hull:
+      for (const Tip<D>& tip : tips(shape)) most = std::max(most, tip.at.norm() + tip.radius);
+      break;
+    case ShapeKind::compound:
+      for (const Shape<D>& part : shape.parts) most = std::max(most, reach(part));
+      break;
+  }
+  return most;
+}
+
+template <int D>
+Bounds<D> bounds(const Shape<D>& shape, const Stance<D>& at) {
+  const Vec<D> center = at.x + at.arm(shape.center);
+  const auto around = [&](const Vec<D>& far) { return Bounds<D>{center - far, center + far}; };
+  const auto axes = [&]() -> Rotation<D> {
+    if (shape.turn == upright<D>()) return at.room_from_body;
+    return at.room_from_body * rotation<D>(shape.turn);
+  };
+  switch (shape.kind) {
+    case ShapeKind::point:
+      break;
+    case ShapeKind::ball:
+      return around(Vec<D>::Constant(shape.radius));
+    case ShapeKind::box:
+      return around(axes().cwiseAbs() * shape.half);
+    case ShapeKind::capsule:
+      return around(axes().col(1).cwiseAbs() * shape.half[1] + Vec<D>::Constant(shape.radius));
+    case ShapeKind::polygon:
+    case ShapeKind::hull: {
+      Bounds<D> all{at.x + at.arm(shape.vertices[0]), at.x + at.arm(shape.vertices[0])};
+      for (const Vec<D>& vertex : shape.vertices) {
+        const Vec<D> place = at.x + at.arm(vertex);
+        all.lower = all.lower.cwiseMin(place);
+        all.upper = all.upper.cwiseMax(place);
+      }
+      return all;
+    }
+    case ShapeKind::compound: {
+      Bounds<D> all = bounds(shape.parts[0], at);
+      for (const Shape<D>& part : shape.parts) {
+        const Bounds<D> own = bounds(part, at);
+        all.lower = all.lower.cwiseMin(own.lower);
+        all.upper = all.upper.cwiseMax(own.upper);
+      }
+      return all;
+    }
+  }
+  return {at.x, at.x};
+}
+
+template Spin<2> solid_inertia<2>(const Shape<2>&, double);
+template Spin<2> inertia<2>(const Shape<2>&, double);
+template Shape<2> seated<2>(const Shape<2>&, const Bulk<2>&);
+template std::vector<Tip<2>> tips<2>(const Shape<2>&);
+template class Tips<2>;
+template double reach<2>(const Shape<2>&);
+template Bounds<2> bounds<2>(const Shape<2>&, const Stance<2>&);
+template Spin<3> solid_inertia<3>(const Shape<3>&, double);
+template Spin<3> inertia<3>(const Shape<3>&, double);
+template Shape<3> seated<3>(const Shape<3>&, const Bulk<3>&);
+template std::vector<Tip<3>> tips<3>(const Shape<3>&);
+template class Tips<3>;
+template double reach<3>(const Shape<3>&);
+template Bounds<3> bounds<3>(const Shape<3>&, const Stance<3>&);
+
+}  // namespace obscura::sim

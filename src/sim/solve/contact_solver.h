@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/model/path.h"
+#include "sim/model/state.h"
+
+namespace obscura::sim {
+
+/// A solver of `contact` and `event`: moves a state on, with everything that touches, hangs and pulls.
+template <int D>
+class ContactStep {
+ public:
+  virtual ~ContactStep() = default;
+
+  /// Moves `state` from t to t + h (s): bodies, contacts, joints, and who is frozen.
+  virtual void step(State<D>& state, double t, double h) = 0;
+};
+
+/// Up to how many bodies the direct solver serves on its own accord: of those that move, with an extent, and
+/// points. A few hundred rows when all lie in one heap, in space sooner: faces have more corners and friction
+/// more ways. Points touch walls and bodies, not one another.
+template <int D>
+inline constexpr int kMostBodies = D == 2 ? 20 : 6;
+inline constexpr int kMostPoints = 400;
+
+/// How many bodies that move may touch others, with an extent; and points.
+struct Crowd {
+  int bodies = 0, points = 0;
+};
+template <int D>
+Crowd crowd(const Model<D>& model);
+
+/// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event`
+/// and chains are the direct one's.
+template <int D>
+Solver solver(const Model<D>& model);
+
+/// That solver. Both are kept by reference.
+template <int D>
+std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+}  // namespace obscura::sim

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/math/full_rank.h"
+#include "sim/solve/exact/cone_law.h"
+
+namespace obscura::sim {
+
+/// Guesses the modes of rows that are a little soft: f answers -w / softness as far as its law lets it. Rows
+/// are scaled so that the largest K_ii of each block is 1. Works in the space of independent motions, of
+/// which there are fewer than rows where rows are redundant.
+template <int D>
+class ConeGuess {
+ public:
+  /// K: n x n, scaled, column by column; b: n; first: the row of each block; sigma: f = sigma * scaled f.
+  /// Kept by reference until the next begin.
+  void begin(std::span<const double> K, std::span<const double> b, std::span<const ConeBlock<D>> blocks,
+             std::span<const int> first, std::span<const double> sigma);
+
+  /// Modes of the rows of this softness, one a block. False where Newton's method did not get there; the
+  /// modes are then those of the softness it came to; without `follow` it does not go there by degrees.
+  /// Starts from where the last call ended.
+  bool guess(double softness, std::span<ConeMode<D>> modes, bool follow = true);
+
+  /// Linear systems solved since begin().
+  int systems() const { return systems_; }
+
+ private:
+  using VecD = Eigen::Matrix<double, D, 1>;
+  using SquareD = Eigen::Matrix<double, D, D>;
+  enum class Friction { associated, coulomb };
+
+  bool newton(double softness, Friction friction, int iterations);
+  double evaluate(double softness, Friction friction, std::span<const double> u);
+  double law(int block, double softness, Friction friction, const double* w, VecD& f, SquareD& slope) const;
+  double stiffen(double softness);
+  bool step(double softness);
+  void modes(double softness, std::span<ConeMode<D>> modes) const;
+
+  int n_ = 0, r_ = 0, systems_ = 0;
+  std::span<const double> b_, sigma_;
+  std::span<const ConeBlock<D>> blocks_;
+  std::span<const int> first_;
+  FullRank factors_;
+  std::vector<double> L_;                      // r x n: K = L^T L, one column a row of K
+  std::vector<double> u_, w_, f_;              // L f, answers, forces
+  std::vector<double> F_, du_, tried_, kept_;  // u - L f(u), step, u tried, u to come back to
+  std::vector<SquareD> slopes_, built_;        // df/dy a block; those H_ was built with
+  std::vector<double> H_, work_;               // sum of L slope L^T
+  std::vector<double> shift_;  // a row: mu |w_t| on normals, friction on those that slide already
+  std::vector<int> swaps_;
+  bool fresh_ = true;
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,87 @@
+// The laws looked at, block by block: by how much forces and answers break them, and the mode to try next.
+// Scaled rows have K_ii <= 1, so that a force and the answer it can make compare with one another.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/solve/exact/cone.h"
+
+namespace obscura::sim {
+
+template <int D>
+double Cone<D>::check(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes) {
+  better_.assign(modes.begin(), modes.end());
+  wrong_.resize(blocks.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const int row = first_[i];
+    double size = 0;
+    for (int k = 0; k < blocks[i].rows(); ++k) size = std::max(size, size_[row + k]);
+    const double wrong = check(blocks[i], modes[i], row, better_[i]) - sigma_[row] * negligible;
+    wrong_[i] = wrong > 0 ? wrong / size : wrong <= 0 ? 0 : wrong;  // not a number stays so
+    if (!(wrong_[i] <= worst)) worst = wrong_[i];
+  }
+  return worst;
+}
+
+// the largest violation in one block, and in `better` the mode that would mend it
+template <int D>
+double Cone<D>::check(const ConeBlock<D>& block, const ConeMode<D>& mode, int row,
+                      ConeMode<D>& better) const {
+  double worst = 0;
+  const auto see = [&](double violation, Hold hold) {
+    if (!(violation <= worst)) worst = violation, better.hold = hold;
+  };
+  const double f = g_[row], w = w_[row];
+  switch (mode.hold) {
+    case Hold::free:
+      see(std::fabs(w), Hold::free);
+      if (block.law == Law::equal) break;
+      see(block.lower / sigma_[row] - f, Hold::at_lower);
+      see(f - block.upper / sigma_[row], Hold::at_upper);
+      break;
+    case Hold::at_lower:
+      if (block.lower < block.upper) see(-w, Hold::free);
+      break;
+    case Hold::at_upper:
+      if (block.lower < block.upper) see(w, Hold::free);
+      break;
+    case Hold::open:
+      see(-w, block.sliding || block.mu == 0 ? Hold::slide : Hold::stick);
+      if (better.hold == Hold::slide) better.along = block.direction;
+      break;
+    case Hold::stick: {
+      const Tangent<D> ft = Eigen::Map<const Tangent<D>>(g_.data() + row + 1);
+      const double pull = ft.norm();
+      see(std::fabs(w), Hold::stick);
+      see(Eigen::Map<const Tangent<D>>(w_.data() + row + 1).norm(), Hold::stick);
+      see(-f, Hold::open);
+      if (f > 0) see(pull - block.mu * f, Hold::slide);
+      if (better.hold == Hold::slide) better.along = -ft / pull;
+      break;
+    }
+    case Hold::brink:
+    case Hold::slide: {
+      see(std::fabs(w), mode.hold);
+      see(-f, Hold::open);
+      if (block.sliding || block.mu == 0) break;
+      // friction may be large enough to matter, and must not push the way it slips
+      const Tangent<D> wt = Eigen::Map<const Tangent<D>>(w_.data() + row + 1);
+      const double along = wt.dot(mode.along), most = block.mu * std::max(0.0, f);
+      see(std::min(-along, most), Hold::stick);
+      if constexpr (D > 2) {
+        const Tangent<D> aside = wt - along * mode.along;
+        see(std::min(aside.norm(), most), mode.hold);
+        if (better.hold == mode.hold && along > 0) better.along = wt.normalized();
+      }
+      break;
+    }
+  }
+  if (better.hold != Hold::slide && better.hold != Hold::brink) better.along.setZero();
+  return worst;
+}
+
+template class Cone<2>;
+template class Cone<3>;
+
+}  // namespace obscura::sim

@@ -1,0 +1,280 @@
+// Groups: bodies that cannot meet in a step are stepped apart, each with cuts of its own.
+//   s_i = 1.1 h sqrt(v^2 + 2 E_w / m) + h^2 |a|       E_w  energy of spin: walls may turn it into speed
+// bounds how far body i gets in a step of h. Two whose bounds overlap are of one group, and so is what
+// joints, springs and chains tie together. Where a body got farther all the same, struck by a heavier one,
+// those that it may have reached are stepped again together with it.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy/energy.h"
+#include "sim/solve/exact/exact.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kSpare = 1.1;
+
+// the list of `count` items by group: items of group g from ends[g - 1] to ends[g]. `group_of` answers an
+// item's group, below zero: none
+template <class Item, class GroupOf>
+void by_group(int groups, int count, const GroupOf& group_of, std::vector<int>& ends, std::vector<Item>& list,
+              const auto& item) {
+  ends.assign(std::size_t(groups) + 1, 0);
+  int all = 0;
+  for (int i = 0; i < count; ++i) {
+    if (const int g = group_of(i); g >= 0) ++ends[g + 1], ++all;
+  }
+  for (int g = 0; g < groups; ++g) ends[g + 1] += ends[g];
+  list.resize(std::size_t(all));
+  for (int i = 0; i < count; ++i) {
+    if (const int g = group_of(i); g >= 0) list[ends[g]++] = item(i);
+  }
+}
+
+}  // namespace
+
+// bounds how far each body may get in a step of h from t
+template <int D>
+void Direct<D>::bound_ways(const State<D>& state, double t, double h) {
+  const auto rate = free_.accelerations(state, t);
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  for (int body = 0; body < int(reach_.size()); ++body) {
+    reach_[body] = 0;
+    if (light_[body] == 0) continue;
+    double a = g;
+    if (const int place = free_.place(body); !model_.bodies[body].linked && place >= 0)
+      a = std::sqrt(Eigen::Map<const Vec<D>>(rate.data() + D * place).squaredNorm());
+    const double v = std::sqrt(2 * kinetic(model_, state, body) / model_.bodies[body].mass);
+    reach_[body] = kSpare * h * v + h * h * a;
+  }
+  // fixed bodies too
+  stand(state);
+}
+
+// near_: which bodies may meet, or are tied together
+template <int D>
+void Direct<D>::join_near(const State<D>& state) {
+  near_.reset(every_body_);
+  for (int body = 0; body < int(reach_.size()); ++body) reach_[body] = std::max(reach_[body], strayed_[body]);
+  const auto link = [&](int a, int b) {
+    if (a < 0 || b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) return;
+    near_.join(a, b);
+  };
+  for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
+  for (const Articulation<D>& chain : model_.chains) {
+    for (const int body : chain.bodies) link(body, chain.bodies[0]);
+  }
+  for (int i = 0; i < int(model_.joints.size()); ++i) {
+    if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
+  }
+  for (const Couple& couple : couples_) {
+    const auto [a, b] = couple;
+    if (b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) continue;
+    const double far = rims_[a] + rims_[b] + reach_[a] + reach_[b] + closed_;
+    if ((first_.x[a] - first_.x[b]).squaredNorm() <= far * far) near_.join(a, b);
+  }
+}
+
+// groups_ of near_. Groups of which all are frozen, and held by no mouse, are left out; single bodies that
+// reach nothing are one group: nothing cuts their step.
+template <int D>
+void Direct<D>::list_groups(const State<D>& state) {
+  const int n = int(model_.bodies.size());
+  constexpr char kAsleep = 0, kFree = 1, kBusy = 2;
+  std::vector<char>& kind = kinds_;  // at the root of each set
+  std::vector<int>& size = group_sizes_;
+  kind.assign(n, kAsleep), size.assign(n, 0);
+  for (int body = 0; body < n; ++body) {
+    if (model_.bodies[body].fixed) continue;
+    const int root = near_.root(body);
+    ++size[root];
+    if (!state.frozen[body]) kind[root] = size[root] > 1 ? kBusy : std::max<char>(kind[root], kFree);
+    if (size[root] > 1 && kind[root] == kFree) kind[root] = kBusy;
+  }
+  const auto busy = [&](int body) {
+    if (body < 0 || model_.bodies[body].fixed) return;
+    char& it = kind[near_.root(body)];
+    if (it == kFree) it = kBusy;
+  };
+  for (const Grip<D>& grip : state.grips) {
+    if (grip.body >= 0 && !model_.bodies[grip.body].fixed) kind[near_.root(grip.body)] = kBusy;
+  }
+  for (const Joint<D>& joint : model_.joints) busy(joint.a.body), busy(joint.b.body);
+  for (const Couple& couple : couples_) {
+    const auto [a, b] = couple;
+    const bool a_fixed = model_.bodies[a].fixed;
+    const int body = a_fixed ? b : a;
+    if (!a_fixed && b >= 0 && !model_.bodies[b].fixed) continue;
+    if (kind[near_.root(body)] != kFree) continue;
+    const double far = rims_[body] + reach_[body] + closed_;
+    bool meets;
+    if (b < 0) {
+      const Wall<D>& wall = model_.walls[-1 - b];
+      meets = (first_.x[body] - wall.point).dot(wall.normal) <= far;
+    } else {
+      const int other = a_fixed ? a : b;
+      const double all = far + rims_[other];
+      meets = (first_.x[body] - stances_[other].x).squaredNorm() <= all * all;
+    }
+    if (meets) kind[near_.root(body)] = kBusy;
+  }
+
+  // numbers of groups, by their lowest bodies
+  groups_.clear();
+  int free = -1;
+  group_of_.assign(n, -1);
+  for (int body = 0; body < n; ++body) {
+    if (model_.bodies[body].fixed) continue;
+    const int root = near_.root(body);
+    if (kind[root] == kAsleep) continue;
+    int& group = kind[root] == kFree ? free : group_of_[root];
+    if (group < 0) {
+      group = int(groups_.size());
+      groups_.emplace_back();
+      groups_.back().root = body;
+      groups_.back().lone = kind[root] != kFree && size[root] == 1;
+    }
+    group_of_[body] = group;
+  }
+
+  // their members
+  const int groups = int(groups_.size());
+  const auto lay = [&](auto& list, int count, const auto& group_of, const auto& item, const auto& give) {
+    by_group(groups, count, group_of, group_ends_, list, item);
+    for (int g = 0; g < groups; ++g) {
+      const int from = g > 0 ? group_ends_[g - 1] : 0;
+      give(groups_[g], std::span(list).subspan(std::size_t(from), std::size_t(group_ends_[g] - from)));
+    }
+  };
+  const auto self = [](int i) { return i; };
+  const auto either = [&](int a, int b) {
+    return a >= 0 && group_of_[a] >= 0 ? group_of_[a] : b >= 0 ? group_of_[b] : -1;
+  };
+  lay(
+      group_bodies_, n, [&](int i) { return group_of_[i]; }, self,
+      [](Group& group, auto list) { group.subset.bodies = list; });
+  lay(
+      group_springs_, int(model_.springs.size()),
+      [&](int i) { return either(model_.springs[i].a.body, model_.springs[i].b.body); }, self,
+      [](Group& group, auto list) { group.subset.springs = list; });
+  lay(
+      group_chains_, int(model_.chains.size()), [&](int i) { return group_of_[model_.chains[i].bodies[0]]; },
+      self, [](Group& group, auto list) { group.subset.chains = list; });
+  lay(
+      group_joints_, int(model_.joints.size()),
+      [&](int i) { return either(model_.joints[i].a.body, model_.joints[i].b.body); }, self,
+      [](Group& group, auto list) { group.joints = list; });
+  lay(
+      group_couples_, int(couples_.size()),
+      [&](int i) {
+        const auto [a, b] = couples_[i];
+        const int of_a = group_of_[a];
+        if (b < 0) return of_a;
+        const int of_b = group_of_[b];
+        if (model_.bodies[a].fixed) return of_b;
+        if (model_.bodies[b].fixed) return of_a;
+        return of_a == of_b ? of_a : -1;
+      },
+      [&](int i) { return couples_[i]; }, [](Group& group, auto list) { group.couples = list; });
+}
+
+// sizes what groups need of a state
+template <int D>
+void Direct<D>::begin_groups(State<D>& state) {
+  const std::size_t n = model_.bodies.size();
+  state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
+  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+  light_.resize(n), stances_.resize(n), part_of_.resize(n);
+  roots_.reset(int(n));
+}
+
+template <int D>
+void Direct<D>::step_alone(State<D>& state, int body, double t, double h) {
+  if (light_.size() != model_.bodies.size()) {
+    begin_groups(state);
+    strayed_.resize(light_.size()), spent_.resize(light_.size());
+    for (const int fixed : fixed_) stances_[fixed] = stance(state, fixed);
+  }
+  lone_body_.assign(1, body), group_couples_.clear();
+  for (int wall = 0; wall < int(model_.walls.size()); ++wall) group_couples_.push_back({body, -1 - wall});
+  for (const int fixed : fixed_) {
+    const auto [a, b] = std::minmax(body, fixed);
+    if (may_touch(a, b)) group_couples_.push_back({a, b});
+  }
+  active_ = {};
+  active_.root = body, active_.lone = true;
+  active_.subset.bodies = lone_body_, active_.couples = group_couples_;
+  strayed_[body] = 0, spent_[body] = 0;
+  cone_.thorough = model_.collision == Collision::event;
+  keep(state, first_);
+  advance(state, t, h);
+  for (Contact<D>& contact : state.contacts) {
+    if (contact.key.a != body && contact.key.b != body) continue;
+    contact.force.setZero(), contact.impulse.setZero();
+    for (const Contact<D>& now : contacts_) {
+      if (now.key == contact.key) contact = now;
+    }
+    for (const Contact<D>& struck : impulses_) {
+      if (struck.key == contact.key) contact.impulse = struck.impulse;
+    }
+  }
+}
+
+// what follows is of this group
+template <int D>
+void Direct<D>::enter(const Group& group) {
+  active_ = group;
+}
+
+// what follows is of all bodies
+template <int D>
+void Direct<D>::enter_all() {
+  active_ = {};
+  active_.subset = {every_body_, every_spring_, every_chain_};
+  active_.joints = every_joint_;
+  active_.couples = couples_;
+  known_ = &contacts_;
+}
+
+// how far the bodies at hand have got
+template <int D>
+void Direct<D>::measure_ways(const State<D>& state) {
+  for (const int body : active_.subset.bodies)
+    strayed_[body] = std::max(strayed_[body], std::sqrt((state.x[body] - first_.x[body]).squaredNorm()));
+}
+
+// counts a cut that two took part in (below zero: none, or a wall); of all at hand where neither is a body
+template <int D>
+void Direct<D>::charge(int a, int b) {
+  if (a >= 0) ++spent_[a];
+  if (b >= 0) ++spent_[b];
+  if (a >= 0 || b >= 0) return;
+  for (const int body : active_.subset.bodies) ++spent_[body];
+}
+
+// the most cuts that one of the bodies at hand took part in
+template <int D>
+int Direct<D>::most_spent() const {
+  int most = 0;
+  for (const int body : active_.subset.bodies) most = std::max(most, spent_[body]);
+  return most;
+}
+
+#define OBSCURA_INSTANTIATE(D)                                          \
+  template void Direct<D>::bound_ways(const State<D>&, double, double); \
+  template void Direct<D>::join_near(const State<D>&);                  \
+  template void Direct<D>::list_groups(const State<D>&);                \
+  template void Direct<D>::enter(const Group&);                         \
+  template void Direct<D>::begin_groups(State<D>&);                     \
+  template void Direct<D>::step_alone(State<D>&, int, double, double);  \
+  template void Direct<D>::enter_all();                                 \
+  template void Direct<D>::measure_ways(const State<D>&);               \
+  template void Direct<D>::charge(int, int);                            \
+  template int Direct<D>::most_spent() const
+OBSCURA_INSTANTIATE(2);
+OBSCURA_INSTANTIATE(3);
+#undef OBSCURA_INSTANTIATE
+
+}  // namespace obscura::sim

@@ -1,0 +1,147 @@
+// A body strikes in a step of h where it reaches a wall, or a fixed body, faster than it falls in one step:
+//   gap + h u - 2 g h^2 < 0,   u < -g h         u  speed of its nearest point along the normal, at least
+// It is alone where no other body can come as far as it can:
+//   |x_i - x_j| > rim_i + rim_j + s_i + s_j       s = 1.1 h sqrt(2 K / m) + g h^2
+
+#include "sim/solve/exact/lone_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy/energy.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kSpare = 1.1;
+constexpr double kNear = 1e-6;       // of the room's size
+constexpr double kSlow = 1e-9;       // of the room's size, 1/s: slower is no impact
+constexpr std::size_t kFew = 50000;  // couples to look at one by one
+
+template <int D>
+bool round(const Shape<D>& shape) {
+  return shape.kind == ShapeKind::point || shape.kind == ShapeKind::ball;
+}
+
+}  // namespace
+
+template <int D>
+Lone<D>::Lone(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model),
+      direct_(model, paths, Direct<D>::Serves::lone),
+      g_(std::sqrt(model.gravity.squaredNorm())) {
+  const int n = int(model.bodies.size());
+  free_.assign(n, 1), still_.resize(n), ways_.resize(n), bounds_.resize(n);
+  const auto tie = [&](int body) {
+    if (body >= 0) free_[body] = 0;
+  };
+  for (int i = 0; i < n; ++i) {
+    const Body<D>& body = model.bodies[i];
+    rims_.push_back(reach(body.shape));
+    points_.push_back(body.shape.kind == ShapeKind::point);
+    if (body.fixed) fixed_.push_back(i);
+    if (body.fixed || body.handout || body.linked) tie(i);
+  }
+  for (const Spring<D>& spring : model.springs) tie(spring.a.body), tie(spring.b.body);
+  for (const Joint<D>& joint : model.joints) tie(joint.a.body), tie(joint.b.body);
+}
+
+// whether it reaches a wall or a fixed body in the step, faster than what rests
+template <int D>
+bool Lone<D>::strikes(const State<D>& state, int body, double h) const {
+  const Vec<D>&x = state.x[body], &v = state.v[body];
+  const Shape<D>& shape = model_.bodies[body].shape;
+  // as far as others count it as an impact: with some to spare
+  const double least = g_ * h + kSlow * model_.scale, fall = 2 * g_ * h * h + kNear * model_.scale;
+  double skin = 0;  // speed of its skin by its spin
+  if (const int k = turning(state, body); k >= 0 && !round(shape))
+    skin = rims_[body] * std::sqrt(state.spin[k].squaredNorm());
+  for (const Wall<D>& wall : model_.walls) {
+    const double u = v.dot(wall.normal) - skin;
+    if (u < -least && (x - wall.point).dot(wall.normal) - rims_[body] + h * u < fall) return true;
+  }
+  const double fast = std::sqrt(v.squaredNorm()) + skin;
+  for (const int other : fixed_) {
+    if (fast <= least) break;
+    const double far = rims_[body] + rims_[other] + h * fast + fall;
+    if ((x - state.x[other]).squaredNorm() < far * far) return true;
+  }
+  return false;
+}
+
+// leaves only candidates that no other body can reach
+template <int D>
+void Lone<D>::leave_out_near(const State<D>& state) {
+  const int n = int(model_.bodies.size());
+  const auto apart = [&](int a, int b) {
+    const Shape<D>&p = model_.bodies[a].shape, &q = model_.bodies[b].shape;
+    if (p.kind == ShapeKind::point && q.kind == ShapeKind::point) return true;
+    const double far = rims_[a] + rims_[b] + ways_[a] + ways_[b];
+    return (state.x[a] - state.x[b]).squaredNorm() > far * far;
+  };
+  if (candidates_.size() * std::size_t(n) <= kFew) {
+    std::erase_if(candidates_, [&](int a) {
+      for (int b = 0; b < n; ++b) {
+        if (a != b && !model_.bodies[b].fixed && !apart(a, b)) return true;
+      }
+      return false;
+    });
+    return;
+  }
+  std::fill(still_.begin(), still_.end(), 1);
+  for (const int i : candidates_) still_[i] = 0;
+  for (int i = 0; i < n; ++i) {
+    const Vec<D> far = Vec<D>::Constant(rims_[i] + ways_[i]);
+    bounds_[i] = {state.x[i] - far, state.x[i] + far};
+  }
+  for (const auto& [a, b] : broad_.find(bounds_, still_, {}, points_)) {
+    if (!model_.bodies[a].fixed && !model_.bodies[b].fixed && !apart(a, b)) still_[a] = still_[b] = 1;
+  }
+  std::erase_if(candidates_, [&](int i) { return still_[i] != 0; });
+}
+
+template <int D>
+void Lone<D>::find(const State<D>& state, double h) {
+  candidates_.clear(), began_.clear();
+  const int n = int(model_.bodies.size());
+  for (int i = 0; i < n; ++i) {
+    const bool frozen = !state.frozen.empty() && state.frozen[i];
+    if (free_[i] && !frozen && strikes(state, i, h)) candidates_.push_back(i);
+  }
+  for (const Grip<D>& grip : state.grips) std::erase(candidates_, grip.body);
+  if (candidates_.empty()) return;
+  for (int i = 0; i < n; ++i) {
+    const bool still = model_.bodies[i].fixed || (!state.frozen.empty() && state.frozen[i]);
+    ways_[i] =
+        still ? 0
+              : kSpare * h * std::sqrt(2 * kinetic(model_, state, i) / model_.bodies[i].mass) + g_ * h * h;
+  }
+  leave_out_near(state);
+  for (const int i : candidates_) {
+    Began it{i, state.x[i], state.v[i], upright<D>(), Spin<D>::Zero(), {}};
+    if (const int k = turning(state, i); k >= 0) {
+      it.turn = state.turn[k], it.spin = state.spin[k];
+      if (std::size_t(k) < state.own.size()) it.own = state.own[k];
+    }
+    began_.push_back(it);
+  }
+}
+
+template <int D>
+void Lone<D>::step(State<D>& state, double t, double h) {
+  for (const Began& it : began_) {
+    const int body = it.body;
+    state.x[body] = it.x, state.v[body] = it.v;
+    if (const int k = turning(state, body); k >= 0) {
+      state.turn[k] = it.turn, state.spin[k] = it.spin;
+      if (std::size_t(k) < state.own.size()) state.own[k] = it.own;
+    }
+    direct_.step_alone(state, body, t, h);
+  }
+}
+
+template class Lone<2>;
+template class Lone<3>;
+
+}  // namespace obscura::sim

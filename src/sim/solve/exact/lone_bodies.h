@@ -1,0 +1,52 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/collide/broad_phase.h"
+#include "sim/solve/exact/exact.h"
+
+namespace obscura::sim {
+
+/// Bodies that meet nothing but walls and fixed bodies in a step, faster than what rests, are moved through
+/// it by the exact solver, whichever solver serves all others: each impact at its own time, however many
+/// there are.
+template <int D>
+class Lone {
+ public:
+  /// Both are kept by reference.
+  Lone(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+  /// Finds them in a state before its step from t to t + h (s), and remembers how they stand.
+  void find(const State<D>& state, double h);
+
+  /// Moves them, in the state that the other solver has stepped.
+  void step(State<D>& state, double t, double h);
+
+ private:
+  struct Began {
+    int body;
+    Vec<D> x, v;
+    Turn<D> turn;
+    Spin<D> spin;
+    OwnSpin<D> own;
+  };
+
+  bool strikes(const State<D>& state, int body, double h) const;
+  void leave_out_near(const State<D>& state);
+
+  const Model<D>& model_;
+  Direct<D> direct_;
+  double g_ = 0;                     // m/s^2
+  std::vector<char> free_;           // one a body: nothing ever ties it
+  std::vector<char> still_;          // one a body: fixed, asleep or no candidate
+  std::vector<char> points_;         // one a body
+  std::vector<int> fixed_;           // bodies
+  std::vector<double> rims_, ways_;  // one a body: bounding radius, how far it gets in the step, m
+  std::vector<int> candidates_;
+  std::vector<Bounds<D>> bounds_;
+  BroadPhase<D> broad_;
+  std::vector<Began> began_;
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "sim/constraint/mobility.h"
+#include "sim/math/orientation.h"
+#include "sim/model/model.h"
+#include "sim/solve/exact/cone.h"
+
+namespace obscura::sim {
+
+/// Forces under which an island stays at rest, exactly: all its touches as one problem of cones. Sweeps take
+/// long to find those of an arch.
+template <int D>
+class Statics {
+ public:
+  /// Touches of an island, at most.
+  static constexpr int kMost = 100;
+
+  explicit Statics(const Model<D>& model);
+
+  /// `touches`: all of an island, with their forces (out). `turns`: of all bodies, room from body. False, and
+  /// the forces mean nothing, where a body would accelerate by more than 1e-9 of gravity, or no forces were
+  /// found.
+  bool hold(std::vector<BearingContact<D>>& touches, const std::vector<Rotation<D>>& turns);
+
+ private:
+  static constexpr int kWays = D + kSpins<D>;
+  using Way = Eigen::Matrix<double, kWays, 1>;
+
+  // what a row pushes one of its bodies with, and how that answers
+  struct Side {
+    int column = -1;
+    Way push = Way::Zero(), answer = Way::Zero();
+  };
+
+  const Model<D>& model_;
+  Cone<D> cone_;
+  std::vector<int> columns_, bodies_;  // of a body; of the columns
+  std::vector<std::array<Side, 2>> rows_;
+  std::vector<Way> rates_;  // m/s^2, rad/s^2
+  std::vector<ConeBlock<D>> blocks_;
+  std::vector<ConeMode<D>> modes_;
+  Eigen::MatrixXd K_;
+  Eigen::VectorXd b_, f_;
+};
+
+}  // namespace obscura::sim

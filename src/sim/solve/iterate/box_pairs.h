@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/collide/core_shapes.h"
+#include "sim/solve/iterate/contact_rows.h"
+
+namespace obscura::sim::sweep {
+
+/// Half the sides (m) of a body that is one box about its centre; zero for any other.
+struct alignas(16) Half {
+  double wide = 0, high = 0;
+};
+
+/// Of every body; one more, zero, for walls.
+std::vector<Half> halves(const Cores& cores);
+
+/// Bodies a and b of four pairs of boxes, and how they meet: words of the features of both touches,
+/// ascending, and a lower bound of the distance, m.
+struct alignas(64) Meeting {
+  int a[kLanes], b[kLanes];
+  int words[2][kLanes];
+  double gap[kLanes];
+};
+
+/// A pair whose features are others now.
+struct Outdated {
+  int pair;
+  int words[2];
+};
+
+/// Among the pairs whose features may have changed in `share` of the time between two looks: the boxes whose
+/// features have, and the seats of all others.
+void find_outdated(const Seats* seats, int count, const Motion* v, const Pose* poses, const Half* halves,
+                   double share, std::vector<Outdated>& boxes, Found& others);
+
+/// What nearest() finds for one pair, for all of them. Pairs of anything else get something.
+void meet(Meeting* meetings, int count, const Pose* poses, const Half* halves);
+
+}  // namespace obscura::sim::sweep

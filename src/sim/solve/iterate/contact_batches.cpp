@@ -1,0 +1,270 @@
+// Pairs take their seats: colours, so that four side by side share no body that moves, and what their
+// features are.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "sim/solve/iterate/plane.h"
+
+namespace obscura::sim {
+
+using sweep::Feature;
+using sweep::kLanes;
+using sweep::Pair;
+using sweep::Seats;
+
+namespace {
+
+constexpr double kCalm = 0.02;  // of its thickness: what a pair may move between two looks, features kept
+constexpr double kSoft = 0.05;  // of its thickness between two looks: slower inelastic closings are no blows
+constexpr int kColours = 40;    // seats of more colours hold one pair each
+constexpr int kPerSpare = 128;  // seats of a colour: one group more for so many
+constexpr int kAhead = 8;       // seats
+constexpr double kNowhere = 1e9;  // m: the gap of a touch that is none
+
+bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind == Feature::corners; }
+
+}  // namespace
+
+// seats for the pairs that are awake: greedy colours, in the order of pairs
+template <int D>
+void Iterative<D>::seat(const State<D>& state, bool known) {
+  std::vector<Pair>& all = pairs_.all();
+  if (version_ == pairs_.version() && frozen_ == state.frozen) {
+    for (Pair& pair : all) {
+      if (pair.slot >= 0 && (pair.fresh || !known)) sit(pair, state);
+      pair.fresh = false;
+    }
+    return;
+  }
+  version_ = pairs_.version();
+  if (known && frozen_ == state.frozen && reseat(state)) {
+    blows_.join(all, v_);
+    return;
+  }
+  const int n = int(turns_.size());
+  frozen_ = state.frozen;
+  for (int i = 0; i < n; ++i) {
+    const bool moves = !fixed_[i] && !state.frozen[i];
+    v_[i].im = moves ? light_[i].im : 0, ii_[i] = moves ? light_[i].ii : 0;
+  }
+
+  std::fill(colours_.begin(), colours_.end(), 0);
+  count_.assign(kColours + 1, 0);
+  awake_pairs_ = 0;
+  for (Pair& pair : all) {
+    pair.slot = pair.colour = colour(pair);  // for now
+    pair.alone = pair.colour == kColours;
+    if (pair.slot >= 0) ++awake_pairs_, ++count_[pair.colour];
+  }
+
+  // A colour begins with seats of its own, and a large one has some to spare. Where two corners meet sits
+  // behind them: that takes more arithmetic.
+  begin_.assign(1, 0);
+  for (int which = 0; which <= kColours; ++which) {
+    const int many = count_[which];
+    const int groups = which < kColours ? (many + kLanes - 1) / kLanes + many / kPerSpare : many;
+    count_[which] = begin_.back(), begin_.push_back(begin_.back() + groups * kLanes);
+  }
+  ends_.assign(begin_.begin() + 1, begin_.end());
+  const int end = begin_.back();
+  slots_.assign(end, -1);
+  for (int i = 0; i < int(all.size()); ++i) {
+    Pair& pair = all[i];
+    pair.fresh = false;
+    if (pair.slot < 0) continue;
+    const int which = pair.slot;
+    if (which < kColours && meets_corners(pair)) {
+      pair.slot = --ends_[which];
+    } else {
+      pair.slot = count_[which], count_[which] += which < kColours ? 1 : kLanes;
+    }
+    slots_[pair.slot] = i;
+  }
+  // in the order of memory
+  calmest_ = 1e300;
+  seats_.resize(end / kLanes), projections_.resize(end / kLanes);
+  for (int slot = 0; slot < end; ++slot) {
+    // pairs and contacts are far apart in memory: ask for those of later seats
+    if (slot + 2 * kAhead < end && slots_[slot + 2 * kAhead] >= 0) {
+      const char* at = reinterpret_cast<const char*>(&all[slots_[slot + 2 * kAhead]]);
+      __builtin_prefetch(at), __builtin_prefetch(at + 64);
+    }
+    if (slot + kAhead < end && slots_[slot + kAhead] >= 0) {
+      const char* at = reinterpret_cast<const char*>(&state.contacts[all[slots_[slot + kAhead]].first]);
+      __builtin_prefetch(at), __builtin_prefetch(at + 64), __builtin_prefetch(at + 128);
+    }
+    if (slots_[slot] < 0) {
+      vacate(slot);
+    } else {
+      take_seat(slots_[slot], state);
+    }
+  }
+  blows_.join(all, v_);
+}
+
+// The colour of a pair, the next in order; -1 where it is asleep.
+template <int D>
+int Iterative<D>::colour(const Pair& pair) {
+  const bool a = v_[pair.a].im > 0, b = pair.b >= 0 && v_[pair.b].im > 0;
+  if (!a && !b) return -1;
+  const std::uint64_t used = (a ? colours_[pair.a] : 0) | (b ? colours_[pair.b] : 0);
+  const int which = std::min(std::countr_one(used), kColours);
+  if (which == kColours) return which;
+  if (a) colours_[pair.a] |= std::uint64_t(1) << which;
+  if (b) colours_[pair.b] |= std::uint64_t(1) << which;
+  return which;
+}
+
+// Seats when some pairs have come and some have gone: whoever keeps its colour keeps its seat, for within a
+// colour the order is of no account. False where there are too few.
+template <int D>
+bool Iterative<D>::reseat(const State<D>& state) {
+  if (begin_.empty()) return false;
+  std::vector<Pair>& all = pairs_.all();
+  const int end = begin_.back(), count = int(all.size());
+  std::fill(colours_.begin(), colours_.end(), 0);
+  next_slots_.assign(end, -1), moved_.clear();
+  int awake = 0;
+  for (int i = 0; i < count; ++i) {
+    Pair& pair = all[i];
+    const int which = colour(pair);
+    if (which < 0) continue;
+    if (which == kColours || pair.alone) return false;
+    ++awake;
+    if (pair.slot >= 0 && pair.colour == which) {
+      next_slots_[pair.slot] = i;
+    } else {
+      pair.colour = which;
+      moved_.push_back(i);
+    }
+  }
+  count_.assign(begin_.begin(), begin_.end() - 1), ends_.assign(begin_.begin() + 1, begin_.end());
+  for (const int i : moved_) {
+    int &next = count_[all[i].colour], &last = ends_[all[i].colour];
+    while (next < last && next_slots_[next] >= 0) ++next;
+    while (next < last && next_slots_[last - 1] >= 0) --last;
+    if (next == last) return false;
+    all[i].slot = meets_corners(all[i]) ? --last : next++;
+    next_slots_[all[i].slot] = count + i;
+  }
+
+  awake_pairs_ = awake;
+  for (int slot = 0; slot < end; ++slot) {
+    if (slot + 2 * kAhead < end && next_slots_[slot + 2 * kAhead] >= 0)
+      __builtin_prefetch(&all[next_slots_[slot + 2 * kAhead] % count]);
+    int& i = next_slots_[slot];
+    if (i >= count) {
+      i -= count;
+      take_seat(i, state);
+    } else if (i >= 0) {
+      Seats& g = seats_[slot / kLanes];
+      g.pair[slot % kLanes] = i, g.first[slot % kLanes] = all[i].first;
+      if (all[i].fresh) sit(all[i], state);
+    } else if (slots_[slot] >= 0) {
+      vacate(slot);
+    }
+    if (i >= 0) all[i].fresh = false;
+  }
+  slots_.swap(next_slots_);
+  return true;
+}
+
+template <int D>
+void Iterative<D>::vacate(int slot) {
+  static const Seats empty = [] {
+    Seats made{};
+    for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -kNowhere;
+    return made;
+  }();
+  Seats& g = seats_[slot / kLanes];
+  const int lane = slot % kLanes, rest = ~(1 << lane), nobody = int(turns_.size());
+  copy_seat(empty, lane, g, lane);
+  g.a[lane] = g.b[lane] = nobody, g.pair[lane] = g.first[lane] = -1;
+  g.taken = static_cast<unsigned char>(g.taken & rest), g.boxes = static_cast<unsigned char>(g.boxes & rest);
+}
+
+// what stays as long as a pair has its seat
+template <int D>
+void Iterative<D>::take_seat(int i, const State<D>& state) {
+  Pair& pair = pairs_.all()[i];
+  const int n = int(turns_.size());
+  Seats& g = seats_[pair.slot / kLanes];
+  const int lane = pair.slot % kLanes;
+  const sweep::Core& a = cores_.all[pair.core_a];
+  double sight = 1e300, far = a.reach, thin = a.inside, radius = a.radius;
+  bool round = false;
+  if (pair.b >= 0) {
+    const sweep::Core& b = cores_.all[pair.core_b];
+    far = std::max(far, b.reach), thin = std::min(thin, b.inside), radius += b.radius;
+    sight = kSight * std::max(thin, 0.5 * radius);
+    // features of round things may change at any time, if there are more than one
+    round = (a.count == 1) != (b.count == 1);
+  }
+  const int bit = 1 << lane;
+  g.taken = static_cast<unsigned char>(g.taken | bit);
+  g.boxes = static_cast<unsigned char>(pairs_.boxes(pair) ? g.boxes | bit : g.boxes & ~bit);
+  g.a[lane] = pair.a, g.iia[lane] = ii_[pair.a];
+  g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
+  g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
+  g.blow[lane] = -(pair.elasticity > 0 ? rest_speed_ : std::max(rest_speed_, kSoft * thin / span_));
+  pair.blow = float(-0.999 * g.blow[lane]);
+  g.sight[lane] = sight, g.mu[lane] = pair.friction, g.radius[lane] = radius;
+  g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
+  // in terms of bodies' own reaches
+  double least = cores_.reach[pair.a];
+  if (pair.b >= 0) least = std::min(least, cores_.reach[pair.b]);
+  if (g.calm[lane] < 1e300) calmest_ = std::min(calmest_, g.calm[lane] * (least / far));
+  sit(pair, state);
+}
+
+// features and forces of a pair
+template <int D>
+void Iterative<D>::sit(const Pair& pair, const State<D>& state) {
+  Seats& g = seats_[pair.slot / kLanes];
+  const int lane = pair.slot % kLanes, bit = 1 << lane;
+  g.first[lane] = pair.first;
+  for (int k = 0; k < 2; ++k) {
+    g.of_b[k] = static_cast<unsigned char>(g.of_b[k] & ~bit);
+    g.corners[k] = static_cast<unsigned char>(g.corners[k] & ~bit);
+    g.cx[k][lane] = g.cy[k][lane] = g.fx[k][lane] = g.fy[k][lane] = g.p[k][lane] = g.q[k][lane] = 0;
+    g.d[k][lane] = -kNowhere;
+    if (k >= pair.touches) continue;
+    const Contact<D>& contact = state.contacts[pair.first + k];
+    const Feature f = Feature::of(pair.words[k]);
+    g.words[k][lane] = static_cast<unsigned short>(pair.words[k]);
+    if (f.kind == Feature::none) continue;
+    g.p[k][lane] = contact.force[0], g.q[k][lane] = contact.force[1];
+    const sweep::Core& a = cores_.all[pair.core_a];
+    if (pair.b < 0) {
+      const Wall<D>& wall = model_.walls[-1 - pair.b];
+      g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
+      g.fx[k][lane] = wall.normal[0], g.fy[k][lane] = wall.normal[1];
+      g.d[k][lane] = wall.normal.dot(wall.point);
+      continue;
+    }
+    const sweep::Core& b = cores_.all[pair.core_b];
+    if (f.kind == Feature::corners) {
+      g.corners[k] = static_cast<unsigned char>(g.corners[k] | bit);
+      g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
+      g.fx[k][lane] = cores_.x[b.first + f.face], g.fy[k][lane] = cores_.y[b.first + f.face];
+      g.d[k][lane] = b.radius;
+      continue;
+    }
+    const bool of_a = f.kind == Feature::corner_of_a;
+    const int corner = (of_a ? a : b).first + f.corner, face = (of_a ? b : a).first + f.face;
+    if (!of_a) g.of_b[k] = static_cast<unsigned char>(g.of_b[k] | bit);
+    g.cx[k][lane] = cores_.x[corner], g.cy[k][lane] = cores_.y[corner];
+    g.fx[k][lane] = cores_.nx[face], g.fy[k][lane] = cores_.ny[face], g.d[k][lane] = cores_.d[face];
+  }
+}
+
+template void Iterative<2>::seat(const State<2>&, bool);
+template bool Iterative<2>::reseat(const State<2>&);
+template int Iterative<2>::colour(const Pair&);
+template void Iterative<2>::vacate(int);
+template void Iterative<2>::take_seat(int, const State<2>&);
+template void Iterative<2>::sit(const Pair&, const State<2>&);
+
+}  // namespace obscura::sim

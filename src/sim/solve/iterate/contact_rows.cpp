@@ -1,0 +1,397 @@
+// One sweep of projected Gauss and Seidel. Of each pair in turn,
+//   friction   lt' = clamp(lt - v_t / K_t, -mu ln, mu ln)
+//   normals    ln >= 0,  v_n + K (ln' - ln) - target >= 0,  one of both zero in each touch
+// the second by its cases: both press, one presses. Where rounding leaves no case, the one less violated. A
+// target is -g / h where the touch is open, else zero; of a pair that met a blow what that says.
+//
+// Written once in vectors of the compiler; two lanes are SSE2, four AVX2. No operation differs, so the bits
+// are the same.
+
+#include "sim/solve/iterate/contact_rows.h"
+
+#include <cmath>
+
+#include "sim/math/lanes.h"
+
+namespace obscura::sim::sweep {
+
+namespace {
+
+constexpr int kAhead = 4;         // groups
+constexpr double kTiny = 1e-300;  // against division by zero in empty seats: changes no other number
+
+template <class V>
+struct Row {
+  V nx, ny, x, y, gap, na, nb, ta, tb;
+};
+
+template <class V>
+OBSCURA_INLINE void make(const Seats& g, int lane, int k, const Quad<V>& a, const Quad<V>& b, Row<V>& r) {
+  // the corner's body, and the face's
+  const Mask<V> swapped = mask<V>(g.of_b[k], lane);
+  const V px = pick<V>(swapped, b.x, a.x), py = pick<V>(swapped, b.y, a.y);
+  const V pc = pick<V>(swapped, b.z, a.z), ps = pick<V>(swapped, b.w, a.w);
+  const V qx = pick<V>(swapped, a.x, b.x), qy = pick<V>(swapped, a.y, b.y);
+  const V qc = pick<V>(swapped, a.z, b.z), qs = pick<V>(swapped, a.w, b.w);
+  const V cx = load<V>(g.cx[k] + lane), cy = load<V>(g.cy[k] + lane);
+  const V fx = load<V>(g.fx[k] + lane), fy = load<V>(g.fy[k] + lane);
+  const V d = load<V>(g.d[k] + lane), radius = load<V>(g.radius + lane);
+  const V x = px + (pc * cx - ps * cy), y = py + (ps * cx + pc * cy);
+  const V nx = qc * fx - qs * fy, ny = qs * fx + qc * fy;
+  r.gap = nx * (x - qx) + ny * (y - qy) - d - radius;
+  const V back = radius + 0.5 * r.gap;
+  r.x = x - nx * back, r.y = y - ny * back;
+  r.nx = pick<V>(swapped, -nx, nx), r.ny = pick<V>(swapped, -ny, ny);
+  if (g.corners[k]) {
+    // two corners: from b's to a's
+    const Mask<V> two = mask<V>(g.corners[k], lane);
+    const V ox = qx + nx, oy = qy + ny;
+    const V ux = x - ox, uy = y - oy;
+    const V l = root(ux * ux + uy * uy);
+    const Mask<V> apart =
+        l > 1e-12 * (d + radius + magnitude<V>(fx) + magnitude<V>(fy) + magnitude<V>(cx) + magnitude<V>(cy));
+    const V one = V{} + 1.0;
+    const V safe = pick<V>(apart, l, one);
+    const V mx = pick<V>(apart, ux / safe, V{}), my = pick<V>(apart, uy / safe, one);
+    const V gap = l - radius, along = d + 0.5 * gap;
+    r.gap = pick<V>(two, gap, r.gap);
+    r.nx = pick<V>(two, mx, r.nx), r.ny = pick<V>(two, my, r.ny);
+    r.x = pick<V>(two, ox + mx * along, r.x), r.y = pick<V>(two, oy + my * along, r.y);
+  }
+  const V ax = r.x - a.x, ay = r.y - a.y, bx = r.x - b.x, by = r.y - b.y;
+  r.na = ax * r.ny - ay * r.nx, r.nb = bx * r.ny - by * r.nx;
+  r.ta = ax * r.nx + ay * r.ny, r.tb = bx * r.nx + by * r.ny;
+}
+
+// the two bodies of each lane under impulses
+template <class V>
+struct Two {
+  Quad<V> a, b;  // velocities, and 1 / mass
+  V iia, iib;
+
+  OBSCURA_INLINE Two(const Seats& g, int lane, const Motion* v) {
+    gather(&v->x, g.a + lane, a), gather(&v->x, g.b + lane, b);
+    iia = load<V>(g.iia + lane), iib = load<V>(g.iib + lane);
+  }
+  OBSCURA_INLINE void back(const Seats& g, int lane, Motion* v) const {
+    scatter(&v->x, g.a + lane, a), scatter(&v->x, g.b + lane, b);
+  }
+  OBSCURA_INLINE V along(const V& dx, const V& dy, const V& ra, const V& rb) const {
+    return dx * (a.x - b.x) + dy * (a.y - b.y) + (ra * a.z - rb * b.z);
+  }
+  OBSCURA_INLINE void push(const V& dx, const V& dy, const V& ra, const V& rb, const V& l) {
+    const V la = a.w * l, lb = b.w * l;
+    a.x += dx * la, a.y += dy * la, a.z += iia * (ra * l);
+    b.x -= dx * lb, b.y -= dy * lb, b.z -= iib * (rb * l);
+  }
+};
+
+// the normal impulses of a pair together
+template <class V>
+OBSCURA_INLINE void press(Two<V>& two, const Row<V>& r0, const Row<V>& r1, const V& target0, const V& target1,
+                          V& l0, V& l1) {
+  const V none{};
+  const V im = two.a.w + two.b.w;
+  const V k11 = im + (two.iia * (r0.na * r0.na) + two.iib * (r0.nb * r0.nb));
+  const V k22 = im + (two.iia * (r1.na * r1.na) + two.iib * (r1.nb * r1.nb));
+  const V k12 =
+      im * (r0.nx * r1.nx + r0.ny * r1.ny) + (two.iia * (r0.na * r1.na) + two.iib * (r0.nb * r1.nb));
+  const V e0 = two.along(r0.nx, r0.ny, r0.na, r0.nb) - target0,
+          e1 = two.along(r1.nx, r1.ny, r1.na, r1.nb) - target1;
+
+  // both press
+  const V det = k11 * k22 - k12 * k12, over = 1.0 / (det + kTiny);
+  const V both0 = l0 - (k22 * e0 - k12 * e1) * over, both1 = l1 - (k11 * e1 - k12 * e0) * over;
+  const Mask<V> together = (both0 >= none) & (both1 >= none) & (det > 1e-8 * (k11 * k22));
+
+  // one presses, the other's impulse taken back
+  V next0 = both0, next1 = both1;
+  if (any(~together)) {
+    const V only0 = larger<V>(l0 - (e0 - k12 * l1) / (k11 + kTiny), none);
+    const V left1 = e1 + k12 * (only0 - l0) - k22 * l1;
+    const V only1 = larger<V>(l1 - (e1 - k12 * l0) / (k22 + kTiny), none);
+    const V left0 = e0 + k12 * (only1 - l1) - k11 * l0;
+    const Mask<V> first = left1 >= left0;
+    next0 = pick<V>(together, both0, pick<V>(first, only0, none));
+    next1 = pick<V>(together, both1, pick<V>(first, none, only1));
+  }
+  two.push(r0.nx, r0.ny, r0.na, r0.nb, next0 - l0);
+  two.push(r1.nx, r1.ny, r1.na, r1.nb, next1 - l1);
+  l0 = next0, l1 = next1;
+}
+
+template <class V>
+OBSCURA_INLINE void rub(Two<V>& two, const Row<V>& r, const V& most, V& lt) {
+  const V tx = -r.ny, ty = r.nx;
+  const V kt = (two.a.w + two.b.w) + (two.iia * (r.ta * r.ta) + two.iib * (r.tb * r.tb));
+  const V wanted = lt - two.along(tx, ty, r.ta, r.tb) / (kt + kTiny);
+  const V next = larger<V>(smaller<V>(wanted, most), -most);
+  two.push(tx, ty, r.ta, r.tb, next - lt);
+  lt = next;
+}
+
+template <class V>
+OBSCURA_INLINE void expand_one(const Seats& g, const Pose* poses, Rows& out) {
+  for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+    Quad<V> a, b;
+    gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
+    for (int k = 0; k < 2; ++k) {
+      Row<V> r;
+      make<V>(g, lane, k, a, b, r);
+      store<V>(out.nx[k] + lane, r.nx), store<V>(out.ny[k] + lane, r.ny);
+      store<V>(out.x[k] + lane, r.x), store<V>(out.y[k] + lane, r.y), store<V>(out.gap[k] + lane, r.gap);
+      store<V>(out.na[k] + lane, r.na), store<V>(out.nb[k] + lane, r.nb);
+      store<V>(out.ta[k] + lane, r.ta), store<V>(out.tb[k] + lane, r.tb);
+    }
+  }
+}
+
+template <class V>
+OBSCURA_INLINE bool start_all(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v,
+                              const Pace& pace, Found& closing, Found& blows) {
+  const V h = V{} + pace.h, creep = V{} - pace.creep, gain = V{} + pace.gain, none{};
+  const V bend = 0.5 * (h * h);
+  Mask<V> deep{};
+  for (int i = 0; i < count; ++i) {
+    Seats& g = seats[i];
+    g.struck[0] = g.struck[1] = 0;
+    if (!g.taken) continue;
+    for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+      Quad<V> a, b;
+      gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
+      const Two<V> before(g, lane, old);
+      Two<V> two(g, lane, v);
+      const V mu = load<V>(g.mu + lane);
+      const V sight = load<V>(g.sight + lane), allowed = pace.allowed * load<V>(g.far + lane);
+      Mask<V> slow{}, fast{};
+      for (int k = 0; k < 2; ++k) {
+        Row<V> r;
+        make<V>(g, lane, k, a, b, r);
+        const V vn = before.along(r.nx, r.ny, r.na, r.nb);
+        deep |= r.gap < -allowed;
+        slow |= (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
+        // a corner of a body that turns may come sooner than along its tangent, by far (h w)^2 / 2
+        const V turns = bend * load<V>(g.far + lane) * (before.a.z * before.a.z + before.b.z * before.b.z);
+        fast |= (vn < load<V>(g.blow + lane)) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
+        const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
+        const V ln = larger<V>(h * (px * r.nx + py * r.ny), none), most = mu * ln;
+        const V lt = larger<V>(smaller<V>(h * (py * r.nx - px * r.ny), most), -most);
+        store<V>(g.p[k] + lane, ln), store<V>(g.q[k] + lane, lt);
+        two.push(r.nx, r.ny, r.na, r.nb, ln);
+        two.push(-r.ny, r.nx, r.ta, r.tb, lt);
+      }
+      two.back(g, lane, v);
+      if (!any(slow | fast)) continue;
+      for (int k = 0; k < Of<V>::lanes; ++k) {
+        if (fast[k]) {
+          blows.push_back(kLanes * i + lane + k);
+        } else if (slow[k]) {
+          closing.push_back(kLanes * i + lane + k);
+        }
+      }
+    }
+  }
+  return any(deep);
+}
+
+OBSCURA_INLINE void keep(const Seats& g, const Rows& rows, Contact<2>* contacts) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (g.pair[lane] < 0) continue;
+    Contact<2>* c = contacts + g.first[lane];
+    for (int k = 0; k < g.touches[lane]; ++k, ++c) {
+      c->point[0] = rows.x[k][lane], c->point[1] = rows.y[k][lane];
+      c->normal[0] = rows.nx[k][lane], c->normal[1] = rows.ny[k][lane];
+      c->gap = rows.gap[k][lane];
+      c->force[0] = g.p[k][lane], c->force[1] = g.q[k][lane];
+      c->impulse[0] = c->impulse[1] = 0;
+      const double ln = rows.na[k][lane], lt = rows.ta[k][lane];
+      c->touching = ln <= 0                           ? Touching::open
+                    : std::fabs(lt) < g.mu[lane] * ln ? Touching::stick
+                                                      : Touching::slide;
+    }
+  }
+}
+
+template <class V, bool kLast, bool kKeep>
+OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
+                              Contact<2>* contacts) {
+  const V per_h = V{} + 1 / pace.h, none{};
+  for (Seats* g = seats; g < seats + count; ++g) {
+    if (!g->taken) continue;
+    [[maybe_unused]] Rows kept;
+    if constexpr (kKeep) {
+      // contacts are far apart in memory: ask for those of a later group
+      if (g + kAhead < seats + count) {
+        for (int lane = 0; lane < kLanes; ++lane) {
+          const char* at = reinterpret_cast<const char*>(contacts + g[kAhead].first[lane]);
+          __builtin_prefetch(at, 1), __builtin_prefetch(at + 64, 1), __builtin_prefetch(at + 128, 1);
+        }
+      }
+    }
+    for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+      Quad<V> a, b;
+      gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
+      Row<V> r0, r1;
+      make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
+      Two<V> two(*g, lane, v);
+      const V mu = load<V>(g->mu + lane);
+      V l0 = load<V>(g->p[0] + lane), t0 = load<V>(g->q[0] + lane);
+      V l1 = load<V>(g->p[1] + lane), t1 = load<V>(g->q[1] + lane);
+      rub<V>(two, r0, mu * l0, t0);
+      rub<V>(two, r1, mu * l1, t1);
+      const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
+      const V open0 = pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none));
+      const V open1 = pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none));
+      V target0 = open0, target1 = open1;
+      if (g->struck[0] | g->struck[1]) {
+        const Least& least = pace.least[g - seats];
+        target0 = pick<V>(mask<V>(g->struck[0], lane), load<V>(least.n[0] + lane), open0);
+        target1 = pick<V>(mask<V>(g->struck[1], lane), load<V>(least.n[1] + lane), open1);
+      }
+      press<V>(two, r0, r1, target0, target1, l0, l1);
+      two.back(*g, lane, v);
+      if constexpr (!kLast) {
+        store<V>(g->p[0] + lane, l0), store<V>(g->q[0] + lane, t0);
+        store<V>(g->p[1] + lane, l1), store<V>(g->q[1] + lane, t1);
+      } else {
+        const V fn0 = l0 * per_h, ft0 = t0 * per_h, fn1 = l1 * per_h, ft1 = t1 * per_h;
+        store<V>(g->p[0] + lane, fn0 * r0.nx - ft0 * r0.ny),
+            store<V>(g->q[0] + lane, fn0 * r0.ny + ft0 * r0.nx);
+        store<V>(g->p[1] + lane, fn1 * r1.nx - ft1 * r1.ny),
+            store<V>(g->q[1] + lane, fn1 * r1.ny + ft1 * r1.nx);
+      }
+      if constexpr (kKeep) {
+        store<V>(kept.nx[0] + lane, r0.nx), store<V>(kept.ny[0] + lane, r0.ny);
+        store<V>(kept.nx[1] + lane, r1.nx), store<V>(kept.ny[1] + lane, r1.ny);
+        store<V>(kept.x[0] + lane, r0.x), store<V>(kept.y[0] + lane, r0.y),
+            store<V>(kept.gap[0] + lane, r0.gap);
+        store<V>(kept.x[1] + lane, r1.x), store<V>(kept.y[1] + lane, r1.y),
+            store<V>(kept.gap[1] + lane, r1.gap);
+        store<V>(kept.na[0] + lane, l0), store<V>(kept.ta[0] + lane, t0);
+        store<V>(kept.na[1] + lane, l1), store<V>(kept.ta[1] + lane, t1);
+      }
+    }
+    if constexpr (kKeep) keep(*g, kept, contacts);
+  }
+}
+
+template <class V>
+OBSCURA_INLINE void project_all(const Seats* seats, Projection* p, int count, const Pose* poses, Motion* d,
+                                double share, double deep) {
+  const V none{}, part = V{} + share;
+  for (const Seats* g = seats; g < seats + count; ++g, ++p) {
+    if (!g->taken) continue;
+    for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+      Quad<V> a, b;
+      gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
+      Row<V> r0, r1;
+      make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
+      Two<V> two(*g, lane, d);
+      const V mu = load<V>(g->mu + lane), allowed = deep * load<V>(g->far + lane);
+      V l0 = load<V>(p->push[0] + lane), l1 = load<V>(p->push[1] + lane);
+      V t0 = load<V>(p->side[0] + lane), t1 = load<V>(p->side[1] + lane);
+      rub<V>(two, r0, mu * l0, t0);
+      rub<V>(two, r1, mu * l1, t1);
+      const V over0 = r0.gap + allowed, over1 = r1.gap + allowed;
+      press<V>(two, r0, r1, pick<V>(over0 < none, -part * over0, -over0),
+               pick<V>(over1 < none, -part * over1, -over1), l0, l1);
+      store<V>(p->push[0] + lane, l0), store<V>(p->push[1] + lane, l1);
+      store<V>(p->side[0] + lane, t0), store<V>(p->side[1] + lane, t1);
+      two.back(*g, lane, d);
+    }
+  }
+}
+
+OBSCURA_WIDE void expand_wide(const Seats& s, const Pose* at, Rows& out) { expand_one<V4>(s, at, out); }
+OBSCURA_WIDE bool start_wide(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace,
+                             Found& closing, Found& blows) {
+  return start_all<V4>(s, n, at, old, v, pace, closing, blows);
+}
+OBSCURA_WIDE void sweep_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
+  sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
+}
+OBSCURA_WIDE void finish_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace,
+                              Contact<2>* contacts) {
+  contacts ? sweep_all<V4, true, true>(s, n, at, v, pace, contacts)
+           : sweep_all<V4, true, false>(s, n, at, v, pace, nullptr);
+}
+OBSCURA_WIDE void project_wide(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share,
+                               double deep) {
+  project_all<V4>(s, p, n, at, d, share, deep);
+}
+
+}  // namespace
+
+void copy_forces(const Seats& from, int i, Seats& to, int k) {
+  for (int side = 0; side < 2; ++side) to.p[side][k] = from.p[side][i], to.q[side][k] = from.q[side][i];
+}
+void copy_seat(const Seats& from, int i, Seats& to, int k) {
+  to.a[k] = from.a[i], to.b[k] = from.b[i], to.pair[k] = from.pair[i], to.first[k] = from.first[i];
+  to.touches[k] = from.touches[i], to.taken = static_cast<unsigned char>(to.taken | 1 << k);
+  to.mu[k] = from.mu[i], to.iia[k] = from.iia[i], to.iib[k] = from.iib[i];
+  to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.blow[k] = from.blow[i],
+  to.radius[k] = from.radius[i];
+  to.sight[k] = from.sight[i];
+  for (int side = 0; side < 2; ++side) {
+    to.cx[side][k] = from.cx[side][i], to.cy[side][k] = from.cy[side][i];
+    to.fx[side][k] = from.fx[side][i], to.fy[side][k] = from.fy[side][i], to.d[side][k] = from.d[side][i];
+    const auto bit = [&](unsigned char bits, unsigned char& out) {
+      out = static_cast<unsigned char>((out & ~(1 << k)) | (bits >> i & 1) << k);
+    };
+    bit(from.of_b[side], to.of_b[side]), bit(from.corners[side], to.corners[side]);
+    to.words[side][k] = from.words[side][i];
+  }
+  copy_forces(from, i, to, k);
+}
+
+void expand(const Seats& s, const Pose* at, Rows& out) {
+  kWide ? expand_wide(s, at, out) : expand_one<V2>(s, at, out);
+}
+
+TouchRow row(const Seats& g, int lane, int k, const Pose& a, const Pose& b) {
+  const bool swapped = g.of_b[k] >> lane & 1;
+  const Pose &p = swapped ? b : a, &q = swapped ? a : b;
+  const double cx = g.cx[k][lane], cy = g.cy[k][lane], fx = g.fx[k][lane], fy = g.fy[k][lane];
+  const double d = g.d[k][lane], radius = g.radius[lane];
+  const double x = p.x + (p.c * cx - p.s * cy), y = p.y + (p.s * cx + p.c * cy);
+  const double nx = q.c * fx - q.s * fy, ny = q.s * fx + q.c * fy;
+  TouchRow r;
+  if (g.corners[k] >> lane & 1) {
+    const double ox = q.x + nx, oy = q.y + ny, ux = x - ox, uy = y - oy;
+    const double l = std::sqrt(ux * ux + uy * uy);
+    const bool apart =
+        l > 1e-12 * (d + radius + std::fabs(fx) + std::fabs(fy) + std::fabs(cx) + std::fabs(cy));
+    r.nx = apart ? ux / l : 0, r.ny = apart ? uy / l : 1, r.gap = l - radius;
+    const double along = d + 0.5 * r.gap;
+    r.x = ox + r.nx * along, r.y = oy + r.ny * along;
+  } else {
+    r.gap = nx * (x - q.x) + ny * (y - q.y) - d - radius;
+    const double back = radius + 0.5 * r.gap;
+    r.x = x - nx * back, r.y = y - ny * back;
+    r.nx = swapped ? -nx : nx, r.ny = swapped ? -ny : ny;
+  }
+  const double ax = r.x - a.x, ay = r.y - a.y, bx = r.x - b.x, by = r.y - b.y;
+  r.na = ax * r.ny - ay * r.nx, r.nb = bx * r.ny - by * r.nx;
+  r.ta = ax * r.nx + ay * r.ny, r.tb = bx * r.nx + by * r.ny;
+  return r;
+}
+
+bool start(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace, Found& closing,
+           Found& blows) {
+  closing.clear(), blows.clear();
+  return kWide ? start_wide(s, n, at, old, v, pace, closing, blows)
+               : start_all<V2>(s, n, at, old, v, pace, closing, blows);
+}
+void sweep(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
+  kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
+}
+void finish(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace, Contact<2>* contacts) {
+  if (kWide) return finish_wide(s, n, at, v, pace, contacts);
+  contacts ? sweep_all<V2, true, true>(s, n, at, v, pace, contacts)
+           : sweep_all<V2, true, false>(s, n, at, v, pace, nullptr);
+}
+void project(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share, double allowed) {
+  kWide ? project_wide(s, p, n, at, d, share, allowed) : project_all<V2>(s, p, n, at, d, share, allowed);
+}
+
+}  // namespace obscura::sim::sweep

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/collide/core_shapes.h"
+#include "sim/model/contact.h"
+
+namespace obscura::sim::sweep {
+
+// Pairs that touch, four side by side. Seats of one colour share no body that moves, so that four pairs at
+// once and one after another give the same bits. A seat keeps what the features are, not the rows: those are
+// made from the poses in every pass, for memory is slower than arithmetic.
+
+inline constexpr int kLanes = 4;
+
+/// Velocity (m/s, rad/s) or displacement (m, rad) of a body, and 1/kg: zero for what does not move.
+struct alignas(32) Motion {
+  double x = 0, y = 0, w = 0, im = 0;
+};
+
+/// A pair has up to two touches. Of each: a corner in its body's frame, and the other's face (or corner,
+/// where two corners touch) in its own; gap = n . (p - x) - d - radius.
+struct alignas(64) Seats {
+  int a[kLanes], b[kLanes];         // bodies; walls and empty seats have the one after the last
+  int pair[kLanes], first[kLanes];  // and where its touches are among the contacts; -1: nobody
+  unsigned char touches[kLanes];
+  unsigned char of_b[2];            // a bit a lane: the corner is b's
+  unsigned char corners[2];         // two corners touch
+  unsigned char struck[2];          // of a pair that met a blow in this step
+  unsigned char boxes;              // both are boxes
+  unsigned char taken;              // somebody sits there
+  unsigned short words[2][kLanes];  // of the features
+  alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
+  double calm[kLanes], far[kLanes];  // m/s up to which features stay; the farther reach of both, m
+  double blow[kLanes];               // -m/s: faster approaches are blows
+  double sight[kLanes];              // m: touches farther off are none
+  double radius[kLanes];             // of both together, m
+  double cx[2][kLanes], cy[2][kLanes];
+  double fx[2][kLanes], fy[2][kLanes];
+  double d[2][kLanes];                // of two corners: b's radius
+  double p[2][kLanes], q[2][kLanes];  // force on a, N; within a step: normal and tangential impulse, N s
+};
+
+/// The rows of four pairs.
+///   v_n = n . (v_a - v_b) + r_a x n w_a - r_b x n w_b      v_t likewise, t = (-n_y, n_x)
+struct alignas(64) Rows {
+  double nx[2][kLanes], ny[2][kLanes], x[2][kLanes], y[2][kLanes], gap[2][kLanes];
+  double na[2][kLanes], nb[2][kLanes], ta[2][kLanes], tb[2][kLanes];  // r_a x n, ..., m
+};
+
+/// What has projected positions along the rows of a group so far: along normals and tangents, kg m.
+struct alignas(64) Projection {
+  double push[2][kLanes], side[2][kLanes];
+};
+
+/// Which pairs a pass has found, as numbers of seats: lane + kLanes * group.
+using Found = std::vector<int>;
+
+/// Of a group: normal speeds that a sweep leaves, at least, m/s.
+struct alignas(32) Least {
+  double n[2][kLanes];
+};
+
+/// Constants of a step.
+struct Pace {
+  double h = 0;                  // s
+  double creep = 0;              // m/s: slower approaches are none
+  double gain = 0;               // m/s that gravity may add in the step
+  double allowed = 0;            // of the farther reach: what is deeper is to be put right
+  const Least* least = nullptr;  // by group, of seats that are struck
+};
+
+/// One pair to another seat; the forces alone.
+void copy_seat(const Seats& from, int i, Seats& to, int k);
+void copy_forces(const Seats& from, int i, Seats& to, int k);
+
+/// Rows of one group.
+void expand(const Seats& seats, const Pose* poses, Rows& out);
+
+/// The row of a touch, as one lane of Rows.
+struct TouchRow {
+  double nx, ny, x, y, gap, na, nb, ta, tb;
+};
+/// Touch k of one seat, whose bodies stand at these poses.
+TouchRow row(const Seats& seats, int lane, int k, const Pose& a, const Pose& b);
+
+/// Makes impulses of the forces and applies them to v. `old`: velocities at the start. Which close slowly in
+/// the step, and which with a blow. True where something is deeper than project() lets it.
+bool start(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v, const Pace& pace,
+           Found& closing, Found& blows);
+
+/// One sweep: every pair once, in order.
+void sweep(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace);
+/// The last one of a stretch: forces into the seats and, where there are some, into the contacts.
+void finish(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace, Contact<2>* contacts);
+
+/// One sweep over positions: `share` of what is deeper than `allowed` of the farther reach is to go. Friction
+/// holds there too, or piles would slide apart by being mended.
+void project(const Seats* seats, Projection* projections, int count, const Pose* poses, Motion* d,
+             double share, double allowed);
+
+}  // namespace obscura::sim::sweep

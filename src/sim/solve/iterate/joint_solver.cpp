@@ -1,0 +1,568 @@
+// Joints between velocities and places, after Rattle (Andersen 1983): with J at the start of a step and J' at
+// its end
+//   v*  = v + h a + M^-1 J l              l: J v* = 0, in sweeps with the contacts
+//   x'  = x + h (v + v*) / 2 + M^-1 J s   s: g(x') = 0, Newton with the factors at hand
+//   v'  = v* + M^-1 (J (s / h - l / 2) + J' m)     m: J' v' = 0, and motors hold their speed there
+// in space with angular momenta for spins, so that what turns on in the step keeps its own;
+// which is of second order, and no joint drifts. A row with bounds beside them: a unit of its impulse is
+// answered by c = -K^-1 J M^-1 r of the joints, so that
+//   give = 1 / (r M^-1 r - r M^-1 J K^-1 J M^-1 r)
+
+#include "sim/solve/iterate/joint_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/math/lie_step.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr int kRounds = 8;           // of Newton's
+constexpr int kSearches = 12;        // the same, with a search along each
+constexpr double kStride = 0.1;      // rad, and of the scene's size: farther nothing is put in a step
+constexpr double kLeastPart = 1e-3;  // of a way, in it
+constexpr double kPut = 1e-9;        // of the scene's size: how far off joints may stay
+constexpr int kBoundedRounds = 16;   // a sweep, of rows with bounds among themselves: they begin from nothing
+constexpr double kLocked = 1e-6;     // of a row's own: what it can move once joints have answered
+constexpr double kApart = 1e-9;      // 1/s, of the scene's size: slower at a joint is rounding
+constexpr double kEndless = 1e300;
+
+}  // namespace
+
+template <int D>
+Linkage<D>::Linkage(const Model<D>& model) : model_(model) {
+  const std::size_t n = model.bodies.size();
+  member_.assign(n, 0), light_.assign(n, 0), part_of_body_.assign(n, -1);
+  at_.resize(n), turn_.resize(n);
+  for (Turn<D>& turn : turn_) turn.setZero();
+  for (const Joint<D>& joint : model.joints) {
+    for (const int body : {joint.a.body, joint.b.body}) {
+      if (body >= 0) member_[body] = 1;
+    }
+  }
+  for (int i = 0; i < int(n); ++i) {
+    if (member_[i]) bodies_.push_back(i);
+  }
+}
+
+template <int D>
+void Linkage<D>::ready(State<D>& state) const {
+  state.broken.resize(model_.joints.size());
+  state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+}
+
+template <int D>
+void Linkage<D>::gather(const State<D>& state) {
+  if (planned_ && broken_ == state.broken && frozen_ == state.frozen) return;
+  planned_ = true, broken_ = state.broken, frozen_ = state.frozen;
+  for (std::size_t i = 0; i < light_.size(); ++i)
+    light_[i] = model_.bodies[i].fixed || state.frozen[i] ? 0 : 1 / model_.bodies[i].mass;
+  plan();
+}
+
+template <int D>
+void Linkage<D>::plan() {
+  held_.clear(), pairs_.clear();
+  std::vector<int> sizes;
+  std::vector<std::vector<int>> of(light_.size());  // blocks of each body that moves
+  for (int i = 0; i < int(model_.joints.size()); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (broken_[i] || joint.kind == JointKind::rope || (light(joint.a.body) == 0 && light(joint.b.body) == 0))
+      continue;
+    Row<D> out[kMostHeld<D>];
+    double off[kMostHeld<D>];
+    for (const int body : {joint.a.body, joint.b.body}) {
+      if (light(body) > 0) of[body].push_back(int(held_.size()));
+    }
+    held_.push_back(i);
+    sizes.push_back(rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off));
+  }
+  const auto meet = [&](const std::vector<int>& all, const std::vector<int>& others) {
+    for (const int i : all) {
+      for (const int j : others) {
+        if (i < j) pairs_.emplace_back(i, j);
+      }
+    }
+  };
+  for (const auto& all : of) meet(all, all);
+  // what a rope ties together answers together
+  for (int i = 0; i < int(model_.joints.size()); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (broken_[i] || joint.kind != JointKind::rope || light(joint.a.body) == 0 || light(joint.b.body) == 0)
+      continue;
+    meet(of[joint.a.body], of[joint.b.body]), meet(of[joint.b.body], of[joint.a.body]);
+  }
+  std::sort(pairs_.begin(), pairs_.end());
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  factors_.plan(sizes, pairs_);
+  for (std::size_t body = 0; body < of.size(); ++body)
+    part_of_body_[body] = of[body].empty() ? -1 : factors_.part(of[body].front());
+  members_.assign(std::size_t(parts()), {});
+  for (const int i : bodies_) {
+    if (part_of_body_[i] >= 0) members_[part_of_body_[i]].push_back(i);
+  }
+  rows_.resize(factors_.rows()), old_rows_.resize(factors_.rows());
+  for (auto* numbers : {&impulses_, &totals_, &rhs_, &shifts_}) numbers->resize(factors_.rows());
+}
+
+template <int D>
+Spin<D> Linkage<D>::turn_between(const Joint<D>& joint) const {
+  Spin<D> turn = Spin<D>::Zero();
+  if (joint.a.body >= 0) turn += rounds<D>(turn_[joint.a.body]);
+  if (joint.b.body >= 0) turn -= rounds<D>(turn_[joint.b.body]);
+  return turn;
+}
+
+// p M^-1 q
+template <int D>
+double Linkage<D>::couple(const Row<D>& p, const Row<D>& q) const {
+  double sum = 0;
+  const auto side = [&](int body, const Spin<D>& turn, double sign) {
+    if (light(body) == 0) return;
+    const Body<D>& b = model_.bodies[body];
+    const auto with = [&](int other, const Spin<D>& its, double s) {
+      if (other != body) return;
+      sum += sign * s * light_[body] * p.along.dot(q.along);
+      if (b.turns()) sum += sign * s * turn.dot(spun<D>(b.inertia, at_[body].room_from_body, its));
+    };
+    with(q.a, q.turn_a, 1), with(q.b, q.turn_b, -1);
+  };
+  side(p.a, p.turn_a, 1), side(p.b, p.turn_b, -1);
+  return sum;
+}
+
+// M^-1 r p onto velocities
+template <int D>
+void Linkage<D>::push(const Row<D>& row, double impulse) {
+  each_push(row, impulse,
+            [&](int body, const Vec<D>& v, const Spin<D>& w) { at_[body].v += v, at_[body].w += w; });
+}
+
+// and onto places: angular momentum stays
+template <int D>
+void Linkage<D>::shift(const Row<D>& row, double by) {
+  const auto side = [&](int body, const Spin<D>& turn, double p) {
+    if (light(body) == 0) return;
+    const Body<D>& b = model_.bodies[body];
+    at_[body].x += p * light_[body] * row.along;
+    if (!b.turns()) return;
+    Stance<D>& at = at_[body];
+    const Rotation<D> from = at.room_from_body;
+    turn_[body] = turned<D>(turn_[body], Spin<D>(p * spun<D>(b.inertia, from, turn)));
+    at.room_from_body = rotation<D>(turn_[body]);
+    at.w = carried_spin<D>(b.inertia, from, at.room_from_body, at.w);
+  };
+  side(row.a, row.turn_a, by), side(row.b, row.turn_b, -by);
+}
+
+// rows where everyone stands, and their factors
+template <int D>
+void Linkage<D>::lay() {
+  double off[kMostHeld<D>];
+  for (int k = 0; k < int(held_.size()); ++k) {
+    const Joint<D>& joint = model_.joints[held_[k]];
+    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), &rows_[factors_.first(k)], off);
+  }
+  constexpr int kMost = kMostHeld<D>;
+  const auto fill = [&](auto& block, int i, int j) {
+    for (int r = 0; r < factors_.size(i); ++r) {
+      for (int c = 0; c < factors_.size(j); ++c)
+        block[r * kMost + c] = couple(rows_[factors_.first(i) + r], rows_[factors_.first(j) + c]);
+    }
+  };
+  for (int k = 0; k < int(held_.size()); ++k) fill(factors_.diagonal(k), k, k);
+  for (int e = 0; e < int(pairs_.size()); ++e) fill(factors_.entry(e), pairs_[e].first, pairs_[e].second);
+  factors_.factorise();
+}
+
+// how far a limit or a rope is from its end where everyone stands; false of what has none
+template <int D>
+bool Linkage<D>::left(const Bounded& bounded, double& off) const {
+  const Joint<D>& joint = model_.joints[bounded.joint];
+  Row<D> out[kMostHeld<D>];
+  if (bounded.load > upper) return false;
+  const Stance<D>&a = side(joint.a.body), &b = side(joint.b.body);
+  if (joint.kind == JointKind::rope) {
+    double offs[kMostHeld<D>];
+    rows(joint, a, b, turn_between(joint), out, offs);
+    off = offs[0];
+    return true;
+  }
+  double way = 0;
+  free_row(joint, a, b, turn_between(joint), out[0], way);
+  off = bounded.load == lower ? way - joint.lower : joint.upper - way;
+  return true;
+}
+
+// rows with bounds, of limits and ropes those that may come to their end in the step
+template <int D>
+void Linkage<D>::bind(double h) {
+  active_ = 0;
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  const auto add = [&](int i, Load load) {
+    const Joint<D>& joint = model_.joints[i];
+    if (active_ == bounded_.size()) bounded_.emplace_back();
+    Bounded& b = bounded_[active_];
+    b.joint = i, b.load = load;
+    b.impulse = 0;
+
+    Row<D> out[kMostHeld<D>];
+    double offs[kMostHeld<D>];
+    const Stance<D>&p = side(joint.a.body), &q = side(joint.b.body);
+    if (joint.kind == JointKind::rope) {
+      rows(joint, p, q, turn_between(joint), out, offs);
+    } else {
+      free_row(joint, p, q, turn_between(joint), out[0], offs[0]);
+    }
+    b.row = out[0];
+    if (load == upper && joint.kind != JointKind::rope)
+      b.row.along *= -1, b.row.turn_a *= -1, b.row.turn_b *= -1;
+    b.least = 0, b.most = kEndless, b.target = 0;
+    if (double off = 0; left(b, off)) {
+      const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
+      if (off > sees) return;
+      b.target = -std::max(off, 0.0) / h;
+    } else {
+      b.most = h * (load == motor ? joint.motor->most : joint.friction), b.least = -b.most;
+      if (load == motor) b.target = joint.motor->speed;
+    }
+
+    hear(b);
+    b.give = give(b);
+    active_ += b.give > 0;
+  };
+  for (int i = 0; i < int(model_.joints.size()); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (broken_[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
+    if (joint.kind == JointKind::rope) add(i, upper);
+    if (!has_free_row<D>(joint.kind)) continue;
+    if (joint.lower > -1e299) add(i, lower);
+    if (joint.upper < 1e299) add(i, upper);
+    if (joint.motor) add(i, motor);
+    if (joint.friction > 0) add(i, friction);
+  }
+}
+
+template <int D>
+void Linkage<D>::hear(Echo& echo) {
+  const auto part = [&](int body) { return body < 0 ? -1 : part_of_body_[body]; };
+  int* const parts = echo.parts;
+  parts[0] = part(echo.row.a), parts[1] = part(echo.row.b);
+  if (parts[0] < 0) std::swap(parts[0], parts[1]);
+  if (parts[1] == parts[0]) parts[1] = -1;
+  for (int s = 0; s < 2; ++s) {
+    echo.answer[s].clear(), echo.felt[s].clear();
+    if (parts[s] < 0) continue;
+    each_row(parts[s], [&](int k, int r) {
+      const double fast = couple(rows_[r], echo.row);
+      rhs_[r] = -fast;
+      if (fast != 0) echo.felt[s].emplace_back(k, fast);
+    });
+    factors_.solve(rhs_.data(), parts[s]);
+    each_row(parts[s], [&](int, int r) { echo.answer[s].push_back(rhs_[r]); });
+  }
+}
+
+template <int D>
+double Linkage<D>::couple(const Echo& p, const Echo& q) const {
+  double sum = couple(p.row, q.row);
+  for (int s = 0; s < 2; ++s) {
+    for (int r = 0; r < 2 && p.parts[s] >= 0; ++r) {
+      if (q.parts[r] != p.parts[s]) continue;
+      for (const auto& [k, fast] : p.felt[s]) sum += fast * q.answer[r][k];
+    }
+  }
+  return sum;
+}
+
+// zero where joints leave it nothing to move
+template <int D>
+double Linkage<D>::give(const Bounded& b) const {
+  const double own = couple(b.row, b.row), gives = couple(b, b);
+  return gives > kLocked * own ? 1 / gives : 0;
+}
+
+// by parts, and how they move each other
+template <int D>
+void Linkage<D>::couple_bounded() {
+  // part_first_[p + 1] begins part p, the next one ends it
+  part_first_.assign(parts() + 2, 0), by_part_.resize(active_);
+  for (std::size_t k = 0; k < active_; ++k) ++part_first_[bounded_[k].parts[0] + 1];
+  int before = 0;
+  for (int& first : part_first_) before += std::exchange(first, before);
+  for (std::size_t k = 0; k < active_; ++k) by_part_[part_first_[bounded_[k].parts[0] + 1]++] = int(k);
+  for (std::size_t p = part_first_.size(); p-- > 1;) part_first_[p] = part_first_[p - 1];
+  part_first_[0] = 0;
+
+  yields_.clear();
+  for (int part = -1; part < parts(); ++part) {
+    const int begin = part_first_[part + 1], end = part_first_[part + 2];
+    for (int i = begin; i < end; ++i) {
+      Bounded& b = bounded_[by_part_[i]];
+      b.first = int(yields_.size());
+      for (int j = begin; j < end; ++j) yields_.push_back(couple(b, bounded_[by_part_[j]]));
+    }
+  }
+}
+
+// changes_ of a part onto the velocities, with what the joints answer
+template <int D>
+void Linkage<D>::push_bounded(int part) {
+  const int begin = part_first_[part + 1], end = part_first_[part + 2];
+  bool any = false;
+  for (int i = begin; i < end; ++i) {
+    if (changes_[i] == 0) continue;
+    any = true;
+    push(bounded_[by_part_[i]].row, changes_[i]);
+  }
+  if (!any) return;
+  each_row(part, [&](int k, int r) {
+    double sum = 0;
+    for (int i = begin; i < end; ++i) sum += bounded_[by_part_[i]].answer[0][k] * changes_[i];
+    impulses_[r] += sum, totals_[r] += sum;
+    push(rows_[r], sum);
+  });
+}
+
+// one onto places
+template <int D>
+void Linkage<D>::shift_bounded(const Bounded& bounded, double by) {
+  shift(bounded.row, by);
+  each_row(bounded.parts[0], [&](int k, int r) { shift(rows_[r], bounded.answer[0][k] * by); });
+}
+
+template <int D>
+void Linkage<D>::set_off(State<D>& state) {
+  if (bodies_.empty()) return;
+  gather(state);
+  for (const int i : bodies_) {
+    at_[i] = sim::stance(state, i);
+    if (const int k = turning(state, i); k >= 0) turn_[i] = state.turn[k];
+  }
+  lay();
+  double fastest = 0;
+  for (const Row<D>& row : rows_) fastest = std::max(fastest, std::fabs(speed(row, at_)));
+  if (fastest <= kApart * model_.scale) return;
+  agree();
+  for (const int i : bodies_) {
+    if (light_[i] == 0) continue;
+    state.v[i] = at_[i].v;
+    if (const int k = turning(state, i); k >= 0) state.spin[k] = at_[i].w;
+  }
+}
+
+template <int D>
+void Linkage<D>::begin(double h) {
+  bind(h);
+  couple_bounded();
+  std::fill(impulses_.begin(), impulses_.end(), 0.0), std::fill(totals_.begin(), totals_.end(), 0.0);
+  speeds_.resize(active_), changes_.resize(active_);
+}
+
+template <int D>
+void Linkage<D>::sweep() {
+  for (int part = -1; part < parts(); ++part) sweep(part);
+}
+
+template <int D>
+void Linkage<D>::sweep(int part) {
+  if (part >= 0) {
+    each_row(part, [&](int, int r) { rhs_[r] = -speed(rows_[r], at_); });
+    factors_.solve(rhs_.data(), part);
+    each_row(part, [&](int, int r) {
+      impulses_[r] += rhs_[r], totals_[r] += rhs_[r];
+      push(rows_[r], rhs_[r]);
+    });
+  }
+  const int begin = part_first_[part + 1], end = part_first_[part + 2];
+  if (begin == end) return;
+  for (int i = begin; i < end; ++i) {
+    const Bounded& b = bounded_[by_part_[i]];
+    speeds_[i] = speed(b.row, at_) - b.target, changes_[i] = 0;
+  }
+  for (int round = 0; round < kBoundedRounds; ++round) {
+    for (int i = begin; i < end; ++i) {
+      Bounded& b = bounded_[by_part_[i]];
+      const double next = std::clamp(b.impulse - b.give * speeds_[i], b.least, b.most);
+      const double change = next - b.impulse;
+      if (change == 0) continue;
+      b.impulse = next, changes_[i] += change;
+      for (int j = begin; j < end; ++j) speeds_[j] += yields_[b.first + j - begin] * change;
+    }
+  }
+  push_bounded(part);
+}
+
+template <int D>
+void Linkage<D>::agree() {
+  for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] = -speed(rows_[r], at_);
+  factors_.solve(rhs_.data());
+  for (std::size_t r = 0; r < rows_.size(); ++r) push(rows_[r], rhs_[r]);
+}
+
+// how far joints are off, at most; into rhs_ what would bring each row back
+template <int D>
+double Linkage<D>::astray() {
+  double worst = 0;
+  for (int k = 0; k < int(held_.size()); ++k) {
+    const Joint<D>& joint = model_.joints[held_[k]];
+    Row<D> out[kMostHeld<D>];
+    double off[kMostHeld<D>];
+    const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off);
+    for (int i = 0; i < n; ++i) {
+      rhs_[factors_.first(k) + i] = -off[i];
+      worst = std::max(worst, std::fabs(off[i]));
+    }
+  }
+  return worst;
+}
+
+// whether all are near where they stood before they were put back
+template <int D>
+bool Linkage<D>::near() const {
+  for (const int i : bodies_) {
+    if ((at_[i].x - begun_at_[i].x).norm() > kStride * model_.scale) return false;
+    if ((at_[i].room_from_body - begun_at_[i].room_from_body).norm() > kStride) return false;
+  }
+  return true;
+}
+
+// places back onto what joints keep, and within what they let
+template <int D>
+void Linkage<D>::put_back(double h) {
+  for (std::size_t k = 0; k < active_; ++k) {
+    double off = 0;
+    if (!left(bounded_[k], off) || off >= 0) continue;
+    const double strayed = astray();
+    begun_at_ = at_, begun_turn_ = turn_;
+    shift_bounded(bounded_[k], -off * bounded_[k].give);
+    // what joints hardly let it do throws them far
+    if (!near() || astray() > strayed - off) at_.swap(begun_at_), turn_.swap(begun_turn_);
+  }
+  begun_at_ = at_, begun_turn_ = turn_;
+  std::fill(shifts_.begin(), shifts_.end(), 0.0);
+  const double close = 1e-15 * model_.scale, enough = kPut * model_.scale;
+  double worst = astray(), before = kEndless;
+  for (int round = 0; round < kRounds && worst > close && worst <= 0.9 * before; ++round) {
+    before = worst;
+    factors_.solve(rhs_.data());
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      shifts_[r] += rhs_[r];
+      shift(rows_[r], rhs_[r]);
+    }
+    worst = astray();
+  }
+  for (double& s : shifts_) s /= h;
+  old_rows_ = rows_;
+  if (worst <= enough && near()) return;
+  at_.swap(begun_at_), turn_.swap(begun_turn_);
+  std::fill(shifts_.begin(), shifts_.end(), 0.0);
+  search();
+}
+
+// the same where the factors at hand lead astray, as on levers that turn far in a step: anew in each round,
+// and no farther than it helps. Velocities know nothing of it
+template <int D>
+void Linkage<D>::search() {
+  double worst = astray();
+  for (int round = 0; round < kSearches && worst > kPut * model_.scale; ++round) {
+    lay();
+    astray();
+    factors_.solve(rhs_.data());
+    begun_at_ = at_, begun_turn_ = turn_, ways_ = rhs_;
+    const double before = worst;
+    bool helped = false;
+    for (double part = 1; !helped && part > kLeastPart; part /= 2) {
+      at_ = begun_at_, turn_ = begun_turn_;
+      for (std::size_t r = 0; r < rows_.size(); ++r) shift(rows_[r], part * ways_[r]);
+      worst = astray();
+      helped = worst < (1 - part / 4) * before && near();
+    }
+    if (!helped) at_ = begun_at_, turn_ = begun_turn_;
+    if (!helped || worst > 0.9 * before) break;
+  }
+}
+
+template <int D>
+void Linkage<D>::finish(double h) {
+  if (bodies_.empty()) return;
+  put_back(h);
+  lay();
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    push(old_rows_[r], shifts_[r] - 0.5 * impulses_[r]);
+    const double half = 0.5 * impulses_[r] + shifts_[r];
+    push(rows_[r], half);
+    totals_[r] = 2 * half;
+  }
+  if (rebind()) {
+    sweep();
+    return;
+  }
+  agree();
+  for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
+}
+
+// Motors where bodies now stand, with what they have left to give; what else has bounds has done its part.
+// False where there are none.
+template <int D>
+bool Linkage<D>::rebind() {
+  bool any = false;
+  for (std::size_t k = 0; k < active_; ++k) {
+    Bounded& b = bounded_[k];
+    if (b.load != motor) {
+      b.least = b.most = b.impulse;
+      continue;
+    }
+    any = true;
+    const Joint<D>& joint = model_.joints[b.joint];
+    double way = 0;
+    free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), b.row, way);
+    hear(b);
+    b.give = give(b);
+  }
+  if (any) couple_bounded();
+  return any;
+}
+
+template <int D>
+void Linkage<D>::keep(State<D>& state, double h, const std::vector<char>* of) const {
+  const auto wanted = [&](int i) {
+    const Joint<D>& joint = model_.joints[i];
+    const bool moves = light(joint.a.body) > 0 || light(joint.b.body) > 0;
+    if (!of) return moves || broken_[i] != 0;
+    return moves && (*of)[light(joint.a.body) > 0 ? joint.a.body : joint.b.body] != 0;
+  };
+  for (int i = 0; i < int(model_.joints.size()); ++i) {
+    if (!wanted(i)) continue;
+    state.joint_forces[i].setZero();
+  }
+  for (int k = 0; k < int(held_.size()); ++k) {
+    if (!wanted(held_[k])) continue;
+    for (int r = factors_.first(k); r < factors_.first(k) + factors_.size(k); ++r)
+      state.joint_forces[held_[k]] += totals_[r] / h * rows_[r].along;
+  }
+  for (std::size_t k = 0; k < active_; ++k) {
+    const Bounded& b = bounded_[k];
+    if (!wanted(b.joint)) continue;
+    state.joint_forces[b.joint] += b.impulse / h * b.row.along;
+  }
+}
+
+template <int D>
+bool Linkage<D>::break_joints(State<D>& state) const {
+  bool any = false;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > model_.joints[i].breaks))
+      continue;
+    state.broken[i] = 1, any = true;
+  }
+  return any;
+}
+
+template class Linkage<2>;
+template class Linkage<3>;
+
+}  // namespace obscura::sim

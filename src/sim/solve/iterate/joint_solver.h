@@ -1,0 +1,188 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/constraint/row.h"
+#include "sim/math/block_factors.h"
+#include "sim/model/state.h"
+
+namespace obscura::sim {
+
+/// Joints as the iterative solver holds them. What they keep as equalities is solved all at once, exactly, by
+/// a sparse factorisation: linear in the number of joints where they form trees. Ropes, limits, motors and
+/// dry friction are rows with bounds, one after another, each with what the joints answer to it.
+template <int D>
+class Linkage {
+ public:
+  /// Kept by reference.
+  explicit Linkage(const Model<D>& model);
+
+  bool empty() const { return model_.joints.empty(); }
+  /// Whether no row has bounds in this step: then one sweep is as good as many.
+  bool plain() const { return active_ == 0; }
+
+  /// Bodies that joints have, ascending; how each stands and moves, by its number in the model, and its turn:
+  /// written by the caller before and read after each of what follows.
+  const std::vector<int>& bodies() const { return bodies_; }
+  bool has(int body) const { return member_[body] != 0; }
+  Stance<D>& stance(int body) { return at_[body]; }
+  Turn<D>& turn(int body) { return turn_[body]; }
+
+  /// Makes room for the joints in a state that no step has seen yet.
+  void ready(State<D>& state) const;
+
+  /// Which joints hold in this state.
+  void gather(const State<D>& state);
+
+  /// Before the first step: velocities with which no joint comes apart, by the impulses of its joints. A step
+  /// goes half its way with the velocities it begins with.
+  void set_off(State<D>& state);
+
+  /// Rows where bodies stand now.
+  void lay();
+  /// A step of h (s) from there. All forces begin at zero.
+  void begin(double h);
+
+  /// Velocities under which no joint comes apart: of all, or of one part. What shares no body that moves is a
+  /// part; part -1: of ropes between bodies that nothing else joins.
+  void sweep();
+  void sweep(int part);
+  /// The same once, of velocities that are none: places that are put right. Impulses stay as they are.
+  void agree();
+  int parts() const { return factors_.parts(); }
+  /// The part that a body's joints are of, or -1.
+  int part(int body) const { return part_of_body_[body]; }
+  /// The bodies of a part, ascending.
+  std::span<const int> members(int part) const { return members_[part]; }
+
+  /// A push of two bodies along a row, and what the joints answer to a unit of it. A body without joints may
+  /// be pushed too: its stance is the caller's to write, where that has a say.
+  struct Echo {
+    Row<D> row;
+    int parts[2] = {-1, -1};                      // of its bodies; the second, if it is another
+    std::vector<double> answer[2];                // impulses of the rows of each, in the order of elimination
+    std::vector<std::pair<int, double>> felt[2];  // which of them it moves by a unit, and how fast
+  };
+  /// Fills in what is not the row, once rows are laid.
+  void hear(Echo& echo);
+  /// How fast the row of one moves by a unit of the other, joints answering, 1/kg.
+  double couple(const Echo& p, const Echo& q) const;
+  /// act(body, change of its velocity, of its spin) for an impulse, and for what answers it.
+  template <class Act>
+  void each_push(const Echo& echo, double impulse, Act&& act) const {
+    each_push(echo.row, impulse, act);
+    for (int s = 0; s < 2; ++s) {
+      each_row(echo.parts[s], [&](int k, int r) { each_push(rows_[r], echo.answer[s][k] * impulse, act); });
+    }
+  }
+
+  /// After a step: places back onto the joints, velocities along them where bodies now stand.
+  void finish(double h);
+
+  /// act(row, how much faster it could make it within the step, beside what it bears) for each row of a part
+  /// that bears something: without end of what joints keep and of limits and ropes that are pulled at.
+  template <class Act>
+  void each_bearing(int part, Act&& act) const {
+    each_row(part, [&](int, int r) { act(rows_[r], kWithoutEnd); });
+    for (int i = part_first_[part + 1]; i < part_first_[part + 2]; ++i) {
+      const Bounded& b = bounded_[by_part_[i]];
+      if (b.load == lower || b.load == upper) {
+        if (b.impulse > 0) act(b.row, kWithoutEnd);
+      } else {
+        act(b.row, std::max(0.0, b.most - std::fabs(b.impulse)) / b.give);
+      }
+    }
+  }
+
+  /// Forces of the step into the state; only of joints of the bodies marked in `of`, where that is given.
+  void keep(State<D>& state, double h, const std::vector<char>* of = nullptr) const;
+
+  /// Joints that are loaded beyond what they bear are no more from the next step on. True where one broke.
+  bool break_joints(State<D>& state) const;
+
+ private:
+  static constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
+
+  // what keeps within bounds
+  enum Load { lower, upper, motor, friction };  // a rope is an upper
+  struct Bounded : Echo {
+    int joint = 0;
+    Load load = lower;
+    double least = 0, most = 0, target = 0;  // N s or N m s; m/s or rad/s
+    double give = 0;                         // what a unit of impulse changes, joints answering, inverted
+    double impulse = 0;
+    int first = 0;  // of its row in yields_
+  };
+
+  void plan();
+  Spin<D> turn_between(const Joint<D>& joint) const;
+  const Stance<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
+  double light(int body) const { return body < 0 ? 0 : light_[body]; }
+  double couple(const Row<D>& p, const Row<D>& q) const;
+  void push(const Row<D>& row, double impulse);
+  template <class Act>
+  void each_push(const Row<D>& row, double impulse, Act&& act) const {
+    const auto side = [&](int body, const Spin<D>& turn, double p) {
+      if (light(body) == 0) return;
+      const Body<D>& b = model_.bodies[body];
+      const Spin<D> spin =
+          b.turns() ? Spin<D>(p * spun<D>(b.inertia, at_[body].room_from_body, turn)) : Spin<D>::Zero();
+      act(body, Vec<D>(p * light_[body] * row.along), spin);
+    };
+    side(row.a, row.turn_a, impulse), side(row.b, row.turn_b, -impulse);
+  }
+  void shift(const Row<D>& row, double by);
+  // rows of a part in the order of elimination: the k-th of it is row r
+  template <class Act>
+  void each_row(int part, Act&& act) const {
+    if (part < 0) return;
+    int k = 0;
+    for (int place = factors_.begin(part); place < factors_.end(part); ++place) {
+      const int block = factors_.at(place), first = factors_.first(block);
+      for (int r = first; r < first + factors_.size(block); ++r) act(k++, r);
+    }
+  }
+  void bind(double h);
+  double give(const Bounded& bounded) const;
+  bool rebind();
+  void couple_bounded();
+  void push_bounded(int part);
+  void shift_bounded(const Bounded& bounded, double by);
+  bool left(const Bounded& bounded, double& off) const;
+  double astray();
+  bool near() const;
+  void put_back(double h);
+  void search();
+
+  const Model<D>& model_;
+  Stance<D> room_;
+  std::vector<int> bodies_;
+  std::vector<char> member_;
+  std::vector<Stance<D>> at_;
+  std::vector<Turn<D>> turn_;
+  std::vector<Stance<D>> begun_at_;  // before they are put back
+  std::vector<Turn<D>> begun_turn_;
+  std::vector<double> light_;  // 1/kg; 0 of what cannot move
+
+  std::vector<char> broken_, frozen_;  // that the plan is of
+  bool planned_ = false;
+  std::vector<int> held_;                   // joints with equalities: the blocks
+  std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
+  std::vector<int> part_of_body_;
+  std::vector<std::vector<int>> members_;  // of parts
+  Blocks<kMostHeld<D>> factors_;           // of K = J M^-1 J'
+  std::vector<Row<D>> rows_, old_rows_;
+  std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
+  std::vector<Bounded> bounded_;  // the first `active_`
+  std::size_t active_ = 0;
+  std::vector<int> by_part_, part_first_;  // of them, those of part -1 first; where each part's begin
+  std::vector<double> yields_;             // of a part: what its rows with bounds do to each other
+  std::vector<double> speeds_, changes_;
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,163 @@
+#include "sim/solve/iterate/near_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/math/orientation.h"
+
+namespace obscura::sim::sweep {
+
+namespace {
+
+constexpr double kCalm = 0.02;    // of the least thickness: how far a calm body may come
+constexpr double kSpare = 0.025;  // of the thickness of both: what they may come nearer by blows
+constexpr double kThrown = 1.25;  // times as fast as they are now, likewise
+
+}  // namespace
+
+Near::Near(const Model<2>& model, const Cores& cores)
+    : model_(model), cores_(cores), may_touch_(model), halves_(halves(cores)) {
+  double thin = 1e300;
+  for (const double inside : cores.inside) thin = std::min(thin, std::max(inside, 1e-3 * model.scale));
+  calm_ = kCalm * thin;
+  const std::size_t n = model.bodies.size();
+  movers_.resize(n), still_.resize(n), exposed_.resize(n);
+  bounds_.resize(cores.all.size()), still_cores_.resize(cores.all.size());
+  for (const Core& core : cores.all) points_.push_back(core.count == 1 && core.radius <= 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    movers_[i].reach = cores.reach[i];
+    movers_[i].thick = std::max(cores.inside[i], 1e-3 * model.scale);
+    fixed_.push_back(model.bodies[i].fixed), handout_.push_back(model.bodies[i].handout);
+    elasticity_ = std::max(elasticity_, model.bodies[i].elasticity);
+  }
+  for (const Wall<2>& wall : model.walls) elasticity_ = std::max(elasticity_, wall.elasticity.value_or(0));
+}
+
+double Near::spare(int body, double speed, double span) const {
+  const double thick = movers_[body].thick;
+  return 0.05 * thick + std::min(0.2 * thick, speed * span);
+}
+
+// who moves, how, and how far
+void Near::weigh(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
+  const int n = int(movers_.size()), points = n - int(state.turn.size());
+  const double falls = span * std::sqrt(model_.gravity.squaredNorm());
+  for (int body = 0; body < n; ++body) {
+    Mover& m = movers_[body];
+    m.x = poses[body].x, m.y = poses[body].y;
+    m.vx = state.v[body][0], m.vy = state.v[body][1];
+    m.swing = body >= points ? std::fabs(state.spin[body - points][0]) * m.reach : 0;
+    m.speed = std::sqrt(m.vx * m.vx + m.vy * m.vy) + m.swing;
+    const bool rests = fixed_[body] || state.frozen[body];
+    still_[body] = rests || (patience > 0 && patience * span * m.speed < calm_);
+    m.margin = rests ? 0 : span * (m.speed + falls) + spare(body, m.speed, span);
+  }
+}
+
+// cores and their margins
+void Near::enclose(const std::vector<Pose>& poses) {
+  constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < int(bounds_.size()); ++i) {
+    const Core& core = cores_.all[i];
+    const Pose& at = poses[core.body];
+    const double out = core.radius + movers_[core.body].margin;
+    Bounds<2>& b = bounds_[i];
+    still_cores_[i] = still_[core.body];
+    if (handout_[core.body]) {
+      b.lower = b.upper = Vec<2>::Constant(kNever);
+      continue;
+    }
+    if (core.wide > 0) {
+      const double c = std::fabs(at.c), s = std::fabs(at.s);
+      const double wide = c * core.wide + s * core.high + out, high = s * core.wide + c * core.high + out;
+      b.lower = {at.x - wide, at.y - high}, b.upper = {at.x + wide, at.y + high};
+      continue;
+    }
+    b.lower.setConstant(1e300), b.upper.setConstant(-1e300);
+    for (int k = core.first; k < core.first + core.count; ++k) {
+      const Vec<2> p(at.x + (at.c * cores_.x[k] - at.s * cores_.y[k]),
+                     at.y + (at.s * cores_.x[k] + at.c * cores_.y[k]));
+      b.lower = b.lower.cwiseMin(p), b.upper = b.upper.cwiseMax(p);
+    }
+    b.lower.array() -= out, b.upper.array() += out;
+  }
+}
+
+// Who may be struck within the span: who may reach another as both fly now, or a wall; and, since they may be
+// thrown about, their neighbours. Of two that fly side by side and cannot be struck, none will touch. Of two
+// of whom one is struck, the other comes on: then they near each other as fast as it flies, and faster if the
+// one bounces.
+void Near::expose(double span) {
+  const int n = int(movers_.size());
+  for (int a = 0; a < n; ++a) {
+    exposed_[a] = 0;
+    if (still_[a]) continue;
+    const Mover& m = movers_[a];
+    for (const Wall<2>& w : model_.walls) {
+      const double high = w.normal[0] * (m.x - w.point[0]) + w.normal[1] * (m.y - w.point[1]);
+      if (high <= m.reach + m.margin) exposed_[a] = 1;
+    }
+  }
+  const double falls = 2 * span * span * std::sqrt(model_.gravity.squaredNorm());
+  close_.resize(candidates_.size());
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const int a = cores_.all[candidates_[i].a].body, b = cores_.all[candidates_[i].b].body;
+    const Mover &p = movers_[a], &q = movers_[b];
+    const double vx = p.vx - q.vx, vy = p.vy - q.vy;
+    const double passes = std::sqrt(vx * vx + vy * vy) + p.swing + q.swing;
+    const double both = p.margin + q.margin, thick = p.thick + q.thick;
+    const double margin = std::min(both, span * passes + falls + 0.1 * thick);
+    const double far = p.reach + q.reach + margin, dx = p.x - q.x, dy = p.y - q.y;
+    const double thrown = std::max(p.speed, q.speed) + elasticity_ * std::min(p.speed, q.speed);
+    candidates_[i].margin =
+        std::min(both, span * kThrown * std::max(passes, thrown) + falls + kSpare * thick);
+    close_[i] = dx * dx + dy * dy <= far * far;
+    if (close_[i]) exposed_[a] = exposed_[b] = 1;
+  }
+  // the close ones stay
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate c = candidates_[i];
+    const int a = cores_.all[c.a].body, b = cores_.all[c.b].body;
+    if (!close_[i] && exposed_[a] != 1 && exposed_[b] != 1) continue;
+    candidates_[kept++] = c;
+  }
+  candidates_.resize(kept);
+}
+
+bool Near::look(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
+  weigh(state, poses, span, patience);
+  candidates_.clear();
+  if (patience > 0 && std::find(still_.begin(), still_.end(), 0) == still_.end()) return false;
+  enclose(poses);
+  for (const auto& [i, j] : broad_.find(bounds_, still_cores_, {}, points_)) {
+    const Core &p = cores_.all[i], &q = cores_.all[j];
+    if (p.body == q.body) continue;
+    if (may_touch_(p.body, q.body)) candidates_.push_back({i, j, -1, 0});
+  }
+  expose(span);
+
+  meet(poses);
+  return true;
+}
+
+// boxes, four pairs at once
+void Near::meet(const std::vector<Pose>& poses) {
+  int count = 0;
+  for (Candidate& c : candidates_) {
+    const int a = cores_.all[c.a].body, b = cores_.all[c.b].body;
+    if (!boxes(a, b)) continue;
+    c.meeting = count++;
+    if (c.meeting / kLanes == int(meetings_.size())) meetings_.emplace_back();
+    Meeting& m = meetings_[c.meeting / kLanes];
+    // who is not there is nobody
+    if (c.meeting % kLanes == 0) {
+      for (int lane = 0; lane < kLanes; ++lane) m.a[lane] = m.b[lane] = int(movers_.size());
+    }
+    m.a[c.meeting % kLanes] = a, m.b[c.meeting % kLanes] = b;
+  }
+  sweep::meet(meetings_.data(), (count + kLanes - 1) / kLanes, poses.data(), halves_.data());
+}
+
+}  // namespace obscura::sim::sweep

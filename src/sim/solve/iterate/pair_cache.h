@@ -1,0 +1,85 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "sim/collide/core_shapes.h"
+#include "sim/model/state.h"
+#include "sim/solve/iterate/contact_rows.h"
+#include "sim/solve/iterate/near_pairs.h"
+
+namespace obscura::sim::sweep {
+
+/// Two cores, or a core and a wall, that may touch before pairs are looked for again. Its touches are entries
+/// `first` and the next of State::contacts.
+struct Pair {
+  int a = -1, b = -1;            // bodies; b = -1 - wall
+  int core_a = -1, core_b = -1;  // -1: a wall
+  int first = 0, touches = 1;
+  int words[2] = {0, 0};  // of the features of its touches, ascending
+  int slot = -1;          // lane + kLanes * group; -1: asleep
+  int colour = -1;        // of its seat
+  bool alone = false;     // colours ran out: nobody sits beside it
+  bool fresh = false;     // its features have changed since it took its seat
+  float blow = 0;         // m/s: no slower approach is a blow
+  double friction = 0, elasticity = 0;
+};
+
+/// What touches, or will.
+class Pairs {
+ public:
+  explicit Pairs(const Model<2>& model, const Cores& cores);
+
+  /// Finds the pairs nearer than their bodies can come within `span` s, and writes their touches into
+  /// state.contacts; forces of the same touches stay. A pair whose two sides rest, or are calm for `patience`
+  /// spans, stays as it is. False where nothing was changed.
+  bool find(State<2>& state, const std::vector<Pose>& poses, double span, int patience);
+
+  /// Makes the pairs those of state.contacts, where they are not already.
+  void adopt(const State<2>& state);
+
+  /// Pairs whose features are others than their seats say, `share` of the time between two looks after the
+  /// last. They are not changed yet.
+  const std::vector<Outdated>& outdated(const std::vector<Seats>& seats, const std::vector<Motion>& v,
+                                        const std::vector<Pose>& poses, double share);
+  /// Changes the features of a pair to these. Forces move with their keys or, failing that, their places.
+  void renew(const Outdated& found, State<2>& state, const std::vector<Pose>& poses);
+  bool boxes(const Pair& pair) const { return pair.b >= 0 && near_.boxes(pair.a, pair.b); }
+
+  const std::vector<Pair>& all() const { return pairs_; }
+  std::vector<Pair>& all() { return pairs_; }
+
+  /// Grows whenever the pairs change.
+  long version() const { return version_; }
+
+  Place place(const Pair& pair, const std::vector<Pose>& poses, Feature feature) const;
+
+  /// How far a body may come by speed (m/s) that it may gain within `span` s, by blows.
+  double spare(int body, double speed, double span) const { return near_.spare(body, speed, span); }
+
+ private:
+  void features(const Pair& pair, const std::vector<Pose>& poses, int words[2]) const;
+  void inherit(const Pair& pair, const std::vector<Pose>& poses, const Contact<2>* old, int count,
+               Contact<2>* now) const;
+  Pair pair(int a, int b, int core_a, int core_b) const;
+  int feature(const Pair& pair, int word) const;
+  void gather_found(const std::vector<Pose>& poses);
+
+  const Model<2>& model_;
+  const Cores& cores_;
+  Near near_;
+  struct Skin {
+    double friction, elasticity;
+  };
+  std::vector<Skin> skins_;  // of bodies
+
+  std::vector<Pair> pairs_, found_;
+  long version_ = 0;
+  std::vector<Contact<2>> contacts_;
+  bool compounds_ = false;
+
+  std::vector<Outdated> outdated_;
+  Found others_;
+};
+
+}  // namespace obscura::sim::sweep

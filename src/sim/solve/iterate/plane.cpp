@@ -1,0 +1,368 @@
+// One step of bodies with contacts: pairs anew, if it is time; then, at low rates in several stretches so
+// that none is longer than 1/240 s, from v to v'
+//   1. features of pairs that move
+//   2. free motion: dv, dx of the step without contacts, springs and hands by Runge-Kutta
+//   3. forces of the last step
+//   4. blows: touches that close in this step faster than the resting speed
+//   5. warm sweeps: v_n' >= -g / h
+//      between them joints, all at once
+//   6. positions: by the mean of old and new velocity; a body struck at tau by that up to tau and after it;
+//      by the new one where a slow touch closed; back onto the joints
+
+#include "sim/solve/iterate/plane.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/force/explosion.h"
+
+namespace obscura::sim {
+
+using sweep::Feature;
+using sweep::kLanes;
+using sweep::Pair;
+using sweep::Seats;
+
+namespace {
+
+constexpr double kLooks = 60;       // a second: how often pairs are looked for
+constexpr double kStretches = 240;  // a second, at least
+constexpr int kMostSweeps = 40;     // of few pairs
+constexpr int kJointSweeps = 16;    // where there are joints: those are solved exactly in each
+constexpr int kStrainSweeps = 64;   // where they press something far into another
+constexpr double kStrained = 0.02;  // of its thickness: how far that is
+constexpr int kPairSweeps = 2000;   // pairs times sweeps where there are more; at least one sweep
+constexpr int kFirstSweeps = 100;   // of the first step, which knows no forces
+constexpr double kProject = 0.2;    // of a penetration each time pairs are looked for
+
+}  // namespace
+
+template <int D>
+Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model),
+      cores_(model),
+      pairs_(model, cores_),
+      blows_(cores_),
+      rest_(model, cores_),
+      tied_(model, paths),
+      linkage_(model) {
+  const int n = int(model.bodies.size());
+  const double h = 1 / value(model.rate);
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
+  span_ = double(every_) * h;
+  stretches_ = std::max(1, int(std::ceil(kStretches * h - 1e-9)));
+  rest_speed_ = 2 * h / stretches_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
+  asked_ = slow(model).asked;
+  poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
+  v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
+  closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);
+  for (const Body<D>& body : model.bodies) {
+    drag_ = drag_ || body.drag != 0;
+    fixed_.push_back(body.fixed);
+    light_.push_back({1 / body.mass, body.turns() ? 1 / body.inertia[0] : 0});
+  }
+}
+
+template <int D>
+void Iterative<D>::step(State<D>& state, double t, double h) {
+  const int n = int(model_.bodies.size());
+  if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
+  if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
+  if (!linkage_.empty()) linkage_.ready(state);
+  if (state.step == 0) linkage_.set_off(state);
+
+  const bool due = state.step % every_ == 0;
+
+  // whom springs and hands hold
+  if (tied_.ever()) {
+    tied_.gather(state);
+    for (int i = 0; i < n; ++i) movers_[i] = tied_.has(i);
+  }
+  bool held = false, asleep = true;
+  for (int i = 0; i < n; ++i) {
+    held = held || (movers_[i] && state.frozen[i]);
+    asleep = asleep && (state.frozen[i] | fixed_[i]);
+  }
+  if (asleep && !held) {
+    next_step_ = -1;
+    return;
+  }
+  const bool known = gather(state);
+  if (!known) pairs_.adopt(state);
+  if (due || held) {
+    look(state, known);
+  } else if (!known) {
+    seat(state, false);
+  }
+  if (state.step == 0 && due && !blasting(state) && rest_.begin(state, pairs_, poses_, v_, movers_))
+    stand(state);
+  blows_.begin();
+  outran_ = false;
+  const double part = h / stretches_;
+  for (int i = 0; i < stretches_; ++i) stretch(state, t + i * part, part, i);
+  blows_.keep(state.contacts);
+  // the next step looks anyway, unless this was a part of one
+  const bool whole = h * value(model_.rate) > 1 - 1e-9;
+  if (outran_ && !(whole && (state.step + 1) % every_ == 0)) look(state, true);
+  if (due && rest_.freeze(state, pairs_, seats_, linkage_, poses_, v_, movers_, part, span_)) stand(state);
+  next_step_ = state.step + 1;
+}
+
+// who has just been frozen
+template <int D>
+void Iterative<D>::stand(const State<D>& state) {
+  for (std::size_t i = 0; i < turns_.size(); ++i) {
+    if (state.frozen[i]) v_[i] = {};
+  }
+  seat(state, true);
+}
+
+// from t to t + h, between two looks: forces stay in the seats until the last
+template <int D>
+void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
+  const bool first = which == 0 && state.step % every_ == 0, last = which + 1 == stretches_;
+  if (outran_) {
+    for (const Pair& pair : pairs_.all()) report(pair, state);
+    look(state, true);
+    outran_ = false;
+  }
+  if (!linkage_.empty()) linkage_.gather(state);
+  const double share = (double(state.step % every_) * stretches_ + which) / double(every_ * stretches_);
+  double fastest = 0;
+  for (int i = 0; i < int(turns_.size()); ++i) {
+    const Motion& m = v_[i];
+    fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.reach[i]);
+  }
+  if (share > 0 && 2 * share * fastest > calmest_) {
+    for (const sweep::Outdated& old : pairs_.outdated(seats_, v_, poses_, share)) {
+      const Pair& pair = pairs_.all()[old.pair];
+      if (stretches_ > 1) report(pair, state);
+      pairs_.renew(old, state, poses_);
+      sit(pair, state);
+    }
+  }
+
+  fall(state, t, h);
+  sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm()), cores_.allowed};
+  const int count = int(seats_.size());
+  const bool deep =
+      sweep::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
+  if (!linkage_.empty()) {
+    lend();
+    linkage_.lay();
+  }
+  blows_.run(fast_, pairs_.all(), seats_, poses_, old_, dv_, v_, pace, linkage_);
+  pace.least = blows_.least();
+  int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  if (state.step == 0 && first) sweeps = kFirstSweeps;
+  if (!linkage_.empty()) {
+    lend();
+    linkage_.begin(h);
+    take();
+    const int most = strained(state) ? kStrainSweeps : kJointSweeps;
+    sweeps = count == 0 && linkage_.plain() ? 1 : std::clamp(most / 4 * sweeps, 4, most);
+  }
+  for (int i = 1; i < sweeps; ++i) {
+    hold();
+    sweep::sweep(seats_.data(), count, poses_.data(), v_.data(), pace);
+  }
+  hold();
+  sweep::finish(seats_.data(), count, poses_.data(), v_.data(), pace, last ? state.contacts.data() : nullptr);
+  blows_.note(pairs_.all(), state.contacts, seats_);
+  if (first && deep) project(state);
+  advance(state, h, first && deep);
+  if (!linkage_.empty()) rejoin(state, h);
+  outran_ = outran(h, (1 - share) * span_);
+}
+
+// Whether joints press something that is awake far into another: pushes by contacts alone, each with its own
+// body's mass, hardly move it then.
+template <int D>
+bool Iterative<D>::strained(const State<D>& state) const {
+  const auto far = [&](int body) { return kStrained * cores_.inside[body]; };
+  return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact<D>& c) {
+    const int a = c.key.a, b = c.key.b;
+    const bool awake = v_[a].im > 0 || (b >= 0 && v_[b].im > 0);
+    const bool tied = linkage_.has(a) || (b >= 0 && linkage_.has(b));
+    return awake && tied && c.gap < -(b < 0 ? far(a) : std::min(far(a), far(b)));
+  });
+}
+
+// a pair's forces, from its seat
+template <int D>
+void Iterative<D>::report(const Pair& pair, State<D>& state) const {
+  if (pair.slot < 0) return;
+  const Seats& g = seats_[pair.slot / kLanes];
+  const int lane = pair.slot % kLanes;
+  for (int k = 0; k < pair.touches; ++k) {
+    Contact<D>& contact = state.contacts[pair.first + k];
+    const Feature f = Feature::of(contact.key.feature);
+    contact.force = {g.p[k][lane], g.q[k][lane]};
+    if (f.kind == Feature::none) continue;
+    const sweep::Place at = pairs_.place(pair, poses_, f);
+    contact.point = {at.x, at.y};
+  }
+}
+
+// pairs anew, who wakes by them, and seats for all
+template <int D>
+void Iterative<D>::look(State<D>& state, bool known) {
+  const int patience = state.contacts.empty() ? 0 : sweep::Near::patience(state.step / every_);
+  bool changed = pairs_.find(state, poses_, span_, patience);
+  if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) {
+    pairs_.find(state, poses_, span_, 0);
+    changed = true;
+  }
+  if (known && !changed && frozen_ == state.frozen) return;
+  seat(state, known);
+  const bool fresh =
+      state.step == 0 && std::all_of(state.contacts.begin(), state.contacts.end(),
+                                     [](const Contact<D>& c) { return c.force == Vec<D>::Zero(); });
+  if (fresh) {
+    guess(state);
+    seat(state, false);
+  }
+}
+
+// false where the state is not the one that the last step left
+template <int D>
+bool Iterative<D>::gather(const State<D>& state) {
+  const int n = int(turns_.size()), still = n - int(state.turn.size());
+  std::size_t contacts = 0;
+  if (!pairs_.all().empty()) contacts = pairs_.all().back().first + pairs_.all().back().touches;
+  bool known = state.step == next_step_ && state.contacts.size() == contacts && state.frozen == frozen_;
+  for (int i = 0; i < n; ++i) {
+    const double x = state.x[i][0], y = state.x[i][1], vx = state.v[i][0], vy = state.v[i][1];
+    const bool same = (poses_[i].x == x) & (poses_[i].y == y) & (v_[i].x == vx) & (v_[i].y == vy);
+    known = known && same;
+    poses_[i].x = x, poses_[i].y = y, v_[i].x = vx, v_[i].y = vy;
+  }
+  for (int i = still; i < n; ++i) {
+    const double turn = state.turn[i - still][0], w = state.spin[i - still][0];
+    known = known && v_[i].w == w;
+    v_[i].w = w;
+    if (turn == turns_[i]) continue;
+    known = false;
+    const SinCos sc = sin_cos(turn);
+    poses_[i].c = sc.cos, poses_[i].s = sc.sin, turns_[i] = turn;
+  }
+  return known;
+}
+
+// what everyone would do in the step if nothing touched
+template <int D>
+void Iterative<D>::fall(State<D>& state, double t, double h) {
+  const int n = int(turns_.size()), still = n - int(state.turn.size());
+  const double gx = model_.gravity[0], gy = model_.gravity[1];
+  for (int i = 0; i < n; ++i) {
+    old_[i] = v_[i];
+    if (v_[i].im == 0) {
+      old_[i] = v_[i] = dv_[i] = dx_[i] = {};
+      continue;
+    }
+    // Runge-Kutta's polynomials of z = -h c/m
+    double p = 0, q = 1, r = 0.5;
+    if (drag_) {
+      const double z = -h * model_.bodies[i].drag * v_[i].im;
+      p = z * (1 + z / 2 * (1 + z / 3 * (1 + z / 4)));
+      q = 1 + z / 2 * (1 + z / 3 * (1 + z / 4)), r = 0.5 * (1 + z / 3 * (1 + z / 4));
+    }
+    dv_[i] = {v_[i].x * p + h * q * gx, v_[i].y * p + h * q * gy, 0, 0};
+    dx_[i] = {h * (v_[i].x * q + h * r * gx), h * (v_[i].y * q + h * r * gy), h * v_[i].w, 0};
+    v_[i].x += dv_[i].x, v_[i].y += dv_[i].y;
+  }
+
+  // springs and hands
+  if (!tied_.ever()) return;
+  const std::vector<int>& bodies = tied_.bodies();
+  stages_.reserve(bodies.size() * (D + kSpins<D>));
+  tied_.step(integrate(model_.integrator), state, t, h, stages_);
+  for (const int i : bodies) {
+    if (v_[i].im > 0) {
+      v_[i].x = state.v[i][0], v_[i].y = state.v[i][1];
+      dv_[i].x = v_[i].x - old_[i].x, dv_[i].y = v_[i].y - old_[i].y;
+      dx_[i].x = state.x[i][0] - poses_[i].x, dx_[i].y = state.x[i][1] - poses_[i].y;
+      if (i >= still) {
+        v_[i].w = state.spin[i - still][0];
+        dv_[i].w = v_[i].w - old_[i].w, dx_[i].w = state.turn[i - still][0] - turns_[i];
+      }
+    }
+    state.x[i] = {poses_[i].x, poses_[i].y}, state.v[i] = {old_[i].x, old_[i].y};
+    if (i >= still) state.turn[i - still][0] = turns_[i], state.spin[i - still][0] = old_[i].w;
+  }
+}
+
+// bodies of joints to the joints, and their velocities back
+template <int D>
+void Iterative<D>::lend() {
+  for (const int i : linkage_.bodies()) {
+    Stance<D>& at = linkage_.stance(i);
+    at.x = {poses_[i].x, poses_[i].y}, at.v = {v_[i].x, v_[i].y}, at.w[0] = v_[i].w;
+    at.room_from_body << poses_[i].c, -poses_[i].s, poses_[i].s, poses_[i].c;
+    linkage_.turn(i)[0] = turns_[i];
+  }
+}
+
+template <int D>
+void Iterative<D>::take() {
+  for (const int i : linkage_.bodies()) {
+    const Stance<D>& at = linkage_.stance(i);
+    v_[i].x = at.v[0], v_[i].y = at.v[1], v_[i].w = at.w[0];
+  }
+}
+
+template <int D>
+void Iterative<D>::hold() {
+  if (linkage_.empty()) return;
+  for (const int i : linkage_.bodies())
+    linkage_.stance(i).v = {v_[i].x, v_[i].y}, linkage_.stance(i).w[0] = v_[i].w;
+  linkage_.sweep();
+  take();
+}
+
+// what the step has pulled apart
+template <int D>
+void Iterative<D>::rejoin(State<D>& state, double h) {
+  lend();
+  linkage_.finish(h);
+  linkage_.keep(state, h);
+  linkage_.break_joints(state);
+  take();
+  const int still = int(turns_.size() - state.turn.size());
+  for (const int i : linkage_.bodies()) {
+    if (v_[i].im == 0) continue;
+    const Stance<D>& at = linkage_.stance(i);
+    state.x[i] = at.x, state.v[i] = at.v;
+    poses_[i].x = at.x[0], poses_[i].y = at.x[1];
+    if (i < still) continue;
+    state.spin[i - still] = at.w, state.turn[i - still] = linkage_.turn(i);
+    turns_[i] = linkage_.turn(i)[0];
+    const SinCos sc = sin_cos(turns_[i]);
+    poses_[i].c = sc.cos, poses_[i].s = sc.sin;
+  }
+}
+
+// positions out of each other, a part of the way
+template <int D>
+void Iterative<D>::project(const State<D>& state) {
+  std::fill(projections_.begin(), projections_.end(), sweep::Projection{});
+  for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
+  int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  if (!linkage_.empty() && strained(state)) sweeps = kStrainSweeps;
+  for (int i = 0; i < sweeps; ++i) {
+    // joints go along
+    for (const int k : linkage_.bodies())
+      linkage_.stance(k).v = {push_[k].x, push_[k].y}, linkage_.stance(k).w[0] = push_[k].w;
+    if (!linkage_.empty()) linkage_.agree();
+    for (const int k : linkage_.bodies()) {
+      const Stance<D>& at = linkage_.stance(k);
+      push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
+    }
+    sweep::project(seats_.data(), projections_.data(), int(seats_.size()), poses_.data(), push_.data(),
+                   kProject, cores_.allowed);
+  }
+}
+
+template class Iterative<2>;
+
+}  // namespace obscura::sim

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/collide/core_shapes.h"
+#include "sim/motion/forward_dynamics.h"
+#include "sim/solve/contact_solver.h"
+#include "sim/solve/iterate/contact_rows.h"
+#include "sim/solve/iterate/joint_solver.h"
+#include "sim/solve/iterate/pair_cache.h"
+#include "sim/solve/iterate/plane_impacts.h"
+#include "sim/solve/iterate/plane_sleep.h"
+
+namespace obscura::sim {
+
+/// Contact for thousands of bodies: pairs are found a tenth as often as steps are taken, forces by a few warm
+/// sweeps a step. What is carried from step to step is in the state: contacts, all pairs that may touch soon
+/// among them, hold forces and name their features. Scratch follows from these, so a run cut in two is the
+/// run in one; a state whose step and motion are to the bit those that the last step left is taken to be that
+/// state, contacts and all.
+template <int D>
+class Iterative final : public ContactStep<D> {
+ public:
+  /// Both are kept by reference.
+  explicit Iterative(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+  /// Moves `state` from t to t + h (s): forces, impacts, contacts with friction, rest. Uses and writes
+  /// state.contacts, frozen, quiet.
+  void step(State<D>& state, double t, double h) override;
+
+ private:
+  using Motion = sweep::Motion;
+
+  static constexpr double kSight = 0.5;  // of its thickness: what may pass within a step is swept instead
+
+  bool gather(const State<D>& state);
+  void stretch(State<D>& state, double t, double h, int which);
+  bool strained(const State<D>& state) const;
+  void report(const sweep::Pair& pair, State<D>& state) const;
+  void seat(const State<D>& state, bool known);
+  void stand(const State<D>& state);
+  bool reseat(const State<D>& state);
+  int colour(const sweep::Pair& pair);
+  void vacate(int slot);
+  void take_seat(int pair, const State<D>& state);
+  void sit(const sweep::Pair& pair, const State<D>& state);
+  void guess(State<D>& state);
+  void fall(State<D>& state, double t, double h);
+  void lend();
+  void take();
+  void hold();
+  void rejoin(State<D>& state, double h);
+  void project(const State<D>& state);
+  void advance(State<D>& state, double h, bool look);
+  void look(State<D>& state, bool known);
+  bool outran(double h, double left) const;
+  double clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const;
+  Motion mean_way(int body, double h) const;
+  Motion course(int body, double h);
+  bool fast(int body, const Motion& way) const;
+
+  const Model<D>& model_;
+  sweep::Cores cores_;
+  sweep::Pairs pairs_;
+  sweep::Blows blows_;
+  sweep::Rest rest_;
+  Tied<D> tied_;
+  Linkage<D> linkage_;
+  Stages stages_;
+  std::int64_t every_ = 1;  // steps between two looks for pairs
+  double span_ = 0;         // and s
+  int stretches_ = 1;       // of a step
+  bool outran_ = false;     // someone came farther than pairs foresaw
+  double rest_speed_ = 0;   // m/s: slower approaches do not bounce
+  double asked_ = 0;        // m/s: who is slower may rest (sim/constraint/mobility.h)
+  bool drag_ = false;
+
+  // of bodies; one more that never moves, for walls
+  std::vector<sweep::Pose> poses_;
+  std::vector<double> turns_;    // that the poses are of, rad
+  std::vector<double> ii_;       // 1/(kg m^2); 0 where asleep or fixed
+  std::vector<Motion> v_, old_;  // now, and when the step began
+  std::vector<Motion> dv_, dx_;  // what the step would do without contacts
+  std::vector<Motion> push_;     // by projection
+  std::vector<char> closing_;    // a slow touch closed in this step
+  std::vector<char> frozen_;     // that the seats are of
+  std::vector<char> fixed_;
+  struct Light {
+    double im, ii;  // 1/kg, 1/(kg m^2)
+  };
+  std::vector<Light> light_;
+  std::vector<char> movers_;  // springs and hands hold them
+
+  std::vector<std::uint64_t> colours_;     // used on each body
+  std::vector<int> count_, begin_, ends_;  // of each colour; where its seats begin and end
+  std::vector<sweep::Seats> seats_;
+  std::vector<sweep::Projection> projections_;
+  sweep::Found slow_, fast_;
+  std::vector<int> slots_, next_slots_;  // which pair sits where
+  std::vector<int> moved_;               // pairs that take another seat
+  std::int64_t next_step_ = -1;          // of the state that this has left
+  long version_ = -1;
+  int awake_pairs_ = 0;
+  double calmest_ = 0;  // m/s: if no point of a body is faster than half of it, all features stay
+};
+
+}  // namespace obscura::sim

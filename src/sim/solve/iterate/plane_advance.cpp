@@ -1,0 +1,163 @@
+// How far each body goes in a step, and what of that is to be swept: by the mean of old and new velocity;
+// struck at tau, by that up to tau and after it; by the new one where a slow touch closed.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/solve/iterate/plane.h"
+#include "sim/solve/iterate/wide_sin_cos.h"
+
+namespace obscura::sim {
+
+using sweep::Feature;
+using sweep::kLanes;
+using sweep::Pair;
+
+template <int D>
+void Iterative<D>::advance(State<D>& state, double h, bool look) {
+  const int n = int(turns_.size()), still = n - int(state.turn.size());
+
+  // whose slow touches closed
+  std::fill(closing_.begin(), closing_.end(), 0);
+  for (const int i : slow_)
+    closing_[seats_[i / kLanes].a[i % kLanes]] = closing_[seats_[i / kLanes].b[i % kLanes]] = 1;
+
+  const double asked2 = asked_ * asked_;
+  for (int i = 0; i < n; ++i) {
+    if (v_[i].im == 0) continue;
+    const Motion &v = v_[i], &o = old_[i];
+    const double reach = cores_.reach[i], far = 0.5 * kSight * cores_.inside[i];
+    Motion d;
+    if (blows_.when(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
+      d = course(i, h);
+    } else {
+      d = closing_[i] ? Motion{h * v.x, h * v.y, h * v.w, 0} : mean_way(i, h);
+    }
+    if (look) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
+    state.x[i][0] = poses_[i].x += d.x, state.x[i][1] = poses_[i].y += d.y;
+    state.v[i][0] = v.x, state.v[i][1] = v.y;
+    if (i >= still) {
+      state.spin[i - still][0] = v.w;
+      state.turn[i - still][0] = turns_[i] += d.w;
+    }
+    const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (reach * reach) <= asked2;
+    state.quiet[i] = quiet ? state.quiet[i] + h : 0;
+  }
+  sweep::turn_all(turns_.data() + still, poses_.data() + still, n - still);
+}
+
+// by the mean of old and new velocity
+template <int D>
+sweep::Motion Iterative<D>::mean_way(int i, double h) const {
+  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
+  const double half = 0.5 * h;
+  return {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
+          dx.w + half * (v.w - (o.w + dv.w)), 0};
+}
+
+// the way of a body in the step, of one too that is struck or fast
+template <int D>
+sweep::Motion Iterative<D>::course(int i, double h) {
+  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i];
+  const double when = blows_.when(i);
+  Motion d;
+  if (when >= 0) {
+    const double one = 0.5 * when, two = 0.5 * (h - when);
+    const Motion &b = blows_.before(i), &a = blows_.after(i);
+    const Motion there{one * (o.x + b.x), one * (o.y + b.y), one * (o.w + b.w), 0};
+    Motion back{two * (a.x + v.x), two * (a.y + v.y), two * (a.w + v.w), 0};
+    if (fast(i, back)) {
+      sweep::Pose from = poses_[i];
+      from.x += there.x, from.y += there.y;
+      const double part = clear(i, from, back, true);
+      back.x *= part, back.y *= part, back.w *= part;
+    }
+    d = {there.x + back.x, there.y + back.y, there.w + back.w, 0};
+  } else if (closing_[i]) {
+    d = {h * v.x, h * v.y, h * v.w, 0};
+  } else {
+    d = mean_way(i, h);
+  }
+  // who is too fast to have been seen comes as far as what it meets, and strikes in the next step
+  const Motion way{h * o.x, h * o.y, h * o.w, 0};
+  if (!fast(i, way)) return d;
+  const double part = clear(i, poses_[i], way, false);
+  if (part >= 1) return d;
+  // the blow it met is what was seen, within half of its thickness
+  const double over = when - part * h;
+  if (when >= 0 && (over <= 0 || !fast(i, {over * o.x, over * o.y, 0, 0}))) return d;
+  // what another was given against it stays given
+  const double gone = std::fabs(v.x - (o.x + dv.x)) + std::fabs(v.y - (o.y + dv.y)) +
+                      std::fabs(v.w - (o.w + dv.w)) * cores_.reach[i];
+  if (when < 0 && gone <= 1e-9 * (std::fabs(o.x) + std::fabs(o.y))) {
+    const double im = v_[i].im;
+    v_[i] = o, v_[i].im = im;
+  }
+  return {part * way.x, part * way.y, part * way.w, 0};
+}
+
+// whether it may pass through something in the step
+template <int D>
+bool Iterative<D>::fast(int body, const Motion& way) const {
+  const double inside = 0.5 * kSight * cores_.inside[body];
+  return way.x * way.x + way.y * way.y > inside * inside;
+}
+
+// the part of its way that a body may go before it meets another where that stands, or a wall: by steps as
+// long as the distance that is left
+template <int D>
+double Iterative<D>::clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const {
+  const double length = std::sqrt(way.x * way.x + way.y * way.y);
+  double part = 1;
+  Feature features[2];
+  for (const int i : blows_.around(body)) {
+    const Pair& pair = pairs_.all()[i];
+    const sweep::Core& a = cores_.all[pair.core_a];
+    if (pair.b < 0) {
+      const Wall<D>& wall = model_.walls[-1 - pair.b];
+      const double nears = -(wall.normal[0] * way.x + wall.normal[1] * way.y);
+      const double gap = nearest(cores_, a, from, wall, features) + 0.02 * a.inside;
+      if (walls && nears > gap) part = std::min(part, std::max(gap, 0.0) / nears);
+      continue;
+    }
+    const sweep::Core& b = cores_.all[pair.core_b];
+    const double close = 0.02 * std::max(std::min(a.inside, b.inside), 1e-6 * model_.scale);
+    sweep::Pose at = from;
+    for (double gone = 0; gone < part;) {
+      at.x = from.x + gone * way.x, at.y = from.y + gone * way.y;
+      const double left = body == pair.a ? nearest(cores_, a, at, b, poses_[pair.b], features)
+                                         : nearest(cores_, a, poses_[pair.a], b, at, features);
+      if (left <= close) {
+        if (gone > 0) part = gone;
+        break;
+      }
+      gone += std::max(left - 0.5 * close, 0.5 * close) / length;
+    }
+  }
+  return part;
+}
+
+// whether a body may come farther in `left` s until the next look than its pairs foresaw, by more than a part
+// of its thickness
+template <int D>
+bool Iterative<D>::outran(double h, double left) const {
+  const int n = int(turns_.size());
+  const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
+  for (int i = 0; i < n; ++i) {
+    const Motion &v = v_[i], &o = old_[i];
+    const double reach = cores_.reach[i];
+    const double gain = std::fabs(v.x - o.x) + std::fabs(v.y - o.y) + std::fabs(v.w - o.w) * reach;
+    if (gain * left < 0.04 * cores_.inside[i] + falls) continue;
+    const auto speed = [&](const Motion& m) {
+      return std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * reach;
+    };
+    if ((speed(v) - speed(o)) * left > 0.25 * cores_.inside[i] + pairs_.spare(i, speed(o), span_) + falls)
+      return true;
+  }
+  return false;
+}
+
+template void Iterative<2>::advance(State<2>&, double, bool);
+template bool Iterative<2>::outran(double, double) const;
+
+}  // namespace obscura::sim

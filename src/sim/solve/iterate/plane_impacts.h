@@ -1,0 +1,125 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/model/state.h"
+#include "sim/solve/iterate/contact_rows.h"
+#include "sim/solve/iterate/joint_solver.h"
+#include "sim/solve/iterate/pair_cache.h"
+
+namespace obscura::sim::sweep {
+
+/// Blows: touches that close within a step faster than the resting speed. Newton's law with Coulomb friction,
+/// normals and friction of a pair together, where its bodies stand when they meet; from pair to pair until
+/// none approaches, in the order in which they come up. Bodies on joints are struck as one with all that
+/// hangs on them.
+class Blows {
+ public:
+  explicit Blows(const Cores& cores);
+
+  /// Who is with whom: the awake pairs of each body.
+  void join(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
+
+  /// Beginning with the seats in `found`. `old`: velocities at the start; dv: what the step adds to them
+  /// without contacts; v gains what the blows do. Marks seats as struck, and says of those what is left to
+  /// the sweeps: least().
+  void run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+           const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
+           std::vector<Motion>& v, const Pace& pace, Linkage<2>& linkage);
+
+  /// By group: the least normal speeds (m/s) that sweeps leave the seats that are struck.
+  const Least* least() const { return least_.data(); }
+
+  /// Forgets the impulses of the step before.
+  void begin() { struck_.clear(); }
+  /// Remembers the impulses of the last run, under the keys of the contacts.
+  void note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
+            const std::vector<Seats>& seats);
+  /// What was remembered, into the contacts.
+  void keep(std::vector<Contact<2>>& contacts) const;
+
+  /// The awake pairs of a body.
+  std::span<const int> around(int body) const {
+    return {around_.data() + around_start_[body], around_.data() + around_start_[body + 1]};
+  }
+
+  /// Who was struck; when (s from the start of the step), with which velocity before and after.
+  const std::vector<int>& bodies() const { return bodies_; }
+  double when(int body) const { return when_[body]; }
+  const Motion& before(int body) const { return before_[body]; }
+  const Motion& after(int body) const { return now_[body]; }
+
+ private:
+  struct Struck {
+    ContactKey key;
+    Vec<2> impulse;  // on a, N s
+    bool pushed;
+  };
+  // a direction, and the moments of a push along it about both bodies, m
+  struct Push {
+    double x, y, a, b;
+  };
+  struct Blow {
+    int pair = -1;
+    double when = 0;  // s: the rows are those of then
+    bool met[2] = {false, false};
+    double gap[2] = {0, 0};               // m
+    double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
+    Push pushes[2][2] = {};               // along normals and across them, of each touch
+  };
+  // a pair as it stands at a time, and how its bodies move
+  struct Standing {
+    double when = 0;
+    Motion a, b;
+    TouchRow rows[2];
+  };
+  void reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace);
+  void move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+            const Pace& pace, Pose& pose, Motion& v) const;
+  Standing stand(const Pair& pair, double when, const Seats& seats, const std::vector<Pose>& poses,
+                 const std::vector<Motion>& dv, const Pace& pace) const;
+  double closing(const Pair& pair, int k, const Seats& seats, const Standing& at,
+                 const std::vector<Motion>& dv, const Pace& pace) const;
+  double meeting(const Pair& pair, int k, const Seats& seats, const Standing& start,
+                 const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) const;
+  bool may_meet(const Pair& pair, const Seats& seats, const Rows& rows, const std::vector<Motion>& dv,
+                const Pace& pace) const;
+  bool meet(const Pair& pair, Blow& blow, const Seats& seats, const std::vector<Pose>& poses,
+            const std::vector<Motion>& dv, const Pace& pace) const;
+  bool hit(int pair, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
+           Linkage<2>& linkage);
+  bool tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
+           const Linkage<2>& linkage);
+  void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], Linkage<2>& linkage);
+  double speed(const Push& push, int a, int b) const {
+    return push.x * (now_[a].x - now_[b].x) + push.y * (now_[a].y - now_[b].y) +
+           (push.a * now_[a].w - push.b * now_[b].w);
+  }
+  void leave(const std::vector<Pair>& pairs, std::vector<Seats>& seats, const std::vector<Pose>& poses,
+             const Pace& pace);
+  const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
+
+  std::vector<double> reach_;               // of bodies, and of walls, m
+  std::vector<int> around_, around_start_;  // pairs of each body
+  std::vector<int> bodies_;
+  std::vector<double> when_;  // -1: not struck
+  std::vector<Motion> before_, now_;
+
+  std::vector<std::pair<double, int>> first_;
+  std::vector<int> queue_;
+  std::vector<char> waiting_;  // of pairs
+  std::vector<int> blow_;      // of pairs: place in blows_, or -1
+  std::vector<Blow> blows_;
+  std::vector<Struck> struck_;
+  std::vector<int> passing_;  // pairs that come near without a blow
+  std::vector<int> known_;    // of groups: place in rows_, or -1
+  std::vector<int> groups_;
+  std::vector<Rows> rows_;
+  std::vector<Least> least_;       // of groups
+  Linkage<2>::Echo echoes_[2][2];  // of normals, and of tangents
+};
+
+}  // namespace obscura::sim::sweep

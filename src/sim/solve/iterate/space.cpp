@@ -1,0 +1,483 @@
+// One step of many bodies with contacts, from v to v':
+//   1. all gaps that may close within the step, and who wakes by them
+//   2. free motion, by Runge-Kutta: v -> v_free
+//   3. impacts of few, each at its time (sim/solve/iterate/space_impacts.cpp)
+//   4. forces of the last step, then sweeps from gap to gap, over and over:
+//        v_n' >= -g / h,  of what closes fast  v_n' >= -e v_n         p_n >= 0
+//        p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
+//      a step along the velocity and not by the inverse block: cut back, that would brake a sliding box with
+//      less than mu g
+//      and, exactly, of joints together  J v' = 0
+//   5. positions: by the mean of old and new velocity; by the new one where a slow touch closed
+//   6. out of each other, a part of the way; joints back onto their places (sim/solve/iterate/joint_solver.h)
+//   7. rest: what is quiet and found in static equilibrium freezes
+
+#include "sim/solve/iterate/space.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kLooks = 60;        // a second: how often rest is looked for
+constexpr int kMostSweeps = 40;      // of few touches
+constexpr int kFewestSweeps = 4;     // of many
+constexpr int kTouchSweeps = 20000;  // touches times sweeps between
+constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
+constexpr double kSpare = 0.02;      // of their reach: what two may come nearer by being struck
+constexpr double kAllowed = 1e-6;    // of a body's reach: how deep is not too deep
+constexpr double kHung = 1e-4;       // the same on joints, which pushes strain
+constexpr int kPartRounds = 2000;    // gaps times rounds of pushing apart; 4 to 16 rounds
+constexpr double kPart = 0.1;        // of what is too deep, in a step
+constexpr int kTempering = 5;        // rounds
+constexpr double kGain = 1e-9;       // of its kinetic energy: what an island may win by rounding
+
+}  // namespace
+
+template <int D>
+Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model),
+      may_touch_(model),
+      tied_(model, paths),
+      linkage_(model),
+      statics_(model),
+      mobility_(model),
+      account_(model) {
+  const double h = 1 / value(model.rate);
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
+  g_ = std::sqrt(model.gravity.squaredNorm());
+  rest_speed_ = 2 * h * g_ + 1e-9 * model.scale;
+  asked_ = slow(model).asked;
+  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
+}
+
+template <int D>
+void Sweeps<D>::step(State<D>& state, double t, double h) {
+  const std::size_t n = model_.bodies.size();
+  state.frozen.resize(n), state.quiet.resize(n);
+  linkage_.ready(state);
+  if (state.step == 0) linkage_.set_off(state);
+  ready(state);
+  find(h);
+  if (wake(state, h) || (state.step == 0 && begin_still(state, h))) ready(state), find(h);
+  fall(state, t, h);
+  strike(state, h);
+  begin(state, h);
+  int sweeps = std::clamp(kTouchSweeps / std::max(1, int(touches_.size())), kFewestSweeps, kMostSweeps);
+  if (state.step == 0) sweeps = kFirstSweeps;
+  if (!linkage_.empty()) {
+    linkage_.gather(state);
+    for (const int i : linkage_.bodies()) {
+      linkage_.stance(i) = stances_[i];
+      if (const int k = turning(state, i); k >= 0) linkage_.turn(i) = turn_[k];
+    }
+    // what hangs together is struck together
+    parts_.assign(linkage_.parts(), 0);
+    for (const int i : linkage_.bodies()) {
+      if (closing_[i] && linkage_.part(i) >= 0) parts_[linkage_.part(i)] = 1;
+    }
+    for (const int i : linkage_.bodies()) {
+      if (linkage_.part(i) >= 0 && parts_[linkage_.part(i)]) closing_[i] = 1;
+    }
+    lend();
+    linkage_.lay();
+    linkage_.begin(h);
+    if (touches_.empty() && linkage_.plain()) sweeps = 1;
+  }
+  for (int round = 0; round < kTempering; ++round) {
+    for (int i = 0; i < sweeps; ++i) {
+      hold();
+      sweep(all_, i % 2 != 0);
+    }
+    advance(state, h);
+    if (!temper(state)) break;
+  }
+  arrive(state, h);
+  part(state);
+  if (!linkage_.empty()) rejoin(state, h);
+  report(state, h);
+  if (state.step % every_ == 0) rest(state, h);
+}
+
+// who moves, and where everyone stands
+template <int D>
+void Sweeps<D>::ready(const State<D>& state) {
+  const int n = int(model_.bodies.size());
+  stances_.resize(n), moving_.assign(n + 1, {}), still_.resize(n);
+  for (int i = 0; i < n; ++i) {
+    const Body<D>& body = model_.bodies[i];
+    stances_[i] = stance(state, i);
+    still_[i] = body.fixed || state.frozen[i];
+    if (still_[i]) continue;
+    Moving& m = moving_[i];
+    m.v = stances_[i].v, m.w = stances_[i].w, m.light = 1 / body.mass;
+    if (!body.turns()) continue;
+    for (int axis = 0; axis < kSpins<D>; ++axis) {
+      m.ease.col(axis) = spun<D>(body.inertia, stances_[i].room_from_body, Spin<D>::Unit(axis));
+    }
+  }
+}
+
+// of the fastest point, at most
+template <int D>
+double Sweeps<D>::swiftness(int body) const {
+  const Moving& m = moving_[body];
+  return std::sqrt(m.v.squaredNorm()) + rims_[body] * std::sqrt(m.w.squaredNorm());
+}
+
+template <int D>
+void Sweeps<D>::find(double h) {
+  const int n = int(model_.bodies.size());
+  const auto margin = [&](int body) {
+    return still_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * rims_[body];
+  };
+  bounds_.resize(n), touches_.clear(), features_.clear();
+  for (int i = 0; i < n; ++i) {
+    bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
+    const Vec<D> more = Vec<D>::Constant(margin(i));
+    bounds_[i].lower -= more, bounds_[i].upper += more;
+  }
+  const auto& pairs = broad_.find(bounds_, still_, [&](int a, int b) {
+    const Body<D>&p = model_.bodies[a], &q = model_.bodies[b];
+    if (p.handout || q.handout) return false;
+    if (p.shape.kind == ShapeKind::point && q.shape.kind == ShapeKind::point) return false;
+    return may_touch_(a, b);
+  });
+
+  // ascending: of a body first its walls, from the last
+  auto pair = pairs.begin();
+  for (int a = 0; a < n; ++a) {
+    const Body<D>& p = model_.bodies[a];
+    for (int wall = int(model_.walls.size()); !still_[a] && !p.handout && wall-- > 0;) {
+      const Wall<D>& w = model_.walls[wall];
+      if ((stances_[a].x - w.point).dot(w.normal) > rims_[a] + margin(a)) continue;
+      gaps_.clear();
+      gaps(a, p.shape, stances_[a], wall, w, margin(a), gaps_);
+      const double mu = w.friction ? std::sqrt(p.friction * *w.friction) : p.friction;
+      const double e = w.elasticity ? std::sqrt(p.elasticity * *w.elasticity) : p.elasticity;
+      for (const Gap<D>& gap : gaps_) add(gap, mu, e);
+    }
+    for (; pair != pairs.end() && pair->first == a; ++pair) {
+      const int b = pair->second;
+      const Body<D>& q = model_.bodies[b];
+      // of two that fly side by side none comes nearer, but for what strikes them meanwhile
+      const double passes = std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
+                            rims_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
+                            rims_[b] * std::sqrt(moving_[b].w.squaredNorm());
+      const double near =
+          std::min(margin(a) + margin(b), h * (passes + 2 * g_ * h) + kSpare * (rims_[a] + rims_[b]));
+      gaps_.clear();
+      gaps(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
+      const double mu = std::sqrt(p.friction * q.friction), e = std::sqrt(p.elasticity * q.elasticity);
+      for (const Gap<D>& gap : gaps_) add(gap, mu, e);
+    }
+  }
+}
+
+template <int D>
+void Sweeps<D>::add(const Gap<D>& gap, double mu, double bounce) {
+  static const Stance<D> room;
+  const int none = int(model_.bodies.size());
+  const int a = gap.key.a, b = gap.key.b < 0 ? none : gap.key.b;
+  const Stance<D>& at_b = b == none ? room : stances_[b];
+  const Meeting<D> now = evaluate(gap, stances_[a], at_b);
+  Touch touch;
+  touch.key = gap.key, touch.a = a, touch.b = b;
+  touch.n = now.normal, touch.point = now.point, touch.gap = now.value;
+  // each is pushed on its own skin: by the time they touch those have come together
+  const Vec<D> apart = 0.5 * std::max(0.0, now.value) * now.normal;
+  touch.arm_a = now.point + apart - stances_[a].x, touch.arm_b = now.point - apart - at_b.x;
+  touch.mu = mu, touch.bounce = bounce;
+
+  // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
+  const auto answer = [&](const Vec<D>& s, const Vec<D>& t) {
+    const Spin<D> as = moment<D>(touch.arm_a, s), at = moment<D>(touch.arm_a, t);
+    const Spin<D> bs = moment<D>(touch.arm_b, s), bt = moment<D>(touch.arm_b, t);
+    return (moving_[a].light + moving_[b].light) * s.dot(t) + as.dot(moving_[a].ease * at) +
+           bs.dot(moving_[b].ease * bt);
+  };
+  touch.normal = answer(touch.n, touch.n);
+  const Vec<D> t = perpendicular<D>(touch.n);
+  touch.across = answer(t, t);
+  if constexpr (D == 3) {
+    const Vec<D> u = touch.n.cross(t);
+    const double p = touch.across, q = answer(u, u), r = answer(t, u), half = 0.5 * (p - q);
+    touch.across = 0.5 * (p + q) + std::sqrt(half * half + r * r);
+  }
+  touches_.push_back(touch), features_.push_back(gap);
+}
+
+// where and how fast everyone would be without contacts
+template <int D>
+void Sweeps<D>::fall(State<D>& state, double t, double h) {
+  const int n = int(model_.bodies.size());
+  x_ = state.x, turn_ = state.turn;
+  tied_.gather(state, true);
+  stages_.reserve(std::size_t(tied_.size()));
+  tied_.step(integrate(model_.integrator), state, t, h, stages_);
+  v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
+  account_.open(state);
+  for (int i = 0; i < n; ++i) {
+    if (still_[i]) continue;
+    moving_[i].v = state.v[i];
+    if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
+  }
+}
+
+// what each touch wants of the step, and the forces it had in the last
+template <int D>
+void Sweeps<D>::begin(const State<D>& state, double h) {
+  static const Stance<D> room;
+  const int n = int(model_.bodies.size());
+  closing_.assign(n + 1, 0), all_.clear();
+  auto known = state.contacts.begin();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    Touch& touch = touches_[i];
+    all_.push_back(i);
+    const Stance<D>& b = touch.b == n ? room : stances_[touch.b];
+    const double before = touch.n.dot(stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b));
+    if (touch.after) {
+      // what is left of the step
+    } else if (before < -rest_speed_ && touch.gap + h * (before - g_ * h) < 0) {
+      touch.least = touch.passes ? -1e9 : -touch.bounce * before;
+      touch.bounces = !touch.passes && touch.bounce > 0;
+      touch.closing = !touch.passes && touch.bounce == 0;
+    } else {
+      touch.least = std::min(-touch.gap / h, 0.0);
+      touch.closing = before < -0.05 * rest_speed_ && touch.gap + h * before < 0;
+    }
+    if (touch.closing) closing_[touch.a] = closing_[touch.b] = 1;
+    while (known != state.contacts.end() && known->key < touch.key) ++known;
+    if (known == state.contacts.end() || known->key != touch.key) continue;
+    touch.pressed = std::max(0.0, h * known->force.dot(touch.n));
+    touch.rubbed = h * (known->force - touch.n * touch.n.dot(known->force));
+    const double size = std::sqrt(touch.rubbed.squaredNorm()), most = touch.mu * touch.pressed;
+    if (size > most) touch.rubbed *= most / size;
+    push(touch, touch.pressed * touch.n + touch.rubbed);
+  }
+}
+
+template <int D>
+void Sweeps<D>::sweep(const std::vector<int>& order, bool back) {
+  const int count = int(order.size());
+  for (int i = 0; i < count; ++i) {
+    Touch& touch = touches_[order[back ? count - 1 - i : i]];
+    const Vec<D> u = slip(touch);
+    const double along = touch.n.dot(u);
+    const double pressed = std::max(0.0, touch.pressed + (touch.least - along) / touch.normal);
+    Vec<D> impulse = (pressed - touch.pressed) * touch.n;
+    touch.pressed = pressed;
+    const double most = touch.mu * pressed;
+    if (most > 0 || !touch.rubbed.isZero(0)) {
+      const Vec<D> wanted = touch.rubbed - (u - along * touch.n) / touch.across;
+      const double size = std::sqrt(wanted.squaredNorm());
+      const Vec<D> rubbed = size > most ? Vec<D>(wanted * (most / size)) : wanted;
+      impulse += rubbed - touch.rubbed;
+      touch.rubbed = rubbed;
+    }
+    if (!impulse.isZero(0)) push(touch, impulse);
+  }
+}
+
+// velocities to the joints, of all that they have or of those marked, and back
+template <int D>
+void Sweeps<D>::lend(const std::vector<char>* of) {
+  for (const int i : linkage_.bodies()) {
+    if (!of || (*of)[i]) linkage_.stance(i).v = moving_[i].v, linkage_.stance(i).w = moving_[i].w;
+  }
+}
+
+template <int D>
+void Sweeps<D>::take(const std::vector<char>* of) {
+  for (const int i : linkage_.bodies()) {
+    if (!of || (*of)[i]) moving_[i].v = linkage_.stance(i).v, moving_[i].w = linkage_.stance(i).w;
+  }
+}
+
+template <int D>
+void Sweeps<D>::hold() {
+  if (linkage_.empty()) return;
+  lend();
+  linkage_.sweep();
+  take();
+}
+
+// Several blows in one instant, with friction or on joints, may leave more energy than was there if each
+// keeps its restitution (Kane and Levinson 1985); those of such an island keep less. Energy is that of the
+// step's end: a body struck within it had not yet fallen all of its way. With
+//   dK = p . v' - p W p / 2
+// a share dK / p . v' less is enough where p stays; what stays of it is looked at again. True where there was
+// any.
+template <int D>
+bool Sweeps<D>::temper(const State<D>& state) {
+  if (std::none_of(touches_.begin(), touches_.end(),
+                   [](const Touch& touch) { return touch.bounces && touch.least > 0 && touch.pressed > 0; }))
+    return false;
+  account_.risen(state);
+  const int n = int(model_.bodies.size());
+  islands_.reset(n);
+  const auto link = [&](int a, int b) {
+    if (a >= 0 && a < n && b >= 0 && b < n && moving_[a].light > 0 && moving_[b].light > 0)
+      islands_.join(a, b);
+  };
+  for (const Touch& touch : touches_) {
+    if (touch.pressed > 0) link(touch.a, touch.b);
+  }
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
+  }
+  before_.assign(n, 0), gained_.assign(n, 0), returned_.assign(n, 0);
+  for (int i = 0; i < n; ++i) {
+    const Moving& m = moving_[i];
+    if (m.light == 0) continue;
+    double moves = v_free_[i].squaredNorm();
+    if (const int k = turning(state, i); k >= 0) moves += rims_[i] * rims_[i] * w_free_[k].squaredNorm();
+    before_[islands_.root(i)] += 0.5 * moves / m.light, gained_[islands_.root(i)] += account_.gain(i);
+  }
+  const auto island = [&](const Touch& touch) {
+    return islands_.root(moving_[touch.a].light > 0 ? touch.a : touch.b);
+  };
+  for (const Touch& touch : touches_) {
+    if (touch.bounces && touch.least > 0 && touch.pressed > 0)
+      returned_[island(touch)] += touch.pressed * touch.least;
+  }
+  bool any = false;
+  for (Touch& touch : touches_) {
+    if (!(touch.bounces && touch.least > 0 && touch.pressed > 0)) continue;
+    const int of = island(touch);
+    if (gained_[of] <= kGain * before_[of]) continue;
+    touch.least *= std::max(0.0, 1 - 1.5 * gained_[of] / returned_[of]), any = true;
+  }
+  return any;
+}
+
+// where everyone comes to, from where all would be without contacts
+template <int D>
+void Sweeps<D>::advance(State<D>& state, double h) {
+  const int n = int(model_.bodies.size());
+  for (int i = 0; i < n; ++i) {
+    if (still_[i]) continue;
+    const Moving& m = moving_[i];
+    const bool closing = closing_[i] && when_[i] < 0;
+    if (closing) {
+      state.x[i] = x_[i] + h * m.v;
+    } else {
+      state.x[i] = x_free_[i] + 0.5 * h * (m.v - v_free_[i]);
+    }
+    state.v[i] = m.v;
+    const int k = turning(state, i);
+    if (k < 0) continue;
+    state.turn[k] = turn_free_[k], state.spin[k] = w_free_[k];
+    const Spin<D> change = m.w - w_free_[k];
+    if (change.isZero(0)) continue;
+    // pushes were reckoned with the body as it stood when the step began; it turns on, and its angular
+    // momentum stays
+    const Spin<D>& inertia = model_.bodies[i].inertia;
+    const Rotation<D> fallen = rotation<D>(turn_free_[k]);
+    state.turn[k] =
+        closing ? turned<D>(turn_[k], Spin<D>(h * m.w)) : turned<D>(turn_free_[k], Spin<D>(0.5 * h * change));
+    const Rotation<D> now = rotation<D>(state.turn[k]);
+    state.spin[k] = carried_spin<D>(inertia, fallen, now, w_free_[k]) +
+                    carried_spin<D>(inertia, stances_[i].room_from_body, now, change);
+  }
+}
+
+// how everyone moves there, and how long it has been quiet
+template <int D>
+void Sweeps<D>::arrive(State<D>& state, double h) {
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    if (still_[i]) continue;
+    double fast = state.v[i].squaredNorm();
+    if (const int k = turning(state, i); k >= 0) {
+      moving_[i].w = state.spin[k];
+      fast += rims_[i] * rims_[i] * state.spin[k].squaredNorm();
+    }
+    state.quiet[i] = fast <= asked_ * asked_ ? state.quiet[i] + h : 0;
+  }
+}
+
+// positions out of each other, a part of the way, by the same rows
+template <int D>
+void Sweeps<D>::part(State<D>& state) {
+  const int n = int(model_.bodies.size());
+  const auto hangs = [&](int body) { return body < n && linkage_.has(body); };
+  const auto allowed = [&](const Touch& touch) {
+    return (hangs(touch.a) || hangs(touch.b) ? kHung : kAllowed) * rims_[touch.a];
+  };
+  some_.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    const Touch& touch = touches_[i];
+    if (touch.gap < -allowed(touch)) some_.push_back(i);
+  }
+  if (some_.empty()) return;
+  kept_ = moving_;
+  for (Moving& m : moving_) m.v.setZero(), m.w.setZero();
+  const int rounds = std::clamp(kPartRounds / int(some_.size()), 4, 16);
+  for (int round = 0; round < rounds; ++round) {
+    for (const int i : some_) {
+      const Touch& touch = touches_[i];
+      const double wanted = kPart * (-touch.gap - allowed(touch));
+      const double left = wanted - touch.n.dot(slip(touch));
+      if (left > 0) push(touch, left / touch.normal * touch.n);
+    }
+    if (linkage_.empty()) continue;
+    lend();
+    linkage_.agree();
+    take();
+  }
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    if (still_[i]) continue;
+    state.x[i] += moving_[i].v;
+    if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
+  }
+  moving_.swap(kept_);
+}
+
+// what the step has pulled apart
+template <int D>
+void Sweeps<D>::rejoin(State<D>& state, double h) {
+  for (const int i : linkage_.bodies()) {
+    linkage_.stance(i) = stance(state, i);
+    if (const int k = turning(state, i); k >= 0) linkage_.turn(i) = state.turn[k];
+  }
+  linkage_.finish(h);
+  linkage_.keep(state, h);
+  linkage_.break_joints(state);
+  take();
+  for (const int i : linkage_.bodies()) {
+    if (still_[i]) continue;
+    state.x[i] = linkage_.stance(i).x, state.v[i] = moving_[i].v;
+    if (const int k = turning(state, i); k >= 0)
+      state.turn[k] = linkage_.turn(i), state.spin[k] = moving_[i].w;
+  }
+}
+
+// the forces of this step; what sleeps keeps its own
+template <int D>
+void Sweeps<D>::report(State<D>& state, double h) const {
+  const auto asleep = [&](int body) { return body < 0 || still_[body]; };
+  std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
+  const std::size_t kept = state.contacts.size();
+  for (const Touch& touch : touches_) {
+    Contact<D> contact;
+    contact.key = touch.key, contact.point = touch.point, contact.normal = touch.n, contact.gap = touch.gap;
+    const Vec<D> impulse = touch.pressed * touch.n + touch.rubbed;
+    contact.force = impulse / h;
+    if (touch.bounces && touch.least > 0) contact.impulse = impulse;
+    contact.impulse += touch.struck;
+    contact.touching = touch.pressed <= 0 ? Touching::open
+                       : std::sqrt(touch.rubbed.squaredNorm()) < touch.mu * touch.pressed * (1 - 1e-9)
+                           ? Touching::stick
+                           : Touching::slide;
+    if (contact.touching == Touching::open && !touch.struck.isZero(0)) contact.touching = Touching::slide;
+    state.contacts.push_back(contact);
+  }
+  std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),
+                     state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
+}
+
+template class Sweeps<3>;
+
+}  // namespace obscura::sim

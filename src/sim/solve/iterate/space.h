@@ -1,0 +1,168 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "sim/collide/broad_phase.h"
+#include "sim/collide/narrow_phase.h"
+#include "sim/constraint/mobility.h"
+#include "sim/constraint/row.h"
+#include "sim/energy/energy_guard.h"
+#include "sim/math/islands.h"
+#include "sim/motion/forward_dynamics.h"
+#include "sim/solve/contact_solver.h"
+#include "sim/solve/exact/cone.h"
+#include "sim/solve/exact/statics.h"
+#include "sim/solve/iterate/joint_solver.h"
+
+namespace obscura::sim {
+
+/// Contact for hundreds of bodies of space: all that may touch within a step is found anew in each, forces by
+/// warm sweeps over it, impacts of few exactly and at their time, joints exactly in each sweep. All that is
+/// carried from step to step is in the state, so a run cut in two is the run in one.
+template <int D>
+class Sweeps final : public ContactStep<D> {
+ public:
+  /// Both are kept by reference.
+  Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+  /// Moves `state` from t to t + h (s): forces, impacts, contacts with friction, rest. Uses and writes
+  /// state.contacts, frozen, quiet.
+  void step(State<D>& state, double t, double h) override;
+
+ private:
+  // how a body moves, and answers a push; none of what is fixed, frozen, or a wall
+  struct Moving {
+    Vec<D> v = Vec<D>::Zero();
+    Spin<D> w = Spin<D>::Zero();
+    double light = 0;  // 1/kg
+    Eigen::Matrix<double, kSpins<D>, kSpins<D>> ease =
+        Eigen::Matrix<double, kSpins<D>, kSpins<D>>::Zero();  // 1/(kg m^2)
+  };
+
+  // a gap that may close in the step
+  struct Touch {
+    ContactKey key;
+    int a = 0, b = 0;  // in moving_; walls and the room are its last
+    Vec<D> n, arm_a, arm_b, point;
+    double gap = 0, mu = 0, bounce = 0;
+    double normal = 0, across = 0;   // what a push answers, 1/kg; across: at most
+    double least = 0;                // of the normal speed after the step, m/s
+    double pressed = 0;              // impulse along n, N s
+    Vec<D> rubbed = Vec<D>::Zero();  // and across it
+    Vec<D> struck = Vec<D>::Zero();  // impulse of impacts within the step, N s
+    bool after = false;              // of a body that had one
+    bool passes = false;             // however it looks, it does not close with an impact
+    bool bounces = false;            // an impact that is left to the sweeps
+    bool closing = false;            // slowly
+  };
+
+  // a body at a time within the step
+  struct Flown {
+    Stance<D> stance;
+    Turn<D> turn = upright<D>();
+  };
+  // a gap then
+  struct Instant {
+    Stance<D> a, b;
+    Meeting<D> now;
+    double speed = 0;  // m/s
+  };
+  // an impact that is due; no longer so once one of its bodies had another
+  struct Due {
+    double when = 0;
+    int touch = 0, rounds = 0;
+  };
+
+  void ready(const State<D>& state);
+  void find(double h);
+  void add(const Gap<D>& gap, double mu, double bounce);
+  bool wake(State<D>& state, double h);
+  void fall(State<D>& state, double t, double h);
+  void strike(State<D>& state, double h);
+  Flown flown(int body, double t, double h) const;
+  Instant instant(int touch, double t, double h) const;
+  double closing_time(int touch, double h) const;
+  bool gather_impact(int touch, double t, double h);
+  bool solve_impact(double t, double h);
+  void begin(const State<D>& state, double h);
+  void sweep(const std::vector<int>& order, bool back);
+  // an impulse on a, and back on b
+  void push(const Touch& touch, const Vec<D>& impulse) {
+    Moving &a = moving_[touch.a], &b = moving_[touch.b];
+    a.v += a.light * impulse, a.w += a.ease * moment<D>(touch.arm_a, impulse);
+    b.v -= b.light * impulse, b.w -= b.ease * moment<D>(touch.arm_b, impulse);
+  }
+  // how fast a's matter moves against b's
+  Vec<D> slip(const Touch& touch) const {
+    const Moving &a = moving_[touch.a], &b = moving_[touch.b];
+    return a.v + swing<D>(a.w, touch.arm_a) - b.v - swing<D>(b.w, touch.arm_b);
+  }
+  bool temper(const State<D>& state);
+  void lend(const std::vector<char>* of = nullptr);
+  void take(const std::vector<char>* of = nullptr);
+  void hold();
+  void advance(State<D>& state, double h);
+  void arrive(State<D>& state, double h);
+  void part(State<D>& state);
+  void rejoin(State<D>& state, double h);
+  void report(State<D>& state, double h) const;
+  void join(const State<D>& state);
+  bool held(int island, double h, int most);
+  Mobile mobile(int island, double h);
+  bool begin_still(State<D>& state, double h);
+  bool rest(State<D>& state, double h);
+  double swiftness(int body) const;
+
+  const Model<D>& model_;
+  MayTouch<D> may_touch_;
+  BroadPhase<D> broad_;
+  Tied<D> tied_;
+  Linkage<D> linkage_;
+  Statics<D> statics_;
+  Mobility<D> mobility_;
+  std::vector<BearingContact<D>> exact_;
+  std::vector<int> bearing_;
+  std::vector<Rotation<D>> rotations_;
+  Account<D> account_;
+  Stages stages_;
+  std::int64_t every_ = 1;  // steps between two looks for rest
+  double g_ = 0, rest_speed_ = 0;
+  double asked_ = 0;  // m/s: who is slower may rest
+  std::vector<double> rims_;
+
+  std::vector<Stance<D>> stances_;
+  std::vector<Moving> moving_;
+  std::vector<Bounds<D>> bounds_;
+  std::vector<char> still_;
+  std::vector<Gap<D>> gaps_;
+  std::vector<Touch> touches_;    // ascending by key
+  std::vector<Gap<D>> features_;  // theirs
+  std::vector<int> all_, some_;
+  std::vector<Vec<D>> x_, x_free_, v_free_;
+  std::vector<Turn<D>> turn_, turn_free_;
+  std::vector<Spin<D>> w_free_;
+  std::vector<char> closing_, ripe_, on_joints_;  // the last: of those that rest
+  std::vector<int> parts_;                        // and of their joints
+  Islands islands_;
+  std::vector<Moving> kept_;
+  std::vector<double> before_, gained_, returned_;  // of each island's blows, J
+  bool struck_ = false;                             // somebody, within this step
+  std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
+  std::vector<Flown> flown_;                        // after it, or as the step began
+  std::vector<Due> due_;
+  std::vector<int> rounds_;                 // impacts of each body
+  std::vector<int> around_, around_start_;  // touches of each body
+  std::vector<int> meets_, changed_;        // touches of an impact, and of all that it moves
+  Cone<D> cone_;
+  std::vector<ConeBlock<D>> blocks_;
+  std::vector<ConeMode<D>> modes_;
+  std::vector<Row<D>> impact_rows_;
+  std::vector<Spin<D>> eased_[2];
+  Eigen::MatrixXd K_;
+  Eigen::VectorXd b_, p_, speeds_;
+  std::vector<double> left_;   // of each island's fastest point, m/s
+  std::vector<Mobile> moves_;  // of each island that is in balance
+};
+
+}  // namespace obscura::sim

@@ -1,0 +1,325 @@
+// Impacts in space, each at its own time within the step and where its bodies stand then:
+//   w = K p + J v,   p_n >= 0,   w_n + e v_n >= 0,   p_n (w_n + e v_n) = 0,   p_t in Coulomb's cone
+// of all that touches there at once, exactly (sim/solve/exact/cone.h). Until then a body flies as it would
+// without contacts, after it with the velocity it got; where it comes to so is what the sweeps begin from.
+// What hangs on joints and large heaps are left to the sweeps. Newton's law with friction can raise the
+// energy; then e is halved until it does not.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/math/lie_step.h"
+#include "sim/solve/iterate/space.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kTogether = 1e-6;  // of a body's reach: no wider open, a gap takes part in an impact
+constexpr int kMost = 8;            // gaps of one impact
+constexpr int kTimes = 8;           // Newton steps for its time
+constexpr double kInTime = 1e-9;    // of the step: the next would be by its square
+constexpr double kLatest = 1.5;     // steps: so late a gap may close that its tangent would close in one
+constexpr double kGain = 1e-13;     // of the energy that moves along the rows: rounding
+constexpr double kLeast = 1e-6;     // of e: halved so far it is none
+constexpr int kTurns = 40;          // impacts, of those that there are at first
+
+}  // namespace
+
+// where a body is at a time of the step, after its last impact if it had one
+template <int D>
+typename Sweeps<D>::Flown Sweeps<D>::flown(int body, double t, double h) const {
+  Flown at = flown_[body];
+  if (body >= int(model_.bodies.size()) || still_[body]) return at;
+  const double time = t - std::max(0.0, when_[body]);
+  if (time == 0) return at;
+  const Body<D>& it = model_.bodies[body];
+  const Vec<D> gain = (time / h) * (v_free_[body] - stances_[body].v);
+  at.stance.x += time * (at.stance.v + 0.5 * gain), at.stance.v += gain;
+  const int k = body - (int(model_.bodies.size()) - int(turn_.size()));
+  if (k < 0 || !it.turns()) return at;
+  // Runge and Kutta, as the body sees itself (sim/math/lie_step.h)
+  const int pieces = pieces_of_turn<D>(at.stance.w, time);
+  const double part = time / pieces;
+  const Spin<D> momentum = spinning<D>(it.inertia, at.stance.room_from_body, at.stance.w);
+  for (int i = 0; i < pieces; ++i) {
+    const Spin<D> w0 = from_room<D>(at.stance.room_from_body, at.stance.w);
+    Spin<D> d[4], w[4], step = Spin<D>::Zero(), spin = w0;
+    for (int s = 0; s < 4; ++s) {
+      d[s] = displacing<D>(step, spin), w[s] = gyration<D>(it.inertia, spin);
+      const double by = s < 2 ? 0.5 * part : part;
+      step = by * d[s], spin = w0 + by * w[s];
+    }
+    const Spin<D> by = part / 6 * (d[0] + 2 * d[1] + 2 * d[2] + d[3]);
+    at.turn = displaced<D>(at.turn, by);
+    at.stance.room_from_body = rotation<D>(at.turn);
+    at.stance.w = spun<D>(it.inertia, at.stance.room_from_body, momentum);
+  }
+  return at;
+}
+
+// a gap at a time: how wide, and how fast it changes
+template <int D>
+typename Sweeps<D>::Instant Sweeps<D>::instant(int i, double t, double h) const {
+  Instant at;
+  const Touch& touch = touches_[i];
+  at.a = flown(touch.a, t, h).stance, at.b = flown(touch.b, t, h).stance;
+  at.now = evaluate(features_[i], at.a, at.b);
+  at.speed = at.now.normal.dot(at.a.velocity(at.now.point - at.a.x) - at.b.velocity(at.now.point - at.b.x));
+  return at;
+}
+
+// When a gap closes with an impact; never: 1e300. Newton's method along its course; where the body turns so
+// far that this misleads, by halving.
+template <int D>
+double Sweeps<D>::closing_time(int i, double h) const {
+  const Touch& touch = touches_[i];
+  const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
+  Instant at = instant(i, from, h);
+  const bool nears = at.speed < -rest_speed_;
+  const double gap = at.now.value;
+  if (gap <= 0) return nears ? from : 1e300;
+  const bool closes = nears && gap + (h - from) * (at.speed - g_ * h) < 0;
+  double when = nears ? from - gap / at.speed : 1e300, low = from, high = -1;
+  for (int n = 0; n < kTimes && when <= from + kLatest * h; ++n) {
+    at = instant(i, when, h);
+    if (at.now.value > 0 && !(at.speed < 0)) {
+      // it has come nearest before: was it closed then?
+      for (double parts = when; parts - low > kInTime * h && high < 0;) {
+        const double mid = 0.5 * (low + parts);
+        const Instant then = instant(i, mid, h);
+        if (then.now.value <= 0)
+          high = mid;
+        else
+          (then.speed < 0 ? low : parts) = mid;
+      }
+      if (high < 0) return 1e300;
+      break;
+    }
+    if (!(at.speed < -rest_speed_)) break;
+    const double next = when - at.now.value / at.speed;
+    if (std::abs(next - when) <= kInTime * h) return closes || when <= h ? when : 1e300;
+    when = std::clamp(next, from, from + kLatest * h);
+  }
+  if (high < 0) {
+    if (from >= h || instant(i, h, h).now.value > 0) return 1e300;
+    high = h;
+  }
+  while (high - low > kInTime * h) {
+    when = 0.5 * (low + high);
+    (instant(i, when, h).now.value > 0 ? low : high) = when;
+  }
+  return instant(i, low, h).speed < -rest_speed_ ? low : 1e300;
+}
+
+// what meets with a gap at a time, through gaps that are closed; false where that is not for here
+template <int D>
+bool Sweeps<D>::gather_impact(int first, double t, double h) {
+  const int n = int(model_.bodies.size());
+  meets_.assign(1, first);
+  for (std::size_t k = 0; k < meets_.size(); ++k) {
+    for (const int body : {touches_[meets_[k]].a, touches_[meets_[k]].b}) {
+      if (body == n || still_[body]) continue;
+      if (linkage_.has(body)) return false;
+      for (int at = around_start_[body]; at < around_start_[body + 1]; ++at) {
+        const int other = around_[at];
+        if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
+        if (instant(other, t, h).now.value > kTogether * rims_[body]) continue;
+        if (int(meets_.size()) == kMost) return false;
+        meets_.push_back(other);
+      }
+    }
+  }
+  return true;
+}
+
+// all that meets at a time, at once; false where no impulses were found
+template <int D>
+bool Sweeps<D>::solve_impact(double t, double h) {
+  const int count = int(meets_.size()), rows = D * count;
+  std::vector<Row<D>>& J = impact_rows_;
+  J.assign(rows, {});
+  K_.resize(rows, rows), b_.resize(rows), p_.resize(rows);
+  blocks_.assign(count, {});
+  const auto ease = [&](int body, const Rotation<D>& at, const Spin<D>& torque) -> Spin<D> {
+    if (moving_[body].light == 0 || !model_.bodies[body].turns()) return Spin<D>::Zero();
+    return spun<D>(model_.bodies[body].inertia, at, torque);
+  };
+  std::vector<Spin<D>>&wa = eased_[0], &wb = eased_[1];
+  wa.resize(rows), wb.resize(rows);
+  Eigen::VectorXd& v = speeds_;
+  v.resize(rows);
+  for (int k = 0; k < count; ++k) {
+    const Touch& touch = touches_[meets_[k]];
+    const Instant at = instant(meets_[k], t, h);
+    Vec<D> ways[D];
+    ways[0] = at.now.normal, ways[1] = perpendicular<D>(at.now.normal);
+    if constexpr (D == 3) ways[2] = ways[0].cross(ways[1]);
+    blocks_[k].mu = touch.mu;
+    for (int i = 0; i < D; ++i) {
+      Row<D>& row = J[D * k + i];
+      row.a = touch.a, row.b = touch.b, row.along = ways[i];
+      row.turn_a = moment<D>(Vec<D>(at.now.point - at.a.x), ways[i]);
+      row.turn_b = moment<D>(Vec<D>(at.now.point - at.b.x), ways[i]);
+      wa[D * k + i] = ease(touch.a, at.a.room_from_body, row.turn_a);
+      wb[D * k + i] = ease(touch.b, at.b.room_from_body, row.turn_b);
+      v[D * k + i] = row.along.dot(at.a.v - at.b.v) + row.turn_a.dot(at.a.w) - row.turn_b.dot(at.b.w);
+    }
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      const Row<D>&r = J[i], &s = J[j];
+      const double direct = r.along.dot(s.along);
+      double k = 0;
+      if (r.a == s.a) k += moving_[r.a].light * direct + wa[i].dot(s.turn_a);
+      if (r.b == s.b) k += moving_[r.b].light * direct + wb[i].dot(s.turn_b);
+      if (r.a == s.b) k -= moving_[r.a].light * direct + wa[i].dot(s.turn_b);
+      if (r.b == s.a) k -= moving_[r.b].light * direct + wb[i].dot(s.turn_a);
+      K_(i, j) = K_(j, i) = k;
+    }
+  }
+  for (double bounce = 1;; bounce = bounce > kLeast ? 0.5 * bounce : 0) {
+    b_ = v;
+    for (int k = 0; k < count; ++k) {
+      if (v[D * k] < -rest_speed_) b_[D * k] += bounce * touches_[meets_[k]].bounce * v[D * k];
+    }
+    modes_.assign(count, {}), p_.setZero();
+    if (!cone_.solve(K_, b_, blocks_, modes_, p_).found) return false;
+    if (bounce == 0) break;
+    double gain = 0, size = 0;
+    for (int i = 0; i < rows; ++i) {
+      gain += p_[i] * (v[i] + 0.5 * K_.row(i).dot(p_)), size = std::max(size, std::abs(p_[i] * v[i]));
+    }
+    if (gain <= kGain * size) break;
+  }
+
+  const auto reach = [&](int body) {
+    if (moving_[body].light == 0 || when_[body] == t) return;
+    flown_[body] = flown(body, t, h), when_[body] = t;
+  };
+  for (const int i : meets_) reach(touches_[i].a), reach(touches_[i].b);
+  for (int i = 0; i < rows; ++i) {
+    const Row<D>& row = J[i];
+    Stance<D>&a = flown_[row.a].stance, &b = flown_[row.b].stance;
+    a.v += p_[i] * moving_[row.a].light * row.along, a.w += p_[i] * wa[i];
+    b.v -= p_[i] * moving_[row.b].light * row.along, b.w -= p_[i] * wb[i];
+    touches_[meets_[i / D]].struck += p_[i] * row.along;
+  }
+  return true;
+}
+
+// Impacts of the step into where everyone would be without contacts, and what is left to the sweeps of the
+// gaps of those that had one.
+template <int D>
+void Sweeps<D>::strike(State<D>& state, double h) {
+  const int n = int(model_.bodies.size());
+  struck_ = false;
+  when_.assign(n + 1, -1), due_.clear();
+  const auto fast = [&](int i) {
+    const Touch& touch = touches_[i];
+    const auto speed = [&](int body) {
+      return body == n ? 0
+                       : std::sqrt(stances_[body].v.squaredNorm()) +
+                             rims_[body] * std::sqrt(stances_[body].w.squaredNorm());
+    };
+    return speed(touch.a) + speed(touch.b) >= rest_speed_;
+  };
+  bool any = false;
+  for (int i = 0; i < int(touches_.size()) && !any; ++i) any = fast(i);
+  if (!any) return;
+  flown_.assign(n + 1, {});
+  for (int i = 0; i < n; ++i) {
+    flown_[i].stance = stances_[i];
+    if (const int k = turning(state, i); k >= 0) flown_[i].turn = turn_[k];
+  }
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    if (!fast(i)) continue;
+    const double when = closing_time(i, h);
+    if (when < 1e300)
+      due_.push_back({when, i, 0});
+    else
+      touches_[i].passes = true;
+  }
+  if (due_.empty()) return;
+
+  // the gaps of each body
+  around_start_.assign(n + 2, 0);
+  const auto each = [&](const auto& act) {
+    for (int i = 0; i < int(touches_.size()); ++i) {
+      for (const int body : {touches_[i].a, touches_[i].b}) {
+        if (body < n && !still_[body]) act(i, body);
+      }
+    }
+  };
+  each([&](int, int body) { ++around_start_[body + 1]; });
+  for (int i = 1; i < n + 2; ++i) around_start_[i] += around_start_[i - 1];
+  around_.resize(around_start_[n + 1]);
+  std::vector<int>& next = changed_;
+  next.assign(around_start_.begin(), around_start_.end());
+  each([&](int i, int body) { around_[next[body]++] = i; });
+
+  // in the order of time, then of gaps
+  rounds_.assign(n + 1, 0);
+  const auto later = [](const Due& p, const Due& q) {
+    return p.when != q.when ? p.when > q.when : p.touch > q.touch;
+  };
+  std::make_heap(due_.begin(), due_.end(), later);
+  const auto rounds = [&](int i) { return rounds_[touches_[i].a] + rounds_[touches_[i].b]; };
+  for (std::size_t left = kTurns * due_.size() + 100; left > 0 && !due_.empty(); --left) {
+    std::pop_heap(due_.begin(), due_.end(), later);
+    const Due due = due_.back();
+    due_.pop_back();
+    if (due.rounds != rounds(due.touch)) continue;
+    if (!gather_impact(due.touch, due.when, h) || !solve_impact(due.when, h)) continue;
+    struck_ = true;
+    for (const int i : meets_) {
+      for (const int body : {touches_[i].a, touches_[i].b}) {
+        if (moving_[body].light > 0) ++rounds_[body];
+      }
+    }
+    changed_.clear();
+    for (const int i : meets_) {
+      for (const int body : {touches_[i].a, touches_[i].b}) {
+        if (body == n || still_[body]) continue;
+        changed_.insert(changed_.end(), around_.begin() + around_start_[body],
+                        around_.begin() + around_start_[body + 1]);
+      }
+    }
+    std::sort(changed_.begin(), changed_.end());
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    for (const int i : changed_) {
+      const double when = closing_time(i, h);
+      if (when == 1e300) continue;
+      due_.push_back({when, i, rounds(i)});
+      std::push_heap(due_.begin(), due_.end(), later);
+    }
+  }
+  if (!struck_) return;
+
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    Touch& touch = touches_[i];
+    if (when_[touch.a] < 0 && when_[touch.b] < 0) continue;
+    const double t = std::max(when_[touch.a], when_[touch.b]), left = h - t;
+    const Instant at = instant(i, t, h);
+    const auto along = [&](const Stance<D>& body, const Vec<D>& arm) {
+      return touch.n.dot(body.velocity(arm));
+    };
+    touch.after = true;
+    touch.least = along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed;
+    if (!touch.struck.isZero(0) || at.now.value <= 0) continue;
+    touch.least = left > kInTime * h ? touch.least - at.now.value / left : -1e9;
+  }
+  for (int i = 0; i < n; ++i) {
+    if (when_[i] < 0) continue;
+    const Flown end = flown(i, h, h);
+    state.x[i] = x_free_[i] = end.stance.x, state.v[i] = v_free_[i] = moving_[i].v = end.stance.v;
+    if (const int k = turning(state, i); k >= 0) {
+      state.turn[k] = turn_free_[k] = end.turn, state.spin[k] = w_free_[k] = moving_[i].w = end.stance.w;
+    }
+  }
+  account_.open(state);
+}
+
+template void Sweeps<3>::strike(State<3>&, double);
+
+}  // namespace obscura::sim

@@ -1,0 +1,188 @@
+#include "sim/step/archive.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <type_traits>
+
+#include "sim/multibody/chain.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr std::int64_t kMostSteps = std::int64_t(1) << 53;  // times of more would not be doubles
+
+// every field of what a state is made of, once, in the order in which it lies in a file
+template <class Visit, int D>
+void fields(Visit& visit, Grip<D>& it) {
+  visit(it.body), visit(it.local);
+}
+template <class Visit, int D>
+void fields(Visit& visit, Touch<D>& it) {
+  visit(it.body), visit(it.wall), visit(it.point), visit(it.impulse);
+}
+template <class Visit, int D>
+void fields(Visit& visit, OwnSpin<D>& it) {
+  visit(it.w), visit(it.rest);
+}
+template <class Visit, int D>
+void fields(Visit& visit, Blast<D>& it) {
+  visit(it.on), visit(it.forces), visit(it.torques);
+}
+template <class Visit, int D>
+void fields(Visit& visit, Seat<D>& it) {
+  visit(it.x), visit(it.turn);
+}
+template <class Visit>
+void fields(Visit& visit, Posture& it) {
+  visit(it.q), visit(it.v);
+}
+template <class Visit, int D>
+void fields(Visit& visit, Contact<D>& it) {
+  visit(it.key.a), visit(it.key.b), visit(it.key.feature), visit(it.touching), visit(it.point);
+  visit(it.normal), visit(it.gap), visit(it.force), visit(it.impulse);
+}
+template <class Visit, int D>
+void fields(Visit& visit, State<D>& it) {
+  visit(it.step), visit(it.beyond), visit(it.x), visit(it.v), visit(it.turn), visit(it.spin);
+  visit(it.grips), visit(it.touches), visit(it.ledger.displacement), visit(it.ledger.impacts);
+  visit(it.fund.level), visit(it.fund.amount), visit(it.own), visit(it.blasts), visit(it.postures);
+  visit(it.holds), visit(it.seats), visit(it.whole), visit(it.contacts), visit(it.frozen), visit(it.quiet);
+  visit(it.broken), visit(it.joint_forces);
+}
+
+template <class T>
+constexpr bool kInteger = std::is_integral_v<T> || std::is_enum_v<T>;
+
+// the fields as words, one after the other; a list begins with its length
+struct Writer {
+  std::vector<std::uint64_t> words;
+
+  template <class T>
+  void operator()(T& it) {
+    if constexpr (kInteger<T>) {
+      words.push_back(std::uint64_t(std::int64_t(it)));
+    } else if constexpr (std::is_same_v<T, double>) {
+      words.push_back(std::bit_cast<std::uint64_t>(it));
+    } else {
+      fields(*this, it);
+    }
+  }
+  template <int N>
+  void operator()(Eigen::Matrix<double, N, 1>& it) {
+    for (int i = 0; i < N; ++i) (*this)(it[i]);
+  }
+  template <class T>
+  void operator()(std::vector<T>& all) {
+    words.push_back(all.size());
+    for (T& one : all) (*this)(one);
+  }
+};
+
+// and back; `sound` tells whether there were as many as asked for
+struct Reader {
+  std::span<const std::uint64_t> words;
+  bool sound = true;
+  int states = 0;  // one within another; of what bonds make there is one, and it has none
+
+  std::uint64_t next() {
+    if (words.empty()) {
+      sound = false;
+      return 0;
+    }
+    const std::uint64_t word = words.front();
+    words = words.subspan(1);
+    return word;
+  }
+  template <class T>
+  void operator()(T& it) {
+    if constexpr (kInteger<T>) {
+      const auto word = std::int64_t(next());
+      it = T(word);
+      sound = sound && std::int64_t(it) == word;
+    } else if constexpr (std::is_same_v<T, double>) {
+      it = std::bit_cast<double>(next());
+    } else {
+      fields(*this, it);
+    }
+  }
+  template <int D>
+  void operator()(State<D>& it) {
+    sound = sound && ++states <= 2;
+    if (sound) fields(*this, it);
+  }
+  template <int N>
+  void operator()(Eigen::Matrix<double, N, 1>& it) {
+    for (int i = 0; i < N; ++i) (*this)(it[i]);
+  }
+  template <class T>
+  void operator()(std::vector<T>& all) {
+    const std::uint64_t count = next();
+    // whatever is in the list takes a word at least
+    if (count > words.size()) sound = false;
+    for (std::uint64_t i = 0; sound && i < count; ++i) (*this)(all.emplace_back());
+  }
+};
+
+}  // namespace
+
+template <int D>
+std::vector<std::uint64_t> saved(const State<D>& state) {
+  Writer writer;
+  // a visitor that reads and one that writes share the list of fields
+  writer(const_cast<State<D>&>(state));
+  return std::move(writer.words);
+}
+
+template <int D>
+std::optional<State<D>> loaded(std::span<const std::uint64_t> words) {
+  Reader reader{words};
+  State<D> state;
+  reader(state);
+  if (!reader.sound || !reader.words.empty()) return {};
+  return state;
+}
+
+template <int D>
+bool fits(const State<D>& state, const Model<D>& model) {
+  const std::size_t bodies = model.bodies.size(), joints = model.joints.size();
+  std::size_t turning = 0;
+  for (const Body<D>& body : model.bodies) turning += body.turns();
+  const auto sized = [](const auto& all, std::size_t n) { return all.empty() || all.size() == n; };
+  const auto body = [&](int i) { return i >= 0 && std::size_t(i) < bodies; };
+  const auto wall = [&](int i) { return i >= 0 && std::size_t(i) < model.walls.size(); };
+
+  bool good = state.step >= 0 && state.step < kMostSteps && state.beyond == 0 && state.x.size() == bodies &&
+              state.v.size() == bodies && state.turn.size() == turning && state.spin.size() == turning &&
+              finite(state) && sized(state.own, turning) && state.grips.size() == model.mice.size() &&
+              state.blasts.size() == model.explosions.size() &&
+              state.postures.size() == model.chains.size() && state.holds.size() == model.bonds.size() &&
+              state.whole.size() == std::size_t(!model.bonds.empty()) &&
+              state.seats.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
+              state.quiet.size() == state.frozen.size() && sized(state.broken, joints) &&
+              state.joint_forces.size() == state.broken.size();
+  for (const Grip<D>& grip : state.grips) good = good && (grip.body == -1 || body(grip.body));
+  for (const Touch<D>& touch : state.touches) good = good && body(touch.body) && wall(touch.wall);
+  for (const Blast<D>& blast : state.blasts)
+    good = good && sized(blast.forces, bodies) && blast.torques.size() == blast.forces.size();
+  for (std::size_t i = 0; good && i < state.postures.size(); ++i) {
+    const Chain<D>& tree = *model.chains[i].tree;
+    good = state.postures[i].q.size() == std::size_t(tree.positions()) &&
+           state.postures[i].v.size() == std::size_t(tree.velocities());
+  }
+  for (const Contact<D>& contact : state.contacts) {
+    good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&
+           contact.touching <= Touching::slide;
+  }
+  return good;
+}
+
+template std::vector<std::uint64_t> saved<2>(const State<2>&);
+template std::vector<std::uint64_t> saved<3>(const State<3>&);
+template std::optional<State<2>> loaded<2>(std::span<const std::uint64_t>);
+template std::optional<State<3>> loaded<3>(std::span<const std::uint64_t>);
+template bool fits<2>(const State<2>&, const Model<2>&);
+template bool fits<3>(const State<3>&, const Model<3>&);
+
+}  // namespace obscura::sim

@@ -1,0 +1,492 @@
+// What bonds make of parts: a rigid body of mass M, centre c, tensor I,
+//   M = sum m_i,   c = sum m_i x_i / M,   I = sum R_i I_i R_i' + m_i (|d_i|^2 - d_i d_i'),   d_i = x_i - c
+//   v = sum m_i v_i / M,   w = I^-1 sum (R_i I_i R_i' w_i + m_i d_i x v_i)
+// and of what comes apart, with c' the centre of what stays together,
+//   v' = v + w x (c' - c),   w' = w
+
+#include "sim/step/bonded_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/math/islands.h"
+#include "sim/math/spatial.h"
+#include "sim/step/archive.h"
+#include "sim/step/stepper.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kLeastMoment = 1e-6;  // of the largest
+
+// of each part, the lowest of those that bonds hold it to
+template <int D>
+std::vector<int> roots(const Model<D>& model, const std::vector<char>& holds) {
+  Islands held;
+  held.reset(int(model.bodies.size()));
+  for (std::size_t k = 0; k < model.bonds.size(); ++k) {
+    if (holds[k] && model.bonds[k].b >= 0) held.join(model.bonds[k].a, model.bonds[k].b);
+  }
+  std::vector<int> root(model.bodies.size());
+  for (int i = 0; i < int(root.size()); ++i) root[i] = held.root(i);
+  return root;
+}
+
+// several parts as one, in the frame that their places are told in
+template <int D>
+struct Solid {
+  double mass = 0;
+  Vec<D> center = Vec<D>::Zero();
+  Turn<D> axes = upright<D>();
+  Spin<D> inertia = Spin<D>::Zero();
+};
+
+// what the paper's linear motion does not let turn, does not turn as one either
+template <int D>
+bool may_turn(const Model<D>& model, const std::vector<int>& parts) {
+  bool extended = false;
+  for (const int i : parts) {
+    if (model.bodies[i].turns()) return true;
+    const ShapeKind kind = model.bodies[i].shape.kind;
+    extended = extended || (kind != ShapeKind::point && kind != ShapeKind::ball);
+  }
+  return !extended;
+}
+
+template <int D>
+Solid<D> solid(const Model<D>& model, const std::vector<int>& parts, const std::vector<Seat<D>>& places) {
+  Solid<D> out;
+  if (parts.size() == 1) {
+    const Body<D>& body = model.bodies[parts[0]];
+    return {body.mass, places[parts[0]].x, places[parts[0]].turn, body.inertia};
+  }
+  for (const int i : parts) {
+    out.mass += model.bodies[i].mass;
+    out.center += model.bodies[i].mass * places[i].x;
+  }
+  out.center /= out.mass;
+  if (!may_turn(model, parts)) return out;
+  SpinTensor<D> tensor = SpinTensor<D>::Zero();
+  for (const int i : parts) {
+    const Body<D>& body = model.bodies[i];
+    const Eigen::Matrix<double, D, kSpins<D>> k = lever<D>(places[i].x - out.center);
+    tensor += body.mass * (k.transpose() * k);
+    if constexpr (D == 2) {
+      tensor += body.inertia;
+    } else {
+      const Rotation<D> turn = rotation<D>(places[i].turn);
+      tensor += turn * body.inertia.asDiagonal() * turn.transpose();
+    }
+  }
+  if constexpr (D == 3) out.axes = principal_axes(tensor);
+  out.inertia = tensor.diagonal();
+  // particles in a row turn about their row as lightly as numbers allow
+  out.inertia = out.inertia.cwiseMax(kLeastMoment * out.inertia.maxCoeff());
+  return out;
+}
+
+// where a place is, seen from a solid
+template <int D>
+Seat<D> seen(const Solid<D>& from, const Seat<D>& place) {
+  return {rotation<D>(from.axes).transpose() * (place.x - from.center),
+          composed<D>(undone<D>(from.axes), place.turn)};
+}
+
+// a shape where its part sits, as parts of a compound
+template <int D>
+void add_seated(const Shape<D>& shape, const Seat<D>& seat, std::vector<Shape<D>>& parts) {
+  const Rotation<D> turn = rotation<D>(seat.turn);
+  const auto moved = [&](const Vec<D>& x) { return Vec<D>(seat.x + turn * x); };
+  for (const Shape<D>& part : shape.parts) add_seated(part, seat, parts);
+  if (shape.kind == ShapeKind::compound) return;
+  Shape<D> own = shape;
+  if (D == 2 && shape.kind == ShapeKind::box) {
+    // in the plane a box that is a part stands upright: this one is a polygon
+    own = {};
+    own.kind = ShapeKind::polygon;
+    for (const int i : {0, 1, 3, 2}) own.vertices.push_back(moved(shape.center + corner(shape, i)));
+  } else {
+    if (own.kind == ShapeKind::point) own.kind = ShapeKind::ball;
+    own.center = moved(shape.center);
+    own.turn = composed<D>(seat.turn, shape.turn);
+    for (Vec<D>& vertex : own.vertices) vertex = moved(vertex);
+  }
+  parts.push_back(own);
+}
+
+// how far outside a shape a point of its frame is, m; about, and negative inside
+template <int D>
+double outside(const Shape<D>& shape, const Vec<D>& point) {
+  double most = -1e300, least = 1e300;
+  const Vec<D> own = shape.turn == upright<D>()
+                         ? Vec<D>(point - shape.center)
+                         : Vec<D>(rotation<D>(shape.turn).transpose() * (point - shape.center));
+  switch (shape.kind) {
+    case ShapeKind::point:
+    case ShapeKind::ball:
+      return own.norm() - shape.radius;
+    case ShapeKind::box:
+      return (own.cwiseAbs() - shape.half).maxCoeff();
+    case ShapeKind::capsule: {
+      Vec<D> off = own;
+      off[1] -= std::clamp(own[1], -shape.half[1], shape.half[1]);
+      return off.norm() - shape.radius;
+    }
+    case ShapeKind::polygon:
+      for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
+        const Vec<D>&a = shape.vertices[i], &b = shape.vertices[(i + 1) % shape.vertices.size()];
+        const Vec<D> edge = b - a, to = point - a;
+        most = std::max(most, (edge[1] * to[0] - edge[0] * to[1]) / edge.norm());
+      }
+      return most;
+    case ShapeKind::hull:
+      if constexpr (D == 3) {
+        for (const std::vector<int>& face : shape.faces) {
+          const Vec<D>& a = shape.vertices[face[0]];
+          const Vec<D> n = (shape.vertices[face[1]] - a).cross(shape.vertices[face[2]] - a);
+          most = std::max(most, n.dot(point - a) / n.norm());
+        }
+      }
+      return most;
+    case ShapeKind::compound:
+      for (const Shape<D>& part : shape.parts) least = std::min(least, outside(part, point));
+      return least;
+  }
+  return most;
+}
+
+}  // namespace
+
+template <int D>
+Pieces<D>::Pieces(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model), loads_(model, paths) {}
+
+template <int D>
+Pieces<D>::~Pieces() = default;
+
+// the bodies that the bonds of a state make, and who steps them
+template <int D>
+void Pieces<D>::gather(const State<D>& state) {
+  if (stepper_ && known_ == state.holds) return;
+  known_ = state.holds;
+  stepper_.reset();
+  const int n = int(model_.bodies.size());
+  const std::vector<int> root = roots(model_, state.holds);
+
+  whole_ = {};
+  Model<D>& made = whole_.model;
+  made = model_;
+  made.bodies.clear(), made.joints.clear(), made.bonds.clear();
+  whole_.body.assign(n, -1), whole_.alone.assign(n, 0);
+  parts_.clear();
+  // those that do not turn first, each kind in the order of their lowest parts
+  for (const bool turning : {false, true}) {
+    for (int first = 0; first < n; ++first) {
+      if (root[first] != first) continue;
+      std::vector<int> parts;
+      for (int i = first; i < n; ++i) {
+        if (root[i] == first) parts.push_back(i);
+      }
+      Body<D> body = model_.bodies[first];
+      if (parts.size() > 1) {
+        const Solid<D> one = solid(model_, parts, state.seats);
+        body.mass = one.mass, body.inertia = one.inertia;
+        body.shape = {};
+        body.shape.kind = ShapeKind::compound;
+        body.elasticity = body.friction = body.drag = body.ground_drag = 0;
+        for (const int i : parts) {
+          const Body<D>& part = model_.bodies[i];
+          add_seated(part.shape, state.seats[i], body.shape.parts);
+          // surfaces by mass
+          body.elasticity += part.elasticity * part.mass / one.mass;
+          body.friction += part.friction * part.mass / one.mass;
+          body.drag += part.drag, body.ground_drag += part.ground_drag;
+          body.fixed = body.fixed || part.fixed, body.handout = body.handout || part.handout;
+        }
+      }
+      if (body.turns() != turning) continue;
+      whole_.alone[first] = parts.size() == 1;
+      for (const int i : parts) whole_.body[i] = int(made.bodies.size());
+      made.bodies.push_back(body);
+      parts_.push_back(parts);
+    }
+  }
+  for (std::size_t k = 0; k < model_.bonds.size(); ++k) {
+    if (state.holds[k] && model_.bonds[k].b < 0) made.bodies[whole_.body[model_.bonds[k].a]].fixed = true;
+  }
+
+  // what hangs on parts hangs on what they are part of
+  const auto moved = [&](End<D>& end) {
+    if (end.body < 0) return;
+    const Seat<D>& seat = state.seats[end.body];
+    if (!whole_.alone[end.body]) end.local = seat.x + rotation<D>(seat.turn) * end.local;
+    end.body = whole_.body[end.body];
+  };
+  for (Spring<D>& spring : made.springs) moved(spring.a), moved(spring.b);
+  whole_.kept.assign(model_.joints.size(), -1);
+  for (std::size_t k = 0; k < model_.joints.size(); ++k) {
+    Joint<D> joint = model_.joints[k];
+    const int a = joint.a.body, b = joint.b.body;
+    if (a >= 0 && b >= 0 && whole_.body[a] == whole_.body[b]) continue;
+    const Turn<D> on_a = a < 0 || whole_.alone[a] ? upright<D>() : state.seats[a].turn;
+    const Turn<D> on_b = b < 0 || whole_.alone[b] ? upright<D>() : state.seats[b].turn;
+    joint.axis = rotation<D>(on_b) * joint.axis;
+    if constexpr (D == 2) {
+      joint.turn += on_b - on_a;
+    } else {
+      joint.turn = logarithm(product(product(on_b, exponential(joint.turn)), undone<D>(on_a)));
+    }
+    moved(joint.a), moved(joint.b);
+    whole_.kept[k] = int(made.joints.size());
+    whole_.joints.push_back(int(k));
+    made.joints.push_back(joint);
+  }
+  stepper_ = std::make_unique<Stepper<D>>(made);
+}
+
+template <int D>
+void Pieces<D>::begin(State<D>& state) {
+  const int n = int(model_.bodies.size());
+  if (state.whole.empty()) {
+    state.holds.assign(model_.bonds.size(), 1);
+    // where everyone stands in the room; then in what he is part of
+    state.seats.resize(n);
+    for (int i = 0; i < n; ++i) {
+      const int k = turning(state, i);
+      state.seats[i] = {state.x[i], k < 0 ? upright<D>() : state.turn[k]};
+    }
+    const std::vector<Seat<D>> places = state.seats;
+    const std::vector<int> root = roots(model_, state.holds);
+    std::vector<Solid<D>> solids(n);
+    std::vector<std::vector<int>> parts(n);
+    for (int i = 0; i < n; ++i) parts[root[i]].push_back(i);
+    for (int first = 0; first < n; ++first) {
+      if (parts[first].empty()) continue;
+      solids[first] = solid(model_, parts[first], places);
+      for (const int i : parts[first])
+        state.seats[i] = parts[first].size() == 1 ? Seat<D>{} : seen(solids[first], places[i]);
+    }
+    known_.clear(), stepper_.reset();
+    gather(state);
+
+    State<D> made;
+    made.step = state.step;
+    for (const std::vector<int>& members : parts_) {
+      const Solid<D>& one = solids[root[members[0]]];
+      const Body<D>& body = whole_.model.bodies[made.x.size()];
+      Vec<D> p = Vec<D>::Zero();
+      Spin<D> L = Spin<D>::Zero();
+      for (const int i : members) {
+        const Body<D>& part = model_.bodies[i];
+        p += part.mass * state.v[i];
+        L += part.mass * moment<D>(places[i].x - one.center, state.v[i]);
+        if (const int k = turning(state, i); k >= 0) {
+          const Rotation<D> axes = rotation<D>(state.turn[k]);
+          L += to_room<D>(axes, part.inertia.cwiseProduct(from_room<D>(axes, state.spin[k])));
+        }
+      }
+      const bool alone = members.size() == 1;
+      made.x.push_back(one.center);
+      made.v.push_back(alone ? state.v[members[0]] : Vec<D>(p / one.mass));
+      if (!body.turns()) continue;
+      made.turn.push_back(one.axes);
+      made.spin.push_back(alone ? state.spin[turning(state, members[0])]
+                                : spun<D>(one.inertia, rotation<D>(one.axes), L));
+    }
+    state.whole = {made};
+  } else {
+    gather(state);
+  }
+  stepper_->begin(state.whole[0]);
+  tell(state);
+}
+
+// the part of body `body` that a place in the room belongs to
+template <int D>
+int Pieces<D>::part_at(int body, const Vec<D>& point, const State<D>& state) const {
+  if (parts_[body].size() == 1) return parts_[body][0];
+  int nearest = parts_[body][0];
+  double least = 1e300;
+  for (const int i : parts_[body]) {
+    Stance<D> at = stance(state, i);
+    const double far =
+        outside(model_.bodies[i].shape, Vec<D>(at.room_from_body.transpose() * (point - at.x)));
+    if (far < least) least = far, nearest = i;
+  }
+  return nearest;
+}
+
+// the parts as the state of the whole has them
+template <int D>
+void Pieces<D>::tell(State<D>& state) const {
+  const State<D>& whole = state.whole[0];
+  state.step = whole.step, state.beyond = whole.beyond, state.ledger = whole.ledger, state.fund = whole.fund;
+  for (int i = 0; i < int(whole_.body.size()); ++i) {
+    const int body = whole_.body[i], k = turning(state, i), kw = turning(whole, body);
+    if (whole_.alone[i]) {
+      state.x[i] = whole.x[body], state.v[i] = whole.v[body];
+      if (k >= 0) state.turn[k] = whole.turn[kw], state.spin[k] = whole.spin[kw];
+      continue;
+    }
+    const Stance<D> at = stance(whole, body);
+    const Vec<D> arm = at.arm(state.seats[i].x);
+    state.x[i] = at.x + arm, state.v[i] = at.velocity(arm);
+    if (k < 0) continue;
+    state.turn[k] = kw < 0 ? state.seats[i].turn : composed<D>(whole.turn[kw], state.seats[i].turn);
+    state.spin[k] = at.w;
+  }
+  state.frozen.clear(), state.quiet.clear();
+  if (!whole.frozen.empty()) {
+    for (const int body : whole_.body) {
+      state.frozen.push_back(whole.frozen[body]), state.quiet.push_back(whole.quiet[body]);
+    }
+  }
+  state.grips = whole.grips;
+  for (Grip<D>& grip : state.grips) {
+    if (grip.body < 0) continue;
+    const Stance<D> at = stance(whole, grip.body);
+    const Vec<D> point = at.x + at.arm(grip.local);
+    const int part = part_at(grip.body, point, state);
+    if (!whole_.alone[part]) {
+      const Stance<D> own = stance(state, part);
+      grip.local = own.room_from_body.transpose() * (point - own.x);
+    }
+    grip.body = part;
+  }
+  state.touches = whole.touches;
+  for (Touch<D>& touch : state.touches) touch.body = part_at(touch.body, touch.point, state);
+  state.contacts = whole.contacts;
+  for (Contact<D>& contact : state.contacts) {
+    contact.key.a = part_at(contact.key.a, contact.point, state);
+    if (contact.key.b < 0) continue;
+    contact.key.b = part_at(contact.key.b, contact.point, state);
+    if (contact.key.a < contact.key.b) continue;
+    std::swap(contact.key.a, contact.key.b);
+    contact.normal *= -1, contact.force *= -1, contact.impulse *= -1;
+  }
+  state.broken.assign(model_.joints.size(), 0);
+  state.joint_forces.assign(model_.joints.size(), Vec<D>::Zero());
+  for (std::size_t k = 0; k < whole_.joints.size() && k < whole.broken.size(); ++k) {
+    state.broken[whole_.joints[k]] = whole.broken[k];
+    state.joint_forces[whole_.joints[k]] = whole.joint_forces[k];
+  }
+  state.blasts.resize(whole.blasts.size());
+  for (std::size_t k = 0; k < whole.blasts.size(); ++k) state.blasts[k].on = whole.blasts[k].on;
+}
+
+template <int D>
+bool Pieces<D>::fits(const State<D>& state) {
+  gather(state);
+  // at the same step: it would be stepped until it were
+  return state.whole[0].step == state.step && stepper_->fits(state.whole[0]);
+}
+
+template <int D>
+std::optional<Trouble> Pieces<D>::step(State<D>& state) {
+  gather(state);
+  auto trouble = stepper_->step(state.whole[0]);
+  tell(state);
+  if (trouble) return trouble;
+  if (loads_.snap(state, whole_.model, whole_.body, time({state.step, 0}, model_.rate))) split(state);
+  return {};
+}
+
+template <int D>
+std::optional<Trouble> Pieces<D>::part(State<D>& state, double fraction) {
+  gather(state);
+  auto trouble = stepper_->part(state.whole[0], fraction);
+  tell(state);
+  return trouble;
+}
+
+// bodies anew, after bonds have broken
+template <int D>
+void Pieces<D>::split(State<D>& state) {
+  const State<D> before = std::move(state.whole[0]);
+  const std::vector<int> body_before = whole_.body, kept_before = whole_.kept;
+  const std::vector<std::vector<int>> parts_before = parts_;
+  const std::vector<Seat<D>> seats = state.seats;
+  const std::vector<Grip<D>> grips = state.grips;
+
+  // seats in what stays together
+  const int n = int(model_.bodies.size());
+  const std::vector<int> root = roots(model_, state.holds);
+  std::vector<std::vector<int>> parts(n);
+  std::vector<Solid<D>> solids(n);
+  for (int i = 0; i < n; ++i) parts[root[i]].push_back(i);
+  for (int first = 0; first < n; ++first) {
+    if (parts[first].empty() || parts[first] == parts_before[body_before[first]]) continue;
+    solids[first] = solid(model_, parts[first], seats);
+    for (const int i : parts[first])
+      state.seats[i] = parts[first].size() == 1 ? Seat<D>{} : seen(solids[first], seats[i]);
+  }
+  gather(state);
+
+  State<D> made;
+  made.step = before.step, made.ledger = before.ledger;
+  std::vector<int> same(parts_before.size(), -1);  // where bodies went that are what they were
+  for (int body = 0; body < int(parts_.size()); ++body) {
+    const int first = parts_[body][0], old = body_before[first], k = turning(before, old);
+    if (parts_[body] == parts_before[old]) {
+      same[old] = body;
+      made.x.push_back(before.x[old]), made.v.push_back(before.v[old]);
+      if (k < 0) continue;
+      made.turn.push_back(before.turn[k]), made.spin.push_back(before.spin[k]);
+      made.own.push_back(before.own.empty() ? OwnSpin<D>{} : before.own[k]);
+      continue;
+    }
+    const Stance<D> at = stance(before, old);
+    const Vec<D> arm = at.arm(solids[first].center);
+    made.x.push_back(at.x + arm), made.v.push_back(at.velocity(arm));
+    if (!whole_.model.bodies[body].turns()) continue;
+    const Turn<D> turn = k < 0 ? solids[first].axes : composed<D>(before.turn[k], solids[first].axes);
+    made.turn.push_back(D == 2 ? turn : Turn<D>(turn / std::sqrt(turn.squaredNorm())));
+    made.spin.push_back(at.w), made.own.push_back({});
+  }
+  if (D == 2) made.own.clear();
+
+  // what hands hold they hold on; contacts of what has not changed stay
+  for (const Grip<D>& grip : grips) {
+    Grip<D> now = grip;
+    if (grip.body >= 0) {
+      now.body = whole_.body[grip.body];
+      const Seat<D>& seat = state.seats[grip.body];
+      if (!whole_.alone[grip.body]) now.local = seat.x + rotation<D>(seat.turn) * grip.local;
+    }
+    made.grips.push_back(now);
+  }
+  for (Contact<D> contact : before.contacts) {
+    contact.key.a = same[contact.key.a];
+    if (contact.key.b >= 0 && same[contact.key.b] < 0) continue;
+    if (contact.key.a < 0) continue;
+    if (contact.key.b >= 0) contact.key.b = same[contact.key.b];
+    made.contacts.push_back(contact);
+  }
+  std::sort(made.contacts.begin(), made.contacts.end(),
+            [](const Contact<D>& a, const Contact<D>& b) { return a.key < b.key; });
+  for (const int joint : whole_.joints) {
+    const int old = kept_before[joint];
+    made.broken.push_back(old < 0 || before.broken.empty() ? 0 : before.broken[old]);
+    made.joint_forces.push_back(old < 0 || before.joint_forces.empty() ? Vec<D>(Vec<D>::Zero())
+                                                                       : before.joint_forces[old]);
+  }
+  state.whole = {made};
+  // what explodes pushes the pieces; nothing is at rest any more
+  const Blasts<D> blasts(whole_.model);
+  state.whole[0].blasts.resize(before.blasts.size());
+  for (std::size_t k = 0; k < before.blasts.size(); ++k) {
+    if (before.blasts[k].on) blasts.begin(state.whole[0], int(k));
+  }
+  stepper_->begin(state.whole[0]);
+  const std::vector<Touch<D>> touches = std::move(state.touches);
+  const std::vector<Contact<D>> contacts = std::move(state.contacts);
+  tell(state);
+  state.touches = touches;
+  if (!contacts.empty() && state.contacts.empty()) state.contacts = contacts;
+}
+
+template class Pieces<2>;
+template class Pieces<3>;
+
+}  // namespace obscura::sim

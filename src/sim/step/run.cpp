@@ -1,0 +1,129 @@
+#include "sim/step/run.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+#include "sim/step/archive.h"
+#include "sim/step/snapshots.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kTrackRate = 120;  // points a second of a way, about
+
+template <int D>
+class RunOf final : public Run {
+ public:
+  RunOf(World<D> world, std::optional<State<D>> saved)
+      : model_(std::move(world.model)), state_(std::move(world.state)), stepper_(model_) {
+    sound_ = !saved || stepper_.fits(*saved);
+    if (saved)
+      state_ = std::move(*saved);
+    else
+      stepper_.begin(state_);
+    cast_ = sim::cast(model_, stepper_.paths());
+    stride_ = std::max<std::int64_t>(1, std::llround(value(model_.rate) / kTrackRate));
+  }
+
+  const Cast& cast() const override { return cast_; }
+  Rational rate() const override { return model_.rate; }
+
+  void heed(std::function<bool()> stop) override { stop_ = std::move(stop); }
+
+  std::variant<Snapshot, Trouble, Stopped> at(Rational t) override {
+    if (trouble_) return *trouble_;
+    const Beat to = beat(t, model_.rate);
+    assert(to.step >= state_.step);
+    while (state_.step < to.step) {
+      if (stop_ && stop_()) return Stopped{};
+      trouble_ = stepper_.step(state_);
+      if (trouble_) return *trouble_;
+      keep_ways();
+    }
+    between_ = to.fraction > 0;
+    if (!between_) return snapshot(model_, state_, stepper_, to, value(t));
+    copy_ = state_;
+    trouble_ = stepper_.part(copy_, to.fraction);
+    if (trouble_) return *trouble_;
+    return snapshot(model_, copy_, stepper_, to, value(t));
+  }
+
+  /// Whether it had a state to begin with.
+  bool sound() const { return sound_; }
+
+  std::vector<std::uint64_t> saved() const override { return sim::saved(state_); }
+  Rational now() const override { return rational(state_.step) / model_.rate; }
+
+  std::vector<std::uint64_t> words() const override { return sim::words(between_ ? copy_ : state_); }
+
+  void track(std::vector<int> bodies) override {
+    track_.bodies = std::move(bodies);
+    track_.points.assign(track_.bodies.size(), {});
+    touched_.assign(model_.bodies.size(), false);
+    keep_ways();
+  }
+
+  Track take_track() override {
+    Track taken{track_.bodies, std::vector<std::vector<Track::Point>>(track_.bodies.size())};
+    taken.points.swap(track_.points);
+    return taken;
+  }
+
+ private:
+  // a point of every way that this step belongs to: all at equal steps, and who has just been struck
+  void keep_ways() {
+    if (track_.bodies.empty()) return;
+    const bool all = state_.step % stride_ == 0;
+    const auto struck = [&](bool now) {
+      bool any = false;
+      for (const Touch<D>& touch : state_.touches) touched_[touch.body] = now, any = true;
+      for (const Contact<D>& contact : state_.contacts) {
+        if (contact.impulse == Vec<D>::Zero()) continue;
+        touched_[contact.key.a] = now, any = true;
+        if (contact.key.b >= 0) touched_[contact.key.b] = now;
+      }
+      return any;
+    };
+    if (!struck(true) && !all) return;
+    const double t = time({state_.step, 0}, model_.rate);
+    for (std::size_t i = 0; i < track_.bodies.size(); ++i) {
+      const int body = track_.bodies[i];
+      if (all || touched_[body]) track_.points[i].push_back({t, lifted<D>(state_.x[body])});
+    }
+    struck(false);
+  }
+
+  Model<D> model_;
+  State<D> state_, copy_;
+  Stepper<D> stepper_;
+  bool sound_ = true;
+  Cast cast_;
+  std::optional<Trouble> trouble_;
+  std::function<bool()> stop_;
+  bool between_ = false;  // the last instant lay between two steps: copy_ shows it
+  Track track_;
+  std::vector<char> touched_;  // all false between two calls
+  std::int64_t stride_ = 1;    // steps
+};
+
+template <int D>
+std::unique_ptr<Run> begun(World<D> world, std::span<const std::uint64_t> words) {
+  std::optional<State<D>> state;
+  if (!words.empty() && !(state = loaded<D>(words))) return {};
+  auto run = std::make_unique<RunOf<D>>(std::move(world), std::move(state));
+  return run->sound() ? std::move(run) : nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<Run> run(World<2> world, std::span<const std::uint64_t> saved) {
+  return begun(std::move(world), saved);
+}
+std::unique_ptr<Run> run(World<3> world, std::span<const std::uint64_t> saved) {
+  return begun(std::move(world), saved);
+}
+
+}  // namespace obscura::sim

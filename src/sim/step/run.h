@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "sim/model/snapshot.h"
+#include "sim/model/state.h"
+#include "sim/model/trouble.h"
+
+namespace obscura::sim {
+
+/// A run that was asked to stop on its way to an instant. It stands between two steps and may be asked to go
+/// on.
+struct Stopped {};
+
+/// The one loop: steps a world along its own clock and hands out instants. A frame between two steps is a
+/// partial step on a copy; the trajectory never notices.
+class Run {
+ public:
+  virtual ~Run() = default;
+
+  virtual const Cast& cast() const = 0;
+  virtual Rational rate() const = 0;
+
+  /// Goes on to the instant t (s, >= 0 and not before the last one asked for). Trouble ends the run: the
+  /// answer to every later call is the same trouble.
+  virtual std::variant<Snapshot, Trouble, Stopped> at(Rational t) = 0;
+
+  /// From now on, `stop` is asked before every step whether to stop there.
+  virtual void heed(std::function<bool()> stop) = 0;
+
+  /// The state at the last whole step, for run() to go on from (sim/step/archive.h), and its time (s). Empty:
+  /// of a run that may begin anywhere.
+  virtual std::vector<std::uint64_t> saved() const = 0;
+  virtual Rational now() const = 0;
+
+  /// The words of the state that the last snapshot shows (sim/model/state.h).
+  virtual std::vector<std::uint64_t> words() const = 0;
+
+  /// From now on, keep the ways of these bodies. Requires: before the first at().
+  virtual void track(std::vector<int> bodies) = 0;
+
+  /// The ways since the last call (or since t = 0), up to the last whole step.
+  virtual Track take_track() = 0;
+};
+
+/// A run of a world from its state, or from one that was saved of a run of the same world: it goes on to the
+/// same bits. None where that is no state of this world.
+std::unique_ptr<Run> run(World<2> world, std::span<const std::uint64_t> saved = {});
+std::unique_ptr<Run> run(World<3> world, std::span<const std::uint64_t> saved = {});
+
+}  // namespace obscura::sim

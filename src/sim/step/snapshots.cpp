@@ -1,0 +1,196 @@
+#include "sim/step/snapshots.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/energy/energy.h"
+#include "sim/force/explosion.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kPathRate = 60;  // places a second of a mouse's way
+constexpr int kPathMost = 600;
+
+// in the plane (0, 0, w)
+template <int D>
+Vec3 spinning(const Spin<D>& w) {
+  if constexpr (D == 2) {
+    return {0, 0, w[0]};
+  } else {
+    return w;
+  }
+}
+
+template <int D>
+std::vector<Vec3> each_lifted(const std::vector<Vec<D>>& places) {
+  std::vector<Vec3> all;
+  for (const Vec<D>& place : places) all.push_back(lifted<D>(place));
+  return all;
+}
+
+// in the plane about z
+template <int D>
+Eigen::Quaterniond oriented(const Turn<D>& turn) {
+  if constexpr (D == 2) {
+    const auto [s, c] = sin_cos(0.5 * turn[0]);
+    return {c, 0, 0, s};
+  } else {
+    return {turn[3], turn[0], turn[1], turn[2]};
+  }
+}
+
+template <int D>
+Cast::Body shown(const Body<D>& body) {
+  const Shape<D>& shape = body.shape;
+  Cast::Body it{body.name, shape.kind,  shape.radius, lifted<D>(shape.half),
+                body.mass, body.fixed,  body.turns(), each_lifted<D>(shape.vertices),
+                {},        shape.faces, body.friction};
+  for (const Shape<D>& part : shape.parts) {
+    it.parts.push_back({part.kind, part.radius, lifted<D>(part.half), lifted<D>(part.center),
+                        each_lifted<D>(part.vertices), part.faces, oriented<D>(part.turn)});
+  }
+  return it;
+}
+
+template <int D>
+Snapshot::Contact shown(const Contact<D>& contact) {
+  Snapshot::Contact it;
+  it.body = contact.key.a;
+  if (contact.key.b < 0) {
+    it.wall = -1 - contact.key.b;
+  } else {
+    it.other = contact.key.b;
+  }
+  it.point = lifted<D>(contact.point), it.normal = lifted<D>(contact.normal);
+  it.impulse = lifted<D>(contact.impulse), it.force = lifted<D>(contact.force);
+  it.gap = contact.gap;
+  it.sliding = contact.touching == Touching::slide;
+  it.holds = contact.touching != Touching::open;
+  return it;
+}
+
+// what explosions push each body with: held through their interval, or as it stands now
+template <int D>
+void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
+  const Blasts<D> blasts(model);
+  for (std::size_t i = 0; i < state.blasts.size(); ++i) {
+    const Blast<D>& it = state.blasts[i];
+    if (!it.on) continue;
+    for (int body = 0; body < int(model.bodies.size()); ++body) {
+      if (model.bodies[body].fixed) continue;
+      const bool held = it.forces.size() == model.bodies.size();
+      const Vec<D> push =
+          held ? it.forces[std::size_t(body)] : blasts.push(model.explosions[i], body, stance(state, body)).f;
+      now.bodies[std::size_t(body)].blast += lifted<D>(push);
+    }
+  }
+}
+
+}  // namespace
+
+double friction(const Cast& cast, const Snapshot::Contact& contact) {
+  const double own = cast.bodies[std::size_t(contact.body)].friction;
+  if (contact.other >= 0) return std::sqrt(own * cast.bodies[std::size_t(contact.other)].friction);
+  const std::optional<double>& wall = cast.walls[std::size_t(contact.wall)].friction;
+  return wall ? std::sqrt(own * *wall) : own;
+}
+
+template <int D>
+Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
+  Cast cast;
+  cast.dimension = D;
+  cast.scale = model.scale;
+  cast.gravity = lifted<D>(model.gravity);
+  for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
+  for (const Wall<D>& wall : model.walls)
+    cast.walls.push_back({lifted<D>(wall.point), lifted<D>(wall.normal), wall.friction});
+  for (const Spring<D>& s : model.springs)
+    cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness});
+  for (const Joint<D>& j : model.joints)
+    cast.joints.push_back(
+        {j.name, j.kind, j.a.body, j.b.body, j.length, lifted<D>(j.axis), j.lower, j.upper});
+  for (std::size_t i = 0; i < model.mice.size(); ++i) {
+    const Path<D>& path = paths[i];
+    Cast::Mouse mouse{path.start(), path.end(), model.mice[i].rest_length, {}};
+    const double span = path.end() - path.start();
+    const int pieces = std::clamp(int(std::ceil(std::min(span, 1e6) * kPathRate)), 1, kPathMost);
+    for (int k = 0; k <= pieces; ++k) {
+      mouse.path.push_back(
+          lifted<D>(path.place(k == pieces ? path.end() : path.start() + span * k / pieces)));
+    }
+    cast.mice.push_back(std::move(mouse));
+  }
+  return cast;
+}
+
+template <int D>
+Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, Beat at,
+                  double t) {
+  Snapshot now;
+  now.time = t;
+  now.step = state.step;
+  now.bodies.resize(model.bodies.size());
+  for (int i = 0; i < int(model.bodies.size()); ++i) {
+    Snapshot::Body& body = now.bodies[i];
+    body.position = lifted<D>(state.x[i]);
+    body.velocity = lifted<D>(state.v[i]);
+    body.at_rest = i < int(state.frozen.size()) && state.frozen[i] != 0;
+    if (const int k = turning(state, i); k >= 0) {
+      body.spin = spinning<D>(state.spin[k]);
+      if (D == 2) body.angle = state.turn[k][0];
+      body.orientation = oriented<D>(state.turn[k]);
+    }
+  }
+  if (blasting(state)) blow(model, state, now);
+  for (const Spring<D>& s : model.springs) {
+    const Vec<D> a = place(state, s.a), b = place(state, s.b);
+    now.springs.push_back(
+        {lifted<D>(a), lifted<D>(b), s.a.body, s.b.body, -s.stiffness * ((b - a).norm() - s.rest_length)});
+  }
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint<D>& j = model.joints[i];
+    Snapshot::Joint joint{lifted<D>(place(state, j.a)), lifted<D>(place(state, j.b))};
+    if (i < state.joint_forces.size()) joint.force = lifted<D>(state.joint_forces[i]);
+    joint.broken = i < state.broken.size() && state.broken[i] != 0;
+    now.joints.push_back(joint);
+  }
+  for (int i = 0; i < int(model.mice.size()); ++i) {
+    Snapshot::Mouse mouse;
+    mouse.pressed = stepper.pressed(i, at);
+    mouse.pointer = lifted<D>(stepper.paths()[i].place(t));
+    mouse.held = mouse.pointer;
+    if (const Grip<D>& grip = state.grips[i]; grip.body >= 0) {
+      mouse.body = grip.body;
+      mouse.held = lifted<D>(place(state, End<D>{grip.body, grip.local}));
+    }
+    now.mice.push_back(mouse);
+  }
+  for (const Touch<D>& touch : state.touches) {
+    const Wall<D>& wall = model.walls[touch.wall];
+    Snapshot::Contact contact;
+    contact.body = touch.body, contact.wall = touch.wall;
+    contact.point = lifted<D>(touch.point), contact.normal = lifted<D>(wall.normal);
+    contact.impulse = lifted<D>(touch.impulse);
+    contact.force = contact.impulse * value(model.rate);  // the mean over the step
+    contact.gap = (touch.point - wall.point).dot(wall.normal);
+    now.contacts.push_back(contact);
+  }
+  for (const Contact<D>& contact : state.contacts) {
+    // some are carried along before they touch
+    if (contact.touching != Touching::open || contact.impulse != Vec<D>::Zero())
+      now.contacts.push_back(shown(contact));
+  }
+  now.energies = energies(model, state, stepper.paths(), t);
+  now.momentum = lifted<D>(momentum(model, state));
+  now.angular_momentum = spinning<D>(angular_momentum(model, state));
+  return now;
+}
+
+template Cast cast<2>(const Model<2>&, const std::vector<Path<2>>&);
+template Snapshot snapshot<2>(const Model<2>&, const State<2>&, const Stepper<2>&, Beat, double);
+template Cast cast<3>(const Model<3>&, const std::vector<Path<3>>&);
+template Snapshot snapshot<3>(const Model<3>&, const State<3>&, const Stepper<3>&, Beat, double);
+
+}  // namespace obscura::sim

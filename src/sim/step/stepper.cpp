@@ -1,0 +1,331 @@
+// One step:
+//   1. cut at the edges of the script
+//   2. integrate: free bodies in blocks, tied bodies and chains together
+//   3. collide with the walls
+//   4. at an edge, press and release, begin and end explosions
+//   5. look for trouble
+
+#include "sim/step/stepper.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "sim/force/mouse.h"
+#include "sim/math/limits.h"
+#include "sim/model/own_spin.h"
+#include "sim/motion/free_motion.h"
+#include "sim/step/archive.h"
+#include "sim/step/bonded_bodies.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr int kBlock = 128;  // bodies: the twelve rows of a Runge-Kutta step take 24 KiB
+
+template <int D>
+std::vector<Path<D>> paths(const Model<D>& model) {
+  std::vector<Path<D>> all;
+  for (const Mouse<D>& mouse : model.mice) all.emplace_back(mouse.path);
+  return all;
+}
+
+}  // namespace
+
+template <int D>
+Stepper<D>::Stepper(const Model<D>& model)
+    : model_(model),
+      paths_(sim::paths(model)),
+      edges_(edges(model)),
+      presses_(model.mice.size()),
+      releases_(model.mice.size()),
+      integrate_(sim::integrate(model.integrator)),
+      handout_(model, paths_),
+      blasts_(model),
+      watch_(model, paths_),
+      tied_(model, paths_),
+      springs_(!model.springs.empty() || !model.mice.empty()) {
+  assert(std::is_partitioned(model.bodies.begin(), model.bodies.end(),
+                             [](const auto& b) { return !b.turns(); }));
+  for (const Edge& edge : edges_) {
+    if (edge.kind == Edge::Kind::press) presses_[edge.mouse] = edge.at;
+    if (edge.kind == Edge::Kind::release) releases_[edge.mouse] = edge.at;
+  }
+  for (int i = 0; i < kBlock; ++i) {
+    for (int axis = 0; axis < D; ++axis) gravity_.push_back(model.gravity[axis]);
+  }
+  const double fastest = kFarthest * model.scale;
+  bool drag = false;
+  for (const Body<D>& body : model.bodies) {
+    for (int axis = 0; axis < D; ++axis) drag_.push_back(body.drag / body.mass);
+    drag = drag || body.drag != 0;
+    if (!body.turns()) continue;
+    spin_limits_.push_back(fastest / reach(body.shape));
+    if (wobbles<D>(body.inertia))
+      spin_limits_.back() = std::min(spin_limits_.back(), kFarthestTurn * value(model.rate));
+  }
+  if (!drag) drag_.clear();
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    if (model.bodies[body].handout) by_handout_.push_back(body);
+  }
+  for (const Body<D>& body : model.bodies) {
+    if (body.turns()) inertia_.push_back(body.inertia);
+  }
+  d_.resize(std::max(D, kSpins<D>) * kBlock), w_.resize(kSpins<D> * kBlock), base_.resize(kBlock);
+  assert(model.bonds.empty() || model.chains.empty());
+  if (!model.bonds.empty()) pieces_ = std::make_unique<Pieces<D>>(model, paths_);
+  if (model.collision != Collision::handout && !pieces_) contact_ = contact_step(model, paths_);
+  suspects_.reserve(model.bodies.size());
+  watch_every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / 60));
+}
+
+template <int D>
+Stepper<D>::~Stepper() = default;
+
+template <int D>
+void Stepper<D>::begin(State<D>& state) {
+  // what is fixed does not move, whatever the scene says
+  for (int body = 0; body < int(model_.bodies.size()); ++body) {
+    if (!model_.bodies[body].fixed) continue;
+    state.v[body].setZero();
+    if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
+  }
+  if (pieces_) return pieces_->begin(state);
+  state.grips.resize(model_.mice.size());
+  state.blasts.resize(model_.explosions.size());
+  if (D == 3) state.own.resize(state.turn.size());
+  if (contact_) {
+    state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
+    state.broken.resize(model_.joints.size());
+    state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+  }
+  follow(model_, state);
+  state.touches.reserve(2 * model_.bodies.size() + 16);
+  touch_script(state, {state.step, 0});
+  watch_.start(state, time({state.step, 0}, model_.rate));
+}
+
+template <int D>
+bool Stepper<D>::fits(const State<D>& state) {
+  return sim::fits(state, model_) && sound(state) && (!pieces_ || pieces_->fits(state));
+}
+
+template <int D>
+std::optional<Trouble> Stepper<D>::step(State<D>& state) {
+  if (pieces_) return pieces_->step(state);
+  auto trouble = advance(state, 1);
+  if (trouble) return trouble;
+  if (springs_ && state.step % watch_every_ == 0 && !blasting(state))
+    return watch_.energy(state, time({state.step, 0}, model_.rate));
+  return {};
+}
+
+template <int D>
+std::optional<Trouble> Stepper<D>::part(State<D>& state, double fraction) {
+  if (pieces_) return pieces_->part(state, fraction);
+  return advance(state, fraction);
+}
+
+template <int D>
+std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
+  state.touches.clear();
+  const double h = step_length(model_.rate);
+  auto edge = std::upper_bound(edges_.begin(), edges_.end(), Beat{state.step, 0},
+                               [](Beat at, const Edge& e) { return at < e.at; });
+  double from = 0;
+  while (from < fraction) {
+    const bool cut = edge != edges_.end() && edge->at.step == state.step && edge->at.fraction <= fraction;
+    const double to = cut ? edge->at.fraction : fraction;
+    const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
+    if (contact_) {
+      contact_->step(state, begun, (to - from) * h);
+      if (!sound(state)) return watch_.ran_away(state, ended);
+      suspects_.clear();
+      for (const int body : by_handout_) handout_.look(state, body, 1, suspects_);
+      handout_.collide(state, suspects_, ended);
+    } else {
+      plan(state);
+      suspects_.clear();
+      if (!integrate(state, begun, (to - from) * h)) return watch_.ran_away(state, ended);
+      if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
+      handout_.collide(state, suspects_, ended);
+    }
+    if (cut) touch_script(state, edge->at);
+    while (cut && edge != edges_.end() && edge->at == Beat{state.step, to}) ++edge;
+    from = to;
+  }
+  if (fraction < 1) {
+    state.beyond = fraction * h;
+    return {};
+  }
+  ++state.step;
+  touch_script(state, {state.step, 0});
+  return {};
+}
+
+template <int D>
+void Stepper<D>::touch_script(State<D>& state, Beat at) {
+  auto edge =
+      std::lower_bound(edges_.begin(), edges_.end(), at, [](const Edge& e, Beat b) { return e.at < b; });
+  for (; edge != edges_.end() && edge->at == at; ++edge) {
+    if (edge->kind == Edge::Kind::blast) blasts_.begin(state, edge->mouse);
+    if (edge->kind == Edge::Kind::calm) {
+      // what it gave is no energy out of nowhere
+      blasts_.end(state, edge->mouse);
+      watch_.start(state, time(at, model_.rate));
+    }
+    if (edge->kind == Edge::Kind::blast || edge->kind == Edge::Kind::calm) continue;
+    Grip<D>& grip = state.grips[edge->mouse];
+    if (edge->kind == Edge::Kind::press)
+      grip = closest(model_, state, model_.mice[edge->mouse].path.front().place);
+    if (edge->kind == Edge::Kind::release) grip = {};
+  }
+}
+
+template <int D>
+bool Stepper<D>::pressed(int mouse, Beat at) const {
+  return !(at < presses_[mouse]) && at < releases_[mouse];
+}
+
+// who flies alone and who is tied, anew whenever a hand has taken or let go
+template <int D>
+void Stepper<D>::plan(const State<D>& state) {
+  bool known = planned_ && gripped_.size() == state.grips.size() && blasting_ == blasting(state);
+  for (std::size_t i = 0; known && i < gripped_.size(); ++i) known = gripped_[i] == state.grips[i].body;
+  if (known) return;
+  gripped_.clear();
+  for (const Grip<D>& grip : state.grips) gripped_.push_back(grip.body);
+  planned_ = true, blasting_ = blasting(state);
+  tied_.gather(state);
+
+  const int bodies = int(model_.bodies.size()), still = bodies - int(state.turn.size());
+  const auto free = [&](int body) { return !model_.bodies[body].fixed && !tied_.has(body); };
+  const auto cut = [&](int from, std::vector<Block>& blocks) {
+    blocks.clear();
+    for (int body = from; body < bodies;) {
+      if (!free(body)) {
+        ++body;
+        continue;
+      }
+      const int first = body;
+      while (body < bodies && body < first + kBlock && free(body)) ++body;
+      blocks.push_back({first, body - first});
+    }
+  };
+  cut(0, flying_);
+  cut(still, spinning_);
+  for (Block& block : spinning_) block.first -= still;
+
+  stages_.reserve(std::max<std::size_t>(std::size_t(tied_.size()), d_.size()));
+}
+
+// false where a number ran away
+template <int D>
+bool Stepper<D>::integrate(State<D>& state, double t, double h) {
+  bool sound = true;
+  for (const Block& block : flying_) sound = fly(state, block, t, h) && sound;
+  for (const Block& block : spinning_) sound = spin(state, block, t, h) && sound;
+  return tied(state, t, h) && sound;
+}
+
+// whether every number is one, and none ran away
+template <int D>
+bool Stepper<D>::sound(const State<D>& state) const {
+  const double limit = kFarthest * model_.scale;
+  std::int64_t sound = within(state.x[0].data(), D * int(state.x.size()), limit) |
+                       within(state.v[0].data(), D * int(state.v.size()), limit);
+  for (std::size_t k = 0; k < state.turn.size(); ++k) {
+    sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
+    sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
+  }
+  return sound >= 0;
+}
+
+template <int D>
+bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
+  const std::size_t n = std::size_t(D) * block.count;
+  double* const x = state.x[block.first].data();
+  const std::span<double> v(state.v[block.first].data(), n), d(d_.data(), n);
+  const auto drag =
+      drag_.empty() ? std::span<const double>() : std::span<const double>(drag_).subspan(D * block.first, n);
+  std::fill(d.begin(), d.end(), 0.0);
+  Flight flight(gravity_, drag);
+  integrate_(flight, t, h, d, v, stages_);
+
+  const double limit = kFarthest * model_.scale;
+  std::int64_t sound = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] += d[i];
+    sound |= within(x[i], limit) | within(v[i], limit);
+  }
+  handout_.look(state, block.first, block.count, suspects_);
+  return sound >= 0;
+}
+
+template <int D>
+bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
+  const std::size_t n = std::size_t(kSpins<D>) * block.count;
+  const std::span<double> w(w_.data(), n), d(d_.data(), n);
+  std::fill(d.begin(), d.end(), 0.0);
+  const bool whole = model_.integrator == Integrator::semi_implicit;
+  for (int i = 0; i < block.count; ++i)
+    take_spin(state, block.first + i, whole, base_[i], w.data() + kSpins<D> * i);
+  const std::span<const Spin<D>> moments(inertia_), base(base_);
+  Spinning<D> spinning(moments.subspan(block.first, block.count), base.first(block.count));
+  integrate_(spinning, t, h, d, w, stages_);
+
+  std::int64_t sound = 0;
+  for (int i = 0; i < block.count; ++i) {
+    const int k = block.first + i;
+    const int at = kSpins<D> * i;
+    const int pieces = wobbles<D>(inertia_[k]) ? pieces_of_turn<D>(state.spin[k], h) : 1;
+    if (pieces > 1)
+      spin(state, k, pieces, t, h);
+    else
+      give_spin<D>(state, k, Turn<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
+    sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
+    sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
+  }
+  return sound >= 0;
+}
+
+// the turn of one body in so many pieces
+template <int D>
+void Stepper<D>::spin(State<D>& state, int k, int pieces, double t, double h) {
+  Spin<D> base;
+  std::array<double, kSpins<D>> d, w;
+  for (int i = 0; i < pieces; ++i) {
+    take_spin(state, k, model_.integrator == Integrator::semi_implicit, base, w.data());
+    d.fill(0);
+    Spinning<D> spinning(std::span(&inertia_[k], 1), std::span(&base, 1));
+    integrate_(spinning, t + i * (h / pieces), h / pieces, d, w, stages_);
+    give_spin<D>(state, k, Turn<D>(state.turn[k]), d.data(), base, w.data());
+  }
+}
+
+template <int D>
+bool Stepper<D>::tied(State<D>& state, double t, double h) {
+  tied_.step(integrate_, state, t, h, stages_);
+  const double limit = kFarthest * model_.scale;
+  std::int64_t sound = 0;
+  const auto look = [&](int body) {
+    sound |= within(state.x[body].data(), D, limit) | within(state.v[body].data(), D, limit);
+    if (const int k = turning(state, body); k >= 0) {
+      sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
+      sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
+    }
+  };
+  for (const int body : tied_.bodies()) {
+    look(body);
+    handout_.look(state, body, 1, suspects_);
+  }
+  for (const int body : tied_.chains().links()) look(body);  // which touch nothing by the handout
+  return sound >= 0;
+}
+
+template class Stepper<2>;
+template class Stepper<3>;
+
+}  // namespace obscura::sim

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sim/energy/divergence_monitor.h"
+#include "sim/force/explosion.h"
+#include "sim/handout/handout.h"
+#include "sim/model/script.h"
+#include "sim/motion/forward_dynamics.h"
+#include "sim/motion/integrator.h"
+#include "sim/solve/contact_solver.h"
+
+namespace obscura::sim {
+
+template <int D>
+class Pieces;
+
+/// Carries states of one model forward. What it owns belongs to the step at hand and is never saved; a warm
+/// step allocates nothing. The model is kept by reference.
+template <int D>
+class Stepper {
+ public:
+  explicit Stepper(const Model<D>& model);
+  ~Stepper();
+
+  /// Readies a state that nothing has stepped yet: what the script does at this very instant is done.
+  void begin(State<D>& state);
+
+  /// Whether a state that was saved can be one of this model's.
+  bool fits(const State<D>& state);
+
+  /// One whole step, cut at the edges of the script. Trouble leaves the state as it was when it was noticed.
+  std::optional<Trouble> step(State<D>& state);
+
+  /// Part of a step, 0 < fraction < 1, for a frame between two steps: of a copy, that is then shown and
+  /// thrown away.
+  std::optional<Trouble> part(State<D>& state, double fraction);
+
+  const std::vector<Path<D>>& paths() const { return paths_; }
+
+  /// Whether mouse `mouse` is pressed at `at`.
+  bool pressed(int mouse, Beat at) const;
+
+ private:
+  // bodies that nothing ties, side by side
+  struct Block {
+    int first, count;
+  };
+
+  std::optional<Trouble> advance(State<D>& state, double fraction);
+  void touch_script(State<D>& state, Beat at);
+  void plan(const State<D>& state);
+  bool integrate(State<D>& state, double t, double h);
+  bool sound(const State<D>& state) const;
+  bool fly(State<D>& state, Block block, double t, double h);
+  bool spin(State<D>& state, Block block, double t, double h);
+  void spin(State<D>& state, int k, int pieces, double t, double h);
+  bool tied(State<D>& state, double t, double h);
+
+  const Model<D>& model_;
+  std::vector<Path<D>> paths_;
+  std::vector<Edge> edges_;
+  std::vector<Beat> presses_, releases_;  // one a mouse
+  Integrate* integrate_;
+  Handout<D> handout_;
+  Blasts<D> blasts_;
+  std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
+  std::unique_ptr<Pieces<D>> pieces_;        // of a model with bonds: all is done there
+  Watch<D> watch_;
+  Tied<D> tied_;
+  std::vector<int> gripped_;  // by each mouse, as the plan knows
+  bool planned_ = false, blasting_ = false;
+
+  std::vector<Block> flying_, spinning_;  // centres, and turns
+  std::vector<double> gravity_;           // a block of it
+  std::vector<double> drag_;              // c/m of every component; empty where there is none
+  std::vector<double> spin_limits_;       // of every body that turns, rad/s
+  std::vector<Spin<D>> inertia_;          // likewise, principal moments, kg m^2
+  std::vector<Spin<D>> base_;             // of a block, see sim/math/lie_step.h
+  std::vector<double> d_, w_;
+  std::vector<int> suspects_;
+  std::vector<int> by_handout_;  // who has that law in `contact` and `event` too
+  Stages stages_;
+  std::int64_t watch_every_ = 1;  // steps
+  bool springs_ = false;          // something may ever tie
+};
+
+}  // namespace obscura::sim
