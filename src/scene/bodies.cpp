@@ -24,7 +24,7 @@ constexpr const char* kPalette[] = {"blue", "green", "orange", "purple", "sky", 
 
 // everything about the making of one scene's bodies
 template <int D>
-struct Making {
+struct BuilderContext {
   const Node& top;
   const Room<D>& room;
   std::uint64_t seed;
@@ -32,7 +32,7 @@ struct Making {
   sim::World<D>& world;
   std::vector<draw::BodyLook>& looks;
   Seating<D>& roster;
-  Complaints& complaints;
+  Diagnostics& complaints;
   bool rotation = true;                    // the scene's
   double ground_drag = 0;                  // the room's
   double drag = 0;                         // the room's
@@ -49,7 +49,7 @@ bool has(const Node& words, std::string_view word) {
 
 // whether a table of a body that can turn lets it
 template <int D>
-bool rotates(const Making<D>& making, const Fields& fields, const std::string& kind) {
+bool rotates(const BuilderContext<D>& making, const Fields& fields, const std::string& kind) {
   if (kind == "particle") return false;
   const Node* own = fields.given("rotation");
   return own ? std::get<bool>(own->value) : making.rotation;
@@ -57,7 +57,7 @@ bool rotates(const Making<D>& making, const Fields& fields, const std::string& k
 
 // adds the i-th of n to the world
 template <int D>
-void add(Making<D>& making, const Fields& fields, const std::string& kind, const Solid<D>& solid,
+void add(BuilderContext<D>& making, const Fields& fields, const std::string& kind, const Solid<D>& solid,
          const std::string& name, int i, int n, const Start<D>& start) {
   sim::Body<D> body;
   body.name = name;
@@ -88,14 +88,14 @@ void add(Making<D>& making, const Fields& fields, const std::string& kind, const
                                                                                : "points"),
                             fmt::format("the {}'s moment of inertia is too {} to be reckoned with", kind,
                                         body.inertia.array().isInf().any() ? "large" : "small"));
-    const sim::Turn<D> turn = sim::composed<D>(start.turn, seat.axes);
+    const sim::Orientation<D> turn = sim::composed<D>(start.turn, seat.axes);
     if (rotates(making, fields, kind)) {
       state.turn.push_back(turn);
-      state.spin.push_back(start.fixed ? sim::Spin<D>(sim::Spin<D>::Zero()) : start.spin);
+      state.spin.push_back(start.fixed ? sim::AngularVec<D>(sim::AngularVec<D>::Zero()) : start.spin);
     } else {
       body.inertia.setZero();
       body.shape = held<D>(body.shape, turn);
-      seat.axes = sim::undone<D>(start.turn);
+      seat.axes = sim::inverse<D>(start.turn);
     }
   } else {
     body.mass = number(fields.node("mass"), i, n);
@@ -128,24 +128,25 @@ void add(Making<D>& making, const Fields& fields, const std::string& kind, const
 
 // how far the body reaches beyond a wall; one that is held counts by its centre
 template <int D>
-double reach(const sim::World<D>& world, int body, const std::vector<sim::Tip<D>>& tips,
+double reach(const sim::World<D>& world, int body, const std::vector<sim::SupportVertex<D>>& tips,
              const sim::Wall<D>& wall) {
   if (world.model.bodies[std::size_t(body)].fixed) return beyond<D>(wall, world.state.x[std::size_t(body)]);
   double most = -std::numeric_limits<double>::infinity();
-  for (const sim::Tip<D>& tip : tips)
+  for (const sim::SupportVertex<D>& tip : tips)
     most = std::max(most, beyond<D>(wall, place(world, body, tip.at)) + tip.radius);
   return most;
 }
 
 // the first of a group that is outside the room, by which wall and how far
 template <int D>
-void refuse_outside(const Making<D>& making, const Group& group, Place place) {
+void refuse_outside(const BuilderContext<D>& making, const Group& group, Place place) {
   int outside = 0;
   std::string message;
   for (int body = group.first; body < group.first + group.count; ++body) {
     double most = 0;
     std::size_t worst = 0;
-    const std::vector<sim::Tip<D>> tips = sim::tips(making.world.model.bodies[std::size_t(body)].shape);
+    const std::vector<sim::SupportVertex<D>> tips =
+        sim::support_vertices(making.world.model.bodies[std::size_t(body)].shape);
     for (std::size_t w = 0; w < making.room.walls.size(); ++w) {
       const double far = reach(making.world, body, tips, making.room.walls[w]);
       if (far > most) most = far, worst = w;
@@ -176,12 +177,12 @@ std::uint64_t stream(const std::string& kind, int ordinal) {
 }
 
 template <int D>
-void declaration(Making<D>& making, const Node& table, const std::string& kind, int ordinal,
+void declaration(BuilderContext<D>& making, const Node& table, const std::string& kind, int ordinal,
                  const std::vector<CopySet>& sets) {
   using Vec = sim::Vec<D>;
   Seating<D>& roster = making.roster;
   const Fields fields(table, kind);
-  Complaints& complaints = making.complaints;
+  Diagnostics& complaints = making.complaints;
   Group group;
   group.name = fields.given("name") ? fields.text("name") : fmt::format("{}[{}]", kind, ordinal);
   group.place = fields.place("name");
@@ -310,9 +311,9 @@ void declaration(Making<D>& making, const Node& table, const std::string& kind, 
 template <int D>
 Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, const std::vector<CopySet>& sets,
                   const Dimension& told, sim::World<D>& world, std::vector<draw::BodyLook>& looks,
-                  Complaints& complaints) {
+                  Diagnostics& complaints) {
   Seating<D> roster;
-  Making<D> making{top, room, seed, told, world, looks, roster, complaints};
+  BuilderContext<D> making{top, room, seed, told, world, looks, roster, complaints};
   making.drag = Fields::of(top, "room").number("drag");
   making.ground_drag = Fields::of(top, "room").number("ground_drag");
   making.rotation = Fields::of(top, "physics").flag("rotation");
@@ -336,7 +337,8 @@ Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, cons
 
 #define OBSCURA_INSTANTIATE(D)                                                                           \
   template Seating<D> bodies<D>(const Node&, const Room<D>&, std::uint64_t, const std::vector<CopySet>&, \
-                                const Dimension&, sim::World<D>&, std::vector<draw::BodyLook>&, Complaints&)
+                                const Dimension&, sim::World<D>&, std::vector<draw::BodyLook>&,          \
+                                Diagnostics&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
 #undef OBSCURA_INSTANTIATE

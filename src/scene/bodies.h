@@ -19,6 +19,6 @@ namespace obscura::scene {
 template <int D>
 Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, const std::vector<CopySet>& sets,
                   const Dimension& told, sim::World<D>& world, std::vector<draw::BodyLook>& looks,
-                  Complaints& complaints);
+                  Diagnostics& complaints);
 
 }  // namespace obscura::scene

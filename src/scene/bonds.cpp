@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMostBonds = 1'000'000;
 
 // the bodies that a list of references means, each once, in the order of the model
-std::vector<int> meant(const Node& list, const Roster& roster, Complaints& complaints) {
+std::vector<int> meant(const Node& list, const NameTable& roster, Diagnostics& complaints) {
   std::vector<int> all;
   for (const Node& each : list.list()) {
     const std::vector<int> some = roster.bodies(each.text(), each.place, complaints);
@@ -36,13 +36,13 @@ double apart(const sim::World<D>& world, int a, int b, double far) {
   const double centres = (world.state.x[std::size_t(a)] - world.state.x[std::size_t(b)]).norm();
   const double least = centres - sim::reach(one) - sim::reach(other);
   if (least > far) return least;
-  return sim::separation(one, sim::stance(world.state, a), other, sim::stance(world.state, b));
+  return sim::separation(one, sim::body_motion(world.state, a), other, sim::body_motion(world.state, b));
 }
 
 }  // namespace
 
 template <int D>
-void bonds(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints) {
+void bonds(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints) {
   const Node* all = top.find("bond");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "bond");
@@ -69,7 +69,7 @@ void bonds(const Node& top, const Roster& roster, sim::World<D>& world, Complain
   }
 }
 
-template void bonds<2>(const Node&, const Roster&, sim::World<2>&, Complaints&);
-template void bonds<3>(const Node&, const Roster&, sim::World<3>&, Complaints&);
+template void bonds<2>(const Node&, const NameTable&, sim::World<2>&, Diagnostics&);
+template void bonds<3>(const Node&, const NameTable&, sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

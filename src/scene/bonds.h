@@ -10,6 +10,6 @@ namespace obscura::scene {
 /// Puts the bonds of a scene into its model: between two bodies, or between all of some that lie near each
 /// other at the start. Requires the bodies.
 template <int D>
-void bonds(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints);
+void bonds(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints);
 
 }  // namespace obscura::scene

@@ -28,7 +28,7 @@ std::string unfit(const sim::Body<D>& body) {
 }  // namespace
 
 template <int D>
-void chains(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints) {
+void chains(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints) {
   const Node* all = top.find("chain");
   if (!all || all->list().empty()) return;
   if (world.model.solver == sim::Solver::iterative)
@@ -74,7 +74,7 @@ void chains(const Node& top, const Roster& roster, sim::World<D>& world, Complai
   }
 }
 
-template void chains<2>(const Node&, const Roster&, sim::World<2>&, Complaints&);
-template void chains<3>(const Node&, const Roster&, sim::World<3>&, Complaints&);
+template void chains<2>(const Node&, const NameTable&, sim::World<2>&, Diagnostics&);
+template void chains<3>(const Node&, const NameTable&, sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

@@ -9,6 +9,6 @@ namespace obscura::scene {
 
 /// Makes the chains of a scene of its bodies and joints, which are in the world already.
 template <int D>
-void chains(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints);
+void chains(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints);
 
 }  // namespace obscura::scene

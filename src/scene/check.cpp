@@ -41,9 +41,9 @@ std::string kind_of(std::string_view word) {
 }
 
 // the tables of a scene: which keys each has, and that it has those it needs
-class Tables : private Faults {
+class Tables : private Reporter {
  public:
-  Tables(const Dimension& told, Complaints& complaints) : Faults(told, complaints) {}
+  Tables(const Dimension& told, Diagnostics& complaints) : Reporter(told, complaints) {}
 
   // takes out of a table what is wrong with it
   void table(Node& node, const std::string& owner) {
@@ -159,11 +159,11 @@ class Tables : private Faults {
 
 }  // namespace
 
-void check(Node& top, const Dimension& told, Complaints& complaints) {
+void check(Node& top, const Dimension& told, Diagnostics& complaints) {
   Tables(told, complaints).table(top, "");
 }
 
-void check(Node& table, const std::string& owner, const Dimension& told, Complaints& complaints) {
+void check(Node& table, const std::string& owner, const Dimension& told, Diagnostics& complaints) {
   Tables(told, complaints).table(table, owner);
 }
 

@@ -36,9 +36,9 @@ bool each(const List& list, Check check) {
   return good;
 }
 
-class Values : private Faults {
+class Values : private Reporter {
  public:
-  explicit Values(const Faults& faults) : Faults(faults) {}
+  explicit Values(const Reporter& faults) : Reporter(faults) {}
 
   bool right(const Node& node, const Key& key) {
     const auto is = [&](bool good) { return good || mistyped(node, key); };
@@ -407,7 +407,7 @@ class Values : private Faults {
 
 }  // namespace
 
-bool check_value(const Node& node, const Key& key, const Faults& faults) {
+bool check_value(const Node& node, const Key& key, const Reporter& faults) {
   return Values(faults).right(node, key);
 }
 

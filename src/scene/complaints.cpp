@@ -72,19 +72,19 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
   return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
 }
 
-Complaint Complaints::complaint(Place place, std::string message) const {
+Complaint Diagnostics::complaint(Place place, std::string message) const {
   if (place.set == 0) return {file_, place.line, place.column, std::move(message)};
   std::string set = sets_[std::size_t(place.set - 1)];
   if (set.size() > kLongestWord) set = set.substr(0, kLongestWord) + "...";
   return {"--set " + set, 0, 0, std::move(message)};
 }
 
-std::string Complaints::text(Place place) const {
+std::string Diagnostics::text(Place place) const {
   const Complaint it = complaint(place, "");
   return it.line > 0 ? fmt::format("{}:{}:{}", it.file, it.line, it.column) : it.file;
 }
 
-void Complaints::raise() const {
+void Diagnostics::raise() const {
   auto found = found_;
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
     return std::tie(a.first.set, a.first.line, a.first.column) <

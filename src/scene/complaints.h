@@ -11,9 +11,9 @@
 namespace obscura::scene {
 
 /// What is wrong with one scene, as it is found.
-class Complaints {
+class Diagnostics {
  public:
-  Complaints(std::string file, std::vector<std::string> sets)
+  Diagnostics(std::string file, std::vector<std::string> sets)
       : file_(std::move(file)), sets_(std::move(sets)) {}
 
   void add(Place place, std::string message) { found_.emplace_back(place, std::move(message)); }

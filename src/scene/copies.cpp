@@ -21,7 +21,7 @@ constexpr std::int64_t kMostBodies = 1'000'000;
 
 // copies.offset: one step in each direction of the grid
 template <int D>
-std::vector<sim::Vec<D>> offsets(const Fields& copies, std::size_t directions, Complaints& complaints) {
+std::vector<sim::Vec<D>> offsets(const Fields& copies, std::size_t directions, Diagnostics& complaints) {
   std::vector<sim::Vec<D>> steps(directions, sim::Vec<D>::Zero());
   const Node* offset = copies.given("offset");
   if (!offset) return steps;
@@ -45,7 +45,7 @@ std::vector<sim::Vec<D>> offsets(const Fields& copies, std::size_t directions, C
 }
 
 // how many in each direction; nothing where there are too many
-std::optional<std::vector<int>> grid(const Fields& copies, std::int64_t so_far, Complaints& complaints) {
+std::optional<std::vector<int>> grid(const Fields& copies, std::int64_t so_far, Diagnostics& complaints) {
   const Node* count = copies.given("count");
   if (!count) return std::vector<int>{1};
   std::vector<int> sides;
@@ -66,7 +66,7 @@ std::optional<std::vector<int>> grid(const Fields& copies, std::int64_t so_far, 
 
 // what varies over copies must have copies to vary over, and as many values as there are
 void refuse_odd_lists(const Fields& fields, const std::string& kind, bool copied, int n, int dimension,
-                      Complaints& complaints) {
+                      Diagnostics& complaints) {
   for (const Key* key : keys_of(kind)) {
     const Node* node = fields.given(key->last());
     if (!key->varies || !node) continue;
@@ -92,34 +92,34 @@ Node typed(Place at, const V& v) {
 }
 
 // a turn and a spin as they would have been typed
-Node typed_turn(Place at, const sim::Turn<2>& turn) { return leaf(at, degrees(turn[0])); }
-Node typed_turn(Place at, const sim::Turn<3>& turn) {
+Node typed_turn(Place at, const sim::Orientation<2>& turn) { return leaf(at, degrees(turn[0])); }
+Node typed_turn(Place at, const sim::Orientation<3>& turn) {
   const sim::Vec3 by = sim::logarithm(turn);
   const double angle = std::sqrt(by.squaredNorm());
   return {at, Node::Table{{"axis", at, typed(at, angle > 0 ? sim::Vec3(by / angle) : sim::Vec3(0, 1, 0))},
                           {"angle", at, leaf(at, degrees(angle))}}};
 }
 
-Node typed_spin(const Node& spin, const sim::Spin<2>&, int i, int n) {
+Node typed_spin(const Node& spin, const sim::AngularVec<2>&, int i, int n) {
   return leaf(spin.place, number(spin, i, n));
 }
-Node typed_spin(const Node& spin, const sim::Spin<3>& w, int, int) {
+Node typed_spin(const Node& spin, const sim::AngularVec<3>& w, int, int) {
   return typed(spin.place, sim::Vec3(w * (180 / std::numbers::pi)));
 }
 
 // how a body is turned that was copied and turned by so many degrees about an axis
-sim::Turn<2> turned_copy(const Fields& fields, int i, int n, double by, const sim::Vec<2>&) {
+sim::Orientation<2> turned_copy(const Fields& fields, int i, int n, double by, const sim::Vec<2>&) {
   const double angle = number(fields.node("angle"), i, n);
-  return sim::Turn<2>(radians(by != 0 ? angle + by : angle));
+  return sim::Orientation<2>(radians(by != 0 ? angle + by : angle));
 }
-sim::Turn<3> turned_copy(const Fields& fields, int, int, double by, const sim::Vec<3>& axis) {
-  const sim::Turn<3> typed = turn<3>(fields);
+sim::Orientation<3> turned_copy(const Fields& fields, int, int, double by, const sim::Vec<3>& axis) {
+  const sim::Orientation<3> typed = turn<3>(fields);
   return by != 0 ? sim::composed<3>(sim::exponential(radians(by) * axis), typed) : typed;
 }
 
 // the turn from one copy to another
-sim::Turn<2> between_copies(double by, const sim::Vec<2>&) { return sim::Turn<2>(radians(by)); }
-sim::Turn<3> between_copies(double by, const sim::Vec<3>& axis) {
+sim::Orientation<2> between_copies(double by, const sim::Vec<2>&) { return sim::Orientation<2>(radians(by)); }
+sim::Orientation<3> between_copies(double by, const sim::Vec<3>& axis) {
   return sim::exponential(radians(by) * axis);
 }
 
@@ -139,7 +139,7 @@ int Copies<D>::count() const {
 }
 
 template <int D>
-sim::Turn<D> Copies<D>::orientation(const Fields& fields, int i) const {
+sim::Orientation<D> Copies<D>::orientation(const Fields& fields, int i) const {
   return turned_copy(fields, i, count(), turn * i, axis);
 }
 
@@ -151,7 +151,7 @@ void Copies<D>::move(Start<D>& start, int i, std::uint64_t seed, std::uint64_t s
     along /= sides[k];
   }
   if (turn != 0 && i > 0) {
-    const sim::Turn<D> further = between_copies(turn * i, axis);
+    const sim::Orientation<D> further = between_copies(turn * i, axis);
     if (around) start.position = *around + turned<D>(start.position - *around, further);
     start.velocity = turned<D>(start.velocity, further);
     start.spin = sim::to_room<D>(sim::rotation<D>(further), start.spin);
@@ -162,7 +162,7 @@ void Copies<D>::move(Start<D>& start, int i, std::uint64_t seed, std::uint64_t s
 
 template <int D>
 std::optional<Copies<D>> copies(const Fields& fields, const std::string& kind, int so_far,
-                                Complaints& complaints) {
+                                Diagnostics& complaints) {
   const Node* given = fields.given("copies");
   const Node none{{}, Node::Table{}};
   const Fields table(given ? *given : none, kind + ".copies");
@@ -208,9 +208,9 @@ Node single(const Fields& fields, const std::string& kind, int i, int n, const S
   return one;
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                      \
-  template struct Copies<D>;                                                                        \
-  template std::optional<Copies<D>> copies<D>(const Fields&, const std::string&, int, Complaints&); \
+#define OBSCURA_INSTANTIATE(D)                                                                       \
+  template struct Copies<D>;                                                                         \
+  template std::optional<Copies<D>> copies<D>(const Fields&, const std::string&, int, Diagnostics&); \
   template Node single<D>(const Fields&, const std::string&, int, int, const Start<D>&, bool)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

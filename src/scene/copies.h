@@ -15,8 +15,8 @@ namespace obscura::scene {
 template <int D>
 struct Start {
   sim::Vec<D> position = sim::Vec<D>::Zero(), velocity = sim::Vec<D>::Zero();  // m, m/s
-  sim::Turn<D> turn = sim::upright<D>();
-  sim::Spin<D> spin = sim::Spin<D>::Zero();  // rad/s
+  sim::Orientation<D> turn = sim::no_rotation<D>();
+  sim::AngularVec<D> spin = sim::AngularVec<D>::Zero();  // rad/s
   bool fixed = false;
 };
 
@@ -33,7 +33,7 @@ struct Copies {
 
   int count() const;
   /// Of the i-th, of a body whose table is `fields`.
-  sim::Turn<D> orientation(const Fields& fields, int i) const;
+  sim::Orientation<D> orientation(const Fields& fields, int i) const;
   /// Moves what begins as it was typed to where the i-th does; the random numbers are those of a stream.
   void move(Start<D>& start, int i, std::uint64_t seed, std::uint64_t stream) const;
 };
@@ -42,7 +42,7 @@ struct Copies {
 /// many bodies, or where a list over copies has another number of values than there are.
 template <int D>
 std::optional<Copies<D>> copies(const Fields& fields, const std::string& kind, int so_far,
-                                Complaints& complaints);
+                                Diagnostics& complaints);
 
 /// The key that says how a body is turned, of the kinds that are.
 template <int D>

@@ -13,7 +13,7 @@ constexpr double kMostIntervals = 100'000;
 }  // namespace
 
 template <int D>
-void explosions(const Node& top, sim::Model<D>& model, Complaints& complaints) {
+void explosions(const Node& top, sim::Model<D>& model, Diagnostics& complaints) {
   const Node* all = top.find("explosion");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "explosion");
@@ -36,7 +36,7 @@ void explosions(const Node& top, sim::Model<D>& model, Complaints& complaints) {
   }
 }
 
-template void explosions<2>(const Node&, sim::Model<2>&, Complaints&);
-template void explosions<3>(const Node&, sim::Model<3>&, Complaints&);
+template void explosions<2>(const Node&, sim::Model<2>&, Diagnostics&);
+template void explosions<3>(const Node&, sim::Model<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

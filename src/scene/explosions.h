@@ -8,6 +8,6 @@ namespace obscura::scene {
 
 /// Puts the explosions of a scene into its model.
 template <int D>
-void explosions(const Node& top, sim::Model<D>& model, Complaints& complaints);
+void explosions(const Node& top, sim::Model<D>& model, Diagnostics& complaints);
 
 }  // namespace obscura::scene

@@ -15,27 +15,27 @@ bool takes_numbers(Form form) {
 
 }  // namespace
 
-bool Faults::wrong(const Node& node, std::string message) {
+bool Reporter::wrong(const Node& node, std::string message) {
   complaints_.add(node.place, std::move(message));
   return false;
 }
 
-bool Faults::mistyped(const Node& node, const Key& key, const std::string& what) {
+bool Reporter::mistyped(const Node& node, const Key& key, const std::string& what) {
   // a string that is a number: what was meant, but said otherwise
   const bool in_quotes = takes_numbers(key.form) && node.is_text() && sim::parse_rational(node.text());
   return instead(node, key, what, described(node) + (in_quotes ? "; write it without the quotes" : ""));
 }
 
-bool Faults::instead(const Node& node, const Key& key, const std::string& what, const std::string& got) {
+bool Reporter::instead(const Node& node, const Key& key, const std::string& what, const std::string& got) {
   return wrong(node, fmt::format("'{}': expected {}, got {}", key.last(), what, got));
 }
 
-bool Faults::unknown(const Entry& entry, const std::string& in, const std::string& hint) {
+bool Reporter::unknown(const Entry& entry, const std::string& in, const std::string& hint) {
   complaints_.add(entry.place, fmt::format("unknown key {} in {}{}", quoted(entry.key), in, hint));
   return false;
 }
 
-std::string Faults::because() const {
+std::string Reporter::because() const {
   if (told_.key.empty()) return "no place of this scene has three numbers";
   return fmt::format("'{}' at {} has {}", told_.key.substr(told_.key.rfind('.') + 1),
                      complaints_.text(told_.place), told_.n);

@@ -11,9 +11,9 @@ namespace obscura::scene {
 
 /// Words what is wrong with a value of a scene that is planar or in space. What complains is false, so that a
 /// check may end with it.
-class Faults {
+class Reporter {
  public:
-  Faults(const Dimension& told, Complaints& complaints) : told_(told), complaints_(complaints) {}
+  Reporter(const Dimension& told, Diagnostics& complaints) : told_(told), complaints_(complaints) {}
 
   bool wrong(const Node& node, std::string message);
   /// "'mass': expected a number of kilograms, got a list": another type than the key takes, or than `what`.
@@ -36,11 +36,11 @@ class Faults {
   bool has(const Key& key) const { return key.dimension == 0 || key.dimension == dimension(); }
 
  protected:
-  Complaints& complaints() { return complaints_; }
+  Diagnostics& complaints() { return complaints_; }
 
  private:
   const Dimension& told_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
 };
 
 }  // namespace obscura::scene

@@ -66,30 +66,30 @@ sim::Vec<D> vector(const Node& node, int i, int n) {
 }
 
 template <>
-sim::Spin<2> spin<2>(const Node& node, int i, int n) {
-  return sim::Spin<2>(radians(number(node, i, n)));
+sim::AngularVec<2> spin<2>(const Node& node, int i, int n) {
+  return sim::AngularVec<2>(radians(number(node, i, n)));
 }
 
 template <>
-sim::Spin<3> spin<3>(const Node& node, int i, int n) {
+sim::AngularVec<3> spin<3>(const Node& node, int i, int n) {
   return vector<3>(node, i, n) * (std::numbers::pi / 180);
 }
 
 template <>
-sim::Turn<2> turn<2>(const Fields& fields, int i, int n) {
-  return sim::Turn<2>(radians(number(fields.node("angle"), i, n)));
+sim::Orientation<2> turn<2>(const Fields& fields, int i, int n) {
+  return sim::Orientation<2>(radians(number(fields.node("angle"), i, n)));
 }
 
 template <>
-sim::Turn<3> turn<3>(const Fields& fields, int, int) {
+sim::Orientation<3> turn<3>(const Fields& fields, int, int) {
   const Node* it = fields.given("orientation");
-  if (!it) return sim::upright<3>();
+  if (!it) return sim::no_rotation<3>();
   if (it->is_table()) {
     const sim::Vec<3> axis = vector<3>(*it->find("axis")).stableNormalized();
     return sim::exponential(radians(it->find("angle")->number()) * axis);
   }
   // about x, then y, then z of the room
-  sim::Turn<3> all = sim::upright<3>();
+  sim::Orientation<3> all = sim::no_rotation<3>();
   for (int k = 0; k < 3; ++k)
     all = sim::product(sim::exponential(radians(it->list()[std::size_t(k)].number()) * sim::Vec<3>::Unit(k)),
                        all);

@@ -51,12 +51,12 @@ sim::Vec<D> vector(const Node& node, int i, int n);
 
 /// A spin in radians a second from one in degrees: a number in the plane, a vector in space.
 template <int D>
-sim::Spin<D> spin(const Node& node, int i, int n);
+sim::AngularVec<D> spin(const Node& node, int i, int n);
 
 /// The turn that `angle` (in the plane) or `orientation` (in space) of a table says, in radians and as a unit
 /// quaternion; of the i-th of n copies. Upright where neither is given.
 template <int D>
-sim::Turn<D> turn(const Fields& fields, int i = 0, int n = 1);
+sim::Orientation<D> turn(const Fields& fields, int i = 0, int n = 1);
 
 /// Degrees, as a person types them, as radians.
 double radians(double degrees);

@@ -33,7 +33,7 @@ draw::Quantity quantity(const std::string& word) {
 template <int D>
 class Reader {
  public:
-  Reader(const Seating<D>& roster, const sim::World<D>& world, Complaints& complaints)
+  Reader(const Seating<D>& roster, const sim::World<D>& world, Diagnostics& complaints)
       : roster_(roster), world_(world), complaints_(complaints) {}
 
   int body(const Fields& fields, const char* key) const {
@@ -76,7 +76,7 @@ class Reader {
  private:
   const Seating<D>& roster_;
   const sim::World<D>& world_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
 };
 
 const Node::List& tables(const Fields& fields, const char* key) {
@@ -89,7 +89,7 @@ const Node::List& tables(const Fields& fields, const char* key) {
 
 template <int D>
 draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
-                    Complaints& complaints) {
+                    Diagnostics& complaints) {
   draw::Figure figure;
   const Fields fields = Fields::of(top, "figure");
   const Reader<D> read(roster, world, complaints);
@@ -197,7 +197,7 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
 
 template <int D>
 std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
-                                Complaints& complaints) {
+                                Diagnostics& complaints) {
   const Fields fields = Fields::of(top, "film");
   const Reader<D> read(roster, world, complaints);
   std::vector<draw::Chart> all;
@@ -218,11 +218,11 @@ std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const
   return all;
 }
 
-template draw::Figure figure<2>(const Node&, const Seating<2>&, const sim::World<2>&, Complaints&);
-template draw::Figure figure<3>(const Node&, const Seating<3>&, const sim::World<3>&, Complaints&);
+template draw::Figure figure<2>(const Node&, const Seating<2>&, const sim::World<2>&, Diagnostics&);
+template draw::Figure figure<3>(const Node&, const Seating<3>&, const sim::World<3>&, Diagnostics&);
 template std::vector<draw::Chart> charts<2>(const Node&, const Seating<2>&, const sim::World<2>&,
-                                            Complaints&);
+                                            Diagnostics&);
 template std::vector<draw::Chart> charts<3>(const Node&, const Seating<3>&, const sim::World<3>&,
-                                            Complaints&);
+                                            Diagnostics&);
 
 }  // namespace obscura::scene

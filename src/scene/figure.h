@@ -12,11 +12,11 @@ namespace obscura::scene {
 /// What the scene says of a figure of it. Complains of who is not there.
 template <int D>
 draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
-                    Complaints& complaints);
+                    Diagnostics& complaints);
 
 /// What of the run its film shows beside the picture.
 template <int D>
 std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
-                                Complaints& complaints);
+                                Diagnostics& complaints);
 
 }  // namespace obscura::scene

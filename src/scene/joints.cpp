@@ -39,8 +39,8 @@ JointKind type(const std::string& word) {
 // a direction of the room as the body at an end sees it
 template <int D>
 sim::Vec<D> as_seen(const sim::World<D>& world, int body, const sim::Vec<D>& direction) {
-  const sim::Turn<D> turn = turn_of(world, body);
-  return turn == sim::upright<D>() ? direction : turned<D>(direction, sim::undone<D>(turn));
+  const sim::Orientation<D> turn = turn_of(world, body);
+  return turn == sim::no_rotation<D>() ? direction : turned<D>(direction, sim::inverse<D>(turn));
 }
 
 // a place of the room as an end of a body
@@ -51,11 +51,11 @@ sim::End<D> on(const sim::World<D>& world, int body, const sim::Vec<D>& at) {
 }
 
 // the turn of one body against another: an angle, or a rotation vector in the other's frame
-sim::Spin<2> against(const sim::World<2>& world, int a, int b) {
-  return sim::Spin<2>(turn_of(world, a)[0] - turn_of(world, b)[0]);
+sim::AngularVec<2> against(const sim::World<2>& world, int a, int b) {
+  return sim::AngularVec<2>(turn_of(world, a)[0] - turn_of(world, b)[0]);
 }
-sim::Spin<3> against(const sim::World<3>& world, int a, int b) {
-  return sim::logarithm(sim::composed<3>(sim::undone<3>(turn_of(world, b)), turn_of(world, a)));
+sim::AngularVec<3> against(const sim::World<3>& world, int a, int b) {
+  return sim::logarithm(sim::composed<3>(sim::inverse<3>(turn_of(world, b)), turn_of(world, a)));
 }
 
 // one side of `between`: what it means, and whether it says where
@@ -68,14 +68,15 @@ struct Side {
 };
 
 template <int D>
-Side<D> side(const Node& node, const Seating<D>& roster, const sim::World<D>& world, Complaints& complaints) {
+Side<D> side(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
+             Diagnostics& complaints) {
   if (node.is_text() && node.text() == "room") return {{sim::End<D>{}}, false};
   return {ends(node, roster, world, complaints),
           node.is_list() || node.find("local") != nullptr || node.find("at") != nullptr};
 }
 
 // keys of some kinds of joint only
-void refuse_others(const Fields& fields, JointKind kind, int dimension, Complaints& complaints) {
+void refuse_others(const Fields& fields, JointKind kind, int dimension, Diagnostics& complaints) {
   const bool space = dimension == 3;
   const bool far = kind == JointKind::rod || kind == JointKind::rope;
   const bool turns = kind == (space ? JointKind::hinge : JointKind::pin);
@@ -100,7 +101,7 @@ class Joining {
   using End = sim::End<D>;
 
   Joining(const Fields& fields, JointKind kind, const Side<D>& a, const Side<D>& b, sim::World<D>& world,
-          Complaints& complaints)
+          Diagnostics& complaints)
       : fields_(fields), kind_(kind), a_(a), b_(b), world_(world), complaints_(complaints) {
     for (const sim::Wall<D>& wall : world.model.walls)
       size_ = std::max(size_, wall.point.cwiseAbs().maxCoeff());
@@ -239,14 +240,14 @@ class Joining {
   JointKind kind_;
   const Side<D>&a_, &b_;
   sim::World<D>& world_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
   double size_ = 0;
 };
 
 }  // namespace
 
 template <int D>
-void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Complaints& complaints) {
+void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints) {
   const Node* all = top.find("joint");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "joint");
@@ -282,7 +283,7 @@ void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Com
   }
 }
 
-template void joints<2>(const Node&, const Seating<2>&, sim::World<2>&, Complaints&);
-template void joints<3>(const Node&, const Seating<3>&, sim::World<3>&, Complaints&);
+template void joints<2>(const Node&, const Seating<2>&, sim::World<2>&, Diagnostics&);
+template void joints<3>(const Node&, const Seating<3>&, sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

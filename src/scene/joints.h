@@ -9,6 +9,6 @@ namespace obscura::scene {
 
 /// Puts the joints of a scene into its world. Requires the bodies.
 template <int D>
-void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Complaints& complaints);
+void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints);
 
 }  // namespace obscura::scene

@@ -71,7 +71,7 @@ std::optional<sim::Vec<D>> spot(const sim::Shape<D>& shape, std::string_view wor
 }
 
 // what varies over the springs of one table must have as many values as there are springs
-bool fits(const Fields& fields, const char* key, int n, Complaints& complaints) {
+bool fits(const Fields& fields, const char* key, int n, Diagnostics& complaints) {
   const Node* node = fields.given(key);
   if (!node || node->is_number()) return true;
   if (node->is_list() && int(node->list().size()) == n) return true;
@@ -88,7 +88,7 @@ std::string automatic(const Fields& fields, const std::string& kind, std::size_t
 }
 
 template <int D>
-bool too_many(const sim::World<D>& world, std::size_t more, Place place, Complaints& complaints) {
+bool too_many(const sim::World<D>& world, std::size_t more, Place place, Diagnostics& complaints) {
   if (world.model.springs.size() + more <= kMostSprings) return false;
   complaints.add(place, fmt::format("{} springs in all are more than {}, the most a scene may have",
                                     world.model.springs.size() + more, kMostSprings));
@@ -104,7 +104,7 @@ sim::Vec<D> start(const sim::World<D>& world, const sim::End<D>& end) {
 
 template <int D>
 std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
-                              Complaints& complaints) {
+                              Diagnostics& complaints) {
   using End = sim::End<D>;
   if (node.is_list()) return {End{-1, vector<D>(node)}};
   const Node& name = node.is_text() ? node : *node.find("body");
@@ -153,7 +153,7 @@ std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const 
 }
 
 template <int D>
-void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Complaints& complaints) {
+void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints) {
   using End = sim::End<D>;
   const Node* all = top.find("spring");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
@@ -201,7 +201,7 @@ void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Co
 }
 
 template <int D>
-void nets(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints) {
+void nets(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints) {
   const Node* all = top.find("net");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "net");
@@ -249,7 +249,7 @@ void nets(const Node& top, const Roster& roster, sim::World<D>& world, Complaint
 }
 
 template <int D>
-void mice(const Node& top, sim::World<D>& world, Complaints& complaints) {
+void mice(const Node& top, sim::World<D>& world, Diagnostics& complaints) {
   const Node* all = top.find("mouse");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "mouse");
@@ -279,10 +279,10 @@ void mice(const Node& top, sim::World<D>& world, Complaints& complaints) {
 #define OBSCURA_INSTANTIATE(D)                                                                    \
   template sim::Vec<D> start<D>(const sim::World<D>&, const sim::End<D>&);                        \
   template std::vector<sim::End<D>> ends<D>(const Node&, const Seating<D>&, const sim::World<D>&, \
-                                            Complaints&);                                         \
-  template void springs<D>(const Node&, const Seating<D>&, sim::World<D>&, Complaints&);          \
-  template void nets<D>(const Node&, const Roster&, sim::World<D>&, Complaints&);                 \
-  template void mice<D>(const Node&, sim::World<D>&, Complaints&)
+                                            Diagnostics&);                                        \
+  template void springs<D>(const Node&, const Seating<D>&, sim::World<D>&, Diagnostics&);         \
+  template void nets<D>(const Node&, const NameTable&, sim::World<D>&, Diagnostics&);             \
+  template void mice<D>(const Node&, sim::World<D>&, Diagnostics&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
 #undef OBSCURA_INSTANTIATE

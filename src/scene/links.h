@@ -13,7 +13,7 @@ namespace obscura::scene {
 /// gives none where there are none such.
 template <int D>
 std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
-                              Complaints& complaints);
+                              Diagnostics& complaints);
 
 /// Where an end is at the start.
 template <int D>
@@ -22,10 +22,10 @@ sim::Vec<D> start(const sim::World<D>& world, const sim::End<D>& end);
 /// Puts the springs, the nets and the mice of a scene into its world. Requires the bodies, and model.scale
 /// for the mice.
 template <int D>
-void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Complaints& complaints);
+void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints);
 template <int D>
-void nets(const Node& top, const Roster& roster, sim::World<D>& world, Complaints& complaints);
+void nets(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints);
 template <int D>
-void mice(const Node& top, sim::World<D>& world, Complaints& complaints);
+void mice(const Node& top, sim::World<D>& world, Diagnostics& complaints);
 
 }  // namespace obscura::scene

@@ -48,7 +48,7 @@ std::string more_text(int more, bool counted) {
 }  // namespace
 
 template <int D>
-void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaints& complaints) {
+void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagnostics& complaints) {
   const sim::Model<D>& model = world.model;
   const bool refuse = model.overlap == sim::Overlap::refuse;
   std::set<std::pair<int, int>> joined, ignored;
@@ -64,7 +64,7 @@ void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaint
   std::vector<sim::Bounds<D>> boxes;
   for (int i = 0; i < n; ++i) {
     const sim::Body<D>& body = model.bodies[std::size_t(i)];
-    boxes.push_back(sim::bounds(body.shape, sim::stance(world.state, i)));
+    boxes.push_back(sim::bounds(body.shape, sim::body_motion(world.state, i)));
     if (body.handout) continue;
     const Kind kind{body.shape.kind == sim::ShapeKind::point, body.fixed, body.group};
     const auto [known, fresh] = index.emplace(kind, int(kinds.size()));
@@ -87,7 +87,7 @@ void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaint
     if (!joined.empty() && joined.contains({a, b})) return true;
     const sim::Shape<D>&one = model.bodies[std::size_t(a)].shape, &other = model.bodies[std::size_t(b)].shape;
     const double depth =
-        -sim::separation(one, sim::stance(world.state, a), other, sim::stance(world.state, b));
+        -sim::separation(one, sim::body_motion(world.state, a), other, sim::body_motion(world.state, b));
     const double size = 2 * std::max(std::min(sim::reach(one), sim::reach(other)),
                                      1e-3 * std::max(sim::reach(one), sim::reach(other)));
     if (!(depth > kAllowed * size)) return true;
@@ -118,7 +118,7 @@ void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaint
                                    kMostLooked));
 }
 
-template void refuse_overlaps<2>(const Roster&, const sim::World<2>&, Complaints&);
-template void refuse_overlaps<3>(const Roster&, const sim::World<3>&, Complaints&);
+template void refuse_overlaps<2>(const NameTable&, const sim::World<2>&, Diagnostics&);
+template void refuse_overlaps<3>(const NameTable&, const sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

@@ -11,6 +11,6 @@ namespace obscura::scene {
 /// pairs are near each other than can be simulated. What need not keep apart may overlap: fixed bodies among
 /// themselves, groups that ignore each other, bodies with a joint between them. Requires the joints.
 template <int D>
-void refuse_overlaps(const Roster& roster, const sim::World<D>& world, Complaints& complaints);
+void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagnostics& complaints);
 
 }  // namespace obscura::scene

@@ -25,7 +25,7 @@ void settle(Node& node, Place place) {
 }
 
 // the value as TOML; a bare word is a string
-std::optional<Node> read_value(std::string_view text, Place place, Complaints& complaints) {
+std::optional<Node> read_value(std::string_view text, Place place, Diagnostics& complaints) {
   std::string reason;
   if (text.empty()) {
     complaints.add(place, "expected a value after =");
@@ -93,7 +93,7 @@ std::string starts(const Node& top, const std::string& word) {
 }  // namespace
 
 void write(Node& table, const std::string& owner, const std::vector<Step>& path, Node value, Place place,
-           int dimension, Complaints& complaints) {
+           int dimension, Diagnostics& complaints) {
   Node* here = &table;
   std::string at = owner;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -143,7 +143,7 @@ void write(Node& table, const std::string& owner, const std::vector<Step>& path,
   *here = std::move(value);
 }
 
-std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Complaints& complaints) {
+std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Diagnostics& complaints) {
   std::vector<CopySet> later;
   const int dim = dimension(top).n;
   for (std::size_t k = 0; k < sets.size(); ++k) {

@@ -21,11 +21,11 @@ struct CopySet {
 
 /// Writes the overrides ("crate.elasticity=0.5") into a document, before it is checked: what is wrong with
 /// them is found where all else is. What means one copy ("ball[3].mass=2") is handed back.
-std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Complaints& complaints);
+std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Diagnostics& complaints);
 
 /// Writes a value under a table of the language ("box", "room") along a path, of a scene in the plane or in
 /// space.
 void write(Node& table, const std::string& owner, const std::vector<Step>& path, Node value, Place place,
-           int dimension, Complaints& complaints);
+           int dimension, Diagnostics& complaints);
 
 }  // namespace obscura::scene

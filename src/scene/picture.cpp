@@ -36,7 +36,7 @@ draw::CameraKey camera_key(const Fields& fields) {
 
 }  // namespace
 
-void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& complaints) {
+void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostics& complaints) {
   const Fields words = Fields(top, ""), fields = Fields::of(top, "look");
   look.title = words.text("title");
   look.subtitle = words.text("subtitle");
@@ -97,7 +97,7 @@ draw::Camera standing(const Fields& fields) {
 }
 
 template <int D>
-draw::Camera camera(const Fields& fields, const Roster& roster, Complaints& complaints) {
+draw::Camera camera(const Fields& fields, const NameTable& roster, Diagnostics& complaints) {
   draw::Camera camera = D == 3 ? standing(fields) : draw::Camera{};
   const Node* keys = fields.given("keys");
   const bool stands = fields.given("center") || fields.given("width") || fields.given("eye");
@@ -139,7 +139,7 @@ draw::Camera camera(const Fields& fields, const Roster& roster, Complaints& comp
 }  // namespace
 
 template <int D>
-std::vector<draw::Camera> cameras(const Node& top, const Roster& roster, Complaints& complaints) {
+std::vector<draw::Camera> cameras(const Node& top, const NameTable& roster, Diagnostics& complaints) {
   const Node* all = top.find("camera");
   if (!all || all->is_table()) return {camera<D>(Fields::of(top, "camera"), roster, complaints)};
   std::vector<draw::Camera> several;
@@ -157,7 +157,7 @@ std::vector<draw::Camera> cameras(const Node& top, const Roster& roster, Complai
 
 namespace {
 
-draw::Pace speed(const Node& node, Complaints& complaints) {
+draw::Pace speed(const Node& node, Diagnostics& complaints) {
   if (!node.is_list()) return draw::Pace(exact(node));
   std::vector<draw::PaceKey> keys;
   for (const Node& each : node.list()) {
@@ -175,7 +175,7 @@ draw::Pace speed(const Node& node, Complaints& complaints) {
 
 }  // namespace
 
-Film film(const Node& top, Complaints& complaints) {
+Film film(const Node& top, Diagnostics& complaints) {
   const Fields fields = Fields::of(top, "film");
   Film film;
   const sim::Vec<2> size = fields.vector<2>("size");
@@ -189,7 +189,7 @@ Film film(const Node& top, Complaints& complaints) {
   return film;
 }
 
-Golden golden(const Node& top, sim::Rational duration, Complaints& complaints) {
+Golden golden(const Node& top, sim::Rational duration, Diagnostics& complaints) {
   const Fields fields = Fields::of(top, "golden");
   const auto whole = [&](const char* key) {
     return int(std::min<std::int64_t>(std::get<std::int64_t>(fields.node(key).value), 1 << 30));
@@ -251,8 +251,8 @@ draw::Extent extent(const Room<D>& room, const sim::World<D>& world) {
   return {in_space<D>(middle - size / 2), in_space<D>(middle + size / 2)};
 }
 
-template std::vector<draw::Camera> cameras<2>(const Node&, const Roster&, Complaints&);
-template std::vector<draw::Camera> cameras<3>(const Node&, const Roster&, Complaints&);
+template std::vector<draw::Camera> cameras<2>(const Node&, const NameTable&, Diagnostics&);
+template std::vector<draw::Camera> cameras<3>(const Node&, const NameTable&, Diagnostics&);
 template draw::Extent extent<2>(const Room<2>&, const sim::World<2>&);
 template draw::Extent extent<3>(const Room<3>&, const sim::World<3>&);
 

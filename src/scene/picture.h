@@ -11,17 +11,17 @@
 namespace obscura::scene {
 
 /// How the scene is to look; the bodies have theirs already, and trails by name are added to them.
-void look(const Node& top, const Roster& roster, draw::Look& look, Complaints& complaints);
+void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostics& complaints);
 
 /// The cameras of a scene, one at least: each stands, or has keys.
 template <int D>
-std::vector<draw::Camera> cameras(const Node& top, const Roster& roster, Complaints& complaints);
+std::vector<draw::Camera> cameras(const Node& top, const NameTable& roster, Diagnostics& complaints);
 
 /// How the scene asks to be filmed.
-Film film(const Node& top, Complaints& complaints);
+Film film(const Node& top, Diagnostics& complaints);
 
 /// What is checked of it against references: its own moments, or the start and half the duration.
-Golden golden(const Node& top, sim::Rational duration, Complaints& complaints);
+Golden golden(const Node& top, sim::Rational duration, Diagnostics& complaints);
 
 /// What the camera fits: the room, or where it is open all that is in it at the start, with a margin.
 template <int D>

@@ -70,7 +70,7 @@ sim::Vec<3> corner(const sim::Vec<3>& size) { return {-size.x() / 2, 0, -size.z(
 }  // namespace
 
 template <int D>
-Room<D> room(const Node& top, Complaints& complaints) {
+Room<D> room(const Node& top, Diagnostics& complaints) {
   using Vec = sim::Vec<D>;
   const Fields fields = Fields::of(top, "room");
   Room<D> room;
@@ -134,7 +134,7 @@ Room<D> room(const Node& top, Complaints& complaints) {
   return room;
 }
 
-template Room<2> room<2>(const Node&, Complaints&);
-template Room<3> room<3>(const Node&, Complaints&);
+template Room<2> room<2>(const Node&, Diagnostics&);
+template Room<3> room<3>(const Node&, Diagnostics&);
 
 }  // namespace obscura::scene

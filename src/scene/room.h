@@ -27,7 +27,7 @@ struct Room {
 /// Builds the walls: floor, left, right and ceiling of `size`, in space also back and front, then those of
 /// `walls`.
 template <int D>
-Room<D> room(const Node& top, Complaints& complaints);
+Room<D> room(const Node& top, Diagnostics& complaints);
 
 /// What walls leave: nothing where they leave no room, and else the box around it; the box has no corners
 /// where it goes on for ever.

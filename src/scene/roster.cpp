@@ -8,14 +8,14 @@
 namespace obscura::scene {
 
 template <int D>
-sim::Vec<D> turned(const sim::Vec<D>& v, const sim::Turn<D>& turn) {
+sim::Vec<D> turned(const sim::Vec<D>& v, const sim::Orientation<D>& turn) {
   return sim::rotation<D>(turn) * v;
 }
 
 template <int D>
-sim::Turn<D> turn_of(const sim::World<D>& world, int body) {
+sim::Orientation<D> turn_of(const sim::World<D>& world, int body) {
   const int k = body < 0 ? -1 : sim::turning(world.state, body);
-  return k < 0 ? sim::upright<D>() : world.state.turn[std::size_t(k)];
+  return k < 0 ? sim::no_rotation<D>() : world.state.turn[std::size_t(k)];
 }
 
 template <int D>
@@ -29,10 +29,10 @@ sim::Vec<D> place(const sim::World<D>& world, int body, const sim::Vec<D>& local
 template <int D>
 sim::Vec<D> Seat<D>::seen(const sim::Vec<D>& typed) const {
   const sim::Vec<D> from = typed - center;
-  return axes == sim::upright<D>() ? from : turned<D>(from, sim::undone<D>(axes));
+  return axes == sim::no_rotation<D>() ? from : turned<D>(from, sim::inverse<D>(axes));
 }
 
-const Group* Roster::group(const std::string& name, Place place, Complaints& complaints) const {
+const Group* NameTable::group(const std::string& name, Place place, Diagnostics& complaints) const {
   if (const auto found = index.find(name); found != index.end()) return &groups[std::size_t(found->second)];
   std::vector<std::string_view> names;
   if (!complaints.enough())
@@ -41,7 +41,7 @@ const Group* Roster::group(const std::string& name, Place place, Complaints& com
   return nullptr;
 }
 
-std::vector<int> Roster::bodies(const std::string& text, Place place, Complaints& complaints) const {
+std::vector<int> NameTable::bodies(const std::string& text, Place place, Diagnostics& complaints) const {
   if (const auto whole = index.find(text); whole != index.end()) {
     const Group& it = groups[std::size_t(whole->second)];
     if (it.count == 1) return {it.first};
@@ -71,10 +71,10 @@ std::vector<int> Roster::bodies(const std::string& text, Place place, Complaints
   return *which;
 }
 
-#define OBSCURA_INSTANTIATE(D)                                             \
-  template struct Seat<D>;                                                 \
-  template sim::Vec<D> turned<D>(const sim::Vec<D>&, const sim::Turn<D>&); \
-  template sim::Turn<D> turn_of<D>(const sim::World<D>&, int);             \
+#define OBSCURA_INSTANTIATE(D)                                                    \
+  template struct Seat<D>;                                                        \
+  template sim::Vec<D> turned<D>(const sim::Vec<D>&, const sim::Orientation<D>&); \
+  template sim::Orientation<D> turn_of<D>(const sim::World<D>&, int);             \
   template sim::Vec<D> place<D>(const sim::World<D>&, int, const sim::Vec<D>&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

@@ -20,23 +20,23 @@ struct Group {
 };
 
 /// Who is in the scene, by name.
-struct Roster {
+struct NameTable {
   std::vector<Group> groups;
   std::map<std::string, int, std::less<>> index;     // name -> group
   std::map<std::string, int, std::less<>> families;  // what `group` says -> Body::group
 
   /// The bodies that a reference means ("ball", "ball[3]", "ball[*]"). Complains at `place` and gives none
   /// where there are none such.
-  std::vector<int> bodies(const std::string& reference, Place place, Complaints& complaints) const;
+  std::vector<int> bodies(const std::string& reference, Place place, Diagnostics& complaints) const;
   /// The group of a name. Complains at `place` where there is none.
-  const Group* group(const std::string& name, Place place, Complaints& complaints) const;
+  const Group* group(const std::string& name, Place place, Diagnostics& complaints) const;
 };
 
 /// How a body's frame lies in the one that was typed: its centre of mass, and in space its principal axes.
 template <int D>
 struct Seat {
   sim::Vec<D> center = sim::Vec<D>::Zero();
-  sim::Turn<D> axes = sim::upright<D>();
+  sim::Orientation<D> axes = sim::no_rotation<D>();
 
   /// A point of the frame that was typed, in the body's.
   sim::Vec<D> seen(const sim::Vec<D>& typed) const;
@@ -44,7 +44,7 @@ struct Seat {
 
 /// The same, and how each body lies in what was typed.
 template <int D>
-struct Seating : Roster {
+struct Seating : NameTable {
   std::vector<Seat<D>> seats;  // one a body
 };
 
@@ -54,10 +54,10 @@ sim::Vec<D> place(const sim::World<D>& world, int body, const sim::Vec<D>& local
 
 /// How a body is turned at the start.
 template <int D>
-sim::Turn<D> turn_of(const sim::World<D>& world, int body);
+sim::Orientation<D> turn_of(const sim::World<D>& world, int body);
 
 /// `v` turned.
 template <int D>
-sim::Vec<D> turned(const sim::Vec<D>& v, const sim::Turn<D>& turn);
+sim::Vec<D> turned(const sim::Vec<D>& v, const sim::Orientation<D>& turn);
 
 }  // namespace obscura::scene

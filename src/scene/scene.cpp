@@ -48,7 +48,7 @@ sim::Solver solver(const std::string& word) {
 }
 
 // the handout knows particles and boxes, each alone
-void refuse_beyond_handout(const Node& top, int dimension, Complaints& complaints) {
+void refuse_beyond_handout(const Node& top, int dimension, Diagnostics& complaints) {
   for (const std::string kind : {"ball", "polygon", "body", "joint", "chain"}) {
     const Node* all = top.find(kind);
     if (!all || all->list().empty() || (dimension == 3 && kind != "joint" && kind != "chain")) continue;
@@ -60,15 +60,17 @@ void refuse_beyond_handout(const Node& top, int dimension, Complaints& complaint
 }
 
 // a turn, in the plane about z
-Eigen::Quaterniond quaternion(const sim::Turn<2>& turn) {
+Eigen::Quaterniond quaternion(const sim::Orientation<2>& turn) {
   const auto [s, c] = sim::sin_cos(0.5 * turn[0]);
   return {c, 0, 0, s};
 }
-Eigen::Quaterniond quaternion(const sim::Turn<3>& turn) { return {turn[3], turn[0], turn[1], turn[2]}; }
+Eigen::Quaterniond quaternion(const sim::Orientation<3>& turn) {
+  return {turn[3], turn[0], turn[1], turn[2]};
+}
 
 // groups that do not touch, as the bodies number them
 template <int D>
-void ignore(const Node& top, const Roster& roster, sim::Model<D>& model, Complaints& complaints) {
+void ignore(const Node& top, const NameTable& roster, sim::Model<D>& model, Diagnostics& complaints) {
   const Fields contact = Fields::of(top, "contact");
   for (const Node& pair : contact.node("ignore").list()) {
     int groups[2] = {0, 0};
@@ -88,7 +90,7 @@ void ignore(const Node& top, const Roster& roster, sim::Model<D>& model, Complai
 }
 
 // springs, nets, joints and mice share the bodies' names, for --set speaks of them all
-void refuse_taken_names(const Node& top, const Roster& roster, Complaints& complaints) {
+void refuse_taken_names(const Node& top, const NameTable& roster, Diagnostics& complaints) {
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
   for (const char* kind : {"spring", "net", "joint", "chain", "bond", "explosion", "mouse"}) {
@@ -107,7 +109,7 @@ void refuse_taken_names(const Node& top, const Roster& roster, Complaints& compl
 // what happens in the plane, or in space, and what it looks like
 template <int D>
 sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, const Dimension& told,
-                    Scene& scene, Complaints& complaints) {
+                    Scene& scene, Diagnostics& complaints) {
   sim::World<D> world;
   sim::Model<D>& model = world.model;
   const Fields physics = Fields::of(top, "physics");
@@ -154,7 +156,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
 }  // namespace
 
 Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets) {
-  Complaints complaints(file, sets);
+  Diagnostics complaints(file, sets);
   Node top = document(text, file);
   if (top.table().empty())
     throw Error({{file, 0, 0, "has no keys at all; `obscura new NAME` writes a scene to start from"}});

@@ -23,7 +23,7 @@ double cross(const Vec& a, const Vec& b) { return a.x() * b.y() - a.y() * b.x();
 
 // the corners of `points`, counter-clockwise; a triangle in their stead, and a complaint, where they make no
 // convex polygon
-std::vector<Vec> corners(const Node& points, Complaints& complaints) {
+std::vector<Vec> corners(const Node& points, Diagnostics& complaints) {
   std::vector<Vec> all;
   for (const Node& each : points.list()) all.push_back(vector<2>(each));
   const std::size_t n = all.size();
@@ -74,15 +74,15 @@ sim::Shape<2> polygon(std::vector<Vec> corners) {
 
 // the convex solid of points: a polygon in the plane, a hull in space
 template <int D>
-sim::Shape<D> convex(const Node& points, Complaints& complaints);
+sim::Shape<D> convex(const Node& points, Diagnostics& complaints);
 
 template <>
-sim::Shape<2> convex(const Node& points, Complaints& complaints) {
+sim::Shape<2> convex(const Node& points, Diagnostics& complaints) {
   return polygon(corners(points, complaints));
 }
 
 template <>
-sim::Shape<3> convex(const Node& points, Complaints& complaints) {
+sim::Shape<3> convex(const Node& points, Diagnostics& complaints) {
   std::vector<sim::Vec3> all;
   for (const Node& each : points.list()) all.push_back(vector<3>(each));
   if (all.size() > kMostPoints) {
@@ -114,7 +114,7 @@ sim::Shape<D> box(const sim::Vec<D>& size) {
 
 // from end to end
 template <int D>
-sim::Shape<D> capsule(const Fields& fields, double length, double radius, Complaints& complaints) {
+sim::Shape<D> capsule(const Fields& fields, double length, double radius, Diagnostics& complaints) {
   if (length <= 2 * radius) {
     complaints.add(
         fields.place("length"),
@@ -130,7 +130,7 @@ sim::Shape<D> capsule(const Fields& fields, double length, double radius, Compla
 }
 
 // a shape turned about its origin and then moved
-sim::Shape<2> moved(sim::Shape<2> it, const sim::Turn<2>& turn, const Vec& to) {
+sim::Shape<2> moved(sim::Shape<2> it, const sim::Orientation<2>& turn, const Vec& to) {
   if (it.kind == sim::ShapeKind::box && turn[0] != 0) {
     const Vec h = it.half, c = it.center;
     it = polygon({c - h, c + Vec(h.x(), -h.y()), c + h, c + Vec(-h.x(), h.y())});
@@ -142,8 +142,8 @@ sim::Shape<2> moved(sim::Shape<2> it, const sim::Turn<2>& turn, const Vec& to) {
   return it;
 }
 
-sim::Shape<3> moved(sim::Shape<3> it, const sim::Turn<3>& turn, const sim::Vec3& to) {
-  const bool turns = turn != sim::upright<3>();
+sim::Shape<3> moved(sim::Shape<3> it, const sim::Orientation<3>& turn, const sim::Vec3& to) {
+  const bool turns = turn != sim::no_rotation<3>();
   const sim::Rotation<3> axes =
       turns ? sim::rotation<3>(turn) : sim::Rotation<3>(sim::Rotation<3>::Identity());
   for (sim::Vec3& vertex : it.vertices) vertex = to + axes * vertex;
@@ -157,7 +157,7 @@ sim::Shape<3> moved(sim::Shape<3> it, const sim::Turn<3>& turn, const sim::Vec3&
 
 // a part where it lies on the body; a box that is turned there in the plane is a polygon
 template <int D>
-sim::Shape<D> part(const Fields& fields, Complaints& complaints) {
+sim::Shape<D> part(const Fields& fields, Diagnostics& complaints) {
   const bool balls = fields.given("radius"), boxes = fields.given("size"), points = fields.given("points");
   if (balls + boxes + points != 1)
     complaints.add(fields.place(), "a shape is one of three: expected 'radius', 'size' or 'points'");
@@ -173,7 +173,7 @@ sim::Shape<D> part(const Fields& fields, Complaints& complaints) {
 }
 
 template <int D>
-sim::Shape<D> compound(const Node& shapes, Complaints& complaints) {
+sim::Shape<D> compound(const Node& shapes, Diagnostics& complaints) {
   sim::Shape<D> it;
   it.kind = sim::ShapeKind::compound;
   for (const Node& each : shapes.list()) it.parts.push_back(part<D>(Fields(each, "body.shapes"), complaints));
@@ -185,7 +185,7 @@ sim::Shape<D> compound(const Node& shapes, Complaints& complaints) {
 }
 
 template <int D>
-sim::Shape<D> form(const Fields& fields, const std::string& kind, int i, int n, Complaints& complaints) {
+sim::Shape<D> form(const Fields& fields, const std::string& kind, int i, int n, Diagnostics& complaints) {
   if (kind == "ball") return ball<D>(number(fields.node("radius"), i, n));
   if (kind == "box") return box<D>(fields.vector<D>("size"));
   if (kind == "capsule")
@@ -200,23 +200,23 @@ sim::Shape<D> form(const Fields& fields, const std::string& kind, int i, int n, 
 }  // namespace
 
 template <int D>
-Solid<D> solid(const Fields& fields, const std::string& kind, int i, int n, Complaints& complaints) {
+Solid<D> solid(const Fields& fields, const std::string& kind, int i, int n, Diagnostics& complaints) {
   Solid<D> it;
   const sim::Shape<D> typed = form<D>(fields, kind, i, n, complaints);
-  it.bulk = sim::bulk(typed);
+  it.bulk = sim::mass_properties(typed);
   it.shape = sim::seated(typed, it.bulk);
   return it;
 }
 
 template <>
-sim::Shape<2> held(const sim::Shape<2>& shape, const sim::Turn<2>& turn) {
+sim::Shape<2> held(const sim::Shape<2>& shape, const sim::Orientation<2>& turn) {
   return moved(shape, turn, Vec(Vec::Zero()));
 }
 
 template <>
-sim::Shape<3> held(const sim::Shape<3>& shape, const sim::Turn<3>& turn) {
+sim::Shape<3> held(const sim::Shape<3>& shape, const sim::Orientation<3>& turn) {
   sim::Shape<3> it = moved(shape, turn, sim::Vec3(sim::Vec3::Zero()));
-  if (it.turn == sim::upright<3>()) return it;
+  if (it.turn == sim::no_rotation<3>()) return it;
   // only parts have a turn of their own
   sim::Shape<3> whole;
   whole.kind = sim::ShapeKind::compound;
@@ -224,7 +224,7 @@ sim::Shape<3> held(const sim::Shape<3>& shape, const sim::Turn<3>& turn) {
   return whole;
 }
 
-template Solid<2> solid<2>(const Fields&, const std::string&, int, int, Complaints&);
-template Solid<3> solid<3>(const Fields&, const std::string&, int, int, Complaints&);
+template Solid<2> solid<2>(const Fields&, const std::string&, int, int, Diagnostics&);
+template Solid<3> solid<3>(const Fields&, const std::string&, int, int, Diagnostics&);
 
 }  // namespace obscura::scene

@@ -13,16 +13,16 @@ namespace obscura::scene {
 template <int D>
 struct Solid {
   sim::Shape<D> shape;
-  sim::Bulk<D> bulk;
+  sim::MassProperties<D> bulk;
 };
 
 /// The form of the i-th of n copies of a ball, box, capsule, polygon, hull or body. Complains, and gives some
 /// form, where points make no solid or a part is none.
 template <int D>
-Solid<D> solid(const Fields& fields, const std::string& kind, int i, int n, Complaints& complaints);
+Solid<D> solid(const Fields& fields, const std::string& kind, int i, int n, Diagnostics& complaints);
 
 /// The form of a body that is turned so from now on, and cannot turn otherwise.
 template <int D>
-sim::Shape<D> held(const sim::Shape<D>& shape, const sim::Turn<D>& turn);
+sim::Shape<D> held(const sim::Shape<D>& shape, const sim::Orientation<D>& turn);
 
 }  // namespace obscura::scene

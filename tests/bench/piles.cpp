@@ -99,10 +99,11 @@ Result ours(const Scene& scene, double seconds, int rate, bool awake) {
     body.friction = scene.friction, body.elasticity = 0;
     world.model.bodies.push_back(body);
     world.state.x.push_back({box.x, box.y}), world.state.v.push_back({0, 0});
-    world.state.turn.push_back(sim::Turn<2>(box.angle)), world.state.spin.push_back(sim::Spin<2>(0.0));
+    world.state.turn.push_back(sim::Orientation<2>(box.angle)),
+        world.state.spin.push_back(sim::AngularVec<2>(0.0));
   }
   const std::vector<sim::Path<2>> paths;
-  sim::Iterative<2> solver(world.model, paths);
+  sim::PlaneIterative<2> solver(world.model, paths);
   Result result;
   int sixtieths = 0;
   result.ms = timed(seconds, [&] {

@@ -14,7 +14,7 @@ using namespace obscura;
 using sim::Vec3;
 
 struct Crowd {
-  sim::Cast cast;
+  sim::SceneInfo cast;
   sim::Snapshot now;
   draw::Look look;
 
@@ -27,7 +27,7 @@ struct Crowd {
       return (state >> 8) / 16777216.0;
     };
     for (int i = 0; i < 200; ++i) {
-      sim::Cast::Body who;
+      sim::SceneInfo::Body who;
       who.kind = sim::ShapeKind::box, who.turns = true, who.mass = 1;
       sim::Snapshot::Body where;
       for (int k = 0; k < 3; ++k) who.half[k] = 0.08 + 0.12 * number();
@@ -44,7 +44,8 @@ struct Crowd {
 void frame(benchmark::State& state) {
   const bool flat = state.range(0) == 0;
   Crowd crowd;
-  const draw::Depictor depictor(crowd.cast, crowd.look, draw::slant(), {{-3, 0, -2}, {3, 2.6, 2}}, 16.0 / 9);
+  const draw::Illustrator depictor(crowd.cast, crowd.look, draw::slant(), {{-3, 0, -2}, {3, 2.6, 2}},
+                                   16.0 / 9);
   gl::Renderer renderer(1920, 1080);
   const draw::Picture bare = depictor.depict(crowd.now, {});
   for (auto _ : state) {

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     const auto* now = std::get_if<sim::Snapshot>(&outcome);
     if (!now) return 6;
     for (std::size_t i = 0; i < now->bodies.size(); ++i)
-      std::printf("%s at %g s: %.17g %.17g\n", run->cast().bodies[i].name.c_str(), now->time,
+      std::printf("%s at %g s: %.17g %.17g\n", run->scene_info().bodies[i].name.c_str(), now->time,
                   now->bodies[i].position.x(), now->bodies[i].position.y());
   }
 

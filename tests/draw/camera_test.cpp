@@ -42,7 +42,7 @@ Made filmed() {
 
 TEST(Camera, KeysAreHitExactly) {
   const Made made = filmed();
-  const Depictor depictor = made.depictor();
+  const Illustrator depictor = made.depictor();
   const double page = 1920;
   const Point middle = depictor.view(0).page({4, 2.25, 0});
   for (const CameraKey& key : made.camera.keys) {
@@ -58,7 +58,7 @@ TEST(Camera, KeysAreHitExactly) {
 TEST(Camera, ZoomKeepsOnePlaceOfTheWorldStill) {
   Made made = room(8, 4.5);
   made.camera.keys = {{0, sim::Vec3(4, 2, 0), 8.0, Ease::linear}, {1, sim::Vec3(6, 1, 0), 2.0, Ease::linear}};
-  const Depictor depictor = made.depictor();
+  const Illustrator depictor = made.depictor();
   // 4 + 2 s = 6 + s (2 - 8) / ... : the centre of the similarity between the two rectangles
   const sim::Vec3 fixed(4 + 2 / (1 - 2.0 / 8), 2 - 1 / (1 - 2.0 / 8), 0);
   const Point there = depictor.view(0).page(fixed);
@@ -72,7 +72,7 @@ TEST(Camera, ZoomKeepsOnePlaceOfTheWorldStill) {
 }
 
 TEST(Camera, HoldsUntilItsTimeAndAfterTheLastKey) {
-  const Depictor depictor = filmed().depictor();
+  const Illustrator depictor = filmed().depictor();
   EXPECT_EQ(depictor.view(4.999).scale, depictor.view(3).scale);
   EXPECT_NEAR(1920 / depictor.view(5).scale, 12, 1e-12);
   EXPECT_EQ(depictor.view(50).scale, depictor.view(5).scale);
@@ -80,7 +80,7 @@ TEST(Camera, HoldsUntilItsTimeAndAfterTheLastKey) {
 }
 
 TEST(Camera, PanIsMonotone) {
-  const Depictor depictor = filmed().depictor();
+  const Illustrator depictor = filmed().depictor();
   double before = 1e9;
   for (int i = 0; i <= 50; ++i) {
     const View view = depictor.view(2 + i / 50.0);
@@ -92,7 +92,7 @@ TEST(Camera, PanIsMonotone) {
 
 TEST(Camera, StillListIsSharedWhileItStandsAndNewWhileItMoves) {
   Made made = filmed();
-  const Depictor depictor = made.depictor();
+  const Illustrator depictor = made.depictor();
   auto still = [&](double t) {
     made.now.time = t;
     return depictor.depict(made.now, {}).still;
@@ -102,7 +102,7 @@ TEST(Camera, StillListIsSharedWhileItStandsAndNewWhileItMoves) {
   EXPECT_EQ(still(6), still(7));
 
   made.camera.keys.clear();
-  const Depictor fixed = made.depictor();
+  const Illustrator fixed = made.depictor();
   made.now.time = 0;
   const auto first = fixed.depict(made.now, {}).still;
   made.now.time = 9;

@@ -214,7 +214,7 @@ TEST(Depict, AnArrowThatWouldLeaveThePageEndsAtItsEdgeOnTheSameWay) {
 TEST(Depict, HandIsShownFromJustBeforeThePressToJustAfterTheRelease) {
   Made made = room(8, 4.5);
   made.body(ShapeKind::box, {3, 2, 0}, 0.3);
-  sim::Cast::Mouse mouse;
+  sim::SceneInfo::Mouse mouse;
   mouse.press = 1, mouse.release = 2, mouse.rest_length = 0.2;
   for (int i = 0; i <= 100; ++i) mouse.path.push_back({2 + 0.03 * i, 3, 0});
   made.cast.mice = {mouse};
@@ -244,7 +244,7 @@ TEST(Depict, HandIsShownFromJustBeforeThePressToJustAfterTheRelease) {
 
 TEST(Depict, WayThatComesBackIsDottedOnce) {
   Made made = room(8, 4.5);
-  sim::Cast::Mouse there, back;
+  sim::SceneInfo::Mouse there, back;
   there.press = back.press = 0, there.release = back.release = 1;
   for (int i = 0; i <= 100; ++i) there.path.push_back({2 + 0.0317 * i, 3, 0});
   back.path = there.path;

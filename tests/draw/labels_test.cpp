@@ -62,14 +62,14 @@ TEST(Labels, InSpaceStandOverTheBodyForEachCamera) {
   made.extent = {{-2, 0, -2}, {2, 2, 2}};
   const int it = made.body(ShapeKind::ball, {0.5, 0.6, -0.3}, 0.2);
   made.look.bodies[it].label = "ball";
-  const Depictor depictor(made.cast, made.look, {side(), slant()}, made.extent, 16.0 / 9);
+  const Illustrator depictor(made.cast, made.look, {side(), slant()}, made.extent, 16.0 / 9);
   const Picture picture = depictor.depict(made.now, {});
   std::vector<Text> found;
   for (const Text& text : picture.moving.texts)
     if (text.spans[0].text == "ball") found.push_back(text);
   ASSERT_EQ(found.size(), 2u);
   for (int panel = 0; panel < 2; ++panel) {
-    const Lens lens = depictor.lens(made.now, panel);
+    const CameraProjection lens = depictor.lens(made.now, panel);
     const Point center = lens.page(made.now.bodies[it].position);
     EXPECT_NEAR(found[std::size_t(panel)].at.x(), center.x(), 1e-9);
     const double over =

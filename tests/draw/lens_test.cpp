@@ -15,22 +15,22 @@ using sim::Vec3;
 constexpr double kDegree = std::numbers::pi / 180;
 const Rect kPage{0, 0, 1920, 1080};
 
-TEST(Lens, AnOrthographicSideViewIsTheFrontElevation) {
+TEST(CameraProjection, AnOrthographicSideViewIsTheFrontElevation) {
   Camera camera = side();
   camera.elevation = 0;
   camera.projection = Camera::Projection::orthographic;
-  const Lens lens = lens_at(camera, {{1, 2, 3}, 8}, kPage, 0);
+  const CameraProjection lens = lens_at(camera, {{1, 2, 3}, 8}, kPage, 0);
   // 1920 page units for 8 m: 240 a metre, the target in the middle, whatever the depth
   EXPECT_NEAR((lens.page({1, 2, 3}) - Point(960, 540)).norm(), 0, 1e-9);
   EXPECT_NEAR((lens.page({2, 2.5, -7}) - Point(1200, 420)).norm(), 0, 1e-9);
 }
 
-TEST(Lens, APerspectiveSideViewDividesByTheDepth) {
+TEST(CameraProjection, APerspectiveSideViewDividesByTheDepth) {
   Camera camera = side();
   camera.elevation = 0;
   camera.field = 2 * std::atan(0.5);
   // at the target 4 m across under an angle of 1 in 1: the eye is 4 m away
-  const Lens lens = lens_at(camera, {Vec3::Zero(), 4}, kPage, 0);
+  const CameraProjection lens = lens_at(camera, {Vec3::Zero(), 4}, kPage, 0);
   EXPECT_NEAR((lens.eye() - Vec3(0, 0, 4)).norm(), 0, 1e-12);
   // 2 m before the target, half as far from the eye: twice as large, 960 page units a metre
   EXPECT_NEAR((lens.page({0.5, -0.25, 2}) - Point(960 + 480, 540 + 240)).norm(), 0, 1e-9);
@@ -38,22 +38,22 @@ TEST(Lens, APerspectiveSideViewDividesByTheDepth) {
   EXPECT_NEAR((lens.page({1, 1, -4}) - Point(960 + 240, 540 - 240)).norm(), 0, 1e-9);
 }
 
-TEST(Lens, SlantTurnsAboutTheVerticalAndThenLooksDown) {
+TEST(CameraProjection, SlantTurnsAboutTheVerticalAndThenLooksDown) {
   Camera camera;
   camera.azimuth = 90 * kDegree, camera.elevation = 30 * kDegree;
   camera.projection = Camera::Projection::orthographic;
-  const Lens lens = lens_at(camera, {Vec3::Zero(), 19.2}, kPage, 0);
+  const CameraProjection lens = lens_at(camera, {Vec3::Zero(), 19.2}, kPage, 0);
   // from +x: -z is to the right; a height shows by its cosine, what is nearer lies lower by its sine
   EXPECT_NEAR((lens.page({0, 0, -1}) - Point(1060, 540)).norm(), 0, 1e-9);
   EXPECT_NEAR((lens.page({0, 1, 0}) - Point(960, 540 - 100 * std::cos(30 * kDegree))).norm(), 0, 1e-9);
   EXPECT_NEAR((lens.page({1, 0, 0}) - Point(960, 540 + 100 * std::sin(30 * kDegree))).norm(), 0, 1e-9);
 }
 
-TEST(Lens, HomogeneousPlacesAndRaysAgreeWithThePage) {
+TEST(CameraProjection, HomogeneousPlacesAndRaysAgreeWithThePage) {
   for (auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
     Camera camera = slant();
     camera.projection = projection;
-    const Lens lens = lens_at(camera, {{0.3, 1, -0.2}, 5}, {100, 50, 900, 700}, 0);
+    const CameraProjection lens = lens_at(camera, {{0.3, 1, -0.2}, 5}, {100, 50, 900, 700}, 0);
     const Vec3 place(0.7, -0.4, 1.1);
     const Eigen::Vector4d h = lens.homogeneous(place);
     EXPECT_NEAR((lens.page(place) - Point(h.x() / h.w(), h.y() / h.w())).norm(), 0, 1e-9);
@@ -69,7 +69,7 @@ TEST(SpaceCamera, FitsWhatItIsGivenInTheWindowAndNotMuchSmaller) {
   for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 3.0 : -3.0, i & 2 ? 2.0 : 0.0, i & 4 ? 1.0 : -1.0});
   const Rect window{200, 100, 800, 900};
   for (Camera camera : {side(), slant()}) {
-    const Lens lens = lens_at(camera, aim(camera, corners, window), window, 0);
+    const CameraProjection lens = lens_at(camera, aim(camera, corners, window), window, 0);
     double reach = 0;
     for (const Vec3& c : corners) {
       const Point p = lens.page(c);
@@ -83,9 +83,9 @@ TEST(SpaceCamera, FitsWhatItIsGivenInTheWindowAndNotMuchSmaller) {
 TEST(SpaceCamera, OrbitsAtItsRateAndFollows) {
   Camera camera = side();
   camera.orbit = 90 * kDegree;
-  const Lens later = lens_at(camera, {Vec3::Zero(), 4}, kPage, 1);
+  const CameraProjection later = lens_at(camera, {Vec3::Zero(), 4}, kPage, 1);
   EXPECT_NEAR((later.right - Vec3(0, 0, -1)).norm(), 0, 1e-12) << "a quarter turn: from +x";
-  const Lens followed = lens_at(camera, {Vec3::Zero(), 4}, kPage, 0, Vec3(5, 1, 2));
+  const CameraProjection followed = lens_at(camera, {Vec3::Zero(), 4}, kPage, 0, Vec3(5, 1, 2));
   EXPECT_NEAR((followed.page({5, 1, 2}) - Point(960, 540)).norm(), 0, 1e-9);
 }
 
@@ -99,7 +99,7 @@ TEST(SpaceCamera, KeysHoldAtTheirTimesAndEaseBetween) {
   EXPECT_NEAR((lens_at(camera, fitted, kPage, 0).right - Vec3(1, 0, 0)).norm(), 0, 1e-12);
   EXPECT_NEAR(lens_at(camera, fitted, kPage, 1).scale, 1920.0 / 4, 1e-9);
   // half of an even move: half the turn, and the mean width of a zoom at an even rate
-  const Lens half = lens_at(camera, fitted, kPage, 2);
+  const CameraProjection half = lens_at(camera, fitted, kPage, 2);
   EXPECT_NEAR((half.right - Vec3(0, 0, -1)).norm(), 0, 1e-12);
   EXPECT_NEAR(half.scale, 1920.0 / 6, 1e-9);
   EXPECT_NEAR((lens_at(camera, fitted, kPage, 7).target - Vec3(1, 0, 0)).norm(), 0, 1e-12);
@@ -110,7 +110,7 @@ TEST(SpaceCamera, AnEyeIsWhereAKeyPutsIt) {
   CameraKey key;
   key.center = Vec3(0, 1, 0), key.eye = Vec3(3, 5, 4);
   camera.keys = {key};
-  const Lens lens = lens_at(camera, {Vec3::Zero(), 6}, kPage, 0);
+  const CameraProjection lens = lens_at(camera, {Vec3::Zero(), 6}, kPage, 0);
   EXPECT_NEAR((lens.eye() - Vec3(3, 5, 4)).norm(), 0, 1e-9);
 }
 

@@ -10,14 +10,14 @@ namespace obscura::draw {
 
 /// A run made by hand: a cast, its looks and one instant of it.
 struct Made {
-  sim::Cast cast;
+  sim::SceneInfo cast;
   Look look;
   Camera camera;
   Extent extent;
   sim::Snapshot now;
   std::vector<std::shared_ptr<const sim::Track>> ways;
 
-  Depictor depictor(double aspect = 16.0 / 9) const { return {cast, look, camera, extent, aspect}; }
+  Illustrator depictor(double aspect = 16.0 / 9) const { return {cast, look, camera, extent, aspect}; }
   Picture picture(double aspect = 16.0 / 9) const { return depictor(aspect).depict(now, ways); }
 
   void wall(const sim::Vec3& point, const sim::Vec3& normal) {
@@ -25,7 +25,7 @@ struct Made {
   }
 
   int body(sim::ShapeKind kind, const sim::Vec3& position, double size = 0) {
-    sim::Cast::Body who;
+    sim::SceneInfo::Body who;
     who.name = "body " + std::to_string(cast.bodies.size());
     who.kind = kind;
     who.radius = kind == sim::ShapeKind::ball ? size : 0;

@@ -14,19 +14,19 @@ using sim::Vec3;
 
 const Rect kPage{0, 0, 1920, 1080};
 
-Lens front(Camera::Projection projection = Camera::Projection::orthographic) {
+CameraProjection front(Camera::Projection projection = Camera::Projection::orthographic) {
   Camera camera = side();
   camera.elevation = 0;
   camera.projection = projection;
   return lens_at(camera, {Vec3::Zero(), 9.6}, kPage, 0);
 }
 
-TEST(Sight, ABoxHidesWhatLiesBehindItAndNoMore) {
-  const Lens lens = front();
-  Sight sight(lens);
+TEST(HiddenLines, ABoxHidesWhatLiesBehindItAndNoMore) {
+  const CameraProjection lens = front();
+  HiddenLines sight(lens);
   sight.add(box({1, 1, 1}), 0);
   sight.finish();
-  Sight::Parts parts;
+  HiddenLines::Parts parts;
   sight.seen({-2, 0, -3}, {2, 0, -3}, -1, -1, parts);
   ASSERT_EQ(parts.size(), 2u);
   // the box is a quarter to three quarters of the way; a line counts as hidden 0.4 of 200 page units inside
@@ -38,33 +38,33 @@ TEST(Sight, ABoxHidesWhatLiesBehindItAndNoMore) {
   ASSERT_EQ(parts.size(), 1u) << "its own";
 }
 
-TEST(Sight, BodiesThatTouchDoNotHideEachOthersEdges) {
-  const Lens lens = front();
-  Sight sight(lens);
+TEST(HiddenLines, BodiesThatTouchDoNotHideEachOthersEdges) {
+  const CameraProjection lens = front();
+  HiddenLines sight(lens);
   // stands on the ground at y = 0; an edge in its upper face, and one that sank into it by a hair
   sight.add(box({1, 1, 1}), 0);
   sight.finish();
-  Sight::Parts parts;
+  HiddenLines::Parts parts;
   for (double sunk : {0.0, 0.0005}) {
     sight.seen({-0.5, 1 - sunk, 1 - sunk}, {0.5, 1 - sunk, 1 - sunk}, -1, -1, parts);
     EXPECT_EQ(parts.size(), 1u);
   }
 }
 
-TEST(Sight, AgreesWithRaysThroughRandomBoxes) {
+TEST(HiddenLines, AgreesWithRaysThroughRandomBoxes) {
   std::mt19937 random(7);
   const auto number = [&](double from, double to) {
     return from + (to - from) * double(random()) / 4294967295.0;
   };
   for (auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
-    const Lens lens = front(projection);
+    const CameraProjection lens = front(projection);
     int hidden = 0;
     for (int trial = 0; trial < 300; ++trial) {
       const Eigen::Quaterniond turn =
           Eigen::Quaterniond(number(-1, 1), number(-1, 1), number(-1, 1), number(-1, 1)).normalized();
       const Vec3 half(number(0.3, 1), number(0.3, 1), number(0.3, 1)),
           at(number(-2, 2), number(-1, 1), number(-2, 2));
-      Sight sight(lens);
+      HiddenLines sight(lens);
       sight.add(box(half).placed(turn.toRotationMatrix(), at), 0);
       sight.finish();
       const Vec3 place(number(-3, 3), number(-2, 2), number(-4, 4));
@@ -85,9 +85,9 @@ TEST(Sight, AgreesWithRaysThroughRandomBoxes) {
   }
 }
 
-TEST(Sight, ABallHidesADiscAndARodAStrip) {
-  const Lens lens = front();
-  Sight sight(lens);
+TEST(HiddenLines, ABallHidesADiscAndARodAStrip) {
+  const CameraProjection lens = front();
+  HiddenLines sight(lens);
   sight.add_disc(contour(lens, {0, 0, 0}, 1, 64), {0, 0, 0}, 0);
   sight.add_rod({3, -1, 0}, {3, 1, 0}, 0.1, 0.1, 1);
   sight.finish();
@@ -98,7 +98,7 @@ TEST(Sight, ABallHidesADiscAndARodAStrip) {
   EXPECT_TRUE(sight.seen({3.15, 0, -1}, -1));
 }
 
-TEST(Sight, AWallCutsTheRoomFromSpace) {
+TEST(HiddenLines, AWallCutsTheRoomFromSpace) {
   Polyhedron room = box({10, 10, 10});
   room = cut(room, {0, 0, 0}, {0, 1, 0}, 0);
   room = cut(room, {1, 0, 0}, {-1, 0, 0}, 1);

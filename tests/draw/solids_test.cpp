@@ -22,7 +22,7 @@ int polygon(Made& made, const sim::Vec3& position, std::vector<sim::Vec3> vertic
   return it;
 }
 
-sim::Cast::Part bar(double x, double y, double half_x, double half_y) {
+sim::SceneInfo::Part bar(double x, double y, double half_x, double half_y) {
   return {.kind = ShapeKind::box, .half = {half_x, half_y, 0}, .center = {x, y, 0}, .vertices = {}};
 }
 
@@ -45,7 +45,7 @@ Color on_top(const List& list, const Point& p) {
 
 void joint(Made& made, JointKind kind, int a, int b, const sim::Vec3& at, const sim::Vec3& to,
            double length = 0) {
-  sim::Cast::Joint who;
+  sim::SceneInfo::Joint who;
   who.kind = kind, who.a = a, who.b = b, who.length = length;
   made.cast.joints.push_back(who);
   made.now.joints.push_back({at, to});

@@ -140,7 +140,7 @@ TEST(Still, HatchingGoesWithTheWorld) {
   Made made = slanted();
   made.camera.keys = {{0, sim::Vec3(4, 2.25, 0), 12.0, CameraKey::Ease::linear},
                       {1, sim::Vec3(4.1237, 2.25, 0), 12.0, CameraKey::Ease::linear}};
-  const Depictor depictor = made.depictor();
+  const Illustrator depictor = made.depictor();
   const auto before = depictor.depict(made.now, {}).still;
   made.now.time = 1;
   const auto after = depictor.depict(made.now, {}).still;

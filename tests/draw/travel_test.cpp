@@ -37,7 +37,7 @@ TEST(Travel, ACameraThatFollowsMovesTheRoomAndNotTheBody) {
   const int ball = made.body(sim::ShapeKind::ball, {4, 2, 0}, 0.5);
   made.now.bodies[std::size_t(ball)].velocity = {2, 0, 0};
   made.camera.follow = ball;
-  const Depictor depictor = made.depictor();
+  const Illustrator depictor = made.depictor();
   EXPECT_NEAR(depictor.travel(made.now, 0.01), 0.02 * depictor.view(0).scale, 1e-9);
 }
 

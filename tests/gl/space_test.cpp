@@ -19,7 +19,7 @@ using sim::Vec3;
 
 /// A run in space made by hand.
 struct Made {
-  sim::Cast cast;
+  sim::SceneInfo cast;
   sim::Snapshot now;
   draw::Look look;
   std::vector<Camera> cameras{draw::slant()};
@@ -35,7 +35,7 @@ struct Made {
   }
   int body(sim::ShapeKind kind, const Vec3& at, const Vec3& half, double radius, const char* color,
            const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) {
-    sim::Cast::Body who;
+    sim::SceneInfo::Body who;
     who.kind = kind, who.half = half, who.radius = radius, who.turns = true, who.mass = 1;
     cast.bodies.push_back(who);
     sim::Snapshot::Body where;
@@ -46,7 +46,7 @@ struct Made {
     look.bodies.push_back(own);
     return int(cast.bodies.size()) - 1;
   }
-  draw::Depictor depictor(double aspect = 16.0 / 9) const { return {cast, look, cameras, extent, aspect}; }
+  draw::Illustrator depictor(double aspect = 16.0 / 9) const { return {cast, look, cameras, extent, aspect}; }
   draw::Picture picture(double aspect = 16.0 / 9) const { return depictor(aspect).depict(now, {}); }
 };
 
@@ -205,7 +205,7 @@ TEST(Space, NothingIsInFrontOfWhatHidesIt) {
     made.box({0.2, 1, -0.8}, {1.5, 0.4, 0.2}, "blue");
     made.cameras = {draw::side()};
     const media::Image image = drawn(renderer, made.picture());
-    const draw::Lens lens = made.depictor().lens(made.now);
+    const draw::CameraProjection lens = made.depictor().lens(made.now);
     // places on the near box's middle cross: its own colour, whatever the shade
     for (double t : {-0.5, -0.25, 0.0, 0.25, 0.5}) {
       const Color seen =
@@ -235,7 +235,7 @@ TEST(Space, ACentimetreIsWholeInAKilometre) {
     camera.projection = projection;
     made.cameras = {camera};
     const media::Image image = drawn(renderer, made.picture());
-    const draw::Lens lens = made.depictor().lens(made.now);
+    const draw::CameraProjection lens = made.depictor().lens(made.now);
     const Color top = at(image, lens.page({400, 0.01, 300}));
     EXPECT_GT(like(top, *draw::color("orange")), 0.7);
     const Color over = at(image, lens.page({400.02, 0, 300}));
@@ -249,7 +249,7 @@ TEST(Space, ShadowsLieOnTheGroundAwayFromTheLightSoftAndNeverBlack) {
   made.box({0, 1, 0}, {0.4, 0.1, 0.4}, "orange");
   Renderer renderer(640, 360);
   const media::Image image = drawn(renderer, made.picture());
-  const draw::Lens lens = made.depictor().lens(made.now);
+  const draw::CameraProjection lens = made.depictor().lens(made.now);
   // the shadow's middle by hand: 1 m down along the light
   const Vec3 foot(0.6, 0, -0.42);
   const double dark = brightness(at(image, lens.page(foot)));
@@ -300,9 +300,10 @@ TEST(Space, CamerasBesideEachOtherKeepToTheirWindows) {
   made.cameras = {draw::side(), draw::slant()};
   Renderer renderer(320, 180);
   const media::Image both = drawn(renderer, made.picture());
-  const draw::Lens left = made.depictor().lens(made.now, 0), right = made.depictor().lens(made.now, 1);
+  const draw::CameraProjection left = made.depictor().lens(made.now, 0),
+                               right = made.depictor().lens(made.now, 1);
   EXPECT_LT(left.window.x + left.window.width, right.window.x);
-  for (const draw::Lens& lens : {left, right}) {
+  for (const draw::CameraProjection& lens : {left, right}) {
     const Color green = at(both, lens.page({0.6, 0.3, 0.5}));
     EXPECT_GT(like(green, *draw::color("green")), 0.7);
   }

@@ -66,9 +66,9 @@ TEST(Chains, AreMadeOfBodiesAndTheirJoints) {
   // balls come before boxes: the foot is 0
   EXPECT_THAT(chain.bodies, ElementsAre(2, 1, 3)) << "the first flies, and carries what is joined to it";
   EXPECT_THAT(chain.joints, ElementsAre(-1, 0, 1));
-  EXPECT_EQ((*chain.tree)[0].joint.freedom, sim::Freedom::free);
-  EXPECT_EQ((*chain.tree)[1].joint.freedom, sim::Freedom::revolute);
-  EXPECT_EQ((*chain.tree)[2].joint.freedom, sim::Freedom::prismatic);
+  EXPECT_EQ((*chain.tree)[0].joint.freedom, sim::JointType::free);
+  EXPECT_EQ((*chain.tree)[1].joint.freedom, sim::JointType::revolute);
+  EXPECT_EQ((*chain.tree)[2].joint.freedom, sim::JointType::prismatic);
   EXPECT_TRUE(model.joints[0].linked && model.joints[1].linked);
   EXPECT_FALSE(model.joints[2].linked) << "a rope is no joint of a chain";
   EXPECT_FALSE(model.bodies[0].linked);
@@ -120,7 +120,7 @@ of = ["a", "b"]
 )",
                          "a.toml");
   const auto& chain = it.space().model.chains[0];
-  EXPECT_EQ((*chain.tree)[1].joint.freedom, sim::Freedom::ball);
+  EXPECT_EQ((*chain.tree)[1].joint.freedom, sim::JointType::ball);
   EXPECT_EQ(chain.tree->velocities(), 9);
 }
 

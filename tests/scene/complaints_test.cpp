@@ -35,7 +35,7 @@ void refused(const std::string& text, const std::string& line) {
   EXPECT_THAT(wrong(text), ElementsAre(line)) << text;
 }
 
-TEST(Complaints, UnknownKeysSayWhatWasMeant) {
+TEST(Diagnostics, UnknownKeysSayWhatWasMeant) {
   refused("duratoin = 3", "a.toml:1:1: unknown key 'duratoin'; did you mean 'duration'?");
   refused("[[box]]\nelastcity = 1",
           "a.toml:2:1: unknown key 'elastcity' in [[box]]; did you mean 'elasticity'?");
@@ -47,7 +47,7 @@ TEST(Complaints, UnknownKeysSayWhatWasMeant) {
           "a.toml:2:23: unknown key 'jiter' in 'copies'; did you mean 'jitter'?");
 }
 
-TEST(Complaints, TablesNobodyKnowsAreToldWhichThereAre) {
+TEST(Diagnostics, TablesNobodyKnowsAreToldWhichThereAre) {
   refused("[[wall]]", "a.toml:1:3: unknown key 'wall'; 'walls': it belongs in [room]");
   refused(
       "[[sphere]]",
@@ -55,21 +55,21 @@ TEST(Complaints, TablesNobodyKnowsAreToldWhichThereAre) {
       "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[explosion]], [[mouse]]");
 }
 
-TEST(Complaints, AKeyInTheWrongTableIsSentHome) {
+TEST(Diagnostics, AKeyInTheWrongTableIsSentHome) {
   refused("gravity = [0, -1]", "a.toml:1:1: unknown key 'gravity'; it belongs in [room]");
   refused("[room]\nfps = 30", "a.toml:2:1: unknown key 'fps' in [room]; it belongs in [film]");
   refused("[film]\nduration = 30",
           "a.toml:2:1: unknown key 'duration' in [film]; it belongs at the top, before the first [table]");
 }
 
-TEST(Complaints, WhatComesLaterIsNamedAsSuch) {
+TEST(Diagnostics, WhatComesLaterIsNamedAsSuch) {
   refused("[[particle]]\n[[spring]]\nbetween = [\"particle[0]\", [1, 1]]\nbreaks = 5",
           "a.toml:4:1: 'breaks' is not in this version of obscura yet");
   refused("version = 2",
           "a.toml:1:11: version 2 of the language is newer than this obscura, which reads version 1");
 }
 
-TEST(Complaints, TypesAreNeverGuessed) {
+TEST(Diagnostics, TypesAreNeverGuessed) {
   refused("[[particle]]\nmass = \"heavy\"",
           "a.toml:2:8: 'mass': expected a number of kilograms, got the string \"heavy\"");
   refused("[[particle]]\nmass = \"0.5\"",
@@ -96,11 +96,11 @@ TEST(Complaints, TypesAreNeverGuessed) {
       "a.toml:2:8: 'rate': expected a number per second, or a fraction such as \"30000/1001\", got 'fast'");
 }
 
-TEST(Complaints, IntegersAreNumbers) {
+TEST(Diagnostics, IntegersAreNumbers) {
   EXPECT_THAT(wrong("duration = 3\n[[particle]]\nmass = 2\nposition = [1, 2]"), ElementsAre());
 }
 
-TEST(Complaints, NumbersKeepTheirRanges) {
+TEST(Diagnostics, NumbersKeepTheirRanges) {
   refused("duration = 0", "a.toml:1:12: 'duration' must be positive, got 0");
   refused("[[particle]]\nmass = -1", "a.toml:2:8: 'mass' must be positive, got -1");
   refused("[[particle]]\nmass = 0", "a.toml:2:8: 'mass' must be positive, got 0");
@@ -117,7 +117,7 @@ TEST(Complaints, NumbersKeepTheirRanges) {
   refused("[[particle]]\nmass = 1e200", "a.toml:2:8: 'mass' is too large, got 1e+200");
 }
 
-TEST(Complaints, TimesAreExactOrRefused) {
+TEST(Diagnostics, TimesAreExactOrRefused) {
   refused("duration = 0.12345678",
           "a.toml:1:12: 'duration' is kept exactly and 0.12345678 has too many digits: expected microseconds "
           "at the finest");
@@ -126,14 +126,14 @@ TEST(Complaints, TimesAreExactOrRefused) {
           "of whole numbers up to a million");
 }
 
-TEST(Complaints, WhatIsTooSmallOrTooLargeToTurnSaysWhich) {
+TEST(Diagnostics, WhatIsTooSmallOrTooLargeToTurnSaysWhich) {
   refused("[[box]]\nsize = [1e-200, 1e-200]\nposition = [1, 1]",
           "a.toml:2:8: the box's moment of inertia is too small to be reckoned with");
   refused("[[box]]\nsize = [1e-170, 1e-170]\nposition = [1, 1]\nmass = 1",
           "a.toml:2:8: the box's moment of inertia is too small to be reckoned with");
 }
 
-TEST(Complaints, WordsComeFromTheirList) {
+TEST(Diagnostics, WordsComeFromTheirList) {
   refused("[look]\ntheme = \"papr\"",
           "a.toml:2:9: 'theme': expected one of paper, screen, got 'papr'; did you mean 'paper'?");
   refused("[physics]\nintegrator = \"verlet\"",
@@ -149,7 +149,7 @@ TEST(Complaints, WordsComeFromTheirList) {
 
 const std::string kContact = "[physics]\ncollision = \"contact\"\n";
 
-TEST(Complaints, PolygonsAreConvexAndSayWhereNot) {
+TEST(Diagnostics, PolygonsAreConvexAndSayWhereNot) {
   const auto polygon = [](const std::string& points) { return kContact + "[[polygon]]\npoints = " + points; };
   refused(polygon("[[0, 0], [1, 0], [0.2, 0.2], [0, 1]]"),
           "a.toml:4:27: points[2] turns the other way: a polygon must be convex; make a [[body]] of several");
@@ -166,7 +166,7 @@ TEST(Complaints, PolygonsAreConvexAndSayWhereNot) {
           "a.toml:3:1: [[polygon]] needs 'points': three points or more [[x, y], ...] in metres");
 }
 
-TEST(Complaints, ShapesOfABodyAreOneOfThree) {
+TEST(Diagnostics, ShapesOfABodyAreOneOfThree) {
   refused(kContact + "[[body]]\nshapes = [{ radius = 0.1, size = [1, 1] }]",
           "a.toml:4:11: a shape is one of three: expected 'radius', 'size' or 'points'");
   refused(kContact + "[[body]]\nshapes = []", "a.toml:4:10: 'shapes' is empty: expected a part at least");
@@ -175,7 +175,7 @@ TEST(Complaints, ShapesOfABodyAreOneOfThree) {
       "a.toml:4:27: unknown key 'densty' in each of 'shapes'; it has radius, size, points, position, angle");
 }
 
-TEST(Complaints, JointsSayWhereTheyAre) {
+TEST(Diagnostics, JointsSayWhereTheyAre) {
   const std::string two =
       kContact +
       "[[ball]]\nname = \"a\"\nposition = [1, 1]\n[[ball]]\nname = \"b\"\nposition = [2, 1]\n"
@@ -205,7 +205,7 @@ TEST(Complaints, JointsSayWhereTheyAre) {
           "a.toml:13:8: 'type': expected one of pin, hinge, ball, weld, slider, rod, rope, got 'hook'");
 }
 
-TEST(Complaints, GroupsAreThoseOfBodies) {
+TEST(Diagnostics, GroupsAreThoseOfBodies) {
   refused("[[box]]\ngroup = \"stones\"\n[contact]\nignore = [[\"stones\", \"stone\"]]",
           "a.toml:4:22: no body is of the group 'stone'; did you mean 'stones'?");
   refused("[[box]]\n[contact]\nignore = [\"stones\"]",
@@ -213,7 +213,7 @@ TEST(Complaints, GroupsAreThoseOfBodies) {
           "\"stones\"");
 }
 
-TEST(Complaints, OverlapsNameThePairAndTheDepth) {
+TEST(Diagnostics, OverlapsNameThePairAndTheDepth) {
   const std::string pair =
       "[[box]]\nname = \"a\"\nsize = [1, 1]\nposition = [2, 2]\n[[box]]\nname = \"b\"\nsize = [1, 1]\n";
   refused(kContact + pair + "position = [2.9, 2.2]",
@@ -252,27 +252,27 @@ TEST(Complaints, OverlapsNameThePairAndTheDepth) {
           .empty());
 }
 
-TEST(Complaints, TheCameraFollowsOneBody) {
+TEST(Diagnostics, TheCameraFollowsOneBody) {
   refused("[[box]]\nname = \"a\"\n[camera]\nfollow = \"b\"",
           "a.toml:4:10: no body is called 'b'; did you mean 'a'?");
   refused("[[box]]\nname = \"a\"\n[camera]\nfollow = \"a\"\ncenter = [1, 1]",
           "a.toml:5:10: the camera follows a body, or looks at 'center'; leave one out");
 }
 
-TEST(Complaints, TheHandoutKnowsParticlesAndBoxes) {
+TEST(Diagnostics, TheHandoutKnowsParticlesAndBoxes) {
   refused(
       "[physics]\ncollision = \"handout\"\n[[ball]]",
       "a.toml:3:1: [[ball]] is not in `collision = \"handout\"`, which knows particles and boxes; [physics] "
       "collision = \"contact\" has it");
 }
 
-TEST(Complaints, ANameIsNotWhatNamelessOnesAreCalled) {
+TEST(Diagnostics, ANameIsNotWhatNamelessOnesAreCalled) {
   refused(kContact + "[[ball]]\nposition = [1, 1]\n[[particle]]\nname = \"ball\"",
           "a.toml:6:8: the name 'ball' is what [[ball]]s without one are called, as at a.toml:3:1");
   EXPECT_TRUE(wrong(kContact + "[[ball]]\nname = \"ball\"", {"ball.mass=2"}).empty());
 }
 
-TEST(Complaints, NamesAreOneEach) {
+TEST(Diagnostics, NamesAreOneEach) {
   refused("[[box]]\nname = \"a\"\n[[particle]]\nname = \"a\"",
           "a.toml:4:8: the name 'a' is taken by another body at a.toml:2:8");
   refused("[[box]]\nname = \"a\"\n[[spring]]\nname = \"a\"\nbetween = [\"a\", [1, 1]]",
@@ -284,7 +284,7 @@ TEST(Complaints, NamesAreOneEach) {
           "a.toml:2:8: 'name': expected letters, digits, _ and -, a letter first, got ''");
 }
 
-TEST(Complaints, ReferencesMustMeanSomething) {
+TEST(Diagnostics, ReferencesMustMeanSomething) {
   const std::string things =
       "[[particle]]\nname = \"ball\"\ncopies = { count = 3, offset = [0.5, 0] }\n[[box]]\nname = "
       "\"crate\"\n[[spring]]\n";
@@ -324,7 +324,7 @@ TEST(Complaints, ReferencesMustMeanSomething) {
   refused("[[net]]\nof = \"a\"", "a.toml:2:6: no body is called 'a'");
 }
 
-TEST(Complaints, BodiesLieInTheRoom) {
+TEST(Diagnostics, BodiesLieInTheRoom) {
   refused("[room]\nsize = [4, 3]\n[[particle]]\nposition = [4.25, 1]",
           "a.toml:4:12: 'particle[0]' is outside the room: 0.25 m beyond the right wall (a.toml:2:8)");
   refused("[room]\nsize = [4, 3]\n[[particle]]\nposition = [1, 0.25]\nradius = 0.5",
@@ -344,20 +344,20 @@ TEST(Complaints, BodiesLieInTheRoom) {
           "room.size is left out), and so are 1 more of its copies");
 }
 
-TEST(Complaints, OnAWallIsInTheRoom) {
+TEST(Diagnostics, OnAWallIsInTheRoom) {
   EXPECT_THAT(wrong("[[particle]]\nposition = [8, 4.5]"), ElementsAre());
   EXPECT_THAT(wrong("[[particle]]\nradius = 0.1\nposition = [0.1, 0.1]"), ElementsAre());
   EXPECT_THAT(wrong("[[box]]\nsize = [0.6, 0.4]\nposition = [0.3, 0.2]"), ElementsAre());
   EXPECT_THAT(wrong("[[box]]\nsize = [0.6, 0.4]\nangle = 90\nposition = [0.2, 0.3]"), ElementsAre());
 }
 
-TEST(Complaints, WhatIsHeldCountsByItsCentre) {
+TEST(Diagnostics, WhatIsHeldCountsByItsCentre) {
   EXPECT_THAT(wrong("[[particle]]\nradius = 0.1\nfixed = true\nposition = [4, 4.5]"), ElementsAre());
   EXPECT_THAT(wrong("[[particle]]\nradius = 0.1\nfixed = true\nposition = [4, 4.6]"),
               ElementsAre(HasSubstr("0.1 m beyond the ceiling")));
 }
 
-TEST(Complaints, RoomsMustBeRooms) {
+TEST(Diagnostics, RoomsMustBeRooms) {
   refused("[room]\nwalls = [{ point = [0, 0], normal = [0, 0] }]",
           "a.toml:2:37: 'normal' is zero: expected the direction into the room, such as [0, 1]");
   refused("[room]\nwalls = [{ point = [0, 0] }]",
@@ -370,7 +370,7 @@ TEST(Complaints, RoomsMustBeRooms) {
           "a.toml:2:10: 'corner' is that of 'size', and there is none");
 }
 
-TEST(Complaints, PlaneAndSpaceDoNotMix) {
+TEST(Diagnostics, PlaneAndSpaceDoNotMix) {
   refused("[room]\nsize = [4, 3]\n[[particle]]\nposition = [1, 1, 1]",
           "a.toml:4:12: 'position' has 3 numbers and 'size' at a.toml:2:8 has 2: a scene is planar or in "
           "space, not both");
@@ -379,7 +379,7 @@ TEST(Complaints, PlaneAndSpaceDoNotMix) {
           "scene is planar or in space, not both");
 }
 
-TEST(Complaints, MouseTimesIncrease) {
+TEST(Diagnostics, MouseTimesIncrease) {
   const std::string ball = "[[particle]]\n[[mouse]]\n";
   refused(ball + "path = [[1, 4, 3], [1, 5, 3]]",
           "a.toml:3:21: times must increase along the path, got 1 after 1");
@@ -391,7 +391,7 @@ TEST(Complaints, MouseTimesIncrease) {
           "a.toml:1:1: the mouse has nothing to take: no body of the scene can move");
 }
 
-TEST(Complaints, SpeedsOfAFilmArePositiveAndTheirKeysIncrease) {
+TEST(Diagnostics, SpeedsOfAFilmArePositiveAndTheirKeysIncrease) {
   refused("[film]\nspeed = 0", "a.toml:2:9: 'speed' must be at least 0.001, got 0");
   refused("[film]\nspeed = \"fast\"",
           "a.toml:2:9: 'speed': expected a number or fraction, or a list of tables, got 'fast'");
@@ -404,7 +404,7 @@ TEST(Complaints, SpeedsOfAFilmArePositiveAndTheirKeysIncrease) {
           "a.toml:2:22: unknown key 'spead' in each of 'speed'; did you mean 'speed'?");
 }
 
-TEST(Complaints, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
+TEST(Diagnostics, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
   refused("[[film.plot]]\nquantity = [\"height\"]\n[[ball]]",
           "a.toml:1:1: a plot of 'height' needs 'of', the body that has it");
   refused("[[film.plot]]\nquantity = []\n[[ball]]",
@@ -418,7 +418,7 @@ TEST(Complaints, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
   refused("[film]\nshutter = 400", "a.toml:2:11: 'shutter' must be at most 360 deg, got 400");
 }
 
-TEST(Complaints, CopiesAreCountedAndBounded) {
+TEST(Diagnostics, CopiesAreCountedAndBounded) {
   refused("[[particle]]\ncopies = { count = [2000, 2000] }",
           "a.toml:2:20: 'count': 4000000 bodies in all are more than 1000000, the most a scene may have");
   refused("[[particle]]\ncopies = { count = 0 }", "a.toml:2:20: 'count' must be at least 1, got 0");
@@ -445,7 +445,7 @@ TEST(Complaints, CopiesAreCountedAndBounded) {
           "a.toml:2:9: 'fixed': expected true or false; a list of copies needs copies");
 }
 
-TEST(Complaints, OneThingIsSaidOnce) {
+TEST(Diagnostics, OneThingIsSaidOnce) {
   refused("[[box]]\nmass = 1\ndensity = 2",
           "a.toml:3:11: 'mass' and 'density' both say how heavy it is; leave one out");
   refused("[camera]\nwidth = 3\nkeys = [{ time = 0 }]",
@@ -454,7 +454,7 @@ TEST(Complaints, OneThingIsSaidOnce) {
           "a.toml:2:32: times must increase from key to key, got 1 after 1");
 }
 
-TEST(Complaints, OfGoldenStatesAndWhatIsKept) {
+TEST(Diagnostics, OfGoldenStatesAndWhatIsKept) {
   const auto refused = [](const std::string& text, const std::string& line) {
     EXPECT_THAT(wrong("[golden]\n" + text), ElementsAre(line)) << text;
   };
@@ -464,7 +464,7 @@ TEST(Complaints, OfGoldenStatesAndWhatIsKept) {
           "a.toml:2:8: 'keep': expected one of pictures, hash, got 'hashes'; did you mean 'hash'?");
 }
 
-TEST(Complaints, AllComeInOneGoInTheOrderOfTheFile) {
+TEST(Diagnostics, AllComeInOneGoInTheOrderOfTheFile) {
   EXPECT_THAT(
       wrong("[[spring]]\nbetween = [\"a\", \"b\"]\n[room]\nsize = [-1, 2]\n[[box]]\nmas = 2\ntitle = 2\n"),
       ElementsAre(
@@ -474,7 +474,7 @@ TEST(Complaints, AllComeInOneGoInTheOrderOfTheFile) {
           "a.toml:7:1: unknown key 'title' in [[box]]; it belongs at the top, before the first [table]"));
 }
 
-TEST(Complaints, AHundredAreEnough) {
+TEST(Diagnostics, AHundredAreEnough) {
   std::string text;
   for (int i = 0; i < 250; ++i) text += "zzzzz" + std::to_string(i) + " = 1\n";
   const auto lines = wrong(text);
@@ -482,7 +482,7 @@ TEST(Complaints, AHundredAreEnough) {
   EXPECT_EQ(lines.back(), "a.toml: and 150 more");
 }
 
-TEST(Complaints, ColumnsCountCodePoints) {
+TEST(Diagnostics, ColumnsCountCodePoints) {
   EXPECT_THAT(wrong("[[box]]\nangle = [1, \"åå\", \"b\"]"),
               ElementsAre(StartsWith("a.toml:2:13: "), StartsWith("a.toml:2:19: ")));
 }

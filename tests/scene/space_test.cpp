@@ -53,7 +53,7 @@ TEST(Space, DefaultsHaveAThirdNumber) {
   EXPECT_EQ(it.space().state.x[0], Vec(0, 1.5, 0));  // the middle of the room
   EXPECT_EQ(it.space().state.v[0], Vec(0, 0, 0));
   EXPECT_EQ(it.space().state.spin[0], Vec(0, 0, 0));
-  EXPECT_EQ(it.space().state.turn[0], sim::upright<3>());
+  EXPECT_EQ(it.space().state.turn[0], sim::no_rotation<3>());
   EXPECT_EQ(it.space().model.scale, 3);
   EXPECT_EQ(it.extent.low, sim::Vec3(-2, 0, -1));
   EXPECT_EQ(it.extent.high, sim::Vec3(2, 3, 1));
@@ -89,7 +89,7 @@ TEST(Space, OrientationIsThreeTurnsOrAnAxisAndAnAngle) {
   const double half = std::sqrt(0.5);
   for (const char* words : {"[0, 90, 0]", "{ axis = [0, 3, 0], angle = 90 }"}) {
     const auto turn = scene(kRoom + "[[box]]\norientation = " + words).space().state.turn[0];
-    EXPECT_NEAR((turn - sim::Turn<3>(0, half, 0, half)).norm(), 0, kExact) << words;
+    EXPECT_NEAR((turn - sim::Orientation<3>(0, half, 0, half)).norm(), 0, kExact) << words;
   }
   // about x, then about z of the room: the box's y goes to z and stays there
   const auto turn = scene(kRoom + "[[box]]\norientation = [90, 0, 90]").space().state.turn[0];
@@ -157,7 +157,8 @@ TEST(Space, HullsHaveWholeFacesAndNoInnerPoints) {
   EXPECT_EQ(cube.vertices.size(), 8u);
   ASSERT_EQ(cube.faces.size(), 6u);
   for (const auto& face : cube.faces) EXPECT_EQ(face.size(), 4u);
-  EXPECT_NEAR(sim::bulk(cube).content, 8, 1e-12);  // of loops that go around the other way it is negative
+  EXPECT_NEAR(sim::mass_properties(cube).content, 8,
+              1e-12);  // of loops that go around the other way it is negative
 
   // points on a ball: Euler's 2 n - 4 triangles, each with all others on its inner side
   points.clear();
@@ -189,7 +190,8 @@ TEST(Space, WhatDoesNotTurnComesFirstAndKeepsItsForm) {
   EXPECT_FALSE(world.model.bodies[0].turns());
   // it stands as it was turned: its x side is 0.4 m long
   double widest = 0;
-  for (const auto& tip : sim::tips(world.model.bodies[0].shape)) widest = std::max(widest, tip.at.x());
+  for (const auto& tip : sim::support_vertices(world.model.bodies[0].shape))
+    widest = std::max(widest, tip.at.x());
   EXPECT_NEAR(widest, 0.2, kExact);
   EXPECT_THAT(complaint(kRoom + "[physics]\nrotation = false\n[[box]]\nspin = [0, 1, 0]"),
               HasSubstr("'spin' of a body that does not turn"));
@@ -335,8 +337,8 @@ TEST(Space, SetWritesTheThirdNumber) {
                                  "copies = { count = 2, offset = [0.5, 0, 0] }",
                              {"b[1].position.z=0.5", "b[0].orientation=[0,0,0]"});
   EXPECT_EQ(copies.space().state.x[1], Vec(0.5, 1.5, 0.5));
-  EXPECT_EQ(copies.space().state.turn[0], sim::upright<3>());
-  EXPECT_NE(copies.space().state.turn[1], sim::upright<3>());
+  EXPECT_EQ(copies.space().state.turn[0], sim::no_rotation<3>());
+  EXPECT_NE(copies.space().state.turn[1], sim::no_rotation<3>());
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ World<2> flat_figure() {
     bodies.push_back(add_box(world, size, mass, {0, 0}));
     Link<2> link = link_of(world.model.bodies.back());
     link.parent = parent;
-    link.joint.freedom = parent < 0 ? Freedom::free : Freedom::revolute;
+    link.joint.freedom = parent < 0 ? JointType::free : JointType::revolute;
     link.joint.on_parent.place = on_parent, link.joint.on_link.place = on_link;
     links.push_back(link);
   };
@@ -175,7 +175,7 @@ TEST(Articulated, AFigureThatFliesInSpaceKeepsItsMomenta) {
     bodies.push_back(add_solid(world, brick({0.3, 0.5, 0.2}), 3, {0, 0, 0}));
     Link<3> link = link_of(world.model.bodies.back());
     link.parent = i - 1;
-    link.joint.freedom = i == 0 ? Freedom::free : i == 1 ? Freedom::revolute : Freedom::ball;
+    link.joint.freedom = i == 0 ? JointType::free : i == 1 ? JointType::revolute : JointType::ball;
     if (i > 0) link.joint.on_parent.place = {0, -0.25, 0}, link.joint.on_link.place = {0, 0.25, 0};
     links.push_back(link);
   }
@@ -264,8 +264,8 @@ TEST(Articulated, ALinkStandsAsItsFramesSay) {
   World<2> world = room();
   const int body = add_box(world, {1, 0.5}, 1, {0, 0});
   Link<2> link = link_of(world.model.bodies[body]);
-  link.joint.on_parent = {rotation<2>(Turn<2>(2.9)), {1, 2}};
-  link.joint.on_link = {rotation<2>(Turn<2>(-0.7)), {0.5, 0}};
+  link.joint.on_parent = {rotation<2>(Orientation<2>(2.9)), {1, 2}};
+  link.joint.on_link = {rotation<2>(Orientation<2>(-0.7)), {0.5, 0}};
   articulate(world, {link}, {body});
   world.state.postures[0].q = {4 * std::acos(-1.0)};
   const State<2> state = stepped(world, 0);

@@ -157,7 +157,7 @@ World<3> scatter() {
 
 TEST(Explosion, TurnsWithTheWholeScene) {
   World<3> world = scatter(), other = world;
-  const Turn<3> by = exponential({0.7, -1.1, 0.4});
+  const Orientation<3> by = exponential({0.7, -1.1, 0.4});
   const Eigen::Matrix3d turn = rotation<3>(by);
   other.model.gravity = turn * world.model.gravity;
   other.model.explosions[0].center = turn * world.model.explosions[0].center;
@@ -201,7 +201,7 @@ TEST(Explosion, BlowsABodyAwayAsItsPoints) {
   world.model.rate = {1000000, 1};
   const Explosion<3> it = explosion<3>(10, {-0.9, 0.2, 0.1});
   world.model.explosions.push_back(it);
-  const Turn<3> turn = exponential({0.4, 0.2, -0.6});
+  const Orientation<3> turn = exponential({0.4, 0.2, -0.6});
   add_solid(world, brick({1, 0.5, 0.8}), 2, {0, 0, 0}, Vec3::Zero(), turn);
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   const Eigen::Matrix3d axes = rotation<3>(turn);
@@ -280,7 +280,7 @@ TEST(GroundDrag, BrakesWhatStandsOnTheGround) {
   add_wall(world, Vec3::Zero(), Vec3::UnitY());
   world.model.scale = 4;
   add_particle(world, {0, 0, 0}, {1, 0, 2}, 2, 0.5);
-  add_solid(world, brick({1, 0.5, 0.8}), 2, {5, 0.25, 0}, {1, 0, 2}, upright<3>(), Vec3::Zero(), 0.5);
+  add_solid(world, brick({1, 0.5, 0.8}), 2, {5, 0.25, 0}, {1, 0, 2}, no_rotation<3>(), Vec3::Zero(), 0.5);
   for (Body<3>& body : world.model.bodies) body.ground_drag = 0.8;
   const State<3> now = stepped(world, 500);
   for (const int body : {0, 1}) {

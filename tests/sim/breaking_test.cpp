@@ -16,7 +16,7 @@ Joint<2> rod(End<2> a, End<2> b, double length) {
 }
 
 // m = 2 kg on a rod of 1 m about the origin, let go level
-World<2> swing() {
+World<2> cross_velocity() {
   World<2> world = touching_room();
   add_particle(world, {1, 0}, {0, 0}, 2);
   world.model.joints.push_back(rod({0, {0, 0}}, {-1, {0, 0}}, 1));
@@ -26,8 +26,8 @@ World<2> swing() {
 TEST(Breaking, ARodReportsTheTensionOfASwing) {
   // T = 3 m g cos of the angle from straight down, here as the place says it. 1e-8: the speed is
   // Runge-Kutta's
-  State<2> state = swing().state;
-  const World<2> world = swing();
+  State<2> state = cross_velocity().state;
+  const World<2> world = cross_velocity();
   Stepper<2> stepper(world.model);
   stepper.begin(state);
   for (int i = 0; i < 300; ++i) {
@@ -39,7 +39,7 @@ TEST(Breaking, ARodReportsTheTensionOfASwing) {
 
 TEST(Breaking, ASwingBreaksItsRodWhereTheTensionSays) {
   // at 1.5 m g the cosine is 1/2: y = -1/2. Broken at the end of the first step beyond it, then a parabola
-  World<2> world = swing();
+  World<2> world = cross_velocity();
   world.model.joints[0].breaks = 1.5 * 2 * 9.81;
   State<2> state = world.state, before = state;
   Stepper<2> stepper(world.model);

@@ -41,7 +41,7 @@ TEST(BulkInSpace, OfACapsuleIsThatOfItsDiscs) {
     const double r2 = r * r - beyond * beyond, slice = std::numbers::pi * r2 * h;
     volume += slice, along += slice * r2 / 2, across += slice * (r2 / 4 + y * y);
   }
-  const Bulk<3> got = bulk(capsule(a, r));
+  const MassProperties<3> got = mass_properties(capsule(a, r));
   // midpoint rule: h^2 = 8e-11 of the whole
   EXPECT_NEAR(got.content, volume, 1e-9);
   EXPECT_NEAR(got.second[0], across, 1e-9);
@@ -54,7 +54,7 @@ TEST(BulkInSpace, OfATetrahedronIsTheClosedForm) {
   hull.kind = ShapeKind::hull;
   hull.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   hull.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  const Bulk<3> got = bulk(hull);
+  const MassProperties<3> got = mass_properties(hull);
   EXPECT_NEAR(got.content, 1.0 / 6, 1e-16);
   EXPECT_LE((got.center - Vec3::Constant(0.25)).norm(), 1e-16);
   // about the centroid C = 1/160 on, -1/480 off the diagonal: of 1 1 1 1/480, across it 1/120
@@ -73,7 +73,7 @@ TEST(BulkInSpace, SeatedShapesHaveTheirAxesAndStandWhereTheyStood) {
     box.center = dice.vector<3>(4);
     box.turn = exponential(dice.vector<3>(2));
     const Shape<3> hull = as_hull(box);
-    const Bulk<3> got = bulk(hull);
+    const MassProperties<3> got = mass_properties(hull);
     EXPECT_NEAR(got.content, 8 * box.half.prod(), 1e-13);
     EXPECT_LE((got.center - box.center).norm(), 1e-13);
     Vec3 want = solid_inertia(box, 1), moments = got.second / got.content;
@@ -81,11 +81,11 @@ TEST(BulkInSpace, SeatedShapesHaveTheirAxesAndStandWhereTheyStood) {
     EXPECT_LE((want - moments).norm(), 1e-12);
 
     const Shape<3> seat = seated(hull, got);
-    const Bulk<3> again = bulk(seat);
+    const MassProperties<3> again = mass_properties(seat);
     EXPECT_LE(again.center.norm(), 1e-14);
     EXPECT_LE((again.second - got.second).norm(), 1e-12);
     // tilted by no more than the rounding of the moments over their differences
-    EXPECT_LE((again.axes - upright<3>()).norm(), 1e-12);
+    EXPECT_LE((again.axes - no_rotation<3>()).norm(), 1e-12);
     const Eigen::Matrix3d axes = rotation<3>(got.axes);
     for (int i = 0; i < 8; ++i)
       EXPECT_LE((got.center + axes * seat.vertices[i] - hull.vertices[i]).norm(), 1e-14);
@@ -97,14 +97,14 @@ TEST(BulkInSpace, SeatedShapesHaveTheirAxesAndStandWhereTheyStood) {
     one.center = box.center + off, two.center = box.center - off;
     Shape<3> whole;
     whole.kind = ShapeKind::compound, whole.parts = {one, as_hull(two)};
-    const Bulk<3> halves = bulk(whole);
+    const MassProperties<3> halves = mass_properties(whole);
     EXPECT_LE((halves.center - got.center).norm(), 1e-13);
     Vec3 both = halves.second / halves.content;
     std::sort(both.data(), both.data() + 3);
     EXPECT_LE((both - want).norm(), 1e-12);
-    const Bulk<3> sat = bulk(seated(whole, halves));
+    const MassProperties<3> sat = mass_properties(seated(whole, halves));
     EXPECT_LE(sat.center.norm(), 1e-13);
-    EXPECT_LE((sat.axes - upright<3>()).norm(), 1e-11);
+    EXPECT_LE((sat.axes - no_rotation<3>()).norm(), 1e-11);
     EXPECT_NEAR(reach(seated(whole, halves)), box.half.norm(), 1e-13);
   }
 }
@@ -115,13 +115,13 @@ TEST(BulkInSpace, AShapeWhoseAxesAreItsFramesKeepsThem) {
   Shape<3> handle = capsule(0.5, 0.1), head = brick({0.6, 0.2, 0.3});
   head.center = {0, 0.6, 0};
   whole.parts = {handle, head};
-  EXPECT_EQ(bulk(whole).axes, upright<3>());
+  EXPECT_EQ(mass_properties(whole).axes, no_rotation<3>());
 }
 
 TEST(BoundsInSpace, HoldEveryTipAndTouchOne) {
   Dice dice(6);
   for (int trial = 0; trial < 200; ++trial) {
-    Stance<3> at;
+    BodyMotion<3> at;
     at.x = dice.vector<3>(5);
     at.room_from_body = rotation<3>(exponential(dice.vector<3>(2)));
     Shape<3> whole;
@@ -133,7 +133,7 @@ TEST(BoundsInSpace, HoldEveryTipAndTouchOne) {
     const Bounds<3> around = bounds(whole, at);
     Vec3 lower = Vec3::Constant(1e9), upper = -lower;
     double most = 0;
-    for (const Tip<3>& tip : tips(whole)) {
+    for (const SupportVertex<3>& tip : support_vertices(whole)) {
       const Vec3 place = at.x + at.arm(tip.at);
       lower = lower.cwiseMin(place - Vec3::Constant(tip.radius));
       upper = upper.cwiseMax(place + Vec3::Constant(tip.radius));

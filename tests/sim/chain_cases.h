@@ -25,7 +25,7 @@ Rotation<D> any_rotation(Dice& dice) {
 
 /// A link of any shape on any joint; those of real solids, no moment above the sum of the others.
 template <int D>
-Link<D> any_link(Dice& dice, int parent, Freedom freedom) {
+Link<D> any_link(Dice& dice, int parent, JointType freedom) {
   Link<D> link;
   link.parent = parent;
   link.joint.freedom = freedom;
@@ -53,10 +53,10 @@ Chain<D> any_tree(Dice& dice, int n) {
   for (int i = 0; i < n; ++i) {
     // mostly off one of the last three links, so that the tree is deep and branches
     const int parent = i == 0 ? -1 : std::max(0, i - 1 - dice.below(3));
-    constexpr Freedom kinds[] = {Freedom::revolute, Freedom::prismatic, Freedom::ball, Freedom::revolute,
-                                 Freedom::weld};
+    constexpr JointType kinds[] = {JointType::revolute, JointType::prismatic, JointType::ball,
+                                   JointType::revolute, JointType::weld};
     links.push_back(
-        any_link<D>(dice, parent, i == 0 && flies ? Freedom::free : kinds[dice.below(i == 0 ? 4 : 5)]));
+        any_link<D>(dice, parent, i == 0 && flies ? JointType::free : kinds[dice.below(i == 0 ? 4 : 5)]));
   }
   return Chain<D>(std::move(links));
 }
@@ -67,7 +67,7 @@ struct Swinging {
   Chain<D> chain;
   Vec<D> gravity = Vec<D>::Unit(D - 1) * -9.81;
   std::vector<double> q, v, tau;
-  ChainStance<D> stance;
+  ChainKinematics<D> stance;
   ChainDynamics<D> dynamics;
 
   explicit Swinging(Chain<D> from)
@@ -174,11 +174,12 @@ inline std::vector<Link<3>> in_space(const std::vector<Link<2>>& flat, bool ball
     Link<3> link;
     link.parent = from.parent;
     link.joint.freedom =
-        from.joint.freedom == Freedom::revolute && balls ? Freedom::ball : from.joint.freedom;
+        from.joint.freedom == JointType::revolute && balls ? JointType::ball : from.joint.freedom;
     link.joint.on_parent = deep(from.joint.on_parent);
     link.joint.on_link = deep(from.joint.on_link);
     const Vec<2>& slide = from.joint.axis;
-    link.joint.axis = from.joint.freedom == Freedom::prismatic ? Vec3(slide[0], slide[1], 0) : Vec3::UnitZ();
+    link.joint.axis =
+        from.joint.freedom == JointType::prismatic ? Vec3(slide[0], slide[1], 0) : Vec3::UnitZ();
     link.joint.damping = from.joint.damping;
     link.mass = from.mass;
     link.com = {from.com[0], from.com[1], 0};

@@ -21,7 +21,7 @@ Swinging<D> any_swing(Dice& dice) {
   Swinging<D> tree(any_tree<D>(dice, 1 + dice.below(20)));
   tree.shake(dice, 2, 3);
   for (double& x : tree.tau) x = dice.between(-5, 5);
-  for (auto& f : tree.dynamics.applied) f = {dice.vector<kSpins<D>>(5), dice.vector<D>(5)};
+  for (auto& f : tree.dynamics.applied) f = {dice.vector<kAngular<D>>(5), dice.vector<D>(5)};
   return tree;
 }
 
@@ -135,7 +135,7 @@ TYPED_TEST(ChainForces, APushGivesTheEnergyOfForceTimesMeanVelocity) {
     const auto after = tree.sums();
     const Vec<D> v1 = point_velocity(tree.stance, link, point);
     EXPECT_NEAR(after.kinetic - before.kinetic, impulse.dot(0.5 * (v0 + v1)), 1e-13 * before.kinetic);
-    if (tree.chain[0].joint.freedom == Freedom::free) {
+    if (tree.chain[0].joint.freedom == JointType::free) {
       EXPECT_LE((after.momentum - before.momentum - impulse).norm(), 1e-12 * before.momentum.norm());
     }
   }
@@ -189,8 +189,9 @@ TYPED_TEST(ChainForces, JointWrenchesCarryTheLinks) {
       const double mass = tree.chain[i].mass;
       const Vec<D> acceleration = point_acceleration<D>(tree.stance, i, a, tree.stance.joint[i].place + com);
       const Vec<D> force = mass * (acceleration - tree.gravity);
-      const Spin<D>& w = tree.stance.twist[i].w;
-      const Spin<D> torque = tree.stance.inertia[i] * a.w + spin_cross<D>(w, tree.stance.inertia[i] * w);
+      const AngularVec<D>& w = tree.stance.twist[i].w;
+      const AngularVec<D> torque =
+          tree.stance.inertia[i] * a.w + spin_cross<D>(w, tree.stance.inertia[i] * w);
       const double size = std::max({1.0, force.norm(), tree.dynamics.resistance[0].f.norm()});
       EXPECT_LE((sum.f - force).norm(), 1e-11 * size);
       EXPECT_LE((sum.n - moment<D>(com, sum.f) - torque).norm(), 1e-11 * size);
@@ -207,12 +208,12 @@ TYPED_TEST(ChainForces, JointWrenchesCarryTheLinks) {
 TYPED_TEST(ChainForces, NothingDependsOnHowFastTheWholeTravels) {
   constexpr int D = TypeParam::value;
   Dice dice(9);
-  std::vector<Link<D>> links = {any_link<D>(dice, -1, Freedom::free)};
-  for (int i = 1; i < 6; ++i) links.push_back(any_link<D>(dice, i - 1, Freedom::ball));
+  std::vector<Link<D>> links = {any_link<D>(dice, -1, JointType::free)};
+  for (int i = 1; i < 6; ++i) links.push_back(any_link<D>(dice, i - 1, JointType::ball));
   Swinging<D> slow(Chain<D>{links});
   slow.shake(dice, 2, 3);
   Swinging<D> fast = slow;
-  for (int k = 0; k < D; ++k) fast.v[kSpins<D> + k] += 1e4;
+  for (int k = 0; k < D; ++k) fast.v[kAngular<D> + k] += 1e4;
   // to the bit: the velocity of the whole enters nowhere
   EXPECT_EQ(slow.rate(), fast.rate());
 }
@@ -220,13 +221,13 @@ TYPED_TEST(ChainForces, NothingDependsOnHowFastTheWholeTravels) {
 TYPED_TEST(ChainForces, AFreeLinkFallsAsGravitySays) {
   constexpr int D = TypeParam::value;
   Dice dice(10);
-  Link<D> link = any_link<D>(dice, -1, Freedom::free);
+  Link<D> link = any_link<D>(dice, -1, JointType::free);
   link.joint.on_parent = {};
   link.joint.on_link = {Rotation<D>::Identity(), link.com};  // origin at the centre of mass
   Swinging<D> body(Chain<D>{{link}});
   body.shake(dice, 2, 3);
   const std::vector<double> rate = body.rate();
-  for (int k = 0; k < D; ++k) EXPECT_NEAR(rate[kSpins<D> + k], body.gravity[k], 1e-14);
+  for (int k = 0; k < D; ++k) EXPECT_NEAR(rate[kAngular<D> + k], body.gravity[k], 1e-14);
 }
 
 TYPED_TEST(ChainForces, AWarmStepAllocatesNothing) {

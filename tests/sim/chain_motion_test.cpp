@@ -10,7 +10,7 @@ namespace {
 // A trunk with a head and four limbs of two parts each: balls at neck, shoulders and hips, hinges at elbows
 // and knees.
 Chain<3> figure() {
-  const auto part = [](int parent, Freedom freedom, Vec3 at, Vec3 half, double mass) {
+  const auto part = [](int parent, JointType freedom, Vec3 at, Vec3 half, double mass) {
     Link<3> link;
     link.parent = parent;
     link.joint.freedom = freedom;
@@ -21,13 +21,13 @@ Chain<3> figure() {
     link.inertia = ((half.squaredNorm() - half.array().square()).matrix() * (mass / 3)).asDiagonal();
     return link;
   };
-  std::vector<Link<3>> links = {part(-1, Freedom::free, {0, 0, 1.2}, {0.15, 0.1, 0.3}, 35),
-                                part(0, Freedom::ball, {0, 0, 0.32}, {0.1, 0.1, 0.12}, 5)};
+  std::vector<Link<3>> links = {part(-1, JointType::free, {0, 0, 1.2}, {0.15, 0.1, 0.3}, 35),
+                                part(0, JointType::ball, {0, 0, 0.32}, {0.1, 0.1, 0.12}, 5)};
   for (const double side : {-1.0, 1.0}) {
-    links.push_back(part(0, Freedom::ball, {0.22 * side, 0, 0.28}, {0.05, 0.05, 0.15}, 2));
-    links.push_back(part(int(links.size()) - 1, Freedom::revolute, {0, 0, -0.3}, {0.04, 0.04, 0.14}, 1.5));
-    links.push_back(part(0, Freedom::ball, {0.1 * side, 0, -0.3}, {0.07, 0.07, 0.22}, 8));
-    links.push_back(part(int(links.size()) - 1, Freedom::revolute, {0, 0, -0.44}, {0.05, 0.05, 0.22}, 4));
+    links.push_back(part(0, JointType::ball, {0.22 * side, 0, 0.28}, {0.05, 0.05, 0.15}, 2));
+    links.push_back(part(int(links.size()) - 1, JointType::revolute, {0, 0, -0.3}, {0.04, 0.04, 0.14}, 1.5));
+    links.push_back(part(0, JointType::ball, {0.1 * side, 0, -0.3}, {0.07, 0.07, 0.22}, 8));
+    links.push_back(part(int(links.size()) - 1, JointType::revolute, {0, 0, -0.44}, {0.05, 0.05, 0.22}, 4));
   }
   return Chain<3>(links);
 }
@@ -56,8 +56,8 @@ TEST(ChainMotion, AThrownFigureKeepsItsMomenta) {
   const Vec<3> want = start.centre + 10 * start.momentum / start.mass;
   EXPECT_LE((end.centre - want).norm(), 1e-11);
   for (int i = 0; i < body.chain.size(); ++i) {
-    const Freedom freedom = body.chain[i].joint.freedom;
-    if (freedom != Freedom::ball && freedom != Freedom::free) continue;
+    const JointType freedom = body.chain[i].joint.freedom;
+    if (freedom != JointType::ball && freedom != JointType::free) continue;
     const auto q = body.chain.q_of(i, std::span<const double>(body.q));
     EXPECT_NEAR(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1, 5e-16);
   }
@@ -82,8 +82,8 @@ void copy_in_space(const Swinging<2>& flat, Swinging<3>& deep) {
     const auto q3 = deep.chain.q_of(i, std::span<double>(deep.q));
     const auto v3 = deep.chain.v_of(i, std::span<double>(deep.v));
     const auto tau3 = deep.chain.v_of(i, std::span<double>(deep.tau));
-    const Freedom freedom = deep.chain[i].joint.freedom;
-    if (freedom == Freedom::ball || freedom == Freedom::free) {
+    const JointType freedom = deep.chain[i].joint.freedom;
+    if (freedom == JointType::ball || freedom == JointType::free) {
       q3[2] = std::sin(0.5 * q[0]);
       q3[3] = std::cos(0.5 * q[0]);
       v3[2] = v[0];

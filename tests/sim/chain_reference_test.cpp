@@ -100,7 +100,7 @@ constexpr double kDegree = 3.14159265358979324 / 180;
 
 TEST(ChainReference, FreeTopFlips) {
   std::vector<Link<3>> links(1);
-  links[0].joint.freedom = Freedom::free;
+  links[0].joint.freedom = JointType::free;
   links[0].inertia.diagonal() << 1, 2, 3;
   Swinging<3> top{Chain<3>(links)};
   top.gravity.setZero();

@@ -14,8 +14,8 @@ TYPED_TEST_SUITE(ChainStances, Dimensions);
 
 TEST(Chain, HasAsManyNumbersAsItsJointsHaveFreedoms) {
   std::vector<Link<3>> links(5);
-  const Freedom kinds[] = {Freedom::free, Freedom::weld, Freedom::revolute, Freedom::prismatic,
-                           Freedom::ball};
+  const JointType kinds[] = {JointType::free, JointType::weld, JointType::revolute, JointType::prismatic,
+                             JointType::ball};
   for (int i = 0; i < 5; ++i) {
     links[i].parent = i - 1;
     links[i].joint.freedom = kinds[i];
@@ -25,8 +25,8 @@ TEST(Chain, HasAsManyNumbersAsItsJointsHaveFreedoms) {
   EXPECT_EQ(chain.velocities(), 6 + 0 + 1 + 1 + 3);
   EXPECT_EQ(chain.home()[3], 1);  // quaternions (0, 0, 0, 1)
   EXPECT_EQ(chain.home()[12], 1);
-  EXPECT_EQ(positions<2>(Freedom::free), 3);
-  EXPECT_EQ(velocities<2>(Freedom::ball), 1);
+  EXPECT_EQ(positions<2>(JointType::free), 3);
+  EXPECT_EQ(velocities<2>(JointType::ball), 1);
 }
 
 TEST(Chain, APendulumHangsWhereItsAnglesSay) {
@@ -60,18 +60,18 @@ TYPED_TEST(ChainStances, JointsHoldTheirFramesTogether) {
           tree.chain.q_of(i, std::span<const double>(tree.q)).empty() ? 0 : tree.q[tree.chain.q_start(i)];
       // roundings pile up over the eight links
       switch (link.joint.freedom) {
-        case Freedom::weld:
+        case JointType::weld:
           EXPECT_LE(turned, 2e-14);
           [[fallthrough]];
-        case Freedom::revolute:
-        case Freedom::ball:
+        case JointType::revolute:
+        case JointType::ball:
           EXPECT_LE(apart.norm(), 2e-14);
           break;
-        case Freedom::prismatic:
+        case JointType::prismatic:
           EXPECT_LE(turned, 2e-14);
           EXPECT_LE((apart - link.joint.axis * q).norm(), 2e-14);
           break;
-        case Freedom::free:
+        case JointType::free:
           break;
       }
     }
@@ -121,7 +121,7 @@ TYPED_TEST(ChainStances, ARowOfTheSpinGivesTheSpin) {
   Dice dice(3);
   Swinging<D> tree(any_tree<D>(dice, 9));
   tree.shake(dice, 1.5, 1);
-  const Spin<D> axis = dice.vector<kSpins<D>>(1);
+  const AngularVec<D> axis = dice.vector<kAngular<D>>(1);
   std::vector<double> j(tree.chain.velocities());
   row<D>(tree.chain, tree.stance, 7, Wrench<D>{axis, Vec<D>::Zero()}, j);
   EXPECT_NEAR(vector(j).dot(vector(tree.v)), axis.dot(tree.stance.twist[7].w), 1e-14);
@@ -130,13 +130,13 @@ TYPED_TEST(ChainStances, ARowOfTheSpinGivesTheSpin) {
 TYPED_TEST(ChainStances, TotalsOfAFreeLinkAreThoseOfARigidBody) {
   constexpr int D = TypeParam::value;
   Dice dice(4);
-  const Link<D> link = any_link<D>(dice, -1, Freedom::free);
+  const Link<D> link = any_link<D>(dice, -1, JointType::free);
   Swinging<D> body(Chain<D>({link}));
   body.shake(dice, 2, 3);
   const auto sum = body.sums();
   const Pose<D> at = link_pose(body.chain, body.stance, 0);
   const Vec<D> x = at * link.com, v = point_velocity(body.stance, 0, x);
-  const Spin<D> w = body.stance.twist[0].w;
+  const AngularVec<D> w = body.stance.twist[0].w;
   SpinTensor<D> inertia = link.inertia;
   if constexpr (D == 3) inertia = at.turn * link.inertia * at.turn.transpose();
   EXPECT_LE((sum.centre - x).norm(), 1e-14);

@@ -134,7 +134,7 @@ TEST(Classics, ARockingBlockLosesWhatHousnerSays) {
   for (const auto collision : {Collision::contact, Collision::event}) {
     World<2> world = touching_room(collision);
     add_floor(world, 2);
-    add_box(world, {2 * b, 2 * h}, 1, rotation<2>(Turn<2>(-tilt)) * Vec2(-b, h), {0, 0}, -tilt, 0, 0);
+    add_box(world, {2 * b, 2 * h}, 1, rotation<2>(Orientation<2>(-tilt)) * Vec2(-b, h), {0, 0}, -tilt, 0, 0);
     rub(world, 2);
     // w^2 / 2 = p^2 (cos(half - angle) - cos half), p^2 = 3 g / 4 R
     const double keeps = 1 - 1.5 * std::pow(std::sin(half), 2);
@@ -199,7 +199,7 @@ TEST(Classics, AMasseShotIsAParabolaUntilItRolls) {
     world.model.collision = Collision::contact, world.model.rate = {600, 1}, world.model.solver = solver;
     world.model.scale = 4;
     add_wall(world, {0, 0, 0}, {0, 1, 0});
-    add_solid(world, ball_shape<3>(r), 1, {0, r, 0}, v, upright<3>(), spin, 0);
+    add_solid(world, ball_shape<3>(r), 1, {0, r, 0}, v, no_rotation<3>(), spin, 0);
     world.model.bodies[0].friction = mu;
     const Vec3 rolls = v + slides * brake;
     const auto at = [&](double t) {

@@ -77,7 +77,7 @@ TEST(Dashpots, OnlyTakeEnergy) {
 TEST(Symmetry, UnderATurnOfTheWholeRoom) {
   // the same room turned by 0.7 rad, gravity and all
   const auto make = [](double angle) {
-    const Rotation<2> R = rotation<2>(Turn<2>(angle));
+    const Rotation<2> R = rotation<2>(Orientation<2>(angle));
     World<2> world = room(R * Vec2(0, -9.81));
     add_wall(world, R * Vec2(0, 0), R * Vec2(0.1, 1));
     add_wall(world, R * Vec2(3, 0), R * Vec2(-1, 0));
@@ -87,7 +87,7 @@ TEST(Symmetry, UnderATurnOfTheWholeRoom) {
     return world;
   };
   const auto a = stepped(make(0), 1500), b = stepped(make(0.7), 1500);
-  const Rotation<2> R = rotation<2>(Turn<2>(0.7));
+  const Rotation<2> R = rotation<2>(Orientation<2>(0.7));
   // rounding, grown by a dozen impacts
   EXPECT_LT((R * a.x[0] - b.x[0]).norm(), 1e-10);
   EXPECT_LT((R * a.x[1] - b.x[1]).norm(), 1e-10);

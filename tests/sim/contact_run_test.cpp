@@ -40,7 +40,7 @@ World<2> thrown(int seed, Collision collision) {
   bar.center = {0, 0.11}, stem.center = {0, -0.14};
   shape = {};
   shape.kind = ShapeKind::compound, shape.parts = {bar, stem};
-  const Vec2 c = bulk(shape).center;
+  const Vec2 c = mass_properties(shape).center;
   for (auto& part : shape.parts) part.center -= c;
   world.model.bodies[t].inertia = inertia(shape, 2);
   rub(world, chance.between(0, 1));

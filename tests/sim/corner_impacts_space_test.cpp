@@ -1,8 +1,8 @@
 // Cubes that fall on a corner in space, with friction: by both solvers, against a closed form.
 //
-// A cube has one moment of inertia I, so it turns about an axis that stays: R(t) = exp(w t) R(0). Impulses p on
-// the corner at r from the centre change its velocity by K p, K = (1/m + r.r/I) 1 - r r'/I. Newton says what
-// the normal component becomes, and Coulomb that p stops the corner or that p_t = -mu p_n d, with d the
+// A cube has one moment of inertia I, so it turns about an axis that stays: R(t) = exp(w t) R(0). Impulses p
+// on the corner at r from the centre change its velocity by K p, K = (1/m + r.r/I) 1 - r r'/I. Newton says
+// what the normal component becomes, and Coulomb that p stops the corner or that p_t = -mu p_n d, with d the
 // direction in which it slides then: the angle of d is found by halving.
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Shape<3> round(double radius) {
 
 struct Fall {
   double side = 0.5, mass = 2, e = 0.5, mu = 0.5, y = 2;
-  Turn<3> turn = upright<3>();
+  Orientation<3> turn = no_rotation<3>();
   Vec3 v = {0, -3, 0}, spin = Vec3::Zero();
 
   double inertia() const { return mass * side * side / 6; }
@@ -43,7 +43,8 @@ Vec3 lowest(const Fall& fall, double t) {
   const Rotation<3> now = rotation<3>(turned<3>(fall.turn, Vec3(fall.spin * t)));
   Vec3 best(0, 1e300, 0);
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 at = now * (fall.side / 2 * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+    const Vec3 at =
+        now * (fall.side / 2 * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
     if (at.y() < best.y()) best = at;
   }
   return best;
@@ -147,8 +148,9 @@ World<3> room_of(const std::vector<Fall>& falls, Solver solver, int rate) {
   add_wall(world, {0, 0, 0}, kUp);
   for (std::size_t i = 0; i < falls.size(); ++i) {
     const Fall& it = falls[i];
-    const int body = add_solid(world, brick({it.side, it.side, it.side}), it.mass,
-                               {3.0 * double(i % 32), it.y, 3.0 * double(i / 32)}, it.v, it.turn, it.spin, it.e);
+    const int body =
+        add_solid(world, brick({it.side, it.side, it.side}), it.mass,
+                  {3.0 * double(i % 32), it.y, 3.0 * double(i / 32)}, it.v, it.turn, it.spin, it.e);
     world.model.bodies[body].friction = it.mu;
   }
   return world;
@@ -187,8 +189,8 @@ Compared compare(const std::vector<Fall>& falls, Solver solver, int rate, double
   return count;
 }
 
-// The exact solver, which moves what meets nothing but walls, finds places to 1e-9 of the room: where a corner
-// comes slowly, a cube of 10 rad/s turns by 1e-7 meanwhile.
+// The exact solver, which moves what meets nothing but walls, finds places to 1e-9 of the room: where a
+// corner comes slowly, a cube of 10 rad/s turns by 1e-7 meanwhile.
 constexpr double kBound = 2e-7;
 
 TEST(CornerImpactsInSpace, ACubeLeavesTheFloorAsTheClosedFormSaysByBothSolvers) {
@@ -245,7 +247,8 @@ TEST(CornerImpactsInSpace, AnOffCentreRoughImpactKeepsAngularMomentum) {
       world.model.rate = {rate, 1}, world.model.scale = 4;
       const Shape<3> shape = cubes ? brick({0.3, 0.3, 0.3}) : round(0.2);
       add_solid(world, shape, 2, {0, 0, 0}, {0, 0, 0}, exponential(Vec3(0.3, 0.5, -0.2)), {1, 2, -3}, 0.7);
-      add_solid(world, shape, 1, {-1, 0.15, 0.05}, {5, 0, 0}, exponential(Vec3(1, -0.5, 0.2)), {-2, 1, 1}, 0.7);
+      add_solid(world, shape, 1, {-1, 0.15, 0.05}, {5, 0, 0}, exponential(Vec3(1, -0.5, 0.2)), {-2, 1, 1},
+                0.7);
       for (Body<3>& body : world.model.bodies) body.friction = 0.6;
       const auto angular = [&](const State<3>& state) {
         Vec3 sum = Vec3::Zero();

@@ -12,12 +12,12 @@
 namespace obscura::sim {
 namespace {
 
-using Kind = Gap<3>::Kind;
+using Kind = ContactCandidate<3>::Kind;
 
 // a core's corners in the room, in long double
 using Place = Eigen::Matrix<long double, 3, 1>;
 
-std::vector<Place> corners(const Shape<3>& shape, const Stance<3>& at) {
+std::vector<Place> corners(const Shape<3>& shape, const BodyMotion<3>& at) {
   std::vector<Vec<3>> local = {Vec<3>::Zero()};
   if (shape.kind == ShapeKind::hull) local = shape.vertices;
   if (shape.kind == ShapeKind::capsule) local = {-shape.half, shape.half};
@@ -90,7 +90,7 @@ TEST(SpaceSeparation, IsTheDistanceOrDepthOfTheDifferencesHull) {
   int overlapping = 0;
   for (int n = 0; n < 400; ++n) {
     const Shape<3> a = dice.solid(1), b = dice.solid(0.8);
-    const Stance<3> at_a = dice.place(1), at_b = dice.place(1);
+    const BodyMotion<3> at_a = dice.place(1), at_b = dice.place(1);
     const double want = double(brute_force(corners(a, at_a), corners(b, at_b))) - a.radius - b.radius;
     overlapping += want < 0;
     // coordinates of order 1, some dozens of roundings, normals of short edges
@@ -106,7 +106,7 @@ TEST(SpaceGaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
   int kinds[6] = {};
   for (int n = 0; n < 20000; ++n) {
     const Shape<3> a = dice.solid(1), b = dice.solid(0.8);
-    const Stance<3> at_a = dice.place(1), at_b = dice.place(1);
+    const BodyMotion<3> at_a = dice.place(1), at_b = dice.place(1);
     const double apart = separation(a, at_a, b, at_b), margin = dice.between(-0.3, 0.5);
     const auto all = found(a, at_a, b, at_b, margin);
     const bool points = a.kind == ShapeKind::point && b.kind == ShapeKind::point;
@@ -114,7 +114,7 @@ TEST(SpaceGaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
     if (all.empty()) continue;
     // places within 1e-6 of each other are one
     EXPECT_NEAR(least(all), apart, 1e-12) << n << " " << int(a.kind) << " " << int(b.kind);
-    for (const Gap<3>& gap : all) {
+    for (const ContactCandidate<3>& gap : all) {
       ++kinds[int(gap.kind)];
       EXPECT_LT(gap.value, margin);
       EXPECT_NEAR(evaluate(gap, at_a, at_b).value, gap.value, 1e-13) << n << " " << int(gap.kind);
@@ -128,27 +128,27 @@ TEST(SpaceGaps, AreTheSameFromEitherSideAndInATurnedRoom) {
   const Rotation<3> turn = matrix(exponential(Vec<3>(0.3, -1.1, 0.7)));
   for (int n = 0; n < 10000; ++n) {
     const Shape<3> a = dice.solid(1), b = dice.solid(0.8);
-    const Stance<3> at_a = dice.place(1), at_b = dice.place(1);
+    const BodyMotion<3> at_a = dice.place(1), at_b = dice.place(1);
     const auto one = found(a, at_a, b, at_b, 0.2), two = found(b, at_b, a, at_a, 0.2);
-    Stance<3> turned_a = at_a, turned_b = at_b;
-    for (Stance<3>* at : {&turned_a, &turned_b}) {
+    BodyMotion<3> turned_a = at_a, turned_b = at_b;
+    for (BodyMotion<3>* at : {&turned_a, &turned_b}) {
       at->x = turn * at->x, at->room_from_body = turn * at->room_from_body;
     }
     const auto three = found(a, turned_a, b, turned_b, 0.2);
     ASSERT_EQ(one.size(), two.size()) << n << " " << int(a.kind) << " " << int(b.kind);
     ASSERT_EQ(one.size(), three.size()) << n;
     for (std::size_t i = 0; i < one.size(); ++i) {
-      const Meeting<3> now = evaluate(one[i], at_a, at_b);
+      const EvaluatedContact<3> now = evaluate(one[i], at_a, at_b);
       EXPECT_TRUE(std::any_of(two.begin(), two.end(),
-                              [&](const Gap<3>& other) {
-                                const Meeting<3> there = evaluate(other, at_b, at_a);
+                              [&](const ContactCandidate<3>& other) {
+                                const EvaluatedContact<3> there = evaluate(other, at_b, at_a);
                                 return std::abs(there.value - now.value) < 1e-12 &&
                                        (there.point - now.point).norm() < 1e-10 &&
                                        (there.normal + now.normal).norm() < 1e-10;
                               }))
           << n << " " << int(a.kind) << " " << int(b.kind);
       EXPECT_EQ(three[i].key, one[i].key);
-      const Meeting<3> there = evaluate(three[i], turned_a, turned_b);
+      const EvaluatedContact<3> there = evaluate(three[i], turned_a, turned_b);
       EXPECT_NEAR(there.value, now.value, 1e-12);
       EXPECT_LT((there.point - turn * now.point).norm(), 1e-10);
     }
@@ -160,9 +160,9 @@ TEST(SpaceGaps, ChangeAtTheNormalVelocityOfTheirPoint) {
   int seen[6] = {};
   for (int n = 0; n < 6000; ++n) {
     const Shape<3> a = dice.solid(1), b = dice.solid(0.8);
-    const Stance<3> at_a = dice.place(1), at_b = dice.place(1);
-    for (const Gap<3>& gap : found(a, at_a, b, at_b, 0.5)) {
-      const Meeting<3> now = evaluate(gap, at_a, at_b);
+    const BodyMotion<3> at_a = dice.place(1), at_b = dice.place(1);
+    for (const ContactCandidate<3>& gap : found(a, at_a, b, at_b, 0.5)) {
+      const EvaluatedContact<3> now = evaluate(gap, at_a, at_b);
       // places close together and edges nearly parallel turn fast
       const bool points =
           gap.kind != Kind::corner_of_a && gap.kind != Kind::corner_of_b && gap.kind != Kind::edges;
@@ -178,15 +178,15 @@ TEST(SpaceGaps, ChangeAtTheNormalVelocityOfTheirPoint) {
 
       // and so do rows: J v, and how it changes
       Row<3> now_rows[3], later_rows[3], before_rows[3];
-      const Width<3> width = rows(gap, at_a, at_b, now_rows);
+      const EvaluatedContact<3> width = rows(gap, at_a, at_b, now_rows);
       EXPECT_NEAR(width.value, now.value, 1e-13);
       EXPECT_LT((width.normal - now.normal).norm(), 1e-12);
-      const std::vector<Stance<3>> both = {at_a, at_b}, after = {moved(at_a, h), moved(at_b, h)},
-                                   earlier = {moved(at_a, -h), moved(at_b, -h)};
+      const std::vector<BodyMotion<3>> both = {at_a, at_b}, after = {moved(at_a, h), moved(at_b, h)},
+                                       earlier = {moved(at_a, -h), moved(at_b, -h)};
       EXPECT_NEAR(speed(now_rows[0], both), rate, 1e-12);
       rows(gap, after[0], after[1], later_rows), rows(gap, earlier[0], earlier[1], before_rows);
       const double faster = (speed(later_rows[0], after) - speed(before_rows[0], earlier)) / (2 * h);
-      EXPECT_NEAR(faster, now_rows[0].drift, 1e-5) << n << " " << int(gap.kind);
+      EXPECT_NEAR(faster, now_rows[0].velocity_product, 1e-5) << n << " " << int(gap.kind);
       ++seen[int(gap.kind)];
     }
   }
@@ -199,21 +199,21 @@ TEST(SpaceGaps, OfExtrudedShapesAreThoseOfThePlane) {
   int seen = 0;
   for (int n = 0; n < 5000; ++n) {
     const Shape<2> flat_a = dice.simple(1), flat_b = dice.simple(0.8);
-    const Stance<2> at_a = dice.stance(1.2), at_b = dice.stance(1.2);
+    const BodyMotion<2> at_a = dice.body_motion(1.2), at_b = dice.body_motion(1.2);
     const double depth_a = dice.between(3, 4), depth_b = n % 3 ? dice.between(3, 4) : depth_a;
     const Shape<3> a = extruded(flat_a, depth_a), b = extruded(flat_b, depth_b);
-    std::vector<Gap<2>> flat;
-    gaps(0, flat_a, at_a, 1, flat_b, at_b, 0.2, flat);
+    std::vector<ContactCandidate<2>> flat;
+    collide(0, flat_a, at_a, 1, flat_b, at_b, 0.2, flat);
     const auto deep = found(a, extruded(at_a), b, extruded(at_b), 0.2);
     const bool round = a.kind == ShapeKind::ball || a.kind == ShapeKind::point || b.kind == ShapeKind::ball ||
                        b.kind == ShapeKind::point;
     ASSERT_EQ(deep.size(), flat.size() * (round ? 1 : 2)) << n << " " << int(a.kind) << " " << int(b.kind);
-    for (const Gap<3>& gap : deep) {
-      const Meeting<3> now = evaluate(gap, extruded(at_a), extruded(at_b));
+    for (const ContactCandidate<3>& gap : deep) {
+      const EvaluatedContact<3> now = evaluate(gap, extruded(at_a), extruded(at_b));
       EXPECT_NEAR(std::abs(now.point[2]), round ? 0 : std::min(depth_a, depth_b) / 2, 1e-12);
       EXPECT_TRUE(std::any_of(flat.begin(), flat.end(),
-                              [&](const Gap<2>& other) {
-                                const Meeting<2> there = evaluate(other, at_a, at_b);
+                              [&](const ContactCandidate<2>& other) {
+                                const EvaluatedContact<2> there = evaluate(other, at_a, at_b);
                                 return std::abs(there.value - now.value) < 1e-12 &&
                                        (there.point - now.point.head<2>()).norm() < 1e-11 &&
                                        (there.normal - now.normal.head<2>()).norm() < 1e-11;
@@ -241,8 +241,8 @@ TEST(SpaceGaps, OfAStackAreFourAndKeepTheirFeatures) {
                                  Vec<3>(0, 1e-9, 0), Vec<3>(0, -1e-8, 0), Vec<3>(1e-7, 1e-8, -1e-7)}) {
         for (const double shift : {0.0, 1e-9, -1e-9}) {
           for (const double height : {0.0, 1e-9, -1e-9, 1e-5}) {
-            const Stance<3> below = placed({0.3, 0.7, 0.1}),
-                            above = placed(below.x + offset + Vec<3>(shift, 0.1 + height, -shift), tilt);
+            const BodyMotion<3> below = placed({0.3, 0.7, 0.1}),
+                                above = placed(below.x + offset + Vec<3>(shift, 0.1 + height, -shift), tilt);
             const auto all =
                 swapped ? found(lower, below, upper, above, 0.01) : found(upper, above, lower, below, 0.01);
             ASSERT_EQ(all.size(), 4u) << offset.transpose() << " " << tilt.transpose() << " " << shift;
@@ -251,7 +251,7 @@ TEST(SpaceGaps, OfAStackAreFourAndKeepTheirFeatures) {
               if (features.size() < 4) features.push_back(all[i].key.feature);
               EXPECT_EQ(all[i].key.feature, features[i])
                   << offset.transpose() << " " << tilt.transpose() << " " << shift << " " << height;
-              const Meeting<3> now =
+              const EvaluatedContact<3> now =
                   swapped ? evaluate(all[i], below, above) : evaluate(all[i], above, below);
               EXPECT_NEAR(now.normal[1], swapped ? -1 : 1, 1e-11);
               EXPECT_NEAR(now.value, height, 1e-7);
@@ -276,11 +276,11 @@ TEST(SpaceGaps, OfCrossedBeamsAreTheirEdgesCrossings) {
   const Shape<3> beam = brick({2, 0.2, 0.4});
   for (const double angle : {0.6, 1.0, std::numbers::pi / 2}) {
     for (const bool swapped : {false, true}) {
-      const Stance<3> below = placed({0, 0, 0}), above = placed({0.1, 0.2, 0.05}, {0, angle, 0});
+      const BodyMotion<3> below = placed({0, 0, 0}), above = placed({0.1, 0.2, 0.05}, {0, angle, 0});
       const auto all =
           swapped ? found(beam, below, beam, above, 0.01) : found(beam, above, beam, below, 0.01);
       ASSERT_EQ(all.size(), 4u);
-      for (const Gap<3>& gap : all) {
+      for (const ContactCandidate<3>& gap : all) {
         EXPECT_EQ(gap.kind, Kind::edges);
         EXPECT_NEAR(gap.value, 0, 1e-15);
       }
@@ -309,8 +309,8 @@ TEST(SpaceGaps, OfCapsulesSideBySideAreTheEndsOfWhatTheyShare) {
   const Shape<3> one = capsule(0.5, 0.1), other = capsule(0.3, 0.2);
   const auto all = found(one, placed({0, 0, 0}), other, placed({0.3, 0.5, 0}), 0.01);
   ASSERT_EQ(all.size(), 2u);
-  for (const Gap<3>& gap : all) {
-    const Meeting<3> now = evaluate(gap, placed({0, 0, 0}), placed({0.3, 0.5, 0}));
+  for (const ContactCandidate<3>& gap : all) {
+    const EvaluatedContact<3> now = evaluate(gap, placed({0, 0, 0}), placed({0.3, 0.5, 0}));
     EXPECT_NEAR(now.value, 0, 1e-15);
     EXPECT_NEAR(now.normal[0], -1, 1e-15);
     EXPECT_NEAR(now.point[0], 0.1, 1e-15);
@@ -328,13 +328,13 @@ TEST(SpaceGaps, ABoxIsAHullToAllOthers) {
   for (int n = 0; n < 2000; ++n) {
     const Shape<3> box = brick({dice.between(0.2, 1), dice.between(0.2, 1), dice.between(0.2, 1)}),
                    other = dice.solid(0.7);
-    const Stance<3> at = dice.place(0.7), there = dice.place(0.7);
+    const BodyMotion<3> at = dice.place(0.7), there = dice.place(0.7);
     const auto one = found(box, at, other, there, 0.3), two = found(as_hull(box), at, other, there, 0.3);
     ASSERT_EQ(one.size(), two.size()) << n;
-    for (const Gap<3>& gap : one) {
-      const Meeting<3> now = evaluate(gap, at, there);
-      EXPECT_TRUE(std::any_of(two.begin(), two.end(), [&](const Gap<3>& same) {
-        const Meeting<3> here = evaluate(same, at, there);
+    for (const ContactCandidate<3>& gap : one) {
+      const EvaluatedContact<3> now = evaluate(gap, at, there);
+      EXPECT_TRUE(std::any_of(two.begin(), two.end(), [&](const ContactCandidate<3>& same) {
+        const EvaluatedContact<3> here = evaluate(same, at, there);
         return std::abs(here.value - now.value) < 1e-12 && (here.point - now.point).norm() < 1e-10;
       })) << n;
     }
@@ -354,14 +354,14 @@ TEST(SpaceGaps, OfACompoundAreThoseOfItsTurnedParts) {
     EXPECT_NEAR(all[i].value, 0, 1e-15);
     for (std::size_t k = 0; k < i; ++k) EXPECT_NE(all[i].key.feature, all[k].key.feature);
   }
-  std::vector<Gap<3>> wall;
-  gaps(0, all_three, placed({0, 0.2, 0}), 0, Wall<3>{{0, 0.1, 0}, {0, 1, 0}, {}, {}}, 1e-3, wall);
+  std::vector<ContactCandidate<3>> wall;
+  collide(0, all_three, placed({0, 0.2, 0}), 0, Wall<3>{{0, 0.1, 0}, {0, 1, 0}, {}, {}}, 1e-3, wall);
   EXPECT_EQ(wall.size(), 7u);
 }
 
 // found by fuzzing states: no face is the nearest to what is turned by no number
 TEST(SpaceGaps, WhatStandsNowhereTouchesNothing) {
-  Stance<3> nowhere = placed({0, 0, 0});
+  BodyMotion<3> nowhere = placed({0, 0, 0});
   nowhere.room_from_body.setConstant(std::nan(""));
   const Shape<3> box = brick({0.2, 0.2, 0.2});
   EXPECT_TRUE(found(box, nowhere, box, placed({0, 0.1, 0}), 1).empty());

@@ -13,12 +13,12 @@
 namespace obscura::sim {
 namespace {
 
-using Kind = Gap<2>::Kind;
+using Kind = ContactCandidate<2>::Kind;
 
 // a polygon's corners in the room, in long double
 using Place = Eigen::Matrix<long double, 2, 1>;
 
-std::vector<Place> placed(const Shape<2>& shape, const Stance<2>& at) {
+std::vector<Place> placed(const Shape<2>& shape, const BodyMotion<2>& at) {
   std::vector<Vec<2>> local = {Vec<2>::Zero()};
   if (shape.kind == ShapeKind::box) local = as_polygon(shape).vertices;
   if (shape.kind == ShapeKind::polygon) local = shape.vertices;
@@ -65,7 +65,7 @@ TEST(Separation, IsTheDistanceOrDepthOfTheDifferencesHull) {
   int overlapping = 0;
   for (int n = 0; n < 3000; ++n) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
-    const Stance<2> at_a = dice.stance(1.2), at_b = dice.stance(1.2);
+    const BodyMotion<2> at_a = dice.body_motion(1.2), at_b = dice.body_motion(1.2);
     const double want = double(brute_force(placed(a, at_a), placed(b, at_b))) - a.radius - b.radius;
     overlapping += want < 0;
     // coordinates of order 1, a dozen roundings
@@ -80,7 +80,7 @@ TEST(Gaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
   ShapeDice dice(2);
   for (int n = 0; n < 5000; ++n) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
-    const Stance<2> at_a = dice.stance(1.2), at_b = dice.stance(1.2);
+    const BodyMotion<2> at_a = dice.body_motion(1.2), at_b = dice.body_motion(1.2);
     const double apart = separation(a, at_a, b, at_b), margin = dice.between(-0.3, 0.5);
     const auto all = found(a, at_a, b, at_b, margin);
     const bool points = a.kind == ShapeKind::point && b.kind == ShapeKind::point;
@@ -88,7 +88,7 @@ TEST(Gaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
     ASSERT_LE(all.size(), 2u);
     if (all.empty()) continue;
     EXPECT_NEAR(least(all), apart, 1e-13) << n;
-    for (const Gap<2>& gap : all) {
+    for (const ContactCandidate<2>& gap : all) {
       EXPECT_LT(gap.value, margin);
       EXPECT_NEAR(evaluate(gap, at_a, at_b).value, gap.value, 1e-14);
     }
@@ -100,13 +100,13 @@ TEST(Gaps, AreTheSameFromEitherSide) {
   ShapeDice dice(3);
   for (int n = 0; n < 5000; ++n) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
-    const Stance<2> at_a = dice.stance(1.2), at_b = dice.stance(1.2);
+    const BodyMotion<2> at_a = dice.body_motion(1.2), at_b = dice.body_motion(1.2);
     const auto one = found(a, at_a, b, at_b, 0.2), two = found(b, at_b, a, at_a, 0.2);
     ASSERT_EQ(one.size(), two.size()) << n;
-    for (const Gap<2>& gap : one) {
-      const Meeting<2> now = evaluate(gap, at_a, at_b);
-      EXPECT_TRUE(std::any_of(two.begin(), two.end(), [&](const Gap<2>& other) {
-        const Meeting<2> there = evaluate(other, at_b, at_a);
+    for (const ContactCandidate<2>& gap : one) {
+      const EvaluatedContact<2> now = evaluate(gap, at_a, at_b);
+      EXPECT_TRUE(std::any_of(two.begin(), two.end(), [&](const ContactCandidate<2>& other) {
+        const EvaluatedContact<2> there = evaluate(other, at_b, at_a);
         return std::abs(there.value - now.value) < 1e-13 && (there.point - now.point).norm() < 1e-12 &&
                (there.normal + now.normal).norm() < 1e-12;
       })) << n;
@@ -121,13 +121,13 @@ TEST(Gaps, ChangeAtTheNormalVelocityOfTheirPoint) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
     const Vec<2> xa(dice.between(-1, 1), dice.between(-1, 1)), xb(dice.between(-1, 1), dice.between(-1, 1));
     const double ta = dice.between(-4, 4), tb = dice.between(-4, 4);
-    Stance<2> at_a = standing(xa, ta), at_b = standing(xb, tb);
+    BodyMotion<2> at_a = standing(xa, ta), at_b = standing(xb, tb);
     at_a.v = {dice.between(-1, 1), dice.between(-1, 1)};
     at_b.v = {dice.between(-1, 1), dice.between(-1, 1)};
     at_a.w[0] = dice.between(-1, 1);
     at_b.w[0] = dice.between(-1, 1);
-    for (const Gap<2>& gap : found(a, at_a, b, at_b, 0.5)) {
-      const Meeting<2> now = evaluate(gap, at_a, at_b);
+    for (const ContactCandidate<2>& gap : found(a, at_a, b, at_b, 0.5)) {
+      const EvaluatedContact<2> now = evaluate(gap, at_a, at_b);
       if (gap.kind == Kind::corners && now.value + gap.radius_a + gap.radius_b < 0.1) continue;
       const double rate =
           now.normal.dot(at_a.velocity(now.point - at_a.x) - at_b.velocity(now.point - at_b.x));
@@ -158,8 +158,8 @@ TEST(Gaps, OfAStackAreTwoAndKeepTheirFeatures) {
       for (const double tilt : {0.0, 1e-9, -1e-9, 1e-6, -1e-6}) {
         for (const double shift : {0.0, 1e-9, -1e-9}) {
           for (const double height : {0.0, 1e-9, -1e-9, 1e-5}) {
-            const Stance<2> below = standing({0.3, 0.7}),
-                            above = standing({0.3 + offset + shift, 0.8 + height}, tilt);
+            const BodyMotion<2> below = standing({0.3, 0.7}),
+                                above = standing({0.3 + offset + shift, 0.8 + height}, tilt);
             const auto all =
                 swapped ? found(lower, below, upper, above, 0.01) : found(upper, above, lower, below, 0.01);
             ASSERT_EQ(all.size(), 2u) << offset << " " << tilt << " " << shift << " " << height;
@@ -171,8 +171,9 @@ TEST(Gaps, OfAStackAreTwoAndKeepTheirFeatures) {
             // the ends of what they share
             const double half = std::min(
                 {(upper.half[0] + lower.half[0] - std::abs(offset)) / 2, upper.half[0], lower.half[0]});
-            for (const Gap<2>& gap : all) {
-              const Meeting<2> now = swapped ? evaluate(gap, below, above) : evaluate(gap, above, below);
+            for (const ContactCandidate<2>& gap : all) {
+              const EvaluatedContact<2> now =
+                  swapped ? evaluate(gap, below, above) : evaluate(gap, above, below);
               EXPECT_NEAR(now.normal[1], swapped ? -1 : 1, 1e-11);
               EXPECT_NEAR(now.value, height, 5.1e-7);
               EXPECT_NEAR(now.point[1], 0.75, 2e-5);
@@ -191,7 +192,7 @@ TEST(Gaps, OfATurnedStackAreThoseOfTheUpright) {
   const Shape<2> box = box_shape(0.2, 0.1);
   const auto upright = found(box, standing({0, 0.1}), box, standing({0, 0}), 0.01);
   for (const double angle : {0.3, 1.0, 2.0, -3.0}) {
-    const Stance<2> below = standing({5, 7}, angle);
+    const BodyMotion<2> below = standing({5, 7}, angle);
     const auto turned = found(box, standing(below.x + below.arm({0, 0.1}), angle), box, below, 0.01);
     ASSERT_EQ(turned.size(), 2u);
     for (int i : {0, 1}) {
@@ -220,7 +221,7 @@ TEST(Gaps, OfCornersApartPointFromOneToTheOther) {
   const auto all = found(box, standing({1.03, 1.04}), box, standing({0, 0}), 0.1);
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].kind, Kind::corners);
-  const Meeting<2> now = evaluate(all[0], standing({1.03, 1.04}), standing({0, 0}));
+  const EvaluatedContact<2> now = evaluate(all[0], standing({1.03, 1.04}), standing({0, 0}));
   EXPECT_NEAR(now.value, 0.05, 1e-15);
   EXPECT_NEAR(now.normal[0], 0.6, 1e-13);
   EXPECT_NEAR(now.point[1], 0.52, 1e-15);
@@ -248,7 +249,7 @@ TEST(Gaps, OfBallsRunAlongTheirCentres) {
   const auto one = found(ball_shape(0.3), standing({1, 0}), ball_shape(0.2), standing({0.6, 0.3}));
   ASSERT_EQ(one.size(), 1u);
   EXPECT_NEAR(one[0].value, 0, 1e-15);
-  const Meeting<2> now = evaluate(one[0], standing({1, 0}), standing({0.6, 0.3}));
+  const EvaluatedContact<2> now = evaluate(one[0], standing({1, 0}), standing({0.6, 0.3}));
   EXPECT_NEAR(now.normal[0], 0.8, 1e-15);
   EXPECT_NEAR(now.point[0], 0.6 + 0.16, 1e-15);
   // in one place: along x
@@ -261,7 +262,7 @@ TEST(Gaps, OfBallsRunAlongTheirCentres) {
 TEST(Gaps, ABallDeepInABoxLeavesByTheNearestFace) {
   const auto all = found(ball_shape(0.1), standing({0.3, 0.1}), box_shape(1, 1), standing({0, 0}));
   ASSERT_EQ(all.size(), 1u);
-  const Meeting<2> now = evaluate(all[0], standing({0.3, 0.1}), standing({0, 0}));
+  const EvaluatedContact<2> now = evaluate(all[0], standing({0.3, 0.1}), standing({0, 0}));
   EXPECT_EQ(now.normal, Vec<2>(1, 0));
   EXPECT_NEAR(now.value, -0.3, 1e-15);
 }
@@ -270,7 +271,7 @@ TEST(Gaps, ABoxIsAPolygonToAllOthers) {
   ShapeDice dice(5);
   for (int n = 0; n < 1000; ++n) {
     const Shape<2> box = box_shape(dice.between(0.2, 1), dice.between(0.2, 1)), other = dice.simple(0.7);
-    const Stance<2> at = dice.stance(0.8), there = dice.stance(0.8);
+    const BodyMotion<2> at = dice.body_motion(0.8), there = dice.body_motion(0.8);
     const auto one = found(box, at, other, there, 0.3), two = found(as_polygon(box), at, other, there, 0.3);
     ASSERT_EQ(one.size(), two.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
@@ -288,7 +289,7 @@ TEST(Gaps, OfACompoundAreThoseOfItsParts) {
   const Shape<2> floor = box_shape(4, 0.2);
   const auto all = found(dumbbell, standing({0, 0.2}), floor, standing({0, 0}), 1e-3);
   ASSERT_EQ(all.size(), 3u);
-  for (const Gap<2>& gap : all) EXPECT_NEAR(gap.value, 0, 1e-15);
+  for (const ContactCandidate<2>& gap : all) EXPECT_NEAR(gap.value, 0, 1e-15);
   EXPECT_NE(all[0].key.feature, all[2].key.feature);
   EXPECT_NE(all[1].key.feature, all[2].key.feature);
   EXPECT_NEAR(separation(dumbbell, standing({0, 0.3}), floor, standing({0, 0})), 0.1, 1e-15);
@@ -297,19 +298,19 @@ TEST(Gaps, OfACompoundAreThoseOfItsParts) {
 TEST(Gaps, ToAWallAreOfEveryCorner) {
   Wall<2> wall;
   wall.point = {0, -1};
-  std::vector<Gap<2>> out;
-  gaps(3, box_shape(1, 1), standing({0, 0}, std::numbers::pi / 4), 2, wall, 0.3, out);
+  std::vector<ContactCandidate<2>> out;
+  collide(3, box_shape(1, 1), standing({0, 0}, std::numbers::pi / 4), 2, wall, 0.3, out);
   ASSERT_EQ(out.size(), 1u);
   EXPECT_EQ(out[0].key.b, -3);
   EXPECT_NEAR(out[0].value, 1 - std::sqrt(0.5), 1e-15);
   out.clear();
-  gaps(3, box_shape(1, 1), standing({0, -0.5}), 2, wall, 0.3, out);
+  collide(3, box_shape(1, 1), standing({0, -0.5}), 2, wall, 0.3, out);
   ASSERT_EQ(out.size(), 2u);
-  const Meeting<2> now = evaluate(out[0], standing({0.2, -0.4}), Stance<2>{});
+  const EvaluatedContact<2> now = evaluate(out[0], standing({0.2, -0.4}), BodyMotion<2>{});
   EXPECT_NEAR(now.value, 0.1, 1e-15);
   EXPECT_NEAR(now.point[1], -0.95, 1e-15);
   out.clear();
-  gaps(3, ball_shape(0.5), standing({0, -0.5}), 2, wall, 0.3, out);
+  collide(3, ball_shape(0.5), standing({0, -0.5}), 2, wall, 0.3, out);
   ASSERT_EQ(out.size(), 1u);
   EXPECT_NEAR(out[0].value, 0, 1e-15);
 }

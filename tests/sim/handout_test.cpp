@@ -193,7 +193,7 @@ World<2> wedge(double angle) {
 
 double deepest(const World<2>& world, const State<2>& state, int body) {
   double depth = 0;
-  const auto at = stance(state, body);
+  const auto at = body_motion(state, body);
   for (const auto& wall : world.model.walls) {
     const Shape<2>& shape = world.model.bodies[body].shape;
     if (shape.kind != ShapeKind::box) depth = std::max(depth, -(at.x - wall.point).dot(wall.normal));
@@ -385,7 +385,7 @@ TEST(Bounce, LeavesNobodyOutsideAndMovingOut) {
     for (int i = 0; i < 600; ++i) {
       ASSERT_FALSE(stepper.step(state));
       for (int body = 0; body < 10; ++body) {
-        const auto at = stance(state, body);
+        const auto at = body_motion(state, body);
         const Shape<2>& shape = world.model.bodies[body].shape;
         for (const auto& wall : world.model.walls) {
           for (int k = 0; k < (body < 5 ? 1 : 4); ++k) {

@@ -17,7 +17,7 @@ namespace {
 // of size 1)
 TEST(IterativeBoxes, MeetAsOnePairAfterAnother) {
   World<2> world = room();
-  std::vector<sweep::Pose> poses;
+  std::vector<plane::Pose> poses;
   constexpr int kBoxes = 200;
   for (int i = 0; i < kBoxes; ++i) {
     const double angle = i % 10 == 0 ? 0 : 0.73 * i;
@@ -27,29 +27,29 @@ TEST(IterativeBoxes, MeetAsOnePairAfterAnother) {
     poses.push_back({at[0], at[1], sc.cos, sc.sin});
   }
   poses.emplace_back();
-  const sweep::Cores cores(world.model);
-  const std::vector<sweep::Half> halves = sweep::halves(cores);
+  const plane::CoreShapes cores(world.model);
+  const std::vector<plane::Half> halves = plane::halves(cores);
   int apart = 0, corners = 0;
   for (int i = 0; i < 1000; ++i) {
-    sweep::Meeting four{};
-    for (int lane = 0; lane < sweep::kLanes; ++lane)
+    plane::BoxManifold four{};
+    for (int lane = 0; lane < plane::kLanes; ++lane)
       four.a[lane] = (7 * i + 31 * lane) % kBoxes, four.b[lane] = (13 * i + 57 * lane + 1) % kBoxes;
-    sweep::meet(&four, 1, poses.data(), halves.data());
-    for (int lane = 0; lane < sweep::kLanes; ++lane) {
+    plane::meet(&four, 1, poses.data(), halves.data());
+    for (int lane = 0; lane < plane::kLanes; ++lane) {
       const int p = four.a[lane], q = four.b[lane];
       if (p == q) continue;
-      const sweep::Core &a = cores.all[p], &b = cores.all[q];
-      sweep::Feature features[2];
+      const plane::CoreShape &a = cores.all[p], &b = cores.all[q];
+      plane::Feature features[2];
       const double gap = nearest(cores, a, poses[p], b, poses[q], features);
       EXPECT_NEAR(four.gap[lane], gap, 1e-12) << p << " " << q;
       apart += gap > 0;
       double want[2], got[2];
       for (int k = 0; k < 2; ++k) {
-        const auto off = [&](const sweep::Feature& f) {
-          return f.kind == sweep::Feature::none ? 1e3 : touch(cores, a, poses[p], b, poses[q], f).gap;
+        const auto off = [&](const plane::Feature& f) {
+          return f.kind == plane::Feature::none ? 1e3 : touch(cores, a, poses[p], b, poses[q], f).gap;
         };
-        const sweep::Feature found = sweep::Feature::of(four.words[k][lane]);
-        corners += found.kind == sweep::Feature::corners;
+        const plane::Feature found = plane::Feature::of(four.words[k][lane]);
+        corners += found.kind == plane::Feature::corners;
         want[k] = off(features[k]), got[k] = off(found);
       }
       if (want[1] < want[0]) std::swap(want[0], want[1]);

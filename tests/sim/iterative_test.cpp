@@ -24,7 +24,7 @@ constexpr double kG = 9.81;
 struct Room {
   World<2> world = room();
   std::vector<Path<2>> paths;
-  std::unique_ptr<Iterative<2>> solver;
+  std::unique_ptr<PlaneIterative<2>> solver;
 
   Room() { world.model.rate = {600, 1}, world.model.collision = Collision::contact; }
   int box(Vec2 size, Vec2 x, double friction, double elasticity = 0, Vec2 v = {0, 0}, double angle = 0,
@@ -40,12 +40,12 @@ struct Room {
     body.friction = friction, body.elasticity = elasticity;
     world.model.bodies.push_back(body);
     world.state.x.push_back(x), world.state.v.push_back(v);
-    world.state.turn.push_back(Turn<2>(0)), world.state.spin.push_back(Spin<2>(spin));
+    world.state.turn.push_back(Orientation<2>(0)), world.state.spin.push_back(AngularVec<2>(spin));
     return int(world.model.bodies.size()) - 1;
   }
   void floor(double slope = 0) { add_wall(world, {0, 0}, {-std::sin(slope), std::cos(slope)}); }
   void run(double seconds) {
-    if (!solver) solver = std::make_unique<Iterative<2>>(world.model, paths);
+    if (!solver) solver = std::make_unique<PlaneIterative<2>>(world.model, paths);
     const double h = 1 / value(world.model.rate);
     for (const auto end = world.state.step + std::llround(seconds / h); world.state.step < end;
          ++world.state.step)
@@ -66,7 +66,7 @@ Room pyramid(int base) {
 
 // the mean velocity moves a body under constant friction exactly; only the step in which it stops is cut
 // short, by less than (mu g h)^2 / (8 mu g)
-TEST(Iterative, BoxStopsAfterVSquaredOverTwoMuG) {
+TEST(PlaneIterative, BoxStopsAfterVSquaredOverTwoMuG) {
   for (const double mu : {0.1, 0.3, 0.8}) {
     Room r;
     r.floor();
@@ -78,7 +78,7 @@ TEST(Iterative, BoxStopsAfterVSquaredOverTwoMuG) {
   }
 }
 
-TEST(Iterative, BlockSticksBelowTheAngleOfFrictionAndSlidesAbove) {
+TEST(PlaneIterative, BlockSticksBelowTheAngleOfFrictionAndSlidesAbove) {
   const double mu = 0.5;
   for (const double off : {-0.01, 0.01}) {
     const double slope = std::atan(mu) + off * std::numbers::pi / 180;
@@ -99,7 +99,7 @@ TEST(Iterative, BlockSticksBelowTheAngleOfFrictionAndSlidesAbove) {
 }
 
 // m v = J, I w = J r, v = w r with I = m r^2 / 2
-TEST(Iterative, SlidingDiscRollsAtTwoThirdsOfItsSpeed) {
+TEST(PlaneIterative, SlidingDiscRollsAtTwoThirdsOfItsSpeed) {
   Room r;
   r.floor();
   r.disc(0.2, {0, 0.2}, 0.3, 0, {3, 0});
@@ -109,7 +109,7 @@ TEST(Iterative, SlidingDiscRollsAtTwoThirdsOfItsSpeed) {
 }
 
 // the blow is placed within the step, to second order in it: what is left is rounding
-TEST(Iterative, ElasticBouncesKeepTheEnergy) {
+TEST(PlaneIterative, ElasticBouncesKeepTheEnergy) {
   Room r;
   r.floor();
   r.disc(0.3, {0, 2}, 0, 1);
@@ -120,7 +120,7 @@ TEST(Iterative, ElasticBouncesKeepTheEnergy) {
 
 // heavy and light, thin and spinning, some of them too fast to be seen coming: no blow gives to one what it
 // has not taken from the other, to rounding (about 1e-16 a blow). Where many touch at once some is lost
-TEST(Iterative, AnElasticGasGainsNoEnergy) {
+TEST(PlaneIterative, AnElasticGasGainsNoEnergy) {
   Room r;
   for (const auto& [at, normal] :
        {std::pair<Vec2, Vec2>{{0, 0}, {0, 1}}, {{0, 3}, {0, -1}}, {{0, 0}, {1, 0}}, {{4, 0}, {-1, 0}}})
@@ -142,7 +142,7 @@ TEST(Iterative, AnElasticGasGainsNoEnergy) {
   }
 }
 
-TEST(Iterative, CradleHandsTheBlowOn) {
+TEST(PlaneIterative, CradleHandsTheBlowOn) {
   Room r;
   r.world.model.gravity = {0, 0};
   r.disc(0.1, {-0.5, 0}, 0, 1, {1, 0});
@@ -153,7 +153,7 @@ TEST(Iterative, CradleHandsTheBlowOn) {
 }
 
 // both corners of a flat landing are one blow
-TEST(Iterative, FlatLandingDoesNotTurnABox) {
+TEST(PlaneIterative, FlatLandingDoesNotTurnABox) {
   Room r;
   r.floor();
   r.box({1, 1}, {0, 2}, 0.5, 0.4);
@@ -162,7 +162,7 @@ TEST(Iterative, FlatLandingDoesNotTurnABox) {
   EXPECT_NEAR(r.state().x[0][0], 0, 1e-13);
 }
 
-TEST(Iterative, EachInterfaceOfAStackCarriesTheWeightAbove) {
+TEST(PlaneIterative, EachInterfaceOfAStackCarriesTheWeightAbove) {
   Room r;
   r.floor();
   for (int i = 0; i < 10; ++i) r.box({1, 1}, {0, 0.5 + i}, 0.5);
@@ -177,7 +177,7 @@ TEST(Iterative, EachInterfaceOfAStackCarriesTheWeightAbove) {
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(r.state().x[i][1], 0.5 + i, 1e-6) << i;
 }
 
-TEST(Iterative, PyramidStands) {
+TEST(PlaneIterative, PyramidStands) {
   Room r = pyramid(20);
   const auto begun = r.state().x;
   r.run(5);
@@ -202,7 +202,7 @@ void expect_cut_is_whole(const Room& begun, std::initializer_list<double> cuts) 
 }
 
 // everything a step needs is in the state, also between two looks for pairs
-TEST(Iterative, RunCutInTwoIsTheRunInOne) {
+TEST(PlaneIterative, RunCutInTwoIsTheRunInOne) {
   Room whole;
   whole.floor();
   for (int i = 0; i < 12; ++i)
@@ -212,7 +212,7 @@ TEST(Iterative, RunCutInTwoIsTheRunInOne) {
 }
 
 // the same where a step is several stretches, with joints that bear loads
-TEST(Iterative, RunCutInTwoIsTheRunInOneAtALowRate) {
+TEST(PlaneIterative, RunCutInTwoIsTheRunInOneAtALowRate) {
   Room whole;
   whole.world.model.rate = {60, 1};
   whole.floor();
@@ -231,7 +231,7 @@ TEST(Iterative, RunCutInTwoIsTheRunInOneAtALowRate) {
 }
 
 // pairs that come and go leave the others in their seats, where a run that goes on seats them all anew
-TEST(Iterative, AHeapCutInTwoIsTheHeapInOne) {
+TEST(PlaneIterative, AHeapCutInTwoIsTheHeapInOne) {
   Room whole;
   whole.world.model.rate = {60, 1};
   whole.floor();
@@ -243,7 +243,7 @@ TEST(Iterative, AHeapCutInTwoIsTheHeapInOne) {
 
 // 400 boxes dropped come to rest and stay there to the bit, each at most a hundredth of its reach in another.
 // Put right to the last they crept for ever: their sweeps are few
-TEST(Iterative, AHeapOfHundredsComesToRest) {
+TEST(PlaneIterative, AHeapOfHundredsComesToRest) {
   Room r;
   r.world.model.rate = {60, 1};
   r.floor(), add_wall(r.world, {0, 0}, {1, 0}), add_wall(r.world, {40, 0}, {-1, 0});
@@ -259,7 +259,7 @@ TEST(Iterative, AHeapOfHundredsComesToRest) {
 }
 
 // half a millimetre apart they bear nothing of one another: who has lain still need not wake the other
-TEST(Iterative, TwoThatLieBesideEachOtherLetEachOtherSleep) {
+TEST(PlaneIterative, TwoThatLieBesideEachOtherLetEachOtherSleep) {
   for (int height = 1; height <= 12; ++height) {
     Room r;
     r.world.model.rate = {60, 1};
@@ -275,7 +275,7 @@ TEST(Iterative, TwoThatLieBesideEachOtherLetEachOtherSleep) {
 }
 
 // forces from the top down are its equilibrium: it never moves by more than rounding, and freezes
-TEST(Iterative, PyramidOfBaseAHundredStandsAndFreezes) {
+TEST(PlaneIterative, PyramidOfBaseAHundredStandsAndFreezes) {
   Room r = pyramid(100);
   r.world.model.rate = {60, 1};
   const auto begun = r.state().x;
@@ -286,12 +286,12 @@ TEST(Iterative, PyramidOfBaseAHundredStandsAndFreezes) {
   }
 }
 
-TEST(Iterative, TurnsManyAtOnceToTheBit) {
+TEST(PlaneIterative, TurnsManyAtOnceToTheBit) {
   std::vector<double> turns;
   for (int i = -4000; i < 4000; ++i) turns.push_back(i * 0.0137), turns.push_back(i * 261.7);
   turns.insert(turns.end(), {0.0, -0.0, 1e-300, 1048576, -1048577, 1e15});
-  std::vector<sweep::Pose> poses(turns.size());
-  sweep::turn_all(turns.data(), poses.data(), int(turns.size()));
+  std::vector<plane::Pose> poses(turns.size());
+  plane::turn_all(turns.data(), poses.data(), int(turns.size()));
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const SinCos want = sin_cos(turns[i]);
     ASSERT_TRUE(poses[i].c == want.cos && poses[i].s == want.sin) << turns[i];
@@ -301,7 +301,7 @@ TEST(Iterative, TurnsManyAtOnceToTheBit) {
 
 // a spring takes part of the weight and pulls sideways, less than friction holds: what the floor gives is the
 // rest. Springs act along the free fall of a step, so their dampers feel c a h / 2 of what the floor stops
-TEST(Iterative, SpringsAndTheFloorShareAWeight) {
+TEST(PlaneIterative, SpringsAndTheFloorShareAWeight) {
   Room r;
   r.floor();
   const int i = r.box({1, 1}, {0, 0.5}, 0.5);
@@ -316,7 +316,7 @@ TEST(Iterative, SpringsAndTheFloorShareAWeight) {
 }
 
 // static equilibrium found, to 1e-6 of g: from then on nothing changes by a bit
-TEST(Iterative, StackAndPyramidFreezeAndStayToTheBit) {
+TEST(PlaneIterative, StackAndPyramidFreezeAndStayToTheBit) {
   Room stack;
   stack.floor();
   for (int i = 0; i < 10; ++i) stack.box({1, 1}, {0.01 * (i % 2), 0.5 + i}, 0.5);
@@ -332,7 +332,7 @@ TEST(Iterative, StackAndPyramidFreezeAndStayToTheBit) {
 }
 
 // a speed threshold would freeze it: 0.96 mm/s after half a second
-TEST(Iterative, SlowSlideIsNotFrozen) {
+TEST(PlaneIterative, SlowSlideIsNotFrozen) {
   const double mu = 0.5, slope = std::atan(mu) + 0.01 * std::numbers::pi / 180;
   Room r;
   r.floor(slope);
@@ -342,7 +342,7 @@ TEST(Iterative, SlowSlideIsNotFrozen) {
   EXPECT_GT(r.state().v[0].norm(), 1e-3);
 }
 
-TEST(Iterative, SleepersWakeWhenTouched) {
+TEST(PlaneIterative, SleepersWakeWhenTouched) {
   Room r;
   r.floor();
   for (int i = 0; i < 4; ++i) r.box({1, 1}, {0, 0.5 + i}, 0.5);
@@ -356,7 +356,7 @@ TEST(Iterative, SleepersWakeWhenTouched) {
   EXPECT_GT(r.state().x[2][0], 0.1);
 }
 
-TEST(Iterative, FastBallStaysInTheRoomAndOutOfBoxes) {
+TEST(PlaneIterative, FastBallStaysInTheRoomAndOutOfBoxes) {
   for (const Vec2& v : {Vec2(1e4, 0), Vec2(7e3, 7.1e3), Vec2(3e3, -9e3)}) {
     Room r;
     add_walls(r.world, 8, 4.5);
@@ -372,7 +372,7 @@ TEST(Iterative, FastBallStaysInTheRoomAndOutOfBoxes) {
   }
 }
 
-TEST(Iterative, WarmStepAllocatesNothing) {
+TEST(PlaneIterative, WarmStepAllocatesNothing) {
   Room r = pyramid(10);
   r.run(0.5);
   const std::size_t before = allocations();

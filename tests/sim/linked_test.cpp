@@ -17,7 +17,7 @@ using sim::pin;
 
 Joint<2> pin(End<2> a, End<2> b, double turn) {
   Joint<2> joint = pin(a, b);
-  joint.turn = Spin<2>(turn);
+  joint.turn = AngularVec<2>(turn);
   return joint;
 }
 
@@ -68,7 +68,7 @@ TEST(Linked, AFreeLinkInSpaceIsAFreeBody) {
   World<3> world = space();
   world.model.collision = Collision::contact, world.model.rate = {600, 1}, world.model.scale = 4;
   add_wall(world, {0, 0, 0}, {0, 1, 0}), add_wall(world, {2, 0, 0}, {-1, 0.2, 0});
-  add_solid(world, brick({0.5, 0.3, 0.4}), 2, {0, 1, 0}, {2.5, 1, 0.4}, upright<3>(), {4, -2, 3}, 0.4);
+  add_solid(world, brick({0.5, 0.3, 0.4}), 2, {0, 1, 0}, {2.5, 1, 0.4}, no_rotation<3>(), {4, -2, 3}, 0.4);
   for (auto& body : world.model.bodies) body.friction = 0.4;
   const World<3> linked = chained(world, {0});
   for (const int steps : {240, 480}) {

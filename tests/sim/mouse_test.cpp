@@ -177,7 +177,7 @@ TEST(Mouse, IsSampledEquallyInTime) {
   add_particle(world, {0, 0});
   world.model.mice.push_back({bent(), 0.1, 10, 0});
   const auto all = run(world);
-  const auto& mouse = all->cast().mice[0];
+  const auto& mouse = all->scene_info().mice[0];
   EXPECT_EQ(mouse.press, 1);
   EXPECT_EQ(mouse.release, 4);
   ASSERT_EQ(mouse.path.size(), 181u);
@@ -187,8 +187,8 @@ TEST(Mouse, IsSampledEquallyInTime) {
 
 // ---- the script's clock
 
-TEST(Beat, IsExact) {
-  EXPECT_EQ(beat({1, 3}, {600, 1}), (Beat{200, 0}));
+TEST(TimeStamp, IsExact) {
+  EXPECT_EQ(beat({1, 3}, {600, 1}), (TimeStamp{200, 0}));
   EXPECT_EQ(beat({1001, 30000}, {600, 1}).step, 20);
   EXPECT_DOUBLE_EQ(beat({1001, 30000}, {600, 1}).fraction, 0.02);
   // 5/3 of a nanosecond short of step 10^15: a double would be on it
@@ -207,9 +207,9 @@ TEST(Edges, WithinABillionthOfAStepOfABoundaryAreThatBoundary) {
   world.model.mice.push_back({{{just_after, {0, 0}}, {{16001, 9600}, {1, 0}}}, 0, 1, 0});
   const auto all = edges(world.model);
   ASSERT_EQ(all.size(), 4u);
-  EXPECT_EQ(all[0].at, (Beat{600, 0}));
-  EXPECT_EQ(all[1].at, (Beat{600, 0}));
-  EXPECT_EQ(all[2].at, (Beat{900, 0}));
+  EXPECT_EQ(all[0].at, (TimeStamp{600, 0}));
+  EXPECT_EQ(all[1].at, (TimeStamp{600, 0}));
+  EXPECT_EQ(all[2].at, (TimeStamp{900, 0}));
   EXPECT_EQ(all[3].at.step, 1000);
   EXPECT_NEAR(all[3].at.fraction, 0.0625, 1e-15);
 }

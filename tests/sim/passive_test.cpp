@@ -56,7 +56,7 @@ World<3> space_room(int seed, int bodies) {
     if (kind > 3) shape = capsule(dice.between(0.05, 0.15), dice.between(0.05, 0.12));
     const double mass = dice.between(0.2, 5);
     const Vec3 v = dice.vec(3);
-    const Turn<3> turn = exponential(dice.vec(1));
+    const Orientation<3> turn = exponential(dice.vec(1));
     const Vec3 spin = dice.vec(8);
     add_solid(world, shape, mass, x, v, turn, spin, dice.between(0, 1));
     world.model.bodies.back().friction = dice.between(0, 1);
@@ -143,7 +143,7 @@ World<3> tangle(int seed) {
     const Shape<3> shape = box ? brick(size) : capsule(size[0] / 2, size[1] / 2);
     const double mass = dice.between(0, 1) < 0.3 ? 10 : dice.between(0.2, 2);
     const Vec3 v = dice.vec(3), spin = dice.vec(6);
-    add_solid(world, shape, mass, x, v, upright<3>(), spin, dice.between(0, 1));
+    add_solid(world, shape, mass, x, v, no_rotation<3>(), spin, dice.between(0, 1));
     world.model.bodies.back().friction = dice.between(0, 1);
   }
   const auto join = [&](int a, int b, Vec3 at, JointKind kind) {
@@ -205,7 +205,7 @@ State<D> hastened(const State<D>& state) {
 
 template <int D>
 void expect_taken_back(const World<D>& world) {
-  Account<D> account(world.model);
+  EnergyGuard<D> account(world.model);
   account.open(world.state);
   EXPECT_FALSE(account.risen(world.state));
   State<D> state = hastened(world.state);
@@ -221,17 +221,17 @@ void expect_taken_back(const World<D>& world) {
   EXPECT_LT((angular_momentum(world.model, state) - angular_momentum(world.model, fast)).norm(), 1e-11 * L);
 }
 
-TEST(Account, TakesBackWhatAStepHasMadeAndLeavesMomentumAlone) {
+TEST(EnergyGuard, TakesBackWhatAStepHasMadeAndLeavesMomentumAlone) {
   expect_taken_back(plane_room(3, 7));
   expect_taken_back(space_room(3, 7));
 }
 
-TEST(Account, LowersWhatRestsAndHasBeenLifted) {
+TEST(EnergyGuard, LowersWhatRestsAndHasBeenLifted) {
   World<2> world = touching_room();
   add_wall(world, {0, 0}, {0, 1});
   add_box(world, {0.4, 0.2}, 1, {0, 0.1}), add_box(world, {0.4, 0.2}, 2, {0, 0.3});
   for (const bool lifted : {false, true}) {
-    Account<2> account(world.model);
+    EnergyGuard<2> account(world.model);
     account.open(world.state);
     State<2> state = world.state;
     state.x[0].y() += 1e-6, state.x[1] += Vec2(1e-6, 3e-6);

@@ -70,7 +70,7 @@ TEST(Bonds, MakeTheirPartsOneRigidBody) {
     tensor += Eigen::Matrix3d(world.model.bodies[i].inertia.asDiagonal());
     tensor += m * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
   }
-  const Turn<3> axes = principal_axes(tensor);
+  const Orientation<3> axes = principal_axes(tensor);
   World<3> one = space();
   one.model.scale = 4;
   add_solid(one, brick({1, 1, 1}), mass, center, {1, 2, 0.5}, axes, {1, 5, 2});

@@ -29,8 +29,8 @@ Vec<D> at(double x, double y, double z = 0) {
 
 // a spin about z
 template <int D>
-Spin<D> about_z(double w) {
-  return Spin<D>::Unit(kSpins<D> - 1) * w;
+AngularVec<D> about_z(double w) {
+  return AngularVec<D>::Unit(kAngular<D> - 1) * w;
 }
 
 // a room of 4 m; its floor, if there is gravity
@@ -47,14 +47,14 @@ World<D> quiet_room(Solver solver, double g, int rate = 600) {
 
 template <int D>
 int add(World<D>& world, const Shape<D>& shape, Vec<D> x, Vec<D> v, double mu, double e = 0,
-        Spin<D> w = Spin<D>::Zero()) {
+        AngularVec<D> w = AngularVec<D>::Zero()) {
   Body<D> body;
   body.name = "body[" + std::to_string(world.model.bodies.size()) + "]";
   body.shape = shape, body.mass = 1, body.friction = mu, body.elasticity = e;
   body.inertia = solid_inertia(shape, 1);
   world.model.bodies.push_back(body);
   world.state.x.push_back(x), world.state.v.push_back(v);
-  world.state.turn.push_back(upright<D>()), world.state.spin.push_back(w);
+  world.state.turn.push_back(no_rotation<D>()), world.state.spin.push_back(w);
   return int(world.model.bodies.size()) - 1;
 }
 

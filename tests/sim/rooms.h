@@ -49,7 +49,7 @@ inline int add_box(World<2>& world, Vec2 size, double mass, Vec2 x, Vec2 v = {0,
   body.inertia = inertia(body.shape, mass);
   world.model.bodies.push_back(body);
   world.state.x.push_back(x), world.state.v.push_back(v);
-  world.state.turn.push_back(Turn<2>(angle)), world.state.spin.push_back(Spin<2>(spin));
+  world.state.turn.push_back(Orientation<2>(angle)), world.state.spin.push_back(AngularVec<2>(spin));
   return int(world.model.bodies.size()) - 1;
 }
 

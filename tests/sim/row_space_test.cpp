@@ -19,8 +19,8 @@ Joint<3> joint_of(JointKind kind, SpaceDice& dice) {
 }
 
 // a as the joint wants it, where b is
-Stance<3> seated_on(const Joint<3>& joint, const Stance<3>& b, const Vec<3>& along, double angle) {
-  Stance<3> a;
+BodyMotion<3> seated_on(const Joint<3>& joint, const BodyMotion<3>& b, const Vec<3>& along, double angle) {
+  BodyMotion<3> a;
   const Vec<3> axis = joint.axis;
   a.room_from_body =
       b.room_from_body * matrix(exponential(Vec<3>(angle * axis))) * matrix(exponential(joint.turn));
@@ -34,7 +34,7 @@ struct Held {
   double off[kMostHeld<3>];
 };
 
-Held held(const Joint<3>& joint, const Stance<3>& a, const Stance<3>& b) {
+Held held(const Joint<3>& joint, const BodyMotion<3>& a, const BodyMotion<3>& b) {
   Held all;
   all.rows = rows(joint, a, b, Vec<3>::Zero().eval(), all.row, all.off);
   return all;
@@ -57,15 +57,15 @@ TEST(SpaceRows, OfAJointChangeByTheirDrift) {
                                JointKind::rod, JointKind::rope}) {
     for (int n = 0; n < 200; ++n) {
       const Joint<3> joint = joint_of(kind, dice);
-      const Stance<3> a = dice.place(2), b = dice.place(2);
-      const std::vector<Stance<3>> now = {a, b}, later = {moved(a, h), moved(b, h)},
-                                   before = {moved(a, -h), moved(b, -h)};
+      const BodyMotion<3> a = dice.place(2), b = dice.place(2);
+      const std::vector<BodyMotion<3>> now = {a, b}, later = {moved(a, h), moved(b, h)},
+                                       before = {moved(a, -h), moved(b, -h)};
       const Held at = held(joint, a, b), after = held(joint, later[0], later[1]),
                  earlier = held(joint, before[0], before[1]);
       for (int i = 0; i < at.rows; ++i) {
         const double rate = (speed(after.row[i], later) - speed(earlier.row[i], before)) / (2 * h);
         // h^2 of third derivatives of order 10, of short rods as many times more as the rate
-        EXPECT_NEAR(rate, at.row[i].drift, 1e-7 * (1 + std::abs(rate))) << int(kind) << " " << i;
+        EXPECT_NEAR(rate, at.row[i].velocity_product, 1e-7 * (1 + std::abs(rate))) << int(kind) << " " << i;
         const bool turns = kind == JointKind::weld ? i >= 3 : kind == JointKind::slider && i >= 2;
         if (turns) continue;
         EXPECT_NEAR((after.off[i] - earlier.off[i]) / (2 * h), speed(at.row[i], now), 1e-7)
@@ -76,7 +76,8 @@ TEST(SpaceRows, OfAJointChangeByTheirDrift) {
       if (!free_row(joint, a, b, Vec<3>::Zero().eval(), free, way)) continue;
       free_row(joint, later[0], later[1], Vec<3>::Zero().eval(), free_after, way);
       free_row(joint, before[0], before[1], Vec<3>::Zero().eval(), free_before, way);
-      EXPECT_NEAR((speed(free_after, later) - speed(free_before, before)) / (2 * h), free.drift, 1e-7);
+      EXPECT_NEAR((speed(free_after, later) - speed(free_before, before)) / (2 * h), free.velocity_product,
+                  1e-7);
     }
   }
 }
@@ -90,7 +91,7 @@ TEST(SpaceRows, AreNotOffWhereTheJointIsSeatedAndLeaveItsOneFreedom) {
       const bool turns = kind == JointKind::hinge || kind == JointKind::pin,
                  slides = kind == JointKind::slider;
       const double angle = turns ? dice.between(-3, 3) : 0, along = slides ? dice.between(-1, 1) : 0;
-      Stance<3> b = dice.place(2), a = seated_on(joint, b, along * joint.axis, angle);
+      BodyMotion<3> b = dice.place(2), a = seated_on(joint, b, along * joint.axis, angle);
       const Held at = held(joint, a, b);
       for (int i = 0; i < at.rows; ++i) EXPECT_NEAR(at.off[i], 0, 1e-14) << int(kind) << " " << i;
       Row<3> free;
@@ -99,9 +100,9 @@ TEST(SpaceRows, AreNotOffWhereTheJointIsSeatedAndLeaveItsOneFreedom) {
 
       // a little off: turns are told too
       a.w = dice.vec(1), a.v = dice.vec(1);
-      const Stance<3> off_a = moved(a, h), off_b = moved(b, h);
+      const BodyMotion<3> off_a = moved(a, h), off_b = moved(b, h);
       const Held off = held(joint, off_a, off_b);
-      const std::vector<Stance<3>> both = {a, b};
+      const std::vector<BodyMotion<3>> both = {a, b};
       for (int i = 0; i < at.rows; ++i) EXPECT_NEAR(off.off[i] / h, speed(at.row[i], both), 1e-4);
       if (kind != JointKind::hinge && !slides) continue;
       EXPECT_NEAR(way, slides ? along : angle, 1e-13);

@@ -181,9 +181,9 @@ TEST(Snapshot, ShowsWhereSpringsEnd) {
   const auto now = shown(*all, {0, 1});
   EXPECT_LT((now.springs[0].a - Vec3(1.75, 1.5, 0)).norm(), 1e-15);
   EXPECT_EQ(now.springs[0].b, Vec3(3, 3, 0));
-  EXPECT_EQ(all->cast().springs[0].a, 0);
-  EXPECT_EQ(all->cast().springs[0].b, -1);
-  EXPECT_EQ(all->cast().bodies[0].half, Vec3(0.5, 0.25, 0));
+  EXPECT_EQ(all->scene_info().springs[0].a, 0);
+  EXPECT_EQ(all->scene_info().springs[0].b, -1);
+  EXPECT_EQ(all->scene_info().bodies[0].half, Vec3(0.5, 0.25, 0));
 }
 
 TEST(Snapshot, CountsEnergyAndMomentum) {

@@ -11,16 +11,16 @@
 namespace obscura::sim {
 namespace {
 
-TEST(Bulk, OfAPolygonIsThatOfTheBoxItDraws) {
+TEST(MassProperties, OfAPolygonIsThatOfTheBoxItDraws) {
   Shape<2> box = box_shape(0.7, 0.4);
   box.center = {3, -5};
-  const Bulk<2> one = bulk(box), two = bulk(as_polygon(box));
+  const MassProperties<2> one = mass_properties(box), two = mass_properties(as_polygon(box));
   EXPECT_NEAR(two.content, one.content, 1e-15);
   EXPECT_NEAR((two.center - one.center).norm(), 0, 2e-15);  // a rounding of 5
   EXPECT_NEAR(two.second[0], one.second[0], 1e-15);
 }
 
-TEST(Bulk, OfARegularPolygonIsTheClosedForm) {
+TEST(MassProperties, OfARegularPolygonIsTheClosedForm) {
   // side s, n corners: A = n s^2 cot(pi/n) / 4, K / A = R^2 (1 + 2 cos^2(pi/n)) / 6
   for (const int n : {3, 5, 12}) {
     std::vector<Vec<2>> around;
@@ -28,30 +28,30 @@ TEST(Bulk, OfARegularPolygonIsTheClosedForm) {
       const double angle = 2 * std::numbers::pi * i / n;
       around.push_back(2 * Vec<2>(std::cos(angle), std::sin(angle)) + Vec<2>(0.3, 0.1));
     }
-    const Bulk<2> whole = bulk(polygon_shape(around));
+    const MassProperties<2> whole = mass_properties(polygon_shape(around));
     const double c = std::cos(std::numbers::pi / n), s = std::sin(std::numbers::pi / n);
     EXPECT_NEAR(whole.content, n * 4 * s * c, 1e-14);
     EXPECT_NEAR(whole.center[0], 0.3, 1e-15);
     EXPECT_NEAR(whole.second[0] / whole.content, 4 * (1 + 2 * c * c) / 6, 1e-14);
-    EXPECT_EQ(inertia(polygon_shape(around), 3), Spin<2>(3 * whole.second / whole.content));
+    EXPECT_EQ(inertia(polygon_shape(around), 3), AngularVec<2>(3 * whole.second / whole.content));
   }
 }
 
-TEST(Bulk, OfPartsIsThatOfTheWholeTheyMake) {
+TEST(MassProperties, OfPartsIsThatOfTheWholeTheyMake) {
   Shape<2> left = box_shape(0.3, 1), right = box_shape(0.7, 1);
   left.center = {-0.35, 2};
   right.center = {0.15, 2};
   const Shape<2> both = compound_shape({left, as_polygon(right)}), whole = box_shape(1, 1);
-  EXPECT_NEAR(bulk(both).content, 1, 1e-15);
-  EXPECT_NEAR((bulk(both).center - Vec<2>(0, 2)).norm(), 0, 1e-15);
+  EXPECT_NEAR(mass_properties(both).content, 1, 1e-15);
+  EXPECT_NEAR((mass_properties(both).center - Vec<2>(0, 2)).norm(), 0, 1e-15);
   EXPECT_NEAR(inertia(both, 6)[0], inertia(whole, 6)[0], 1e-15);
   EXPECT_NEAR(inertia(both, 6)[0], 1, 1e-15);
 }
 
 TEST(Inertia, OfABallIsNoneUntilItRolls) {
-  EXPECT_EQ(inertia(ball_shape(0.5), 8), Spin<2>::Zero());
+  EXPECT_EQ(inertia(ball_shape(0.5), 8), AngularVec<2>::Zero());
   EXPECT_EQ(solid_inertia(ball_shape(0.5), 8)[0], 1);
-  EXPECT_EQ(solid_inertia(ball_shape(0), 8), Spin<2>::Zero());
+  EXPECT_EQ(solid_inertia(ball_shape(0), 8), AngularVec<2>::Zero());
   EXPECT_NEAR(solid_inertia(compound_shape({ball_shape(0.5)}), 8)[0], 1, 1e-15);
 }
 
@@ -61,7 +61,7 @@ TEST(Bounds, HoldTheShapeTightly) {
     Shape<2> box = box_shape(dice.between(0.2, 1), dice.between(0.2, 1)), ball = ball_shape(0.3);
     ball.center = {0.6, 0.1};
     const Shape<2> polygon = dice.polygon(1), all = compound_shape({box, ball, polygon});
-    const Stance<2> at = dice.stance(3);
+    const BodyMotion<2> at = dice.body_motion(3);
     const Bounds<2> a = bounds(box, at), b = bounds(as_polygon(box), at), c = bounds(all, at);
     EXPECT_NEAR((a.lower - b.lower).norm() + (a.upper - b.upper).norm(), 0, 4e-15);
     const Vec<2> center = at.x + at.arm(ball.center), r = Vec<2>::Constant(0.3);

@@ -48,10 +48,10 @@ inline Shape<2> as_polygon(const Shape<2>& box) {
   return polygon_shape(around);
 }
 
-inline Stance<2> standing(const Vec<2>& x, double angle = 0) {
-  Stance<2> at;
+inline BodyMotion<2> standing(const Vec<2>& x, double angle = 0) {
+  BodyMotion<2> at;
   at.x = x;
-  at.room_from_body = rotation<2>(Turn<2>(angle));
+  at.room_from_body = rotation<2>(Orientation<2>(angle));
   return at;
 }
 
@@ -89,7 +89,7 @@ class ShapeDice : public Dice {
     }
   }
 
-  Stance<2> stance(double room) {
+  BodyMotion<2> body_motion(double room) {
     return standing({between(-room, room), between(-room, room)}, between(-4, 4));
   }
 };

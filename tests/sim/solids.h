@@ -96,15 +96,15 @@ inline Shape<3> extruded(const Shape<2>& flat, double depth) {
   return hull_solid(all);
 }
 
-inline Stance<3> placed(const Vec<3>& x, const Vec<3>& turn = Vec<3>::Zero()) {
-  Stance<3> at;
+inline BodyMotion<3> placed(const Vec<3>& x, const Vec<3>& turn = Vec<3>::Zero()) {
+  BodyMotion<3> at;
   at.x = x;
   at.room_from_body = matrix(exponential(turn));
   return at;
 }
 
-inline Stance<3> extruded(const Stance<2>& flat) {
-  Stance<3> at;
+inline BodyMotion<3> extruded(const BodyMotion<2>& flat) {
+  BodyMotion<3> at;
   at.x = {flat.x[0], flat.x[1], 0};
   at.room_from_body.topLeftCorner<2, 2>() = flat.room_from_body;
   at.v = {flat.v[0], flat.v[1], 0};
@@ -113,8 +113,8 @@ inline Stance<3> extruded(const Stance<2>& flat) {
 }
 
 /// Where it comes to in a time h.
-inline Stance<3> moved(const Stance<3>& from, double h) {
-  Stance<3> at = from;
+inline BodyMotion<3> moved(const BodyMotion<3>& from, double h) {
+  BodyMotion<3> at = from;
   at.x += h * from.v;
   at.room_from_body = matrix(exponential(Vec<3>(h * from.w))) * from.room_from_body;
   return at;
@@ -152,8 +152,8 @@ class SpaceDice : public ShapeDice {
     }
   }
 
-  Stance<3> place(double room) {
-    Stance<3> at = placed(vec(room), vec(3));
+  BodyMotion<3> place(double room) {
+    BodyMotion<3> at = placed(vec(room), vec(3));
     at.v = vec(1), at.w = vec(1);
     return at;
   }

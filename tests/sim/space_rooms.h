@@ -23,7 +23,8 @@ inline World<3> space(Vec3 gravity = {0, -9.81, 0}) {
 
 /// Any shape as a body that turns, of uniform density.
 inline int add_solid(World<3>& world, const Shape<3>& shape, double mass, Vec3 x, Vec3 v = Vec3::Zero(),
-                     Turn<3> turn = upright<3>(), Vec3 spin = Vec3::Zero(), double elasticity = 1) {
+                     Orientation<3> turn = no_rotation<3>(), Vec3 spin = Vec3::Zero(),
+                     double elasticity = 1) {
   Body<3> body;
   body.name = "solid[" + std::to_string(world.model.bodies.size()) + "]";
   body.shape = shape;
@@ -78,9 +79,9 @@ inline World<3> doll() {
   world.model.collision = Collision::contact, world.model.rate = {600, 1}, world.model.scale = 4;
   add_wall(world, {0, 0, 0}, {0, 1, 0});
   const Vec3 v(1, 0, 0.3);
-  add_solid(world, brick({0.4, 0.6, 0.2}), 6, {0, 1.2, 0}, v, upright<3>(), {0, 0, 0}, 0.2);
-  add_solid(world, capsule(0.2, 0.06), 1, {0.3, 1.3, 0}, v, upright<3>(), {0, 0, 0}, 0.2);
-  add_solid(world, capsule(0.2, 0.06), 1, {-0.1, 0.65, 0}, v, upright<3>(), {0, 0, 0}, 0.2);
+  add_solid(world, brick({0.4, 0.6, 0.2}), 6, {0, 1.2, 0}, v, no_rotation<3>(), {0, 0, 0}, 0.2);
+  add_solid(world, capsule(0.2, 0.06), 1, {0.3, 1.3, 0}, v, no_rotation<3>(), {0, 0, 0}, 0.2);
+  add_solid(world, capsule(0.2, 0.06), 1, {-0.1, 0.65, 0}, v, no_rotation<3>(), {0, 0, 0}, 0.2);
   Joint<3> ball, hinge;
   ball.a = {1, {0, 0.2, 0}}, ball.b = {0, {0.3, 0.3, 0}};
   hinge.kind = JointKind::hinge, hinge.axis = {1, 0, 0};

@@ -117,7 +117,7 @@ TEST(FlightInSpace, IsTheParabola) {
   World<3> world = space({0, -9.8125, 0});
   world.model.rate = {64, 1};
   add_particle(world, {0, 1, 2}, {3, 4, -1});
-  add_solid(world, brick({1, 2, 3}), 2, {0, 1, 2}, {3, 4, -1}, upright<3>(), {1, 2, 3});
+  add_solid(world, brick({1, 2, 3}), 2, {0, 1, 2}, {3, 4, -1}, no_rotation<3>(), {1, 2, 3});
   for (const double t : {0.5, 1.0, 2.0}) {
     const auto want = closed_form({"projectile_dyadic", "t=" + std::string(t == 0.5 ? "0.5"
                                                                            : t == 1 ? "1 "
@@ -255,7 +255,7 @@ TEST(SpringsInSpace, KeepEnergyAndMomentum) {
 
 TEST(SpringsInSpace, TurnWithTheWholeScene) {
   World<3> world = hanging(1000, Integrator::rk4), other = world;
-  const Turn<3> by = exponential({0.7, -1.1, 0.4});
+  const Orientation<3> by = exponential({0.7, -1.1, 0.4});
   const Eigen::Matrix3d turn = rotation<3>(by);
   other.model.gravity = turn * world.model.gravity;
   other.model.springs[0].b.local = turn * world.model.springs[0].b.local;
@@ -287,7 +287,7 @@ TEST(WallsInSpace, GiveACornerItsImpulse) {
   World<3> world = space(Vec3::Zero());
   world.model.rate = {100000000, 1}, world.model.scale = 4;
   add_wall(world, Vec3::Zero(), Vec3::UnitY());
-  const Turn<3> turn = exponential({0.5, 0.3, -0.4});
+  const Orientation<3> turn = exponential({0.5, 0.3, -0.4});
   add_solid(world, brick({1, 0.5, 0.8}), 2, {0, 0, 0}, {1, -3, 0.5}, turn, {2, -1, 0.5}, 0.6);
   const Eigen::Matrix3d axes = rotation<3>(turn);
   Vec3 r = Vec3::Zero();
@@ -313,10 +313,10 @@ TEST(WallsInSpace, GiveNoSpinToWhatLandsFlat) {
     World<3> world = space();
     world.model.scale = 4;
     add_wall(world, Vec3::Zero(), Vec3::UnitY());
-    add_solid(world, shape, 2, {0, 1, 0}, {0.3, 0, 0.1}, upright<3>(), Vec3::Zero(), 0.5);
+    add_solid(world, shape, 2, {0, 1, 0}, {0.3, 0, 0.1}, no_rotation<3>(), Vec3::Zero(), 0.5);
     const State<3> now = stepped(world, 3000);
     EXPECT_LE(now.spin[0].norm(), 1e-13);
-    EXPECT_LE((now.turn[0] - upright<3>()).norm(), 1e-14);  // the rounding of four corners
+    EXPECT_LE((now.turn[0] - no_rotation<3>()).norm(), 1e-14);  // the rounding of four corners
     EXPECT_NEAR(now.x[0][1], 0.25, 1e-4);
   }
   // lying on its side
@@ -407,7 +407,7 @@ TEST(RunInSpace, GivesTheSameStateAtEveryFrameRateAndCutInTwo) {
   EXPECT_EQ(by(60), want);
   auto it = run(world);
   const Snapshot now = shown(*it, {1, 1});
-  EXPECT_EQ(it->cast().dimension, 3);
+  EXPECT_EQ(it->scene_info().dimension, 3);
   const State<3> half = stepped(world, 500);
   const State<3> whole = stepped(World<3>{world.model, half}, 500);
   EXPECT_EQ(words(whole), want);

@@ -17,12 +17,12 @@ constexpr double kRounding = 4e-15;
 
 template <int D>
 Twist<D> any_twist(Dice& dice) {
-  return {dice.vector<kSpins<D>>(2), dice.vector<D>(2)};
+  return {dice.vector<kAngular<D>>(2), dice.vector<D>(2)};
 }
 
 template <int D>
 Wrench<D> any_wrench(Dice& dice) {
-  return {dice.vector<kSpins<D>>(2), dice.vector<D>(2)};
+  return {dice.vector<kAngular<D>>(2), dice.vector<D>(2)};
 }
 
 TYPED_TEST(Spatial, PowerDoesNotDependOnTheOrigin) {
@@ -39,18 +39,18 @@ TYPED_TEST(Spatial, PowerDoesNotDependOnTheOrigin) {
 TYPED_TEST(Spatial, LeverIsSwing) {
   constexpr int D = TypeParam::value;
   Dice dice(2);
-  const Spin<D> w = dice.vector<kSpins<D>>(1);
+  const AngularVec<D> w = dice.vector<kAngular<D>>(1);
   const Vec<D> r = dice.vector<D>(1);
-  EXPECT_LE((lever<D>(r) * w - swing<D>(w, r)).norm(), kRounding);
+  EXPECT_LE((lever<D>(r) * w - cross_velocity<D>(w, r)).norm(), kRounding);
 }
 
 TYPED_TEST(Spatial, InertiaOfALinkGivesItsKineticEnergyFromAnyOrigin) {
   constexpr int D = TypeParam::value;
   Dice dice(3);
   for (int trial = 0; trial < 100; ++trial) {
-    const Link<D> link = any_link<D>(dice, -1, Freedom::free);
+    const Link<D> link = any_link<D>(dice, -1, JointType::free);
     const auto t = any_twist<D>(dice);
-    const Vec<D> v = t.v + swing<D>(t.w, link.com);
+    const Vec<D> v = t.v + cross_velocity<D>(t.w, link.com);
     const double want = link.mass * v.squaredNorm() + t.w.dot(link.inertia * t.w);
     const auto inertia = rigid_inertia<D>(link.mass, link.com, link.inertia);
     EXPECT_NEAR(power(inertia * t, t), want, 10 * kRounding * want);
@@ -65,7 +65,7 @@ TYPED_TEST(Spatial, InertiaOfALinkGivesItsKineticEnergyFromAnyOrigin) {
 TYPED_TEST(Spatial, AnInertiaFreedAlongADirectionDoesNotFeelIt) {
   constexpr int D = TypeParam::value;
   Dice dice(4);
-  const Link<D> link = any_link<D>(dice, -1, Freedom::free);
+  const Link<D> link = any_link<D>(dice, -1, JointType::free);
   const auto s = any_twist<D>(dice);
   auto inertia = rigid_inertia<D>(link.mass, link.com, link.inertia);
   const Wrench<D> u = inertia * s;

@@ -92,7 +92,7 @@ TEST(HangingSpring, StaysAtItsStaticExtension) {
 
 enum class Case { pendulum, damped, box };
 
-World<2> swing(Case which, int rate) {
+World<2> cross_velocity(Case which, int rate) {
   World<2> world = room();
   world.model.rate = {rate, 1};
   if (which == Case::box) {
@@ -120,7 +120,7 @@ double error(const Snapshot::Body& at, const std::vector<double>& row) {
 void expect_table(Case which, const char* name, const char* errors, double times) {
   for (const int rate : {240, 1000, 4000, 16000}) {
     const auto reachable = rk4_errors(errors, rate);
-    const auto motion = run(swing(which, rate));
+    const auto motion = run(cross_velocity(which, rate));
     for (const auto& row : table(name)) {
       const auto found = reachable.find(row[0]);
       if (found == reachable.end()) continue;
@@ -161,7 +161,7 @@ TEST(BoxOnACornerSpring, StepsAsTheSchemeByHand) {
     const Six k1 = f(y), k2 = f(y + h / 2 * k1), k3 = f(y + h / 2 * k2), k4 = f(y + h * k3);
     y += h * (k1 + 2 * k2 + 2 * k3 + k4) / 6;
   }
-  const auto at = shown(*run(swing(Case::box, 1000)), {1, 1}).bodies[0];
+  const auto at = shown(*run(cross_velocity(Case::box, 1000)), {1, 1}).bodies[0];
   // the same scheme: rounding only
   EXPECT_NEAR(at.position.x(), y[0], 1e-12);
   EXPECT_NEAR(at.position.y(), y[1], 1e-12);
@@ -209,7 +209,7 @@ TEST(Spring, HoldsOnToAFixedBody) {
   const double angle = 0.3;
   const int box = add_box(by_body, {1, 0.5}, 2, {0, 2}, {0, 0}, angle);
   by_body.model.bodies[box].fixed = true;
-  const Vec2 local(0.5, 0.25), corner = Vec2(0, 2) + rotation<2>(Turn<2>(angle)) * local;
+  const Vec2 local(0.5, 0.25), corner = Vec2(0, 2) + rotation<2>(Orientation<2>(angle)) * local;
   add_spring(by_body, {0, {0, 0}}, {box, local}, 30, 0.2);
   add_spring(by_place, {0, {0, 0}}, {-1, corner}, 30, 0.2);
   EXPECT_EQ(stepped(by_body, 1000).x[0], stepped(by_place, 1000).x[0]);

@@ -37,8 +37,8 @@ double deepest(const World<3>& world, const State<3>& state) {
   double depth = 0;
   for (std::size_t a = 0; a < state.x.size(); ++a) {
     for (std::size_t b = a + 1; b < state.x.size(); ++b) {
-      depth = std::max(depth, -separation(world.model.bodies[a].shape, stance(state, int(a)),
-                                          world.model.bodies[b].shape, stance(state, int(b))));
+      depth = std::max(depth, -separation(world.model.bodies[a].shape, body_motion(state, int(a)),
+                                          world.model.bodies[b].shape, body_motion(state, int(b))));
     }
   }
   return depth;
@@ -56,7 +56,7 @@ World<3> heap(int n, int side, double mu) {
   return world;
 }
 
-TEST(Sweeps, ABoxStopsAfterVSquaredOverTwoMuGInEveryDirection) {
+TEST(SpaceIterative, ABoxStopsAfterVSquaredOverTwoMuGInEveryDirection) {
   const double mu = 0.3, v = 1;
   for (int i = 0; i < 12; ++i) {
     const double angle = (30 * i + 7) * std::numbers::pi / 180;
@@ -69,7 +69,7 @@ TEST(Sweeps, ABoxStopsAfterVSquaredOverTwoMuGInEveryDirection) {
   }
 }
 
-TEST(Sweeps, AHeapComesToRestAndCarriesItsWeight) {
+TEST(SpaceIterative, AHeapComesToRestAndCarriesItsWeight) {
   const World<3> world = heap(30, 3, 0.6);
   State<3> state = world.state;
   Stepper<3> stepper(world.model);
@@ -95,7 +95,7 @@ TEST(Sweeps, AHeapComesToRestAndCarriesItsWeight) {
   EXPECT_EQ(state.x, before.x);
 }
 
-TEST(Sweeps, ASmallHeapLiesInItselfByAMillionthAtMost) {
+TEST(SpaceIterative, ASmallHeapLiesInItselfByAMillionthAtMost) {
   World<3> world = heap(12, 2, 0.5);
   State<3> state = world.state;
   Stepper<3> stepper(world.model);
@@ -109,7 +109,7 @@ TEST(Sweeps, ASmallHeapLiesInItselfByAMillionthAtMost) {
   for (const Contact<3>& contact : state.contacts) EXPECT_GT(contact.gap, -1e-6 * 0.3);
 }
 
-TEST(Sweeps, ARunCutInTwoIsTheRunInOne) {
+TEST(SpaceIterative, ARunCutInTwoIsTheRunInOne) {
   const World<3> world = heap(12, 2, 0.5);
   const State<3> whole = stepped(world, 300);
   World<3> half = world;
@@ -117,7 +117,7 @@ TEST(Sweeps, ARunCutInTwoIsTheRunInOne) {
   EXPECT_EQ(words(stepped(half, 163)), words(whole));
 }
 
-TEST(Sweeps, EnergyOfAHeapOnlyFalls) {
+TEST(SpaceIterative, EnergyOfAHeapOnlyFalls) {
   const World<3> world = heap(20, 2, 0.4);
   State<3> state = world.state;
   Stepper<3> stepper(world.model);
@@ -148,7 +148,7 @@ World<3> blown_apart() {
   return world;
 }
 
-TEST(Sweeps, AHundredBoxesBlownApartComeToRestWithNoEnergyFromNowhere) {
+TEST(SpaceIterative, AHundredBoxesBlownApartComeToRestWithNoEnergyFromNowhere) {
   const World<3> world = blown_apart();
   const auto run = [&](State<3>& state, double& gained, double& thrown) {
     Stepper<3> stepper(world.model);

@@ -32,10 +32,10 @@ inline int add_ball(World<2>& world, double radius, double mass, Vec2 x, Vec2 v 
   body.shape.kind = ShapeKind::ball;
   body.shape.radius = radius;
   body.mass = mass, body.elasticity = elasticity;
-  body.inertia = Spin<2>(0.5 * mass * radius * radius);
+  body.inertia = AngularVec<2>(0.5 * mass * radius * radius);
   world.model.bodies.push_back(body);
   world.state.x.push_back(x), world.state.v.push_back(v);
-  world.state.turn.push_back(Turn<2>(0)), world.state.spin.push_back(Spin<2>(spin));
+  world.state.turn.push_back(Orientation<2>(0)), world.state.spin.push_back(AngularVec<2>(spin));
   return int(world.model.bodies.size()) - 1;
 }
 
@@ -79,13 +79,13 @@ inline int add_polygon(World<2>& world, std::vector<Vec2> corners, double mass, 
   body.name = "polygon[" + std::to_string(world.model.bodies.size()) + "]";
   body.shape.kind = ShapeKind::polygon;
   body.shape.vertices = std::move(corners);
-  const Vec2 c = bulk(body.shape).center;
+  const Vec2 c = mass_properties(body.shape).center;
   for (Vec2& corner : body.shape.vertices) corner -= c;
   body.mass = mass, body.elasticity = elasticity;
   body.inertia = inertia(body.shape, mass);
   world.model.bodies.push_back(body);
-  world.state.x.push_back(x + rotation<2>(Turn<2>(angle)) * c), world.state.v.push_back(v);
-  world.state.turn.push_back(Turn<2>(angle)), world.state.spin.push_back(Spin<2>(spin));
+  world.state.x.push_back(x + rotation<2>(Orientation<2>(angle)) * c), world.state.v.push_back(v);
+  world.state.turn.push_back(Orientation<2>(angle)), world.state.spin.push_back(AngularVec<2>(spin));
   return int(world.model.bodies.size()) - 1;
 }
 

@@ -76,7 +76,7 @@ TEST(Trig, OfWhatIsNotFiniteIsNotANumber) {
 }
 
 // glibc's sin, cos, exp, pow give other last bits on processors without fused multiply-add
-TEST(Core, CallsNoTranscendentalOfTheLibrary) {
+TEST(CoreShape, CallsNoTranscendentalOfTheLibrary) {
   const auto library = std::filesystem::path(OBSCURA_BINARY).parent_path() / "src" / "libobscura_sim.a";
   ASSERT_TRUE(std::filesystem::exists(library)) << library;
   std::FILE* pipe = popen(("nm -u '" + library.string() + "'").c_str(), "r");

@@ -58,11 +58,11 @@ void settle(std::vector<T>& values) {
 // meshes, each once, and the nodes that show them
 class Stage {
  public:
-  Stage(const scene::Scene& scene, const sim::Cast& cast) : cast_(cast), depth_(cast.scale / 12) {
+  Stage(const scene::Scene& scene, const sim::SceneInfo& cast) : cast_(cast), depth_(cast.scale / 12) {
     glb.name = scene::one_line(scene.name), glb.generator = fmt::format("obscura {}", OBSCURA_VERSION);
     int next = 0;
     for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
-      const sim::Cast::Body& body = cast.bodies[i];
+      const sim::SceneInfo::Body& body = cast.bodies[i];
       const auto own = i < scene.look.bodies.size() ? scene.look.bodies[i].color : std::nullopt;
       const draw::Color color = own          ? *own
                                 : body.fixed ? draw::neutral(scene.look.theme)
@@ -80,9 +80,9 @@ class Stage {
       }
     };
     rods(cast.springs.size(), "spring", palette.spring);
-    for (const sim::Cast::Joint& joint : cast.joints)
+    for (const sim::SceneInfo::Joint& joint : cast.joints)
       if (far(joint)) rods(1, joint.name, palette.ink);
-    for (const sim::Cast::Wall& wall : cast.walls) {
+    for (const sim::SceneInfo::Wall& wall : cast.walls) {
       if (cast.dimension != 3 || wall.normal != Vec3::UnitY()) continue;
       Glb::Mesh mesh = floor(scene.extent.low, scene.extent.high);
       mesh.name = "floor", mesh.color = linear(palette.room);
@@ -113,7 +113,7 @@ class Stage {
   Glb glb;
 
  private:
-  static bool far(const sim::Cast::Joint& joint) {
+  static bool far(const sim::SceneInfo::Joint& joint) {
     return joint.kind == sim::JointKind::rod || joint.kind == sim::JointKind::rope;
   }
 
@@ -138,7 +138,7 @@ class Stage {
     node.scales.push_back(narrow(Vec3(thick, whole ? length : 0, thick)));
   }
 
-  const sim::Cast& cast_;
+  const sim::SceneInfo& cast_;
   double depth_;  // m
 };
 
@@ -159,10 +159,10 @@ int run(const Flags& flags) {
   motion->heed(interrupted);
   const std::int64_t frames = sim::ceil(scene.duration * fps);
   // a place and a turn of each node at each instant, in lists that grow, and then as a file
-  const sim::Cast& cast = motion->cast();
+  const sim::SceneInfo& cast = motion->scene_info();
   const double nodes = double(cast.bodies.size() + cast.springs.size() + cast.joints.size());
   refuse_beyond_memory(scene, double(frames) * (nodes * 10 + 1) * sizeof(float) * 3);
-  Stage stage(scene, motion->cast());
+  Stage stage(scene, motion->scene_info());
   for (std::int64_t n = 0; n <= frames; ++n) {
     const sim::Rational at = n < frames ? sim::rational(n) / fps : scene.duration;
     doing("simulating", double(n), double(frames), "frames");
@@ -175,7 +175,7 @@ int run(const Flags& flags) {
   stage.end();
   media::make_folder_of(out);
   media::write_glb(out, stage.glb);
-  say(stdout, "{}: {} bodies, {} instants over {:g} s\n", out, motion->cast().bodies.size(), frames + 1,
+  say(stdout, "{}: {} bodies, {} instants over {:g} s\n", out, motion->scene_info().bodies.size(), frames + 1,
       sim::value(scene.duration));
   return kDone;
 }

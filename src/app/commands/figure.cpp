@@ -138,7 +138,7 @@ int run(const Flags& flags) {
     (void)draw::font_file(draw::Face::regular);  // throws where there is none
   }
 
-  const Album album(flags.scene, flags.sets, options);
+  const FigureBuilder album(flags.scene, flags.sets, options);
   media::make_folder_of(out);
   const Page made = album.page();
   const double width = album.width(), height = width / made.picture.aspect;

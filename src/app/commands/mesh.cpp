@@ -119,13 +119,13 @@ void add(Mesh& mesh, const Form& form, double depth) {
 
 }  // namespace
 
-Mesh surface(const sim::Cast::Body& body, double depth) {
+Mesh surface(const sim::SceneInfo::Body& body, double depth) {
   Mesh mesh;
   if (body.kind != ShapeKind::compound) {
     add(mesh, body, depth);
     return mesh;
   }
-  for (const sim::Cast::Part& part : body.parts) {
+  for (const sim::SceneInfo::Part& part : body.parts) {
     Mesh own;
     add(own, part, depth);
     // corners of polygons and hulls are in the body's frame already

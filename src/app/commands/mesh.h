@@ -7,7 +7,7 @@ namespace obscura::app {
 
 /// The surface of a body in its own frame. What has no depth gets `depth` (m): bodies of the plane; what has
 /// no size, a point, is a small ball of a tenth of it.
-media::Glb::Mesh surface(const sim::Cast::Body& body, double depth);
+media::Glb::Mesh surface(const sim::SceneInfo::Body& body, double depth);
 
 /// A round rod along y from -1/2 to 1/2, of radius one: a spring or a rod between two places is one, scaled.
 media::Glb::Mesh rod();

@@ -66,7 +66,7 @@ class Sink {
   std::optional<media::File> file_;
 };
 
-const std::string& name(const sim::Cast& cast, int body) { return cast.bodies[std::size_t(body)].name; }
+const std::string& name(const sim::SceneInfo& cast, int body) { return cast.bodies[std::size_t(body)].name; }
 
 // a spin or turning momentum: one number in the plane
 std::string spin(const sim::Vec3& w, int dimension) {
@@ -82,7 +82,7 @@ std::string turn(const sim::Snapshot::Body& body, int dimension) {
 }
 
 // one instant as a JSON object
-std::string json(const sim::Snapshot& now, const sim::Cast& cast, const std::string& hash) {
+std::string json(const sim::Snapshot& now, const sim::SceneInfo& cast, const std::string& hash) {
   const int d = cast.dimension;
   const sim::Energies& e = now.energies;
   std::string text = fmt::format(
@@ -198,14 +198,14 @@ int states(const Flags& flags) {
   // rows that run over the terminal are progress enough
   std::optional<Hushed> rows;
   if (isatty(STDOUT_FILENO) == 1 && !flags.out) rows.emplace();
-  const std::vector<Column> all = columns(run->cast(), scene.axes);
+  const std::vector<Column> all = columns(run->scene_info(), scene.axes);
   if (as_json) {
     put(
         fmt::format("{{\"version\": \"{}\", \"scene\": {}, \"scene_hash\": \"{}\", \"dimension\": {},\n"
                     " \"units\": {{\"length\": \"m\", \"time\": \"s\", \"angle\": \"rad\", \"energy\": "
                     "\"J\", \"force\": \"N\", \"impulse\": \"N s\"}},\n"
                     " \"solver\": {},\n \"states\": [\n",
-                    OBSCURA_VERSION, quoted(scene.file), hash(scene.text), run->cast().dimension,
+                    OBSCURA_VERSION, quoted(scene.file), hash(scene.text), run->scene_info().dimension,
                     std::visit([](const auto& world) { return solver_name(world.model); }, scene.world)));
   } else {
     put(csv_header(all));
@@ -227,7 +227,7 @@ int states(const Flags& flags) {
       // turned as it was typed, not as its principal axes lie
       for (std::size_t i = 0; i < now.bodies.size(); ++i)
         now.bodies[i].orientation = now.bodies[i].orientation * scene.axes[i].conjugate();
-      put((first ? "" : ",\n") + json(now, run->cast(), state));
+      put((first ? "" : ",\n") + json(now, run->scene_info(), state));
     } else {
       put(csv_row(now, state, all));
     }

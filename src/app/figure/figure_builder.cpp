@@ -42,7 +42,7 @@ sim::Rational impact(const scene::Scene& scene) {
       if ((each.body == body || each.other == body) && each.impulse.norm() > 0) return t;
   }
   throw UsageError(fmt::format("{}: {} strikes nothing within the duration", scene.file,
-                               run->cast().bodies[std::size_t(body)].name));
+                               run->scene_info().bodies[std::size_t(body)].name));
 }
 
 draw::Text words(const std::string& text, draw::Face face, double size, const draw::Point& at,
@@ -54,7 +54,8 @@ draw::Text words(const std::string& text, draw::Face face, double size, const dr
 
 }  // namespace
 
-Album::Album(const std::string& file, const std::vector<std::string>& sets, const AlbumOptions& options) {
+FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::string>& sets,
+                             const AlbumOptions& options) {
   // one scene for each value, all combinations
   std::vector<std::string> varies = options.vary;
   if (varies.empty() && file != "-")
@@ -97,8 +98,8 @@ Album::Album(const std::string& file, const std::vector<std::string>& sets, cons
   columns_ = std::min(n, wanted > 0 ? wanted : n <= 4 ? n : int(std::ceil(std::sqrt(n))));
 }
 
-void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& times,
-                 const std::string& said) {
+void FigureBuilder::take(const scene::Scene& scene, const std::vector<sim::Rational>& times,
+                         const std::string& said) {
   const auto run = scene.run();
   run->heed(interrupted);
   std::vector<int> trailed;
@@ -112,7 +113,7 @@ void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& ti
   sim::Rational next;
   for (const sim::Rational& time : times) {
     for (; every_ && next < time; next = next + *every_) before.push_back(at(next));
-    Panel panel{scene, run->cast(), at(time), before, {}, said};
+    Panel panel{scene, run->scene_info(), at(time), before, {}, said};
     ways.push_back(std::make_shared<const sim::Track>(run->take_track()));
     panel.ways = ways;
     if (times.size() > 1)
@@ -121,7 +122,7 @@ void Album::take(const scene::Scene& scene, const std::vector<sim::Rational>& ti
   }
 }
 
-std::vector<Album::Cell> Album::cells() const {
+std::vector<FigureBuilder::Cell> FigureBuilder::cells() const {
   const std::vector<draw::Camera>& cameras = panels_.front().scene.cameras;
   const int seen = panels_.front().cast.dimension == 3 ? int(cameras.size()) : 1;
   std::vector<Cell> all;
@@ -134,7 +135,7 @@ std::vector<Album::Cell> Album::cells() const {
   return all;
 }
 
-Page Album::page() const {
+Page FigureBuilder::page() const {
   const std::vector<Cell> cells = this->cells();
   const bool space = panels_.front().cast.dimension == 3;
   const int columns = std::min(columns_, int(cells.size()));
@@ -145,11 +146,11 @@ Page Album::page() const {
   const draw::Figure& figure = panels_.front().scene.figure;
   std::vector<sim::Snapshot> moments;
   for (const Panel& panel : panels_) moments.push_back(panel.now);
-  const draw::Depictor first = depictor(cells.front(), each);
+  const draw::Illustrator first = depictor(cells.front(), each);
   draw::Rect window;
   double scale = 1;  // page units a metre
   if (space) {
-    const draw::Lens lens = first.lens(moments.front());
+    const draw::CameraProjection lens = first.lens(moments.front());
     const double k = each * draw::kPoint / lens.window.width;
     window = {0, 0, k * lens.window.width, k * lens.window.height}, scale = k * lens.scale;
   } else {
@@ -172,7 +173,7 @@ Page Album::page() const {
     if (column == 0) top += row_height, row_height = 0;
     double height = 0;
     const draw::Point corner(column * (each + kGutter) * draw::kPoint, top);
-    const draw::Depictor artist = depictor(cells[i], each);
+    const draw::Illustrator artist = depictor(cells[i], each);
     draw::List list;
     if (space) {
       Lit lit;
@@ -222,7 +223,7 @@ Page Album::page() const {
 }
 
 // of several runs, their lines in one plot, each with the value that sets it apart
-std::vector<draw::Plot> Album::plots() const {
+std::vector<draw::Plot> FigureBuilder::plots() const {
   std::vector<double> marks;
   if (panels_.front().scene.figure.room)
     for (const Panel& panel : panels_) marks.push_back(panel.now.time);
@@ -244,7 +245,7 @@ std::vector<draw::Plot> Album::plots() const {
   return all;
 }
 
-draw::Depictor Album::depictor(const Cell& cell, double width) const {
+draw::Illustrator FigureBuilder::depictor(const Cell& cell, double width) const {
   const Panel& panel = *cell.panel;
   draw::Look look = panel.scene.look;
   look.caption = false;
@@ -260,8 +261,8 @@ draw::Depictor Album::depictor(const Cell& cell, double width) const {
   return {panel.cast, look, panel.scene.extent, sheet};
 }
 
-draw::List Album::in_plane(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
-                           double& height) const {
+draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell& cell,
+                                   const draw::Scales& scales, double& height) const {
   const Panel& panel = *cell.panel;
   const draw::Palette colours = draw::palette(panel.scene.look.theme);
 
@@ -281,8 +282,8 @@ draw::List Album::in_plane(const draw::Depictor& depictor, const Cell& cell, con
 }
 
 // a camera's picture, as wide as the panel, under the panel's letter
-draw::List Album::in_space(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
-                           double width, double& height, Lit& lit) const {
+draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell& cell,
+                                   const draw::Scales& scales, double width, double& height, Lit& lit) const {
   const Panel& panel = *cell.panel;
   const draw::Palette colours = draw::palette(panel.scene.look.theme);
   lit.picture = depictor.depict(panel.now, panel.ways);

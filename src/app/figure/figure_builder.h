@@ -40,10 +40,10 @@ struct Page {
 
 /// The instants that a figure shows, simulated: one panel for each, of one run or of several that differ in a
 /// value; in space one for each by each camera.
-class Album {
+class FigureBuilder {
  public:
   /// Reads the scene and runs it as far as the figure needs. Throws UsageError, scene::Error, TroubleError.
-  Album(const std::string& scene, const std::vector<std::string>& sets, const AlbumOptions& options);
+  FigureBuilder(const std::string& scene, const std::vector<std::string>& sets, const AlbumOptions& options);
 
   Page page() const;
   double width() const { return width_; }  // pt
@@ -52,7 +52,7 @@ class Album {
  private:
   struct Panel {
     scene::Scene scene;
-    sim::Cast cast;
+    sim::SceneInfo cast;
     sim::Snapshot now;
     std::vector<sim::Snapshot> before;                    // exposures, oldest first
     std::vector<std::shared_ptr<const sim::Track>> ways;  // of trails
@@ -66,10 +66,10 @@ class Album {
     std::string words;
   };
   std::vector<Cell> cells() const;
-  draw::Depictor depictor(const Cell& cell, double width) const;
-  draw::List in_plane(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+  draw::Illustrator depictor(const Cell& cell, double width) const;
+  draw::List in_plane(const draw::Illustrator& depictor, const Cell& cell, const draw::Scales& scales,
                       double& height) const;
-  draw::List in_space(const draw::Depictor& depictor, const Cell& cell, const draw::Scales& scales,
+  draw::List in_space(const draw::Illustrator& depictor, const Cell& cell, const draw::Scales& scales,
                       double width, double& height, Lit& lit) const;
 
   /// One of the runs that differ in a value, and what it is called in a plot.

@@ -42,7 +42,7 @@ class Filming {
 
  private:
   // a take, drawn
-  struct Print {
+  struct DrawnSegment {
     std::int64_t number = 0;
     int frames = 0;
     bool whole = true;                 // false: an interrupt cut it short
@@ -62,8 +62,8 @@ class Filming {
   void clear_leftovers() const;
   SimulationOptions simulating();
   int prepare(Simulation& simulation);
-  std::function<Print(Take)> hire(const draw::Charts& charts);
-  Print print(Take take, Darkroom& darkroom);
+  std::function<DrawnSegment(FilmSegment)> hire(const draw::Charts& charts);
+  DrawnSegment print(FilmSegment take, FrameRenderer& darkroom);
   void shoot(Simulation& simulation, const draw::Charts& charts, Progress& progress);
   int finish(Progress& progress, const Simulation& simulation, std::int64_t wanted);
   std::string cut_part() const {
@@ -194,19 +194,19 @@ SimulationOptions Filming::simulating() {
 }
 
 // a worker: a context of its own, and for each take a closed piece of film
-std::function<Filming::Print(Take)> Filming::hire(const draw::Charts& charts) {
-  auto darkroom = std::make_shared<Darkroom>(scene_, charts, options_.context);
+std::function<Filming::DrawnSegment(FilmSegment)> Filming::hire(const draw::Charts& charts) {
+  auto darkroom = std::make_shared<FrameRenderer>(scene_, charts, options_.context);
   if (const auto before = store_ ? store_->drawn() : std::nullopt) {
     Origin here = journal_.origin;
     here.gl_version = darkroom->renderer().version(), here.gl_renderer = darkroom->renderer().device();
     if (const std::string why = discord(*before, here); !why.empty())
       throw media::Error(fmt::format("{}: holds parts that cannot go with these: {}", store_->folder(), why));
   }
-  return [this, darkroom](Take take) { return print(std::move(take), *darkroom); };
+  return [this, darkroom](FilmSegment take) { return print(std::move(take), *darkroom); };
 }
 
-Filming::Print Filming::print(Take take, Darkroom& darkroom) {
-  Print print;
+Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) {
+  DrawnSegment print;
   print.number = take.number;
   Origin origin = journal_.origin;
   origin.gl_version = darkroom.renderer().version(), origin.gl_renderer = darkroom.renderer().device();
@@ -260,11 +260,11 @@ void Filming::shoot(Simulation& simulation, const draw::Charts& charts, Progress
   if (output_.form == Output::Form::pipe) pipe.emplace(STDOUT_FILENO, options_.pipe, spec_);
 
   gl::ready(options_.context);
-  Conduct<Take, Print> parts;
+  Conduct<FilmSegment, DrawnSegment> parts;
   parts.produce = [&] { return simulation.next(); };
   parts.wait = [&] { progress.at(drawn_); };
   parts.hire = [&] { return hire(charts); };
-  parts.consume = [&](Print print) {
+  parts.consume = [&](DrawnSegment print) {
     for (const media::Image& image : print.images) {
       if (open_ && !pipe->write(image)) open_ = false;
     }

@@ -13,10 +13,11 @@ gl::Renderer opened(const scene::Film& film, const gl::ContextOptions& context) 
 
 }  // namespace
 
-Darkroom::Darkroom(const scene::Scene& scene, const draw::Charts& charts, const gl::ContextOptions& context)
+FrameRenderer::FrameRenderer(const scene::Scene& scene, const draw::Charts& charts,
+                             const gl::ContextOptions& context)
     : renderer_(opened(scene.film, context)), artist_(depictor(scene, charts)) {}
 
-const media::Image& Darkroom::print(const Take& take, std::size_t frame, bool transparent) {
+const media::Image& FrameRenderer::print(const FilmSegment& take, std::size_t frame, bool transparent) {
   const sim::Snapshot& instant = take.moments[frame];
   const auto draw = [&](const sim::Snapshot& moment) -> const media::Image& {
     draw::Picture picture = artist_.depict(moment, take.ways, instant);

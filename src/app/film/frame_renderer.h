@@ -14,18 +14,18 @@ namespace obscura::app {
 
 /// Makes pictures of takes, one of each frame: of its instant, or where the shutter is open while things
 /// move the mean of several. Used from one thread at a time; several work side by side.
-class Darkroom {
+class FrameRenderer {
  public:
-  Darkroom(const scene::Scene& scene, const draw::Charts& charts, const gl::ContextOptions& context);
+  FrameRenderer(const scene::Scene& scene, const draw::Charts& charts, const gl::ContextOptions& context);
 
   /// The picture of a frame of a take, good until the next one. `transparent`: with the ground left out.
-  const media::Image& print(const Take& take, std::size_t frame, bool transparent);
+  const media::Image& print(const FilmSegment& take, std::size_t frame, bool transparent);
 
   const gl::Renderer& renderer() const { return renderer_; }
 
  private:
   gl::Renderer renderer_;
-  draw::Depictor artist_;
+  draw::Illustrator artist_;
   media::Exposure exposure_;
 };
 

@@ -10,7 +10,7 @@ namespace obscura::app {
 std::vector<Pictured> pictures(const scene::Scene& scene, const Shots& shots, const PictureOptions& options) {
   const draw::Charts charts = app::charts(scene);
   Simulation simulation(scene, shots, depictor(scene, charts), {.frames = 1, .hash_each = true});
-  Darkroom darkroom(scene, charts, options.context);
+  FrameRenderer darkroom(scene, charts, options.context);
   std::vector<Pictured> all;
   while (const auto take = simulation.next()) {
     Pictured one;

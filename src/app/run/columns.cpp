@@ -31,7 +31,7 @@ class Listing {
 
 }  // namespace
 
-std::vector<Column> columns(const sim::Cast& cast, const std::vector<Eigen::Quaterniond>& axes) {
+std::vector<Column> columns(const sim::SceneInfo& cast, const std::vector<Eigen::Quaterniond>& axes) {
   Listing list(cast.dimension);
   list.number("time", [](Now now) { return now.time; });
   list.number("step", [](Now now) { return double(now.step); });

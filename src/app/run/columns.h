@@ -19,6 +19,6 @@ struct Column {
 /// The columns of a run's states as `states --format csv` has them, in its order and without the hash: time,
 /// step, energies, momenta, contacts, then bodies and joints. `axes`: those in which each body was typed
 /// (scene::Scene); an orientation is read as it was typed, not as its principal axes lie.
-std::vector<Column> columns(const sim::Cast& cast, const std::vector<Eigen::Quaterniond>& axes);
+std::vector<Column> columns(const sim::SceneInfo& cast, const std::vector<Eigen::Quaterniond>& axes);
 
 }  // namespace obscura::app

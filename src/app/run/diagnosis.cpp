@@ -208,9 +208,9 @@ std::string first_difference(const Origin& a, const Origin& b) {
   std::string names;
   std::size_t told = 0;
   for (const std::size_t body : apart->bodies) {
-    if (body >= run->cast().bodies.size()) return text;
+    if (body >= run->scene_info().bodies.size()) return text;
     if (told == kMostBodies) break;
-    names += (told++ ? ", " : "") + run->cast().bodies[body].name;
+    names += (told++ ? ", " : "") + run->scene_info().bodies[body].name;
   }
   if (apart->bodies.size() > told) names += fmt::format(" and {} more", apart->bodies.size() - told);
   if (apart->bodies_at != *apart->first) text += fmt::format("; at {}", frame(apart->bodies_at));
@@ -226,7 +226,7 @@ std::optional<Origin> simulated(const Origin& origin) {
   const std::int64_t count = origin.states ? std::min(origin.states->frames(), shots.size()) : 1;
   Origin again = origin;
   again.states.reset();
-  Checksums states(shots.size(), run->cast().bodies.size());
+  Checksums states(shots.size(), run->scene_info().bodies.size());
   for (std::int64_t i = 0; i < count; ++i) {
     const auto found = run->at(i == 0 ? origin.shot->time : shots[i].time);
     const auto* moment = std::get_if<sim::Snapshot>(&found);

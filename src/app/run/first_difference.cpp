@@ -41,7 +41,7 @@ std::optional<Parting> of_body(const Snapshot::Body& a, const Snapshot::Body& b,
   return found;
 }
 
-Parting first_difference(const Snapshot& a, const Snapshot& b, const sim::Cast& cast) {
+Parting first_difference(const Snapshot& a, const Snapshot& b, const sim::SceneInfo& cast) {
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
     if (auto found = of_body(a.bodies[i], b.bodies[i], cast.dimension)) {
       found->body = cast.bodies[i].name;
@@ -60,7 +60,7 @@ Parting first_difference(const Snapshot& a, const Snapshot& b, const sim::Cast& 
 
 // a difference that is there before anything moves
 std::optional<Parting> of_casts(const sim::Run& a, const sim::Run& b) {
-  const sim::Cast &left = a.cast(), &right = b.cast();
+  const sim::SceneInfo &left = a.scene_info(), &right = b.scene_info();
   Parting found;
   if (left.dimension != right.dimension) {
     found.quantity = "one is in the plane and one in space";
@@ -107,7 +107,7 @@ std::optional<Parting> parting(const scene::Scene& a, const scene::Scene& b, sim
       found.quantity = fmt::format("only one of them can go on: {}", text(bad_a ? *bad_a : *bad_b));
     } else if (left->words() != right->words()) {
       if (!std::holds_alternative<Snapshot>(one) || !std::holds_alternative<Snapshot>(two)) return {};
-      found = first_difference(std::get<Snapshot>(one), std::get<Snapshot>(two), left->cast());
+      found = first_difference(std::get<Snapshot>(one), std::get<Snapshot>(two), left->scene_info());
     } else {
       if (t == until) return {};
       continue;

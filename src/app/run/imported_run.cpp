@@ -41,7 +41,7 @@ using Columns = std::vector<std::size_t>;
 class Footage {
  public:
   Footage(const Table& table, const scene::Scene& scene)
-      : table_(table), scene_(scene), run_(scene.run()), cast_(run_->cast()) {
+      : table_(table), scene_(scene), run_(scene.run()), cast_(run_->scene_info()) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) index_[table.columns[i]] = i;
   }
 
@@ -67,7 +67,7 @@ class Footage {
   const Table& table_;
   const scene::Scene& scene_;
   std::unique_ptr<sim::Run> run_;
-  const sim::Cast& cast_;
+  const sim::SceneInfo& cast_;
   std::unordered_map<std::string, std::size_t> index_;  // of columns
 };
 
@@ -185,7 +185,7 @@ std::vector<std::vector<sim::Sighting>> Footage::poses(std::vector<std::string>&
                                                 std::vector<sim::Sighting>(cast_.bodies.size()));
   std::vector<std::string> missing, upright, still;
   for (std::size_t i = 0; i < cast_.bodies.size(); ++i) {
-    const sim::Cast::Body& body = cast_.bodies[i];
+    const sim::SceneInfo::Body& body = cast_.bodies[i];
     const std::size_t before = missing.size();
     const auto position = columns(body.name, "position", axes, missing);
     if (!position && !body.fixed && missing.size() == before)

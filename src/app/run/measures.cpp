@@ -66,7 +66,7 @@ Question question(std::string_view text) {
 }
 
 // how a number is read from an instant; nothing of a hash
-std::function<double(const sim::Snapshot&)> reader(const Question& asked, const sim::Cast& cast,
+std::function<double(const sim::Snapshot&)> reader(const Question& asked, const sim::SceneInfo& cast,
                                                    const std::vector<Column>& all) {
   if (asked.path == kHash) return {};
   for (const Column& column : all)
@@ -128,16 +128,16 @@ std::vector<Question> questions(const std::string& list) {
 
 void check(const std::vector<Question>& asked, const scene::Scene& scene) {
   const auto run = scene.run();
-  const std::vector<Column> all = columns(run->cast(), scene.axes);
-  for (const Question& each : asked) (void)reader(each, run->cast(), all);
+  const std::vector<Column> all = columns(run->scene_info(), scene.axes);
+  for (const Question& each : asked) (void)reader(each, run->scene_info(), all);
 }
 
 Answers answers(const scene::Scene& scene, const std::vector<Question>& asked) {
   const auto run = scene.run();
   run->heed(interrupted);
-  const std::vector<Column> all = columns(run->cast(), scene.axes);
+  const std::vector<Column> all = columns(run->scene_info(), scene.axes);
   std::vector<std::function<double(const sim::Snapshot&)>> readers;
-  for (const Question& each : asked) readers.push_back(reader(each, run->cast(), all));
+  for (const Question& each : asked) readers.push_back(reader(each, run->scene_info(), all));
 
   // the instants asked for, in the order of time
   std::vector<std::pair<sim::Rational, std::size_t>> instants;

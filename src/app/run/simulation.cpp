@@ -32,10 +32,10 @@ double last_time(const sim::Track& track) {
 
 }  // namespace
 
-draw::Depictor depictor(const scene::Scene& scene, const draw::Charts& charts) {
+draw::Illustrator depictor(const scene::Scene& scene, const draw::Charts& charts) {
   const auto run = scene.run();
   const double aspect = double(scene.film.width) / scene.film.height;
-  return {run->cast(), scene.look, scene.cameras, scene.extent, aspect, charts};
+  return {run->scene_info(), scene.look, scene.cameras, scene.extent, aspect, charts};
 }
 
 sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene) {
@@ -46,7 +46,7 @@ sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene) 
   return std::get<sim::Snapshot>(std::move(found));
 }
 
-Simulation::Simulation(const scene::Scene& scene, const Shots& shots, const draw::Depictor& artist,
+Simulation::Simulation(const scene::Scene& scene, const Shots& shots, const draw::Illustrator& artist,
                        const SimulationOptions& options)
     : shots_(shots), artist_(artist), film_(scene.film), options_(options), take_(options.first) {
   for (const draw::BodyLook& look : scene.look.bodies) contacts_ = contacts_ || look.contact;
@@ -81,7 +81,7 @@ std::variant<sim::Snapshot, sim::Trouble, sim::Stopped> Simulation::at(sim::Rati
   return run_->at(t);
 }
 
-std::optional<Take> Simulation::next() {
+std::optional<FilmSegment> Simulation::next() {
   if (trouble_ || interrupted()) return {};
   const auto begins = [&] { return take_ * options_.frames; };
   while (take_ < options_.last && begins() < shots_.size() && options_.skip(take_)) ++take_;
@@ -89,7 +89,7 @@ std::optional<Take> Simulation::next() {
   next_ = begins();
   approach(shots_[next_].time);
   if (!trouble_ && !interrupted()) options_.begin_take(*run_);
-  Take take;
+  FilmSegment take;
   take.number = take_++;
   while (int(take.shots.size()) < options_.frames && next_ < shots_.size() && !trouble_ && !interrupted()) {
     const Shot shot = shots_[next_];

@@ -19,7 +19,7 @@ namespace obscura::app {
 using Ways = std::vector<std::shared_ptr<const sim::Track>>;
 
 /// A closed piece of a film, simulated and not yet drawn.
-struct Take {
+struct FilmSegment {
   std::int64_t number = 0;
   std::vector<Shot> shots;
   std::vector<sim::Snapshot> moments;
@@ -30,7 +30,7 @@ struct Take {
 };
 
 /// Who draws the scene's instants, as large as its film is, with these charts beside them.
-draw::Depictor depictor(const scene::Scene& scene, const draw::Charts& charts);
+draw::Illustrator depictor(const scene::Scene& scene, const draw::Charts& charts);
 
 /// A run at an instant. Throws TroubleError where it cannot go on, Interrupted where somebody asks for an
 /// end.
@@ -57,11 +57,11 @@ struct SimulationOptions {
 class Simulation {
  public:
   /// `artist`: who is going to draw them.
-  Simulation(const scene::Scene& scene, const Shots& shots, const draw::Depictor& artist,
+  Simulation(const scene::Scene& scene, const Shots& shots, const draw::Illustrator& artist,
              const SimulationOptions& options);
 
   /// The next take; none after the last, or where the run cannot go on.
-  std::optional<Take> next();
+  std::optional<FilmSegment> next();
 
   const std::optional<sim::Trouble>& trouble() const { return trouble_; }
 
@@ -76,7 +76,7 @@ class Simulation {
   void keep_ways();
 
   Shots shots_;
-  draw::Depictor artist_;
+  draw::Illustrator artist_;
   scene::Film film_;
   bool contacts_ = false;  // are drawn
   SimulationOptions options_;

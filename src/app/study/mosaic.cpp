@@ -30,7 +30,7 @@ namespace {
 constexpr int kLeastWidth = 64, kLeastHeight = 36;  // px of a tile
 
 // the same piece of all runs
-using Together = std::vector<Take>;
+using Together = std::vector<FilmSegment>;
 
 // puts the runs' pictures beside each other; used from one thread
 class Wall {
@@ -74,7 +74,7 @@ class Wall {
  private:
   Mosaic mosaic_;
   gl::Renderer renderer_;
-  std::vector<draw::Depictor> artists_;
+  std::vector<draw::Illustrator> artists_;
   media::Image whole_;
 };
 
@@ -104,12 +104,12 @@ class Runs {
   std::optional<Together> next() {
     Together takes(runs_.size());
     std::size_t asked = 0, had = 0, frames = 0;
-    Conduct<std::size_t, std::optional<Take>> pieces;
+    Conduct<std::size_t, std::optional<FilmSegment>> pieces;
     pieces.produce = [&] {
       return asked < runs_.size() && !interrupted() ? std::optional(asked++) : std::nullopt;
     };
     pieces.hire = [&] { return [&](std::size_t i) { return runs_[i]->next(); }; };
-    pieces.consume = [&](std::optional<Take> take) {
+    pieces.consume = [&](std::optional<FilmSegment> take) {
       if (take && !take->moments.empty()) last_[had] = take->moments.back();
       if (take) takes[had] = std::move(*take);
       frames = std::max(frames, takes[had++].moments.size());
@@ -204,7 +204,7 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
     return [&, wall](const Together& takes) {
       media::SegmentEncoder encoder(out, spec);
       std::size_t frames = 0;
-      for (const Take& take : takes) frames = std::max(frames, take.moments.size());
+      for (const FilmSegment& take : takes) frames = std::max(frames, take.moments.size());
       for (std::size_t n = 0; n < frames && !interrupted(); ++n) encoder.add(wall->frame(takes, n));
       return encoder.finish();
     };

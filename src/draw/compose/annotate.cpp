@@ -32,8 +32,8 @@ using sim::Vec3;
 /// Puts the figure on one page: lines at once, words when all lines are known.
 class Notes {
  public:
-  Notes(const sim::Cast& cast, const Palette& colours, const Projection& projection, const sim::Snapshot& now,
-        List& list)
+  Notes(const sim::SceneInfo& cast, const Palette& colours, const Projection& projection,
+        const sim::Snapshot& now, List& list)
       : cast_(cast),
         colours_(colours),
         view_(projection),
@@ -79,7 +79,7 @@ class Notes {
     if (!set.empty()) words_.push_back({std::move(set), std::move(places), anchor});
   }
 
-  const sim::Cast& cast_;
+  const sim::SceneInfo& cast_;
   const Palette& colours_;
   const Projection& view_;
   const sim::Snapshot& now_;
@@ -92,7 +92,7 @@ class Notes {
 void Notes::avoid_bodies() {
   const bool flat = view_.view() != nullptr;
   for (std::size_t i = 0; i < cast_.bodies.size(); ++i) {
-    const sim::Cast::Body& body = cast_.bodies[i];
+    const sim::SceneInfo::Body& body = cast_.bodies[i];
     const sim::Snapshot::Body& it = now_.bodies[i];
     std::vector<Vec3> corners = flat ? body.vertices : std::vector<Vec3>();
     if (body.kind == sim::ShapeKind::box)
@@ -166,7 +166,7 @@ void Notes::arc(const At& at, double radius, double from, double to, double widt
 // which is dashed, and open away from the eye; its tip is before the body.
 void Notes::turn(const Figure::Vector& vector, const Reading& reading, const Formula& label, Color ink) {
   if (!(std::abs(reading.signed_value) > 1e-9)) return;
-  const sim::Cast::Body& body = cast_.bodies[std::size_t(vector.body)];
+  const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(vector.body)];
   const Point center = view_.page(reading.tail);
   const double scale = view_.scale_at(reading.tail), wide = 1.1 * kPoint;
   std::vector<Placing::Candidate> places;
@@ -412,7 +412,7 @@ void Notes::finish() {
 
 }  // namespace
 
-Projection::Projection(const Lens& lens, double scale, const Point& corner)
+Projection::Projection(const CameraProjection& lens, double scale, const Point& corner)
     : lens_(lens), scale_(scale), corner_(corner) {
   const Rect& w = lens.window;
   window_ = {corner.x() + scale * w.x, corner.y() + scale * w.y, scale * w.width, scale * w.height};
@@ -428,7 +428,7 @@ double Projection::scale_at(const Vec3& place) const {
 
 Vec3 Projection::sight(const Vec3& place) const { return view_ ? Vec3(Vec3::UnitZ()) : lens_.sight(place); }
 
-void annotate(const Figure& figure, const Scales& scales, const sim::Cast& cast, const Palette& colours,
+void annotate(const Figure& figure, const Scales& scales, const sim::SceneInfo& cast, const Palette& colours,
               const Projection& projection, const sim::Snapshot& now, List& list) {
   Notes notes(cast, colours, projection, now, list);
   if (figure.axes && !projection.view()) notes.axes();

@@ -16,7 +16,7 @@ class Projection {
  public:
   explicit Projection(const View& view) : view_(view), window_(view.window) {}
   /// A lens's page, put down `scale` times as large with its corner at `corner`.
-  Projection(const Lens& lens, double scale, const Point& corner);
+  Projection(const CameraProjection& lens, double scale, const Point& corner);
 
   Point page(const sim::Vec3& place) const;
   /// Page units a metre there.
@@ -29,7 +29,7 @@ class Projection {
 
  private:
   std::optional<View> view_;
-  Lens lens_;
+  CameraProjection lens_;
   double scale_ = 1;
   Point corner_ = {0, 0};
   Rect window_;
@@ -44,12 +44,12 @@ struct Scales {
 
 /// The scales at which the longest arrow of each kind is a good part of a window of `scale` page units a
 /// metre.
-Scales scales(const Figure& figure, const sim::Cast& cast, std::span<const sim::Snapshot> moments,
+Scales scales(const Figure& figure, const sim::SceneInfo& cast, std::span<const sim::Snapshot> moments,
               const Rect& window, double scale);
 
 /// Draws what a figure says of an instant: arrows, angles, lengths, points, and their words where there is
 /// room for them.
-void annotate(const Figure& figure, const Scales& scales, const sim::Cast& cast, const Palette& colours,
+void annotate(const Figure& figure, const Scales& scales, const sim::SceneInfo& cast, const Palette& colours,
               const Projection& projection, const sim::Snapshot& now, List& list);
 
 /// Rulers in metres along the lower and the left edge of a sheet's window, and how much room they take there.

@@ -16,19 +16,19 @@ namespace {
 
 constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
 
-bool is_point(const sim::Cast::Body& body) { return body.kind == sim::ShapeKind::point; }
+bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::ShapeKind::point; }
 
 }  // namespace
 
-std::vector<char> knots(const sim::Cast& cast) {
+std::vector<char> knots(const sim::SceneInfo& cast) {
   std::vector<int> count(cast.bodies.size(), 0);
-  for (const sim::Cast::Spring& spring : cast.springs) {
+  for (const sim::SceneInfo::Spring& spring : cast.springs) {
     for (int body : {spring.a, spring.b}) {
       if (body >= 0 && !cast.bodies[body].turns) ++count[body];
     }
   }
   std::vector<char> knot(cast.bodies.size(), 0);
-  for (const sim::Cast::Spring& spring : cast.springs) {
+  for (const sim::SceneInfo::Spring& spring : cast.springs) {
     for (auto [body, other] : {std::pair(spring.a, spring.b), std::pair(spring.b, spring.a)}) {
       if (body >= 0 && (count[body] >= 3 || (count[body] == 2 && other >= 0 && count[other] >= 3)))
         knot[body] = 1;
@@ -37,10 +37,10 @@ std::vector<char> knots(const sim::Cast& cast) {
   return knot;
 }
 
-double newton(const sim::Cast& cast) {
+double newton(const sim::SceneInfo& cast) {
   // the heaviest, and all of them: a stack's lowest contacts carry much more than its highest
   double heaviest = 0, all = 0;
-  for (const sim::Cast::Body& body : cast.bodies) {
+  for (const sim::SceneInfo::Body& body : cast.bodies) {
     if (body.fixed) continue;
     heaviest = std::max(heaviest, body.mass), all += body.mass;
   }
@@ -49,19 +49,19 @@ double newton(const sim::Cast& cast) {
   return usual > 0 ? kForceArrow * cast.scale / usual : 0;
 }
 
-Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, const Layout& page,
+Stage::Stage(const sim::SceneInfo& who, const Look& looks_, const Camera& camera_, const Layout& page,
              const Charts& beside)
     : cast(who), look(looks_), camera(camera_), colours(palette(looks_.theme)), layout(page), charts(beside) {
   const std::vector<char> net = knots(cast);
   auto knot = [&](int body) { return body >= 0 && net[body]; };
 
   // springs: coils, or lines where they make a net or are many
-  auto in_net = [&](const sim::Cast::Spring& spring) { return knot(spring.a) || knot(spring.b); };
+  auto in_net = [&](const sim::SceneInfo::Spring& spring) { return knot(spring.a) || knot(spring.b); };
   const auto loose =
       std::count_if(cast.springs.begin(), cast.springs.end(), [&](const auto& s) { return !in_net(s); });
   double mesh = 1e300;  // a net's shortest spring, page units
   std::vector<char> tied(cast.bodies.size(), 0);
-  for (const sim::Cast::Spring& spring : cast.springs) {
+  for (const sim::SceneInfo::Spring& spring : cast.springs) {
     const bool line = look.springs == Look::Springs::lines ||
                       (look.springs == Look::Springs::automatic && (loose > kMany || in_net(spring)));
     const double rest = spring.rest_length * layout.scale;
@@ -76,7 +76,7 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
     }
   }
   force_scale = look.force_scale > 0 ? look.force_scale : newton(cast);
-  for (const sim::Cast::Mouse& mouse : cast.mice) {
+  for (const sim::SceneInfo::Mouse& mouse : cast.mice) {
     // the hand's rest length is short and its pull long: turns for a pull across a part of the room
     const double rest = std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale;
     hands.push_back(coil(rest, 0.82 * layout.weight));
@@ -89,7 +89,7 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
       kDot * layout.weight * std::min(1.0, std::cbrt(60.0 / double(std::max<std::ptrdiff_t>(points, 1))));
   int taken = 0;
   for (int i = 0; i < int(cast.bodies.size()); ++i) {
-    const sim::Cast::Body& body = cast.bodies[i];
+    const sim::SceneInfo::Body& body = cast.bodies[i];
     const BodyLook own = looks(i);
     const bool quiet = body.fixed || knot(i);
     paints.push_back(paint(own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++), look.theme));
@@ -116,7 +116,7 @@ Stage::Stage(const sim::Cast& who, const Look& looks_, const Camera& camera_, co
 }
 
 // Of a run in the plane.
-struct Depictor::Plan {
+struct Illustrator::Plan {
   Stage stage;
   // the last still list, and the view it is of
   mutable std::mutex mutex;
@@ -144,12 +144,12 @@ struct Depictor::Plan {
   }
 };
 
-Depictor::Depictor(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
-                   double aspect)
-    : Depictor(cast, look, std::vector{camera}, extent, aspect) {}
+Illustrator::Illustrator(const sim::SceneInfo& cast, const Look& look, const Camera& camera,
+                         const Extent& extent, double aspect)
+    : Illustrator(cast, look, std::vector{camera}, extent, aspect) {}
 
-Depictor::Depictor(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras,
-                   const Extent& extent, double aspect, const Charts& charts)
+Illustrator::Illustrator(const sim::SceneInfo& cast, const Look& look, const std::vector<Camera>& cameras,
+                         const Extent& extent, double aspect, const Charts& charts)
     : look_(look) {
   if (cast.dimension == 3) {
     space_ = std::make_shared<const SpaceStage>(cast, look, cameras, extent, aspect, charts);
@@ -160,22 +160,25 @@ Depictor::Depictor(const sim::Cast& cast, const Look& look, const std::vector<Ca
   plan_.reset(new Plan{Stage(cast, look, camera, layout, charts), {}, {}, {}});
 }
 
-Depictor::Depictor(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet)
+Illustrator::Illustrator(const sim::SceneInfo& cast, const Look& look, const Extent& extent,
+                         const Sheet& sheet)
     : look_(look), plan_(new Plan{Stage(cast, look, {}, lay_out(cast, look, extent, sheet)), {}, {}, {}}) {}
 
-const Layout& Depictor::layout() const { return plan_->stage.layout; }
+const Layout& Illustrator::layout() const { return plan_->stage.layout; }
 
-View Depictor::view(double t) const { return view_at(plan_->stage.camera, plan_->stage.layout, t); }
+View Illustrator::view(double t) const { return view_at(plan_->stage.camera, plan_->stage.layout, t); }
 
-Lens Depictor::lens(const sim::Snapshot& now, int panel) const { return lens_of(space_->panels[panel], now); }
+CameraProjection Illustrator::lens(const sim::Snapshot& now, int panel) const {
+  return lens_of(space_->panels[panel], now);
+}
 
-Picture Depictor::depict(const sim::Snapshot& now,
-                         std::span<const std::shared_ptr<const sim::Track>> ways) const {
+Picture Illustrator::depict(const sim::Snapshot& now,
+                            std::span<const std::shared_ptr<const sim::Track>> ways) const {
   return depict(now, ways, now);
 }
 
-Picture Depictor::depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
-                         const sim::Snapshot& frame) const {
+Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
+                            const sim::Snapshot& frame) const {
   if (space_) return depict_space(*space_, now, ways, frame);
   const Stage& stage = plan_->stage;
   const View view = plan_->view(now);
@@ -210,13 +213,13 @@ Picture Depictor::depict(const sim::Snapshot& now, std::span<const std::shared_p
   return picture;
 }
 
-double Depictor::travel(const sim::Snapshot& now, double seconds) const {
+double Illustrator::travel(const sim::Snapshot& now, double seconds) const {
   const sim::Snapshot then = later(now, seconds);
   if (space_) return draw::travel(*space_, now, then);
   return draw::travel(plan_->stage, plan_->view(now), plan_->view(then), now, then);
 }
 
-void Depictor::ghosts(const sim::Snapshot& then, double strength, List& list) const {
+void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list) const {
   Stage faded = plan_->stage;
   faded.look.axes = false;
   for (Paint& paint : faded.paints) {
@@ -236,13 +239,13 @@ void Depictor::ghosts(const sim::Snapshot& then, double strength, List& list) co
   list.unclip();
 }
 
-double Depictor::longest_trail() const {
+double Illustrator::longest_trail() const {
   double longest = 0;
   for (const BodyLook& body : look_.bodies) longest = std::max(longest, body.trail);
   return longest;
 }
 
-std::vector<int> Depictor::trailed() const {
+std::vector<int> Illustrator::trailed() const {
   std::vector<int> bodies;
   for (std::size_t i = 0; i < look_.bodies.size(); ++i) {
     if (look_.bodies[i].trail > 0) bodies.push_back(int(i));

@@ -19,26 +19,26 @@ struct Sheet;
 
 /// Draws instants of one run. Holds what does not change: the look's colours, the room's walls as polygons,
 /// the still list.
-class Depictor {
+class Illustrator {
  public:
   /// `extent` is what the camera fits; `aspect` the picture's width over its height.
-  Depictor(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
-           double aspect);
+  Illustrator(const sim::SceneInfo& cast, const Look& look, const Camera& camera, const Extent& extent,
+              double aspect);
 
   /// In space: several cameras look at one run, in panels beside each other with their names over them.
   /// Charts of the run stand beside its picture.
-  Depictor(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras, const Extent& extent,
-           double aspect, const Charts& charts = {});
+  Illustrator(const sim::SceneInfo& cast, const Look& look, const std::vector<Camera>& cameras,
+              const Extent& extent, double aspect, const Charts& charts = {});
 
   /// In the plane, for print: a picture of `sheet`, whose size follows from what it shows
   /// (draw/page/sheet.h).
-  Depictor(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet);
+  Illustrator(const sim::SceneInfo& cast, const Look& look, const Extent& extent, const Sheet& sheet);
 
   /// In the plane: where the world lies on the page at time t (s).
   View view(double t) const;
 
   /// In space: how it lies in a panel.
-  Lens lens(const sim::Snapshot& now, int panel = 0) const;
+  CameraProjection lens(const sim::Snapshot& now, int panel = 0) const;
 
   /// The picture of one instant. `ways`: the tracks that hold the last `trail` seconds before it, oldest
   /// first.

@@ -85,10 +85,10 @@ void draw_labels(const Stage& stage, const View& view, const sim::Snapshot& now,
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < now.bodies.size(); ++i) {
     const std::string& words = stage.look.bodies[i].label;
     if (words.empty()) continue;
-    const sim::Cast::Body& who = stage.cast.bodies[i];
+    const sim::SceneInfo::Body& who = stage.cast.bodies[i];
     Label label{words, view.page(now.bodies[i].position), {}};
     if (who.parts.empty()) add_form(who, sim::Vec3::Zero(), now.bodies[i], view, label.body);
-    for (const sim::Cast::Part& part : who.parts)
+    for (const sim::SceneInfo::Part& part : who.parts)
       add_form(part, part.center, now.bodies[i], view, label.body);
     label.body.add(label.center.y(), stage.dots[i]);
     labels.push_back(label);
@@ -96,7 +96,7 @@ void draw_labels(const Stage& stage, const View& view, const sim::Snapshot& now,
   add(labels, view.window, stage.layout.weight, stage.colours, list);
 }
 
-void draw_space_labels(Scenery& s) {
+void draw_space_labels(SpaceFrame& s) {
   const auto& bodies = s.stage.look.bodies;
   if (std::all_of(bodies.begin(), bodies.end(), [](const BodyLook& body) { return body.label.empty(); }))
     return;

@@ -28,7 +28,7 @@ double round_below(double x) {
   return power;
 }
 
-Scales scales(const Figure& figure, const sim::Cast& cast, std::span<const sim::Snapshot> moments,
+Scales scales(const Figure& figure, const sim::SceneInfo& cast, std::span<const sim::Snapshot> moments,
               const Rect& window, double scale) {
   Scales longest;
   for (const sim::Snapshot& now : moments) {

@@ -8,7 +8,7 @@ namespace {
 using sim::Vec3;
 
 /// What turns about a body's middle.
-Reading turning(const sim::Cast& cast, const Vec3& middle, const Vec3& value) {
+Reading turning(const sim::SceneInfo& cast, const Vec3& middle, const Vec3& value) {
   return {middle, value, cast.dimension == 2 ? value.z() : value.norm()};
 }
 
@@ -42,10 +42,10 @@ std::vector<Reading> touches(const sim::Snapshot& now, int body, Quantity what) 
 }
 
 /// The pull of each spring on a body, at the point that it holds.
-std::vector<Reading> pulls(const sim::Cast& cast, const sim::Snapshot& now, int body) {
+std::vector<Reading> pulls(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
   std::vector<Reading> found;
   for (std::size_t i = 0; i < cast.springs.size(); ++i) {
-    const sim::Cast::Spring& spring = cast.springs[i];
+    const sim::SceneInfo::Spring& spring = cast.springs[i];
     if (spring.a != body && spring.b != body) continue;
     const bool at_a = spring.a == body;
     const Vec3 here = at_a ? now.springs[i].a : now.springs[i].b,
@@ -59,7 +59,8 @@ std::vector<Reading> pulls(const sim::Cast& cast, const sim::Snapshot& now, int 
 
 }  // namespace
 
-std::vector<Reading> readings(const Figure::Vector& vector, const sim::Cast& cast, const sim::Snapshot& now) {
+std::vector<Reading> readings(const Figure::Vector& vector, const sim::SceneInfo& cast,
+                              const sim::Snapshot& now) {
   if (vector.quantity == Quantity::position) {
     const Vec3 tail = vector.at ? place(*vector.at, now) : Vec3(Vec3::Zero());
     const Vec3 tip = vector.to         ? place(*vector.to, now)

@@ -16,7 +16,8 @@ struct Reading {
 };
 
 /// The arrows that a vector of a figure stands for at an instant: one a spring, one a thing touched.
-std::vector<Reading> readings(const Figure::Vector& vector, const sim::Cast& cast, const sim::Snapshot& now);
+std::vector<Reading> readings(const Figure::Vector& vector, const sim::SceneInfo& cast,
+                              const sim::Snapshot& now);
 
 std::string_view unit(Quantity quantity);
 

@@ -17,7 +17,7 @@ using sim::Vec3;
 constexpr double kNear = 0.05;  // depth over the target's, nearer than which nothing is looked at
 
 // where a hand is on its way
-Vec3 along(const sim::Cast::Mouse& mouse, double time) {
+Vec3 along(const sim::SceneInfo::Mouse& mouse, double time) {
   const double span = mouse.release - mouse.press, n = double(mouse.path.size() - 1);
   const double at = span > 0 ? std::clamp((time - mouse.press) / span, 0.0, 1.0) * n : 0;
   const auto i = std::min(std::size_t(at), mouse.path.size() - 1), k = std::min(i + 1, mouse.path.size() - 1);
@@ -31,7 +31,7 @@ double seen_travel(const Rect& window, const Point& from, const Point& to, doubl
 
 double spatial(const SpaceStage& stage, const Panel& panel, const sim::Snapshot& now,
                const sim::Snapshot& then) {
-  const Lens a = lens_of(panel, now), b = lens_of(panel, then);
+  const CameraProjection a = lens_of(panel, now), b = lens_of(panel, then);
   const auto way = [&](const Vec3& from, const Vec3& to, double around, double turned) {
     if (a.depth(from) < kNear || b.depth(to) < kNear) return 0.0;
     const double scale = a.scale_at(from);
@@ -50,7 +50,7 @@ double spatial(const SpaceStage& stage, const Panel& panel, const sim::Snapshot&
     most = std::max(most, way(now.bodies[i].position, then.bodies[i].position, far, turned));
   }
   for (std::size_t i = 0; stage.look.pointer && i < stage.cast.mice.size(); ++i) {
-    const sim::Cast::Mouse& mouse = stage.cast.mice[i];
+    const sim::SceneInfo::Mouse& mouse = stage.cast.mice[i];
     if (mouse.path.empty() || !(shown(mouse, now.time) > 0)) continue;
     most = std::max(most, way(along(mouse, now.time), along(mouse, then.time), 0, 0));
   }
@@ -67,11 +67,11 @@ sim::Snapshot later(const sim::Snapshot& now, double seconds) {
   return then;
 }
 
-double reach(const sim::Cast::Body& body) {
+double reach(const sim::SceneInfo::Body& body) {
   double far = std::max(body.radius + (body.kind == sim::ShapeKind::capsule ? body.half.norm() : 0),
                         body.kind == sim::ShapeKind::box ? body.half.norm() : 0);
   for (const Vec3& vertex : body.vertices) far = std::max(far, vertex.norm());
-  for (const sim::Cast::Part& part : body.parts) {
+  for (const sim::SceneInfo::Part& part : body.parts) {
     far = std::max(far, part.center.norm() + part.radius + part.half.norm());
     for (const Vec3& vertex : part.vertices) far = std::max(far, vertex.norm());
   }
@@ -94,7 +94,7 @@ double travel(const Stage& stage, const View& a, const View& b, const sim::Snaps
                                       far + stage.dots[i], turned));
   }
   for (std::size_t i = 0; stage.look.pointer && i < stage.cast.mice.size(); ++i) {
-    const sim::Cast::Mouse& mouse = stage.cast.mice[i];
+    const sim::SceneInfo::Mouse& mouse = stage.cast.mice[i];
     if (mouse.path.empty() || !(shown(mouse, now.time) > 0)) continue;
     most = std::max(most, (b.page(along(mouse, then.time)) - a.page(along(mouse, now.time))).norm());
   }

@@ -9,7 +9,7 @@ namespace obscura::draw {
 sim::Snapshot later(const sim::Snapshot& now, double seconds);
 
 /// How far a body reaches from its centre of mass, m.
-double reach(const sim::Cast::Body& body);
+double reach(const sim::SceneInfo::Body& body);
 
 /// How far anything that is seen moves on the page from one instant to a later one: bodies, the hands of mice
 /// on their ways, and what stands still as the camera goes. Page units.

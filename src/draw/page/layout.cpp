@@ -20,7 +20,7 @@ constexpr double kSmallestType = 0.82;  // before the caption takes another line
 
 }  // namespace
 
-Fitted fitted_world(const sim::Cast& cast, const Extent& extent) {
+Fitted fitted_world(const sim::SceneInfo& cast, const Extent& extent) {
   Fitted f{false, extent.low.cwiseMin(extent.high), extent.low.cwiseMax(extent.high)};
   const double reach = 1e4 * std::max({cast.scale, (f.high - f.low).norm(), 1e-9});
   const Point about = ((f.low + f.high) / 2).head<2>();
@@ -40,7 +40,7 @@ Fitted fitted_world(const sim::Cast& cast, const Extent& extent) {
 
   // a picture without a ground says less: take in walls that are not farther than the extent is wide
   const double near = std::max((f.high - f.low).head<2>().maxCoeff(), 0.25 * cast.scale);
-  for (const sim::Cast::Wall& wall : cast.walls) {
+  for (const sim::SceneInfo::Wall& wall : cast.walls) {
     const sim::Vec3 center = (f.low + f.high) / 2;
     const double distance = (center - wall.point).dot(wall.normal);
     if (distance <= 0 || distance > 1.5 * near) continue;
@@ -129,10 +129,10 @@ std::string clock_text(double time) {
   return fmt::format("t = {:.2f} s", std::abs(time) < 0.005 ? 0.0 : time);
 }
 
-std::vector<HalfPlane> half_planes(const sim::Cast& cast, const View& view) {
+std::vector<HalfPlane> half_planes(const sim::SceneInfo& cast, const View& view) {
   std::vector<HalfPlane> halves;
   halves.reserve(cast.walls.size());
-  for (const sim::Cast::Wall& wall : cast.walls) {
+  for (const sim::SceneInfo::Wall& wall : cast.walls) {
     halves.push_back({view.page(wall.point), Point(wall.normal.x(), -wall.normal.y()).normalized()});
   }
   return halves;
@@ -177,7 +177,7 @@ double lay_caption(Layout& layout, const Look& look) {
   return w * (kStrip + (setting.lines - 1) * kSecondLine);
 }
 
-Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
+Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camera, const Extent& extent,
                double aspect, double right, double below) {
   Layout layout;
   layout.width = 1080 * aspect;

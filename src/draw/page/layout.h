@@ -32,12 +32,12 @@ struct Fitted {
   bool closed = false;
   sim::Vec3 low, high;
 };
-Fitted fitted_world(const sim::Cast& cast, const Extent& extent);
+Fitted fitted_world(const sim::SceneInfo& cast, const Extent& extent);
 
 /// Lays the page out: the caption above, aligned to the room's edges, the room centred and as large as
 /// caption and hatching allow. Throws draw::Error where a font is missing.
 /// `right` and `below` are left free at those edges, page units.
-Layout lay_out(const sim::Cast& cast, const Look& look, const Camera& camera, const Extent& extent,
+Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camera, const Extent& extent,
                double aspect, double right = 0, double below = 0);
 
 /// Writes the caption over a page without a room on it, and says how high its strip is.
@@ -50,7 +50,7 @@ double width_of(const std::string& words, Face face, double size, bool tabular =
 std::string clock_text(double time);
 
 /// The walls as half planes of the page, as `view` shows them.
-std::vector<HalfPlane> half_planes(const sim::Cast& cast, const View& view);
+std::vector<HalfPlane> half_planes(const sim::SceneInfo& cast, const View& view);
 
 /// Nothing within `reach` of p lies in the rectangle.
 bool outside(const Rect& rect, const Point& p, double reach);

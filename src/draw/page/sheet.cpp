@@ -12,7 +12,7 @@ constexpr double kMargin = 2;  // pt: half a line's width is never cut off
 
 }  // namespace
 
-Layout lay_out(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet) {
+Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Extent& extent, const Sheet& sheet) {
   Layout layout;
   layout.weight = kPrint;
   layout.width = sheet.width * kPoint;

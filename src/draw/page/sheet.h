@@ -21,6 +21,6 @@ struct Sheet {
 };
 
 /// Lays a sheet out in `kPoint` units a point: the world as wide as the sheet, its height what that takes.
-Layout lay_out(const sim::Cast& cast, const Look& look, const Extent& extent, const Sheet& sheet);
+Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Extent& extent, const Sheet& sheet);
 
 }  // namespace obscura::draw

@@ -11,7 +11,7 @@ namespace obscura::draw {
 /// right, up and towards the eye, in metres,
 ///   page = middle + scale (x, -y) / w,    w = 1 - z / distance,
 /// where 1 / distance is 0 for an orthographic camera: w is the depth over the target's.
-struct Lens {
+struct CameraProjection {
   sim::Vec3 target = sim::Vec3::Zero();
   sim::Vec3 right = sim::Vec3::UnitX(), up = sim::Vec3::UnitY(), back = sim::Vec3::UnitZ();  // unit
   double per_distance = 0;  // 1/m: one over the eye's distance from the target; 0: orthographic

@@ -65,7 +65,7 @@ void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& 
   draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.velocity, list);
 }
 
-std::vector<Push> pushes(const sim::Cast& cast, const Look& look, const sim::Snapshot& now) {
+std::vector<Push> pushes(const sim::SceneInfo& cast, const Look& look, const sim::Snapshot& now) {
   std::vector<Push> found;
   const auto wanted = [&](int body) { return body < int(look.bodies.size()) && look.bodies[body].contact; };
   const sim::Vec3 up = cast.gravity.norm() > 0 ? sim::Vec3(-cast.gravity) : sim::Vec3::UnitY();

@@ -31,8 +31,8 @@ std::vector<Point> placed(const std::vector<Point>& form, const Point& at, doubl
 
 /// Dots at equal distances along the hand's way; what it has gone is stronger than what it will go. A way
 /// that comes back over itself is dotted once.
-void dot_way(const sim::Cast::Mouse& mouse, const Stage& stage, const View& view, double time, double alpha,
-             List& list) {
+void dot_way(const sim::SceneInfo::Mouse& mouse, const Stage& stage, const View& view, double time,
+             double alpha, List& list) {
   const double step = kStep * stage.layout.weight, radius = kWayDot * stage.layout.weight;
   const double lasts = mouse.release - mouse.press;
   const std::size_t n = mouse.path.size();
@@ -81,7 +81,7 @@ std::vector<Hand> hands(const Stage& stage, const View& view, const sim::Snapsho
   std::vector<Hand> found;
   if (!stage.look.pointer) return found;
   for (std::size_t i = 0; i < now.mice.size() && i < stage.cast.mice.size(); ++i) {
-    const sim::Cast::Mouse& mouse = stage.cast.mice[i];
+    const sim::SceneInfo::Mouse& mouse = stage.cast.mice[i];
     if (mouse.path.empty()) continue;
     const double alpha = shown(mouse, now.time);
     if (alpha > 0) found.push_back({i, view.page(pointer(mouse, now.mice[i], now.time)), alpha});
@@ -91,12 +91,12 @@ std::vector<Hand> hands(const Stage& stage, const View& view, const sim::Snapsho
 
 }  // namespace
 
-double shown(const sim::Cast::Mouse& mouse, double time) {
+double shown(const sim::SceneInfo::Mouse& mouse, double time) {
   const double before = mouse.press - time, after = time - mouse.release;
   return std::clamp(std::min(1 - before / kAppear, 1 - after / kLeave), 0.0, 1.0);
 }
 
-sim::Vec3 pointer(const sim::Cast::Mouse& mouse, const sim::Snapshot::Mouse& now, double time) {
+sim::Vec3 pointer(const sim::SceneInfo::Mouse& mouse, const sim::Snapshot::Mouse& now, double time) {
   return time < mouse.press ? mouse.path.front() : time > mouse.release ? mouse.path.back() : now.pointer;
 }
 

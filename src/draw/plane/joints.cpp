@@ -40,11 +40,11 @@ double sag(const Point& a, const Point& b, const Point& down, double rope) {
 }
 
 /// Half the narrowest of the bodies at a joint, page units: what is drawn on them is not larger.
-double room_for(const Stage& stage, const View& view, const sim::Cast::Joint& joint) {
+double room_for(const Stage& stage, const View& view, const sim::SceneInfo::Joint& joint) {
   double least = 1e300;
   for (int i : {joint.a, joint.b}) {
     if (i < 0) continue;
-    const sim::Cast::Body& body = stage.cast.bodies[i];
+    const sim::SceneInfo::Body& body = stage.cast.bodies[i];
     if (body.kind == sim::ShapeKind::box) least = std::min(least, body.half.head<2>().minCoeff());
     if (body.kind == sim::ShapeKind::ball) least = std::min(least, body.radius);
   }
@@ -56,7 +56,7 @@ double room_for(const Stage& stage, const View& view, const sim::Cast::Joint& jo
 void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
-    const sim::Cast::Joint& joint = stage.cast.joints[i];
+    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     if (joint.kind != JointKind::slider || now.joints[i].broken) continue;
     const double angle = joint.b < 0 ? 0 : now.bodies[joint.b].angle;
     const double s = std::sin(angle), c = std::cos(angle);
@@ -82,7 +82,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
   down = down.norm() > 0 ? down.normalized() : Point(0, 1);
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
-    const sim::Cast::Joint& joint = stage.cast.joints[i];
+    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     const bool rope = joint.kind == JointKind::rope;
     if ((joint.kind != JointKind::rod && !rope) || now.joints[i].broken) continue;
     const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
@@ -99,7 +99,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
   }
   // made fast to the room, or to a point of a body
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
-    const sim::Cast::Joint& joint = stage.cast.joints[i];
+    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     if ((joint.kind != JointKind::rod && joint.kind != JointKind::rope) || now.joints[i].broken) continue;
     for (const auto& [body, at] :
          {std::pair(joint.a, now.joints[i].a), std::pair(joint.b, now.joints[i].b)}) {
@@ -112,7 +112,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
 void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
-    const sim::Cast::Joint& joint = stage.cast.joints[i];
+    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     if (joint.kind != JointKind::pin || now.joints[i].broken) continue;
     const Point at = view.page(now.joints[i].a);
     const double radius = std::max(std::min(kPin * weight, 0.7 * room_for(stage, view, joint)), 1.6 * weight);

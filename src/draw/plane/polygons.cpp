@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMostEdges = 64;  // bits of a part's seams
 
-using Part = sim::Cast::Part;
+using Part = sim::SceneInfo::Part;
 
 /// The corners of a box or polygon in the body's frame, counter-clockwise; of a ball none.
 std::vector<Point> corners(const Part& part) {
@@ -96,7 +96,7 @@ std::vector<Point> inner(const Form& form, double line) {
 
 }  // namespace
 
-std::vector<std::uint64_t> seams_of(const sim::Cast::Body& body) {
+std::vector<std::uint64_t> seams_of(const sim::SceneInfo::Body& body) {
   std::vector<std::uint64_t> seams;
   for (std::size_t p = 0; p < body.parts.size(); ++p) {
     const std::vector<Point> around = corners(body.parts[p]);
@@ -120,7 +120,7 @@ std::vector<std::uint64_t> seams_of(const sim::Cast::Body& body) {
 void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;
   for (int i : stage.polygons) {
-    const sim::Cast::Body& who = stage.cast.bodies[i];
+    const sim::SceneInfo::Body& who = stage.cast.bodies[i];
     const sim::Snapshot::Body& body = now.bodies[i];
     const Paint& paint = stage.paints[i];
     std::vector<Part> parts = who.parts;

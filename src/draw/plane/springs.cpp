@@ -29,7 +29,7 @@ double lead(const Coil& coil, double length) {
   return std::min(std::clamp(0.085 * length, 2.2 * coil.line, 12 * coil.line), 0.2 * length);
 }
 
-bool holds_solid(const Stage& stage, const sim::Cast::Spring& spring) {
+bool holds_solid(const Stage& stage, const sim::SceneInfo::Spring& spring) {
   return stage.solid(spring.a) || stage.solid(spring.b);
 }
 
@@ -103,7 +103,7 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
     list.add(Disc{at, radius, 0, stage.colours.spring, stage.colours.spring});
   };
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
-    const sim::Cast::Spring& spring = stage.cast.springs[i];
+    const sim::SceneInfo::Spring& spring = stage.cast.springs[i];
     if (holds_solid(stage, spring) != solids) continue;
     joint(spring.a, view.page(now.springs[i].a), stage.coils[i]);
     joint(spring.b, view.page(now.springs[i].b), stage.coils[i]);

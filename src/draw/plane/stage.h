@@ -14,7 +14,7 @@ namespace obscura::draw {
 
 /// What the pictures of one run have in common, and the layers they are made of.
 struct Stage {
-  sim::Cast cast;
+  sim::SceneInfo cast;
   Look look;
   Camera camera;
   Palette colours;
@@ -30,7 +30,7 @@ struct Stage {
   std::vector<Coil> coils;                        // one a spring; turns 0: a plain line
   std::vector<Coil> hands;                        // one a mouse
 
-  Stage(const sim::Cast& cast, const Look& look, const Camera& camera, const Layout& layout,
+  Stage(const sim::SceneInfo& cast, const Look& look, const Camera& camera, const Layout& layout,
         const Charts& charts = {});
 
   /// The looks of a body, also where the scene says nothing.
@@ -41,7 +41,7 @@ struct Stage {
 };
 
 /// Of each part of a body, which of its edges lie within another part, see draw/plane/polygons.cpp.
-std::vector<std::uint64_t> seams_of(const sim::Cast::Body& body);
+std::vector<std::uint64_t> seams_of(const sim::SceneInfo::Body& body);
 
 using Ways = std::span<const std::shared_ptr<const sim::Track>>;
 
@@ -50,10 +50,10 @@ std::vector<sim::Track::Point> way_of(int body, double from, const sim::Snapshot
 
 /// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on
 /// one.
-std::vector<char> knots(const sim::Cast& cast);
+std::vector<char> knots(const sim::SceneInfo& cast);
 
 /// How long the arrow of a newton is, m.
-double newton(const sim::Cast& cast);
+double newton(const sim::SceneInfo& cast);
 
 /// More springs than these, nets apart, are drawn as lines.
 inline constexpr int kMany = 12;
@@ -76,16 +76,16 @@ struct Push {
 };
 
 /// The forces of contacts that the look asks for.
-std::vector<Push> pushes(const sim::Cast& cast, const Look& look, const sim::Snapshot& now);
+std::vector<Push> pushes(const sim::SceneInfo& cast, const Look& look, const sim::Snapshot& now);
 
 /// The pointer of a hand, its tip at `at`.
 void draw_pointer(const Point& at, double alpha, double weight, const Palette& colours, List& list);
 
 /// How strongly a hand is shown at a time: it appears before the press and leaves after the release.
-double shown(const sim::Cast::Mouse& mouse, double time);
+double shown(const sim::SceneInfo::Mouse& mouse, double time);
 
 /// Where the hand is then, also before the press and after the release.
-sim::Vec3 pointer(const sim::Cast::Mouse& mouse, const sim::Snapshot::Mouse& now, double time);
+sim::Vec3 pointer(const sim::SceneInfo::Mouse& mouse, const sim::Snapshot::Mouse& now, double time);
 
 /// Hatching, room, walls, title: what stands still while the camera does.
 void draw_still(const Stage& stage, const View& view, List& list);

@@ -22,25 +22,25 @@ Vec3 placed(const sim::Snapshot::Body& body, const Vec3& local) {
 }
 
 /// Whether a ball around a place may be seen.
-bool in_window(const Lens& lens, const Vec3& center, double reach) {
+bool in_window(const CameraProjection& lens, const Vec3& center, double reach) {
   const double near = lens.depth(center) - lens.per_distance * reach;
   if (lens.perspective() && lens.depth(center) + lens.per_distance * reach <= 0) return false;
   if (near < 1e-3) return true;
   return !outside(lens.window, lens.page(center), reach * lens.scale / near + kAround);
 }
 
-void begin(Scenery& s, const Vec3& center, double reach, int piece) {
+void begin(SpaceFrame& s, const Vec3& center, double reach, int piece) {
   s.chunks.push_back({s.triangles.size(), 0, center, reach, piece});
 }
-void end(Scenery& s) { s.chunks.back().end = s.triangles.size(); }
+void end(SpaceFrame& s) { s.chunks.back().end = s.triangles.size(); }
 
-std::uint32_t corner(Scenery& s, const Vec3& place, const Vec3& normal, const Shaded& color) {
+std::uint32_t corner(SpaceFrame& s, const Vec3& place, const Vec3& normal, const Shaded& color) {
   s.corners.push_back({place, normal, color});
   return std::uint32_t(s.corners.size() - 1);
 }
 
 /// The faces of a polyhedron that look at the eye.
-void add_faces(Scenery& s, const Polyhedron& body, Color own) {
+void add_faces(SpaceFrame& s, const Polyhedron& body, Color own) {
   for (const Polyhedron::Face& face : body.faces) {
     const Vec3& place = body.vertices[face.loop[0]];
     if (face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) <= 0) continue;
@@ -53,8 +53,8 @@ void add_faces(Scenery& s, const Polyhedron& body, Color own) {
 }
 
 /// The half of a ball that looks at the eye: rings around the sight line, down to the contour.
-void add_cap(Scenery& s, const Vec3& center, double radius, Color own) {
-  const Lens& lens = s.lens;
+void add_cap(SpaceFrame& s, const Vec3& center, double radius, Color own) {
+  const CameraProjection& lens = s.lens;
   const double page = radius * lens.scale_at(center);
   const int around = std::clamp(roundness(page), 8, 64), rings = std::max(2, around / 5);
   const Vec3 sight = lens.sight(center), side = lens.up.cross(sight).normalized(), up = sight.cross(side);
@@ -84,7 +84,7 @@ void add_cap(Scenery& s, const Vec3& center, double radius, Color own) {
 }
 
 /// A tube along `way` without ends, its rings carried along so that it does not twist.
-void add_rings(Scenery& s, const std::vector<Vec3>& way, double radius, Color own) {
+void add_rings(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color own) {
   const double page = radius * s.lens.scale_at(way[way.size() / 2]);
   const int around = std::clamp(roundness(page) / 2 * 2, 6, 48);
   Vec3 side = Vec3::Zero();
@@ -111,13 +111,13 @@ void add_rings(Scenery& s, const std::vector<Vec3>& way, double radius, Color ow
   }
 }
 
-double line_width(const Scenery& s, const Vec3& center, double least) {
+double line_width(const SpaceFrame& s, const Vec3& center, double least) {
   const double weight = s.stage.layout.weight;
   return std::clamp(2 * kThinEdge * least * s.lens.scale_at(center), 0.5 * weight, kEdgeLine * weight);
 }
 
 /// The outline of a capsule on the page: of its two ends' contours, the hull.
-std::vector<Vec3> outline(const Lens& lens, const Vec3& a, const Vec3& b, double radius) {
+std::vector<Vec3> outline(const CameraProjection& lens, const Vec3& a, const Vec3& b, double radius) {
   struct Place {
     Point page;
     Vec3 world;
@@ -156,7 +156,7 @@ std::vector<Vec3> outline(const Lens& lens, const Vec3& a, const Vec3& b, double
 
 }  // namespace
 
-void add_ball(Scenery& s, const Vec3& center, double radius, Color color, int number) {
+void add_ball(SpaceFrame& s, const Vec3& center, double radius, Color color, int number) {
   if (!in_window(s.lens, center, radius) || s.lens.depth(center) < 1e-3) return;
   begin(s, center, radius, number);
   add_cap(s, center, radius, color);
@@ -165,7 +165,7 @@ void add_ball(Scenery& s, const Vec3& center, double radius, Color color, int nu
                    center, number);
 }
 
-void add_tube(Scenery& s, const std::vector<Vec3>& way, double radius, Color color, int number) {
+void add_tube(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color color, int number) {
   if (way.size() < 2) return;
   Vec3 low = way[0], high = way[0];
   for (const Vec3& p : way) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -183,7 +183,7 @@ void add_tube(Scenery& s, const std::vector<Vec3>& way, double radius, Color col
   for (std::size_t i = 1; i < way.size(); ++i) s.sight.add_rod(way[i - 1], way[i], radius, radius, number);
 }
 
-void add_bodies(Scenery& s) {
+void add_bodies(SpaceFrame& s) {
   const auto& pieces = s.stage.pieces;
   s.placed.resize(pieces.size());
   for (int i = 0; i < int(pieces.size()); ++i) {
@@ -223,10 +223,10 @@ void add_bodies(Scenery& s) {
   }
 }
 
-void trace(Scenery& s, const std::vector<Vec3>& way, bool closed, int own, int too, double width,
+void trace(SpaceFrame& s, const std::vector<Vec3>& way, bool closed, int own, int too, double width,
            Color color) {
   if (way.size() < 2) return;
-  Sight::Parts parts;
+  HiddenLines::Parts parts;
   std::vector<Trace> found;
   Trace line;
   bool whole = closed;
@@ -264,7 +264,7 @@ void trace(Scenery& s, const std::vector<Vec3>& way, bool closed, int own, int t
   }
 }
 
-void trace_edges(Scenery& s) {
+void trace_edges(SpaceFrame& s) {
   const auto& pieces = s.stage.pieces;
   std::vector<char> front;
   for (int i = 0; i < int(pieces.size()); ++i) {

@@ -31,7 +31,7 @@ struct Aim {
 Aim aim(const Camera& camera, const std::vector<sim::Vec3>& corners, const Rect& window);
 
 /// How space lies in the window at time t (s). `followed`: where the body is that the camera follows.
-Lens lens_at(const Camera& camera, const Aim& fitted, const Rect& window, double t,
-             const std::optional<sim::Vec3>& followed = {});
+CameraProjection lens_at(const Camera& camera, const Aim& fitted, const Rect& window, double t,
+                         const std::optional<sim::Vec3>& followed = {});
 
 }  // namespace obscura::draw

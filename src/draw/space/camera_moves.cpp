@@ -27,10 +27,10 @@ double page_distance(const Camera& camera, const Rect& window) {
   return std::max(window.width, window.height) / (2 * std::tan(camera.field / 2));
 }
 
-Lens lens(const Camera& camera, const Shot& shot, const Rect& window) {
+CameraProjection lens(const Camera& camera, const Shot& shot, const Rect& window) {
   const double sa = std::sin(shot.azimuth), ca = std::cos(shot.azimuth), se = std::sin(shot.elevation),
                ce = std::cos(shot.elevation);
-  Lens l;
+  CameraProjection l;
   l.target = shot.target;
   l.back = {sa * ce, se, ca * ce};
   l.right = {ca, 0, -sa};
@@ -102,7 +102,7 @@ Aim aim(const Camera& camera, const std::vector<Vec3>& corners, const Rect& wind
     double over = 0;  // how much too large the picture is
     Point away = Point::Zero();
     for (int k = 0; k < (turns ? kOrbit : 1); ++k) {
-      const Lens l = lens(
+      const CameraProjection l = lens(
           camera,
           {found.target, camera.azimuth + 2 * std::numbers::pi * k / kOrbit, camera.elevation, found.width},
           window);
@@ -130,8 +130,8 @@ Aim aim(const Camera& camera, const std::vector<Vec3>& corners, const Rect& wind
   return found;
 }
 
-Lens lens_at(const Camera& camera, const Aim& fitted, const Rect& window, double t,
-             const std::optional<Vec3>& followed) {
+CameraProjection lens_at(const Camera& camera, const Aim& fitted, const Rect& window, double t,
+                         const std::optional<Vec3>& followed) {
   Shot now{fitted.target, camera.azimuth, camera.elevation, fitted.width};
   if (!camera.keys.empty()) {
     // the first key later than t, and the one before it

@@ -74,7 +74,7 @@ bool clip(const std::vector<Vec3>& loop, const Vec3& normal, const Vec3& a, cons
 }
 
 /// A segment in the window, cut where it passes the eye.
-void add_line(const Lens& lens, Vec3 a, Vec3 b, double width, Color color, List& list) {
+void add_line(const CameraProjection& lens, Vec3 a, Vec3 b, double width, Color color, List& list) {
   constexpr double near = 0.02;
   const double da = lens.depth(a), db = lens.depth(b);
   if (da < near && db < near) return;
@@ -83,7 +83,7 @@ void add_line(const Lens& lens, Vec3 a, Vec3 b, double width, Color color, List&
   list.add({{lens.page(a), width, color}, {lens.page(b), width, color}}, Cap::round);
 }
 
-void draw_grid(const SpaceStage& stage, const Lens& lens, List& list) {
+void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list) {
   const Ground& ground = *stage.ground;
   const Axes axis = axes(ground);
   const double weight = stage.layout.weight, shown = lens.window.width / lens.scale;
@@ -135,7 +135,7 @@ void draw_grid(const SpaceStage& stage, const Lens& lens, List& list) {
 }
 
 /// Whether an edge of the room lies behind what is in it.
-bool behind(const SpaceStage& stage, const Lens& lens, const Polyhedron::Edge& e) {
+bool behind(const SpaceStage& stage, const CameraProjection& lens, const Polyhedron::Edge& e) {
   const auto away = [&](int f) {
     const Polyhedron::Face& face = stage.room.faces[f];
     const Vec3& place = stage.room.vertices[face.loop[0]];
@@ -144,7 +144,7 @@ bool behind(const SpaceStage& stage, const Lens& lens, const Polyhedron::Edge& e
   return away(e.left) || (e.right >= 0 && away(e.right));
 }
 
-void draw_frame(const SpaceStage& stage, const Lens& lens, bool back, List& list) {
+void draw_frame(const SpaceStage& stage, const CameraProjection& lens, bool back, List& list) {
   if (!stage.closed) return;
   const double weight = stage.layout.weight;
   for (const Polyhedron::Edge& e : stage.room.edges) {
@@ -158,9 +158,9 @@ void draw_frame(const SpaceStage& stage, const Lens& lens, bool back, List& list
 
 }  // namespace
 
-void draw_space_still(const SpaceStage& stage, const std::vector<Lens>& lenses, List& list) {
+void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjection>& lenses, List& list) {
   for (std::size_t i = 0; i < lenses.size(); ++i) {
-    const Lens& lens = lenses[i];
+    const CameraProjection& lens = lenses[i];
     list.clip(lens.window);
     const bool above =
         stage.ground &&
@@ -174,7 +174,7 @@ void draw_space_still(const SpaceStage& stage, const std::vector<Lens>& lenses, 
   stage.charts.draw_still(list);
 }
 
-void draw_room_front(const SpaceStage& stage, const Lens& lens, List& list) {
+void draw_room_front(const SpaceStage& stage, const CameraProjection& lens, List& list) {
   draw_frame(stage, lens, false, list);
 }
 

@@ -43,8 +43,8 @@ void hull(std::vector<Point>& points, std::vector<Point>& out) {
   chain(points.rbegin(), points.rend());
 }
 
-/// (x w, y w, w) of a place, see Lens::homogeneous.
-Vec3 seen_at(const Lens& lens, const Vec3& place) {
+/// (x w, y w, w) of a place, see CameraProjection::homogeneous.
+Vec3 seen_at(const CameraProjection& lens, const Vec3& place) {
   const Eigen::Vector4d h = lens.homogeneous(place);
   return {h.x(), h.y(), h.w()};
 }
@@ -91,14 +91,14 @@ std::uint32_t stopped(double share) {
   return share < 1 ? rays : ~0u;
 }
 
-Fall::Fall(const Ground& ground, const Light& light, const Lens& lens)
+GroundShadow::GroundShadow(const Ground& ground, const Light& light, const CameraProjection& lens)
     : ground_(ground), light_(light), lens_(lens), slope_(light.toward.dot(ground.normal)) {
   if (slope_ <= kLevel) return;
   for (int i = 0; i < kRays; ++i) rays_[i] = ray(light.rays[i]);
   rays_[kRays] = ray(light.toward);
 }
 
-Fall::Ray Fall::ray(const Vec3& along) const {
+GroundShadow::Ray GroundShadow::ray(const Vec3& along) const {
   // a ball's shadow is an ellipse: its axis along the light is longer
   const double down = along.dot(ground_.normal);
   const Vec3 flat = along - ground_.normal * down;
@@ -115,7 +115,8 @@ Fall::Ray Fall::ray(const Vec3& along) const {
   return r;
 }
 
-void Fall::cast(std::span<const Vec3> corners, double radius, bool many, std::uint32_t rays, Solids& solids) {
+void GroundShadow::cast(std::span<const Vec3> corners, double radius, bool many, std::uint32_t rays,
+                        Solids& solids) {
   if (slope_ <= kLevel) return;
   // what is under the ground casts nothing on it
   double high = -1e300;

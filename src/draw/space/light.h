@@ -43,9 +43,9 @@ struct Ground {
 std::uint32_t stopped(double share);
 
 /// How the light falls on the ground, as one camera sees it.
-class Fall {
+class GroundShadow {
  public:
-  Fall(const Ground& ground, const Light& light, const Lens& lens);
+  GroundShadow(const Ground& ground, const Light& light, const CameraProjection& lens);
 
   /// Adds the shadow of a convex body that has these corners, each a ball of `radius`, and stops `rays`.
   /// Where there are `many` bodies every second ray will do.
@@ -53,7 +53,7 @@ class Fall {
 
  private:
   static constexpr int kRim = 14;
-  // in (x w, y w, w) of the page, see Lens::homogeneous
+  // in (x w, y w, w) of the page, see CameraProjection::homogeneous
   struct Ray {
     sim::Vec3 down;                     // what a metre of height moves a corner by
     std::array<sim::Vec3, kRim> round;  // the rim of the shadow of a ball of 1 m
@@ -62,7 +62,7 @@ class Fall {
 
   Ground ground_;
   Light light_;
-  Lens lens_;
+  CameraProjection lens_;
   double slope_;                     // how straight the light comes down
   std::array<Ray, kRays + 1> rays_;  // the last one the light's middle
   std::vector<sim::Vec3> seen_;

@@ -17,10 +17,10 @@ constexpr double kStep = 14, kWayDot = 2.1;
 
 }  // namespace
 
-void trace_trails(Scenery& s, Ways ways) {
+void trace_trails(SpaceFrame& s, Ways ways) {
   const SpaceStage& stage = s.stage;
   const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
-  Sight::Parts parts;
+  HiddenLines::Parts parts;
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
     const double lasting = stage.look.bodies[i].trail;
     if (!(lasting > 0)) continue;
@@ -79,7 +79,7 @@ void trace_trails(Scenery& s, Ways ways) {
   }
 }
 
-void draw_space_arrows(Scenery& s) {
+void draw_space_arrows(SpaceFrame& s) {
   // the lines that are seen, the farthest first
   std::stable_sort(s.lines.begin(), s.lines.end(),
                    [](const Trace& a, const Trace& b) { return a.near < b.near; });
@@ -104,12 +104,12 @@ void draw_space_arrows(Scenery& s) {
   draw_arrows(arrows, weight, stage.colours.room, stage.colours.velocity, s.list);
 }
 
-void draw_space_hands(Scenery& s) {
+void draw_space_hands(SpaceFrame& s) {
   const SpaceStage& stage = s.stage;
   if (!stage.look.pointer) return;
   const double weight = stage.layout.weight;
   for (std::size_t i = 0; i < s.now.mice.size() && i < stage.cast.mice.size(); ++i) {
-    const sim::Cast::Mouse& mouse = stage.cast.mice[i];
+    const sim::SceneInfo::Mouse& mouse = stage.cast.mice[i];
     if (mouse.path.empty()) continue;
     const double alpha = shown(mouse, s.now.time);
     if (alpha <= 0) continue;

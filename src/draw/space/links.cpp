@@ -44,7 +44,7 @@ std::vector<Vec3> helix(const Coil& form, const Vec3& a, const Vec3& b, double w
   return way;
 }
 
-void add_coil(Scenery& s, const Coil& form, const Vec3& a, const Vec3& b, int number) {
+void add_coil(SpaceFrame& s, const Coil& form, const Vec3& a, const Vec3& b, int number) {
   const double page = s.lens.scale;  // page units a metre, where the camera looks
   const double length = (b - a).norm();
   const double weight = s.stage.layout.weight;
@@ -92,8 +92,8 @@ std::vector<Vec3> hanging(const Vec3& a, const Vec3& b, const Vec3& down, double
 
 }  // namespace
 
-void add_links(Scenery& s) {
-  const sim::Cast& cast = s.stage.cast;
+void add_links(SpaceFrame& s) {
+  const sim::SceneInfo& cast = s.stage.cast;
   const double weight = s.stage.layout.weight, metre = s.zoom / s.lens.scale;  // m a fitted page unit
   const Color color = s.stage.colours.spring;
   int number = int(s.stage.pieces.size());
@@ -108,7 +108,7 @@ void add_links(Scenery& s) {
     knob(cast.springs[i].b, at.b, joint);
   }
   for (std::size_t i = 0; i < s.now.joints.size() && i < cast.joints.size(); ++i, ++number) {
-    const sim::Cast::Joint& joint = cast.joints[i];
+    const sim::SceneInfo::Joint& joint = cast.joints[i];
     const sim::Snapshot::Joint& at = s.now.joints[i];
     if (at.broken) continue;
     switch (joint.kind) {

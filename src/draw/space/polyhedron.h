@@ -30,7 +30,7 @@ struct Polyhedron {
 /// A box about the origin.
 Polyhedron box(const sim::Vec3& half);
 
-/// By its faces, see sim::Cast::Body.
+/// By its faces, see sim::SceneInfo::Body.
 Polyhedron polyhedron(std::span<const sim::Vec3> vertices, std::span<const std::vector<int>> faces);
 
 /// What of `body` has (p - point) . normal >= 0; the new face is of `side`.

@@ -107,7 +107,7 @@ std::vector<std::vector<int>> pair_up(const std::vector<Extents>& things, const 
 
 /// The far side of a body from the light, as triangles.
 template <class Emit>
-void far_side(const Scenery& s, const Chunk& chunk, const LightFrame& frame, Emit&& emit) {
+void far_side(const SpaceFrame& s, const Chunk& chunk, const LightFrame& frame, Emit&& emit) {
   const auto& pieces = s.stage.pieces;
   if (chunk.piece >= int(pieces.size())) return;
   const Piece& piece = pieces[chunk.piece];
@@ -156,7 +156,7 @@ void far_side(const Scenery& s, const Chunk& chunk, const LightFrame& frame, Emi
   }
 }
 
-void cast_on_each_other(Scenery& s) {
+void cast_on_each_other(SpaceFrame& s) {
   LightFrame frame;
   frame.away = -s.stage.light.toward;
   frame.u = (std::abs(frame.away.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitX()).cross(frame.away).normalized();
@@ -282,8 +282,8 @@ void cast_on_each_other(Scenery& s) {
   }
 }
 
-void cast_on_ground(Scenery& s) {
-  Fall fall(*s.stage.ground, s.stage.light, s.lens);
+void cast_on_ground(SpaceFrame& s) {
+  GroundShadow fall(*s.stage.ground, s.stage.light, s.lens);
   const auto& pieces = s.stage.pieces;
   const bool many = pieces.size() > 64;
   constexpr std::uint32_t all = ~0u;
@@ -306,7 +306,7 @@ void cast_on_ground(Scenery& s) {
 
 }  // namespace
 
-void add_shadows(Scenery& s) {
+void add_shadows(SpaceFrame& s) {
   cast_on_each_other(s);
   const bool above = s.stage.ground &&
                      s.stage.ground->normal.dot(

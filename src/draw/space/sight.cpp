@@ -1,5 +1,5 @@
-// Which parts of a line a convex body hides. In page space (Lens::seen) a plane n . p = d of the world is the
-// plane
+// Which parts of a line a convex body hides. In page space (CameraProjection::seen) a plane n . p = d of the
+// world is the plane
 //   N = (n_r, -n_u, n_b - d' k),  D = n_b s/k + n_r m_x - n_u m_y        (perspective)
 //   N = (n_r, -n_u, n_b),         D = s d' + n_r m_x - n_u m_y           (orthographic)
 // n_r, n_u, n_b  the normal along the lens's right, up and back, d' = d - n . target, k = 1/distance, s  the
@@ -26,7 +26,7 @@ constexpr double kCell = 48;     // page units
 constexpr double kNear = 1e-3;   // least depth over the target's
 constexpr double kShort = 0.25;  // page units: shorter parts are left out, shorter gaps closed
 
-Eigen::Vector4d plane(const Lens& lens, const Vec3& normal, const Vec3& point) {
+Eigen::Vector4d plane(const CameraProjection& lens, const Vec3& normal, const Vec3& point) {
   const double r = normal.dot(lens.right), u = normal.dot(lens.up), b = normal.dot(lens.back);
   const double d = normal.dot(point - lens.target), k = lens.per_distance;
   const double on_page = r * lens.middle.x() - u * lens.middle.y();
@@ -38,12 +38,12 @@ Eigen::Vector4d plane(const Lens& lens, const Vec3& normal, const Vec3& point) {
 
 }  // namespace
 
-Sight::Sight(const Lens& lens) : lens_(lens) {
+HiddenLines::HiddenLines(const CameraProjection& lens) : lens_(lens) {
   columns_ = std::max(1, int(std::ceil(lens.window.width / kCell)));
   rows_ = std::max(1, int(std::ceil(lens.window.height / kCell)));
 }
 
-void Sight::close(Piece piece) {
+void HiddenLines::close(Piece piece) {
   piece.end = int(planes_.size());
   const Rect& w = lens_.window;
   if (piece.x1 < w.x || piece.y1 < w.y || piece.x0 > w.x + w.width || piece.y0 > w.y + w.height) {
@@ -53,7 +53,7 @@ void Sight::close(Piece piece) {
   pieces_.push_back(piece);
 }
 
-void Sight::add(const Polyhedron& body, int number) {
+void HiddenLines::add(const Polyhedron& body, int number) {
   std::vector<Vec3> at;
   at.reserve(body.vertices.size());
   Piece piece{number, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
@@ -85,7 +85,7 @@ void Sight::add(const Polyhedron& body, int number) {
   close(piece);
 }
 
-void Sight::add_disc(const std::vector<Vec3>& rim, const Vec3& center, int number) {
+void HiddenLines::add_disc(const std::vector<Vec3>& rim, const Vec3& center, int number) {
   if (lens_.depth(center) < kNear) return;
   Piece piece{number, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
   std::vector<Point> at;
@@ -111,7 +111,7 @@ void Sight::add_disc(const std::vector<Vec3>& rim, const Vec3& center, int numbe
   close(piece);
 }
 
-void Sight::add_rod(const Vec3& a, const Vec3& b, double radius_a, double radius_b, int number) {
+void HiddenLines::add_rod(const Vec3& a, const Vec3& b, double radius_a, double radius_b, int number) {
   const Vec3 way = b - a, across = way.cross(lens_.sight((a + b) / 2));
   const double length = across.norm();
   if (length < 1e-12 * way.norm() || way.norm() == 0) return;
@@ -144,7 +144,7 @@ void Sight::add_rod(const Vec3& a, const Vec3& b, double radius_a, double radius
   close(piece);
 }
 
-void Sight::finish() {
+void HiddenLines::finish() {
   cells_.assign(std::size_t(columns_) * rows_, {});
   const Rect& w = lens_.window;
   for (int i = 0; i < int(pieces_.size()); ++i) {
@@ -159,7 +159,7 @@ void Sight::finish() {
   stamp_.assign(pieces_.size(), 0);
 }
 
-void Sight::seen(const Vec3& from, const Vec3& to, int own, int too, Parts& parts) const {
+void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts& parts) const {
   parts.clear();
   if (lens_.depth(from) < kNear || lens_.depth(to) < kNear) return;
   const Vec3 a = lens_.seen(from), b = lens_.seen(to), way = b - a;
@@ -213,14 +213,14 @@ void Sight::seen(const Vec3& from, const Vec3& to, int own, int too, Parts& part
   if (1 - at > std::min(least, 0.5)) parts.push_back({at, 1});
 }
 
-bool Sight::seen(const Vec3& place, int own, int too) const {
+bool HiddenLines::seen(const Vec3& place, int own, int too) const {
   Parts parts;
   // a point is a line without a length
   seen(place, place, own, too, parts);
   return !parts.empty();
 }
 
-std::vector<Vec3> contour(const Lens& lens, const Vec3& center, double radius, int count) {
+std::vector<Vec3> contour(const CameraProjection& lens, const Vec3& center, double radius, int count) {
   const Vec3 sight = lens.sight(center);
   double forward = 0, wide = radius;
   if (lens.perspective()) {

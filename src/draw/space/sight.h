@@ -8,11 +8,12 @@
 
 namespace obscura::draw {
 
-/// What is seen of lines in a space of convex bodies. Everything is in the coordinates of Lens::seen, where
-/// sight lines are parallel to the third axis and the nearer of two points has the larger third.
-class Sight {
+/// What is seen of lines in a space of convex bodies. Everything is in the coordinates of
+/// CameraProjection::seen, where sight lines are parallel to the third axis and the nearer of two points has
+/// the larger third.
+class HiddenLines {
  public:
-  explicit Sight(const Lens& lens);
+  explicit HiddenLines(const CameraProjection& lens);
 
   /// A body hides what lies behind it. `body` is the number of this convex piece, for `seen`. Pieces that
   /// reach behind the eye are left out.
@@ -41,7 +42,7 @@ class Sight {
   };
   void close(Piece piece);
 
-  Lens lens_;
+  CameraProjection lens_;
   std::vector<Eigen::Vector4d> planes_;
   std::vector<Piece> pieces_;
   int columns_ = 1, rows_ = 1;
@@ -53,7 +54,8 @@ class Sight {
 };
 
 /// Where sight lines touch a ball: `count` places on a circle, counter-clockwise as seen.
-std::vector<sim::Vec3> contour(const Lens& lens, const sim::Vec3& center, double radius, int count);
+std::vector<sim::Vec3> contour(const CameraProjection& lens, const sim::Vec3& center, double radius,
+                               int count);
 
 /// How many pieces make a circle of this radius on the page round to the eye.
 int roundness(double page_radius);

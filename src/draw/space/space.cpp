@@ -107,14 +107,14 @@ std::vector<Rect> windows(int count, double width, double top, double bottom, bo
   return found;
 }
 
-bool same(const Lens& a, const Lens& b) {
+bool same(const CameraProjection& a, const CameraProjection& b) {
   return a.target == b.target && a.back == b.back && a.right == b.right && a.up == b.up &&
          a.scale == b.scale && a.per_distance == b.per_distance && a.middle == b.middle;
 }
 
 }  // namespace
 
-SpaceStage::SpaceStage(const sim::Cast& who, const Look& looks_, const std::vector<Camera>& cameras,
+SpaceStage::SpaceStage(const sim::SceneInfo& who, const Look& looks_, const std::vector<Camera>& cameras,
                        const Extent& extent, double aspect, const Charts& beside)
     : cast(who),
       look(looks_),
@@ -149,17 +149,18 @@ SpaceStage::SpaceStage(const sim::Cast& who, const Look& looks_, const std::vect
   // bodies, piece by piece
   const std::vector<char> net = knots(cast);
   const auto knot = [&](int body) { return body >= 0 && net[body]; };
-  const auto points = std::count_if(cast.bodies.begin(), cast.bodies.end(),
-                                    [](const sim::Cast::Body& b) { return b.kind == sim::ShapeKind::point; });
+  const auto points =
+      std::count_if(cast.bodies.begin(), cast.bodies.end(),
+                    [](const sim::SceneInfo::Body& b) { return b.kind == sim::ShapeKind::point; });
   const double dot = kDot * w * std::min(1.0, std::cbrt(60.0 / double(std::max<std::ptrdiff_t>(points, 1))));
   int taken = 0;
   for (int i = 0; i < int(cast.bodies.size()); ++i) {
-    const sim::Cast::Body& body = cast.bodies[i];
+    const sim::SceneInfo::Body& body = cast.bodies[i];
     const bool quiet = body.fixed || knot(i);
     own.push_back(looks(i).color ? *looks(i).color : quiet ? neutral(look.theme) : turn(taken++));
     dots.push_back(body.kind == sim::ShapeKind::point ? dot : 0);
     add_pieces(i, body, Eigen::Matrix3d::Identity(), Vec3::Zero(), pieces);
-    for (const sim::Cast::Part& part : body.parts)
+    for (const sim::SceneInfo::Part& part : body.parts)
       add_pieces(i, part, part.turn.toRotationMatrix(), part.center, pieces);
   }
 
@@ -187,22 +188,22 @@ SpaceStage::SpaceStage(const sim::Cast& who, const Look& looks_, const std::vect
   layout.scale = rects[0].width / panels[0].aim.width;
 
   // springs: coils, or lines where they make a net or are many
-  const auto in_net = [&](const sim::Cast::Spring& spring) { return knot(spring.a) || knot(spring.b); };
+  const auto in_net = [&](const sim::SceneInfo::Spring& spring) { return knot(spring.a) || knot(spring.b); };
   const auto loose =
       std::count_if(cast.springs.begin(), cast.springs.end(), [&](const auto& s) { return !in_net(s); });
-  for (const sim::Cast::Spring& spring : cast.springs) {
+  for (const sim::SceneInfo::Spring& spring : cast.springs) {
     const bool line = look.springs == Look::Springs::lines ||
                       (look.springs == Look::Springs::automatic && (loose > kMany || in_net(spring)));
     Coil form = coil(std::max(spring.rest_length, 0.12 * cast.scale) * layout.scale, w);
     if (line) form.turns = 0;
     coils.push_back(form);
   }
-  for (const sim::Cast::Mouse& mouse : cast.mice)
+  for (const sim::SceneInfo::Mouse& mouse : cast.mice)
     hands.push_back(coil(std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale, 0.82 * w));
   force_scale = look.force_scale > 0 ? look.force_scale : newton(cast);
 }
 
-Lens lens_of(const Panel& panel, const sim::Snapshot& now) {
+CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now) {
   std::optional<Vec3> followed;
   if (panel.camera.follow) followed = now.bodies[*panel.camera.follow].position;
   return lens_at(panel.camera, panel.aim, panel.window, now.time, followed);
@@ -213,7 +214,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
   Picture picture;
   picture.aspect = stage.layout.aspect;
   picture.ground = stage.colours.ground;
-  std::vector<Lens> lenses;
+  std::vector<CameraProjection> lenses;
   for (const Panel& panel : stage.panels) lenses.push_back(lens_of(panel, now));
   {
     const std::lock_guard lock(stage.mutex);
@@ -229,21 +230,21 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
 
   for (std::size_t i = 0; i < stage.panels.size(); ++i) {
     const Panel& panel = stage.panels[i];
-    const Lens& lens = lenses[i];
-    Scenery scenery{stage,
-                    panel,
-                    lens,
-                    now,
-                    picture.moving,
-                    lens.scale * panel.aim.width / panel.window.width,
-                    Sight(lens),
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {},
-                    {}};
+    const CameraProjection& lens = lenses[i];
+    SpaceFrame scenery{stage,
+                       panel,
+                       lens,
+                       now,
+                       picture.moving,
+                       lens.scale * panel.aim.width / panel.window.width,
+                       HiddenLines(lens),
+                       {},
+                       {},
+                       {},
+                       {},
+                       {},
+                       {},
+                       {}};
     scenery.solids.window = panel.window;
     picture.moving.clip(panel.window);
     // what hides, then what is seen

@@ -35,7 +35,7 @@ struct Panel {
 
 /// What the pictures of one run in space have in common.
 struct SpaceStage {
-  sim::Cast cast;
+  sim::SceneInfo cast;
   Look look;
   Palette colours;
   Layout layout;  // the caption, weights
@@ -53,18 +53,18 @@ struct SpaceStage {
   double force_scale = 0;
   std::vector<Coil> coils, hands;  // turns 0: a plain line
 
-  SpaceStage(const sim::Cast& cast, const Look& look, const std::vector<Camera>& cameras,
+  SpaceStage(const sim::SceneInfo& cast, const Look& look, const std::vector<Camera>& cameras,
              const Extent& extent, double aspect, const Charts& charts = {});
   BodyLook looks(int body) const { return body < int(look.bodies.size()) ? look.bodies[body] : BodyLook{}; }
 
   // the last still list, and what it is of
   mutable std::mutex mutex;
-  mutable std::vector<Lens> seen;
+  mutable std::vector<CameraProjection> seen;
   mutable std::shared_ptr<const List> still;
 };
 
 /// How a panel sees space at an instant.
-Lens lens_of(const Panel& panel, const sim::Snapshot& now);
+CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now);
 
 /// `frame`: of which the clock and the charts are.
 Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways,
@@ -79,7 +79,7 @@ struct Trace {
 
 /// Triangles of one thing.
 struct Chunk {
-  std::size_t begin = 0, end = 0;  // into Scenery::triangles
+  std::size_t begin = 0, end = 0;  // into SpaceFrame::triangles
   sim::Vec3 center = sim::Vec3::Zero();
   double reach = 0;  // of a ball around it, m
   int piece = -1;    // a thing's own number: -1 casts nothing on others
@@ -99,14 +99,14 @@ struct Rod {
 };
 
 /// One panel at one instant, while it is drawn.
-struct Scenery {
+struct SpaceFrame {
   const SpaceStage& stage;
   const Panel& panel;
-  const Lens lens;
+  const CameraProjection lens;
   const sim::Snapshot& now;
   List& list;
   double zoom;  // page scale over the fitted one
-  Sight sight;
+  HiddenLines sight;
   Solids solids;
   std::vector<Polyhedron> placed;  // polyhedra in the world, one a piece; empty ones of other forms
   std::vector<Corner> corners;
@@ -117,31 +117,31 @@ struct Scenery {
 };
 
 /// Grid, room, caption: what stands still while the camera does.
-void draw_space_still(const SpaceStage& stage, const std::vector<Lens>& lenses, List& list);
+void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjection>& lenses, List& list);
 
 /// The hairlines of the room that lie between it and the eye.
-void draw_room_front(const SpaceStage& stage, const Lens& lens, List& list);
+void draw_room_front(const SpaceStage& stage, const CameraProjection& lens, List& list);
 
 /// A round rod along `way`, of this radius (m), into the solids; `number`: in sight.
-void add_tube(Scenery& scenery, const std::vector<sim::Vec3>& way, double radius, Color color, int number);
-void add_ball(Scenery& scenery, const sim::Vec3& center, double radius, Color color, int number);
+void add_tube(SpaceFrame& scenery, const std::vector<sim::Vec3>& way, double radius, Color color, int number);
+void add_ball(SpaceFrame& scenery, const sim::Vec3& center, double radius, Color color, int number);
 
 /// Bodies: what hides, then what is seen of them.
-void add_bodies(Scenery& scenery);
+void add_bodies(SpaceFrame& scenery);
 /// Springs, rods, ropes, pins, the hands' springs; before lines are traced, since they hide them.
-void add_links(Scenery& scenery);
+void add_links(SpaceFrame& scenery);
 /// The edges of bodies that are seen.
-void trace_edges(Scenery& scenery);
-void trace_trails(Scenery& scenery, Ways ways);
+void trace_edges(SpaceFrame& scenery);
+void trace_trails(SpaceFrame& scenery, Ways ways);
 /// The shadows on the ground and on each other.
-void add_shadows(Scenery& scenery);
+void add_shadows(SpaceFrame& scenery);
 /// The lines that were traced, the farthest first, and arrows over them.
-void draw_space_arrows(Scenery& scenery);
-void draw_space_labels(Scenery& scenery);
-void draw_space_hands(Scenery& scenery);
+void draw_space_arrows(SpaceFrame& scenery);
+void draw_space_labels(SpaceFrame& scenery);
+void draw_space_hands(SpaceFrame& scenery);
 
 /// The parts of a line through `way` that are seen, as lines of this width and colour.
-void trace(Scenery& scenery, const std::vector<sim::Vec3>& way, bool closed, int own, int too, double width,
-           Color color);
+void trace(SpaceFrame& scenery, const std::vector<sim::Vec3>& way, bool closed, int own, int too,
+           double width, Color color);
 
 }  // namespace obscura::draw

@@ -10,7 +10,7 @@
 
 #include "sim/shape/shape.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -21,11 +21,11 @@ struct Point {
   double x, y;
 };
 
-Point corner(const Cores& cores, const Core& core, const Pose& at, int i) {
+Point corner(const CoreShapes& cores, const CoreShape& core, const Pose& at, int i) {
   const double x = cores.x[core.first + i], y = cores.y[core.first + i];
   return {at.x + (at.c * x - at.s * y), at.y + (at.s * x + at.c * y)};
 }
-Point normal(const Cores& cores, const Core& core, const Pose& at, int face) {
+Point normal(const CoreShapes& cores, const CoreShape& core, const Pose& at, int face) {
   const double x = cores.nx[core.first + face], y = cores.ny[core.first + face];
   return {at.c * x - at.s * y, at.s * x + at.c * y};
 }
@@ -35,7 +35,8 @@ struct Reference {
   int face = 0;
   double gap = -1e300;
 };
-Reference reference(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b) {
+Reference reference(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
+                    const Pose& at_b) {
   // b's corners in a's frame
   const double c = at_a.c * at_b.c + at_a.s * at_b.s, s = at_a.c * at_b.s - at_a.s * at_b.c;
   const double wx = at_b.x - at_a.x, wy = at_b.y - at_a.y;
@@ -61,8 +62,8 @@ Reference reference(const Cores& cores, const Core& a, const Pose& at_a, const C
 }
 
 // polygon a's face against polygon b; `swapped` where a is the contact's b
-double clip(const Cores& cores, const Core& a, const Pose& at_a, int face, const Core& b, const Pose& at_b,
-            bool swapped, Feature out[2]) {
+double clip(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, int face, const CoreShape& b,
+            const Pose& at_b, bool swapped, Feature out[2]) {
   const Point n = normal(cores, a, at_a, face);
   int incident = 0;
   double least = 1e300;
@@ -102,8 +103,8 @@ double clip(const Cores& cores, const Core& a, const Pose& at_a, int face, const
   return low;
 }
 
-double at_corner(const Cores& cores, const Core& round, const Pose& at_round, const Core& polygon,
-                 const Pose& at, bool swapped, Feature out[2]) {
+double at_corner(const CoreShapes& cores, const CoreShape& round, const Pose& at_round,
+                 const CoreShape& polygon, const Pose& at, bool swapped, Feature out[2]) {
   // the round one's corner in the polygon's frame
   const Point p = corner(cores, round, at_round, 0);
   const double wx = p.x - at.x, wy = p.y - at.y;
@@ -134,14 +135,14 @@ double at_corner(const Cores& cores, const Core& round, const Pose& at_round, co
 
 }  // namespace
 
-Cores::Cores(const Model<2>& model) {
+CoreShapes::CoreShapes(const Model<2>& model) {
   const auto moving = std::count_if(model.bodies.begin(), model.bodies.end(), [](const Body<2>& body) {
     return !body.fixed && body.shape.kind != ShapeKind::point;
   });
   const double crowded = std::clamp((double(moving) - kFew) / (kMany - kFew), 0.0, 1.0);
   allowed = kLeastAllowed + (kMostAllowed - kLeastAllowed) * crowded * crowded * crowded;
   const auto add = [&](int body, int part, const Shape<2>& shape) {
-    Core core;
+    CoreShape core;
     core.body = body, core.part = part, core.first = int(x.size());
     core.radius = shape.kind == ShapeKind::ball ? shape.radius : 0;
     if (shape.kind == ShapeKind::box) {
@@ -188,8 +189,8 @@ Cores::Cores(const Model<2>& model) {
   begin.push_back(int(all.size()));
 }
 
-double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
-               Feature out[2], double margin) {
+double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
+               const Pose& at_b, Feature out[2], double margin) {
   if (a.count == 1 && b.count == 1) {
     const Point p = corner(cores, a, at_a, 0), q = corner(cores, b, at_b, 0);
     out[0] = {Feature::corners, 0, 0}, out[1] = {};
@@ -207,8 +208,8 @@ double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Core& 
   return clip(cores, a, at_a, ra.face, b, at_b, false, out);
 }
 
-Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
-            Feature feature) {
+Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
+            const Pose& at_b, Feature feature) {
   Place at;
   if (feature.kind == Feature::corners) {
     const Point p = corner(cores, a, at_a, feature.corner), q = corner(cores, b, at_b, feature.face);
@@ -225,7 +226,7 @@ Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, 
     return at;
   }
   const bool of_a = feature.kind == Feature::corner_of_a;
-  const Core &pointed = of_a ? a : b, &flat = of_a ? b : a;
+  const CoreShape &pointed = of_a ? a : b, &flat = of_a ? b : a;
   const Pose &at_pointed = of_a ? at_a : at_b, &at_flat = of_a ? at_b : at_a;
   const Point p = corner(cores, pointed, at_pointed, feature.corner);
   const Point n = normal(cores, flat, at_flat, feature.face);
@@ -237,7 +238,8 @@ Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, 
   return at;
 }
 
-double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Wall<2>& wall, Feature out[2]) {
+double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
+               Feature out[2]) {
   const double nx = wall.normal[0], ny = wall.normal[1];
   int low[2] = {0, -1};
   double gap[2] = {1e300, 1e300};
@@ -256,7 +258,8 @@ double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Wall<2
   return gap[0];
 }
 
-Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Wall<2>& wall, Feature feature) {
+Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
+            Feature feature) {
   const Point p = corner(cores, a, at_a, feature.corner);
   Place at;
   at.nx = wall.normal[0], at.ny = wall.normal[1];
@@ -266,4 +269,4 @@ Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Wall<2>& 
   return at;
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

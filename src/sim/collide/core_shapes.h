@@ -11,14 +11,14 @@
 //   g = |p_a - p_b| - r_a - r_b    two corners
 // so that a contact is told by the numbers of its features and its gap needs nothing else than two poses.
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 /// Where a body stands: its centre (m), and cosine and sine of its turn.
 struct alignas(32) Pose {
   double x = 0, y = 0, c = 1, s = 0;
 };
 
-struct Core {
+struct CoreShape {
   int body = 0, part = 0;
   int first = 0, count = 0;   // corners, counter-clockwise; face i goes from corner i to the next
   double radius = 0;          // m
@@ -28,10 +28,10 @@ struct Core {
 };
 
 /// All cores of a model, those of a body side by side.
-struct Cores {
-  explicit Cores(const Model<2>& model);
+struct CoreShapes {
+  explicit CoreShapes(const Model<2>& model);
 
-  std::vector<Core> all;
+  std::vector<CoreShape> all;
   std::vector<int> begin;             // a body's first core; one more at the end
   std::vector<double> x, y;           // corners in the body's frame, m
   std::vector<double> nx, ny, d;      // faces: outward normal and its distance from the body's centre
@@ -63,13 +63,15 @@ struct Place {
 
 /// The features nearest to each other: two where a corner of each end of two faces that lie on each other,
 /// else one and `none`. Returns a lower bound of the distance, m; from `margin` on features may be left out.
-double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
-               Feature out[2], double margin = 1e300);
-Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Core& b, const Pose& at_b,
-            Feature feature);
+double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
+               const Pose& at_b, Feature out[2], double margin = 1e300);
+Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
+            const Pose& at_b, Feature feature);
 
 /// Of a wall: the two corners that lie lowest.
-double nearest(const Cores& cores, const Core& a, const Pose& at_a, const Wall<2>& wall, Feature out[2]);
-Place touch(const Cores& cores, const Core& a, const Pose& at_a, const Wall<2>& wall, Feature feature);
+double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
+               Feature out[2]);
+Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
+            Feature feature);
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

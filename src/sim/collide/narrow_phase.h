@@ -20,7 +20,7 @@ namespace obscura::sim {
 
 /// One such function, and what it was when it was found.
 template <int D>
-struct Gap {
+struct ContactCandidate {
   enum class Kind : std::uint8_t {
     corner_of_a,       // at a face of b
     corner_of_b,       // at a face of a
@@ -68,7 +68,7 @@ Vec<D> perpendicular(const Vec<D>& n) {
 
 /// A gap at some instant.
 template <int D>
-struct Meeting {
+struct EvaluatedContact {
   double value = 0;                 // g, m; negative: inside
   Vec<D> point = Vec<D>::Zero();    // world frame, midway between the two surfaces
   Vec<D> normal = Vec<D>::Unit(0);  // world frame, unit, from b to a
@@ -78,30 +78,30 @@ struct Meeting {
 /// component of the velocity of a's material at `point` against b's, exactly: both turn about it, and a shift
 /// along the normal changes nothing. Corners that coincide part along x.
 template <int D>
-Meeting<D> evaluate(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b) {
+EvaluatedContact<D> evaluate(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b) {
   const Vec<D> on_a = a.x + a.arm(gap.on_a), on_b = b.x + b.arm(gap.on_b), apart = on_a - on_b;
-  Meeting<D> now;
+  EvaluatedContact<D> now;
   switch (gap.kind) {
-    case Gap<D>::Kind::corner_of_a:
+    case ContactCandidate<D>::Kind::corner_of_a:
       now.normal = b.arm(gap.normal);
       now.value = now.normal.dot(apart) - gap.radius_a - gap.radius_b;
       now.point = on_a - now.normal * (gap.radius_a + now.value / 2);
       break;
-    case Gap<D>::Kind::corner_of_b:
+    case ContactCandidate<D>::Kind::corner_of_b:
       now.normal = -a.arm(gap.normal);
       now.value = now.normal.dot(apart) - gap.radius_a - gap.radius_b;
       now.point = on_b + now.normal * (gap.radius_b + now.value / 2);
       break;
-    case Gap<D>::Kind::corners: {
+    case ContactCandidate<D>::Kind::corners: {
       const double length = apart.norm();
       if (length > 0) now.normal = apart / length;
       now.value = length - gap.radius_a - gap.radius_b;
       now.point = on_b + now.normal * (gap.radius_b + now.value / 2);
       break;
     }
-    case Gap<D>::Kind::corner_at_edge_b:
-    case Gap<D>::Kind::corner_at_edge_a: {
-      const bool mine = gap.kind == Gap<D>::Kind::corner_at_edge_b;
+    case ContactCandidate<D>::Kind::corner_at_edge_b:
+    case ContactCandidate<D>::Kind::corner_at_edge_a: {
+      const bool mine = gap.kind == ContactCandidate<D>::Kind::corner_at_edge_b;
       const Vec<D> edge = mine ? b.arm(gap.edge_b) : a.arm(gap.edge_a);
       const Vec<D> across = apart - edge * edge.dot(apart);
       const double length = across.norm();
@@ -114,7 +114,7 @@ Meeting<D> evaluate(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b) {
       }
       break;
     }
-    case Gap<D>::Kind::edges:
+    case ContactCandidate<D>::Kind::edges:
       if constexpr (D == 3) {
         const Vec<D> edge_a = a.arm(gap.edge_a), edge_b = b.arm(gap.edge_b);
         now.normal = edge_a.cross(edge_b).normalized();
@@ -141,26 +141,26 @@ Meeting<D> evaluate(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b) {
 /// edge is taken as a corner. Of parallel edges that are nearest the ends of what they share, as corners at
 /// edges.
 template <int D>
-void gaps(int a, const Shape<D>& shape_a, const Stance<D>& at_a, int b, const Shape<D>& shape_b,
-          const Stance<D>& at_b, double margin, std::vector<Gap<D>>& out);
+void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, const Shape<D>& shape_b,
+             const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out);
 
 /// The gaps below `margin` between a shape and a wall: of every corner.
 template <int D>
-void gaps(int a, const Shape<D>& shape, const Stance<D>& at, int wall, const Wall<D>& half_space,
-          double margin, std::vector<Gap<D>>& out);
+void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, const Wall<D>& half_space,
+             double margin, std::vector<ContactCandidate<D>>& out);
 
 /// Distance (m) between two shapes; where they overlap minus the depth.
 template <int D>
-double separation(const Shape<D>& a, const Stance<D>& at_a, const Shape<D>& b, const Stance<D>& at_b);
+double separation(const Shape<D>& a, const BodyMotion<D>& at_a, const Shape<D>& b, const BodyMotion<D>& at_b);
 
 // of space, gap_space.cpp
 template <>
-void gaps(int a, const Shape<3>& shape_a, const Stance<3>& at_a, int b, const Shape<3>& shape_b,
-          const Stance<3>& at_b, double margin, std::vector<Gap<3>>& out);
+void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
+             const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out);
 template <>
-void gaps(int a, const Shape<3>& shape, const Stance<3>& at, int wall, const Wall<3>& half_space,
-          double margin, std::vector<Gap<3>>& out);
+void collide(int a, const Shape<3>& shape, const BodyMotion<3>& at, int wall, const Wall<3>& half_space,
+             double margin, std::vector<ContactCandidate<3>>& out);
 template <>
-double separation(const Shape<3>& a, const Stance<3>& at_a, const Shape<3>& b, const Stance<3>& at_b);
+double separation(const Shape<3>& a, const BodyMotion<3>& at_a, const Shape<3>& b, const BodyMotion<3>& at_b);
 
 }  // namespace obscura::sim

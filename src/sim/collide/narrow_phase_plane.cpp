@@ -26,20 +26,20 @@ constexpr double kAligned = 1e-6;   // of a face: corners of both that lie so cl
 constexpr double kParallel = 1e-3;  // rad: faces that can trade their corners
 constexpr double kRounding = 1e-9;  // of a face: this far beyond its end is still over it
 
-using Kind = Gap<2>::Kind;
+using Kind = ContactCandidate<2>::Kind;
 
 // two outlines, part by part of two bodies
 struct Couple {
   int a, b;
-  const Outline &of_a, &of_b;
+  const ConvexPolygon &of_a, &of_b;
   int part_a, part_b, parts_b;
   int digits_a, digits_b;  // more than any corner's number
 
   double radii() const { return of_a.radius() + of_b.radius(); }
 
   // which: numbers of the corner or face of a, and of b
-  Gap<2> gap(Kind kind, int which_a, int which_b, double core) const {
-    Gap<2> made;
+  ContactCandidate<2> gap(Kind kind, int which_a, int which_b, double core) const {
+    ContactCandidate<2> made;
     unsigned feature = unsigned(kind);
     feature = (feature + 3u * unsigned(part_a)) * unsigned(parts_b) + unsigned(part_b);
     feature = (feature * unsigned(digits_a) + unsigned(which_a)) * unsigned(digits_b) + unsigned(which_b);
@@ -58,33 +58,33 @@ struct Couple {
 
 // Two outlines of which the first owns the touching face, in its frame.
 struct Touching {
-  const Outline &base, &other;
+  const ConvexPolygon &base, &other;
   const Lie& lies;  // of the other
   bool base_is_b;   // else a
   int face;
   double value;  // greatest separation
 
-  Gap<2> other_at_base(const Couple& couple, int corner, double core) const {
+  ContactCandidate<2> other_at_base(const Couple& couple, int corner, double core) const {
     return base_is_b ? couple.gap(Kind::corner_of_a, corner, face, core)
                      : couple.gap(Kind::corner_of_b, face, corner, core);
   }
-  Gap<2> base_at_other(const Couple& couple, int corner, int partner, double core) const {
+  ContactCandidate<2> base_at_other(const Couple& couple, int corner, int partner, double core) const {
     return base_is_b ? couple.gap(Kind::corner_of_b, partner, corner, core)
                      : couple.gap(Kind::corner_of_a, corner, partner, core);
   }
-  Gap<2> corners(const Couple& couple, int of_base, int of_other, double core) const {
+  ContactCandidate<2> corners(const Couple& couple, int of_base, int of_other, double core) const {
     return base_is_b ? couple.gap(Kind::corners, of_other, of_base, core)
                      : couple.gap(Kind::corners, of_base, of_other, core);
   }
 };
 
-void keep(const Gap<2>& gap, double margin, std::vector<Gap<2>>& out) {
+void keep(const ContactCandidate<2>& gap, double margin, std::vector<ContactCandidate<2>>& out) {
   if (gap.value < margin) out.push_back(gap);
 }
 
 // no face is nearest: the two nearest corners; at one place, the deepest corner at the touching face
 void corner_at_corner(const Couple& couple, const Touching& touching, double aligned, int deepest,
-                      double margin, std::vector<Gap<2>>& out) {
+                      double margin, std::vector<ContactCandidate<2>>& out) {
   double least = 1e300;
   int of_base = 0, of_other = 0;
   for (int k = 0; k < touching.other.corners(); ++k) {
@@ -104,7 +104,8 @@ void corner_at_corner(const Couple& couple, const Touching& touching, double ali
        margin, out);
 }
 
-void corner_at_face(const Couple& couple, const Touching& touching, double margin, std::vector<Gap<2>>& out) {
+void corner_at_face(const Couple& couple, const Touching& touching, double margin,
+                    std::vector<ContactCandidate<2>>& out) {
   const Vec<2> r0 = touching.base.corner(touching.face);
   const Vec<2> r1 = touching.base.corner(touching.base.next(touching.face));
   const Vec<2> p = touching.lies * touching.other.corner(0);
@@ -117,9 +118,10 @@ void corner_at_face(const Couple& couple, const Touching& touching, double margi
   }
 }
 
-void face_at_face(const Couple& couple, const Touching& touching, double margin, std::vector<Gap<2>>& out) {
+void face_at_face(const Couple& couple, const Touching& touching, double margin,
+                  std::vector<ContactCandidate<2>>& out) {
   // the touching face and its partner, in the base's frame
-  const Outline &base = touching.base, &other = touching.other;
+  const ConvexPolygon &base = touching.base, &other = touching.other;
   const Vec<2> n = base.normal(touching.face), t(-n[1], n[0]);
   const Vec<2> down = -(touching.lies.turn.transpose() * n);
   const int partner = other.facing(down);
@@ -184,8 +186,9 @@ void face_at_face(const Couple& couple, const Touching& touching, double margin,
   keep_end(1);
 }
 
-void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin, std::vector<Gap<2>>& out) {
-  const Outline &a = couple.of_a, &b = couple.of_b;
+void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin,
+                  std::vector<ContactCandidate<2>>& out) {
+  const ConvexPolygon &a = couple.of_a, &b = couple.of_b;
   const double far = margin + couple.radii();
   const Vec<2> middles = a_in_b * a.middle() - b.middle();
   const double girths = std::max(far, 0.0) + a.girth() + b.girth();
@@ -230,34 +233,34 @@ int digits(const Shape<2>& shape) {
 }  // namespace
 
 template <int D>
-void gaps(int a, const Shape<D>& shape_a, const Stance<D>& at_a, int b, const Shape<D>& shape_b,
-          const Stance<D>& at_b, double margin, std::vector<Gap<D>>& out) {
+void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, const Shape<D>& shape_b,
+             const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out) {
   static_assert(D == 2, "space comes with its own outlines");
   const Lie a_in_b = lie(at_a, at_b);
   const int digits_a = digits(shape_a), digits_b = digits(shape_b);
   for (int i = 0; i < parts(shape_a); ++i) {
-    const Outline of_a(part(shape_a, i));
+    const ConvexPolygon of_a(part(shape_a, i));
     for (int k = 0; k < parts(shape_b); ++k) {
-      const Outline of_b(part(shape_b, k));
+      const ConvexPolygon of_b(part(shape_b, k));
       outline_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, a_in_b, margin, out);
     }
   }
 }
 
 template <int D>
-void gaps(int a, const Shape<D>& shape, const Stance<D>& at, int wall, const Wall<D>& half_space,
-          double margin, std::vector<Gap<D>>& out) {
+void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, const Wall<D>& half_space,
+             double margin, std::vector<ContactCandidate<D>>& out) {
   static_assert(D == 2, "space comes with its own outlines");
   const int digits_a = digits(shape);
   for (int i = 0; i < parts(shape); ++i) {
-    const Outline outline(part(shape, i));
+    const ConvexPolygon outline(part(shape, i));
     for (int k = 0; k < outline.corners(); ++k) {
       const Vec<D> p = at.x + at.arm(outline.corner(k));
       const double value = half_space.normal.dot(p - half_space.point) - outline.radius();
       if (!(value < margin)) continue;
-      Gap<D> made;
+      ContactCandidate<D> made;
       made.key = {a, -1 - wall, i * digits_a + k};
-      made.kind = Gap<D>::Kind::corner_of_a;
+      made.kind = ContactCandidate<D>::Kind::corner_of_a;
       made.on_a = outline.corner(k);
       made.on_b = half_space.point;
       made.normal = half_space.normal;
@@ -269,22 +272,24 @@ void gaps(int a, const Shape<D>& shape, const Stance<D>& at, int wall, const Wal
 }
 
 template <int D>
-double separation(const Shape<D>& a, const Stance<D>& at_a, const Shape<D>& b, const Stance<D>& at_b) {
+double separation(const Shape<D>& a, const BodyMotion<D>& at_a, const Shape<D>& b,
+                  const BodyMotion<D>& at_b) {
   const Lie a_in_b = lie(at_a, at_b);
   double least = 1e300;
   for (int i = 0; i < parts(a); ++i) {
-    const Outline of_a(part(a, i));
+    const ConvexPolygon of_a(part(a, i));
     for (int k = 0; k < parts(b); ++k) {
-      const Outline of_b(part(b, k));
+      const ConvexPolygon of_b(part(b, k));
       least = std::min(least, core_separation(of_a, of_b, a_in_b) - of_a.radius() - of_b.radius());
     }
   }
   return least;
 }
 
-template void gaps(int, const Shape<2>&, const Stance<2>&, int, const Shape<2>&, const Stance<2>&, double,
-                   std::vector<Gap<2>>&);
-template void gaps(int, const Shape<2>&, const Stance<2>&, int, const Wall<2>&, double, std::vector<Gap<2>>&);
-template double separation(const Shape<2>&, const Stance<2>&, const Shape<2>&, const Stance<2>&);
+template void collide(int, const Shape<2>&, const BodyMotion<2>&, int, const Shape<2>&, const BodyMotion<2>&,
+                      double, std::vector<ContactCandidate<2>>&);
+template void collide(int, const Shape<2>&, const BodyMotion<2>&, int, const Wall<2>&, double,
+                      std::vector<ContactCandidate<2>>&);
+template double separation(const Shape<2>&, const BodyMotion<2>&, const Shape<2>&, const BodyMotion<2>&);
 
 }  // namespace obscura::sim

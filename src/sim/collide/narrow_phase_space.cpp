@@ -31,7 +31,7 @@ constexpr double kSteep = 0.1;       // cosine: a partner that leans more is not
 constexpr double kSharp = 0.05;      // sine between edges that cross
 constexpr double kRounding = 1e-12;
 
-using Kind = Gap<3>::Kind;
+using Kind = ContactCandidate<3>::Kind;
 using Point = Vec<2>;
 
 // a list that allocates only when it is long
@@ -58,15 +58,15 @@ class Few {
 // two cores, part by part of two bodies
 struct Couple {
   int a, b;
-  const Solid &of_a, &of_b;
+  const Polyhedron &of_a, &of_b;
   int part_a, part_b, parts_b;
   int digits_a, digits_b;  // more than any corner's, edge's or face's number
 
   double radii() const { return of_a.radius() + of_b.radius(); }
 
   // which: numbers of the corner, edge or face of a, and of b
-  Gap<3> named(Kind kind, int which_a, int which_b) const {
-    Gap<3> made;
+  ContactCandidate<3> named(Kind kind, int which_a, int which_b) const {
+    ContactCandidate<3> made;
     unsigned feature = unsigned(kind);
     feature = (feature + 6u * unsigned(part_a)) * unsigned(parts_b) + unsigned(part_b);
     feature = (feature * unsigned(digits_a) + unsigned(which_a)) * unsigned(digits_b) + unsigned(which_b);
@@ -76,43 +76,43 @@ struct Couple {
     made.radius_b = of_b.radius();
     return made;
   }
-  Gap<3> corner_of_a(int corner, int face, double core) const {
-    Gap<3> made = named(Kind::corner_of_a, corner, face);
+  ContactCandidate<3> corner_of_a(int corner, int face, double core) const {
+    ContactCandidate<3> made = named(Kind::corner_of_a, corner, face);
     made.on_a = of_a.own_corner(corner), made.on_b = of_b.own_corner(of_b.loop(face)[0]);
     made.normal = of_b.own(of_b.normal(face));
     made.value = core - radii();
     return made;
   }
-  Gap<3> corner_of_b(int face, int corner, double core) const {
-    Gap<3> made = named(Kind::corner_of_b, face, corner);
+  ContactCandidate<3> corner_of_b(int face, int corner, double core) const {
+    ContactCandidate<3> made = named(Kind::corner_of_b, face, corner);
     made.on_a = of_a.own_corner(of_a.loop(face)[0]), made.on_b = of_b.own_corner(corner);
     made.normal = of_a.own(of_a.normal(face));
     made.value = core - radii();
     return made;
   }
-  Gap<3> corners(int of_one, int of_other, double core) const {
-    Gap<3> made = named(Kind::corners, of_one, of_other);
+  ContactCandidate<3> corners(int of_one, int of_other, double core) const {
+    ContactCandidate<3> made = named(Kind::corners, of_one, of_other);
     made.on_a = of_a.own_corner(of_one), made.on_b = of_b.own_corner(of_other);
     made.value = core - radii();
     return made;
   }
-  Gap<3> corner_at_edge_b(int corner, int edge, double core) const {
-    Gap<3> made = named(Kind::corner_at_edge_b, corner, edge);
+  ContactCandidate<3> corner_at_edge_b(int corner, int edge, double core) const {
+    ContactCandidate<3> made = named(Kind::corner_at_edge_b, corner, edge);
     made.on_a = of_a.own_corner(corner), made.on_b = of_b.own_corner(of_b.edge(edge).from);
     made.edge_b = of_b.own(of_b.along(edge));
     made.value = core - radii();
     return made;
   }
-  Gap<3> corner_at_edge_a(int edge, int corner, double core) const {
-    Gap<3> made = named(Kind::corner_at_edge_a, edge, corner);
+  ContactCandidate<3> corner_at_edge_a(int edge, int corner, double core) const {
+    ContactCandidate<3> made = named(Kind::corner_at_edge_a, edge, corner);
     made.on_a = of_a.own_corner(of_a.edge(edge).from), made.on_b = of_b.own_corner(corner);
     made.edge_a = of_a.own(of_a.along(edge));
     made.value = core - radii();
     return made;
   }
   // normal: about from b to a
-  Gap<3> edges(int edge_a, int edge_b, const Vec<3>& normal, double core) const {
-    Gap<3> made = named(Kind::edges, edge_a, edge_b);
+  ContactCandidate<3> edges(int edge_a, int edge_b, const Vec<3>& normal, double core) const {
+    ContactCandidate<3> made = named(Kind::edges, edge_a, edge_b);
     made.on_a = of_a.own_corner(of_a.edge(edge_a).from), made.on_b = of_b.own_corner(of_b.edge(edge_b).from);
     const Vec<3> along_a = of_a.along(edge_a), along_b = of_b.along(edge_b);
     made.edge_a = of_a.own(along_a), made.edge_b = of_b.own(along_b);
@@ -124,20 +124,20 @@ struct Couple {
 
 // Two cores of which the first owns the touching face.
 struct Touching {
-  const Solid &base, &other;
+  const Polyhedron &base, &other;
   bool base_is_b;  // else a
   FaceAxis by;     // of the base
   double best;     // greatest separation, by faces or edges
 
-  Gap<3> other_at_base(const Couple& couple, int corner, double core) const {
+  ContactCandidate<3> other_at_base(const Couple& couple, int corner, double core) const {
     return base_is_b ? couple.corner_of_a(corner, by.face, core) : couple.corner_of_b(by.face, corner, core);
   }
-  Gap<3> base_at_other(const Couple& couple, int corner, int partner, double core) const {
+  ContactCandidate<3> base_at_other(const Couple& couple, int corner, int partner, double core) const {
     return base_is_b ? couple.corner_of_b(partner, corner, core) : couple.corner_of_a(corner, partner, core);
   }
 };
 
-void keep(const Gap<3>& gap, double margin, std::vector<Gap<3>>& out) {
+void keep(const ContactCandidate<3>& gap, double margin, std::vector<ContactCandidate<3>>& out) {
   if (gap.value < margin) out.push_back(gap);
 }
 
@@ -181,8 +181,8 @@ double width(const Few<Point, 16>& points) {
 }
 
 // whether two edges cross within both their lengths
-bool cross_within(const Solid& a, const Solid& b, int of_a, int of_b) {
-  const Solid::Edge p = a.edge(of_a), q = b.edge(of_b);
+bool cross_within(const Polyhedron& a, const Polyhedron& b, int of_a, int of_b) {
+  const Polyhedron::Edge p = a.edge(of_a), q = b.edge(of_b);
   const Vec<3> p0 = a.corner(p.from), q0 = b.corner(q.from), along_a = a.along(of_a), along_b = b.along(of_b);
   const Crossing at = crossing(p0 - q0, along_a, along_b);
   const double length_a = along_a.dot(a.corner(p.to) - p0), length_b = along_b.dot(b.corner(q.to) - q0);
@@ -194,9 +194,9 @@ bool cross_within(const Solid& a, const Solid& b, int of_a, int of_b) {
 class Shared {
  public:
   // Appends its gaps to `out`.
-  Shared(const Couple& couple, const Touching& touching, std::vector<Gap<3>>& out)
+  Shared(const Couple& couple, const Touching& touching, std::vector<ContactCandidate<3>>& out)
       : couple_(couple), touching_(touching), gaps_(out), begin_(out.size()) {
-    const Solid &base = touching.base, &other = touching.other;
+    const Polyhedron &base = touching.base, &other = touching.other;
     n_ = base.normal(touching.by.face);
     t_ = perpendicular<3>(n_), u_ = n_.cross(t_);
     origin_ = base.corner(base.loop(touching.by.face)[0]);
@@ -235,7 +235,7 @@ class Shared {
     // apart and askew, a corner that only seems to be over the partner seems nearer than all
     const double nearest = touching_.best > 0 ? touching_.best * (1 - kAligned) - aligned_ : -1e300;
     gaps_.erase(std::remove_if(gaps_.begin() + std::ptrdiff_t(begin_), gaps_.end(),
-                               [&](const Gap<3>& gap) {
+                               [&](const ContactCandidate<3>& gap) {
                                  return !(gap.value < margin && gap.value + couple_.radii() >= nearest);
                                }),
                 gaps_.end());
@@ -245,7 +245,7 @@ class Shared {
   void drop() { gaps_.resize(begin_); }
 
  private:
-  Seen seen(const Solid& of, int corner) const {
+  Seen seen(const Polyhedron& of, int corner) const {
     const Vec<3> place = of.corner(corner) - origin_;
     return {corner, {t_.dot(place), u_.dot(place)}, n_.dot(place)};
   }
@@ -258,7 +258,7 @@ class Shared {
   }
 
   // real: its nearest places lie on the features
-  void add(const Point& at, const Gap<3>& gap, bool real) {
+  void add(const Point& at, const ContactCandidate<3>& gap, bool real) {
     places_.push_back(at), gaps_.push_back(gap);
     if (real || touching_.best <= 0) least_ = std::min(least_, gap.value + couple_.radii());
   }
@@ -306,7 +306,7 @@ class Shared {
   }
 
   void cross_at(const Point& at, int p0, int p1, const Seen& q0, const Seen& q1, double on_q) {
-    const Solid &base = touching_.base, &other = touching_.other;
+    const Polyhedron &base = touching_.base, &other = touching_.other;
     const int of_base = base.edge_between(p0, p1), of_other = other.edge_between(q0.corner, q1.corner);
     const Vec<3> from = base.corner(p0), to = other.corner(q0.corner);
     Vec<3> n = (base.corner(p1) - from).normalized().cross((other.corner(q1.corner) - to).normalized());
@@ -325,7 +325,7 @@ class Shared {
     // too nearly parallel to tell a normal: the place on the other's edge against the touching face
     const double height = q0.height + on_q * (q1.height - q0.height);
     const Vec<3> place = other.own_place(to + on_q * (other.corner(q1.corner) - to));
-    Gap<3> gap = touching_.other_at_base(couple_, q0.corner, height);
+    ContactCandidate<3> gap = touching_.other_at_base(couple_, q0.corner, height);
     gap.key = couple_
                   .named(Kind::edges, touching_.base_is_b ? of_other : of_base,
                          touching_.base_is_b ? of_base : of_other)
@@ -342,23 +342,23 @@ class Shared {
   double aligned_ = 0, least_ = 1e300;
   Loop own_, its_;
   Few<Point, 16> places_;
-  std::vector<Gap<3>>& gaps_;
+  std::vector<ContactCandidate<3>>& gaps_;
   std::size_t begin_;
 };
 
 // no face is nearest, nor edges that cross: corners and edges; of parallel edges both ends of what they share
 void nearest_features(const Couple& couple, const Touching* touching, double margin,
-                      std::vector<Gap<3>>& out) {
-  const Solid &a = couple.of_a, &b = couple.of_b;
+                      std::vector<ContactCandidate<3>>& out) {
+  const Polyhedron &a = couple.of_a, &b = couple.of_b;
   const int edges_a = std::max(1, a.edges()), edges_b = std::max(1, b.edges());
-  const auto edge = [](const Solid& of, int i) { return of.edges() ? of.edge(i) : Solid::Edge{}; };
+  const auto edge = [](const Polyhedron& of, int i) { return of.edges() ? of.edge(i) : Polyhedron::Edge{}; };
   Nearest best{0, 0, 1e300};
   int of_a = 0, of_b = 0;
   for (int i = 0; i < edges_a; ++i) {
-    const Solid::Edge p = edge(a, i);
+    const Polyhedron::Edge p = edge(a, i);
     const Vec<3> p0 = a.corner(p.from), p1 = a.corner(p.to);
     for (int k = 0; k < edges_b; ++k) {
-      const Solid::Edge q = edge(b, k);
+      const Polyhedron::Edge q = edge(b, k);
       const Nearest here = nearest(p0, p1, b.corner(q.from), b.corner(q.to));
       if (here.apart < best.apart) best = here, of_a = i, of_b = k;
     }
@@ -372,12 +372,12 @@ void nearest_features(const Couple& couple, const Touching* touching, double mar
 
   // edges beside each other
   for (int i = 0; i < a.edges(); ++i) {
-    const Solid::Edge p = a.edge(i);
+    const Polyhedron::Edge p = a.edge(i);
     const Vec<3> p0 = a.corner(p.from), along = a.along(i);
     const double length = along.dot(a.corner(p.to) - p0);
     for (int k = 0; k < b.edges(); ++k) {
       if (along.cross(b.along(k)).squaredNorm() > kAlongside * kAlongside) continue;
-      const Solid::Edge q = b.edge(k);
+      const Polyhedron::Edge q = b.edge(k);
       const Vec<3> q0 = b.corner(q.from), q1 = b.corner(q.to);
       if (nearest(p0, a.corner(p.to), q0, q1).apart > best.apart + aligned) continue;
       double ends[2] = {along.dot(q0 - p0), along.dot(q1 - p0)};
@@ -402,9 +402,9 @@ void nearest_features(const Couple& couple, const Touching* touching, double mar
     }
   }
 
-  const auto end = [](const Solid::Edge& of, double on) { return on <= kRounding ? of.from : of.to; };
+  const auto end = [](const Polyhedron::Edge& of, double on) { return on <= kRounding ? of.from : of.to; };
   const auto inner = [](double on) { return on > kRounding && on < 1 - kRounding; };
-  const Solid::Edge p = edge(a, of_a), q = edge(b, of_b);
+  const Polyhedron::Edge p = edge(a, of_a), q = edge(b, of_b);
   const bool in_a = a.edges() > 0 && inner(best.on_p), in_b = b.edges() > 0 && inner(best.on_q);
   if (in_a && in_b) {
     const Vec<3> apart = (a.corner(p.from) + best.on_p * (a.corner(p.to) - a.corner(p.from))) -
@@ -419,8 +419,8 @@ void nearest_features(const Couple& couple, const Touching* touching, double mar
   }
 }
 
-void solid_gaps(const Couple& couple, double margin, std::vector<Gap<3>>& out) {
-  const Solid &a = couple.of_a, &b = couple.of_b;
+void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidate<3>>& out) {
+  const Polyhedron &a = couple.of_a, &b = couple.of_b;
   const double far = margin + couple.radii();
   const double girths = std::max(far, 0.0) + a.girth() + b.girth();
   if ((a.middle() - b.middle()).squaredNorm() > girths * girths) return;
@@ -479,31 +479,31 @@ int digits(const Shape<3>& shape) {
 }  // namespace
 
 template <>
-void gaps(int a, const Shape<3>& shape_a, const Stance<3>& at_a, int b, const Shape<3>& shape_b,
-          const Stance<3>& at_b, double margin, std::vector<Gap<3>>& out) {
+void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
+             const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out) {
   const int digits_a = digits(shape_a), digits_b = digits(shape_b);
   const std::size_t before = out.size();
   for (int i = 0; i < parts(shape_a); ++i) {
-    const Solid of_a(part(shape_a, i), at_a, at_b.x);
+    const Polyhedron of_a(part(shape_a, i), at_a, at_b.x);
     for (int k = 0; k < parts(shape_b); ++k) {
-      const Solid of_b(part(shape_b, k), at_b, at_b.x);
+      const Polyhedron of_b(part(shape_b, k), at_b, at_b.x);
       solid_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, margin, out);
     }
   }
   std::sort(out.begin() + std::ptrdiff_t(before), out.end(),
-            [](const Gap<3>& p, const Gap<3>& q) { return p.key < q.key; });
+            [](const ContactCandidate<3>& p, const ContactCandidate<3>& q) { return p.key < q.key; });
 }
 
 template <>
-void gaps(int a, const Shape<3>& shape, const Stance<3>& at, int wall, const Wall<3>& half_space,
-          double margin, std::vector<Gap<3>>& out) {
+void collide(int a, const Shape<3>& shape, const BodyMotion<3>& at, int wall, const Wall<3>& half_space,
+             double margin, std::vector<ContactCandidate<3>>& out) {
   const int digits_a = digits(shape);
   for (int i = 0; i < parts(shape); ++i) {
-    const Solid solid(part(shape, i), at, half_space.point);
+    const Polyhedron solid(part(shape, i), at, half_space.point);
     for (int k = 0; k < solid.corners(); ++k) {
       const double value = half_space.normal.dot(solid.corner(k)) - solid.radius();
       if (!(value < margin)) continue;
-      Gap<3> made;
+      ContactCandidate<3> made;
       made.key = {a, -1 - wall, i * digits_a + k};
       made.kind = Kind::corner_of_a;
       made.on_a = solid.own_corner(k);
@@ -517,12 +517,13 @@ void gaps(int a, const Shape<3>& shape, const Stance<3>& at, int wall, const Wal
 }
 
 template <>
-double separation(const Shape<3>& a, const Stance<3>& at_a, const Shape<3>& b, const Stance<3>& at_b) {
+double separation(const Shape<3>& a, const BodyMotion<3>& at_a, const Shape<3>& b,
+                  const BodyMotion<3>& at_b) {
   double least = 1e300;
   for (int i = 0; i < parts(a); ++i) {
-    const Solid of_a(part(a, i), at_a, at_b.x);
+    const Polyhedron of_a(part(a, i), at_a, at_b.x);
     for (int k = 0; k < parts(b); ++k) {
-      const Solid of_b(part(b, k), at_b, at_b.x);
+      const Polyhedron of_b(part(b, k), at_b, at_b.x);
       least = std::min(least, core_separation(of_a, of_b) - of_a.radius() - of_b.radius());
     }
   }

@@ -46,7 +46,7 @@ void Mobility<D>::clear() {
 }
 
 template <int D>
-void Mobility<D>::add(int body, const Vec<D>& v, const Spin<D>& w, const Rotation<D>& room_from_body) {
+void Mobility<D>::add(int body, const Vec<D>& v, const AngularVec<D>& w, const Rotation<D>& room_from_body) {
   columns_[body] = int(bodies_.size());
   Moving it{.body = body, .room_from_body = room_from_body, .v = Way::Zero(), .change = Way::Zero()};
   it.v << v, w;
@@ -54,7 +54,7 @@ void Mobility<D>::add(int body, const Vec<D>& v, const Spin<D>& w, const Rotatio
 }
 
 template <int D>
-typename Mobility<D>::Side Mobility<D>::side(int body, const Vec<D>& along, const Spin<D>& turn) const {
+typename Mobility<D>::Side Mobility<D>::side(int body, const Vec<D>& along, const AngularVec<D>& turn) const {
   Side it;
   it.column = body < 0 ? -1 : columns_[body];
   if (it.column < 0) return it;
@@ -62,7 +62,8 @@ typename Mobility<D>::Side Mobility<D>::side(int body, const Vec<D>& along, cons
   it.push << along, turn;
   it.answer.template head<D>() = along / b.mass;
   if (b.turns())
-    it.answer.template tail<kSpins<D>>() = spun<D>(b.inertia, bodies_[it.column].room_from_body, turn);
+    it.answer.template tail<kAngular<D>>() =
+        inverse_inertia_times<D>(b.inertia, bodies_[it.column].room_from_body, turn);
   return it;
 }
 
@@ -90,7 +91,7 @@ void Mobility<D>::hold(const BearingContact<D>& touch) {
   const auto row = [&](const Vec<D>& along) {
     Held it;
     it.sides[0] = side(touch.a, along, moment<D>(touch.arm_a, along));
-    it.sides[1] = side(touch.b, Vec<D>(-along), Spin<D>(-moment<D>(touch.arm_b, along)));
+    it.sides[1] = side(touch.b, Vec<D>(-along), AngularVec<D>(-moment<D>(touch.arm_b, along)));
     return it;
   };
   keep(row(touch.normal));
@@ -108,8 +109,8 @@ void Mobility<D>::hold(const BearingContact<D>& touch) {
 template <int D>
 void Mobility<D>::hold(const Row<D>& row, double spare) {
   Held it;
-  it.sides[0] = side(row.a, row.along, row.turn_a);
-  it.sides[1] = side(row.b, Vec<D>(-row.along), Spin<D>(-row.turn_b));
+  it.sides[0] = side(row.a, row.along, row.angular_a);
+  it.sides[1] = side(row.b, Vec<D>(-row.along), AngularVec<D>(-row.angular_b));
   if (std::fabs(moves(it)) <= kAtOnce * spare) keep(it);
 }
 
@@ -119,7 +120,7 @@ double Mobility<D>::fastest() const {
   double most = 0;
   for (const Moving& it : bodies_) {
     most = std::max(most, std::sqrt(it.v.template head<D>().squaredNorm()) +
-                              rims_[it.body] * std::sqrt(it.v.template tail<kSpins<D>>().squaredNorm()));
+                              rims_[it.body] * std::sqrt(it.v.template tail<kAngular<D>>().squaredNorm()));
   }
   return most;
 }

@@ -54,7 +54,7 @@ class Mobility {
   void clear();
 
   /// A body that moves, at its turn. Rows of other bodies than those added hold onto the room.
-  void add(int body, const Vec<D>& v, const Spin<D>& w, const Rotation<D>& room_from_body);
+  void add(int body, const Vec<D>& v, const AngularVec<D>& w, const Rotation<D>& room_from_body);
 
   /// After all bodies: a contact with its force. One that does not press holds nothing.
   void hold(const BearingContact<D>& touch);
@@ -66,7 +66,7 @@ class Mobility {
   Mobile mobile();
 
  private:
-  static constexpr int kWays = D + kSpins<D>;
+  static constexpr int kWays = D + kAngular<D>;
   using Way = Eigen::Matrix<double, kWays, 1>;
 
   // what a row pushes one of its bodies with, and how that answers
@@ -85,7 +85,7 @@ class Mobility {
     Way v, change;
   };
 
-  Side side(int body, const Vec<D>& along, const Spin<D>& turn) const;
+  Side side(int body, const Vec<D>& along, const AngularVec<D>& turn) const;
   double moves(const Held& row) const;
   void keep(Held row);
   double fastest() const;

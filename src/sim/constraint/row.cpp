@@ -36,13 +36,13 @@ struct Carried {
   Vec<D> n, point;          // the normal from b to a, and the point of contact
   Vec<D> n_rate, velocity;  // theirs
   bool turns_with_face;     // else as the line between two corners
-  Spin<D> w;                // of the face
+  AngularVec<D> w;          // of the face
 };
 
 // between two points that move: corners, or a corner and the foot of it on an edge
 template <int D>
-Carried<D> between_points(const Gap<D>& gap, const Vec<D>& pa, const Vec<D>& va, const Vec<D>& pb,
-                          const Vec<D>& vb, const Vec<D>& if_none, double& value) {
+Carried<D> between_points(const ContactCandidate<D>& gap, const Vec<D>& pa, const Vec<D>& va,
+                          const Vec<D>& pb, const Vec<D>& vb, const Vec<D>& if_none, double& value) {
   Carried<D> c;
   const Vec<D> d = pa - pb, rel = va - vb;
   const double l = std::sqrt(d.squaredNorm());
@@ -52,22 +52,23 @@ Carried<D> between_points(const Gap<D>& gap, const Vec<D>& pa, const Vec<D>& va,
   c.point = pa - gap.radius_a * c.n;
   c.velocity = va - gap.radius_a * c.n_rate;
   c.turns_with_face = false;
-  c.w = Spin<D>::Zero();
+  c.w = AngularVec<D>::Zero();
   return c;
 }
 
 // the foot of a point on an edge through p, and how it moves
 template <int D>
-void foot(const Vec<D>& point, const Vec<D>& velocity, const Vec<D>& edge, const Spin<D>& w, Vec<D>& p,
+void foot(const Vec<D>& point, const Vec<D>& velocity, const Vec<D>& edge, const AngularVec<D>& w, Vec<D>& p,
           Vec<D>& v) {
-  const Vec<D> d = point - p, edge_rate = swing<D>(w, edge);
+  const Vec<D> d = point - p, edge_rate = cross_velocity<D>(w, edge);
   const double s = edge.dot(d), s_rate = edge_rate.dot(d) + edge.dot(velocity - v);
   p += s * edge;
   v += s_rate * edge + s * edge_rate;
 }
 
-Carried<3> between_edges(const Gap<3>& gap, const Stance<3>& a, const Stance<3>& b, const Vec<3>& pa,
-                         const Vec<3>& va, const Vec<3>& pb, const Vec<3>& vb, double& value) {
+Carried<3> between_edges(const ContactCandidate<3>& gap, const BodyMotion<3>& a, const BodyMotion<3>& b,
+                         const Vec<3>& pa, const Vec<3>& va, const Vec<3>& pb, const Vec<3>& vb,
+                         double& value) {
   const Vec<3> ea = a.arm(gap.edge_a), eb = b.arm(gap.edge_b), u = ea.cross(eb);
   const Vec<3> ea_rate = a.w.cross(ea), eb_rate = b.w.cross(eb), d = pa - pb, d_rate = va - vb;
   const double sine2 = u.squaredNorm(), sine = std::sqrt(sine2);
@@ -92,8 +93,9 @@ Carried<3> between_edges(const Gap<3>& gap, const Stance<3>& a, const Stance<3>&
 }
 
 template <int D>
-Carried<D> carried(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b, double& value) {
-  using Kind = typename Gap<D>::Kind;
+Carried<D> carried(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b,
+                   double& value) {
+  using Kind = typename ContactCandidate<D>::Kind;
   const Vec<D> arm_a = a.arm(gap.on_a), arm_b = b.arm(gap.on_b);
   Vec<D> pa = a.x + arm_a, pb = b.x + arm_b;
   if (gap.kind != Kind::corner_of_a && gap.kind != Kind::corner_of_b) {
@@ -112,12 +114,12 @@ Carried<D> carried(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b, do
   }
   Carried<D> c;
   const bool mine = gap.kind == Kind::corner_of_a;  // the corner is a's, the face is b's
-  const Stance<D>&corner = mine ? a : b, &face = mine ? b : a;
+  const BodyMotion<D>&corner = mine ? a : b, &face = mine ? b : a;
   const Vec<D> n = face.room_from_body * gap.normal;  // out of the face
   const Vec<D>&p = mine ? pa : pb, &q = mine ? pb : pa;
   const double radius = mine ? gap.radius_a : gap.radius_b;
   value = n.dot(p - q) - gap.radius_a - gap.radius_b;
-  const Vec<D> n_rate = swing<D>(face.w, n);
+  const Vec<D> n_rate = cross_velocity<D>(face.w, n);
   c.point = p - radius * n;
   c.velocity = corner.velocity(mine ? arm_a : arm_b) - radius * n_rate;
   c.n = mine ? n : Vec<D>(-n);
@@ -129,49 +131,51 @@ Carried<D> carried(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b, do
 
 template <int D>
 Row<D> along(const Vec<D>& s, const Vec<D>& s_rate, const Vec<D>& point, const Vec<D>& velocity,
-             const Stance<D>& a, const Stance<D>& b) {
+             const BodyMotion<D>& a, const BodyMotion<D>& b) {
   Row<D> row;
   const Vec<D> ra = point - a.x, rb = point - b.x;
   row.along = s;
-  row.turn_a = moment<D>(ra, s), row.turn_b = moment<D>(rb, s);
-  row.drift = s_rate.dot(a.velocity(ra) - b.velocity(rb)) +
-              s.dot(swing<D>(a.w, Vec<D>(velocity - a.v)) - swing<D>(b.w, Vec<D>(velocity - b.v)));
+  row.angular_a = moment<D>(ra, s), row.angular_b = moment<D>(rb, s);
+  row.velocity_product =
+      s_rate.dot(a.velocity(ra) - b.velocity(rb)) +
+      s.dot(cross_velocity<D>(a.w, Vec<D>(velocity - a.v)) - cross_velocity<D>(b.w, Vec<D>(velocity - b.v)));
   return row;
 }
 
 // across a point of a and a point of b, along a direction that stays in the room
 template <int D>
-Row<D> between(const Vec<D>& s, const Vec<D>& arm_a, const Vec<D>& arm_b, const Stance<D>& a,
-               const Stance<D>& b) {
+Row<D> between(const Vec<D>& s, const Vec<D>& arm_a, const Vec<D>& arm_b, const BodyMotion<D>& a,
+               const BodyMotion<D>& b) {
   Row<D> row;
   row.along = s;
-  row.turn_a = moment<D>(arm_a, s), row.turn_b = moment<D>(arm_b, s);
-  row.drift = s.dot(swing<D>(a.w, swing<D>(a.w, arm_a)) - swing<D>(b.w, swing<D>(b.w, arm_b)));
+  row.angular_a = moment<D>(arm_a, s), row.angular_b = moment<D>(arm_b, s);
+  row.velocity_product = s.dot(cross_velocity<D>(a.w, cross_velocity<D>(a.w, arm_a)) -
+                               cross_velocity<D>(b.w, cross_velocity<D>(b.w, arm_b)));
   return row;
 }
 
 template <int D>
 Row<D> turning_row(int axis) {
   Row<D> row;
-  row.turn_a = Spin<D>::Unit(axis), row.turn_b = Spin<D>::Unit(axis);
+  row.angular_a = AngularVec<D>::Unit(axis), row.angular_b = AngularVec<D>::Unit(axis);
   return row;
 }
 
 // a corner of a against a face of b through its point, or two corners: what rows slider, rod and rope are
 template <int D>
-Gap<D> gap_of(const Joint<D>& joint) {
-  Gap<D> gap;
+ContactCandidate<D> gap_of(const Joint<D>& joint) {
+  ContactCandidate<D> gap;
   gap.on_a = joint.a.local, gap.on_b = joint.b.local;
-  gap.kind = Gap<D>::Kind::corners;
+  gap.kind = ContactCandidate<D>::Kind::corners;
   return gap;
 }
 
 // the way of a's point against b's along a direction of b's frame
 template <int D>
-Row<D> way_row(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b, const Vec<D>& direction,
+Row<D> way_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const Vec<D>& direction,
                double& way) {
-  Gap<D> gap = gap_of(joint);
-  gap.kind = Gap<D>::Kind::corner_of_a;
+  ContactCandidate<D> gap = gap_of(joint);
+  gap.kind = ContactCandidate<D>::Kind::corner_of_a;
   gap.normal = direction;
   Row<D> all[D];
   way = rows(gap, a, b, all).value;
@@ -179,28 +183,28 @@ Row<D> way_row(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b, co
 }
 
 // an axis of a against one of b that should be across it: J v = (A x B) . (w_a - w_b), off A . B
-Row<3> across_row(const Stance<3>& a, const Stance<3>& b, const Vec<3>& axis_a, const Vec<3>& axis_b,
+Row<3> across_row(const BodyMotion<3>& a, const BodyMotion<3>& b, const Vec<3>& axis_a, const Vec<3>& axis_b,
                   double& off) {
   Row<3> row;
   const Vec<3> turn = axis_a.cross(axis_b);
-  row.turn_a = turn, row.turn_b = turn;
-  row.drift = (a.w.cross(axis_a).cross(axis_b) + axis_a.cross(b.w.cross(axis_b))).dot(a.w - b.w);
+  row.angular_a = turn, row.angular_b = turn;
+  row.velocity_product = (a.w.cross(axis_a).cross(axis_b) + axis_a.cross(b.w.cross(axis_b))).dot(a.w - b.w);
   off = axis_a.dot(axis_b);
   return row;
 }
 
 // b's frame turned by what the joint keeps, as a would stand
-Rotation<3> kept(const Joint<3>& joint, const Stance<3>& b) {
+Rotation<3> kept(const Joint<3>& joint, const BodyMotion<3>& b) {
   return b.room_from_body * matrix(exponential(joint.turn));
 }
 
 // all that two bodies turn against each other, and how far a is turned off: of E = R_a R_kept' the part that
 // is a turn about an axis, sin(angle) axis
 template <int D>
-void turning_rows(const Joint<D>& joint, [[maybe_unused]] const Stance<D>& a,
-                  [[maybe_unused]] const Stance<D>& b, [[maybe_unused]] const Spin<D>& turn, Row<D>* out,
-                  double* off) {
-  for (int axis = 0; axis < kSpins<D>; ++axis) out[axis] = turning_row<D>(axis);
+void turning_rows(const Joint<D>& joint, [[maybe_unused]] const BodyMotion<D>& a,
+                  [[maybe_unused]] const BodyMotion<D>& b, [[maybe_unused]] const AngularVec<D>& turn,
+                  Row<D>* out, double* off) {
+  for (int axis = 0; axis < kAngular<D>; ++axis) out[axis] = turning_row<D>(axis);
   if constexpr (D == 2) {
     off[0] = (turn - joint.turn)[0];
   } else {
@@ -226,30 +230,31 @@ double angle(double sine, double cosine) {
 }  // namespace
 
 template <int D>
-double speed(const Row<D>& row, const std::vector<Stance<D>>& bodies) {
+double speed(const Row<D>& row, const std::vector<BodyMotion<D>>& bodies) {
   double sum = 0;
-  if (row.a >= 0) sum += row.along.dot(bodies[row.a].v) + row.turn_a.dot(bodies[row.a].w);
-  if (row.b >= 0) sum -= row.along.dot(bodies[row.b].v) + row.turn_b.dot(bodies[row.b].w);
+  if (row.a >= 0) sum += row.along.dot(bodies[row.a].v) + row.angular_a.dot(bodies[row.a].w);
+  if (row.b >= 0) sum -= row.along.dot(bodies[row.b].v) + row.angular_b.dot(bodies[row.b].w);
   return sum;
 }
 
 template <int D>
-Width<D> width(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b) {
-  Width<D> at;
+EvaluatedContact<D> width(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b) {
+  EvaluatedContact<D> at;
   const Carried<D> c = carried(gap, a, b, at.value);
   at.point = c.point, at.normal = c.n;
   return at;
 }
 
 template <int D>
-Width<D> rows(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b, Row<D>* out) {
-  Width<D> at;
+EvaluatedContact<D> rows(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b,
+                         Row<D>* out) {
+  EvaluatedContact<D> at;
   const Carried<D> c = carried(gap, a, b, at.value);
   at.point = c.point, at.normal = c.n;
   out[0] = along<D>(c.n, c.n_rate, c.point, c.velocity, a, b);
   for (int i = 0; i < D - 1; ++i) {
     const Vec<D> t = across<D>(c.n, i);
-    const Vec<D> t_rate = c.turns_with_face ? swing<D>(c.w, t) : Vec<D>(-t.dot(c.n_rate) * c.n);
+    const Vec<D> t_rate = c.turns_with_face ? cross_velocity<D>(c.w, t) : Vec<D>(-t.dot(c.n_rate) * c.n);
     out[1 + i] = along<D>(t, t_rate, c.point, c.velocity, a, b);
   }
   for (int i = 0; i < D; ++i) out[i].a = gap.key.a, out[i].b = std::max(-1, gap.key.b);
@@ -257,8 +262,8 @@ Width<D> rows(const Gap<D>& gap, const Stance<D>& a, const Stance<D>& b, Row<D>*
 }
 
 template <int D>
-int rows(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b, const Spin<D>& turn, Row<D>* out,
-         double* off) {
+int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
+         Row<D>* out, double* off) {
   int n = 0;
   const Vec<D> arm_a = a.arm(joint.a.local), arm_b = b.arm(joint.b.local);
   const Vec<D> apart = (a.x + arm_a) - (b.x + arm_b);
@@ -283,7 +288,7 @@ int rows(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b, const Sp
       out[n] = pair[0];
       if (joint.kind == JointKind::rope) {
         off[n] = -off[n];
-        out[n].along *= -1, out[n].turn_a *= -1, out[n].turn_b *= -1, out[n].drift *= -1;
+        out[n].along *= -1, out[n].angular_a *= -1, out[n].angular_b *= -1, out[n].velocity_product *= -1;
       }
       ++n;
       break;
@@ -291,7 +296,7 @@ int rows(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b, const Sp
   }
   if (joint.kind == JointKind::weld || joint.kind == JointKind::slider) {
     turning_rows<D>(joint, a, b, turn, out + n, off + n);
-    n += kSpins<D>;
+    n += kAngular<D>;
   }
   if constexpr (D == 3) {
     if (joint.kind == JointKind::hinge) {
@@ -306,8 +311,8 @@ int rows(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b, const Sp
 }
 
 template <int D>
-bool free_row(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b,
-              [[maybe_unused]] const Spin<D>& turn, Row<D>& out, double& way) {
+bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
+              [[maybe_unused]] const AngularVec<D>& turn, Row<D>& out, double& way) {
   if (!has_free_row<D>(joint.kind)) return false;
   if (joint.kind == JointKind::slider) {
     out = way_row<D>(joint, a, b, joint.axis, way);
@@ -317,8 +322,8 @@ bool free_row(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b,
   } else {
     const Vec<D> axis = b.arm(joint.axis), aside = across<D>(joint.axis, 0);
     out = Row<D>();
-    out.turn_a = axis, out.turn_b = axis;
-    out.drift = b.w.cross(axis).dot(a.w - b.w);
+    out.angular_a = axis, out.angular_b = axis;
+    out.velocity_product = b.w.cross(axis).dot(a.w - b.w);
     const Vec<D> from = b.arm(aside);
     const Vec<D> to = a.room_from_body * (matrix(exponential(joint.turn)).transpose() * aside);
     way = angle(axis.dot(from.cross(to)), from.dot(to));
@@ -328,18 +333,22 @@ bool free_row(const Joint<D>& joint, const Stance<D>& a, const Stance<D>& b,
 }
 
 template struct Row<2>;
-template double speed<2>(const Row<2>&, const std::vector<Stance<2>>&);
-template Width<2> width<2>(const Gap<2>&, const Stance<2>&, const Stance<2>&);
-template Width<2> rows<2>(const Gap<2>&, const Stance<2>&, const Stance<2>&, Row<2>*);
-template int rows<2>(const Joint<2>&, const Stance<2>&, const Stance<2>&, const Spin<2>&, Row<2>*, double*);
-template bool free_row<2>(const Joint<2>&, const Stance<2>&, const Stance<2>&, const Spin<2>&, Row<2>&,
-                          double&);
+template double speed<2>(const Row<2>&, const std::vector<BodyMotion<2>>&);
+template EvaluatedContact<2> width<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
+template EvaluatedContact<2> rows<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&,
+                                     Row<2>*);
+template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
+                     Row<2>*, double*);
+template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
+                          Row<2>&, double&);
 template struct Row<3>;
-template double speed<3>(const Row<3>&, const std::vector<Stance<3>>&);
-template Width<3> width<3>(const Gap<3>&, const Stance<3>&, const Stance<3>&);
-template Width<3> rows<3>(const Gap<3>&, const Stance<3>&, const Stance<3>&, Row<3>*);
-template int rows<3>(const Joint<3>&, const Stance<3>&, const Stance<3>&, const Spin<3>&, Row<3>*, double*);
-template bool free_row<3>(const Joint<3>&, const Stance<3>&, const Stance<3>&, const Spin<3>&, Row<3>&,
-                          double&);
+template double speed<3>(const Row<3>&, const std::vector<BodyMotion<3>>&);
+template EvaluatedContact<3> width<3>(const ContactCandidate<3>&, const BodyMotion<3>&, const BodyMotion<3>&);
+template EvaluatedContact<3> rows<3>(const ContactCandidate<3>&, const BodyMotion<3>&, const BodyMotion<3>&,
+                                     Row<3>*);
+template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
+                     Row<3>*, double*);
+template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
+                          Row<3>&, double&);
 
 }  // namespace obscura::sim

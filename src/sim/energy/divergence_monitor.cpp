@@ -42,10 +42,11 @@ std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit) 
 }  // namespace
 
 template <int D>
-Watch<D>::Watch(const Model<D>& model, const std::vector<Path<D>>& paths) : model_(model), paths_(paths) {}
+DivergenceMonitor<D>::DivergenceMonitor(const Model<D>& model, const std::vector<Path<D>>& paths)
+    : model_(model), paths_(paths) {}
 
 template <int D>
-std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const {
+std::optional<Trouble> DivergenceMonitor<D>::ran_away(const State<D>& state, double t) const {
   const double limit = kFarthest * model_.scale;
   for (int body = 0; body < int(model_.bodies.size()); ++body) {
     const auto trouble = [&](const char* quantity, std::string what) {
@@ -58,7 +59,7 @@ std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const
     const int k = turning(state, body);
     if (k < 0) continue;
     const double fastest = limit / reach(model_.bodies[body].shape);
-    constexpr int kSpin = kSpins<D>;
+    constexpr int kSpin = kAngular<D>;
     if (apart<kSpin>(state.spin[k], fastest)) {
       return trouble("spin", fate<kSpin>(state.spin[k], "1e6 room heights a second at a corner"));
     }
@@ -67,7 +68,7 @@ std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const
       return Trouble{t, named(model_, body), "spin", "grew past 100 radians a step",
                      "it turns too fast for the steps: raise physics.rate"};
     }
-    constexpr int kTurn = Turn<D>::RowsAtCompileTime;
+    constexpr int kTurn = Orientation<D>::RowsAtCompileTime;
     if (apart<kTurn>(state.turn[k], kFarthest * kFarthest)) {
       return trouble(D == 2 ? "angle" : "orientation", fate<kTurn>(state.turn[k], "1e12 radians"));
     }
@@ -76,9 +77,9 @@ std::optional<Trouble> Watch<D>::ran_away(const State<D>& state, double t) const
 }
 
 template <int D>
-void Watch<D>::start(State<D>& state, double t) const {
+void DivergenceMonitor<D>::start(State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
-  double fund = e.kinetic + e.springs;
+  double energy_budget = e.kinetic + e.springs;
   const double little = 0.1 * model_.scale;
   double fastest = little;
   for (const Mouse<D>& mouse : model_.mice) {
@@ -89,24 +90,24 @@ void Watch<D>::start(State<D>& state, double t) const {
       way += piece;
       fastest = std::max(fastest, piece / (value(to.time) - value(from.time)));
     }
-    fund += 0.5 * mouse.stiffness * way * way;
+    energy_budget += 0.5 * mouse.stiffness * way * way;
   }
-  for (const Spring<D>& spring : model_.springs) fund += 0.5 * spring.stiffness * little * little;
+  for (const Spring<D>& spring : model_.springs) energy_budget += 0.5 * spring.stiffness * little * little;
   const double g = std::sqrt(model_.gravity.squaredNorm());
   for (const Body<D>& body : model_.bodies) {
-    if (!body.fixed) fund += body.mass * (g * model_.scale + fastest * fastest);
+    if (!body.fixed) energy_budget += body.mass * (g * model_.scale + fastest * fastest);
   }
-  state.fund = {e.gravity + state.ledger.displacement, fund};
+  state.energy_budget = {e.gravity + state.ledger.displacement, energy_budget};
 }
 
 template <int D>
-std::optional<Trouble> Watch<D>::energy(const State<D>& state, double t) const {
+std::optional<Trouble> DivergenceMonitor<D>::energy(const State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
-  const double fund = state.fund.amount + std::max(0.0, state.ledger.displacement);
-  const double now = e.kinetic + e.springs + e.gravity - state.fund.level;
-  if (now <= kSuspect * fund) return {};
+  const double energy_budget = state.energy_budget.amount + std::max(0.0, state.ledger.displacement);
+  const double now = e.kinetic + e.springs + e.gravity - state.energy_budget.level;
+  if (now <= kSuspect * energy_budget) return {};
   const Tightness worst = tightest(model_, state.grips);
-  if (now <= kProof * fund && worst.body < 0) return {};
+  if (now <= kProof * energy_budget && worst.body < 0) return {};
 
   // whose it is: the one that moves most
   int body = 0;
@@ -120,7 +121,7 @@ std::optional<Trouble> Watch<D>::energy(const State<D>& state, double t) const {
 }
 
 template <int D>
-std::string Watch<D>::likely(const State<D>& state, int body) const {
+std::string DivergenceMonitor<D>::likely(const State<D>& state, int body) const {
   if (const Tightness worst = tightest(model_, state.grips); worst.body >= 0) return too_long(model_, worst);
   bool tied = false;
   for (const Spring<D>& s : model_.springs) tied = tied || s.a.body == body || s.b.body == body;
@@ -134,7 +135,7 @@ std::string Watch<D>::likely(const State<D>& state, int body) const {
   return "nothing stops it: no wall lies on its way, or it started too fast";
 }
 
-template class Watch<2>;
-template class Watch<3>;
+template class DivergenceMonitor<2>;
+template class DivergenceMonitor<3>;
 
 }  // namespace obscura::sim

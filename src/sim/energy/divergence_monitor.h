@@ -12,10 +12,10 @@ namespace obscura::sim {
 /// Looks for what has gone wrong, and says why. Looking for numbers that ran away costs the step nothing
 /// (sim/math/limits.h); this is for naming them, and for energy out of nowhere.
 template <int D>
-class Watch {
+class DivergenceMonitor {
  public:
   /// Both are kept by reference.
-  Watch(const Model<D>& model, const std::vector<Path<D>>& paths);
+  DivergenceMonitor(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// The first body whose numbers ran away, in a state at time t (s).
   std::optional<Trouble> ran_away(const State<D>& state, double t) const;

@@ -8,7 +8,7 @@ namespace obscura::sim {
 template <int D>
 Vec<D> place(const State<D>& state, const End<D>& end) {
   if (end.body < 0) return end.local;
-  const Stance<D> at = stance(state, end.body);
+  const BodyMotion<D> at = body_motion(state, end.body);
   return at.x + at.arm(end.local);
 }
 
@@ -78,8 +78,8 @@ Vec<D> momentum(const Model<D>& model, const State<D>& state) {
 }
 
 template <int D>
-Spin<D> angular_momentum(const Model<D>& model, const State<D>& state) {
-  Spin<D> sum = Spin<D>::Zero();
+AngularVec<D> angular_momentum(const Model<D>& model, const State<D>& state) {
+  AngularVec<D> sum = AngularVec<D>::Zero();
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     const Body<D>& b = model.bodies[body];
     if (b.fixed) continue;
@@ -100,7 +100,7 @@ template double stored<2>(const Model<2>&, const State<2>&, int);
 template double stored<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, int, double);
 template Energies energies<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, double);
 template Vec<2> momentum<2>(const Model<2>&, const State<2>&);
-template Spin<2> angular_momentum<2>(const Model<2>&, const State<2>&);
+template AngularVec<2> angular_momentum<2>(const Model<2>&, const State<2>&);
 template Vec<3> place<3>(const State<3>&, const End<3>&);
 template double kinetic<3>(const Model<3>&, const State<3>&, int);
 template double moving<3>(const Model<3>&, const State<3>&);
@@ -109,6 +109,6 @@ template double stored<3>(const Model<3>&, const State<3>&, int);
 template double stored<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, int, double);
 template Energies energies<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, double);
 template Vec<3> momentum<3>(const Model<3>&, const State<3>&);
-template Spin<3> angular_momentum<3>(const Model<3>&, const State<3>&);
+template AngularVec<3> angular_momentum<3>(const Model<3>&, const State<3>&);
 
 }  // namespace obscura::sim

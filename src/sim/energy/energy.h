@@ -45,6 +45,6 @@ Vec<D> momentum(const Model<D>& model, const State<D>& state);
 
 /// About the origin, kg m^2/s.
 template <int D>
-Spin<D> angular_momentum(const Model<D>& model, const State<D>& state);
+AngularVec<D> angular_momentum(const Model<D>& model, const State<D>& state);
 
 }  // namespace obscura::sim

@@ -29,7 +29,8 @@ Rotation<D> axes(const State<D>& state, int k) {
 }  // namespace
 
 template <int D>
-Account<D>::Account(const Model<D>& model) : model_(model), g_(std::sqrt(model.gravity.squaredNorm())) {
+EnergyGuard<D>::EnergyGuard(const Model<D>& model)
+    : model_(model), g_(std::sqrt(model.gravity.squaredNorm())) {
   for (const Body<D>& body : model.bodies) {
     Weight weight;
     if (!body.fixed && !body.handout) weight = {body.mass, body.inertia};
@@ -41,7 +42,7 @@ Account<D>::Account(const Model<D>& model) : model_(model), g_(std::sqrt(model.g
 }
 
 template <int D>
-double Account<D>::kinetic(const State<D>& state, int body) const {
+double EnergyGuard<D>::kinetic(const State<D>& state, int body) const {
   const Weight& weight = weights_[body];
   double sum = 0.5 * weight.mass * state.v[body].squaredNorm();
   if (const int k = turning(state, body); k >= 0 && weight.mass > 0)
@@ -50,7 +51,7 @@ double Account<D>::kinetic(const State<D>& state, int body) const {
 }
 
 template <int D>
-void Account<D>::open(const State<D>& state) {
+void EnergyGuard<D>::open(const State<D>& state) {
   const int n = int(weights_.size());
   x_ = state.x, moved_.resize(n), before_.resize(n), now_.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -61,7 +62,7 @@ void Account<D>::open(const State<D>& state) {
 }
 
 template <int D>
-bool Account<D>::risen(const State<D>& state) {
+bool EnergyGuard<D>::risen(const State<D>& state) {
   const int n = int(weights_.size());
   double sum = 0, motion = 0;
   for (int i = 0; i < n; ++i) {
@@ -80,7 +81,7 @@ bool Account<D>::risen(const State<D>& state) {
 }
 
 template <int D>
-void Account<D>::touch(int a, int b) {
+void EnergyGuard<D>::touch(int a, int b) {
   const bool stays = b < 0 || weights_[b].mass == 0;
   if (weights_[a].mass == 0) {
     if (!stays) touched_[b] = rooted_[b] = 1;
@@ -95,7 +96,7 @@ void Account<D>::touch(int a, int b) {
 
 // islands, by joints, springs and chains too, and what each has
 template <int D>
-void Account<D>::gather(const State<D>& state) {
+void EnergyGuard<D>::gather(const State<D>& state) {
   const int n = int(weights_.size());
   const auto counts = [&](int body) { return body >= 0 && weights_[body].mass > 0; };
   tied_.assign(n, 0), jointed_.assign(n, 0);
@@ -169,7 +170,7 @@ void Account<D>::gather(const State<D>& state) {
 
 // of islands that nothing holds: how they move as one, and what energy is left beside that
 template <int D>
-void Account<D>::move_as_one(const State<D>& state) {
+void EnergyGuard<D>::move_as_one(const State<D>& state) {
   const int n = int(weights_.size());
   const auto each = [&](const auto& act) {
     for (int i = 0; i < n; ++i) {
@@ -186,9 +187,9 @@ void Account<D>::move_as_one(const State<D>& state) {
     const bool turns = k >= 0 && model_.bodies[i].turns();
     const Rotation<D> at = turns ? axes<D>(state, k) : Rotation<D>(Rotation<D>::Identity());
     if (turns) it.turning += spinning<D>(weights_[i].inertia, at, state.spin[k]);
-    for (int axis = 0; axis < kSpins<D>; ++axis) {
-      const Spin<D> unit = Spin<D>::Unit(axis);
-      it.inertia.col(axis) += m * moment<D>(r, swing<D>(unit, r));
+    for (int axis = 0; axis < kAngular<D>; ++axis) {
+      const AngularVec<D> unit = AngularVec<D>::Unit(axis);
+      it.inertia.col(axis) += m * moment<D>(r, cross_velocity<D>(unit, r));
       if (turns) it.inertia.col(axis) += spinning<D>(weights_[i].inertia, at, unit);
     }
   });
@@ -196,8 +197,9 @@ void Account<D>::move_as_one(const State<D>& state) {
     if (!it.touched || it.rooted) continue;
     // of points in a line nothing turns about it
     const double least = 1e-12 * it.inertia.trace();
-    for (int axis = 0; axis < kSpins<D>; ++axis) it.inertia(axis, axis) += least;
-    const Spin<D> w = least > 0 ? Spin<D>(it.inertia.inverse() * it.turning) : Spin<D>(Spin<D>::Zero());
+    for (int axis = 0; axis < kAngular<D>; ++axis) it.inertia(axis, axis) += least;
+    const AngularVec<D> w =
+        least > 0 ? AngularVec<D>(it.inertia.inverse() * it.turning) : AngularVec<D>(AngularVec<D>::Zero());
     const double apart = it.kinetic - 0.5 * it.momentum.squaredNorm() / it.mass - 0.5 * w.dot(it.turning);
     // who was held back on its way by what goes along with it pays all alone
     if (apart > it.gain)
@@ -208,7 +210,7 @@ void Account<D>::move_as_one(const State<D>& state) {
 }
 
 template <int D>
-void Account<D>::take_back(State<D>& state) {
+void EnergyGuard<D>::take_back(State<D>& state) {
   gather(state);
   move_as_one(state);
   for (Island& it : sums_) {
@@ -223,10 +225,10 @@ void Account<D>::take_back(State<D>& state) {
     const Island& it = sums_[islands_.root(i)];
     if (weights_[i].mass == 0 || it.keeps == 1) continue;
     Vec<D> common = Vec<D>::Zero();
-    Spin<D> spin = Spin<D>::Zero();
+    AngularVec<D> spin = AngularVec<D>::Zero();
     if (!it.rooted) {
       spin = it.turning;
-      common = it.momentum / it.mass + swing<D>(spin, Vec<D>(state.x[i] - it.middle / it.mass));
+      common = it.momentum / it.mass + cross_velocity<D>(spin, Vec<D>(state.x[i] - it.middle / it.mass));
     }
     state.v[i] = common + it.keeps * (state.v[i] - common);
     if (const int k = turning(state, i); k >= 0) state.spin[k] = spin + it.keeps * (state.spin[k] - spin);
@@ -241,7 +243,7 @@ void Account<D>::take_back(State<D>& state) {
   }
 }
 
-template class Account<2>;
-template class Account<3>;
+template class EnergyGuard<2>;
+template class EnergyGuard<3>;
 
 }  // namespace obscura::sim

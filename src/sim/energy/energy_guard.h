@@ -11,10 +11,10 @@ namespace obscura::sim {
 /// contact may only take. A step that finds forces at one configuration and moves through it to another is
 /// wrong by its own order either way; what it would so add is taken out of the motion of those that touched.
 template <int D>
-class Account {
+class EnergyGuard {
  public:
   /// Kept by reference.
-  explicit Account(const Model<D>& model);
+  explicit EnergyGuard(const Model<D>& model);
 
   /// Notes what there is, of motion, height and springs, before a step.
   void open(const State<D>& state);
@@ -38,8 +38,8 @@ class Account {
  private:
   // what a body weighs; nothing of what does not count
   struct Weight {
-    double mass = 0;                    // kg
-    Spin<D> inertia = Spin<D>::Zero();  // kg m^2
+    double mass = 0;                                // kg
+    AngularVec<D> inertia = AngularVec<D>::Zero();  // kg m^2
   };
   // what touches together
   struct Island {
@@ -49,8 +49,9 @@ class Account {
     bool touched = false, rooted = false, chained = false, driven = false;
     bool tied = false, jointed = false;  // by springs; by joints
     // as it moves as one: about its middle
-    Spin<D> turning = Spin<D>::Zero();  // angular momentum, then spin
-    Eigen::Matrix<double, kSpins<D>, kSpins<D>> inertia = Eigen::Matrix<double, kSpins<D>, kSpins<D>>::Zero();
+    AngularVec<D> turning = AngularVec<D>::Zero();  // angular momentum, then spin
+    Eigen::Matrix<double, kAngular<D>, kAngular<D>> inertia =
+        Eigen::Matrix<double, kAngular<D>, kAngular<D>>::Zero();
     double keeps = 1, lowers = 0;  // of its velocities; of the height
   };
   // what joints make move together

@@ -21,9 +21,9 @@ template <int D>
 Blasts<D>::Blasts(const Model<D>& model) : model_(model), tips_(model.bodies) {}
 
 template <int D>
-Wrench<D> Blasts<D>::push(const Explosion<D>& explosion, int body, const Stance<D>& at) const {
+Wrench<D> Blasts<D>::push(const Explosion<D>& explosion, int body, const BodyMotion<D>& at) const {
   Wrench<D> sum;
-  for (const Tip<D>& tip : tips_[body]) {
+  for (const SupportVertex<D>& tip : tips_[body]) {
     const Vec<D> arm = at.arm(tip.at), force = blast<D>(explosion, at.x + arm);
     sum.f += force;
     sum.n += moment<D>(arm, force);
@@ -49,10 +49,10 @@ void Blasts<D>::begin(State<D>& state, int explosion) const {
   now.on = 1;
   if (it.scheme == Explosion<D>::Scheme::smooth) return;
   now.forces.assign(model_.bodies.size(), Vec<D>::Zero());
-  now.torques.assign(model_.bodies.size(), Spin<D>::Zero());
+  now.torques.assign(model_.bodies.size(), AngularVec<D>::Zero());
   for (int body = 0; body < int(model_.bodies.size()); ++body) {
     if (model_.bodies[body].fixed) continue;
-    const Wrench<D> all = push(it, body, stance(state, body));
+    const Wrench<D> all = push(it, body, body_motion(state, body));
     now.forces[body] = all.f, now.torques[body] = all.n;
   }
 }

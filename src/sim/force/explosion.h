@@ -20,7 +20,7 @@ class Blasts {
   explicit Blasts(const Model<D>& model);
 
   /// On body `body` that stands so, in the room's frame.
-  Wrench<D> push(const Explosion<D>& explosion, int body, const Stance<D>& at) const;
+  Wrench<D> push(const Explosion<D>& explosion, int body, const BodyMotion<D>& at) const;
 
   /// Lets explosion `explosion` begin, or its next interval: what is held through it is taken anew. At the
   /// beginning what has come to rest wakes.
@@ -31,7 +31,7 @@ class Blasts {
 
  private:
   const Model<D>& model_;
-  Tips<D> tips_;
+  SupportVertices<D> tips_;
 };
 
 /// Whether any explosion acts.

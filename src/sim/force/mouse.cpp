@@ -18,8 +18,8 @@ Grip<D> closest(const Model<D>& model, const State<D>& state, const Vec<D>& plac
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     const Body<D>& b = model.bodies[body];
     if (b.fixed) continue;
-    const Stance<D> at = stance(state, body);
-    for (const Tip<D>& tip : tips(b.shape)) offer(body, tip.at, at.x + at.arm(tip.at));
+    const BodyMotion<D> at = body_motion(state, body);
+    for (const SupportVertex<D>& tip : support_vertices(b.shape)) offer(body, tip.at, at.x + at.arm(tip.at));
   }
   return grip;
 }

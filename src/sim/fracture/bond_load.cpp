@@ -21,7 +21,7 @@ namespace obscura::sim {
 namespace {
 
 template <int D>
-SpinTensor<D> tensor(const Body<D>& body, const Stance<D>& at) {
+SpinTensor<D> tensor(const Body<D>& body, const BodyMotion<D>& at) {
   if constexpr (D == 2) {
     return SpinTensor<D>(body.inertia);
   } else {
@@ -47,12 +47,12 @@ void BondLoads<D>::push(const State<D>& state, double t) {
     const Body<D>& body = model_.bodies[i];
     steady_[i].f = body.mass * model_.gravity - body.drag * state.v[i];
     for (int k = 0; k < int(state.blasts.size()); ++k) {
-      if (state.blasts[k].on) steady_[i] += blasts_.push(model_.explosions[k], i, stance(state, i));
+      if (state.blasts[k].on) steady_[i] += blasts_.push(model_.explosions[k], i, body_motion(state, i));
     }
   }
   const auto velocity = [&](const End<D>& end) -> Vec<D> {
     if (end.body < 0) return Vec<D>::Zero();
-    const Stance<D> at = stance(state, end.body);
+    const BodyMotion<D> at = body_motion(state, end.body);
     return at.velocity(at.arm(end.local));
   };
   for (const Spring<D>& s : model_.springs) {
@@ -97,38 +97,38 @@ bool BondLoads<D>::snap(State<D>& state, const Model<D>& whole, const std::vecto
   bool any = false;
   for (int i = 0; i < int(whole.bodies.size()); ++i) {
     if (bonds[i].empty()) continue;
-    any = snap(state, whole.bodies[i], stance(state.whole[0], i), parts[i], bonds[i]) || any;
+    any = snap(state, whole.bodies[i], body_motion(state.whole[0], i), parts[i], bonds[i]) || any;
   }
   return any;
 }
 
 // one rigid body
 template <int D>
-bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const Stance<D>& at,
+bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const BodyMotion<D>& at,
                         const std::vector<int>& parts, const std::vector<int>& bonds) {
-  constexpr int kRows = D + kSpins<D>;
+  constexpr int kRows = D + kAngular<D>;
   const int n = int(parts.size());
   const bool fixed = whole.fixed, turns = whole.turns();
 
   // how it accelerates
   const Vec<D> x = at.x;
-  const Spin<D> w = at.w;
+  const AngularVec<D> w = at.w;
   Wrench<D> force, blow;
   std::vector<SpinTensor<D>> own(n);
   for (int p = 0; p < n; ++p) {
     const int i = parts[p];
-    own[p] = tensor(model_.bodies[i], stance(state, i));
+    own[p] = tensor(model_.bodies[i], body_motion(state, i));
     force += brought(steady_[i], Vec<D>(state.x[i] - x)), blow += brought(blows_[i], Vec<D>(state.x[i] - x));
   }
-  Spin<D> alpha = Spin<D>::Zero(), dw = Spin<D>::Zero();
+  AngularVec<D> alpha = AngularVec<D>::Zero(), dw = AngularVec<D>::Zero();
   Vec<D> A = Vec<D>::Zero(), dv = Vec<D>::Zero();
   if (!fixed) {
     A = force.f / whole.mass, dv = blow.f / whole.mass;
     if (turns) {
       const Rotation<D>& axes = at.room_from_body;
-      const Spin<D> L = to_room<D>(axes, whole.inertia.cwiseProduct(from_room<D>(axes, w)));
-      alpha = spun<D>(whole.inertia, axes, Spin<D>(force.n - spin_cross<D>(w, L)));
-      dw = spun<D>(whole.inertia, axes, blow.n);
+      const AngularVec<D> L = to_room<D>(axes, whole.inertia.cwiseProduct(from_room<D>(axes, w)));
+      alpha = inverse_inertia_times<D>(whole.inertia, axes, AngularVec<D>(force.n - spin_cross<D>(w, L)));
+      dw = inverse_inertia_times<D>(whole.inertia, axes, blow.n);
     }
   }
 
@@ -148,17 +148,19 @@ bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const Stance<D>& 
     const int i = parts[p];
     const Body<D>& part = model_.bodies[i];
     const Vec<D> d = state.x[i] - x;
-    const Vec<D> f = part.mass * (A + swing<D>(alpha, d) + swing<D>(w, swing<D>(w, d))) - steady_[i].f;
-    const Vec<D> j = part.mass * (dv + swing<D>(dw, d)) - blows_[i].f;
-    const Spin<D> nt = own[p] * alpha + spin_cross<D>(w, Spin<D>(own[p] * w)) - steady_[i].n;
-    const Spin<D> jt = own[p] * dw - blows_[i].n;
+    const Vec<D> f =
+        part.mass * (A + cross_velocity<D>(alpha, d) + cross_velocity<D>(w, cross_velocity<D>(w, d))) -
+        steady_[i].f;
+    const Vec<D> j = part.mass * (dv + cross_velocity<D>(dw, d)) - blows_[i].f;
+    const AngularVec<D> nt = own[p] * alpha + spin_cross<D>(w, AngularVec<D>(own[p] * w)) - steady_[i].n;
+    const AngularVec<D> jt = own[p] * dw - blows_[i].n;
     forces += f.norm() + j.norm() / shortest, torques += nt.norm() + jt.norm() / shortest;
     far = std::max(far, d.norm());
     if (place[i] < 0) continue;
     want.block(rows * place[i], 0, D, 1) = f, want.block(rows * place[i], 1, D, 1) = j;
     if (turns) {
-      want.block(rows * place[i] + D, 0, kSpins<D>, 1) = nt;
-      want.block(rows * place[i] + D, 1, kSpins<D>, 1) = jt;
+      want.block(rows * place[i] + D, 0, kAngular<D>, 1) = nt;
+      want.block(rows * place[i] + D, 1, kAngular<D>, 1) = jt;
     }
   }
 
@@ -186,9 +188,9 @@ bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const Stance<D>& 
   const auto given = [&](int bond, int part, double sign) {
     Block g = Block::Zero();
     g.template topLeftCorner<D, D>().diagonal().setConstant(sign);
-    g.template bottomLeftCorner<kSpins<D>, D>() =
+    g.template bottomLeftCorner<kAngular<D>, D>() =
         sign * lever<D>(Vec<D>(levers[bond].point - state.x[part])).transpose();
-    g.template bottomRightCorner<kSpins<D>, kSpins<D>>().diagonal().setConstant(sign * levers[bond].l);
+    g.template bottomRightCorner<kAngular<D>, kAngular<D>>().diagonal().setConstant(sign * levers[bond].l);
     for (int r = 0; r < rows; ++r) {
       for (int c = 0; c < rows; ++c) {
         if (g(r, c) != 0) entries.emplace_back(rows * place[part] + r, rows * bond + c, g(r, c));

@@ -27,7 +27,7 @@ class BondLoads {
 
  private:
   void push(const State<D>& state, double t);
-  bool snap(State<D>& state, const Body<D>& whole, const Stance<D>& at, const std::vector<int>& parts,
+  bool snap(State<D>& state, const Body<D>& whole, const BodyMotion<D>& at, const std::vector<int>& parts,
             const std::vector<int>& bonds);
 
   const Model<D>& model_;

@@ -98,7 +98,7 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
     s.tips = tips_[body];
     s.centred = particle_like(body);
     if (!s.centred) {
-      s.at = stance(state, body);
+      s.at = body_motion(state, body);
       for (std::size_t i = 0; i < s.tips.size(); ++i) arms_[i] = s.at.arm(s.tips[i].at);
       s.speed = s.at.v.squaredNorm() + s.at.w.squaredNorm() * rims_[body] * rims_[body];
       if (!extended(s)) continue;
@@ -254,20 +254,21 @@ void Handout<D>::meet_all(Striker& s) {
       rows[n++] = {wall, i, r, moment<D>(r, w.normal)};
     }
   }
-  strike(s, rows, n, D + (s.body->turns() ? kSpins<D> : 0));
+  strike(s, rows, n, D + (s.body->turns() ? kAngular<D> : 0));
 }
 
 template <int D>
 void Handout<D>::strike(Striker& s, const Row* rows, int n, int rank) {
   const Body<D>& body = *s.body;
-  const auto respond = [&](const Spin<D>& turn) {
-    return body.turns() ? spun<D>(body.inertia, s.at.room_from_body, turn) : Spin<D>::Zero().eval();
+  const auto respond = [&](const AngularVec<D>& turn) {
+    return body.turns() ? inverse_inertia_times<D>(body.inertia, s.at.room_from_body, turn)
+                        : AngularVec<D>::Zero().eval();
   };
   Square A(n, n);
   Rows b(n), p;
   for (int i = 0; i < n; ++i) {
     const Wall<D>& w = model_.walls[rows[i].wall];
-    const Spin<D> response = respond(rows[i].turn);
+    const AngularVec<D> response = respond(rows[i].turn);
     for (int j = 0; j < n; ++j) {
       A(j, i) = w.normal.dot(model_.walls[rows[j].wall].normal) / body.mass + rows[j].turn.dot(response);
     }
@@ -276,7 +277,7 @@ void Handout<D>::strike(Striker& s, const Row* rows, int n, int rank) {
   complementary(A, b, rank, p);
 
   Vec<D> push = Vec<D>::Zero();
-  Spin<D> turn = Spin<D>::Zero();
+  AngularVec<D> turn = AngularVec<D>::Zero();
   for (int i = 0; i < n; ++i) {
     const Vec<D> impulse = p[i] * model_.walls[rows[i].wall].normal;
     push += impulse;

@@ -30,9 +30,9 @@ class Handout {
   // a body as the walls meet it
   struct Striker {
     const Body<D>* body = nullptr;
-    Stance<D> at;
+    BodyMotion<D> at;
     double speed = 0;  // square of how fast any of its points came, m^2/s^2
-    std::span<const Tip<D>> tips;
+    std::span<const SupportVertex<D>> tips;
     bool centred = false;  // a particle: all it has is its centre, and a radius
   };
   // the impulses of one point at one wall
@@ -44,7 +44,7 @@ class Handout {
   struct Row {
     int wall, point;
     Vec<D> arm;
-    Spin<D> turn;  // arm x normal
+    AngularVec<D> turn;  // arm x normal
   };
 
   Vec<D> arm(const Striker& s, int point, const Wall<D>& wall) const;
@@ -63,7 +63,7 @@ class Handout {
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
   std::vector<double> rims_;  // how far each body reaches, m
-  Tips<D> tips_;
+  SupportVertices<D> tips_;
   std::vector<std::vector<int>> springs_;  // of each body
   std::vector<std::int64_t> signs_;        // a block's: negative where somebody is outside
   std::vector<Hit> hits_;                  // of the body at hand

@@ -7,8 +7,8 @@ namespace obscura::sim {
 // Loops the integrators share. Pointers overlap nowhere, except that `out` may be `y`.
 
 /// out = y + h k
-inline void along(std::size_t n, const double* y, double h, const double* __restrict k,
-                  double* __restrict out) {
+inline void axpy(std::size_t n, const double* y, double h, const double* __restrict k,
+                 double* __restrict out) {
   for (std::size_t i = 0; i < n; ++i) out[i] = y[i] + h * k[i];
 }
 

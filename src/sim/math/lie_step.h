@@ -22,7 +22,7 @@ inline constexpr double kFarTurn = 0.25, kPieceOfTurn = 0.1;
 /// Whether a body of these principal moments wobbles as it turns: in the plane none does, in space all but
 /// balls and their like.
 template <int D>
-bool wobbles([[maybe_unused]] const Spin<D>& inertia) {
+bool wobbles([[maybe_unused]] const AngularVec<D>& inertia) {
   if constexpr (D == 2) {
     return false;
   } else {
@@ -32,7 +32,7 @@ bool wobbles([[maybe_unused]] const Spin<D>& inertia) {
 
 /// How many equal pieces a step of h (s) is cut in for what turns with this spin.
 template <int D>
-int pieces_of_turn(const Spin<D>& w, double h) {
+int pieces_of_turn(const AngularVec<D>& w, double h) {
   const double angle2 = w.squaredNorm() * (h * h);
   if (!(angle2 > kFarTurn * kFarTurn)) return 1;
   return int(std::min(std::ceil(std::sqrt(angle2) / kPieceOfTurn), kFarthestTurn / kPieceOfTurn));
@@ -40,9 +40,10 @@ int pieces_of_turn(const Spin<D>& w, double h) {
 
 /// -I^-1 (w x I w), rad/s^2, of principal moments and a spin that the body sees: nothing in the plane.
 template <int D>
-Spin<D> gyration([[maybe_unused]] const Spin<D>& inertia, [[maybe_unused]] const Spin<D>& w) {
+AngularVec<D> gyration([[maybe_unused]] const AngularVec<D>& inertia,
+                       [[maybe_unused]] const AngularVec<D>& w) {
   if constexpr (D == 2) {
-    return Spin<D>::Zero();
+    return AngularVec<D>::Zero();
   } else {
     return inertia.cwiseProduct(w).cross(w).cwiseQuotient(inertia);
   }
@@ -50,7 +51,7 @@ Spin<D> gyration([[maybe_unused]] const Spin<D>& inertia, [[maybe_unused]] const
 
 /// The rate of the displacement d of a turn under the spin w.
 template <int D>
-Spin<D> displacing([[maybe_unused]] const Spin<D>& d, const Spin<D>& w) {
+AngularVec<D> displacing([[maybe_unused]] const AngularVec<D>& d, const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return w;
   } else {
@@ -60,7 +61,7 @@ Spin<D> displacing([[maybe_unused]] const Spin<D>& d, const Spin<D>& w) {
 
 /// The spin that the body sees, of a base and what is kept beside it.
 template <int D>
-Spin<D> whole_spin([[maybe_unused]] const Spin<D>& base, const Spin<D>& v) {
+AngularVec<D> whole_spin([[maybe_unused]] const AngularVec<D>& base, const AngularVec<D>& v) {
   if constexpr (D == 2) {
     return v;
   } else {
@@ -70,7 +71,7 @@ Spin<D> whole_spin([[maybe_unused]] const Spin<D>& base, const Spin<D>& v) {
 
 /// Where a turn comes to that is displaced by d.
 template <int D>
-Turn<D> displaced(const Turn<D>& turn, const Spin<D>& d) {
+Orientation<D> displaced(const Orientation<D>& turn, const AngularVec<D>& d) {
   if constexpr (D == 2) {
     return turn + d;
   } else {
@@ -81,27 +82,27 @@ Turn<D> displaced(const Turn<D>& turn, const Spin<D>& d) {
 /// The turn a part s of the way between two, h (s) apart, with the spins w (room's frame) at either: of the
 /// displacement from the first, the cubic through its values and rates. In the plane that of the angles.
 template <int D>
-Turn<D> between(const Turn<D>& from, const Spin<D>& w_from, const Turn<D>& to, const Spin<D>& w_to, double h,
-                double s) {
+Orientation<D> between(const Orientation<D>& from, const AngularVec<D>& w_from, const Orientation<D>& to,
+                       const AngularVec<D>& w_to, double h, double s) {
   const double r = 1 - s;
   const double p0 = r * r * (1 + 2 * s), p1 = s * s * (3 - 2 * s), m0 = h * s * r * r, m1 = -h * s * s * r;
   if constexpr (D == 2) {
     return p0 * from + p1 * to + m0 * w_from + m1 * w_to;
   } else {
-    const Spin<D> d = logarithm(product(undone<D>(from), to));
-    const Spin<D> begun = from_room<D>(rotation<D>(from), w_from),
-                  ended = turn_rate(d, from_room<D>(rotation<D>(to), w_to));
-    return sim::turned(from, Spin<D>(p1 * d + m0 * begun + m1 * ended));
+    const AngularVec<D> d = logarithm(product(inverse<D>(from), to));
+    const AngularVec<D> begun = from_room<D>(rotation<D>(from), w_from),
+                        ended = turn_rate(d, from_room<D>(rotation<D>(to), w_to));
+    return sim::turned(from, AngularVec<D>(p1 * d + m0 * begun + m1 * ended));
   }
 }
 
 /// The angle of a turn of the plane with all its rounds; of space nothing, where the rotation tells all.
 template <int D>
-Spin<D> rounds([[maybe_unused]] const Turn<D>& turn) {
+AngularVec<D> rounds([[maybe_unused]] const Orientation<D>& turn) {
   if constexpr (D == 2) {
     return turn;
   } else {
-    return Spin<D>::Zero();
+    return AngularVec<D>::Zero();
   }
 }
 

@@ -17,7 +17,7 @@ using Rotation = Eigen::Matrix<double, D, D>;
 
 /// w x r: the velocity (m/s) that spin w gives to a point at arm r.
 template <int D>
-Vec<D> swing(const Spin<D>& w, const Vec<D>& r) {
+Vec<D> cross_velocity(const AngularVec<D>& w, const Vec<D>& r) {
   if constexpr (D == 2) {
     return {-w[0] * r[1], w[0] * r[0]};
   } else {
@@ -27,9 +27,9 @@ Vec<D> swing(const Spin<D>& w, const Vec<D>& r) {
 
 /// r x f: the torque (N m) of a force f at arm r, or the turn of an impulse.
 template <int D>
-Spin<D> moment(const Vec<D>& r, const Vec<D>& f) {
+AngularVec<D> moment(const Vec<D>& r, const Vec<D>& f) {
   if constexpr (D == 2) {
-    return Spin<D>(r[0] * f[1] - r[1] * f[0]);
+    return AngularVec<D>(r[0] * f[1] - r[1] * f[0]);
   } else {
     return r.cross(f);
   }
@@ -37,7 +37,7 @@ Spin<D> moment(const Vec<D>& r, const Vec<D>& f) {
 
 /// Columns are the axes of the body, seen from the room.
 template <int D>
-Rotation<D> rotation(const Turn<D>& turn) {
+Rotation<D> rotation(const Orientation<D>& turn) {
   if constexpr (D == 2) {
     const auto [s, c] = sin_cos(turn[0]);
     Rotation<D> room_from_body;
@@ -51,19 +51,19 @@ Rotation<D> rotation(const Turn<D>& turn) {
 /// Where a body comes to that turns from `turn` by `by` (rad; in space a rotation vector in the room's frame,
 /// as spins are).
 template <int D>
-Turn<D> turned(const Turn<D>& turn, const Spin<D>& by) {
+Orientation<D> turned(const Orientation<D>& turn, const AngularVec<D>& by) {
   if constexpr (D == 2) {
     return turn + by;
   } else {
     if (by.isZero(0)) return turn;
-    const Turn<D> to = product(exponential(by), turn);
+    const Orientation<D> to = product(exponential(by), turn);
     return to / std::sqrt(to.squaredNorm());
   }
 }
 
 /// The turn `inner`, itself turned by `outer`: rotation(outer) rotation(inner).
 template <int D>
-Turn<D> composed(const Turn<D>& outer, const Turn<D>& inner) {
+Orientation<D> composed(const Orientation<D>& outer, const Orientation<D>& inner) {
   if constexpr (D == 2) {
     return outer + inner;
   } else {
@@ -73,7 +73,7 @@ Turn<D> composed(const Turn<D>& outer, const Turn<D>& inner) {
 
 /// The turn that undoes `turn`.
 template <int D>
-Turn<D> undone(const Turn<D>& turn) {
+Orientation<D> inverse(const Orientation<D>& turn) {
   if constexpr (D == 2) {
     return -turn;
   } else {
@@ -83,7 +83,7 @@ Turn<D> undone(const Turn<D>& turn) {
 
 /// A spin or torque of the room's frame as the body sees it: in the plane the same.
 template <int D>
-Spin<D> from_room([[maybe_unused]] const Rotation<D>& room_from_body, const Spin<D>& w) {
+AngularVec<D> from_room([[maybe_unused]] const Rotation<D>& room_from_body, const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return w;
   } else {
@@ -93,7 +93,7 @@ Spin<D> from_room([[maybe_unused]] const Rotation<D>& room_from_body, const Spin
 
 /// A spin or torque that the body sees, in the room's frame: in the plane the same.
 template <int D>
-Spin<D> to_room([[maybe_unused]] const Rotation<D>& room_from_body, const Spin<D>& w) {
+AngularVec<D> to_room([[maybe_unused]] const Rotation<D>& room_from_body, const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return w;
   } else {
@@ -103,10 +103,11 @@ Spin<D> to_room([[maybe_unused]] const Rotation<D>& room_from_body, const Spin<D
 
 /// I^-1 tau: the spin (or its rate) that a torque (room's frame) gives to a body of these principal moments.
 template <int D>
-Spin<D> spun(const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& room_from_body,
-             const Spin<D>& torque) {
+AngularVec<D> inverse_inertia_times(const AngularVec<D>& inertia,
+                                    [[maybe_unused]] const Rotation<D>& room_from_body,
+                                    const AngularVec<D>& torque) {
   if constexpr (D == 2) {
-    return Spin<D>(torque[0] / inertia[0]);
+    return AngularVec<D>(torque[0] / inertia[0]);
   } else {
     return room_from_body * (room_from_body.transpose() * torque).cwiseQuotient(inertia);
   }
@@ -114,30 +115,32 @@ Spin<D> spun(const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& room_fr
 
 /// I w: the angular momentum about its centre of a body with the spin w, both in the room's frame.
 template <int D>
-Spin<D> spinning(const Spin<D>& inertia, const Rotation<D>& room_from_body, const Spin<D>& w) {
+AngularVec<D> spinning(const AngularVec<D>& inertia, const Rotation<D>& room_from_body,
+                       const AngularVec<D>& w) {
   return to_room<D>(room_from_body, inertia.cwiseProduct(from_room<D>(room_from_body, w)));
 }
 
 /// The spin of a body that is turned from one stance to another and keeps its angular momentum: in the plane
 /// the same.
 template <int D>
-Spin<D> carried_spin([[maybe_unused]] const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& from,
-                     [[maybe_unused]] const Rotation<D>& to, const Spin<D>& w) {
+AngularVec<D> carried_spin([[maybe_unused]] const AngularVec<D>& inertia,
+                           [[maybe_unused]] const Rotation<D>& from, [[maybe_unused]] const Rotation<D>& to,
+                           const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return w;
   } else {
-    return spun<D>(inertia, to, spinning<D>(inertia, from, w));
+    return inverse_inertia_times<D>(inertia, to, spinning<D>(inertia, from, w));
   }
 }
 
 /// Kinetic energy of the spin, J.
 template <int D>
-double spin_energy(const Spin<D>& inertia, [[maybe_unused]] const Rotation<D>& room_from_body,
-                   const Spin<D>& w) {
+double spin_energy(const AngularVec<D>& inertia, [[maybe_unused]] const Rotation<D>& room_from_body,
+                   const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return 0.5 * inertia[0] * w[0] * w[0];
   } else {
-    const Spin<D> own = room_from_body.transpose() * w;
+    const AngularVec<D> own = room_from_body.transpose() * w;
     return 0.5 * own.dot(inertia.cwiseProduct(own));
   }
 }

@@ -20,13 +20,13 @@ namespace obscura::sim {
 
 /// Rotational inertia (kg m^2): a number in the plane, a symmetric 3 x 3 in space.
 template <int D>
-using SpinTensor = Eigen::Matrix<double, kSpins<D>, kSpins<D>>;
+using SpinTensor = Eigen::Matrix<double, kAngular<D>, kAngular<D>>;
 
 /// Spin (rad/s) and velocity (m/s) of a rigid motion at an origin; or its acceleration, or one direction of
 /// freedom.
 template <int D>
 struct Twist {
-  Spin<D> w = Spin<D>::Zero();
+  AngularVec<D> w = AngularVec<D>::Zero();
   Vec<D> v = Vec<D>::Zero();
 
   Twist& operator+=(const Twist& b) {
@@ -41,7 +41,7 @@ struct Twist {
 /// Torque (N m) about an origin and force (N); or impulses of both, or momenta.
 template <int D>
 struct Wrench {
-  Spin<D> n = Spin<D>::Zero();
+  AngularVec<D> n = AngularVec<D>::Zero();
   Vec<D> f = Vec<D>::Zero();
 
   Wrench& operator+=(const Wrench& b) {
@@ -68,7 +68,7 @@ double power(const Wrench<D>& f, const Twist<D>& t) {
 /// The twist seen from an origin at `r` (m).
 template <int D>
 Twist<D> shifted(const Twist<D>& t, const Vec<D>& r) {
-  return {t.w, t.v + swing<D>(t.w, r)};
+  return {t.w, t.v + cross_velocity<D>(t.w, r)};
 }
 
 /// The wrench given at `r` (m), as felt at the origin.
@@ -79,8 +79,8 @@ Wrench<D> brought(const Wrench<D>& f, const Vec<D>& r) {
 
 /// K: D x spins with w x r = K w.
 template <int D>
-Eigen::Matrix<double, D, kSpins<D>> lever(const Vec<D>& r) {
-  Eigen::Matrix<double, D, kSpins<D>> k;
+Eigen::Matrix<double, D, kAngular<D>> lever(const Vec<D>& r) {
+  Eigen::Matrix<double, D, kAngular<D>> k;
   if constexpr (D == 2) {
     k << -r[1], r[0];
   } else {
@@ -91,9 +91,9 @@ Eigen::Matrix<double, D, kSpins<D>> lever(const Vec<D>& r) {
 
 /// w x u for two spins: nothing in the plane.
 template <int D>
-Spin<D> spin_cross([[maybe_unused]] const Spin<D>& w, [[maybe_unused]] const Spin<D>& u) {
+AngularVec<D> spin_cross([[maybe_unused]] const AngularVec<D>& w, [[maybe_unused]] const AngularVec<D>& u) {
   if constexpr (D == 2) {
-    return Spin<D>::Zero();
+    return AngularVec<D>::Zero();
   } else {
     return w.cross(u);
   }
@@ -104,7 +104,7 @@ Spin<D> spin_cross([[maybe_unused]] const Spin<D>& w, [[maybe_unused]] const Spi
 template <int D>
 struct ArticulatedInertia {
   SpinTensor<D> J = SpinTensor<D>::Zero();
-  Eigen::Matrix<double, kSpins<D>, D> H = Eigen::Matrix<double, kSpins<D>, D>::Zero();
+  Eigen::Matrix<double, kAngular<D>, D> H = Eigen::Matrix<double, kAngular<D>, D>::Zero();
   Eigen::Matrix<double, D, D> M = Eigen::Matrix<double, D, D>::Zero();
 
   ArticulatedInertia& operator+=(const ArticulatedInertia& b) {
@@ -118,7 +118,7 @@ struct ArticulatedInertia {
 /// Inertia of one rigid link: `com` from the origin (m), `inertia` about the centre of mass.
 template <int D>
 ArticulatedInertia<D> rigid_inertia(double mass, const Vec<D>& com, const SpinTensor<D>& inertia) {
-  const Eigen::Matrix<double, D, kSpins<D>> k = lever<D>(com);
+  const Eigen::Matrix<double, D, kAngular<D>> k = lever<D>(com);
   ArticulatedInertia<D> out;
   out.J.noalias() = inertia + mass * (k.transpose() * k);
   out.H = mass * k.transpose();
@@ -137,8 +137,8 @@ Wrench<D> operator*(const ArticulatedInertia<D>& i, const Twist<D>& t) {
 /// The inertia given at `r` (m), as felt at the origin.
 template <int D>
 ArticulatedInertia<D> brought(const ArticulatedInertia<D>& i, const Vec<D>& r) {
-  const Eigen::Matrix<double, D, kSpins<D>> k = lever<D>(r);
-  const Eigen::Matrix<double, kSpins<D>, D> km = k.transpose() * i.M;
+  const Eigen::Matrix<double, D, kAngular<D>> k = lever<D>(r);
+  const Eigen::Matrix<double, kAngular<D>, D> km = k.transpose() * i.M;
   const SpinTensor<D> hk = i.H * k;
   ArticulatedInertia<D> out;
   out.J = i.J + hk + hk.transpose() + km * k;

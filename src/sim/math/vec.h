@@ -11,21 +11,22 @@ using Vec = Eigen::Matrix<double, D, 1>;
 
 /// Components of spin: one in the plane, three in space.
 template <int D>
-inline constexpr int kSpins = D*(D - 1) / 2;
+inline constexpr int kAngular = D*(D - 1) / 2;
 
 /// Angular velocity (rad/s) or torque (N m). In the plane positive is counter-clockwise.
 template <int D>
-using Spin = Eigen::Matrix<double, kSpins<D>, 1>;
+using AngularVec = Eigen::Matrix<double, kAngular<D>, 1>;
 
 /// The turn of a rigid body: in the plane an angle (rad, not wrapped), in space a unit quaternion (x, y, z,
 /// w), room from body.
 template <int D>
-using Turn = Eigen::Matrix<double, D == 2 ? 1 : 4, 1>;
+using Orientation = Eigen::Matrix<double, D == 2 ? 1 : 4, 1>;
 
 /// The turn of what stands as it was made: the angle zero, or (0, 0, 0, 1).
 template <int D>
-Turn<D> upright() {
-  return D == 2 ? Turn<D>(Turn<D>::Zero()) : Turn<D>(Turn<D>::Unit(Turn<D>::RowsAtCompileTime - 1));
+Orientation<D> no_rotation() {
+  return D == 2 ? Orientation<D>(Orientation<D>::Zero())
+                : Orientation<D>(Orientation<D>::Unit(Orientation<D>::RowsAtCompileTime - 1));
 }
 
 using Vec3 = Eigen::Vector3d;

@@ -63,9 +63,9 @@ std::vector<std::uint64_t> words(const State<D>& state) {
   for (const char broken : state.broken) w.integer(broken);
   w.list(state.joint_forces);
   if constexpr (D == 3) {
-    for (const OwnSpin<D>& own : state.own) {
-      w.template numbers<kSpins<D>>(own.w);
-      w.template numbers<kSpins<D>>(own.rest);
+    for (const BodySpin<D>& own : state.own) {
+      w.template numbers<kAngular<D>>(own.w);
+      w.template numbers<kAngular<D>>(own.rest);
     }
   }
   for (const Blast<D>& blast : state.blasts) {
@@ -73,14 +73,14 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     w.list(blast.forces);
     w.list(blast.torques);
   }
-  for (const Posture& posture : state.postures) {
+  for (const ChainState& posture : state.postures) {
     for (const double x : posture.q) w.number(x);
     for (const double x : posture.v) w.number(x);
   }
   for (const char holds : state.holds) w.integer(holds);
   for (const Seat<D>& seat : state.seats) {
     w.template numbers<D>(seat.x);
-    w.template numbers<Turn<D>::RowsAtCompileTime>(seat.turn);
+    w.template numbers<Orientation<D>::RowsAtCompileTime>(seat.turn);
   }
   for (const State<D>& whole : state.whole) {
     const std::vector<std::uint64_t> more = words(whole);

@@ -42,7 +42,7 @@ struct Shape {
   std::vector<Vec<D>> vertices;    // polygon: convex, counter-clockwise; hull: convex; m
   std::vector<Shape> parts;        // compound: in the body's frame, m
   std::vector<std::vector<int>> faces = {};  // hull: loops of vertices, counter-clockwise seen from outside
-  Turn<D> turn = upright<D>();               // of a box or capsule that is a part
+  Orientation<D> turn = no_rotation<D>();    // of a box or capsule that is a part
 };
 
 /// What stays true of a body while the room moves. A particle is a point or a ball that does not turn; a
@@ -51,18 +51,18 @@ template <int D>
 struct Body {
   std::string name;
   Shape<D> shape;
-  double mass = 1;                    // kg
-  Spin<D> inertia = Spin<D>::Zero();  // principal moments, kg m^2; zero: does not turn
-  double elasticity = 1;              // the handout's e, 0 <= e <= 1
-  double friction = 0;                // Coulomb's mu >= 0; of a pair, the root of the product
-  double drag = 0;                    // c of f = -c v at the centre of mass, N s/m
-  double ground_drag = 0;             // the same along the ground while it stands there, beside mu; N s/m
-  int group = 0;                      // for Model::ignore
-  bool fixed = false;                 // held where it starts; as heavy as the room
-  bool linked = false;                // a link of a chain, which moves it
-  bool handout = false;  // meets walls by the handout's law, and no bodies, whatever `collision` says
+  double mass = 1;                                // kg
+  AngularVec<D> inertia = AngularVec<D>::Zero();  // principal moments, kg m^2; zero: does not turn
+  double elasticity = 1;                          // the handout's e, 0 <= e <= 1
+  double friction = 0;                            // Coulomb's mu >= 0; of a pair, the root of the product
+  double drag = 0;                                // c of f = -c v at the centre of mass, N s/m
+  double ground_drag = 0;  // the same along the ground while it stands there, beside mu; N s/m
+  int group = 0;           // for Model::ignore
+  bool fixed = false;      // held where it starts; as heavy as the room
+  bool linked = false;     // a link of a chain, which moves it
+  bool handout = false;    // meets walls by the handout's law, and no bodies, whatever `collision` says
 
-  bool turns() const { return inertia != Spin<D>::Zero(); }
+  bool turns() const { return inertia != AngularVec<D>::Zero(); }
 };
 
 /// An immobile half space: what has (q - point) . normal < 0 is on the wrong side. Handout §2.3.
@@ -106,11 +106,12 @@ struct Joint {
   std::string name;
   JointKind kind = JointKind::pin;
   End<D> a, b;
-  Vec<D> axis = Vec<D>::Unit(0);   // slider: the way of a; hinge of space: what it turns about. Unit, in
-                                   // b's frame
-  Spin<D> turn = Spin<D>::Zero();  // weld, slider: the turn of a against b to be kept; hinge: where its
-                                   // angle is zero, rad. In space a rotation vector in b's frame
-  double length = 0;               // rod: the distance; rope: the largest, m
+  Vec<D> axis = Vec<D>::Unit(0);  // slider: the way of a; hinge of space: what it turns about. Unit, in
+                                  // b's frame
+  AngularVec<D> turn =
+      AngularVec<D>::Zero();             // weld, slider: the turn of a against b to be kept; hinge: where its
+                                         // angle is zero, rad. In space a rotation vector in b's frame
+  double length = 0;                     // rod: the distance; rope: the largest, m
   double lower = -1e300, upper = 1e300;  // of a hinge's angle (rad, in space within pi) or a slider's way (m)
   std::optional<Motor> motor;
   double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider

@@ -12,16 +12,17 @@ namespace obscura::sim {
 /// The spin of the body with turn k, ready for a step: base + v is what the body sees. `whole`: v is all of
 /// it, as a scheme needs that takes v itself for the rate of d (semi-implicit Euler).
 template <int D>
-void take_spin(const State<D>& state, int k, bool whole, Spin<D>& base, double* v) {
+void take_spin(const State<D>& state, int k, bool whole, AngularVec<D>& base, double* v) {
   base.setZero();
   if constexpr (D == 2) {
-    std::copy_n(state.spin[k].data(), kSpins<D>, v);
+    std::copy_n(state.spin[k].data(), kAngular<D>, v);
   } else {
     const Rotation<D> axes = rotation<D>(state.turn[k]);
-    OwnSpin<D> own;
+    BodySpin<D> own;
     if (k < int(state.own.size())) own = state.own[k];
-    if (to_room<D>(axes, own.w) != state.spin[k]) own = {from_room<D>(axes, state.spin[k]), Spin<D>::Zero()};
-    Eigen::Map<Spin<D>> given(v);
+    if (to_room<D>(axes, own.w) != state.spin[k])
+      own = {from_room<D>(axes, state.spin[k]), AngularVec<D>::Zero()};
+    Eigen::Map<AngularVec<D>> given(v);
     if (whole) {
       given = own.w;
     } else {
@@ -32,14 +33,14 @@ void take_spin(const State<D>& state, int k, bool whole, Spin<D>& base, double* 
 
 /// Gives body k, whose turn was `from`, what a step has made of it.
 template <int D>
-void give_spin(State<D>& state, int k, const Turn<D>& from, const double* d, const Spin<D>& base,
+void give_spin(State<D>& state, int k, const Orientation<D>& from, const double* d, const AngularVec<D>& base,
                const double* v) {
-  const Eigen::Map<const Spin<D>> by(d), more(v);
+  const Eigen::Map<const AngularVec<D>> by(d), more(v);
   state.turn[k] = displaced<D>(from, by);
   if constexpr (D == 2) {
     state.spin[k] = more;
   } else {
-    const Spin<D> w = base + more;
+    const AngularVec<D> w = base + more;
     state.spin[k] = to_room<D>(rotation<D>(state.turn[k]), w);
     if (k < int(state.own.size())) state.own[k] = {w, more - (w - base)};
   }

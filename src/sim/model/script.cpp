@@ -10,7 +10,7 @@ __extension__ typedef __int128 Wide;
 
 constexpr double kSame = 1e-9;  // of a step
 
-Beat snapped(Beat at) {
+TimeStamp snapped(TimeStamp at) {
   if (at.fraction < kSame) return {at.step, 0};
   if (at.fraction > 1 - kSame) return {at.step + 1, 0};
   return at;
@@ -18,7 +18,7 @@ Beat snapped(Beat at) {
 
 }  // namespace
 
-Beat beat(Rational t, Rational rate) {
+TimeStamp beat(Rational t, Rational rate) {
   const Wide num = Wide(t.num) * rate.num, den = Wide(t.den) * rate.den;
   Wide whole = num / den, rest = num % den;
   if (rest < 0) rest += den, --whole;
@@ -28,19 +28,19 @@ Beat beat(Rational t, Rational rate) {
   return {std::int64_t(whole), fraction};
 }
 
-double time(Beat at, Rational rate) {
+double time(TimeStamp at, Rational rate) {
   return double(at.step) * double(rate.den) / double(rate.num) + at.fraction * step_length(rate);
 }
 
 template <int D>
-std::vector<Edge> edges(const Model<D>& model) {
-  std::vector<Edge> all;
+std::vector<ScriptEvent> edges(const Model<D>& model) {
+  std::vector<ScriptEvent> all;
   for (int mouse = 0; mouse < int(model.mice.size()); ++mouse) {
     const auto& path = model.mice[mouse].path;
     for (const Knot<D>& knot : path) {
-      const auto kind = &knot == &path.front()  ? Edge::Kind::press
-                        : &knot == &path.back() ? Edge::Kind::release
-                                                : Edge::Kind::knot;
+      const auto kind = &knot == &path.front()  ? ScriptEvent::Kind::press
+                        : &knot == &path.back() ? ScriptEvent::Kind::release
+                                                : ScriptEvent::Kind::knot;
       all.push_back({snapped(beat(knot.time, model.rate)), mouse, kind});
     }
   }
@@ -50,20 +50,21 @@ std::vector<Edge> edges(const Model<D>& model) {
     const bool held = it.scheme == Explosion<D>::Scheme::paper;
     Rational at = it.start;
     do {
-      all.push_back({snapped(beat(at, model.rate)), i, Edge::Kind::blast});
+      all.push_back({snapped(beat(at, model.rate)), i, ScriptEvent::Kind::blast});
       at = at + it.interval;
     } while (held && at < end);
-    all.push_back({snapped(beat(end, model.rate)), i, Edge::Kind::calm});
+    all.push_back({snapped(beat(end, model.rate)), i, ScriptEvent::Kind::calm});
   }
-  std::stable_sort(all.begin(), all.end(), [](const Edge& a, const Edge& b) { return a.at < b.at; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const ScriptEvent& a, const ScriptEvent& b) { return a.at < b.at; });
   for (std::size_t i = 1; i < all.size(); ++i) {
-    const Beat before = all[i - 1].at;
+    const TimeStamp before = all[i - 1].at;
     if (all[i].at.step == before.step && all[i].at.fraction - before.fraction < kSame) all[i].at = before;
   }
   return all;
 }
 
-template std::vector<Edge> edges<2>(const Model<2>&);
-template std::vector<Edge> edges<3>(const Model<3>&);
+template std::vector<ScriptEvent> edges<2>(const Model<2>&);
+template std::vector<ScriptEvent> edges<3>(const Model<3>&);
 
 }  // namespace obscura::sim

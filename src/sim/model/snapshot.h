@@ -14,7 +14,7 @@ namespace obscura::sim {
 // One instant, without a dimension: above it nothing knows D. The plane lies at z = 0, seen from +z.
 
 /// What is the same at every instant: who is in the room and what they look like to a measuring eye.
-struct Cast {
+struct SceneInfo {
   /// A piece of a body of several, in the body's frame.
   struct Part {
     ShapeKind kind = ShapeKind::ball;
@@ -127,7 +127,7 @@ struct Snapshot {
 };
 
 /// Coulomb's mu between the two that touch.
-double friction(const Cast& cast, const Snapshot::Contact& contact);
+double friction(const SceneInfo& cast, const Snapshot::Contact& contact);
 
 /// The ways of chosen bodies on the physics clock, the same for every frame rate: what a trail is drawn from.
 /// Points come at equal steps and at each impact, so that a bounce keeps its cusp.

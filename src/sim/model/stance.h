@@ -7,13 +7,13 @@ namespace obscura::sim {
 
 /// How a body stands and moves, and from it how its points do. A body that does not turn has no spin.
 template <int D>
-struct Stance {
+struct BodyMotion {
   Vec<D> x = Vec<D>::Zero(), v = Vec<D>::Zero();
   Rotation<D> room_from_body = Rotation<D>::Identity();
-  Spin<D> w = Spin<D>::Zero();
+  AngularVec<D> w = AngularVec<D>::Zero();
 
   Vec<D> arm(const Vec<D>& local) const { return room_from_body * local; }
-  Vec<D> velocity(const Vec<D>& arm) const { return v + swing<D>(w, arm); }
+  Vec<D> velocity(const Vec<D>& arm) const { return v + cross_velocity<D>(w, arm); }
 };
 
 /// Index of a body among those that turn; negative for one that does not.
@@ -23,8 +23,8 @@ int turning(const State<D>& state, int body) {
 }
 
 template <int D>
-Stance<D> stance(const State<D>& state, int body) {
-  Stance<D> at;
+BodyMotion<D> body_motion(const State<D>& state, int body) {
+  BodyMotion<D> at;
   at.x = state.x[body];
   at.v = state.v[body];
   if (const int k = turning(state, body); k >= 0) {

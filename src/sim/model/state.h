@@ -34,11 +34,11 @@ struct Touch {
 /// `spin` of the state is what it gives in the room's frame, to the bit; who changes that or the turn need
 /// not know of it.
 template <int D>
-struct OwnSpin {
-  Spin<D> w = Spin<D>::Zero();     // rad/s
-  Spin<D> rest = Spin<D>::Zero();  // rad/s; to be added
+struct BodySpin {
+  AngularVec<D> w = AngularVec<D>::Zero();     // rad/s
+  AngularVec<D> rest = AngularVec<D>::Zero();  // rad/s; to be added
 
-  bool operator==(const OwnSpin&) const = default;
+  bool operator==(const BodySpin&) const = default;
 };
 
 /// What the displacement and the impulses of `handout` did to the energy since t = 0, J.
@@ -51,19 +51,19 @@ struct Ledger {
 
 /// What energy there may be: what there was at the start and what hands can give. The watch over runs that
 /// go wrong measures by it (sim/energy/divergence_monitor.cpp).
-struct Fund {
+struct EnergyBudget {
   double level = 0;   // gravity's potential at the start, J
   double amount = 0;  // energy that could be there, J
 
-  bool operator==(const Fund&) const = default;
+  bool operator==(const EnergyBudget&) const = default;
 };
 
 /// An explosion of the model at an instant.
 template <int D>
 struct Blast {
   char on = 0;
-  std::vector<Vec<D>> forces;    // held through the interval at hand, one a body, N; of Scheme::paper
-  std::vector<Spin<D>> torques;  // likewise, N m
+  std::vector<Vec<D>> forces;          // held through the interval at hand, one a body, N; of Scheme::paper
+  std::vector<AngularVec<D>> torques;  // likewise, N m
 
   bool operator==(const Blast&) const = default;
 };
@@ -72,17 +72,17 @@ struct Blast {
 template <int D>
 struct Seat {
   Vec<D> x = Vec<D>::Zero();  // m
-  Turn<D> turn = upright<D>();
+  Orientation<D> turn = no_rotation<D>();
 
   bool operator==(const Seat&) const = default;
 };
 
 /// How an articulated body stands and moves, in the numbers of its tree (sim/multibody/chain.h); the places
 /// of its bodies follow from them.
-struct Posture {
+struct ChainState {
   std::vector<double> q, v;
 
-  bool operator==(const Posture&) const = default;
+  bool operator==(const ChainState&) const = default;
 };
 
 /// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
@@ -90,18 +90,18 @@ struct Posture {
 template <int D>
 struct State {
   std::int64_t step = 0;
-  double beyond = 0;              // s; 0 on the trajectory
-  std::vector<Vec<D>> x;          // centres of mass, m, one a body
-  std::vector<Vec<D>> v;          // m/s
-  std::vector<Turn<D>> turn;      // one a body that turns, in their order
-  std::vector<Spin<D>> spin;      // rad/s (in space: world frame)
-  std::vector<Grip<D>> grips;     // one a mouse
-  std::vector<Touch<D>> touches;  // of `handout`
+  double beyond = 0;                 // s; 0 on the trajectory
+  std::vector<Vec<D>> x;             // centres of mass, m, one a body
+  std::vector<Vec<D>> v;             // m/s
+  std::vector<Orientation<D>> turn;  // one a body that turns, in their order
+  std::vector<AngularVec<D>> spin;   // rad/s (in space: world frame)
+  std::vector<Grip<D>> grips;        // one a mouse
+  std::vector<Touch<D>> touches;     // of `handout`
   Ledger ledger;
-  Fund fund;
-  std::vector<OwnSpin<D>> own;    // in space: one a body that turns
-  std::vector<Blast<D>> blasts;   // one an explosion
-  std::vector<Posture> postures;  // one a chain of the model
+  EnergyBudget energy_budget;
+  std::vector<BodySpin<D>> own;      // in space: one a body that turns
+  std::vector<Blast<D>> blasts;      // one an explosion
+  std::vector<ChainState> postures;  // one a chain of the model
 
   // of what is bonded, see sim/step/bonded_bodies.h: everything above is then told of the parts, and this is
   // what moves

@@ -11,8 +11,8 @@ void euler(System& system, double t, double h, std::span<double> d, std::span<do
   const auto dk = stages.row(0, n), vk = stages.row(1, n);
 
   system.rates(t, d, v, dk, vk);
-  along(n, d.data(), h, dk.data(), d.data());
-  along(n, v.data(), h, vk.data(), v.data());
+  axpy(n, d.data(), h, dk.data(), d.data());
+  axpy(n, v.data(), h, vk.data(), v.data());
 }
 
 }  // namespace obscura::sim

@@ -22,7 +22,7 @@ constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stan
 }  // namespace
 
 template <int D>
-Tied<D>::Tied(const Model<D>& model, const std::vector<Path<D>>& paths)
+ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model), paths_(paths), chains_(model), blasts_(model), tips_(model.bodies) {
   member_.assign(model.bodies.size(), -1);
   const std::size_t counts[] = {model.bodies.size(), model.springs.size(), model.chains.size()};
@@ -35,15 +35,15 @@ Tied<D>::Tied(const Model<D>& model, const std::vector<Path<D>>& paths)
 }
 
 template <int D>
-typename Tied<D>::Hold Tied<D>::hold(const State<D>& state, const End<D>& end) const {
+typename ForwardDynamics<D>::Hold ForwardDynamics<D>::hold(const State<D>& state, const End<D>& end) const {
   if (end.body < 0) return {-1, -1, end.local};
   if (member_[end.body] >= 0) return {member_[end.body], -1, end.local};
-  const Stance<D> at = stance(state, end.body);  // what does not move: its point stays
+  const BodyMotion<D> at = body_motion(state, end.body);  // what does not move: its point stays
   return {-1, -1, at.x + at.arm(end.local)};
 }
 
 template <int D>
-void Tied<D>::gather(const State<D>& state, bool everyone) {
+void ForwardDynamics<D>::gather(const State<D>& state, bool everyone) {
   const Subset all{numbers_[0], numbers_[1], numbers_[2]};
   if (everyone || blasting(state)) return gather(state, all);
   // bodies with a spring, those that the mouse holds, and those that the ground brakes
@@ -60,7 +60,7 @@ void Tied<D>::gather(const State<D>& state, bool everyone) {
 }
 
 template <int D>
-void Tied<D>::gather(const State<D>& state, const Subset& of) {
+void ForwardDynamics<D>::gather(const State<D>& state, const Subset& of) {
   for (const int body : all_) member_[body] = -1;
   for (const int body : of.bodies) {
     const bool frozen = !state.frozen.empty() && state.frozen[body];
@@ -71,7 +71,7 @@ void Tied<D>::gather(const State<D>& state, const Subset& of) {
 
 // gathers the bodies of a part of the model whose member_ is not below zero
 template <int D>
-void Tied<D>::gather_marked(const State<D>& state, const Subset& of) {
+void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) {
   bodies_.clear();
   for (const int body : of.bodies) {
     if (member_[body] < 0) continue;
@@ -140,7 +140,7 @@ void Tied<D>::gather_marked(const State<D>& state, const Subset& of) {
 
 // the tied bodies of a state as d = 0 and v
 template <int D>
-void Tied<D>::load(const State<D>& state) {
+void ForwardDynamics<D>::load(const State<D>& state) {
   const int n = int(bodies_.size()), still = n - turning_;
   for (int i = 0; i < n; ++i) {
     x_[i] = state.x[bodies_[i]];
@@ -150,7 +150,7 @@ void Tied<D>::load(const State<D>& state) {
     const int k = turning(state, bodies_[still + i]);
     turn_[i] = state.turn[k];
     take_spin(state, k, model_.integrator == Integrator::semi_implicit, base_[i],
-              v_.data() + D * n + kSpins<D> * i);
+              v_.data() + D * n + kAngular<D> * i);
   }
   chains_.load(state, std::span<double>(v_).subspan(std::size_t(chain_start())));
   std::fill(d_.begin(), d_.end(), 0.0);
@@ -172,7 +172,7 @@ void Tied<D>::load(const State<D>& state) {
   // what the ground brakes
   braked_.clear();
   for (const int member : dragged_) {
-    const Stance<D> at = stance(state, all_[member]);
+    const BodyMotion<D> at = body_motion(state, all_[member]);
     const Body<D>& body = model_.bodies[all_[member]];
     const double h = 1 / value(model_.rate), g = std::sqrt(model_.gravity.squaredNorm());
     // as far as it falls between two impacts of the handout's rest
@@ -180,7 +180,7 @@ void Tied<D>::load(const State<D>& state) {
     for (const Wall<D>& wall : model_.walls) {
       if (g > 0 && !(wall.normal.dot(model_.gravity) < 0)) continue;
       double least = 1e300;
-      for (const Tip<D>& tip : tips_[all_[member]])
+      for (const SupportVertex<D>& tip : tips_[all_[member]])
         least = std::min(least, (at.x + at.arm(tip.at) - wall.point).dot(wall.normal) - tip.radius);
       if (least > near) continue;
       braked_.push_back({member, body.ground_drag / body.mass, wall.normal});
@@ -190,7 +190,7 @@ void Tied<D>::load(const State<D>& state) {
 }
 
 template <int D>
-std::span<const double> Tied<D>::accelerations(const State<D>& state, double t) {
+std::span<const double> ForwardDynamics<D>::accelerations(const State<D>& state, double t) {
   load(state);
   rates(t, d_, v_, d_rate_, v_rate_);
   return v_rate_;
@@ -199,7 +199,7 @@ std::span<const double> Tied<D>::accelerations(const State<D>& state, double t) 
 // In how many pieces a step is made: as what turns most asks for. Not where the step is too long for a
 // spring: what that makes spin is to be told, not hidden.
 template <int D>
-int Tied<D>::pieces(const State<D>& state, double h) const {
+int ForwardDynamics<D>::pieces(const State<D>& state, double h) const {
   int most = 1;
   for (const int body : wheels_)
     most = std::max(most, pieces_of_turn<D>(state.spin[turning(state, body)], h));
@@ -207,15 +207,16 @@ int Tied<D>::pieces(const State<D>& state, double h) const {
 }
 
 template <int D>
-void Tied<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System* with) {
+void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
+                              System* with) {
   if (all_.empty()) return;
   const int n = pieces(state, h);
   for (int i = 0; i < n; ++i) piece(integrate, state, t + i * (h / n), h / n, stages, with ? *with : *this);
 }
 
 template <int D>
-void Tied<D>::piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
-                    System& rates) {
+void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
+                               System& rates) {
   const int n = int(bodies_.size()), still = n - turning_;
   load(state);
   integrate(rates, t, h, d_, v_, stages);
@@ -225,7 +226,7 @@ void Tied<D>::piece(Integrate* integrate, State<D>& state, double t, double h, S
     state.v[bodies_[i]] = Eigen::Map<const Vec<D>>(v_.data() + D * i);
   }
   for (int i = 0; i < turning_; ++i) {
-    const int k = turning(state, bodies_[still + i]), at = D * n + kSpins<D> * i;
+    const int k = turning(state, bodies_[still + i]), at = D * n + kAngular<D> * i;
     give_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
   }
   const std::size_t chains = std::size_t(chain_start());
@@ -234,42 +235,43 @@ void Tied<D>::piece(Integrate* integrate, State<D>& state, double t, double h, S
 }
 
 template <int D>
-typename Tied<D>::Moving Tied<D>::moving(const Hold& hold, double t) const {
+typename ForwardDynamics<D>::Moving ForwardDynamics<D>::moving(const Hold& hold, double t) const {
   if (hold.mouse >= 0) {
     const auto hand = paths_[hold.mouse].at(t);
     return {Vec<D>::Zero(), hand.place, hand.velocity};
   }
   if (hold.member < 0) return {Vec<D>::Zero(), hold.at, Vec<D>::Zero()};
-  const Stance<D>& at = stances_[hold.member];
+  const BodyMotion<D>& at = stances_[hold.member];
   const Vec<D> arm = at.arm(hold.at);
   return {arm, at.x + arm, at.velocity(arm)};
 }
 
 template <int D>
-void Tied<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate) {
+void ForwardDynamics<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force,
+                              std::span<double> v_rate) {
   if (hold.member >= 0) push(hold.member, {moment<D>(arm, force), force}, v_rate);
 }
 
 // by a force at the centre and a torque, in the room's frame
 template <int D>
-void Tied<D>::push(int member, const Wrench<D>& by, std::span<double> v_rate) {
+void ForwardDynamics<D>::push(int member, const Wrench<D>& by, std::span<double> v_rate) {
   const int n = int(bodies_.size()), spinning = member - (n - turning_);
   if (member >= n) return chains_.pull(member - n, by);
   const Body<D>& body = model_.bodies[bodies_[member]];
   Eigen::Map<Vec<D>>(v_rate.data() + D * member) += by.f / body.mass;
   if (spinning < 0) return;
-  Eigen::Map<Spin<D>>(v_rate.data() + D * n + kSpins<D> * spinning) +=
+  Eigen::Map<AngularVec<D>>(v_rate.data() + D * n + kAngular<D> * spinning) +=
       from_room<D>(stances_[member].room_from_body, by.n).cwiseQuotient(body.inertia);
 }
 
 template <int D>
-void Tied<D>::rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
-                    std::span<double> v_rate) {
+void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<const double> v,
+                               std::span<double> d_rate, std::span<double> v_rate) {
   const int n = int(bodies_.size()), still = n - turning_;
 
   // what needs no spring: x' = v, v' = g - (c/m) v
   std::copy_n(v.begin(), D * n, d_rate.begin());
-  fall(gravity_, drag_, v.first(D * n), v_rate.first(D * n));
+  unconstrained_rates(gravity_, drag_, v.first(D * n), v_rate.first(D * n));
 
   // where everyone is at this stage, and how it turns by itself
   for (int i = 0; i < n; ++i) {
@@ -277,21 +279,22 @@ void Tied<D>::rates(double t, std::span<const double> d, std::span<const double>
     stances_[i].v = Eigen::Map<const Vec<D>>(v.data() + D * i);
   }
   for (int i = 0; i < turning_; ++i) {
-    const int at = D * n + kSpins<D> * i;
-    const Spin<D> by = Eigen::Map<const Spin<D>>(d.data() + at);
-    const Spin<D> w = whole_spin<D>(base_[i], Spin<D>(Eigen::Map<const Spin<D>>(v.data() + at)));
-    Stance<D>& it = stances_[still + i];
+    const int at = D * n + kAngular<D> * i;
+    const AngularVec<D> by = Eigen::Map<const AngularVec<D>>(d.data() + at);
+    const AngularVec<D> w =
+        whole_spin<D>(base_[i], AngularVec<D>(Eigen::Map<const AngularVec<D>>(v.data() + at)));
+    BodyMotion<D>& it = stances_[still + i];
     it.room_from_body = rotation<D>(displaced<D>(turn_[i], by));
     it.w = to_room<D>(it.room_from_body, w);
-    Eigen::Map<Spin<D>>(d_rate.data() + at) = displacing<D>(by, w);
-    Eigen::Map<Spin<D>>(v_rate.data() + at) = gyration<D>(model_.bodies[bodies_[still + i]].inertia, w);
+    Eigen::Map<AngularVec<D>>(d_rate.data() + at) = displacing<D>(by, w);
+    Eigen::Map<AngularVec<D>>(v_rate.data() + at) = gyration<D>(model_.bodies[bodies_[still + i]].inertia, w);
   }
   const std::size_t chains = std::size_t(chain_start());
   const int links = int(chains_.links().size());
   if (links > 0) chains_.stand(d.subspan(chains), v.subspan(chains)), chains_.let_go();
   for (int k = 0; k < links; ++k) {
-    stances_[n + k] = chains_.stance(k);
-    chains_.pull(k, {Spin<D>::Zero(), -model_.bodies[all_[n + k]].drag * stances_[n + k].v});
+    stances_[n + k] = chains_.body_motion(k);
+    chains_.pull(k, {AngularVec<D>::Zero(), -model_.bodies[all_[n + k]].drag * stances_[n + k].v});
   }
 
   for (const Tie& tie : ties_) {
@@ -311,13 +314,13 @@ void Tied<D>::rates(double t, std::span<const double> d, std::span<const double>
     if (it.member < n)
       Eigen::Map<Vec<D>>(v_rate.data() + D * it.member) -= rate;
     else
-      push(it.member, {Spin<D>::Zero(), -model_.bodies[all_[it.member]].mass * rate}, v_rate);
+      push(it.member, {AngularVec<D>::Zero(), -model_.bodies[all_[it.member]].mass * rate}, v_rate);
   }
   if (links > 0)
     chains_.rates(d.subspan(chains), v.subspan(chains), d_rate.subspan(chains), v_rate.subspan(chains));
 }
 
-template class Tied<2>;
-template class Tied<3>;
+template class ForwardDynamics<2>;
+template class ForwardDynamics<3>;
 
 }  // namespace obscura::sim

@@ -24,10 +24,10 @@ struct Subset {
 /// room's frame meets J . to_room(room_from_body, v'), and a torque adds from_room(room_from_body, torque) /
 /// inertia.
 template <int D>
-class Tied final : public System {
+class ForwardDynamics final : public System {
  public:
   /// `paths`: the way of each mouse. Both are kept by reference.
-  Tied(const Model<D>& model, const std::vector<Path<D>>& paths);
+  ForwardDynamics(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// Whether anything of the model may ever tie a body.
   bool ever() const { return ever_; }
@@ -55,15 +55,15 @@ class Tied final : public System {
 
   /// How the tied bodies stand and move at the stage that rates() saw last: bodies(), then the links of
   /// chains().
-  const std::vector<Stance<D>>& stances() const { return stances_; }
+  const std::vector<BodyMotion<D>>& stances() const { return stances_; }
 
   /// How many numbers d and v have: D of each body, then the spins of those that turn, then the chains'.
   int size() const { return int(v_.size()); }
-  int chain_start() const { return D * int(bodies_.size()) + kSpins<D> * turning_; }
+  int chain_start() const { return D * int(bodies_.size()) + kAngular<D> * turning_; }
   /// Where the spin of the body at `place` in bodies() starts; below zero: it does not turn.
   int spin_start(int place) const {
     const int spinning = place - (int(bodies_.size()) - turning_);
-    return spinning < 0 ? -1 : D * int(bodies_.size()) + kSpins<D> * spinning;
+    return spinning < 0 ? -1 : D * int(bodies_.size()) + kAngular<D> * spinning;
   }
   int place(int body) const { return member_[body]; }
 
@@ -110,7 +110,7 @@ class Tied final : public System {
   std::vector<Tie> ties_;        // springs in order, then mice in order
   bool ever_ = false;
   Blasts<D> blasts_;
-  Tips<D> tips_;
+  SupportVertices<D> tips_;
   std::vector<int> acting_;             // explosions that act
   std::vector<Wrench<D>> held_;         // by the paper's scheme, one a member; empty where nothing is
   std::vector<int> dragged_;            // members with drag on the ground
@@ -120,9 +120,9 @@ class Tied final : public System {
   std::vector<int> wheels_;             // bodies that no step may turn far in one piece
 
   std::vector<Vec<D>> x_;  // where the step began
-  std::vector<Turn<D>> turn_;
-  std::vector<Spin<D>> base_;       // see sim/math/lie_step.h
-  std::vector<Stance<D>> stances_;  // at the stage at hand
+  std::vector<Orientation<D>> turn_;
+  std::vector<AngularVec<D>> base_;     // see sim/math/lie_step.h
+  std::vector<BodyMotion<D>> stances_;  // at the stage at hand
   std::vector<double> d_, v_, d_rate_, v_rate_;
 };
 

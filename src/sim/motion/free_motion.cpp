@@ -8,38 +8,38 @@ namespace obscura::sim {
 
 namespace {
 
-void fall(std::size_t n, const double* __restrict gravity, const double* __restrict drag,
-          const double* __restrict v, double* __restrict out) {
+void unconstrained_rates(std::size_t n, const double* __restrict gravity, const double* __restrict drag,
+                         const double* __restrict v, double* __restrict out) {
   for (std::size_t i = 0; i < n; ++i) out[i] = gravity[i] - drag[i] * v[i];
 }
 
 }  // namespace
 
-void fall(std::span<const double> gravity, std::span<const double> drag, std::span<const double> v,
-          std::span<double> v_rate) {
+void unconstrained_rates(std::span<const double> gravity, std::span<const double> drag,
+                         std::span<const double> v, std::span<double> v_rate) {
   if (drag.empty()) {
     std::copy(gravity.begin(), gravity.end(), v_rate.begin());
   } else {
-    fall(v.size(), gravity.data(), drag.data(), v.data(), v_rate.data());
+    unconstrained_rates(v.size(), gravity.data(), drag.data(), v.data(), v_rate.data());
   }
 }
 
-void Flight::rates(double, std::span<const double>, std::span<const double> v, std::span<double> d_rate,
-                   std::span<double> v_rate) {
+void FreeTranslation::rates(double, std::span<const double>, std::span<const double> v,
+                            std::span<double> d_rate, std::span<double> v_rate) {
   std::copy(v.begin(), v.end(), d_rate.begin());
-  fall(gravity_.first(v.size()), drag_, v, v_rate);
+  unconstrained_rates(gravity_.first(v.size()), drag_, v, v_rate);
 }
 
 template <>
-void Spinning<2>::rates(double, std::span<const double>, std::span<const double> v, std::span<double> d_rate,
-                        std::span<double> v_rate) {
+void TorqueFreeRotation<2>::rates(double, std::span<const double>, std::span<const double> v,
+                                  std::span<double> d_rate, std::span<double> v_rate) {
   std::copy(v.begin(), v.end(), d_rate.begin());
   std::fill(v_rate.begin(), v_rate.end(), 0.0);
 }
 
 template <>
-void Spinning<3>::rates(double, std::span<const double> d, std::span<const double> v,
-                        std::span<double> d_rate, std::span<double> v_rate) {
+void TorqueFreeRotation<3>::rates(double, std::span<const double> d, std::span<const double> v,
+                                  std::span<double> d_rate, std::span<double> v_rate) {
   for (std::size_t i = 0; i < base_.size(); ++i) {
     const Vec3 w = base_[i] + Eigen::Map<const Vec3>(v.data() + 3 * i);
     Eigen::Map<Vec3>(d_rate.data() + 3 * i) = displacing<3>(Eigen::Map<const Vec3>(d.data() + 3 * i), w);

@@ -9,11 +9,12 @@ namespace obscura::sim {
 // component, so that a body's motion does not depend on which others share its block.
 
 /// Centres of free bodies: x' = v, v' = g - (c/m) v, on flat components.
-class Flight final : public System {
+class FreeTranslation final : public System {
  public:
   /// `gravity` and `drag` (c/m, 1/s) component by component, as long as the system; no drag where `drag` is
   /// empty.
-  Flight(std::span<const double> gravity, std::span<const double> drag) : gravity_(gravity), drag_(drag) {}
+  FreeTranslation(std::span<const double> gravity, std::span<const double> drag)
+      : gravity_(gravity), drag_(drag) {}
 
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
@@ -24,21 +25,21 @@ class Flight final : public System {
 
 /// Free turning, see sim/math/lie_step.h: in the plane the spin stays, in space it wobbles.
 template <int D>
-class Spinning final : public System {
+class TorqueFreeRotation final : public System {
  public:
   /// Principal moments (kg m^2) and base spins of the bodies of the system.
-  Spinning(std::span<const Spin<D>> inertia, std::span<const Spin<D>> base)
+  TorqueFreeRotation(std::span<const AngularVec<D>> inertia, std::span<const AngularVec<D>> base)
       : inertia_(inertia), base_(base) {}
 
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
 
  private:
-  std::span<const Spin<D>> inertia_, base_;
+  std::span<const AngularVec<D>> inertia_, base_;
 };
 
 /// v_rate = gravity - drag v, on n components; what every body feels, tied or free.
-void fall(std::span<const double> gravity, std::span<const double> drag, std::span<const double> v,
-          std::span<double> v_rate);
+void unconstrained_rates(std::span<const double> gravity, std::span<const double> drag,
+                         std::span<const double> v, std::span<double> v_rate);
 
 }  // namespace obscura::sim

@@ -12,11 +12,11 @@ void midpoint(System& system, double t, double h, std::span<double> d, std::span
   const auto dk = stages.row(2, n), vk = stages.row(3, n);
 
   system.rates(t, d, v, dk, vk);
-  along(n, d.data(), 0.5 * h, dk.data(), ds.data());
-  along(n, v.data(), 0.5 * h, vk.data(), vs.data());
+  axpy(n, d.data(), 0.5 * h, dk.data(), ds.data());
+  axpy(n, v.data(), 0.5 * h, vk.data(), vs.data());
   system.rates(t + 0.5 * h, ds, vs, dk, vk);
-  along(n, d.data(), h, dk.data(), d.data());
-  along(n, v.data(), h, vk.data(), v.data());
+  axpy(n, d.data(), h, dk.data(), d.data());
+  axpy(n, v.data(), h, vk.data(), v.data());
 }
 
 }  // namespace obscura::sim

@@ -27,14 +27,14 @@ void rk4(System& system, double t, double h, std::span<double> d, std::span<doub
   const auto d4 = stages.row(8, n), v4 = stages.row(9, n);
 
   system.rates(t, d, v, d1, v1);
-  along(n, d.data(), 0.5 * h, d1.data(), ds.data());
-  along(n, v.data(), 0.5 * h, v1.data(), vs.data());
+  axpy(n, d.data(), 0.5 * h, d1.data(), ds.data());
+  axpy(n, v.data(), 0.5 * h, v1.data(), vs.data());
   system.rates(t + 0.5 * h, ds, vs, d2, v2);
-  along(n, d.data(), 0.5 * h, d2.data(), ds.data());
-  along(n, v.data(), 0.5 * h, v2.data(), vs.data());
+  axpy(n, d.data(), 0.5 * h, d2.data(), ds.data());
+  axpy(n, v.data(), 0.5 * h, v2.data(), vs.data());
   system.rates(t + 0.5 * h, ds, vs, d3, v3);
-  along(n, d.data(), h, d3.data(), ds.data());
-  along(n, v.data(), h, v3.data(), vs.data());
+  axpy(n, d.data(), h, d3.data(), ds.data());
+  axpy(n, v.data(), h, v3.data(), vs.data());
   system.rates(t + h, ds, vs, d4, v4);
   sum(n, h, d1.data(), d2.data(), d3.data(), d4.data(), d.data());
   sum(n, h, v1.data(), v2.data(), v3.data(), v4.data(), v.data());

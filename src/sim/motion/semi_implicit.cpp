@@ -13,8 +13,8 @@ void semi_implicit(System& system, double t, double h, std::span<double> d, std:
   const auto dk = stages.row(0, n), vk = stages.row(1, n);
 
   system.rates(t, d, v, dk, vk);
-  along(n, v.data(), h, vk.data(), v.data());
-  along(n, d.data(), h, v.data(), d.data());
+  axpy(n, v.data(), h, vk.data(), v.data());
+  axpy(n, d.data(), h, v.data(), d.data());
 }
 
 }  // namespace obscura::sim

@@ -23,23 +23,23 @@ namespace {
 
 // what a link by itself needs to go on turning, less what pulls it
 template <int D>
-Wrench<D> own_resistance(const Chain<D>& chain, const ChainStance<D>& stance,
+Wrench<D> own_resistance(const Chain<D>& chain, const ChainKinematics<D>& stance,
                          const ChainDynamics<D>& dynamics, const Vec<D>& gravity, int i) {
-  const Spin<D>& w = stance.twist[i].w;
+  const AngularVec<D>& w = stance.twist[i].w;
   const Vec<D>& com = stance.com[i];
-  const Vec<D> f = chain[i].mass * (swing<D>(w, swing<D>(w, com)) - gravity);
-  const Spin<D> gyroscopic = spin_cross<D>(w, stance.inertia[i] * w);
+  const Vec<D> f = chain[i].mass * (cross_velocity<D>(w, cross_velocity<D>(w, com)) - gravity);
+  const AngularVec<D> gyroscopic = spin_cross<D>(w, stance.inertia[i] * w);
   return Wrench<D>{gyroscopic + moment<D>(com, f), f} - dynamics.applied[i];
 }
 
 template <int D>
-ArticulatedInertia<D> own_inertia(const Chain<D>& chain, const ChainStance<D>& stance, int i) {
+ArticulatedInertia<D> own_inertia(const Chain<D>& chain, const ChainKinematics<D>& stance, int i) {
   return rigid_inertia<D>(chain[i].mass, stance.com[i], stance.inertia[i]);
 }
 
 // one link's share of the forward sweep, from its origin's acceleration without the freedoms' own
 template <int D>
-void let_go(const Chain<D>& chain, const ChainStance<D>& stance, const ChainDynamics<D>& dynamics, int i,
+void let_go(const Chain<D>& chain, const ChainKinematics<D>& stance, const ChainDynamics<D>& dynamics, int i,
             Twist<D>& a, std::span<double> rate) {
   for (int j = chain.v_start(i); j < chain.v_start(i + 1); ++j) {
     rate[j] = (dynamics.push[j] - power(dynamics.U[j], a)) * dynamics.over_D[j];
@@ -49,7 +49,7 @@ void let_go(const Chain<D>& chain, const ChainStance<D>& stance, const ChainDyna
 
 // the forward sweep of an impulse: no bias, no velocity
 template <int D>
-void spread(const Chain<D>& chain, const ChainStance<D>& stance, ChainDynamics<D>& dynamics,
+void spread(const Chain<D>& chain, const ChainKinematics<D>& stance, ChainDynamics<D>& dynamics,
             std::span<double> change) {
   for (int i = 0; i < chain.size(); ++i) {
     const int p = chain[i].parent;
@@ -75,7 +75,7 @@ ChainDynamics<D>::ChainDynamics(const Chain<D>& chain)
       impulses(chain.size()) {}
 
 template <int D>
-void factor(const Chain<D>& chain, const ChainStance<D>& stance, ChainDynamics<D>& dynamics) {
+void factor(const Chain<D>& chain, const ChainKinematics<D>& stance, ChainDynamics<D>& dynamics) {
   for (int i = 0; i < chain.size(); ++i) dynamics.inertia[i] = own_inertia(chain, stance, i);
   for (int i = chain.size() - 1; i >= 0; --i) {
     ArticulatedInertia<D>& inertia = dynamics.inertia[i];
@@ -90,7 +90,7 @@ void factor(const Chain<D>& chain, const ChainStance<D>& stance, ChainDynamics<D
 }
 
 template <int D>
-void accelerate(const Chain<D>& chain, const ChainStance<D>& stance, std::span<const double> v,
+void accelerate(const Chain<D>& chain, const ChainKinematics<D>& stance, std::span<const double> v,
                 std::span<const double> tau, const Vec<D>& gravity, ChainDynamics<D>& dynamics,
                 std::span<double> rate) {
   for (int i = 0; i < chain.size(); ++i)
@@ -119,7 +119,7 @@ void accelerate(const Chain<D>& chain, const ChainStance<D>& stance, std::span<c
 }
 
 template <int D>
-void respond(const Chain<D>& chain, const ChainStance<D>& stance, int link, const Wrench<D>& wrench,
+void respond(const Chain<D>& chain, const ChainKinematics<D>& stance, int link, const Wrench<D>& wrench,
              ChainDynamics<D>& dynamics, std::span<double> change) {
   for (double& x : dynamics.push) x = 0;
   Wrench<D> p = wrench * -1;
@@ -134,7 +134,7 @@ void respond(const Chain<D>& chain, const ChainStance<D>& stance, int link, cons
 }
 
 template <int D>
-void respond(const Chain<D>& chain, const ChainStance<D>& stance, std::span<const double> along,
+void respond(const Chain<D>& chain, const ChainKinematics<D>& stance, std::span<const double> along,
              ChainDynamics<D>& dynamics, std::span<double> change) {
   for (Wrench<D>& p : dynamics.impulses) p = {};
   for (int i = chain.size() - 1; i >= 0; --i) {
@@ -150,8 +150,8 @@ void respond(const Chain<D>& chain, const ChainStance<D>& stance, std::span<cons
 }
 
 template <int D>
-Wrench<D> joint_wrench(const Chain<D>& chain, const ChainStance<D>& stance, const ChainDynamics<D>& dynamics,
-                       int link) {
+Wrench<D> joint_wrench(const Chain<D>& chain, const ChainKinematics<D>& stance,
+                       const ChainDynamics<D>& dynamics, int link) {
   const int up = chain[link].parent;
   Twist<D> a;
   if (up >= 0) a = shifted(dynamics.acceleration[up], stance.arm[link]) + stance.bias[link];
@@ -159,7 +159,7 @@ Wrench<D> joint_wrench(const Chain<D>& chain, const ChainStance<D>& stance, cons
 }
 
 template <int D>
-void inverse(const Chain<D>& chain, const ChainStance<D>& stance, std::span<const double> v,
+void inverse(const Chain<D>& chain, const ChainKinematics<D>& stance, std::span<const double> v,
              std::span<const double> rate, const Vec<D>& gravity, ChainDynamics<D>& dynamics,
              std::span<double> tau) {
   // accelerations outward
@@ -185,7 +185,7 @@ void inverse(const Chain<D>& chain, const ChainStance<D>& stance, std::span<cons
 }
 
 template <int D>
-void mass_matrix(const Chain<D>& chain, const ChainStance<D>& stance, ChainDynamics<D>& dynamics,
+void mass_matrix(const Chain<D>& chain, const ChainKinematics<D>& stance, ChainDynamics<D>& dynamics,
                  Eigen::Ref<Eigen::MatrixXd> m) {
   m.setZero();
   for (int i = 0; i < chain.size(); ++i) dynamics.inertia[i] = own_inertia(chain, stance, i);
@@ -207,17 +207,18 @@ void mass_matrix(const Chain<D>& chain, const ChainStance<D>& stance, ChainDynam
 
 #define OBSCURA_INSTANTIATE(D)                                                                               \
   template struct ChainDynamics<D>;                                                                          \
-  template void factor<D>(const Chain<D>&, const ChainStance<D>&, ChainDynamics<D>&);                        \
-  template void accelerate<D>(const Chain<D>&, const ChainStance<D>&, std::span<const double>,               \
+  template void factor<D>(const Chain<D>&, const ChainKinematics<D>&, ChainDynamics<D>&);                    \
+  template void accelerate<D>(const Chain<D>&, const ChainKinematics<D>&, std::span<const double>,           \
                               std::span<const double>, const Vec<D>&, ChainDynamics<D>&, std::span<double>); \
-  template void respond<D>(const Chain<D>&, const ChainStance<D>&, int, const Wrench<D>&, ChainDynamics<D>&, \
-                           std::span<double>);                                                               \
-  template void respond<D>(const Chain<D>&, const ChainStance<D>&, std::span<const double>,                  \
+  template void respond<D>(const Chain<D>&, const ChainKinematics<D>&, int, const Wrench<D>&,                \
                            ChainDynamics<D>&, std::span<double>);                                            \
-  template Wrench<D> joint_wrench<D>(const Chain<D>&, const ChainStance<D>&, const ChainDynamics<D>&, int);  \
-  template void inverse<D>(const Chain<D>&, const ChainStance<D>&, std::span<const double>,                  \
+  template void respond<D>(const Chain<D>&, const ChainKinematics<D>&, std::span<const double>,              \
+                           ChainDynamics<D>&, std::span<double>);                                            \
+  template Wrench<D> joint_wrench<D>(const Chain<D>&, const ChainKinematics<D>&, const ChainDynamics<D>&,    \
+                                     int);                                                                   \
+  template void inverse<D>(const Chain<D>&, const ChainKinematics<D>&, std::span<const double>,              \
                            std::span<const double>, const Vec<D>&, ChainDynamics<D>&, std::span<double>);    \
-  template void mass_matrix<D>(const Chain<D>&, const ChainStance<D>&, ChainDynamics<D>&,                    \
+  template void mass_matrix<D>(const Chain<D>&, const ChainKinematics<D>&, ChainDynamics<D>&,                \
                                Eigen::Ref<Eigen::MatrixXd>);
 OBSCURA_INSTANTIATE(2)
 OBSCURA_INSTANTIATE(3)

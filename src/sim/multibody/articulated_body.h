@@ -35,45 +35,45 @@ struct ChainDynamics {
 /// Articulated inertias: what accelerate() and respond() share, and depends on q only. After place().
 /// Requires that no freedom is without inertia, as a ball joint about the line to a point mass would be.
 template <int D>
-void factor(const Chain<D>& chain, const ChainStance<D>& stance, ChainDynamics<D>& dynamics);
+void factor(const Chain<D>& chain, const ChainKinematics<D>& stance, ChainDynamics<D>& dynamics);
 
 /// Forward dynamics by the articulated-body algorithm, O(n): v' of the velocity v under tau (along the
 /// freedoms), damping, the applied wrenches and gravity (m/s^2). After place(), move() and factor(). tau, v,
 /// rate: chain.velocities() numbers.
 template <int D>
-void accelerate(const Chain<D>& chain, const ChainStance<D>& stance, std::span<const double> v,
+void accelerate(const Chain<D>& chain, const ChainKinematics<D>& stance, std::span<const double> v,
                 std::span<const double> tau, const Vec<D>& gravity, ChainDynamics<D>& dynamics,
                 std::span<double> rate);
 
 /// M^-1 J' of one row: the change of v that an impulse `wrench` at the origin of `link` makes, O(n). After
 /// factor().
 template <int D>
-void respond(const Chain<D>& chain, const ChainStance<D>& stance, int link, const Wrench<D>& wrench,
+void respond(const Chain<D>& chain, const ChainKinematics<D>& stance, int link, const Wrench<D>& wrench,
              ChainDynamics<D>& dynamics, std::span<double> change);
 
 /// M^-1 x: the change of v that an impulse along the freedoms makes, as of a motor or a limit, O(n). After
 /// factor(). `change` may be `along`.
 template <int D>
-void respond(const Chain<D>& chain, const ChainStance<D>& stance, std::span<const double> along,
+void respond(const Chain<D>& chain, const ChainKinematics<D>& stance, std::span<const double> along,
              ChainDynamics<D>& dynamics, std::span<double> change);
 
 /// The wrench at its origin that the joint of `link` puts on it, motor and freedoms included. After
 /// accelerate().
 template <int D>
-Wrench<D> joint_wrench(const Chain<D>& chain, const ChainStance<D>& stance, const ChainDynamics<D>& dynamics,
-                       int link);
+Wrench<D> joint_wrench(const Chain<D>& chain, const ChainKinematics<D>& stance,
+                       const ChainDynamics<D>& dynamics, int link);
 
 /// Inverse dynamics (recursive Newton-Euler): the tau under which v has the given rate, O(n). With rate zero,
 /// what the reference calls h. After place() and move(). Overwrites what accelerate() left.
 template <int D>
-void inverse(const Chain<D>& chain, const ChainStance<D>& stance, std::span<const double> v,
+void inverse(const Chain<D>& chain, const ChainKinematics<D>& stance, std::span<const double> v,
              std::span<const double> rate, const Vec<D>& gravity, ChainDynamics<D>& dynamics,
              std::span<double> tau);
 
 /// The joint-space mass matrix (composite rigid bodies), symmetric, velocities() x velocities(). After
 /// place(). Overwrites what factor() left.
 template <int D>
-void mass_matrix(const Chain<D>& chain, const ChainStance<D>& stance, ChainDynamics<D>& dynamics,
+void mass_matrix(const Chain<D>& chain, const ChainKinematics<D>& stance, ChainDynamics<D>& dynamics,
                  Eigen::Ref<Eigen::MatrixXd> m);
 
 }  // namespace obscura::sim

@@ -44,16 +44,16 @@ std::vector<double> offsets([[maybe_unused]] const Chain<D>& chain) {
 
 // what a chain makes of a joint between rows
 template <int D>
-std::optional<Freedom> freedom(JointKind kind) {
+std::optional<JointType> freedom(JointKind kind) {
   switch (kind) {
     case JointKind::pin:
-      return D == 2 ? Freedom::revolute : Freedom::ball;
+      return D == 2 ? JointType::revolute : JointType::ball;
     case JointKind::hinge:
-      return Freedom::revolute;
+      return JointType::revolute;
     case JointKind::slider:
-      return Freedom::prismatic;
+      return JointType::prismatic;
     case JointKind::weld:
-      return Freedom::weld;
+      return JointType::weld;
     case JointKind::rod:
     case JointKind::rope:
       break;
@@ -64,7 +64,7 @@ std::optional<Freedom> freedom(JointKind kind) {
 // the turn and then the place of a body, as the numbers of what flies
 template <int D>
 void put_pose(const State<D>& state, int body, std::vector<double>& q) {
-  const Turn<D>& turn = state.turn[turning(state, body)];
+  const Orientation<D>& turn = state.turn[turning(state, body)];
   q.assign(turn.data(), turn.data() + turn.size());
   q.insert(q.end(), state.x[body].data(), state.x[body].data() + D);
 }
@@ -113,7 +113,7 @@ class Growing {
     articulate(world_, links_, members_);
     Articulation<D>& made = world_.model.chains.back();
     made.joints = held_;
-    Posture& posture = world_.state.postures.back();
+    ChainState& posture = world_.state.postures.back();
     if (joint < 0) {
       std::vector<double> pose;
       put_pose(world_.state, root, pose);
@@ -141,7 +141,7 @@ class Growing {
     Link<D> link = link_of(world_.model.bodies[body]);
     link.parent = parent;
     if (joint < 0) {
-      link.joint.freedom = Freedom::free;
+      link.joint.freedom = JointType::free;
     } else {
       Joint<D>& it = world_.model.joints[joint];
       it.linked = true;
@@ -158,8 +158,8 @@ class Growing {
   }
 
   // what the joints leave of the velocities that the bodies have
-  void carry_over(const Chain<D>& chain, Posture& posture) {
-    ChainStance<D> stance(chain);
+  void carry_over(const Chain<D>& chain, ChainState& posture) {
+    ChainKinematics<D> stance(chain);
     ChainDynamics<D> dynamics(chain);
     place<D>(chain, posture.q, stance);
     factor(chain, stance, dynamics);

@@ -27,7 +27,7 @@ Chain<D>::Chain(std::vector<Link<D>> links) : links_(std::move(links)) {
   for (int i = 0; i < size(); ++i) {
     const Link<D>& link = links_[i];
     assert(link.parent >= -1 && link.parent < i);
-    assert(link.joint.freedom != Freedom::free || link.parent == -1);
+    assert(link.joint.freedom != JointType::free || link.parent == -1);
     q_start_.push_back(q_start_.back() + sim::positions<D>(link.joint.freedom));
     v_start_.push_back(v_start_.back() + sim::velocities<D>(link.joint.freedom));
 

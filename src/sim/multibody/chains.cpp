@@ -14,37 +14,37 @@ namespace obscura::sim {
 
 namespace {
 
-bool turns_first(Freedom freedom) {
-  return freedom == Freedom::revolute || freedom == Freedom::ball || freedom == Freedom::free;
+bool turns_first(JointType freedom) {
+  return freedom == JointType::revolute || freedom == JointType::ball || freedom == JointType::free;
 }
 
 // how a link is turned; of q and -q the one nearer to `before`
-Turn<2> turn_of(const Articulation<2>& of, std::span<const double> q, int link, const Rotation<2>&,
-                const Turn<2>&) {
+Orientation<2> turn_of(const Articulation<2>& of, std::span<const double> q, int link, const Rotation<2>&,
+                       const Orientation<2>&) {
   const Chain<2>& chain = *of.tree;
   double sum = of.offsets[link];
   for (int i = link; i >= 0; i = chain[i].parent) {
     if (turns_first(chain[i].joint.freedom)) sum += q[chain.q_start(i)];
   }
-  return Turn<2>(sum);
+  return Orientation<2>(sum);
 }
-Turn<3> turn_of(const Articulation<3>&, std::span<const double>, int, const Rotation<3>& rotation,
-                const Turn<3>& before) {
+Orientation<3> turn_of(const Articulation<3>&, std::span<const double>, int, const Rotation<3>& rotation,
+                       const Orientation<3>& before) {
   const Eigen::Quaterniond quaternion(rotation);
-  const Turn<3> turn = quaternion.coeffs() / std::sqrt(quaternion.squaredNorm());
-  return turn.dot(before) < 0 ? Turn<3>(-turn) : turn;
+  const Orientation<3> turn = quaternion.coeffs() / std::sqrt(quaternion.squaredNorm());
+  return turn.dot(before) < 0 ? Orientation<3>(-turn) : turn;
 }
 
 // a link's body as its chain stands
 template <int D>
-Stance<D> standing(const Chain<D>& chain, const ChainStance<D>& stance, int link) {
+BodyMotion<D> standing(const Chain<D>& chain, const ChainKinematics<D>& stance, int link) {
   const Pose<D> pose = link_pose(chain, stance, link);
   return {pose.place, point_velocity<D>(stance, link, pose.place), pose.turn, stance.twist[link].w};
 }
 
 // from a link's origin to its centre
 template <int D>
-Vec<D> arm(const Chain<D>& chain, const ChainStance<D>& stance, int link) {
+Vec<D> arm(const Chain<D>& chain, const ChainKinematics<D>& stance, int link) {
   return stance.joint[link].turn * chain.hung(link).link.place;
 }
 
@@ -55,8 +55,8 @@ Articulated<D>::Articulated(const Model<D>& model) : model_(model), places_(mode
   for (const Articulation<D>& of : model.chains) {
     const Chain<D>& chain = *of.tree;
     const std::vector<double> zeros(std::size_t(chain.velocities()));
-    trees_.push_back({&of, true, 0, 0, chain.home(), chain.home(), zeros, zeros, zeros, ChainStance<D>(chain),
-                      ChainDynamics<D>(chain)});
+    trees_.push_back({&of, true, 0, 0, chain.home(), chain.home(), zeros, zeros, zeros,
+                      ChainKinematics<D>(chain), ChainDynamics<D>(chain)});
   }
   std::vector<int> all(trees_.size());
   std::iota(all.begin(), all.end(), 0);
@@ -119,17 +119,17 @@ void Articulated<D>::stand(const State<D>& state) {
 }
 
 template <int D>
-Stance<D> Articulated<D>::stance(int link) const {
+BodyMotion<D> Articulated<D>::body_motion(int link) const {
   const Tree& tree = trees_[where_[link].tree];
   return standing(tree.chain(), tree.stance, where_[link].link);
 }
 
 template <int D>
-Twist<D> Articulated<D>::drift(int link) const {
+Twist<D> Articulated<D>::velocity_product(int link) const {
   const Tree& tree = trees_[where_[link].tree];
   const int i = where_[link].link;
   return {
-      tree.stance.drift[i].w,
+      tree.stance.velocity_product[i].w,
       point_drift<D>(tree.stance, i, Vec<D>(tree.stance.joint[i].place + arm(tree.chain(), tree.stance, i)))};
 }
 
@@ -219,7 +219,7 @@ void Articulated<D>::give(std::span<const double> d, std::span<const double> v, 
   for (std::size_t i = 0; i < trees_.size(); ++i) {
     Tree& tree = trees_[i];
     if (!tree.awake) continue;
-    Posture& posture = state.postures[i];
+    ChainState& posture = state.postures[i];
     tree.chain().displace(tree.q, tree.own(d), posture.q);
     const std::span<const double> own = tree.own(v);
     std::copy(own.begin(), own.end(), posture.v.begin());
@@ -232,7 +232,7 @@ void Articulated<D>::jump(State<D>& state, std::span<const double> change, bool 
   for (std::size_t i = 0; i < trees_.size(); ++i) {
     const Tree& tree = trees_[i];
     if (!tree.awake) continue;
-    Posture& posture = state.postures[i];
+    ChainState& posture = state.postures[i];
     const std::span<const double> own = tree.own(change);
     if (places) {
       tree.chain().displace(posture.q, own, posture.q);
@@ -243,11 +243,11 @@ void Articulated<D>::jump(State<D>& state, std::span<const double> change, bool 
 }
 
 template <int D>
-void Articulated<D>::advance(const std::vector<Posture>& begun, double h, State<D>& state) {
+void Articulated<D>::advance(const std::vector<ChainState>& begun, double h, State<D>& state) {
   for (std::size_t i = 0; i < trees_.size(); ++i) {
     Tree& tree = trees_[i];
     if (!tree.awake) continue;
-    Posture& posture = state.postures[i];
+    ChainState& posture = state.postures[i];
     for (std::size_t j = 0; j < posture.v.size(); ++j)
       tree.rate[j] = 0.5 * h * (begun[i].v[j] + posture.v[j]);
     tree.chain().displace(begun[i].q, tree.rate, posture.q);
@@ -267,7 +267,7 @@ template <int D>
 void Articulated<D>::show(const Tree& tree, std::span<const double> q, State<D>& state) const {
   for (int link = 0; link < tree.chain().size(); ++link) {
     const int body = tree.of->bodies[link];
-    const Stance<D> at = standing(tree.chain(), tree.stance, link);
+    const BodyMotion<D> at = standing(tree.chain(), tree.stance, link);
     state.x[body] = at.x, state.v[body] = at.v;
     const int k = turning(state, body);
     if (k < 0) continue;

@@ -56,10 +56,10 @@ class Articulated {
   void stand(const State<D>& state);
 
   /// How a link stands and moves.
-  Stance<D> stance(int link) const;
+  BodyMotion<D> body_motion(int link) const;
 
   /// Acceleration of a link at its centre where v' = 0.
-  Twist<D> drift(int link) const;
+  Twist<D> velocity_product(int link) const;
 
   /// Motion of each link at its centre that v has, at this stance: J v of all links.
   void motions(std::span<const double> v, std::vector<Twist<D>>& out);
@@ -89,7 +89,7 @@ class Articulated {
 
   /// Moves the places of `state` by the mean of the velocities in `begun` and its own, through h (s), from
   /// those in `begun`.
-  void advance(const std::vector<Posture>& begun, double h, State<D>& state);
+  void advance(const std::vector<ChainState>& begun, double h, State<D>& state);
 
   /// Puts the links' bodies of `state` where its postures have them; stands there.
   void follow(State<D>& state);
@@ -102,7 +102,7 @@ class Articulated {
     std::vector<double> q, held;    // where displacements begin, and at the stage at hand
     std::vector<double> v;          // at the stage at hand
     std::vector<double> tau, rate;  // tau: none
-    ChainStance<D> stance;
+    ChainKinematics<D> stance;
     ChainDynamics<D> dynamics;
 
     const Chain<D>& chain() const { return *of->tree; }

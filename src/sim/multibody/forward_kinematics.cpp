@@ -10,7 +10,7 @@
 namespace obscura::sim {
 
 template <int D>
-ChainStance<D>::ChainStance(const Chain<D>& chain)
+ChainKinematics<D>::ChainKinematics(const Chain<D>& chain)
     : joint(chain.size()),
       arm(chain.size(), Vec<D>::Zero()),
       com(chain.size(), Vec<D>::Zero()),
@@ -18,10 +18,10 @@ ChainStance<D>::ChainStance(const Chain<D>& chain)
       freedom(chain.velocities()),
       twist(chain.size()),
       bias(chain.size()),
-      drift(chain.size()) {}
+      velocity_product(chain.size()) {}
 
 template <int D>
-void place(const Chain<D>& chain, std::span<const double> q, ChainStance<D>& stance) {
+void place(const Chain<D>& chain, std::span<const double> q, ChainKinematics<D>& stance) {
   for (int i = 0; i < chain.size(); ++i) {
     const Link<D>& link = chain[i];
     const auto& hung = chain.hung(i);
@@ -51,7 +51,7 @@ void place(const Chain<D>& chain, std::span<const double> q, ChainStance<D>& sta
 }
 
 template <int D>
-void move(const Chain<D>& chain, std::span<const double> v, ChainStance<D>& stance) {
+void move(const Chain<D>& chain, std::span<const double> v, ChainKinematics<D>& stance) {
   for (int i = 0; i < chain.size(); ++i) {
     // by its own joint
     Twist<D> own;
@@ -60,46 +60,48 @@ void move(const Chain<D>& chain, std::span<const double> v, ChainStance<D>& stan
     const int p = chain[i].parent;
     if (p < 0) {
       stance.twist[i] = own;
-      stance.bias[i] = stance.drift[i] = {};
+      stance.bias[i] = stance.velocity_product[i] = {};
       continue;
     }
     const Vec<D>& r = stance.arm[i];
-    const Spin<D>& w = stance.twist[p].w;
+    const AngularVec<D>& w = stance.twist[p].w;
     stance.twist[i] = shifted(stance.twist[p], r) + own;
-    stance.bias[i] = {spin_cross<D>(w, own.w), swing<D>(w, swing<D>(w, r)) + 2 * swing<D>(w, own.v)};
-    stance.drift[i] = shifted(stance.drift[p], r) + stance.bias[i];
+    stance.bias[i] = {spin_cross<D>(w, own.w),
+                      cross_velocity<D>(w, cross_velocity<D>(w, r)) + 2 * cross_velocity<D>(w, own.v)};
+    stance.velocity_product[i] = shifted(stance.velocity_product[p], r) + stance.bias[i];
   }
 }
 
 template <int D>
-Pose<D> link_pose(const Chain<D>& chain, const ChainStance<D>& stance, int link) {
+Pose<D> link_pose(const Chain<D>& chain, const ChainKinematics<D>& stance, int link) {
   return stance.joint[link] * chain.hung(link).link;
 }
 
 template <int D>
-Vec<D> point_velocity(const ChainStance<D>& stance, int link, const Vec<D>& point) {
+Vec<D> point_velocity(const ChainKinematics<D>& stance, int link, const Vec<D>& point) {
   return shifted<D>(stance.twist[link], point - stance.joint[link].place).v;
 }
 
 template <int D>
-Vec<D> point_drift(const ChainStance<D>& stance, int link, const Vec<D>& point) {
-  return point_acceleration(stance, link, stance.drift[link], point);
+Vec<D> point_drift(const ChainKinematics<D>& stance, int link, const Vec<D>& point) {
+  return point_acceleration(stance, link, stance.velocity_product[link], point);
 }
 
 template <int D>
-Vec<D> point_acceleration(const ChainStance<D>& stance, int link, const Twist<D>& a, const Vec<D>& point) {
+Vec<D> point_acceleration(const ChainKinematics<D>& stance, int link, const Twist<D>& a,
+                          const Vec<D>& point) {
   const Vec<D> r = point - stance.joint[link].place;
-  const Spin<D>& w = stance.twist[link].w;
-  return shifted(a, r).v + swing<D>(w, swing<D>(w, r));
+  const AngularVec<D>& w = stance.twist[link].w;
+  return shifted(a, r).v + cross_velocity<D>(w, cross_velocity<D>(w, r));
 }
 
 template <int D>
-Wrench<D> wrench_at(const ChainStance<D>& stance, int link, const Vec<D>& point, const Vec<D>& force) {
-  return brought(Wrench<D>{Spin<D>::Zero(), force}, Vec<D>(point - stance.joint[link].place));
+Wrench<D> wrench_at(const ChainKinematics<D>& stance, int link, const Vec<D>& point, const Vec<D>& force) {
+  return brought(Wrench<D>{AngularVec<D>::Zero(), force}, Vec<D>(point - stance.joint[link].place));
 }
 
 template <int D>
-void row(const Chain<D>& chain, const ChainStance<D>& stance, int link, const Wrench<D>& wrench,
+void row(const Chain<D>& chain, const ChainKinematics<D>& stance, int link, const Wrench<D>& wrench,
          std::span<double> out) {
   for (double& x : out) x = 0;
   Wrench<D> f = wrench;
@@ -110,14 +112,14 @@ void row(const Chain<D>& chain, const ChainStance<D>& stance, int link, const Wr
 }
 
 template <int D>
-ChainTotals<D> totals(const Chain<D>& chain, const ChainStance<D>& stance, const Vec<D>& gravity) {
+ChainTotals<D> totals(const Chain<D>& chain, const ChainKinematics<D>& stance, const Vec<D>& gravity) {
   ChainTotals<D> sum;
   for (int i = 0; i < chain.size(); ++i) {
     const double mass = chain[i].mass;
     const Vec<D> x = stance.joint[i].place + stance.com[i];
-    const Spin<D>& w = stance.twist[i].w;
-    const Vec<D> v = stance.twist[i].v + swing<D>(w, stance.com[i]);
-    const Spin<D> spin = stance.inertia[i] * w;
+    const AngularVec<D>& w = stance.twist[i].w;
+    const Vec<D> v = stance.twist[i].v + cross_velocity<D>(w, stance.com[i]);
+    const AngularVec<D> spin = stance.inertia[i] * w;
     sum.mass += mass;
     sum.centre += mass * x;
     sum.kinetic += 0.5 * mass * v.squaredNorm() + 0.5 * w.dot(spin);
@@ -129,17 +131,18 @@ ChainTotals<D> totals(const Chain<D>& chain, const ChainStance<D>& stance, const
   return sum;
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                            \
-  template struct ChainStance<D>;                                                                         \
-  template void place<D>(const Chain<D>&, std::span<const double>, ChainStance<D>&);                      \
-  template void move<D>(const Chain<D>&, std::span<const double>, ChainStance<D>&);                       \
-  template Pose<D> link_pose<D>(const Chain<D>&, const ChainStance<D>&, int);                             \
-  template Vec<D> point_velocity<D>(const ChainStance<D>&, int, const Vec<D>&);                           \
-  template Vec<D> point_drift<D>(const ChainStance<D>&, int, const Vec<D>&);                              \
-  template Vec<D> point_acceleration<D>(const ChainStance<D>&, int, const Twist<D>&, const Vec<D>&);      \
-  template Wrench<D> wrench_at<D>(const ChainStance<D>&, int, const Vec<D>&, const Vec<D>&);              \
-  template void row<D>(const Chain<D>&, const ChainStance<D>&, int, const Wrench<D>&, std::span<double>); \
-  template ChainTotals<D> totals<D>(const Chain<D>&, const ChainStance<D>&, const Vec<D>&);
+#define OBSCURA_INSTANTIATE(D)                                                                           \
+  template struct ChainKinematics<D>;                                                                    \
+  template void place<D>(const Chain<D>&, std::span<const double>, ChainKinematics<D>&);                 \
+  template void move<D>(const Chain<D>&, std::span<const double>, ChainKinematics<D>&);                  \
+  template Pose<D> link_pose<D>(const Chain<D>&, const ChainKinematics<D>&, int);                        \
+  template Vec<D> point_velocity<D>(const ChainKinematics<D>&, int, const Vec<D>&);                      \
+  template Vec<D> point_drift<D>(const ChainKinematics<D>&, int, const Vec<D>&);                         \
+  template Vec<D> point_acceleration<D>(const ChainKinematics<D>&, int, const Twist<D>&, const Vec<D>&); \
+  template Wrench<D> wrench_at<D>(const ChainKinematics<D>&, int, const Vec<D>&, const Vec<D>&);         \
+  template void row<D>(const Chain<D>&, const ChainKinematics<D>&, int, const Wrench<D>&,                \
+                       std::span<double>);                                                               \
+  template ChainTotals<D> totals<D>(const Chain<D>&, const ChainKinematics<D>&, const Vec<D>&);
 OBSCURA_INSTANTIATE(2)
 OBSCURA_INSTANTIATE(3)
 #undef OBSCURA_INSTANTIATE

@@ -21,28 +21,28 @@ template <int D>
 constexpr int kTurns = D == 2 ? 1 : 4;
 
 // how many a joint has where any turn takes `turn` and any place `place`
-int numbers(Freedom freedom, int turn, int place) {
+int numbers(JointType freedom, int turn, int place) {
   switch (freedom) {
-    case Freedom::weld:
+    case JointType::weld:
       return 0;
-    case Freedom::revolute:
-    case Freedom::prismatic:
+    case JointType::revolute:
+    case JointType::prismatic:
       return 1;
-    case Freedom::ball:
+    case JointType::ball:
       return turn;
-    case Freedom::free:
+    case JointType::free:
       return turn + place;
   }
   return 0;
 }
 
-bool turns_all_ways(Freedom freedom) { return freedom == Freedom::ball || freedom == Freedom::free; }
+bool turns_all_ways(JointType freedom) { return freedom == JointType::ball || freedom == JointType::free; }
 
 // the turn at the head of a ball's or free link's q
 template <int D>
 Rotation<D> turn_of(std::span<const double> q) {
   if constexpr (D == 2) {
-    return rotation<D>(Turn<D>(q[0]));
+    return rotation<D>(Orientation<D>(q[0]));
   } else {
     return matrix({q[0], q[1], q[2], q[3]});
   }
@@ -51,17 +51,17 @@ Rotation<D> turn_of(std::span<const double> q) {
 }  // namespace
 
 template <int D>
-int positions(Freedom freedom) {
+int positions(JointType freedom) {
   return numbers(freedom, kTurns<D>, D);
 }
 
 template <int D>
-int velocities(Freedom freedom) {
-  return numbers(freedom, kSpins<D>, D);
+int velocities(JointType freedom) {
+  return numbers(freedom, kAngular<D>, D);
 }
 
 template <int D>
-void put_home(Freedom freedom, std::span<double> q) {
+void put_home(JointType freedom, std::span<double> q) {
   std::fill(q.begin(), q.end(), 0.0);
   if (D == 3 && turns_all_ways(freedom)) q[3] = 1;
 }
@@ -70,9 +70,9 @@ template <int D>
 Pose<D> pose(const LinkJoint<D>& joint, std::span<const double> q) {
   Pose<D> out;
   switch (joint.freedom) {
-    case Freedom::weld:
+    case JointType::weld:
       break;
-    case Freedom::revolute:
+    case JointType::revolute:
       if constexpr (D == 2) {
         out.turn = turn_of<D>(q);
       } else {
@@ -80,13 +80,13 @@ Pose<D> pose(const LinkJoint<D>& joint, std::span<const double> q) {
         out.turn = about(joint.axis, s, c);
       }
       break;
-    case Freedom::prismatic:
+    case JointType::prismatic:
       out.place = joint.axis * q[0];
       break;
-    case Freedom::ball:
+    case JointType::ball:
       out.turn = turn_of<D>(q);
       break;
-    case Freedom::free:
+    case JointType::free:
       out.turn = turn_of<D>(q);
       for (int k = 0; k < D; ++k) out.place[k] = q[kTurns<D> + k];
       break;
@@ -98,39 +98,40 @@ template <int D>
 void freedoms(const LinkJoint<D>& joint, [[maybe_unused]] const Rotation<D>& on_parent,
               [[maybe_unused]] const Rotation<D>& on_link, std::span<Twist<D>> out) {
   const auto spins = [&] {
-    for (int k = 0; k < kSpins<D>; ++k) {
+    for (int k = 0; k < kAngular<D>; ++k) {
       if constexpr (D == 2) {
-        out[k] = {Spin<D>::Ones(), Vec<D>::Zero()};
+        out[k] = {AngularVec<D>::Ones(), Vec<D>::Zero()};
       } else {
         out[k] = {on_link.col(k), Vec<D>::Zero()};
       }
     }
   };
   switch (joint.freedom) {
-    case Freedom::weld:
+    case JointType::weld:
       break;
-    case Freedom::revolute:
+    case JointType::revolute:
       if constexpr (D == 2) {
         spins();
       } else {
         out[0] = {on_parent * joint.axis, Vec<D>::Zero()};
       }
       break;
-    case Freedom::prismatic:
-      out[0] = {Spin<D>::Zero(), on_parent * joint.axis};
+    case JointType::prismatic:
+      out[0] = {AngularVec<D>::Zero(), on_parent * joint.axis};
       break;
-    case Freedom::ball:
+    case JointType::ball:
       spins();
       break;
-    case Freedom::free:
+    case JointType::free:
       spins();
-      for (int k = 0; k < D; ++k) out[kSpins<D> + k] = {Spin<D>::Zero(), on_parent.col(k)};
+      for (int k = 0; k < D; ++k) out[kAngular<D> + k] = {AngularVec<D>::Zero(), on_parent.col(k)};
       break;
   }
 }
 
 template <int D>
-void displace(Freedom freedom, std::span<const double> q, std::span<const double> d, std::span<double> out) {
+void displace(JointType freedom, std::span<const double> q, std::span<const double> d,
+              std::span<double> out) {
   assert(int(q.size()) == positions<D>(freedom) && int(d.size()) == velocities<D>(freedom));
   if (D == 3 && turns_all_ways(freedom)) {
     const Eigen::Vector4d to = turned({q[0], q[1], q[2], q[3]}, {d[0], d[1], d[2]});
@@ -142,7 +143,7 @@ void displace(Freedom freedom, std::span<const double> q, std::span<const double
 }
 
 template <int D>
-void displacement_rate(Freedom freedom, std::span<const double> d, std::span<const double> v,
+void displacement_rate(JointType freedom, std::span<const double> d, std::span<const double> v,
                        std::span<double> out) {
   std::size_t k = 0;
   if (D == 3 && turns_all_ways(freedom)) {
@@ -152,15 +153,15 @@ void displacement_rate(Freedom freedom, std::span<const double> d, std::span<con
   for (; k < v.size(); ++k) out[k] = v[k];
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                             \
-  template int positions<D>(Freedom);                                                                      \
-  template int velocities<D>(Freedom);                                                                     \
-  template void put_home<D>(Freedom, std::span<double>);                                                   \
-  template Pose<D> pose<D>(const LinkJoint<D>&, std::span<const double>);                                  \
-  template void freedoms<D>(const LinkJoint<D>&, const Rotation<D>&, const Rotation<D>&,                   \
-                            std::span<Twist<D>>);                                                          \
-  template void displace<D>(Freedom, std::span<const double>, std::span<const double>, std::span<double>); \
-  template void displacement_rate<D>(Freedom, std::span<const double>, std::span<const double>,            \
+#define OBSCURA_INSTANTIATE(D)                                                                               \
+  template int positions<D>(JointType);                                                                      \
+  template int velocities<D>(JointType);                                                                     \
+  template void put_home<D>(JointType, std::span<double>);                                                   \
+  template Pose<D> pose<D>(const LinkJoint<D>&, std::span<const double>);                                    \
+  template void freedoms<D>(const LinkJoint<D>&, const Rotation<D>&, const Rotation<D>&,                     \
+                            std::span<Twist<D>>);                                                            \
+  template void displace<D>(JointType, std::span<const double>, std::span<const double>, std::span<double>); \
+  template void displacement_rate<D>(JointType, std::span<const double>, std::span<const double>,            \
                                      std::span<double>);
 OBSCURA_INSTANTIATE(2)
 OBSCURA_INSTANTIATE(3)

@@ -9,7 +9,7 @@
 namespace obscura::sim {
 
 /// What the joint of a link lets it do against its parent. In the plane a ball is a revolute.
-enum class Freedom {
+enum class JointType {
   weld,       // nothing
   revolute,   // turn about an axis: q = angle, rad
   prismatic,  // slide along an axis: q = m
@@ -27,7 +27,7 @@ struct LinkJoint {
     double most = 0;   // the largest torque (N m) or force (N) it has
   };
 
-  Freedom freedom = Freedom::revolute;
+  JointType freedom = JointType::revolute;
   Pose<D> on_parent;                  // the joint's frame, seen from the parent's (from the room for -1)
   Pose<D> on_link;                    // the same frame where q is zero, seen from the link's
   Vec<D> axis = Vec<D>::Unit(D - 1);  // unit, in the joint's frame; the plane's revolute has none
@@ -41,13 +41,13 @@ struct LinkJoint {
 
 /// How many numbers of q and of v a joint has.
 template <int D>
-int positions(Freedom freedom);
+int positions(JointType freedom);
 template <int D>
-int velocities(Freedom freedom);
+int velocities(JointType freedom);
 
 /// Writes the q of a joint whose two frames agree: zeros, and the quaternion (0, 0, 0, 1).
 template <int D>
-void put_home(Freedom freedom, std::span<double> q);
+void put_home(JointType freedom, std::span<double> q);
 
 /// The joint's frame on the link, seen from the joint's frame on the parent.
 template <int D>
@@ -62,11 +62,11 @@ void freedoms(const LinkJoint<D>& joint, const Rotation<D>& on_parent, const Rot
 /// Where q comes to by a displacement d, one number a velocity: turns by the exponential, all else by
 /// addition. `out` may be `q`.
 template <int D>
-void displace(Freedom freedom, std::span<const double> q, std::span<const double> d, std::span<double> out);
+void displace(JointType freedom, std::span<const double> q, std::span<const double> d, std::span<double> out);
 
 /// d' of such a displacement under the velocity v: v itself but for turns in space, where it is dexp^-1.
 template <int D>
-void displacement_rate(Freedom freedom, std::span<const double> d, std::span<const double> v,
+void displacement_rate(JointType freedom, std::span<const double> d, std::span<const double> v,
                        std::span<double> out);
 
 }  // namespace obscura::sim

@@ -15,13 +15,13 @@ namespace obscura::sim {
 namespace {
 
 // distance from p to the segment of face i
-double distance(const Outline& outline, int i, const Vec<2>& p) {
+double distance(const ConvexPolygon& outline, int i, const Vec<2>& p) {
   const Vec<2> from = outline.corner(i), along = outline.corner(outline.next(i)) - from;
   const double s = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
   return (p - from - s * along).norm();
 }
 
-double nearest(const Outline& outline, const Outline& other, const Lie& lies) {
+double nearest(const ConvexPolygon& outline, const ConvexPolygon& other, const Lie& lies) {
   double least = 1e300;
   for (int i = 0; i < outline.faces(); ++i) {
     for (int k = 0; k < other.corners(); ++k) {
@@ -32,7 +32,7 @@ double nearest(const Outline& outline, const Outline& other, const Lie& lies) {
 }
 
 // the same as by corners, for the two axes of a box at once
-Separation of_boxes(const Outline& of, const Outline& other, const Lie& lies) {
+Separation of_boxes(const ConvexPolygon& of, const ConvexPolygon& other, const Lie& lies) {
   const Vec<2> away = lies * other.middle() - of.middle();
   const Vec<2> s = away.cwiseAbs() - of.half() - lies.turn.cwiseAbs() * other.half();
   const int upright = away[1] > 0 ? 2 : 0, across = away[0] < 0 ? 3 : 1;
@@ -42,7 +42,7 @@ Separation of_boxes(const Outline& of, const Outline& other, const Lie& lies) {
 
 }  // namespace
 
-Outline::Outline(const Shape<2>& shape) : shape_(&shape) {
+ConvexPolygon::ConvexPolygon(const Shape<2>& shape) : shape_(&shape) {
   assert(shape.kind != ShapeKind::compound);
   switch (shape.kind) {
     case ShapeKind::ball:
@@ -70,7 +70,7 @@ Outline::Outline(const Shape<2>& shape) : shape_(&shape) {
   }
 }
 
-int Outline::farthest(const Vec<2>& d) const {
+int ConvexPolygon::farthest(const Vec<2>& d) const {
   if (corners_ == 1) return 0;
   if (is_box()) {
     if (d[1] > 0) return d[0] > 0 ? 2 : 3;
@@ -88,7 +88,7 @@ int Outline::farthest(const Vec<2>& d) const {
   return best;
 }
 
-int Outline::facing(const Vec<2>& d) const {
+int ConvexPolygon::facing(const Vec<2>& d) const {
   if (is_box()) {
     const int upright = d[1] > 0 ? 2 : 0, across = d[0] < 0 ? 3 : 1;
     const double height = std::abs(d[1]), width = std::abs(d[0]);
@@ -107,7 +107,7 @@ int Outline::facing(const Vec<2>& d) const {
   return best;
 }
 
-Lie lie(const Stance<2>& a, const Stance<2>& b) {
+Lie lie(const BodyMotion<2>& a, const BodyMotion<2>& b) {
   const Rotation<2> b_from_room = b.room_from_body.transpose();
   return {b_from_room * (a.x - b.x), b_from_room * a.room_from_body};
 }
@@ -117,7 +117,8 @@ Lie inverse(const Lie& of) {
   return {-(back * of.x), back};
 }
 
-Separation greatest_separation(const Outline& of, const Outline& other, const Lie& lies, double enough) {
+Separation greatest_separation(const ConvexPolygon& of, const ConvexPolygon& other, const Lie& lies,
+                               double enough) {
   if (of.is_box() && other.is_box()) return of_boxes(of, other, lies);
   Separation best{-1e300, 0};
   for (int i = 0; i < of.faces(); ++i) {
@@ -131,7 +132,7 @@ Separation greatest_separation(const Outline& of, const Outline& other, const Li
   return best;
 }
 
-double core_separation(const Outline& a, const Outline& b, const Lie& a_in_b) {
+double core_separation(const ConvexPolygon& a, const ConvexPolygon& b, const Lie& a_in_b) {
   if (a.faces() + b.faces() == 0) return (a_in_b * a.corner(0) - b.corner(0)).norm();
   const Lie b_in_a = inverse(a_in_b);
   double s = -1e300;

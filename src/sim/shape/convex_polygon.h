@@ -8,10 +8,10 @@ namespace obscura::sim {
 /// counter-clockwise, and the radius that rounds it. Corner i of a box counts around it from the lower left.
 /// Face i runs from corner i to the next. A point and a ball have one corner and no face. Refers to the
 /// shape, which must live longer.
-class Outline {
+class ConvexPolygon {
  public:
   /// Requires any kind but compound.
-  explicit Outline(const Shape<2>& shape);
+  explicit ConvexPolygon(const Shape<2>& shape);
 
   int corners() const { return corners_; }
   int faces() const { return corners_ > 1 ? corners_ : 0; }
@@ -66,7 +66,7 @@ struct Lie {
 
   Vec<2> operator*(const Vec<2>& local) const { return x + turn * local; }
 };
-Lie lie(const Stance<2>& a, const Stance<2>& b);
+Lie lie(const BodyMotion<2>& a, const BodyMotion<2>& b);
 Lie inverse(const Lie& of);
 
 /// A face of one outline and how far the corners of the other stay from it, m.
@@ -77,10 +77,11 @@ struct Separation {
 
 /// The face of `of` that the other outline, lying so in its frame, keeps the greatest separation from, the
 /// first of equals. Stops at the first face beyond `enough`. Requires faces.
-Separation greatest_separation(const Outline& of, const Outline& other, const Lie& lies, double enough);
+Separation greatest_separation(const ConvexPolygon& of, const ConvexPolygon& other, const Lie& lies,
+                               double enough);
 
 /// Distance (m) between two outlines without their radii, a lying so in b's frame; where they overlap minus
 /// the depth.
-double core_separation(const Outline& a, const Outline& b, const Lie& a_in_b);
+double core_separation(const ConvexPolygon& a, const ConvexPolygon& b, const Lie& a_in_b);
 
 }  // namespace obscura::sim

@@ -25,8 +25,8 @@ namespace obscura::sim {
 namespace {
 
 // fan of triangles from the first vertex, so that a polygon far from its origin loses no digits
-Bulk<2> polygon_bulk(const std::vector<Vec<2>>& vertices) {
-  Bulk<2> sum;
+MassProperties<2> polygon_bulk(const std::vector<Vec<2>>& vertices) {
+  MassProperties<2> sum;
   double about_first = 0;
   for (std::size_t i = 1; i + 1 < vertices.size(); ++i) {
     const Vec<2> p = vertices[i] - vertices[0], q = vertices[i + 1] - vertices[0];
@@ -42,17 +42,17 @@ Bulk<2> polygon_bulk(const std::vector<Vec<2>>& vertices) {
   return sum;
 }
 
-Bulk<2> parts_bulk(const std::vector<Shape<2>>& parts) {
-  Bulk<2> sum;
+MassProperties<2> parts_bulk(const std::vector<Shape<2>>& parts) {
+  MassProperties<2> sum;
   for (const Shape<2>& part : parts) {
-    const Bulk<2> own = bulk(part);
+    const MassProperties<2> own = mass_properties(part);
     sum.content += own.content;
     sum.center += own.content * own.center;
   }
   if (sum.content == 0) return sum;
   sum.center /= sum.content;
   for (const Shape<2>& part : parts) {
-    const Bulk<2> own = bulk(part);
+    const MassProperties<2> own = mass_properties(part);
     sum.second[0] += own.second[0] + own.content * (own.center - sum.center).squaredNorm();
   }
   return sum;
@@ -131,7 +131,7 @@ Spread spread(const Shape<3>& shape) {
     }
   }
   whole.center = shape.center;
-  if (shape.turn != upright<3>()) {
+  if (shape.turn != no_rotation<3>()) {
     const Eigen::Matrix3d turn = rotation<3>(shape.turn);
     whole.c = turn * whole.c * turn.transpose();
   }
@@ -142,8 +142,8 @@ Spread spread(const Shape<3>& shape) {
 
 // Jacobi's rotations: turns a symmetric matrix into a diagonal one, smallest turns first to last, so that
 // axes stay as near to those of the frame as they can. The axes it finds, as a turn.
-Turn<3> principal_axes(Eigen::Matrix3d& a) {
-  Turn<3> turn = upright<3>();
+Orientation<3> principal_axes(Eigen::Matrix3d& a) {
+  Orientation<3> turn = no_rotation<3>();
   for (int sweep = 0; sweep < 50; ++sweep) {
     // what is rounding counts as none: a shape whose axes are its frame's keeps them
     const double small = 1e-14 * a.trace();
@@ -161,7 +161,7 @@ Turn<3> principal_axes(Eigen::Matrix3d& a) {
         // the same as a quaternion about the third axis: half the angle from its cosine
         const int axis = 3 - p - q;
         const double half_cos = std::sqrt(0.5 * (1 + c)), half_sin = s / (2 * half_cos);
-        Turn<3> by = Turn<3>::Zero();
+        Orientation<3> by = Orientation<3>::Zero();
         by[axis] = axis == 1 ? half_sin : -half_sin, by[3] = half_cos;
         turn = product(turn, by);
       }
@@ -172,8 +172,8 @@ Turn<3> principal_axes(Eigen::Matrix3d& a) {
 }
 
 template <>
-Bulk<2> bulk<2>(const Shape<2>& shape) {
-  Bulk<2> whole;
+MassProperties<2> mass_properties<2>(const Shape<2>& shape) {
+  MassProperties<2> whole;
   switch (shape.kind) {
     case ShapeKind::point:
     case ShapeKind::hull:
@@ -207,9 +207,9 @@ Bulk<2> bulk<2>(const Shape<2>& shape) {
 }
 
 template <>
-Bulk<3> bulk<3>(const Shape<3>& shape) {
+MassProperties<3> mass_properties<3>(const Shape<3>& shape) {
   Spread whole = spread(shape);
-  Bulk<3> out;
+  MassProperties<3> out;
   out.content = whole.content, out.center = whole.center;
   out.axes = principal_axes(whole.c);
   const Vec3 c = whole.c.diagonal();

@@ -25,13 +25,13 @@ constexpr double kSkew = 1e-6;  // sine between two edges: below, they have no c
 constexpr int kBoxLoops[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
-constexpr Solid::Edge box_edge(int number) {
+constexpr Polyhedron::Edge box_edge(int number) {
   const int axis = number / 4, next = (axis + 1) % 3, last = (axis + 2) % 3;
   const int i = number & 1, j = number >> 1 & 1;
   const int from = i << next | j << last;
   const int beside_next = 2 * next + i, beside_last = 2 * last + j;
-  return i == j ? Solid::Edge{from, from | 1 << axis, beside_next, beside_last}
-                : Solid::Edge{from, from | 1 << axis, beside_last, beside_next};
+  return i == j ? Polyhedron::Edge{from, from | 1 << axis, beside_next, beside_last}
+                : Polyhedron::Edge{from, from | 1 << axis, beside_last, beside_next};
 }
 
 // of a loop, by Newell: every corner has its say
@@ -47,7 +47,7 @@ Vec<3> loop_normal(const Shape<3>& hull, int face) {
 
 }  // namespace
 
-Solid::Solid(const Shape<3>& shape, const Stance<3>& at, const Vec<3>& origin)
+Polyhedron::Polyhedron(const Shape<3>& shape, const BodyMotion<3>& at, const Vec<3>& origin)
     : shape_(&shape), x_(at.x - origin), turn_(at.room_from_body) {
   assert(shape.kind != ShapeKind::compound && shape.kind != ShapeKind::polygon);
   middle_ = x_;
@@ -81,13 +81,13 @@ Solid::Solid(const Shape<3>& shape, const Stance<3>& at, const Vec<3>& origin)
       break;
   }
   if (shape.kind == ShapeKind::box || shape.kind == ShapeKind::capsule) {
-    axes_ = shape.turn == upright<3>() ? turn_ : Rotation<3>(turn_ * rotation<3>(shape.turn));
+    axes_ = shape.turn == no_rotation<3>() ? turn_ : Rotation<3>(turn_ * rotation<3>(shape.turn));
     arms_ = axes_ * shape.half.asDiagonal();
   }
 }
 
 // of a hull: each side of a loop once, from its lower corner, with the face on whose loop it runs back
-void Solid::find_edges() {
+void Polyhedron::find_edges() {
   const auto add = [&](const Edge& edge) {
     if (edges_ < kFewEdges) {
       few_[edges_] = edge;
@@ -114,23 +114,23 @@ void Solid::find_edges() {
   }
 }
 
-Solid::Edge Solid::edge(int i) const {
+Polyhedron::Edge Polyhedron::edge(int i) const {
   if (is_box()) return box_edge(i);
   if (faces_ == 0) return {0, 1, -1, -1};
   return i < kFewEdges ? few_[i] : many_[i - kFewEdges];
 }
 
-std::span<const int> Solid::loop(int face) const {
+std::span<const int> Polyhedron::loop(int face) const {
   if (is_box()) return kBoxLoops[face];
   return shape_->faces[face];
 }
 
-Vec<3> Solid::normal(int face) const {
+Vec<3> Polyhedron::normal(int face) const {
   if (is_box()) return (face & 1 ? 1 : -1) * axes_.col(face >> 1);
   return turn_ * loop_normal(*shape_, face);
 }
 
-Vec<3> Solid::along(int edge) const {
+Vec<3> Polyhedron::along(int edge) const {
   if (is_box()) return axes_.col(edge >> 2);
   if (faces_ == 0) return axes_.col(1);
   const Edge of = this->edge(edge);
@@ -138,7 +138,7 @@ Vec<3> Solid::along(int edge) const {
   return turn_ * (way / std::sqrt(way.squaredNorm()));
 }
 
-int Solid::edge_between(int corner, int other) const {
+int Polyhedron::edge_between(int corner, int other) const {
   if (is_box()) {
     const int axis = (corner ^ other) >> 1, next = (axis + 1) % 3, last = (axis + 2) % 3;
     return 4 * axis + (corner >> next & 1) + 2 * (corner >> last & 1);
@@ -150,7 +150,7 @@ int Solid::edge_between(int corner, int other) const {
   return -1;
 }
 
-Vec<3> Solid::own_corner(int i) const {
+Vec<3> Polyhedron::own_corner(int i) const {
   Vec<3> place = Vec<3>::Zero();
   switch (shape_->kind) {
     case ShapeKind::hull:
@@ -164,11 +164,11 @@ Vec<3> Solid::own_corner(int i) const {
     default:
       break;
   }
-  if (shape_->turn != upright<3>()) place = rotation<3>(shape_->turn) * place;
+  if (shape_->turn != no_rotation<3>()) place = rotation<3>(shape_->turn) * place;
   return shape_->center + place;
 }
 
-int Solid::farthest(const Vec<3>& d) const {
+int Polyhedron::farthest(const Vec<3>& d) const {
   if (corners_ == 1) return 0;
   if (is_box()) {
     const Vec<3> own = axes_.transpose() * d;
@@ -188,7 +188,7 @@ int Solid::farthest(const Vec<3>& d) const {
   return best;
 }
 
-int Solid::facing(int corner, const Vec<3>& d) const {
+int Polyhedron::facing(int corner, const Vec<3>& d) const {
   if (is_box()) {
     const Vec<3> own = axes_.transpose() * d;
     int best = 0;
@@ -220,7 +220,7 @@ int Solid::facing(int corner, const Vec<3>& d) const {
 namespace {
 
 // by the three axes of a box at once
-FaceAxis of_box(const Solid& of, const Solid& other) {
+FaceAxis of_box(const Polyhedron& of, const Polyhedron& other) {
   const Vec<3> away = of.axes().transpose() * (other.middle() - of.middle());
   const Rotation<3> seen = of.axes().transpose() * other.arms();
   const Vec<3> s = away.cwiseAbs() - of.half() - seen.cwiseAbs().rowwise().sum();
@@ -233,7 +233,7 @@ FaceAxis of_box(const Solid& of, const Solid& other) {
 }
 
 // by the nine common normals of two boxes' axes; the edges are those that face each other
-EdgeAxis of_boxes(const Solid& a, const Solid& b, double enough) {
+EdgeAxis of_boxes(const Polyhedron& a, const Polyhedron& b, double enough) {
   const Vec<3> away = a.middle() - b.middle();
   EdgeAxis best;
   for (int i = 0; i < 3; ++i) {
@@ -263,8 +263,8 @@ EdgeAxis of_boxes(const Solid& a, const Solid& b, double enough) {
 struct Wedge {
   Vec<3> place, along, left = Vec<3>::Zero(), right = Vec<3>::Zero();
 
-  Wedge(const Solid& of, int number) : along(of.along(number)) {
-    const Solid::Edge edge = of.edge(number);
+  Wedge(const Polyhedron& of, int number) : along(of.along(number)) {
+    const Polyhedron::Edge edge = of.edge(number);
     place = of.corner(edge.from);
     if (edge.left >= 0) left = of.normal(edge.left).cross(along);
     if (edge.right >= 0) right = along.cross(of.normal(edge.right));
@@ -273,7 +273,7 @@ struct Wedge {
 
 }  // namespace
 
-FaceAxis greatest_separation(const Solid& of, const Solid& other, double enough) {
+FaceAxis greatest_separation(const Polyhedron& of, const Polyhedron& other, double enough) {
   if (of.is_box() && other.is_box()) return of_box(of, other);
   FaceAxis best;
   for (int face = 0; face < of.faces(); ++face) {
@@ -286,7 +286,7 @@ FaceAxis greatest_separation(const Solid& of, const Solid& other, double enough)
   return best;
 }
 
-EdgeAxis greatest_edge_separation(const Solid& a, const Solid& b, double enough) {
+EdgeAxis greatest_edge_separation(const Polyhedron& a, const Polyhedron& b, double enough) {
   if (a.is_box() && b.is_box()) return of_boxes(a, b, enough);
   constexpr double kLevel = 1e-12;  // rounding of what lies in a face
   EdgeAxis best;
@@ -336,7 +336,7 @@ Nearest nearest(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0, const Vec<
   return {s, t, std::sqrt((r + s * d - t * e).squaredNorm())};
 }
 
-bool over(const Solid& solid, int face, const Vec<3>& place, double slack) {
+bool over(const Polyhedron& solid, int face, const Vec<3>& place, double slack) {
   const std::span<const int> loop = solid.loop(face);
   const Vec<3> n = solid.normal(face);
   Vec<3> from = solid.corner(loop.back());
@@ -348,14 +348,14 @@ bool over(const Solid& solid, int face, const Vec<3>& place, double slack) {
   return true;
 }
 
-double core_separation(const Solid& a, const Solid& b) {
+double core_separation(const Polyhedron& a, const Polyhedron& b) {
   const double s = std::max({greatest_separation(a, b, 1e300).value, greatest_separation(b, a, 1e300).value,
                              greatest_edge_separation(a, b, 1e300).value});
   if (s <= 0 && a.faces() + b.faces() > 0) return s;
 
   // apart: corners over faces, and edges with their ends
   double least = 1e300;
-  const auto corners_over = [&](const Solid& base, const Solid& other) {
+  const auto corners_over = [&](const Polyhedron& base, const Polyhedron& other) {
     for (int face = 0; face < base.faces(); ++face) {
       const Vec<3> n = base.normal(face), origin = base.corner(base.loop(face)[0]);
       for (int i = 0; i < other.corners(); ++i) {
@@ -367,9 +367,9 @@ double core_separation(const Solid& a, const Solid& b) {
   };
   corners_over(a, b), corners_over(b, a);
   for (int i = 0; i < std::max(1, a.edges()); ++i) {
-    const Solid::Edge p = a.edges() ? a.edge(i) : Solid::Edge{};
+    const Polyhedron::Edge p = a.edges() ? a.edge(i) : Polyhedron::Edge{};
     for (int j = 0; j < std::max(1, b.edges()); ++j) {
-      const Solid::Edge q = b.edges() ? b.edge(j) : Solid::Edge{};
+      const Polyhedron::Edge q = b.edges() ? b.edge(j) : Polyhedron::Edge{};
       least =
           std::min(least, nearest(a.corner(p.from), a.corner(p.to), b.corner(q.from), b.corner(q.to)).apart);
     }

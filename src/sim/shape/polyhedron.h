@@ -12,7 +12,7 @@ namespace obscura::sim {
 /// two of them, faces around loops of them, and the radius that rounds it. A point and a ball have one corner
 /// and nothing else, a capsule one edge and no face. Places are in the axes of the room, about an origin near
 /// by. Refers to the shape, which must live longer; allocates only for hulls of more than kFewEdges edges.
-class Solid {
+class Polyhedron {
  public:
   static constexpr int kFewEdges = 48;
 
@@ -22,7 +22,7 @@ class Solid {
   };
 
   /// Requires any kind but polygon and compound.
-  Solid(const Shape<3>& shape, const Stance<3>& at, const Vec<3>& origin);
+  Polyhedron(const Shape<3>& shape, const BodyMotion<3>& at, const Vec<3>& origin);
 
   int corners() const { return corners_; }
   int edges() const { return edges_; }
@@ -97,7 +97,7 @@ struct FaceAxis {
 
 /// The face of `of` that `other` keeps the greatest separation from, the first of equals. Stops at the first
 /// beyond `enough`.
-FaceAxis greatest_separation(const Solid& of, const Solid& other, double enough);
+FaceAxis greatest_separation(const Polyhedron& of, const Polyhedron& other, double enough);
 
 /// An edge of either, the unit normal of both from b to a, and how far a stays from b along it, m.
 struct EdgeAxis {
@@ -108,7 +108,7 @@ struct EdgeAxis {
 
 /// The two edges along whose common normal two cores keep the greatest separation. Edges that are parallel
 /// within 1e-6 have none.
-EdgeAxis greatest_edge_separation(const Solid& a, const Solid& b, double enough);
+EdgeAxis greatest_edge_separation(const Polyhedron& a, const Polyhedron& b, double enough);
 
 /// Where two segments are nearest to each other: the parts of their ways, and how far they are apart, m.
 struct Nearest {
@@ -117,9 +117,9 @@ struct Nearest {
 Nearest nearest(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0, const Vec<3>& q1);
 
 /// Whether a place lies over a face, up to `slack` (m) beyond its edges.
-bool over(const Solid& solid, int face, const Vec<3>& place, double slack);
+bool over(const Polyhedron& solid, int face, const Vec<3>& place, double slack);
 
 /// Distance (m) between two cores without their radii; where they overlap minus the depth.
-double core_separation(const Solid& a, const Solid& b);
+double core_separation(const Polyhedron& a, const Polyhedron& b);
 
 }  // namespace obscura::sim

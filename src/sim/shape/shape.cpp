@@ -9,12 +9,12 @@
 namespace obscura::sim {
 
 template <int D>
-Spin<D> solid_inertia(const Shape<D>& shape, double mass) {
+AngularVec<D> solid_inertia(const Shape<D>& shape, double mass) {
   // the handout's own words for a box, to the bit
   if (shape.kind == ShapeKind::box) {
     const Vec<D> side = 2 * shape.half;
-    Spin<D> moments;
-    for (int axis = 0; axis < kSpins<D>; ++axis) {
+    AngularVec<D> moments;
+    for (int axis = 0; axis < kAngular<D>; ++axis) {
       const double x = side[(axis + 1) % D], y = side[(axis + 2) % D];
       moments[axis] =
           D == 2 ? mass * (side[0] * side[0] + side[1] * side[1]) / 12 : mass * (x * x + y * y) / 12;
@@ -22,23 +22,23 @@ Spin<D> solid_inertia(const Shape<D>& shape, double mass) {
     return moments;
   }
   if (shape.kind == ShapeKind::ball) {
-    return Spin<D>::Constant(D == 2 ? mass * shape.radius * shape.radius / 2
-                                    : 2 * mass * shape.radius * shape.radius / 5);
+    return AngularVec<D>::Constant(D == 2 ? mass * shape.radius * shape.radius / 2
+                                          : 2 * mass * shape.radius * shape.radius / 5);
   }
-  const Bulk<D> whole = bulk(shape);
-  return whole.content > 0 ? Spin<D>(mass * whole.second / whole.content) : Spin<D>::Zero();
+  const MassProperties<D> whole = mass_properties(shape);
+  return whole.content > 0 ? AngularVec<D>(mass * whole.second / whole.content) : AngularVec<D>::Zero();
 }
 
 template <int D>
-Spin<D> inertia(const Shape<D>& shape, double mass) {
+AngularVec<D> inertia(const Shape<D>& shape, double mass) {
   const bool particle = shape.kind == ShapeKind::point || shape.kind == ShapeKind::ball;
-  return particle ? Spin<D>::Zero() : solid_inertia(shape, mass);
+  return particle ? AngularVec<D>::Zero() : solid_inertia(shape, mass);
 }
 
 template <int D>
-Shape<D> seated(const Shape<D>& shape, const Bulk<D>& bulk) {
+Shape<D> seated(const Shape<D>& shape, const MassProperties<D>& bulk) {
   Shape<D> out = shape;
-  const bool turns = bulk.axes != upright<D>();
+  const bool turns = bulk.axes != no_rotation<D>();
   const Rotation<D> back = turns ? Rotation<D>(rotation<D>(bulk.axes).transpose()) : Rotation<D>::Identity();
   const auto seen = [&](Vec<D>& place) {
     place -= bulk.center;
@@ -48,7 +48,7 @@ Shape<D> seated(const Shape<D>& shape, const Bulk<D>& bulk) {
   for (Shape<D>& part : out.parts) part = seated(part, bulk);
   if (out.kind == ShapeKind::ball || out.kind == ShapeKind::box || out.kind == ShapeKind::capsule) {
     seen(out.center);
-    if (turns) out.turn = composed<D>(undone<D>(bulk.axes), out.turn);
+    if (turns) out.turn = composed<D>(inverse<D>(bulk.axes), out.turn);
   }
   return out;
 }
@@ -56,9 +56,9 @@ Shape<D> seated(const Shape<D>& shape, const Bulk<D>& bulk) {
 namespace {
 
 template <int D>
-void add_tips(const Shape<D>& shape, std::vector<Tip<D>>& all) {
+void add_tips(const Shape<D>& shape, std::vector<SupportVertex<D>>& all) {
   const auto placed = [&](const Vec<D>& own) {
-    if (shape.turn == upright<D>()) return Vec<D>(shape.center + own);
+    if (shape.turn == no_rotation<D>()) return Vec<D>(shape.center + own);
     return Vec<D>(shape.center + rotation<D>(shape.turn) * own);
   };
   switch (shape.kind) {
@@ -86,14 +86,14 @@ void add_tips(const Shape<D>& shape, std::vector<Tip<D>>& all) {
 }  // namespace
 
 template <int D>
-std::vector<Tip<D>> tips(const Shape<D>& shape) {
-  std::vector<Tip<D>> all;
+std::vector<SupportVertex<D>> support_vertices(const Shape<D>& shape) {
+  std::vector<SupportVertex<D>> all;
   add_tips(shape, all);
   return all;
 }
 
 template <int D>
-Tips<D>::Tips(const std::vector<Body<D>>& bodies) {
+SupportVertices<D>::SupportVertices(const std::vector<Body<D>>& bodies) {
   for (const Body<D>& body : bodies) {
     first_.push_back(int(all_.size()));
     add_tips(body.shape, all_);
@@ -102,7 +102,7 @@ Tips<D>::Tips(const std::vector<Body<D>>& bodies) {
 }
 
 template <int D>
-int Tips<D>::most() const {
+int SupportVertices<D>::most() const {
   int most = 0;
   for (std::size_t i = 1; i < first_.size(); ++i) most = std::max(most, first_[i] - first_[i - 1]);
   return most;
@@ -117,12 +117,13 @@ double reach(const Shape<D>& shape) {
     case ShapeKind::ball:
       return shape.center.norm() + shape.radius;
     case ShapeKind::box:
-      if (shape.turn == upright<D>()) return (shape.center.cwiseAbs() + shape.half).norm();
+      if (shape.turn == no_rotation<D>()) return (shape.center.cwiseAbs() + shape.half).norm();
       [[fallthrough]];
     case ShapeKind::capsule:
     case ShapeKind::polygon:
     case ShapeKind::hull:
-      for (const Tip<D>& tip : tips(shape)) most = std::max(most, tip.at.norm() + tip.radius);
+      for (const SupportVertex<D>& tip : support_vertices(shape))
+        most = std::max(most, tip.at.norm() + tip.radius);
       break;
     case ShapeKind::compound:
       for (const Shape<D>& part : shape.parts) most = std::max(most, reach(part));
@@ -132,11 +133,11 @@ double reach(const Shape<D>& shape) {
 }
 
 template <int D>
-Bounds<D> bounds(const Shape<D>& shape, const Stance<D>& at) {
+Bounds<D> bounds(const Shape<D>& shape, const BodyMotion<D>& at) {
   const Vec<D> center = at.x + at.arm(shape.center);
   const auto around = [&](const Vec<D>& far) { return Bounds<D>{center - far, center + far}; };
   const auto axes = [&]() -> Rotation<D> {
-    if (shape.turn == upright<D>()) return at.room_from_body;
+    if (shape.turn == no_rotation<D>()) return at.room_from_body;
     return at.room_from_body * rotation<D>(shape.turn);
   };
   switch (shape.kind) {
@@ -171,19 +172,19 @@ Bounds<D> bounds(const Shape<D>& shape, const Stance<D>& at) {
   return {at.x, at.x};
 }
 
-template Spin<2> solid_inertia<2>(const Shape<2>&, double);
-template Spin<2> inertia<2>(const Shape<2>&, double);
-template Shape<2> seated<2>(const Shape<2>&, const Bulk<2>&);
-template std::vector<Tip<2>> tips<2>(const Shape<2>&);
-template class Tips<2>;
+template AngularVec<2> solid_inertia<2>(const Shape<2>&, double);
+template AngularVec<2> inertia<2>(const Shape<2>&, double);
+template Shape<2> seated<2>(const Shape<2>&, const MassProperties<2>&);
+template std::vector<SupportVertex<2>> support_vertices<2>(const Shape<2>&);
+template class SupportVertices<2>;
 template double reach<2>(const Shape<2>&);
-template Bounds<2> bounds<2>(const Shape<2>&, const Stance<2>&);
-template Spin<3> solid_inertia<3>(const Shape<3>&, double);
-template Spin<3> inertia<3>(const Shape<3>&, double);
-template Shape<3> seated<3>(const Shape<3>&, const Bulk<3>&);
-template std::vector<Tip<3>> tips<3>(const Shape<3>&);
-template class Tips<3>;
+template Bounds<2> bounds<2>(const Shape<2>&, const BodyMotion<2>&);
+template AngularVec<3> solid_inertia<3>(const Shape<3>&, double);
+template AngularVec<3> inertia<3>(const Shape<3>&, double);
+template Shape<3> seated<3>(const Shape<3>&, const MassProperties<3>&);
+template std::vector<SupportVertex<3>> support_vertices<3>(const Shape<3>&);
+template class SupportVertices<3>;
 template double reach<3>(const Shape<3>&);
-template Bounds<3> bounds<3>(const Shape<3>&, const Stance<3>&);
+template Bounds<3> bounds<3>(const Shape<3>&, const BodyMotion<3>&);
 
 }  // namespace obscura::sim

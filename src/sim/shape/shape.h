@@ -13,39 +13,41 @@ namespace obscura::sim {
 /// to the body's axes where it is seated (below). Zero for what does not turn: points and balls, which are
 /// particles; see solid_inertia for a ball that rolls.
 template <int D>
-Spin<D> inertia(const Shape<D>& shape, double mass);
+AngularVec<D> inertia(const Shape<D>& shape, double mass);
 
 /// The same, and of a ball what it has when it turns: in the plane m r^2 / 2, in space 2 m r^2 / 5. Zero for
 /// a point.
 template <int D>
-Spin<D> solid_inertia(const Shape<D>& shape, double mass);
+AngularVec<D> solid_inertia(const Shape<D>& shape, double mass);
 
 /// How much of the plane (or of space) a shape fills, and how it lies there. Where parts of a compound
 /// overlap, what they share counts once for each.
 template <int D>
-struct Bulk {
-  double content = 0;                // m^2; in space m^3
-  Vec<D> center = Vec<D>::Zero();    // centroid, in the shape's frame, m
-  Spin<D> second = Spin<D>::Zero();  // second moment about the centroid, m^4; in space principal ones, m^5
-  Turn<D> axes = upright<D>();       // the principal axes in the shape's frame: those it has, where they are
+struct MassProperties {
+  double content = 0;              // m^2; in space m^3
+  Vec<D> center = Vec<D>::Zero();  // centroid, in the shape's frame, m
+  AngularVec<D> second =
+      AngularVec<D>::Zero();  // second moment about the centroid, m^4; in space principal ones, m^5
+  Orientation<D> axes =
+      no_rotation<D>();  // the principal axes in the shape's frame: those it has, where they are
 };
 
 /// Of a point: nothing.
 template <int D>
-Bulk<D> bulk(const Shape<D>& shape);
+MassProperties<D> mass_properties(const Shape<D>& shape);
 template <>
-Bulk<2> bulk<2>(const Shape<2>& shape);
+MassProperties<2> mass_properties<2>(const Shape<2>& shape);
 template <>
-Bulk<3> bulk<3>(const Shape<3>& shape);
+MassProperties<3> mass_properties<3>(const Shape<3>& shape);
 
 /// Turns a symmetric tensor into its diagonal; the turn of the axes in which it is that. Axes stay those of
 /// the frame where they are principal ones already.
-Turn<3> principal_axes(Eigen::Matrix3d& tensor);
+Orientation<3> principal_axes(Eigen::Matrix3d& tensor);
 
 /// The shape as its body sees it, whose origin is the centroid and whose axes are the principal ones of
 /// `bulk`. The body then stands at room_from_shape * bulk.center, turned by room_from_shape * bulk.axes.
 template <int D>
-Shape<D> seated(const Shape<D>& shape, const Bulk<D>& bulk);
+Shape<D> seated(const Shape<D>& shape, const MassProperties<D>& bulk);
 
 /// Corners of a box: corner i lies on the positive side of axis a where bit a of i is set.
 template <int D>
@@ -63,7 +65,7 @@ Vec<D> corner(const Shape<D>& shape, int i) {
 
 /// A point of a shape that may be the first to touch a plane, rounded by a radius.
 template <int D>
-struct Tip {
+struct SupportVertex {
   Vec<D> at = Vec<D>::Zero();  // in the body's frame, m
   double radius = 0;           // m
 };
@@ -71,22 +73,22 @@ struct Tip {
 /// All of them: the centre of a point or ball, the ends of a capsule, the corners of all else; of a compound
 /// those of its parts in order.
 template <int D>
-std::vector<Tip<D>> tips(const Shape<D>& shape);
+std::vector<SupportVertex<D>> support_vertices(const Shape<D>& shape);
 
 /// The tips of many bodies, side by side.
 template <int D>
-class Tips {
+class SupportVertices {
  public:
-  explicit Tips(const std::vector<Body<D>>& bodies);
+  explicit SupportVertices(const std::vector<Body<D>>& bodies);
 
-  std::span<const Tip<D>> operator[](int body) const {
+  std::span<const SupportVertex<D>> operator[](int body) const {
     return std::span(all_).subspan(first_[body], first_[body + 1] - first_[body]);
   }
   /// The most that one body has.
   int most() const;
 
  private:
-  std::vector<Tip<D>> all_;
+  std::vector<SupportVertex<D>> all_;
   std::vector<int> first_;  // of each body; one more at the end
 };
 
@@ -106,6 +108,6 @@ struct Bounds {
 
 /// The smallest upright box around a shape.
 template <int D>
-Bounds<D> bounds(const Shape<D>& shape, const Stance<D>& at);
+Bounds<D> bounds(const Shape<D>& shape, const BodyMotion<D>& at);
 
 }  // namespace obscura::sim

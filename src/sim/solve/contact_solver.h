@@ -10,9 +10,9 @@ namespace obscura::sim {
 
 /// A solver of `contact` and `event`: moves a state on, with everything that touches, hangs and pulls.
 template <int D>
-class ContactStep {
+class ContactSolver {
  public:
-  virtual ~ContactStep() = default;
+  virtual ~ContactSolver() = default;
 
   /// Moves `state` from t to t + h (s): bodies, contacts, joints, and who is frozen.
   virtual void step(State<D>& state, double t, double h) = 0;
@@ -39,6 +39,7 @@ Solver solver(const Model<D>& model);
 
 /// That solver. Both are kept by reference.
 template <int D>
-std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::vector<Path<D>>& paths);
+std::unique_ptr<ContactSolver<D>> make_contact_solver(const Model<D>& model,
+                                                      const std::vector<Path<D>>& paths);
 
 }  // namespace obscura::sim

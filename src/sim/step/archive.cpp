@@ -23,7 +23,7 @@ void fields(Visit& visit, Touch<D>& it) {
   visit(it.body), visit(it.wall), visit(it.point), visit(it.impulse);
 }
 template <class Visit, int D>
-void fields(Visit& visit, OwnSpin<D>& it) {
+void fields(Visit& visit, BodySpin<D>& it) {
   visit(it.w), visit(it.rest);
 }
 template <class Visit, int D>
@@ -35,7 +35,7 @@ void fields(Visit& visit, Seat<D>& it) {
   visit(it.x), visit(it.turn);
 }
 template <class Visit>
-void fields(Visit& visit, Posture& it) {
+void fields(Visit& visit, ChainState& it) {
   visit(it.q), visit(it.v);
 }
 template <class Visit, int D>
@@ -47,7 +47,8 @@ template <class Visit, int D>
 void fields(Visit& visit, State<D>& it) {
   visit(it.step), visit(it.beyond), visit(it.x), visit(it.v), visit(it.turn), visit(it.spin);
   visit(it.grips), visit(it.touches), visit(it.ledger.displacement), visit(it.ledger.impacts);
-  visit(it.fund.level), visit(it.fund.amount), visit(it.own), visit(it.blasts), visit(it.postures);
+  visit(it.energy_budget.level), visit(it.energy_budget.amount), visit(it.own), visit(it.blasts),
+      visit(it.postures);
   visit(it.holds), visit(it.seats), visit(it.whole), visit(it.contacts), visit(it.frozen), visit(it.quiet);
   visit(it.broken), visit(it.joint_forces);
 }

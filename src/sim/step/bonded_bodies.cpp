@@ -38,8 +38,8 @@ template <int D>
 struct Solid {
   double mass = 0;
   Vec<D> center = Vec<D>::Zero();
-  Turn<D> axes = upright<D>();
-  Spin<D> inertia = Spin<D>::Zero();
+  Orientation<D> axes = no_rotation<D>();
+  AngularVec<D> inertia = AngularVec<D>::Zero();
 };
 
 // what the paper's linear motion does not let turn, does not turn as one either
@@ -70,7 +70,7 @@ Solid<D> solid(const Model<D>& model, const std::vector<int>& parts, const std::
   SpinTensor<D> tensor = SpinTensor<D>::Zero();
   for (const int i : parts) {
     const Body<D>& body = model.bodies[i];
-    const Eigen::Matrix<double, D, kSpins<D>> k = lever<D>(places[i].x - out.center);
+    const Eigen::Matrix<double, D, kAngular<D>> k = lever<D>(places[i].x - out.center);
     tensor += body.mass * (k.transpose() * k);
     if constexpr (D == 2) {
       tensor += body.inertia;
@@ -90,7 +90,7 @@ Solid<D> solid(const Model<D>& model, const std::vector<int>& parts, const std::
 template <int D>
 Seat<D> seen(const Solid<D>& from, const Seat<D>& place) {
   return {rotation<D>(from.axes).transpose() * (place.x - from.center),
-          composed<D>(undone<D>(from.axes), place.turn)};
+          composed<D>(inverse<D>(from.axes), place.turn)};
 }
 
 // a shape where its part sits, as parts of a compound
@@ -119,7 +119,7 @@ void add_seated(const Shape<D>& shape, const Seat<D>& seat, std::vector<Shape<D>
 template <int D>
 double outside(const Shape<D>& shape, const Vec<D>& point) {
   double most = -1e300, least = 1e300;
-  const Vec<D> own = shape.turn == upright<D>()
+  const Vec<D> own = shape.turn == no_rotation<D>()
                          ? Vec<D>(point - shape.center)
                          : Vec<D>(rotation<D>(shape.turn).transpose() * (point - shape.center));
   switch (shape.kind) {
@@ -159,15 +159,15 @@ double outside(const Shape<D>& shape, const Vec<D>& point) {
 }  // namespace
 
 template <int D>
-Pieces<D>::Pieces(const Model<D>& model, const std::vector<Path<D>>& paths)
+BondedBodies<D>::BondedBodies(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model), loads_(model, paths) {}
 
 template <int D>
-Pieces<D>::~Pieces() = default;
+BondedBodies<D>::~BondedBodies() = default;
 
 // the bodies that the bonds of a state make, and who steps them
 template <int D>
-void Pieces<D>::gather(const State<D>& state) {
+void BondedBodies<D>::gather(const State<D>& state) {
   if (stepper_ && known_ == state.holds) return;
   known_ = state.holds;
   stepper_.reset();
@@ -229,13 +229,13 @@ void Pieces<D>::gather(const State<D>& state) {
     Joint<D> joint = model_.joints[k];
     const int a = joint.a.body, b = joint.b.body;
     if (a >= 0 && b >= 0 && whole_.body[a] == whole_.body[b]) continue;
-    const Turn<D> on_a = a < 0 || whole_.alone[a] ? upright<D>() : state.seats[a].turn;
-    const Turn<D> on_b = b < 0 || whole_.alone[b] ? upright<D>() : state.seats[b].turn;
+    const Orientation<D> on_a = a < 0 || whole_.alone[a] ? no_rotation<D>() : state.seats[a].turn;
+    const Orientation<D> on_b = b < 0 || whole_.alone[b] ? no_rotation<D>() : state.seats[b].turn;
     joint.axis = rotation<D>(on_b) * joint.axis;
     if constexpr (D == 2) {
       joint.turn += on_b - on_a;
     } else {
-      joint.turn = logarithm(product(product(on_b, exponential(joint.turn)), undone<D>(on_a)));
+      joint.turn = logarithm(product(product(on_b, exponential(joint.turn)), inverse<D>(on_a)));
     }
     moved(joint.a), moved(joint.b);
     whole_.kept[k] = int(made.joints.size());
@@ -246,7 +246,7 @@ void Pieces<D>::gather(const State<D>& state) {
 }
 
 template <int D>
-void Pieces<D>::begin(State<D>& state) {
+void BondedBodies<D>::begin(State<D>& state) {
   const int n = int(model_.bodies.size());
   if (state.whole.empty()) {
     state.holds.assign(model_.bonds.size(), 1);
@@ -254,7 +254,7 @@ void Pieces<D>::begin(State<D>& state) {
     state.seats.resize(n);
     for (int i = 0; i < n; ++i) {
       const int k = turning(state, i);
-      state.seats[i] = {state.x[i], k < 0 ? upright<D>() : state.turn[k]};
+      state.seats[i] = {state.x[i], k < 0 ? no_rotation<D>() : state.turn[k]};
     }
     const std::vector<Seat<D>> places = state.seats;
     const std::vector<int> root = roots(model_, state.holds);
@@ -276,7 +276,7 @@ void Pieces<D>::begin(State<D>& state) {
       const Solid<D>& one = solids[root[members[0]]];
       const Body<D>& body = whole_.model.bodies[made.x.size()];
       Vec<D> p = Vec<D>::Zero();
-      Spin<D> L = Spin<D>::Zero();
+      AngularVec<D> L = AngularVec<D>::Zero();
       for (const int i : members) {
         const Body<D>& part = model_.bodies[i];
         p += part.mass * state.v[i];
@@ -292,7 +292,7 @@ void Pieces<D>::begin(State<D>& state) {
       if (!body.turns()) continue;
       made.turn.push_back(one.axes);
       made.spin.push_back(alone ? state.spin[turning(state, members[0])]
-                                : spun<D>(one.inertia, rotation<D>(one.axes), L));
+                                : inverse_inertia_times<D>(one.inertia, rotation<D>(one.axes), L));
     }
     state.whole = {made};
   } else {
@@ -304,12 +304,12 @@ void Pieces<D>::begin(State<D>& state) {
 
 // the part of body `body` that a place in the room belongs to
 template <int D>
-int Pieces<D>::part_at(int body, const Vec<D>& point, const State<D>& state) const {
+int BondedBodies<D>::part_at(int body, const Vec<D>& point, const State<D>& state) const {
   if (parts_[body].size() == 1) return parts_[body][0];
   int nearest = parts_[body][0];
   double least = 1e300;
   for (const int i : parts_[body]) {
-    Stance<D> at = stance(state, i);
+    BodyMotion<D> at = body_motion(state, i);
     const double far =
         outside(model_.bodies[i].shape, Vec<D>(at.room_from_body.transpose() * (point - at.x)));
     if (far < least) least = far, nearest = i;
@@ -319,9 +319,10 @@ int Pieces<D>::part_at(int body, const Vec<D>& point, const State<D>& state) con
 
 // the parts as the state of the whole has them
 template <int D>
-void Pieces<D>::tell(State<D>& state) const {
+void BondedBodies<D>::tell(State<D>& state) const {
   const State<D>& whole = state.whole[0];
-  state.step = whole.step, state.beyond = whole.beyond, state.ledger = whole.ledger, state.fund = whole.fund;
+  state.step = whole.step, state.beyond = whole.beyond, state.ledger = whole.ledger,
+  state.energy_budget = whole.energy_budget;
   for (int i = 0; i < int(whole_.body.size()); ++i) {
     const int body = whole_.body[i], k = turning(state, i), kw = turning(whole, body);
     if (whole_.alone[i]) {
@@ -329,7 +330,7 @@ void Pieces<D>::tell(State<D>& state) const {
       if (k >= 0) state.turn[k] = whole.turn[kw], state.spin[k] = whole.spin[kw];
       continue;
     }
-    const Stance<D> at = stance(whole, body);
+    const BodyMotion<D> at = body_motion(whole, body);
     const Vec<D> arm = at.arm(state.seats[i].x);
     state.x[i] = at.x + arm, state.v[i] = at.velocity(arm);
     if (k < 0) continue;
@@ -345,11 +346,11 @@ void Pieces<D>::tell(State<D>& state) const {
   state.grips = whole.grips;
   for (Grip<D>& grip : state.grips) {
     if (grip.body < 0) continue;
-    const Stance<D> at = stance(whole, grip.body);
+    const BodyMotion<D> at = body_motion(whole, grip.body);
     const Vec<D> point = at.x + at.arm(grip.local);
     const int part = part_at(grip.body, point, state);
     if (!whole_.alone[part]) {
-      const Stance<D> own = stance(state, part);
+      const BodyMotion<D> own = body_motion(state, part);
       grip.local = own.room_from_body.transpose() * (point - own.x);
     }
     grip.body = part;
@@ -376,14 +377,14 @@ void Pieces<D>::tell(State<D>& state) const {
 }
 
 template <int D>
-bool Pieces<D>::fits(const State<D>& state) {
+bool BondedBodies<D>::fits(const State<D>& state) {
   gather(state);
   // at the same step: it would be stepped until it were
   return state.whole[0].step == state.step && stepper_->fits(state.whole[0]);
 }
 
 template <int D>
-std::optional<Trouble> Pieces<D>::step(State<D>& state) {
+std::optional<Trouble> BondedBodies<D>::step(State<D>& state) {
   gather(state);
   auto trouble = stepper_->step(state.whole[0]);
   tell(state);
@@ -393,7 +394,7 @@ std::optional<Trouble> Pieces<D>::step(State<D>& state) {
 }
 
 template <int D>
-std::optional<Trouble> Pieces<D>::part(State<D>& state, double fraction) {
+std::optional<Trouble> BondedBodies<D>::part(State<D>& state, double fraction) {
   gather(state);
   auto trouble = stepper_->part(state.whole[0], fraction);
   tell(state);
@@ -402,7 +403,7 @@ std::optional<Trouble> Pieces<D>::part(State<D>& state, double fraction) {
 
 // bodies anew, after bonds have broken
 template <int D>
-void Pieces<D>::split(State<D>& state) {
+void BondedBodies<D>::split(State<D>& state) {
   const State<D> before = std::move(state.whole[0]);
   const std::vector<int> body_before = whole_.body, kept_before = whole_.kept;
   const std::vector<std::vector<int>> parts_before = parts_;
@@ -433,15 +434,15 @@ void Pieces<D>::split(State<D>& state) {
       made.x.push_back(before.x[old]), made.v.push_back(before.v[old]);
       if (k < 0) continue;
       made.turn.push_back(before.turn[k]), made.spin.push_back(before.spin[k]);
-      made.own.push_back(before.own.empty() ? OwnSpin<D>{} : before.own[k]);
+      made.own.push_back(before.own.empty() ? BodySpin<D>{} : before.own[k]);
       continue;
     }
-    const Stance<D> at = stance(before, old);
+    const BodyMotion<D> at = body_motion(before, old);
     const Vec<D> arm = at.arm(solids[first].center);
     made.x.push_back(at.x + arm), made.v.push_back(at.velocity(arm));
     if (!whole_.model.bodies[body].turns()) continue;
-    const Turn<D> turn = k < 0 ? solids[first].axes : composed<D>(before.turn[k], solids[first].axes);
-    made.turn.push_back(D == 2 ? turn : Turn<D>(turn / std::sqrt(turn.squaredNorm())));
+    const Orientation<D> turn = k < 0 ? solids[first].axes : composed<D>(before.turn[k], solids[first].axes);
+    made.turn.push_back(D == 2 ? turn : Orientation<D>(turn / std::sqrt(turn.squaredNorm())));
     made.spin.push_back(at.w), made.own.push_back({});
   }
   if (D == 2) made.own.clear();
@@ -486,7 +487,7 @@ void Pieces<D>::split(State<D>& state) {
   if (!contacts.empty() && state.contacts.empty()) state.contacts = contacts;
 }
 
-template class Pieces<2>;
-template class Pieces<3>;
+template class BondedBodies<2>;
+template class BondedBodies<3>;
 
 }  // namespace obscura::sim

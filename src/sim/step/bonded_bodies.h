@@ -27,11 +27,11 @@ struct Whole {
 /// loaded beyond its strength at the end of a step. What comes apart goes on as it moved: momentum, angular
 /// momentum and energy are those before the break.
 template <int D>
-class Pieces {
+class BondedBodies {
  public:
   /// Both are kept by reference.
-  Pieces(const Model<D>& model, const std::vector<Path<D>>& paths);
-  ~Pieces();
+  BondedBodies(const Model<D>& model, const std::vector<Path<D>>& paths);
+  ~BondedBodies();
 
   /// Readies a state: at the start bonds hold the parts as they stand. Velocities that are not those of one
   /// rigid body become those of the same momentum and angular momentum.

@@ -18,14 +18,14 @@ constexpr double kSwings = 1e-2;  // of its motion on joints: the error of a ste
 
 // a solver's steps, none of which leaves more energy than there was
 template <int D>
-class Passive final : public ContactStep<D> {
+class Passive final : public ContactSolver<D> {
  public:
-  Passive(const Model<D>& model, const std::vector<Path<D>>& paths, std::unique_ptr<ContactStep<D>> solver)
+  Passive(const Model<D>& model, const std::vector<Path<D>>& paths, std::unique_ptr<ContactSolver<D>> solver)
       : model_(model),
         solver_(std::move(solver)),
         account_(model),
         direct_(sim::solver(model) == Solver::direct) {
-    if (!direct_) lone_ = std::make_unique<Lone<D>>(model, paths);
+    if (!direct_) lone_ = std::make_unique<LoneBodies<D>>(model, paths);
   }
 
   void step(State<D>& state, double t, double h) override {
@@ -58,19 +58,19 @@ class Passive final : public ContactStep<D> {
 
  private:
   const Model<D>& model_;
-  std::unique_ptr<ContactStep<D>> solver_;
-  Account<D> account_;
+  std::unique_ptr<ContactSolver<D>> solver_;
+  EnergyGuard<D> account_;
   bool direct_;
-  std::unique_ptr<Lone<D>> lone_;  // beside a solver for many
+  std::unique_ptr<LoneBodies<D>> lone_;  // beside a solver for many
   std::vector<std::pair<int, int>> touched_;
 };
 
 // who finds the forces of many
-std::unique_ptr<ContactStep<2>> iterative(const Model<2>& model, const std::vector<Path<2>>& paths) {
-  return std::make_unique<Iterative<2>>(model, paths);
+std::unique_ptr<ContactSolver<2>> iterative(const Model<2>& model, const std::vector<Path<2>>& paths) {
+  return std::make_unique<PlaneIterative<2>>(model, paths);
 }
-std::unique_ptr<ContactStep<3>> iterative(const Model<3>& model, const std::vector<Path<3>>& paths) {
-  return std::make_unique<Sweeps<3>>(model, paths);
+std::unique_ptr<ContactSolver<3>> iterative(const Model<3>& model, const std::vector<Path<3>>& paths) {
+  return std::make_unique<SpaceIterative<3>>(model, paths);
 }
 
 }  // namespace
@@ -94,10 +94,11 @@ Solver solver(const Model<D>& model) {
 }
 
 template <int D>
-std::unique_ptr<ContactStep<D>> contact_step(const Model<D>& model, const std::vector<Path<D>>& paths) {
-  std::unique_ptr<ContactStep<D>> all;
+std::unique_ptr<ContactSolver<D>> make_contact_solver(const Model<D>& model,
+                                                      const std::vector<Path<D>>& paths) {
+  std::unique_ptr<ContactSolver<D>> all;
   if (solver(model) == Solver::direct)
-    all = std::make_unique<Direct<D>>(model, paths);
+    all = std::make_unique<ExactSolver<D>>(model, paths);
   else
     all = iterative(model, paths);
   return std::make_unique<Passive<D>>(model, paths, std::move(all));
@@ -107,7 +108,9 @@ template Crowd crowd<2>(const Model<2>&);
 template Crowd crowd<3>(const Model<3>&);
 template Solver solver<2>(const Model<2>&);
 template Solver solver<3>(const Model<3>&);
-template std::unique_ptr<ContactStep<2>> contact_step<2>(const Model<2>&, const std::vector<Path<2>>&);
-template std::unique_ptr<ContactStep<3>> contact_step<3>(const Model<3>&, const std::vector<Path<3>>&);
+template std::unique_ptr<ContactSolver<2>> make_contact_solver<2>(const Model<2>&,
+                                                                  const std::vector<Path<2>>&);
+template std::unique_ptr<ContactSolver<3>> make_contact_solver<3>(const Model<3>&,
+                                                                  const std::vector<Path<3>>&);
 
 }  // namespace obscura::sim

@@ -50,7 +50,7 @@ class PlaybackOf final : public Run {
     cast_ = sim::cast(model_, stepper_.paths());
   }
 
-  const Cast& cast() const override { return cast_; }
+  const SceneInfo& scene_info() const override { return cast_; }
   Rational rate() const override { return model_.rate; }
   void heed(std::function<bool()> stop) override { stop_ = std::move(stop); }
 
@@ -61,7 +61,7 @@ class PlaybackOf final : public Run {
     keep_ways(now);
     const std::vector<Sighting> poses = trajectory_->at(now);
     for (std::size_t i = 0; i < poses.size(); ++i) place(poses[i], int(i), state_);
-    const Beat beat = sim::beat(t, model_.rate);
+    const TimeStamp beat = sim::beat(t, model_.rate);
     state_.step = beat.step;
     return snapshot(model_, state_, stepper_, beat, now);
   }
@@ -98,7 +98,7 @@ class PlaybackOf final : public Run {
   State<D> state_;
   Stepper<D> stepper_;
   std::shared_ptr<const Trajectory> trajectory_;
-  Cast cast_;
+  SceneInfo cast_;
   std::function<bool()> stop_;
   Track track_;
   std::size_t next_ = 0;  // the row whose places are not kept yet

@@ -28,14 +28,14 @@ class RunOf final : public Run {
     stride_ = std::max<std::int64_t>(1, std::llround(value(model_.rate) / kTrackRate));
   }
 
-  const Cast& cast() const override { return cast_; }
+  const SceneInfo& scene_info() const override { return cast_; }
   Rational rate() const override { return model_.rate; }
 
   void heed(std::function<bool()> stop) override { stop_ = std::move(stop); }
 
   std::variant<Snapshot, Trouble, Stopped> at(Rational t) override {
     if (trouble_) return *trouble_;
-    const Beat to = beat(t, model_.rate);
+    const TimeStamp to = beat(t, model_.rate);
     assert(to.step >= state_.step);
     while (state_.step < to.step) {
       if (stop_ && stop_()) return Stopped{};
@@ -100,7 +100,7 @@ class RunOf final : public Run {
   State<D> state_, copy_;
   Stepper<D> stepper_;
   bool sound_ = true;
-  Cast cast_;
+  SceneInfo cast_;
   std::optional<Trouble> trouble_;
   std::function<bool()> stop_;
   bool between_ = false;  // the last instant lay between two steps: copy_ shows it

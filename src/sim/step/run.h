@@ -23,7 +23,7 @@ class Run {
  public:
   virtual ~Run() = default;
 
-  virtual const Cast& cast() const = 0;
+  virtual const SceneInfo& scene_info() const = 0;
   virtual Rational rate() const = 0;
 
   /// Goes on to the instant t (s, >= 0 and not before the last one asked for). Trouble ends the run: the

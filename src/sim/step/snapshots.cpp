@@ -15,7 +15,7 @@ constexpr int kPathMost = 600;
 
 // in the plane (0, 0, w)
 template <int D>
-Vec3 spinning(const Spin<D>& w) {
+Vec3 spinning(const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return {0, 0, w[0]};
   } else {
@@ -32,7 +32,7 @@ std::vector<Vec3> each_lifted(const std::vector<Vec<D>>& places) {
 
 // in the plane about z
 template <int D>
-Eigen::Quaterniond oriented(const Turn<D>& turn) {
+Eigen::Quaterniond oriented(const Orientation<D>& turn) {
   if constexpr (D == 2) {
     const auto [s, c] = sin_cos(0.5 * turn[0]);
     return {c, 0, 0, s};
@@ -42,11 +42,11 @@ Eigen::Quaterniond oriented(const Turn<D>& turn) {
 }
 
 template <int D>
-Cast::Body shown(const Body<D>& body) {
+SceneInfo::Body shown(const Body<D>& body) {
   const Shape<D>& shape = body.shape;
-  Cast::Body it{body.name, shape.kind,  shape.radius, lifted<D>(shape.half),
-                body.mass, body.fixed,  body.turns(), each_lifted<D>(shape.vertices),
-                {},        shape.faces, body.friction};
+  SceneInfo::Body it{body.name, shape.kind,  shape.radius, lifted<D>(shape.half),
+                     body.mass, body.fixed,  body.turns(), each_lifted<D>(shape.vertices),
+                     {},        shape.faces, body.friction};
   for (const Shape<D>& part : shape.parts) {
     it.parts.push_back({part.kind, part.radius, lifted<D>(part.half), lifted<D>(part.center),
                         each_lifted<D>(part.vertices), part.faces, oriented<D>(part.turn)});
@@ -81,8 +81,8 @@ void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
     for (int body = 0; body < int(model.bodies.size()); ++body) {
       if (model.bodies[body].fixed) continue;
       const bool held = it.forces.size() == model.bodies.size();
-      const Vec<D> push =
-          held ? it.forces[std::size_t(body)] : blasts.push(model.explosions[i], body, stance(state, body)).f;
+      const Vec<D> push = held ? it.forces[std::size_t(body)]
+                               : blasts.push(model.explosions[i], body, body_motion(state, body)).f;
       now.bodies[std::size_t(body)].blast += lifted<D>(push);
     }
   }
@@ -90,7 +90,7 @@ void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
 
 }  // namespace
 
-double friction(const Cast& cast, const Snapshot::Contact& contact) {
+double friction(const SceneInfo& cast, const Snapshot::Contact& contact) {
   const double own = cast.bodies[std::size_t(contact.body)].friction;
   if (contact.other >= 0) return std::sqrt(own * cast.bodies[std::size_t(contact.other)].friction);
   const std::optional<double>& wall = cast.walls[std::size_t(contact.wall)].friction;
@@ -98,8 +98,8 @@ double friction(const Cast& cast, const Snapshot::Contact& contact) {
 }
 
 template <int D>
-Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
-  Cast cast;
+SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
+  SceneInfo cast;
   cast.dimension = D;
   cast.scale = model.scale;
   cast.gravity = lifted<D>(model.gravity);
@@ -113,7 +113,7 @@ Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
         {j.name, j.kind, j.a.body, j.b.body, j.length, lifted<D>(j.axis), j.lower, j.upper});
   for (std::size_t i = 0; i < model.mice.size(); ++i) {
     const Path<D>& path = paths[i];
-    Cast::Mouse mouse{path.start(), path.end(), model.mice[i].rest_length, {}};
+    SceneInfo::Mouse mouse{path.start(), path.end(), model.mice[i].rest_length, {}};
     const double span = path.end() - path.start();
     const int pieces = std::clamp(int(std::ceil(std::min(span, 1e6) * kPathRate)), 1, kPathMost);
     for (int k = 0; k <= pieces; ++k) {
@@ -126,7 +126,7 @@ Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
 }
 
 template <int D>
-Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, Beat at,
+Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, TimeStamp at,
                   double t) {
   Snapshot now;
   now.time = t;
@@ -188,9 +188,9 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
   return now;
 }
 
-template Cast cast<2>(const Model<2>&, const std::vector<Path<2>>&);
-template Snapshot snapshot<2>(const Model<2>&, const State<2>&, const Stepper<2>&, Beat, double);
-template Cast cast<3>(const Model<3>&, const std::vector<Path<3>>&);
-template Snapshot snapshot<3>(const Model<3>&, const State<3>&, const Stepper<3>&, Beat, double);
+template SceneInfo cast<2>(const Model<2>&, const std::vector<Path<2>>&);
+template Snapshot snapshot<2>(const Model<2>&, const State<2>&, const Stepper<2>&, TimeStamp, double);
+template SceneInfo cast<3>(const Model<3>&, const std::vector<Path<3>>&);
+template Snapshot snapshot<3>(const Model<3>&, const State<3>&, const Stepper<3>&, TimeStamp, double);
 
 }  // namespace obscura::sim

@@ -9,11 +9,12 @@ namespace obscura::sim {
 
 /// Who is in the room.
 template <int D>
-Cast cast(const Model<D>& model, const std::vector<Path<D>>& paths);
+SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths);
 
 /// The instant `at` of a state, at time `t` (s).
 template <int D>
-Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, Beat at, double t);
+Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, TimeStamp at,
+                  double t);
 
 /// A place of the plane at z = 0.
 template <int D>

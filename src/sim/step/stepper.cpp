@@ -49,9 +49,9 @@ Stepper<D>::Stepper(const Model<D>& model)
       springs_(!model.springs.empty() || !model.mice.empty()) {
   assert(std::is_partitioned(model.bodies.begin(), model.bodies.end(),
                              [](const auto& b) { return !b.turns(); }));
-  for (const Edge& edge : edges_) {
-    if (edge.kind == Edge::Kind::press) presses_[edge.mouse] = edge.at;
-    if (edge.kind == Edge::Kind::release) releases_[edge.mouse] = edge.at;
+  for (const ScriptEvent& edge : edges_) {
+    if (edge.kind == ScriptEvent::Kind::press) presses_[edge.mouse] = edge.at;
+    if (edge.kind == ScriptEvent::Kind::release) releases_[edge.mouse] = edge.at;
   }
   for (int i = 0; i < kBlock; ++i) {
     for (int axis = 0; axis < D; ++axis) gravity_.push_back(model.gravity[axis]);
@@ -73,10 +73,10 @@ Stepper<D>::Stepper(const Model<D>& model)
   for (const Body<D>& body : model.bodies) {
     if (body.turns()) inertia_.push_back(body.inertia);
   }
-  d_.resize(std::max(D, kSpins<D>) * kBlock), w_.resize(kSpins<D> * kBlock), base_.resize(kBlock);
+  d_.resize(std::max(D, kAngular<D>) * kBlock), w_.resize(kAngular<D> * kBlock), base_.resize(kBlock);
   assert(model.bonds.empty() || model.chains.empty());
-  if (!model.bonds.empty()) pieces_ = std::make_unique<Pieces<D>>(model, paths_);
-  if (model.collision != Collision::handout && !pieces_) contact_ = contact_step(model, paths_);
+  if (!model.bonds.empty()) pieces_ = std::make_unique<BondedBodies<D>>(model, paths_);
+  if (model.collision != Collision::handout && !pieces_) contact_ = make_contact_solver(model, paths_);
   suspects_.reserve(model.bodies.size());
   watch_every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / 60));
 }
@@ -132,8 +132,8 @@ template <int D>
 std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
   state.touches.clear();
   const double h = step_length(model_.rate);
-  auto edge = std::upper_bound(edges_.begin(), edges_.end(), Beat{state.step, 0},
-                               [](Beat at, const Edge& e) { return at < e.at; });
+  auto edge = std::upper_bound(edges_.begin(), edges_.end(), TimeStamp{state.step, 0},
+                               [](TimeStamp at, const ScriptEvent& e) { return at < e.at; });
   double from = 0;
   while (from < fraction) {
     const bool cut = edge != edges_.end() && edge->at.step == state.step && edge->at.fraction <= fraction;
@@ -153,7 +153,7 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
       handout_.collide(state, suspects_, ended);
     }
     if (cut) touch_script(state, edge->at);
-    while (cut && edge != edges_.end() && edge->at == Beat{state.step, to}) ++edge;
+    while (cut && edge != edges_.end() && edge->at == TimeStamp{state.step, to}) ++edge;
     from = to;
   }
   if (fraction < 1) {
@@ -166,26 +166,26 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
 }
 
 template <int D>
-void Stepper<D>::touch_script(State<D>& state, Beat at) {
-  auto edge =
-      std::lower_bound(edges_.begin(), edges_.end(), at, [](const Edge& e, Beat b) { return e.at < b; });
+void Stepper<D>::touch_script(State<D>& state, TimeStamp at) {
+  auto edge = std::lower_bound(edges_.begin(), edges_.end(), at,
+                               [](const ScriptEvent& e, TimeStamp b) { return e.at < b; });
   for (; edge != edges_.end() && edge->at == at; ++edge) {
-    if (edge->kind == Edge::Kind::blast) blasts_.begin(state, edge->mouse);
-    if (edge->kind == Edge::Kind::calm) {
+    if (edge->kind == ScriptEvent::Kind::blast) blasts_.begin(state, edge->mouse);
+    if (edge->kind == ScriptEvent::Kind::calm) {
       // what it gave is no energy out of nowhere
       blasts_.end(state, edge->mouse);
       watch_.start(state, time(at, model_.rate));
     }
-    if (edge->kind == Edge::Kind::blast || edge->kind == Edge::Kind::calm) continue;
+    if (edge->kind == ScriptEvent::Kind::blast || edge->kind == ScriptEvent::Kind::calm) continue;
     Grip<D>& grip = state.grips[edge->mouse];
-    if (edge->kind == Edge::Kind::press)
+    if (edge->kind == ScriptEvent::Kind::press)
       grip = closest(model_, state, model_.mice[edge->mouse].path.front().place);
-    if (edge->kind == Edge::Kind::release) grip = {};
+    if (edge->kind == ScriptEvent::Kind::release) grip = {};
   }
 }
 
 template <int D>
-bool Stepper<D>::pressed(int mouse, Beat at) const {
+bool Stepper<D>::pressed(int mouse, TimeStamp at) const {
   return !(at < presses_[mouse]) && at < releases_[mouse];
 }
 
@@ -238,7 +238,7 @@ bool Stepper<D>::sound(const State<D>& state) const {
                        within(state.v[0].data(), D * int(state.v.size()), limit);
   for (std::size_t k = 0; k < state.turn.size(); ++k) {
     sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
-    sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
+    sound |= within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
   }
   return sound >= 0;
 }
@@ -251,7 +251,7 @@ bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
   const auto drag =
       drag_.empty() ? std::span<const double>() : std::span<const double>(drag_).subspan(D * block.first, n);
   std::fill(d.begin(), d.end(), 0.0);
-  Flight flight(gravity_, drag);
+  FreeTranslation flight(gravity_, drag);
   integrate_(flight, t, h, d, v, stages_);
 
   const double limit = kFarthest * model_.scale;
@@ -266,27 +266,27 @@ bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
 
 template <int D>
 bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
-  const std::size_t n = std::size_t(kSpins<D>) * block.count;
+  const std::size_t n = std::size_t(kAngular<D>) * block.count;
   const std::span<double> w(w_.data(), n), d(d_.data(), n);
   std::fill(d.begin(), d.end(), 0.0);
   const bool whole = model_.integrator == Integrator::semi_implicit;
   for (int i = 0; i < block.count; ++i)
-    take_spin(state, block.first + i, whole, base_[i], w.data() + kSpins<D> * i);
-  const std::span<const Spin<D>> moments(inertia_), base(base_);
-  Spinning<D> spinning(moments.subspan(block.first, block.count), base.first(block.count));
+    take_spin(state, block.first + i, whole, base_[i], w.data() + kAngular<D> * i);
+  const std::span<const AngularVec<D>> moments(inertia_), base(base_);
+  TorqueFreeRotation<D> spinning(moments.subspan(block.first, block.count), base.first(block.count));
   integrate_(spinning, t, h, d, w, stages_);
 
   std::int64_t sound = 0;
   for (int i = 0; i < block.count; ++i) {
     const int k = block.first + i;
-    const int at = kSpins<D> * i;
+    const int at = kAngular<D> * i;
     const int pieces = wobbles<D>(inertia_[k]) ? pieces_of_turn<D>(state.spin[k], h) : 1;
     if (pieces > 1)
       spin(state, k, pieces, t, h);
     else
-      give_spin<D>(state, k, Turn<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
+      give_spin<D>(state, k, Orientation<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
     sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
-    sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
+    sound |= within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
   }
   return sound >= 0;
 }
@@ -294,14 +294,14 @@ bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
 // the turn of one body in so many pieces
 template <int D>
 void Stepper<D>::spin(State<D>& state, int k, int pieces, double t, double h) {
-  Spin<D> base;
-  std::array<double, kSpins<D>> d, w;
+  AngularVec<D> base;
+  std::array<double, kAngular<D>> d, w;
   for (int i = 0; i < pieces; ++i) {
     take_spin(state, k, model_.integrator == Integrator::semi_implicit, base, w.data());
     d.fill(0);
-    Spinning<D> spinning(std::span(&inertia_[k], 1), std::span(&base, 1));
+    TorqueFreeRotation<D> spinning(std::span(&inertia_[k], 1), std::span(&base, 1));
     integrate_(spinning, t + i * (h / pieces), h / pieces, d, w, stages_);
-    give_spin<D>(state, k, Turn<D>(state.turn[k]), d.data(), base, w.data());
+    give_spin<D>(state, k, Orientation<D>(state.turn[k]), d.data(), base, w.data());
   }
 }
 
@@ -314,7 +314,7 @@ bool Stepper<D>::tied(State<D>& state, double t, double h) {
     sound |= within(state.x[body].data(), D, limit) | within(state.v[body].data(), D, limit);
     if (const int k = turning(state, body); k >= 0) {
       sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
-      sound |= within(state.spin[k].data(), kSpins<D>, spin_limits_[k]);
+      sound |= within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
     }
   };
   for (const int body : tied_.bodies()) {

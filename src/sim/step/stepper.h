@@ -15,7 +15,7 @@
 namespace obscura::sim {
 
 template <int D>
-class Pieces;
+class BondedBodies;
 
 /// Carries states of one model forward. What it owns belongs to the step at hand and is never saved; a warm
 /// step allocates nothing. The model is kept by reference.
@@ -41,7 +41,7 @@ class Stepper {
   const std::vector<Path<D>>& paths() const { return paths_; }
 
   /// Whether mouse `mouse` is pressed at `at`.
-  bool pressed(int mouse, Beat at) const;
+  bool pressed(int mouse, TimeStamp at) const;
 
  private:
   // bodies that nothing ties, side by side
@@ -50,7 +50,7 @@ class Stepper {
   };
 
   std::optional<Trouble> advance(State<D>& state, double fraction);
-  void touch_script(State<D>& state, Beat at);
+  void touch_script(State<D>& state, TimeStamp at);
   void plan(const State<D>& state);
   bool integrate(State<D>& state, double t, double h);
   bool sound(const State<D>& state) const;
@@ -61,15 +61,15 @@ class Stepper {
 
   const Model<D>& model_;
   std::vector<Path<D>> paths_;
-  std::vector<Edge> edges_;
-  std::vector<Beat> presses_, releases_;  // one a mouse
+  std::vector<ScriptEvent> edges_;
+  std::vector<TimeStamp> presses_, releases_;  // one a mouse
   Integrate* integrate_;
   Handout<D> handout_;
   Blasts<D> blasts_;
-  std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
-  std::unique_ptr<Pieces<D>> pieces_;        // of a model with bonds: all is done there
-  Watch<D> watch_;
-  Tied<D> tied_;
+  std::unique_ptr<ContactSolver<D>> contact_;  // of `contact` and `event`
+  std::unique_ptr<BondedBodies<D>> pieces_;    // of a model with bonds: all is done there
+  DivergenceMonitor<D> watch_;
+  ForwardDynamics<D> tied_;
   std::vector<int> gripped_;  // by each mouse, as the plan knows
   bool planned_ = false, blasting_ = false;
 
@@ -77,8 +77,8 @@ class Stepper {
   std::vector<double> gravity_;           // a block of it
   std::vector<double> drag_;              // c/m of every component; empty where there is none
   std::vector<double> spin_limits_;       // of every body that turns, rad/s
-  std::vector<Spin<D>> inertia_;          // likewise, principal moments, kg m^2
-  std::vector<Spin<D>> base_;             // of a block, see sim/math/lie_step.h
+  std::vector<AngularVec<D>> inertia_;    // likewise, principal moments, kg m^2
+  std::vector<AngularVec<D>> base_;       // of a block, see sim/math/lie_step.h
   std::vector<double> d_, w_;
   std::vector<int> suspects_;
   std::vector<int> by_handout_;  // who has that law in `contact` and `event` too

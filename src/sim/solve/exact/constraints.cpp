@@ -20,20 +20,20 @@ constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: 
 }  // namespace
 
 template <int D>
-void Direct<D>::stand(const State<D>& state) {
-  for (const int body : active_.subset.bodies) stances_[body] = stance(state, body);
+void ExactSolver<D>::stand(const State<D>& state) {
+  for (const int body : active_.subset.bodies) stances_[body] = body_motion(state, body);
   free_.chains().stand(state);
 }
 
 template <int D>
-Spin<D> Direct<D>::turned_by(int body, const Spin<D>& moment) const {
+AngularVec<D> ExactSolver<D>::turned_by(int body, const AngularVec<D>& moment) const {
   const Body<D>& b = model_.bodies[body];
-  if (light_[body] == 0 || !b.turns()) return Spin<D>::Zero();
-  return spun<D>(b.inertia, stances_[body].room_from_body, moment);
+  if (light_[body] == 0 || !b.turns()) return AngularVec<D>::Zero();
+  return inverse_inertia_times<D>(b.inertia, stances_[body].room_from_body, moment);
 }
 
 template <int D>
-double Direct<D>::friction(const ContactKey& key) const {
+double ExactSolver<D>::friction(const ContactKey& key) const {
   const double a = model_.bodies[key.a].friction;
   if (key.b >= 0) return std::sqrt(a * model_.bodies[key.b].friction);
   const auto& wall = model_.walls[-1 - key.b].friction;
@@ -41,7 +41,7 @@ double Direct<D>::friction(const ContactKey& key) const {
 }
 
 template <int D>
-double Direct<D>::elasticity(const ContactKey& key) const {
+double ExactSolver<D>::elasticity(const ContactKey& key) const {
   const double a = model_.bodies[key.a].elasticity;
   if (key.b >= 0) return std::sqrt(a * model_.bodies[key.b].elasticity);
   const auto& wall = model_.walls[-1 - key.b].elasticity;
@@ -49,8 +49,8 @@ double Direct<D>::elasticity(const ContactKey& key) const {
 }
 
 template <int D>
-Spin<D> Direct<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
-  Spin<D> turn = Spin<D>::Zero();
+AngularVec<D> ExactSolver<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
+  AngularVec<D> turn = AngularVec<D>::Zero();
   if (const int k = joint.a.body < 0 ? -1 : turning(state, joint.a.body); k >= 0)
     turn += rounds<D>(state.turn[k]);
   if (const int k = joint.b.body < 0 ? -1 : turning(state, joint.b.body); k >= 0)
@@ -60,19 +60,19 @@ Spin<D> Direct<D>::turn_between(const State<D>& state, const Joint<D>& joint) co
 
 // the rows of what is held, at the stances at hand
 template <int D>
-void Direct<D>::lay_rows(Held& held, const Spin<D>& turn) {
-  static const Stance<D> room;
+void ExactSolver<D>::lay_rows(Held& held, const AngularVec<D>& turn) {
+  static const BodyMotion<D> room;
   held.first = int(rows_.size());
-  const auto at = [&](int body) -> const Stance<D>& { return body < 0 ? room : stances_[body]; };
+  const auto at = [&](int body) -> const BodyMotion<D>& { return body < 0 ? room : stances_[body]; };
   Row<D> out[kMostHeld<D>];
   if (held.kind == Held::Kind::contact) {
-    const Gap<D>& gap = gaps_[held.of];
-    const Width<D> now = sim::rows(gap, at(gap.key.a), at(gap.key.b), out);
+    const ContactCandidate<D>& gap = gaps_[held.of];
+    const EvaluatedContact<D> now = sim::rows(gap, at(gap.key.a), at(gap.key.b), out);
     held.off = now.value, held.point = now.point, held.normal = now.normal;
     held.rows = D;
   } else {
     const Joint<D>& joint = model_.joints[held.of];
-    const Stance<D>&a = at(joint.a.body), &b = at(joint.b.body);
+    const BodyMotion<D>&a = at(joint.a.body), &b = at(joint.b.body);
     if (held.kind == Held::Kind::joint || held.kind == Held::Kind::rope) {
       held.rows = sim::rows(joint, a, b, turn, out, held.offs);
       held.off = held.offs[0];
@@ -83,7 +83,7 @@ void Direct<D>::lay_rows(Held& held, const Spin<D>& turn) {
       if (held.kind == Held::Kind::lower) held.off = way - joint.lower;
       if (held.kind == Held::Kind::upper) {
         held.off = joint.upper - way;
-        out[0].along *= -1, out[0].turn_a *= -1, out[0].turn_b *= -1, out[0].drift *= -1;
+        out[0].along *= -1, out[0].angular_a *= -1, out[0].angular_b *= -1, out[0].velocity_product *= -1;
       }
     }
   }
@@ -91,17 +91,17 @@ void Direct<D>::lay_rows(Held& held, const Spin<D>& turn) {
 }
 
 template <int D>
-double Direct<D>::moves(int row) const {
+double ExactSolver<D>::moves(int row) const {
   return speed(rows_[row], stances_);
 }
 
 // what may hold in this state: `all`, or only what does not come apart already. What comes apart more slowly
 // than rest may yet be held, if it would come back
 template <int D>
-void Direct<D>::gather(const State<D>& state, bool all) {
+void ExactSolver<D>::gather(const State<D>& state, bool all) {
   using Kind = typename Held::Kind;
   held_.clear(), rows_.clear();
-  const auto add = [&](Kind kind, int of, const Spin<D>& turn, bool one_sided) {
+  const auto add = [&](Kind kind, int of, const AngularVec<D>& turn, bool one_sided) {
     Held held{};
     held.kind = kind, held.of = of;
     lay_rows(held, turn);
@@ -114,7 +114,7 @@ void Direct<D>::gather(const State<D>& state, bool all) {
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
-    const Spin<D> turn = turn_between(state, joint);
+    const AngularVec<D> turn = turn_between(state, joint);
     if (!joint.linked)
       add(joint.kind == JointKind::rope ? Kind::rope : Kind::joint, i, turn, joint.kind == JointKind::rope);
     if (!has_free_row<D>(joint.kind)) continue;
@@ -123,13 +123,13 @@ void Direct<D>::gather(const State<D>& state, bool all) {
     if (joint.motor) add(Kind::motor, i, turn, false);
     if (joint.friction > 0) add(Kind::friction, i, turn, false);
   }
-  for (int i = 0; i < int(gaps_.size()); ++i) add(Kind::contact, i, Spin<D>::Zero(), true);
+  for (int i = 0; i < int(gaps_.size()); ++i) add(Kind::contact, i, AngularVec<D>::Zero(), true);
   reach();
 }
 
 // blocks of what is held, at the stances at hand. Of impulses motors and friction in joints have none.
 template <int D>
-void Direct<D>::lay_blocks(bool impulses) {
+void ExactSolver<D>::lay_blocks(bool impulses) {
   using Kind = typename Held::Kind;
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   blocks_.clear();
@@ -178,18 +178,18 @@ void Direct<D>::lay_blocks(bool impulses) {
 
 // J a: what the rows accelerate by, of accelerations in the order of free_
 template <int D>
-double Direct<D>::along(int number, std::span<const double> rate) const {
+double ExactSolver<D>::along(int number, std::span<const double> rate) const {
   const Row<D>& row = rows_[number];
   double sum = 0;
-  const auto side = [&](int body, const Spin<D>& turn, double sign) {
+  const auto side = [&](int body, const AngularVec<D>& turn, double sign) {
     const int place = free(body) ? free_.place(body) : -1;
     if (place < 0) return;
     sum += sign * row.along.dot(Eigen::Map<const Vec<D>>(rate.data() + D * place));
     if (const int at = free_.spin_start(place); at >= 0)
-      sum += sign *
-             turn.dot(to_room<D>(stances_[body].room_from_body, Eigen::Map<const Spin<D>>(rate.data() + at)));
+      sum += sign * turn.dot(to_room<D>(stances_[body].room_from_body,
+                                        Eigen::Map<const AngularVec<D>>(rate.data() + at)));
   };
-  side(row.a, row.turn_a, 1), side(row.b, row.turn_b, -1);
+  side(row.a, row.angular_a, 1), side(row.b, row.angular_b, -1);
   if (reaches_[number] < 0) return sum;
   const auto J = reached(chain_J_, number);
   for (std::size_t i = 0; i < J.size(); ++i) sum += J[i] * rate[std::size_t(free_.chain_start()) + i];
@@ -198,18 +198,18 @@ double Direct<D>::along(int number, std::span<const double> rate) const {
 
 // M^-1 J' f, onto accelerations in the order of free_
 template <int D>
-void Direct<D>::push(int number, double f, std::span<double> rate) const {
+void ExactSolver<D>::push(int number, double f, std::span<double> rate) const {
   const Row<D>& row = rows_[number];
-  const auto side = [&](int body, const Spin<D>& turn, double force) {
+  const auto side = [&](int body, const AngularVec<D>& turn, double force) {
     const int place = free(body) ? free_.place(body) : -1;
     if (place < 0) return;
     Eigen::Map<Vec<D>>(rate.data() + D * place) += force * light_[body] * row.along;
     if (const int at = free_.spin_start(place); at >= 0)
-      Eigen::Map<Spin<D>>(rate.data() + at) +=
+      Eigen::Map<AngularVec<D>>(rate.data() + at) +=
           force * from_room<D>(stances_[body].room_from_body, turned_by(body, turn));
   };
   if (f == 0) return;
-  side(row.a, row.turn_a, f), side(row.b, row.turn_b, -f);
+  side(row.a, row.angular_a, f), side(row.b, row.angular_b, -f);
   if (reaches_[number] < 0) return;
   const auto U = reached(chain_U_, number);
   for (std::size_t i = 0; i < U.size(); ++i) rate[std::size_t(free_.chain_start()) + i] += f * U[i];
@@ -217,26 +217,26 @@ void Direct<D>::push(int number, double f, std::span<double> rate) const {
 
 // M^-1 J' p onto the velocities of the free bodies of a state, or onto their places
 template <int D>
-void Direct<D>::jump(State<D>& state, const Row<D>& row, double p, bool places) const {
-  const auto side = [&](int body, const Spin<D>& turn, double impulse) {
+void ExactSolver<D>::jump(State<D>& state, const Row<D>& row, double p, bool places) const {
+  const auto side = [&](int body, const AngularVec<D>& turn, double impulse) {
     if (!free(body)) return;
     (places ? state.x : state.v)[body] += impulse * light_[body] * row.along;
     const int k = turning(state, body);
     if (k < 0) return;
-    const Spin<D> by = impulse * turned_by(body, turn);
+    const AngularVec<D> by = impulse * turned_by(body, turn);
     if (places)
       state.turn[k] = turned<D>(state.turn[k], by);
     else
       state.spin[k] += by;
   };
   if (p == 0) return;
-  side(row.a, row.turn_a, p), side(row.b, row.turn_b, -p);
+  side(row.a, row.angular_a, p), side(row.b, row.angular_b, -p);
 }
 
 // what contacts did last is the first guess at what they do now; and so are their forces,
 // times `h` where impulses are asked for
 template <int D>
-void Direct<D>::guess(double h) {
+void ExactSolver<D>::guess(double h) {
   warm_.setZero(Eigen::Index(rows_.size()));
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact) continue;
@@ -257,7 +257,7 @@ void Direct<D>::guess(double h) {
 
 // the forces of this instant, and what each contact does. False where there are none.
 template <int D>
-bool Direct<D>::choose(State<D>& state, double t) {
+bool ExactSolver<D>::choose(State<D>& state, double t) {
   stand(state);
   gather(state, false);
   lay_blocks(false);
@@ -265,7 +265,7 @@ bool Direct<D>::choose(State<D>& state, double t) {
   split();
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(i, rate) + rows_[i].drift;
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(i, rate) + rows_[i].velocity_product;
   guess(1);
   const bool found = solve();
   // what lets go, but would come closer by the change of the forces alone, is held
@@ -286,7 +286,7 @@ bool Direct<D>::choose(State<D>& state, double t) {
 // which it locks forces grow without bound, and what holds them as equalities throws bodies away. An impact
 // ends that.
 template <int D>
-bool Direct<D>::jammed() const {
+bool ExactSolver<D>::jammed() const {
   double most = 0, load = 0;
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact || modes_[held.block].hold != Hold::slide) continue;
@@ -302,7 +302,7 @@ bool Direct<D>::jammed() const {
 }
 
 template <int D>
-bool Direct<D>::acts(const Held& held) const {
+bool ExactSolver<D>::acts(const Held& held) const {
   switch (held.kind) {
     case Held::Kind::joint:
       return true;
@@ -315,7 +315,7 @@ bool Direct<D>::acts(const Held& held) const {
 
 // What is lifted out of what it had sunk into pays for its height with its motion
 template <int D>
-void Direct<D>::pay_for(State<D>& state) {
+void ExactSolver<D>::pay_for(State<D>& state) {
   const auto lifted = [&](int body) {
     return -model_.bodies[body].mass * model_.gravity.dot(state.x[body] - placed_[body]);
   };
@@ -339,13 +339,13 @@ void Direct<D>::pay_for(State<D>& state) {
 // puts what is held back to where it belongs: places first, then velocities. `impacts_follow`: contacts that
 // approach as in an impact keep their velocities, for the impact to come
 template <int D>
-void Direct<D>::project(State<D>& state, bool impacts_follow) {
+void ExactSolver<D>::project(State<D>& state, bool impacts_follow) {
   using Kind = typename Held::Kind;
   const auto again = [&] {
     stand(state);
     rows_.clear();
     for (Held& held : held_) {
-      lay_rows(held, held.kind == Kind::contact ? Spin<D>::Zero().eval()
+      lay_rows(held, held.kind == Kind::contact ? AngularVec<D>::Zero().eval()
                                                 : turn_between(state, model_.joints[held.of]));
     }
     reach();
@@ -415,7 +415,7 @@ void Direct<D>::project(State<D>& state, bool impacts_follow) {
   jump(state, false);
 }
 
-template class Direct<2>;
-template class Direct<3>;
+template class ExactSolver<2>;
+template class ExactSolver<3>;
 
 }  // namespace obscura::sim

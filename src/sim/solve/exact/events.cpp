@@ -27,7 +27,7 @@ constexpr double kSlight = 1e-6;   // of the largest force: what may pull before
 }  // namespace
 
 template <int D>
-bool Direct<D>::may_touch(int a, int b) const {
+bool ExactSolver<D>::may_touch(int a, int b) const {
   const Body<D>&p = model_.bodies[a], &q = model_.bodies[b];
   if ((p.fixed && q.fixed) || p.handout || q.handout) return false;
   if (p.shape.kind == ShapeKind::point && q.shape.kind == ShapeKind::point) return false;
@@ -45,37 +45,38 @@ bool Direct<D>::may_touch(int a, int b) const {
 // every gap below the margin, if they are near at all
 template <int D>
 template <class Found>
-void Direct<D>::near(const std::vector<Stance<D>>& at, Couple couple, double margin, Found&& found) {
+void ExactSolver<D>::near(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found) {
   const auto [a, b] = couple;
   some_.clear();
   if (b < 0) {
     const Wall<D>& wall = model_.walls[-1 - b];
     if ((at[a].x - wall.point).dot(wall.normal) > rims_[a] + margin) return;
-    gaps(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, some_);
+    collide(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, some_);
   } else {
     const double far = rims_[a] + rims_[b] + margin;
     if ((at[a].x - at[b].x).squaredNorm() > far * far) return;
-    gaps(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin, some_);
+    collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin, some_);
   }
-  for (const Gap<D>& gap : some_) found(gap);
+  for (const ContactCandidate<D>& gap : some_) found(gap);
 }
 
 template <int D>
-void Direct<D>::find(const State<D>& state, double margin) {
+void ExactSolver<D>::find(const State<D>& state, double margin) {
   stand(state);
   gaps_.clear();
   for (const Couple& couple : active_.couples) {
     if (light(couple.a) == 0 && light(couple.b) == 0) continue;
-    near(stances_, couple, margin, [&](const Gap<D>& gap) { gaps_.push_back(gap); });
+    near(stances_, couple, margin, [&](const ContactCandidate<D>& gap) { gaps_.push_back(gap); });
   }
-  std::sort(gaps_.begin(), gaps_.end(), [](const Gap<D>& p, const Gap<D>& q) { return p.key < q.key; });
+  std::sort(gaps_.begin(), gaps_.end(),
+            [](const ContactCandidate<D>& p, const ContactCandidate<D>& q) { return p.key < q.key; });
 }
 
 // a gap at the stances at hand, m; `otherwise` where its features no longer face each other
 template <int D>
-double Direct<D>::gap_of(const ContactKey& key, double otherwise) {
+double ExactSolver<D>::gap_of(const ContactKey& key, double otherwise) {
   double value = otherwise;
-  near(stances_, {key.a, key.b}, model_.scale, [&](const Gap<D>& gap) {
+  near(stances_, {key.a, key.b}, model_.scale, [&](const ContactCandidate<D>& gap) {
     if (gap.key == key) value = gap.value;
   });
   return value;
@@ -83,10 +84,10 @@ double Direct<D>::gap_of(const ContactKey& key, double otherwise) {
 
 // the pose of a body a part of the way from begun_ to `state`
 template <int D>
-Stance<D> Direct<D>::between(const State<D>& state, int body, double h, double part) const {
+BodyMotion<D> ExactSolver<D>::between(const State<D>& state, int body, double h, double part) const {
   const double s = part, r = 1 - s;
   const double p0 = r * r * (1 + 2 * s), p1 = s * s * (3 - 2 * s), m0 = h * s * r * r, m1 = -h * s * s * r;
-  Stance<D> at;
+  BodyMotion<D> at;
   at.x = p0 * begun_.x[body] + p1 * state.x[body] + m0 * begun_.v[body] + m1 * state.v[body];
   if (const int k = turning(state, body); k >= 0) {
     at.room_from_body =
@@ -97,7 +98,7 @@ Stance<D> Direct<D>::between(const State<D>& state, int body, double h, double p
 
 // how far a body went at most, m
 template <int D>
-double Direct<D>::way(const State<D>& state, int body, double h) const {
+double ExactSolver<D>::way(const State<D>& state, int body, double h) const {
   if (light(body) == 0) return 0;
   double sum = std::sqrt((state.x[body] - begun_.x[body]).squaredNorm());
   sum = std::max(sum, h * std::sqrt(std::max(begun_.v[body].squaredNorm(), state.v[body].squaredNorm())));
@@ -110,7 +111,7 @@ double Direct<D>::way(const State<D>& state, int body, double h) const {
 
 // whether two are near enough for it
 template <int D>
-bool Direct<D>::may_close(const State<D>& state, double h, Couple couple) const {
+bool ExactSolver<D>::may_close(const State<D>& state, double h, Couple couple) const {
   const auto [a, b] = couple;
   if (light(a) == 0 && light(b) == 0) return false;
   if (b < 0) {
@@ -124,7 +125,7 @@ bool Direct<D>::may_close(const State<D>& state, double h, Couple couple) const 
 // the part of the stretch at which a couple closes, beyond what is held; kNever where it does not. Moves
 // their stances.
 template <int D>
-double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
+double ExactSolver<D>::closing(const State<D>& state, double h, Couple couple) {
   const int a = couple.a, b = couple.b;  // no binding: lambdas of clang 14 cannot hold one
   const double ways = way(state, a, h) + way(state, b, h);
   const auto held = [&](const ContactKey& key) {
@@ -138,7 +139,7 @@ double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
     if (light(a) > 0) stances_[a] = between(state, a, h, part);
     if (light(b) > 0) stances_[b] = between(state, b, h, part);
     double value = 1e300;
-    near(stances_, couple, ways + closed_, [&](const Gap<D>& gap) {
+    near(stances_, couple, ways + closed_, [&](const ContactCandidate<D>& gap) {
       if (!held(gap.key)) value = std::min(value, gap.value);
     });
     return value;
@@ -201,7 +202,7 @@ double Direct<D>::closing(const State<D>& state, double h, Couple couple) {
 
 // the part of the stretch at which the first of what slides has stopped, by a straight line; and whose slide
 template <int D>
-double Direct<D>::stopping(Couple& which) const {
+double ExactSolver<D>::stopping(Couple& which) const {
   double first = kNever;
   for (const Held& held : held_) {
     double begun = 0, now = 0;
@@ -232,7 +233,7 @@ double Direct<D>::stopping(Couple& which) const {
 
 // how much force is left, of these, until a contact lets go; in event mode, until it slips
 template <int D>
-double Direct<D>::grasp(const Held& held, const Eigen::VectorXd& f) const {
+double ExactSolver<D>::grasp(const Held& held, const Eigen::VectorXd& f) const {
   const double pressed = f[held.first];
   if (model_.collision != Collision::event || holding_[held.block].hold != Hold::stick) return pressed;
   return blocks_[held.block].mu * pressed - std::sqrt(f.segment(held.first + 1, D - 1).squaredNorm());
@@ -242,7 +243,7 @@ double Direct<D>::grasp(const Held& held, const Eigen::VectorXd& f) const {
 // has gone beyond by a little, so that it does indeed. Beyond, what pulls would hold on, and friction would
 // drive the slip
 template <int D>
-double Direct<D>::letting_go(const Held*& which) {
+double ExactSolver<D>::letting_go(const Held*& which) {
   double most = 0, first = kNever;
   for (const Held& held : held_) {
     if (held.kind == Held::Kind::contact) most = std::max(most, pressed_[held.first]);
@@ -262,12 +263,12 @@ double Direct<D>::letting_go(const Held*& which) {
 // the part of the stretch from begun_ to `state` at which the first thing happens, and to whom; kNever:
 // nothing does
 template <int D>
-double Direct<D>::crossing(const State<D>& state, double h, Couple& which) {
+double ExactSolver<D>::crossing(const State<D>& state, double h, Couple& which) {
   // what slides, by its rows at the end
   stand(state);
   rows_.clear();
   for (Held& held : held_) {
-    lay_rows(held, held.kind == Held::Kind::contact ? Spin<D>::Zero().eval()
+    lay_rows(held, held.kind == Held::Kind::contact ? AngularVec<D>::Zero().eval()
                                                     : turn_between(state, model_.joints[held.of]));
   }
   double first = stopping(which);
@@ -278,18 +279,19 @@ double Direct<D>::crossing(const State<D>& state, double h, Couple& which) {
   for (const Couple& couple : active_.couples) {
     if (!may_close(state, h, couple)) continue;
     if (const double part = closing(state, h, couple); part < first) first = part, which = couple;
-    stances_[couple.a] = stance(state, couple.a);
-    if (couple.b >= 0) stances_[couple.b] = stance(state, couple.b);
+    stances_[couple.a] = body_motion(state, couple.a);
+    if (couple.b >= 0) stances_[couple.b] = body_motion(state, couple.b);
   }
   return first;
 }
 
 // the turn between the sides of a joint a part of the way
 template <int D>
-Spin<D> Direct<D>::turn_part(const State<D>& state, const Joint<D>& joint, double h, double part) const {
-  const auto at = [&](int body) -> Spin<D> {
+AngularVec<D> ExactSolver<D>::turn_part(const State<D>& state, const Joint<D>& joint, double h,
+                                        double part) const {
+  const auto at = [&](int body) -> AngularVec<D> {
     const int k = body < 0 ? -1 : turning(state, body);
-    if (k < 0) return Spin<D>::Zero();
+    if (k < 0) return AngularVec<D>::Zero();
     return rounds<D>(sim::between<D>(begun_.turn[k], begun_.spin[k], state.turn[k], state.spin[k], h, part));
   };
   return at(joint.a.body) - at(joint.b.body);
@@ -297,7 +299,7 @@ Spin<D> Direct<D>::turn_part(const State<D>& state, const Joint<D>& joint, doubl
 
 // ropes that become tight and limits that are met
 template <int D>
-double Direct<D>::tightening(const State<D>& state, double h, Couple& which) {
+double ExactSolver<D>::tightening(const State<D>& state, double h, Couple& which) {
   using Kind = typename Held::Kind;
   double first = kNever;
   const auto look = [&](Kind kind, int joint) {
@@ -335,7 +337,7 @@ double Direct<D>::tightening(const State<D>& state, double h, Couple& which) {
     }
     if (first < before) which = {model_.joints[joint].a.body, model_.joints[joint].b.body};
     for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
-      if (light(body) > 0) stances_[body] = stance(state, body);
+      if (light(body) > 0) stances_[body] = body_motion(state, body);
     }
   };
   for (const int i : active_.joints) {
@@ -351,7 +353,7 @@ double Direct<D>::tightening(const State<D>& state, double h, Couple& which) {
 
 // smooth motion up to the first event, at most h; answers how long it was. `cut`: an event ended it
 template <int D>
-double Direct<D>::stretch(State<D>& state, double t, double h, bool& cut) {
+double ExactSolver<D>::stretch(State<D>& state, double t, double h, bool& cut) {
   keep(state, begun_);
   slips_.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) slips_[i] = moves(i);
@@ -392,21 +394,21 @@ double Direct<D>::stretch(State<D>& state, double t, double h, bool& cut) {
 
 // in finer steps where there are joints: what they hold swings faster than what flies
 template <int D>
-void Direct<D>::smooth(State<D>& state, double t, double h) {
+void ExactSolver<D>::smooth(State<D>& state, double t, double h) {
   const int pieces = row_joints_ == 0 || row_joints_ > kFewJoints ? 1 : kFiner;
   for (int i = 0; i < pieces; ++i)
     free_.step(integrate_, state, t + i * (h / pieces), h / pieces, stages_, this);
 }
 
-template double Direct<2>::stretch(State<2>&, double, double, bool&);
-template void Direct<2>::find(const State<2>&, double);
-template bool Direct<2>::may_touch(int, int) const;
-template double Direct<2>::grasp(const Held&, const Eigen::VectorXd&) const;
-template double Direct<3>::stretch(State<3>&, double, double, bool&);
-template void Direct<3>::find(const State<3>&, double);
-template bool Direct<3>::may_touch(int, int) const;
-template double Direct<3>::grasp(const Held&, const Eigen::VectorXd&) const;
-template double Direct<2>::gap_of(const ContactKey&, double);
-template double Direct<3>::gap_of(const ContactKey&, double);
+template double ExactSolver<2>::stretch(State<2>&, double, double, bool&);
+template void ExactSolver<2>::find(const State<2>&, double);
+template bool ExactSolver<2>::may_touch(int, int) const;
+template double ExactSolver<2>::grasp(const Held&, const Eigen::VectorXd&) const;
+template double ExactSolver<3>::stretch(State<3>&, double, double, bool&);
+template void ExactSolver<3>::find(const State<3>&, double);
+template bool ExactSolver<3>::may_touch(int, int) const;
+template double ExactSolver<3>::grasp(const Held&, const Eigen::VectorXd&) const;
+template double ExactSolver<2>::gap_of(const ContactKey&, double);
+template double ExactSolver<3>::gap_of(const ContactKey&, double);
 
 }  // namespace obscura::sim

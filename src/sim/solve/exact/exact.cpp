@@ -87,7 +87,7 @@ double thickness(const Shape<D>& shape) {
 }  // namespace
 
 template <int D>
-Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
+ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
     : model_(model), integrate_(sim::integrate(model.integrator)), free_(model, paths) {
   const double g = std::sqrt(model.gravity.squaredNorm()), h = 1 / value(model.rate);
   const bool exact = model.collision == Collision::event;
@@ -127,7 +127,7 @@ Direct<D>::Direct(const Model<D>& model, const std::vector<Path<D>>& paths, Serv
 }
 
 template <int D>
-void Direct<D>::keep(const State<D>& state, Motion& motion) const {
+void ExactSolver<D>::keep(const State<D>& state, Motion& motion) const {
   motion.x.resize(state.x.size()), motion.v.resize(state.v.size());
   motion.turn.resize(state.turn.size()), motion.spin.resize(state.spin.size());
   motion.own.resize(state.own.size()), motion.postures.resize(state.postures.size());
@@ -142,7 +142,7 @@ void Direct<D>::keep(const State<D>& state, Motion& motion) const {
 }
 
 template <int D>
-void Direct<D>::restore(const Motion& motion, State<D>& state) const {
+void ExactSolver<D>::restore(const Motion& motion, State<D>& state) const {
   for (const int body : active_.subset.bodies) {
     state.x[body] = motion.x[body], state.v[body] = motion.v[body];
     const int k = turning(state, body);
@@ -155,7 +155,7 @@ void Direct<D>::restore(const Motion& motion, State<D>& state) const {
 
 // whether every number of the bodies at hand is finite
 template <int D>
-bool Direct<D>::sound(const State<D>& state) const {
+bool ExactSolver<D>::sound(const State<D>& state) const {
   for (const int body : active_.subset.bodies) {
     if (!state.x[body].array().isFinite().all() || !state.v[body].array().isFinite().all()) return false;
     const int k = turning(state, body);
@@ -167,7 +167,7 @@ bool Direct<D>::sound(const State<D>& state) const {
 
 // kinetic energy of the bodies at hand, J
 template <int D>
-double Direct<D>::motion(const State<D>& state) const {
+double ExactSolver<D>::motion(const State<D>& state) const {
   double sum = 0;
   for (const int body : active_.subset.bodies) {
     if (!model_.bodies[body].fixed) sum += kinetic(model_, state, body);
@@ -177,7 +177,7 @@ double Direct<D>::motion(const State<D>& state) const {
 
 // collects the bodies at hand, whatever of them is awake
 template <int D>
-void Direct<D>::ready(State<D>& state) {
+void ExactSolver<D>::ready(State<D>& state) {
   double fastest = 0;
   for (const int body : active_.subset.bodies) {
     light_[body] = model_.bodies[body].fixed || state.frozen[body] ? 0 : 1 / model_.bodies[body].mass;
@@ -189,7 +189,7 @@ void Direct<D>::ready(State<D>& state) {
 }
 
 template <int D>
-void Direct<D>::step(State<D>& state, double t, double h) {
+void ExactSolver<D>::step(State<D>& state, double t, double h) {
   const std::size_t n = model_.bodies.size();
   begin_groups(state);
   all_contacts_.clear(), all_impulses_.clear();
@@ -243,7 +243,7 @@ void Direct<D>::step(State<D>& state, double t, double h) {
 
 // moves the group at hand from t to t + h
 template <int D>
-void Direct<D>::advance(State<D>& state, double t, double h) {
+void ExactSolver<D>::advance(State<D>& state, double t, double h) {
   ready(state);
   contacts_.clear(), impulses_.clear();
   known_ = &state.contacts;
@@ -263,7 +263,7 @@ void Direct<D>::advance(State<D>& state, double t, double h) {
       ready(state);
       find(state, closed_);
     }
-    collide(state);
+    resolve_impacts(state);
     bool cut = true;
     double length = 0;
     bool held_again = false;  // what let go is to be held: the same instant once more
@@ -313,7 +313,7 @@ void Direct<D>::advance(State<D>& state, double t, double h) {
     ready(state);
     find(state, closed_);
   }
-  collide(state);
+  resolve_impacts(state);
   // the forces that joints are shown with and break by are those of the end
   if (!active_.joints.empty() && choose(state, t + h)) remember();
   // what was pushed out of another has another gap now than when its force was found
@@ -324,7 +324,7 @@ void Direct<D>::advance(State<D>& state, double t, double h) {
 
 // what the last stretch ended by lets go, or slips, if it bears next to nothing more now
 template <int D>
-void Direct<D>::part_ways() {
+void ExactSolver<D>::part_ways() {
   --openings_;
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact || gaps_[held.of].key != *let_go_ || !acts(held)) continue;
@@ -345,7 +345,7 @@ void Direct<D>::part_ways() {
 
 // s: how long all may move on and not come far into one another
 template <int D>
-double Direct<D>::unseen(const State<D>& state) const {
+double ExactSolver<D>::unseen(const State<D>& state) const {
   double least = 1e300;
   for (const int body : active_.subset.bodies) {
     if (thin_[body] > 0) least = std::min(least, thin_[body]);
@@ -362,8 +362,8 @@ double Direct<D>::unseen(const State<D>& state) const {
 }
 
 template <int D>
-void Direct<D>::rates(double t, std::span<const double> d, std::span<const double> v,
-                      std::span<double> d_rate, std::span<double> v_rate) {
+void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const double> v,
+                           std::span<double> d_rate, std::span<double> v_rate) {
   free_.rates(t, d, v, d_rate, v_rate);
   if (held_.empty()) return;
 
@@ -373,10 +373,10 @@ void Direct<D>::rates(double t, std::span<const double> d, std::span<const doubl
   const auto& links = free_.chains().links();
   for (std::size_t i = 0; i < links.size(); ++i) stances_[links[i]] = free_.stances()[members.size() + i];
   rows_.clear();
-  for (Held& held : held_) lay_rows(held, Spin<D>::Zero());
+  for (Held& held : held_) lay_rows(held, AngularVec<D>::Zero());
   reach();
   b_.resize(Eigen::Index(rows_.size()));
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(i, v_rate) + rows_[i].drift;
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(i, v_rate) + rows_[i].velocity_product;
 
   // what holds goes on holding
   if (D > 2) turn_slides();
@@ -386,7 +386,7 @@ void Direct<D>::rates(double t, std::span<const double> d, std::span<const doubl
 
 // contacts and joints and their forces as they were chosen last; joints of what is frozen keep theirs
 template <int D>
-void Direct<D>::remember() {
+void ExactSolver<D>::remember() {
   contacts_.clear(), known_ = &contacts_;
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
@@ -415,7 +415,7 @@ void Direct<D>::remember() {
 
 // joints that are loaded beyond what they bear are no more from the next step on; what they held wakes
 template <int D>
-void Direct<D>::break_joints(State<D>& state) {
+void ExactSolver<D>::break_joints(State<D>& state) {
   bool any = false;
   ripe_.assign(model_.bodies.size(), 0);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
@@ -433,7 +433,7 @@ void Direct<D>::break_joints(State<D>& state) {
 }
 
 template <int D>
-void Direct<D>::report(State<D>& state) {
+void ExactSolver<D>::report(State<D>& state) {
   state.joint_forces = joint_forces_;
   for (const Contact<D>& struck : impulses_) {
     const auto at = std::lower_bound(contacts_.begin(), contacts_.end(), struck,
@@ -460,7 +460,7 @@ void Direct<D>::report(State<D>& state) {
 // the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
 // end
 template <int D>
-void Direct<D>::settle(State<D>& state, double t, double h) {
+void ExactSolver<D>::settle(State<D>& state, double t, double h) {
   find(state, closed_);
   stand(state);
   gather(state, true);
@@ -469,7 +469,8 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
   split();
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(i, rate) + rows_[i].drift);
+  for (int i = 0; i < int(rows_.size()); ++i)
+    b_[i] = moves(i) + h * (along(i, rate) + rows_[i].velocity_product);
   // What all but rests is begun with the forces of the step before. With these sweeps would go on holding
   // what has begun to fall
   double fastest = 0;
@@ -480,7 +481,7 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
     state.v[body] += h * Eigen::Map<const Vec<D>>(rate.data() + D * i);
     if (const int at = free_.spin_start(int(i)); at >= 0)
       state.spin[turning(state, body)] +=
-          h * to_room<D>(stances_[body].room_from_body, Eigen::Map<const Spin<D>>(rate.data() + at));
+          h * to_room<D>(stances_[body].room_from_body, Eigen::Map<const AngularVec<D>>(rate.data() + at));
   }
   Articulated<D>& chains = free_.chains();
   chain_change_.assign(rate.begin() + free_.chain_start(), rate.end());
@@ -492,7 +493,7 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
   for (const int body : members) {
     state.x[body] += 0.5 * h * (begun_.v[body] + state.v[body]);
     if (const int k = turning(state, body); k >= 0)
-      state.turn[k] = turned<D>(begun_.turn[k], Spin<D>(0.5 * h * (begun_.spin[k] + state.spin[k])));
+      state.turn[k] = turned<D>(begun_.turn[k], AngularVec<D>(0.5 * h * (begun_.spin[k] + state.spin[k])));
   }
   chains.advance(begun_.postures, h, state);
   f_ /= h;
@@ -514,7 +515,7 @@ void Direct<D>::settle(State<D>& state, double t, double h) {
   project(state, true);
 }
 
-template class Direct<2>;
-template class Direct<3>;
+template class ExactSolver<2>;
+template class ExactSolver<3>;
 
 }  // namespace obscura::sim

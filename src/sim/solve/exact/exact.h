@@ -19,13 +19,13 @@ namespace obscura::sim {
 /// meet in a step are stepped apart, so that the cuts of one are none of the other's. For scenes of up to
 /// some hundred rows.
 template <int D>
-class Direct final : public ContactStep<D>, private System {
+class ExactSolver final : public ContactSolver<D>, private System {
  public:
   /// Whom it serves: all bodies, or single ones of a model that another solver serves.
   enum class Serves { all, lone };
 
   /// Both are kept by reference.
-  Direct(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom = Serves::all);
+  ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom = Serves::all);
 
   /// Moves `state` from t to t + h: its bodies, contacts, and who is frozen.
   void step(State<D>& state, double t, double h) override;
@@ -52,10 +52,10 @@ class Direct final : public ContactStep<D>, private System {
   // how bodies stand and move
   struct Motion {
     std::vector<Vec<D>> x, v;
-    std::vector<Turn<D>> turn;
-    std::vector<Spin<D>> spin;
-    std::vector<OwnSpin<D>> own;
-    std::vector<Posture> postures;
+    std::vector<Orientation<D>> turn;
+    std::vector<AngularVec<D>> spin;
+    std::vector<BodySpin<D>> own;
+    std::vector<ChainState> postures;
   };
 
   // two that may come through each other: a body and a body or wall
@@ -101,9 +101,9 @@ class Direct final : public ContactStep<D>, private System {
 
   // direct_hold.cpp
   void stand(const State<D>& state);
-  Spin<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
+  AngularVec<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
   void gather(const State<D>& state, bool all);
-  void lay_rows(Held& held, const Spin<D>& turn);
+  void lay_rows(Held& held, const AngularVec<D>& turn);
   void lay_blocks(bool impulses);
   bool choose(State<D>& state, double t);
   bool jammed() const;
@@ -143,7 +143,7 @@ class Direct final : public ContactStep<D>, private System {
   // direct_impacts.cpp
   double approach() const;
   bool coming_apart() const;
-  void collide(State<D>& state);
+  void resolve_impacts(State<D>& state);
   void only_worst_pair();
   void strike(State<D>& state, double bounce);
   void note(const ContactKey& key, const Held& held, const Vec<D>& impulse);
@@ -164,22 +164,22 @@ class Direct final : public ContactStep<D>, private System {
   double letting_go(const Held*& which);
   double way(const State<D>& state, int body, double h) const;
   bool may_close(const State<D>& state, double h, Couple couple) const;
-  Spin<D> turn_part(const State<D>& state, const Joint<D>& joint, double h, double part) const;
+  AngularVec<D> turn_part(const State<D>& state, const Joint<D>& joint, double h, double part) const;
   void find(const State<D>& state, double margin);
   double gap_of(const ContactKey& key, double otherwise);
   bool may_touch(int a, int b) const;
   template <class Found>
-  void near(const std::vector<Stance<D>>& at, Couple couple, double margin, Found&& found);
-  Stance<D> between(const State<D>& state, int body, double h, double part) const;
+  void near(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
+  BodyMotion<D> between(const State<D>& state, int body, double h, double part) const;
 
   double light(int body) const { return body < 0 ? 0 : light_[body]; }
-  Spin<D> turned_by(int body, const Spin<D>& moment) const;
+  AngularVec<D> turned_by(int body, const AngularVec<D>& moment) const;
   double friction(const ContactKey& key) const;
   double elasticity(const ContactKey& key) const;
 
   const Model<D>& model_;
   Integrate* integrate_;
-  Tied<D> free_;
+  ForwardDynamics<D> free_;
   Stages stages_;
   Cone<D> cone_;
 
@@ -217,9 +217,9 @@ class Direct final : public ContactStep<D>, private System {
   Motion first_;  // where the step began
 
   // of the instant at hand
-  std::vector<Stance<D>> stances_;  // one a body
-  std::vector<double> light_;       // 1/m, 0 of what cannot move
-  std::vector<Gap<D>> gaps_, some_;
+  std::vector<BodyMotion<D>> stances_;  // one a body
+  std::vector<double> light_;           // 1/m, 0 of what cannot move
+  std::vector<ContactCandidate<D>> gaps_, some_;
   std::vector<Held> held_;
   std::vector<Row<D>> rows_;
   // of rows that move chains: their J, and M^-1 J', each of all chains

@@ -37,7 +37,7 @@ void by_group(int groups, int count, const GroupOf& group_of, std::vector<int>& 
 
 // bounds how far each body may get in a step of h from t
 template <int D>
-void Direct<D>::bound_ways(const State<D>& state, double t, double h) {
+void ExactSolver<D>::bound_ways(const State<D>& state, double t, double h) {
   const auto rate = free_.accelerations(state, t);
   const double g = std::sqrt(model_.gravity.squaredNorm());
   for (int body = 0; body < int(reach_.size()); ++body) {
@@ -55,7 +55,7 @@ void Direct<D>::bound_ways(const State<D>& state, double t, double h) {
 
 // near_: which bodies may meet, or are tied together
 template <int D>
-void Direct<D>::join_near(const State<D>& state) {
+void ExactSolver<D>::join_near(const State<D>& state) {
   near_.reset(every_body_);
   for (int body = 0; body < int(reach_.size()); ++body) reach_[body] = std::max(reach_[body], strayed_[body]);
   const auto link = [&](int a, int b) {
@@ -80,7 +80,7 @@ void Direct<D>::join_near(const State<D>& state) {
 // groups_ of near_. Groups of which all are frozen, and held by no mouse, are left out; single bodies that
 // reach nothing are one group: nothing cuts their step.
 template <int D>
-void Direct<D>::list_groups(const State<D>& state) {
+void ExactSolver<D>::list_groups(const State<D>& state) {
   const int n = int(model_.bodies.size());
   constexpr char kAsleep = 0, kFree = 1, kBusy = 2;
   std::vector<char>& kind = kinds_;  // at the root of each set
@@ -182,7 +182,7 @@ void Direct<D>::list_groups(const State<D>& state) {
 
 // sizes what groups need of a state
 template <int D>
-void Direct<D>::begin_groups(State<D>& state) {
+void ExactSolver<D>::begin_groups(State<D>& state) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
   state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
@@ -191,11 +191,11 @@ void Direct<D>::begin_groups(State<D>& state) {
 }
 
 template <int D>
-void Direct<D>::step_alone(State<D>& state, int body, double t, double h) {
+void ExactSolver<D>::step_alone(State<D>& state, int body, double t, double h) {
   if (light_.size() != model_.bodies.size()) {
     begin_groups(state);
     strayed_.resize(light_.size()), spent_.resize(light_.size());
-    for (const int fixed : fixed_) stances_[fixed] = stance(state, fixed);
+    for (const int fixed : fixed_) stances_[fixed] = body_motion(state, fixed);
   }
   lone_body_.assign(1, body), group_couples_.clear();
   for (int wall = 0; wall < int(model_.walls.size()); ++wall) group_couples_.push_back({body, -1 - wall});
@@ -224,13 +224,13 @@ void Direct<D>::step_alone(State<D>& state, int body, double t, double h) {
 
 // what follows is of this group
 template <int D>
-void Direct<D>::enter(const Group& group) {
+void ExactSolver<D>::enter(const Group& group) {
   active_ = group;
 }
 
 // what follows is of all bodies
 template <int D>
-void Direct<D>::enter_all() {
+void ExactSolver<D>::enter_all() {
   active_ = {};
   active_.subset = {every_body_, every_spring_, every_chain_};
   active_.joints = every_joint_;
@@ -240,14 +240,14 @@ void Direct<D>::enter_all() {
 
 // how far the bodies at hand have got
 template <int D>
-void Direct<D>::measure_ways(const State<D>& state) {
+void ExactSolver<D>::measure_ways(const State<D>& state) {
   for (const int body : active_.subset.bodies)
     strayed_[body] = std::max(strayed_[body], std::sqrt((state.x[body] - first_.x[body]).squaredNorm()));
 }
 
 // counts a cut that two took part in (below zero: none, or a wall); of all at hand where neither is a body
 template <int D>
-void Direct<D>::charge(int a, int b) {
+void ExactSolver<D>::charge(int a, int b) {
   if (a >= 0) ++spent_[a];
   if (b >= 0) ++spent_[b];
   if (a >= 0 || b >= 0) return;
@@ -256,23 +256,23 @@ void Direct<D>::charge(int a, int b) {
 
 // the most cuts that one of the bodies at hand took part in
 template <int D>
-int Direct<D>::most_spent() const {
+int ExactSolver<D>::most_spent() const {
   int most = 0;
   for (const int body : active_.subset.bodies) most = std::max(most, spent_[body]);
   return most;
 }
 
-#define OBSCURA_INSTANTIATE(D)                                          \
-  template void Direct<D>::bound_ways(const State<D>&, double, double); \
-  template void Direct<D>::join_near(const State<D>&);                  \
-  template void Direct<D>::list_groups(const State<D>&);                \
-  template void Direct<D>::enter(const Group&);                         \
-  template void Direct<D>::begin_groups(State<D>&);                     \
-  template void Direct<D>::step_alone(State<D>&, int, double, double);  \
-  template void Direct<D>::enter_all();                                 \
-  template void Direct<D>::measure_ways(const State<D>&);               \
-  template void Direct<D>::charge(int, int);                            \
-  template int Direct<D>::most_spent() const
+#define OBSCURA_INSTANTIATE(D)                                               \
+  template void ExactSolver<D>::bound_ways(const State<D>&, double, double); \
+  template void ExactSolver<D>::join_near(const State<D>&);                  \
+  template void ExactSolver<D>::list_groups(const State<D>&);                \
+  template void ExactSolver<D>::enter(const Group&);                         \
+  template void ExactSolver<D>::begin_groups(State<D>&);                     \
+  template void ExactSolver<D>::step_alone(State<D>&, int, double, double);  \
+  template void ExactSolver<D>::enter_all();                                 \
+  template void ExactSolver<D>::measure_ways(const State<D>&);               \
+  template void ExactSolver<D>::charge(int, int);                            \
+  template int ExactSolver<D>::most_spent() const
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
 #undef OBSCURA_INSTANTIATE

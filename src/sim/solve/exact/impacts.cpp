@@ -20,7 +20,7 @@ constexpr double kRounding = 1000;  // of what is still: what a solve leaves
 
 // how fast what touches comes closer, or joints come apart, at most
 template <int D>
-double Direct<D>::approach() const {
+double ExactSolver<D>::approach() const {
   double most = 0;
   for (const Held& held : held_) {
     switch (held.kind) {
@@ -39,7 +39,7 @@ double Direct<D>::approach() const {
 
 // whether anything that is held from now on comes apart yet
 template <int D>
-bool Direct<D>::coming_apart() const {
+bool ExactSolver<D>::coming_apart() const {
   for (const Held& held : held_) {
     const bool one_sided =
         held.kind != Held::Kind::joint && held.kind != Held::Kind::motor && held.kind != Held::Kind::friction;
@@ -50,7 +50,7 @@ bool Direct<D>::coming_apart() const {
 
 // impacts of this instant
 template <int D>
-void Direct<D>::collide(State<D>& state) {
+void ExactSolver<D>::resolve_impacts(State<D>& state) {
   double before = 0;
   for (int round = 0; round < kRounds; ++round) {
     stand(state);
@@ -68,7 +68,7 @@ void Direct<D>::collide(State<D>& state) {
 
 // of the contacts only those of the pair that comes together fastest
 template <int D>
-void Direct<D>::only_worst_pair() {
+void ExactSolver<D>::only_worst_pair() {
   const Held* worst = nullptr;
   for (const Held& held : held_) {
     if (held.kind == Held::Kind::contact && (!worst || moves(held.first) < moves(worst->first)))
@@ -82,14 +82,14 @@ void Direct<D>::only_worst_pair() {
     return key.a != pair.a || key.b != pair.b;
   });
   rows_.clear();
-  for (Held& held : held_) lay_rows(held, Spin<D>::Zero());
+  for (Held& held : held_) lay_rows(held, AngularVec<D>::Zero());
   reach();
 }
 
 // Newton's law with Coulomb's friction for all that is held; `bounce` scales e. Where energy would rise e is
 // scaled down further.
 template <int D>
-void Direct<D>::strike(State<D>& state, double bounce) {
+void ExactSolver<D>::strike(State<D>& state, double bounce) {
   lay_blocks(true);
   split();
   b_.resize(Eigen::Index(rows_.size()));
@@ -126,7 +126,7 @@ void Direct<D>::strike(State<D>& state, double bounce) {
 
 // adds an impulse to those of this step
 template <int D>
-void Direct<D>::note(const ContactKey& key, const Held& held, const Vec<D>& impulse) {
+void ExactSolver<D>::note(const ContactKey& key, const Held& held, const Vec<D>& impulse) {
   for (Contact<D>& known : impulses_) {
     if (known.key != key) continue;
     known.impulse += impulse;
@@ -139,11 +139,11 @@ void Direct<D>::note(const ContactKey& key, const Held& held, const Vec<D>& impu
   impulses_.push_back(contact);
 }
 
-template double Direct<2>::approach() const;
-template bool Direct<2>::coming_apart() const;
-template void Direct<2>::collide(State<2>&);
-template double Direct<3>::approach() const;
-template bool Direct<3>::coming_apart() const;
-template void Direct<3>::collide(State<3>&);
+template double ExactSolver<2>::approach() const;
+template bool ExactSolver<2>::coming_apart() const;
+template void ExactSolver<2>::resolve_impacts(State<2>&);
+template double ExactSolver<3>::approach() const;
+template bool ExactSolver<3>::coming_apart() const;
+template void ExactSolver<3>::resolve_impacts(State<3>&);
 
 }  // namespace obscura::sim

@@ -16,7 +16,7 @@ constexpr double kThorough = 5e8;  // of the size of all systems that a thorough
 
 // what of held_ belongs together, by the bodies it moves
 template <int D>
-void Direct<D>::split() {
+void ExactSolver<D>::split() {
   roots_.reset(active_.subset.bodies);
   for (const int number : active_.subset.chains) {
     const Articulation<D>& chain = model_.chains[number];
@@ -43,7 +43,7 @@ void Direct<D>::split() {
 
 // K of the rows in part_rows_
 template <int D>
-void Direct<D>::assemble() {
+void ExactSolver<D>::assemble() {
   const int n = int(part_rows_.size());
   K_.resize(n, n), part_b_.resize(n), part_f_.setZero(n);
   for (int i = 0; i < n; ++i) {
@@ -51,15 +51,15 @@ void Direct<D>::assemble() {
     part_b_[i] = b_[part_rows_[i]];
     const double ma = free(r.a) ? light_[r.a] : 0, mb = free(r.b) ? light_[r.b] : 0;
     const int chained = reaches_[part_rows_[i]];
-    const Spin<D> wa = ma > 0 ? turned_by(r.a, r.turn_a) : Spin<D>::Zero();
-    const Spin<D> wb = mb > 0 ? turned_by(r.b, r.turn_b) : Spin<D>::Zero();
+    const AngularVec<D> wa = ma > 0 ? turned_by(r.a, r.angular_a) : AngularVec<D>::Zero();
+    const AngularVec<D> wb = mb > 0 ? turned_by(r.b, r.angular_b) : AngularVec<D>::Zero();
     for (int j = 0; j <= i; ++j) {
       const Row<D>& s = rows_[part_rows_[j]];
       double k = 0;
-      if (ma > 0 && r.a == s.a) k += ma * r.along.dot(s.along) + wa.dot(s.turn_a);
-      if (mb > 0 && r.b == s.b) k += mb * r.along.dot(s.along) + wb.dot(s.turn_b);
-      if (ma > 0 && r.a == s.b) k -= ma * r.along.dot(s.along) + wa.dot(s.turn_b);
-      if (mb > 0 && r.b == s.a) k -= mb * r.along.dot(s.along) + wb.dot(s.turn_a);
+      if (ma > 0 && r.a == s.a) k += ma * r.along.dot(s.along) + wa.dot(s.angular_a);
+      if (mb > 0 && r.b == s.b) k += mb * r.along.dot(s.along) + wb.dot(s.angular_b);
+      if (ma > 0 && r.a == s.b) k -= ma * r.along.dot(s.along) + wa.dot(s.angular_b);
+      if (mb > 0 && r.b == s.a) k -= mb * r.along.dot(s.along) + wb.dot(s.angular_a);
       if (chained >= 0 && reaches_[part_rows_[j]] >= 0) {
         const auto J = reached(chain_J_, part_rows_[i]), U = reached(chain_U_, part_rows_[j]);
         k += std::inner_product(J.begin(), J.end(), U.begin(), 0.0);
@@ -71,7 +71,7 @@ void Direct<D>::assemble() {
 
 // f_ and modes_ of all rows under b_, exactly; false where a part has none. Or roughly
 template <int D>
-bool Direct<D>::solve() {
+bool ExactSolver<D>::solve() {
   if (rough_) {
     sweep(kSweeps);
     return true;
@@ -92,7 +92,7 @@ bool Direct<D>::solve() {
 
 // the same, roughly
 template <int D>
-void Direct<D>::sweep(int sweeps) {
+void ExactSolver<D>::sweep(int sweeps) {
   each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
     cone_.sweep(K_, part_b_, part_blocks_, modes, part_f_, sweeps);
   });
@@ -100,14 +100,14 @@ void Direct<D>::sweep(int sweeps) {
 
 // f_ where what holds goes on holding
 template <int D>
-void Direct<D>::hold() {
+void ExactSolver<D>::hold() {
   each_part(holding_,
             [&](std::vector<ConeMode<D>>& modes) { cone_.hold(K_, part_b_, part_blocks_, modes, part_f_); });
 }
 
 template <int D>
 template <class Solve>
-void Direct<D>::each_part(std::vector<ConeMode<D>>& modes, Solve&& solve) {
+void ExactSolver<D>::each_part(std::vector<ConeMode<D>>& modes, Solve&& solve) {
   f_.setZero(Eigen::Index(rows_.size()));
   for (int part = 0; part < parts_; ++part) {
     part_rows_.clear(), part_blocks_.clear(), part_modes_.clear();
@@ -136,7 +136,7 @@ void Direct<D>::each_part(std::vector<ConeMode<D>>& modes, Solve&& solve) {
 
 // f_ of least norm that gives the rows in chosen_ what b_ has for them
 template <int D>
-void Direct<D>::least() {
+void ExactSolver<D>::least() {
   f_.setZero(Eigen::Index(rows_.size()));
   wanted_.assign(rows_.size(), 0);
   for (const int row : chosen_) wanted_[row] = 1;
@@ -155,15 +155,15 @@ void Direct<D>::least() {
   }
 }
 
-template void Direct<2>::split();
-template bool Direct<2>::solve();
-template void Direct<2>::sweep(int);
-template void Direct<2>::hold();
-template void Direct<2>::least();
-template void Direct<3>::split();
-template bool Direct<3>::solve();
-template void Direct<3>::sweep(int);
-template void Direct<3>::hold();
-template void Direct<3>::least();
+template void ExactSolver<2>::split();
+template bool ExactSolver<2>::solve();
+template void ExactSolver<2>::sweep(int);
+template void ExactSolver<2>::hold();
+template void ExactSolver<2>::least();
+template void ExactSolver<3>::split();
+template bool ExactSolver<3>::solve();
+template void ExactSolver<3>::sweep(int);
+template void ExactSolver<3>::hold();
+template void ExactSolver<3>::least();
 
 }  // namespace obscura::sim

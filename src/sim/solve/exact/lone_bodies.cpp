@@ -27,9 +27,9 @@ bool round(const Shape<D>& shape) {
 }  // namespace
 
 template <int D>
-Lone<D>::Lone(const Model<D>& model, const std::vector<Path<D>>& paths)
+LoneBodies<D>::LoneBodies(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model),
-      direct_(model, paths, Direct<D>::Serves::lone),
+      direct_(model, paths, ExactSolver<D>::Serves::lone),
       g_(std::sqrt(model.gravity.squaredNorm())) {
   const int n = int(model.bodies.size());
   free_.assign(n, 1), still_.resize(n), ways_.resize(n), bounds_.resize(n);
@@ -49,7 +49,7 @@ Lone<D>::Lone(const Model<D>& model, const std::vector<Path<D>>& paths)
 
 // whether it reaches a wall or a fixed body in the step, faster than what rests
 template <int D>
-bool Lone<D>::strikes(const State<D>& state, int body, double h) const {
+bool LoneBodies<D>::strikes(const State<D>& state, int body, double h) const {
   const Vec<D>&x = state.x[body], &v = state.v[body];
   const Shape<D>& shape = model_.bodies[body].shape;
   // as far as others count it as an impact: with some to spare
@@ -72,7 +72,7 @@ bool Lone<D>::strikes(const State<D>& state, int body, double h) const {
 
 // leaves only candidates that no other body can reach
 template <int D>
-void Lone<D>::leave_out_near(const State<D>& state) {
+void LoneBodies<D>::leave_out_near(const State<D>& state) {
   const int n = int(model_.bodies.size());
   const auto apart = [&](int a, int b) {
     const Shape<D>&p = model_.bodies[a].shape, &q = model_.bodies[b].shape;
@@ -102,7 +102,7 @@ void Lone<D>::leave_out_near(const State<D>& state) {
 }
 
 template <int D>
-void Lone<D>::find(const State<D>& state, double h) {
+void LoneBodies<D>::find(const State<D>& state, double h) {
   candidates_.clear(), began_.clear();
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
@@ -119,7 +119,7 @@ void Lone<D>::find(const State<D>& state, double h) {
   }
   leave_out_near(state);
   for (const int i : candidates_) {
-    Began it{i, state.x[i], state.v[i], upright<D>(), Spin<D>::Zero(), {}};
+    Began it{i, state.x[i], state.v[i], no_rotation<D>(), AngularVec<D>::Zero(), {}};
     if (const int k = turning(state, i); k >= 0) {
       it.turn = state.turn[k], it.spin = state.spin[k];
       if (std::size_t(k) < state.own.size()) it.own = state.own[k];
@@ -129,7 +129,7 @@ void Lone<D>::find(const State<D>& state, double h) {
 }
 
 template <int D>
-void Lone<D>::step(State<D>& state, double t, double h) {
+void LoneBodies<D>::step(State<D>& state, double t, double h) {
   for (const Began& it : began_) {
     const int body = it.body;
     state.x[body] = it.x, state.v[body] = it.v;
@@ -141,7 +141,7 @@ void Lone<D>::step(State<D>& state, double t, double h) {
   }
 }
 
-template class Lone<2>;
-template class Lone<3>;
+template class LoneBodies<2>;
+template class LoneBodies<3>;
 
 }  // namespace obscura::sim

@@ -12,10 +12,10 @@ namespace obscura::sim {
 /// it by the exact solver, whichever solver serves all others: each impact at its own time, however many
 /// there are.
 template <int D>
-class Lone {
+class LoneBodies {
  public:
   /// Both are kept by reference.
-  Lone(const Model<D>& model, const std::vector<Path<D>>& paths);
+  LoneBodies(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// Finds them in a state before its step from t to t + h (s), and remembers how they stand.
   void find(const State<D>& state, double h);
@@ -27,16 +27,16 @@ class Lone {
   struct Began {
     int body;
     Vec<D> x, v;
-    Turn<D> turn;
-    Spin<D> spin;
-    OwnSpin<D> own;
+    Orientation<D> turn;
+    AngularVec<D> spin;
+    BodySpin<D> own;
   };
 
   bool strikes(const State<D>& state, int body, double h) const;
   void leave_out_near(const State<D>& state);
 
   const Model<D>& model_;
-  Direct<D> direct_;
+  ExactSolver<D> direct_;
   double g_ = 0;                     // m/s^2
   std::vector<char> free_;           // one a body: nothing ever ties it
   std::vector<char> still_;          // one a body: fixed, asleep or no candidate

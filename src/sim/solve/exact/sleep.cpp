@@ -20,7 +20,7 @@ constexpr double kStatic = 1e-10;  // of g: what rest may accelerate by
 
 // who is joined to whom, by the contacts of the state, springs and joints; fixed bodies join nobody
 template <int D>
-void Direct<D>::join(const State<D>& state) {
+void ExactSolver<D>::join(const State<D>& state) {
   islands_.reset(int(model_.bodies.size()));
   const auto link = [&](int a, int b) {
     if (a < 0 || b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) return;
@@ -38,7 +38,7 @@ void Direct<D>::join(const State<D>& state) {
 
 // thaws what something awake touches or holds, with all that it is joined to. True where it did
 template <int D>
-bool Direct<D>::wake(State<D>& state) {
+bool ExactSolver<D>::wake(State<D>& state) {
   const auto& bodies = active_.subset.bodies;
   if (std::none_of(bodies.begin(), bodies.end(), [&](int body) { return state.frozen[body] != 0; }))
     return false;
@@ -48,7 +48,7 @@ bool Direct<D>::wake(State<D>& state) {
     if (state.frozen[a] && light_[b] > 0) chosen_.push_back(a);
     if (state.frozen[b] && light_[a] > 0) chosen_.push_back(b);
   };
-  for (const Gap<D>& gap : gaps_) meet(gap.key.a, gap.key.b);
+  for (const ContactCandidate<D>& gap : gaps_) meet(gap.key.a, gap.key.b);
   for (const Grip<D>& grip : state.grips) {
     if (grip.body >= 0 && state.frozen[grip.body]) chosen_.push_back(grip.body);
   }
@@ -64,7 +64,7 @@ bool Direct<D>::wake(State<D>& state) {
 
 // freezes what rests, at time t after a step of h
 template <int D>
-void Direct<D>::rest(State<D>& state, double t, double h) {
+void ExactSolver<D>::rest(State<D>& state, double t, double h) {
   const double g = std::sqrt(model_.gravity.squaredNorm()), none = slow(model_).none;
   const int n = int(model_.bodies.size());
   bool ripe = false;
@@ -112,7 +112,7 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
     const int body = members[k];
     double a = std::sqrt(Eigen::Map<const Vec<D>>(rate_.data() + D * k).squaredNorm());
     if (const int at = free_.spin_start(k); at >= 0)
-      a += rims_[body] * std::sqrt(Eigen::Map<const Spin<D>>(rate_.data() + at).squaredNorm());
+      a += rims_[body] * std::sqrt(Eigen::Map<const AngularVec<D>>(rate_.data() + at).squaredNorm());
     if (!found || !(a <= kStatic * g)) ripe_[islands_.root(body)] = 0;
   }
   const auto& links = free_.chains().links();
@@ -143,11 +143,11 @@ void Direct<D>::rest(State<D>& state, double t, double h) {
   if (any) remember();
 }
 
-template void Direct<2>::join(const State<2>&);
-template bool Direct<2>::wake(State<2>&);
-template void Direct<2>::rest(State<2>&, double, double);
-template void Direct<3>::join(const State<3>&);
-template bool Direct<3>::wake(State<3>&);
-template void Direct<3>::rest(State<3>&, double, double);
+template void ExactSolver<2>::join(const State<2>&);
+template bool ExactSolver<2>::wake(State<2>&);
+template void ExactSolver<2>::rest(State<2>&, double, double);
+template void ExactSolver<3>::join(const State<3>&);
+template bool ExactSolver<3>::wake(State<3>&);
+template void ExactSolver<3>::rest(State<3>&, double, double);
 
 }  // namespace obscura::sim

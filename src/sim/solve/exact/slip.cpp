@@ -27,7 +27,7 @@ constexpr int kSweeps = 200;  // where it finds none
 
 // the ways of all contacts that slide at this instant, of `h` (s) that are left
 template <int D>
-void Direct<D>::begin_slides(State<D>& state, double t, double h) {
+void ExactSolver<D>::begin_slides(State<D>& state, double t, double h) {
   bool any = false;
   for (Held& held : held_) {
     held.slip.setZero(), held.slow = false;
@@ -49,11 +49,12 @@ void Direct<D>::begin_slides(State<D>& state, double t, double h) {
 
 // the ways of those that are slow, by the friction of an implicit step
 template <int D>
-void Direct<D>::aim_slow_slides(State<D>& state, double t, double h) {
+void ExactSolver<D>::aim_slow_slides(State<D>& state, double t, double h) {
   chosen_blocks_ = blocks_, chosen_modes_ = modes_, chosen_f_ = f_;
   lay_blocks(true);
   const auto rate = free_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i) + h * (along(i, rate) + rows_[i].drift);
+  for (int i = 0; i < int(rows_.size()); ++i)
+    b_[i] = moves(i) + h * (along(i, rate) + rows_[i].velocity_product);
   guess(h);
   const double enough = std::exchange(cone_.enough, kEnough);
   const int patience = std::exchange(cone_.patience, kPatience);
@@ -72,7 +73,7 @@ void Direct<D>::aim_slow_slides(State<D>& state, double t, double h) {
 
 // the ways at the stage at hand. Past a stop a slide goes on as it was
 template <int D>
-void Direct<D>::turn_slides() {
+void ExactSolver<D>::turn_slides() {
   for (const Held& held : held_) {
     if (held.kind != Held::Kind::contact || holding_[held.block].hold != Hold::slide) continue;
     Tangent<D> way, slip;
@@ -87,9 +88,9 @@ void Direct<D>::turn_slides() {
   }
 }
 
-template void Direct<2>::begin_slides(State<2>&, double, double);
-template void Direct<2>::turn_slides();
-template void Direct<3>::begin_slides(State<3>&, double, double);
-template void Direct<3>::turn_slides();
+template void ExactSolver<2>::begin_slides(State<2>&, double, double);
+template void ExactSolver<2>::turn_slides();
+template void ExactSolver<3>::begin_slides(State<3>&, double, double);
+template void ExactSolver<3>::turn_slides();
 
 }  // namespace obscura::sim

@@ -58,12 +58,13 @@ bool Statics<D>::hold(std::vector<BearingContact<D>>& touches, const std::vector
         if (at < 0) continue;
         const Body<D>& body = model_.bodies[at];
         const Vec<D> push = first ? Vec<D>(ways.col(k)) : Vec<D>(-ways.col(k));
-        const Spin<D> turn = moment<D>(first ? touch.arm_a : touch.arm_b, push);
+        const AngularVec<D> turn = moment<D>(first ? touch.arm_a : touch.arm_b, push);
         Side& side = rows_[D * i + k][first ? 0 : 1];
         side.column = columns_[at];
         side.push << push, turn;
         side.answer.template head<D>() = push / body.mass;
-        if (body.turns()) side.answer.template tail<kSpins<D>>() = spun<D>(body.inertia, turns[at], turn);
+        if (body.turns())
+          side.answer.template tail<kAngular<D>>() = inverse_inertia_times<D>(body.inertia, turns[at], turn);
       }
     }
   }
@@ -92,7 +93,7 @@ bool Statics<D>::hold(std::vector<BearingContact<D>>& touches, const std::vector
     const Way& rate = rates_[columns_[body]];
     const double a =
         std::sqrt(rate.template head<D>().squaredNorm()) +
-        reach(model_.bodies[body].shape) * std::sqrt(rate.template tail<kSpins<D>>().squaredNorm());
+        reach(model_.bodies[body].shape) * std::sqrt(rate.template tail<kAngular<D>>().squaredNorm());
     held = held && a <= kStatic * g;
     columns_[body] = -1;
   }

@@ -27,7 +27,7 @@ class Statics {
   bool hold(std::vector<BearingContact<D>>& touches, const std::vector<Rotation<D>>& turns);
 
  private:
-  static constexpr int kWays = D + kSpins<D>;
+  static constexpr int kWays = D + kAngular<D>;
   using Way = Eigen::Matrix<double, kWays, 1>;
 
   // what a row pushes one of its bodies with, and how that answers

@@ -13,7 +13,7 @@
 
 #include "sim/math/lanes.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -47,7 +47,7 @@ OBSCURA_INLINE void reference(const V& x, const V& y, const V& c, const V& s, co
 }
 
 template <class V>
-OBSCURA_INLINE void meet_four(Meeting& m, int lane, const Pose* poses, const Half* halves) {
+OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const Half* halves) {
   using M = Mask<V>;
   Quad<V> a, b;
   gather(&poses->x, m.a + lane, a), gather(&poses->x, m.b + lane, b);
@@ -129,13 +129,13 @@ OBSCURA_INLINE void meet_four(Meeting& m, int lane, const Pose* poses, const Hal
 }
 
 template <class V>
-OBSCURA_INLINE void outdated_all(const Seats* seats, int count, const Motion* v, const Pose* poses,
+OBSCURA_INLINE void outdated_all(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
                                  const Half* halves, double share, std::vector<Outdated>& boxes,
                                  Found& others) {
   const V part = V{} + share;
-  Meeting m;
+  BoxManifold m;
   for (int i = 0; i < count; ++i) {
-    const Seats& g = seats[i];
+    const ContactBatch& g = seats[i];
     if (!g.taken) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
@@ -157,28 +157,28 @@ OBSCURA_INLINE void outdated_all(const Seats* seats, int count, const Motion* v,
     }
   }
 }
-OBSCURA_WIDE void outdated_wide(const Seats* seats, int count, const Motion* v, const Pose* poses,
+OBSCURA_WIDE void outdated_wide(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
                                 const Half* halves, double share, std::vector<Outdated>& boxes,
                                 Found& others) {
   outdated_all<V4>(seats, count, v, poses, halves, share, boxes, others);
 }
 
 template <class V>
-OBSCURA_INLINE void meet_all(Meeting* meetings, int count, const Pose* poses, const Half* halves) {
-  for (Meeting* m = meetings; m < meetings + count; ++m) {
+OBSCURA_INLINE void meet_all(BoxManifold* meetings, int count, const Pose* poses, const Half* halves) {
+  for (BoxManifold* m = meetings; m < meetings + count; ++m) {
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) meet_four<V>(*m, lane, poses, halves);
   }
 }
-OBSCURA_WIDE void meet_wide(Meeting* meetings, int count, const Pose* poses, const Half* halves) {
+OBSCURA_WIDE void meet_wide(BoxManifold* meetings, int count, const Pose* poses, const Half* halves) {
   meet_all<V4>(meetings, count, poses, halves);
 }
 
 }  // namespace
 
-std::vector<Half> halves(const Cores& cores) {
+std::vector<Half> halves(const CoreShapes& cores) {
   std::vector<Half> all;
   for (std::size_t body = 0; body + 1 < cores.begin.size(); ++body) {
-    const Core& core = cores.all[cores.begin[body]];
+    const CoreShape& core = cores.all[cores.begin[body]];
     const bool box = cores.begin[body + 1] == cores.begin[body] + 1 && core.wide > 0;
     all.push_back(box ? Half{core.wide, core.high} : Half{});
   }
@@ -186,15 +186,15 @@ std::vector<Half> halves(const Cores& cores) {
   return all;
 }
 
-void find_outdated(const Seats* seats, int count, const Motion* v, const Pose* poses, const Half* halves,
-                   double share, std::vector<Outdated>& boxes, Found& others) {
+void find_outdated(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
+                   const Half* halves, double share, std::vector<Outdated>& boxes, Found& others) {
   boxes.clear(), others.clear();
   kWide ? outdated_wide(seats, count, v, poses, halves, share, boxes, others)
         : outdated_all<V2>(seats, count, v, poses, halves, share, boxes, others);
 }
 
-void meet(Meeting* meetings, int count, const Pose* poses, const Half* halves) {
+void meet(BoxManifold* meetings, int count, const Pose* poses, const Half* halves) {
   kWide ? meet_wide(meetings, count, poses, halves) : meet_all<V2>(meetings, count, poses, halves);
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

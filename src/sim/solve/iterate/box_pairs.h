@@ -5,7 +5,7 @@
 #include "sim/collide/core_shapes.h"
 #include "sim/solve/iterate/contact_rows.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 /// Half the sides (m) of a body that is one box about its centre; zero for any other.
 struct alignas(16) Half {
@@ -13,11 +13,11 @@ struct alignas(16) Half {
 };
 
 /// Of every body; one more, zero, for walls.
-std::vector<Half> halves(const Cores& cores);
+std::vector<Half> halves(const CoreShapes& cores);
 
 /// Bodies a and b of four pairs of boxes, and how they meet: words of the features of both touches,
 /// ascending, and a lower bound of the distance, m.
-struct alignas(64) Meeting {
+struct alignas(64) BoxManifold {
   int a[kLanes], b[kLanes];
   int words[2][kLanes];
   double gap[kLanes];
@@ -31,10 +31,10 @@ struct Outdated {
 
 /// Among the pairs whose features may have changed in `share` of the time between two looks: the boxes whose
 /// features have, and the seats of all others.
-void find_outdated(const Seats* seats, int count, const Motion* v, const Pose* poses, const Half* halves,
-                   double share, std::vector<Outdated>& boxes, Found& others);
+void find_outdated(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
+                   const Half* halves, double share, std::vector<Outdated>& boxes, Found& others);
 
 /// What nearest() finds for one pair, for all of them. Pairs of anything else get something.
-void meet(Meeting* meetings, int count, const Pose* poses, const Half* halves);
+void meet(BoxManifold* meetings, int count, const Pose* poses, const Half* halves);
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

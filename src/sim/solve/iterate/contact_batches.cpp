@@ -9,10 +9,10 @@
 
 namespace obscura::sim {
 
-using sweep::Feature;
-using sweep::kLanes;
-using sweep::Pair;
-using sweep::Seats;
+using plane::ContactBatch;
+using plane::Feature;
+using plane::kLanes;
+using plane::Pair;
 
 namespace {
 
@@ -29,7 +29,7 @@ bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind ==
 
 // seats for the pairs that are awake: greedy colours, in the order of pairs
 template <int D>
-void Iterative<D>::seat(const State<D>& state, bool known) {
+void PlaneIterative<D>::seat(const State<D>& state, bool known) {
   std::vector<Pair>& all = pairs_.all();
   if (version_ == pairs_.version() && frozen_ == state.frozen) {
     for (Pair& pair : all) {
@@ -106,7 +106,7 @@ void Iterative<D>::seat(const State<D>& state, bool known) {
 
 // The colour of a pair, the next in order; -1 where it is asleep.
 template <int D>
-int Iterative<D>::colour(const Pair& pair) {
+int PlaneIterative<D>::colour(const Pair& pair) {
   const bool a = v_[pair.a].im > 0, b = pair.b >= 0 && v_[pair.b].im > 0;
   if (!a && !b) return -1;
   const std::uint64_t used = (a ? colours_[pair.a] : 0) | (b ? colours_[pair.b] : 0);
@@ -120,7 +120,7 @@ int Iterative<D>::colour(const Pair& pair) {
 // Seats when some pairs have come and some have gone: whoever keeps its colour keeps its seat, for within a
 // colour the order is of no account. False where there are too few.
 template <int D>
-bool Iterative<D>::reseat(const State<D>& state) {
+bool PlaneIterative<D>::reseat(const State<D>& state) {
   if (begin_.empty()) return false;
   std::vector<Pair>& all = pairs_.all();
   const int end = begin_.back(), count = int(all.size());
@@ -159,7 +159,7 @@ bool Iterative<D>::reseat(const State<D>& state) {
       i -= count;
       take_seat(i, state);
     } else if (i >= 0) {
-      Seats& g = seats_[slot / kLanes];
+      ContactBatch& g = seats_[slot / kLanes];
       g.pair[slot % kLanes] = i, g.first[slot % kLanes] = all[i].first;
       if (all[i].fresh) sit(all[i], state);
     } else if (slots_[slot] >= 0) {
@@ -172,13 +172,13 @@ bool Iterative<D>::reseat(const State<D>& state) {
 }
 
 template <int D>
-void Iterative<D>::vacate(int slot) {
-  static const Seats empty = [] {
-    Seats made{};
+void PlaneIterative<D>::vacate(int slot) {
+  static const ContactBatch empty = [] {
+    ContactBatch made{};
     for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -kNowhere;
     return made;
   }();
-  Seats& g = seats_[slot / kLanes];
+  ContactBatch& g = seats_[slot / kLanes];
   const int lane = slot % kLanes, rest = ~(1 << lane), nobody = int(turns_.size());
   copy_seat(empty, lane, g, lane);
   g.a[lane] = g.b[lane] = nobody, g.pair[lane] = g.first[lane] = -1;
@@ -187,16 +187,16 @@ void Iterative<D>::vacate(int slot) {
 
 // what stays as long as a pair has its seat
 template <int D>
-void Iterative<D>::take_seat(int i, const State<D>& state) {
+void PlaneIterative<D>::take_seat(int i, const State<D>& state) {
   Pair& pair = pairs_.all()[i];
   const int n = int(turns_.size());
-  Seats& g = seats_[pair.slot / kLanes];
+  ContactBatch& g = seats_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
-  const sweep::Core& a = cores_.all[pair.core_a];
+  const plane::CoreShape& a = cores_.all[pair.core_a];
   double sight = 1e300, far = a.reach, thin = a.inside, radius = a.radius;
   bool round = false;
   if (pair.b >= 0) {
-    const sweep::Core& b = cores_.all[pair.core_b];
+    const plane::CoreShape& b = cores_.all[pair.core_b];
     far = std::max(far, b.reach), thin = std::min(thin, b.inside), radius += b.radius;
     sight = kSight * std::max(thin, 0.5 * radius);
     // features of round things may change at any time, if there are more than one
@@ -221,8 +221,8 @@ void Iterative<D>::take_seat(int i, const State<D>& state) {
 
 // features and forces of a pair
 template <int D>
-void Iterative<D>::sit(const Pair& pair, const State<D>& state) {
-  Seats& g = seats_[pair.slot / kLanes];
+void PlaneIterative<D>::sit(const Pair& pair, const State<D>& state) {
+  ContactBatch& g = seats_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes, bit = 1 << lane;
   g.first[lane] = pair.first;
   for (int k = 0; k < 2; ++k) {
@@ -236,7 +236,7 @@ void Iterative<D>::sit(const Pair& pair, const State<D>& state) {
     g.words[k][lane] = static_cast<unsigned short>(pair.words[k]);
     if (f.kind == Feature::none) continue;
     g.p[k][lane] = contact.force[0], g.q[k][lane] = contact.force[1];
-    const sweep::Core& a = cores_.all[pair.core_a];
+    const plane::CoreShape& a = cores_.all[pair.core_a];
     if (pair.b < 0) {
       const Wall<D>& wall = model_.walls[-1 - pair.b];
       g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
@@ -244,7 +244,7 @@ void Iterative<D>::sit(const Pair& pair, const State<D>& state) {
       g.d[k][lane] = wall.normal.dot(wall.point);
       continue;
     }
-    const sweep::Core& b = cores_.all[pair.core_b];
+    const plane::CoreShape& b = cores_.all[pair.core_b];
     if (f.kind == Feature::corners) {
       g.corners[k] = static_cast<unsigned char>(g.corners[k] | bit);
       g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
@@ -260,11 +260,11 @@ void Iterative<D>::sit(const Pair& pair, const State<D>& state) {
   }
 }
 
-template void Iterative<2>::seat(const State<2>&, bool);
-template bool Iterative<2>::reseat(const State<2>&);
-template int Iterative<2>::colour(const Pair&);
-template void Iterative<2>::vacate(int);
-template void Iterative<2>::take_seat(int, const State<2>&);
-template void Iterative<2>::sit(const Pair&, const State<2>&);
+template void PlaneIterative<2>::seat(const State<2>&, bool);
+template bool PlaneIterative<2>::reseat(const State<2>&);
+template int PlaneIterative<2>::colour(const Pair&);
+template void PlaneIterative<2>::vacate(int);
+template void PlaneIterative<2>::take_seat(int, const State<2>&);
+template void PlaneIterative<2>::sit(const Pair&, const State<2>&);
 
 }  // namespace obscura::sim

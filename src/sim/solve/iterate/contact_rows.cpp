@@ -13,7 +13,7 @@
 
 #include "sim/math/lanes.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -26,7 +26,8 @@ struct Row {
 };
 
 template <class V>
-OBSCURA_INLINE void make(const Seats& g, int lane, int k, const Quad<V>& a, const Quad<V>& b, Row<V>& r) {
+OBSCURA_INLINE void make(const ContactBatch& g, int lane, int k, const Quad<V>& a, const Quad<V>& b,
+                         Row<V>& r) {
   // the corner's body, and the face's
   const Mask<V> swapped = mask<V>(g.of_b[k], lane);
   const V px = pick<V>(swapped, b.x, a.x), py = pick<V>(swapped, b.y, a.y);
@@ -69,11 +70,11 @@ struct Two {
   Quad<V> a, b;  // velocities, and 1 / mass
   V iia, iib;
 
-  OBSCURA_INLINE Two(const Seats& g, int lane, const Motion* v) {
+  OBSCURA_INLINE Two(const ContactBatch& g, int lane, const Motion* v) {
     gather(&v->x, g.a + lane, a), gather(&v->x, g.b + lane, b);
     iia = load<V>(g.iia + lane), iib = load<V>(g.iib + lane);
   }
-  OBSCURA_INLINE void back(const Seats& g, int lane, Motion* v) const {
+  OBSCURA_INLINE void back(const ContactBatch& g, int lane, Motion* v) const {
     scatter(&v->x, g.a + lane, a), scatter(&v->x, g.b + lane, b);
   }
   OBSCURA_INLINE V along(const V& dx, const V& dy, const V& ra, const V& rb) const {
@@ -131,7 +132,7 @@ OBSCURA_INLINE void rub(Two<V>& two, const Row<V>& r, const V& most, V& lt) {
 }
 
 template <class V>
-OBSCURA_INLINE void expand_one(const Seats& g, const Pose* poses, Rows& out) {
+OBSCURA_INLINE void expand_one(const ContactBatch& g, const Pose* poses, Rows& out) {
   for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
     Quad<V> a, b;
     gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
@@ -147,13 +148,13 @@ OBSCURA_INLINE void expand_one(const Seats& g, const Pose* poses, Rows& out) {
 }
 
 template <class V>
-OBSCURA_INLINE bool start_all(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v,
+OBSCURA_INLINE bool start_all(ContactBatch* seats, int count, const Pose* poses, const Motion* old, Motion* v,
                               const Pace& pace, Found& closing, Found& blows) {
   const V h = V{} + pace.h, creep = V{} - pace.creep, gain = V{} + pace.gain, none{};
   const V bend = 0.5 * (h * h);
   Mask<V> deep{};
   for (int i = 0; i < count; ++i) {
-    Seats& g = seats[i];
+    ContactBatch& g = seats[i];
     g.struck[0] = g.struck[1] = 0;
     if (!g.taken) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
@@ -194,7 +195,7 @@ OBSCURA_INLINE bool start_all(Seats* seats, int count, const Pose* poses, const 
   return any(deep);
 }
 
-OBSCURA_INLINE void keep(const Seats& g, const Rows& rows, Contact<2>* contacts) {
+OBSCURA_INLINE void keep(const ContactBatch& g, const Rows& rows, Contact<2>* contacts) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (g.pair[lane] < 0) continue;
     Contact<2>* c = contacts + g.first[lane];
@@ -213,10 +214,10 @@ OBSCURA_INLINE void keep(const Seats& g, const Rows& rows, Contact<2>* contacts)
 }
 
 template <class V, bool kLast, bool kKeep>
-OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
+OBSCURA_INLINE void sweep_all(ContactBatch* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
                               Contact<2>* contacts) {
   const V per_h = V{} + 1 / pace.h, none{};
-  for (Seats* g = seats; g < seats + count; ++g) {
+  for (ContactBatch* g = seats; g < seats + count; ++g) {
     if (!g->taken) continue;
     [[maybe_unused]] Rows kept;
     if constexpr (kKeep) {
@@ -276,10 +277,10 @@ OBSCURA_INLINE void sweep_all(Seats* seats, int count, const Pose* poses, Motion
 }
 
 template <class V>
-OBSCURA_INLINE void project_all(const Seats* seats, Projection* p, int count, const Pose* poses, Motion* d,
-                                double share, double deep) {
+OBSCURA_INLINE void project_all(const ContactBatch* seats, Projection* p, int count, const Pose* poses,
+                                Motion* d, double share, double deep) {
   const V none{}, part = V{} + share;
-  for (const Seats* g = seats; g < seats + count; ++g, ++p) {
+  for (const ContactBatch* g = seats; g < seats + count; ++g, ++p) {
     if (!g->taken) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
@@ -302,30 +303,32 @@ OBSCURA_INLINE void project_all(const Seats* seats, Projection* p, int count, co
   }
 }
 
-OBSCURA_WIDE void expand_wide(const Seats& s, const Pose* at, Rows& out) { expand_one<V4>(s, at, out); }
-OBSCURA_WIDE bool start_wide(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace,
-                             Found& closing, Found& blows) {
+OBSCURA_WIDE void expand_wide(const ContactBatch& s, const Pose* at, Rows& out) {
+  expand_one<V4>(s, at, out);
+}
+OBSCURA_WIDE bool start_wide(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
+                             const Pace& pace, Found& closing, Found& blows) {
   return start_all<V4>(s, n, at, old, v, pace, closing, blows);
 }
-OBSCURA_WIDE void sweep_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
+OBSCURA_WIDE void sweep_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const Pace& pace) {
   sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
 }
-OBSCURA_WIDE void finish_wide(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace,
+OBSCURA_WIDE void finish_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const Pace& pace,
                               Contact<2>* contacts) {
   contacts ? sweep_all<V4, true, true>(s, n, at, v, pace, contacts)
            : sweep_all<V4, true, false>(s, n, at, v, pace, nullptr);
 }
-OBSCURA_WIDE void project_wide(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share,
-                               double deep) {
+OBSCURA_WIDE void project_wide(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d,
+                               double share, double deep) {
   project_all<V4>(s, p, n, at, d, share, deep);
 }
 
 }  // namespace
 
-void copy_forces(const Seats& from, int i, Seats& to, int k) {
+void copy_forces(const ContactBatch& from, int i, ContactBatch& to, int k) {
   for (int side = 0; side < 2; ++side) to.p[side][k] = from.p[side][i], to.q[side][k] = from.q[side][i];
 }
-void copy_seat(const Seats& from, int i, Seats& to, int k) {
+void copy_seat(const ContactBatch& from, int i, ContactBatch& to, int k) {
   to.a[k] = from.a[i], to.b[k] = from.b[i], to.pair[k] = from.pair[i], to.first[k] = from.first[i];
   to.touches[k] = from.touches[i], to.taken = static_cast<unsigned char>(to.taken | 1 << k);
   to.mu[k] = from.mu[i], to.iia[k] = from.iia[i], to.iib[k] = from.iib[i];
@@ -344,11 +347,11 @@ void copy_seat(const Seats& from, int i, Seats& to, int k) {
   copy_forces(from, i, to, k);
 }
 
-void expand(const Seats& s, const Pose* at, Rows& out) {
+void expand(const ContactBatch& s, const Pose* at, Rows& out) {
   kWide ? expand_wide(s, at, out) : expand_one<V2>(s, at, out);
 }
 
-TouchRow row(const Seats& g, int lane, int k, const Pose& a, const Pose& b) {
+TouchRow row(const ContactBatch& g, int lane, int k, const Pose& a, const Pose& b) {
   const bool swapped = g.of_b[k] >> lane & 1;
   const Pose &p = swapped ? b : a, &q = swapped ? a : b;
   const double cx = g.cx[k][lane], cy = g.cy[k][lane], fx = g.fx[k][lane], fy = g.fy[k][lane];
@@ -376,22 +379,23 @@ TouchRow row(const Seats& g, int lane, int k, const Pose& a, const Pose& b) {
   return r;
 }
 
-bool start(Seats* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace, Found& closing,
-           Found& blows) {
+bool start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace,
+           Found& closing, Found& blows) {
   closing.clear(), blows.clear();
   return kWide ? start_wide(s, n, at, old, v, pace, closing, blows)
                : start_all<V2>(s, n, at, old, v, pace, closing, blows);
 }
-void sweep(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace) {
+void sweep(ContactBatch* s, int n, const Pose* at, Motion* v, const Pace& pace) {
   kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
 }
-void finish(Seats* s, int n, const Pose* at, Motion* v, const Pace& pace, Contact<2>* contacts) {
+void finish(ContactBatch* s, int n, const Pose* at, Motion* v, const Pace& pace, Contact<2>* contacts) {
   if (kWide) return finish_wide(s, n, at, v, pace, contacts);
   contacts ? sweep_all<V2, true, true>(s, n, at, v, pace, contacts)
            : sweep_all<V2, true, false>(s, n, at, v, pace, nullptr);
 }
-void project(const Seats* s, Projection* p, int n, const Pose* at, Motion* d, double share, double allowed) {
+void project(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d, double share,
+             double allowed) {
   kWide ? project_wide(s, p, n, at, d, share, allowed) : project_all<V2>(s, p, n, at, d, share, allowed);
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

@@ -5,7 +5,7 @@
 #include "sim/collide/core_shapes.h"
 #include "sim/model/contact.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 // Pairs that touch, four side by side. Seats of one colour share no body that moves, so that four pairs at
 // once and one after another give the same bits. A seat keeps what the features are, not the rows: those are
@@ -20,7 +20,7 @@ struct alignas(32) Motion {
 
 /// A pair has up to two touches. Of each: a corner in its body's frame, and the other's face (or corner,
 /// where two corners touch) in its own; gap = n . (p - x) - d - radius.
-struct alignas(64) Seats {
+struct alignas(64) ContactBatch {
   int a[kLanes], b[kLanes];         // bodies; walls and empty seats have the one after the last
   int pair[kLanes], first[kLanes];  // and where its touches are among the contacts; -1: nobody
   unsigned char touches[kLanes];
@@ -71,32 +71,33 @@ struct Pace {
 };
 
 /// One pair to another seat; the forces alone.
-void copy_seat(const Seats& from, int i, Seats& to, int k);
-void copy_forces(const Seats& from, int i, Seats& to, int k);
+void copy_seat(const ContactBatch& from, int i, ContactBatch& to, int k);
+void copy_forces(const ContactBatch& from, int i, ContactBatch& to, int k);
 
 /// Rows of one group.
-void expand(const Seats& seats, const Pose* poses, Rows& out);
+void expand(const ContactBatch& seats, const Pose* poses, Rows& out);
 
 /// The row of a touch, as one lane of Rows.
 struct TouchRow {
   double nx, ny, x, y, gap, na, nb, ta, tb;
 };
 /// Touch k of one seat, whose bodies stand at these poses.
-TouchRow row(const Seats& seats, int lane, int k, const Pose& a, const Pose& b);
+TouchRow row(const ContactBatch& seats, int lane, int k, const Pose& a, const Pose& b);
 
 /// Makes impulses of the forces and applies them to v. `old`: velocities at the start. Which close slowly in
 /// the step, and which with a blow. True where something is deeper than project() lets it.
-bool start(Seats* seats, int count, const Pose* poses, const Motion* old, Motion* v, const Pace& pace,
+bool start(ContactBatch* seats, int count, const Pose* poses, const Motion* old, Motion* v, const Pace& pace,
            Found& closing, Found& blows);
 
 /// One sweep: every pair once, in order.
-void sweep(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace);
+void sweep(ContactBatch* seats, int count, const Pose* poses, Motion* v, const Pace& pace);
 /// The last one of a stretch: forces into the seats and, where there are some, into the contacts.
-void finish(Seats* seats, int count, const Pose* poses, Motion* v, const Pace& pace, Contact<2>* contacts);
+void finish(ContactBatch* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
+            Contact<2>* contacts);
 
 /// One sweep over positions: `share` of what is deeper than `allowed` of the farther reach is to go. Friction
 /// holds there too, or piles would slide apart by being mended.
-void project(const Seats* seats, Projection* projections, int count, const Pose* poses, Motion* d,
+void project(const ContactBatch* seats, Projection* projections, int count, const Pose* poses, Motion* d,
              double share, double allowed);
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

@@ -33,11 +33,11 @@ constexpr double kEndless = 1e300;
 }  // namespace
 
 template <int D>
-Linkage<D>::Linkage(const Model<D>& model) : model_(model) {
+JointSolver<D>::JointSolver(const Model<D>& model) : model_(model) {
   const std::size_t n = model.bodies.size();
   member_.assign(n, 0), light_.assign(n, 0), part_of_body_.assign(n, -1);
   at_.resize(n), turn_.resize(n);
-  for (Turn<D>& turn : turn_) turn.setZero();
+  for (Orientation<D>& turn : turn_) turn.setZero();
   for (const Joint<D>& joint : model.joints) {
     for (const int body : {joint.a.body, joint.b.body}) {
       if (body >= 0) member_[body] = 1;
@@ -49,13 +49,13 @@ Linkage<D>::Linkage(const Model<D>& model) : model_(model) {
 }
 
 template <int D>
-void Linkage<D>::ready(State<D>& state) const {
+void JointSolver<D>::ready(State<D>& state) const {
   state.broken.resize(model_.joints.size());
   state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
 }
 
 template <int D>
-void Linkage<D>::gather(const State<D>& state) {
+void JointSolver<D>::gather(const State<D>& state) {
   if (planned_ && broken_ == state.broken && frozen_ == state.frozen) return;
   planned_ = true, broken_ = state.broken, frozen_ = state.frozen;
   for (std::size_t i = 0; i < light_.size(); ++i)
@@ -64,7 +64,7 @@ void Linkage<D>::gather(const State<D>& state) {
 }
 
 template <int D>
-void Linkage<D>::plan() {
+void JointSolver<D>::plan() {
   held_.clear(), pairs_.clear();
   std::vector<int> sizes;
   std::vector<std::vector<int>> of(light_.size());  // blocks of each body that moves
@@ -109,8 +109,8 @@ void Linkage<D>::plan() {
 }
 
 template <int D>
-Spin<D> Linkage<D>::turn_between(const Joint<D>& joint) const {
-  Spin<D> turn = Spin<D>::Zero();
+AngularVec<D> JointSolver<D>::turn_between(const Joint<D>& joint) const {
+  AngularVec<D> turn = AngularVec<D>::Zero();
   if (joint.a.body >= 0) turn += rounds<D>(turn_[joint.a.body]);
   if (joint.b.body >= 0) turn -= rounds<D>(turn_[joint.b.body]);
   return turn;
@@ -118,49 +118,50 @@ Spin<D> Linkage<D>::turn_between(const Joint<D>& joint) const {
 
 // p M^-1 q
 template <int D>
-double Linkage<D>::couple(const Row<D>& p, const Row<D>& q) const {
+double JointSolver<D>::couple(const Row<D>& p, const Row<D>& q) const {
   double sum = 0;
-  const auto side = [&](int body, const Spin<D>& turn, double sign) {
+  const auto side = [&](int body, const AngularVec<D>& turn, double sign) {
     if (light(body) == 0) return;
     const Body<D>& b = model_.bodies[body];
-    const auto with = [&](int other, const Spin<D>& its, double s) {
+    const auto with = [&](int other, const AngularVec<D>& its, double s) {
       if (other != body) return;
       sum += sign * s * light_[body] * p.along.dot(q.along);
-      if (b.turns()) sum += sign * s * turn.dot(spun<D>(b.inertia, at_[body].room_from_body, its));
+      if (b.turns())
+        sum += sign * s * turn.dot(inverse_inertia_times<D>(b.inertia, at_[body].room_from_body, its));
     };
-    with(q.a, q.turn_a, 1), with(q.b, q.turn_b, -1);
+    with(q.a, q.angular_a, 1), with(q.b, q.angular_b, -1);
   };
-  side(p.a, p.turn_a, 1), side(p.b, p.turn_b, -1);
+  side(p.a, p.angular_a, 1), side(p.b, p.angular_b, -1);
   return sum;
 }
 
 // M^-1 r p onto velocities
 template <int D>
-void Linkage<D>::push(const Row<D>& row, double impulse) {
+void JointSolver<D>::push(const Row<D>& row, double impulse) {
   each_push(row, impulse,
-            [&](int body, const Vec<D>& v, const Spin<D>& w) { at_[body].v += v, at_[body].w += w; });
+            [&](int body, const Vec<D>& v, const AngularVec<D>& w) { at_[body].v += v, at_[body].w += w; });
 }
 
 // and onto places: angular momentum stays
 template <int D>
-void Linkage<D>::shift(const Row<D>& row, double by) {
-  const auto side = [&](int body, const Spin<D>& turn, double p) {
+void JointSolver<D>::shift(const Row<D>& row, double by) {
+  const auto side = [&](int body, const AngularVec<D>& turn, double p) {
     if (light(body) == 0) return;
     const Body<D>& b = model_.bodies[body];
     at_[body].x += p * light_[body] * row.along;
     if (!b.turns()) return;
-    Stance<D>& at = at_[body];
+    BodyMotion<D>& at = at_[body];
     const Rotation<D> from = at.room_from_body;
-    turn_[body] = turned<D>(turn_[body], Spin<D>(p * spun<D>(b.inertia, from, turn)));
+    turn_[body] = turned<D>(turn_[body], AngularVec<D>(p * inverse_inertia_times<D>(b.inertia, from, turn)));
     at.room_from_body = rotation<D>(turn_[body]);
     at.w = carried_spin<D>(b.inertia, from, at.room_from_body, at.w);
   };
-  side(row.a, row.turn_a, by), side(row.b, row.turn_b, -by);
+  side(row.a, row.angular_a, by), side(row.b, row.angular_b, -by);
 }
 
 // rows where everyone stands, and their factors
 template <int D>
-void Linkage<D>::lay() {
+void JointSolver<D>::lay() {
   double off[kMostHeld<D>];
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
@@ -180,11 +181,11 @@ void Linkage<D>::lay() {
 
 // how far a limit or a rope is from its end where everyone stands; false of what has none
 template <int D>
-bool Linkage<D>::left(const Bounded& bounded, double& off) const {
+bool JointSolver<D>::left(const Bounded& bounded, double& off) const {
   const Joint<D>& joint = model_.joints[bounded.joint];
   Row<D> out[kMostHeld<D>];
   if (bounded.load > upper) return false;
-  const Stance<D>&a = side(joint.a.body), &b = side(joint.b.body);
+  const BodyMotion<D>&a = side(joint.a.body), &b = side(joint.b.body);
   if (joint.kind == JointKind::rope) {
     double offs[kMostHeld<D>];
     rows(joint, a, b, turn_between(joint), out, offs);
@@ -199,7 +200,7 @@ bool Linkage<D>::left(const Bounded& bounded, double& off) const {
 
 // rows with bounds, of limits and ropes those that may come to their end in the step
 template <int D>
-void Linkage<D>::bind(double h) {
+void JointSolver<D>::bind(double h) {
   active_ = 0;
   const double g = std::sqrt(model_.gravity.squaredNorm());
   const auto add = [&](int i, Load load) {
@@ -211,7 +212,7 @@ void Linkage<D>::bind(double h) {
 
     Row<D> out[kMostHeld<D>];
     double offs[kMostHeld<D>];
-    const Stance<D>&p = side(joint.a.body), &q = side(joint.b.body);
+    const BodyMotion<D>&p = side(joint.a.body), &q = side(joint.b.body);
     if (joint.kind == JointKind::rope) {
       rows(joint, p, q, turn_between(joint), out, offs);
     } else {
@@ -219,7 +220,7 @@ void Linkage<D>::bind(double h) {
     }
     b.row = out[0];
     if (load == upper && joint.kind != JointKind::rope)
-      b.row.along *= -1, b.row.turn_a *= -1, b.row.turn_b *= -1;
+      b.row.along *= -1, b.row.angular_a *= -1, b.row.angular_b *= -1;
     b.least = 0, b.most = kEndless, b.target = 0;
     if (double off = 0; left(b, off)) {
       const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
@@ -247,7 +248,7 @@ void Linkage<D>::bind(double h) {
 }
 
 template <int D>
-void Linkage<D>::hear(Echo& echo) {
+void JointSolver<D>::hear(JointResponse& echo) {
   const auto part = [&](int body) { return body < 0 ? -1 : part_of_body_[body]; };
   int* const parts = echo.parts;
   parts[0] = part(echo.row.a), parts[1] = part(echo.row.b);
@@ -267,7 +268,7 @@ void Linkage<D>::hear(Echo& echo) {
 }
 
 template <int D>
-double Linkage<D>::couple(const Echo& p, const Echo& q) const {
+double JointSolver<D>::couple(const JointResponse& p, const JointResponse& q) const {
   double sum = couple(p.row, q.row);
   for (int s = 0; s < 2; ++s) {
     for (int r = 0; r < 2 && p.parts[s] >= 0; ++r) {
@@ -280,14 +281,14 @@ double Linkage<D>::couple(const Echo& p, const Echo& q) const {
 
 // zero where joints leave it nothing to move
 template <int D>
-double Linkage<D>::give(const Bounded& b) const {
+double JointSolver<D>::give(const Bounded& b) const {
   const double own = couple(b.row, b.row), gives = couple(b, b);
   return gives > kLocked * own ? 1 / gives : 0;
 }
 
 // by parts, and how they move each other
 template <int D>
-void Linkage<D>::couple_bounded() {
+void JointSolver<D>::couple_bounded() {
   // part_first_[p + 1] begins part p, the next one ends it
   part_first_.assign(parts() + 2, 0), by_part_.resize(active_);
   for (std::size_t k = 0; k < active_; ++k) ++part_first_[bounded_[k].parts[0] + 1];
@@ -310,7 +311,7 @@ void Linkage<D>::couple_bounded() {
 
 // changes_ of a part onto the velocities, with what the joints answer
 template <int D>
-void Linkage<D>::push_bounded(int part) {
+void JointSolver<D>::push_bounded(int part) {
   const int begin = part_first_[part + 1], end = part_first_[part + 2];
   bool any = false;
   for (int i = begin; i < end; ++i) {
@@ -329,17 +330,17 @@ void Linkage<D>::push_bounded(int part) {
 
 // one onto places
 template <int D>
-void Linkage<D>::shift_bounded(const Bounded& bounded, double by) {
+void JointSolver<D>::shift_bounded(const Bounded& bounded, double by) {
   shift(bounded.row, by);
   each_row(bounded.parts[0], [&](int k, int r) { shift(rows_[r], bounded.answer[0][k] * by); });
 }
 
 template <int D>
-void Linkage<D>::set_off(State<D>& state) {
+void JointSolver<D>::set_off(State<D>& state) {
   if (bodies_.empty()) return;
   gather(state);
   for (const int i : bodies_) {
-    at_[i] = sim::stance(state, i);
+    at_[i] = sim::body_motion(state, i);
     if (const int k = turning(state, i); k >= 0) turn_[i] = state.turn[k];
   }
   lay();
@@ -355,7 +356,7 @@ void Linkage<D>::set_off(State<D>& state) {
 }
 
 template <int D>
-void Linkage<D>::begin(double h) {
+void JointSolver<D>::begin(double h) {
   bind(h);
   couple_bounded();
   std::fill(impulses_.begin(), impulses_.end(), 0.0), std::fill(totals_.begin(), totals_.end(), 0.0);
@@ -363,12 +364,12 @@ void Linkage<D>::begin(double h) {
 }
 
 template <int D>
-void Linkage<D>::sweep() {
+void JointSolver<D>::sweep() {
   for (int part = -1; part < parts(); ++part) sweep(part);
 }
 
 template <int D>
-void Linkage<D>::sweep(int part) {
+void JointSolver<D>::sweep(int part) {
   if (part >= 0) {
     each_row(part, [&](int, int r) { rhs_[r] = -speed(rows_[r], at_); });
     factors_.solve(rhs_.data(), part);
@@ -397,7 +398,7 @@ void Linkage<D>::sweep(int part) {
 }
 
 template <int D>
-void Linkage<D>::agree() {
+void JointSolver<D>::agree() {
   for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] = -speed(rows_[r], at_);
   factors_.solve(rhs_.data());
   for (std::size_t r = 0; r < rows_.size(); ++r) push(rows_[r], rhs_[r]);
@@ -405,7 +406,7 @@ void Linkage<D>::agree() {
 
 // how far joints are off, at most; into rhs_ what would bring each row back
 template <int D>
-double Linkage<D>::astray() {
+double JointSolver<D>::astray() {
   double worst = 0;
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
@@ -422,7 +423,7 @@ double Linkage<D>::astray() {
 
 // whether all are near where they stood before they were put back
 template <int D>
-bool Linkage<D>::near() const {
+bool JointSolver<D>::near() const {
   for (const int i : bodies_) {
     if ((at_[i].x - begun_at_[i].x).norm() > kStride * model_.scale) return false;
     if ((at_[i].room_from_body - begun_at_[i].room_from_body).norm() > kStride) return false;
@@ -432,7 +433,7 @@ bool Linkage<D>::near() const {
 
 // places back onto what joints keep, and within what they let
 template <int D>
-void Linkage<D>::put_back(double h) {
+void JointSolver<D>::put_back(double h) {
   for (std::size_t k = 0; k < active_; ++k) {
     double off = 0;
     if (!left(bounded_[k], off) || off >= 0) continue;
@@ -466,7 +467,7 @@ void Linkage<D>::put_back(double h) {
 // the same where the factors at hand lead astray, as on levers that turn far in a step: anew in each round,
 // and no farther than it helps. Velocities know nothing of it
 template <int D>
-void Linkage<D>::search() {
+void JointSolver<D>::search() {
   double worst = astray();
   for (int round = 0; round < kSearches && worst > kPut * model_.scale; ++round) {
     lay();
@@ -487,7 +488,7 @@ void Linkage<D>::search() {
 }
 
 template <int D>
-void Linkage<D>::finish(double h) {
+void JointSolver<D>::finish(double h) {
   if (bodies_.empty()) return;
   put_back(h);
   lay();
@@ -508,7 +509,7 @@ void Linkage<D>::finish(double h) {
 // Motors where bodies now stand, with what they have left to give; what else has bounds has done its part.
 // False where there are none.
 template <int D>
-bool Linkage<D>::rebind() {
+bool JointSolver<D>::rebind() {
   bool any = false;
   for (std::size_t k = 0; k < active_; ++k) {
     Bounded& b = bounded_[k];
@@ -528,7 +529,7 @@ bool Linkage<D>::rebind() {
 }
 
 template <int D>
-void Linkage<D>::keep(State<D>& state, double h, const std::vector<char>* of) const {
+void JointSolver<D>::keep(State<D>& state, double h, const std::vector<char>* of) const {
   const auto wanted = [&](int i) {
     const Joint<D>& joint = model_.joints[i];
     const bool moves = light(joint.a.body) > 0 || light(joint.b.body) > 0;
@@ -552,7 +553,7 @@ void Linkage<D>::keep(State<D>& state, double h, const std::vector<char>* of) co
 }
 
 template <int D>
-bool Linkage<D>::break_joints(State<D>& state) const {
+bool JointSolver<D>::break_joints(State<D>& state) const {
   bool any = false;
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > model_.joints[i].breaks))
@@ -562,7 +563,7 @@ bool Linkage<D>::break_joints(State<D>& state) const {
   return any;
 }
 
-template class Linkage<2>;
-template class Linkage<3>;
+template class JointSolver<2>;
+template class JointSolver<3>;
 
 }  // namespace obscura::sim

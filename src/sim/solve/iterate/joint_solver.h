@@ -17,10 +17,10 @@ namespace obscura::sim {
 /// a sparse factorisation: linear in the number of joints where they form trees. Ropes, limits, motors and
 /// dry friction are rows with bounds, one after another, each with what the joints answer to it.
 template <int D>
-class Linkage {
+class JointSolver {
  public:
   /// Kept by reference.
-  explicit Linkage(const Model<D>& model);
+  explicit JointSolver(const Model<D>& model);
 
   bool empty() const { return model_.joints.empty(); }
   /// Whether no row has bounds in this step: then one sweep is as good as many.
@@ -30,8 +30,8 @@ class Linkage {
   /// written by the caller before and read after each of what follows.
   const std::vector<int>& bodies() const { return bodies_; }
   bool has(int body) const { return member_[body] != 0; }
-  Stance<D>& stance(int body) { return at_[body]; }
-  Turn<D>& turn(int body) { return turn_[body]; }
+  BodyMotion<D>& body_motion(int body) { return at_[body]; }
+  Orientation<D>& turn(int body) { return turn_[body]; }
 
   /// Makes room for the joints in a state that no step has seen yet.
   void ready(State<D>& state) const;
@@ -62,19 +62,19 @@ class Linkage {
 
   /// A push of two bodies along a row, and what the joints answer to a unit of it. A body without joints may
   /// be pushed too: its stance is the caller's to write, where that has a say.
-  struct Echo {
+  struct JointResponse {
     Row<D> row;
     int parts[2] = {-1, -1};                      // of its bodies; the second, if it is another
     std::vector<double> answer[2];                // impulses of the rows of each, in the order of elimination
     std::vector<std::pair<int, double>> felt[2];  // which of them it moves by a unit, and how fast
   };
   /// Fills in what is not the row, once rows are laid.
-  void hear(Echo& echo);
+  void hear(JointResponse& echo);
   /// How fast the row of one moves by a unit of the other, joints answering, 1/kg.
-  double couple(const Echo& p, const Echo& q) const;
+  double couple(const JointResponse& p, const JointResponse& q) const;
   /// act(body, change of its velocity, of its spin) for an impulse, and for what answers it.
   template <class Act>
-  void each_push(const Echo& echo, double impulse, Act&& act) const {
+  void each_push(const JointResponse& echo, double impulse, Act&& act) const {
     each_push(echo.row, impulse, act);
     for (int s = 0; s < 2; ++s) {
       each_row(echo.parts[s], [&](int k, int r) { each_push(rows_[r], echo.answer[s][k] * impulse, act); });
@@ -110,7 +110,7 @@ class Linkage {
 
   // what keeps within bounds
   enum Load { lower, upper, motor, friction };  // a rope is an upper
-  struct Bounded : Echo {
+  struct Bounded : JointResponse {
     int joint = 0;
     Load load = lower;
     double least = 0, most = 0, target = 0;  // N s or N m s; m/s or rad/s
@@ -120,21 +120,22 @@ class Linkage {
   };
 
   void plan();
-  Spin<D> turn_between(const Joint<D>& joint) const;
-  const Stance<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
+  AngularVec<D> turn_between(const Joint<D>& joint) const;
+  const BodyMotion<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
   double light(int body) const { return body < 0 ? 0 : light_[body]; }
   double couple(const Row<D>& p, const Row<D>& q) const;
   void push(const Row<D>& row, double impulse);
   template <class Act>
   void each_push(const Row<D>& row, double impulse, Act&& act) const {
-    const auto side = [&](int body, const Spin<D>& turn, double p) {
+    const auto side = [&](int body, const AngularVec<D>& turn, double p) {
       if (light(body) == 0) return;
       const Body<D>& b = model_.bodies[body];
-      const Spin<D> spin =
-          b.turns() ? Spin<D>(p * spun<D>(b.inertia, at_[body].room_from_body, turn)) : Spin<D>::Zero();
+      const AngularVec<D> spin =
+          b.turns() ? AngularVec<D>(p * inverse_inertia_times<D>(b.inertia, at_[body].room_from_body, turn))
+                    : AngularVec<D>::Zero();
       act(body, Vec<D>(p * light_[body] * row.along), spin);
     };
-    side(row.a, row.turn_a, impulse), side(row.b, row.turn_b, -impulse);
+    side(row.a, row.angular_a, impulse), side(row.b, row.angular_b, -impulse);
   }
   void shift(const Row<D>& row, double by);
   // rows of a part in the order of elimination: the k-th of it is row r
@@ -160,13 +161,13 @@ class Linkage {
   void search();
 
   const Model<D>& model_;
-  Stance<D> room_;
+  BodyMotion<D> room_;
   std::vector<int> bodies_;
   std::vector<char> member_;
-  std::vector<Stance<D>> at_;
-  std::vector<Turn<D>> turn_;
-  std::vector<Stance<D>> begun_at_;  // before they are put back
-  std::vector<Turn<D>> begun_turn_;
+  std::vector<BodyMotion<D>> at_;
+  std::vector<Orientation<D>> turn_;
+  std::vector<BodyMotion<D>> begun_at_;  // before they are put back
+  std::vector<Orientation<D>> begun_turn_;
   std::vector<double> light_;  // 1/kg; 0 of what cannot move
 
   std::vector<char> broken_, frozen_;  // that the plan is of

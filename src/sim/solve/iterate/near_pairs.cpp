@@ -6,7 +6,7 @@
 
 #include "sim/math/orientation.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -16,7 +16,7 @@ constexpr double kThrown = 1.25;  // times as fast as they are now, likewise
 
 }  // namespace
 
-Near::Near(const Model<2>& model, const Cores& cores)
+NearPairs::NearPairs(const Model<2>& model, const CoreShapes& cores)
     : model_(model), cores_(cores), may_touch_(model), halves_(halves(cores)) {
   double thin = 1e300;
   for (const double inside : cores.inside) thin = std::min(thin, std::max(inside, 1e-3 * model.scale));
@@ -24,7 +24,7 @@ Near::Near(const Model<2>& model, const Cores& cores)
   const std::size_t n = model.bodies.size();
   movers_.resize(n), still_.resize(n), exposed_.resize(n);
   bounds_.resize(cores.all.size()), still_cores_.resize(cores.all.size());
-  for (const Core& core : cores.all) points_.push_back(core.count == 1 && core.radius <= 0);
+  for (const CoreShape& core : cores.all) points_.push_back(core.count == 1 && core.radius <= 0);
   for (std::size_t i = 0; i < n; ++i) {
     movers_[i].reach = cores.reach[i];
     movers_[i].thick = std::max(cores.inside[i], 1e-3 * model.scale);
@@ -34,13 +34,13 @@ Near::Near(const Model<2>& model, const Cores& cores)
   for (const Wall<2>& wall : model.walls) elasticity_ = std::max(elasticity_, wall.elasticity.value_or(0));
 }
 
-double Near::spare(int body, double speed, double span) const {
+double NearPairs::spare(int body, double speed, double span) const {
   const double thick = movers_[body].thick;
   return 0.05 * thick + std::min(0.2 * thick, speed * span);
 }
 
 // who moves, how, and how far
-void Near::weigh(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
+void NearPairs::weigh(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
   const int n = int(movers_.size()), points = n - int(state.turn.size());
   const double falls = span * std::sqrt(model_.gravity.squaredNorm());
   for (int body = 0; body < n; ++body) {
@@ -56,10 +56,10 @@ void Near::weigh(const State<2>& state, const std::vector<Pose>& poses, double s
 }
 
 // cores and their margins
-void Near::enclose(const std::vector<Pose>& poses) {
+void NearPairs::enclose(const std::vector<Pose>& poses) {
   constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < int(bounds_.size()); ++i) {
-    const Core& core = cores_.all[i];
+    const CoreShape& core = cores_.all[i];
     const Pose& at = poses[core.body];
     const double out = core.radius + movers_[core.body].margin;
     Bounds<2>& b = bounds_[i];
@@ -88,7 +88,7 @@ void Near::enclose(const std::vector<Pose>& poses) {
 // thrown about, their neighbours. Of two that fly side by side and cannot be struck, none will touch. Of two
 // of whom one is struck, the other comes on: then they near each other as fast as it flies, and faster if the
 // one bounces.
-void Near::expose(double span) {
+void NearPairs::expose(double span) {
   const int n = int(movers_.size());
   for (int a = 0; a < n; ++a) {
     exposed_[a] = 0;
@@ -126,13 +126,13 @@ void Near::expose(double span) {
   candidates_.resize(kept);
 }
 
-bool Near::look(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
+bool NearPairs::look(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
   weigh(state, poses, span, patience);
   candidates_.clear();
   if (patience > 0 && std::find(still_.begin(), still_.end(), 0) == still_.end()) return false;
   enclose(poses);
   for (const auto& [i, j] : broad_.find(bounds_, still_cores_, {}, points_)) {
-    const Core &p = cores_.all[i], &q = cores_.all[j];
+    const CoreShape &p = cores_.all[i], &q = cores_.all[j];
     if (p.body == q.body) continue;
     if (may_touch_(p.body, q.body)) candidates_.push_back({i, j, -1, 0});
   }
@@ -143,21 +143,21 @@ bool Near::look(const State<2>& state, const std::vector<Pose>& poses, double sp
 }
 
 // boxes, four pairs at once
-void Near::meet(const std::vector<Pose>& poses) {
+void NearPairs::meet(const std::vector<Pose>& poses) {
   int count = 0;
   for (Candidate& c : candidates_) {
     const int a = cores_.all[c.a].body, b = cores_.all[c.b].body;
     if (!boxes(a, b)) continue;
     c.meeting = count++;
     if (c.meeting / kLanes == int(meetings_.size())) meetings_.emplace_back();
-    Meeting& m = meetings_[c.meeting / kLanes];
+    BoxManifold& m = meetings_[c.meeting / kLanes];
     // who is not there is nobody
     if (c.meeting % kLanes == 0) {
       for (int lane = 0; lane < kLanes; ++lane) m.a[lane] = m.b[lane] = int(movers_.size());
     }
     m.a[c.meeting % kLanes] = a, m.b[c.meeting % kLanes] = b;
   }
-  sweep::meet(meetings_.data(), (count + kLanes - 1) / kLanes, poses.data(), halves_.data());
+  plane::meet(meetings_.data(), (count + kLanes - 1) / kLanes, poses.data(), halves_.data());
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

@@ -8,12 +8,12 @@
 #include "sim/model/state.h"
 #include "sim/solve/iterate/box_pairs.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 /// Which cores may touch within a span of time.
-class Near {
+class NearPairs {
  public:
-  Near(const Model<2>& model, const Cores& cores);
+  NearPairs(const Model<2>& model, const CoreShapes& cores);
 
   /// Two cores of different bodies, a < b, and how near each other they may touch, m. Of two boxes, where
   /// they meet: lane + kLanes * group; else -1.
@@ -37,7 +37,7 @@ class Near {
 
   /// What the last look has found, ascending.
   const std::vector<Candidate>& candidates() const { return candidates_; }
-  const Meeting& meeting(const Candidate& c) const { return meetings_[c.meeting / kLanes]; }
+  const BoxManifold& meeting(const Candidate& c) const { return meetings_[c.meeting / kLanes]; }
   /// Whether a body was not looked for. Walls are not.
   bool still(int body) const { return body < 0 || still_[body] != 0; }
   /// Whether a body touches nothing here: the handout's law moves it.
@@ -50,10 +50,10 @@ class Near {
 
   /// Whether both are one box about their centre.
   bool boxes(int a, int b) const { return halves_[a].wide > 0 && halves_[b].wide > 0; }
-  void find_outdated(const std::vector<Seats>& seats, const std::vector<Motion>& v,
+  void find_outdated(const std::vector<ContactBatch>& seats, const std::vector<Motion>& v,
                      const std::vector<Pose>& poses, double share, std::vector<Outdated>& boxes,
                      Found& others) const {
-    sweep::find_outdated(seats.data(), int(seats.size()), v.data(), poses.data(), halves_.data(), share,
+    plane::find_outdated(seats.data(), int(seats.size()), v.data(), poses.data(), halves_.data(), share,
                          boxes, others);
   }
 
@@ -70,7 +70,7 @@ class Near {
   void meet(const std::vector<Pose>& poses);
 
   const Model<2>& model_;
-  const Cores& cores_;
+  const CoreShapes& cores_;
   MayTouch<2> may_touch_;
   BroadPhase<2> broad_;
   std::vector<Half> halves_;
@@ -82,9 +82,9 @@ class Near {
   std::vector<char> exposed_;  // bodies that may be struck within the span
   std::vector<Candidate> candidates_;
   std::vector<char> close_;  // of candidates
-  std::vector<Meeting> meetings_;
+  std::vector<BoxManifold> meetings_;
   double calm_ = 0;        // m: how far the calm may come
   double elasticity_ = 0;  // the largest there is
 };
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -21,7 +21,7 @@ double mean(double a, double b) { return a == b ? a : std::sqrt(a * b); }
 
 }  // namespace
 
-Pairs::Pairs(const Model<2>& model, const Cores& cores)
+Pairs::Pairs(const Model<2>& model, const CoreShapes& cores)
     : model_(model), cores_(cores), near_(model, cores), compounds_(cores.all.size() > model.bodies.size()) {
   for (const Body<2>& body : model.bodies) skins_.push_back({body.friction, body.elasticity});
 }
@@ -62,7 +62,7 @@ void Pairs::gather_found(const std::vector<Pose>& poses) {
   };
   const int n = int(model_.bodies.size());
   std::size_t resting = 0, next = 0;
-  const std::vector<Near::Candidate>& candidates = near_.candidates();
+  const std::vector<NearPairs::Candidate>& candidates = near_.candidates();
   for (int a = 0; a < n; ++a) {
     const std::size_t begun = found_.size();
     bool kept = false;
@@ -84,10 +84,10 @@ void Pairs::gather_found(const std::vector<Pose>& poses) {
       }
     }
     for (; next < candidates.size() && candidates[next].a < cores_.begin[a + 1]; ++next) {
-      const Near::Candidate& c = candidates[next];
-      const Core &p = cores_.all[c.a], &q = cores_.all[c.b];
+      const NearPairs::Candidate& c = candidates[next];
+      const CoreShape &p = cores_.all[c.a], &q = cores_.all[c.b];
       if (c.meeting >= 0) {
-        const Meeting& m = near_.meeting(c);
+        const BoxManifold& m = near_.meeting(c);
         const int lane = c.meeting % kLanes;
         if (!(m.gap[lane] < c.margin)) continue;
         found_.push_back(pair(a, q.body, c.a, c.b));
@@ -200,8 +200,9 @@ void Pairs::features(const Pair& pair, const std::vector<Pose>& poses, int words
   if (pair.touches == 2 && words[1] < words[0]) std::swap(words[0], words[1]);
 }
 
-const std::vector<Outdated>& Pairs::outdated(const std::vector<Seats>& seats, const std::vector<Motion>& v,
-                                             const std::vector<Pose>& poses, double share) {
+const std::vector<Outdated>& Pairs::outdated(const std::vector<ContactBatch>& seats,
+                                             const std::vector<Motion>& v, const std::vector<Pose>& poses,
+                                             double share) {
   near_.find_outdated(seats, v, poses, share, outdated_, others_);
   for (const int seat : others_) {
     const int i = seats[seat / kLanes].pair[seat % kLanes];
@@ -255,4 +256,4 @@ void Pairs::adopt(const State<2>& state) {
   ++version_;
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

@@ -8,7 +8,7 @@
 #include "sim/solve/iterate/contact_rows.h"
 #include "sim/solve/iterate/near_pairs.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 /// Two cores, or a core and a wall, that may touch before pairs are looked for again. Its touches are entries
 /// `first` and the next of State::contacts.
@@ -28,7 +28,7 @@ struct Pair {
 /// What touches, or will.
 class Pairs {
  public:
-  explicit Pairs(const Model<2>& model, const Cores& cores);
+  explicit Pairs(const Model<2>& model, const CoreShapes& cores);
 
   /// Finds the pairs nearer than their bodies can come within `span` s, and writes their touches into
   /// state.contacts; forces of the same touches stay. A pair whose two sides rest, or are calm for `patience`
@@ -40,7 +40,7 @@ class Pairs {
 
   /// Pairs whose features are others than their seats say, `share` of the time between two looks after the
   /// last. They are not changed yet.
-  const std::vector<Outdated>& outdated(const std::vector<Seats>& seats, const std::vector<Motion>& v,
+  const std::vector<Outdated>& outdated(const std::vector<ContactBatch>& seats, const std::vector<Motion>& v,
                                         const std::vector<Pose>& poses, double share);
   /// Changes the features of a pair to these. Forces move with their keys or, failing that, their places.
   void renew(const Outdated& found, State<2>& state, const std::vector<Pose>& poses);
@@ -66,8 +66,8 @@ class Pairs {
   void gather_found(const std::vector<Pose>& poses);
 
   const Model<2>& model_;
-  const Cores& cores_;
-  Near near_;
+  const CoreShapes& cores_;
+  NearPairs near_;
   struct Skin {
     double friction, elasticity;
   };
@@ -82,4 +82,4 @@ class Pairs {
   Found others_;
 };
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

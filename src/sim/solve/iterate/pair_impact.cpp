@@ -12,7 +12,7 @@
 #include <cmath>
 #include <utility>
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -182,4 +182,4 @@ void solve(const PairImpact& impact, double (&p)[4]) {
   }
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

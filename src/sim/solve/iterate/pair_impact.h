@@ -1,6 +1,6 @@
 #pragma once
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 /// An impact of two bodies of the plane at up to two touches, in one instant. Rows: the normal and the
 /// tangent of touch 0, then those of touch 1.
@@ -17,4 +17,4 @@ struct PairImpact {
 /// Newton's law with friction can raise the energy; then e is halved, in both touches, until it does not.
 void solve(const PairImpact& impact, double (&p)[4]);
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

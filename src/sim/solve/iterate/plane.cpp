@@ -18,10 +18,10 @@
 
 namespace obscura::sim {
 
-using sweep::Feature;
-using sweep::kLanes;
-using sweep::Pair;
-using sweep::Seats;
+using plane::ContactBatch;
+using plane::Feature;
+using plane::kLanes;
+using plane::Pair;
 
 namespace {
 
@@ -38,7 +38,7 @@ constexpr double kProject = 0.2;    // of a penetration each time pairs are look
 }  // namespace
 
 template <int D>
-Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths)
+PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model),
       cores_(model),
       pairs_(model, cores_),
@@ -64,7 +64,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
 }
 
 template <int D>
-void Iterative<D>::step(State<D>& state, double t, double h) {
+void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
@@ -110,7 +110,7 @@ void Iterative<D>::step(State<D>& state, double t, double h) {
 
 // who has just been frozen
 template <int D>
-void Iterative<D>::stand(const State<D>& state) {
+void PlaneIterative<D>::stand(const State<D>& state) {
   for (std::size_t i = 0; i < turns_.size(); ++i) {
     if (state.frozen[i]) v_[i] = {};
   }
@@ -119,7 +119,7 @@ void Iterative<D>::stand(const State<D>& state) {
 
 // from t to t + h, between two looks: forces stay in the seats until the last
 template <int D>
-void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
+void PlaneIterative<D>::stretch(State<D>& state, double t, double h, int which) {
   const bool first = which == 0 && state.step % every_ == 0, last = which + 1 == stretches_;
   if (outran_) {
     for (const Pair& pair : pairs_.all()) report(pair, state);
@@ -134,7 +134,7 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
     fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.reach[i]);
   }
   if (share > 0 && 2 * share * fastest > calmest_) {
-    for (const sweep::Outdated& old : pairs_.outdated(seats_, v_, poses_, share)) {
+    for (const plane::Outdated& old : pairs_.outdated(seats_, v_, poses_, share)) {
       const Pair& pair = pairs_.all()[old.pair];
       if (stretches_ > 1) report(pair, state);
       pairs_.renew(old, state, poses_);
@@ -143,10 +143,10 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
   }
 
   fall(state, t, h);
-  sweep::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm()), cores_.allowed};
+  plane::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm()), cores_.allowed};
   const int count = int(seats_.size());
   const bool deep =
-      sweep::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
+      plane::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
   if (!linkage_.empty()) {
     lend();
     linkage_.lay();
@@ -164,10 +164,10 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
   }
   for (int i = 1; i < sweeps; ++i) {
     hold();
-    sweep::sweep(seats_.data(), count, poses_.data(), v_.data(), pace);
+    plane::sweep(seats_.data(), count, poses_.data(), v_.data(), pace);
   }
   hold();
-  sweep::finish(seats_.data(), count, poses_.data(), v_.data(), pace, last ? state.contacts.data() : nullptr);
+  plane::finish(seats_.data(), count, poses_.data(), v_.data(), pace, last ? state.contacts.data() : nullptr);
   blows_.note(pairs_.all(), state.contacts, seats_);
   if (first && deep) project(state);
   advance(state, h, first && deep);
@@ -178,7 +178,7 @@ void Iterative<D>::stretch(State<D>& state, double t, double h, int which) {
 // Whether joints press something that is awake far into another: pushes by contacts alone, each with its own
 // body's mass, hardly move it then.
 template <int D>
-bool Iterative<D>::strained(const State<D>& state) const {
+bool PlaneIterative<D>::strained(const State<D>& state) const {
   const auto far = [&](int body) { return kStrained * cores_.inside[body]; };
   return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact<D>& c) {
     const int a = c.key.a, b = c.key.b;
@@ -190,24 +190,24 @@ bool Iterative<D>::strained(const State<D>& state) const {
 
 // a pair's forces, from its seat
 template <int D>
-void Iterative<D>::report(const Pair& pair, State<D>& state) const {
+void PlaneIterative<D>::report(const Pair& pair, State<D>& state) const {
   if (pair.slot < 0) return;
-  const Seats& g = seats_[pair.slot / kLanes];
+  const ContactBatch& g = seats_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
   for (int k = 0; k < pair.touches; ++k) {
     Contact<D>& contact = state.contacts[pair.first + k];
     const Feature f = Feature::of(contact.key.feature);
     contact.force = {g.p[k][lane], g.q[k][lane]};
     if (f.kind == Feature::none) continue;
-    const sweep::Place at = pairs_.place(pair, poses_, f);
+    const plane::Place at = pairs_.place(pair, poses_, f);
     contact.point = {at.x, at.y};
   }
 }
 
 // pairs anew, who wakes by them, and seats for all
 template <int D>
-void Iterative<D>::look(State<D>& state, bool known) {
-  const int patience = state.contacts.empty() ? 0 : sweep::Near::patience(state.step / every_);
+void PlaneIterative<D>::look(State<D>& state, bool known) {
+  const int patience = state.contacts.empty() ? 0 : plane::NearPairs::patience(state.step / every_);
   bool changed = pairs_.find(state, poses_, span_, patience);
   if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) {
     pairs_.find(state, poses_, span_, 0);
@@ -226,7 +226,7 @@ void Iterative<D>::look(State<D>& state, bool known) {
 
 // false where the state is not the one that the last step left
 template <int D>
-bool Iterative<D>::gather(const State<D>& state) {
+bool PlaneIterative<D>::gather(const State<D>& state) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
   std::size_t contacts = 0;
   if (!pairs_.all().empty()) contacts = pairs_.all().back().first + pairs_.all().back().touches;
@@ -251,7 +251,7 @@ bool Iterative<D>::gather(const State<D>& state) {
 
 // what everyone would do in the step if nothing touched
 template <int D>
-void Iterative<D>::fall(State<D>& state, double t, double h) {
+void PlaneIterative<D>::fall(State<D>& state, double t, double h) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
   const double gx = model_.gravity[0], gy = model_.gravity[1];
   for (int i = 0; i < n; ++i) {
@@ -275,7 +275,7 @@ void Iterative<D>::fall(State<D>& state, double t, double h) {
   // springs and hands
   if (!tied_.ever()) return;
   const std::vector<int>& bodies = tied_.bodies();
-  stages_.reserve(bodies.size() * (D + kSpins<D>));
+  stages_.reserve(bodies.size() * (D + kAngular<D>));
   tied_.step(integrate(model_.integrator), state, t, h, stages_);
   for (const int i : bodies) {
     if (v_[i].im > 0) {
@@ -294,9 +294,9 @@ void Iterative<D>::fall(State<D>& state, double t, double h) {
 
 // bodies of joints to the joints, and their velocities back
 template <int D>
-void Iterative<D>::lend() {
+void PlaneIterative<D>::lend() {
   for (const int i : linkage_.bodies()) {
-    Stance<D>& at = linkage_.stance(i);
+    BodyMotion<D>& at = linkage_.body_motion(i);
     at.x = {poses_[i].x, poses_[i].y}, at.v = {v_[i].x, v_[i].y}, at.w[0] = v_[i].w;
     at.room_from_body << poses_[i].c, -poses_[i].s, poses_[i].s, poses_[i].c;
     linkage_.turn(i)[0] = turns_[i];
@@ -304,25 +304,25 @@ void Iterative<D>::lend() {
 }
 
 template <int D>
-void Iterative<D>::take() {
+void PlaneIterative<D>::take() {
   for (const int i : linkage_.bodies()) {
-    const Stance<D>& at = linkage_.stance(i);
+    const BodyMotion<D>& at = linkage_.body_motion(i);
     v_[i].x = at.v[0], v_[i].y = at.v[1], v_[i].w = at.w[0];
   }
 }
 
 template <int D>
-void Iterative<D>::hold() {
+void PlaneIterative<D>::hold() {
   if (linkage_.empty()) return;
   for (const int i : linkage_.bodies())
-    linkage_.stance(i).v = {v_[i].x, v_[i].y}, linkage_.stance(i).w[0] = v_[i].w;
+    linkage_.body_motion(i).v = {v_[i].x, v_[i].y}, linkage_.body_motion(i).w[0] = v_[i].w;
   linkage_.sweep();
   take();
 }
 
 // what the step has pulled apart
 template <int D>
-void Iterative<D>::rejoin(State<D>& state, double h) {
+void PlaneIterative<D>::rejoin(State<D>& state, double h) {
   lend();
   linkage_.finish(h);
   linkage_.keep(state, h);
@@ -331,7 +331,7 @@ void Iterative<D>::rejoin(State<D>& state, double h) {
   const int still = int(turns_.size() - state.turn.size());
   for (const int i : linkage_.bodies()) {
     if (v_[i].im == 0) continue;
-    const Stance<D>& at = linkage_.stance(i);
+    const BodyMotion<D>& at = linkage_.body_motion(i);
     state.x[i] = at.x, state.v[i] = at.v;
     poses_[i].x = at.x[0], poses_[i].y = at.x[1];
     if (i < still) continue;
@@ -344,25 +344,25 @@ void Iterative<D>::rejoin(State<D>& state, double h) {
 
 // positions out of each other, a part of the way
 template <int D>
-void Iterative<D>::project(const State<D>& state) {
-  std::fill(projections_.begin(), projections_.end(), sweep::Projection{});
+void PlaneIterative<D>::project(const State<D>& state) {
+  std::fill(projections_.begin(), projections_.end(), plane::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
   int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
   if (!linkage_.empty() && strained(state)) sweeps = kStrainSweeps;
   for (int i = 0; i < sweeps; ++i) {
     // joints go along
     for (const int k : linkage_.bodies())
-      linkage_.stance(k).v = {push_[k].x, push_[k].y}, linkage_.stance(k).w[0] = push_[k].w;
+      linkage_.body_motion(k).v = {push_[k].x, push_[k].y}, linkage_.body_motion(k).w[0] = push_[k].w;
     if (!linkage_.empty()) linkage_.agree();
     for (const int k : linkage_.bodies()) {
-      const Stance<D>& at = linkage_.stance(k);
+      const BodyMotion<D>& at = linkage_.body_motion(k);
       push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
     }
-    sweep::project(seats_.data(), projections_.data(), int(seats_.size()), poses_.data(), push_.data(),
+    plane::project(seats_.data(), projections_.data(), int(seats_.size()), poses_.data(), push_.data(),
                    kProject, cores_.allowed);
   }
 }
 
-template class Iterative<2>;
+template class PlaneIterative<2>;
 
 }  // namespace obscura::sim

@@ -20,31 +20,31 @@ namespace obscura::sim {
 /// run in one; a state whose step and motion are to the bit those that the last step left is taken to be that
 /// state, contacts and all.
 template <int D>
-class Iterative final : public ContactStep<D> {
+class PlaneIterative final : public ContactSolver<D> {
  public:
   /// Both are kept by reference.
-  explicit Iterative(const Model<D>& model, const std::vector<Path<D>>& paths);
+  explicit PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// Moves `state` from t to t + h (s): forces, impacts, contacts with friction, rest. Uses and writes
   /// state.contacts, frozen, quiet.
   void step(State<D>& state, double t, double h) override;
 
  private:
-  using Motion = sweep::Motion;
+  using Motion = plane::Motion;
 
   static constexpr double kSight = 0.5;  // of its thickness: what may pass within a step is swept instead
 
   bool gather(const State<D>& state);
   void stretch(State<D>& state, double t, double h, int which);
   bool strained(const State<D>& state) const;
-  void report(const sweep::Pair& pair, State<D>& state) const;
+  void report(const plane::Pair& pair, State<D>& state) const;
   void seat(const State<D>& state, bool known);
   void stand(const State<D>& state);
   bool reseat(const State<D>& state);
-  int colour(const sweep::Pair& pair);
+  int colour(const plane::Pair& pair);
   void vacate(int slot);
   void take_seat(int pair, const State<D>& state);
-  void sit(const sweep::Pair& pair, const State<D>& state);
+  void sit(const plane::Pair& pair, const State<D>& state);
   void guess(State<D>& state);
   void fall(State<D>& state, double t, double h);
   void lend();
@@ -55,18 +55,18 @@ class Iterative final : public ContactStep<D> {
   void advance(State<D>& state, double h, bool look);
   void look(State<D>& state, bool known);
   bool outran(double h, double left) const;
-  double clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const;
+  double clear(int body, const plane::Pose& from, const Motion& way, bool walls) const;
   Motion mean_way(int body, double h) const;
   Motion course(int body, double h);
   bool fast(int body, const Motion& way) const;
 
   const Model<D>& model_;
-  sweep::Cores cores_;
-  sweep::Pairs pairs_;
-  sweep::Blows blows_;
-  sweep::Rest rest_;
-  Tied<D> tied_;
-  Linkage<D> linkage_;
+  plane::CoreShapes cores_;
+  plane::Pairs pairs_;
+  plane::Impacts blows_;
+  plane::Rest rest_;
+  ForwardDynamics<D> tied_;
+  JointSolver<D> linkage_;
   Stages stages_;
   std::int64_t every_ = 1;  // steps between two looks for pairs
   double span_ = 0;         // and s
@@ -77,7 +77,7 @@ class Iterative final : public ContactStep<D> {
   bool drag_ = false;
 
   // of bodies; one more that never moves, for walls
-  std::vector<sweep::Pose> poses_;
+  std::vector<plane::Pose> poses_;
   std::vector<double> turns_;    // that the poses are of, rad
   std::vector<double> ii_;       // 1/(kg m^2); 0 where asleep or fixed
   std::vector<Motion> v_, old_;  // now, and when the step began
@@ -94,9 +94,9 @@ class Iterative final : public ContactStep<D> {
 
   std::vector<std::uint64_t> colours_;     // used on each body
   std::vector<int> count_, begin_, ends_;  // of each colour; where its seats begin and end
-  std::vector<sweep::Seats> seats_;
-  std::vector<sweep::Projection> projections_;
-  sweep::Found slow_, fast_;
+  std::vector<plane::ContactBatch> seats_;
+  std::vector<plane::Projection> projections_;
+  plane::Found slow_, fast_;
   std::vector<int> slots_, next_slots_;  // which pair sits where
   std::vector<int> moved_;               // pairs that take another seat
   std::int64_t next_step_ = -1;          // of the state that this has left

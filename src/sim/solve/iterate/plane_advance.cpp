@@ -9,12 +9,12 @@
 
 namespace obscura::sim {
 
-using sweep::Feature;
-using sweep::kLanes;
-using sweep::Pair;
+using plane::Feature;
+using plane::kLanes;
+using plane::Pair;
 
 template <int D>
-void Iterative<D>::advance(State<D>& state, double h, bool look) {
+void PlaneIterative<D>::advance(State<D>& state, double h, bool look) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
 
   // whose slow touches closed
@@ -43,12 +43,12 @@ void Iterative<D>::advance(State<D>& state, double h, bool look) {
     const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (reach * reach) <= asked2;
     state.quiet[i] = quiet ? state.quiet[i] + h : 0;
   }
-  sweep::turn_all(turns_.data() + still, poses_.data() + still, n - still);
+  plane::turn_all(turns_.data() + still, poses_.data() + still, n - still);
 }
 
 // by the mean of old and new velocity
 template <int D>
-sweep::Motion Iterative<D>::mean_way(int i, double h) const {
+plane::Motion PlaneIterative<D>::mean_way(int i, double h) const {
   const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
   const double half = 0.5 * h;
   return {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
@@ -57,7 +57,7 @@ sweep::Motion Iterative<D>::mean_way(int i, double h) const {
 
 // the way of a body in the step, of one too that is struck or fast
 template <int D>
-sweep::Motion Iterative<D>::course(int i, double h) {
+plane::Motion PlaneIterative<D>::course(int i, double h) {
   const Motion &v = v_[i], &o = old_[i], &dv = dv_[i];
   const double when = blows_.when(i);
   Motion d;
@@ -67,7 +67,7 @@ sweep::Motion Iterative<D>::course(int i, double h) {
     const Motion there{one * (o.x + b.x), one * (o.y + b.y), one * (o.w + b.w), 0};
     Motion back{two * (a.x + v.x), two * (a.y + v.y), two * (a.w + v.w), 0};
     if (fast(i, back)) {
-      sweep::Pose from = poses_[i];
+      plane::Pose from = poses_[i];
       from.x += there.x, from.y += there.y;
       const double part = clear(i, from, back, true);
       back.x *= part, back.y *= part, back.w *= part;
@@ -98,7 +98,7 @@ sweep::Motion Iterative<D>::course(int i, double h) {
 
 // whether it may pass through something in the step
 template <int D>
-bool Iterative<D>::fast(int body, const Motion& way) const {
+bool PlaneIterative<D>::fast(int body, const Motion& way) const {
   const double inside = 0.5 * kSight * cores_.inside[body];
   return way.x * way.x + way.y * way.y > inside * inside;
 }
@@ -106,13 +106,13 @@ bool Iterative<D>::fast(int body, const Motion& way) const {
 // the part of its way that a body may go before it meets another where that stands, or a wall: by steps as
 // long as the distance that is left
 template <int D>
-double Iterative<D>::clear(int body, const sweep::Pose& from, const Motion& way, bool walls) const {
+double PlaneIterative<D>::clear(int body, const plane::Pose& from, const Motion& way, bool walls) const {
   const double length = std::sqrt(way.x * way.x + way.y * way.y);
   double part = 1;
   Feature features[2];
   for (const int i : blows_.around(body)) {
     const Pair& pair = pairs_.all()[i];
-    const sweep::Core& a = cores_.all[pair.core_a];
+    const plane::CoreShape& a = cores_.all[pair.core_a];
     if (pair.b < 0) {
       const Wall<D>& wall = model_.walls[-1 - pair.b];
       const double nears = -(wall.normal[0] * way.x + wall.normal[1] * way.y);
@@ -120,9 +120,9 @@ double Iterative<D>::clear(int body, const sweep::Pose& from, const Motion& way,
       if (walls && nears > gap) part = std::min(part, std::max(gap, 0.0) / nears);
       continue;
     }
-    const sweep::Core& b = cores_.all[pair.core_b];
+    const plane::CoreShape& b = cores_.all[pair.core_b];
     const double close = 0.02 * std::max(std::min(a.inside, b.inside), 1e-6 * model_.scale);
-    sweep::Pose at = from;
+    plane::Pose at = from;
     for (double gone = 0; gone < part;) {
       at.x = from.x + gone * way.x, at.y = from.y + gone * way.y;
       const double left = body == pair.a ? nearest(cores_, a, at, b, poses_[pair.b], features)
@@ -140,7 +140,7 @@ double Iterative<D>::clear(int body, const sweep::Pose& from, const Motion& way,
 // whether a body may come farther in `left` s until the next look than its pairs foresaw, by more than a part
 // of its thickness
 template <int D>
-bool Iterative<D>::outran(double h, double left) const {
+bool PlaneIterative<D>::outran(double h, double left) const {
   const int n = int(turns_.size());
   const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
   for (int i = 0; i < n; ++i) {
@@ -157,7 +157,7 @@ bool Iterative<D>::outran(double h, double left) const {
   return false;
 }
 
-template void Iterative<2>::advance(State<2>&, double, bool);
-template bool Iterative<2>::outran(double, double) const;
+template void PlaneIterative<2>::advance(State<2>&, double, bool);
+template bool PlaneIterative<2>::outran(double, double) const;
 
 }  // namespace obscura::sim

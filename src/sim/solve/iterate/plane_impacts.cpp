@@ -15,7 +15,7 @@
 #include "sim/math/trig.h"
 #include "sim/solve/iterate/pair_impact.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -37,7 +37,7 @@ double along(const TouchRow& r, const Motion& a, const Motion& b) {
 
 }  // namespace
 
-Blows::Blows(const Cores& cores) : reach_(cores.reach) {
+Impacts::Impacts(const CoreShapes& cores) : reach_(cores.reach) {
   const int bodies = int(reach_.size());
   reach_.push_back(0);
   around_start_.resize(bodies + 2);
@@ -45,7 +45,7 @@ Blows::Blows(const Cores& cores) : reach_(cores.reach) {
   before_.resize(bodies + 1), now_.resize(bodies + 1);
 }
 
-void Blows::join(const std::vector<Pair>& pairs, const std::vector<Motion>& v) {
+void Impacts::join(const std::vector<Pair>& pairs, const std::vector<Motion>& v) {
   std::fill(around_start_.begin(), around_start_.end(), 0);
   const int n = int(around_start_.size()) - 2;
   const auto each = [&](const auto& act) {
@@ -64,7 +64,7 @@ void Blows::join(const std::vector<Pair>& pairs, const std::vector<Motion>& v) {
 }
 
 // as the step begins
-const Rows& Blows::rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses) {
+const Rows& Impacts::rows(int group, const std::vector<ContactBatch>& seats, const std::vector<Pose>& poses) {
   if (known_[group] < 0) {
     known_[group] = int(groups_.size());
     groups_.push_back(group);
@@ -75,7 +75,7 @@ const Rows& Blows::rows(int group, const std::vector<Seats>& seats, const std::v
 }
 
 // a body meets its first blow of the step
-void Blows::reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace) {
+void Impacts::reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace) {
   if (now_[body].im == 0 || when_[body] >= 0) return;
   when_[body] = when;
   bodies_.push_back(body);
@@ -85,8 +85,8 @@ void Blows::reach(int body, double when, const std::vector<Motion>& dv, const Pa
 }
 
 // where a body is at a time after its last blow, and how it moves there
-void Blows::move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                 const Pace& pace, Pose& pose, Motion& v) const {
+void Impacts::move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                   const Pace& pace, Pose& pose, Motion& v) const {
   pose = poses[body], v = now_[body];
   if (v.im == 0) return;
   const Motion& gain = dv[body];
@@ -114,8 +114,9 @@ void Blows::move(int body, double when, const std::vector<Pose>& poses, const st
 }
 
 // a pair at a time
-Blows::Standing Blows::stand(const Pair& pair, double when, const Seats& g, const std::vector<Pose>& poses,
-                             const std::vector<Motion>& dv, const Pace& pace) const {
+Impacts::Standing Impacts::stand(const Pair& pair, double when, const ContactBatch& g,
+                                 const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                                 const Pace& pace) const {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   Standing at;
   at.when = when;
@@ -131,8 +132,8 @@ Blows::Standing Blows::stand(const Pair& pair, double when, const Seats& g, cons
 }
 
 // when a touch closes with a blow, by its course from where it stands, s; never: 1e300
-double Blows::closing(const Pair& pair, int k, const Seats& g, const Standing& at,
-                      const std::vector<Motion>& dv, const Pace& pace) const {
+double Impacts::closing(const Pair& pair, int k, const ContactBatch& g, const Standing& at,
+                        const std::vector<Motion>& dv, const Pace& pace) const {
   const int lane = pair.slot % kLanes;
   const Motion &a = at.a, &b = at.b, &gain_a = dv[g.a[lane]], &gain_b = dv[g.b[lane]];
   const TouchRow& r = at.rows[k];
@@ -151,8 +152,9 @@ double Blows::closing(const Pair& pair, int k, const Seats& g, const Standing& a
 
 // The same where its bodies stand by then: Newton's method along the course; where the bodies turn so far
 // that this misleads, by halving.
-double Blows::meeting(const Pair& pair, int k, const Seats& g, const Standing& start,
-                      const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) const {
+double Impacts::meeting(const Pair& pair, int k, const ContactBatch& g, const Standing& start,
+                        const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                        const Pace& pace) const {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   const TouchRow& r = start.rows[k];
   const double from = start.when;
@@ -195,8 +197,8 @@ double Blows::meeting(const Pair& pair, int k, const Seats& g, const Standing& s
 }
 
 // Whether a pair may meet with a blow in the step, as its rows were when it began: most do not.
-bool Blows::may_meet(const Pair& pair, const Seats& g, const Rows& r, const std::vector<Motion>& dv,
-                     const Pace& pace) const {
+bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Rows& r, const std::vector<Motion>& dv,
+                       const Pace& pace) const {
   const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   const Motion &va = now_[a], &vb = now_[b];
   double spare = -1;  // what it may come nearer than by these rows and velocities, m
@@ -221,8 +223,8 @@ bool Blows::may_meet(const Pair& pair, const Seats& g, const Rows& r, const std:
 }
 
 // When and where a pair meets with a blow in the step, into `blow`; false where it does not.
-bool Blows::meet(const Pair& pair, Blow& blow, const Seats& g, const std::vector<Pose>& poses,
-                 const std::vector<Motion>& dv, const Pace& pace) const {
+bool Impacts::meet(const Pair& pair, Blow& blow, const ContactBatch& g, const std::vector<Pose>& poses,
+                   const std::vector<Motion>& dv, const Pace& pace) const {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   const double from = std::max({0.0, when_[a], when_[b]});
   Standing at = stand(pair, from, g, poses, dv, pace);
@@ -246,8 +248,8 @@ bool Blows::meet(const Pair& pair, Blow& blow, const Seats& g, const std::vector
 }
 
 // whether one of a pair hangs on joints: what hangs there with it meets the blow too
-bool Blows::tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
-                const Linkage<2>& linkage) {
+bool Impacts::tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
+                  const JointSolver<2>& linkage) {
   bool tied = false;
   for (const int body : {pair.a, pair.b}) {
     const int part = body < 0 ? -1 : linkage.part(body);
@@ -259,23 +261,24 @@ bool Blows::tie(const Pair& pair, double when, const std::vector<Motion>& dv, co
 }
 
 // what joints answer to pushes of those touches that close
-void Blows::hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], Linkage<2>& linkage) {
+void Impacts::hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2],
+                   JointSolver<2>& linkage) {
   for (int across = 0; across < 2; ++across) {
     for (int k = 0; k < 2; ++k) {
       if (!closes[k]) continue;
       const Push& push = pushes[across][k];
       Row<2>& row = echoes_[across][k].row;
       row.a = pair.a, row.b = pair.b;
-      row.along = {push.x, push.y}, row.turn_a[0] = push.a, row.turn_b[0] = push.b;
+      row.along = {push.x, push.y}, row.angular_a[0] = push.a, row.angular_b[0] = push.b;
       linkage.hear(echoes_[across][k]);
     }
   }
 }
 
 // one pair, both touches together; false where it does not approach
-bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
-                const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
-                Linkage<2>& linkage) {
+bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
+                  const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
+                  JointSolver<2>& linkage) {
   const Pair& pair = pairs[i];
   const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   // too slow for a blow however they meet: most are, and their seats are far away in memory
@@ -284,7 +287,7 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
       pair.blow)
     return false;
   const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
-  const Seats& g = seats[group];
+  const ContactBatch& g = seats[group];
 
   // when, and which touches
   bool closes[2] = {false, false};
@@ -341,7 +344,7 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
   solve(impact, impulses);
   const auto push = [&](int across, int k, double l) {
     if (tied) {
-      linkage.each_push(echoes_[across][k], l, [&](int body, const Vec<2>& v, const Spin<2>& w) {
+      linkage.each_push(echoes_[across][k], l, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
         now_[body].x += v[0], now_[body].y += v[1], now_[body].w += w[0];
       });
       return;
@@ -362,14 +365,14 @@ bool Blows::hit(int i, const std::vector<Pair>& pairs, std::vector<Seats>& seats
 // What is left to the sweeps of pairs that met, in their rows, of the step's start: of what met that it does
 // not come nearer than the blow left it; of the other touch that it does not close in what is left of the
 // step.
-void Blows::leave(const std::vector<Pair>& pairs, std::vector<Seats>& seats, const std::vector<Pose>& poses,
-                  const Pace& pace) {
+void Impacts::leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
+                    const std::vector<Pose>& poses, const Pace& pace) {
   if (least_.size() < seats.size()) least_.resize(seats.size());
   const int room = int(now_.size()) - 1;
   for (const int i : passing_) {
     const Pair& pair = pairs[i];
     const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
-    Seats& g = seats[group];
+    ContactBatch& g = seats[group];
     const Rows& r = rows(group, seats, poses);
     for (int k = 0; k < pair.touches; ++k) {
       if (!(along(r, k, lane, now_[pair.a], now_[b]) < g.blow[lane]) || r.gap[k][lane] <= 0) continue;
@@ -380,7 +383,7 @@ void Blows::leave(const std::vector<Pair>& pairs, std::vector<Seats>& seats, con
   for (const Blow& blow : blows_) {
     const Pair& pair = pairs[blow.pair];
     const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
-    Seats& g = seats[group];
+    ContactBatch& g = seats[group];
     const Rows& r = rows(group, seats, poses);
     const double left = pace.h - blow.when;
     for (int k = 0; k < pair.touches; ++k) {
@@ -393,9 +396,10 @@ void Blows::leave(const std::vector<Pair>& pairs, std::vector<Seats>& seats, con
   }
 }
 
-void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
-                const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
-                std::vector<Motion>& v, const Pace& pace, Linkage<2>& linkage) {
+void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
+                  const std::vector<Pose>& poses, const std::vector<Motion>& old,
+                  const std::vector<Motion>& dv, std::vector<Motion>& v, const Pace& pace,
+                  JointSolver<2>& linkage) {
   for (const int body : bodies_) when_[body] = -1;
   for (const Blow& blow : blows_) {
     if (blow.pair < int(blow_.size())) blow_[blow.pair] = -1;
@@ -409,7 +413,7 @@ void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<
   // in the order of time, then of pairs
   first_.clear();
   for (const int seat : found) {
-    const Seats& g = seats[seat / kLanes];
+    const ContactBatch& g = seats[seat / kLanes];
     const int i = g.pair[seat % kLanes];
     const Pair& pair = pairs[i];
     const Standing at = stand(pair, 0, g, poses, dv, pace);
@@ -459,8 +463,8 @@ void Blows::run(const Found& found, const std::vector<Pair>& pairs, std::vector<
   leave(pairs, seats, poses, pace);
 }
 
-void Blows::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
-                 [[maybe_unused]] const std::vector<Seats>& seats) {
+void Impacts::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
+                   [[maybe_unused]] const std::vector<ContactBatch>& seats) {
   for (const Blow& blow : blows_) {
     const Pair& pair = pairs[blow.pair];
     assert(seats[pair.slot / kLanes].pair[pair.slot % kLanes] == blow.pair);
@@ -474,7 +478,7 @@ void Blows::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& 
   }
 }
 
-void Blows::keep(std::vector<Contact<2>>& contacts) const {
+void Impacts::keep(std::vector<Contact<2>>& contacts) const {
   for (const Struck& struck : struck_) {
     const auto at = std::lower_bound(contacts.begin(), contacts.end(), struck.key,
                                      [](const Contact<2>& c, const ContactKey& key) { return c.key < key; });
@@ -484,4 +488,4 @@ void Blows::keep(std::vector<Contact<2>>& contacts) const {
   }
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

@@ -9,15 +9,15 @@
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/pair_cache.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 /// Blows: touches that close within a step faster than the resting speed. Newton's law with Coulomb friction,
 /// normals and friction of a pair together, where its bodies stand when they meet; from pair to pair until
 /// none approaches, in the order in which they come up. Bodies on joints are struck as one with all that
 /// hangs on them.
-class Blows {
+class Impacts {
  public:
-  explicit Blows(const Cores& cores);
+  explicit Impacts(const CoreShapes& cores);
 
   /// Who is with whom: the awake pairs of each body.
   void join(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
@@ -25,9 +25,9 @@ class Blows {
   /// Beginning with the seats in `found`. `old`: velocities at the start; dv: what the step adds to them
   /// without contacts; v gains what the blows do. Marks seats as struck, and says of those what is left to
   /// the sweeps: least().
-  void run(const Found& found, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+  void run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
-           std::vector<Motion>& v, const Pace& pace, Linkage<2>& linkage);
+           std::vector<Motion>& v, const Pace& pace, JointSolver<2>& linkage);
 
   /// By group: the least normal speeds (m/s) that sweeps leave the seats that are struck.
   const Least* least() const { return least_.data(); }
@@ -36,7 +36,7 @@ class Blows {
   void begin() { struck_.clear(); }
   /// Remembers the impulses of the last run, under the keys of the contacts.
   void note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
-            const std::vector<Seats>& seats);
+            const std::vector<ContactBatch>& seats);
   /// What was remembered, into the contacts.
   void keep(std::vector<Contact<2>>& contacts) const;
 
@@ -78,29 +78,29 @@ class Blows {
   void reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace);
   void move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
             const Pace& pace, Pose& pose, Motion& v) const;
-  Standing stand(const Pair& pair, double when, const Seats& seats, const std::vector<Pose>& poses,
+  Standing stand(const Pair& pair, double when, const ContactBatch& seats, const std::vector<Pose>& poses,
                  const std::vector<Motion>& dv, const Pace& pace) const;
-  double closing(const Pair& pair, int k, const Seats& seats, const Standing& at,
+  double closing(const Pair& pair, int k, const ContactBatch& seats, const Standing& at,
                  const std::vector<Motion>& dv, const Pace& pace) const;
-  double meeting(const Pair& pair, int k, const Seats& seats, const Standing& start,
+  double meeting(const Pair& pair, int k, const ContactBatch& seats, const Standing& start,
                  const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) const;
-  bool may_meet(const Pair& pair, const Seats& seats, const Rows& rows, const std::vector<Motion>& dv,
+  bool may_meet(const Pair& pair, const ContactBatch& seats, const Rows& rows, const std::vector<Motion>& dv,
                 const Pace& pace) const;
-  bool meet(const Pair& pair, Blow& blow, const Seats& seats, const std::vector<Pose>& poses,
+  bool meet(const Pair& pair, Blow& blow, const ContactBatch& seats, const std::vector<Pose>& poses,
             const std::vector<Motion>& dv, const Pace& pace) const;
-  bool hit(int pair, const std::vector<Pair>& pairs, std::vector<Seats>& seats,
+  bool hit(int pair, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
-           Linkage<2>& linkage);
+           JointSolver<2>& linkage);
   bool tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
-           const Linkage<2>& linkage);
-  void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], Linkage<2>& linkage);
+           const JointSolver<2>& linkage);
+  void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], JointSolver<2>& linkage);
   double speed(const Push& push, int a, int b) const {
     return push.x * (now_[a].x - now_[b].x) + push.y * (now_[a].y - now_[b].y) +
            (push.a * now_[a].w - push.b * now_[b].w);
   }
-  void leave(const std::vector<Pair>& pairs, std::vector<Seats>& seats, const std::vector<Pose>& poses,
+  void leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats, const std::vector<Pose>& poses,
              const Pace& pace);
-  const Rows& rows(int group, const std::vector<Seats>& seats, const std::vector<Pose>& poses);
+  const Rows& rows(int group, const std::vector<ContactBatch>& seats, const std::vector<Pose>& poses);
 
   std::vector<double> reach_;               // of bodies, and of walls, m
   std::vector<int> around_, around_start_;  // pairs of each body
@@ -118,8 +118,8 @@ class Blows {
   std::vector<int> known_;    // of groups: place in rows_, or -1
   std::vector<int> groups_;
   std::vector<Rows> rows_;
-  std::vector<Least> least_;       // of groups
-  Linkage<2>::Echo echoes_[2][2];  // of normals, and of tangents
+  std::vector<Least> least_;                    // of groups
+  JointSolver<2>::JointResponse echoes_[2][2];  // of normals, and of tangents
 };
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

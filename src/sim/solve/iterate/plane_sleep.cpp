@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -20,7 +20,7 @@ constexpr double kClosed = 1e-6;  // of its thickness: no wider a gap bears
 
 }  // namespace
 
-Rest::Rest(const Model<2>& model, const Cores& cores)
+Rest::Rest(const Model<2>& model, const CoreShapes& cores)
     : model_(model),
       cores_(cores),
       statics_(model),
@@ -90,13 +90,13 @@ bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
 }
 
 // whether what bears an island leaves its motion `v` any freedom
-Mobile Rest::mobile(const State<2>& state, const Pairs& pairs, const Linkage<2>& linkage,
+Mobile Rest::mobile(const State<2>& state, const Pairs& pairs, const JointSolver<2>& linkage,
                     std::span<const int> of, std::span<const std::pair<int, int>> members,
                     const std::vector<Motion>& v, double h) {
   mobility_.clear();
   for (const auto& member : members) {
     const int i = member.second;
-    mobility_.add(i, {v[i].x, v[i].y}, Spin<2>(v[i].w), Rotation<2>::Identity());
+    mobility_.add(i, {v[i].x, v[i].y}, AngularVec<2>(v[i].w), Rotation<2>::Identity());
   }
   for (const int i : of) {
     const Pair& pair = pairs.all()[i];
@@ -161,8 +161,8 @@ bool Rest::begin(State<2>& state, const Pairs& pairs, const std::vector<Pose>& p
   return froze;
 }
 
-bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats, Linkage<2>& linkage,
-                  const std::vector<Pose>& poses, const std::vector<Motion>& v,
+bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>& seats,
+                  JointSolver<2>& linkage, const std::vector<Pose>& poses, const std::vector<Motion>& v,
                   const std::vector<char>& movers, double h, double span) {
   const std::vector<Pair>& pairs = found.all();
   const int n = int(model_.bodies.size());
@@ -216,10 +216,10 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats
   }
   std::sort(members_.begin(), members_.end());
   const auto lend = [&](int body) {
-    linkage.stance(body).v = {v_[body].x, v_[body].y}, linkage.stance(body).w[0] = v_[body].w;
+    linkage.body_motion(body).v = {v_[body].x, v_[body].y}, linkage.body_motion(body).w[0] = v_[body].w;
   };
   const auto take = [&](int body) {
-    const Stance<2>& at = linkage.stance(body);
+    const BodyMotion<2>& at = linkage.body_motion(body);
     v_[body].x = at.v[0], v_[body].y = at.v[1], v_[body].w = at.w[0];
   };
   if (!linkage.empty()) {
@@ -253,7 +253,7 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats
     // seats of its own: those of one colour stay together
     some_.clear();
     int lane = kLanes, colour = -1;
-    Seats empty{};
+    ContactBatch empty{};
     for (int k = 0; k < kLanes; ++k) {
       empty.a[k] = empty.b[k] = n, empty.pair[k] = empty.first[k] = -1, empty.d[0][k] = empty.d[1][k] = -1e9;
     }
@@ -292,7 +292,7 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<Seats>& seats
     bool held = worst <= kHeld * g * h;
     hold();
     finish(some_.data(), count, poses.data(), v_.data(), pace, state.contacts.data());
-    for (Seats& g4 : some_) {
+    for (ContactBatch& g4 : some_) {
       for (int k = 0; k < kLanes; ++k) {
         if (g4.pair[k] >= 0)
           copy_forces(g4, k, seats[pairs[g4.pair[k]].slot / kLanes], pairs[g4.pair[k]].slot % kLanes);
@@ -375,4 +375,4 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
   return true;
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

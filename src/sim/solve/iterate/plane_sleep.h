@@ -11,17 +11,17 @@
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/pair_cache.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 /// Who may rest, by the rule of sim/constraint/mobility.h. Bodies that touch are an island.
 class Rest {
  public:
-  Rest(const Model<2>& model, const Cores& cores);
+  Rest(const Model<2>& model, const CoreShapes& cores);
 
   /// Freezes islands; forces of those that have waited but are not yet held are improved. `movers`: bodies
   /// that springs and hands hold are never frozen. `span`: s since it was last asked. True where someone
   /// froze.
-  bool freeze(State<2>& state, const Pairs& pairs, std::vector<Seats>& seats, Linkage<2>& linkage,
+  bool freeze(State<2>& state, const Pairs& pairs, std::vector<ContactBatch>& seats, JointSolver<2>& linkage,
               const std::vector<Pose>& poses, const std::vector<Motion>& v, const std::vector<char>& movers,
               double h, double span);
 
@@ -40,13 +40,14 @@ class Rest {
   bool held(State<2>& state, const Pairs& pairs, std::span<const int> of, const std::vector<Pose>& poses);
   void freeze(State<2>& state, int body) const;
   bool joins(const Contact<2>& touch, const Pair& pair) const;
-  Mobile mobile(const State<2>& state, const Pairs& pairs, const Linkage<2>& linkage, std::span<const int> of,
-                std::span<const std::pair<int, int>> members, const std::vector<Motion>& v, double h);
+  Mobile mobile(const State<2>& state, const Pairs& pairs, const JointSolver<2>& linkage,
+                std::span<const int> of, std::span<const std::pair<int, int>> members,
+                const std::vector<Motion>& v, double h);
   template <class Alike>
   void unite_joined(const State<2>& state, Alike&& alike);
 
   const Model<2>& model_;
-  const Cores& cores_;
+  const CoreShapes& cores_;
   Statics<2> statics_;
   Mobility<2> mobility_;
   std::vector<Rotation<2>> turns_;  // one moment of inertia is the same in all
@@ -59,9 +60,9 @@ class Rest {
   std::vector<std::pair<int, int>> members_;  // island, body
   std::vector<int> parts_;                    // of the joints of an island
   std::vector<char> marked_;                  // bodies of an island
-  std::vector<Seats> some_;
+  std::vector<ContactBatch> some_;
   std::vector<Motion> v_, zero_;
   Found slow_, fast_;
 };
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane

@@ -37,7 +37,7 @@ constexpr double kGain = 1e-9;       // of its kinetic energy: what an island ma
 }  // namespace
 
 template <int D>
-Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
+SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model),
       may_touch_(model),
       tied_(model, paths),
@@ -54,7 +54,7 @@ Sweeps<D>::Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths)
 }
 
 template <int D>
-void Sweeps<D>::step(State<D>& state, double t, double h) {
+void SpaceIterative<D>::step(State<D>& state, double t, double h) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n);
   linkage_.ready(state);
@@ -70,7 +70,7 @@ void Sweeps<D>::step(State<D>& state, double t, double h) {
   if (!linkage_.empty()) {
     linkage_.gather(state);
     for (const int i : linkage_.bodies()) {
-      linkage_.stance(i) = stances_[i];
+      linkage_.body_motion(i) = stances_[i];
       if (const int k = turning(state, i); k >= 0) linkage_.turn(i) = turn_[k];
     }
     // what hangs together is struck together
@@ -103,32 +103,33 @@ void Sweeps<D>::step(State<D>& state, double t, double h) {
 
 // who moves, and where everyone stands
 template <int D>
-void Sweeps<D>::ready(const State<D>& state) {
+void SpaceIterative<D>::ready(const State<D>& state) {
   const int n = int(model_.bodies.size());
   stances_.resize(n), moving_.assign(n + 1, {}), still_.resize(n);
   for (int i = 0; i < n; ++i) {
     const Body<D>& body = model_.bodies[i];
-    stances_[i] = stance(state, i);
+    stances_[i] = body_motion(state, i);
     still_[i] = body.fixed || state.frozen[i];
     if (still_[i]) continue;
     Moving& m = moving_[i];
     m.v = stances_[i].v, m.w = stances_[i].w, m.light = 1 / body.mass;
     if (!body.turns()) continue;
-    for (int axis = 0; axis < kSpins<D>; ++axis) {
-      m.ease.col(axis) = spun<D>(body.inertia, stances_[i].room_from_body, Spin<D>::Unit(axis));
+    for (int axis = 0; axis < kAngular<D>; ++axis) {
+      m.ease.col(axis) =
+          inverse_inertia_times<D>(body.inertia, stances_[i].room_from_body, AngularVec<D>::Unit(axis));
     }
   }
 }
 
 // of the fastest point, at most
 template <int D>
-double Sweeps<D>::swiftness(int body) const {
+double SpaceIterative<D>::swiftness(int body) const {
   const Moving& m = moving_[body];
   return std::sqrt(m.v.squaredNorm()) + rims_[body] * std::sqrt(m.w.squaredNorm());
 }
 
 template <int D>
-void Sweeps<D>::find(double h) {
+void SpaceIterative<D>::find(double h) {
   const int n = int(model_.bodies.size());
   const auto margin = [&](int body) {
     return still_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * rims_[body];
@@ -154,10 +155,10 @@ void Sweeps<D>::find(double h) {
       const Wall<D>& w = model_.walls[wall];
       if ((stances_[a].x - w.point).dot(w.normal) > rims_[a] + margin(a)) continue;
       gaps_.clear();
-      gaps(a, p.shape, stances_[a], wall, w, margin(a), gaps_);
+      collide(a, p.shape, stances_[a], wall, w, margin(a), gaps_);
       const double mu = w.friction ? std::sqrt(p.friction * *w.friction) : p.friction;
       const double e = w.elasticity ? std::sqrt(p.elasticity * *w.elasticity) : p.elasticity;
-      for (const Gap<D>& gap : gaps_) add(gap, mu, e);
+      for (const ContactCandidate<D>& gap : gaps_) add(gap, mu, e);
     }
     for (; pair != pairs.end() && pair->first == a; ++pair) {
       const int b = pair->second;
@@ -169,20 +170,20 @@ void Sweeps<D>::find(double h) {
       const double near =
           std::min(margin(a) + margin(b), h * (passes + 2 * g_ * h) + kSpare * (rims_[a] + rims_[b]));
       gaps_.clear();
-      gaps(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
+      collide(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
       const double mu = std::sqrt(p.friction * q.friction), e = std::sqrt(p.elasticity * q.elasticity);
-      for (const Gap<D>& gap : gaps_) add(gap, mu, e);
+      for (const ContactCandidate<D>& gap : gaps_) add(gap, mu, e);
     }
   }
 }
 
 template <int D>
-void Sweeps<D>::add(const Gap<D>& gap, double mu, double bounce) {
-  static const Stance<D> room;
+void SpaceIterative<D>::add(const ContactCandidate<D>& gap, double mu, double bounce) {
+  static const BodyMotion<D> room;
   const int none = int(model_.bodies.size());
   const int a = gap.key.a, b = gap.key.b < 0 ? none : gap.key.b;
-  const Stance<D>& at_b = b == none ? room : stances_[b];
-  const Meeting<D> now = evaluate(gap, stances_[a], at_b);
+  const BodyMotion<D>& at_b = b == none ? room : stances_[b];
+  const EvaluatedContact<D> now = evaluate(gap, stances_[a], at_b);
   Touch touch;
   touch.key = gap.key, touch.a = a, touch.b = b;
   touch.n = now.normal, touch.point = now.point, touch.gap = now.value;
@@ -193,8 +194,8 @@ void Sweeps<D>::add(const Gap<D>& gap, double mu, double bounce) {
 
   // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
   const auto answer = [&](const Vec<D>& s, const Vec<D>& t) {
-    const Spin<D> as = moment<D>(touch.arm_a, s), at = moment<D>(touch.arm_a, t);
-    const Spin<D> bs = moment<D>(touch.arm_b, s), bt = moment<D>(touch.arm_b, t);
+    const AngularVec<D> as = moment<D>(touch.arm_a, s), at = moment<D>(touch.arm_a, t);
+    const AngularVec<D> bs = moment<D>(touch.arm_b, s), bt = moment<D>(touch.arm_b, t);
     return (moving_[a].light + moving_[b].light) * s.dot(t) + as.dot(moving_[a].ease * at) +
            bs.dot(moving_[b].ease * bt);
   };
@@ -211,7 +212,7 @@ void Sweeps<D>::add(const Gap<D>& gap, double mu, double bounce) {
 
 // where and how fast everyone would be without contacts
 template <int D>
-void Sweeps<D>::fall(State<D>& state, double t, double h) {
+void SpaceIterative<D>::fall(State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   x_ = state.x, turn_ = state.turn;
   tied_.gather(state, true);
@@ -228,15 +229,15 @@ void Sweeps<D>::fall(State<D>& state, double t, double h) {
 
 // what each touch wants of the step, and the forces it had in the last
 template <int D>
-void Sweeps<D>::begin(const State<D>& state, double h) {
-  static const Stance<D> room;
+void SpaceIterative<D>::begin(const State<D>& state, double h) {
+  static const BodyMotion<D> room;
   const int n = int(model_.bodies.size());
   closing_.assign(n + 1, 0), all_.clear();
   auto known = state.contacts.begin();
   for (int i = 0; i < int(touches_.size()); ++i) {
     Touch& touch = touches_[i];
     all_.push_back(i);
-    const Stance<D>& b = touch.b == n ? room : stances_[touch.b];
+    const BodyMotion<D>& b = touch.b == n ? room : stances_[touch.b];
     const double before = touch.n.dot(stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b));
     if (touch.after) {
       // what is left of the step
@@ -260,7 +261,7 @@ void Sweeps<D>::begin(const State<D>& state, double h) {
 }
 
 template <int D>
-void Sweeps<D>::sweep(const std::vector<int>& order, bool back) {
+void SpaceIterative<D>::sweep(const std::vector<int>& order, bool back) {
   const int count = int(order.size());
   for (int i = 0; i < count; ++i) {
     Touch& touch = touches_[order[back ? count - 1 - i : i]];
@@ -283,21 +284,21 @@ void Sweeps<D>::sweep(const std::vector<int>& order, bool back) {
 
 // velocities to the joints, of all that they have or of those marked, and back
 template <int D>
-void Sweeps<D>::lend(const std::vector<char>* of) {
+void SpaceIterative<D>::lend(const std::vector<char>* of) {
   for (const int i : linkage_.bodies()) {
-    if (!of || (*of)[i]) linkage_.stance(i).v = moving_[i].v, linkage_.stance(i).w = moving_[i].w;
+    if (!of || (*of)[i]) linkage_.body_motion(i).v = moving_[i].v, linkage_.body_motion(i).w = moving_[i].w;
   }
 }
 
 template <int D>
-void Sweeps<D>::take(const std::vector<char>* of) {
+void SpaceIterative<D>::take(const std::vector<char>* of) {
   for (const int i : linkage_.bodies()) {
-    if (!of || (*of)[i]) moving_[i].v = linkage_.stance(i).v, moving_[i].w = linkage_.stance(i).w;
+    if (!of || (*of)[i]) moving_[i].v = linkage_.body_motion(i).v, moving_[i].w = linkage_.body_motion(i).w;
   }
 }
 
 template <int D>
-void Sweeps<D>::hold() {
+void SpaceIterative<D>::hold() {
   if (linkage_.empty()) return;
   lend();
   linkage_.sweep();
@@ -311,7 +312,7 @@ void Sweeps<D>::hold() {
 // a share dK / p . v' less is enough where p stays; what stays of it is looked at again. True where there was
 // any.
 template <int D>
-bool Sweeps<D>::temper(const State<D>& state) {
+bool SpaceIterative<D>::temper(const State<D>& state) {
   if (std::none_of(touches_.begin(), touches_.end(),
                    [](const Touch& touch) { return touch.bounces && touch.least > 0 && touch.pressed > 0; }))
     return false;
@@ -355,7 +356,7 @@ bool Sweeps<D>::temper(const State<D>& state) {
 
 // where everyone comes to, from where all would be without contacts
 template <int D>
-void Sweeps<D>::advance(State<D>& state, double h) {
+void SpaceIterative<D>::advance(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
     if (still_[i]) continue;
@@ -370,14 +371,14 @@ void Sweeps<D>::advance(State<D>& state, double h) {
     const int k = turning(state, i);
     if (k < 0) continue;
     state.turn[k] = turn_free_[k], state.spin[k] = w_free_[k];
-    const Spin<D> change = m.w - w_free_[k];
+    const AngularVec<D> change = m.w - w_free_[k];
     if (change.isZero(0)) continue;
     // pushes were reckoned with the body as it stood when the step began; it turns on, and its angular
     // momentum stays
-    const Spin<D>& inertia = model_.bodies[i].inertia;
+    const AngularVec<D>& inertia = model_.bodies[i].inertia;
     const Rotation<D> fallen = rotation<D>(turn_free_[k]);
-    state.turn[k] =
-        closing ? turned<D>(turn_[k], Spin<D>(h * m.w)) : turned<D>(turn_free_[k], Spin<D>(0.5 * h * change));
+    state.turn[k] = closing ? turned<D>(turn_[k], AngularVec<D>(h * m.w))
+                            : turned<D>(turn_free_[k], AngularVec<D>(0.5 * h * change));
     const Rotation<D> now = rotation<D>(state.turn[k]);
     state.spin[k] = carried_spin<D>(inertia, fallen, now, w_free_[k]) +
                     carried_spin<D>(inertia, stances_[i].room_from_body, now, change);
@@ -386,7 +387,7 @@ void Sweeps<D>::advance(State<D>& state, double h) {
 
 // how everyone moves there, and how long it has been quiet
 template <int D>
-void Sweeps<D>::arrive(State<D>& state, double h) {
+void SpaceIterative<D>::arrive(State<D>& state, double h) {
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (still_[i]) continue;
     double fast = state.v[i].squaredNorm();
@@ -400,7 +401,7 @@ void Sweeps<D>::arrive(State<D>& state, double h) {
 
 // positions out of each other, a part of the way, by the same rows
 template <int D>
-void Sweeps<D>::part(State<D>& state) {
+void SpaceIterative<D>::part(State<D>& state) {
   const int n = int(model_.bodies.size());
   const auto hangs = [&](int body) { return body < n && linkage_.has(body); };
   const auto allowed = [&](const Touch& touch) {
@@ -437,9 +438,9 @@ void Sweeps<D>::part(State<D>& state) {
 
 // what the step has pulled apart
 template <int D>
-void Sweeps<D>::rejoin(State<D>& state, double h) {
+void SpaceIterative<D>::rejoin(State<D>& state, double h) {
   for (const int i : linkage_.bodies()) {
-    linkage_.stance(i) = stance(state, i);
+    linkage_.body_motion(i) = body_motion(state, i);
     if (const int k = turning(state, i); k >= 0) linkage_.turn(i) = state.turn[k];
   }
   linkage_.finish(h);
@@ -448,7 +449,7 @@ void Sweeps<D>::rejoin(State<D>& state, double h) {
   take();
   for (const int i : linkage_.bodies()) {
     if (still_[i]) continue;
-    state.x[i] = linkage_.stance(i).x, state.v[i] = moving_[i].v;
+    state.x[i] = linkage_.body_motion(i).x, state.v[i] = moving_[i].v;
     if (const int k = turning(state, i); k >= 0)
       state.turn[k] = linkage_.turn(i), state.spin[k] = moving_[i].w;
   }
@@ -456,7 +457,7 @@ void Sweeps<D>::rejoin(State<D>& state, double h) {
 
 // the forces of this step; what sleeps keeps its own
 template <int D>
-void Sweeps<D>::report(State<D>& state, double h) const {
+void SpaceIterative<D>::report(State<D>& state, double h) const {
   const auto asleep = [&](int body) { return body < 0 || still_[body]; };
   std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
   const std::size_t kept = state.contacts.size();
@@ -478,6 +479,6 @@ void Sweeps<D>::report(State<D>& state, double h) const {
                      state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
 }
 
-template class Sweeps<3>;
+template class SpaceIterative<3>;
 
 }  // namespace obscura::sim

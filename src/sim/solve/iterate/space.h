@@ -21,10 +21,10 @@ namespace obscura::sim {
 /// warm sweeps over it, impacts of few exactly and at their time, joints exactly in each sweep. All that is
 /// carried from step to step is in the state, so a run cut in two is the run in one.
 template <int D>
-class Sweeps final : public ContactStep<D> {
+class SpaceIterative final : public ContactSolver<D> {
  public:
   /// Both are kept by reference.
-  Sweeps(const Model<D>& model, const std::vector<Path<D>>& paths);
+  SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// Moves `state` from t to t + h (s): forces, impacts, contacts with friction, rest. Uses and writes
   /// state.contacts, frozen, quiet.
@@ -34,10 +34,10 @@ class Sweeps final : public ContactStep<D> {
   // how a body moves, and answers a push; none of what is fixed, frozen, or a wall
   struct Moving {
     Vec<D> v = Vec<D>::Zero();
-    Spin<D> w = Spin<D>::Zero();
+    AngularVec<D> w = AngularVec<D>::Zero();
     double light = 0;  // 1/kg
-    Eigen::Matrix<double, kSpins<D>, kSpins<D>> ease =
-        Eigen::Matrix<double, kSpins<D>, kSpins<D>>::Zero();  // 1/(kg m^2)
+    Eigen::Matrix<double, kAngular<D>, kAngular<D>> ease =
+        Eigen::Matrix<double, kAngular<D>, kAngular<D>>::Zero();  // 1/(kg m^2)
   };
 
   // a gap that may close in the step
@@ -59,13 +59,13 @@ class Sweeps final : public ContactStep<D> {
 
   // a body at a time within the step
   struct Flown {
-    Stance<D> stance;
-    Turn<D> turn = upright<D>();
+    BodyMotion<D> stance;
+    Orientation<D> turn = no_rotation<D>();
   };
   // a gap then
   struct Instant {
-    Stance<D> a, b;
-    Meeting<D> now;
+    BodyMotion<D> a, b;
+    EvaluatedContact<D> now;
     double speed = 0;  // m/s
   };
   // an impact that is due; no longer so once one of its bodies had another
@@ -76,7 +76,7 @@ class Sweeps final : public ContactStep<D> {
 
   void ready(const State<D>& state);
   void find(double h);
-  void add(const Gap<D>& gap, double mu, double bounce);
+  void add(const ContactCandidate<D>& gap, double mu, double bounce);
   bool wake(State<D>& state, double h);
   void fall(State<D>& state, double t, double h);
   void strike(State<D>& state, double h);
@@ -96,7 +96,7 @@ class Sweeps final : public ContactStep<D> {
   // how fast a's matter moves against b's
   Vec<D> slip(const Touch& touch) const {
     const Moving &a = moving_[touch.a], &b = moving_[touch.b];
-    return a.v + swing<D>(a.w, touch.arm_a) - b.v - swing<D>(b.w, touch.arm_b);
+    return a.v + cross_velocity<D>(a.w, touch.arm_a) - b.v - cross_velocity<D>(b.w, touch.arm_b);
   }
   bool temper(const State<D>& state);
   void lend(const std::vector<char>* of = nullptr);
@@ -117,31 +117,31 @@ class Sweeps final : public ContactStep<D> {
   const Model<D>& model_;
   MayTouch<D> may_touch_;
   BroadPhase<D> broad_;
-  Tied<D> tied_;
-  Linkage<D> linkage_;
+  ForwardDynamics<D> tied_;
+  JointSolver<D> linkage_;
   Statics<D> statics_;
   Mobility<D> mobility_;
   std::vector<BearingContact<D>> exact_;
   std::vector<int> bearing_;
   std::vector<Rotation<D>> rotations_;
-  Account<D> account_;
+  EnergyGuard<D> account_;
   Stages stages_;
   std::int64_t every_ = 1;  // steps between two looks for rest
   double g_ = 0, rest_speed_ = 0;
   double asked_ = 0;  // m/s: who is slower may rest
   std::vector<double> rims_;
 
-  std::vector<Stance<D>> stances_;
+  std::vector<BodyMotion<D>> stances_;
   std::vector<Moving> moving_;
   std::vector<Bounds<D>> bounds_;
   std::vector<char> still_;
-  std::vector<Gap<D>> gaps_;
-  std::vector<Touch> touches_;    // ascending by key
-  std::vector<Gap<D>> features_;  // theirs
+  std::vector<ContactCandidate<D>> gaps_;
+  std::vector<Touch> touches_;                 // ascending by key
+  std::vector<ContactCandidate<D>> features_;  // theirs
   std::vector<int> all_, some_;
   std::vector<Vec<D>> x_, x_free_, v_free_;
-  std::vector<Turn<D>> turn_, turn_free_;
-  std::vector<Spin<D>> w_free_;
+  std::vector<Orientation<D>> turn_, turn_free_;
+  std::vector<AngularVec<D>> w_free_;
   std::vector<char> closing_, ripe_, on_joints_;  // the last: of those that rest
   std::vector<int> parts_;                        // and of their joints
   Islands islands_;
@@ -158,7 +158,7 @@ class Sweeps final : public ContactStep<D> {
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_;
   std::vector<Row<D>> impact_rows_;
-  std::vector<Spin<D>> eased_[2];
+  std::vector<AngularVec<D>> eased_[2];
   Eigen::MatrixXd K_;
   Eigen::VectorXd b_, p_, speeds_;
   std::vector<double> left_;   // of each island's fastest point, m/s

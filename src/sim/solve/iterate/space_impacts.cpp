@@ -28,7 +28,7 @@ constexpr int kTurns = 40;          // impacts, of those that there are at first
 
 // where a body is at a time of the step, after its last impact if it had one
 template <int D>
-typename Sweeps<D>::Flown Sweeps<D>::flown(int body, double t, double h) const {
+typename SpaceIterative<D>::Flown SpaceIterative<D>::flown(int body, double t, double h) const {
   Flown at = flown_[body];
   if (body >= int(model_.bodies.size()) || still_[body]) return at;
   const double time = t - std::max(0.0, when_[body]);
@@ -41,26 +41,26 @@ typename Sweeps<D>::Flown Sweeps<D>::flown(int body, double t, double h) const {
   // Runge and Kutta, as the body sees itself (sim/math/lie_step.h)
   const int pieces = pieces_of_turn<D>(at.stance.w, time);
   const double part = time / pieces;
-  const Spin<D> momentum = spinning<D>(it.inertia, at.stance.room_from_body, at.stance.w);
+  const AngularVec<D> momentum = spinning<D>(it.inertia, at.stance.room_from_body, at.stance.w);
   for (int i = 0; i < pieces; ++i) {
-    const Spin<D> w0 = from_room<D>(at.stance.room_from_body, at.stance.w);
-    Spin<D> d[4], w[4], step = Spin<D>::Zero(), spin = w0;
+    const AngularVec<D> w0 = from_room<D>(at.stance.room_from_body, at.stance.w);
+    AngularVec<D> d[4], w[4], step = AngularVec<D>::Zero(), spin = w0;
     for (int s = 0; s < 4; ++s) {
       d[s] = displacing<D>(step, spin), w[s] = gyration<D>(it.inertia, spin);
       const double by = s < 2 ? 0.5 * part : part;
       step = by * d[s], spin = w0 + by * w[s];
     }
-    const Spin<D> by = part / 6 * (d[0] + 2 * d[1] + 2 * d[2] + d[3]);
+    const AngularVec<D> by = part / 6 * (d[0] + 2 * d[1] + 2 * d[2] + d[3]);
     at.turn = displaced<D>(at.turn, by);
     at.stance.room_from_body = rotation<D>(at.turn);
-    at.stance.w = spun<D>(it.inertia, at.stance.room_from_body, momentum);
+    at.stance.w = inverse_inertia_times<D>(it.inertia, at.stance.room_from_body, momentum);
   }
   return at;
 }
 
 // a gap at a time: how wide, and how fast it changes
 template <int D>
-typename Sweeps<D>::Instant Sweeps<D>::instant(int i, double t, double h) const {
+typename SpaceIterative<D>::Instant SpaceIterative<D>::instant(int i, double t, double h) const {
   Instant at;
   const Touch& touch = touches_[i];
   at.a = flown(touch.a, t, h).stance, at.b = flown(touch.b, t, h).stance;
@@ -72,7 +72,7 @@ typename Sweeps<D>::Instant Sweeps<D>::instant(int i, double t, double h) const 
 // When a gap closes with an impact; never: 1e300. Newton's method along its course; where the body turns so
 // far that this misleads, by halving.
 template <int D>
-double Sweeps<D>::closing_time(int i, double h) const {
+double SpaceIterative<D>::closing_time(int i, double h) const {
   const Touch& touch = touches_[i];
   const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
   Instant at = instant(i, from, h);
@@ -114,7 +114,7 @@ double Sweeps<D>::closing_time(int i, double h) const {
 
 // what meets with a gap at a time, through gaps that are closed; false where that is not for here
 template <int D>
-bool Sweeps<D>::gather_impact(int first, double t, double h) {
+bool SpaceIterative<D>::gather_impact(int first, double t, double h) {
   const int n = int(model_.bodies.size());
   meets_.assign(1, first);
   for (std::size_t k = 0; k < meets_.size(); ++k) {
@@ -135,17 +135,17 @@ bool Sweeps<D>::gather_impact(int first, double t, double h) {
 
 // all that meets at a time, at once; false where no impulses were found
 template <int D>
-bool Sweeps<D>::solve_impact(double t, double h) {
+bool SpaceIterative<D>::solve_impact(double t, double h) {
   const int count = int(meets_.size()), rows = D * count;
   std::vector<Row<D>>& J = impact_rows_;
   J.assign(rows, {});
   K_.resize(rows, rows), b_.resize(rows), p_.resize(rows);
   blocks_.assign(count, {});
-  const auto ease = [&](int body, const Rotation<D>& at, const Spin<D>& torque) -> Spin<D> {
-    if (moving_[body].light == 0 || !model_.bodies[body].turns()) return Spin<D>::Zero();
-    return spun<D>(model_.bodies[body].inertia, at, torque);
+  const auto ease = [&](int body, const Rotation<D>& at, const AngularVec<D>& torque) -> AngularVec<D> {
+    if (moving_[body].light == 0 || !model_.bodies[body].turns()) return AngularVec<D>::Zero();
+    return inverse_inertia_times<D>(model_.bodies[body].inertia, at, torque);
   };
-  std::vector<Spin<D>>&wa = eased_[0], &wb = eased_[1];
+  std::vector<AngularVec<D>>&wa = eased_[0], &wb = eased_[1];
   wa.resize(rows), wb.resize(rows);
   Eigen::VectorXd& v = speeds_;
   v.resize(rows);
@@ -159,11 +159,11 @@ bool Sweeps<D>::solve_impact(double t, double h) {
     for (int i = 0; i < D; ++i) {
       Row<D>& row = J[D * k + i];
       row.a = touch.a, row.b = touch.b, row.along = ways[i];
-      row.turn_a = moment<D>(Vec<D>(at.now.point - at.a.x), ways[i]);
-      row.turn_b = moment<D>(Vec<D>(at.now.point - at.b.x), ways[i]);
-      wa[D * k + i] = ease(touch.a, at.a.room_from_body, row.turn_a);
-      wb[D * k + i] = ease(touch.b, at.b.room_from_body, row.turn_b);
-      v[D * k + i] = row.along.dot(at.a.v - at.b.v) + row.turn_a.dot(at.a.w) - row.turn_b.dot(at.b.w);
+      row.angular_a = moment<D>(Vec<D>(at.now.point - at.a.x), ways[i]);
+      row.angular_b = moment<D>(Vec<D>(at.now.point - at.b.x), ways[i]);
+      wa[D * k + i] = ease(touch.a, at.a.room_from_body, row.angular_a);
+      wb[D * k + i] = ease(touch.b, at.b.room_from_body, row.angular_b);
+      v[D * k + i] = row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
     }
   }
   for (int i = 0; i < rows; ++i) {
@@ -171,10 +171,10 @@ bool Sweeps<D>::solve_impact(double t, double h) {
       const Row<D>&r = J[i], &s = J[j];
       const double direct = r.along.dot(s.along);
       double k = 0;
-      if (r.a == s.a) k += moving_[r.a].light * direct + wa[i].dot(s.turn_a);
-      if (r.b == s.b) k += moving_[r.b].light * direct + wb[i].dot(s.turn_b);
-      if (r.a == s.b) k -= moving_[r.a].light * direct + wa[i].dot(s.turn_b);
-      if (r.b == s.a) k -= moving_[r.b].light * direct + wb[i].dot(s.turn_a);
+      if (r.a == s.a) k += moving_[r.a].light * direct + wa[i].dot(s.angular_a);
+      if (r.b == s.b) k += moving_[r.b].light * direct + wb[i].dot(s.angular_b);
+      if (r.a == s.b) k -= moving_[r.a].light * direct + wa[i].dot(s.angular_b);
+      if (r.b == s.a) k -= moving_[r.b].light * direct + wb[i].dot(s.angular_a);
       K_(i, j) = K_(j, i) = k;
     }
   }
@@ -200,7 +200,7 @@ bool Sweeps<D>::solve_impact(double t, double h) {
   for (const int i : meets_) reach(touches_[i].a), reach(touches_[i].b);
   for (int i = 0; i < rows; ++i) {
     const Row<D>& row = J[i];
-    Stance<D>&a = flown_[row.a].stance, &b = flown_[row.b].stance;
+    BodyMotion<D>&a = flown_[row.a].stance, &b = flown_[row.b].stance;
     a.v += p_[i] * moving_[row.a].light * row.along, a.w += p_[i] * wa[i];
     b.v -= p_[i] * moving_[row.b].light * row.along, b.w -= p_[i] * wb[i];
     touches_[meets_[i / D]].struck += p_[i] * row.along;
@@ -211,7 +211,7 @@ bool Sweeps<D>::solve_impact(double t, double h) {
 // Impacts of the step into where everyone would be without contacts, and what is left to the sweeps of the
 // gaps of those that had one.
 template <int D>
-void Sweeps<D>::strike(State<D>& state, double h) {
+void SpaceIterative<D>::strike(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   struck_ = false;
   when_.assign(n + 1, -1), due_.clear();
@@ -301,7 +301,7 @@ void Sweeps<D>::strike(State<D>& state, double h) {
     if (when_[touch.a] < 0 && when_[touch.b] < 0) continue;
     const double t = std::max(when_[touch.a], when_[touch.b]), left = h - t;
     const Instant at = instant(i, t, h);
-    const auto along = [&](const Stance<D>& body, const Vec<D>& arm) {
+    const auto along = [&](const BodyMotion<D>& body, const Vec<D>& arm) {
       return touch.n.dot(body.velocity(arm));
     };
     touch.after = true;
@@ -320,6 +320,6 @@ void Sweeps<D>::strike(State<D>& state, double h) {
   account_.open(state);
 }
 
-template void Sweeps<3>::strike(State<3>&, double);
+template void SpaceIterative<3>::strike(State<3>&, double);
 
 }  // namespace obscura::sim

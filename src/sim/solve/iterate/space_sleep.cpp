@@ -24,7 +24,7 @@ constexpr double kClosed = 1e-6;  // of a body's reach: no wider a gap bears wha
 
 // wakes the islands that something awake will touch, and those in a hand
 template <int D>
-bool Sweeps<D>::wake(State<D>& state, double h) {
+bool SpaceIterative<D>::wake(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   if (std::none_of(state.frozen.begin(), state.frozen.end(), [](char frozen) { return frozen != 0; }))
     return false;
@@ -65,7 +65,7 @@ bool Sweeps<D>::wake(State<D>& state, double h) {
 
 // who is joined to whom, by contacts that bear or are closed, springs and joints; fixed bodies join nobody
 template <int D>
-void Sweeps<D>::join(const State<D>& state) {
+void SpaceIterative<D>::join(const State<D>& state) {
   islands_.reset(int(model_.bodies.size()));
   const auto link = [&](int a, int b) {
     if (a < 0 || b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) return;
@@ -83,7 +83,7 @@ void Sweeps<D>::join(const State<D>& state) {
 
 // whether exact forces hold an island of bodies that stand still; its touches take them
 template <int D>
-bool Sweeps<D>::held(int island, double h, int most) {
+bool SpaceIterative<D>::held(int island, double h, int most) {
   const auto moving = [&](int body) { return body < int(still_.size()) && !still_[body] ? body : -1; };
   exact_.clear(), bearing_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
@@ -123,7 +123,7 @@ bool Sweeps<D>::held(int island, double h, int most) {
 // whether what bears an island leaves its motion any freedom: that is in kept_, while the trial of rest has
 // moving_
 template <int D>
-Mobile Sweeps<D>::mobile(int island, double h) {
+Mobile SpaceIterative<D>::mobile(int island, double h) {
   const int n = int(model_.bodies.size());
   mobility_.clear();
   const auto member = [&](int body) { return body < n && !still_[body] && islands_.root(body) == island; };
@@ -148,7 +148,7 @@ Mobile Sweeps<D>::mobile(int island, double h) {
 
 // freezes what begins without speed and in equilibrium, small islands without springs, hands and joints
 template <int D>
-bool Sweeps<D>::begin_still(State<D>& state, double h) {
+bool SpaceIterative<D>::begin_still(State<D>& state, double h) {
   if (blasting(state)) return false;
   const int n = int(model_.bodies.size());
   islands_.reset(n), ripe_.assign(n, 1);
@@ -179,7 +179,7 @@ bool Sweeps<D>::begin_still(State<D>& state, double h) {
 
 // freezes quiet islands; forces found on the way are kept
 template <int D>
-bool Sweeps<D>::rest(State<D>& state, double h) {
+bool SpaceIterative<D>::rest(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   bool ripe = false;
   for (int i = 0; i < n; ++i) ripe = ripe || (!still_[i] && state.quiet[i] >= kWait);
@@ -288,9 +288,9 @@ bool Sweeps<D>::rest(State<D>& state, double h) {
   return froze;
 }
 
-template void Sweeps<3>::join(const State<3>&);
-template bool Sweeps<3>::wake(State<3>&, double);
-template bool Sweeps<3>::begin_still(State<3>&, double);
-template bool Sweeps<3>::rest(State<3>&, double);
+template void SpaceIterative<3>::join(const State<3>&);
+template bool SpaceIterative<3>::wake(State<3>&, double);
+template bool SpaceIterative<3>::begin_still(State<3>&, double);
+template bool SpaceIterative<3>::rest(State<3>&, double);
 
 }  // namespace obscura::sim

@@ -10,7 +10,7 @@
 #include "sim/math/trig.h"
 #include "sim/math/trig_kernel.h"
 
-namespace obscura::sim::sweep {
+namespace obscura::sim::plane {
 
 namespace {
 
@@ -74,4 +74,4 @@ void turn_all(const double* turns, Pose* poses, int count) {
   all(turns, poses, count);
 }
 
-}  // namespace obscura::sim::sweep
+}  // namespace obscura::sim::plane
