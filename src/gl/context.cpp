@@ -25,7 +25,7 @@ void set_environment(bool native) {
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", keep);
 }
 
-// Whether memory is what the loader wants. It has no codes, but words, English where nobody calls setlocale;
+// Whether memory is what the loader wants. It has no codes, but words, English where setlocale is not called;
 // a segment that it cannot map may be forbidden too.
 bool lacks_memory(const char* why) {
   if (std::strstr(why, "Cannot allocate memory")) return true;

@@ -31,7 +31,7 @@ struct ContextOptions {
 void ready(const ContextOptions& options);
 
 /// Creates a context and makes it current. Throws gl::Error saying what was tried and which package has it,
-/// and std::bad_alloc where memory was wanting. Makes ready where nobody has.
+/// and std::bad_alloc where memory was wanting. Initialises on the first call.
 std::unique_ptr<Context> create(const ContextOptions& options);
 
 }  // namespace obscura::gl

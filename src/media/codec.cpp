@@ -125,7 +125,7 @@ std::string encoder_name(const std::string& path, const MovieSpec& spec,
     const auto found = std::find_if(names.begin(), names.end(), present);
     return found == names.end() ? std::string() : *found;
   };
-  // gif and raw frames need nobody
+  // gif and raw frames need no library encoder
   if (kind.ending == "gif" || kind.ending == "y4m") {
     if (spec.codec.empty() || spec.codec == kind.encoders[0]) return kind.encoders[0];
     throw Error(fmt::format("{}: no codec '{}' in a .{} file", path, spec.codec, kind.ending));

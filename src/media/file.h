@@ -36,7 +36,7 @@ class File {
 void make_folder_of(const std::string& path);
 
 /// Removes what a killed program left beside files of this folder under temporary names: of those that `ours`
-/// accepts by their final names. Requires: nobody writes them.
+/// accepts by their final names. Requires: no other process writes them.
 void remove_leftovers(const std::string& folder, const std::function<bool(const std::string& name)>& ours);
 
 /// Writes all of `bytes` to a descriptor, whatever interrupts or shortens it. 0, or errno of the failure.

@@ -114,7 +114,7 @@ class Tables : private Reporter {
                     because(), key.instead.empty() ? "" : "; " + here + " " + key.instead));
   }
 
-  // complains of a key nobody knows, and says which of the table's keys was probably meant
+  // reports an unknown key with the most similar key of the table
   std::string_view unknown_key(const Entry& entry, const std::string& owner, const std::string& path) {
     const bool several = entry.node.is_list() && entry.node.header;
     const auto later = later_keys();

@@ -19,7 +19,7 @@ class Diagnostics {
   void add(Place place, std::string message) { found_.emplace_back(place, std::move(message)); }
   bool none() const { return found_.empty(); }
   std::size_t count() const { return found_.size(); }
-  /// So many that nobody reads further hints.
+  /// Beyond so many, hints are left out.
   bool enough() const { return found_.size() > 1000; }
 
   /// "scenes/a.toml:12:8", "--set crate.mass=-1": for a complaint that names two places.

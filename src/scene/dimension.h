@@ -9,7 +9,7 @@ namespace obscura::scene {
 /// How many numbers the places of a scene have: two in the plane, three in space.
 struct Dimension {
   int n = 2;
-  std::string key;  // that told it, "room.size"; empty: nobody did, and it is the plane
+  std::string key;  // the key that decided it, "room.size"; empty: none did, and it is the plane
   Place place;      // where that is
 };
 

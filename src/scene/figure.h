@@ -9,7 +9,7 @@
 
 namespace obscura::scene {
 
-/// What the scene says of a figure of it. Complains of who is not there.
+/// What the scene says of a figure of it. Reports names that do not exist.
 template <int D>
 draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                     Diagnostics& complaints);

@@ -29,7 +29,7 @@ void stop_if_asked() {
 
 class Input::Buffer : public std::streambuf {
  public:
-  // a named pipe that nobody writes to yet would hold up open() itself
+  // open() of a named pipe without a writer would block
   explicit Buffer(const std::string& file)
       : owned_(file != "-"),
         descriptor_(owned_ ? ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC) : STDIN_FILENO) {

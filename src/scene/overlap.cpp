@@ -20,7 +20,7 @@ namespace obscura::scene {
 namespace {
 
 constexpr double kAllowed = 1e-6;               // of the smaller body's size: what the first step puts right
-constexpr std::int64_t kMostCounted = 100'000;  // overlaps: nobody wants to know of more
+constexpr std::int64_t kMostCounted = 100'000;  // overlaps that are counted, at most
 constexpr std::int64_t kMostLooked = 20'000'000;  // pairs that are near each other: each takes 500 bytes
 
 std::pair<int, int> ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }

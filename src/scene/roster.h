@@ -19,7 +19,7 @@ struct Group {
   std::vector<int> grid;     // copies: how many in each direction; empty: none asked for
 };
 
-/// Who is in the scene, by name.
+/// The scene's bodies, springs and joints by name.
 struct NameTable {
   std::vector<Group> groups;
   std::map<std::string, int, std::less<>> index;     // name -> group

@@ -32,7 +32,7 @@ void cancel(const std::vector<std::string>& jobs);
 /// Whether such a job may still do something.
 bool lives(const State& state);
 
-/// Whether it does nothing until somebody releases it.
+/// Whether it is held until a user releases it.
 bool held(const State& state);
 
 }  // namespace obscura::app::slurm

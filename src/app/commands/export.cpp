@@ -1,4 +1,4 @@
-// obscura export: a run as one animated glTF, for those who light it in another renderer.
+// obscura export: a run as one animated glTF, to be lit in another renderer.
 
 #include <algorithm>
 #include <cmath>

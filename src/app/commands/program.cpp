@@ -61,7 +61,7 @@ int complain(int code, const std::string& what) {
   return code;
 }
 
-// what was said is not said before it is written; a reader who has gone away has read enough
+// Flush stdout and report write errors; a closed pipe is not an error.
 int said(int code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
   if (errno == EPIPE || code != kDone) return code;
@@ -140,7 +140,7 @@ int run(int argc, const char* const* argv) {
   } catch (const std::system_error& error) {
     // a thread that cannot be had
     if (error.code() == std::errc::resource_unavailable_try_again) return complain(kFiles, out_of_memory());
-    // nobody reads any more
+    // the reader has closed the pipe
     if (error.code() == std::errc::broken_pipe) return kDone;
     return complain(kFiles, error.what());
   }

@@ -150,7 +150,7 @@ std::string csv_row(const sim::Snapshot& now, const std::string& hash, const std
   return line + "\n";
 }
 
-// who finds the forces; none does in the handout's mode
+// the solver in use; none in the handout's mode
 template <int D>
 const char* solver_name(const sim::Model<D>& model) {
   if (model.collision == sim::Collision::handout) return "null";

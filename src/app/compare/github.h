@@ -24,7 +24,7 @@ std::string command(const Annotation& annotation);
 std::string commands(const scene::Error& error);
 
 /// Text of a log in which no line is a workflow command, whatever it says: commands stop before it, and go
-/// on after it with a token that nobody can guess.
+/// on after it with a token that cannot be guessed.
 std::string verbatim(const std::string& text);
 
 /// A line of text as it stands, in Markdown and in a cell of its tables.

@@ -297,7 +297,7 @@ void sweep(const scene::Scene& scene, const std::string& references, const std::
     try {
       origin = origin_in(media::read_png(entry.path().string()).tags);
     } catch (const media::Error& error) {
-      // whose it is, is not known for sure: it is left where it is
+      // it may belong to another scene: leave it where it is
       if (is_time(entry.path().stem().string().substr(scene.name.size() + 1)))
         lines.push_back(fmt::format("{}; it is no moment of the scene any more", error.what()));
       continue;

@@ -125,7 +125,7 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
   for (const std::string& name : b.columns)
     if (name != "time" && name != "step" && !a.column(name)) extra.push_back(name);
   if (columns.empty()) found.plain.push_back("they have no column in common but time");
-  // a body that is not there at all is another run; a quantity that nobody wrote down is not compared
+  // a missing body makes it another run; a quantity without a column is not compared
   std::vector<std::string> absent;
   std::erase_if(missing, [&](const std::string& name) {
     const Column column = named(name);

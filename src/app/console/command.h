@@ -49,7 +49,7 @@ class Command {
   Option option(const char* names, std::optional<int>& value, const std::string& about) const;
   Option option(const char* names, double& value, const std::string& about) const;
   Option option(const char* names, std::optional<double>& value, const std::string& about) const;
-  /// An option whose value is done something with at once.
+  /// An option with an action that runs as soon as its value is parsed.
   Option option(const char* names, std::function<void(const std::string&)> with,
                 const std::string& about) const;
   /// true where it is given.

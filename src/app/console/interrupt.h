@@ -9,7 +9,7 @@ void heed_interrupts();
 /// Somebody has asked for an end. Safe from every thread.
 bool interrupted();
 
-/// Thrown where a command ends because somebody asked: exit 130, without a word.
+/// Thrown where a signal ends a command: exit 130, without a message.
 struct Interrupted {};
 
 }  // namespace obscura::app

@@ -67,7 +67,7 @@ void judge_fault(int signal) {
   ::raise(signal);
 }
 
-// on a thread where nobody can catch it
+// on a thread without a handler
 void judge_exception() {
   try {
     if (const auto error = std::current_exception()) std::rethrow_exception(error);

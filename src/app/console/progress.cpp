@@ -20,7 +20,7 @@ std::string clock(double seconds) {
   return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
 
-// nobody may be reading any more: that is no reason to stop filming
+// a closed standard error does not stop the film
 void put(const std::string& text, std::FILE* to = stderr) { std::fputs(text.c_str(), to); }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kPatience(2000), kBetween(500);
 struct Said {
   std::mutex mutex;
   std::condition_variable_any ended;
-  bool heard = false;  // somebody tells it
+  bool heard = false;  // progress has been reported
   int hushed = 0;
   bool shown = false;
   std::string what;

@@ -110,7 +110,7 @@ double own_time() {
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-// how many times as long this processor takes for the same as the one whose times the model has
+// this processor's time over that of the processor on which the model was measured
 double slowness() {
   constexpr double kReference = 0.4e-3;  // s
   static const double found = [] {

@@ -123,7 +123,7 @@ Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& ou
   clear_leftovers();
 }
 
-// whoever wrote these files before us was killed: we have the lock of them
+// a killed process wrote these files: we hold their lock
 void Filming::clear_leftovers() const {
   std::set<std::string> names;
   if (movie() && last_ - first_ == journal_.takes) names.insert(fs::path(output_.path).filename().string());
@@ -278,7 +278,7 @@ void Filming::shoot(Simulation& simulation, const draw::Charts& charts, Progress
   conduct(parts, workers);
 }
 
-// whether --resume finds the film whole: nobody left parts, and the movie is this one
+// whether --resume finds the film whole: no parts are left, and the movie is this one
 bool Filming::already_whole() const {
   if (!options_.resume || !movie() || options_.shard || options_.prepare) return false;
   if (fs::exists(output_.parts()) || !fs::exists(output_.path)) return false;

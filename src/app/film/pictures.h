@@ -22,7 +22,7 @@ struct PictureOptions {
   bool transparent = false;
 };
 
-/// Simulates and draws the shots of a scene in this thread. Fewer come back when somebody asks for an end.
+/// Simulates and draws the shots of a scene in this thread. Fewer come back when a signal asks for an end.
 /// Throws TroubleError where the run cannot go on, and the errors of gl.
 std::vector<Pictured> pictures(const scene::Scene& scene, const Shots& shots,
                                const PictureOptions& options = {});

@@ -10,7 +10,7 @@ namespace obscura::app {
 inline constexpr double kWorthKeeping = 60;
 
 /// How long was worked at a thing that is not whole yet, in a small file beside it: what says whether it may
-/// be thrown away. That it cannot be written stops nobody's work.
+/// be thrown away. A failure to write it is ignored.
 class Spent {
  public:
   /// What an earlier process put down in the file.

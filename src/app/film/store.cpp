@@ -106,7 +106,7 @@ struct Store::Impl {
   }
   std::string at(const std::string& name) const { return (fs::path(folder) / name).string(); }
 
-  // waits for nobody
+  // does not wait for the lock
   void take_lock(std::int64_t first, std::int64_t last) {
     const std::string path = at("lock");
     do lock = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);

@@ -32,16 +32,16 @@ enum class Earlier {
 
 /// The folder of a film in the making, and what of it is whole: a journal, each take that is done as a part
 /// (media/part.h), checkpoints to go on from. All of it is written whole or not at all, a part's name holds
-/// the hash of its bytes, and nobody else makes the same takes at the same time: they are locked, on shared
-/// file systems too.
+/// the hash of its bytes, and no other process makes the same takes at the same time: they are locked, on
+/// shared file systems too.
 class Store {
  public:
-  /// Makes or opens the folder for the takes [first, last). Throws media::Error: where somebody makes these
-  /// takes already; where `go_on` finds parts of another film; where `replace` would lose shards, prepared
-  /// states, or more than a minute of work, but for those of one process alone at a scene that was edited
-  /// since.
+  /// Makes or opens the folder for the takes [first, last). Throws media::Error: where another process makes
+  /// these takes already; where `go_on` finds parts of another film; where `replace` would lose shards,
+  /// prepared states, or more than a minute of work, but for those of one process alone at a scene that was
+  /// edited since.
   Store(const Output& output, const Journal& journal, std::int64_t first, std::int64_t last, Earlier earlier);
-  /// Opens the folder of a film for somebody who takes all of it. Throws media::Error where there is none.
+  /// Opens the folder of a film to take all of it. Throws media::Error where there is none.
   explicit Store(const Output& output);
   ~Store();
   Store(Store&&) noexcept;
@@ -64,7 +64,7 @@ class Store {
   /// Keeps the state at which a run stands, for run_between; not its start, which the scene is enough for.
   void keep(const scene::Scene& scene, const sim::Run& run);
   bool kept(std::int64_t step) const;
-  /// Lets checkpoints go that nobody needs who goes on at this step or later.
+  /// Removes checkpoints that are not needed to go on at this step or later.
   void forget_before(std::int64_t step);
   /// A run that goes on from the latest checkpoint of the steps (since, until]; none where there is none that
   /// is whole and of this scene.

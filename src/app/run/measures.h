@@ -36,7 +36,7 @@ struct Answers {
 };
 
 /// Runs a scene as far as the questions need. Throws UsageError where its states have no such number,
-/// Interrupted where somebody asks for an end.
+/// Interrupted where a signal asks for an end.
 Answers answers(const scene::Scene& scene, const std::vector<Question>& asked);
 
 }  // namespace obscura::app

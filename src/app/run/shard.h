@@ -5,7 +5,7 @@
 
 namespace obscura::app {
 
-/// One of several equal shares of a work whose pieces are counted from 0: neighbours in one share.
+/// One of several equal shares of a work. Its pieces count from 0; a share has consecutive ones.
 struct Shard {
   std::int64_t number = 1, of = 1;  // the first is 1
 

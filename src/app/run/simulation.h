@@ -29,10 +29,10 @@ struct FilmSegment {
   Ways ways;                        // what trails are drawn from
 };
 
-/// Who draws the scene's instants, as large as its film is, with these charts beside them.
+/// The illustrator of the scene's instants, at the film's size, with these charts beside them.
 draw::Illustrator depictor(const scene::Scene& scene, const draw::Charts& charts);
 
-/// A run at an instant. Throws TroubleError where it cannot go on, Interrupted where somebody asks for an
+/// A run at an instant. Throws TroubleError where it cannot go on, Interrupted where a signal asks for an
 /// end.
 sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene);
 
@@ -53,10 +53,10 @@ struct SimulationOptions {
 };
 
 /// Simulates the shots of a scene, take after take, keeping the ways that trails need. Ends early when
-/// somebody asks for an end.
+/// a signal asks for an end.
 class Simulation {
  public:
-  /// `artist`: who is going to draw them.
+  /// `artist` draws them.
   Simulation(const scene::Scene& scene, const Shots& shots, const draw::Illustrator& artist,
              const SimulationOptions& options);
 

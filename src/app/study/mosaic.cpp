@@ -118,7 +118,7 @@ class Runs {
     conduct(pieces, std::min(workers_, int(runs_.size())));
     if (interrupted()) return {};
     if (frames == 0) return {};
-    // who cannot go on stands where it last was
+    // a run that cannot go on is shown where it last was
     for (std::size_t i = 0; i < runs_.size(); ++i)
       if (last_[i]) takes[i].moments.resize(frames, *last_[i]);
     return takes;

@@ -48,7 +48,7 @@ struct Figure {
     double offset = 0;  // mm to the left of the way from one to the other
   };
   struct Cone {
-    int body = -1;  // whose contacts' friction
+    int body = -1;  // the body with the contacts
     std::string label;
   };
   struct Label {

@@ -27,7 +27,7 @@ const Measure* measure(std::string_view name);
 /// Which quantities a plot shows.
 struct Measured {
   std::vector<std::string> quantities;
-  int body = -1;  // who has them, where it is not all the room
+  int body = -1;  // the body measured; -1: the whole room
 
   std::vector<const Measure*> measures() const;
 };

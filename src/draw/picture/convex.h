@@ -12,11 +12,11 @@ struct HalfPlane {
   Point normal;  // unit
 };
 
-/// A convex polygon whose edges know what they belong to.
+/// A convex polygon; each edge carries the number of what it belongs to.
 struct Convex {
   struct Corner {
     Point at;
-    int side = -1;  // whose the edge from here to the next corner is; -1: the border it was cut from
+    int side = -1;  // owner of the edge from here to the next corner; -1: the border it was cut from
   };
   std::vector<Corner> corners;
 

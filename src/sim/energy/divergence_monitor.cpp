@@ -109,7 +109,7 @@ std::optional<Trouble> DivergenceMonitor<D>::energy(const State<D>& state, doubl
   const Tightness worst = tightest(model_, state.grips);
   if (now <= kProof * energy_budget && worst.body < 0) return {};
 
-  // whose it is: the one that moves most
+  // the body to blame: the one with the most kinetic energy
   int body = 0;
   double most = -1;
   for (int i = 0; i < int(model_.bodies.size()); ++i) {

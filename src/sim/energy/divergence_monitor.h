@@ -17,7 +17,7 @@ class DivergenceMonitor {
   /// Both are kept by reference.
   DivergenceMonitor(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// The first body whose numbers ran away, in a state at time t (s).
+  /// The first body with a velocity or position beyond its limit, in a state at time t (s).
   std::optional<Trouble> ran_away(const State<D>& state, double t) const;
 
   /// Takes this state at time t as the start: what energy there is comes from it and from the hands.

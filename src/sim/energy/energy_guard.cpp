@@ -161,7 +161,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
   for (const Grip<D>& grip : state.grips) {
     if (counts(grip.body)) island(grip.body).driven = true;
   }
-  // who was held back before it met anything, or by what is no longer near
+  // slowed before any contact, or by something no longer near
   for (Island& it : sums_) {
     if (it.touched || (it.tied && !it.jointed)) continue;
     if (it.gain > (it.jointed ? kJointed : kFlight) * it.kinetic) it.touched = it.rooted = true;
@@ -201,7 +201,7 @@ void EnergyGuard<D>::move_as_one(const State<D>& state) {
     const AngularVec<D> w =
         least > 0 ? AngularVec<D>(it.inertia.inverse() * it.turning) : AngularVec<D>(AngularVec<D>::Zero());
     const double apart = it.kinetic - 0.5 * it.momentum.squaredNorm() / it.mass - 0.5 * w.dot(it.turning);
-    // who was held back on its way by what goes along with it pays all alone
+    // too little relative motion to absorb the gain: scale the whole motion
     if (apart > it.gain)
       it.kinetic = apart, it.turning = w;
     else

@@ -20,7 +20,7 @@ class Handout {
   /// Both are kept by reference. `paths`: the way of each mouse.
   Handout(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// Appends to `suspects` who of bodies first .. first + count may have come through a wall.
+  /// Appends to `suspects` those of the bodies first .. first + count that may have come through a wall.
   void look(const State<D>& state, int first, int count, std::vector<int>& suspects);
 
   /// Lets the suspects collide at time t. Adds their touches and what became of the energy to the state.
@@ -65,7 +65,7 @@ class Handout {
   std::vector<double> rims_;  // how far each body reaches, m
   SupportVertices<D> tips_;
   std::vector<std::vector<int>> springs_;  // of each body
-  std::vector<std::int64_t> signs_;        // a block's: negative where somebody is outside
+  std::vector<std::int64_t> signs_;        // a block's: negative where a body is outside
   std::vector<Hit> hits_;                  // of the body at hand
   std::vector<Vec<D>> arms_;               // of its tips, from its centre, m
   std::vector<double> distances_;          // of its tips from the wall at hand, m

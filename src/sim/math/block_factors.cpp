@@ -65,7 +65,7 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
   std::vector<std::vector<int>> members(n);
   for (int i = 0; i < n; ++i) members[parts.root(i)].push_back(i);
 
-  // whoever has the fewest neighbours left goes first, then by number
+  // eliminate the block with the fewest remaining neighbours first, then by number
   part_.assign(n, 0), parts_.assign(1, 0), order_.clear();
   std::vector<int> place(n, -1);
   std::vector<std::vector<int>> left(n);
@@ -106,7 +106,7 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
   };
   for (int e = 0; e < int(pairs.size()); ++e) {
     const auto [i, j] = pairs[e];
-    // an entry has i's rows; below stands who goes later
+    // an entry has i's rows; the block eliminated later stands below
     const bool turned = place[i] < place[j];
     sources_.push_back({e, turned ? slot(j, i) : slot(i, j), turned});
   }

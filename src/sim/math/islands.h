@@ -18,7 +18,7 @@ class Islands {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
-  /// Makes sets of one member each of `members`, who must not have been joined to others; n as before.
+  /// Makes sets of one member each of `members`, which must not have been joined to others; n as before.
   void reset(std::span<const int> members) {
     for (const int i : members) parent_[i] = i;
   }

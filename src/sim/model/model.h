@@ -18,7 +18,7 @@ enum class Integrator { rk4, midpoint, euler, semi_implicit };
 /// bounded number a step.
 enum class Collision { handout, contact, event };
 
-/// Who finds the forces of `contact`: see sim/model/contact.h. `automatic` decides from the scene.
+/// The solver for contact forces (sim/model/contact.h). `automatic` decides from the scene.
 enum class Solver { automatic, direct, iterative };
 
 /// Which law holds for impacts in one instant: solved together, or one pair after another until none

@@ -13,7 +13,7 @@ namespace obscura::sim {
 
 // One instant, without a dimension: above it nothing knows D. The plane lies at z = 0, seen from +z.
 
-/// What is the same at every instant: who is in the room and what they look like to a measuring eye.
+/// What is the same at every instant: names, shapes and masses of all that is in the room.
 struct SceneInfo {
   /// A piece of a body of several, in the body's frame.
   struct Part {

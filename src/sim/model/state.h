@@ -31,8 +31,8 @@ struct Touch {
 
 /// The spin of a body in space as the body sees it, and what rounding has taken from it since: near its
 /// middle axis a top doubles every error in a fraction of a second, that of rounding too. It counts while
-/// `spin` of the state is what it gives in the room's frame, to the bit; who changes that or the turn need
-/// not know of it.
+/// `spin` of the state is what it gives in the room's frame, to the bit; code that changes that or the turn
+/// need not know of it.
 template <int D>
 struct BodySpin {
   AngularVec<D> w = AngularVec<D>::Zero();     // rad/s

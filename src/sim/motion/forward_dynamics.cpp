@@ -101,7 +101,7 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
         {hold(state, {grip.body, grip.local}), {-1, mouse, Vec<D>::Zero()}, law(model_.mice[mouse])});
   }
 
-  // who is not to be turned far: what wobbles, what is held off its centre, and links
+  // bodies with a limit on the turn of one step: tumbling ones, those held off their centre, and links
   wheels_.clear();
   for (int i = 0; i < int(all_.size()); ++i) {
     if (turning(state, all_[i]) < 0) continue;
@@ -273,7 +273,7 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
   std::copy_n(v.begin(), D * n, d_rate.begin());
   unconstrained_rates(gravity_, drag_, v.first(D * n), v_rate.first(D * n));
 
-  // where everyone is at this stage, and how it turns by itself
+  // poses at this stage, and the torque-free rotation
   for (int i = 0; i < n; ++i) {
     stances_[i].x = x_[i] + Eigen::Map<const Vec<D>>(d.data() + D * i);
     stances_[i].v = Eigen::Map<const Vec<D>>(v.data() + D * i);

@@ -32,9 +32,9 @@ class ForwardDynamics final : public System {
   /// Whether anything of the model may ever tie a body.
   bool ever() const { return ever_; }
 
-  /// Who is tied under the grips of `state`; or everyone who can move and is not frozen, as they are while
-  /// an explosion acts. What the ground brakes counts as tied. To be called whenever a grip changes, or who
-  /// is frozen, or what explodes.
+  /// Collects the bodies that springs and mice hold in `state`; with `everyone` all that can move and are
+  /// awake, as while an explosion acts. Bodies with drag on the ground count too. To be called whenever a
+  /// grip changes, a body falls asleep or wakes, or an explosion begins or ends.
   void gather(const State<D>& state, bool everyone = false);
   /// The same for a part of the model: all else stays out of it.
   void gather(const State<D>& state, const Subset& of);
@@ -74,7 +74,7 @@ class ForwardDynamics final : public System {
   // one end of a tie: a point of a tied body, a place that stays, or a hand
   struct Hold {
     int member = -1;             // place in bodies_, and from there on in links(); -1: not a tied body
-    int mouse = -1;              // whose hand; -1: none
+    int mouse = -1;              // the mouse that holds it; -1: none
     Vec<D> at = Vec<D>::Zero();  // in the body's frame; else a place in the room
   };
   struct Tie {

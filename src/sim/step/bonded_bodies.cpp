@@ -165,7 +165,7 @@ BondedBodies<D>::BondedBodies(const Model<D>& model, const std::vector<Path<D>>&
 template <int D>
 BondedBodies<D>::~BondedBodies() = default;
 
-// the bodies that the bonds of a state make, and who steps them
+// the rigid bodies that the bonds of a state make, and their stepper
 template <int D>
 void BondedBodies<D>::gather(const State<D>& state) {
   if (stepper_ && known_ == state.holds) return;
@@ -250,7 +250,7 @@ void BondedBodies<D>::begin(State<D>& state) {
   const int n = int(model_.bodies.size());
   if (state.whole.empty()) {
     state.holds.assign(model_.bonds.size(), 1);
-    // where everyone stands in the room; then in what he is part of
+    // poses in the room; then in the bonded body
     state.seats.resize(n);
     for (int i = 0; i < n; ++i) {
       const int k = turning(state, i);

@@ -65,7 +65,7 @@ class Passive final : public ContactSolver<D> {
   std::vector<std::pair<int, int>> touched_;
 };
 
-// who finds the forces of many
+// the solver for many bodies
 std::unique_ptr<ContactSolver<2>> iterative(const Model<2>& model, const std::vector<Path<2>>& paths) {
   return std::make_unique<PlaneIterative<2>>(model, paths);
 }

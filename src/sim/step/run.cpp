@@ -73,7 +73,8 @@ class RunOf final : public Run {
   }
 
  private:
-  // a point of every way that this step belongs to: all at equal steps, and who has just been struck
+  // a point of every way that this step belongs to: all at equal steps, and bodies that have just had an
+  // impact
   void keep_ways() {
     if (track_.bodies.empty()) return;
     const bool all = state_.step % stride_ == 0;

@@ -189,7 +189,7 @@ bool Stepper<D>::pressed(int mouse, TimeStamp at) const {
   return !(at < presses_[mouse]) && at < releases_[mouse];
 }
 
-// who flies alone and who is tied, anew whenever a hand has taken or let go
+// which bodies move freely and which are coupled by forces, anew whenever a mouse takes or lets go
 template <int D>
 void Stepper<D>::plan(const State<D>& state) {
   bool known = planned_ && gripped_.size() == state.grips.size() && blasting_ == blasting(state);

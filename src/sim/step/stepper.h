@@ -81,7 +81,7 @@ class Stepper {
   std::vector<AngularVec<D>> base_;       // of a block, see sim/math/lie_step.h
   std::vector<double> d_, w_;
   std::vector<int> suspects_;
-  std::vector<int> by_handout_;  // who has that law in `contact` and `event` too
+  std::vector<int> by_handout_;  // bodies with that law in `contact` and `event` too
   Stages stages_;
   std::int64_t watch_every_ = 1;  // steps
   bool springs_ = false;          // something may ever tie
