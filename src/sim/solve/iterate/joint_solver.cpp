@@ -208,7 +208,7 @@ void JointSolver<D>::bind(double h) {
     if (active_ == bounded_.size()) bounded_.emplace_back();
     Bounded& b = bounded_[active_];
     b.joint = i, b.load = load;
-    b.impulse = 0;
+    b.impulse = 0, b.taut = false, b.put = 0;
 
     Row<D> out[kMostHeld<D>];
     double offs[kMostHeld<D>];
@@ -226,6 +226,7 @@ void JointSolver<D>::bind(double h) {
       const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
       if (off > sees) return;
       b.target = -std::max(off, 0.0) / h;
+      b.taut = joint.kind == JointKind::rope && off <= kPut * model_.scale;
     } else {
       b.most = h * (load == motor ? joint.motor->most : joint.friction), b.least = -b.most;
       if (load == motor) b.target = joint.motor->speed;
@@ -439,9 +440,14 @@ void JointSolver<D>::put_back(double h) {
     if (!left(bounded_[k], off) || off >= 0) continue;
     const double strayed = astray();
     begun_at_ = at_, begun_turn_ = turn_;
-    shift_bounded(bounded_[k], -off * bounded_[k].give);
+    const double put = -off * bounded_[k].give;
+    shift_bounded(bounded_[k], put);
     // what joints hardly let it do throws them far
-    if (!near() || astray() > strayed - off) at_.swap(begun_at_), turn_.swap(begun_turn_);
+    if (!near() || astray() > strayed - off) {
+      at_.swap(begun_at_), turn_.swap(begun_turn_);
+    } else if (bounded_[k].taut) {
+      bounded_[k].put = put;
+    }
   }
   begun_at_ = at_, begun_turn_ = turn_;
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
@@ -491,6 +497,13 @@ template <int D>
 void JointSolver<D>::finish(double h) {
   if (bodies_.empty()) return;
   put_back(h);
+  // a taut rope turns its bodies' motion as an equality does: s / h of Rattle's
+  for (std::size_t k = 0; k < active_; ++k) {
+    if (bounded_[k].put == 0) continue;
+    bounded_[k].impulse += bounded_[k].put / h;
+    each_push(bounded_[k], bounded_[k].put / h,
+              [&](int body, const Vec<D>& v, const AngularVec<D>& w) { at_[body].v += v, at_[body].w += w; });
+  }
   lay();
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     push(old_rows_[r], shifts_[r] - 0.5 * impulses_[r]);
@@ -513,14 +526,21 @@ bool JointSolver<D>::rebind() {
   bool any = false;
   for (std::size_t k = 0; k < active_; ++k) {
     Bounded& b = bounded_[k];
-    if (b.load != motor) {
+    if (b.load != motor && b.put == 0) {
       b.least = b.most = b.impulse;
       continue;
     }
     any = true;
     const Joint<D>& joint = model_.joints[b.joint];
-    double way = 0;
-    free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), b.row, way);
+    if (b.load == motor) {
+      double way = 0;
+      free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), b.row, way);
+    } else {
+      Row<D> out[kMostHeld<D>];
+      double offs[kMostHeld<D>];
+      rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, offs);
+      b.row = out[0], b.target = 0, b.least = b.impulse;
+    }
     hear(b);
     b.give = give(b);
   }

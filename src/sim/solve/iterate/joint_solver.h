@@ -116,7 +116,9 @@ class JointSolver {
     double least = 0, most = 0, target = 0;  // N s or N m s; m/s or rad/s
     double give = 0;                         // what a unit of impulse changes, joints answering, inverted
     double impulse = 0;
-    int first = 0;  // of its row in yields_
+    bool taut = false;  // a rope that is at its length when the step begins
+    double put = 0;     // kg m: what put its bodies back where the step had left the rope too long
+    int first = 0;      // of its row in yields_
   };
 
   void plan();
