@@ -42,4 +42,27 @@ class TorqueFreeRotation final : public System {
 void unconstrained_rates(std::span<const double> gravity, std::span<const double> drag,
                          std::span<const double> v, std::span<double> v_rate);
 
+/// A step of a free centre under gravity and drag, x' = v, v' = g + (z / h) v with z = -h c/m:
+///   v := v + p v + h q g      x := x + h (u v + h r g)
+/// by the polynomials in z of the integrator that the scene names.
+struct FreeStep {
+  double p = 0, q = 1, u = 1, r = 0.5;
+};
+inline FreeStep free_step(Integrator integrator, double z) {
+  switch (integrator) {
+    case Integrator::rk4: {
+      if (z == 0) return {};
+      const double q = 1 + z / 2 * (1 + z / 3 * (1 + z / 4));
+      return {z * q, q, q, 0.5 * (1 + z / 3 * (1 + z / 4))};
+    }
+    case Integrator::midpoint:
+      return {z * (1 + z / 2), 1 + z / 2, 1 + z / 2, 0.5};
+    case Integrator::euler:
+      return {z, 1, 1, 0};
+    case Integrator::semi_implicit:
+      return {z, 1, 1 + z, 1};
+  }
+  return {};
+}
+
 }  // namespace obscura::sim

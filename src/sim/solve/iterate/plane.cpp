@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "sim/force/explosion.h"
+#include "sim/motion/free_motion.h"
 
 namespace obscura::sim {
 
@@ -249,7 +250,7 @@ bool PlaneIterative<D>::gather(const State<D>& state) {
   return known;
 }
 
-// what everyone would do in the step if nothing touched
+// how each body would move in the step if nothing touched
 template <int D>
 void PlaneIterative<D>::fall(State<D>& state, double t, double h) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
@@ -260,15 +261,9 @@ void PlaneIterative<D>::fall(State<D>& state, double t, double h) {
       old_[i] = v_[i] = dv_[i] = dx_[i] = {};
       continue;
     }
-    // Runge-Kutta's polynomials of z = -h c/m
-    double p = 0, q = 1, r = 0.5;
-    if (drag_) {
-      const double z = -h * model_.bodies[i].drag * v_[i].im;
-      p = z * (1 + z / 2 * (1 + z / 3 * (1 + z / 4)));
-      q = 1 + z / 2 * (1 + z / 3 * (1 + z / 4)), r = 0.5 * (1 + z / 3 * (1 + z / 4));
-    }
-    dv_[i] = {v_[i].x * p + h * q * gx, v_[i].y * p + h * q * gy, 0, 0};
-    dx_[i] = {h * (v_[i].x * q + h * r * gx), h * (v_[i].y * q + h * r * gy), h * v_[i].w, 0};
+    const FreeStep by = free_step(model_.integrator, drag_ ? -h * model_.bodies[i].drag * v_[i].im : 0);
+    dv_[i] = {v_[i].x * by.p + h * by.q * gx, v_[i].y * by.p + h * by.q * gy, 0, 0};
+    dx_[i] = {h * (v_[i].x * by.u + h * by.r * gx), h * (v_[i].y * by.u + h * by.r * gy), h * v_[i].w, 0};
     v_[i].x += dv_[i].x, v_[i].y += dv_[i].y;
   }
 
