@@ -491,7 +491,7 @@ int submit(Flags flags) {
 
 }  // namespace
 
-void add_submit(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(80, submit) {
   const Command command(program, exit, "submit",
                         "Share a film, or a sweep, out among the tasks of a Slurm array");
   auto flags = std::make_shared<Flags>();

@@ -245,7 +245,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
 
 }  // namespace
 
-void add_check(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(50, check) {
   const Command command(program, exit, "check", "Read scenes and say what would be filmed, without drawing");
   auto files = std::make_shared<std::vector<std::string>>();
   auto sets = std::make_shared<std::vector<std::string>>();

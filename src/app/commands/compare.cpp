@@ -115,7 +115,7 @@ int run(const Flags& flags) {
 
 }  // namespace
 
-void add_compare(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(100, compare) {
   const Command command(program, exit, "compare",
                         "Say whether two pictures, sequences or runs are the same, and why not");
   auto flags = std::make_shared<Flags>();

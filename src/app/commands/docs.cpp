@@ -11,7 +11,7 @@
 
 namespace obscura::app {
 
-void add_docs(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(130, docs) {
   const Command command(program, exit, "docs", "Print the reference of scene keys, or their JSON Schema");
   auto what = std::make_shared<std::string>();
   command.option("WHAT", *what, "keys (a page in Markdown) or schema (for editors)")

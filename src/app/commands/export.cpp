@@ -182,7 +182,7 @@ int run(const Flags& flags) {
 
 }  // namespace
 
-void add_export(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(90, export) {
   const Command command(program, exit, "export", "Write a run as one animated glTF, for another renderer");
   auto flags = std::make_shared<Flags>();
   add_scene(command, flags->scene);

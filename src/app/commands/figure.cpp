@@ -173,7 +173,7 @@ int run(const Flags& flags) {
 
 }  // namespace
 
-void add_figure(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(30, figure) {
   const Command command(program, exit, "figure", "A figure for print: SVG, PDF or PNG");
   auto flags = std::make_shared<Flags>();
   add_scene(command, flags->scene);

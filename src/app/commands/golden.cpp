@@ -284,7 +284,7 @@ int golden(Flags& flags) {
 
 }  // namespace
 
-void add_golden(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(120, golden) {
   const Command command(program, exit, "golden",
                         "Check what scenes look like, and their states, against references");
   auto flags = std::make_shared<Flags>();

@@ -38,7 +38,7 @@ int make(const std::string& name, const std::string& program) {
 
 }  // namespace
 
-void add_new(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(40, new) {
   const Command command(program, exit, "new", "Write a short commented scene to start from");
   auto name = std::make_shared<std::string>();
   command.option("NAME", *name, "The scene's name: NAME.toml is written, never over another").required();

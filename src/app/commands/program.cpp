@@ -91,19 +91,7 @@ int run(int argc, const char* const* argv) {
   program.set_version_flag("--version", version, "Show the versions of obscura, OpenGL, FFmpeg and libpng");
   program.get_formatter()->column_width(34);
   int exit = kDone;
-  add_render(program, exit);
-  add_join(program, exit);
-  add_figure(program, exit);
-  add_new(program, exit);
-  add_check(program, exit);
-  add_states(program, exit);
-  add_sweep(program, exit);
-  add_submit(program, exit);
-  add_export(program, exit);
-  add_compare(program, exit);
-  add_verify(program, exit);
-  add_golden(program, exit);
-  add_docs(program, exit);
+  for (AddCommand* add : commands()) add(program, exit);
   try {
     know_command(program, argc, argv);
     program.parse(argc, argv);

@@ -204,7 +204,7 @@ int render(Flags flags) {
 
 }  // namespace
 
-void add_render(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(10, render) {
   const Command command(program, exit, "render",
                         "Film a scene: a movie, a sequence of PNGs, one PNG or a stream");
   auto flags = std::make_shared<Flags>();

@@ -244,7 +244,7 @@ int states(const Flags& flags) {
 
 }  // namespace
 
-void add_states(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(60, states) {
   const Command command(program, exit, "states",
                         "Print the state at given instants as data, without drawing");
   auto flags = std::make_shared<Flags>();

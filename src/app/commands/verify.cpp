@@ -280,7 +280,7 @@ int verify(Flags flags) {
 
 }  // namespace
 
-void add_verify(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(110, verify) {
   const Command command(program, exit, "verify",
                         "Make a picture or movie again from its origin: is it still true?");
   auto flags = std::make_shared<Flags>();

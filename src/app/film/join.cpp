@@ -179,7 +179,7 @@ int join_command(const Flags& flags) {
 
 }  // namespace
 
-void add_join(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(20, join) {
   const Command command(program, exit, "join", "Make the movie of the parts that shards have left");
   auto flags = std::make_shared<Flags>();
   command.option("OUT", flags->out, "The movie, as `render -o` named it, or the pattern of its pictures")

@@ -244,7 +244,7 @@ void check_sweep(const std::string& scene, const std::vector<std::string>& sets,
   const Sweep sweep(flags);
 }
 
-void add_sweep(CLI::App& program, int& exit) {
+OBSCURA_COMMAND(70, sweep) {
   const Command command(program, exit, "sweep",
                         "Run a scene many times, and measure: a table, without drawing");
   auto flags = std::make_shared<Flags>();
