@@ -7,18 +7,15 @@
 namespace obscura::app {
 namespace {
 
-using Interrupt = Program;
-
-// starts a command that reads `pipe`, waits until it heeds SIGTERM, sends one, and waits for its end while
-// the pipe stays open
-std::string interrupted_at(const std::string& command) {
-  return "mkfifo pipe; " + command +
-         " & p=$!; exec 3>pipe; printf 'what is no scene, nor a table' >&3;"
-         // SIGTERM is the 15th bit of the signals that it catches
-         " until [ $(( 0x$(sed -n 's/^SigCgt:[[:space:]]*//p' /proc/$p/status) >> 14 & 1 )) = 1 ]; do sleep "
-         "0.01; done;"
-         " kill -TERM $p; wait $p; echo $?";
-}
+class Interrupt : public Program {
+ protected:
+  // starts a command that reads `pipe`, waits until it heeds SIGTERM, sends one, and waits for its end while
+  // the pipe stays open
+  static std::string interrupted_at(const std::string& command) {
+    return "mkfifo pipe; " + command + " & p=$!; exec 3>pipe; printf 'what is no scene, nor a table' >&3; " +
+           until_heeding("$p") + "kill -TERM $p; wait $p; echo $?";
+  }
+};
 
 TEST_F(Interrupt, TheFirstSigtermEndsAReadOfAnIdlePipe) {
   for (const char* command : {"check - <pipe", "check pipe", "render scene.toml --states pipe -o a.mp4"}) {

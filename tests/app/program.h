@@ -70,6 +70,20 @@ class Program : public ::testing::Test {
            " ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0 LD_PRELOAD=" OBSCURA_FAULTS
            " " OBSCURA_BINARY " ";
   }
+  /// Shell words that wait until something is so of the process of this number, or it has ended.
+  static std::string until(const std::string& pid, const std::string& condition) {
+    return "until grep -q '^State:[[:space:]]*Z' /proc/" + pid + "/status || " + condition +
+           "; do sleep 0.01; done; ";
+  }
+  /// Until STOP has stopped it. The file met is there a moment earlier, and a CONT in between would be lost.
+  static std::string until_stopped(const std::string& pid) {
+    return until(pid, "grep -q '^State:[[:space:]]*T' /proc/" + pid + "/status");
+  }
+  /// Until it heeds SIGTERM, the 15th bit of the signals that it catches.
+  static std::string until_heeding(const std::string& pid) {
+    return until(pid,
+                 "[ $(( 0x$(sed -n 's/^SigCgt:[[:space:]]*//p' /proc/" + pid + "/status) >> 14 & 1 )) = 1 ]");
+  }
   bool met() const { return std::filesystem::exists(path("met")); }
 
   /// Writes a scene of `text` and returns its name.

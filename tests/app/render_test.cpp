@@ -199,9 +199,8 @@ TEST_F(Render, AnInterruptEndsAFrameThatTakesForever) {
   // the program has worked for a second, which is past its start, however long that takes here
   scene(kRoom);
   const std::string interrupted =
-      " & pid=$!; for i in $(seq 6000); do [ $(cut -d ' ' -f 14 /proc/$pid/stat) -ge $(getconf CLK_TCK) ] && "
-      "break; sleep 0.1; done; "
-      "kill -";
+      " & pid=$!; " + until_heeding("$pid") +
+      until("$pid", "[ $(cut -d ' ' -f 14 /proc/$pid/stat) -ge $(getconf CLK_TCK) ]") + "kill -";
   const Outcome run =
       shell("env --default-signal=INT " OBSCURA_BINARY
             " render scene.toml -o far.png --at 100000 --set physics.rate=500000 --progress none" +

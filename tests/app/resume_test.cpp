@@ -204,8 +204,7 @@ TEST_F(Resume, TwoAtOnceOnOneFilmAreOne) {
   const std::string command = std::string("render scene.toml -o out/film.mp4") + kSmall;
   // the first stands still where it places its third file, until the second has been told of it
   const Outcome both =
-      shell(meeting("STOP", 3, "rename") + command +
-            " & p=$!; for i in $(seq 60000); do [ -s met ] && break; sleep 0.01; done; " OBSCURA_BINARY " " +
+      shell(meeting("STOP", 3, "rename") + command + " & p=$!; " + until_stopped("$p") + OBSCURA_BINARY " " +
             command + "; echo second $?; kill -CONT $p; wait $p; echo first $?");
   EXPECT_EQ(both.out, "second 4\nfirst 0\n") << both.err;
   EXPECT_NE(both.err.find("another obscura is making this film"), std::string::npos) << both.err;

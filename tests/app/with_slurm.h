@@ -1,7 +1,10 @@
 #pragma once
 
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <thread>
@@ -88,17 +91,34 @@ class WithSlurm : public Program {
   }
 
  private:
+  /// Two ports of the loopback that nothing listens on: the kernel names them.
+  static std::array<int, 2> free_ports() {
+    std::array<int, 2> ports{}, sockets{};
+    for (std::size_t i = 0; i < ports.size(); ++i) {
+      sockets[i] = ::socket(AF_INET, SOCK_STREAM, 0);
+      sockaddr_in address{};
+      address.sin_family = AF_INET, address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      socklen_t size = sizeof address;
+      ::bind(sockets[i], reinterpret_cast<sockaddr*>(&address), size);
+      ::getsockname(sockets[i], reinterpret_cast<sockaddr*>(&address), &size);
+      ports[i] = ntohs(address.sin_port);
+    }
+    for (const int each : sockets) ::close(each);
+    return ports;
+  }
+
   std::string configuration() const {
     const std::string host = shell("hostname -s").out.substr(0, shell("hostname -s").out.find('\n'));
     const std::string user = shell("id -un").out.substr(0, shell("id -un").out.find('\n'));
-    const int port = 20000 + 2 * (::getpid() % 10000);
+    const auto ports = free_ports();
     const std::string here = folder_.string() + "/";
     return "ClusterName=obscura\nSlurmctldHost=" + host +
-           "(127.0.0.1)\nSlurmctldPort=" + std::to_string(port) + "\nSlurmdPort=" + std::to_string(port + 1) +
-           "\nAuthType=auth/munge\nAuthInfo=socket=" + here + "munge.socket\nSlurmUser=" + user +
-           "\nSlurmdUser=" + user + "\nStateSaveLocation=" + here + "state\nSlurmdSpoolDir=" + here +
-           "spool\nSlurmctldPidFile=" + here + "slurmctld.pid\nSlurmdPidFile=" + here +
-           "slurmd.pid\nSlurmctldLogFile=" + here + "slurmctld.log\nSlurmdLogFile=" + here +
+           "(127.0.0.1)\nSlurmctldPort=" + std::to_string(ports[0]) +
+           "\nSlurmdPort=" + std::to_string(ports[1]) + "\nAuthType=auth/munge\nAuthInfo=socket=" + here +
+           "munge.socket\nSlurmUser=" + user + "\nSlurmdUser=" + user + "\nStateSaveLocation=" + here +
+           "state\nSlurmdSpoolDir=" + here + "spool\nSlurmctldPidFile=" + here +
+           "slurmctld.pid\nSlurmdPidFile=" + here + "slurmd.pid\nSlurmctldLogFile=" + here +
+           "slurmctld.log\nSlurmdLogFile=" + here +
            "slurmd.log\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\n"
            "JobAcctGatherType=jobacct_gather/none\nSelectType=select/"
            "cons_tres\nSelectTypeParameters=CR_CPU\nSwitchType=switch/"

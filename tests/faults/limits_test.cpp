@@ -79,9 +79,8 @@ TEST_F(Limits, AFolderThatIsNoneOrGoesAwayIsAnError) {
   // it goes away where the fifth picture is placed: the program stands still until it is gone
   const Outcome run =
       shell(meeting("STOP", 5, "rename") +
-            "render scene.toml --size 64x36 --fps 30 --progress none -o 'out/{frame}.png' & pid=$!; "
-            "for i in $(seq 60000); do [ -s met ] && break; sleep 0.01; done; mv out away; kill -CONT $pid; "
-            "wait $pid");
+            "render scene.toml --size 64x36 --fps 30 --progress none -o 'out/{frame}.png' & pid=$!; " +
+            until_stopped("$pid") + "mv out away; kill -CONT $pid; wait $pid");
   expect_refused(run, 4, "out/");
 }
 
@@ -219,7 +218,7 @@ TEST_F(Limits, WhatTakesLongSaysSoOnATerminalAndNowhereElse) {
       shell("mkfifo one two; script -qfec '" OBSCURA_BINARY
             " check one' log < /dev/null > /dev/null & a=$!; " OBSCURA_BINARY
             " check two > out 2> err & b=$!; exec 3> one 4> two; "
-            "for i in $(seq 600); do grep -q 'check  reading one' log && break; sleep 0.1; done; "
+            "for i in $(seq 12000); do grep -q 'check  reading one' log && break; sleep 0.1; done; "
             "cat scene.toml >&3; cat scene.toml >&4; exec 3>&- 4>&-; wait $a && wait $b");
   EXPECT_EQ(run.exit, 0) << run.err;
   const std::string log = contents(path("log"));

@@ -1,5 +1,7 @@
 // Files that mean harm, or none at all: each ends in a scene or in complaints, quickly.
 
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -158,7 +160,8 @@ TEST(Hostile, NothingIsNoScene) {
 }
 
 TEST(Hostile, FilesThatAreNone) {
-  const fs::path folder = fs::temp_directory_path() / "obscura_scene_hostile_test";
+  const fs::path folder =
+      fs::temp_directory_path() / ("obscura_scene_hostile_test_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   EXPECT_THROW(
       {
