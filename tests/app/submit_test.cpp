@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <sstream>
+
 #include "where.h"
 #include "with_slurm.h"
 
@@ -24,6 +26,43 @@ TEST_F(Submit, DryRunShowsScriptsThatAShellReadsAndNeedsNoSlurm) {
   std::ofstream(path("all.sh")) << run.out;
   EXPECT_EQ(shell("sh -n all.sh").exit, 0) << contents(path("all.sh"));
   EXPECT_FALSE(std::filesystem::exists(path("it's.mp4.slurm")));
+}
+
+TEST_F(Submit, HandsOnWhatHoldsForEveryTask) {
+  scene(kRoom);
+  // each command of the scripts, without the comments
+  const auto commands = [&](const std::string& arguments) {
+    const Outcome run = obscura("submit scene.toml --tasks 2 --dry-run " + arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    std::vector<std::string> found;
+    std::istringstream lines(run.out);
+    for (std::string line; std::getline(lines, line);)
+      if (line.find("obscura") != line.npos && line.ends_with(" &")) found.push_back(line);
+    return found;
+  };
+  const auto film = commands("-o a.mp4 --memory-limit '1.5 GiB' --backend osmesa --native");
+  ASSERT_EQ(film.size(), 3u);
+  for (const std::string& line : film) {
+    EXPECT_THAT(line, testing::HasSubstr(" --memory-limit '1.5 GiB'"));
+    // what joins them draws nothing
+    for (const char* flag : {" --backend osmesa", " --native"})
+      EXPECT_EQ(line.find(flag) != line.npos, line.find(" join ") == line.npos) << line;
+  }
+  const auto sweep = commands("-o a.csv --vary seed=1:4 --measure hash@end --memory-limit 2GB");
+  ASSERT_GE(sweep.size(), 1u);
+  EXPECT_THAT(sweep[0], testing::HasSubstr(" --memory-limit 2GB"));
+  for (const std::string& line : commands("-o a.mp4"))
+    for (const char* flag : {"--memory-limit", "--backend", "--native"})
+      EXPECT_EQ(line.find(flag), line.npos) << line;
+  // a table is not drawn
+  for (const char* flag : {"--backend egl", "--native"}) {
+    const Outcome run = obscura(
+        std::string("submit scene.toml --tasks 2 --dry-run -o a.csv --vary seed=1:4 --measure hash@end ") +
+        flag);
+    EXPECT_EQ(run.exit, 2);
+    EXPECT_THAT(run.err, testing::HasSubstr("a sweep's table draws nothing"));
+  }
+  EXPECT_EQ(obscura("submit scene.toml --tasks 2 --dry-run --memory-limit many").exit, 2);
 }
 
 TEST_F(Submit, RefusesWhatCannotBeSharedOut) {

@@ -42,6 +42,8 @@ struct Flags {
   std::string scene;
   std::vector<std::string> sets, vary, measure, options;
   std::optional<std::string> out;
+  std::string memory_limit;
+  gl::ContextOptions context;
   int tasks = 0, at_once = 0;
   bool dry_run = false, no_wait = false, anew = false;
   ProgressKind progress = ProgressKind::automatic;
@@ -165,6 +167,21 @@ std::int64_t count(const std::string& folder, const std::function<bool(const fs:
   return n;
 }
 
+// what --memory-limit says of every task
+std::vector<std::string> limits(const Flags& flags) {
+  if (flags.memory_limit.empty()) return {};
+  return {"--memory-limit", flags.memory_limit};
+}
+
+// how the pictures are drawn, by flags of render
+std::vector<std::string> drawing(const Flags& flags) {
+  std::vector<std::string> all;
+  if (flags.context.backend != gl::Backend::automatic)
+    all = {"--backend", flags.context.backend == gl::Backend::egl ? "egl" : "osmesa"};
+  if (flags.context.native) all.push_back("--native");
+  return all;
+}
+
 void film_work(const Flags& flags, const scene::Scene& scene, const std::vector<std::string>& program,
                Work& work) {
   const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
@@ -195,15 +212,19 @@ void film_work(const Flags& flags, const scene::Scene& scene, const std::vector<
     };
   }
 
-  std::vector<std::string> render = program;
+  std::vector<std::string> render = program, join = program;
   for (const char* word : {"render", flags.scene.c_str(), "-o", out.path.c_str()}) render.push_back(word);
   for (const std::string& set : flags.sets) render.insert(render.end(), {"--set", set});
+  for (const std::string& word : limits(flags)) render.push_back(word);
+  for (const std::string& word : drawing(flags)) render.push_back(word);
+  for (const char* word : {"join", out.path.c_str()}) join.push_back(word);
+  for (const std::string& word : limits(flags)) join.push_back(word);
   Errand& errand = work.errand;
   errand.made = out.path;
   const std::string line = words(render) + " --progress none";
   errand.prepare = fmt::format("{} --prepare {}", line, errand.tasks);
   errand.shard = fmt::format("{} --shard \"$shard/{}\" -j \"$cores\"", line, errand.tasks);
-  errand.join = words(program) + " join " + shell_word(out.path);
+  errand.join = words(join);
 }
 
 void sweep_work(const Flags& flags, const std::vector<std::string>& program, Work& work) {
@@ -211,6 +232,8 @@ void sweep_work(const Flags& flags, const std::vector<std::string>& program, Wor
   const std::string ending = fs::path(out).extension().string();
   if (ending != ".csv" && ending != ".jsonl")
     throw UsageError("a sweep is shared out into a table: -o with a name that ends with .csv or .jsonl");
+  if (!drawing(flags).empty())
+    throw UsageError("--backend and --native are for a film: a sweep's table draws nothing");
   check_sweep(flags.scene, flags.sets, flags.vary, flags.measure, out);
   work.made = out;
   work.parts = out + ".parts";
@@ -220,6 +243,7 @@ void sweep_work(const Flags& flags, const std::vector<std::string>& program, Wor
   for (const std::string& set : flags.sets) sweep.insert(sweep.end(), {"--set", set});
   for (const std::string& vary : flags.vary) sweep.insert(sweep.end(), {"--vary", vary});
   for (const std::string& measure : flags.measure) sweep.insert(sweep.end(), {"--measure", measure});
+  for (const std::string& word : limits(flags)) sweep.push_back(word);
   Errand& errand = work.errand;
   errand.made = out;
   errand.shard = fmt::format(
@@ -517,6 +541,9 @@ OBSCURA_COMMAND(80, submit) {
   command.flag("--anew", flags->anew, "Begin anew whatever an earlier submit left, whole shards too");
   command.flag("--dry-run", flags->dry_run, "Show the scripts, and do nothing; needs no Slurm");
   command.flag("--no-wait", flags->no_wait, "Hand it in and end");
+  add_memory_limit(command, &flags->memory_limit);
+  add_backend(command, flags->context.backend);
+  command.flag("--native", flags->context.native, "As for render");
   add_progress(command, flags->progress);
   command.footer(
       "Writes plain sbatch scripts into the folder OUT.slurm, where the logs go too: one simulates and "

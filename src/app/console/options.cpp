@@ -32,8 +32,11 @@ void add_progress(const Command& command, ProgressKind& kind) {
       .type("KIND");
 }
 
-void add_memory_limit(const Command& command) {
-  const auto hold = [](const std::string& text) { hold_memory(parse_bytes(text)); };
+void add_memory_limit(const Command& command, std::string* kept) {
+  const auto hold = [kept](const std::string& text) {
+    hold_memory(parse_bytes(text));
+    if (kept) *kept = text;
+  };
   command.option("--memory-limit", hold, "Never take more memory, as in 2GB [nine tenths of the machine's]")
       .type("SIZE");
 }

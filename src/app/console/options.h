@@ -21,8 +21,8 @@ void add_sets(const Command& command, std::vector<std::string>& sets);
 void add_progress(const Command& command, ProgressKind& kind);
 
 /// --memory-limit, which every command has: Command::run() adds it where it stands nowhere before. Held to as
-/// soon as it is read.
-void add_memory_limit(const Command& command);
+/// soon as it is read. `kept`: as it was written, for a command that hands it on.
+void add_memory_limit(const Command& command, std::string* kept = nullptr);
 
 /// --backend, which every command that draws with OpenGL has.
 void add_backend(const Command& command, gl::Backend& backend);
