@@ -8,6 +8,7 @@
 
 #include "media/png.h"
 
+#include <fmt/format.h>
 #include <libdeflate.h>
 #include <png.h>
 
@@ -236,7 +237,15 @@ Png read_png(const std::string& path) {
   if (bytes >= 0 && promised > 1032.0 * double(bytes)) {
     throw Error(path + ": not a readable PNG: the file is too short for its size");
   }
-  png.image.pixels.resize(std::size_t(4) * png.image.width * png.image.height);
+  const std::size_t needed = std::size_t(4) * png.image.width * png.image.height;
+  try {
+    png.image.pixels.resize(needed);
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format(
+        "{}: its {} x {} pixels need {:.{}f} {} of memory, which are not to be had (--memory-limit)", path,
+        png.image.width, png.image.height, double(needed) / (needed < 1e9 ? 1e6 : 1e9), needed < 1e9 ? 1 : 2,
+        needed < 1e9 ? "MB" : "GB"));
+  }
   std::vector<png_bytep> rows(std::size_t(png.image.height));
   for (int y = 0; y < png.image.height; ++y) rows[std::size_t(y)] = png.image.row(y);
   if (!read_rows(file, call, &png.image, rows.data())) {

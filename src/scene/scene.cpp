@@ -24,6 +24,8 @@
 #include "scene/room.h"
 #include "sim/math/trig.h"
 #include "sim/motion/stability.h"
+#include "sim/solve/contact_solver.h"
+#include "sim/solve/exact/couples.h"
 
 namespace obscura::scene {
 
@@ -106,6 +108,26 @@ void refuse_taken_names(const Node& top, const NameTable& roster, Diagnostics& c
   }
 }
 
+// the direct solver looks at every couple of bodies
+template <int D>
+void refuse_crowd(const Node& top, const sim::Model<D>& model, Diagnostics& complaints) {
+  if (model.collision == sim::Collision::handout || sim::solver(model) != sim::Solver::direct) return;
+  const double all = sim::couples(model);
+  if (all <= sim::kMostCouples) return;
+  const Fields physics = Fields::of(top, "physics");
+  const bool event = model.collision == sim::Collision::event, chains = !model.chains.empty();
+  const Place where = event    ? physics.place("collision")
+                      : chains ? top.find("chain")->list().front().place
+                               : physics.place("solver");
+  complaints.add(where,
+                 fmt::format("the direct solver looks at all couples of bodies and walls, of which here are "
+                             "{:.0f}, and takes up to {:.0f}; {}",
+                             all, sim::kMostCouples,
+                             event    ? "collision = \"contact\" is for thousands of bodies"
+                             : chains ? "a scene with a [[chain]] has few bodies beside it"
+                                      : "leave 'solver' out: the iterative one is for thousands of bodies"));
+}
+
 // what happens in the plane, or in space, and what it looks like
 template <int D>
 sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, const Dimension& told,
@@ -134,6 +156,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   bonds(top, roster, world, complaints);
   ignore(top, roster, model, complaints);
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
+  refuse_crowd(top, model, complaints);
   refuse_taken_names(top, roster, complaints);
 
   // what the camera fits, and with it the length of a reference pixel

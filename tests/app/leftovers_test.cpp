@@ -36,8 +36,11 @@ class Leftovers : public Program {
     if (seconds.empty())
       fs::remove(path("film.mp4.parts/seconds"));
     else
-      std::ofstream(path("film.mp4.parts/seconds")) << seconds;
+      worked_for(seconds);
     ASSERT_EQ(parts(), 2);
+  }
+  void worked_for(const std::string& seconds) const {
+    std::ofstream(path("film.mp4.parts/seconds")) << seconds;
   }
   void edit(const std::string& file = "scene.toml") const {
     std::string text = kRoom;
@@ -49,6 +52,8 @@ TEST_F(Leftovers, OfShardsAreNotThrownAway) {
   ASSERT_EQ(render("").exit, 0);
   const std::string bytes = contents(path("film.mp4"));
   ASSERT_EQ(render("--shard 1/2").exit, 0);
+  // a second of work is told: how long it took is not a clock's to say here
+  worked_for("0.9");
   Outcome run = render("");
   EXPECT_EQ(run.exit, 4);
   EXPECT_THAT(run.err, HasSubstr("film.mp4.parts: holds 20 of 40 frames, work of 2 shards"));
@@ -60,6 +65,8 @@ TEST_F(Leftovers, OfShardsAreNotThrownAway) {
   EXPECT_EQ(run.exit, 4);
   EXPECT_THAT(run.err,
               HasSubstr("work of 2 shards of another film: the scene's crate.spin is 90 there, and 80 here"));
+  worked_for("1.5");
+  EXPECT_THAT(render("", "other.toml").err, HasSubstr("work of 2 shards, 1.5 s of work of another film: "));
   run = render("--resume", "other.toml");
   EXPECT_EQ(run.exit, 4);
   EXPECT_THAT(run.err, HasSubstr("--anew throws them away"));

@@ -123,6 +123,9 @@ class Faults : public Program {
         // what is left over is in nobody's way; a quarter of the runs is tried
         if (n % 4 != 1) continue;
         if (!over) fs::remove_all(out());
+        // of more than a minute of work nothing is thrown away: a slow machine has not worked for longer
+        for (const auto& entry : fs::recursive_directory_iterator(folder_))
+          if (entry.path().filename() == "seconds") std::ofstream(entry.path()) << "0";
         const Outcome repaired = obscura(again.empty() ? command : again);
         ASSERT_EQ(repaired.exit, 0) << "again: " << repaired.err << what;
         const Files then = files();

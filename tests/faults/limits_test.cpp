@@ -180,7 +180,12 @@ TEST_F(Limits, AHundredThousandBodiesAreCheckedInAGigabyte) {
       "[room]\nsize = [100, 100, 100]\n[[ball]]\nradius = 0.1\nposition = [-40, 0.2, -40]\n"
       "copies = { count = [50, 50, 40], offset = [[0.3, 0, 0], [0, 0.3, 0], [0, 0, 0.3]] }",
       "space.toml");
-  for (const std::string name : {"tables", "plane", "space"}) {
+  // the direct solver lists couples: of points there are those with the walls alone
+  scene(
+      "[room]\nsize = [100, 100]\n[physics]\nsolver = \"direct\"\n[[particle]]\nposition = [0.2, 0.2]\n"
+      "copies = { count = [400, 250], offset = [[0.24, 0], [0, 0.24]] }",
+      "direct.toml");
+  for (const std::string name : {"tables", "plane", "space", "direct"}) {
     const Outcome run = shell(OBSCURA_BINARY " check --memory-limit 1GB " + name + ".toml");
     EXPECT_EQ(run.exit, 0) << name << "\n" << run.err;
     EXPECT_NE(run.out.find("100000"), std::string::npos) << run.out;
@@ -196,11 +201,33 @@ TEST_F(Limits, EveryCommandHoldsToAMemoryLimit) {
   for (const char* at : {"0", "1"})
     ASSERT_EQ(
         obscura(std::string("render scene.toml --size 2000x2000 --at ") + at + " -o " + at + ".png").exit, 0);
-  for (const char* command : {"compare 0.png 1.png", "golden scene.toml"}) {
-    const Outcome run = shell(kRun + command + " --memory-limit 30MB");
-    EXPECT_EQ(run.exit, 4) << command << "\n" << run.err;
-    EXPECT_NE(run.err.find("30.0 MB"), std::string::npos) << command << "\n" << run.err;
-  }
+  expect_refused(shell(kRun + "compare 0.png 1.png --memory-limit 30MB"), 4,
+                 "1.png: its 2000 x 2000 pixels need 16.0 MB of memory");
+  const Outcome golden = shell(kRun + "golden scene.toml --memory-limit 30MB");
+  EXPECT_EQ(golden.exit, 4) << golden.err;
+  EXPECT_NE(golden.err.find("30.0 MB"), std::string::npos) << golden.err;
+}
+
+TEST_F(Limits, APictureTooLargeToBeReadSaysWhatItNeeds) {
+  // as large as its head says, and never read so far that what follows would have to be right
+  const auto number = [](std::uint32_t n) {
+    return std::string{char(n >> 24), char(n >> 16), char(n >> 8), char(n)};
+  };
+  const auto chunk = [&](const std::string& name, const std::string& bytes) {
+    std::uint32_t crc = ~0u;
+    for (const char c : name + bytes) {
+      crc ^= static_cast<unsigned char>(c);
+      for (int i = 0; i < 8; ++i) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0);
+    }
+    return number(std::uint32_t(bytes.size())) + name + bytes + number(~crc);
+  };
+  const std::string head = number(30000) + number(30000) + std::string("\1\0\0\0\0", 5);  // a bit a pixel
+  for (const std::string name : {"a", "b"})
+    std::ofstream(path(name + ".png"), std::ios::binary)
+        << "\x89PNG\r\n\x1A\n"
+        << chunk("IHDR", head) << chunk("IDAT", std::string(150'000, name[0]));
+  expect_refused(shell(kRun + "compare a.png b.png --memory-limit 1GB"), 4,
+                 "a.png: its 30000 x 30000 pixels need 3.60 GB of memory");
 }
 #endif
 

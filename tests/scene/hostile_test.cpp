@@ -360,6 +360,29 @@ TEST(Hostile, AHundredThousandParticlesAtOnePlaceAreStepped) {
   }
 }
 
+TEST(Hostile, MoreCouplesThanTheDirectSolverTakesAreRefused) {
+  const std::string room = "[room]\nsize = [110, 80]\n",
+                    grid = "count = [400, 250], offset = [[0.26, 0], [0, 0.26]]";
+  const auto balls = [&](const std::string& count) {
+    return "[[ball]]\nradius = 0.1\nposition = [0.2, 0.2]\ncopies = { " + count + " }\n";
+  };
+  EXPECT_EQ(complaint(room + "[physics]\nsolver = \"direct\"\n" + balls(grid)),
+            "a.toml:4:10: the direct solver looks at all couples of bodies and walls, of which here are "
+            "5000350000, "
+            "and takes up to 20000000; leave 'solver' out: the iterative one is for thousands of bodies");
+  EXPECT_THAT(
+      complaint(room + "[physics]\ncollision = \"event\"\n" + balls(grid)),
+      testing::AllOf(testing::StartsWith("a.toml:4:13: "), HasSubstr("collision = \"contact\" is for")));
+  // what is not looked at is not counted: points among themselves, and fixed bodies
+  EXPECT_EQ(
+      complaint(room + "[physics]\nsolver = \"direct\"\n[[particle]]\nposition = [0.2, 0.2]\ncopies = { " +
+                grid + " }\n" + "[[ball]]\nradius = 0.1\nposition = [109, 79]"),
+      "");
+  EXPECT_EQ(complaint(room + "[physics]\nsolver = \"direct\"\n" + balls(grid) +
+                      "fixed = true\n[[ball]]\nradius = 0.1\nposition = [109, 79]"),
+            "");
+}
+
 TEST(Hostile, TwentyThousandWallsAreRefused) {
   const std::string wall = "[[room.walls]]\npoint = [0, 0]\nnormal = [0, 1]\n",
                     ball = "[[ball]]\nposition = [0, 2]";

@@ -297,7 +297,8 @@ OBSCURA_COMMAND(110, verify) {
   add_backend(command, flags->film.context.backend);
   command.footer(
       "Every PNG and movie of obscura's carries its origin: the scene's text, what was set, the instant, the "
-      "hash of the state, who drew it. verify simulates that again, compares the states of all frames, draws "
+      "hash of the state, what drew it. verify simulates that again, compares the states of all frames, "
+      "draws "
       "it again and "
       "compares pixels, of a movie bytes or else all frames.\n\n"
       "Exit codes: 0 all are still true, 1 one is not, 4 one is not readable or has no origin, or SCENE is "

@@ -45,7 +45,7 @@ void add_backend(const Command& command, gl::Backend& backend) {
   command
       .choice("--backend", backend,
               {{"auto", gl::Backend::automatic}, {"osmesa", gl::Backend::osmesa}, {"egl", gl::Backend::egl}},
-              "auto, osmesa or egl: who draws, never a GPU unless named [auto]")
+              "auto, osmesa or egl: which OpenGL draws, never a GPU unless named [auto]")
       .type("NAME");
 }
 

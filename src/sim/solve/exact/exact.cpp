@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "sim/energy/energy.h"
+#include "sim/solve/exact/couples.h"
 
 namespace obscura::sim {
 
@@ -106,15 +107,11 @@ ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& p
     rims_.push_back(sim::reach(body.shape));
     thin_.push_back(thickness(body.shape));
   }
-  for (int a = 0; a < int(model.bodies.size()); ++a) {
-    if (whom == Serves::lone && model.bodies[a].fixed) fixed_.push_back(a);
-    if (whom == Serves::lone || model.bodies[a].handout) continue;
-    if (!model.bodies[a].fixed) {
-      for (int wall = 0; wall < int(model.walls.size()); ++wall) couples_.push_back({a, -1 - wall});
-    }
-    for (int b = a + 1; b < int(model.bodies.size()); ++b) {
-      if (may_touch(a, b)) couples_.push_back({a, b});
-    }
+  if (whom == Serves::all) {
+    list_couples<D>(model, [&](int a, int b) { couples_.push_back({a, b}); });
+  } else {
+    for (int a = 0; a < int(model.bodies.size()); ++a)
+      if (model.bodies[a].fixed) fixed_.push_back(a);
   }
   const auto number = [](std::vector<int>& list, std::size_t size) {
     list.resize(size);
