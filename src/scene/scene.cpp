@@ -119,13 +119,13 @@ void refuse_crowd(const Node& top, const sim::Model<D>& model, Diagnostics& comp
   const Place where = event    ? physics.place("collision")
                       : chains ? top.find("chain")->list().front().place
                                : physics.place("solver");
-  complaints.add(where,
-                 fmt::format("the direct solver looks at all couples of bodies and walls, of which here are "
-                             "{:.0f}, and takes up to {:.0f}; {}",
-                             all, sim::kMostCouples,
-                             event    ? "collision = \"contact\" is for thousands of bodies"
-                             : chains ? "a scene with a [[chain]] has few bodies beside it"
-                                      : "leave 'solver' out: the iterative one is for thousands of bodies"));
+  complaints.add(
+      where, fmt::format("the direct solver looks at all couples of bodies and walls, {:.0f} here, and takes "
+                         "{:.0f} at most; {}",
+                         all, sim::kMostCouples,
+                         event    ? "collision = \"contact\" is for thousands of bodies"
+                         : chains ? "a scene with a [[chain]] has few bodies beside it"
+                                  : "leave 'solver' out: the iterative one is for thousands of bodies"));
 }
 
 // what happens in the plane, or in space, and what it looks like

@@ -366,10 +366,10 @@ TEST(Hostile, MoreCouplesThanTheDirectSolverTakesAreRefused) {
   const auto balls = [&](const std::string& count) {
     return "[[ball]]\nradius = 0.1\nposition = [0.2, 0.2]\ncopies = { " + count + " }\n";
   };
-  EXPECT_EQ(complaint(room + "[physics]\nsolver = \"direct\"\n" + balls(grid)),
-            "a.toml:4:10: the direct solver looks at all couples of bodies and walls, of which here are "
-            "5000350000, "
-            "and takes up to 20000000; leave 'solver' out: the iterative one is for thousands of bodies");
+  EXPECT_EQ(
+      complaint(room + "[physics]\nsolver = \"direct\"\n" + balls(grid)),
+      "a.toml:4:10: the direct solver looks at all couples of bodies and walls, 5000350000 here, and takes "
+      "20000000 at most; leave 'solver' out: the iterative one is for thousands of bodies");
   EXPECT_THAT(
       complaint(room + "[physics]\ncollision = \"event\"\n" + balls(grid)),
       testing::AllOf(testing::StartsWith("a.toml:4:13: "), HasSubstr("collision = \"contact\" is for")));
