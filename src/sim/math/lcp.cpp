@@ -1,4 +1,4 @@
-// A small linear complementarity problem by enumeration.
+// A small linear complementarity problem by enumeration (Cottle, Pang and Stone, 1992, §1).
 //   w = A p + b,  p >= 0,  w >= 0,  p . w = 0
 // A is a Gram matrix: w is unique, and some solution has at most rank(A) positive entries, on rows that are
 // independent.

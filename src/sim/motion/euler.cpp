@@ -1,5 +1,6 @@
 // Explicit Euler.
 //   y += h f(t, y)
+// Source: Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (1993), §I.7.
 
 #include "sim/math/axpy.h"
 #include "sim/motion/integrator.h"

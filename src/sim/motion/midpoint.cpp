@@ -1,5 +1,6 @@
 // The midpoint rule.
 //   y += h f(t + h/2, y + h/2 f(t, y))
+// Source: Runge (1895); Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (1993), §II.1.
 
 #include "sim/math/axpy.h"
 #include "sim/motion/integrator.h"

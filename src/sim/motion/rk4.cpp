@@ -3,6 +3,7 @@
 //   k3 = f(t + h/2, y + h/2 k2)     k4 = f(t + h, y + h k3)
 //   y += h (k1 + 2 (k2 + k3) + k4) / 6
 // Divided by six last: under a constant force whose numbers are short binary fractions the step is exact.
+// Source: Kutta (1901); Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (1993), §II.1.
 
 #include "sim/math/axpy.h"
 #include "sim/motion/integrator.h"

@@ -1,6 +1,7 @@
 // Semi-implicit (symplectic) Euler.
 //   v += h a(t, d, v)
 //   d += h v                 the new v
+// Source: Hairer, Lubich and Wanner, Geometric Numerical Integration (2006), §I.1.2.
 
 #include "sim/math/axpy.h"
 #include "sim/motion/integrator.h"

@@ -1,4 +1,4 @@
-// Modes as equalities.
+// The equality solve: forces of given modes.
 //   E (K S x + K f0 + b) = 0      E: rows that must answer zero; S: what each unknown pushes; f0: at bounds
 // A row that may push either way is an unknown by itself; a contact on its cone pushes along n - mu d. Then K
 // between rows and unknowns is no longer symmetric. In space d may be unknown too where a contact slips from

@@ -1,4 +1,4 @@
-// Rough forces by sweeps: projected Gauss-Seidel.
+// Rough forces by projected Gauss-Seidel (Moreau 1999; Jean 1999: nonsmooth contact dynamics).
 //   f_n <- max(0, f_n - w_n / K_nn),   f_t <- f_t - w_t / K_tt, back onto |f_t| <= mu f_n
 // one block after another, there and back, each with what those before it have left.
 

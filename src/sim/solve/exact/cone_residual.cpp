@@ -1,4 +1,4 @@
-// The laws looked at, block by block: by how much forces and answers break them, and the mode to try next.
+// The residual, block by block: by how much forces and velocities break their law, and the mode to try next.
 // Scaled rows have K_ii <= 1, so that a force and the answer it can make compare with one another.
 
 #include <algorithm>

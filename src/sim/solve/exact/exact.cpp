@@ -1,8 +1,8 @@
-// One step with contact forces inside the stages.
+// One step of the event-driven solver, with contact forces inside the stages of the integrator.
 //   1. impacts of this instant
-//   2. who holds whom, and with what force: at this instant exactly
-//   3. smooth motion, in which what holds goes on holding, up to the next event or the end
-//   4. places and velocities back onto what holds; again from 1
+//   2. contact modes and forces at this instant: K f + b = w under the laws of cone_law.h
+//   3. smooth motion with those modes, up to the next event or the end of the step
+//   4. projection of positions and velocities onto the constraints; again from 1
 // After too many events the rest of the step is done at once, by impulses.
 
 #include "sim/solve/exact/exact.h"
