@@ -21,7 +21,6 @@ constexpr double kSoft = 0.05;  // of its thickness between two looks: slower in
 constexpr int kColours = 40;    // seats of more colours hold one pair each
 constexpr int kPerSpare = 128;  // seats of a colour: one group more for so many
 constexpr int kAhead = 8;       // seats
-constexpr double kNowhere = 1e9;  // m: the gap of a touch that is none
 
 bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind == Feature::corners; }
 
@@ -175,7 +174,7 @@ template <int D>
 void PlaneIterative<D>::vacate(int slot) {
   static const ContactBatch empty = [] {
     ContactBatch made{};
-    for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -kNowhere;
+    for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -plane::kNowhere;
     return made;
   }();
   ContactBatch& g = seats_[slot / kLanes];
@@ -223,40 +222,13 @@ void PlaneIterative<D>::take_seat(int i, const State<D>& state) {
 template <int D>
 void PlaneIterative<D>::sit(const Pair& pair, const State<D>& state) {
   ContactBatch& g = seats_[pair.slot / kLanes];
-  const int lane = pair.slot % kLanes, bit = 1 << lane;
+  const int lane = pair.slot % kLanes;
   g.first[lane] = pair.first;
+  pairs_.put(pair, pair.words, g);
   for (int k = 0; k < 2; ++k) {
-    g.of_b[k] = static_cast<unsigned char>(g.of_b[k] & ~bit);
-    g.corners[k] = static_cast<unsigned char>(g.corners[k] & ~bit);
-    g.cx[k][lane] = g.cy[k][lane] = g.fx[k][lane] = g.fy[k][lane] = g.p[k][lane] = g.q[k][lane] = 0;
-    g.d[k][lane] = -kNowhere;
-    if (k >= pair.touches) continue;
-    const Contact<D>& contact = state.contacts[pair.first + k];
-    const Feature f = Feature::of(pair.words[k]);
-    g.words[k][lane] = static_cast<unsigned short>(pair.words[k]);
-    if (f.kind == Feature::none) continue;
-    g.p[k][lane] = contact.force[0], g.q[k][lane] = contact.force[1];
-    const plane::CoreShape& a = cores_.all[pair.core_a];
-    if (pair.b < 0) {
-      const Wall<D>& wall = model_.walls[-1 - pair.b];
-      g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
-      g.fx[k][lane] = wall.normal[0], g.fy[k][lane] = wall.normal[1];
-      g.d[k][lane] = wall.normal.dot(wall.point);
-      continue;
-    }
-    const plane::CoreShape& b = cores_.all[pair.core_b];
-    if (f.kind == Feature::corners) {
-      g.corners[k] = static_cast<unsigned char>(g.corners[k] | bit);
-      g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
-      g.fx[k][lane] = cores_.x[b.first + f.face], g.fy[k][lane] = cores_.y[b.first + f.face];
-      g.d[k][lane] = b.radius;
-      continue;
-    }
-    const bool of_a = f.kind == Feature::corner_of_a;
-    const int corner = (of_a ? a : b).first + f.corner, face = (of_a ? b : a).first + f.face;
-    if (!of_a) g.of_b[k] = static_cast<unsigned char>(g.of_b[k] | bit);
-    g.cx[k][lane] = cores_.x[corner], g.cy[k][lane] = cores_.y[corner];
-    g.fx[k][lane] = cores_.nx[face], g.fy[k][lane] = cores_.ny[face], g.d[k][lane] = cores_.d[face];
+    const bool none = k >= pair.touches || Feature::of(pair.words[k]).kind == Feature::none;
+    const Vec<D> force = none ? Vec<D>(Vec<D>::Zero()) : state.contacts[pair.first + k].force;
+    g.p[k][lane] = force[0], g.q[k][lane] = force[1];
   }
 }
 

@@ -164,6 +164,15 @@ OBSCURA_INLINE bool start_all(ContactBatch* seats, int count, const Pose* poses,
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
       const V sight = load<V>(g.sight + lane), allowed = pace.allowed * load<V>(g.far + lane);
+      // What turns may come sooner than along its tangent: gap'' >= -(w_a^2 + w_b^2) r - 2 w_b v_t. Of two
+      // corners of polygons others may come nearer, however these move.
+      const V w2 = before.a.z * before.a.z + before.b.z * before.b.z;
+      const V w = magnitude<V>(before.a.z) + magnitude<V>(before.b.z);
+      const V v1 = magnitude<V>(before.a.x - before.b.x) + magnitude<V>(before.a.y - before.b.y);
+      const V far = load<V>(g.far + lane);
+      const V fastest = v1 + far * w, turns = bend * (far * w2 + 2.0 * w * fastest);
+      const V blow = load<V>(g.blow + lane);
+      const Mask<V> polygons = load<V>(g.radius + lane) <= none;
       Mask<V> slow{}, fast{};
       for (int k = 0; k < 2; ++k) {
         Row<V> r;
@@ -171,9 +180,9 @@ OBSCURA_INLINE bool start_all(ContactBatch* seats, int count, const Pose* poses,
         const V vn = before.along(r.nx, r.ny, r.na, r.nb);
         deep |= r.gap < -allowed;
         slow |= (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
-        // a corner of a body that turns may come sooner than along its tangent, by far (h w)^2 / 2
-        const V turns = bend * load<V>(g.far + lane) * (before.a.z * before.a.z + before.b.z * before.b.z);
-        fast |= (vn < load<V>(g.blow + lane)) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
+        fast |= (vn < blow) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
+        if (g.corners[k])
+          fast |= mask<V>(g.corners[k], lane) & polygons & (-fastest < blow) & (r.gap < h * (fastest + gain));
         const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
         const V ln = larger<V>(h * (px * r.nx + py * r.ny), none), most = mu * ln;
         const V lt = larger<V>(smaller<V>(h * (py * r.nx - px * r.ny), most), -most);

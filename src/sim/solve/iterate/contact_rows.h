@@ -12,6 +12,7 @@ namespace obscura::sim::plane {
 // made from the poses in every pass, for memory is slower than arithmetic.
 
 inline constexpr int kLanes = 4;
+inline constexpr double kNowhere = 1e9;  // m: the gap of a touch that is none
 
 /// Velocity (m/s, rad/s) or displacement (m, rad) of a body, and 1/kg: zero for what does not move.
 struct alignas(32) Motion {

@@ -188,16 +188,50 @@ Place Pairs::place(const Pair& pair, const std::vector<Pose>& poses, Feature fea
                feature);
 }
 
-// words of features, ascending
-void Pairs::features(const Pair& pair, const std::vector<Pose>& poses, int words[2]) const {
-  Feature features[2];
+void Pairs::features(const Pair& pair, const Pose& a, const Pose& b, int words[2]) const {
+  Feature found[2];
   if (pair.b < 0) {
-    nearest(cores_, cores_.all[pair.core_a], poses[pair.a], model_.walls[-1 - pair.b], features);
+    nearest(cores_, cores_.all[pair.core_a], a, model_.walls[-1 - pair.b], found);
   } else {
-    nearest(cores_, cores_.all[pair.core_a], poses[pair.a], cores_.all[pair.core_b], poses[pair.b], features);
+    nearest(cores_, cores_.all[pair.core_a], a, cores_.all[pair.core_b], b, found);
   }
-  words[0] = features[0].word(), words[1] = features[1].word();
+  words[0] = found[0].word(), words[1] = found[1].word();
   if (pair.touches == 2 && words[1] < words[0]) std::swap(words[0], words[1]);
+}
+
+void Pairs::put(const Pair& pair, const int words[2], ContactBatch& g) const {
+  const int lane = pair.slot % kLanes, bit = 1 << lane;
+  for (int k = 0; k < 2; ++k) {
+    g.of_b[k] = static_cast<unsigned char>(g.of_b[k] & ~bit);
+    g.corners[k] = static_cast<unsigned char>(g.corners[k] & ~bit);
+    g.cx[k][lane] = g.cy[k][lane] = g.fx[k][lane] = g.fy[k][lane] = 0;
+    g.d[k][lane] = -kNowhere;
+    if (k >= pair.touches) continue;
+    const Feature f = Feature::of(words[k]);
+    g.words[k][lane] = static_cast<unsigned short>(words[k]);
+    if (f.kind == Feature::none) continue;
+    const CoreShape& a = cores_.all[pair.core_a];
+    if (pair.b < 0) {
+      const Wall<2>& wall = model_.walls[-1 - pair.b];
+      g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
+      g.fx[k][lane] = wall.normal[0], g.fy[k][lane] = wall.normal[1];
+      g.d[k][lane] = wall.normal.dot(wall.point);
+      continue;
+    }
+    const CoreShape& b = cores_.all[pair.core_b];
+    if (f.kind == Feature::corners) {
+      g.corners[k] = static_cast<unsigned char>(g.corners[k] | bit);
+      g.cx[k][lane] = cores_.x[a.first + f.corner], g.cy[k][lane] = cores_.y[a.first + f.corner];
+      g.fx[k][lane] = cores_.x[b.first + f.face], g.fy[k][lane] = cores_.y[b.first + f.face];
+      g.d[k][lane] = b.radius;
+      continue;
+    }
+    const bool of_a = f.kind == Feature::corner_of_a;
+    const int corner = (of_a ? a : b).first + f.corner, face = (of_a ? b : a).first + f.face;
+    if (!of_a) g.of_b[k] = static_cast<unsigned char>(g.of_b[k] | bit);
+    g.cx[k][lane] = cores_.x[corner], g.cy[k][lane] = cores_.y[corner];
+    g.fx[k][lane] = cores_.nx[face], g.fy[k][lane] = cores_.ny[face], g.d[k][lane] = cores_.d[face];
+  }
 }
 
 const std::vector<Outdated>& Pairs::outdated(const std::vector<ContactBatch>& seats,
@@ -208,7 +242,7 @@ const std::vector<Outdated>& Pairs::outdated(const std::vector<ContactBatch>& se
     const int i = seats[seat / kLanes].pair[seat % kLanes];
     const Pair& pair = pairs_[i];
     Outdated now{i, {0, 0}};
-    features(pair, poses, now.words);
+    features(pair, poses[pair.a], poses[pair.b < 0 ? pair.a : pair.b], now.words);
     if (now.words[0] != pair.words[0] || (pair.touches == 2 && now.words[1] != pair.words[1]))
       outdated_.push_back(now);
   }

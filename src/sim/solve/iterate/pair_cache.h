@@ -54,11 +54,15 @@ class Pairs {
 
   Place place(const Pair& pair, const std::vector<Pose>& poses, Feature feature) const;
 
+  /// Words of the features nearest to each other where its bodies stand so, ascending.
+  void features(const Pair& pair, const Pose& a, const Pose& b, int words[2]) const;
+  /// Features into the pair's lane of its seats, or of others like them; forces are let be.
+  void put(const Pair& pair, const int words[2], ContactBatch& seats) const;
+
   /// How far a body may come by speed (m/s) that it may gain within `span` s, by blows.
   double spare(int body, double speed, double span) const { return near_.spare(body, speed, span); }
 
  private:
-  void features(const Pair& pair, const std::vector<Pose>& poses, int words[2]) const;
   void inherit(const Pair& pair, const std::vector<Pose>& poses, const Contact<2>* old, int count,
                Contact<2>* now) const;
   Pair pair(int a, int b, int core_a, int core_b) const;

@@ -43,7 +43,7 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
     : model_(model),
       cores_(model),
       pairs_(model, cores_),
-      blows_(cores_),
+      blows_(cores_, pairs_),
       rest_(model, cores_),
       tied_(model, paths),
       linkage_(model) {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <tuple>
 
 #include "sim/math/trig.h"
 #include "sim/solve/iterate/pair_impact.h"
@@ -24,6 +25,7 @@ constexpr double kLocked = 1e-9;    // of what a push moves without joints
 constexpr double kTogether = 1e-6;  // of the farther reach: no wider open, a touch meets with the other
 constexpr int kTimes = 8;           // Newton steps for the time of a blow
 constexpr double kInTime = 1e-9;    // of the step: the next would be by its square
+constexpr double kForward = 0.01;   // of the step: by so much at least features are looked for on the way
 constexpr double kLatest = 1.5;     // steps: so late a touch may close that its tangent would close in one
 
 // v_n of a touch
@@ -35,9 +37,14 @@ double along(const TouchRow& r, const Motion& a, const Motion& b) {
   return r.nx * (a.x - b.x) + r.ny * (a.y - b.y) + (r.na * a.w - r.nb * b.w);
 }
 
+// two corners of polygons: others may come nearer, however these move
+bool other_corners(const ContactBatch& g, int k, int lane) {
+  return (g.corners[k] >> lane & 1) != 0 && g.radius[lane] == 0;
+}
+
 }  // namespace
 
-Impacts::Impacts(const CoreShapes& cores) : reach_(cores.reach) {
+Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs) : pairs_(pairs), reach_(cores.reach) {
   const int bodies = int(reach_.size());
   reach_.push_back(0);
   around_start_.resize(bodies + 2);
@@ -202,13 +209,21 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Rows& r, c
   const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   const Motion &va = now_[a], &vb = now_[b];
   double spare = -1;  // what it may come nearer than by these rows and velocities, m
+  const auto fastest = [&] {
+    return std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) +
+           g.far[lane] * (std::fabs(va.w) + std::fabs(vb.w));
+  };
   for (int k = 0; k < pair.touches; ++k) {
     // seats are far away in memory
     const double vn = along(r, k, lane, va, vb);
+    if (other_corners(g, k, lane) && r.gap[k][lane] < pace.h * (fastest() + pace.gain)) return true;
     if (vn > -pair.blow) continue;
     const double left = r.gap[k][lane] + pace.h * (vn + 0.5 * along(r, k, lane, dv[a], dv[b]));
     if (left >= 0 && spare < 0) {
-      spare = 0.5 * pace.h * pace.h * std::max(reach_[a], reach_[b]) * (va.w * va.w + vb.w * vb.w);
+      const double far = std::max(reach_[a], reach_[b]), w = std::fabs(va.w) + std::fabs(vb.w);
+      spare = 0.5 * pace.h * pace.h *
+              (far * (va.w * va.w + vb.w * vb.w) +
+               2 * w * (std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) + far * w));
       for (const int body : {a, b}) {
         if (!(when_[body] > 0)) continue;
         const Motion &p = before_[body], &q = now_[body];
@@ -222,17 +237,99 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Rows& r, c
   return false;
 }
 
+// when the first of a pair's touches closes with a blow, and which
+double Impacts::first_closing(const Pair& pair, const ContactBatch& g, const Standing& start,
+                              const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
+                              int& which) const {
+  double first = 1e300;
+  which = 0;
+  for (int k = 0; k < pair.touches; ++k) {
+    const double when = meeting(pair, k, g, start, poses, dv, pace);
+    if (when < first) first = when, which = k;
+  }
+  return first;
+}
+
+// Moves `at`, how a pair stands, to where it meets with a blow; false where it does not. By the features of
+// its seat or, where others are nearest by then, by those: then it goes as far as it surely does not meet,
+// again and again, until the features that are nearest there are so when they close.
+bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, Standing& at,
+                           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) {
+  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
+  int which, words[2];
+  double when = first_closing(pair, g, at, poses, dv, pace, which);
+  const auto find_features = [&](double time) {
+    Pose pose_a, pose_b;
+    Motion v_a, v_b;
+    move(a, time, poses, dv, pace, pose_a, v_a), move(b, time, poses, dv, pace, pose_b, v_b);
+    pairs_.features(pair, pose_a, pose_b, words);
+  };
+  const auto knows = [&](const ContactBatch& by, int k) {
+    return by.words[k][lane] == words[0] || (pair.touches > 1 && by.words[k][lane] == words[1]);
+  };
+  const auto stand_anew = [&](double time) {
+    pairs_.put(pair, words, fresh_);
+    at = stand(pair, time, fresh_, poses, dv, pace);
+    at.renewed = true;
+  };
+  // whether that is all there is to find
+  const auto found = [&](const ContactBatch& by) {
+    // round things have no other features
+    if (g.calm[lane] < 1e300) {
+      find_features(std::min(when, pace.h));
+      if (!knows(by, 0) || (pair.touches > 1 && !knows(by, 1))) {
+        if (&by != &fresh_) copy_seat(by, lane, fresh_, lane);
+        if (when == 1e300 || !knows(by, which)) return false;
+        stand_anew(when);
+        return true;
+      }
+    }
+    if (when < 1e300 && when != at.when) {
+      at = stand(pair, when, by, poses, dv, pace);
+      at.renewed = &by != &g;
+    }
+    return true;
+  };
+  if (found(g)) return when < 1e300;
+
+  const double from = at.when;
+  const Motion &p = at.a, &q = at.b;
+  const double fastest = std::fabs(p.x - q.x) + std::fabs(p.y - q.y) + std::fabs(dv[a].x - dv[b].x) +
+                         std::fabs(dv[a].y - dv[b].y) + (std::fabs(p.w) + std::fabs(dv[a].w)) * reach_[a] +
+                         (std::fabs(q.w) + std::fabs(dv[b].w)) * reach_[b];
+  const auto gap = [&] {
+    return pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap;
+  };
+  double apart = -1;  // s: when it was last
+  for (double time = from; time <= pace.h;) {
+    find_features(time), stand_anew(time);
+    if (gap() <= 0 && apart >= 0) {
+      // on the way
+      for (double low = apart; time - low > kInTime * pace.h;) {
+        const double mid = 0.5 * (low + time);
+        find_features(mid), stand_anew(mid);
+        (gap() > 0 ? low : time) = mid;
+      }
+      find_features(time), stand_anew(time);
+    }
+    when = first_closing(pair, fresh_, at, poses, dv, pace, which);
+    if (when == time) return true;
+    if (found(fresh_)) return when < 1e300;
+    apart = gap() > 0 ? time : -1;
+    time += std::max(kForward * pace.h, gap() / fastest);
+  }
+  return false;
+}
+
 // When and where a pair meets with a blow in the step, into `blow`; false where it does not.
 bool Impacts::meet(const Pair& pair, Blow& blow, const ContactBatch& g, const std::vector<Pose>& poses,
-                   const std::vector<Motion>& dv, const Pace& pace) const {
+                   const std::vector<Motion>& dv, const Pace& pace) {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   const double from = std::max({0.0, when_[a], when_[b]});
   Standing at = stand(pair, from, g, poses, dv, pace);
-  double when = 1e300;
-  for (int k = 0; k < pair.touches; ++k) when = std::min(when, meeting(pair, k, g, at, poses, dv, pace));
-  if (when == 1e300) return false;
-  if (when != from) at = stand(pair, when, g, poses, dv, pace);
-  blow.when = when;
+  if (!find_meeting(pair, g, at, poses, dv, pace)) return false;
+  const double when = at.when;
+  blow.when = when, blow.renewed = at.renewed;
   bool any = false;
   for (int k = 0; k < pair.touches; ++k) {
     const TouchRow& r = at.rows[k];
@@ -364,7 +461,8 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
 
 // What is left to the sweeps of pairs that met, in their rows, of the step's start: of what met that it does
 // not come nearer than the blow left it; of the other touch that it does not close in what is left of the
-// step.
+// step. Where it met by other features than the rows have, these may part fast while those hardly do: to keep
+// up such a speed would take energy from nowhere.
 void Impacts::leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
                     const std::vector<Pose>& poses, const Pace& pace) {
   if (least_.size() < seats.size()) least_.resize(seats.size());
@@ -390,6 +488,7 @@ void Impacts::leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& s
       double& least = least_[group].n[k][lane];
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
       least = along(r, k, lane, now_[pair.a], now_[b]) - speed(blow.pushes[0][k], pair.a, b);
+      if (blow.renewed) least = std::min(least, 0.0);
       if (blow.met[k] || blow.gap[k] <= 0) continue;
       least = left > kInTime * pace.h ? least - blow.gap[k] / left : -1e9;
     }
@@ -478,11 +577,23 @@ void Impacts::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>
   }
 }
 
+// Features may have changed since: then the touch of the same pair that is closest.
 void Impacts::keep(std::vector<Contact<2>>& contacts) const {
   for (const Struck& struck : struck_) {
-    const auto at = std::lower_bound(contacts.begin(), contacts.end(), struck.key,
-                                     [](const Contact<2>& c, const ContactKey& key) { return c.key < key; });
-    if (at == contacts.end() || at->key != struck.key) continue;
+    const ContactKey& key = struck.key;
+    const auto parts = [](const ContactKey& it) { return std::tuple(it.a, it.b, it.feature >> 16); };
+    const auto first = std::partition_point(contacts.begin(), contacts.end(), [&](const Contact<2>& c) {
+      return c.key < ContactKey{key.a, key.b, key.feature >> 16 << 16};
+    });
+    auto at = contacts.end();
+    for (auto it = first; it != contacts.end() && parts(it->key) == parts(key); ++it) {
+      if (it->key == key) {
+        at = it;
+        break;
+      }
+      if (at == contacts.end() || it->gap < at->gap) at = it;
+    }
+    if (at == contacts.end()) continue;
     at->impulse += struck.impulse;
     if (at->touching == Touching::open && struck.pushed) at->touching = Touching::slide;
   }

@@ -17,7 +17,8 @@ namespace obscura::sim::plane {
 /// hangs on them.
 class Impacts {
  public:
-  explicit Impacts(const CoreShapes& cores);
+  /// `pairs` is kept by reference.
+  Impacts(const CoreShapes& cores, const Pairs& pairs);
 
   /// Who is with whom: the awake pairs of each body.
   void join(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
@@ -63,7 +64,8 @@ class Impacts {
   };
   struct Blow {
     int pair = -1;
-    double when = 0;  // s: the rows are those of then
+    double when = 0;       // s: the rows are those of then
+    bool renewed = false;  // its features are others than those of the seat
     bool met[2] = {false, false};
     double gap[2] = {0, 0};               // m
     double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
@@ -72,6 +74,7 @@ class Impacts {
   // a pair as it stands at a time, and how its bodies move
   struct Standing {
     double when = 0;
+    bool renewed = false;  // by other features than those of the seat
     Motion a, b;
     TouchRow rows[2];
   };
@@ -86,8 +89,13 @@ class Impacts {
                  const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) const;
   bool may_meet(const Pair& pair, const ContactBatch& seats, const Rows& rows, const std::vector<Motion>& dv,
                 const Pace& pace) const;
+  double first_closing(const Pair& pair, const ContactBatch& seats, const Standing& start,
+                       const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
+                       int& which) const;
+  bool find_meeting(const Pair& pair, const ContactBatch& seats, Standing& at, const std::vector<Pose>& poses,
+                    const std::vector<Motion>& dv, const Pace& pace);
   bool meet(const Pair& pair, Blow& blow, const ContactBatch& seats, const std::vector<Pose>& poses,
-            const std::vector<Motion>& dv, const Pace& pace) const;
+            const std::vector<Motion>& dv, const Pace& pace);
   bool hit(int pair, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
            JointSolver<2>& linkage);
@@ -102,6 +110,8 @@ class Impacts {
              const Pace& pace);
   const Rows& rows(int group, const std::vector<ContactBatch>& seats, const std::vector<Pose>& poses);
 
+  const Pairs& pairs_;
+  ContactBatch fresh_{};                    // of a pair: the features that are nearest when it meets
   std::vector<double> reach_;               // of bodies, and of walls, m
   std::vector<int> around_, around_start_;  // pairs of each body
   std::vector<int> bodies_;
