@@ -54,31 +54,24 @@ void Mobility<D>::add(int body, const Vec<D>& v, const AngularVec<D>& w, const R
 }
 
 template <int D>
-typename Mobility<D>::Side Mobility<D>::side(int body, const Vec<D>& along, const AngularVec<D>& turn) const {
-  Side it;
-  it.column = body < 0 ? -1 : columns_[body];
-  if (it.column < 0) return it;
-  const Body<D>& b = model_.bodies[body];
-  it.push << along, turn;
-  it.answer.template head<D>() = along / b.mass;
-  if (b.turns())
-    it.answer.template tail<kAngular<D>>() =
-        inverse_inertia_times<D>(b.inertia, bodies_[it.column].room_from_body, turn);
-  return it;
+Side<D> Mobility<D>::side(int body, const Vec<D>& along, const AngularVec<D>& turn) const {
+  const int column = body < 0 ? -1 : columns_[body];
+  if (column < 0) return {};
+  return {column, model_.bodies[body], bodies_[column].room_from_body, along, turn};
 }
 
 // J v
 template <int D>
 double Mobility<D>::moves(const Held& row) const {
   double sum = 0;
-  for (const Side& side : row.sides) sum += side.column < 0 ? 0 : side.push.dot(bodies_[side.column].v);
+  for (const Side<D>& side : row.sides) sum += side.column < 0 ? 0 : side.J.dot(bodies_[side.column].v);
   return sum;
 }
 
 template <int D>
 void Mobility<D>::keep(Held row) {
   double answer = 0;
-  for (const Side& side : row.sides) answer += side.push.dot(side.answer);
+  for (const Side<D>& side : row.sides) answer += side.J.dot(side.response);
   if (!(answer > 0)) return;
   row.give = 1 / answer;
   rows_.push_back(row);
@@ -144,15 +137,15 @@ Mobile Mobility<D>::mobile() {
     // along the direction, as far as it helps
     for (Moving& it : bodies_) it.change.setZero();
     for (const Held& row : rows_) {
-      for (const Side& side : row.sides) {
-        if (side.column >= 0) bodies_[side.column].change += row.way * side.answer;
+      for (const Side<D>& side : row.sides) {
+        if (side.column >= 0) bodies_[side.column].change += row.way * side.response;
       }
     }
     double bends = 0;
     for (Held& row : rows_) {
       row.by = 0;
-      for (const Side& side : row.sides) {
-        if (side.column >= 0) row.by += side.push.dot(bodies_[side.column].change);
+      for (const Side<D>& side : row.sides) {
+        if (side.column >= 0) row.by += side.J.dot(bodies_[side.column].change);
       }
       bends += row.way * row.by;
     }

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "sim/constraint/row.h"
+#include "sim/constraint/response.h"
 
 namespace obscura::sim {
 
@@ -66,16 +66,10 @@ class Mobility {
   Mobile mobile();
 
  private:
-  static constexpr int kWays = D + kAngular<D>;
-  using Way = Eigen::Matrix<double, kWays, 1>;
+  using Way = typename Side<D>::Way;
 
-  // what a row pushes one of its bodies with, and how that answers
-  struct Side {
-    int column = -1;
-    Way push = Way::Zero(), answer = Way::Zero();
-  };
   struct Held {
-    std::array<Side, 2> sides;
+    std::array<Side<D>, 2> sides;
     double give = 0;                  // 1 / (J M^-1 J')
     double off = 0, way = 0, by = 0;  // of conjugate gradients: J v; direction; J M^-1 J' direction
   };
@@ -85,7 +79,7 @@ class Mobility {
     Way v, change;
   };
 
-  Side side(int body, const Vec<D>& along, const AngularVec<D>& turn) const;
+  Side<D> side(int body, const Vec<D>& along, const AngularVec<D>& turn) const;
   double moves(const Held& row) const;
   void keep(Held row);
   double fastest() const;

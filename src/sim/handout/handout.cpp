@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 
+#include "sim/constraint/response.h"
 #include "sim/energy/energy.h"
 
 namespace obscura::sim {
@@ -261,8 +262,7 @@ template <int D>
 void Handout<D>::strike(Striker& s, const Row* rows, int n, int rank) {
   const Body<D>& body = *s.body;
   const auto respond = [&](const AngularVec<D>& turn) {
-    return body.turns() ? inverse_inertia_times<D>(body.inertia, s.at.room_from_body, turn)
-                        : AngularVec<D>::Zero().eval();
+    return angular_response<D>(body, s.at.room_from_body, turn);
   };
   Square A(n, n);
   Rows b(n), p;

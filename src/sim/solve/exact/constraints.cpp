@@ -26,13 +26,6 @@ void ExactSolver<D>::stand(const State<D>& state) {
 }
 
 template <int D>
-AngularVec<D> ExactSolver<D>::turned_by(int body, const AngularVec<D>& moment) const {
-  const Body<D>& b = model_.bodies[body];
-  if (light_[body] == 0 || !b.turns()) return AngularVec<D>::Zero();
-  return inverse_inertia_times<D>(b.inertia, stances_[body].room_from_body, moment);
-}
-
-template <int D>
 double ExactSolver<D>::friction(const ContactKey& key) const {
   const double a = model_.bodies[key.a].friction;
   if (key.b >= 0) return std::sqrt(a * model_.bodies[key.b].friction);
@@ -113,7 +106,7 @@ void ExactSolver<D>::gather(const State<D>& state, bool all) {
   };
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (state.broken[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
+    if (state.broken[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
     const AngularVec<D> turn = turn_between(state, joint);
     if (!joint.linked)
       add(joint.kind == JointKind::rope ? Kind::rope : Kind::joint, i, turn, joint.kind == JointKind::rope);
@@ -124,7 +117,7 @@ void ExactSolver<D>::gather(const State<D>& state, bool all) {
     if (joint.friction > 0) add(Kind::friction, i, turn, false);
   }
   for (int i = 0; i < int(gaps_.size()); ++i) add(Kind::contact, i, AngularVec<D>::Zero(), true);
-  reach();
+  chain_response_.build(rows_, response_, free_.chains());
 }
 
 // blocks of what is held, at the stances at hand. Of impulses motors and friction in joints have none.
@@ -182,7 +175,7 @@ double ExactSolver<D>::along(int number, std::span<const double> rate) const {
   const Row<D>& row = rows_[number];
   double sum = 0;
   const auto side = [&](int body, const AngularVec<D>& turn, double sign) {
-    const int place = free(body) ? free_.place(body) : -1;
+    const int place = response_.free(body) ? free_.place(body) : -1;
     if (place < 0) return;
     sum += sign * row.along.dot(Eigen::Map<const Vec<D>>(rate.data() + D * place));
     if (const int at = free_.spin_start(place); at >= 0)
@@ -190,8 +183,8 @@ double ExactSolver<D>::along(int number, std::span<const double> rate) const {
                                         Eigen::Map<const AngularVec<D>>(rate.data() + at)));
   };
   side(row.a, row.angular_a, 1), side(row.b, row.angular_b, -1);
-  if (reaches_[number] < 0) return sum;
-  const auto J = reached(chain_J_, number);
+  if (!chain_response_.moves(number)) return sum;
+  const auto J = chain_response_.jacobian(number);
   for (std::size_t i = 0; i < J.size(); ++i) sum += J[i] * rate[std::size_t(free_.chain_start()) + i];
   return sum;
 }
@@ -199,38 +192,36 @@ double ExactSolver<D>::along(int number, std::span<const double> rate) const {
 // M^-1 J' f, onto accelerations in the order of free_
 template <int D>
 void ExactSolver<D>::push(int number, double f, std::span<double> rate) const {
-  const Row<D>& row = rows_[number];
-  const auto side = [&](int body, const AngularVec<D>& turn, double force) {
-    const int place = free(body) ? free_.place(body) : -1;
+  const auto side = [&](int body, const Vec<D>& dv, const AngularVec<D>& spin, double force) {
+    const int place = free_.place(body);
     if (place < 0) return;
-    Eigen::Map<Vec<D>>(rate.data() + D * place) += force * light_[body] * row.along;
+    Eigen::Map<Vec<D>>(rate.data() + D * place) += dv;
     if (const int at = free_.spin_start(place); at >= 0)
       Eigen::Map<AngularVec<D>>(rate.data() + at) +=
-          force * from_room<D>(stances_[body].room_from_body, turned_by(body, turn));
+          force * from_room<D>(stances_[body].room_from_body, spin);
   };
   if (f == 0) return;
-  side(row.a, row.angular_a, f), side(row.b, row.angular_b, -f);
-  if (reaches_[number] < 0) return;
-  const auto U = reached(chain_U_, number);
+  each_response(rows_[number], response_.of(rows_[number], stances_), f, side);
+  if (!chain_response_.moves(number)) return;
+  const auto U = chain_response_.response(number);
   for (std::size_t i = 0; i < U.size(); ++i) rate[std::size_t(free_.chain_start()) + i] += f * U[i];
 }
 
 // M^-1 J' p onto the velocities of the free bodies of a state, or onto their places
 template <int D>
 void ExactSolver<D>::jump(State<D>& state, const Row<D>& row, double p, bool places) const {
-  const auto side = [&](int body, const AngularVec<D>& turn, double impulse) {
-    if (!free(body)) return;
-    (places ? state.x : state.v)[body] += impulse * light_[body] * row.along;
+  const auto side = [&](int body, const Vec<D>& dv, const AngularVec<D>& spin, double impulse) {
+    (places ? state.x : state.v)[body] += dv;
     const int k = turning(state, body);
     if (k < 0) return;
-    const AngularVec<D> by = impulse * turned_by(body, turn);
+    const AngularVec<D> by = impulse * spin;
     if (places)
       state.turn[k] = turned<D>(state.turn[k], by);
     else
       state.spin[k] += by;
   };
   if (p == 0) return;
-  side(row.a, row.angular_a, p), side(row.b, row.angular_b, -p);
+  each_response(row, response_.of(row, stances_), p, side);
 }
 
 // what contacts did last is the first guess at what they do now; and so are their forces,
@@ -294,7 +285,8 @@ bool ExactSolver<D>::jammed() const {
   }
   if (most == 0) return false;
   const double g = std::sqrt(model_.gravity.squaredNorm());
-  for (const int body : active_.subset.bodies) load += light_[body] > 0 ? g / light_[body] : 0;
+  for (const int body : active_.subset.bodies)
+    load += response_.moves(body) ? g / response_.inverse_mass(body) : 0;
   for (int i = 0; i < int(rows_.size()); ++i) {
     if (const double k = answer(i); k > 0) load += std::fabs(b_[i]) / k;
   }
@@ -348,7 +340,7 @@ void ExactSolver<D>::project(State<D>& state, bool impacts_follow) {
       lay_rows(held, held.kind == Kind::contact ? AngularVec<D>::Zero().eval()
                                                 : turn_between(state, model_.joints[held.of]));
     }
-    reach();
+    chain_response_.build(rows_, response_, free_.chains());
   };
   // how far they are off, at most; into b_ what would bring each row back
   const auto astray = [&] {

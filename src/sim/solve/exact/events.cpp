@@ -65,7 +65,7 @@ void ExactSolver<D>::find(const State<D>& state, double margin) {
   stand(state);
   gaps_.clear();
   for (const Couple& couple : active_.couples) {
-    if (light(couple.a) == 0 && light(couple.b) == 0) continue;
+    if (!response_.moves(couple.a) && !response_.moves(couple.b)) continue;
     near(stances_, couple, margin, [&](const ContactCandidate<D>& gap) { gaps_.push_back(gap); });
   }
   std::sort(gaps_.begin(), gaps_.end(),
@@ -99,7 +99,7 @@ BodyMotion<D> ExactSolver<D>::between(const State<D>& state, int body, double h,
 // how far a body went at most, m
 template <int D>
 double ExactSolver<D>::way(const State<D>& state, int body, double h) const {
-  if (light(body) == 0) return 0;
+  if (!response_.moves(body)) return 0;
   double sum = std::sqrt((state.x[body] - begun_.x[body]).squaredNorm());
   sum = std::max(sum, h * std::sqrt(std::max(begun_.v[body].squaredNorm(), state.v[body].squaredNorm())));
   if (const int k = turning(state, body); k >= 0) {
@@ -113,7 +113,7 @@ double ExactSolver<D>::way(const State<D>& state, int body, double h) const {
 template <int D>
 bool ExactSolver<D>::may_close(const State<D>& state, double h, Couple couple) const {
   const auto [a, b] = couple;
-  if (light(a) == 0 && light(b) == 0) return false;
+  if (!response_.moves(a) && !response_.moves(b)) return false;
   if (b < 0) {
     const Wall<D>& wall = model_.walls[-1 - b];
     return (stances_[a].x - wall.point).dot(wall.normal) <= rims_[a] + way(state, a, h) + closed_;
@@ -136,8 +136,8 @@ double ExactSolver<D>::closing(const State<D>& state, double h, Couple couple) {
   };
   // the least gap at a part of the way
   const auto least = [&](double part) {
-    if (light(a) > 0) stances_[a] = between(state, a, h, part);
-    if (light(b) > 0) stances_[b] = between(state, b, h, part);
+    if (response_.moves(a)) stances_[a] = between(state, a, h, part);
+    if (response_.moves(b)) stances_[b] = between(state, b, h, part);
     double value = 1e300;
     near(stances_, couple, ways + closed_, [&](const ContactCandidate<D>& gap) {
       if (!held(gap.key)) value = std::min(value, gap.value);
@@ -311,7 +311,7 @@ double ExactSolver<D>::tightening(const State<D>& state, double h, Couple& which
     const std::size_t rows = rows_.size();
     const auto left = [&](double part) {
       for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
-        if (light(body) > 0) stances_[body] = between(state, body, h, part);
+        if (response_.moves(body)) stances_[body] = between(state, body, h, part);
       }
       lay_rows(held, turn_part(state, model_.joints[joint], h, part));
       rows_.resize(rows);
@@ -337,12 +337,12 @@ double ExactSolver<D>::tightening(const State<D>& state, double h, Couple& which
     }
     if (first < before) which = {model_.joints[joint].a.body, model_.joints[joint].b.body};
     for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
-      if (light(body) > 0) stances_[body] = body_motion(state, body);
+      if (response_.moves(body)) stances_[body] = body_motion(state, body);
     }
   };
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (state.broken[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
+    if (state.broken[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
     if (joint.kind == JointKind::rope) look(Kind::rope, i);
     if (!has_free_row<D>(joint.kind)) continue;
     if (joint.lower > -1e299) look(Kind::lower, i);

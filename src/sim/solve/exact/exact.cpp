@@ -89,7 +89,7 @@ double thickness(const Shape<D>& shape) {
 
 template <int D>
 ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
-    : model_(model), integrate_(sim::integrate(model.integrator)), free_(model, paths) {
+    : model_(model), integrate_(sim::integrate(model.integrator)), free_(model, paths), response_(model) {
   const double g = std::sqrt(model.gravity.squaredNorm()), h = 1 / value(model.rate);
   const bool exact = model.collision == Collision::event;
   pace_ = std::sqrt(g * model.scale);
@@ -177,7 +177,7 @@ template <int D>
 void ExactSolver<D>::ready(State<D>& state) {
   double fastest = 0;
   for (const int body : active_.subset.bodies) {
-    light_[body] = model_.bodies[body].fixed || state.frozen[body] ? 0 : 1 / model_.bodies[body].mass;
+    response_.set(body, !model_.bodies[body].fixed && !state.frozen[body]);
     fastest = std::max(fastest, state.v[body].squaredNorm());
   }
   still_ = 1e-11 * std::max(pace_, std::sqrt(fastest));
@@ -349,7 +349,7 @@ double ExactSolver<D>::unseen(const State<D>& state) const {
   }
   double fastest = 0;
   for (const int body : active_.subset.bodies) {
-    if (light(body) == 0) continue;
+    if (!response_.moves(body)) continue;
     double speed = std::sqrt(state.v[body].squaredNorm());
     if (const int k = turning(state, body); k >= 0)
       speed += rims_[body] * std::sqrt(state.spin[k].squaredNorm());
@@ -371,7 +371,7 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   for (std::size_t i = 0; i < links.size(); ++i) stances_[links[i]] = free_.stances()[members.size() + i];
   rows_.clear();
   for (Held& held : held_) lay_rows(held, AngularVec<D>::Zero());
-  reach();
+  chain_response_.build(rows_, response_, free_.chains());
   b_.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(i, v_rate) + rows_[i].velocity_product;
 
@@ -387,7 +387,7 @@ void ExactSolver<D>::remember() {
   contacts_.clear(), known_ = &contacts_;
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (light(joint.a.body) > 0 || light(joint.b.body) > 0) joint_forces_[i].setZero();
+    if (response_.moves(joint.a.body) || response_.moves(joint.b.body)) joint_forces_[i].setZero();
   }
   chain_forces();
   for (const Held& held : held_) {
@@ -444,7 +444,7 @@ void ExactSolver<D>::report(State<D>& state) {
   // what was frozen keeps its forces
   std::size_t kept = 0;
   for (Contact<D>& contact : state.contacts) {
-    if (light(contact.key.a) > 0 || light(contact.key.b) > 0) continue;
+    if (response_.moves(contact.key.a) || response_.moves(contact.key.b)) continue;
     contact.impulse.setZero();
     state.contacts[kept++] = contact;
   }

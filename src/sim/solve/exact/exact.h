@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/constraint/row.h"
+#include "sim/constraint/response.h"
 #include "sim/math/islands.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/solve/contact_solver.h"
@@ -117,10 +117,6 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void pay_for(State<D>& state);
 
   // direct_chains.cpp
-  void reach();
-  std::span<const double> reached(const std::vector<double>& numbers, int row) const;
-  bool linked(int body) const { return body >= 0 && light_[body] > 0 && model_.bodies[body].linked; }
-  bool free(int body) const { return body >= 0 && light_[body] > 0 && !model_.bodies[body].linked; }
   double answer(int row) const;
   void jump(State<D>& state, bool places);
   void chain_forces();
@@ -172,8 +168,6 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void near(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
   BodyMotion<D> between(const State<D>& state, int body, double h, double part) const;
 
-  double light(int body) const { return body < 0 ? 0 : light_[body]; }
-  AngularVec<D> turned_by(int body, const AngularVec<D>& moment) const;
   double friction(const ContactKey& key) const;
   double elasticity(const ContactKey& key) const;
 
@@ -218,13 +212,12 @@ class ExactSolver final : public ContactSolver<D>, private System {
 
   // of the instant at hand
   std::vector<BodyMotion<D>> stances_;  // one a body
-  std::vector<double> light_;           // 1/m, 0 of what cannot move
+  Response<D> response_;
   std::vector<ContactCandidate<D>> gaps_, some_;
   std::vector<Held> held_;
   std::vector<Row<D>> rows_;
-  // of rows that move chains: their J, and M^-1 J', each of all chains
-  std::vector<int> reaches_;  // one a row: its number among those, or -1
-  std::vector<double> chain_J_, chain_U_, chain_change_;
+  ChainResponse<D> chain_response_;  // of rows_
+  std::vector<double> chain_change_;
   std::vector<Twist<D>> motions_;  // of the links
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_, holding_;  // as chosen, and as the stages keep them

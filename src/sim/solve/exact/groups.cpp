@@ -42,7 +42,7 @@ void ExactSolver<D>::bound_ways(const State<D>& state, double t, double h) {
   const double g = std::sqrt(model_.gravity.squaredNorm());
   for (int body = 0; body < int(reach_.size()); ++body) {
     reach_[body] = 0;
-    if (light_[body] == 0) continue;
+    if (!response_.moves(body)) continue;
     double a = g;
     if (const int place = free_.place(body); !model_.bodies[body].linked && place >= 0)
       a = std::sqrt(Eigen::Map<const Vec<D>>(rate.data() + D * place).squaredNorm());
@@ -186,15 +186,15 @@ void ExactSolver<D>::begin_groups(State<D>& state) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
   state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
-  light_.resize(n), stances_.resize(n), part_of_.resize(n);
+  stances_.resize(n), part_of_.resize(n);
   roots_.reset(int(n));
 }
 
 template <int D>
 void ExactSolver<D>::step_alone(State<D>& state, int body, double t, double h) {
-  if (light_.size() != model_.bodies.size()) {
+  if (stances_.size() != model_.bodies.size()) {
     begin_groups(state);
-    strayed_.resize(light_.size()), spent_.resize(light_.size());
+    strayed_.resize(stances_.size()), spent_.resize(stances_.size());
     for (const int fixed : fixed_) stances_[fixed] = body_motion(state, fixed);
   }
   lone_body_.assign(1, body), group_couples_.clear();

@@ -83,7 +83,7 @@ void ExactSolver<D>::only_worst_pair() {
   });
   rows_.clear();
   for (Held& held : held_) lay_rows(held, AngularVec<D>::Zero());
-  reach();
+  chain_response_.build(rows_, response_, free_.chains());
 }
 
 // Newton's law with Coulomb's friction for all that is held; `bounce` scales e. Where energy would rise e is

@@ -1,7 +1,6 @@
 // Rows that share no body do not know of one another: K falls into parts, each solved alone.
 
 #include <algorithm>
-#include <numeric>
 
 #include "sim/solve/exact/exact.h"
 
@@ -24,20 +23,20 @@ void ExactSolver<D>::split() {
   }
   for (const Held& held : held_) {
     const Row<D>& row = rows_[held.first];
-    if (light(row.a) > 0 && light(row.b) > 0) roots_.join(row.a, row.b);
+    if (response_.moves(row.a) && response_.moves(row.b)) roots_.join(row.a, row.b);
   }
   for (const int body : active_.subset.bodies) part_of_[body] = -1;
   parts_ = 0;
   for (const Held& held : held_) {
     const Row<D>& row = rows_[held.first];
-    const int body = roots_.root(light(row.a) > 0 ? row.a : row.b);
+    const int body = roots_.root(response_.moves(row.a) ? row.a : row.b);
     if (part_of_[body] < 0) part_of_[body] = parts_++;
     if (int(members_.size()) < parts_) members_.emplace_back();
   }
   for (int part = 0; part < parts_; ++part) members_[part].clear();
   for (int i = 0; i < int(held_.size()); ++i) {
     const Row<D>& row = rows_[held_[i].first];
-    members_[part_of_[roots_.root(light(row.a) > 0 ? row.a : row.b)]].push_back(i);
+    members_[part_of_[roots_.root(response_.moves(row.a) ? row.a : row.b)]].push_back(i);
   }
 }
 
@@ -49,21 +48,10 @@ void ExactSolver<D>::assemble() {
   for (int i = 0; i < n; ++i) {
     const Row<D>& r = rows_[part_rows_[i]];
     part_b_[i] = b_[part_rows_[i]];
-    const double ma = free(r.a) ? light_[r.a] : 0, mb = free(r.b) ? light_[r.b] : 0;
-    const int chained = reaches_[part_rows_[i]];
-    const AngularVec<D> wa = ma > 0 ? turned_by(r.a, r.angular_a) : AngularVec<D>::Zero();
-    const AngularVec<D> wb = mb > 0 ? turned_by(r.b, r.angular_b) : AngularVec<D>::Zero();
+    const RowResponse<D> response = response_.of(r, stances_);
     for (int j = 0; j <= i; ++j) {
-      const Row<D>& s = rows_[part_rows_[j]];
-      double k = 0;
-      if (ma > 0 && r.a == s.a) k += ma * r.along.dot(s.along) + wa.dot(s.angular_a);
-      if (mb > 0 && r.b == s.b) k += mb * r.along.dot(s.along) + wb.dot(s.angular_b);
-      if (ma > 0 && r.a == s.b) k -= ma * r.along.dot(s.along) + wa.dot(s.angular_b);
-      if (mb > 0 && r.b == s.a) k -= mb * r.along.dot(s.along) + wb.dot(s.angular_a);
-      if (chained >= 0 && reaches_[part_rows_[j]] >= 0) {
-        const auto J = reached(chain_J_, part_rows_[i]), U = reached(chain_U_, part_rows_[j]);
-        k += std::inner_product(J.begin(), J.end(), U.begin(), 0.0);
-      }
+      double k = coupling(r, response, rows_[part_rows_[j]]);
+      k += chain_response_.coupling(part_rows_[i], part_rows_[j]);
       K_(i, j) = k, K_(j, i) = k;
     }
   }

@@ -45,8 +45,8 @@ bool ExactSolver<D>::wake(State<D>& state) {
   chosen_.clear();
   const auto meet = [&](int a, int b) {
     if (a < 0 || b < 0) return;
-    if (state.frozen[a] && light_[b] > 0) chosen_.push_back(a);
-    if (state.frozen[b] && light_[a] > 0) chosen_.push_back(b);
+    if (state.frozen[a] && response_.moves(b)) chosen_.push_back(a);
+    if (state.frozen[b] && response_.moves(a)) chosen_.push_back(b);
   };
   for (const ContactCandidate<D>& gap : gaps_) meet(gap.key.a, gap.key.b);
   for (const Grip<D>& grip : state.grips) {
@@ -69,7 +69,7 @@ void ExactSolver<D>::rest(State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   bool ripe = false;
   for (int i = 0; i < n; ++i) {
-    if (light_[i] == 0) continue;
+    if (!response_.moves(i)) continue;
     double fast = std::sqrt(state.v[i].squaredNorm());
     if (const int k = turning(state, i); k >= 0) fast += rims_[i] * std::sqrt(state.spin[k].squaredNorm());
     state.quiet[i] = fast <= none ? state.quiet[i] + h : 0;
@@ -81,7 +81,7 @@ void ExactSolver<D>::rest(State<D>& state, double t, double h) {
   join(state);
   ripe_.assign(n, 1);
   for (int i = 0; i < n; ++i) {
-    if (light_[i] > 0 && state.quiet[i] < kWait) ripe_[islands_.root(i)] = 0;
+    if (response_.moves(i) && state.quiet[i] < kWait) ripe_[islands_.root(i)] = 0;
   }
   for (const Grip<D>& grip : state.grips) {
     if (grip.body >= 0) ripe_[islands_.root(grip.body)] = 0;
@@ -89,7 +89,7 @@ void ExactSolver<D>::rest(State<D>& state, double t, double h) {
   keep(state, begun_);
   bool any = false;
   for (int i = 0; i < n; ++i) {
-    if (light_[i] == 0 || !ripe_[islands_.root(i)]) continue;
+    if (!response_.moves(i) || !ripe_[islands_.root(i)]) continue;
     any = true;
     state.v[i].setZero();
     if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();
@@ -97,7 +97,7 @@ void ExactSolver<D>::rest(State<D>& state, double t, double h) {
   if (!any) return;
   for (std::size_t i = 0; i < model_.chains.size(); ++i) {
     const int body = model_.chains[i].bodies[0];
-    if (light_[body] > 0 && ripe_[islands_.root(body)])
+    if (response_.moves(body) && ripe_[islands_.root(body)])
       std::fill(state.postures[i].v.begin(), state.postures[i].v.end(), 0.0);
   }
 

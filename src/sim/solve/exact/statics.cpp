@@ -56,15 +56,9 @@ bool Statics<D>::hold(std::vector<BearingContact<D>>& touches, const std::vector
       for (const bool first : {true, false}) {
         const int at = first ? touch.a : touch.b;
         if (at < 0) continue;
-        const Body<D>& body = model_.bodies[at];
         const Vec<D> push = first ? Vec<D>(ways.col(k)) : Vec<D>(-ways.col(k));
         const AngularVec<D> turn = moment<D>(first ? touch.arm_a : touch.arm_b, push);
-        Side& side = rows_[D * i + k][first ? 0 : 1];
-        side.column = columns_[at];
-        side.push << push, turn;
-        side.answer.template head<D>() = push / body.mass;
-        if (body.turns())
-          side.answer.template tail<kAngular<D>>() = inverse_inertia_times<D>(body.inertia, turns[at], turn);
+        rows_[D * i + k][first ? 0 : 1] = {columns_[at], model_.bodies[at], turns[at], push, turn};
       }
     }
   }
@@ -72,12 +66,12 @@ bool Statics<D>::hold(std::vector<BearingContact<D>>& touches, const std::vector
   K_.resize(rows, rows), b_.resize(rows);
   for (int i = 0; i < rows; ++i) {
     b_[i] = 0;
-    for (const Side& side : rows_[i]) b_[i] += side.column < 0 ? 0 : side.push.dot(rates_[side.column]);
+    for (const Side<D>& side : rows_[i]) b_[i] += side.column < 0 ? 0 : side.J.dot(rates_[side.column]);
     for (int j = 0; j <= i; ++j) {
       double sum = 0;
-      for (const Side& one : rows_[i]) {
-        for (const Side& other : rows_[j]) {
-          if (one.column >= 0 && one.column == other.column) sum += one.push.dot(other.answer);
+      for (const Side<D>& one : rows_[i]) {
+        for (const Side<D>& other : rows_[j]) {
+          if (one.column >= 0 && one.column == other.column) sum += one.J.dot(other.response);
         }
       }
       K_(i, j) = K_(j, i) = sum;
@@ -85,8 +79,8 @@ bool Statics<D>::hold(std::vector<BearingContact<D>>& touches, const std::vector
   }
   bool held = cone_.solve(K_, b_, blocks_, modes_, f_).found;
   for (int i = 0; i < rows; ++i) {
-    for (const Side& side : rows_[i]) {
-      if (side.column >= 0) rates_[side.column] += f_[i] * side.answer;
+    for (const Side<D>& side : rows_[i]) {
+      if (side.column >= 0) rates_[side.column] += f_[i] * side.response;
     }
   }
   for (const int body : bodies_) {

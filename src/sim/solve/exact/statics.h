@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/constraint/mobility.h"
+#include "sim/constraint/response.h"
 #include "sim/math/orientation.h"
 #include "sim/model/model.h"
 #include "sim/solve/exact/cone.h"
@@ -27,19 +28,12 @@ class Statics {
   bool hold(std::vector<BearingContact<D>>& touches, const std::vector<Rotation<D>>& turns);
 
  private:
-  static constexpr int kWays = D + kAngular<D>;
-  using Way = Eigen::Matrix<double, kWays, 1>;
-
-  // what a row pushes one of its bodies with, and how that answers
-  struct Side {
-    int column = -1;
-    Way push = Way::Zero(), answer = Way::Zero();
-  };
+  using Way = typename Side<D>::Way;
 
   const Model<D>& model_;
   Cone<D> cone_;
   std::vector<int> columns_, bodies_;  // of a body; of the columns
-  std::vector<std::array<Side, 2>> rows_;
+  std::vector<std::array<Side<D>, 2>> rows_;
   std::vector<Way> rates_;  // m/s^2, rad/s^2
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_;

@@ -33,9 +33,9 @@ constexpr double kEndless = 1e300;
 }  // namespace
 
 template <int D>
-JointSolver<D>::JointSolver(const Model<D>& model) : model_(model) {
+JointSolver<D>::JointSolver(const Model<D>& model) : model_(model), response_(model) {
   const std::size_t n = model.bodies.size();
-  member_.assign(n, 0), light_.assign(n, 0), part_of_body_.assign(n, -1);
+  member_.assign(n, 0), part_of_body_.assign(n, -1);
   at_.resize(n), turn_.resize(n);
   for (Orientation<D>& turn : turn_) turn.setZero();
   for (const Joint<D>& joint : model.joints) {
@@ -58,8 +58,8 @@ template <int D>
 void JointSolver<D>::gather(const State<D>& state) {
   if (planned_ && broken_ == state.broken && frozen_ == state.frozen) return;
   planned_ = true, broken_ = state.broken, frozen_ = state.frozen;
-  for (std::size_t i = 0; i < light_.size(); ++i)
-    light_[i] = model_.bodies[i].fixed || state.frozen[i] ? 0 : 1 / model_.bodies[i].mass;
+  for (int i = 0; i < int(model_.bodies.size()); ++i)
+    response_.set(i, !model_.bodies[i].fixed && !state.frozen[i]);
   plan();
 }
 
@@ -67,15 +67,16 @@ template <int D>
 void JointSolver<D>::plan() {
   held_.clear(), pairs_.clear();
   std::vector<int> sizes;
-  std::vector<std::vector<int>> of(light_.size());  // blocks of each body that moves
+  std::vector<std::vector<int>> of(model_.bodies.size());  // blocks of each body that moves
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || joint.kind == JointKind::rope || (light(joint.a.body) == 0 && light(joint.b.body) == 0))
+    if (broken_[i] || joint.kind == JointKind::rope ||
+        (!response_.moves(joint.a.body) && !response_.moves(joint.b.body)))
       continue;
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
     for (const int body : {joint.a.body, joint.b.body}) {
-      if (light(body) > 0) of[body].push_back(int(held_.size()));
+      if (response_.moves(body)) of[body].push_back(int(held_.size()));
     }
     held_.push_back(i);
     sizes.push_back(rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off));
@@ -91,7 +92,8 @@ void JointSolver<D>::plan() {
   // what a rope ties together answers together
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || joint.kind != JointKind::rope || light(joint.a.body) == 0 || light(joint.b.body) == 0)
+    if (broken_[i] || joint.kind != JointKind::rope || !response_.moves(joint.a.body) ||
+        !response_.moves(joint.b.body))
       continue;
     meet(of[joint.a.body], of[joint.b.body]), meet(of[joint.b.body], of[joint.a.body]);
   }
@@ -116,25 +118,6 @@ AngularVec<D> JointSolver<D>::turn_between(const Joint<D>& joint) const {
   return turn;
 }
 
-// p M^-1 q
-template <int D>
-double JointSolver<D>::couple(const Row<D>& p, const Row<D>& q) const {
-  double sum = 0;
-  const auto side = [&](int body, const AngularVec<D>& turn, double sign) {
-    if (light(body) == 0) return;
-    const Body<D>& b = model_.bodies[body];
-    const auto with = [&](int other, const AngularVec<D>& its, double s) {
-      if (other != body) return;
-      sum += sign * s * light_[body] * p.along.dot(q.along);
-      if (b.turns())
-        sum += sign * s * turn.dot(inverse_inertia_times<D>(b.inertia, at_[body].room_from_body, its));
-    };
-    with(q.a, q.angular_a, 1), with(q.b, q.angular_b, -1);
-  };
-  side(p.a, p.angular_a, 1), side(p.b, p.angular_b, -1);
-  return sum;
-}
-
 // M^-1 r p onto velocities
 template <int D>
 void JointSolver<D>::push(const Row<D>& row, double impulse) {
@@ -145,18 +128,16 @@ void JointSolver<D>::push(const Row<D>& row, double impulse) {
 // and onto places: angular momentum stays
 template <int D>
 void JointSolver<D>::shift(const Row<D>& row, double by) {
-  const auto side = [&](int body, const AngularVec<D>& turn, double p) {
-    if (light(body) == 0) return;
+  each_push(row, by, [&](int body, const Vec<D>& dx, const AngularVec<D>& dturn) {
     const Body<D>& b = model_.bodies[body];
-    at_[body].x += p * light_[body] * row.along;
-    if (!b.turns()) return;
     BodyMotion<D>& at = at_[body];
+    at.x += dx;
+    if (!b.turns()) return;
     const Rotation<D> from = at.room_from_body;
-    turn_[body] = turned<D>(turn_[body], AngularVec<D>(p * inverse_inertia_times<D>(b.inertia, from, turn)));
+    turn_[body] = turned<D>(turn_[body], dturn);
     at.room_from_body = rotation<D>(turn_[body]);
     at.w = carried_spin<D>(b.inertia, from, at.room_from_body, at.w);
-  };
-  side(row.a, row.angular_a, by), side(row.b, row.angular_b, -by);
+  });
 }
 
 // rows where everyone stands, and their factors
@@ -171,7 +152,8 @@ void JointSolver<D>::lay() {
   const auto fill = [&](auto& block, int i, int j) {
     for (int r = 0; r < factors_.size(i); ++r) {
       for (int c = 0; c < factors_.size(j); ++c)
-        block[r * kMost + c] = couple(rows_[factors_.first(i) + r], rows_[factors_.first(j) + c]);
+        block[r * kMost + c] =
+            response_.coupling(rows_[factors_.first(i) + r], rows_[factors_.first(j) + c], at_);
     }
   };
   for (int k = 0; k < int(held_.size()); ++k) fill(factors_.diagonal(k), k, k);
@@ -238,7 +220,7 @@ void JointSolver<D>::bind(double h) {
   };
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || (light(joint.a.body) == 0 && light(joint.b.body) == 0)) continue;
+    if (broken_[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
     if (joint.kind == JointKind::rope) add(i, upper);
     if (!has_free_row<D>(joint.kind)) continue;
     if (joint.lower > -1e299) add(i, lower);
@@ -259,7 +241,7 @@ void JointSolver<D>::hear(JointResponse& echo) {
     echo.answer[s].clear(), echo.felt[s].clear();
     if (parts[s] < 0) continue;
     each_row(parts[s], [&](int k, int r) {
-      const double fast = couple(rows_[r], echo.row);
+      const double fast = response_.coupling(rows_[r], echo.row, at_);
       rhs_[r] = -fast;
       if (fast != 0) echo.felt[s].emplace_back(k, fast);
     });
@@ -270,7 +252,7 @@ void JointSolver<D>::hear(JointResponse& echo) {
 
 template <int D>
 double JointSolver<D>::couple(const JointResponse& p, const JointResponse& q) const {
-  double sum = couple(p.row, q.row);
+  double sum = response_.coupling(p.row, q.row, at_);
   for (int s = 0; s < 2; ++s) {
     for (int r = 0; r < 2 && p.parts[s] >= 0; ++r) {
       if (q.parts[r] != p.parts[s]) continue;
@@ -283,7 +265,7 @@ double JointSolver<D>::couple(const JointResponse& p, const JointResponse& q) co
 // zero where joints leave it nothing to move
 template <int D>
 double JointSolver<D>::give(const Bounded& b) const {
-  const double own = couple(b.row, b.row), gives = couple(b, b);
+  const double own = response_.coupling(b.row, b.row, at_), gives = couple(b, b);
   return gives > kLocked * own ? 1 / gives : 0;
 }
 
@@ -350,7 +332,7 @@ void JointSolver<D>::set_off(State<D>& state) {
   if (fastest <= kApart * model_.scale) return;
   agree();
   for (const int i : bodies_) {
-    if (light_[i] == 0) continue;
+    if (!response_.moves(i)) continue;
     state.v[i] = at_[i].v;
     if (const int k = turning(state, i); k >= 0) state.spin[k] = at_[i].w;
   }
@@ -552,9 +534,9 @@ template <int D>
 void JointSolver<D>::keep(State<D>& state, double h, const std::vector<char>* of) const {
   const auto wanted = [&](int i) {
     const Joint<D>& joint = model_.joints[i];
-    const bool moves = light(joint.a.body) > 0 || light(joint.b.body) > 0;
+    const bool moves = response_.moves(joint.a.body) || response_.moves(joint.b.body);
     if (!of) return moves || broken_[i] != 0;
-    return moves && (*of)[light(joint.a.body) > 0 ? joint.a.body : joint.b.body] != 0;
+    return moves && (*of)[response_.moves(joint.a.body) ? joint.a.body : joint.b.body] != 0;
   };
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     if (!wanted(i)) continue;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/constraint/row.h"
+#include "sim/constraint/response.h"
 #include "sim/math/block_factors.h"
 #include "sim/model/state.h"
 
@@ -124,20 +124,13 @@ class JointSolver {
   void plan();
   AngularVec<D> turn_between(const Joint<D>& joint) const;
   const BodyMotion<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
-  double light(int body) const { return body < 0 ? 0 : light_[body]; }
-  double couple(const Row<D>& p, const Row<D>& q) const;
   void push(const Row<D>& row, double impulse);
   template <class Act>
   void each_push(const Row<D>& row, double impulse, Act&& act) const {
-    const auto side = [&](int body, const AngularVec<D>& turn, double p) {
-      if (light(body) == 0) return;
-      const Body<D>& b = model_.bodies[body];
-      const AngularVec<D> spin =
-          b.turns() ? AngularVec<D>(p * inverse_inertia_times<D>(b.inertia, at_[body].room_from_body, turn))
-                    : AngularVec<D>::Zero();
-      act(body, Vec<D>(p * light_[body] * row.along), spin);
-    };
-    side(row.a, row.angular_a, impulse), side(row.b, row.angular_b, -impulse);
+    each_response(row, response_.of(row, at_), impulse,
+                  [&](int body, const Vec<D>& dv, const AngularVec<D>& spin, double p) {
+                    act(body, dv, AngularVec<D>(p * spin));
+                  });
   }
   void shift(const Row<D>& row, double by);
   // rows of a part in the order of elimination: the k-th of it is row r
@@ -170,7 +163,7 @@ class JointSolver {
   std::vector<Orientation<D>> turn_;
   std::vector<BodyMotion<D>> begun_at_;  // before they are put back
   std::vector<Orientation<D>> begun_turn_;
-  std::vector<double> light_;  // 1/kg; 0 of what cannot move
+  Response<D> response_;
 
   std::vector<char> broken_, frozen_;  // that the plan is of
   bool planned_ = false;

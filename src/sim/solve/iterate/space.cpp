@@ -44,6 +44,7 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
       linkage_(model),
       statics_(model),
       mobility_(model),
+      response_(model),
       account_(model) {
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
@@ -110,21 +111,15 @@ void SpaceIterative<D>::ready(const State<D>& state) {
     const Body<D>& body = model_.bodies[i];
     stances_[i] = body_motion(state, i);
     still_[i] = body.fixed || state.frozen[i];
-    if (still_[i]) continue;
-    Moving& m = moving_[i];
-    m.v = stances_[i].v, m.w = stances_[i].w, m.light = 1 / body.mass;
-    if (!body.turns()) continue;
-    for (int axis = 0; axis < kAngular<D>; ++axis) {
-      m.ease.col(axis) =
-          inverse_inertia_times<D>(body.inertia, stances_[i].room_from_body, AngularVec<D>::Unit(axis));
-    }
+    response_.set(i, !still_[i]);
+    if (!still_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
   }
 }
 
 // of the fastest point, at most
 template <int D>
 double SpaceIterative<D>::swiftness(int body) const {
-  const Moving& m = moving_[body];
+  const PointBody<D>& m = moving_[body];
   return std::sqrt(m.v.squaredNorm()) + rims_[body] * std::sqrt(m.w.squaredNorm());
 }
 
@@ -194,10 +189,7 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, double mu, double bo
 
   // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
   const auto answer = [&](const Vec<D>& s, const Vec<D>& t) {
-    const AngularVec<D> as = moment<D>(touch.arm_a, s), at = moment<D>(touch.arm_a, t);
-    const AngularVec<D> bs = moment<D>(touch.arm_b, s), bt = moment<D>(touch.arm_b, t);
-    return (moving_[a].light + moving_[b].light) * s.dot(t) + as.dot(moving_[a].ease * at) +
-           bs.dot(moving_[b].ease * bt);
+    return coupling(s, t, moving_[a], touch.arm_a, moving_[b], touch.arm_b);
   };
   touch.normal = answer(touch.n, touch.n);
   const Vec<D> t = perpendicular<D>(touch.n);
@@ -320,7 +312,7 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
   const int n = int(model_.bodies.size());
   islands_.reset(n);
   const auto link = [&](int a, int b) {
-    if (a >= 0 && a < n && b >= 0 && b < n && moving_[a].light > 0 && moving_[b].light > 0)
+    if (a >= 0 && a < n && b >= 0 && b < n && moving_[a].inverse_mass > 0 && moving_[b].inverse_mass > 0)
       islands_.join(a, b);
   };
   for (const Touch& touch : touches_) {
@@ -331,14 +323,14 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
   }
   before_.assign(n, 0), gained_.assign(n, 0), returned_.assign(n, 0);
   for (int i = 0; i < n; ++i) {
-    const Moving& m = moving_[i];
-    if (m.light == 0) continue;
+    const PointBody<D>& m = moving_[i];
+    if (m.inverse_mass == 0) continue;
     double moves = v_free_[i].squaredNorm();
     if (const int k = turning(state, i); k >= 0) moves += rims_[i] * rims_[i] * w_free_[k].squaredNorm();
-    before_[islands_.root(i)] += 0.5 * moves / m.light, gained_[islands_.root(i)] += account_.gain(i);
+    before_[islands_.root(i)] += 0.5 * moves / m.inverse_mass, gained_[islands_.root(i)] += account_.gain(i);
   }
   const auto island = [&](const Touch& touch) {
-    return islands_.root(moving_[touch.a].light > 0 ? touch.a : touch.b);
+    return islands_.root(moving_[touch.a].inverse_mass > 0 ? touch.a : touch.b);
   };
   for (const Touch& touch : touches_) {
     if (touch.bounces && touch.least > 0 && touch.pressed > 0)
@@ -360,7 +352,7 @@ void SpaceIterative<D>::advance(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
     if (still_[i]) continue;
-    const Moving& m = moving_[i];
+    const PointBody<D>& m = moving_[i];
     const bool closing = closing_[i] && when_[i] < 0;
     if (closing) {
       state.x[i] = x_[i] + h * m.v;
@@ -414,7 +406,7 @@ void SpaceIterative<D>::part(State<D>& state) {
   }
   if (some_.empty()) return;
   kept_ = moving_;
-  for (Moving& m : moving_) m.v.setZero(), m.w.setZero();
+  for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();
   const int rounds = std::clamp(kPartRounds / int(some_.size()), 4, 16);
   for (int round = 0; round < rounds; ++round) {
     for (const int i : some_) {

@@ -6,7 +6,7 @@
 #include "sim/collide/broad_phase.h"
 #include "sim/collide/narrow_phase.h"
 #include "sim/constraint/mobility.h"
-#include "sim/constraint/row.h"
+#include "sim/constraint/response.h"
 #include "sim/energy/energy_guard.h"
 #include "sim/math/islands.h"
 #include "sim/motion/forward_dynamics.h"
@@ -31,15 +31,6 @@ class SpaceIterative final : public ContactSolver<D> {
   void step(State<D>& state, double t, double h) override;
 
  private:
-  // how a body moves, and answers a push; none of what is fixed, frozen, or a wall
-  struct Moving {
-    Vec<D> v = Vec<D>::Zero();
-    AngularVec<D> w = AngularVec<D>::Zero();
-    double light = 0;  // 1/kg
-    Eigen::Matrix<double, kAngular<D>, kAngular<D>> ease =
-        Eigen::Matrix<double, kAngular<D>, kAngular<D>>::Zero();  // 1/(kg m^2)
-  };
-
   // a gap that may close in the step
   struct Touch {
     ContactKey key;
@@ -89,13 +80,11 @@ class SpaceIterative final : public ContactSolver<D> {
   void sweep(const std::vector<int>& order, bool back);
   // an impulse on a, and back on b
   void push(const Touch& touch, const Vec<D>& impulse) {
-    Moving &a = moving_[touch.a], &b = moving_[touch.b];
-    a.v += a.light * impulse, a.w += a.ease * moment<D>(touch.arm_a, impulse);
-    b.v -= b.light * impulse, b.w -= b.ease * moment<D>(touch.arm_b, impulse);
+    apply(impulse, moving_[touch.a], touch.arm_a, moving_[touch.b], touch.arm_b);
   }
   // how fast a's matter moves against b's
   Vec<D> slip(const Touch& touch) const {
-    const Moving &a = moving_[touch.a], &b = moving_[touch.b];
+    const PointBody<D>&a = moving_[touch.a], &b = moving_[touch.b];
     return a.v + cross_velocity<D>(a.w, touch.arm_a) - b.v - cross_velocity<D>(b.w, touch.arm_b);
   }
   bool temper(const State<D>& state);
@@ -121,6 +110,7 @@ class SpaceIterative final : public ContactSolver<D> {
   JointSolver<D> linkage_;
   Statics<D> statics_;
   Mobility<D> mobility_;
+  Response<D> response_;
   std::vector<BearingContact<D>> exact_;
   std::vector<int> bearing_;
   std::vector<Rotation<D>> rotations_;
@@ -132,7 +122,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<double> rims_;
 
   std::vector<BodyMotion<D>> stances_;
-  std::vector<Moving> moving_;
+  std::vector<PointBody<D>> moving_;
   std::vector<Bounds<D>> bounds_;
   std::vector<char> still_;
   std::vector<ContactCandidate<D>> gaps_;
@@ -145,7 +135,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<char> closing_, ripe_, on_joints_;  // the last: of those that rest
   std::vector<int> parts_;                        // and of their joints
   Islands islands_;
-  std::vector<Moving> kept_;
+  std::vector<PointBody<D>> kept_;
   std::vector<double> before_, gained_, returned_;  // of each island's blows, J
   bool struck_ = false;                             // somebody, within this step
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
@@ -158,7 +148,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_;
   std::vector<Row<D>> impact_rows_;
-  std::vector<AngularVec<D>> eased_[2];
+  std::vector<RowResponse<D>> impact_responses_;
   Eigen::MatrixXd K_;
   Eigen::VectorXd b_, p_, speeds_;
   std::vector<double> left_;   // of each island's fastest point, m/s

@@ -141,12 +141,9 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
   J.assign(rows, {});
   K_.resize(rows, rows), b_.resize(rows), p_.resize(rows);
   blocks_.assign(count, {});
-  const auto ease = [&](int body, const Rotation<D>& at, const AngularVec<D>& torque) -> AngularVec<D> {
-    if (moving_[body].light == 0 || !model_.bodies[body].turns()) return AngularVec<D>::Zero();
-    return inverse_inertia_times<D>(model_.bodies[body].inertia, at, torque);
-  };
-  std::vector<AngularVec<D>>&wa = eased_[0], &wb = eased_[1];
-  wa.resize(rows), wb.resize(rows);
+  const int n = int(model_.bodies.size());
+  std::vector<RowResponse<D>>& responses = impact_responses_;
+  responses.resize(rows);
   Eigen::VectorXd& v = speeds_;
   v.resize(rows);
   for (int k = 0; k < count; ++k) {
@@ -158,24 +155,16 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
     blocks_[k].mu = touch.mu;
     for (int i = 0; i < D; ++i) {
       Row<D>& row = J[D * k + i];
-      row.a = touch.a, row.b = touch.b, row.along = ways[i];
+      row.a = touch.a, row.b = touch.b == n ? -1 : touch.b, row.along = ways[i];
       row.angular_a = moment<D>(Vec<D>(at.now.point - at.a.x), ways[i]);
       row.angular_b = moment<D>(Vec<D>(at.now.point - at.b.x), ways[i]);
-      wa[D * k + i] = ease(touch.a, at.a.room_from_body, row.angular_a);
-      wb[D * k + i] = ease(touch.b, at.b.room_from_body, row.angular_b);
+      responses[D * k + i] = response_.of(row, at.a, at.b);
       v[D * k + i] = row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
     }
   }
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j <= i; ++j) {
-      const Row<D>&r = J[i], &s = J[j];
-      const double direct = r.along.dot(s.along);
-      double k = 0;
-      if (r.a == s.a) k += moving_[r.a].light * direct + wa[i].dot(s.angular_a);
-      if (r.b == s.b) k += moving_[r.b].light * direct + wb[i].dot(s.angular_b);
-      if (r.a == s.b) k -= moving_[r.a].light * direct + wa[i].dot(s.angular_b);
-      if (r.b == s.a) k -= moving_[r.b].light * direct + wb[i].dot(s.angular_a);
-      K_(i, j) = K_(j, i) = k;
+      K_(i, j) = K_(j, i) = coupling(J[i], responses[i], J[j]);
     }
   }
   for (double bounce = 1;; bounce = bounce > kLeast ? 0.5 * bounce : 0) {
@@ -194,16 +183,17 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
   }
 
   const auto reach = [&](int body) {
-    if (moving_[body].light == 0 || when_[body] == t) return;
+    if (moving_[body].inverse_mass == 0 || when_[body] == t) return;
     flown_[body] = flown(body, t, h), when_[body] = t;
   };
   for (const int i : meets_) reach(touches_[i].a), reach(touches_[i].b);
   for (int i = 0; i < rows; ++i) {
-    const Row<D>& row = J[i];
-    BodyMotion<D>&a = flown_[row.a].stance, &b = flown_[row.b].stance;
-    a.v += p_[i] * moving_[row.a].light * row.along, a.w += p_[i] * wa[i];
-    b.v -= p_[i] * moving_[row.b].light * row.along, b.w -= p_[i] * wb[i];
-    touches_[meets_[i / D]].struck += p_[i] * row.along;
+    each_response(J[i], responses[i], p_[i],
+                  [&](int body, const Vec<D>& dv, const AngularVec<D>& spin, double p) {
+                    BodyMotion<D>& it = flown_[body].stance;
+                    it.v += dv, it.w += p * spin;
+                  });
+    touches_[meets_[i / D]].struck += p_[i] * J[i].along;
   }
   return true;
 }
@@ -274,7 +264,7 @@ void SpaceIterative<D>::strike(State<D>& state, double h) {
     struck_ = true;
     for (const int i : meets_) {
       for (const int body : {touches_[i].a, touches_[i].b}) {
-        if (moving_[body].light > 0) ++rounds_[body];
+        if (moving_[body].inverse_mass > 0) ++rounds_[body];
       }
     }
     changed_.clear();
