@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 
+#include "sim/constraint/material.h"
 #include "sim/constraint/response.h"
 #include "sim/energy/energy.h"
 
@@ -70,11 +71,6 @@ Vec<D> Handout<D>::arm(const Striker& s, int point, const Wall<D>& wall) const {
   const double radius = s.tips[point].radius;
   if (s.centred) return radius == 0 ? Vec<D>(Vec<D>::Zero()) : Vec<D>(-radius * wall.normal);
   return radius == 0 ? arms_[point] : Vec<D>(arms_[point] - radius * wall.normal);
-}
-
-template <int D>
-double Handout<D>::elasticity(const Body<D>& body, const Wall<D>& wall) const {
-  return wall.elasticity ? std::sqrt(*wall.elasticity * body.elasticity) : body.elasticity;
 }
 
 // what the springs on a body hold, J
@@ -151,7 +147,7 @@ bool Handout<D>::bounce(State<D>& state, int body) const {
       const double vn = v.dot(w.normal);
       if (!strikes(vn, speed)) continue;
       if (met >= 0) return false;
-      met = wall, jump = -(1 + elasticity(b, w)) * vn;
+      met = wall, jump = -(1 + mixed(b.elasticity, w.elasticity)) * vn;
       x -= distance * w.normal;
       v += jump * w.normal;
     }
@@ -178,7 +174,7 @@ bool Handout<D>::particle(Striker& s) {
       if (!(distance < 0)) continue;
       const double vn = v.dot(w.normal);
       if (!strikes(vn, s.speed)) continue;
-      const double jump = -(1 + elasticity(*s.body, w)) * vn;
+      const double jump = -(1 + mixed(s.body->elasticity, w.elasticity)) * vn;
       x -= distance * w.normal;
       v += jump * w.normal;
       hit(wall, 0, mass * jump * w.normal);
@@ -272,7 +268,7 @@ void Handout<D>::strike(Striker& s, const Row* rows, int n, int rank) {
     for (int j = 0; j < n; ++j) {
       A(j, i) = w.normal.dot(model_.walls[rows[j].wall].normal) / body.mass + rows[j].turn.dot(response);
     }
-    b[i] = (1 + elasticity(body, w)) * s.at.velocity(rows[i].arm).dot(w.normal);
+    b[i] = (1 + mixed(body.elasticity, w.elasticity)) * s.at.velocity(rows[i].arm).dot(w.normal);
   }
   complementary(A, b, rank, p);
 

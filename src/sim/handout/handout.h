@@ -48,7 +48,6 @@ class Handout {
   };
 
   Vec<D> arm(const Striker& s, int point, const Wall<D>& wall) const;
-  double elasticity(const Body<D>& body, const Wall<D>& wall) const;
   double springs(const State<D>& state, int body, double t) const;
   bool particle_like(int body) const;
   bool bounce(State<D>& state, int body) const;

@@ -1,8 +1,8 @@
 #include "sim/step/snapshots.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "sim/constraint/material.h"
 #include "sim/energy/energy.h"
 #include "sim/force/explosion.h"
 
@@ -92,9 +92,8 @@ void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
 
 double friction(const SceneInfo& cast, const Snapshot::Contact& contact) {
   const double own = cast.bodies[std::size_t(contact.body)].friction;
-  if (contact.other >= 0) return std::sqrt(own * cast.bodies[std::size_t(contact.other)].friction);
-  const std::optional<double>& wall = cast.walls[std::size_t(contact.wall)].friction;
-  return wall ? std::sqrt(own * *wall) : own;
+  if (contact.other >= 0) return mixed(own, cast.bodies[std::size_t(contact.other)].friction);
+  return mixed(own, cast.walls[std::size_t(contact.wall)].friction);
 }
 
 template <int D>

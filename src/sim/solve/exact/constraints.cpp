@@ -26,22 +26,6 @@ void ExactSolver<D>::stand(const State<D>& state) {
 }
 
 template <int D>
-double ExactSolver<D>::friction(const ContactKey& key) const {
-  const double a = model_.bodies[key.a].friction;
-  if (key.b >= 0) return std::sqrt(a * model_.bodies[key.b].friction);
-  const auto& wall = model_.walls[-1 - key.b].friction;
-  return wall ? std::sqrt(a * *wall) : a;
-}
-
-template <int D>
-double ExactSolver<D>::elasticity(const ContactKey& key) const {
-  const double a = model_.bodies[key.a].elasticity;
-  if (key.b >= 0) return std::sqrt(a * model_.bodies[key.b].elasticity);
-  const auto& wall = model_.walls[-1 - key.b].elasticity;
-  return wall ? std::sqrt(a * *wall) : a;
-}
-
-template <int D>
 AngularVec<D> ExactSolver<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
   AngularVec<D> turn = AngularVec<D>::Zero();
   if (const int k = joint.a.body < 0 ? -1 : turning(state, joint.a.body); k >= 0)
@@ -131,7 +115,7 @@ void ExactSolver<D>::lay_blocks(bool impulses) {
     ConeBlock<D> block;
     switch (held.kind) {
       case Kind::contact: {
-        block.mu = friction(gaps_[held.of].key);
+        block.mu = material(gaps_[held.of].key).friction;
         Tangent<D> slip;
         for (int i = 0; i < D - 1; ++i) slip[i] = moves(held.first + 1 + i);
         const double fast = std::sqrt(slip.squaredNorm());

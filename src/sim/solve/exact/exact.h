@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/constraint/material.h"
 #include "sim/constraint/response.h"
 #include "sim/math/islands.h"
 #include "sim/motion/forward_dynamics.h"
@@ -168,8 +169,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void near(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
   BodyMotion<D> between(const State<D>& state, int body, double h, double part) const;
 
-  double friction(const ContactKey& key) const;
-  double elasticity(const ContactKey& key) const;
+  Material material(const ContactKey& key) const { return sim::material(model_, key.a, key.b); }
 
   const Model<D>& model_;
   Integrate* integrate_;

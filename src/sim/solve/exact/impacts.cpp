@@ -101,7 +101,7 @@ void ExactSolver<D>::strike(State<D>& state, double bounce) {
     for (const Held& held : held_) {
       const double vn = moves(held.first);
       if (held.kind == Held::Kind::contact && vn < -rest_)
-        b_[held.first] += bounce * elasticity(gaps_[held.of].key) * vn;
+        b_[held.first] += bounce * material(gaps_[held.of].key).elasticity * vn;
     }
     modes_.assign(blocks_.size(), {}), warm_.setZero(Eigen::Index(rows_.size()));
     bool found = solve();

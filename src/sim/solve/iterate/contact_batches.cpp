@@ -207,9 +207,9 @@ void PlaneIterative<D>::take_seat(int i, const State<D>& state) {
   g.a[lane] = pair.a, g.iia[lane] = ii_[pair.a];
   g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
   g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
-  g.blow[lane] = -(pair.elasticity > 0 ? rest_speed_ : std::max(rest_speed_, kSoft * thin / span_));
+  g.blow[lane] = -(pair.material.elasticity > 0 ? rest_speed_ : std::max(rest_speed_, kSoft * thin / span_));
   pair.blow = float(-0.999 * g.blow[lane]);
-  g.sight[lane] = sight, g.mu[lane] = pair.friction, g.radius[lane] = radius;
+  g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
   // in terms of bodies' own reaches
   double least = cores_.reach[pair.a];

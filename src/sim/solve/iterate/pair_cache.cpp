@@ -1,7 +1,6 @@
 #include "sim/solve/iterate/pair_cache.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace obscura::sim::plane {
 
@@ -17,28 +16,21 @@ bool alike(const Pair& p, const Pair& q) {
   return p.a == q.a && p.b == q.b && p.core_a == q.core_a && p.core_b == q.core_b;
 }
 
-double mean(double a, double b) { return a == b ? a : std::sqrt(a * b); }
-
 }  // namespace
 
 Pairs::Pairs(const Model<2>& model, const CoreShapes& cores)
     : model_(model), cores_(cores), near_(model, cores), compounds_(cores.all.size() > model.bodies.size()) {
-  for (const Body<2>& body : model.bodies) skins_.push_back({body.friction, body.elasticity});
+  for (const Body<2>& body : model.bodies) materials_.emplace_back(body);
 }
 
 Pair Pairs::pair(int a, int b, int core_a, int core_b) const {
   Pair made;
   made.a = a, made.b = b, made.core_a = core_a, made.core_b = core_b;
-  const Skin& p = skins_[a];
   if (b < 0) {
-    const Wall<2>& wall = model_.walls[-1 - b];
-    made.friction = wall.friction ? mean(p.friction, *wall.friction) : p.friction;
-    made.elasticity = wall.elasticity ? mean(p.elasticity, *wall.elasticity) : p.elasticity;
+    made.material = mixed(materials_[a], model_.walls[-1 - b]);
     made.touches = cores_.all[core_a].count > 1 ? 2 : 1;
   } else {
-    const Skin& q = skins_[b];
-    made.friction = mean(p.friction, q.friction);
-    made.elasticity = mean(p.elasticity, q.elasticity);
+    made.material = mixed(materials_[a], materials_[b]);
     made.touches = cores_.all[core_a].count > 1 && cores_.all[core_b].count > 1 ? 2 : 1;
   }
   return made;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/collide/core_shapes.h"
+#include "sim/constraint/material.h"
 #include "sim/model/state.h"
 #include "sim/solve/iterate/contact_rows.h"
 #include "sim/solve/iterate/near_pairs.h"
@@ -22,7 +23,7 @@ struct Pair {
   bool alone = false;     // colours ran out: nobody sits beside it
   bool fresh = false;     // its features have changed since it took its seat
   float blow = 0;         // m/s: no slower approach is a blow
-  double friction = 0, elasticity = 0;
+  Material material;
 };
 
 /// What touches, or will.
@@ -72,10 +73,7 @@ class Pairs {
   const Model<2>& model_;
   const CoreShapes& cores_;
   NearPairs near_;
-  struct Skin {
-    double friction, elasticity;
-  };
-  std::vector<Skin> skins_;  // of bodies
+  std::vector<Material> materials_;  // of bodies
 
   std::vector<Pair> pairs_, found_;
   long version_ = 0;

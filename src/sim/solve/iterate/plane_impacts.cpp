@@ -422,13 +422,13 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
   }
 
   PairImpact impact;
-  impact.mu = pair.friction;
+  impact.mu = pair.material.friction;
   for (int r = 0; r < 4; ++r) {
     if (!closes[r / 2]) continue;
     impact.closed[r / 2] = true;
     const Push& p = pushes[r % 2][r / 2];
     impact.v[r] = speed(p, a, b);
-    if (r % 2 == 0) impact.e[r / 2] = impact.v[r] < g.blow[lane] ? pair.elasticity : 0;
+    if (r % 2 == 0) impact.e[r / 2] = impact.v[r] < g.blow[lane] ? pair.material.elasticity : 0;
     for (int c = 0; c <= r; ++c) {
       if (!closes[c / 2]) continue;
       const Push& q = pushes[c % 2][c / 2];

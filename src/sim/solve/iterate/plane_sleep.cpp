@@ -67,7 +67,7 @@ bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
       contact.point = {at.x, at.y}, contact.normal = {at.nx, at.ny}, contact.gap = at.gap;
       if (at.gap > kClosed * thin) continue;
       BearingContact<2> touch{.a = moving(pair.a), .b = moving(pair.b), .normal = contact.normal};
-      touch.arm_a = contact.point - state.x[pair.a], touch.friction = pair.friction;
+      touch.arm_a = contact.point - state.x[pair.a], touch.friction = pair.material.friction;
       if (pair.b >= 0) touch.arm_b = contact.point - state.x[pair.b];
       touch.force = contact.force;
       touches_.push_back(touch), bearing_.push_back(k);
@@ -103,7 +103,7 @@ Mobile Rest::mobile(const State<2>& state, const Pairs& pairs, const JointSolver
     for (int k = pair.first; k < pair.first + pair.touches; ++k) {
       const Contact<2>& contact = state.contacts[k];
       BearingContact<2> touch{.a = pair.a, .b = pair.b, .normal = contact.normal};
-      touch.arm_a = contact.point - state.x[pair.a], touch.friction = pair.friction;
+      touch.arm_a = contact.point - state.x[pair.a], touch.friction = pair.material.friction;
       if (pair.b >= 0) touch.arm_b = contact.point - state.x[pair.b];
       touch.force = contact.force;
       mobility_.hold(touch);

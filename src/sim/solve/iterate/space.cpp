@@ -151,9 +151,7 @@ void SpaceIterative<D>::find(double h) {
       if ((stances_[a].x - w.point).dot(w.normal) > rims_[a] + margin(a)) continue;
       gaps_.clear();
       collide(a, p.shape, stances_[a], wall, w, margin(a), gaps_);
-      const double mu = w.friction ? std::sqrt(p.friction * *w.friction) : p.friction;
-      const double e = w.elasticity ? std::sqrt(p.elasticity * *w.elasticity) : p.elasticity;
-      for (const ContactCandidate<D>& gap : gaps_) add(gap, mu, e);
+      for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, -1 - wall));
     }
     for (; pair != pairs.end() && pair->first == a; ++pair) {
       const int b = pair->second;
@@ -166,14 +164,13 @@ void SpaceIterative<D>::find(double h) {
           std::min(margin(a) + margin(b), h * (passes + 2 * g_ * h) + kSpare * (rims_[a] + rims_[b]));
       gaps_.clear();
       collide(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
-      const double mu = std::sqrt(p.friction * q.friction), e = std::sqrt(p.elasticity * q.elasticity);
-      for (const ContactCandidate<D>& gap : gaps_) add(gap, mu, e);
+      for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, b));
     }
   }
 }
 
 template <int D>
-void SpaceIterative<D>::add(const ContactCandidate<D>& gap, double mu, double bounce) {
+void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair) {
   static const BodyMotion<D> room;
   const int none = int(model_.bodies.size());
   const int a = gap.key.a, b = gap.key.b < 0 ? none : gap.key.b;
@@ -185,7 +182,7 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, double mu, double bo
   // each is pushed on its own skin: by the time they touch those have come together
   const Vec<D> apart = 0.5 * std::max(0.0, now.value) * now.normal;
   touch.arm_a = now.point + apart - stances_[a].x, touch.arm_b = now.point - apart - at_b.x;
-  touch.mu = mu, touch.bounce = bounce;
+  touch.mu = pair.friction, touch.bounce = pair.elasticity;
 
   // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
   const auto answer = [&](const Vec<D>& s, const Vec<D>& t) {

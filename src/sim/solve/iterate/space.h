@@ -5,6 +5,7 @@
 
 #include "sim/collide/broad_phase.h"
 #include "sim/collide/narrow_phase.h"
+#include "sim/constraint/material.h"
 #include "sim/constraint/mobility.h"
 #include "sim/constraint/response.h"
 #include "sim/energy/energy_guard.h"
@@ -67,7 +68,7 @@ class SpaceIterative final : public ContactSolver<D> {
 
   void ready(const State<D>& state);
   void find(double h);
-  void add(const ContactCandidate<D>& gap, double mu, double bounce);
+  void add(const ContactCandidate<D>& gap, const Material& pair);
   bool wake(State<D>& state, double h);
   void fall(State<D>& state, double t, double h);
   void strike(State<D>& state, double h);

@@ -1,0 +1,47 @@
+#pragma once
+
+// What a pair that touches takes of the materials of its two sides (docs/scene.md, `friction`, `elasticity`):
+//   mu = sqrt(mu_a mu_b),  e = sqrt(e_a e_b)      the body's own, where a wall has none
+// A geometric mean keeps what one side makes zero: ice under rubber slides, clay does not bounce.
+
+#include <cmath>
+#include <optional>
+
+#include "sim/model/model.h"
+
+namespace obscura::sim {
+
+/// Of one value each; equal ones stay to the bit, though their square be out of range.
+inline double mixed(double a, double b) { return a == b ? a : std::sqrt(a * b); }
+/// Of a body and a wall, which may have none.
+inline double mixed(double body, const std::optional<double>& wall) {
+  return wall ? mixed(body, *wall) : body;
+}
+
+/// Coulomb's friction and Newton's elasticity, of a body or of a pair that touches.
+struct Material {
+  double friction = 0;    // mu
+  double elasticity = 0;  // e
+
+  Material() = default;
+  Material(double mu, double e) : friction(mu), elasticity(e) {}
+  template <int D>
+  explicit Material(const Body<D>& body) : friction(body.friction), elasticity(body.elasticity) {}
+};
+
+inline Material mixed(const Material& a, const Material& b) {
+  return {mixed(a.friction, b.friction), mixed(a.elasticity, b.elasticity)};
+}
+template <int D>
+Material mixed(const Material& body, const Wall<D>& wall) {
+  return {mixed(body.friction, wall.friction), mixed(body.elasticity, wall.elasticity)};
+}
+
+/// Of a body and what it touches: another body, or wall -1 - b where b is below zero.
+template <int D>
+Material material(const Model<D>& model, int a, int b) {
+  const Material own(model.bodies[a]);
+  return b >= 0 ? mixed(own, Material(model.bodies[b])) : mixed(own, model.walls[-1 - b]);
+}
+
+}  // namespace obscura::sim
