@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/jointed.h"
 #include "sim/rooms.h"
 #include "sim/solids.h"

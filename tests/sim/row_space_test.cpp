@@ -1,6 +1,6 @@
 // Rows of joints in space: how they change, and what they hold, by finite differences.
 
-#include "sim/constraint/row.h"
+#include "sim/constraint/joints/joint.h"
 
 #include <gtest/gtest.h>
 

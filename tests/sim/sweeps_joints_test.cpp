@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/constraint/row.h"
+#include "sim/constraint/joints/joint.h"
 #include "sim/jointed.h"
 #include "sim/space_rooms.h"
 

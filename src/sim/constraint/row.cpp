@@ -1,4 +1,4 @@
-// Rows of contacts and joints, and how they change by the motion alone.
+// Rows of contacts, and how they change by the motion alone.
 //   v_c = v + w x (c - x)                               the body's matter at the point of contact c
 //   row   s . (v_ca - v_cb)                             s  normal or tangent
 //   drift s' . (v_ca - v_cb) + s . (w_a x (c' - v_a) - w_b x (c' - v_b))
@@ -13,22 +13,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/math/exponential.h"
-
 namespace obscura::sim {
 
 namespace {
-
-// a unit vector across n
-template <int D>
-Vec<D> across(const Vec<D>& n, int i) {
-  if constexpr (D == 2) {
-    return perpendicular<D>(n);
-  } else {
-    const Vec<D> t = perpendicular<D>(n);
-    return i == 0 ? t : Vec<D>(n.cross(t));
-  }
-}
 
 // how a direction and a point of contact move
 template <int D>
@@ -142,91 +129,6 @@ Row<D> along(const Vec<D>& s, const Vec<D>& s_rate, const Vec<D>& point, const V
   return row;
 }
 
-// across a point of a and a point of b, along a direction that stays in the room
-template <int D>
-Row<D> between(const Vec<D>& s, const Vec<D>& arm_a, const Vec<D>& arm_b, const BodyMotion<D>& a,
-               const BodyMotion<D>& b) {
-  Row<D> row;
-  row.along = s;
-  row.angular_a = moment<D>(arm_a, s), row.angular_b = moment<D>(arm_b, s);
-  row.velocity_product = s.dot(cross_velocity<D>(a.w, cross_velocity<D>(a.w, arm_a)) -
-                               cross_velocity<D>(b.w, cross_velocity<D>(b.w, arm_b)));
-  return row;
-}
-
-template <int D>
-Row<D> turning_row(int axis) {
-  Row<D> row;
-  row.angular_a = AngularVec<D>::Unit(axis), row.angular_b = AngularVec<D>::Unit(axis);
-  return row;
-}
-
-// a corner of a against a face of b through its point, or two corners: what rows slider, rod and rope are
-template <int D>
-ContactCandidate<D> gap_of(const Joint<D>& joint) {
-  ContactCandidate<D> gap;
-  gap.on_a = joint.a.local, gap.on_b = joint.b.local;
-  gap.kind = ContactCandidate<D>::Kind::corners;
-  return gap;
-}
-
-// the way of a's point against b's along a direction of b's frame
-template <int D>
-Row<D> way_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const Vec<D>& direction,
-               double& way) {
-  ContactCandidate<D> gap = gap_of(joint);
-  gap.kind = ContactCandidate<D>::Kind::corner_of_a;
-  gap.normal = direction;
-  Row<D> all[D];
-  way = rows(gap, a, b, all).value;
-  return all[0];
-}
-
-// an axis of a against one of b that should be across it: J v = (A x B) . (w_a - w_b), off A . B
-Row<3> across_row(const BodyMotion<3>& a, const BodyMotion<3>& b, const Vec<3>& axis_a, const Vec<3>& axis_b,
-                  double& off) {
-  Row<3> row;
-  const Vec<3> turn = axis_a.cross(axis_b);
-  row.angular_a = turn, row.angular_b = turn;
-  row.velocity_product = (a.w.cross(axis_a).cross(axis_b) + axis_a.cross(b.w.cross(axis_b))).dot(a.w - b.w);
-  off = axis_a.dot(axis_b);
-  return row;
-}
-
-// b's frame turned by what the joint keeps, as a would stand
-Rotation<3> kept(const Joint<3>& joint, const BodyMotion<3>& b) {
-  return b.room_from_body * matrix(exponential(joint.turn));
-}
-
-// all that two bodies turn against each other, and how far a is turned off: of E = R_a R_kept' the part that
-// is a turn about an axis, sin(angle) axis
-template <int D>
-void turning_rows(const Joint<D>& joint, [[maybe_unused]] const BodyMotion<D>& a,
-                  [[maybe_unused]] const BodyMotion<D>& b, [[maybe_unused]] const AngularVec<D>& turn,
-                  Row<D>* out, double* off) {
-  for (int axis = 0; axis < kAngular<D>; ++axis) out[axis] = turning_row<D>(axis);
-  if constexpr (D == 2) {
-    off[0] = (turn - joint.turn)[0];
-  } else {
-    const Rotation<3> e = a.room_from_body * kept(joint, b).transpose();
-    off[0] = 0.5 * (e(2, 1) - e(1, 2)), off[1] = 0.5 * (e(0, 2) - e(2, 0)),
-    off[2] = 0.5 * (e(1, 0) - e(0, 1));
-  }
-}
-
-// angle whose sine and cosine are given
-double angle(double sine, double cosine) {
-  // half of it about the third axis
-  const double half = std::sqrt(0.5 * std::max(0.0, 1 + std::fabs(cosine)));
-  Eigen::Vector4d q(0, 0, 0, 0);
-  if (cosine >= 0) {
-    q[3] = half, q[2] = 0.5 * sine / half;
-  } else {
-    q[2] = sine < 0 ? -half : half, q[3] = 0.5 * std::fabs(sine) / half;
-  }
-  return logarithm(q)[2];
-}
-
 }  // namespace
 
 template <int D>
@@ -253,7 +155,7 @@ EvaluatedContact<D> rows(const ContactCandidate<D>& gap, const BodyMotion<D>& a,
   at.point = c.point, at.normal = c.n;
   out[0] = along<D>(c.n, c.n_rate, c.point, c.velocity, a, b);
   for (int i = 0; i < D - 1; ++i) {
-    const Vec<D> t = across<D>(c.n, i);
+    const Vec<D> t = tangent<D>(c.n, i);
     const Vec<D> t_rate = c.turns_with_face ? cross_velocity<D>(c.w, t) : Vec<D>(-t.dot(c.n_rate) * c.n);
     out[1 + i] = along<D>(t, t_rate, c.point, c.velocity, a, b);
   }
@@ -261,94 +163,15 @@ EvaluatedContact<D> rows(const ContactCandidate<D>& gap, const BodyMotion<D>& a,
   return at;
 }
 
-template <int D>
-int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
-         Row<D>* out, double* off) {
-  int n = 0;
-  const Vec<D> arm_a = a.arm(joint.a.local), arm_b = b.arm(joint.b.local);
-  const Vec<D> apart = (a.x + arm_a) - (b.x + arm_b);
-  switch (joint.kind) {
-    case JointKind::pin:
-    case JointKind::weld:
-    case JointKind::hinge:
-      for (int axis = 0; axis < D; ++axis, ++n) {
-        out[n] = between<D>(Vec<D>::Unit(axis), arm_a, arm_b, a, b);
-        off[n] = apart[axis];
-      }
-      break;
-    case JointKind::slider:
-      for (int i = 0; i < D - 1; ++i, ++n) {
-        out[n] = way_row<D>(joint, a, b, across<D>(joint.axis, i), off[n]);
-      }
-      break;
-    case JointKind::rod:
-    case JointKind::rope: {
-      Row<D> pair[D];
-      off[n] = rows(gap_of(joint), a, b, pair).value - joint.length;
-      out[n] = pair[0];
-      if (joint.kind == JointKind::rope) {
-        off[n] = -off[n];
-        out[n].along *= -1, out[n].angular_a *= -1, out[n].angular_b *= -1, out[n].velocity_product *= -1;
-      }
-      ++n;
-      break;
-    }
-  }
-  if (joint.kind == JointKind::weld || joint.kind == JointKind::slider) {
-    turning_rows<D>(joint, a, b, turn, out + n, off + n);
-    n += kAngular<D>;
-  }
-  if constexpr (D == 3) {
-    if (joint.kind == JointKind::hinge) {
-      const Vec<D> axis_a = a.room_from_body * (matrix(exponential(joint.turn)).transpose() * joint.axis);
-      for (int i = 0; i < 2; ++i, ++n) {
-        out[n] = across_row(a, b, axis_a, b.arm(across<D>(joint.axis, i)), off[n]);
-      }
-    }
-  }
-  for (int i = 0; i < n; ++i) out[i].a = joint.a.body, out[i].b = joint.b.body;
-  return n;
-}
-
-template <int D>
-bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
-              [[maybe_unused]] const AngularVec<D>& turn, Row<D>& out, double& way) {
-  if (!has_free_row<D>(joint.kind)) return false;
-  if (joint.kind == JointKind::slider) {
-    out = way_row<D>(joint, a, b, joint.axis, way);
-  } else if constexpr (D == 2) {
-    out = turning_row<D>(0);
-    way = (turn - joint.turn)[0];
-  } else {
-    const Vec<D> axis = b.arm(joint.axis), aside = across<D>(joint.axis, 0);
-    out = Row<D>();
-    out.angular_a = axis, out.angular_b = axis;
-    out.velocity_product = b.w.cross(axis).dot(a.w - b.w);
-    const Vec<D> from = b.arm(aside);
-    const Vec<D> to = a.room_from_body * (matrix(exponential(joint.turn)).transpose() * aside);
-    way = angle(axis.dot(from.cross(to)), from.dot(to));
-  }
-  out.a = joint.a.body, out.b = joint.b.body;
-  return true;
-}
-
 template struct Row<2>;
 template double speed<2>(const Row<2>&, const std::vector<BodyMotion<2>>&);
 template EvaluatedContact<2> width<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
 template EvaluatedContact<2> rows<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&,
                                      Row<2>*);
-template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
-                     Row<2>*, double*);
-template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
-                          Row<2>&, double&);
 template struct Row<3>;
 template double speed<3>(const Row<3>&, const std::vector<BodyMotion<3>>&);
 template EvaluatedContact<3> width<3>(const ContactCandidate<3>&, const BodyMotion<3>&, const BodyMotion<3>&);
 template EvaluatedContact<3> rows<3>(const ContactCandidate<3>&, const BodyMotion<3>&, const BodyMotion<3>&,
                                      Row<3>*);
-template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
-                     Row<3>*, double*);
-template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
-                          Row<3>&, double&);
 
 }  // namespace obscura::sim

@@ -19,7 +19,20 @@ struct Row {
   AngularVec<D> angular_a = AngularVec<D>::Zero();  // arm x along, m; of a row of turning the axis
   AngularVec<D> angular_b = AngularVec<D>::Zero();
   double velocity_product = 0;  // m/s^2 or rad/s^2
+
+  /// The row of the opposite direction.
+  void reverse() { along *= -1, angular_a *= -1, angular_b *= -1, velocity_product *= -1; }
 };
+
+/// The i-th of D-1 unit vectors across n, which with it are a right-handed frame.
+template <int D>
+Vec<D> tangent(const Vec<D>& n, int i) {
+  const Vec<D> t = perpendicular<D>(n);
+  if constexpr (D == 3) {
+    if (i == 1) return n.cross(t);
+  }
+  return t;
+}
 
 /// J v. The room stands still.
 template <int D>
@@ -33,28 +46,5 @@ EvaluatedContact<D> width(const ContactCandidate<D>& gap, const BodyMotion<D>& a
 template <int D>
 EvaluatedContact<D> rows(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b,
                          Row<D>* out);
-
-/// The most rows that a joint holds.
-template <int D>
-inline constexpr int kMostHeld = D + kAngular<D>;
-
-/// The rows that a joint holds as equalities, and by how much each is off (m or rad). Returns how many. A
-/// rope has one, what it has left; it is no equality. `turn`: of a against b (rad), for what keeps one; in
-/// space the stances tell it.
-template <int D>
-int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
-         Row<D>* out, double* off);
-
-/// Whether a joint leaves one thing free that it can tell: the turn of a hinge (in the plane also called a
-/// pin), the way of a slider.
-template <int D>
-bool has_free_row(JointKind kind) {
-  return kind == JointKind::hinge || kind == JointKind::slider || (D == 2 && kind == JointKind::pin);
-}
-
-/// The row of that, for motors, limits and friction; and how far it is (rad or m). False where there is none.
-template <int D>
-bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
-              const AngularVec<D>& turn, Row<D>& out, double& way);
 
 }  // namespace obscura::sim

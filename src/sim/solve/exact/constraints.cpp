@@ -60,7 +60,7 @@ void ExactSolver<D>::lay_rows(Held& held, const AngularVec<D>& turn) {
       if (held.kind == Held::Kind::lower) held.off = way - joint.lower;
       if (held.kind == Held::Kind::upper) {
         held.off = joint.upper - way;
-        out[0].along *= -1, out[0].angular_a *= -1, out[0].angular_b *= -1, out[0].velocity_product *= -1;
+        out[0].reverse();
       }
     }
   }
@@ -92,9 +92,8 @@ void ExactSolver<D>::gather(const State<D>& state, bool all) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
     const AngularVec<D> turn = turn_between(state, joint);
-    if (!joint.linked)
-      add(joint.kind == JointKind::rope ? Kind::rope : Kind::joint, i, turn, joint.kind == JointKind::rope);
-    if (!has_free_row<D>(joint.kind)) continue;
+    if (!joint.linked) add(one_sided(joint) ? Kind::rope : Kind::joint, i, turn, one_sided(joint));
+    if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) add(Kind::lower, i, turn, true);
     if (joint.upper < 1e299) add(Kind::upper, i, turn, true);
     if (joint.motor) add(Kind::motor, i, turn, false);

@@ -343,8 +343,8 @@ double ExactSolver<D>::tightening(const State<D>& state, double h, Couple& which
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
-    if (joint.kind == JointKind::rope) look(Kind::rope, i);
-    if (!has_free_row<D>(joint.kind)) continue;
+    if (one_sided(joint)) look(Kind::rope, i);
+    if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) look(Kind::lower, i);
     if (joint.upper < 1e299) look(Kind::upper, i);
   }

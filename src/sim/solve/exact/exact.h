@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/constraint/material.h"
 #include "sim/constraint/response.h"
 #include "sim/math/islands.h"

@@ -70,8 +70,7 @@ void JointSolver<D>::plan() {
   std::vector<std::vector<int>> of(model_.bodies.size());  // blocks of each body that moves
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || joint.kind == JointKind::rope ||
-        (!response_.moves(joint.a.body) && !response_.moves(joint.b.body)))
+    if (broken_[i] || one_sided(joint) || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body)))
       continue;
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
@@ -92,8 +91,7 @@ void JointSolver<D>::plan() {
   // what a rope ties together answers together
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || joint.kind != JointKind::rope || !response_.moves(joint.a.body) ||
-        !response_.moves(joint.b.body))
+    if (broken_[i] || !one_sided(joint) || !response_.moves(joint.a.body) || !response_.moves(joint.b.body))
       continue;
     meet(of[joint.a.body], of[joint.b.body]), meet(of[joint.b.body], of[joint.a.body]);
   }
@@ -168,7 +166,7 @@ bool JointSolver<D>::left(const Bounded& bounded, double& off) const {
   Row<D> out[kMostHeld<D>];
   if (bounded.load > upper) return false;
   const BodyMotion<D>&a = side(joint.a.body), &b = side(joint.b.body);
-  if (joint.kind == JointKind::rope) {
+  if (one_sided(joint)) {
     double offs[kMostHeld<D>];
     rows(joint, a, b, turn_between(joint), out, offs);
     off = offs[0];
@@ -195,20 +193,19 @@ void JointSolver<D>::bind(double h) {
     Row<D> out[kMostHeld<D>];
     double offs[kMostHeld<D>];
     const BodyMotion<D>&p = side(joint.a.body), &q = side(joint.b.body);
-    if (joint.kind == JointKind::rope) {
+    if (one_sided(joint)) {
       rows(joint, p, q, turn_between(joint), out, offs);
     } else {
       free_row(joint, p, q, turn_between(joint), out[0], offs[0]);
     }
     b.row = out[0];
-    if (load == upper && joint.kind != JointKind::rope)
-      b.row.along *= -1, b.row.angular_a *= -1, b.row.angular_b *= -1;
+    if (load == upper && !one_sided(joint)) b.row.reverse();
     b.least = 0, b.most = kEndless, b.target = 0;
     if (double off = 0; left(b, off)) {
       const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
       if (off > sees) return;
       b.target = -std::max(off, 0.0) / h;
-      b.taut = joint.kind == JointKind::rope && off <= kPut * model_.scale;
+      b.taut = one_sided(joint) && off <= kPut * model_.scale;
     } else {
       b.most = h * (load == motor ? joint.motor->most : joint.friction), b.least = -b.most;
       if (load == motor) b.target = joint.motor->speed;
@@ -221,8 +218,8 @@ void JointSolver<D>::bind(double h) {
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
     if (broken_[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
-    if (joint.kind == JointKind::rope) add(i, upper);
-    if (!has_free_row<D>(joint.kind)) continue;
+    if (one_sided(joint)) add(i, upper);
+    if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) add(i, lower);
     if (joint.upper < 1e299) add(i, upper);
     if (joint.motor) add(i, motor);

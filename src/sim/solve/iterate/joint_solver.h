@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/constraint/response.h"
 #include "sim/math/block_factors.h"
 #include "sim/model/state.h"

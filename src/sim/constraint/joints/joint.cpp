@@ -1,0 +1,54 @@
+#include "sim/constraint/joints/joint.h"
+
+#include <cassert>
+#include <cstddef>
+
+#include "sim/constraint/joints/hinge.h"
+#include "sim/constraint/joints/pin.h"
+#include "sim/constraint/joints/rod.h"
+#include "sim/constraint/joints/rope.h"
+#include "sim/constraint/joints/slider.h"
+#include "sim/constraint/joints/weld.h"
+
+namespace obscura::sim {
+
+// in the order of JointKind
+template <int D>
+const JointEquations<D>& equations(JointKind kind) {
+  static constexpr JointEquations<D> kTable[] = {kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>};
+  const JointEquations<D>& found = kTable[std::size_t(kind)];
+  assert(found.kind == kind && found.rows <= kMostHeld<D>);
+  return found;
+}
+
+template <int D>
+int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
+         Row<D>* out, double* off) {
+  const JointEquations<D>& its = equations<D>(joint.kind);
+  its.hold({joint, a, b, turn}, out, off);
+  for (int i = 0; i < its.rows; ++i) out[i].a = joint.a.body, out[i].b = joint.b.body;
+  return its.rows;
+}
+
+template <int D>
+bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
+              const AngularVec<D>& turn, Row<D>& out, double& way) {
+  const JointEquations<D>& its = equations<D>(joint.kind);
+  if (!its.coordinate) return false;
+  way = its.coordinate({joint, a, b, turn}, out);
+  out.a = joint.a.body, out.b = joint.b.body;
+  return true;
+}
+
+template const JointEquations<2>& equations<2>(JointKind);
+template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
+                     Row<2>*, double*);
+template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
+                          Row<2>&, double&);
+template const JointEquations<3>& equations<3>(JointKind);
+template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
+                     Row<3>*, double*);
+template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
+                          Row<3>&, double&);
+
+}  // namespace obscura::sim

@@ -1,0 +1,70 @@
+#pragma once
+
+// Joints: what two bodies may not do against each other, C(q) = 0 row by row, and what they may. To add one:
+// a file beside pin.h, a name in JointKind and a row in the table of joint.cpp. Both solvers, limits, motors,
+// dry friction and breaking work from the rows:
+//   limit     lower <= c <= upper              a row along the free coordinate c, of one sign
+//   motor     c' = speed, |f| <= most          the same row, bounded both ways; friction: c' = 0, |f| <=
+//   friction breaks    |sum of f_i s_i| > breaks        s_i  linear part of row i: the force of its rows, N
+
+#include "sim/constraint/row.h"
+
+namespace obscura::sim {
+
+/// A joint and how its two sides lie and move; of a side that is the room, as of a body that stands still.
+template <int D>
+struct JointPose {
+  const Joint<D>& joint;
+  const BodyMotion<D>&a, &b;
+  const AngularVec<D>& turn;  // of a against b, rad; in space the poses tell it
+
+  Vec<D> arm_a() const { return a.arm(joint.a.local); }
+  Vec<D> arm_b() const { return b.arm(joint.b.local); }
+};
+
+/// What a kind of joint is to the solvers.
+template <int D>
+struct JointEquations {
+  JointKind kind = JointKind::pin;
+  int rows = 0;            // equations, at most kMostHeld<D>
+  bool one_sided = false;  // C >= 0 (m) instead of C = 0
+  /// Writes J and C (m or rad), one a row.
+  void (*hold)(const JointPose<D>& at, Row<D>* J, double* C) = nullptr;
+  /// Writes J of the free coordinate and returns its value, m or rad. Null: the joint has none that it can
+  /// tell.
+  double (*coordinate)(const JointPose<D>& at, Row<D>& J) = nullptr;
+};
+
+/// The row of the table.
+template <int D>
+const JointEquations<D>& equations(JointKind kind);
+
+/// The most rows that a joint holds.
+template <int D>
+inline constexpr int kMostHeld = D + kAngular<D>;
+
+/// The rows that a joint holds, and by how much each is off, C (m or rad). Returns how many. `turn`: of a
+/// against b (rad), for what keeps one; in space the poses tell it.
+template <int D>
+int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
+         Row<D>* out, double* off);
+
+/// Whether a joint holds C >= 0 only: a rope, with what it has left.
+template <int D>
+bool one_sided(const Joint<D>& joint) {
+  return equations<D>(joint.kind).one_sided;
+}
+
+/// Whether a joint leaves one coordinate free that it can tell: the angle of a hinge (in the plane also
+/// called a pin), the way of a slider.
+template <int D>
+bool has_free_row(const Joint<D>& joint) {
+  return equations<D>(joint.kind).coordinate != nullptr;
+}
+
+/// The row of that, for motors, limits and friction; and its value (rad or m). False where there is none.
+template <int D>
+bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
+              const AngularVec<D>& turn, Row<D>& out, double& way);
+
+}  // namespace obscura::sim
