@@ -34,7 +34,7 @@ double apart(const sim::World<D>& world, int a, int b, double far) {
   const auto& one = world.model.bodies[std::size_t(a)].shape;
   const auto& other = world.model.bodies[std::size_t(b)].shape;
   const double centres = (world.state.x[std::size_t(a)] - world.state.x[std::size_t(b)]).norm();
-  const double least = centres - sim::reach(one) - sim::reach(other);
+  const double least = centres - sim::bounding_radius(one) - sim::bounding_radius(other);
   if (least > far) return least;
   return sim::separation(one, sim::body_motion(world.state, a), other, sim::body_motion(world.state, b));
 }

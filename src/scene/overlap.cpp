@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scene/meetings.h"
+#include "sim/collide/may_touch.h"
 #include "sim/collide/narrow_phase.h"
 #include "sim/model/stance.h"
 #include "sim/shape/shape.h"
@@ -51,14 +51,11 @@ template <int D>
 void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagnostics& complaints) {
   const sim::Model<D>& model = world.model;
   const bool refuse = model.overlap == sim::Overlap::refuse;
-  std::set<std::pair<int, int>> joined, ignored;
-  for (const sim::Joint<D>& joint : model.joints)
-    if (!joint.touching) joined.insert(ordered(joint.a.body, joint.b.body));
-  for (const auto& [a, b] : model.ignore) ignored.insert(ordered(a, b));
+  const sim::MayTouch<D> may_touch(model);
 
-  // kinds of bodies, and the boxes around them
+  // kinds of bodies, the first body of each, and the boxes around them
   const int n = int(model.bodies.size());
-  std::vector<Kind> kinds;
+  std::vector<int> kinds;
   std::map<Kind, int> index;
   std::vector<int> kind_of(static_cast<std::size_t>(n), -1), group_of(static_cast<std::size_t>(n), 0);
   std::vector<sim::Bounds<D>> boxes;
@@ -68,15 +65,13 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
     if (body.handout) continue;
     const Kind kind{body.shape.kind == sim::ShapeKind::point, body.fixed, body.group};
     const auto [known, fresh] = index.emplace(kind, int(kinds.size()));
-    if (fresh) kinds.push_back(kind);
+    if (fresh) kinds.push_back(i);
     kind_of[std::size_t(i)] = known->second;
   }
   for (std::size_t g = 0; g < roster.groups.size(); ++g)
     std::fill_n(group_of.begin() + roster.groups[g].first, roster.groups[g].count, int(g));
   const auto keep_apart = [&](int k, int l) {
-    const Kind &one = kinds[std::size_t(k)], &other = kinds[std::size_t(l)];
-    return !(one.point && other.point) && !(one.fixed && other.fixed) &&
-           !ignored.contains(ordered(one.group, other.group));
+    return may_touch.but_for_joints(kinds[std::size_t(k)], kinds[std::size_t(l)]);
   };
 
   std::vector<Found> found(roster.groups.size());
@@ -84,12 +79,12 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
   meetings<D>(boxes, kind_of, keep_apart, [&](int a, int b) {
     if (++looked > kMostLooked) return false;
     if (!refuse) return true;
-    if (!joined.empty() && joined.contains({a, b})) return true;
+    if (!may_touch(a, b)) return true;
     const sim::Shape<D>&one = model.bodies[std::size_t(a)].shape, &other = model.bodies[std::size_t(b)].shape;
     const double depth =
         -sim::separation(one, sim::body_motion(world.state, a), other, sim::body_motion(world.state, b));
-    const double size = 2 * std::max(std::min(sim::reach(one), sim::reach(other)),
-                                     1e-3 * std::max(sim::reach(one), sim::reach(other)));
+    const double size = 2 * std::max(std::min(sim::bounding_radius(one), sim::bounding_radius(other)),
+                                     1e-3 * std::max(sim::bounding_radius(one), sim::bounding_radius(other)));
     if (!(depth > kAllowed * size)) return true;
     ++overlapping;
     Found& its = found[std::size_t(group_of[std::size_t(b)])];

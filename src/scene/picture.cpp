@@ -233,7 +233,7 @@ draw::Extent extent(const Room<D>& room, const sim::World<D>& world) {
   if (room.bounds) return {in_space<D>(room.bounds->low), in_space<D>(room.bounds->high)};
   std::vector<Vec> points;
   for (std::size_t i = 0; i < world.state.x.size(); ++i) {
-    const double reach = sim::reach(world.model.bodies[i].shape);
+    const double reach = sim::bounding_radius(world.model.bodies[i].shape);
     points.push_back(world.state.x[i] - Vec::Constant(reach));
     points.push_back(world.state.x[i] + Vec::Constant(reach));
   }

@@ -59,7 +59,7 @@ Count impacts(const sim::World<D>& world, double seconds) {
         std::any_of(before.blasts.begin(), before.blasts.end(), [](const auto& b) { return b.on; });
     for (int i = 0; i < int(skip.size()) && !blasting; ++i) {
       if (skip[i] || before.frozen[i]) continue;
-      const double rim = sim::reach(model.bodies[i].shape);
+      const double rim = sim::bounding_radius(model.bodies[i].shape);
       const bool held = std::any_of(before.grips.begin(), before.grips.end(),
                                     [&](const auto& grip) { return grip.body == i; });
       // alone: nothing else within thrice what both go
@@ -68,7 +68,7 @@ Count impacts(const sim::World<D>& world, double seconds) {
         if (j == i) continue;
         const double ways =
             3 * h * (std::sqrt(before.v[i].squaredNorm()) + std::sqrt(before.v[j].squaredNorm()) + g * h);
-        const double far = rim + sim::reach(model.bodies[j].shape) + ways;
+        const double far = rim + sim::bounding_radius(model.bodies[j].shape) + ways;
         alone = (before.x[i] - before.x[j]).squaredNorm() > far * far;
       }
       if (!alone) continue;

@@ -105,7 +105,7 @@ TEST(BulkInSpace, SeatedShapesHaveTheirAxesAndStandWhereTheyStood) {
     const MassProperties<3> sat = mass_properties(seated(whole, halves));
     EXPECT_LE(sat.center.norm(), 1e-13);
     EXPECT_LE((sat.axes - no_rotation<3>()).norm(), 1e-11);
-    EXPECT_NEAR(reach(seated(whole, halves)), box.half.norm(), 1e-13);
+    EXPECT_NEAR(bounding_radius(seated(whole, halves)), box.half.norm(), 1e-13);
   }
 }
 
@@ -141,7 +141,7 @@ TEST(BoundsInSpace, HoldEveryTipAndTouchOne) {
     }
     EXPECT_LE((around.lower - lower).norm(), 1e-14);
     EXPECT_LE((around.upper - upper).norm(), 1e-14);
-    EXPECT_NEAR(reach(whole), most, 1e-15);
+    EXPECT_NEAR(bounding_radius(whole), most, 1e-15);
   }
 }
 

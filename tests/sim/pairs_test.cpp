@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "sim/allocations.h"
+#include "sim/collide/may_touch.h"
 #include "sim/shapes.h"
 
 namespace obscura::sim {
@@ -132,6 +133,7 @@ TEST(MayTouch, IsNotOfGroupsThatIgnoreEachOtherNorOfAJoint) {
   for (const int group : {7, -2, 7, 5}) {
     model.bodies.emplace_back();
     model.bodies.back().group = group;
+    model.bodies.back().shape = ball_shape(1);
   }
   model.ignore = {{-2, 7}, {5, 5}, {99, 7}};
   Joint<2> joint;
@@ -147,6 +149,21 @@ TEST(MayTouch, IsNotOfGroupsThatIgnoreEachOtherNorOfAJoint) {
   EXPECT_FALSE(may(2, 3));
   model.joints[0].touching = true;
   EXPECT_TRUE(MayTouch<2>(model)(2, 3));
+}
+
+TEST(MayTouch, IsNotOfTwoFixedNorOfTwoPointsNorOfTheHandouts) {
+  Model<2> model;
+  for (int i = 0; i < 7; ++i) {
+    model.bodies.emplace_back();
+    model.bodies.back().shape = ball_shape(i == 2 || i == 3 ? 0 : 1);
+    model.bodies.back().fixed = i < 2;
+    model.bodies.back().handout = i == 6;
+  }
+  const MayTouch<2> may(model);
+  EXPECT_FALSE(may(0, 1)) << "both fixed";
+  EXPECT_FALSE(may(2, 3)) << "both points";
+  EXPECT_TRUE(may(0, 2) && may(1, 4) && may(3, 4) && may(4, 5));
+  for (int i = 0; i < 6; ++i) EXPECT_FALSE(may(i, 6) || may(6, i)) << "one keeps the handout's law";
 }
 
 }  // namespace

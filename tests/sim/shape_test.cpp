@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "sim/shapes.h"
 
@@ -55,6 +57,22 @@ TEST(Inertia, OfABallIsNoneUntilItRolls) {
   EXPECT_NEAR(solid_inertia(compound_shape({ball_shape(0.5)}), 8)[0], 1, 1e-15);
 }
 
+// twelve corners: the apothem, r cos(pi / 12)
+TEST(HalfThickness, IsTheLeastOfAShape) {
+  EXPECT_EQ(half_thickness(ball_shape(0)), 0);
+  EXPECT_EQ(half_thickness(ball_shape(0.3)), 0.3);
+  EXPECT_EQ(half_thickness(box_shape(0.4, 3)), 0.2);
+  std::vector<Vec<2>> corners;
+  for (int i = 0; i < 12; ++i) {
+    const double angle = i * std::numbers::pi / 6;
+    corners.emplace_back(2 * std::cos(angle), 2 * std::sin(angle));
+  }
+  const Shape<2> twelve = polygon_shape(corners);
+  EXPECT_NEAR(half_thickness(twelve), 2 * std::cos(std::numbers::pi / 12), 1e-15);
+  EXPECT_NEAR(half_thickness(as_polygon(box_shape(0.4, 3))), 0.2, 1e-16);
+  EXPECT_EQ(half_thickness(compound_shape({twelve, ball_shape(0.3)})), 0.3);
+}
+
 TEST(Bounds, HoldTheShapeTightly) {
   ShapeDice dice(6);
   for (int n = 0; n < 200; ++n) {
@@ -67,9 +85,9 @@ TEST(Bounds, HoldTheShapeTightly) {
     const Vec<2> center = at.x + at.arm(ball.center), r = Vec<2>::Constant(0.3);
     EXPECT_EQ(c.lower, a.lower.cwiseMin(bounds(polygon, at).lower).cwiseMin(center - r));
     EXPECT_EQ(c.upper, a.upper.cwiseMax(bounds(polygon, at).upper).cwiseMax(center + r));
-    EXPECT_LE((c.upper - at.x).maxCoeff(), reach(all) + 1e-15);
-    EXPECT_GE(reach(all), ball.center.norm() + 0.3);
-    EXPECT_EQ(reach(box), box.half.norm());
+    EXPECT_LE((c.upper - at.x).maxCoeff(), bounding_radius(all) + 1e-15);
+    EXPECT_GE(bounding_radius(all), ball.center.norm() + 0.3);
+    EXPECT_EQ(bounding_radius(box), box.half.norm());
   }
 }
 

@@ -71,7 +71,7 @@ class Outlines {
         std::min(scene.film.width / std::max(size.x(), 1e-9), scene.film.height / std::max(size.y(), 1e-9));
     const auto add = [&](const auto& world) {
       for (const auto& body : world.model.bodies)
-        reach_.push_back(std::max(sim::reach(body.shape), kSmallest / scale_));
+        reach_.push_back(std::max(sim::bounding_radius(body.shape), kSmallest / scale_));
     };
     std::visit(add, scene.world);
   }

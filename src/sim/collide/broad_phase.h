@@ -11,23 +11,6 @@
 
 namespace obscura::sim {
 
-/// Which bodies may touch: not those of groups that ignore each other, nor two on one joint that does not
-/// let them, be it broken or whole.
-template <int D>
-class MayTouch {
- public:
-  explicit MayTouch(const Model<D>& model);
-
-  bool operator()(int a, int b) const;
-
- private:
-  std::vector<int> group_;                 // one a body, numbered from 0 as they come
-  std::vector<char> ignored_;              // one a couple of groups
-  std::vector<std::pair<int, int>> held_;  // bodies on joints, a < b, sorted
-  std::vector<char> jointed_;              // one a body: whether it is in held_
-  std::size_t groups_ = 0;
-};
-
 /// Finds which bodies are near each other. Keeps the order it found for the next time, which only makes that
 /// time faster: what it finds depends on nothing but the arguments.
 template <int D>

@@ -14,7 +14,7 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr double kLeastAllowed = 5e-7, kMostAllowed = 1e-2;  // of a reach
+constexpr double kLeastAllowed = 5e-7, kMostAllowed = 1e-2;  // of a bounding radius
 constexpr double kFew = 50, kMany = 200;                     // bodies that move, beside points
 
 struct Point {
@@ -158,19 +158,13 @@ CoreShapes::CoreShapes(const Model<2>& model) {
     }
     core.count = int(x.size()) - core.first;
     assert(core.count <= Feature::kMostCorners && part <= Feature::kMostParts);
-    double thin = 1e300;
     for (int i = core.first; i < core.first + core.count; ++i) {
       const int next = i + 1 == core.first + core.count ? core.first : i + 1;
       const double tx = x[next] - x[i], ty = y[next] - y[i], l = std::sqrt(tx * tx + ty * ty);
       nx.push_back(l > 0 ? ty / l : 0), ny.push_back(l > 0 ? -tx / l : 1);
       d.push_back(nx[i] * x[i] + ny[i] * y[i]);
-      core.reach = std::max(core.reach, std::sqrt(x[i] * x[i] + y[i] * y[i]) + core.radius);
-      double deep = 0;
-      for (int j = core.first; j < core.first + core.count; ++j)
-        deep = std::max(deep, d[i] - (nx[i] * x[j] + ny[i] * y[j]));
-      thin = std::min(thin, deep);
     }
-    core.inside = core.count > 1 ? 0.5 * thin : core.radius;
+    core.bounding_radius = sim::bounding_radius(shape), core.half_thickness = sim::half_thickness(shape);
     all.push_back(core);
   };
   for (int body = 0; body < int(model.bodies.size()); ++body) {
@@ -181,10 +175,8 @@ CoreShapes::CoreShapes(const Model<2>& model) {
     } else {
       add(body, 0, shape);
     }
-    double far = 0, thin = 1e300;
-    for (int i = begin.back(); i < int(all.size()); ++i)
-      far = std::max(far, all[i].reach), thin = std::min(thin, all[i].inside);
-    reach.push_back(far), inside.push_back(thin);
+    bounding_radius.push_back(sim::bounding_radius(shape));
+    half_thickness.push_back(sim::half_thickness(shape));
   }
   begin.push_back(int(all.size()));
 }
@@ -203,7 +195,7 @@ double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, co
   const Reference rb = reference(cores, b, at_b, a, at_a);
   if (rb.gap >= margin) return rb.gap;
   // of nearly equals a's face, so that rounding does not choose
-  if (rb.gap > ra.gap + 1e-6 * std::min(a.inside, b.inside))
+  if (rb.gap > ra.gap + 1e-6 * std::min(a.half_thickness, b.half_thickness))
     return clip(cores, b, at_b, rb.face, a, at_a, true, out);
   return clip(cores, a, at_a, ra.face, b, at_b, false, out);
 }
@@ -215,7 +207,7 @@ Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const
     const Point p = corner(cores, a, at_a, feature.corner), q = corner(cores, b, at_b, feature.face);
     double nx = p.x - q.x, ny = p.y - q.y;
     const double l = std::sqrt(nx * nx + ny * ny);
-    if (l > 1e-12 * (a.reach + b.reach)) {
+    if (l > 1e-12 * (a.bounding_radius + b.bounding_radius)) {
       nx /= l, ny /= l;
     } else {
       nx = 0, ny = 1;

@@ -20,11 +20,11 @@ struct alignas(32) Pose {
 
 struct CoreShape {
   int body = 0, part = 0;
-  int first = 0, count = 0;   // corners, counter-clockwise; face i goes from corner i to the next
-  double radius = 0;          // m
-  double inside = 0;          // about how thick it is, m
-  double reach = 0;           // from the body's centre, m
-  double wide = 0, high = 0;  // of a box about the body's centre: half its sides, m; else 0
+  int first = 0, count = 0;    // corners, counter-clockwise; face i goes from corner i to the next
+  double radius = 0;           // m
+  double half_thickness = 0;   // m
+  double bounding_radius = 0;  // from the body's centre, m
+  double wide = 0, high = 0;   // of a box about the body's centre: half its sides, m; else 0
 };
 
 /// All cores of a model, those of a body side by side.
@@ -32,14 +32,14 @@ struct CoreShapes {
   explicit CoreShapes(const Model<2>& model);
 
   std::vector<CoreShape> all;
-  std::vector<int> begin;             // a body's first core; one more at the end
-  std::vector<double> x, y;           // corners in the body's frame, m
-  std::vector<double> nx, ny, d;      // faces: outward normal and its distance from the body's centre
-  std::vector<double> reach, inside;  // of bodies, m
-  /// Of the farther reach of two: how deep one may lie in the other for good. Where few lie it is next to
-  /// nothing. The few sweeps that many have leave some of those apart that they push out of one another, and
-  /// who stands apart bears nothing until it has fallen back: a heap that is put right to the last creeps for
-  /// ever.
+  std::vector<int> begin;         // a body's first core; one more at the end
+  std::vector<double> x, y;       // corners in the body's frame, m
+  std::vector<double> nx, ny, d;  // faces: outward normal and its distance from the body's centre
+  std::vector<double> bounding_radius, half_thickness;  // of bodies, m
+  /// Of the larger bounding radius of two: how deep one may lie in the other for good. Where few lie it is
+  /// next to nothing. The few sweeps that many have leave some of those apart that they push out of one
+  /// another, and who stands apart bears nothing until it has fallen back: a heap that is put right to the
+  /// last creeps for ever.
   double allowed = 0;
 };
 

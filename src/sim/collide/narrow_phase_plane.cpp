@@ -191,8 +191,8 @@ void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin,
   const ConvexPolygon &a = couple.of_a, &b = couple.of_b;
   const double far = margin + couple.radii();
   const Vec<2> middles = a_in_b * a.middle() - b.middle();
-  const double girths = std::max(far, 0.0) + a.girth() + b.girth();
-  if (middles.squaredNorm() > girths * girths) return;
+  const double radii = std::max(far, 0.0) + a.bounding_radius() + b.bounding_radius();
+  if (middles.squaredNorm() > radii * radii) return;
 
   if (a.faces() + b.faces() == 0) {
     if (couple.radii() > 0) keep(couple.gap(Kind::corners, 0, 0, middles.norm()), margin, out);

@@ -212,7 +212,9 @@ class Shared {
     } else {
       its_.push_back(seen(other, 0)), its_.push_back(seen(other, 1));
     }
-    const double size = std::min(base.girth(), other.girth() > 0 ? other.girth() : base.girth());
+    const double size =
+        std::min(base.bounding_radius(),
+                 other.bounding_radius() > 0 ? other.bounding_radius() : base.bounding_radius());
     aligned_ = kAligned * size;
 
     const bool other_first = touching.base_is_b || !parallel_;
@@ -363,7 +365,8 @@ void nearest_features(const Couple& couple, const Touching* touching, double mar
       if (here.apart < best.apart) best = here, of_a = i, of_b = k;
     }
   }
-  const double size = std::min(a.girth() > 0 ? a.girth() : b.girth(), b.girth() > 0 ? b.girth() : a.girth());
+  const double size = std::min(a.bounding_radius() > 0 ? a.bounding_radius() : b.bounding_radius(),
+                               b.bounding_radius() > 0 ? b.bounding_radius() : a.bounding_radius());
   const double aligned = kAligned * size;
   if (best.apart <= aligned && touching) {
     // at one place and sharp: the deepest corner at the touching face
@@ -422,8 +425,8 @@ void nearest_features(const Couple& couple, const Touching* touching, double mar
 void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidate<3>>& out) {
   const Polyhedron &a = couple.of_a, &b = couple.of_b;
   const double far = margin + couple.radii();
-  const double girths = std::max(far, 0.0) + a.girth() + b.girth();
-  if ((a.middle() - b.middle()).squaredNorm() > girths * girths) return;
+  const double radii = std::max(far, 0.0) + a.bounding_radius() + b.bounding_radius();
+  if ((a.middle() - b.middle()).squaredNorm() > radii * radii) return;
 
   if (a.faces() + b.faces() == 0) {
     if (couple.radii() > 0) nearest_features(couple, nullptr, margin, out);
@@ -443,7 +446,7 @@ void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidat
                           std::max({by_a.value, by_b.value, by_edges.value})};
   if (touching.by.face < 0) return;  // what stands nowhere, of a state that is no more
   if (touching.other.edges() == 0) {
-    const double slack = kAligned * touching.base.girth();
+    const double slack = kAligned * touching.base.bounding_radius();
     if (touching.best <= 0 ||
         over(touching.base, touching.by.face, touching.other.corner(touching.by.corner), slack)) {
       return keep(touching.other_at_base(couple, touching.by.corner, touching.by.value), margin, out);

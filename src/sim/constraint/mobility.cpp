@@ -36,7 +36,7 @@ Mobility<D>::Mobility(const Model<D>& model)
       slow_(slow(model)),
       g_(std::sqrt(model.gravity.squaredNorm())),
       columns_(model.bodies.size(), -1) {
-  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
+  for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
 }
 
 template <int D>
@@ -112,8 +112,9 @@ template <int D>
 double Mobility<D>::fastest() const {
   double most = 0;
   for (const Moving& it : bodies_) {
-    most = std::max(most, std::sqrt(it.v.template head<D>().squaredNorm()) +
-                              rims_[it.body] * std::sqrt(it.v.template tail<kAngular<D>>().squaredNorm()));
+    most = std::max(
+        most, std::sqrt(it.v.template head<D>().squaredNorm()) +
+                  bounding_radius_[it.body] * std::sqrt(it.v.template tail<kAngular<D>>().squaredNorm()));
   }
   return most;
 }

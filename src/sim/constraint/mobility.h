@@ -87,7 +87,7 @@ class Mobility {
   const Model<D>& model_;
   Slow slow_;
   double g_ = 0;
-  std::vector<double> rims_;
+  std::vector<double> bounding_radius_;
   std::vector<int> columns_;  // of a body in bodies_, or -1
   std::vector<Moving> bodies_;
   std::vector<Held> rows_;

@@ -58,7 +58,7 @@ std::optional<Trouble> DivergenceMonitor<D>::ran_away(const State<D>& state, dou
       return trouble("velocity", fate<D>(state.v[body], "1e6 room heights a second"));
     const int k = turning(state, body);
     if (k < 0) continue;
-    const double fastest = limit / reach(model_.bodies[body].shape);
+    const double fastest = limit / bounding_radius(model_.bodies[body].shape);
     constexpr int kSpin = kAngular<D>;
     if (apart<kSpin>(state.spin[k], fastest)) {
       return trouble("spin", fate<kSpin>(state.spin[k], "1e6 room heights a second at a corner"));

@@ -175,7 +175,7 @@ bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const BodyMotion<
     const Bond<D>& bond = model_.bonds[k];
     const Vec<D> other = bond.b < 0 ? state.x[bond.a] : state.x[bond.b];
     double l = (state.x[bond.a] - other).norm() / 2;
-    if (l == 0) l = std::max(reach(model_.bodies[bond.a].shape), 1e-9 * model_.scale);
+    if (l == 0) l = std::max(bounding_radius(model_.bodies[bond.a].shape), 1e-9 * model_.scale);
     levers.push_back({(state.x[bond.a] + other) / 2, l});
     least = std::min(least, l), weakest = std::min(weakest, bond.strength);
   }

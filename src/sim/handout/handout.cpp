@@ -18,9 +18,10 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kRounds = 16;         // over the walls one by one; then all of them at once
-constexpr double kStill = 1e-26;    // square of the part of a speed that is its rounding
-constexpr double kTogether = 1e-9;  // of a body's reach: points this near the wall touch in the same instant
+constexpr int kRounds = 16;       // over the walls one by one; then all of them at once
+constexpr double kStill = 1e-26;  // square of the part of a speed that is its rounding
+constexpr double kTogether =
+    1e-9;  // of a body's bounding radius: points this near the wall touch in the same instant
 constexpr double kOutside = 1e-13;  // of the room's height: a depth that is rounding
 
 // moves the wrong way, by more than the rounding of the speed it came with (squared)
@@ -43,7 +44,7 @@ template <int D>
 Handout<D>::Handout(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model), paths_(paths), tips_(model.bodies) {
   springs_.resize(model.bodies.size());
-  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
+  for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
   const int most = tips_.most();
   arms_.resize(most), distances_.resize(most), striking_.resize(most), met_.reserve(most);
   for (int spring = 0; spring < int(model.springs.size()); ++spring) {
@@ -59,7 +60,7 @@ void Handout<D>::look(const State<D>& state, int first, int count, std::vector<i
   if (int(signs_.size()) < count) signs_.resize(count);
   std::fill_n(signs_.begin(), count, 0);
   for (const Wall<D>& wall : model_.walls) {
-    mark<D>(count, state.x[first].data(), rims_.data() + first, wall, signs_.data());
+    mark<D>(count, state.x[first].data(), bounding_radius_.data() + first, wall, signs_.data());
   }
   for (int i = 0; i < count; ++i) {
     if (signs_[i] < 0) suspects.push_back(first + i);
@@ -97,7 +98,7 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
     if (!s.centred) {
       s.at = body_motion(state, body);
       for (std::size_t i = 0; i < s.tips.size(); ++i) arms_[i] = s.at.arm(s.tips[i].at);
-      s.speed = s.at.v.squaredNorm() + s.at.w.squaredNorm() * rims_[body] * rims_[body];
+      s.speed = s.at.v.squaredNorm() + s.at.w.squaredNorm() * bounding_radius_[body] * bounding_radius_[body];
       if (!extended(s)) continue;
     } else {
       s.at.x = state.x[body], s.at.v = state.v[body];
@@ -206,7 +207,7 @@ template <int D>
 bool Handout<D>::meet(Striker& s, int wall) {
   const Wall<D>& w = model_.walls[wall];
   const double middle = (s.at.x - w.point).dot(w.normal);
-  const double span = rims_[s.body - model_.bodies.data()];
+  const double span = bounding_radius_[s.body - model_.bodies.data()];
   if (middle > span) return false;
 
   double depth = -1;
@@ -238,7 +239,7 @@ bool Handout<D>::meet(Striker& s, int wall) {
 // all walls that are touched or passed, at once: what a narrow wedge comes to
 template <int D>
 void Handout<D>::meet_all(Striker& s) {
-  const double span = rims_[s.body - model_.bodies.data()];
+  const double span = bounding_radius_[s.body - model_.bodies.data()];
   const double near = std::max(kTogether * span, kOutside * model_.scale);
   Row rows[kMostRows];
   int n = 0;

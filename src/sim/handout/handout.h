@@ -61,7 +61,7 @@ class Handout {
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
-  std::vector<double> rims_;  // how far each body reaches, m
+  std::vector<double> bounding_radius_;  // how far each body reaches, m
   SupportVertices<D> tips_;
   std::vector<std::vector<int>> springs_;  // of each body
   std::vector<std::int64_t> signs_;        // a block's: negative where a body is outside

@@ -52,15 +52,15 @@ ConvexPolygon::ConvexPolygon(const Shape<2>& shape) : shape_(&shape) {
     case ShapeKind::box:
       corners_ = 4;
       middle_ = shape.center;
-      girth_ = shape.half.norm();
+      bounding_radius_ = shape.half.norm();
       break;
     case ShapeKind::polygon:
       corners_ = int(shape.vertices.size());
       for (const Vec<2>& vertex : shape.vertices) middle_ += vertex / corners_;
       for (const Vec<2>& vertex : shape.vertices) {
-        girth_ = std::max(girth_, (vertex - middle_).squaredNorm());
+        bounding_radius_ = std::max(bounding_radius_, (vertex - middle_).squaredNorm());
       }
-      girth_ = std::sqrt(girth_);
+      bounding_radius_ = std::sqrt(bounding_radius_);
       break;
     case ShapeKind::point:
     case ShapeKind::compound:

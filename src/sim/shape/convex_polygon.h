@@ -33,7 +33,7 @@ class ConvexPolygon {
 
   /// A circle that holds the core without its radius, around `middle`.
   Vec<2> middle() const { return middle_; }
-  double girth() const { return girth_; }
+  double bounding_radius() const { return bounding_radius_; }
 
   /// Which corner lies farthest along d, the first of equals.
   int farthest(const Vec<2>& d) const;
@@ -47,7 +47,7 @@ class ConvexPolygon {
  private:
   const Shape<2>* shape_;
   int corners_ = 1;
-  double radius_ = 0, girth_ = 0;
+  double radius_ = 0, bounding_radius_ = 0;
   Vec<2> middle_ = Vec<2>::Zero();
 };
 

@@ -58,11 +58,11 @@ Polyhedron::Polyhedron(const Shape<3>& shape, const BodyMotion<3>& at, const Vec
       break;
     case ShapeKind::box:
       corners_ = 8, edges_ = 12, faces_ = 6;
-      girth_ = std::sqrt(shape.half.squaredNorm());
+      bounding_radius_ = std::sqrt(shape.half.squaredNorm());
       break;
     case ShapeKind::capsule:
       corners_ = 2, edges_ = 1;
-      radius_ = shape.radius, girth_ = shape.half[1];
+      radius_ = shape.radius, bounding_radius_ = shape.half[1];
       break;
     case ShapeKind::hull: {
       corners_ = int(shape.vertices.size()), faces_ = int(shape.faces.size());
@@ -70,9 +70,9 @@ Polyhedron::Polyhedron(const Shape<3>& shape, const BodyMotion<3>& at, const Vec
       for (const Vec<3>& vertex : shape.vertices) middle += vertex;
       middle /= corners_;
       for (const Vec<3>& vertex : shape.vertices) {
-        girth_ = std::max(girth_, (vertex - middle).squaredNorm());
+        bounding_radius_ = std::max(bounding_radius_, (vertex - middle).squaredNorm());
       }
-      girth_ = std::sqrt(girth_);
+      bounding_radius_ = std::sqrt(bounding_radius_);
       middle_ = x_ + turn_ * middle;
       find_edges();
       break;

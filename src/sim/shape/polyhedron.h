@@ -55,7 +55,7 @@ class Polyhedron {
 
   /// A sphere that holds the core without its radius, around `middle`.
   const Vec<3>& middle() const { return middle_; }
-  double girth() const { return girth_; }
+  double bounding_radius() const { return bounding_radius_; }
 
   /// Which corner lies farthest along d, the first of equals.
   int farthest(const Vec<3>& d) const;
@@ -73,7 +73,7 @@ class Polyhedron {
 
   const Shape<3>* shape_;
   int corners_ = 1, edges_ = 0, faces_ = 0;
-  double radius_ = 0, girth_ = 0;
+  double radius_ = 0, bounding_radius_ = 0;
   Vec<3> x_, middle_;
   Rotation<3> turn_;         // room from body
   Rotation<3> axes_, arms_;  // of a box or capsule

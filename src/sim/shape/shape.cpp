@@ -108,8 +108,67 @@ int SupportVertices<D>::most() const {
   return most;
 }
 
+namespace {
+
+// the least half depth below a face of a hull
+double half_hull_thickness(const Shape<3>& hull) {
+  double least = 1e300;
+  for (const std::vector<int>& face : hull.faces) {
+    const Vec<3>& p = hull.vertices[face[0]];
+    const Vec<3> n = (hull.vertices[face[1]] - p).cross(hull.vertices[face[2]] - p);
+    double most = 0;
+    for (const Vec<3>& v : hull.vertices) most = std::max(most, -n.dot(v - p));
+    least = std::min(least, 0.5 * most / std::sqrt(n.squaredNorm()));
+  }
+  return least;
+}
+double half_hull_thickness(const Shape<2>&) { return 0; }
+
+}  // namespace
+
 template <int D>
-double reach(const Shape<D>& shape) {
+double half_thickness(const Shape<D>& shape) {
+  switch (shape.kind) {
+    case ShapeKind::point:
+      return 0;
+    case ShapeKind::hull:
+      return half_hull_thickness(shape);
+    case ShapeKind::ball:
+    case ShapeKind::capsule:
+      return shape.radius;
+    case ShapeKind::box:
+      return shape.half.minCoeff();
+    case ShapeKind::polygon: {
+      // the least half width across an edge: the vertex farthest from an edge comes after that of the edge
+      // before
+      double least = 1e300;
+      const std::size_t n = shape.vertices.size();
+      std::size_t farthest = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const Vec<D> edge = shape.vertices[(i + 1) % n] - shape.vertices[i];
+        const double length = edge.norm();
+        const auto across = [&](std::size_t k) {
+          const Vec<D> d = shape.vertices[k % n] - shape.vertices[i];
+          return std::abs(edge[0] * d[1] - edge[1] * d[0]) / length;
+        };
+        farthest = std::max(farthest, i + 1);
+        double most = across(farthest);
+        for (double next; farthest < i + n && (next = across(farthest + 1)) >= most; ++farthest) most = next;
+        least = std::min(least, 0.5 * most);
+      }
+      return least;
+    }
+    case ShapeKind::compound: {
+      double least = 1e300;
+      for (const Shape<D>& part : shape.parts) least = std::min(least, half_thickness(part));
+      return least;
+    }
+  }
+  return 0;
+}
+
+template <int D>
+double bounding_radius(const Shape<D>& shape) {
   double most = 0;
   switch (shape.kind) {
     case ShapeKind::point:
@@ -126,7 +185,7 @@ double reach(const Shape<D>& shape) {
         most = std::max(most, tip.at.norm() + tip.radius);
       break;
     case ShapeKind::compound:
-      for (const Shape<D>& part : shape.parts) most = std::max(most, reach(part));
+      for (const Shape<D>& part : shape.parts) most = std::max(most, bounding_radius(part));
       break;
   }
   return most;
@@ -177,14 +236,16 @@ template AngularVec<2> inertia<2>(const Shape<2>&, double);
 template Shape<2> seated<2>(const Shape<2>&, const MassProperties<2>&);
 template std::vector<SupportVertex<2>> support_vertices<2>(const Shape<2>&);
 template class SupportVertices<2>;
-template double reach<2>(const Shape<2>&);
+template double half_thickness<2>(const Shape<2>&);
+template double bounding_radius<2>(const Shape<2>&);
 template Bounds<2> bounds<2>(const Shape<2>&, const BodyMotion<2>&);
 template AngularVec<3> solid_inertia<3>(const Shape<3>&, double);
 template AngularVec<3> inertia<3>(const Shape<3>&, double);
 template Shape<3> seated<3>(const Shape<3>&, const MassProperties<3>&);
 template std::vector<SupportVertex<3>> support_vertices<3>(const Shape<3>&);
 template class SupportVertices<3>;
-template double reach<3>(const Shape<3>&);
+template double half_thickness<3>(const Shape<3>&);
+template double bounding_radius<3>(const Shape<3>&);
 template Bounds<3> bounds<3>(const Shape<3>&, const BodyMotion<3>&);
 
 }  // namespace obscura::sim

@@ -92,9 +92,15 @@ class SupportVertices {
   std::vector<int> first_;  // of each body; one more at the end
 };
 
+/// Half the least thickness, m: the radius of a ball or capsule, of a convex shape half the least distance
+/// from an edge or face to the vertex farthest below it, of several parts the least; 0 of a point. What goes
+/// no farther than this in a step does not pass through it.
+template <int D>
+double half_thickness(const Shape<D>& shape);
+
 /// The farthest the shape reaches from its centre (the origin of its frame), m.
 template <int D>
-double reach(const Shape<D>& shape);
+double bounding_radius(const Shape<D>& shape);
 
 /// An upright box in the room, m.
 template <int D>

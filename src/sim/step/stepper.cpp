@@ -62,7 +62,7 @@ Stepper<D>::Stepper(const Model<D>& model)
     for (int axis = 0; axis < D; ++axis) drag_.push_back(body.drag / body.mass);
     drag = drag || body.drag != 0;
     if (!body.turns()) continue;
-    spin_limits_.push_back(fastest / reach(body.shape));
+    spin_limits_.push_back(fastest / bounding_radius(body.shape));
     if (wobbles<D>(body.inertia))
       spin_limits_.back() = std::min(spin_limits_.back(), kFarthestTurn * value(model.rate));
   }

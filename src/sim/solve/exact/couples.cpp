@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "sim/collide/broad_phase.h"
+#include "sim/collide/may_touch.h"
 
 namespace obscura::sim {
 

@@ -26,22 +26,6 @@ constexpr double kSlight = 1e-6;   // of the largest force: what may pull before
 
 }  // namespace
 
-template <int D>
-bool ExactSolver<D>::may_touch(int a, int b) const {
-  const Body<D>&p = model_.bodies[a], &q = model_.bodies[b];
-  if ((p.fixed && q.fixed) || p.handout || q.handout) return false;
-  if (p.shape.kind == ShapeKind::point && q.shape.kind == ShapeKind::point) return false;
-  for (const auto& [g, h] : model_.ignore) {
-    if ((p.group == g && q.group == h) || (p.group == h && q.group == g)) return false;
-  }
-  for (const Joint<D>& joint : model_.joints) {
-    if (!joint.touching &&
-        ((joint.a.body == a && joint.b.body == b) || (joint.a.body == b && joint.b.body == a)))
-      return false;
-  }
-  return true;
-}
-
 // every gap below the margin, if they are near at all
 template <int D>
 template <class Found>
@@ -50,10 +34,10 @@ void ExactSolver<D>::near(const std::vector<BodyMotion<D>>& at, Couple couple, d
   some_.clear();
   if (b < 0) {
     const Wall<D>& wall = model_.walls[-1 - b];
-    if ((at[a].x - wall.point).dot(wall.normal) > rims_[a] + margin) return;
+    if ((at[a].x - wall.point).dot(wall.normal) > bounding_radius_[a] + margin) return;
     collide(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, some_);
   } else {
-    const double far = rims_[a] + rims_[b] + margin;
+    const double far = bounding_radius_[a] + bounding_radius_[b] + margin;
     if ((at[a].x - at[b].x).squaredNorm() > far * far) return;
     collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin, some_);
   }
@@ -104,7 +88,7 @@ double ExactSolver<D>::way(const State<D>& state, int body, double h) const {
   sum = std::max(sum, h * std::sqrt(std::max(begun_.v[body].squaredNorm(), state.v[body].squaredNorm())));
   if (const int k = turning(state, body); k >= 0) {
     const double fast = std::sqrt(std::max(begun_.spin[k].squaredNorm(), state.spin[k].squaredNorm()));
-    sum += rims_[body] * std::min(2.0, h * fast);
+    sum += bounding_radius_[body] * std::min(2.0, h * fast);
   }
   return sum;
 }
@@ -116,9 +100,10 @@ bool ExactSolver<D>::may_close(const State<D>& state, double h, Couple couple) c
   if (!response_.moves(a) && !response_.moves(b)) return false;
   if (b < 0) {
     const Wall<D>& wall = model_.walls[-1 - b];
-    return (stances_[a].x - wall.point).dot(wall.normal) <= rims_[a] + way(state, a, h) + closed_;
+    return (stances_[a].x - wall.point).dot(wall.normal) <= bounding_radius_[a] + way(state, a, h) + closed_;
   }
-  const double far = rims_[a] + rims_[b] + way(state, a, h) + way(state, b, h) + closed_;
+  const double far =
+      bounding_radius_[a] + bounding_radius_[b] + way(state, a, h) + way(state, b, h) + closed_;
   return (stances_[a].x - stances_[b].x).squaredNorm() <= far * far;
 }
 
@@ -147,8 +132,9 @@ double ExactSolver<D>::closing(const State<D>& state, double h, Couple couple) {
 
   // walls are never left behind: the end tells. Bodies may pass through each other between
   double high = kNever, before = 0;
-  const double thin =
-      b < 0 ? 0 : std::min(thin_[a] > 0 ? thin_[a] : thin_[b], thin_[b] > 0 ? thin_[b] : thin_[a]);
+  const double thin = b < 0 ? 0
+                            : std::min(half_thickness_[a] > 0 ? half_thickness_[a] : half_thickness_[b],
+                                       half_thickness_[b] > 0 ? half_thickness_[b] : half_thickness_[a]);
   const double pieces = thin > 0 && std::isfinite(ways) ? ways / (kFine * thin) : 0;
   const int looks = int(std::min<double>(pieces, kMostLooks - 1)) + 1;
   for (int i = 1; i <= looks; ++i) {
@@ -159,8 +145,9 @@ double ExactSolver<D>::closing(const State<D>& state, double h, Couple couple) {
       break;
     }
     // no look is needed before what is between them can be used up
-    const double apart =
-        b < 0 ? 0 : std::sqrt((stances_[a].x - stances_[b].x).squaredNorm()) - rims_[a] - rims_[b];
+    const double apart = b < 0 ? 0
+                               : std::sqrt((stances_[a].x - stances_[b].x).squaredNorm()) -
+                                     bounding_radius_[a] - bounding_radius_[b];
     const double spare = apart / (kSteepest * ways) * looks - 1;
     if (spare >= 1) i += int(std::min(spare, double(looks - i)));
     before = double(i) / looks;
@@ -402,11 +389,9 @@ void ExactSolver<D>::smooth(State<D>& state, double t, double h) {
 
 template double ExactSolver<2>::stretch(State<2>&, double, double, bool&);
 template void ExactSolver<2>::find(const State<2>&, double);
-template bool ExactSolver<2>::may_touch(int, int) const;
 template double ExactSolver<2>::grasp(const Held&, const Eigen::VectorXd&) const;
 template double ExactSolver<3>::stretch(State<3>&, double, double, bool&);
 template void ExactSolver<3>::find(const State<3>&, double);
-template bool ExactSolver<3>::may_touch(int, int) const;
 template double ExactSolver<3>::grasp(const Held&, const Eigen::VectorXd&) const;
 template double ExactSolver<2>::gap_of(const ContactKey&, double);
 template double ExactSolver<3>::gap_of(const ContactKey&, double);

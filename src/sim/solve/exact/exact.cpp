@@ -18,20 +18,6 @@ namespace obscura::sim {
 
 namespace {
 
-// the least half depth below a face of a hull, m
-double hull_thickness(const Shape<3>& hull) {
-  double least = 1e300;
-  for (const std::vector<int>& face : hull.faces) {
-    const Vec<3>& p = hull.vertices[face[0]];
-    const Vec<3> n = (hull.vertices[face[1]] - p).cross(hull.vertices[face[2]] - p);
-    double most = 0;
-    for (const Vec<3>& v : hull.vertices) most = std::max(most, -n.dot(v - p));
-    least = std::min(least, 0.5 * most / std::sqrt(n.squaredNorm()));
-  }
-  return least;
-}
-double hull_thickness(const Shape<2>&) { return 0; }
-
 constexpr double kCreep = 1e-6;      // of sqrt(g L)
 constexpr double kSunk = 0.1;        // of the thinnest: how far two may come into each other in one piece
 constexpr double kMostPieces = 200;  // of a step that is done roughly
@@ -43,53 +29,15 @@ constexpr int kMostRounds = 8;       // of stepping again what got farther than 
 constexpr int kMostLoneCuts =
     50000;  // of a step, by a body that meets walls alone: a bounce takes microseconds
 
-// the least thickness of a shape, m
-template <int D>
-double thickness(const Shape<D>& shape) {
-  switch (shape.kind) {
-    case ShapeKind::point:
-      return 0;
-    case ShapeKind::hull:
-      return hull_thickness(shape);
-    case ShapeKind::ball:
-    case ShapeKind::capsule:
-      return shape.radius;
-    case ShapeKind::box:
-      return shape.half.minCoeff();
-    case ShapeKind::polygon: {
-      // the least half width across an edge: the vertex farthest from an edge comes after that of the edge
-      // before
-      double least = 1e300;
-      const std::size_t n = shape.vertices.size();
-      std::size_t farthest = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        const Vec<D> edge = shape.vertices[(i + 1) % n] - shape.vertices[i];
-        const double length = edge.norm();
-        const auto across = [&](std::size_t k) {
-          const Vec<D> d = shape.vertices[k % n] - shape.vertices[i];
-          return std::abs(edge[0] * d[1] - edge[1] * d[0]) / length;
-        };
-        farthest = std::max(farthest, i + 1);
-        double most = across(farthest);
-        for (double next; farthest < i + n && (next = across(farthest + 1)) >= most; ++farthest) most = next;
-        least = std::min(least, 0.5 * most);
-      }
-      return least;
-    }
-    case ShapeKind::compound: {
-      double least = 1e300;
-      for (const Shape<D>& part : shape.parts) least = std::min(least, thickness(part));
-      return least;
-    }
-  }
-  return 0;
-}
-
 }  // namespace
 
 template <int D>
 ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
-    : model_(model), integrate_(sim::integrate(model.integrator)), free_(model, paths), response_(model) {
+    : model_(model),
+      may_touch_(model),
+      integrate_(sim::integrate(model.integrator)),
+      free_(model, paths),
+      response_(model) {
   const double g = std::sqrt(model.gravity.squaredNorm()), h = 1 / value(model.rate);
   const bool exact = model.collision == Collision::event;
   pace_ = std::sqrt(g * model.scale);
@@ -104,8 +52,8 @@ ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& p
   if (!exact) cone_.enough = 1e-7;
   for (const Joint<D>& joint : model.joints) row_joints_ += !joint.linked;
   for (const Body<D>& body : model.bodies) {
-    rims_.push_back(sim::reach(body.shape));
-    thin_.push_back(thickness(body.shape));
+    bounding_radius_.push_back(sim::bounding_radius(body.shape));
+    half_thickness_.push_back(half_thickness(body.shape));
   }
   if (whom == Serves::all) {
     list_couples<D>(model, [&](int a, int b) { couples_.push_back({a, b}); });
@@ -345,14 +293,14 @@ template <int D>
 double ExactSolver<D>::unseen(const State<D>& state) const {
   double least = 1e300;
   for (const int body : active_.subset.bodies) {
-    if (thin_[body] > 0) least = std::min(least, thin_[body]);
+    if (half_thickness_[body] > 0) least = std::min(least, half_thickness_[body]);
   }
   double fastest = 0;
   for (const int body : active_.subset.bodies) {
     if (!response_.moves(body)) continue;
     double speed = std::sqrt(state.v[body].squaredNorm());
     if (const int k = turning(state, body); k >= 0)
-      speed += rims_[body] * std::sqrt(state.spin[k].squaredNorm());
+      speed += bounding_radius_[body] * std::sqrt(state.spin[k].squaredNorm());
     fastest = std::max(fastest, speed);
   }
   return fastest > 0 ? kSunk * least / fastest : 1e300;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/collide/may_touch.h"
 #include "sim/constraint/joints/joint.h"
 #include "sim/constraint/material.h"
 #include "sim/constraint/response.h"
@@ -165,7 +166,6 @@ class ExactSolver final : public ContactSolver<D>, private System {
   AngularVec<D> turn_part(const State<D>& state, const Joint<D>& joint, double h, double part) const;
   void find(const State<D>& state, double margin);
   double gap_of(const ContactKey& key, double otherwise);
-  bool may_touch(int a, int b) const;
   template <class Found>
   void near(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
   BodyMotion<D> between(const State<D>& state, int body, double h, double part) const;
@@ -173,24 +173,25 @@ class ExactSolver final : public ContactSolver<D>, private System {
   Material material(const ContactKey& key) const { return sim::material(model_, key.a, key.b); }
 
   const Model<D>& model_;
+  MayTouch<D> may_touch_;
   Integrate* integrate_;
   ForwardDynamics<D> free_;
   Stages stages_;
   Cone<D> cone_;
 
-  int row_joints_ = 0;           // that no chain holds
-  double closed_ = 0;            // m: gaps up to this touch
-  double rest_ = 0;              // m/s: slower impacts do not bounce
-  double pace_ = 0;              // m/s: sqrt(g L), or L a second
-  double still_ = 0;             // m/s: slower is not at all, at the speeds at hand
-  int most_cuts_ = 0;            // of a step, by one body among others
-  int most_openings_ = 0;        // cuts of a step by what lets go
-  int patience_ = 0;             // cuts of a step by one body before rest begins to grow
-  double budget_ = 0;            // rows^3 that a step may solve before it is done roughly
-  double short_ = 0;             // of a step: what is done at once where there is no other way
-  std::vector<double> rims_;     // how far each body reaches, m
-  std::vector<double> thin_;     // the least thickness of each body, m; 0 of a point
-  std::vector<Couple> couples_;  // bodies that may touch others, or walls
+  int row_joints_ = 0;                   // that no chain holds
+  double closed_ = 0;                    // m: gaps up to this touch
+  double rest_ = 0;                      // m/s: slower impacts do not bounce
+  double pace_ = 0;                      // m/s: sqrt(g L), or L a second
+  double still_ = 0;                     // m/s: slower is not at all, at the speeds at hand
+  int most_cuts_ = 0;                    // of a step, by one body among others
+  int most_openings_ = 0;                // cuts of a step by what lets go
+  int patience_ = 0;                     // cuts of a step by one body before rest begins to grow
+  double budget_ = 0;                    // rows^3 that a step may solve before it is done roughly
+  double short_ = 0;                     // of a step: what is done at once where there is no other way
+  std::vector<double> bounding_radius_;  // how far each body reaches, m
+  std::vector<double> half_thickness_;   // of each body, m; 0 of a point
+  std::vector<Couple> couples_;          // bodies that may touch others, or walls
 
   // groups of a step: the members of each lie side by side in these lists
   Group active_;  // that is stepped

@@ -72,7 +72,7 @@ void ExactSolver<D>::join_near(const State<D>& state) {
   for (const Couple& couple : couples_) {
     const auto [a, b] = couple;
     if (b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) continue;
-    const double far = rims_[a] + rims_[b] + reach_[a] + reach_[b] + closed_;
+    const double far = bounding_radius_[a] + bounding_radius_[b] + reach_[a] + reach_[b] + closed_;
     if ((first_.x[a] - first_.x[b]).squaredNorm() <= far * far) near_.join(a, b);
   }
 }
@@ -108,14 +108,14 @@ void ExactSolver<D>::list_groups(const State<D>& state) {
     const int body = a_fixed ? b : a;
     if (!a_fixed && b >= 0 && !model_.bodies[b].fixed) continue;
     if (kind[near_.root(body)] != kFree) continue;
-    const double far = rims_[body] + reach_[body] + closed_;
+    const double far = bounding_radius_[body] + reach_[body] + closed_;
     bool meets;
     if (b < 0) {
       const Wall<D>& wall = model_.walls[-1 - b];
       meets = (first_.x[body] - wall.point).dot(wall.normal) <= far;
     } else {
       const int other = a_fixed ? a : b;
-      const double all = far + rims_[other];
+      const double all = far + bounding_radius_[other];
       meets = (first_.x[body] - stances_[other].x).squaredNorm() <= all * all;
     }
     if (meets) kind[near_.root(body)] = kBusy;
@@ -201,7 +201,7 @@ void ExactSolver<D>::step_alone(State<D>& state, int body, double t, double h) {
   for (int wall = 0; wall < int(model_.walls.size()); ++wall) group_couples_.push_back({body, -1 - wall});
   for (const int fixed : fixed_) {
     const auto [a, b] = std::minmax(body, fixed);
-    if (may_touch(a, b)) group_couples_.push_back({a, b});
+    if (may_touch_(a, b)) group_couples_.push_back({a, b});
   }
   active_ = {};
   active_.root = body, active_.lone = true;

@@ -38,7 +38,7 @@ LoneBodies<D>::LoneBodies(const Model<D>& model, const std::vector<Path<D>>& pat
   };
   for (int i = 0; i < n; ++i) {
     const Body<D>& body = model.bodies[i];
-    rims_.push_back(reach(body.shape));
+    bounding_radius_.push_back(bounding_radius(body.shape));
     points_.push_back(body.shape.kind == ShapeKind::point);
     if (body.fixed) fixed_.push_back(i);
     if (body.fixed || body.handout || body.linked) tie(i);
@@ -56,15 +56,15 @@ bool LoneBodies<D>::strikes(const State<D>& state, int body, double h) const {
   const double least = g_ * h + kSlow * model_.scale, fall = 2 * g_ * h * h + kNear * model_.scale;
   double skin = 0;  // speed of its skin by its spin
   if (const int k = turning(state, body); k >= 0 && !round(shape))
-    skin = rims_[body] * std::sqrt(state.spin[k].squaredNorm());
+    skin = bounding_radius_[body] * std::sqrt(state.spin[k].squaredNorm());
   for (const Wall<D>& wall : model_.walls) {
     const double u = v.dot(wall.normal) - skin;
-    if (u < -least && (x - wall.point).dot(wall.normal) - rims_[body] + h * u < fall) return true;
+    if (u < -least && (x - wall.point).dot(wall.normal) - bounding_radius_[body] + h * u < fall) return true;
   }
   const double fast = std::sqrt(v.squaredNorm()) + skin;
   for (const int other : fixed_) {
     if (fast <= least) break;
-    const double far = rims_[body] + rims_[other] + h * fast + fall;
+    const double far = bounding_radius_[body] + bounding_radius_[other] + h * fast + fall;
     if ((x - state.x[other]).squaredNorm() < far * far) return true;
   }
   return false;
@@ -77,7 +77,7 @@ void LoneBodies<D>::leave_out_near(const State<D>& state) {
   const auto apart = [&](int a, int b) {
     const Shape<D>&p = model_.bodies[a].shape, &q = model_.bodies[b].shape;
     if (p.kind == ShapeKind::point && q.kind == ShapeKind::point) return true;
-    const double far = rims_[a] + rims_[b] + ways_[a] + ways_[b];
+    const double far = bounding_radius_[a] + bounding_radius_[b] + ways_[a] + ways_[b];
     return (state.x[a] - state.x[b]).squaredNorm() > far * far;
   };
   if (candidates_.size() * std::size_t(n) <= kFew) {
@@ -92,7 +92,7 @@ void LoneBodies<D>::leave_out_near(const State<D>& state) {
   std::fill(still_.begin(), still_.end(), 1);
   for (const int i : candidates_) still_[i] = 0;
   for (int i = 0; i < n; ++i) {
-    const Vec<D> far = Vec<D>::Constant(rims_[i] + ways_[i]);
+    const Vec<D> far = Vec<D>::Constant(bounding_radius_[i] + ways_[i]);
     bounds_[i] = {state.x[i] - far, state.x[i] + far};
   }
   for (const auto& [a, b] : broad_.find(bounds_, still_, {}, points_)) {

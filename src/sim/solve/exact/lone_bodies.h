@@ -37,12 +37,12 @@ class LoneBodies {
 
   const Model<D>& model_;
   ExactSolver<D> direct_;
-  double g_ = 0;                     // m/s^2
-  std::vector<char> free_;           // one a body: nothing ever ties it
-  std::vector<char> still_;          // one a body: fixed, asleep or no candidate
-  std::vector<char> points_;         // one a body
-  std::vector<int> fixed_;           // bodies
-  std::vector<double> rims_, ways_;  // one a body: bounding radius, how far it gets in the step, m
+  double g_ = 0;                                // m/s^2
+  std::vector<char> free_;                      // one a body: nothing ever ties it
+  std::vector<char> still_;                     // one a body: fixed, asleep or no candidate
+  std::vector<char> points_;                    // one a body
+  std::vector<int> fixed_;                      // bodies
+  std::vector<double> bounding_radius_, ways_;  // one a body: bounding radius, how far it gets in the step, m
   std::vector<int> candidates_;
   std::vector<Bounds<D>> bounds_;
   BroadPhase<D> broad_;

@@ -71,7 +71,8 @@ void ExactSolver<D>::rest(State<D>& state, double t, double h) {
   for (int i = 0; i < n; ++i) {
     if (!response_.moves(i)) continue;
     double fast = std::sqrt(state.v[i].squaredNorm());
-    if (const int k = turning(state, i); k >= 0) fast += rims_[i] * std::sqrt(state.spin[k].squaredNorm());
+    if (const int k = turning(state, i); k >= 0)
+      fast += bounding_radius_[i] * std::sqrt(state.spin[k].squaredNorm());
     state.quiet[i] = fast <= none ? state.quiet[i] + h : 0;
     ripe = ripe || state.quiet[i] >= kWait;
   }
@@ -112,14 +113,15 @@ void ExactSolver<D>::rest(State<D>& state, double t, double h) {
     const int body = members[k];
     double a = std::sqrt(Eigen::Map<const Vec<D>>(rate_.data() + D * k).squaredNorm());
     if (const int at = free_.spin_start(k); at >= 0)
-      a += rims_[body] * std::sqrt(Eigen::Map<const AngularVec<D>>(rate_.data() + at).squaredNorm());
+      a += bounding_radius_[body] *
+           std::sqrt(Eigen::Map<const AngularVec<D>>(rate_.data() + at).squaredNorm());
     if (!found || !(a <= kStatic * g)) ripe_[islands_.root(body)] = 0;
   }
   const auto& links = free_.chains().links();
   free_.chains().motions(std::span<const double>(rate_).subspan(std::size_t(free_.chain_start())), motions_);
   for (std::size_t k = 0; k < links.size(); ++k) {
-    const double a =
-        std::sqrt(motions_[k].v.squaredNorm()) + rims_[links[k]] * std::sqrt(motions_[k].w.squaredNorm());
+    const double a = std::sqrt(motions_[k].v.squaredNorm()) +
+                     bounding_radius_[links[k]] * std::sqrt(motions_[k].w.squaredNorm());
     if (!found || !(a <= kStatic * g)) ripe_[islands_.root(links[k])] = 0;
   }
 

@@ -85,9 +85,9 @@ bool Statics<D>::hold(std::vector<BearingContact<D>>& touches, const std::vector
   }
   for (const int body : bodies_) {
     const Way& rate = rates_[columns_[body]];
-    const double a =
-        std::sqrt(rate.template head<D>().squaredNorm()) +
-        reach(model_.bodies[body].shape) * std::sqrt(rate.template tail<kAngular<D>>().squaredNorm());
+    const double a = std::sqrt(rate.template head<D>().squaredNorm()) +
+                     bounding_radius(model_.bodies[body].shape) *
+                         std::sqrt(rate.template tail<kAngular<D>>().squaredNorm());
     held = held && a <= kStatic * g;
     columns_[body] = -1;
   }

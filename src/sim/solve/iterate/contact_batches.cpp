@@ -192,11 +192,11 @@ void PlaneIterative<D>::take_seat(int i, const State<D>& state) {
   ContactBatch& g = seats_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
   const plane::CoreShape& a = cores_.all[pair.core_a];
-  double sight = 1e300, far = a.reach, thin = a.inside, radius = a.radius;
+  double sight = 1e300, far = a.bounding_radius, thin = a.half_thickness, radius = a.radius;
   bool round = false;
   if (pair.b >= 0) {
     const plane::CoreShape& b = cores_.all[pair.core_b];
-    far = std::max(far, b.reach), thin = std::min(thin, b.inside), radius += b.radius;
+    far = std::max(far, b.bounding_radius), thin = std::min(thin, b.half_thickness), radius += b.radius;
     sight = kSight * std::max(thin, 0.5 * radius);
     // features of round things may change at any time, if there are more than one
     round = (a.count == 1) != (b.count == 1);
@@ -211,9 +211,9 @@ void PlaneIterative<D>::take_seat(int i, const State<D>& state) {
   pair.blow = float(-0.999 * g.blow[lane]);
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
-  // in terms of bodies' own reaches
-  double least = cores_.reach[pair.a];
-  if (pair.b >= 0) least = std::min(least, cores_.reach[pair.b]);
+  // in terms of bodies' own bounding radii
+  double least = cores_.bounding_radius[pair.a];
+  if (pair.b >= 0) least = std::min(least, cores_.bounding_radius[pair.b]);
   if (g.calm[lane] < 1e300) calmest_ = std::min(calmest_, g.calm[lane] * (least / far));
   sit(pair, state);
 }

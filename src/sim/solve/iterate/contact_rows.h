@@ -32,7 +32,7 @@ struct alignas(64) ContactBatch {
   unsigned char taken;              // somebody sits there
   unsigned short words[2][kLanes];  // of the features
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
-  double calm[kLanes], far[kLanes];  // m/s up to which features stay; the farther reach of both, m
+  double calm[kLanes], far[kLanes];  // m/s up to which features stay; the larger bounding radius of both, m
   double blow[kLanes];               // -m/s: faster approaches are blows
   double sight[kLanes];              // m: touches farther off are none
   double radius[kLanes];             // of both together, m
@@ -67,7 +67,7 @@ struct Pace {
   double h = 0;                  // s
   double creep = 0;              // m/s: slower approaches are none
   double gain = 0;               // m/s that gravity may add in the step
-  double allowed = 0;            // of the farther reach: what is deeper is to be put right
+  double allowed = 0;            // of the larger bounding radius: what is deeper is to be put right
   const Least* least = nullptr;  // by group, of seats that are struck
 };
 
@@ -96,8 +96,8 @@ void sweep(ContactBatch* seats, int count, const Pose* poses, Motion* v, const P
 void finish(ContactBatch* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
             Contact<2>* contacts);
 
-/// One sweep over positions: `share` of what is deeper than `allowed` of the farther reach is to go. Friction
-/// holds there too, or piles would slide apart by being mended.
+/// One sweep over positions: `share` of what is deeper than `allowed` of the larger bounding radius is to go.
+/// Friction holds there too, or piles would slide apart by being mended.
 void project(const ContactBatch* seats, Projection* projections, int count, const Pose* poses, Motion* d,
              double share, double allowed);
 

@@ -19,15 +19,15 @@ constexpr double kThrown = 1.25;  // times as fast as they are now, likewise
 NearPairs::NearPairs(const Model<2>& model, const CoreShapes& cores)
     : model_(model), cores_(cores), may_touch_(model), halves_(halves(cores)) {
   double thin = 1e300;
-  for (const double inside : cores.inside) thin = std::min(thin, std::max(inside, 1e-3 * model.scale));
+  for (const double half : cores.half_thickness) thin = std::min(thin, std::max(half, 1e-3 * model.scale));
   calm_ = kCalm * thin;
   const std::size_t n = model.bodies.size();
   movers_.resize(n), still_.resize(n), exposed_.resize(n);
   bounds_.resize(cores.all.size()), still_cores_.resize(cores.all.size());
   for (const CoreShape& core : cores.all) points_.push_back(core.count == 1 && core.radius <= 0);
   for (std::size_t i = 0; i < n; ++i) {
-    movers_[i].reach = cores.reach[i];
-    movers_[i].thick = std::max(cores.inside[i], 1e-3 * model.scale);
+    movers_[i].bounding_radius = cores.bounding_radius[i];
+    movers_[i].half_thickness = std::max(cores.half_thickness[i], 1e-3 * model.scale);
     fixed_.push_back(model.bodies[i].fixed), handout_.push_back(model.bodies[i].handout);
     elasticity_ = std::max(elasticity_, model.bodies[i].elasticity);
   }
@@ -35,7 +35,7 @@ NearPairs::NearPairs(const Model<2>& model, const CoreShapes& cores)
 }
 
 double NearPairs::spare(int body, double speed, double span) const {
-  const double thick = movers_[body].thick;
+  const double thick = movers_[body].half_thickness;
   return 0.05 * thick + std::min(0.2 * thick, speed * span);
 }
 
@@ -47,7 +47,7 @@ void NearPairs::weigh(const State<2>& state, const std::vector<Pose>& poses, dou
     Mover& m = movers_[body];
     m.x = poses[body].x, m.y = poses[body].y;
     m.vx = state.v[body][0], m.vy = state.v[body][1];
-    m.swing = body >= points ? std::fabs(state.spin[body - points][0]) * m.reach : 0;
+    m.swing = body >= points ? std::fabs(state.spin[body - points][0]) * m.bounding_radius : 0;
     m.speed = std::sqrt(m.vx * m.vx + m.vy * m.vy) + m.swing;
     const bool rests = fixed_[body] || state.frozen[body];
     still_[body] = rests || (patience > 0 && patience * span * m.speed < calm_);
@@ -96,7 +96,7 @@ void NearPairs::expose(double span) {
     const Mover& m = movers_[a];
     for (const Wall<2>& w : model_.walls) {
       const double high = w.normal[0] * (m.x - w.point[0]) + w.normal[1] * (m.y - w.point[1]);
-      if (high <= m.reach + m.margin) exposed_[a] = 1;
+      if (high <= m.bounding_radius + m.margin) exposed_[a] = 1;
     }
   }
   const double falls = 2 * span * span * std::sqrt(model_.gravity.squaredNorm());
@@ -106,9 +106,9 @@ void NearPairs::expose(double span) {
     const Mover &p = movers_[a], &q = movers_[b];
     const double vx = p.vx - q.vx, vy = p.vy - q.vy;
     const double passes = std::sqrt(vx * vx + vy * vy) + p.swing + q.swing;
-    const double both = p.margin + q.margin, thick = p.thick + q.thick;
+    const double both = p.margin + q.margin, thick = p.half_thickness + q.half_thickness;
     const double margin = std::min(both, span * passes + falls + 0.1 * thick);
-    const double far = p.reach + q.reach + margin, dx = p.x - q.x, dy = p.y - q.y;
+    const double far = p.bounding_radius + q.bounding_radius + margin, dx = p.x - q.x, dy = p.y - q.y;
     const double thrown = std::max(p.speed, q.speed) + elasticity_ * std::min(p.speed, q.speed);
     candidates_[i].margin =
         std::min(both, span * kThrown * std::max(passes, thrown) + falls + kSpare * thick);

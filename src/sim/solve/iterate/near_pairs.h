@@ -5,6 +5,7 @@
 
 #include "sim/collide/broad_phase.h"
 #include "sim/collide/core_shapes.h"
+#include "sim/collide/may_touch.h"
 #include "sim/model/state.h"
 #include "sim/solve/iterate/box_pairs.h"
 
@@ -62,7 +63,7 @@ class NearPairs {
   struct alignas(64) Mover {
     double x = 0, y = 0, vx = 0, vy = 0;
     double margin = 0, swing = 0, speed = 0;  // m; m/s of its farthest point, by its spin alone, and at most
-    double reach = 0, thick = 0;              // m
+    double bounding_radius = 0, half_thickness = 0;  // m
   };
   void weigh(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
   void enclose(const std::vector<Pose>& poses);

@@ -68,7 +68,7 @@ void Pairs::gather_found(const std::vector<Pose>& poses) {
       for (int wall = int(model_.walls.size()); wall-- > 0;) {
         const Wall<2>& w = model_.walls[wall];
         const double high = w.normal[0] * (poses[a].x - w.point[0]) + w.normal[1] * (poses[a].y - w.point[1]);
-        if (high > cores_.reach[a] + near_.margin(a)) continue;
+        if (high > cores_.bounding_radius[a] + near_.margin(a)) continue;
         for (int i = cores_.begin[a]; i < cores_.begin[a + 1]; ++i) {
           if (nearest(cores_, cores_.all[i], poses[a], w, features) < near_.margin(a))
             add(pair(a, -1 - wall, i, -1));
@@ -159,7 +159,7 @@ void Pairs::inherit(const Pair& pair, const std::vector<Pose>& poses, const Cont
     const Feature feature = Feature::of(now[k].key.feature);
     if (filled[k] || feature.kind == Feature::none) continue;
     const Place at = place(pair, poses, feature);
-    const double near = 0.2 * cores_.inside[pair.a];
+    const double near = 0.2 * cores_.half_thickness[pair.a];
     double least = near * near;
     int best = -1;
     for (int o = 0; o < count; ++o) {

@@ -132,7 +132,7 @@ void PlaneIterative<D>::stretch(State<D>& state, double t, double h, int which) 
   double fastest = 0;
   for (int i = 0; i < int(turns_.size()); ++i) {
     const Motion& m = v_[i];
-    fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.reach[i]);
+    fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.bounding_radius[i]);
   }
   if (share > 0 && 2 * share * fastest > calmest_) {
     for (const plane::Outdated& old : pairs_.outdated(seats_, v_, poses_, share)) {
@@ -180,7 +180,7 @@ void PlaneIterative<D>::stretch(State<D>& state, double t, double h, int which) 
 // body's mass, hardly move it then.
 template <int D>
 bool PlaneIterative<D>::strained(const State<D>& state) const {
-  const auto far = [&](int body) { return kStrained * cores_.inside[body]; };
+  const auto far = [&](int body) { return kStrained * cores_.half_thickness[body]; };
   return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact<D>& c) {
     const int a = c.key.a, b = c.key.b;
     const bool awake = v_[a].im > 0 || (b >= 0 && v_[b].im > 0);

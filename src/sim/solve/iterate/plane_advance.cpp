@@ -26,7 +26,7 @@ void PlaneIterative<D>::advance(State<D>& state, double h, bool look) {
   for (int i = 0; i < n; ++i) {
     if (v_[i].im == 0) continue;
     const Motion &v = v_[i], &o = old_[i];
-    const double reach = cores_.reach[i], far = 0.5 * kSight * cores_.inside[i];
+    const double radius = cores_.bounding_radius[i], far = 0.5 * kSight * cores_.half_thickness[i];
     Motion d;
     if (blows_.when(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
       d = course(i, h);
@@ -40,7 +40,7 @@ void PlaneIterative<D>::advance(State<D>& state, double h, bool look) {
       state.spin[i - still][0] = v.w;
       state.turn[i - still][0] = turns_[i] += d.w;
     }
-    const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (reach * reach) <= asked2;
+    const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (radius * radius) <= asked2;
     state.quiet[i] = quiet ? state.quiet[i] + h : 0;
   }
   plane::turn_all(turns_.data() + still, poses_.data() + still, n - still);
@@ -88,7 +88,7 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
   if (when >= 0 && (over <= 0 || !fast(i, {over * o.x, over * o.y, 0, 0}))) return d;
   // what another was given against it stays given
   const double gone = std::fabs(v.x - (o.x + dv.x)) + std::fabs(v.y - (o.y + dv.y)) +
-                      std::fabs(v.w - (o.w + dv.w)) * cores_.reach[i];
+                      std::fabs(v.w - (o.w + dv.w)) * cores_.bounding_radius[i];
   if (when < 0 && gone <= 1e-9 * (std::fabs(o.x) + std::fabs(o.y))) {
     const double im = v_[i].im;
     v_[i] = o, v_[i].im = im;
@@ -99,8 +99,8 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
 // whether it may pass through something in the step
 template <int D>
 bool PlaneIterative<D>::fast(int body, const Motion& way) const {
-  const double inside = 0.5 * kSight * cores_.inside[body];
-  return way.x * way.x + way.y * way.y > inside * inside;
+  const double half = 0.5 * kSight * cores_.half_thickness[body];
+  return way.x * way.x + way.y * way.y > half * half;
 }
 
 // the part of its way that a body may go before it meets another where that stands, or a wall: by steps as
@@ -116,12 +116,12 @@ double PlaneIterative<D>::clear(int body, const plane::Pose& from, const Motion&
     if (pair.b < 0) {
       const Wall<D>& wall = model_.walls[-1 - pair.b];
       const double nears = -(wall.normal[0] * way.x + wall.normal[1] * way.y);
-      const double gap = nearest(cores_, a, from, wall, features) + 0.02 * a.inside;
+      const double gap = nearest(cores_, a, from, wall, features) + 0.02 * a.half_thickness;
       if (walls && nears > gap) part = std::min(part, std::max(gap, 0.0) / nears);
       continue;
     }
     const plane::CoreShape& b = cores_.all[pair.core_b];
-    const double close = 0.02 * std::max(std::min(a.inside, b.inside), 1e-6 * model_.scale);
+    const double close = 0.02 * std::max(std::min(a.half_thickness, b.half_thickness), 1e-6 * model_.scale);
     plane::Pose at = from;
     for (double gone = 0; gone < part;) {
       at.x = from.x + gone * way.x, at.y = from.y + gone * way.y;
@@ -145,13 +145,14 @@ bool PlaneIterative<D>::outran(double h, double left) const {
   const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
   for (int i = 0; i < n; ++i) {
     const Motion &v = v_[i], &o = old_[i];
-    const double reach = cores_.reach[i];
-    const double gain = std::fabs(v.x - o.x) + std::fabs(v.y - o.y) + std::fabs(v.w - o.w) * reach;
-    if (gain * left < 0.04 * cores_.inside[i] + falls) continue;
+    const double radius = cores_.bounding_radius[i];
+    const double gain = std::fabs(v.x - o.x) + std::fabs(v.y - o.y) + std::fabs(v.w - o.w) * radius;
+    if (gain * left < 0.04 * cores_.half_thickness[i] + falls) continue;
     const auto speed = [&](const Motion& m) {
-      return std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * reach;
+      return std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * radius;
     };
-    if ((speed(v) - speed(o)) * left > 0.25 * cores_.inside[i] + pairs_.spare(i, speed(o), span_) + falls)
+    if ((speed(v) - speed(o)) * left >
+        0.25 * cores_.half_thickness[i] + pairs_.spare(i, speed(o), span_) + falls)
       return true;
   }
   return false;

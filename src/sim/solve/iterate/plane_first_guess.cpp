@@ -80,7 +80,7 @@ void PlaneIterative<D>::guess(State<D>& state) {
         const plane::Place at = pairs_.place(pair, poses_, f);
         contact.normal = {at.nx, at.ny}, contact.point = {at.x, at.y};
         const Vec<D> normal = pair.a == body ? contact.normal : Vec<D>(-contact.normal);
-        if (at.gap > 1e-3 * cores_.inside[body] || up.dot(normal) <= 0.5) continue;
+        if (at.gap > 1e-3 * cores_.half_thickness[body] || up.dot(normal) <= 0.5) continue;
         Support support;
         support.contact = pair.first + k, support.up = up.dot(normal);
         support.moment = moment<D>(contact.point - state.x[body], normal)[0];

@@ -20,13 +20,14 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr std::size_t kAhead = 4;   // pairs
-constexpr double kLocked = 1e-9;    // of what a push moves without joints
-constexpr double kTogether = 1e-6;  // of the farther reach: no wider open, a touch meets with the other
-constexpr int kTimes = 8;           // Newton steps for the time of a blow
-constexpr double kInTime = 1e-9;    // of the step: the next would be by its square
-constexpr double kForward = 0.01;   // of the step: by so much at least features are looked for on the way
-constexpr double kLatest = 1.5;     // steps: so late a touch may close that its tangent would close in one
+constexpr std::size_t kAhead = 4;  // pairs
+constexpr double kLocked = 1e-9;   // of what a push moves without joints
+constexpr double kTogether =
+    1e-6;                  // of the larger bounding radius: no wider open, a touch meets with the other
+constexpr int kTimes = 8;  // Newton steps for the time of a blow
+constexpr double kInTime = 1e-9;   // of the step: the next would be by its square
+constexpr double kForward = 0.01;  // of the step: by so much at least features are looked for on the way
+constexpr double kLatest = 1.5;    // steps: so late a touch may close that its tangent would close in one
 
 // v_n of a touch
 double along(const Rows& r, int k, int lane, const Motion& a, const Motion& b) {
@@ -44,9 +45,10 @@ bool other_corners(const ContactBatch& g, int k, int lane) {
 
 }  // namespace
 
-Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs) : pairs_(pairs), reach_(cores.reach) {
-  const int bodies = int(reach_.size());
-  reach_.push_back(0);
+Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs)
+    : pairs_(pairs), bounding_radius_(cores.bounding_radius) {
+  const int bodies = int(bounding_radius_.size());
+  bounding_radius_.push_back(0);
   around_start_.resize(bodies + 2);
   when_.assign(bodies + 1, -1);
   before_.resize(bodies + 1), now_.resize(bodies + 1);
@@ -220,15 +222,16 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Rows& r, c
     if (vn > -pair.blow) continue;
     const double left = r.gap[k][lane] + pace.h * (vn + 0.5 * along(r, k, lane, dv[a], dv[b]));
     if (left >= 0 && spare < 0) {
-      const double far = std::max(reach_[a], reach_[b]), w = std::fabs(va.w) + std::fabs(vb.w);
+      const double far = std::max(bounding_radius_[a], bounding_radius_[b]),
+                   w = std::fabs(va.w) + std::fabs(vb.w);
       spare = 0.5 * pace.h * pace.h *
               (far * (va.w * va.w + vb.w * vb.w) +
                2 * w * (std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) + far * w));
       for (const int body : {a, b}) {
         if (!(when_[body] > 0)) continue;
         const Motion &p = before_[body], &q = now_[body];
-        spare +=
-            when_[body] * (std::fabs(q.x - p.x) + std::fabs(q.y - p.y) + std::fabs(q.w - p.w) * reach_[body]);
+        spare += when_[body] * (std::fabs(q.x - p.x) + std::fabs(q.y - p.y) +
+                                std::fabs(q.w - p.w) * bounding_radius_[body]);
       }
     }
     if (left >= 0 && left >= spare) continue;
@@ -295,8 +298,9 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, Standing& at
   const double from = at.when;
   const Motion &p = at.a, &q = at.b;
   const double fastest = std::fabs(p.x - q.x) + std::fabs(p.y - q.y) + std::fabs(dv[a].x - dv[b].x) +
-                         std::fabs(dv[a].y - dv[b].y) + (std::fabs(p.w) + std::fabs(dv[a].w)) * reach_[a] +
-                         (std::fabs(q.w) + std::fabs(dv[b].w)) * reach_[b];
+                         std::fabs(dv[a].y - dv[b].y) +
+                         (std::fabs(p.w) + std::fabs(dv[a].w)) * bounding_radius_[a] +
+                         (std::fabs(q.w) + std::fabs(dv[b].w)) * bounding_radius_[b];
   const auto gap = [&] {
     return pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap;
   };
@@ -379,8 +383,8 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
   const Pair& pair = pairs[i];
   const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   // too slow for a blow however they meet: most are, and their seats are far away in memory
-  if (std::fabs(now_[a].x - now_[b].x) + std::fabs(now_[a].y - now_[b].y) + std::fabs(now_[a].w) * reach_[a] +
-          std::fabs(now_[b].w) * reach_[b] <
+  if (std::fabs(now_[a].x - now_[b].x) + std::fabs(now_[a].y - now_[b].y) +
+          std::fabs(now_[a].w) * bounding_radius_[a] + std::fabs(now_[b].w) * bounding_radius_[b] <
       pair.blow)
     return false;
   const int group = pair.slot / kLanes, lane = pair.slot % kLanes;

@@ -112,7 +112,7 @@ class Impacts {
 
   const Pairs& pairs_;
   ContactBatch fresh_{};                    // of a pair: the features that are nearest when it meets
-  std::vector<double> reach_;               // of bodies, and of walls, m
+  std::vector<double> bounding_radius_;     // of bodies, and of walls, m
   std::vector<int> around_, around_start_;  // pairs of each body
   std::vector<int> bodies_;
   std::vector<double> when_;  // -1: not struck

@@ -33,7 +33,7 @@ Rest::Rest(const Model<2>& model, const CoreShapes& cores)
 // whether a touch makes an island of two bodies
 bool Rest::joins(const Contact<2>& touch, const Pair& pair) const {
   return touch.touching != Touching::open ||
-         touch.gap < 1e-3 * std::min(cores_.inside[pair.a], cores_.inside[pair.b]);
+         touch.gap < 1e-3 * std::min(cores_.half_thickness[pair.a], cores_.half_thickness[pair.b]);
 }
 
 // the two of a joint are of one island, if they are alike
@@ -57,8 +57,8 @@ bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
   const auto moving = [&](int body) { return body >= 0 && free_[body] ? body : -1; };
   for (const int i : of) {
     const Pair& pair = pairs.all()[i];
-    double thin = cores_.inside[pair.a];
-    if (pair.b >= 0) thin = std::min(thin, cores_.inside[pair.b]);
+    double thin = cores_.half_thickness[pair.a];
+    if (pair.b >= 0) thin = std::min(thin, cores_.half_thickness[pair.b]);
     for (int k = pair.first; k < pair.first + pair.touches; ++k) {
       Contact<2>& contact = state.contacts[k];
       const Feature feature = Feature::of(contact.key.feature);
@@ -125,8 +125,8 @@ bool Rest::begin(State<2>& state, const Pairs& pairs, const std::vector<Pose>& p
   for (int i = 0; i < int(pairs.all().size()); ++i) {
     const Pair& pair = pairs.all()[i];
     if (pair.slot < 0) continue;
-    double gap = 1e300, thin = cores_.inside[pair.a];
-    if (pair.b >= 0) thin = std::min(thin, cores_.inside[pair.b]);
+    double gap = 1e300, thin = cores_.half_thickness[pair.a];
+    if (pair.b >= 0) thin = std::min(thin, cores_.half_thickness[pair.b]);
     for (int k = 0; k < pair.touches; ++k) {
       const Feature feature = Feature::of(state.contacts[pair.first + k].key.feature);
       if (feature.kind != Feature::none) gap = std::min(gap, pairs.place(pair, poses, feature).gap);
@@ -193,7 +193,7 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
     const int body = v[pair.a].im > 0 ? pair.a : pair.b;
     bool deep = false;
     for (int k = 0; k < pair.touches; ++k)
-      deep = deep || state.contacts[pair.first + k].gap < -2 * cores_.allowed * cores_.reach[body];
+      deep = deep || state.contacts[pair.first + k].gap < -2 * cores_.allowed * cores_.bounding_radius[body];
     if (deep) restless_[islands_.root(body)] = 1;
     order_.push_back(i);
   }
@@ -285,8 +285,8 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
       worst = 0;
       for (std::size_t k = first; k < last; ++k) {
         const Motion& m = v_[members_[k].second];
-        worst = std::max(
-            worst, std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[members_[k].second]);
+        worst = std::max(worst, std::sqrt(m.x * m.x + m.y * m.y) +
+                                    std::fabs(m.w) * cores_.bounding_radius[members_[k].second]);
       }
     }
     bool held = worst <= kHeld * g * h;
@@ -335,7 +335,7 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
     if (model_.bodies[pair.a].fixed || model_.bodies[pair.b].fixed) continue;
     const int sleeper = state.frozen[pair.a] ? pair.a : pair.b, other = pair.a + pair.b - sleeper;
     const Motion& m = v[other];
-    const double fast = std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.reach[other];
+    const double fast = std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.bounding_radius[other];
     double gap = 1e300, nears = 0;
     bool bears = false;
     for (int k = 0; k < pair.touches; ++k) {

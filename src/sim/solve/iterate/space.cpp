@@ -26,8 +26,8 @@ constexpr int kMostSweeps = 40;      // of few touches
 constexpr int kFewestSweeps = 4;     // of many
 constexpr int kTouchSweeps = 20000;  // touches times sweeps between
 constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
-constexpr double kSpare = 0.02;      // of their reach: what two may come nearer by being struck
-constexpr double kAllowed = 1e-6;    // of a body's reach: how deep is not too deep
+constexpr double kSpare = 0.02;      // of their bounding radius: what two may come nearer by being struck
+constexpr double kAllowed = 1e-6;    // of a body's bounding radius: how deep is not too deep
 constexpr double kHung = 1e-4;       // the same on joints, which pushes strain
 constexpr int kPartRounds = 2000;    // gaps times rounds of pushing apart; 4 to 16 rounds
 constexpr double kPart = 0.1;        // of what is too deep, in a step
@@ -51,7 +51,7 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
   g_ = std::sqrt(model.gravity.squaredNorm());
   rest_speed_ = 2 * h * g_ + 1e-9 * model.scale;
   asked_ = slow(model).asked;
-  for (const Body<D>& body : model.bodies) rims_.push_back(reach(body.shape));
+  for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
 }
 
 template <int D>
@@ -120,14 +120,14 @@ void SpaceIterative<D>::ready(const State<D>& state) {
 template <int D>
 double SpaceIterative<D>::swiftness(int body) const {
   const PointBody<D>& m = moving_[body];
-  return std::sqrt(m.v.squaredNorm()) + rims_[body] * std::sqrt(m.w.squaredNorm());
+  return std::sqrt(m.v.squaredNorm()) + bounding_radius_[body] * std::sqrt(m.w.squaredNorm());
 }
 
 template <int D>
 void SpaceIterative<D>::find(double h) {
   const int n = int(model_.bodies.size());
   const auto margin = [&](int body) {
-    return still_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * rims_[body];
+    return still_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
   };
   bounds_.resize(n), touches_.clear(), features_.clear();
   for (int i = 0; i < n; ++i) {
@@ -135,12 +135,7 @@ void SpaceIterative<D>::find(double h) {
     const Vec<D> more = Vec<D>::Constant(margin(i));
     bounds_[i].lower -= more, bounds_[i].upper += more;
   }
-  const auto& pairs = broad_.find(bounds_, still_, [&](int a, int b) {
-    const Body<D>&p = model_.bodies[a], &q = model_.bodies[b];
-    if (p.handout || q.handout) return false;
-    if (p.shape.kind == ShapeKind::point && q.shape.kind == ShapeKind::point) return false;
-    return may_touch_(a, b);
-  });
+  const auto& pairs = broad_.find(bounds_, still_, [&](int a, int b) { return may_touch_(a, b); });
 
   // ascending: of a body first its walls, from the last
   auto pair = pairs.begin();
@@ -148,7 +143,7 @@ void SpaceIterative<D>::find(double h) {
     const Body<D>& p = model_.bodies[a];
     for (int wall = int(model_.walls.size()); !still_[a] && !p.handout && wall-- > 0;) {
       const Wall<D>& w = model_.walls[wall];
-      if ((stances_[a].x - w.point).dot(w.normal) > rims_[a] + margin(a)) continue;
+      if ((stances_[a].x - w.point).dot(w.normal) > bounding_radius_[a] + margin(a)) continue;
       gaps_.clear();
       collide(a, p.shape, stances_[a], wall, w, margin(a), gaps_);
       for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, -1 - wall));
@@ -158,10 +153,11 @@ void SpaceIterative<D>::find(double h) {
       const Body<D>& q = model_.bodies[b];
       // of two that fly side by side none comes nearer, but for what strikes them meanwhile
       const double passes = std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
-                            rims_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
-                            rims_[b] * std::sqrt(moving_[b].w.squaredNorm());
+                            bounding_radius_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
+                            bounding_radius_[b] * std::sqrt(moving_[b].w.squaredNorm());
       const double near =
-          std::min(margin(a) + margin(b), h * (passes + 2 * g_ * h) + kSpare * (rims_[a] + rims_[b]));
+          std::min(margin(a) + margin(b),
+                   h * (passes + 2 * g_ * h) + kSpare * (bounding_radius_[a] + bounding_radius_[b]));
       gaps_.clear();
       collide(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
       for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, b));
@@ -323,7 +319,8 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
     const PointBody<D>& m = moving_[i];
     if (m.inverse_mass == 0) continue;
     double moves = v_free_[i].squaredNorm();
-    if (const int k = turning(state, i); k >= 0) moves += rims_[i] * rims_[i] * w_free_[k].squaredNorm();
+    if (const int k = turning(state, i); k >= 0)
+      moves += bounding_radius_[i] * bounding_radius_[i] * w_free_[k].squaredNorm();
     before_[islands_.root(i)] += 0.5 * moves / m.inverse_mass, gained_[islands_.root(i)] += account_.gain(i);
   }
   const auto island = [&](const Touch& touch) {
@@ -382,7 +379,7 @@ void SpaceIterative<D>::arrive(State<D>& state, double h) {
     double fast = state.v[i].squaredNorm();
     if (const int k = turning(state, i); k >= 0) {
       moving_[i].w = state.spin[k];
-      fast += rims_[i] * rims_[i] * state.spin[k].squaredNorm();
+      fast += bounding_radius_[i] * bounding_radius_[i] * state.spin[k].squaredNorm();
     }
     state.quiet[i] = fast <= asked_ * asked_ ? state.quiet[i] + h : 0;
   }
@@ -394,7 +391,7 @@ void SpaceIterative<D>::part(State<D>& state) {
   const int n = int(model_.bodies.size());
   const auto hangs = [&](int body) { return body < n && linkage_.has(body); };
   const auto allowed = [&](const Touch& touch) {
-    return (hangs(touch.a) || hangs(touch.b) ? kHung : kAllowed) * rims_[touch.a];
+    return (hangs(touch.a) || hangs(touch.b) ? kHung : kAllowed) * bounding_radius_[touch.a];
   };
   some_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/collide/broad_phase.h"
+#include "sim/collide/may_touch.h"
 #include "sim/collide/narrow_phase.h"
 #include "sim/constraint/material.h"
 #include "sim/constraint/mobility.h"
@@ -120,7 +121,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::int64_t every_ = 1;  // steps between two looks for rest
   double g_ = 0, rest_speed_ = 0;
   double asked_ = 0;  // m/s: who is slower may rest
-  std::vector<double> rims_;
+  std::vector<double> bounding_radius_;
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<PointBody<D>> moving_;

@@ -15,14 +15,15 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kTogether = 1e-6;  // of a body's reach: no wider open, a gap takes part in an impact
-constexpr int kMost = 8;            // gaps of one impact
-constexpr int kTimes = 8;           // Newton steps for its time
-constexpr double kInTime = 1e-9;    // of the step: the next would be by its square
-constexpr double kLatest = 1.5;     // steps: so late a gap may close that its tangent would close in one
-constexpr double kGain = 1e-13;     // of the energy that moves along the rows: rounding
-constexpr double kLeast = 1e-6;     // of e: halved so far it is none
-constexpr int kTurns = 40;          // impacts, of those that there are at first
+constexpr double kTogether =
+    1e-6;                         // of a body's bounding radius: no wider open, a gap takes part in an impact
+constexpr int kMost = 8;          // gaps of one impact
+constexpr int kTimes = 8;         // Newton steps for its time
+constexpr double kInTime = 1e-9;  // of the step: the next would be by its square
+constexpr double kLatest = 1.5;   // steps: so late a gap may close that its tangent would close in one
+constexpr double kGain = 1e-13;   // of the energy that moves along the rows: rounding
+constexpr double kLeast = 1e-6;   // of e: halved so far it is none
+constexpr int kTurns = 40;        // impacts, of those that there are at first
 
 }  // namespace
 
@@ -124,7 +125,7 @@ bool SpaceIterative<D>::gather_impact(int first, double t, double h) {
       for (int at = around_start_[body]; at < around_start_[body + 1]; ++at) {
         const int other = around_[at];
         if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
-        if (instant(other, t, h).now.value > kTogether * rims_[body]) continue;
+        if (instant(other, t, h).now.value > kTogether * bounding_radius_[body]) continue;
         if (int(meets_.size()) == kMost) return false;
         meets_.push_back(other);
       }
@@ -210,7 +211,7 @@ void SpaceIterative<D>::strike(State<D>& state, double h) {
     const auto speed = [&](int body) {
       return body == n ? 0
                        : std::sqrt(stances_[body].v.squaredNorm()) +
-                             rims_[body] * std::sqrt(stances_[body].w.squaredNorm());
+                             bounding_radius_[body] * std::sqrt(stances_[body].w.squaredNorm());
     };
     return speed(touch.a) + speed(touch.b) >= rest_speed_;
   };

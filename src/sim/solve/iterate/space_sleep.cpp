@@ -13,12 +13,12 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kDeepest = 2e-3;  // of a body's reach: deeper nothing rests
+constexpr double kDeepest = 2e-3;  // of a body's bounding radius: deeper nothing rests
 constexpr double kHeld = 1e-6;     // of gravity
 constexpr int kRestSweeps = 400;   // of an island at a time
 constexpr int kFew = 32;           // touches of one that is solved exactly where these are too few
 constexpr int kBetweenChecks = 10;
-constexpr double kClosed = 1e-6;  // of a body's reach: no wider a gap bears what rests
+constexpr double kClosed = 1e-6;  // of a body's bounding radius: no wider a gap bears what rests
 
 }  // namespace
 
@@ -72,7 +72,8 @@ void SpaceIterative<D>::join(const State<D>& state) {
     islands_.join(a, b);
   };
   for (const Contact<D>& contact : state.contacts) {
-    const bool near = contact.touching != Touching::open || contact.gap < 1e-3 * rims_[contact.key.a];
+    const bool near =
+        contact.touching != Touching::open || contact.gap < 1e-3 * bounding_radius_[contact.key.a];
     if (near) link(contact.key.a, contact.key.b);
   }
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
@@ -91,7 +92,7 @@ bool SpaceIterative<D>::held(int island, double h, int most) {
     const int a = moving(touch.a), b = moving(touch.b);
     if ((a < 0 && b < 0) || islands_.root(a < 0 ? b : a) != island) continue;
     bearing_.push_back(i);
-    if (touch.gap > kClosed * rims_[touch.a]) continue;
+    if (touch.gap > kClosed * bounding_radius_[touch.a]) continue;
     exact_.push_back({.a = a,
                       .b = b,
                       .normal = touch.n,
@@ -112,7 +113,7 @@ bool SpaceIterative<D>::held(int island, double h, int most) {
   for (const int i : bearing_) {
     Touch& touch = touches_[i];
     touch.pressed = 0, touch.rubbed.setZero(), touch.least = 0;
-    if (touch.gap > kClosed * rims_[touch.a]) continue;
+    if (touch.gap > kClosed * bounding_radius_[touch.a]) continue;
     touch.pressed = h * bears->force.dot(touch.n);
     touch.rubbed = h * bears->force - touch.pressed * touch.n;
     ++bears;
@@ -153,7 +154,7 @@ bool SpaceIterative<D>::begin_still(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   islands_.reset(n), ripe_.assign(n, 1);
   for (const Touch& touch : touches_) {
-    if (touch.b < n && touch.gap < 1e-3 * rims_[touch.a] && !still_[touch.a] && !still_[touch.b])
+    if (touch.b < n && touch.gap < 1e-3 * bounding_radius_[touch.a] && !still_[touch.a] && !still_[touch.b])
       islands_.join(touch.a, touch.b);
   }
   const auto restless = [&](int body) {
@@ -204,7 +205,7 @@ bool SpaceIterative<D>::rest(State<D>& state, double h) {
     if (!resting(touch.a) && !resting(touch.b)) continue;
     // too deep to stay so, or awake beyond
     const int body = resting(touch.a) ? touch.a : touch.b;
-    if (touch.gap < -kDeepest * rims_[touch.a]) ripe_[islands_.root(body)] = 0;
+    if (touch.gap < -kDeepest * bounding_radius_[touch.a]) ripe_[islands_.root(body)] = 0;
     some_.push_back(i);
   }
   std::erase_if(some_, [&](int i) { return !resting(touches_[i].a) && !resting(touches_[i].b); });
