@@ -12,7 +12,7 @@
 namespace obscura::gl {
 namespace {
 
-struct Library {
+struct EglLibrary {
   decltype(&::eglGetProcAddress) GetProcAddress = nullptr;
   decltype(&::eglGetPlatformDisplay) GetPlatformDisplay = nullptr;
   decltype(&::eglInitialize) Initialize = nullptr;
@@ -26,7 +26,7 @@ struct Library {
 
   // opened and initialised once for the process, never terminated: other threads' contexts live on the same
   // display
-  Library() {
+  EglLibrary() {
     void* handle = opened("libEGL.so.1");
     if (!handle) throw Error("EGL: libEGL.so.1 cannot be opened (packages libegl1 and libgl1-mesa-dri)");
     const auto find = [&](auto& f, const char* name) {
@@ -54,14 +54,14 @@ struct Library {
   }
 };
 
-const Library& library() {
-  static const Library library;
+const EglLibrary& egl_library() {
+  static const EglLibrary library;
   return library;
 }
 
 class Egl final : public Context {
  public:
-  Egl() : lib_(library()) {
+  Egl() : lib_(egl_library()) {
     lib_.BindAPI(EGL_OPENGL_API);
     for (const auto& [major, minor] : {std::array{4, 5}, std::array{3, 3}}) {
       const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
@@ -114,7 +114,7 @@ class Egl final : public Context {
     lib_.DestroyContext(lib_.display, context_);
   }
 
-  const Library& lib_;
+  const EglLibrary& lib_;
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 

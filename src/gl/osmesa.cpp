@@ -17,14 +17,14 @@ constexpr int kFormat = 0x22, kRgba = 0x1908, kDepthBits = 0x30, kStencilBits = 
 constexpr int kProfile = 0x33, kCoreProfile = 0x34, kMajor = 0x36, kMinor = 0x37;
 constexpr unsigned kUnsignedByte = 0x1401;
 
-struct Library {
+struct OsMesaLibrary {
   OSMesaContext (*create)(const int* attributes, OSMesaContext share) = nullptr;
   void (*destroy)(OSMesaContext) = nullptr;
   unsigned char (*make_current)(OSMesaContext, void* buffer, unsigned type, int width, int height) = nullptr;
   void* (*function)(const char* name) = nullptr;
 
   // opened once and never closed: Mesa's and LLVM's exit handlers stay behind
-  Library() {
+  OsMesaLibrary() {
     void* handle = nullptr;
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so"}) {
       if (!handle) handle = opened(name);
@@ -43,14 +43,14 @@ struct Library {
   }
 };
 
-const Library& library() {
-  static const Library library;
+const OsMesaLibrary& os_mesa_library() {
+  static const OsMesaLibrary library;
   return library;
 }
 
 class OsMesa final : public Context {
  public:
-  OsMesa() : lib_(library()) {
+  OsMesa() : lib_(os_mesa_library()) {
     for (const auto& [major, minor] : {std::array{4, 5}, std::array{3, 3}}) {
       const int attributes[] = {kFormat,  kRgba,        kDepthBits, 0,     kStencilBits, 0,     kAccumBits, 0,
                                 kProfile, kCoreProfile, kMajor,     major, kMinor,       minor, 0};
@@ -88,7 +88,7 @@ class OsMesa final : public Context {
  private:
   // its own buffer goes unused: pictures are drawn into a framebuffer object
   static constexpr int kSide = 16;
-  const Library& lib_;
+  const OsMesaLibrary& lib_;
   OSMesaContext context_ = nullptr;
   std::array<std::uint8_t, 4 * kSide * kSide> buffer_{};
 };

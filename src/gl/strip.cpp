@@ -20,10 +20,10 @@ namespace {
 
 using draw::Point;
 
-constexpr double kMargin = 0.75;   // px beyond the edge where a pixel may still be covered: sqrt(1/2)
-constexpr double kMitreLimit = 4;  // mitre length over width, as in SVG
-constexpr double kSharp = 0.5;     // cosine of the turn beyond which a joint that does not fit is broken
-constexpr double kCutLimit = 16;   // arms closer to parallel are left to overlap
+constexpr double kStrokeMargin = 0.75;  // px beyond the edge where a pixel may still be covered: sqrt(1/2)
+constexpr double kMitreLimit = 4;       // mitre length over width, as in SVG
+constexpr double kSharp = 0.5;          // cosine of the turn beyond which a joint that does not fit is broken
+constexpr double kCutLimit = 16;        // arms closer to parallel are left to overlap
 
 struct Vertex {
   Point at;
@@ -53,7 +53,7 @@ struct Joint {
 
 Joint joint(const Point& t0, const Point& t1, double room, double half) {
   const double cosine = std::clamp(t0.dot(t1), -1.0, 1.0);
-  const double d = half + kMargin;
+  const double d = half + kStrokeMargin;
   Joint j;
   j.mitre = 1 / std::sqrt(std::max((1 + cosine) / 2, 1e-12));
   const double tangent = std::sqrt(std::max((1 - cosine) / 2, 0.0)) * j.mitre;
@@ -130,8 +130,8 @@ void Builder::rectangle(std::uint32_t first) {
 
 void Builder::bar(const Vertex& a, const Vertex& b, End end) {
   const Point step = b.at - a.at, middle = (a.at + b.at) / 2;
-  const double length = step.norm(), wide = a.half + kMargin;
-  const double reach = length / 2 + kMargin + (end == End::round ? a.half : 0);
+  const double length = step.norm(), wide = a.half + kStrokeMargin;
+  const double reach = length / 2 + kStrokeMargin + (end == End::round ? a.half : 0);
   const Point tangent = step / length, n = normal_of(tangent);
   const auto first = std::uint32_t(strip_.vertices.size());
   for (const double along : {-reach, reach}) {
@@ -157,7 +157,7 @@ void Builder::bar(const Vertex& a, const Vertex& b, End end) {
 void Builder::cap(const Vertex& node, const Point& outward, const Tip& tip) {
   if (tip.end == End::joined || (tip.end == End::round && node.half <= 0)) return;
   Vertex far = node;
-  far.at += outward * (kMargin + (tip.end == End::round ? node.half : 0));
+  far.at += outward * (kStrokeMargin + (tip.end == End::round ? node.half : 0));
   // the strip's left and right are those of its own direction
   const bool forward = normal_of(outward).dot(node.left) > 0;
   quad(node, far, forward ? outward : Point(-outward), tip, node.at, forward ? 1 : -1, true, tip.side != 0);
@@ -193,7 +193,7 @@ void Builder::arm(std::vector<Vertex>& nodes, const Tip& start, const Tip& finis
     Vertex& v = nodes[i];
     const bool end = i == 0 || i == segments;
     if (end && !closed) {
-      v.left = normal_of(tangents[i == 0 ? 0 : segments - 1]) * (v.half + kMargin);
+      v.left = normal_of(tangents[i == 0 ? 0 : segments - 1]) * (v.half + kStrokeMargin);
       v.right = -v.left;
     } else {
       const int before = i == 0 ? segments - 1 : i - 1, after = i == segments ? 0 : i;
@@ -274,7 +274,7 @@ Bounds add_stroke(std::span<const draw::Node> line, const draw::Stroke& stroke, 
     breaks[i].end = End::round;
     if (j.mitre > kCutLimit) continue;
     breaks[i].side = 1;
-    breaks[i].reach = 1.5 * (nodes[i].half + kMargin) * j.mitre;
+    breaks[i].reach = 1.5 * (nodes[i].half + kStrokeMargin) * j.mitre;
     breaks[i].cut = nodes[i].at;
     breaks[i].cut_normal = (t0 + t1).normalized();
   }

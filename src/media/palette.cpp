@@ -14,14 +14,14 @@ using Counted = std::pair<std::uint32_t, std::uint32_t>;  // 0xRRGGBB, pixels
 
 int channel(std::uint32_t colour, int k) { return int(colour >> (16 - 8 * k) & 255); }
 
-struct Box {
+struct ColourBox {
   std::size_t begin, end;
   int axis = 0;
   std::uint64_t weight = 0;  // pixels times the longest side: what cutting it would gain
 };
 
-Box box(const std::vector<Counted>& colours, std::size_t begin, std::size_t end) {
-  Box result{begin, end};
+ColourBox box(const std::vector<Counted>& colours, std::size_t begin, std::size_t end) {
+  ColourBox result{begin, end};
   std::uint64_t pixels = 0;
   int low[3] = {255, 255, 255}, high[3] = {0, 0, 0};
   for (std::size_t i = begin; i < end; ++i) {
@@ -38,7 +38,7 @@ Box box(const std::vector<Counted>& colours, std::size_t begin, std::size_t end)
   return result;
 }
 
-std::uint32_t mean(const std::vector<Counted>& colours, const Box& of) {
+std::uint32_t mean(const std::vector<Counted>& colours, const ColourBox& of) {
   std::uint64_t pixels = 0, sum[3] = {};
   for (std::size_t i = of.begin; i < of.end; ++i) {
     pixels += colours[i].second;
@@ -60,13 +60,14 @@ std::vector<std::uint32_t> palette(std::vector<Counted> colours, std::size_t mos
   std::vector<std::uint32_t> result;
   for (std::size_t i = 0; i < exact; ++i) result.push_back(colours[i].first);
 
-  std::vector<Box> boxes;
+  std::vector<ColourBox> boxes;
   if (exact < colours.size()) boxes.push_back(box(colours, exact, colours.size()));
   while (!boxes.empty() && boxes.size() < most - exact) {
-    const auto widest = std::max_element(boxes.begin(), boxes.end(),
-                                         [](const Box& a, const Box& b) { return a.weight < b.weight; });
+    const auto widest =
+        std::max_element(boxes.begin(), boxes.end(),
+                         [](const ColourBox& a, const ColourBox& b) { return a.weight < b.weight; });
     if (widest->weight == 0) break;
-    const Box whole = *widest;
+    const ColourBox whole = *widest;
     const auto first = colours.begin() + std::ptrdiff_t(whole.begin);
     const auto last = colours.begin() + std::ptrdiff_t(whole.end);
     std::sort(first, last, [&](const Counted& a, const Counted& b) {
@@ -83,7 +84,7 @@ std::vector<std::uint32_t> palette(std::vector<Counted> colours, std::size_t mos
     *widest = box(colours, whole.begin, cut);
     boxes.push_back(box(colours, cut, whole.end));
   }
-  for (const Box& one : boxes) result.push_back(mean(colours, one));
+  for (const ColourBox& one : boxes) result.push_back(mean(colours, one));
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

@@ -52,11 +52,19 @@ sim::Vec<D> vector(const Node& node, int i, int n);
 /// A spin in radians a second from one in degrees: a number in the plane, a vector in space.
 template <int D>
 sim::AngularVec<D> spin(const Node& node, int i, int n);
+template <>
+sim::AngularVec<2> spin<2>(const Node& node, int i, int n);
+template <>
+sim::AngularVec<3> spin<3>(const Node& node, int i, int n);
 
 /// The turn that `angle` (in the plane) or `orientation` (in space) of a table says, in radians and as a unit
 /// quaternion; of the i-th of n copies. Upright where neither is given.
 template <int D>
 sim::Orientation<D> turn(const Fields& fields, int i = 0, int n = 1);
+template <>
+sim::Orientation<2> turn<2>(const Fields& fields, int i, int n);
+template <>
+sim::Orientation<3> turn<3>(const Fields& fields, int i, int n);
 
 /// Degrees, as a person types them, as radians.
 double radians(double degrees);

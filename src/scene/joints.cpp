@@ -22,7 +22,7 @@ constexpr std::size_t kMostJoints = 1'000'000;
 // of a lever, in the largest coordinate of a room or a body
 constexpr double kLongest = 100;
 
-constexpr double kRounding = 1e-9;  // of the room's size: places this near are one
+constexpr double kSamePlace = 1e-9;  // of the room's size: places this near are one
 
 // in the plane a hinge is a pin; in space a pin is a ball joint
 template <int D>
@@ -60,7 +60,7 @@ sim::AngularVec<3> against(const sim::World<3>& world, int a, int b) {
 
 // one side of `between`: what it means, and whether it says where
 template <int D>
-struct Side {
+struct JointSide {
   std::vector<sim::End<D>> ends;
   bool says_where = false;
 
@@ -68,8 +68,8 @@ struct Side {
 };
 
 template <int D>
-Side<D> side(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
-             Diagnostics& complaints) {
+JointSide<D> side(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
+                  Diagnostics& complaints) {
   if (node.is_text() && node.text() == "room") return {{sim::End<D>{}}, false};
   return {ends(node, roster, world, complaints),
           node.is_list() || node.find("local") != nullptr || node.find("at") != nullptr};
@@ -100,8 +100,8 @@ class Joining {
   using Vec = sim::Vec<D>;
   using End = sim::End<D>;
 
-  Joining(const Fields& fields, JointKind kind, const Side<D>& a, const Side<D>& b, sim::World<D>& world,
-          Diagnostics& complaints)
+  Joining(const Fields& fields, JointKind kind, const JointSide<D>& a, const JointSide<D>& b,
+          sim::World<D>& world, Diagnostics& complaints)
       : fields_(fields), kind_(kind), a_(a), b_(b), world_(world), complaints_(complaints) {
     for (const sim::Wall<D>& wall : world.model.walls)
       size_ = std::max(size_, wall.point.cwiseAbs().maxCoeff());
@@ -184,7 +184,7 @@ class Joining {
     }
     if (a_says && b_says) {
       const double apart = (from_a - from_b).norm();
-      if (apart <= kRounding * (1 + size_)) return true;
+      if (apart <= kSamePlace * (1 + size_)) return true;
       complaints_.add(fields_.place("between"),
                       fmt::format("the two points of this {} are {:.3g} m apart at the start",
                                   fields_.text("type"), apart));
@@ -194,7 +194,7 @@ class Joining {
     if (b_says) {
       it.a = on<D>(world_, it.a.body, from_b);
     } else if (a_says || it.b.body < 0 || (kind_ != JointKind::pin && kind_ != JointKind::hinge) ||
-               (from_a - from_b).norm() <= kRounding * (1 + size_)) {
+               (from_a - from_b).norm() <= kSamePlace * (1 + size_)) {
       it.b = on<D>(world_, it.b.body, from_a);
     } else {
       complaints_.add(
@@ -224,7 +224,7 @@ class Joining {
       return false;
     }
     if (!length) return true;
-    const double slack = length->number() - apart, rounding = kRounding * (1 + size_);
+    const double slack = length->number() - apart, rounding = kSamePlace * (1 + size_);
     if (slack < -rounding || (kind_ == JointKind::rod && slack > rounding)) {
       complaints_.add(
           length->place,
@@ -238,7 +238,7 @@ class Joining {
 
   const Fields& fields_;
   JointKind kind_;
-  const Side<D>&a_, &b_;
+  const JointSide<D>&a_, &b_;
   sim::World<D>& world_;
   Diagnostics& complaints_;
   double size_ = 0;
@@ -255,8 +255,8 @@ void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Dia
     if (!between || !fields.given("type")) continue;
     const JointKind kind = type<D>(fields.text("type"));
     refuse_others(fields, kind, D, complaints);
-    const Side<D> a = side(between->list()[0], roster, world, complaints);
-    const Side<D> b = side(between->list()[1], roster, world, complaints);
+    const JointSide<D> a = side(between->list()[0], roster, world, complaints);
+    const JointSide<D> b = side(between->list()[1], roster, world, complaints);
     if (a.ends.empty() || b.ends.empty()) continue;
     if (a.ends.size() != b.ends.size() && a.ends.size() != 1 && b.ends.size() != 1) {
       complaints.add(

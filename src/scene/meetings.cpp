@@ -23,11 +23,11 @@ struct Cell {
 };
 
 template <int D>
-struct Entry {
+struct LevelEntry {
   Cell<D> cell;
   int kind = 0, box = 0;
 
-  auto operator<=>(const Entry&) const = default;
+  auto operator<=>(const LevelEntry&) const = default;
 };
 
 template <int D>
@@ -66,7 +66,7 @@ class Grid {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (kinds[i] < 0) continue;
       const double h = std::ldexp(1.0, level_[i]);
-      Entry<D> entry{{level_[i], {}}, kinds[i], int(i)};
+      LevelEntry<D> entry{{level_[i], {}}, kinds[i], int(i)};
       for (int k = 0; k < D; ++k)
         entry.cell.at[std::size_t(k)] = index((boxes[i].lower[k] + boxes[i].upper[k]) / 2 / h);
       entries_.push_back(entry);
@@ -144,12 +144,12 @@ class Grid {
   }
 
   std::span<const sim::Bounds<D>> boxes_;
-  double slack_ = 0;               // m
-  std::vector<int> level_;         // one a box
-  std::vector<int> levels_;        // those that there are
-  std::vector<Entry<D>> entries_;  // sorted
-  std::vector<int> next_kind_;     // one an entry
-  std::vector<int> slots_;         // the first entry of a cell, or -1
+  double slack_ = 0;                    // m
+  std::vector<int> level_;              // one a box
+  std::vector<int> levels_;             // those that there are
+  std::vector<LevelEntry<D>> entries_;  // sorted
+  std::vector<int> next_kind_;          // one an entry
+  std::vector<int> slots_;              // the first entry of a cell, or -1
 };
 
 }  // namespace

@@ -25,7 +25,7 @@ constexpr std::int64_t kMostLooked = 20'000'000;  // pairs that are near each ot
 
 std::pair<int, int> ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-struct Found {
+struct OverlapsFound {
   int a = -1, b = -1;  // the first pair
   double depth = 0;
   int more = 0;
@@ -74,7 +74,7 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
     return may_touch.but_for_joints(kinds[std::size_t(k)], kinds[std::size_t(l)]);
   };
 
-  std::vector<Found> found(roster.groups.size());
+  std::vector<OverlapsFound> found(roster.groups.size());
   std::int64_t looked = 0, overlapping = 0;
   meetings<D>(boxes, kind_of, keep_apart, [&](int a, int b) {
     if (++looked > kMostLooked) return false;
@@ -87,7 +87,7 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
                                      1e-3 * std::max(sim::bounding_radius(one), sim::bounding_radius(other)));
     if (!(depth > kAllowed * size)) return true;
     ++overlapping;
-    Found& its = found[std::size_t(group_of[std::size_t(b)])];
+    OverlapsFound& its = found[std::size_t(group_of[std::size_t(b)])];
     if (its.a < 0 || ordered(b, a) < ordered(its.b, its.a)) {
       its = {a, b, depth, its.a < 0 ? 0 : its.more + 1};
     } else {
@@ -97,7 +97,7 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
   });
 
   for (std::size_t g = 0; g < found.size(); ++g) {
-    const Found& its = found[g];
+    const OverlapsFound& its = found[g];
     if (its.a < 0) continue;
     complaints.add(
         roster.groups[g].at,

@@ -62,18 +62,18 @@ std::optional<std::size_t> component(const std::string& name) {
   return {};
 }
 
-struct Found {
+struct NamedTable {
   std::string kind;
   int table = 0;
 };
 
-std::optional<Found> named(const Node& top, const std::string& name) {
+std::optional<NamedTable> named(const Node& top, const std::string& name) {
   for (const char* kind : kNamed) {
     const Node* all = top.find(kind);
     if (!all || !all->is_list()) continue;
     for (std::size_t i = 0; i < all->list().size(); ++i) {
       const Node* its = all->list()[i].find("name");
-      if (its && its->is_text() && its->text() == name) return Found{kind, int(i)};
+      if (its && its->is_text() && its->text() == name) return NamedTable{kind, int(i)};
     }
   }
   return {};
@@ -174,7 +174,7 @@ std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Diag
     }
 
     // a thing: by its name, or by the place of its table in the file
-    Found found;
+    NamedTable found;
     std::optional<std::int64_t> copy;
     if (const auto it = named(top, first.name)) {
       found = *it;

@@ -6,14 +6,14 @@ namespace obscura::scene {
 
 namespace {
 
-std::string_view trimmed(std::string_view s) {
+std::string_view trimmed_path(std::string_view s) {
   while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
   while (!s.empty() && (s.back() == ' ' || s.back() == '\t')) s.remove_suffix(1);
   return s;
 }
 
 std::optional<std::int64_t> whole(std::string_view s) {
-  s = trimmed(s);
+  s = trimmed_path(s);
   std::int64_t n = 0;
   const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), n);
   if (s.empty() || error != std::errc() || end != s.data() + s.size() || n < 0) return {};
@@ -24,7 +24,7 @@ std::optional<std::int64_t> whole(std::string_view s) {
 
 std::optional<std::vector<Step>> path(std::string_view text) {
   std::vector<Step> steps;
-  text = trimmed(text);
+  text = trimmed_path(text);
   while (true) {
     const std::size_t dot = text.find('.');
     const std::string_view part = text.substr(0, dot);
@@ -47,7 +47,7 @@ std::optional<std::vector<Step>> path(std::string_view text) {
 }
 
 std::optional<Reference> reference(std::string_view text) {
-  text = trimmed(text);
+  text = trimmed_path(text);
   // an automatic name has an index of its own: "box[0]", "particle[1][3]"
   const std::size_t open = text.rfind('[');
   if (open == std::string_view::npos) {
@@ -61,13 +61,13 @@ std::optional<Reference> reference(std::string_view text) {
 
 std::optional<std::vector<int>> range(std::string_view text, int n) {
   std::vector<int> all;
-  if (trimmed(text) == "*") {
+  if (trimmed_path(text) == "*") {
     for (int i = 0; i < n; ++i) all.push_back(i);
     return all;
   }
   while (true) {
     const std::size_t comma = text.find(',');
-    const std::string_view part = trimmed(text.substr(0, comma));
+    const std::string_view part = trimmed_path(text.substr(0, comma));
     const std::size_t dots = part.find("..");
     const auto first = whole(part.substr(0, dots));
     const auto last = dots == std::string_view::npos ? first : whole(part.substr(dots + 2));

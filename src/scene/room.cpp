@@ -13,37 +13,37 @@ namespace {
 
 // the walls that a size gives, in their order: all of them, or as many as are wanted
 template <int D>
-struct Side {
+struct WallSide {
   const char* name;
   int axis;
   bool high;
 };
 
-constexpr Side<2> kPlane[] = {{"the floor", 1, false},
-                              {"the left wall", 0, false},
-                              {"the right wall", 0, true},
-                              {"the ceiling", 1, true}};
-constexpr Side<3> kSpace[] = {{"the floor", 1, false},     {"the left wall", 0, false},
-                              {"the right wall", 0, true}, {"the ceiling", 1, true},
-                              {"the back wall", 2, false}, {"the front wall", 2, true}};
+constexpr WallSide<2> kPlane[] = {{"the floor", 1, false},
+                                  {"the left wall", 0, false},
+                                  {"the right wall", 0, true},
+                                  {"the ceiling", 1, true}};
+constexpr WallSide<3> kSpace[] = {{"the floor", 1, false},     {"the left wall", 0, false},
+                                  {"the right wall", 0, true}, {"the ceiling", 1, true},
+                                  {"the back wall", 2, false}, {"the front wall", 2, true}};
 
 template <int D>
-std::vector<Side<D>> sides(const Node* walls);
+std::vector<WallSide<D>> sides(const Node* walls);
 
 template <>
-std::vector<Side<2>> sides(const Node* walls) {
+std::vector<WallSide<2>> sides(const Node* walls) {
   const std::size_t n = !walls || !walls->is_text() ? 4 : walls->text() == "ground" ? 1 : 0;
   return {kPlane, kPlane + n};
 }
 
 template <>
-std::vector<Side<3>> sides(const Node* walls) {
+std::vector<WallSide<3>> sides(const Node* walls) {
   const std::size_t n = !walls || !walls->is_text() ? 6 : walls->text() == "ground" ? 1 : 0;
   return {kSpace, kSpace + n};
 }
 
 // more walls, or more of them in one plane, take contacts and pictures longer than anybody waits
-constexpr std::size_t kMostWalls = 1000;
+constexpr std::size_t kMostListedWalls = 1000;
 constexpr int kMostAlike = 8;
 
 // the first wall that lies in one plane with as many others before it; -1: none does
@@ -87,7 +87,7 @@ Room<D> room(const Node& top, Diagnostics& complaints) {
     const Vec low = at ? vector<D>(*at) : corner(size), high = low + size;
     room.height = size.y();
     room.bounds = {low, high};
-    for (const Side<D>& side : sides<D>(walls)) {
+    for (const WallSide<D>& side : sides<D>(walls)) {
       const Vec normal = (side.high ? -1.0 : 1.0) * Vec::Unit(side.axis) + Vec::Zero();
       room.walls.push_back({side.high ? high : low, normal, elasticity, friction});
       room.names.push_back(side.name);
@@ -98,9 +98,9 @@ Room<D> room(const Node& top, Diagnostics& complaints) {
   }
 
   // walls at any angle
-  if (listed && walls->list().size() > kMostWalls) {
+  if (listed && walls->list().size() > kMostListedWalls) {
     complaints.add(walls->place, fmt::format("'walls': {} walls are more than {}, the most a room may have",
-                                             walls->list().size(), kMostWalls));
+                                             walls->list().size(), kMostListedWalls));
     return room;
   }
   for (std::size_t i = 0; listed && i < walls->list().size(); ++i) {

@@ -17,14 +17,14 @@ using Json = nlohmann::ordered_json;
 
 Json object(const std::string& owner);
 
-Json literal(const Node& node) {
+Json json_literal(const Node& node) {
   if (node.is_integer()) return std::get<std::int64_t>(node.value);
   if (node.is_number()) return node.number();
   if (const bool* flag = std::get_if<bool>(&node.value)) return *flag;
   if (node.is_text()) return node.text();
   Json list = Json::array();
   if (node.is_list())
-    for (const Node& each : node.list()) list.push_back(literal(each));
+    for (const Node& each : node.list()) list.push_back(json_literal(each));
   return list;
 }
 
@@ -158,7 +158,7 @@ Json property(const Key& key) {
   if (!key.absent.empty()) text += fmt::format(" Left out: {}.", key.absent);
   it["description"] = text;
   if (!key.fallback.empty() && key.absent.empty())
-    it["default"] = literal(fallback(key.path, key.dimension == 3 ? 3 : 2));
+    it["default"] = json_literal(fallback(key.path, key.dimension == 3 ? 3 : 2));
   return it;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostRows = 100;  // of a summary, which GitHub cuts at a megabyte
+constexpr std::size_t kMostSummaryRows = 100;  // of a summary, which GitHub cuts at a megabyte
 
 std::string title(const GoldenCase& it) {
   return it.time.empty() ? it.scene : fmt::format("{}, t = {} s", it.scene, it.time);
@@ -82,13 +82,13 @@ std::string golden_summary(const std::vector<GoldenCase>& cases) {
       fmt::format("### Golden images: {} of {} not good\n\n| moment | | |\n|---|---|---|\n", bad, moments);
   std::size_t rows = 0;
   for (const GoldenCase& it : cases) {
-    if (it.good() || ++rows > kMostRows) continue;
+    if (it.good() || ++rows > kMostSummaryRows) continue;
     std::string lines;
     for (const std::string& line : it.lines) lines += (lines.empty() ? "" : "<br>") + github::escaped(line);
     all +=
         fmt::format("| {} | **{}** | {} |\n", github::escaped(title(it)), github::escaped(it.state), lines);
   }
-  if (rows > kMostRows) all += fmt::format("\nand {} more\n", rows - kMostRows);
+  if (rows > kMostSummaryRows) all += fmt::format("\nand {} more\n", rows - kMostSummaryRows);
   return all + "\n";
 }
 

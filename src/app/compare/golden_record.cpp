@@ -16,24 +16,24 @@ namespace {
 
 // Digits that tell one from all others, if not from what a forger makes: a thousand scenes of two moments are
 // to be less than 200 kB of git.
-constexpr std::size_t kState = 16, kPixels = 12, kScene = 8;
+constexpr std::size_t kStateDigits = 16, kPixelDigits = 12, kSceneDigits = 8;
 
 }  // namespace
 
 std::string pixel_hash(const media::Image& image) {
   const std::string all =
       fmt::format("{}x{} {}", image.width, image.height, hash(image.pixels.data(), image.pixels.size()));
-  return hash(all).substr(0, kPixels);
+  return hash(all).substr(0, kPixelDigits);
 }
 
 GoldenRecord::Moment moment_of(const Pictured& made) {
-  return {made.origin.state.substr(0, kState), pixel_hash(made.image)};
+  return {made.origin.state.substr(0, kStateDigits), pixel_hash(made.image)};
 }
 
 GoldenRecord record_of(const std::vector<std::string>& times, const std::vector<Pictured>& made) {
   const Origin& origin = made.front().origin;
   GoldenRecord record;
-  record.scene = origin.scene_hash.substr(0, kScene);
+  record.scene = origin.scene_hash.substr(0, kSceneDigits);
   record.gl = origin.gl_version + "; " + origin.gl_renderer;
   const std::string profile = " (Core Profile)";
   if (const std::size_t at = record.gl.find(profile); at != std::string::npos)
@@ -64,8 +64,8 @@ GoldenRecord read_record(const std::string& file) {
         value.get_to(record.scene);
       else if (key == "gl")
         record.gl = scene::one_line(value.get<std::string>());
-      else if (const auto both = value.get<std::string>(); both.size() == kState + 1 + kPixels)
-        record.moments[key] = {both.substr(0, kState), both.substr(kState + 1)};
+      else if (const auto both = value.get<std::string>(); both.size() == kStateDigits + 1 + kPixelDigits)
+        record.moments[key] = {both.substr(0, kStateDigits), both.substr(kStateDigits + 1)};
       else
         throw none;
     }

@@ -16,7 +16,7 @@ namespace obscura::app {
 
 namespace {
 
-constexpr std::size_t kMostRows = 20;  // of the table of quantities
+constexpr std::size_t kMostQuantities = 20;  // of the table of quantities
 
 struct Column {
   std::string body, quantity, component;  // "ball", "position", "x"
@@ -216,11 +216,11 @@ std::string text(const RunComparison& c, const Tolerance& tolerance) {
     all += fmt::format("  {:<28} {:>10} {:>12} {:>10}\n", "quantity", "parts at", "largest", "at");
     std::size_t shown = 0;
     for (const auto& q : c.quantities) {
-      if (!q.parts || ++shown > kMostRows) continue;
+      if (!q.parts || ++shown > kMostQuantities) continue;
       all += fmt::format("  {:<28} {:>8g} s {:>12.3g} {:>8g} s\n", joined(q.body, q.name), q.first, q.largest,
                          q.at);
     }
-    if (shown > kMostRows) all += fmt::format("  and {} more\n", shown - kMostRows);
+    if (shown > kMostQuantities) all += fmt::format("  and {} more\n", shown - kMostQuantities);
   }
   return all;
 }

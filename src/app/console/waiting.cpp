@@ -17,7 +17,7 @@ namespace {
 constexpr std::chrono::milliseconds kPatience(2000), kBetween(500);
 
 // what there is to be said, for the one Waiting there is
-struct Said {
+struct Notices {
   std::mutex mutex;
   std::condition_variable_any ended;
   bool heard = false;  // progress has been reported
@@ -28,13 +28,13 @@ struct Said {
   std::string unit;
 };
 
-Said& said() {
-  static Said it;
+Notices& said() {
+  static Notices it;
   return it;
 }
 
 // requires the mutex
-void clear(Said& it) {
+void clear(Notices& it) {
   if (!it.shown) return;
   it.shown = false;
   std::fputs("\033[K", stderr);
@@ -66,7 +66,7 @@ Waiting::~Waiting() {
 void Waiting::tell(std::stop_token stop) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point began = Clock::now();
-  Said& it = said();
+  Notices& it = said();
   std::unique_lock lock(it.mutex);
   const auto over = [&] { return stop.stop_requested(); };
   for (auto wait = kPatience; !it.ended.wait_for(lock, stop, wait, over) && !over(); wait = kBetween) {
@@ -83,7 +83,7 @@ void Waiting::tell(std::stop_token stop) {
 }
 
 void doing(const std::string& what, double done, double of, const std::string& unit) {
-  Said& it = said();
+  Notices& it = said();
   const std::lock_guard lock(it.mutex);
   if (!it.heard) return;
   if (it.what != what) it.what = what;

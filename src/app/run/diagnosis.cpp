@@ -14,7 +14,7 @@ namespace obscura::app {
 
 namespace {
 
-constexpr std::size_t kMostKeys = 6, kMostBodies = 6;
+constexpr std::size_t kMostKeys = 6, kMostBodiesTold = 6;
 
 std::string or_absent(const std::string& value) { return value.empty() ? "left out" : value; }
 
@@ -209,7 +209,7 @@ std::string first_difference(const Origin& a, const Origin& b) {
   std::size_t told = 0;
   for (const std::size_t body : apart->bodies) {
     if (body >= run->scene_info().bodies.size()) return text;
-    if (told == kMostBodies) break;
+    if (told == kMostBodiesTold) break;
     names += (told++ ? ", " : "") + run->scene_info().bodies[body].name;
   }
   if (apart->bodies.size() > told) names += fmt::format(" and {} more", apart->bodies.size() - told);

@@ -19,7 +19,7 @@ namespace {
 
 // beyond what any file of ours says: a size, and frames of 1e6 s at 1000 a second a thousand times slowed
 // down
-constexpr std::int64_t kMostPixels = 1'000'000, kMostFrames = 1'000'000'000'000;
+constexpr std::int64_t kMostPixels = 1'000'000, kMostFramesOfMovie = 1'000'000'000'000;
 
 }  // namespace
 
@@ -147,8 +147,8 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
     origin.transparent = json.value("transparent", false);
     const auto time = sim::parse_rational(json.at("time").get<std::string>());
     const auto fps = sim::parse_rational(origin.fps);
-    const auto frame = whole(json.at("frame"), 0, kMostFrames),
-               frames = json.contains("frames") ? whole(json["frames"], 1, kMostFrames) : 0;
+    const auto frame = whole(json.at("frame"), 0, kMostFramesOfMovie),
+               frames = json.contains("frames") ? whole(json["frames"], 1, kMostFramesOfMovie) : 0;
     if (!width || !height || !time || *time < sim::Rational{} || !fps || fps->num <= 0 || !frame || !frames)
       return {};
     origin.width = int(*width), origin.height = int(*height);

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kInstant = 5e-7;  // s
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trimmed_cell(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && blank(text.back())) text.remove_suffix(1);
@@ -31,7 +31,7 @@ std::vector<std::string_view> cells(std::string_view line) {
   std::vector<std::string_view> all;
   for (;;) {
     const std::size_t comma = line.find(',');
-    all.push_back(trimmed(line.substr(0, comma)));
+    all.push_back(trimmed_cell(line.substr(0, comma)));
     if (comma == std::string_view::npos) return all;
     line.remove_prefix(comma + 1);
   }
@@ -68,7 +68,7 @@ Table table_in(const std::string& file) {
   std::string line;
   for (int at = 1; std::getline(in, line); ++at) {
     if (at == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    const std::string_view text = trimmed(line);
+    const std::string_view text = trimmed_cell(line);
     if (text.empty() || text.front() == '#') continue;
     if (numeric.empty() && text.front() == '{')
       return table_of_json(file, line + "\n" + std::string(std::istreambuf_iterator<char>(in), {}));

@@ -11,10 +11,10 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kLabel = 23;              // em
-constexpr double kAscent = 0.74;           // of the em: figures and capitals
-constexpr double kDescent = 0.22;          // and what hangs below the baseline
-constexpr double kGap = 7, kAround = 3.5;  // page units: to the body, and of the plate around the words
+constexpr double kLabel = 23;                  // em
+constexpr double kAscent = 0.74;               // of the em: figures and capitals
+constexpr double kDescent = 0.22;              // and what hangs below the baseline
+constexpr double kBodyGap = 7, kAround = 3.5;  // page units: to the body, and of the plate around the words
 
 /// From where to where on the page a body reaches.
 struct Height {
@@ -39,8 +39,8 @@ void add(const std::vector<Label>& labels, const Rect& window, double weight, co
     const std::string words = fitted(label.words, Face::medium, size, window.width - 2 * around);
     const double half = width_of(words, Face::medium, size) / 2 + around;
     const double high = kAscent * size + around, low = kDescent * size + around;
-    double baseline = label.body.top - kGap * weight - low;
-    if (baseline - high < window.y) baseline = label.body.bottom + kGap * weight + high;
+    double baseline = label.body.top - kBodyGap * weight - low;
+    if (baseline - high < window.y) baseline = label.body.bottom + kBodyGap * weight + high;
     const double last = window.y + window.height - low;
     baseline = std::min(baseline, last);
     const double x = 2 * half < window.width

@@ -14,9 +14,9 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kSmall = 8.5 * kPoint;               // em
-constexpr double kLongest = 0.34;                     // of the picture's shorter side
-constexpr double kArrow = 1.1 * kPoint / kArrowLine;  // weight at which a shaft is 1.1 pt
+constexpr double kSmall = 8.5 * kPoint;                     // em
+constexpr double kLongest = 0.34;                           // of the picture's shorter side
+constexpr double kLegendArrow = 1.1 * kPoint / kArrowLine;  // weight at which a shaft is 1.1 pt
 
 }  // namespace
 
@@ -86,11 +86,11 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     add(f, {x, baseline}, list);
     x -= 3 * kPoint;
     std::vector<Arrow> arrows;
-    offer({x - length, middle}, {x, middle}, {left, middle - length, right - left, 2 * length}, kArrow,
+    offer({x - length, middle}, {x, middle}, {left, middle - length, right - left, 2 * length}, kLegendArrow,
           arrows);
     Figure::Vector of;
     of.quantity = kind.quantity;
-    draw_arrows(arrows, kArrow, colours.ground, color_of(of, colours), list);
+    draw_arrows(arrows, kLegendArrow, colours.ground, color_of(of, colours), list);
     x -= length + 10 * kPoint;
   }
 }

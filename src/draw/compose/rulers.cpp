@@ -12,9 +12,10 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kType = 8.5 * kPoint, kTick = 2.5 * kPoint, kLine = 0.6 * kPoint;
-constexpr double kOff = 3 * kPoint;                        // from the picture
-constexpr double kFar = 26 * kPoint, kNear = 18 * kPoint;  // between numbers beside and above each other
+constexpr double kRulerType = 8.5 * kPoint, kTick = 2.5 * kPoint, kLine = 0.6 * kPoint;
+constexpr double kOff = 3 * kPoint;  // from the picture
+constexpr double kFarNumbers = 26 * kPoint,
+                 kNearNumbers = 18 * kPoint;  // between numbers beside and above each other
 
 }  // namespace
 
@@ -31,7 +32,7 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
     list.add({{a, kLine, colours.ink}, {b, kLine, colours.ink}}, Cap::butt);
   };
   const auto write = [&](const std::string& text, const Point& at, double align) {
-    const Formula f = formula(text, kType, colours.ink);
+    const Formula f = formula(text, kRulerType, colours.ink);
     add(f, {at.x() - align * f.width, at.y()}, list);
     return f.width;
   };
@@ -40,17 +41,18 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
   line({left, under}, {right, under});
   const double base = under + kTick + 7.5 * kPoint;
   const double name = write("x / \"m\"", {right, base}, 1);
-  for (const double x : ticks(x_low, x_high, int((right - left) / kFar))) {
+  for (const double x : ticks(x_low, x_high, int((right - left) / kFarNumbers))) {
     const double at = view.page({x, 0, 0}).x();
     line({at, under}, {at, under + kTick});
     if (at < right - name - 6 * kPoint) write(number(x), {at, base}, 0.5);
   }
   line({beside, top}, {beside, bottom});
-  write("y / \"m\"", {beside - kTick - 1.5 * kPoint, top + 0.5 * kType}, 1);
-  for (const double y : ticks(y_low, y_high, int((bottom - top) / kNear))) {
+  write("y / \"m\"", {beside - kTick - 1.5 * kPoint, top + 0.5 * kRulerType}, 1);
+  for (const double y : ticks(y_low, y_high, int((bottom - top) / kNearNumbers))) {
     const double at = view.page({0, y, 0}).y();
     line({beside, at}, {beside - kTick, at});
-    if (at > top + 1.4 * kType) write(number(y), {beside - kTick - 1.5 * kPoint, at + 0.24 * kType}, 1);
+    if (at > top + 1.4 * kRulerType)
+      write(number(y), {beside - kTick - 1.5 * kPoint, at + 0.24 * kRulerType}, 1);
   }
 }
 

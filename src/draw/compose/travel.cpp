@@ -14,7 +14,7 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kNear = 0.05;  // depth over the target's, nearer than which nothing is looked at
+constexpr double kNearestDepth = 0.05;  // depth over the target's, nearer than which nothing is looked at
 
 // where a hand is on its way
 Vec3 along(const sim::SceneInfo::Mouse& mouse, double time) {
@@ -33,7 +33,7 @@ double spatial(const SpaceStage& stage, const Panel& panel, const sim::Snapshot&
                const sim::Snapshot& then) {
   const CameraProjection a = lens_of(panel, now), b = lens_of(panel, then);
   const auto way = [&](const Vec3& from, const Vec3& to, double around, double turned) {
-    if (a.depth(from) < kNear || b.depth(to) < kNear) return 0.0;
+    if (a.depth(from) < kNearestDepth || b.depth(to) < kNearestDepth) return 0.0;
     const double scale = a.scale_at(from);
     return seen_travel(a.window, a.page(from), b.page(to), scale * around, scale * turned);
   };

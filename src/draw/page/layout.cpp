@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTitle = 34, kSubtitle = 26.5, kClock = 28.5;   // em
 constexpr double kStrip = 76, kSecondLine = 36, kBaseline = 50;  // heights
-constexpr double kMargin = 36, kTitleGap = 18, kClockGap = 44;
+constexpr double kPageMargin = 36, kTitleGap = 18, kClockGap = 44;
 constexpr double kSmallestType = 0.82;  // before the caption takes another line
 
 }  // namespace
@@ -170,7 +170,7 @@ double lay_caption(Layout& layout, const Look& look) {
   const double w = layout.weight;
   layout.caption = look.caption && (look.clock || !look.title.empty() || !look.subtitle.empty());
   if (!layout.caption) return 0;
-  const double page = layout.width - 2 * std::max(w * kMargin, 0.045 * layout.width);
+  const double page = layout.width - 2 * std::max(w * kPageMargin, 0.045 * layout.width);
   const Setting setting = set_words(look, w, page, page);
   write_caption(layout, look, palette(look.theme), setting, (layout.width - page) / 2,
                 (layout.width + page) / 2, 0);
@@ -192,7 +192,7 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
 
   // the largest scale at which the world fits under a strip of this height
   const double band = cast.walls.empty() ? 0 : w * (look.hatching ? kBand : kWallLine);
-  const double around = w * kMargin + band;
+  const double around = w * kPageMargin + band;
   const Point size = (world.high - world.low).head<2>();
   auto scale = [&](double strip) {
     const double wide = std::max(1.0, layout.width - 2 * around),
@@ -201,9 +201,9 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   };
 
   // the caption's lines depend on the room's width, which depends on the strip's height
-  double strip = w * kMargin;
+  double strip = w * kPageMargin;
   Setting setting;
-  const double page = layout.width - 2 * std::max(w * kMargin, 0.045 * layout.width);
+  const double page = layout.width - 2 * std::max(w * kPageMargin, 0.045 * layout.width);
   if (layout.caption) {
     auto room = [&] { return world.closed ? scale(strip) * size.x() + 2 * w * kWallLine : page; };
     strip = w * kStrip;
@@ -218,7 +218,7 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
 
   // what height is left over goes above and below alike; a camera that moves, or a world without an end,
   // keeps the caption at the top
-  const double spare = layout.height - strip - 2 * band - w * kMargin - layout.scale * size.y();
+  const double spare = layout.height - strip - 2 * band - w * kPageMargin - layout.scale * size.y();
   const bool still = camera.keys.empty() && !camera.follow;
   const double above = world.closed && still ? spare / 2 : 0;
   layout.clipped = !(world.closed && still);

@@ -15,8 +15,8 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kType = 8.5, kTick = 2.5, kLine = 1.0, kAxis = 0.6;  // points
-constexpr double kApart = 10;                                         // of words at the ends
+constexpr double kTypeSize = 8.5, kTick = 2.5, kLine = 1.0, kAxis = 0.6;  // points
+constexpr double kApart = 10;                                             // of words at the ends
 constexpr double kDotRadius = 1.6;
 constexpr int kMostDecades = 7;  // with a number each
 
@@ -136,11 +136,11 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
   }
 
   // room for the numbers at the left, the names at the right
-  double numbers = 0, names = plot.name == Plot{}.name ? 0 : formula(plot.name, kType * point, {}).width;
+  double numbers = 0, names = plot.name == Plot{}.name ? 0 : formula(plot.name, kTypeSize * point, {}).width;
   for (const std::string& each : upward(area).numbers)
-    numbers = std::max(numbers, formula(each, kType * point, {}).width);
+    numbers = std::max(numbers, formula(each, kTypeSize * point, {}).width);
   for (const Series& each : plot.lines)
-    names = std::max(names, formula(each.label + each.note, kType * point, each.color).width);
+    names = std::max(names, formula(each.label + each.note, kTypeSize * point, each.color).width);
   area.left = rect.x + numbers + kTick * point + 3 * point;
   area.right = rect.x + rect.width - names - 5 * point;
   area.top = rect.y + 14 * point, area.bottom = rect.y + rect.height - 13 * point;
@@ -157,7 +157,7 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
 }
 
 void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, List& list) {
-  const double type = kType * area.point, tick = kTick * area.point, axis = kAxis * area.point;
+  const double type = kTypeSize * area.point, tick = kTick * area.point, axis = kAxis * area.point;
   const auto line = [&](const Point& a, const Point& b, double width, Color color) {
     list.add({{a, width, color}, {b, width, color}}, Cap::butt);
   };
@@ -223,7 +223,7 @@ void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, L
     list.add(Disc{p, kDotRadius * unit, 0, colours.ink, colours.ink});
     // at the right end above it, where the line's name is beside it
     const bool last = p.x() > area.right - 10 * unit;
-    const Formula f = formula(dot.label, kType * unit, colours.ink);
+    const Formula f = formula(dot.label, kTypeSize * unit, colours.ink);
     add(f, p + (last ? Point(-f.width / 2, -5 * unit) : Point(3.5 * unit, -2.5 * unit)), list);
   }
 }
@@ -236,8 +236,8 @@ void draw_names(const Plot& plot, const PlotArea& area, List& list) {
             [&](std::size_t a, std::size_t b) { return area.names[a] > area.names[b]; });
   for (const std::size_t i : order) {
     const Formula name =
-        formula(plot.lines[i].label + plot.lines[i].note, kType * area.point, plot.lines[i].color);
-    add(name, {area.right + 4 * area.point, area.names[i] + 0.24 * kType * area.point}, list);
+        formula(plot.lines[i].label + plot.lines[i].note, kTypeSize * area.point, plot.lines[i].color);
+    add(name, {area.right + 4 * area.point, area.names[i] + 0.24 * kTypeSize * area.point}, list);
   }
 }
 

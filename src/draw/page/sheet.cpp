@@ -8,7 +8,7 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kMargin = 2;  // pt: half a line's width is never cut off
+constexpr double kSheetMargin = 2;  // pt: half a line's width is never cut off
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Extent& exten
   layout.center = (world.low + world.high) / 2;
 
   const double band = cast.walls.empty() ? 0 : kPrint * (look.hatching ? kBand : kWallLine);
-  const double around = kMargin * kPoint + band;
+  const double around = kSheetMargin * kPoint + band;
   const Point size = (world.high - world.low).head<2>();
   const double left = kPoint * sheet.left, wide = layout.width - left;
   layout.scale =

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kAppear = 0.4, kLeave = 0.4;  // s before the press and after the release
 constexpr double kStep = 14, kWayDot = 2.1;    // of the dotted path, page units
-constexpr double kEdge = 2.4;                  // the pointer's outline
+constexpr double kPointerEdge = 2.4;           // the pointer's outline
 
 Color faded(Color c, double alpha) {
   c.a = std::uint8_t(std::lround(c.a * std::clamp(alpha, 0.0, 1.0)));
@@ -103,7 +103,7 @@ sim::Vec3 pointer(const sim::SceneInfo::Mouse& mouse, const sim::Snapshot::Mouse
 void draw_pointer(const Point& at, double alpha, double weight, const Palette& colours, List& list) {
   std::vector<Node> around;
   for (const Point& p : placed(kPointer, at, weight))
-    around.push_back({p, 2 * kEdge * weight, faded(colours.room, alpha)});
+    around.push_back({p, 2 * kPointerEdge * weight, faded(colours.room, alpha)});
   list.add(around, Cap::round, Blend::over, true);
   list.add(placed(kPointer, at, weight), faded(colours.ink, alpha));
 }

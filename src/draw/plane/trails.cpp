@@ -11,7 +11,7 @@
 namespace obscura::draw {
 namespace {
 
-constexpr int kPieces = 240;
+constexpr int kTrailPieces = 240;
 constexpr double kCusp = 0.9;   // cosine of a turn that breaks the line
 constexpr double kClose = 0.5;  // page units: nearer points are one
 
@@ -62,7 +62,7 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
     line.clear();
     std::int64_t piece = 0;
     for (std::size_t k = 0; k < way.size(); ++k) {
-      const auto here = std::int64_t(std::floor(way[k].time * kPieces / lasting));
+      const auto here = std::int64_t(std::floor(way[k].time * kTrailPieces / lasting));
       bool cusp = false;
       if (k > 0 && k + 1 < way.size()) {
         const Point in = (way[k].place - way[k - 1].place).head<2>(),

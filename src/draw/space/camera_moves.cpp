@@ -17,7 +17,7 @@ using sim::Vec3;
 constexpr double kMargin = 0.06;  // of the window's shorter side
 constexpr int kOrbit = 24;        // directions that an orbit is fitted for
 
-struct Shot {
+struct CameraAim {
   Vec3 target;
   double azimuth, elevation, width;
 };
@@ -27,7 +27,7 @@ double page_distance(const Camera& camera, const Rect& window) {
   return std::max(window.width, window.height) / (2 * std::tan(camera.field / 2));
 }
 
-CameraProjection lens(const Camera& camera, const Shot& shot, const Rect& window) {
+CameraProjection lens(const Camera& camera, const CameraAim& shot, const Rect& window) {
   const double sa = std::sin(shot.azimuth), ca = std::cos(shot.azimuth), se = std::sin(shot.elevation),
                ce = std::cos(shot.elevation);
   CameraProjection l;
@@ -43,9 +43,9 @@ CameraProjection lens(const Camera& camera, const Shot& shot, const Rect& window
   return l;
 }
 
-Shot shot(const Camera& camera, const CameraKey& key, const Aim& fitted, const Rect& window) {
-  Shot s{key.center.value_or(fitted.target), key.azimuth.value_or(camera.azimuth),
-         key.elevation.value_or(camera.elevation), key.width.value_or(fitted.width)};
+CameraAim shot(const Camera& camera, const CameraKey& key, const Aim& fitted, const Rect& window) {
+  CameraAim s{key.center.value_or(fitted.target), key.azimuth.value_or(camera.azimuth),
+              key.elevation.value_or(camera.elevation), key.width.value_or(fitted.width)};
   if (!key.eye) return s;
   const Vec3 back = *key.eye - s.target;
   const double far = back.norm();
@@ -58,7 +58,7 @@ Shot shot(const Camera& camera, const CameraKey& key, const Aim& fitted, const R
 }
 
 /// The way round is the short one to an eye, and as told between azimuths.
-Shot between(const Shot& a, Shot b, bool short_way, double s) {
+CameraAim between(const CameraAim& a, CameraAim b, bool short_way, double s) {
   constexpr double turn = 2 * std::numbers::pi;
   if (short_way) b.azimuth -= turn * std::round((b.azimuth - a.azimuth) / turn);
   if (s <= 0) return a;
@@ -132,7 +132,7 @@ Aim aim(const Camera& camera, const std::vector<Vec3>& corners, const Rect& wind
 
 CameraProjection lens_at(const Camera& camera, const Aim& fitted, const Rect& window, double t,
                          const std::optional<Vec3>& followed) {
-  Shot now{fitted.target, camera.azimuth, camera.elevation, fitted.width};
+  CameraAim now{fitted.target, camera.azimuth, camera.elevation, fitted.width};
   if (!camera.keys.empty()) {
     // the first key later than t, and the one before it
     std::size_t next = 0;

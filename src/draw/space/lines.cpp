@@ -11,8 +11,8 @@ namespace {
 
 using sim::Vec3;
 
-constexpr int kPieces = 120;   // of a trail
-constexpr double kCusp = 0.9;  // cosine of a turn that is kept
+constexpr int kTrailPieces = 120;  // of a trail
+constexpr double kCusp = 0.9;      // cosine of a turn that is kept
 constexpr double kStep = 14, kWayDot = 2.1;
 
 }  // namespace
@@ -39,7 +39,7 @@ void trace_trails(SpaceFrame& s, Ways ways) {
     std::vector<sim::Track::Point> chosen;
     std::int64_t piece = 0;
     for (std::size_t k = 0; k < way.size(); ++k) {
-      const auto here = std::int64_t(std::floor(way[k].time * kPieces / lasting));
+      const auto here = std::int64_t(std::floor(way[k].time * kTrailPieces / lasting));
       bool cusp = false;
       if (k > 0 && k + 1 < way.size()) {
         const Vec3 in = way[k].place - way[k - 1].place, out = way[k + 1].place - way[k].place;

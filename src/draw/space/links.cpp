@@ -17,7 +17,7 @@ constexpr double kRise = 0.5;  // turns over which a coil leaves its axis
 constexpr int kNodes = 14;     // a turn
 constexpr int kSag = 20;       // pieces of a rope that sags
 
-double smooth(double u) {
+double smooth_end(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * (3 - 2 * u);
 }
@@ -36,7 +36,7 @@ std::vector<Vec3> helix(const Coil& form, const Vec3& a, const Vec3& b, double w
   std::vector<Vec3> way{a};
   for (int i = 0; i <= form.turns * kNodes; ++i) {
     const double s = double(i) / kNodes, turn = 2 * std::numbers::pi * s;
-    const double rise = smooth(s / kRise) * smooth((n - s) / kRise);
+    const double rise = smooth_end(s / kRise) * smooth_end((n - s) / kRise);
     way.push_back(a + d * (lead + (length - 2 * lead) * s / n) +
                   radius * rise * (std::cos(turn) * u + std::sin(turn) * v));
   }

@@ -21,7 +21,7 @@ using sim::Vec3;
 constexpr double kSoft =
     0.02;                      // of the window's width in the world: what a soft edge may reach beyond a body
 constexpr double kSteep = 12;  // slopes are cut off there
-constexpr double kNear = 1e-3;
+constexpr double kLightNear = 1e-3;
 constexpr double kReach = 4;            // texels of the map that a soft edge reaches at most
 constexpr std::size_t kManyEdges = 30;  // of a body: more are not looked along
 
@@ -261,7 +261,7 @@ void cast_on_each_other(SpaceFrame& s) {
     const double z = s.lens.perspective() ? at.back().w() : -at.back().z();
     near = std::min(near, z), farthest = std::max(farthest, z);
   }
-  if (s.lens.perspective()) near = std::max(near, kNear);
+  if (s.lens.perspective()) near = std::max(near, kLightNear);
   const double span = std::max(farthest - near, 1e-12 + 1e-9 * std::abs(near));
   s.solids.vertices.reserve(s.corners.size());
   for (std::size_t i = 0; i < s.corners.size(); ++i) {

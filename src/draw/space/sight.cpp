@@ -23,8 +23,8 @@ using sim::Vec3;
 constexpr double kInside = 0.4;  // page units that a line must lie inside an outline
 constexpr double kBehind = 0.5;  // and behind a face: bodies that touch do not hide each other's edges there
 constexpr double kCell = 48;     // page units
-constexpr double kNear = 1e-3;   // least depth over the target's
-constexpr double kShort = 0.25;  // page units: shorter parts are left out, shorter gaps closed
+constexpr double kSightNear = 1e-3;  // least depth over the target's
+constexpr double kShort = 0.25;      // page units: shorter parts are left out, shorter gaps closed
 
 Eigen::Vector4d plane(const CameraProjection& lens, const Vec3& normal, const Vec3& point) {
   const double r = normal.dot(lens.right), u = normal.dot(lens.up), b = normal.dot(lens.back);
@@ -59,7 +59,7 @@ void HiddenLines::add(const Polyhedron& body, int number) {
   Piece piece{number, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
   Point middle = Point::Zero();
   for (const Vec3& v : body.vertices) {
-    if (lens_.depth(v) < kNear) return;
+    if (lens_.depth(v) < kSightNear) return;
     at.push_back(lens_.seen(v));
     piece.x0 = std::min(piece.x0, at.back().x()), piece.x1 = std::max(piece.x1, at.back().x());
     piece.y0 = std::min(piece.y0, at.back().y()), piece.y1 = std::max(piece.y1, at.back().y());
@@ -86,12 +86,12 @@ void HiddenLines::add(const Polyhedron& body, int number) {
 }
 
 void HiddenLines::add_disc(const std::vector<Vec3>& rim, const Vec3& center, int number) {
-  if (lens_.depth(center) < kNear) return;
+  if (lens_.depth(center) < kSightNear) return;
   Piece piece{number, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
   std::vector<Point> at;
   at.reserve(rim.size());
   for (const Vec3& v : rim) {
-    if (lens_.depth(v) < kNear) return;
+    if (lens_.depth(v) < kSightNear) return;
     at.push_back(lens_.page(v));
     piece.x0 = std::min(piece.x0, at.back().x()), piece.x1 = std::max(piece.x1, at.back().x());
     piece.y0 = std::min(piece.y0, at.back().y()), piece.y1 = std::max(piece.y1, at.back().y());
@@ -122,7 +122,7 @@ void HiddenLines::add_rod(const Vec3& a, const Vec3& b, double radius_a, double 
   std::array<Point, 4> at;
   Point middle = Point::Zero();
   for (int i = 0; i < 4; ++i) {
-    if (lens_.depth(quad[i]) < kNear) return;
+    if (lens_.depth(quad[i]) < kSightNear) return;
     at[i] = lens_.page(quad[i]);
     middle += at[i] / 4;
     piece.x0 = std::min(piece.x0, at[i].x()), piece.x1 = std::max(piece.x1, at[i].x());
@@ -161,7 +161,7 @@ void HiddenLines::finish() {
 
 void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts& parts) const {
   parts.clear();
-  if (lens_.depth(from) < kNear || lens_.depth(to) < kNear) return;
+  if (lens_.depth(from) < kSightNear || lens_.depth(to) < kSightNear) return;
   const Vec3 a = lens_.seen(from), b = lens_.seen(to), way = b - a;
   const double length = way.head<2>().norm();
   const Rect& w = lens_.window;

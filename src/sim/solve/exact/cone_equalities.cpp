@@ -13,7 +13,6 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kDependent = 1e-11;  // a pivot this small beside the first is rounding
 constexpr double kLargestTurn = 0.5;  // of a slip's direction at once, rad
 constexpr int kRefinements = 3;
 constexpr double kSafe = 1e-5;  // no pivot is so small where rows are far from dependent

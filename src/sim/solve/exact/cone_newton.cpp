@@ -16,9 +16,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kDependent = 1e-11;  // a pivot this small beside the first is rounding
-constexpr double kSettled = 1e-10;    // of u
-constexpr double kStride = 0.1;       // of softness
+constexpr double kSettled = 1e-10;  // of u
+constexpr double kStride = 0.1;     // of softness
 constexpr int kStrides = 40;
 
 double dot(std::span<const double> x, std::span<const double> y) {

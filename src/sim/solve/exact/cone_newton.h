@@ -8,6 +8,9 @@
 
 namespace obscura::sim {
 
+/// A pivot this small beside the first is rounding.
+inline constexpr double kDependent = 1e-11;
+
 /// Guesses the modes of rows that are a little soft: f answers -w / softness as far as its law lets it. Rows
 /// are scaled so that the largest K_ii of each block is 1. Works in the space of independent motions, of
 /// which there are fewer than rows where rows are redundant.

@@ -81,7 +81,7 @@ double Cone<D>::check(const ConeBlock<D>& block, const ConeMode<D>& mode, int ro
   return worst;
 }
 
-template class Cone<2>;
-template class Cone<3>;
+template double Cone<2>::check(std::span<const ConeBlock<2>>, std::span<const ConeMode<2>>);
+template double Cone<3>::check(std::span<const ConeBlock<3>>, std::span<const ConeMode<3>>);
 
 }  // namespace obscura::sim

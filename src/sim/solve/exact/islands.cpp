@@ -8,8 +8,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kSweeps = 40;        // of a rough solve
-constexpr double kThorough = 5e8;  // of the size of all systems that a thorough one solves
+constexpr int kRoughIterations = 40;   // of a rough solve
+constexpr double kThoroughSize = 5e8;  // of the size of all systems that a thorough one solves
 
 }  // namespace
 
@@ -61,7 +61,7 @@ void ExactSolver<D>::assemble() {
 template <int D>
 bool ExactSolver<D>::solve() {
   if (rough_) {
-    sweep(kSweeps);
+    sweep(kRoughIterations);
     return true;
   }
   bool found = true;
@@ -69,7 +69,7 @@ bool ExactSolver<D>::solve() {
     const double rows = double(part_rows_.size()), size = rows * rows * rows;
     const int patience = cone_.patience;
     if (cone_.thorough && model_.collision != Collision::event)
-      cone_.patience = int(std::min<double>(patience, kThorough / size));
+      cone_.patience = int(std::min<double>(patience, kThoroughSize / size));
     const ConeReport report = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_);
     cone_.patience = patience;
     found = report.found && found;

@@ -14,10 +14,10 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kSpare = 1.1;
-constexpr double kNear = 1e-6;       // of the room's size
-constexpr double kSlow = 1e-9;       // of the room's size, 1/s: slower is no impact
-constexpr std::size_t kFew = 50000;  // couples to look at one by one
+constexpr double kSpareWay = 1.1;
+constexpr double kNearby = 1e-6;        // of the room's size
+constexpr double kSlowApproach = 1e-9;  // of the room's size, 1/s: slower is no impact
+constexpr std::size_t kFew = 50000;     // couples to look at one by one
 
 template <int D>
 bool round(const Shape<D>& shape) {
@@ -53,7 +53,7 @@ bool LoneBodies<D>::strikes(const State<D>& state, int body, double h) const {
   const Vec<D>&x = state.x[body], &v = state.v[body];
   const Shape<D>& shape = model_.bodies[body].shape;
   // as far as others count it as an impact: with some to spare
-  const double least = g_ * h + kSlow * model_.scale, fall = 2 * g_ * h * h + kNear * model_.scale;
+  const double least = g_ * h + kSlowApproach * model_.scale, fall = 2 * g_ * h * h + kNearby * model_.scale;
   double skin = 0;  // speed of its skin by its spin
   if (const int k = turning(state, body); k >= 0 && !round(shape))
     skin = bounding_radius_[body] * std::sqrt(state.spin[k].squaredNorm());
@@ -115,7 +115,7 @@ void LoneBodies<D>::find(const State<D>& state, double h) {
     const bool still = model_.bodies[i].fixed || (!state.frozen.empty() && state.frozen[i]);
     ways_[i] =
         still ? 0
-              : kSpare * h * std::sqrt(2 * kinetic(model_, state, i) / model_.bodies[i].mass) + g_ * h * h;
+              : kSpareWay * h * std::sqrt(2 * kinetic(model_, state, i) / model_.bodies[i].mass) + g_ * h * h;
   }
   leave_out_near(state);
   for (const int i : candidates_) {

@@ -16,12 +16,13 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kSlow = 8;  // of what friction takes away from the slip in a step; four corners share a body
+constexpr double kSlowSlip =
+    8;  // of what friction takes away from the slip in a step; four corners share a body
 // of what aims: its ways are wanted, not its forces, and four corners that turn about one of them at a crawl
 // have those only after a thousand attempts
 constexpr double kEnough = 1e-7;
-constexpr int kPatience = 300;
-constexpr int kSweeps = 200;  // where it finds none
+constexpr int kSlipPatience = 300;
+constexpr int kSlipIterations = 200;  // where it finds none
 
 }  // namespace
 
@@ -41,7 +42,7 @@ void ExactSolver<D>::begin_slides(State<D>& state, double t, double h) {
       most = std::max(most, answer(held.first + 1 + i));
     }
     const double taken = blocks_[held.block].mu * f_[held.first] * most * h;
-    held.slow = std::sqrt(slip.squaredNorm()) < kSlow * taken;
+    held.slow = std::sqrt(slip.squaredNorm()) < kSlowSlip * taken;
     any = any || held.slow;
   }
   if (any) aim_slow_slides(state, t, h);
@@ -57,8 +58,8 @@ void ExactSolver<D>::aim_slow_slides(State<D>& state, double t, double h) {
     b_[i] = moves(i) + h * (along(i, rate) + rows_[i].velocity_product);
   guess(h);
   const double enough = std::exchange(cone_.enough, kEnough);
-  const int patience = std::exchange(cone_.patience, kPatience);
-  if (!solve()) sweep(kSweeps);
+  const int patience = std::exchange(cone_.patience, kSlipPatience);
+  if (!solve()) sweep(kSlipIterations);
   cone_.enough = enough, cone_.patience = patience;
   for (Held& held : held_) {
     if (!held.slow) continue;

@@ -12,7 +12,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kStatic = 1e-9;  // of g
+constexpr double kStaticResidual = 1e-9;  // of g
 
 }  // namespace
 
@@ -88,7 +88,7 @@ bool Statics<D>::hold(std::vector<BearingContact<D>>& touches, const std::vector
     const double a = std::sqrt(rate.template head<D>().squaredNorm()) +
                      bounding_radius(model_.bodies[body].shape) *
                          std::sqrt(rate.template tail<kAngular<D>>().squaredNorm());
-    held = held && a <= kStatic * g;
+    held = held && a <= kStaticResidual * g;
     columns_[body] = -1;
   }
   for (int i = 0; i < int(touches.size()); ++i) touches[i].force = axes(touches[i]) * f_.segment<D>(D * i);

@@ -21,13 +21,13 @@ constexpr int kAhead = 4;         // groups
 constexpr double kTiny = 1e-300;  // against division by zero in empty seats: changes no other number
 
 template <class V>
-struct Row {
+struct WideRow {
   V nx, ny, x, y, gap, na, nb, ta, tb;
 };
 
 template <class V>
 OBSCURA_INLINE void make(const ContactBatch& g, int lane, int k, const Quad<V>& a, const Quad<V>& b,
-                         Row<V>& r) {
+                         WideRow<V>& r) {
   // the corner's body, and the face's
   const Mask<V> swapped = mask<V>(g.of_b[k], lane);
   const V px = pick<V>(swapped, b.x, a.x), py = pick<V>(swapped, b.y, a.y);
@@ -89,8 +89,8 @@ struct Two {
 
 // the normal impulses of a pair together
 template <class V>
-OBSCURA_INLINE void press(Two<V>& two, const Row<V>& r0, const Row<V>& r1, const V& target0, const V& target1,
-                          V& l0, V& l1) {
+OBSCURA_INLINE void press(Two<V>& two, const WideRow<V>& r0, const WideRow<V>& r1, const V& target0,
+                          const V& target1, V& l0, V& l1) {
   const V none{};
   const V im = two.a.w + two.b.w;
   const V k11 = im + (two.iia * (r0.na * r0.na) + two.iib * (r0.nb * r0.nb));
@@ -122,7 +122,7 @@ OBSCURA_INLINE void press(Two<V>& two, const Row<V>& r0, const Row<V>& r1, const
 }
 
 template <class V>
-OBSCURA_INLINE void rub(Two<V>& two, const Row<V>& r, const V& most, V& lt) {
+OBSCURA_INLINE void rub(Two<V>& two, const WideRow<V>& r, const V& most, V& lt) {
   const V tx = -r.ny, ty = r.nx;
   const V kt = (two.a.w + two.b.w) + (two.iia * (r.ta * r.ta) + two.iib * (r.tb * r.tb));
   const V wanted = lt - two.along(tx, ty, r.ta, r.tb) / (kt + kTiny);
@@ -137,7 +137,7 @@ OBSCURA_INLINE void expand_one(const ContactBatch& g, const Pose* poses, Rows& o
     Quad<V> a, b;
     gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
     for (int k = 0; k < 2; ++k) {
-      Row<V> r;
+      WideRow<V> r;
       make<V>(g, lane, k, a, b, r);
       store<V>(out.nx[k] + lane, r.nx), store<V>(out.ny[k] + lane, r.ny);
       store<V>(out.x[k] + lane, r.x), store<V>(out.y[k] + lane, r.y), store<V>(out.gap[k] + lane, r.gap);
@@ -175,7 +175,7 @@ OBSCURA_INLINE bool start_all(ContactBatch* seats, int count, const Pose* poses,
       const Mask<V> polygons = load<V>(g.radius + lane) <= none;
       Mask<V> slow{}, fast{};
       for (int k = 0; k < 2; ++k) {
-        Row<V> r;
+        WideRow<V> r;
         make<V>(g, lane, k, a, b, r);
         const V vn = before.along(r.nx, r.ny, r.na, r.nb);
         deep |= r.gap < -allowed;
@@ -241,7 +241,7 @@ OBSCURA_INLINE void sweep_all(ContactBatch* seats, int count, const Pose* poses,
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
-      Row<V> r0, r1;
+      WideRow<V> r0, r1;
       make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
       Two<V> two(*g, lane, v);
       const V mu = load<V>(g->mu + lane);
@@ -294,7 +294,7 @@ OBSCURA_INLINE void project_all(const ContactBatch* seats, Projection* p, int co
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
-      Row<V> r0, r1;
+      WideRow<V> r0, r1;
       make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
       Two<V> two(*g, lane, d);
       const V mu = load<V>(g->mu + lane), allowed = deep * load<V>(g->far + lane);

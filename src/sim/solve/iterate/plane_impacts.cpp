@@ -20,8 +20,8 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr std::size_t kAhead = 4;  // pairs
-constexpr double kLocked = 1e-9;   // of what a push moves without joints
+constexpr std::size_t kPairsAhead = 4;  // pairs
+constexpr double kLocked = 1e-9;        // of what a push moves without joints
 constexpr double kTogether =
     1e-6;                  // of the larger bounding radius: no wider open, a touch meets with the other
 constexpr int kTimes = 8;  // Newton steps for the time of a blow
@@ -531,9 +531,9 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
   std::size_t at = 0;
   for (; at < queue_.size() && at < most; ++at) {
     // pairs and their seats are far apart in memory: ask for those of later ones
-    if (at + 2 * kAhead < queue_.size()) __builtin_prefetch(&pairs[queue_[at + 2 * kAhead]]);
-    if (at + kAhead < queue_.size()) {
-      const Pair& later = pairs[queue_[at + kAhead]];
+    if (at + 2 * kPairsAhead < queue_.size()) __builtin_prefetch(&pairs[queue_[at + 2 * kPairsAhead]]);
+    if (at + kPairsAhead < queue_.size()) {
+      const Pair& later = pairs[queue_[at + kPairsAhead]];
       __builtin_prefetch(&now_[later.a]);
       if (later.b >= 0) __builtin_prefetch(&now_[later.b]);
     }

@@ -21,18 +21,18 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kLooks = 60;        // a second: how often rest is looked for
-constexpr int kMostSweeps = 40;      // of few touches
-constexpr int kFewestSweeps = 4;     // of many
-constexpr int kTouchSweeps = 20000;  // touches times sweeps between
-constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
-constexpr double kSpare = 0.02;      // of their bounding radius: what two may come nearer by being struck
-constexpr double kAllowed = 1e-6;    // of a body's bounding radius: how deep is not too deep
-constexpr double kHung = 1e-4;       // the same on joints, which pushes strain
-constexpr int kPartRounds = 2000;    // gaps times rounds of pushing apart; 4 to 16 rounds
-constexpr double kPart = 0.1;        // of what is too deep, in a step
-constexpr int kTempering = 5;        // rounds
-constexpr double kGain = 1e-9;       // of its kinetic energy: what an island may win by rounding
+constexpr double kUpdates = 60;          // a second: how often rest is looked for
+constexpr int kMostIterations = 40;      // of few touches
+constexpr int kFewestIterations = 4;     // of many
+constexpr int kTouchIterations = 20000;  // touches times sweeps between
+constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
+constexpr double kSpare = 0.02;          // of their bounding radius: what two may come nearer by being struck
+constexpr double kAllowed = 1e-6;        // of a body's bounding radius: how deep is not too deep
+constexpr double kHung = 1e-4;           // the same on joints, which pushes strain
+constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds
+constexpr double kPart = 0.1;            // of what is too deep, in a step
+constexpr int kTempering = 5;            // rounds
+constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
 
 }  // namespace
 
@@ -47,7 +47,7 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
       response_(model),
       account_(model) {
   const double h = 1 / value(model.rate);
-  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kUpdates));
   g_ = std::sqrt(model.gravity.squaredNorm());
   rest_speed_ = 2 * h * g_ + 1e-9 * model.scale;
   asked_ = slow(model).asked;
@@ -66,8 +66,9 @@ void SpaceIterative<D>::step(State<D>& state, double t, double h) {
   fall(state, t, h);
   strike(state, h);
   begin(state, h);
-  int sweeps = std::clamp(kTouchSweeps / std::max(1, int(touches_.size())), kFewestSweeps, kMostSweeps);
-  if (state.step == 0) sweeps = kFirstSweeps;
+  int sweeps =
+      std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
+  if (state.step == 0) sweeps = kFirstIterations;
   if (!linkage_.empty()) {
     linkage_.gather(state);
     for (const int i : linkage_.bodies()) {
@@ -334,7 +335,7 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
   for (Touch& touch : touches_) {
     if (!(touch.bounces && touch.least > 0 && touch.pressed > 0)) continue;
     const int of = island(touch);
-    if (gained_[of] <= kGain * before_[of]) continue;
+    if (gained_[of] <= kRoundingGain * before_[of]) continue;
     touch.least *= std::max(0.0, 1 - 1.5 * gained_[of] / returned_[of]), any = true;
   }
   return any;

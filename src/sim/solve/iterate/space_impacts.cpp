@@ -21,9 +21,9 @@ constexpr int kMost = 8;          // gaps of one impact
 constexpr int kTimes = 8;         // Newton steps for its time
 constexpr double kInTime = 1e-9;  // of the step: the next would be by its square
 constexpr double kLatest = 1.5;   // steps: so late a gap may close that its tangent would close in one
-constexpr double kGain = 1e-13;   // of the energy that moves along the rows: rounding
-constexpr double kLeast = 1e-6;   // of e: halved so far it is none
-constexpr int kTurns = 40;        // impacts, of those that there are at first
+constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
+constexpr double kLeast = 1e-6;        // of e: halved so far it is none
+constexpr int kTurns = 40;             // impacts, of those that there are at first
 
 }  // namespace
 
@@ -180,7 +180,7 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
     for (int i = 0; i < rows; ++i) {
       gain += p_[i] * (v[i] + 0.5 * K_.row(i).dot(p_)), size = std::max(size, std::abs(p_[i] * v[i]));
     }
-    if (gain <= kGain * size) break;
+    if (gain <= kImpactGain * size) break;
   }
 
   const auto reach = [&](int body) {
