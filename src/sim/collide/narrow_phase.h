@@ -153,7 +153,7 @@ void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, co
 template <int D>
 double separation(const Shape<D>& a, const BodyMotion<D>& at_a, const Shape<D>& b, const BodyMotion<D>& at_b);
 
-// of space, gap_space.cpp
+// of space, narrow_phase_space.cpp
 template <>
 void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
              const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out);

@@ -85,7 +85,7 @@ class Cone {
   bool search(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
               std::span<const ConeBlock<D>> blocks, Eigen::Ref<Eigen::VectorXd> f);
 
-  // cone_balance.cpp: modes as equalities
+  // cone_equalities.cpp: modes as equalities
   void balance(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
   bool turn(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes);
   void start(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);
@@ -98,7 +98,7 @@ class Cone {
   double misfit() const;
   double contradiction(std::span<const ConeBlock<D>> blocks);
 
-  // cone_check.cpp: the laws looked at
+  // cone_residual.cpp: the laws looked at
   double check(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes);
   double check(const ConeBlock<D>& block, const ConeMode<D>& mode, int row, ConeMode<D>& better) const;
 

@@ -75,7 +75,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     bool lone = false;  // one body, that nothing but walls can meet
   };
 
-  // direct.cpp
+  // exact.cpp
   void advance(State<D>& state, double t, double h);
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
@@ -91,7 +91,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void part_ways();
   void break_joints(State<D>& state);
 
-  // direct_groups.cpp
+  // groups.cpp
   void bound_ways(const State<D>& state, double t, double h);
   void join_near(const State<D>& state);
   void list_groups(const State<D>& state);
@@ -102,7 +102,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void charge(int a, int b);
   int most_spent() const;
 
-  // direct_hold.cpp
+  // constraints.cpp
   void stand(const State<D>& state);
   AngularVec<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
   void gather(const State<D>& state, bool all);
@@ -119,17 +119,17 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void project(State<D>& state, bool impacts_follow = false);
   void pay_for(State<D>& state);
 
-  // direct_chains.cpp
+  // chain_responses.cpp
   double answer(int row) const;
   void jump(State<D>& state, bool places);
   void chain_forces();
 
-  // direct_slides.cpp
+  // slip.cpp
   void begin_slides(State<D>& state, double t, double h);
   void aim_slow_slides(State<D>& state, double t, double h);
   void turn_slides();
 
-  // direct_parts.cpp
+  // islands.cpp
   void split();
   void assemble();
   bool solve();
@@ -139,7 +139,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   template <class Solve>
   void each_part(std::vector<ConeMode<D>>& modes, Solve&& solve);
 
-  // direct_impacts.cpp
+  // impacts.cpp
   double approach() const;
   bool coming_apart() const;
   void resolve_impacts(State<D>& state);
@@ -147,12 +147,12 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void strike(State<D>& state, double bounce);
   void note(const ContactKey& key, const Held& held, const Vec<D>& impulse);
 
-  // direct_rest.cpp
+  // sleep.cpp
   void join(const State<D>& state);
   bool wake(State<D>& state);
   void rest(State<D>& state, double t, double h);
 
-  // direct_events.cpp
+  // events.cpp
   double stretch(State<D>& state, double t, double h, bool& cut);
   void smooth(State<D>& state, double t, double h);
   double crossing(const State<D>& state, double h, Couple& first);
