@@ -1,0 +1,69 @@
+// Boxes of a chain that falls on a corner of one of them, with friction: the impact of the solvers for many
+// bodies against that of the exact one. All of it flies alike until then, so that joints bear nothing, and it
+// meets the floor a millionth of a step before the step ends: what joints do after the impact is less than
+// the bounds.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "sim/jointed.h"
+#include "sim/touching.h"
+
+namespace obscura::sim {
+namespace {
+
+constexpr int kSteps = 4;        // until it lands
+constexpr double kBound = 1e-7;  // m/s
+
+// `lowest` of four boxes in a row is turned so that a corner of it comes first
+World<2> chain(int seed, int lowest, int rate) {
+  Chance chance(std::uint64_t(seed) * 3571 + 17);
+  World<2> world = touching_room(Collision::contact, {0, 0});
+  world.model.rate = {rate, 1};
+  add_wall(world, {0, 0}, {0, 1});
+  const Vec2 v(chance.between(-2, 2), -chance.between(1, 4));
+  const double e = chance.between(0.2, 1), mu = seed % 4 == 0 ? 0 : chance.between(0.05, 1);
+  for (int i = 0; i < 4; ++i) {
+    const double angle = i == lowest ? chance.between(0.2, 1.3) : chance.between(-0.3, 0.3);
+    add_box(world, {0.4, 0.3}, chance.between(0.5, 3), {0.45 * i, i == lowest ? 2.0 : 2.3}, v, angle, 0, e);
+    if (i > 0) {
+      const Vec2 middle = 0.5 * (world.state.x[i - 1] + world.state.x[i]);
+      const auto local = [&](int body) -> Vec2 {
+        return Eigen::Rotation2Dd(-world.state.turn[body][0]) * (middle - world.state.x[body]);
+      };
+      world.model.joints.push_back(pin({i, local(i)}, {i - 1, local(i - 1)}));
+      world.model.ignore.emplace_back(i - 1, i);
+    }
+  }
+  rub(world, mu);
+  // the corner that lies lowest
+  const double c = std::cos(world.state.turn[lowest][0]), s = std::sin(world.state.turn[lowest][0]);
+  const double down = 0.2 * s + 0.15 * c, gap = -v.y() * (kSteps - 1e-6) / rate;
+  for (Vec2& x : world.state.x) x.y() += gap + down - 2.0;
+  return world;
+}
+
+void expect_same(World<2> world, const std::string& name) {
+  world.model.solver = Solver::direct;
+  const State<2> want = stepped(world, kSteps);
+  world.model.solver = Solver::iterative;
+  const State<2> got = stepped(world, kSteps);
+  EXPECT_GT((want.v[0] - world.state.v[0]).norm(), 1e-3) << name << ": it must have landed";
+  for (std::size_t i = 0; i < want.v.size(); ++i) {
+    EXPECT_NEAR((got.v[i] - want.v[i]).norm(), 0, kBound) << name << " box " << i;
+    EXPECT_NEAR((got.spin[i] - want.spin[i]).norm() * 0.25, 0, kBound) << name << " box " << i;
+  }
+}
+
+TEST(JointedImpacts, ABoxOfAChainLeavesTheFloorAsByTheExactSolver) {
+  for (const int rate : {60, 600, 6000}) {
+    for (int seed = 0; seed < 40; ++seed)
+      expect_same(chain(seed, seed % 4, rate),
+                  "seed " + std::to_string(seed) + " at " + std::to_string(rate));
+  }
+}
+
+}  // namespace
+}  // namespace obscura::sim
