@@ -206,8 +206,8 @@ double Impacts::meeting(const Pair& pair, int k, const ContactBatch& g, const St
 }
 
 // Whether a pair may meet with a blow in the step, as its rows were when it began: most do not.
-bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Rows& r, const std::vector<Motion>& dv,
-                       const Pace& pace) const {
+bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vector<Pose>& poses,
+                       const std::vector<Motion>& dv, const Pace& pace) const {
   const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   const Motion &va = now_[a], &vb = now_[b];
   double spare = -1;  // what it may come nearer than by these rows and velocities, m
@@ -216,11 +216,11 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Rows& r, c
            g.far[lane] * (std::fabs(va.w) + std::fabs(vb.w));
   };
   for (int k = 0; k < pair.touches; ++k) {
-    // seats are far away in memory
-    const double vn = along(r, k, lane, va, vb);
-    if (other_corners(g, k, lane) && r.gap[k][lane] < pace.h * (fastest() + pace.gain)) return true;
+    const TouchRow r = row(g, lane, k, poses[a], poses[b]);
+    const double vn = along(r, va, vb);
+    if (other_corners(g, k, lane) && r.gap < pace.h * (fastest() + pace.gain)) return true;
     if (vn > -pair.blow) continue;
-    const double left = r.gap[k][lane] + pace.h * (vn + 0.5 * along(r, k, lane, dv[a], dv[b]));
+    const double left = r.gap + pace.h * (vn + 0.5 * along(r, dv[a], dv[b]));
     if (left >= 0 && spare < 0) {
       const double far = std::max(bounding_radius_[a], bounding_radius_[b]),
                    w = std::fabs(va.w) + std::fabs(vb.w);
@@ -235,7 +235,7 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Rows& r, c
       }
     }
     if (left >= 0 && left >= spare) continue;
-    if (r.gap[k][lane] <= g.sight[lane] && vn < g.blow[lane]) return true;
+    if (r.gap <= g.sight[lane] && vn < g.blow[lane]) return true;
   }
   return false;
 }
@@ -394,7 +394,7 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
   bool closes[2] = {false, false};
   if (blow_[i] < 0) {
     Blow blow;
-    if (!may_meet(pair, g, rows(group, seats, poses), dv, pace)) return false;
+    if (!may_meet(pair, g, poses, dv, pace)) return false;
     if (!meet(pair, blow, g, poses, dv, pace)) {
       passing_.push_back(i);
       return false;
@@ -585,17 +585,18 @@ void Impacts::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>
 void Impacts::keep(std::vector<Contact<2>>& contacts) const {
   for (const Struck& struck : struck_) {
     const ContactKey& key = struck.key;
-    const auto parts = [](const ContactKey& it) { return std::tuple(it.a, it.b, it.feature >> 16); };
-    const auto first = std::partition_point(contacts.begin(), contacts.end(), [&](const Contact<2>& c) {
-      return c.key < ContactKey{key.a, key.b, key.feature >> 16 << 16};
-    });
-    auto at = contacts.end();
-    for (auto it = first; it != contacts.end() && parts(it->key) == parts(key); ++it) {
-      if (it->key == key) {
-        at = it;
-        break;
+    const auto from = [&](const ContactKey& least) {
+      return std::lower_bound(contacts.begin(), contacts.end(), least,
+                              [](const Contact<2>& c, const ContactKey& it) { return c.key < it; });
+    };
+    auto at = from(key);
+    if (at == contacts.end() || at->key != key) {
+      const auto parts = [](const ContactKey& it) { return std::tuple(it.a, it.b, it.feature >> 16); };
+      at = contacts.end();
+      for (auto it = from({key.a, key.b, key.feature >> 16 << 16});
+           it != contacts.end() && parts(it->key) == parts(key); ++it) {
+        if (at == contacts.end() || it->gap < at->gap) at = it;
       }
-      if (at == contacts.end() || it->gap < at->gap) at = it;
     }
     if (at == contacts.end()) continue;
     at->impulse += struck.impulse;

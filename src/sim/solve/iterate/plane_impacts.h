@@ -87,8 +87,8 @@ class Impacts {
                  const std::vector<Motion>& dv, const Pace& pace) const;
   double meeting(const Pair& pair, int k, const ContactBatch& seats, const Standing& start,
                  const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) const;
-  bool may_meet(const Pair& pair, const ContactBatch& seats, const Rows& rows, const std::vector<Motion>& dv,
-                const Pace& pace) const;
+  bool may_meet(const Pair& pair, const ContactBatch& seats, const std::vector<Pose>& poses,
+                const std::vector<Motion>& dv, const Pace& pace) const;
   double first_closing(const Pair& pair, const ContactBatch& seats, const Standing& start,
                        const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
                        int& which) const;
