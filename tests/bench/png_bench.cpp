@@ -14,7 +14,7 @@ namespace {
 using namespace obscura;
 
 // Flat ground with outlined discs and boxes at places of no pattern, as our pictures are.
-media::Image crowd() {
+media::Image body_counts() {
   draw::Picture picture;
   picture.ground = {255, 255, 255};
   std::mt19937 random(1);
@@ -45,7 +45,7 @@ media::Image crowd() {
 }
 
 const media::Image& frame() {
-  static const media::Image image = crowd();
+  static const media::Image image = body_counts();
   return image;
 }
 

@@ -13,12 +13,12 @@ namespace {
 using namespace obscura;
 using sim::Vec3;
 
-struct Crowd {
+struct BodyCounts {
   sim::SceneInfo cast;
   sim::Snapshot now;
   draw::Look look;
 
-  Crowd() {
+  BodyCounts() {
     cast.dimension = 3, cast.scale = 4;
     cast.walls.push_back({{0, 0, 0}, {0, 1, 0}});
     unsigned state = 1;
@@ -43,7 +43,7 @@ struct Crowd {
 
 void frame(benchmark::State& state) {
   const bool flat = state.range(0) == 0;
-  Crowd crowd;
+  BodyCounts crowd;
   const draw::Illustrator depictor(crowd.cast, crowd.look, draw::slant(), {{-3, 0, -2}, {3, 2.6, 2}},
                                    16.0 / 9);
   gl::Renderer renderer(1920, 1080);

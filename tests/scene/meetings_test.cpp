@@ -16,7 +16,7 @@ namespace {
 using Found = std::vector<std::pair<int, int>>;
 
 template <int D>
-struct Crowd {
+struct BodyCounts {
   std::vector<sim::Bounds<D>> boxes;
   std::vector<int> kinds;
 
@@ -30,7 +30,7 @@ struct Crowd {
 bool matter(int a, int b) { return a % 2 == 0 || b % 2 == 0; }
 
 template <int D>
-Found all_pairs(const Crowd<D>& crowd) {
+Found all_pairs(const BodyCounts<D>& crowd) {
   Found all;
   for (int a = 0; a < int(crowd.boxes.size()); ++a) {
     for (int b = a + 1; b < int(crowd.boxes.size()); ++b) {
@@ -43,7 +43,7 @@ Found all_pairs(const Crowd<D>& crowd) {
 }
 
 template <int D>
-Found found(const Crowd<D>& crowd) {
+Found found(const BodyCounts<D>& crowd) {
   Found all;
   meetings<D>(crowd.boxes, crowd.kinds, matter, [&](int a, int b) {
     all.emplace_back(a, b);
@@ -54,7 +54,7 @@ Found found(const Crowd<D>& crowd) {
 }
 
 template <int D>
-std::int64_t compared(const Crowd<D>& crowd) {
+std::int64_t compared(const BodyCounts<D>& crowd) {
   return meetings<D>(crowd.boxes, crowd.kinds, matter, [](int, int) { return true; });
 }
 
@@ -65,7 +65,7 @@ void expect_all_and_no_other() {
     return low + (high - low) * double(dice() >> 11) * 0x1p-53;
   };
   for (int round = 0; round < 60; ++round) {
-    Crowd<D> crowd;
+    BodyCounts<D> crowd;
     const double room = between(1, 30), far = round % 3 == 0 ? 1e9 : round % 3 == 1 ? 0 : -3;
     const int n = 1 + int(dice() % 200);
     for (int i = 0; i < n; ++i) {
@@ -88,14 +88,14 @@ TEST(Meetings, AreAllPairsOfBoxesThatMeetAndNoOther) {
 }
 
 TEST(Meetings, OfNoBoxAndOfOneAreNone) {
-  Crowd<2> crowd;
+  BodyCounts<2> crowd;
   EXPECT_EQ(compared(crowd), 0);
   crowd.add({1, 2}, {0, 0});
   EXPECT_EQ(compared(crowd), 0);
 }
 
 TEST(Meetings, EndWhenToldTo) {
-  Crowd<2> crowd;
+  BodyCounts<2> crowd;
   for (int i = 0; i < 1000; ++i) crowd.add({0, 0}, {1, 1});
   int told = 0;
   meetings<2>(crowd.boxes, crowd.kinds, matter, [&](int, int) { return ++told < 10; });
@@ -105,17 +105,17 @@ TEST(Meetings, EndWhenToldTo) {
 // twice as many cost twice as much, wherever they stand
 TEST(Meetings, AreLinearInSheetsColumnsAndMixedSizes) {
   const auto sheet = [](int n) {  // on the floor of space
-    Crowd<3> crowd;
+    BodyCounts<3> crowd;
     for (int i = 0; i < n; ++i) crowd.add({0.3 * (i % 50), 1, 0.3 * (i / 50)}, {0.1, 0.1, 0.1});
     return compared(crowd);
   };
   const auto column = [](int n) {
-    Crowd<2> crowd;
+    BodyCounts<2> crowd;
     for (int i = 0; i < n; ++i) crowd.add({1, 0.3 * i}, {0.1, 0.1});
     return compared(crowd);
   };
   const auto mixed = [](int n) {  // one in a hundred is thirty times as large, beside the others
-    Crowd<2> crowd;
+    BodyCounts<2> crowd;
     for (int i = 0; i < n; ++i)
       crowd.add({0.3 * i, i % 100 == 0 ? 4.0 : 0.0}, sim::Vec<2>::Constant(i % 100 == 0 ? 3 : 0.1));
     return compared(crowd);
@@ -131,7 +131,7 @@ TEST(Meetings, AreLinearInSheetsColumnsAndMixedSizes) {
 }
 
 TEST(Meetings, OfKindsThatDoNotMatterAreNotEvenCompared) {
-  Crowd<2> crowd;
+  BodyCounts<2> crowd;
   for (int i = 0; i < 100'000; ++i) crowd.add({1, 2}, {0, 0}, i % 2 == 0 ? 1 : 3);
   EXPECT_EQ(compared(crowd), 0);
   crowd.add({1, 2}, {0.5, 0.5}, 0);

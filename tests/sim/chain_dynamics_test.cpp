@@ -181,7 +181,8 @@ TYPED_TEST(ChainForces, JointWrenchesCarryTheLinks) {
       Wrench<D> sum = joint_wrench(tree.chain, tree.stance, tree.dynamics, i) + tree.dynamics.applied[i];
       for (int k = i + 1; k < tree.chain.size(); ++k) {
         if (tree.chain[k].parent == i) {
-          sum -= brought(joint_wrench(tree.chain, tree.stance, tree.dynamics, k), tree.stance.arm[k]);
+          sum -= transformed_to_origin(joint_wrench(tree.chain, tree.stance, tree.dynamics, k),
+                                       tree.stance.arm[k]);
         }
       }
       const Vec<D>& com = tree.stance.com[i];

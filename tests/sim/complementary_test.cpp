@@ -29,7 +29,7 @@ TEST(Complementary, HoldsForRandomRows) {
     const int n = 1 + trial % 8;
     const auto [A, b] = random_problem(random, n, 3);
     Rows p;
-    ASSERT_TRUE(complementary(A, b, 3, p)) << trial;
+    ASSERT_TRUE(solve_lcp(A, b, 3, p)) << trial;
     const Rows w = A * p + b;
     const double scale = 1 + p.maxCoeff() * 3;
     ASSERT_GE(p.minCoeff(), 0);
@@ -43,7 +43,7 @@ TEST(Complementary, SharesAlikeWhereRowsAreRedundant) {
   const Square A = Square::Constant(3, 3, 2.0);
   const Rows b = Rows::Constant(3, -3.0);
   Rows p;
-  ASSERT_TRUE(complementary(A, b, 3, p));
+  ASSERT_TRUE(solve_lcp(A, b, 3, p));
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(p[i], 0.5, 1e-14);
 }
 
@@ -51,7 +51,7 @@ TEST(Complementary, IsZeroWhereNothingPushes) {
   const Square A = Square::Identity(2, 2);
   const Rows b = Rows::Constant(2, 1.0);
   Rows p;
-  ASSERT_TRUE(complementary(A, b, 2, p));
+  ASSERT_TRUE(solve_lcp(A, b, 2, p));
   EXPECT_EQ(p.norm(), 0);
 }
 
@@ -61,7 +61,7 @@ TEST(Complementary, SaysWhereThereIsNone) {
   A << 1, -1, -1, 1;
   const Rows b = Rows::Constant(2, -1.0);
   Rows p;
-  EXPECT_FALSE(complementary(A, b, 2, p));
+  EXPECT_FALSE(solve_lcp(A, b, 2, p));
 }
 
 }  // namespace

@@ -176,7 +176,8 @@ TEST(Cone, BlockSticksJustBelowTheAngleOfFriction) {
     const Solved<2> s = solve(slope(std::atan(mu) * 180 / M_PI - 0.01, mu));
     ASSERT_TRUE(s.report.found);
     EXPECT_LT(s.w.cwiseAbs().maxCoeff(), kExact * kG);
-    for (const ConeMode<2>& mode : s.modes) EXPECT_TRUE(mode.hold == Hold::stick || mode.hold == Hold::brink);
+    for (const ConeMode<2>& mode : s.modes)
+      EXPECT_TRUE(mode.hold == Hold::stick || mode.hold == Hold::at_friction_limit);
   }
 }
 

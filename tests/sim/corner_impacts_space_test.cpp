@@ -255,7 +255,7 @@ TEST(CornerImpactsInSpace, AnOffCentreRoughImpactKeepsAngularMomentum) {
         for (int i = 0; i < 2; ++i) {
           const Body<3>& body = world.model.bodies[i];
           sum += body.mass * state.x[i].cross(state.v[i]) +
-                 spinning<3>(body.inertia, rotation<3>(state.turn[i]), state.spin[i]);
+                 inertia_times<3>(body.inertia, rotation<3>(state.turn[i]), state.spin[i]);
         }
         return sum;
       };

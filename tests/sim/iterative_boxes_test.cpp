@@ -34,19 +34,20 @@ TEST(IterativeBoxes, MeetAsOnePairAfterAnother) {
     plane::BoxManifold four{};
     for (int lane = 0; lane < plane::kLanes; ++lane)
       four.a[lane] = (7 * i + 31 * lane) % kBoxes, four.b[lane] = (13 * i + 57 * lane + 1) % kBoxes;
-    plane::meet(&four, 1, poses.data(), halves.data());
+    plane::collide_boxes(&four, 1, poses.data(), halves.data());
     for (int lane = 0; lane < plane::kLanes; ++lane) {
       const int p = four.a[lane], q = four.b[lane];
       if (p == q) continue;
       const plane::CoreShape &a = cores.all[p], &b = cores.all[q];
       plane::Feature features[2];
-      const double gap = nearest(cores, a, poses[p], b, poses[q], features);
+      const double gap = find_features(cores, a, poses[p], b, poses[q], features);
       EXPECT_NEAR(four.gap[lane], gap, 1e-12) << p << " " << q;
       apart += gap > 0;
       double want[2], got[2];
       for (int k = 0; k < 2; ++k) {
         const auto off = [&](const plane::Feature& f) {
-          return f.kind == plane::Feature::none ? 1e3 : touch(cores, a, poses[p], b, poses[q], f).gap;
+          return f.kind == plane::Feature::none ? 1e3
+                                                : evaluate_feature(cores, a, poses[p], b, poses[q], f).gap;
         };
         const plane::Feature found = plane::Feature::of(four.words[k][lane]);
         corners += found.kind == plane::Feature::corners;

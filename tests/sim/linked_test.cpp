@@ -176,7 +176,7 @@ TEST(Linked, AnImpactKeepsMomenta) {
   for (auto& joint : world.model.joints) joint.friction = 0;
   const World<2> links = chained(world, kFigure);
   const Eigen::Vector3d before = momenta(links, links.state);
-  const double energy = moving(links.model, links.state);
+  const double energy = kinetic(links.model, links.state);
   bool struck = false;
   State<2> state = links.state;
   Stepper<2> stepper(links.model);
@@ -188,7 +188,7 @@ TEST(Linked, AnImpactKeepsMomenta) {
   EXPECT_TRUE(struck);
   // rounding of the impact, and of joints at their limits
   EXPECT_LE((momenta(links, state) - before).norm(), 1e-10 * before.norm());
-  EXPECT_LE(moving(links.model, state), energy * (1 + 1e-9));
+  EXPECT_LE(kinetic(links.model, state), energy * (1 + 1e-9));
 }
 
 TEST(Linked, AThrownFigureLosesEnergyOnly) {

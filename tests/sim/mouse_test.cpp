@@ -188,15 +188,15 @@ TEST(Mouse, IsSampledEquallyInTime) {
 // ---- the script's clock
 
 TEST(TimeStamp, IsExact) {
-  EXPECT_EQ(beat({1, 3}, {600, 1}), (TimeStamp{200, 0}));
-  EXPECT_EQ(beat({1001, 30000}, {600, 1}).step, 20);
-  EXPECT_DOUBLE_EQ(beat({1001, 30000}, {600, 1}).fraction, 0.02);
+  EXPECT_EQ(time_stamp({1, 3}, {600, 1}), (TimeStamp{200, 0}));
+  EXPECT_EQ(time_stamp({1001, 30000}, {600, 1}).step, 20);
+  EXPECT_DOUBLE_EQ(time_stamp({1001, 30000}, {600, 1}).fraction, 0.02);
   // 5/3 of a nanosecond short of step 10^15: a double would be on it
-  const auto late = beat({2999999999999999, 3000000000}, {1000000000, 1});
+  const auto late = time_stamp({2999999999999999, 3000000000}, {1000000000, 1});
   EXPECT_EQ(late.step, 999999999999999);
   EXPECT_NEAR(late.fraction, 2.0 / 3, 1e-15);
   // the products do not fit 64 bits
-  EXPECT_EQ(beat({9000000000000000001, 1000000000000000003}, {30000, 1001}).step, 269);
+  EXPECT_EQ(time_stamp({9000000000000000001, 1000000000000000003}, {30000, 1001}).step, 269);
 }
 
 TEST(Edges, WithinABillionthOfAStepOfABoundaryAreThatBoundary) {

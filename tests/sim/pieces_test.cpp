@@ -117,7 +117,7 @@ TEST(Bonds, ThatBreakLoseNothing) {
   State<3> state = world.state;
   stepper.begin(state);
   const Vec3 p = momentum(world.model, state), L = angular_momentum(world.model, state);
-  const double energy = moving(world.model, state);
+  const double energy = kinetic(world.model, state);
   std::size_t bodies = state.whole[0].x.size();
   EXPECT_EQ(bodies, 1u);
   bool broke = false;
@@ -127,7 +127,7 @@ TEST(Bonds, ThatBreakLoseNothing) {
     bodies = state.whole[0].x.size();
     ASSERT_LE((momentum(world.model, state) - p).norm(), 1e-11 * p.norm()) << i;
     ASSERT_LE((angular_momentum(world.model, state) - L).norm(), 1e-9 * L.norm()) << i;
-    ASSERT_NEAR(moving(world.model, state), energy, 1e-9 * energy) << i;
+    ASSERT_NEAR(kinetic(world.model, state), energy, 1e-9 * energy) << i;
   }
   EXPECT_TRUE(broke);
   EXPECT_GT(bodies, 1u);

@@ -87,7 +87,7 @@ void each(Act&& act) {
   }
 }
 
-struct Crowd {
+struct BodyCounts {
   int rate, count;
   double speed, seconds;
 };
@@ -95,9 +95,10 @@ struct Crowd {
 TEST(Rest, WhatFliesWithoutGravityFliesOn) {
   each([](auto d, Solver solver) {
     constexpr int D = d;
-    for (const Crowd& it : {Crowd{60, 1, 0.015, 100}, Crowd{60, 1, 1e-9, 10}, Crowd{60, 7, 0.015, 10},
-                            Crowd{60, 20, 1e-4, 3}, Crowd{60, 100, 0.015, 1}, Crowd{60, 1000, 0.015, 1},
-                            Crowd{600, 7, 0.015, 2}, Crowd{6000, 1, 1e-6, 1}, Crowd{6000, 7, 0.015, 0.5}}) {
+    for (const BodyCounts& it :
+         {BodyCounts{60, 1, 0.015, 100}, BodyCounts{60, 1, 1e-9, 10}, BodyCounts{60, 7, 0.015, 10},
+          BodyCounts{60, 20, 1e-4, 3}, BodyCounts{60, 100, 0.015, 1}, BodyCounts{60, 1000, 0.015, 1},
+          BodyCounts{600, 7, 0.015, 2}, BodyCounts{6000, 1, 1e-6, 1}, BodyCounts{6000, 7, 0.015, 0.5}}) {
       if (solver == Solver::direct && it.count > 100) continue;
       World<D> world = quiet_room<D>(solver, 0, it.rate);
       for (int i = 0; i < it.count; ++i) {
@@ -134,9 +135,9 @@ TEST(Rest, WhatTouchesAndFliesAlongWithoutGravityFliesOn) {
 TEST(Rest, PucksSlideOnWithoutFriction) {
   each([](auto d, Solver solver) {
     constexpr int D = d;
-    for (const Crowd& it :
-         {Crowd{60, 1, 0.015, 60}, Crowd{60, 1, 1e-6, 20}, Crowd{60, 20, 0.01, 5}, Crowd{60, 1000, 0.01, 0.5},
-          Crowd{600, 7, 0.003, 1}, Crowd{6000, 1, 0.015, 0.4}}) {
+    for (const BodyCounts& it :
+         {BodyCounts{60, 1, 0.015, 60}, BodyCounts{60, 1, 1e-6, 20}, BodyCounts{60, 20, 0.01, 5},
+          BodyCounts{60, 1000, 0.01, 0.5}, BodyCounts{600, 7, 0.003, 1}, BodyCounts{6000, 1, 0.015, 0.4}}) {
       if (solver == Solver::direct && it.count > 20) continue;
       World<D> world = quiet_room<D>(solver, kG, it.rate);
       for (int i = 0; i < it.count; ++i)
@@ -154,8 +155,9 @@ TEST(Rest, PucksSlideOnWithoutFriction) {
 TEST(Rest, WhatRollsRollsOn) {
   each([](auto d, Solver solver) {
     constexpr int D = d;
-    for (const Crowd& it : {Crowd{60, 1, 0.01, 120}, Crowd{60, 1, 1e-6, 20}, Crowd{60, 20, 0.01, 5},
-                            Crowd{60, 1000, 0.01, 0.5}, Crowd{600, 7, 0.015, 1}, Crowd{6000, 1, 0.01, 0.4}}) {
+    for (const BodyCounts& it :
+         {BodyCounts{60, 1, 0.01, 120}, BodyCounts{60, 1, 1e-6, 20}, BodyCounts{60, 20, 0.01, 5},
+          BodyCounts{60, 1000, 0.01, 0.5}, BodyCounts{600, 7, 0.015, 1}, BodyCounts{6000, 1, 0.01, 0.4}}) {
       if (solver == Solver::direct && it.count > 20) continue;
       World<D> world = quiet_room<D>(solver, kG, it.rate);
       for (int i = 0; i < it.count; ++i)
@@ -353,7 +355,7 @@ TEST(Mobility, ABallOnTheFloorRollsFreelyAndDoesNotSlip) {
   const auto moves = [&](const Vec3& v, const Vec3& w, double mu) {
     mobility.clear();
     mobility.add(0, v, w, Rotation<3>::Identity());
-    mobility.hold(touch<3>(0, -1, {0, 1, 0}, {0, -0.1, 0}, mu, kG));
+    mobility.add_contact(touch<3>(0, -1, {0, 1, 0}, {0, -0.1, 0}, mu, kG));
     return mobility.mobile();
   };
   EXPECT_EQ(moves({0.01, 0, 0}, {0, 0, -0.1}, 0.5), Mobile::yes);

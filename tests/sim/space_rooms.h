@@ -96,7 +96,7 @@ inline World<3> doll() {
 inline double energy(const World<3>& world, const State<3>& state) {
   double sum = 0;
   for (int i = 0; i < int(state.x.size()); ++i)
-    sum += kinetic(world.model, state, i) + lifted(world.model, state, i);
+    sum += kinetic(world.model, state, i) + gravity_energy(world.model, state, i);
   return sum;
 }
 

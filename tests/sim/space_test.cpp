@@ -134,32 +134,32 @@ TEST(FlightInSpace, IsTheParabola) {
 World<3> in_space(const World<2>& plane, double depth) {
   World<3> out;
   out.model.rate = plane.model.rate, out.model.integrator = plane.model.integrator;
-  out.model.gravity = lifted<2>(plane.model.gravity), out.model.scale = plane.model.scale;
+  out.model.gravity = to_3d<2>(plane.model.gravity), out.model.scale = plane.model.scale;
   for (std::size_t i = 0; i < plane.model.bodies.size(); ++i) {
     const Body<2>& it = plane.model.bodies[i];
     if (it.turns()) {
       Shape<3> box = brick({2 * it.shape.half[0], 2 * it.shape.half[1], depth});
       const int k = turning(plane.state, int(i));
-      add_solid(out, box, it.mass, lifted<2>(plane.state.x[i]), lifted<2>(plane.state.v[i]),
+      add_solid(out, box, it.mass, to_3d<2>(plane.state.x[i]), to_3d<2>(plane.state.v[i]),
                 exponential({0, 0, plane.state.turn[k][0]}), {0, 0, plane.state.spin[k][0]}, it.elasticity);
     } else {
-      add_particle(out, lifted<2>(plane.state.x[i]), lifted<2>(plane.state.v[i]), it.mass, it.elasticity,
+      add_particle(out, to_3d<2>(plane.state.x[i]), to_3d<2>(plane.state.v[i]), it.mass, it.elasticity,
                    it.shape.radius);
     }
     out.model.bodies.back().drag = it.drag;
   }
   for (const Wall<2>& wall : plane.model.walls)
-    out.model.walls.push_back({lifted<2>(wall.point), lifted<2>(wall.normal), wall.elasticity, {}});
+    out.model.walls.push_back({to_3d<2>(wall.point), to_3d<2>(wall.normal), wall.elasticity, {}});
   for (const Spring<2>& s : plane.model.springs) {
-    out.model.springs.push_back({{s.a.body, lifted<2>(s.a.local)},
-                                 {s.b.body, lifted<2>(s.b.local)},
+    out.model.springs.push_back({{s.a.body, to_3d<2>(s.a.local)},
+                                 {s.b.body, to_3d<2>(s.b.local)},
                                  s.rest_length,
                                  s.stiffness,
                                  s.damping});
   }
   for (const Mouse<2>& m : plane.model.mice) {
     Mouse<3> mouse{{}, m.rest_length, m.stiffness, m.damping};
-    for (const Knot<2>& knot : m.path) mouse.path.push_back({knot.time, lifted<2>(knot.place)});
+    for (const Knot<2>& knot : m.path) mouse.path.push_back({knot.time, to_3d<2>(knot.place)});
     out.model.mice.push_back(mouse);
   }
   return out;
@@ -168,8 +168,8 @@ World<3> in_space(const World<2>& plane, double depth) {
 double apart(const State<2>& plane, const State<3>& space) {
   double most = 0;
   for (std::size_t i = 0; i < plane.x.size(); ++i) {
-    most = std::max(most, (lifted<2>(plane.x[i]) - space.x[i]).norm());
-    most = std::max(most, (lifted<2>(plane.v[i]) - space.v[i]).norm());
+    most = std::max(most, (to_3d<2>(plane.x[i]) - space.x[i]).norm());
+    most = std::max(most, (to_3d<2>(plane.v[i]) - space.v[i]).norm());
   }
   for (std::size_t k = 0; k < plane.turn.size(); ++k) {
     const Eigen::Matrix3d want = rotation<3>(exponential({0, 0, plane.turn[k][0]}));

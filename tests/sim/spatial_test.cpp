@@ -32,7 +32,7 @@ TYPED_TEST(Spatial, PowerDoesNotDependOnTheOrigin) {
     const auto t = any_twist<D>(dice);
     const auto f = any_wrench<D>(dice);
     const Vec<D> r = dice.vector<D>(1);
-    EXPECT_NEAR(power(brought(f, r), t), power(f, shifted(t, r)), 4 * kRounding);
+    EXPECT_NEAR(power(transformed_to_origin(f, r), t), power(f, shifted(t, r)), 4 * kRounding);
   }
 }
 
@@ -58,7 +58,7 @@ TYPED_TEST(Spatial, InertiaOfALinkGivesItsKineticEnergyFromAnyOrigin) {
     // given about one origin and felt at another
     const Vec<D> r = dice.vector<D>(1);
     const auto there = rigid_inertia<D>(link.mass, link.com - r, link.inertia);
-    EXPECT_NEAR(power(brought(there, r) * t, t), want, 10 * kRounding * want);
+    EXPECT_NEAR(power(transformed_to_origin(there, r) * t, t), want, 10 * kRounding * want);
   }
 }
 
@@ -69,7 +69,7 @@ TYPED_TEST(Spatial, AnInertiaFreedAlongADirectionDoesNotFeelIt) {
   const auto s = any_twist<D>(dice);
   auto inertia = rigid_inertia<D>(link.mass, link.com, link.inertia);
   const Wrench<D> u = inertia * s;
-  free_along(inertia, u, 1 / power(u, s));
+  eliminate_freedom(inertia, u, 1 / power(u, s));
   const Wrench<D> felt = inertia * s;
   EXPECT_LE(felt.n.norm() + felt.f.norm(), 2 * kRounding);
 }

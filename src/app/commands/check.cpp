@@ -43,7 +43,7 @@ template <int D>
 std::string contact(const sim::Model<D>& model) {
   if (model.collision == sim::Collision::handout) return "the handout's: walls alone, put back and pushed";
   const bool direct = sim::solver(model) == sim::Solver::direct;
-  const sim::Crowd crowd = sim::crowd(model);
+  const sim::BodyCounts crowd = sim::body_counts(model);
   std::string why;
   if (model.collision == sim::Collision::event)
     why = "every event at its own time";

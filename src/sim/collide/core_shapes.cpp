@@ -140,7 +140,7 @@ CoreShapes::CoreShapes(const Model<2>& model) {
     return !body.fixed && body.shape.kind != ShapeKind::point;
   });
   const double crowded = std::clamp((double(moving) - kFew) / (kMany - kFew), 0.0, 1.0);
-  allowed = kLeastAllowed + (kMostAllowed - kLeastAllowed) * crowded * crowded * crowded;
+  linear_slop = kLeastAllowed + (kMostAllowed - kLeastAllowed) * crowded * crowded * crowded;
   const auto add = [&](int body, int part, const Shape<2>& shape) {
     CoreShape core;
     core.body = body, core.part = part, core.first = int(x.size());
@@ -181,8 +181,8 @@ CoreShapes::CoreShapes(const Model<2>& model) {
   begin.push_back(int(all.size()));
 }
 
-double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
-               const Pose& at_b, Feature out[2], double margin) {
+double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
+                     const Pose& at_b, Feature out[2], double margin) {
   if (a.count == 1 && b.count == 1) {
     const Point p = corner(cores, a, at_a, 0), q = corner(cores, b, at_b, 0);
     out[0] = {Feature::corners, 0, 0}, out[1] = {};
@@ -200,9 +200,9 @@ double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, co
   return clip(cores, a, at_a, ra.face, b, at_b, false, out);
 }
 
-Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
-            const Pose& at_b, Feature feature) {
-  Place at;
+ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,
+                              const CoreShape& b, const Pose& at_b, Feature feature) {
+  ContactPoint at;
   if (feature.kind == Feature::corners) {
     const Point p = corner(cores, a, at_a, feature.corner), q = corner(cores, b, at_b, feature.face);
     double nx = p.x - q.x, ny = p.y - q.y;
@@ -230,8 +230,8 @@ Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const
   return at;
 }
 
-double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
-               Feature out[2]) {
+double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
+                     Feature out[2]) {
   const double nx = wall.normal[0], ny = wall.normal[1];
   int low[2] = {0, -1};
   double gap[2] = {1e300, 1e300};
@@ -250,10 +250,10 @@ double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, co
   return gap[0];
 }
 
-Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
-            Feature feature) {
+ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,
+                              const Wall<2>& wall, Feature feature) {
   const Point p = corner(cores, a, at_a, feature.corner);
-  Place at;
+  ContactPoint at;
   at.nx = wall.normal[0], at.ny = wall.normal[1];
   at.gap = at.nx * (p.x - wall.point[0]) + at.ny * (p.y - wall.point[1]) - a.radius;
   const double back = a.radius + 0.5 * at.gap;

@@ -40,7 +40,7 @@ struct CoreShapes {
   /// next to nothing. The few sweeps that many have leave some of those apart that they push out of one
   /// another, and who stands apart bears nothing until it has fallen back: a heap that is put right to the
   /// last creeps for ever.
-  double allowed = 0;
+  double linear_slop = 0;
 };
 
 /// Which features touch. `none` pads a pair whose two cores have one touch only.
@@ -57,21 +57,21 @@ struct Feature {
 };
 
 /// Where two features are: point (m), normal from b to a, gap (m).
-struct Place {
+struct ContactPoint {
   double x = 0, y = 0, nx = 0, ny = 1, gap = 0;
 };
 
 /// The features nearest to each other: two where a corner of each end of two faces that lie on each other,
 /// else one and `none`. Returns a lower bound of the distance, m; from `margin` on features may be left out.
-double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
-               const Pose& at_b, Feature out[2], double margin = 1e300);
-Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
-            const Pose& at_b, Feature feature);
+double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
+                     const Pose& at_b, Feature out[2], double margin = 1e300);
+ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,
+                              const CoreShape& b, const Pose& at_b, Feature feature);
 
 /// Of a wall: the two corners that lie lowest.
-double nearest(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
-               Feature out[2]);
-Place touch(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
-            Feature feature);
+double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
+                     Feature out[2]);
+ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,
+                              const Wall<2>& wall, Feature feature);
 
 }  // namespace obscura::sim::plane

@@ -78,7 +78,7 @@ void Mobility<D>::keep(Held row) {
 }
 
 template <int D>
-void Mobility<D>::hold(const BearingContact<D>& touch) {
+void Mobility<D>::add_contact(const BearingContact<D>& touch) {
   const double presses = touch.force.dot(touch.normal);
   if (!(presses > 0)) return;
   const auto row = [&](const Vec<D>& along) {
@@ -100,7 +100,7 @@ void Mobility<D>::hold(const BearingContact<D>& touch) {
 }
 
 template <int D>
-void Mobility<D>::hold(const Row<D>& row, double spare) {
+void Mobility<D>::add_row(const Row<D>& row, double spare) {
   Held it;
   it.sides[0] = side(row.a, row.along, row.angular_a);
   it.sides[1] = side(row.b, Vec<D>(-row.along), AngularVec<D>(-row.angular_b));

@@ -57,11 +57,11 @@ class Mobility {
   void add(int body, const Vec<D>& v, const AngularVec<D>& w, const Rotation<D>& room_from_body);
 
   /// After all bodies: a contact with its force. One that does not press holds nothing.
-  void hold(const BearingContact<D>& touch);
+  void add_contact(const BearingContact<D>& touch);
 
   /// A row of a joint. One with bounds holds where it moves by no more than `spare`, the acceleration (m/s^2
   /// or rad/s^2) that it could give beside what it bears, stops at once.
-  void hold(const Row<D>& row, double spare);
+  void add_row(const Row<D>& row, double spare);
 
   Mobile mobile();
 

@@ -46,7 +46,7 @@ DivergenceMonitor<D>::DivergenceMonitor(const Model<D>& model, const std::vector
     : model_(model), paths_(paths) {}
 
 template <int D>
-std::optional<Trouble> DivergenceMonitor<D>::ran_away(const State<D>& state, double t) const {
+std::optional<Trouble> DivergenceMonitor<D>::check_bounds(const State<D>& state, double t) const {
   const double limit = kFarthest * model_.scale;
   for (int body = 0; body < int(model_.bodies.size()); ++body) {
     const auto trouble = [&](const char* quantity, std::string what) {
@@ -101,7 +101,7 @@ void DivergenceMonitor<D>::start(State<D>& state, double t) const {
 }
 
 template <int D>
-std::optional<Trouble> DivergenceMonitor<D>::energy(const State<D>& state, double t) const {
+std::optional<Trouble> DivergenceMonitor<D>::check_energy(const State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
   const double energy_budget = state.energy_budget.amount + std::max(0.0, state.ledger.displacement);
   const double now = e.kinetic + e.springs + e.gravity - state.energy_budget.level;
@@ -122,7 +122,8 @@ std::optional<Trouble> DivergenceMonitor<D>::energy(const State<D>& state, doubl
 
 template <int D>
 std::string DivergenceMonitor<D>::likely(const State<D>& state, int body) const {
-  if (const Tightness worst = tightest(model_, state.grips); worst.body >= 0) return too_long(model_, worst);
+  if (const Tightness worst = tightest(model_, state.grips); worst.body >= 0)
+    return step_too_long_message(model_, worst);
   bool tied = false;
   for (const Spring<D>& s : model_.springs) tied = tied || s.a.body == body || s.b.body == body;
   for (const Grip<D>& grip : state.grips) tied = tied || grip.body == body;

@@ -18,14 +18,14 @@ class DivergenceMonitor {
   DivergenceMonitor(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// The first body with a velocity or position beyond its limit, in a state at time t (s).
-  std::optional<Trouble> ran_away(const State<D>& state, double t) const;
+  std::optional<Trouble> check_bounds(const State<D>& state, double t) const;
 
   /// Takes this state at time t as the start: what energy there is comes from it and from the hands.
   void start(State<D>& state, double t) const;
 
   /// Whether the springs hold far more energy than could have come from anywhere. Only springs can make it
   /// so.
-  std::optional<Trouble> energy(const State<D>& state, double t) const;
+  std::optional<Trouble> check_energy(const State<D>& state, double t) const;
 
  private:
   std::string likely(const State<D>& state, int body) const;

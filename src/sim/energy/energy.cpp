@@ -23,7 +23,7 @@ double kinetic(const Model<D>& model, const State<D>& state, int body) {
 }
 
 template <int D>
-double moving(const Model<D>& model, const State<D>& state) {
+double kinetic(const Model<D>& model, const State<D>& state) {
   double sum = 0;
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     if (!model.bodies[body].fixed) sum += kinetic(model, state, body);
@@ -32,23 +32,23 @@ double moving(const Model<D>& model, const State<D>& state) {
 }
 
 template <int D>
-double lifted(const Model<D>& model, const State<D>& state, int body) {
+double gravity_energy(const Model<D>& model, const State<D>& state, int body) {
   return -model.bodies[body].mass * model.gravity.dot(state.x[body]);
 }
 
 template <int D>
-double stored(const Model<D>& model, const State<D>& state, int spring) {
+double spring_energy(const Model<D>& model, const State<D>& state, int spring) {
   const Spring<D>& s = model.springs[spring];
-  return stored<D>(law(s), place(state, s.a), place(state, s.b));
+  return spring_energy<D>(law(s), place(state, s.a), place(state, s.b));
 }
 
 template <int D>
-double stored(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths, int mouse,
-              double t) {
+double spring_energy(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths,
+                     int mouse, double t) {
   const Grip<D>& grip = state.grips[mouse];
   if (grip.body < 0) return 0;
-  return stored<D>(law(model.mice[mouse]), place(state, End<D>{grip.body, grip.local}),
-                   paths[mouse].place(t));
+  return spring_energy<D>(law(model.mice[mouse]), place(state, End<D>{grip.body, grip.local}),
+                          paths[mouse].place(t));
 }
 
 template <int D>
@@ -57,12 +57,12 @@ Energies energies(const Model<D>& model, const State<D>& state, const std::vecto
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     if (model.bodies[body].fixed) continue;
     sum.kinetic += kinetic(model, state, body);
-    sum.gravity += lifted(model, state, body);
+    sum.gravity += gravity_energy(model, state, body);
   }
   for (int spring = 0; spring < int(model.springs.size()); ++spring)
-    sum.springs += stored(model, state, spring);
+    sum.springs += spring_energy(model, state, spring);
   for (int mouse = 0; mouse < int(model.mice.size()); ++mouse)
-    sum.springs += stored(model, state, paths, mouse, t);
+    sum.springs += spring_energy(model, state, paths, mouse, t);
   sum.displacement = state.ledger.displacement;
   sum.impacts = state.ledger.impacts;
   return sum;
@@ -86,7 +86,7 @@ AngularVec<D> angular_momentum(const Model<D>& model, const State<D>& state) {
     sum += b.mass * moment<D>(state.x[body], state.v[body]);
     if (const int k = turning(state, body); k >= 0) {
       const Rotation<D> axes = D == 2 ? Rotation<D>(Rotation<D>::Identity()) : rotation<D>(state.turn[k]);
-      sum += spinning<D>(b.inertia, axes, state.spin[k]);
+      sum += inertia_times<D>(b.inertia, axes, state.spin[k]);
     }
   }
   return sum;
@@ -94,19 +94,19 @@ AngularVec<D> angular_momentum(const Model<D>& model, const State<D>& state) {
 
 template Vec<2> place<2>(const State<2>&, const End<2>&);
 template double kinetic<2>(const Model<2>&, const State<2>&, int);
-template double moving<2>(const Model<2>&, const State<2>&);
-template double lifted<2>(const Model<2>&, const State<2>&, int);
-template double stored<2>(const Model<2>&, const State<2>&, int);
-template double stored<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, int, double);
+template double kinetic<2>(const Model<2>&, const State<2>&);
+template double gravity_energy<2>(const Model<2>&, const State<2>&, int);
+template double spring_energy<2>(const Model<2>&, const State<2>&, int);
+template double spring_energy<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, int, double);
 template Energies energies<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, double);
 template Vec<2> momentum<2>(const Model<2>&, const State<2>&);
 template AngularVec<2> angular_momentum<2>(const Model<2>&, const State<2>&);
 template Vec<3> place<3>(const State<3>&, const End<3>&);
 template double kinetic<3>(const Model<3>&, const State<3>&, int);
-template double moving<3>(const Model<3>&, const State<3>&);
-template double lifted<3>(const Model<3>&, const State<3>&, int);
-template double stored<3>(const Model<3>&, const State<3>&, int);
-template double stored<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, int, double);
+template double kinetic<3>(const Model<3>&, const State<3>&);
+template double gravity_energy<3>(const Model<3>&, const State<3>&, int);
+template double spring_energy<3>(const Model<3>&, const State<3>&, int);
+template double spring_energy<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, int, double);
 template Energies energies<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, double);
 template Vec<3> momentum<3>(const Model<3>&, const State<3>&);
 template AngularVec<3> angular_momentum<3>(const Model<3>&, const State<3>&);

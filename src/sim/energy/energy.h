@@ -20,20 +20,20 @@ double kinetic(const Model<D>& model, const State<D>& state, int body);
 
 /// Kinetic energy of all bodies that are not fixed, J.
 template <int D>
-double moving(const Model<D>& model, const State<D>& state);
+double kinetic(const Model<D>& model, const State<D>& state);
 
 /// Gravity's potential of one body relative to the origin, -m g . x, J.
 template <int D>
-double lifted(const Model<D>& model, const State<D>& state, int body);
+double gravity_energy(const Model<D>& model, const State<D>& state, int body);
 
 /// Energy in spring `spring`, J.
 template <int D>
-double stored(const Model<D>& model, const State<D>& state, int spring);
+double spring_energy(const Model<D>& model, const State<D>& state, int spring);
 
 /// Energy in the spring of mouse `mouse` at time t, J; none where it holds nothing.
 template <int D>
-double stored(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths, int mouse,
-              double t);
+double spring_energy(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths,
+                     int mouse, double t);
 
 /// All of it, with the ledger, at time t (s).
 template <int D>

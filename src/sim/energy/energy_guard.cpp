@@ -58,7 +58,7 @@ void EnergyGuard<D>::open(const State<D>& state) {
     moved_[i] = kinetic(state, i);
     before_[i] = moved_[i] - weights_[i].mass * model_.gravity.dot(state.x[i]);
   }
-  for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = stored(model_, state, i);
+  for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = spring_energy(model_, state, i);
 }
 
 template <int D>
@@ -71,7 +71,7 @@ bool EnergyGuard<D>::risen(const State<D>& state) {
     sum += now_[i] - before_[i], motion += moves;
   }
   for (int i = 0; i < int(springs_now_.size()); ++i) {
-    springs_now_[i] = stored(model_, state, i);
+    springs_now_[i] = spring_energy(model_, state, i);
     sum += springs_now_[i] - springs_before_[i], motion += springs_now_[i];
   }
   if (!(sum > kRounding * (motion + size_))) return false;
@@ -186,11 +186,11 @@ void EnergyGuard<D>::move_as_one(const State<D>& state) {
     const int k = turning(state, i);
     const bool turns = k >= 0 && model_.bodies[i].turns();
     const Rotation<D> at = turns ? axes<D>(state, k) : Rotation<D>(Rotation<D>::Identity());
-    if (turns) it.turning += spinning<D>(weights_[i].inertia, at, state.spin[k]);
+    if (turns) it.turning += inertia_times<D>(weights_[i].inertia, at, state.spin[k]);
     for (int axis = 0; axis < kAngular<D>; ++axis) {
       const AngularVec<D> unit = AngularVec<D>::Unit(axis);
       it.inertia.col(axis) += m * moment<D>(r, cross_velocity<D>(unit, r));
-      if (turns) it.inertia.col(axis) += spinning<D>(weights_[i].inertia, at, unit);
+      if (turns) it.inertia.col(axis) += inertia_times<D>(weights_[i].inertia, at, unit);
     }
   });
   for (Island& it : sums_) {

@@ -35,7 +35,7 @@ Vec<D> pull(const SpringLaw& s, const Vec<D>& a, const Vec<D>& va, const Vec<D>&
 
 /// What it holds when its ends are at a and b, J.
 template <int D>
-double stored(const SpringLaw& s, const Vec<D>& a, const Vec<D>& b) {
+double spring_energy(const SpringLaw& s, const Vec<D>& a, const Vec<D>& b) {
   const double stretch = std::sqrt((a - b).squaredNorm()) - s.rest_length;
   return 0.5 * s.stiffness * stretch * stretch;
 }

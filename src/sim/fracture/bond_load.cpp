@@ -118,7 +118,8 @@ bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const BodyMotion<
   for (int p = 0; p < n; ++p) {
     const int i = parts[p];
     own[p] = tensor(model_.bodies[i], body_motion(state, i));
-    force += brought(steady_[i], Vec<D>(state.x[i] - x)), blow += brought(blows_[i], Vec<D>(state.x[i] - x));
+    force += transformed_to_origin(steady_[i], Vec<D>(state.x[i] - x)),
+        blow += transformed_to_origin(blows_[i], Vec<D>(state.x[i] - x));
   }
   AngularVec<D> alpha = AngularVec<D>::Zero(), dw = AngularVec<D>::Zero();
   Vec<D> A = Vec<D>::Zero(), dv = Vec<D>::Zero();

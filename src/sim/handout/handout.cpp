@@ -78,9 +78,9 @@ Vec<D> Handout<D>::arm(const Striker& s, int point, const Wall<D>& wall) const {
 template <int D>
 double Handout<D>::springs(const State<D>& state, int body, double t) const {
   double sum = 0;
-  for (const int spring : springs_[body]) sum += stored(model_, state, spring);
+  for (const int spring : springs_[body]) sum += spring_energy(model_, state, spring);
   for (int mouse = 0; mouse < int(state.grips.size()); ++mouse) {
-    if (state.grips[mouse].body == body) sum += stored(model_, state, paths_, mouse, t);
+    if (state.grips[mouse].body == body) sum += spring_energy(model_, state, paths_, mouse, t);
   }
   return sum;
 }
@@ -271,7 +271,7 @@ void Handout<D>::strike(Striker& s, const Row* rows, int n, int rank) {
     }
     b[i] = (1 + mixed(body.elasticity, w.elasticity)) * s.at.velocity(rows[i].arm).dot(w.normal);
   }
-  complementary(A, b, rank, p);
+  solve_lcp(A, b, rank, p);
 
   Vec<D> push = Vec<D>::Zero();
   AngularVec<D> turn = AngularVec<D>::Zero();
@@ -311,7 +311,7 @@ void Handout<D>::put_inside(Striker& s) const {
   }
   Rows p;
   // walls that leave no place between them keep it where it is
-  if (!complementary(A, gaps.head(n), D, p)) return;
+  if (!solve_lcp(A, gaps.head(n), D, p)) return;
   for (int i = 0; i < n; ++i) s.at.x += p[i] * model_.walls[walls[i]].normal;
 }
 

@@ -115,7 +115,7 @@ void spread(const Square& A, const Rows& b, Rows& p) {
 
 }  // namespace
 
-bool complementary(const Square& A, const Rows& b, int rank, Rows& p) {
+bool solve_lcp(const Square& A, const Rows& b, int rank, Rows& p) {
   const int n = int(b.size());
   p = Rows::Zero(n);
   if (n == 0) return true;

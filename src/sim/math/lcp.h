@@ -14,6 +14,6 @@ using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRow
 /// p >= 0 with A p + b >= 0 and p . (A p + b) = 0, by trying sets of active rows, exactly to rounding. A: n x
 /// n, symmetric, positive semidefinite, of rank at most `rank`. Where rows are redundant, the p of least norm
 /// if that is positive. False (and p = 0) where there is none.
-bool complementary(const Square& A, const Rows& b, int rank, Rows& p);
+bool solve_lcp(const Square& A, const Rows& b, int rank, Rows& p);
 
 }  // namespace obscura::sim

@@ -40,8 +40,8 @@ int pieces_of_turn(const AngularVec<D>& w, double h) {
 
 /// -I^-1 (w x I w), rad/s^2, of principal moments and a spin that the body sees: nothing in the plane.
 template <int D>
-AngularVec<D> gyration([[maybe_unused]] const AngularVec<D>& inertia,
-                       [[maybe_unused]] const AngularVec<D>& w) {
+AngularVec<D> gyroscopic_acceleration([[maybe_unused]] const AngularVec<D>& inertia,
+                                      [[maybe_unused]] const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return AngularVec<D>::Zero();
   } else {
@@ -51,7 +51,7 @@ AngularVec<D> gyration([[maybe_unused]] const AngularVec<D>& inertia,
 
 /// The rate of the displacement d of a turn under the spin w.
 template <int D>
-AngularVec<D> displacing([[maybe_unused]] const AngularVec<D>& d, const AngularVec<D>& w) {
+AngularVec<D> displacement_rate([[maybe_unused]] const AngularVec<D>& d, const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return w;
   } else {

@@ -115,8 +115,8 @@ AngularVec<D> inverse_inertia_times(const AngularVec<D>& inertia,
 
 /// I w: the angular momentum about its centre of a body with the spin w, both in the room's frame.
 template <int D>
-AngularVec<D> spinning(const AngularVec<D>& inertia, const Rotation<D>& room_from_body,
-                       const AngularVec<D>& w) {
+AngularVec<D> inertia_times(const AngularVec<D>& inertia, const Rotation<D>& room_from_body,
+                            const AngularVec<D>& w) {
   return to_room<D>(room_from_body, inertia.cwiseProduct(from_room<D>(room_from_body, w)));
 }
 
@@ -129,7 +129,7 @@ AngularVec<D> carried_spin([[maybe_unused]] const AngularVec<D>& inertia,
   if constexpr (D == 2) {
     return w;
   } else {
-    return inverse_inertia_times<D>(inertia, to, spinning<D>(inertia, from, w));
+    return inverse_inertia_times<D>(inertia, to, inertia_times<D>(inertia, from, w));
   }
 }
 

@@ -73,7 +73,7 @@ Twist<D> shifted(const Twist<D>& t, const Vec<D>& r) {
 
 /// The wrench given at `r` (m), as felt at the origin.
 template <int D>
-Wrench<D> brought(const Wrench<D>& f, const Vec<D>& r) {
+Wrench<D> transformed_to_origin(const Wrench<D>& f, const Vec<D>& r) {
   return {f.n + moment<D>(r, f.f), f.f};
 }
 
@@ -136,7 +136,7 @@ Wrench<D> operator*(const ArticulatedInertia<D>& i, const Twist<D>& t) {
 
 /// The inertia given at `r` (m), as felt at the origin.
 template <int D>
-ArticulatedInertia<D> brought(const ArticulatedInertia<D>& i, const Vec<D>& r) {
+ArticulatedInertia<D> transformed_to_origin(const ArticulatedInertia<D>& i, const Vec<D>& r) {
   const Eigen::Matrix<double, D, kAngular<D>> k = lever<D>(r);
   const Eigen::Matrix<double, kAngular<D>, D> km = k.transpose() * i.M;
   const SpinTensor<D> hk = i.H * k;
@@ -149,7 +149,7 @@ ArticulatedInertia<D> brought(const ArticulatedInertia<D>& i, const Vec<D>& r) {
 
 /// Takes away what moves freely along a direction of freedom: I -= U U' / D.
 template <int D>
-void free_along(ArticulatedInertia<D>& i, const Wrench<D>& u, double over_D) {
+void eliminate_freedom(ArticulatedInertia<D>& i, const Wrench<D>& u, double over_D) {
   const Wrench<D> scaled = u * over_D;
   i.J.noalias() -= scaled.n * u.n.transpose();
   i.H.noalias() -= scaled.n * u.f.transpose();

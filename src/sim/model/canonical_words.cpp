@@ -65,7 +65,7 @@ std::vector<std::uint64_t> words(const State<D>& state) {
   if constexpr (D == 3) {
     for (const BodySpin<D>& own : state.own) {
       w.template numbers<kAngular<D>>(own.w);
-      w.template numbers<kAngular<D>>(own.rest);
+      w.template numbers<kAngular<D>>(own.residual);
     }
   }
   for (const Blast<D>& blast : state.blasts) {

@@ -16,10 +16,10 @@ struct ContactKey {
 };
 
 /// What a contact does at an instant.
-enum class Touching : std::uint8_t {
+enum class ContactMode : std::uint8_t {
   open,
   stick,
-  brink,  // holds with all the friction there is
+  at_friction_limit,  // holds with all the friction there is
   slide
 };
 
@@ -27,7 +27,7 @@ enum class Touching : std::uint8_t {
 template <int D>
 struct Contact {
   ContactKey key;
-  Touching touching = Touching::open;
+  ContactMode touching = ContactMode::open;
   Vec<D> point = Vec<D>::Zero();    // world frame, m
   Vec<D> normal = Vec<D>::Zero();   // unit, from b to a
   double gap = 0;                   // m, negative: inside

@@ -26,7 +26,7 @@ void take_spin(const State<D>& state, int k, bool whole, AngularVec<D>& base, do
     if (whole) {
       given = own.w;
     } else {
-      base = own.w, given = own.rest;
+      base = own.w, given = own.residual;
     }
   }
 }

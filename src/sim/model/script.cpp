@@ -18,7 +18,7 @@ TimeStamp snapped(TimeStamp at) {
 
 }  // namespace
 
-TimeStamp beat(Rational t, Rational rate) {
+TimeStamp time_stamp(Rational t, Rational rate) {
   const Wide num = Wide(t.num) * rate.num, den = Wide(t.den) * rate.den;
   Wide whole = num / den, rest = num % den;
   if (rest < 0) rest += den, --whole;
@@ -41,7 +41,7 @@ std::vector<ScriptEvent> edges(const Model<D>& model) {
       const auto kind = &knot == &path.front()  ? ScriptEvent::Kind::press
                         : &knot == &path.back() ? ScriptEvent::Kind::release
                                                 : ScriptEvent::Kind::knot;
-      all.push_back({snapped(beat(knot.time, model.rate)), mouse, kind});
+      all.push_back({snapped(time_stamp(knot.time, model.rate)), mouse, kind});
     }
   }
   for (int i = 0; i < int(model.explosions.size()); ++i) {
@@ -50,10 +50,10 @@ std::vector<ScriptEvent> edges(const Model<D>& model) {
     const bool held = it.scheme == Explosion<D>::Scheme::paper;
     Rational at = it.start;
     do {
-      all.push_back({snapped(beat(at, model.rate)), i, ScriptEvent::Kind::blast});
+      all.push_back({snapped(time_stamp(at, model.rate)), i, ScriptEvent::Kind::blast});
       at = at + it.interval;
     } while (held && at < end);
-    all.push_back({snapped(beat(end, model.rate)), i, ScriptEvent::Kind::calm});
+    all.push_back({snapped(time_stamp(end, model.rate)), i, ScriptEvent::Kind::calm});
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const ScriptEvent& a, const ScriptEvent& b) { return a.at < b.at; });

@@ -21,7 +21,7 @@ inline bool operator<(TimeStamp a, TimeStamp b) {
 }
 
 /// The beat of time t (s, >= 0), floor(t rate) exactly.
-TimeStamp beat(Rational t, Rational rate);
+TimeStamp time_stamp(Rational t, Rational rate);
 
 /// Time of a beat, s: step / rate is rounded once while it has less than 53 bits.
 double time(TimeStamp at, Rational rate);

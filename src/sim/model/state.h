@@ -35,8 +35,8 @@ struct Touch {
 /// need not know of it.
 template <int D>
 struct BodySpin {
-  AngularVec<D> w = AngularVec<D>::Zero();     // rad/s
-  AngularVec<D> rest = AngularVec<D>::Zero();  // rad/s; to be added
+  AngularVec<D> w = AngularVec<D>::Zero();         // rad/s
+  AngularVec<D> residual = AngularVec<D>::Zero();  // rad/s; to be added
 
   bool operator==(const BodySpin&) const = default;
 };

@@ -286,12 +286,13 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     BodyMotion<D>& it = stances_[still + i];
     it.room_from_body = rotation<D>(displaced<D>(turn_[i], by));
     it.w = to_room<D>(it.room_from_body, w);
-    Eigen::Map<AngularVec<D>>(d_rate.data() + at) = displacing<D>(by, w);
-    Eigen::Map<AngularVec<D>>(v_rate.data() + at) = gyration<D>(model_.bodies[bodies_[still + i]].inertia, w);
+    Eigen::Map<AngularVec<D>>(d_rate.data() + at) = displacement_rate<D>(by, w);
+    Eigen::Map<AngularVec<D>>(v_rate.data() + at) =
+        gyroscopic_acceleration<D>(model_.bodies[bodies_[still + i]].inertia, w);
   }
   const std::size_t chains = std::size_t(chain_start());
   const int links = int(chains_.links().size());
-  if (links > 0) chains_.stand(d.subspan(chains), v.subspan(chains)), chains_.let_go();
+  if (links > 0) chains_.stand(d.subspan(chains), v.subspan(chains)), chains_.clear_forces();
   for (int k = 0; k < links; ++k) {
     stances_[n + k] = chains_.body_motion(k);
     chains_.pull(k, {AngularVec<D>::Zero(), -model_.bodies[all_[n + k]].drag * stances_[n + k].v});

@@ -42,8 +42,9 @@ void TorqueFreeRotation<3>::rates(double, std::span<const double> d, std::span<c
                                   std::span<double> d_rate, std::span<double> v_rate) {
   for (std::size_t i = 0; i < base_.size(); ++i) {
     const Vec3 w = base_[i] + Eigen::Map<const Vec3>(v.data() + 3 * i);
-    Eigen::Map<Vec3>(d_rate.data() + 3 * i) = displacing<3>(Eigen::Map<const Vec3>(d.data() + 3 * i), w);
-    Eigen::Map<Vec3>(v_rate.data() + 3 * i) = gyration<3>(inertia_[i], w);
+    Eigen::Map<Vec3>(d_rate.data() + 3 * i) =
+        displacement_rate<3>(Eigen::Map<const Vec3>(d.data() + 3 * i), w);
+    Eigen::Map<Vec3>(v_rate.data() + 3 * i) = gyroscopic_acceleration<3>(inertia_[i], w);
   }
 }
 

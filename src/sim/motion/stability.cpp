@@ -143,7 +143,7 @@ double longest_step(Integrator integrator, const Tightness& oscillator, double h
 }
 
 template <int D>
-std::string too_long(const Model<D>& model, const Tightness& oscillator) {
+std::string step_too_long_message(const Model<D>& model, const Tightness& oscillator) {
   const double h = 1 / value(model.rate);
   if (!grows(model.integrator, oscillator, h)) return {};
   const double limit = longest_step(model.integrator, oscillator, h);
@@ -209,7 +209,8 @@ std::vector<Trouble> foreseen(const Model<D>& model) {
     }
   }
   if (worst.body < 0) return {};
-  return {{0, named(model, worst.body), "energy", "will grow from nowhere", too_long(model, worst)}};
+  return {
+      {0, named(model, worst.body), "energy", "will grow from nowhere", step_too_long_message(model, worst)}};
 }
 
 }  // namespace
@@ -219,11 +220,11 @@ std::vector<Trouble> stability_warnings(const Model<3>& model) { return foreseen
 
 template std::string named<2>(const Model<2>&, int);
 template std::vector<Tightness> tightness<2>(const Model<2>&, const std::vector<Grip<2>>&);
-template std::string too_long<2>(const Model<2>&, const Tightness&);
+template std::string step_too_long_message<2>(const Model<2>&, const Tightness&);
 template Tightness tightest<2>(const Model<2>&, const std::vector<Grip<2>>&);
 template std::string named<3>(const Model<3>&, int);
 template std::vector<Tightness> tightness<3>(const Model<3>&, const std::vector<Grip<3>>&);
-template std::string too_long<3>(const Model<3>&, const Tightness&);
+template std::string step_too_long_message<3>(const Model<3>&, const Tightness&);
 template Tightness tightest<3>(const Model<3>&, const std::vector<Grip<3>>&);
 
 }  // namespace obscura::sim

@@ -32,7 +32,7 @@ double longest_step(Integrator integrator, const Tightness& oscillator, double h
 /// What a person can do about it: the step, the limit, the spring and the rate that would do. Empty where the
 /// step is short enough for every spring on every body.
 template <int D>
-std::string too_long(const Model<D>& model, const Tightness& oscillator);
+std::string step_too_long_message(const Model<D>& model, const Tightness& oscillator);
 
 /// The tightest of all bodies by its limit; body -1 where the step is short enough for all.
 template <int D>

@@ -82,10 +82,10 @@ void factor(const Chain<D>& chain, const ChainKinematics<D>& stance, ChainDynami
     for (int j = chain.v_start(i + 1) - 1; j >= chain.v_start(i); --j) {
       dynamics.U[j] = inertia * stance.freedom[j];
       dynamics.over_D[j] = 1 / power(dynamics.U[j], stance.freedom[j]);
-      free_along(inertia, dynamics.U[j], dynamics.over_D[j]);
+      eliminate_freedom(inertia, dynamics.U[j], dynamics.over_D[j]);
     }
     const int p = chain[i].parent;
-    if (p >= 0) dynamics.inertia[p] += brought(inertia, stance.arm[i]);
+    if (p >= 0) dynamics.inertia[p] += transformed_to_origin(inertia, stance.arm[i]);
   }
 }
 
@@ -105,7 +105,7 @@ void accelerate(const Chain<D>& chain, const ChainKinematics<D>& stance, std::sp
     }
     const int up = chain[i].parent;
     if (up < 0) continue;
-    dynamics.resistance[up] += brought(p + dynamics.inertia[i] * stance.bias[i], stance.arm[i]);
+    dynamics.resistance[up] += transformed_to_origin(p + dynamics.inertia[i] * stance.bias[i], stance.arm[i]);
   }
 
   // and back
@@ -128,7 +128,7 @@ void respond(const Chain<D>& chain, const ChainKinematics<D>& stance, int link, 
       dynamics.push[j] = -power(p, stance.freedom[j]);
       p += dynamics.U[j] * (dynamics.push[j] * dynamics.over_D[j]);
     }
-    p = brought(p, stance.arm[i]);
+    p = transformed_to_origin(p, stance.arm[i]);
   }
   spread(chain, stance, dynamics, change);
 }
@@ -144,7 +144,7 @@ void respond(const Chain<D>& chain, const ChainKinematics<D>& stance, std::span<
       p += dynamics.U[j] * (dynamics.push[j] * dynamics.over_D[j]);
     }
     const int up = chain[i].parent;
-    if (up >= 0) dynamics.impulses[up] += brought(p, stance.arm[i]);
+    if (up >= 0) dynamics.impulses[up] += transformed_to_origin(p, stance.arm[i]);
   }
   spread(chain, stance, dynamics, change);
 }
@@ -180,7 +180,7 @@ void inverse(const Chain<D>& chain, const ChainKinematics<D>& stance, std::span<
       tau[j] = power(f, stance.freedom[j]) + chain[i].joint.damping * v[j];
     }
     const int up = chain[i].parent;
-    if (up >= 0) dynamics.resistance[up] += brought(f, stance.arm[i]);
+    if (up >= 0) dynamics.resistance[up] += transformed_to_origin(f, stance.arm[i]);
   }
 }
 
@@ -192,12 +192,12 @@ void mass_matrix(const Chain<D>& chain, const ChainKinematics<D>& stance, ChainD
   for (int i = chain.size() - 1; i >= 0; --i) {
     // all from here on, as one rigid body
     const int up = chain[i].parent;
-    if (up >= 0) dynamics.inertia[up] += brought(dynamics.inertia[i], stance.arm[i]);
+    if (up >= 0) dynamics.inertia[up] += transformed_to_origin(dynamics.inertia[i], stance.arm[i]);
     for (int j = chain.v_start(i); j < chain.v_start(i + 1); ++j) {
       Wrench<D> f = dynamics.inertia[i] * stance.freedom[j];
       for (int k = chain.v_start(i); k <= j; ++k) m(k, j) = m(j, k) = power(f, stance.freedom[k]);
       for (int below = i, over = up; over >= 0; below = over, over = chain[over].parent) {
-        f = brought(f, stance.arm[below]);
+        f = transformed_to_origin(f, stance.arm[below]);
         for (int k = chain.v_start(over); k < chain.v_start(over + 1); ++k)
           m(k, j) = m(j, k) = power(f, stance.freedom[k]);
       }

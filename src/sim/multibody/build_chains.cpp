@@ -171,10 +171,11 @@ class Growing {
       const Body<D>& it = world_.model.bodies[body];
       const Wrench<D> own{to_room<D>(axes, it.inertia.cwiseProduct(from_room<D>(axes, world_.state.spin[k]))),
                           it.mass * world_.state.v[body]};
-      momenta[i] += brought(own, stance.com[i]);
+      momenta[i] += transformed_to_origin(own, stance.com[i]);
       for (int j = chain.v_start(i); j < chain.v_start(i + 1); ++j)
         along[j] = power(momenta[i], stance.freedom[j]);
-      if (const int up = chain[i].parent; up >= 0) momenta[up] += brought(momenta[i], stance.arm[i]);
+      if (const int up = chain[i].parent; up >= 0)
+        momenta[up] += transformed_to_origin(momenta[i], stance.arm[i]);
     }
     respond<D>(chain, stance, along, dynamics, posture.v);
   }

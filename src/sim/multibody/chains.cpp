@@ -159,7 +159,8 @@ void Articulated<D>::add_row(int link, const Wrench<D>& wrench, std::span<double
   const Tree& tree = trees_[where_[link].tree];
   const int i = where_[link].link;
   const std::span<double> part = tree.own(std::span<double>(part_)), own = tree.own(row);
-  sim::row<D>(tree.chain(), tree.stance, i, brought(wrench, arm(tree.chain(), tree.stance, i)), part);
+  sim::row<D>(tree.chain(), tree.stance, i, transformed_to_origin(wrench, arm(tree.chain(), tree.stance, i)),
+              part);
   for (std::size_t j = 0; j < part.size(); ++j) own[j] += part[j];
 }
 
@@ -177,7 +178,7 @@ void Articulated<D>::respond(std::span<const double> row, std::span<double> chan
 }
 
 template <int D>
-void Articulated<D>::let_go() {
+void Articulated<D>::clear_forces() {
   for (Tree& tree : trees_)
     std::fill(tree.dynamics.applied.begin(), tree.dynamics.applied.end(), Wrench<D>{});
 }
@@ -186,7 +187,7 @@ template <int D>
 void Articulated<D>::pull(int link, const Wrench<D>& wrench) {
   Tree& tree = trees_[where_[link].tree];
   const int i = where_[link].link;
-  tree.dynamics.applied[i] += brought(wrench, arm(tree.chain(), tree.stance, i));
+  tree.dynamics.applied[i] += transformed_to_origin(wrench, arm(tree.chain(), tree.stance, i));
 }
 
 template <int D>

@@ -71,7 +71,7 @@ class Articulated {
   void respond(std::span<const double> row, std::span<double> change);
 
   /// Forces besides gravity, at the centres of links, that rates() and joint_force() see: none, and more.
-  void let_go();
+  void clear_forces();
   void pull(int link, const Wrench<D>& wrench);
 
   /// d' of the displacement d and v' of v, at this stance.

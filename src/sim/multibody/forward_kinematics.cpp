@@ -97,7 +97,8 @@ Vec<D> point_acceleration(const ChainKinematics<D>& stance, int link, const Twis
 
 template <int D>
 Wrench<D> wrench_at(const ChainKinematics<D>& stance, int link, const Vec<D>& point, const Vec<D>& force) {
-  return brought(Wrench<D>{AngularVec<D>::Zero(), force}, Vec<D>(point - stance.joint[link].place));
+  return transformed_to_origin(Wrench<D>{AngularVec<D>::Zero(), force},
+                               Vec<D>(point - stance.joint[link].place));
 }
 
 template <int D>
@@ -107,7 +108,7 @@ void row(const Chain<D>& chain, const ChainKinematics<D>& stance, int link, cons
   Wrench<D> f = wrench;
   for (int i = link; i >= 0; i = chain[i].parent) {
     for (int j = chain.v_start(i); j < chain.v_start(i + 1); ++j) out[j] = power(f, stance.freedom[j]);
-    f = brought(f, stance.arm[i]);
+    f = transformed_to_origin(f, stance.arm[i]);
   }
 }
 

@@ -14,7 +14,7 @@ class ContactSolver {
  public:
   virtual ~ContactSolver() = default;
 
-  /// Moves `state` from t to t + h (s): bodies, contacts, joints, and who is frozen.
+  /// Moves `state` from t to t + h (s): bodies, contacts, joints, and which bodies sleep.
   virtual void step(State<D>& state, double t, double h) = 0;
 };
 
@@ -26,11 +26,11 @@ inline constexpr int kMostBodies = D == 2 ? 20 : 6;
 inline constexpr int kMostPoints = 400;
 
 /// How many bodies that move may touch others, with an extent; and points.
-struct Crowd {
+struct BodyCounts {
   int bodies = 0, points = 0;
 };
 template <int D>
-Crowd crowd(const Model<D>& model);
+BodyCounts body_counts(const Model<D>& model);
 
 /// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event`
 /// and chains are the direct one's.

@@ -24,7 +24,7 @@ void fields(Visit& visit, Touch<D>& it) {
 }
 template <class Visit, int D>
 void fields(Visit& visit, BodySpin<D>& it) {
-  visit(it.w), visit(it.rest);
+  visit(it.w), visit(it.residual);
 }
 template <class Visit, int D>
 void fields(Visit& visit, Blast<D>& it) {
@@ -174,7 +174,7 @@ bool fits(const State<D>& state, const Model<D>& model) {
   }
   for (const Contact<D>& contact : state.contacts) {
     good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&
-           contact.touching <= Touching::slide;
+           contact.touching <= ContactMode::slide;
   }
   return good;
 }

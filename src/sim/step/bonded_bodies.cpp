@@ -394,9 +394,9 @@ std::optional<Trouble> BondedBodies<D>::step(State<D>& state) {
 }
 
 template <int D>
-std::optional<Trouble> BondedBodies<D>::part(State<D>& state, double fraction) {
+std::optional<Trouble> BondedBodies<D>::partial_step(State<D>& state, double fraction) {
   gather(state);
-  auto trouble = stepper_->part(state.whole[0], fraction);
+  auto trouble = stepper_->partial_step(state.whole[0], fraction);
   tell(state);
   return trouble;
 }

@@ -41,7 +41,7 @@ class BondedBodies {
   bool fits(const State<D>& state);
 
   std::optional<Trouble> step(State<D>& state);
-  std::optional<Trouble> part(State<D>& state, double fraction);
+  std::optional<Trouble> partial_step(State<D>& state, double fraction);
 
  private:
   void gather(const State<D>& state);

@@ -76,8 +76,8 @@ std::unique_ptr<ContactSolver<3>> iterative(const Model<3>& model, const std::ve
 }  // namespace
 
 template <int D>
-Crowd crowd(const Model<D>& model) {
-  Crowd all;
+BodyCounts body_counts(const Model<D>& model) {
+  BodyCounts all;
   for (const Body<D>& body : model.bodies) {
     if (!body.fixed) ++(body.shape.kind == ShapeKind::point ? all.points : all.bodies);
   }
@@ -89,7 +89,7 @@ Solver solver(const Model<D>& model) {
   if (model.collision == Collision::event) return Solver::direct;
   if (!model.chains.empty()) return Solver::direct;  // links are sides of its rows alone
   if (model.solver != Solver::automatic) return model.solver;
-  const Crowd all = crowd(model);
+  const BodyCounts all = body_counts(model);
   return all.points <= kMostPoints && all.bodies <= kMostBodies<D> ? Solver::direct : Solver::iterative;
 }
 
@@ -104,8 +104,8 @@ std::unique_ptr<ContactSolver<D>> make_contact_solver(const Model<D>& model,
   return std::make_unique<Passive<D>>(model, paths, std::move(all));
 }
 
-template Crowd crowd<2>(const Model<2>&);
-template Crowd crowd<3>(const Model<3>&);
+template BodyCounts body_counts<2>(const Model<2>&);
+template BodyCounts body_counts<3>(const Model<3>&);
 template Solver solver<2>(const Model<2>&);
 template Solver solver<3>(const Model<3>&);
 template std::unique_ptr<ContactSolver<2>> make_contact_solver<2>(const Model<2>&,

@@ -61,7 +61,7 @@ class PlaybackOf final : public Run {
     keep_ways(now);
     const std::vector<Sighting> poses = trajectory_->at(now);
     for (std::size_t i = 0; i < poses.size(); ++i) place(poses[i], int(i), state_);
-    const TimeStamp beat = sim::beat(t, model_.rate);
+    const TimeStamp beat = sim::time_stamp(t, model_.rate);
     state_.step = beat.step;
     return snapshot(model_, state_, stepper_, beat, now);
   }

@@ -35,7 +35,7 @@ class RunOf final : public Run {
 
   std::variant<Snapshot, Trouble, Stopped> at(Rational t) override {
     if (trouble_) return *trouble_;
-    const TimeStamp to = beat(t, model_.rate);
+    const TimeStamp to = time_stamp(t, model_.rate);
     assert(to.step >= state_.step);
     while (state_.step < to.step) {
       if (stop_ && stop_()) return Stopped{};
@@ -46,7 +46,7 @@ class RunOf final : public Run {
     between_ = to.fraction > 0;
     if (!between_) return snapshot(model_, state_, stepper_, to, value(t));
     copy_ = state_;
-    trouble_ = stepper_.part(copy_, to.fraction);
+    trouble_ = stepper_.partial_step(copy_, to.fraction);
     if (trouble_) return *trouble_;
     return snapshot(model_, copy_, stepper_, to, value(t));
   }
@@ -92,7 +92,7 @@ class RunOf final : public Run {
     const double t = time({state_.step, 0}, model_.rate);
     for (std::size_t i = 0; i < track_.bodies.size(); ++i) {
       const int body = track_.bodies[i];
-      if (all || touched_[body]) track_.points[i].push_back({t, lifted<D>(state_.x[body])});
+      if (all || touched_[body]) track_.points[i].push_back({t, to_3d<D>(state_.x[body])});
     }
     struck(false);
   }

@@ -15,7 +15,7 @@ constexpr int kPathMost = 600;
 
 // in the plane (0, 0, w)
 template <int D>
-Vec3 spinning(const AngularVec<D>& w) {
+Vec3 inertia_times(const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return {0, 0, w[0]};
   } else {
@@ -26,7 +26,7 @@ Vec3 spinning(const AngularVec<D>& w) {
 template <int D>
 std::vector<Vec3> each_lifted(const std::vector<Vec<D>>& places) {
   std::vector<Vec3> all;
-  for (const Vec<D>& place : places) all.push_back(lifted<D>(place));
+  for (const Vec<D>& place : places) all.push_back(to_3d<D>(place));
   return all;
 }
 
@@ -44,11 +44,11 @@ Eigen::Quaterniond oriented(const Orientation<D>& turn) {
 template <int D>
 SceneInfo::Body shown(const Body<D>& body) {
   const Shape<D>& shape = body.shape;
-  SceneInfo::Body it{body.name, shape.kind,  shape.radius, lifted<D>(shape.half),
+  SceneInfo::Body it{body.name, shape.kind,  shape.radius, to_3d<D>(shape.half),
                      body.mass, body.fixed,  body.turns(), each_lifted<D>(shape.vertices),
                      {},        shape.faces, body.friction};
   for (const Shape<D>& part : shape.parts) {
-    it.parts.push_back({part.kind, part.radius, lifted<D>(part.half), lifted<D>(part.center),
+    it.parts.push_back({part.kind, part.radius, to_3d<D>(part.half), to_3d<D>(part.center),
                         each_lifted<D>(part.vertices), part.faces, oriented<D>(part.turn)});
   }
   return it;
@@ -63,11 +63,11 @@ Snapshot::Contact shown(const Contact<D>& contact) {
   } else {
     it.other = contact.key.b;
   }
-  it.point = lifted<D>(contact.point), it.normal = lifted<D>(contact.normal);
-  it.impulse = lifted<D>(contact.impulse), it.force = lifted<D>(contact.force);
+  it.point = to_3d<D>(contact.point), it.normal = to_3d<D>(contact.normal);
+  it.impulse = to_3d<D>(contact.impulse), it.force = to_3d<D>(contact.force);
   it.gap = contact.gap;
-  it.sliding = contact.touching == Touching::slide;
-  it.holds = contact.touching != Touching::open;
+  it.sliding = contact.touching == ContactMode::slide;
+  it.holds = contact.touching != ContactMode::open;
   return it;
 }
 
@@ -83,7 +83,7 @@ void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
       const bool held = it.forces.size() == model.bodies.size();
       const Vec<D> push = held ? it.forces[std::size_t(body)]
                                : blasts.push(model.explosions[i], body, body_motion(state, body)).f;
-      now.bodies[std::size_t(body)].blast += lifted<D>(push);
+      now.bodies[std::size_t(body)].blast += to_3d<D>(push);
     }
   }
 }
@@ -101,23 +101,21 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   SceneInfo cast;
   cast.dimension = D;
   cast.scale = model.scale;
-  cast.gravity = lifted<D>(model.gravity);
+  cast.gravity = to_3d<D>(model.gravity);
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Wall<D>& wall : model.walls)
-    cast.walls.push_back({lifted<D>(wall.point), lifted<D>(wall.normal), wall.friction});
+    cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal), wall.friction});
   for (const Spring<D>& s : model.springs)
     cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness});
   for (const Joint<D>& j : model.joints)
-    cast.joints.push_back(
-        {j.name, j.kind, j.a.body, j.b.body, j.length, lifted<D>(j.axis), j.lower, j.upper});
+    cast.joints.push_back({j.name, j.kind, j.a.body, j.b.body, j.length, to_3d<D>(j.axis), j.lower, j.upper});
   for (std::size_t i = 0; i < model.mice.size(); ++i) {
     const Path<D>& path = paths[i];
     SceneInfo::Mouse mouse{path.start(), path.end(), model.mice[i].rest_length, {}};
     const double span = path.end() - path.start();
     const int pieces = std::clamp(int(std::ceil(std::min(span, 1e6) * kPathRate)), 1, kPathMost);
     for (int k = 0; k <= pieces; ++k) {
-      mouse.path.push_back(
-          lifted<D>(path.place(k == pieces ? path.end() : path.start() + span * k / pieces)));
+      mouse.path.push_back(to_3d<D>(path.place(k == pieces ? path.end() : path.start() + span * k / pieces)));
     }
     cast.mice.push_back(std::move(mouse));
   }
@@ -133,11 +131,11 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
   now.bodies.resize(model.bodies.size());
   for (int i = 0; i < int(model.bodies.size()); ++i) {
     Snapshot::Body& body = now.bodies[i];
-    body.position = lifted<D>(state.x[i]);
-    body.velocity = lifted<D>(state.v[i]);
+    body.position = to_3d<D>(state.x[i]);
+    body.velocity = to_3d<D>(state.v[i]);
     body.at_rest = i < int(state.frozen.size()) && state.frozen[i] != 0;
     if (const int k = turning(state, i); k >= 0) {
-      body.spin = spinning<D>(state.spin[k]);
+      body.spin = inertia_times<D>(state.spin[k]);
       if (D == 2) body.angle = state.turn[k][0];
       body.orientation = oriented<D>(state.turn[k]);
     }
@@ -146,23 +144,23 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
   for (const Spring<D>& s : model.springs) {
     const Vec<D> a = place(state, s.a), b = place(state, s.b);
     now.springs.push_back(
-        {lifted<D>(a), lifted<D>(b), s.a.body, s.b.body, -s.stiffness * ((b - a).norm() - s.rest_length)});
+        {to_3d<D>(a), to_3d<D>(b), s.a.body, s.b.body, -s.stiffness * ((b - a).norm() - s.rest_length)});
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint<D>& j = model.joints[i];
-    Snapshot::Joint joint{lifted<D>(place(state, j.a)), lifted<D>(place(state, j.b))};
-    if (i < state.joint_forces.size()) joint.force = lifted<D>(state.joint_forces[i]);
+    Snapshot::Joint joint{to_3d<D>(place(state, j.a)), to_3d<D>(place(state, j.b))};
+    if (i < state.joint_forces.size()) joint.force = to_3d<D>(state.joint_forces[i]);
     joint.broken = i < state.broken.size() && state.broken[i] != 0;
     now.joints.push_back(joint);
   }
   for (int i = 0; i < int(model.mice.size()); ++i) {
     Snapshot::Mouse mouse;
     mouse.pressed = stepper.pressed(i, at);
-    mouse.pointer = lifted<D>(stepper.paths()[i].place(t));
+    mouse.pointer = to_3d<D>(stepper.paths()[i].place(t));
     mouse.held = mouse.pointer;
     if (const Grip<D>& grip = state.grips[i]; grip.body >= 0) {
       mouse.body = grip.body;
-      mouse.held = lifted<D>(place(state, End<D>{grip.body, grip.local}));
+      mouse.held = to_3d<D>(place(state, End<D>{grip.body, grip.local}));
     }
     now.mice.push_back(mouse);
   }
@@ -170,20 +168,20 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
     const Wall<D>& wall = model.walls[touch.wall];
     Snapshot::Contact contact;
     contact.body = touch.body, contact.wall = touch.wall;
-    contact.point = lifted<D>(touch.point), contact.normal = lifted<D>(wall.normal);
-    contact.impulse = lifted<D>(touch.impulse);
+    contact.point = to_3d<D>(touch.point), contact.normal = to_3d<D>(wall.normal);
+    contact.impulse = to_3d<D>(touch.impulse);
     contact.force = contact.impulse * value(model.rate);  // the mean over the step
     contact.gap = (touch.point - wall.point).dot(wall.normal);
     now.contacts.push_back(contact);
   }
   for (const Contact<D>& contact : state.contacts) {
     // some are carried along before they touch
-    if (contact.touching != Touching::open || contact.impulse != Vec<D>::Zero())
+    if (contact.touching != ContactMode::open || contact.impulse != Vec<D>::Zero())
       now.contacts.push_back(shown(contact));
   }
   now.energies = energies(model, state, stepper.paths(), t);
-  now.momentum = lifted<D>(momentum(model, state));
-  now.angular_momentum = spinning<D>(angular_momentum(model, state));
+  now.momentum = to_3d<D>(momentum(model, state));
+  now.angular_momentum = inertia_times<D>(angular_momentum(model, state));
   return now;
 }
 

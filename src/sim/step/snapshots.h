@@ -18,7 +18,7 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
 
 /// A place of the plane at z = 0.
 template <int D>
-Vec3 lifted(const Vec<D>& x) {
+Vec3 to_3d(const Vec<D>& x) {
   Vec3 place = Vec3::Zero();
   place.head<D>() = x;
   return place;

@@ -44,7 +44,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       integrate_(sim::integrate(model.integrator)),
       handout_(model, paths_),
       blasts_(model),
-      watch_(model, paths_),
+      divergence_(model, paths_),
       tied_(model, paths_),
       springs_(!model.springs.empty() || !model.mice.empty()) {
   assert(std::is_partitioned(model.bodies.begin(), model.bodies.end(),
@@ -104,7 +104,7 @@ void Stepper<D>::begin(State<D>& state) {
   follow(model_, state);
   state.touches.reserve(2 * model_.bodies.size() + 16);
   touch_script(state, {state.step, 0});
-  watch_.start(state, time({state.step, 0}, model_.rate));
+  divergence_.start(state, time({state.step, 0}, model_.rate));
 }
 
 template <int D>
@@ -118,13 +118,13 @@ std::optional<Trouble> Stepper<D>::step(State<D>& state) {
   auto trouble = advance(state, 1);
   if (trouble) return trouble;
   if (springs_ && state.step % watch_every_ == 0 && !blasting(state))
-    return watch_.energy(state, time({state.step, 0}, model_.rate));
+    return divergence_.check_energy(state, time({state.step, 0}, model_.rate));
   return {};
 }
 
 template <int D>
-std::optional<Trouble> Stepper<D>::part(State<D>& state, double fraction) {
-  if (pieces_) return pieces_->part(state, fraction);
+std::optional<Trouble> Stepper<D>::partial_step(State<D>& state, double fraction) {
+  if (pieces_) return pieces_->partial_step(state, fraction);
   return advance(state, fraction);
 }
 
@@ -141,14 +141,14 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
     if (contact_) {
       contact_->step(state, begun, (to - from) * h);
-      if (!sound(state)) return watch_.ran_away(state, ended);
+      if (!sound(state)) return divergence_.check_bounds(state, ended);
       suspects_.clear();
       for (const int body : by_handout_) handout_.look(state, body, 1, suspects_);
       handout_.collide(state, suspects_, ended);
     } else {
       plan(state);
       suspects_.clear();
-      if (!integrate(state, begun, (to - from) * h)) return watch_.ran_away(state, ended);
+      if (!integrate(state, begun, (to - from) * h)) return divergence_.check_bounds(state, ended);
       if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
       handout_.collide(state, suspects_, ended);
     }
@@ -174,7 +174,7 @@ void Stepper<D>::touch_script(State<D>& state, TimeStamp at) {
     if (edge->kind == ScriptEvent::Kind::calm) {
       // what it gave is no energy out of nowhere
       blasts_.end(state, edge->mouse);
-      watch_.start(state, time(at, model_.rate));
+      divergence_.start(state, time(at, model_.rate));
     }
     if (edge->kind == ScriptEvent::Kind::blast || edge->kind == ScriptEvent::Kind::calm) continue;
     Grip<D>& grip = state.grips[edge->mouse];

@@ -36,7 +36,7 @@ class Stepper {
 
   /// Part of a step, 0 < fraction < 1, for a frame between two steps: of a copy, that is then shown and
   /// thrown away.
-  std::optional<Trouble> part(State<D>& state, double fraction);
+  std::optional<Trouble> partial_step(State<D>& state, double fraction);
 
   const std::vector<Path<D>>& paths() const { return paths_; }
 
@@ -68,7 +68,7 @@ class Stepper {
   Blasts<D> blasts_;
   std::unique_ptr<ContactSolver<D>> contact_;  // of `contact` and `event`
   std::unique_ptr<BondedBodies<D>> pieces_;    // of a model with bonds: all is done there
-  DivergenceMonitor<D> watch_;
+  DivergenceMonitor<D> divergence_;
   ForwardDynamics<D> tied_;
   std::vector<int> gripped_;  // by each mouse, as the plan knows
   bool planned_ = false, blasting_ = false;

@@ -49,7 +49,7 @@ ConeMode<D> fit(const ConeBlock<D>& block, ConeMode<D> mode) {
   if (mode.hold == Hold::open) return {Hold::open, Tangent<D>::Zero()};
   if (block.sliding) return {Hold::slide, block.direction};
   if (block.mu == 0) return {Hold::slide, Tangent<D>::Zero()};
-  const bool slips = mode.hold == Hold::slide || mode.hold == Hold::brink;
+  const bool slips = mode.hold == Hold::slide || mode.hold == Hold::at_friction_limit;
   if (slips && mode.along.norm() > 0.5) return {Hold::slide, mode.along.normalized()};
   return {Hold::stick, Tangent<D>::Zero()};
 }
@@ -205,7 +205,7 @@ ConeReport Cone<D>::solve(const Eigen::Ref<const Eigen::MatrixXd>& K,
     double size = 0;
     for (int k = 0; k < D; ++k) size = std::max(size, size_[first_[i] + k]);
     const bool slips = wt.norm() > kTolerance * size + sigma_[first_[i]] * negligible;
-    if (!slips) modes[i].hold = Hold::brink;
+    if (!slips) modes[i].hold = Hold::at_friction_limit;
     if (slips && blocks[i].mu == 0) modes[i].along = wt.normalized();
   }
   return {found, best_residual_, tries_};

@@ -17,7 +17,7 @@ constexpr double kLargestTurn = 0.5;  // of a slip's direction at once, rad
 constexpr int kRefinements = 3;
 constexpr double kSafe = 1e-5;  // no pivot is so small where rows are far from dependent
 
-bool on_cone(Hold hold) { return hold == Hold::slide || hold == Hold::brink; }
+bool on_cone(Hold hold) { return hold == Hold::slide || hold == Hold::at_friction_limit; }
 
 // a quarter turn
 Eigen::Matrix<double, 1, 1> across(const Eigen::Matrix<double, 1, 1>&) {

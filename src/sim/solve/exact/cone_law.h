@@ -19,13 +19,14 @@ enum class Law : std::uint8_t {
 
 /// How a block obeys its law.
 enum class Hold : std::uint8_t {
-  free,      // w = 0: equal, or bounded between its bounds
-  at_lower,  // bounded: f = lower
-  at_upper,  // bounded: f = upper
-  open,      // contact: f = 0
-  stick,     // contact: w = 0, f inside the cone
-  brink,     // contact: on the cone's surface, f_t = -mu f_n d, and w = 0 all the same, as others hold it
-  slide      // contact: w_n = 0, f_t = -mu f_n d
+  free,               // w = 0: equal, or bounded between its bounds
+  at_lower,           // bounded: f = lower
+  at_upper,           // bounded: f = upper
+  open,               // contact: f = 0
+  stick,              // contact: w = 0, f inside the cone
+  at_friction_limit,  // contact: on the cone's surface, f_t = -mu f_n d, and w = 0 all the same, as others
+                      // hold it
+  slide               // contact: w_n = 0, f_t = -mu f_n d
 };
 
 /// One block of rows. A block's rows follow those of the block before it.

@@ -60,7 +60,7 @@ double Cone<D>::check(const ConeBlock<D>& block, const ConeMode<D>& mode, int ro
       if (better.hold == Hold::slide) better.along = -ft / pull;
       break;
     }
-    case Hold::brink:
+    case Hold::at_friction_limit:
     case Hold::slide: {
       see(std::fabs(w), mode.hold);
       see(-f, Hold::open);
@@ -77,7 +77,7 @@ double Cone<D>::check(const ConeBlock<D>& block, const ConeMode<D>& mode, int ro
       break;
     }
   }
-  if (better.hold != Hold::slide && better.hold != Hold::brink) better.along.setZero();
+  if (better.hold != Hold::slide && better.hold != Hold::at_friction_limit) better.along.setZero();
   return worst;
 }
 

@@ -220,8 +220,8 @@ void ExactSolver<D>::guess(double h) {
     if (known == known_->end() || known->key != key) continue;
     for (int i = 0; i < D; ++i) warm_[held.first + i] = h * known->force.dot(rows_[held.first + i].along);
     ConeMode<D>& mode = modes_[held.block];
-    if (known->touching == Touching::open) mode.hold = Hold::open;
-    if (known->touching != Touching::slide && known->touching != Touching::brink) continue;
+    if (known->touching == ContactMode::open) mode.hold = Hold::open;
+    if (known->touching != ContactMode::slide && known->touching != ContactMode::at_friction_limit) continue;
     Tangent<D> drag;
     for (int i = 0; i < D - 1; ++i) drag[i] = h * known->force.dot(rows_[held.first + 1 + i].along);
     const double size = std::sqrt(drag.squaredNorm());

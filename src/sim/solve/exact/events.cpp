@@ -247,7 +247,7 @@ double ExactSolver<D>::letting_go(const Held*& which) {
   return first;
 }
 
-// the part of the stretch from begun_ to `state` at which the first thing happens, and to whom; kNever:
+// the part of the stretch from begun_ to `state` of the first event, and the pair concerned; kNever:
 // nothing does
 template <int D>
 double ExactSolver<D>::crossing(const State<D>& state, double h, Couple& which) {

@@ -201,7 +201,7 @@ void ExactSolver<D>::advance(State<D>& state, double t, double h) {
   const int most_cuts = exact ? most_cuts_ : active_.lone ? kMostLoneCuts : most_cuts_;
   const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
   int grown = 0;  // cuts at which rest has grown
-  // `event` counts all cuts of the group, whoever they are of
+  // `event` counts the cuts of all bodies of the group
   for (int spent = 0; done < h; spent = exact ? spent + 1 : most_spent()) {
     find(state, closed_);
     if (wake(state)) {
@@ -223,7 +223,7 @@ void ExactSolver<D>::advance(State<D>& state, double t, double h) {
       // on the brink nothing slips: as an equality it is a stick
       holding_ = modes_;
       for (ConeMode<D>& mode : holding_) {
-        if (mode.hold == Hold::brink) mode.hold = Hold::stick;
+        if (mode.hold == Hold::at_friction_limit) mode.hold = Hold::stick;
       }
       if (D > 2) begin_slides(state, t + done, h - done);
       const std::size_t forced = forced_.size();
@@ -312,7 +312,7 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   free_.rates(t, d, v, d_rate, v_rate);
   if (held_.empty()) return;
 
-  // rows where everyone is at this stage
+  // rows at the poses of this stage
   const auto& members = free_.bodies();
   for (std::size_t i = 0; i < members.size(); ++i) stances_[members[i]] = free_.stances()[i];
   const auto& links = free_.chains().links();
@@ -349,9 +349,9 @@ void ExactSolver<D>::remember() {
     if (hold == Hold::open) continue;
     Contact<D> contact;
     contact.key = gaps_[held.of].key;
-    contact.touching = hold == Hold::slide   ? Touching::slide
-                       : hold == Hold::brink ? Touching::brink
-                                             : Touching::stick;
+    contact.touching = hold == Hold::slide               ? ContactMode::slide
+                       : hold == Hold::at_friction_limit ? ContactMode::at_friction_limit
+                                                         : ContactMode::stick;
     contact.point = held.point, contact.normal = held.normal, contact.gap = held.off;
     for (int i = 0; i < D; ++i) contact.force += f_[held.first + i] * rows_[held.first + i].along;
     contacts_.push_back(contact);

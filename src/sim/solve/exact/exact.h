@@ -30,7 +30,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   /// Both are kept by reference.
   ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom = Serves::all);
 
-  /// Moves `state` from t to t + h: its bodies, contacts, and who is frozen.
+  /// Moves `state` from t to t + h: its bodies, contacts, and which bodies sleep.
   void step(State<D>& state, double t, double h) override;
 
   /// Moves one body that meets nothing but walls and fixed bodies, and tells its contacts in `state` that are
@@ -204,7 +204,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   std::vector<int> group_of_, old_root_;  // one a body: its group, and the root of the one it was stepped in
   std::vector<int> group_sizes_, group_ends_;
   std::vector<char> kinds_;
-  Couple charged_{-1, -1};       // who the last stretch was cut by
+  Couple charged_{-1, -1};       // the pair whose event ended the last interval
   std::vector<double> reach_;    // m: how far from where the step began each body may get
   std::vector<double> strayed_;  // m: how far each has got
   std::vector<int> spent_;       // one a body: cuts of this step that it took part in
@@ -247,7 +247,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   Islands islands_;
   std::vector<char> ripe_;
   std::vector<double> rate_;
-  std::vector<ContactKey> vague_;            // whose forces do not tell in this step when they let go
+  std::vector<ContactKey> vague_;            // contacts whose opening is not looked for in this step
   std::vector<std::pair<int, int>> forced_;  // couples that would come through each other at once
   bool forced_again_ = false;
   bool rough_ = false;  // of this step: forces by sweeps from here on

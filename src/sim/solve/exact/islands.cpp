@@ -1,4 +1,4 @@
-// Rows that share no body do not know of one another: K falls into parts, each solved alone.
+// Rows that share no body are independent: K falls into blocks, each solved alone.
 
 #include <algorithm>
 

@@ -18,7 +18,7 @@ constexpr double kStatic = 1e-10;  // of g: what rest may accelerate by
 
 }  // namespace
 
-// who is joined to whom, by the contacts of the state, springs and joints; fixed bodies join nobody
+// islands: bodies joined by contacts, springs and joints; fixed bodies join none
 template <int D>
 void ExactSolver<D>::join(const State<D>& state) {
   islands_.reset(int(model_.bodies.size()));
@@ -125,7 +125,7 @@ void ExactSolver<D>::rest(State<D>& state, double t, double h) {
     if (!found || !(a <= kStatic * g)) ripe_[islands_.root(links[k])] = 0;
   }
 
-  // who stays so, and who goes on
+  // which islands stay at rest, and which go on
   any = false;
   const auto decide = [&](int body) {
     if (ripe_[islands_.root(body)]) {

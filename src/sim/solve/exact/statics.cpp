@@ -22,7 +22,8 @@ Statics<D>::Statics(const Model<D>& model) : model_(model), columns_(model.bodie
 }
 
 template <int D>
-bool Statics<D>::hold(std::vector<BearingContact<D>>& touches, const std::vector<Rotation<D>>& turns) {
+bool Statics<D>::in_equilibrium(std::vector<BearingContact<D>>& touches,
+                                const std::vector<Rotation<D>>& turns) {
   const double g = std::sqrt(model_.gravity.squaredNorm());
   if (touches.empty() || int(touches.size()) > kMost || g == 0) return false;
   bodies_.clear();

@@ -25,7 +25,7 @@ class Statics {
   /// `touches`: all of an island, with their forces (out). `turns`: of all bodies, room from body. False, and
   /// the forces mean nothing, where a body would accelerate by more than 1e-9 of gravity, or no forces were
   /// found.
-  bool hold(std::vector<BearingContact<D>>& touches, const std::vector<Rotation<D>>& turns);
+  bool in_equilibrium(std::vector<BearingContact<D>>& touches, const std::vector<Rotation<D>>& turns);
 
  private:
   using Way = typename Side<D>::Way;

@@ -136,7 +136,7 @@ OBSCURA_INLINE void outdated_all(const ContactBatch* seats, int count, const Mot
   BoxManifold m;
   for (int i = 0; i < count; ++i) {
     const ContactBatch& g = seats[i];
-    if (!g.taken) continue;
+    if (!g.used) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&v->x, g.a + lane, a), gather(&v->x, g.b + lane, b);
@@ -164,13 +164,13 @@ OBSCURA_WIDE void outdated_wide(const ContactBatch* seats, int count, const Moti
 }
 
 template <class V>
-OBSCURA_INLINE void meet_all(BoxManifold* meetings, int count, const Pose* poses, const Half* halves) {
-  for (BoxManifold* m = meetings; m < meetings + count; ++m) {
+OBSCURA_INLINE void meet_all(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves) {
+  for (BoxManifold* m = manifolds; m < manifolds + count; ++m) {
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) meet_four<V>(*m, lane, poses, halves);
   }
 }
-OBSCURA_WIDE void meet_wide(BoxManifold* meetings, int count, const Pose* poses, const Half* halves) {
-  meet_all<V4>(meetings, count, poses, halves);
+OBSCURA_WIDE void meet_wide(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves) {
+  meet_all<V4>(manifolds, count, poses, halves);
 }
 
 }  // namespace
@@ -193,8 +193,8 @@ void find_outdated(const ContactBatch* seats, int count, const Motion* v, const 
         : outdated_all<V2>(seats, count, v, poses, halves, share, boxes, others);
 }
 
-void meet(BoxManifold* meetings, int count, const Pose* poses, const Half* halves) {
-  kWide ? meet_wide(meetings, count, poses, halves) : meet_all<V2>(meetings, count, poses, halves);
+void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves) {
+  kWide ? meet_wide(manifolds, count, poses, halves) : meet_all<V2>(manifolds, count, poses, halves);
 }
 
 }  // namespace obscura::sim::plane

@@ -29,12 +29,12 @@ struct Outdated {
   int words[2];
 };
 
-/// Among the pairs whose features may have changed in `share` of the time between two looks: the boxes whose
-/// features have, and the seats of all others.
+/// Among the pairs whose features may have changed in `share` of the time between two pair searches: the
+/// boxes whose features have, and the lanes of all others.
 void find_outdated(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
                    const Half* halves, double share, std::vector<Outdated>& boxes, Found& others);
 
 /// What nearest() finds for one pair, for all of them. Pairs of anything else get something.
-void meet(BoxManifold* meetings, int count, const Pose* poses, const Half* halves);
+void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves);
 
 }  // namespace obscura::sim::plane

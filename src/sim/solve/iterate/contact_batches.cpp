@@ -1,4 +1,4 @@
-// Pairs take their seats: colours, so that four side by side share no body that moves, and what their
+// Pairs take their lanes: colours, so that four side by side share no body that moves, and what their
 // features are.
 
 #include <algorithm>
@@ -16,30 +16,32 @@ using plane::Pair;
 
 namespace {
 
-constexpr double kCalm = 0.02;  // of its thickness: what a pair may move between two looks, features kept
-constexpr double kSoft = 0.05;  // of its thickness between two looks: slower inelastic closings are no blows
-constexpr int kColours = 40;    // seats of more colours hold one pair each
-constexpr int kPerSpare = 128;  // seats of a colour: one group more for so many
-constexpr int kAhead = 8;       // seats
+constexpr double kCalm =
+    0.02;  // of its thickness: what a pair may move between two pair searches, features kept
+constexpr double kSoft =
+    0.05;  // of its thickness between two pair searches: slower inelastic closings are no impacts
+constexpr int kColours = 40;    // lanes of more colours hold one pair each
+constexpr int kPerSpare = 128;  // lanes of a colour: one group more for so many
+constexpr int kAhead = 8;       // lanes
 
 bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind == Feature::corners; }
 
 }  // namespace
 
-// seats for the pairs that are awake: greedy colours, in the order of pairs
+// lanes for the pairs that are awake: greedy colours, in the order of pairs
 template <int D>
-void PlaneIterative<D>::seat(const State<D>& state, bool known) {
+void PlaneIterative<D>::build_batches(const State<D>& state, bool known) {
   std::vector<Pair>& all = pairs_.all();
   if (version_ == pairs_.version() && frozen_ == state.frozen) {
     for (Pair& pair : all) {
-      if (pair.slot >= 0 && (pair.fresh || !known)) sit(pair, state);
+      if (pair.slot >= 0 && (pair.fresh || !known)) write_lane(pair, state);
       pair.fresh = false;
     }
     return;
   }
   version_ = pairs_.version();
-  if (known && frozen_ == state.frozen && reseat(state)) {
-    blows_.join(all, v_);
+  if (known && frozen_ == state.frozen && update_batches(state)) {
+    impacts_.join(all, v_);
     return;
   }
   const int n = int(turns_.size());
@@ -58,7 +60,7 @@ void PlaneIterative<D>::seat(const State<D>& state, bool known) {
     if (pair.slot >= 0) ++awake_pairs_, ++count_[pair.colour];
   }
 
-  // A colour begins with seats of its own, and a large one has some to spare. Where two corners meet sits
+  // A colour begins with lanes of its own, and a large one has some to spare. Where two corners meet sits
   // behind them: that takes more arithmetic.
   begin_.assign(1, 0);
   for (int which = 0; which <= kColours; ++which) {
@@ -83,9 +85,9 @@ void PlaneIterative<D>::seat(const State<D>& state, bool known) {
   }
   // in the order of memory
   calmest_ = 1e300;
-  seats_.resize(end / kLanes), projections_.resize(end / kLanes);
+  batches_.resize(end / kLanes), projections_.resize(end / kLanes);
   for (int slot = 0; slot < end; ++slot) {
-    // pairs and contacts are far apart in memory: ask for those of later seats
+    // pairs and contacts are far apart in memory: ask for those of later lanes
     if (slot + 2 * kAhead < end && slots_[slot + 2 * kAhead] >= 0) {
       const char* at = reinterpret_cast<const char*>(&all[slots_[slot + 2 * kAhead]]);
       __builtin_prefetch(at), __builtin_prefetch(at + 64);
@@ -95,12 +97,12 @@ void PlaneIterative<D>::seat(const State<D>& state, bool known) {
       __builtin_prefetch(at), __builtin_prefetch(at + 64), __builtin_prefetch(at + 128);
     }
     if (slots_[slot] < 0) {
-      vacate(slot);
+      clear_lane(slot);
     } else {
-      take_seat(slots_[slot], state);
+      fill_lane(slots_[slot], state);
     }
   }
-  blows_.join(all, v_);
+  impacts_.join(all, v_);
 }
 
 // The colour of a pair, the next in order; -1 where it is asleep.
@@ -116,10 +118,10 @@ int PlaneIterative<D>::colour(const Pair& pair) {
   return which;
 }
 
-// Seats when some pairs have come and some have gone: whoever keeps its colour keeps its seat, for within a
-// colour the order is of no account. False where there are too few.
+// Batches after some pairs have come and some have gone: a pair that keeps its colour keeps its lane, for
+// within a colour the order is of no account. False where there are too few.
 template <int D>
-bool PlaneIterative<D>::reseat(const State<D>& state) {
+bool PlaneIterative<D>::update_batches(const State<D>& state) {
   if (begin_.empty()) return false;
   std::vector<Pair>& all = pairs_.all();
   const int end = begin_.back(), count = int(all.size());
@@ -156,13 +158,13 @@ bool PlaneIterative<D>::reseat(const State<D>& state) {
     int& i = next_slots_[slot];
     if (i >= count) {
       i -= count;
-      take_seat(i, state);
+      fill_lane(i, state);
     } else if (i >= 0) {
-      ContactBatch& g = seats_[slot / kLanes];
+      ContactBatch& g = batches_[slot / kLanes];
       g.pair[slot % kLanes] = i, g.first[slot % kLanes] = all[i].first;
-      if (all[i].fresh) sit(all[i], state);
+      if (all[i].fresh) write_lane(all[i], state);
     } else if (slots_[slot] >= 0) {
-      vacate(slot);
+      clear_lane(slot);
     }
     if (i >= 0) all[i].fresh = false;
   }
@@ -171,25 +173,25 @@ bool PlaneIterative<D>::reseat(const State<D>& state) {
 }
 
 template <int D>
-void PlaneIterative<D>::vacate(int slot) {
+void PlaneIterative<D>::clear_lane(int slot) {
   static const ContactBatch empty = [] {
     ContactBatch made{};
     for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -plane::kNowhere;
     return made;
   }();
-  ContactBatch& g = seats_[slot / kLanes];
+  ContactBatch& g = batches_[slot / kLanes];
   const int lane = slot % kLanes, rest = ~(1 << lane), nobody = int(turns_.size());
-  copy_seat(empty, lane, g, lane);
+  copy_lane(empty, lane, g, lane);
   g.a[lane] = g.b[lane] = nobody, g.pair[lane] = g.first[lane] = -1;
-  g.taken = static_cast<unsigned char>(g.taken & rest), g.boxes = static_cast<unsigned char>(g.boxes & rest);
+  g.used = static_cast<unsigned char>(g.used & rest), g.boxes = static_cast<unsigned char>(g.boxes & rest);
 }
 
-// what stays as long as a pair has its seat
+// what stays as long as a pair has its lane
 template <int D>
-void PlaneIterative<D>::take_seat(int i, const State<D>& state) {
+void PlaneIterative<D>::fill_lane(int i, const State<D>& state) {
   Pair& pair = pairs_.all()[i];
   const int n = int(turns_.size());
-  ContactBatch& g = seats_[pair.slot / kLanes];
+  ContactBatch& g = batches_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
   const plane::CoreShape& a = cores_.all[pair.core_a];
   double sight = 1e300, far = a.bounding_radius, thin = a.half_thickness, radius = a.radius;
@@ -202,12 +204,13 @@ void PlaneIterative<D>::take_seat(int i, const State<D>& state) {
     round = (a.count == 1) != (b.count == 1);
   }
   const int bit = 1 << lane;
-  g.taken = static_cast<unsigned char>(g.taken | bit);
+  g.used = static_cast<unsigned char>(g.used | bit);
   g.boxes = static_cast<unsigned char>(pairs_.boxes(pair) ? g.boxes | bit : g.boxes & ~bit);
   g.a[lane] = pair.a, g.iia[lane] = ii_[pair.a];
   g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
   g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
-  g.blow[lane] = -(pair.material.elasticity > 0 ? rest_speed_ : std::max(rest_speed_, kSoft * thin / span_));
+  g.blow[lane] = -(pair.material.elasticity > 0 ? restitution_threshold_
+                                                : std::max(restitution_threshold_, kSoft * thin / span_));
   pair.blow = float(-0.999 * g.blow[lane]);
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
@@ -215,13 +218,13 @@ void PlaneIterative<D>::take_seat(int i, const State<D>& state) {
   double least = cores_.bounding_radius[pair.a];
   if (pair.b >= 0) least = std::min(least, cores_.bounding_radius[pair.b]);
   if (g.calm[lane] < 1e300) calmest_ = std::min(calmest_, g.calm[lane] * (least / far));
-  sit(pair, state);
+  write_lane(pair, state);
 }
 
 // features and forces of a pair
 template <int D>
-void PlaneIterative<D>::sit(const Pair& pair, const State<D>& state) {
-  ContactBatch& g = seats_[pair.slot / kLanes];
+void PlaneIterative<D>::write_lane(const Pair& pair, const State<D>& state) {
+  ContactBatch& g = batches_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
   g.first[lane] = pair.first;
   pairs_.put(pair, pair.words, g);
@@ -232,11 +235,11 @@ void PlaneIterative<D>::sit(const Pair& pair, const State<D>& state) {
   }
 }
 
-template void PlaneIterative<2>::seat(const State<2>&, bool);
-template bool PlaneIterative<2>::reseat(const State<2>&);
+template void PlaneIterative<2>::build_batches(const State<2>&, bool);
+template bool PlaneIterative<2>::update_batches(const State<2>&);
 template int PlaneIterative<2>::colour(const Pair&);
-template void PlaneIterative<2>::vacate(int);
-template void PlaneIterative<2>::take_seat(int, const State<2>&);
-template void PlaneIterative<2>::sit(const Pair&, const State<2>&);
+template void PlaneIterative<2>::clear_lane(int);
+template void PlaneIterative<2>::fill_lane(int, const State<2>&);
+template void PlaneIterative<2>::write_lane(const Pair&, const State<2>&);
 
 }  // namespace obscura::sim

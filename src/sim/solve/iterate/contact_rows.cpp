@@ -1,8 +1,8 @@
-// One sweep of projected Gauss and Seidel. Of each pair in turn,
+// One iteration of projected Gauss and Seidel. Of each pair in turn,
 //   friction   lt' = clamp(lt - v_t / K_t, -mu ln, mu ln)
 //   normals    ln >= 0,  v_n + K (ln' - ln) - target >= 0,  one of both zero in each touch
 // the second by its cases: both press, one presses. Where rounding leaves no case, the one less violated. A
-// target is -g / h where the touch is open, else zero; of a pair that met a blow what that says.
+// target is -g / h where the touch is open, else zero; of a pair that met an impact what that says.
 //
 // Written once in vectors of the compiler; two lanes are SSE2, four AVX2. No operation differs, so the bits
 // are the same.
@@ -18,7 +18,7 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr int kAhead = 4;         // groups
-constexpr double kTiny = 1e-300;  // against division by zero in empty seats: changes no other number
+constexpr double kTiny = 1e-300;  // against division by zero in empty lanes: changes no other number
 
 template <class V>
 struct WideRow {
@@ -149,21 +149,21 @@ OBSCURA_INLINE void expand_one(const ContactBatch& g, const Pose* poses, Rows& o
 
 template <class V>
 OBSCURA_INLINE bool start_all(ContactBatch* seats, int count, const Pose* poses, const Motion* old, Motion* v,
-                              const Pace& pace, Found& closing, Found& blows) {
-  const V h = V{} + pace.h, creep = V{} - pace.creep, gain = V{} + pace.gain, none{};
+                              const StepConstants& pace, Found& closing, Found& blows) {
+  const V h = V{} + pace.h, creep = V{} - pace.min_closing_speed, gain = V{} + pace.gravity_dv, none{};
   const V bend = 0.5 * (h * h);
   Mask<V> deep{};
   for (int i = 0; i < count; ++i) {
     ContactBatch& g = seats[i];
     g.struck[0] = g.struck[1] = 0;
-    if (!g.taken) continue;
+    if (!g.used) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
-      const V sight = load<V>(g.sight + lane), allowed = pace.allowed * load<V>(g.far + lane);
+      const V sight = load<V>(g.sight + lane), allowed = pace.linear_slop * load<V>(g.far + lane);
       // What turns may come sooner than along its tangent: gap'' >= -(w_a^2 + w_b^2) r - 2 w_b v_t. Of two
       // corners of polygons others may come nearer, however these move.
       const V w2 = before.a.z * before.a.z + before.b.z * before.b.z;
@@ -215,19 +215,19 @@ OBSCURA_INLINE void keep(const ContactBatch& g, const Rows& rows, Contact<2>* co
       c->force[0] = g.p[k][lane], c->force[1] = g.q[k][lane];
       c->impulse[0] = c->impulse[1] = 0;
       const double ln = rows.na[k][lane], lt = rows.ta[k][lane];
-      c->touching = ln <= 0                           ? Touching::open
-                    : std::fabs(lt) < g.mu[lane] * ln ? Touching::stick
-                                                      : Touching::slide;
+      c->touching = ln <= 0                           ? ContactMode::open
+                    : std::fabs(lt) < g.mu[lane] * ln ? ContactMode::stick
+                                                      : ContactMode::slide;
     }
   }
 }
 
 template <class V, bool kLast, bool kKeep>
-OBSCURA_INLINE void sweep_all(ContactBatch* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
-                              Contact<2>* contacts) {
+OBSCURA_INLINE void sweep_all(ContactBatch* seats, int count, const Pose* poses, Motion* v,
+                              const StepConstants& pace, Contact<2>* contacts) {
   const V per_h = V{} + 1 / pace.h, none{};
   for (ContactBatch* g = seats; g < seats + count; ++g) {
-    if (!g->taken) continue;
+    if (!g->used) continue;
     [[maybe_unused]] Rows kept;
     if constexpr (kKeep) {
       // contacts are far apart in memory: ask for those of a later group
@@ -290,7 +290,7 @@ OBSCURA_INLINE void project_all(const ContactBatch* seats, Projection* p, int co
                                 Motion* d, double share, double deep) {
   const V none{}, part = V{} + share;
   for (const ContactBatch* g = seats; g < seats + count; ++g, ++p) {
-    if (!g->taken) continue;
+    if (!g->used) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
       gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
@@ -316,13 +316,13 @@ OBSCURA_WIDE void expand_wide(const ContactBatch& s, const Pose* at, Rows& out) 
   expand_one<V4>(s, at, out);
 }
 OBSCURA_WIDE bool start_wide(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
-                             const Pace& pace, Found& closing, Found& blows) {
+                             const StepConstants& pace, Found& closing, Found& blows) {
   return start_all<V4>(s, n, at, old, v, pace, closing, blows);
 }
-OBSCURA_WIDE void sweep_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const Pace& pace) {
+OBSCURA_WIDE void sweep_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
   sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
 }
-OBSCURA_WIDE void finish_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const Pace& pace,
+OBSCURA_WIDE void finish_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
                               Contact<2>* contacts) {
   contacts ? sweep_all<V4, true, true>(s, n, at, v, pace, contacts)
            : sweep_all<V4, true, false>(s, n, at, v, pace, nullptr);
@@ -334,12 +334,12 @@ OBSCURA_WIDE void project_wide(const ContactBatch* s, Projection* p, int n, cons
 
 }  // namespace
 
-void copy_forces(const ContactBatch& from, int i, ContactBatch& to, int k) {
+void copy_lane_forces(const ContactBatch& from, int i, ContactBatch& to, int k) {
   for (int side = 0; side < 2; ++side) to.p[side][k] = from.p[side][i], to.q[side][k] = from.q[side][i];
 }
-void copy_seat(const ContactBatch& from, int i, ContactBatch& to, int k) {
+void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k) {
   to.a[k] = from.a[i], to.b[k] = from.b[i], to.pair[k] = from.pair[i], to.first[k] = from.first[i];
-  to.touches[k] = from.touches[i], to.taken = static_cast<unsigned char>(to.taken | 1 << k);
+  to.touches[k] = from.touches[i], to.used = static_cast<unsigned char>(to.used | 1 << k);
   to.mu[k] = from.mu[i], to.iia[k] = from.iia[i], to.iib[k] = from.iib[i];
   to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.blow[k] = from.blow[i],
   to.radius[k] = from.radius[i];
@@ -353,7 +353,7 @@ void copy_seat(const ContactBatch& from, int i, ContactBatch& to, int k) {
     bit(from.of_b[side], to.of_b[side]), bit(from.corners[side], to.corners[side]);
     to.words[side][k] = from.words[side][i];
   }
-  copy_forces(from, i, to, k);
+  copy_lane_forces(from, i, to, k);
 }
 
 void expand(const ContactBatch& s, const Pose* at, Rows& out) {
@@ -388,16 +388,17 @@ TouchRow row(const ContactBatch& g, int lane, int k, const Pose& a, const Pose& 
   return r;
 }
 
-bool start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v, const Pace& pace,
+bool start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v, const StepConstants& pace,
            Found& closing, Found& blows) {
   closing.clear(), blows.clear();
   return kWide ? start_wide(s, n, at, old, v, pace, closing, blows)
                : start_all<V2>(s, n, at, old, v, pace, closing, blows);
 }
-void sweep(ContactBatch* s, int n, const Pose* at, Motion* v, const Pace& pace) {
+void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
   kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
 }
-void finish(ContactBatch* s, int n, const Pose* at, Motion* v, const Pace& pace, Contact<2>* contacts) {
+void finish(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
+            Contact<2>* contacts) {
   if (kWide) return finish_wide(s, n, at, v, pace, contacts);
   contacts ? sweep_all<V2, true, true>(s, n, at, v, pace, contacts)
            : sweep_all<V2, true, false>(s, n, at, v, pace, nullptr);

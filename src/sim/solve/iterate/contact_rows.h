@@ -7,8 +7,8 @@
 
 namespace obscura::sim::plane {
 
-// Pairs that touch, four side by side. Seats of one colour share no body that moves, so that four pairs at
-// once and one after another give the same bits. A seat keeps what the features are, not the rows: those are
+// Pairs that touch, four side by side. Lanes of one colour share no body that moves, so that four pairs at
+// once and one after another give the same bits. A lane keeps what the features are, not the rows: those are
 // made from the poses in every pass, for memory is slower than arithmetic.
 
 inline constexpr int kLanes = 4;
@@ -22,18 +22,18 @@ struct alignas(32) Motion {
 /// A pair has up to two touches. Of each: a corner in its body's frame, and the other's face (or corner,
 /// where two corners touch) in its own; gap = n . (p - x) - d - radius.
 struct alignas(64) ContactBatch {
-  int a[kLanes], b[kLanes];         // bodies; walls and empty seats have the one after the last
-  int pair[kLanes], first[kLanes];  // and where its touches are among the contacts; -1: nobody
+  int a[kLanes], b[kLanes];         // bodies; walls and empty lanes have the one after the last
+  int pair[kLanes], first[kLanes];  // and where its touches are among the contacts; -1: an unused lane
   unsigned char touches[kLanes];
   unsigned char of_b[2];            // a bit a lane: the corner is b's
   unsigned char corners[2];         // two corners touch
-  unsigned char struck[2];          // of a pair that met a blow in this step
+  unsigned char struck[2];          // of a pair that met an impact in this step
   unsigned char boxes;              // both are boxes
-  unsigned char taken;              // somebody sits there
+  unsigned char used;               // a bit a lane: it is in use
   unsigned short words[2][kLanes];  // of the features
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
   double calm[kLanes], far[kLanes];  // m/s up to which features stay; the larger bounding radius of both, m
-  double blow[kLanes];               // -m/s: faster approaches are blows
+  double blow[kLanes];               // -m/s: faster approaches are impacts
   double sight[kLanes];              // m: touches farther off are none
   double radius[kLanes];             // of both together, m
   double cx[2][kLanes], cy[2][kLanes];
@@ -54,26 +54,26 @@ struct alignas(64) Projection {
   double push[2][kLanes], side[2][kLanes];
 };
 
-/// Which pairs a pass has found, as numbers of seats: lane + kLanes * group.
+/// Which pairs a pass has found, as numbers of lanes: lane + kLanes * group.
 using Found = std::vector<int>;
 
-/// Of a group: normal speeds that a sweep leaves, at least, m/s.
+/// Of a group: normal speeds that an iteration leaves, at least, m/s.
 struct alignas(32) Least {
   double n[2][kLanes];
 };
 
 /// Constants of a step.
-struct Pace {
+struct StepConstants {
   double h = 0;                  // s
-  double creep = 0;              // m/s: slower approaches are none
-  double gain = 0;               // m/s that gravity may add in the step
-  double allowed = 0;            // of the larger bounding radius: what is deeper is to be put right
-  const Least* least = nullptr;  // by group, of seats that are struck
+  double min_closing_speed = 0;  // m/s: slower approaches are none
+  double gravity_dv = 0;         // m/s that gravity may add in the step
+  double linear_slop = 0;        // of the larger bounding radius: what is deeper is to be put right
+  const Least* least = nullptr;  // by group, of lanes that are struck
 };
 
-/// One pair to another seat; the forces alone.
-void copy_seat(const ContactBatch& from, int i, ContactBatch& to, int k);
-void copy_forces(const ContactBatch& from, int i, ContactBatch& to, int k);
+/// One pair to another lane; the forces alone.
+void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k);
+void copy_lane_forces(const ContactBatch& from, int i, ContactBatch& to, int k);
 
 /// Rows of one group.
 void expand(const ContactBatch& seats, const Pose* poses, Rows& out);
@@ -82,22 +82,22 @@ void expand(const ContactBatch& seats, const Pose* poses, Rows& out);
 struct TouchRow {
   double nx, ny, x, y, gap, na, nb, ta, tb;
 };
-/// Touch k of one seat, whose bodies stand at these poses.
+/// Touch k of one lane, whose bodies stand at these poses.
 TouchRow row(const ContactBatch& seats, int lane, int k, const Pose& a, const Pose& b);
 
 /// Makes impulses of the forces and applies them to v. `old`: velocities at the start. Which close slowly in
-/// the step, and which with a blow. True where something is deeper than project() lets it.
-bool start(ContactBatch* seats, int count, const Pose* poses, const Motion* old, Motion* v, const Pace& pace,
-           Found& closing, Found& blows);
+/// the step, and which with an impact. True where something is deeper than project() lets it.
+bool start(ContactBatch* seats, int count, const Pose* poses, const Motion* old, Motion* v,
+           const StepConstants& pace, Found& closing, Found& blows);
 
-/// One sweep: every pair once, in order.
-void sweep(ContactBatch* seats, int count, const Pose* poses, Motion* v, const Pace& pace);
-/// The last one of a stretch: forces into the seats and, where there are some, into the contacts.
-void finish(ContactBatch* seats, int count, const Pose* poses, Motion* v, const Pace& pace,
+/// One iteration: every pair once, in order.
+void iterate(ContactBatch* seats, int count, const Pose* poses, Motion* v, const StepConstants& pace);
+/// The last one of a substep: forces into the lanes and, where there are some, into the contacts.
+void finish(ContactBatch* seats, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             Contact<2>* contacts);
 
-/// One sweep over positions: `share` of what is deeper than `allowed` of the larger bounding radius is to go.
-/// Friction holds there too, or piles would slide apart by being mended.
+/// One iteration over positions: `share` of what is deeper than `allowed` of the larger bounding radius is to
+/// go. Friction holds there too, or piles would slide apart by being mended.
 void project(const ContactBatch* seats, Projection* projections, int count, const Pose* poses, Motion* d,
              double share, double allowed);
 

@@ -1,6 +1,6 @@
 // Joints between velocities and places, after Rattle (Andersen 1983): with J at the start of a step and J' at
 // its end
-//   v*  = v + h a + M^-1 J l              l: J v* = 0, in sweeps with the contacts
+//   v*  = v + h a + M^-1 J l              l: J v* = 0, in iterations with the contacts
 //   x'  = x + h (v + v*) / 2 + M^-1 J s   s: g(x') = 0, Newton with the factors at hand
 //   v'  = v* + M^-1 (J (s / h - l / 2) + J' m)     m: J' v' = 0, and motors hold their speed there
 // in space with angular momenta for spins, so that what turns on in the step keeps its own;
@@ -25,9 +25,10 @@ constexpr int kSearches = 12;        // the same, with a search along each
 constexpr double kStride = 0.1;      // rad, and of the scene's size: farther nothing is put in a step
 constexpr double kLeastPart = 1e-3;  // of a way, in it
 constexpr double kPut = 1e-9;        // of the scene's size: how far off joints may stay
-constexpr int kBoundedRounds = 16;   // a sweep, of rows with bounds among themselves: they begin from nothing
-constexpr double kLocked = 1e-6;     // of a row's own: what it can move once joints have answered
-constexpr double kApart = 1e-9;      // 1/s, of the scene's size: slower at a joint is rounding
+constexpr int kBoundedRounds =
+    16;  // an iteration, of rows with bounds among themselves: they begin from nothing
+constexpr double kLocked = 1e-6;  // of a row's own: what it can move once joints have answered
+constexpr double kApart = 1e-9;   // 1/s, of the scene's size: slower at a joint is rounding
 constexpr double kEndless = 1e300;
 
 }  // namespace
@@ -49,7 +50,7 @@ JointSolver<D>::JointSolver(const Model<D>& model) : model_(model), response_(mo
 }
 
 template <int D>
-void JointSolver<D>::ready(State<D>& state) const {
+void JointSolver<D>::prepare(State<D>& state) const {
   state.broken.resize(model_.joints.size());
   state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
 }
@@ -138,9 +139,9 @@ void JointSolver<D>::shift(const Row<D>& row, double by) {
   });
 }
 
-// rows where everyone stands, and their factors
+// rows at the present poses, and their factors
 template <int D>
-void JointSolver<D>::lay() {
+void JointSolver<D>::compute_rows() {
   double off[kMostHeld<D>];
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
@@ -159,7 +160,7 @@ void JointSolver<D>::lay() {
   factors_.factorise();
 }
 
-// how far a limit or a rope is from its end where everyone stands; false of what has none
+// how far a limit or a rope is from its end at the present poses; false of what has none
 template <int D>
 bool JointSolver<D>::left(const Bounded& bounded, double& off) const {
   const Joint<D>& joint = model_.joints[bounded.joint];
@@ -180,7 +181,7 @@ bool JointSolver<D>::left(const Bounded& bounded, double& off) const {
 
 // rows with bounds, of limits and ropes those that may come to their end in the step
 template <int D>
-void JointSolver<D>::bind(double h) {
+void JointSolver<D>::collect_bounded(double h) {
   active_ = 0;
   const double g = std::sqrt(model_.gravity.squaredNorm());
   const auto add = [&](int i, Load load) {
@@ -211,7 +212,7 @@ void JointSolver<D>::bind(double h) {
       if (load == motor) b.target = joint.motor->speed;
     }
 
-    hear(b);
+    compute_response(b);
     b.give = give(b);
     active_ += b.give > 0;
   };
@@ -228,32 +229,32 @@ void JointSolver<D>::bind(double h) {
 }
 
 template <int D>
-void JointSolver<D>::hear(JointResponse& echo) {
+void JointSolver<D>::compute_response(JointResponse& response) {
   const auto part = [&](int body) { return body < 0 ? -1 : part_of_body_[body]; };
-  int* const parts = echo.parts;
-  parts[0] = part(echo.row.a), parts[1] = part(echo.row.b);
+  int* const parts = response.parts;
+  parts[0] = part(response.row.a), parts[1] = part(response.row.b);
   if (parts[0] < 0) std::swap(parts[0], parts[1]);
   if (parts[1] == parts[0]) parts[1] = -1;
   for (int s = 0; s < 2; ++s) {
-    echo.answer[s].clear(), echo.felt[s].clear();
+    response.answer[s].clear(), response.affected[s].clear();
     if (parts[s] < 0) continue;
     each_row(parts[s], [&](int k, int r) {
-      const double fast = response_.coupling(rows_[r], echo.row, at_);
+      const double fast = response_.coupling(rows_[r], response.row, at_);
       rhs_[r] = -fast;
-      if (fast != 0) echo.felt[s].emplace_back(k, fast);
+      if (fast != 0) response.affected[s].emplace_back(k, fast);
     });
     factors_.solve(rhs_.data(), parts[s]);
-    each_row(parts[s], [&](int, int r) { echo.answer[s].push_back(rhs_[r]); });
+    each_row(parts[s], [&](int, int r) { response.answer[s].push_back(rhs_[r]); });
   }
 }
 
 template <int D>
-double JointSolver<D>::couple(const JointResponse& p, const JointResponse& q) const {
+double JointSolver<D>::response_between(const JointResponse& p, const JointResponse& q) const {
   double sum = response_.coupling(p.row, q.row, at_);
   for (int s = 0; s < 2; ++s) {
     for (int r = 0; r < 2 && p.parts[s] >= 0; ++r) {
       if (q.parts[r] != p.parts[s]) continue;
-      for (const auto& [k, fast] : p.felt[s]) sum += fast * q.answer[r][k];
+      for (const auto& [k, fast] : p.affected[s]) sum += fast * q.answer[r][k];
     }
   }
   return sum;
@@ -262,7 +263,7 @@ double JointSolver<D>::couple(const JointResponse& p, const JointResponse& q) co
 // zero where joints leave it nothing to move
 template <int D>
 double JointSolver<D>::give(const Bounded& b) const {
-  const double own = response_.coupling(b.row, b.row, at_), gives = couple(b, b);
+  const double own = response_.coupling(b.row, b.row, at_), gives = response_between(b, b);
   return gives > kLocked * own ? 1 / gives : 0;
 }
 
@@ -284,7 +285,7 @@ void JointSolver<D>::couple_bounded() {
     for (int i = begin; i < end; ++i) {
       Bounded& b = bounded_[by_part_[i]];
       b.first = int(yields_.size());
-      for (int j = begin; j < end; ++j) yields_.push_back(couple(b, bounded_[by_part_[j]]));
+      for (int j = begin; j < end; ++j) yields_.push_back(response_between(b, bounded_[by_part_[j]]));
     }
   }
 }
@@ -316,18 +317,18 @@ void JointSolver<D>::shift_bounded(const Bounded& bounded, double by) {
 }
 
 template <int D>
-void JointSolver<D>::set_off(State<D>& state) {
+void JointSolver<D>::project_initial_velocities(State<D>& state) {
   if (bodies_.empty()) return;
   gather(state);
   for (const int i : bodies_) {
     at_[i] = sim::body_motion(state, i);
     if (const int k = turning(state, i); k >= 0) turn_[i] = state.turn[k];
   }
-  lay();
+  compute_rows();
   double fastest = 0;
   for (const Row<D>& row : rows_) fastest = std::max(fastest, std::fabs(speed(row, at_)));
   if (fastest <= kApart * model_.scale) return;
-  agree();
+  solve_positions();
   for (const int i : bodies_) {
     if (!response_.moves(i)) continue;
     state.v[i] = at_[i].v;
@@ -337,19 +338,19 @@ void JointSolver<D>::set_off(State<D>& state) {
 
 template <int D>
 void JointSolver<D>::begin(double h) {
-  bind(h);
+  collect_bounded(h);
   couple_bounded();
   std::fill(impulses_.begin(), impulses_.end(), 0.0), std::fill(totals_.begin(), totals_.end(), 0.0);
   speeds_.resize(active_), changes_.resize(active_);
 }
 
 template <int D>
-void JointSolver<D>::sweep() {
-  for (int part = -1; part < parts(); ++part) sweep(part);
+void JointSolver<D>::iterate() {
+  for (int part = -1; part < parts(); ++part) iterate(part);
 }
 
 template <int D>
-void JointSolver<D>::sweep(int part) {
+void JointSolver<D>::iterate(int part) {
   if (part >= 0) {
     each_row(part, [&](int, int r) { rhs_[r] = -speed(rows_[r], at_); });
     factors_.solve(rhs_.data(), part);
@@ -378,7 +379,7 @@ void JointSolver<D>::sweep(int part) {
 }
 
 template <int D>
-void JointSolver<D>::agree() {
+void JointSolver<D>::solve_positions() {
   for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] = -speed(rows_[r], at_);
   factors_.solve(rhs_.data());
   for (std::size_t r = 0; r < rows_.size(); ++r) push(rows_[r], rhs_[r]);
@@ -386,7 +387,7 @@ void JointSolver<D>::agree() {
 
 // how far joints are off, at most; into rhs_ what would bring each row back
 template <int D>
-double JointSolver<D>::astray() {
+double JointSolver<D>::position_error() {
   double worst = 0;
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
@@ -413,16 +414,16 @@ bool JointSolver<D>::near() const {
 
 // places back onto what joints keep, and within what they let
 template <int D>
-void JointSolver<D>::put_back(double h) {
+void JointSolver<D>::project_positions(double h) {
   for (std::size_t k = 0; k < active_; ++k) {
     double off = 0;
     if (!left(bounded_[k], off) || off >= 0) continue;
-    const double strayed = astray();
+    const double strayed = position_error();
     begun_at_ = at_, begun_turn_ = turn_;
     const double put = -off * bounded_[k].give;
     shift_bounded(bounded_[k], put);
     // what joints hardly let it do throws them far
-    if (!near() || astray() > strayed - off) {
+    if (!near() || position_error() > strayed - off) {
       at_.swap(begun_at_), turn_.swap(begun_turn_);
     } else if (bounded_[k].taut) {
       bounded_[k].put = put;
@@ -431,7 +432,7 @@ void JointSolver<D>::put_back(double h) {
   begun_at_ = at_, begun_turn_ = turn_;
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
   const double close = 1e-15 * model_.scale, enough = kPut * model_.scale;
-  double worst = astray(), before = kEndless;
+  double worst = position_error(), before = kEndless;
   for (int round = 0; round < kRounds && worst > close && worst <= 0.9 * before; ++round) {
     before = worst;
     factors_.solve(rhs_.data());
@@ -439,24 +440,24 @@ void JointSolver<D>::put_back(double h) {
       shifts_[r] += rhs_[r];
       shift(rows_[r], rhs_[r]);
     }
-    worst = astray();
+    worst = position_error();
   }
   for (double& s : shifts_) s /= h;
   old_rows_ = rows_;
   if (worst <= enough && near()) return;
   at_.swap(begun_at_), turn_.swap(begun_turn_);
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
-  search();
+  damped_newton();
 }
 
 // the same where the factors at hand lead astray, as on levers that turn far in a step: anew in each round,
 // and no farther than it helps. Velocities know nothing of it
 template <int D>
-void JointSolver<D>::search() {
-  double worst = astray();
+void JointSolver<D>::damped_newton() {
+  double worst = position_error();
   for (int round = 0; round < kSearches && worst > kPut * model_.scale; ++round) {
-    lay();
-    astray();
+    compute_rows();
+    position_error();
     factors_.solve(rhs_.data());
     begun_at_ = at_, begun_turn_ = turn_, ways_ = rhs_;
     const double before = worst;
@@ -464,7 +465,7 @@ void JointSolver<D>::search() {
     for (double part = 1; !helped && part > kLeastPart; part /= 2) {
       at_ = begun_at_, turn_ = begun_turn_;
       for (std::size_t r = 0; r < rows_.size(); ++r) shift(rows_[r], part * ways_[r]);
-      worst = astray();
+      worst = position_error();
       helped = worst < (1 - part / 4) * before && near();
     }
     if (!helped) at_ = begun_at_, turn_ = begun_turn_;
@@ -475,7 +476,7 @@ void JointSolver<D>::search() {
 template <int D>
 void JointSolver<D>::finish(double h) {
   if (bodies_.empty()) return;
-  put_back(h);
+  project_positions(h);
   // a taut rope turns its bodies' motion as an equality does: s / h of Rattle's
   for (std::size_t k = 0; k < active_; ++k) {
     if (bounded_[k].put == 0) continue;
@@ -483,25 +484,25 @@ void JointSolver<D>::finish(double h) {
     each_push(bounded_[k], bounded_[k].put / h,
               [&](int body, const Vec<D>& v, const AngularVec<D>& w) { at_[body].v += v, at_[body].w += w; });
   }
-  lay();
+  compute_rows();
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     push(old_rows_[r], shifts_[r] - 0.5 * impulses_[r]);
     const double half = 0.5 * impulses_[r] + shifts_[r];
     push(rows_[r], half);
     totals_[r] = 2 * half;
   }
-  if (rebind()) {
-    sweep();
+  if (update_bounded()) {
+    iterate();
     return;
   }
-  agree();
+  solve_positions();
   for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
 }
 
 // Motors where bodies now stand, with what they have left to give; what else has bounds has done its part.
 // False where there are none.
 template <int D>
-bool JointSolver<D>::rebind() {
+bool JointSolver<D>::update_bounded() {
   bool any = false;
   for (std::size_t k = 0; k < active_; ++k) {
     Bounded& b = bounded_[k];
@@ -520,7 +521,7 @@ bool JointSolver<D>::rebind() {
       rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, offs);
       b.row = out[0], b.target = 0, b.least = b.impulse;
     }
-    hear(b);
+    compute_response(b);
     b.give = give(b);
   }
   if (any) couple_bounded();

@@ -24,7 +24,7 @@ class JointSolver {
   explicit JointSolver(const Model<D>& model);
 
   bool empty() const { return model_.joints.empty(); }
-  /// Whether no row has bounds in this step: then one sweep is as good as many.
+  /// Whether no row has bounds in this step: then one iteration is as good as many.
   bool plain() const { return active_ == 0; }
 
   /// Bodies that joints have, ascending; how each stands and moves, by its number in the model, and its turn:
@@ -35,26 +35,26 @@ class JointSolver {
   Orientation<D>& turn(int body) { return turn_[body]; }
 
   /// Makes room for the joints in a state that no step has seen yet.
-  void ready(State<D>& state) const;
+  void prepare(State<D>& state) const;
 
   /// Which joints hold in this state.
   void gather(const State<D>& state);
 
   /// Before the first step: velocities with which no joint comes apart, by the impulses of its joints. A step
   /// goes half its way with the velocities it begins with.
-  void set_off(State<D>& state);
+  void project_initial_velocities(State<D>& state);
 
   /// Rows where bodies stand now.
-  void lay();
+  void compute_rows();
   /// A step of h (s) from there. All forces begin at zero.
   void begin(double h);
 
   /// Velocities under which no joint comes apart: of all, or of one part. What shares no body that moves is a
   /// part; part -1: of ropes between bodies that nothing else joins.
-  void sweep();
-  void sweep(int part);
+  void iterate();
+  void iterate(int part);
   /// The same once, of velocities that are none: places that are put right. Impulses stay as they are.
-  void agree();
+  void solve_positions();
   int parts() const { return factors_.parts(); }
   /// The part that a body's joints are of, or -1.
   int part(int body) const { return part_of_body_[body]; }
@@ -65,20 +65,21 @@ class JointSolver {
   /// be pushed too: its stance is the caller's to write, where that has a say.
   struct JointResponse {
     Row<D> row;
-    int parts[2] = {-1, -1};                      // of its bodies; the second, if it is another
-    std::vector<double> answer[2];                // impulses of the rows of each, in the order of elimination
-    std::vector<std::pair<int, double>> felt[2];  // which of them it moves by a unit, and how fast
+    int parts[2] = {-1, -1};        // of its bodies; the second, if it is another
+    std::vector<double> answer[2];  // impulses of the rows of each, in the order of elimination
+    std::vector<std::pair<int, double>> affected[2];  // which of them it moves by a unit, and how fast
   };
   /// Fills in what is not the row, once rows are laid.
-  void hear(JointResponse& echo);
+  void compute_response(JointResponse& response);
   /// How fast the row of one moves by a unit of the other, joints answering, 1/kg.
-  double couple(const JointResponse& p, const JointResponse& q) const;
+  double response_between(const JointResponse& p, const JointResponse& q) const;
   /// act(body, change of its velocity, of its spin) for an impulse, and for what answers it.
   template <class Act>
-  void each_push(const JointResponse& echo, double impulse, Act&& act) const {
-    each_push(echo.row, impulse, act);
+  void each_push(const JointResponse& response, double impulse, Act&& act) const {
+    each_push(response.row, impulse, act);
     for (int s = 0; s < 2; ++s) {
-      each_row(echo.parts[s], [&](int k, int r) { each_push(rows_[r], echo.answer[s][k] * impulse, act); });
+      each_row(response.parts[s],
+               [&](int k, int r) { each_push(rows_[r], response.answer[s][k] * impulse, act); });
     }
   }
 
@@ -144,17 +145,17 @@ class JointSolver {
       for (int r = first; r < first + factors_.size(block); ++r) act(k++, r);
     }
   }
-  void bind(double h);
+  void collect_bounded(double h);
   double give(const Bounded& bounded) const;
-  bool rebind();
+  bool update_bounded();
   void couple_bounded();
   void push_bounded(int part);
   void shift_bounded(const Bounded& bounded, double by);
   bool left(const Bounded& bounded, double& off) const;
-  double astray();
+  double position_error();
   bool near() const;
-  void put_back(double h);
-  void search();
+  void project_positions(double h);
+  void damped_newton();
 
   const Model<D>& model_;
   BodyMotion<D> room_;

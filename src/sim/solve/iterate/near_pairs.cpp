@@ -11,7 +11,7 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr double kCalm = 0.02;    // of the least thickness: how far a calm body may come
-constexpr double kSpare = 0.025;  // of the thickness of both: what they may come nearer by blows
+constexpr double kSpare = 0.025;  // of the thickness of both: what they may come nearer by impacts
 constexpr double kThrown = 1.25;  // times as fast as they are now, likewise
 
 }  // namespace
@@ -39,8 +39,9 @@ double NearPairs::spare(int body, double speed, double span) const {
   return 0.05 * thick + std::min(0.2 * thick, speed * span);
 }
 
-// who moves, how, and how far
-void NearPairs::weigh(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
+// velocities of the moving bodies, and how far each may get within the span
+void NearPairs::compute_margins(const State<2>& state, const std::vector<Pose>& poses, double span,
+                                int patience) {
   const int n = int(movers_.size()), points = n - int(state.turn.size());
   const double falls = span * std::sqrt(model_.gravity.squaredNorm());
   for (int body = 0; body < n; ++body) {
@@ -56,7 +57,7 @@ void NearPairs::weigh(const State<2>& state, const std::vector<Pose>& poses, dou
 }
 
 // cores and their margins
-void NearPairs::enclose(const std::vector<Pose>& poses) {
+void NearPairs::compute_bounds(const std::vector<Pose>& poses) {
   constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < int(bounds_.size()); ++i) {
     const CoreShape& core = cores_.all[i];
@@ -88,7 +89,7 @@ void NearPairs::enclose(const std::vector<Pose>& poses) {
 // thrown about, their neighbours. Of two that fly side by side and cannot be struck, none will touch. Of two
 // of whom one is struck, the other comes on: then they near each other as fast as it flies, and faster if the
 // one bounces.
-void NearPairs::expose(double span) {
+void NearPairs::mark_possible_impacts(double span) {
   const int n = int(movers_.size());
   for (int a = 0; a < n; ++a) {
     exposed_[a] = 0;
@@ -126,38 +127,38 @@ void NearPairs::expose(double span) {
   candidates_.resize(kept);
 }
 
-bool NearPairs::look(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
-  weigh(state, poses, span, patience);
+bool NearPairs::find(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
+  compute_margins(state, poses, span, patience);
   candidates_.clear();
   if (patience > 0 && std::find(still_.begin(), still_.end(), 0) == still_.end()) return false;
-  enclose(poses);
+  compute_bounds(poses);
   for (const auto& [i, j] : broad_.find(bounds_, still_cores_, {}, points_)) {
     const CoreShape &p = cores_.all[i], &q = cores_.all[j];
     if (p.body == q.body) continue;
     if (may_touch_(p.body, q.body)) candidates_.push_back({i, j, -1, 0});
   }
-  expose(span);
+  mark_possible_impacts(span);
 
-  meet(poses);
+  collide_box_pairs(poses);
   return true;
 }
 
 // boxes, four pairs at once
-void NearPairs::meet(const std::vector<Pose>& poses) {
+void NearPairs::collide_box_pairs(const std::vector<Pose>& poses) {
   int count = 0;
   for (Candidate& c : candidates_) {
     const int a = cores_.all[c.a].body, b = cores_.all[c.b].body;
     if (!boxes(a, b)) continue;
     c.meeting = count++;
-    if (c.meeting / kLanes == int(meetings_.size())) meetings_.emplace_back();
-    BoxManifold& m = meetings_[c.meeting / kLanes];
-    // who is not there is nobody
+    if (c.meeting / kLanes == int(manifolds_.size())) manifolds_.emplace_back();
+    BoxManifold& m = manifolds_[c.meeting / kLanes];
+    // fill unused lanes with the dummy body
     if (c.meeting % kLanes == 0) {
       for (int lane = 0; lane < kLanes; ++lane) m.a[lane] = m.b[lane] = int(movers_.size());
     }
     m.a[c.meeting % kLanes] = a, m.b[c.meeting % kLanes] = b;
   }
-  plane::meet(meetings_.data(), (count + kLanes - 1) / kLanes, poses.data(), halves_.data());
+  plane::collide_boxes(manifolds_.data(), (count + kLanes - 1) / kLanes, poses.data(), halves_.data());
 }
 
 }  // namespace obscura::sim::plane

@@ -25,20 +25,20 @@ class NearPairs {
   };
 
   /// Looks for all that may touch within `span` s; not for those that rest nor for those that are calm: so
-  /// slow that they come nowhere in `patience` spans. False where there is nobody to look for.
-  bool look(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
-  static constexpr int kCalmLooks = 16;
+  /// slow that they come nowhere in `patience` spans. False where no body needs a search.
+  bool find(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
+  static constexpr int kCalmSearches = 16;
 
   /// For how many spans those must be calm whom look `number` leaves out: every other look is for the fast
   /// alone, of the rest every other for the less fast too, and so on; each kCalmLooks-th is for all.
   static int patience(long long number) {
-    number %= kCalmLooks;
+    number %= kCalmSearches;
     return number == 0 ? 0 : 2 * int(number & -number);
   }
 
   /// What the last look has found, ascending.
   const std::vector<Candidate>& candidates() const { return candidates_; }
-  const BoxManifold& meeting(const Candidate& c) const { return meetings_[c.meeting / kLanes]; }
+  const BoxManifold& manifold(const Candidate& c) const { return manifolds_[c.meeting / kLanes]; }
   /// Whether a body was not looked for. Walls are not.
   bool still(int body) const { return body < 0 || still_[body] != 0; }
   /// Whether a body touches nothing here: the handout's law moves it.
@@ -46,7 +46,7 @@ class NearPairs {
   /// How far a body may come within the span by itself, m.
   double margin(int body) const { return movers_[body].margin; }
 
-  /// What of this is for speed (m/s) that it may gain meanwhile, by blows.
+  /// What of this is for speed (m/s) that it may gain meanwhile, by impacts.
   double spare(int body, double speed, double span) const;
 
   /// Whether both are one box about their centre.
@@ -65,10 +65,10 @@ class NearPairs {
     double margin = 0, swing = 0, speed = 0;  // m; m/s of its farthest point, by its spin alone, and at most
     double bounding_radius = 0, half_thickness = 0;  // m
   };
-  void weigh(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
-  void enclose(const std::vector<Pose>& poses);
-  void expose(double span);
-  void meet(const std::vector<Pose>& poses);
+  void compute_margins(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
+  void compute_bounds(const std::vector<Pose>& poses);
+  void mark_possible_impacts(double span);
+  void collide_box_pairs(const std::vector<Pose>& poses);
 
   const Model<2>& model_;
   const CoreShapes& cores_;
@@ -83,7 +83,7 @@ class NearPairs {
   std::vector<char> exposed_;  // bodies that may be struck within the span
   std::vector<Candidate> candidates_;
   std::vector<char> close_;  // of candidates
-  std::vector<BoxManifold> meetings_;
+  std::vector<BoxManifold> manifolds_;
   double calm_ = 0;        // m: how far the calm may come
   double elasticity_ = 0;  // the largest there is
 };

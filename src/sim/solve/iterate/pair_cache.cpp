@@ -70,7 +70,7 @@ void Pairs::gather_found(const std::vector<Pose>& poses) {
         const double high = w.normal[0] * (poses[a].x - w.point[0]) + w.normal[1] * (poses[a].y - w.point[1]);
         if (high > cores_.bounding_radius[a] + near_.margin(a)) continue;
         for (int i = cores_.begin[a]; i < cores_.begin[a + 1]; ++i) {
-          if (nearest(cores_, cores_.all[i], poses[a], w, features) < near_.margin(a))
+          if (find_features(cores_, cores_.all[i], poses[a], w, features) < near_.margin(a))
             add(pair(a, -1 - wall, i, -1));
         }
       }
@@ -79,12 +79,12 @@ void Pairs::gather_found(const std::vector<Pose>& poses) {
       const NearPairs::Candidate& c = candidates[next];
       const CoreShape &p = cores_.all[c.a], &q = cores_.all[c.b];
       if (c.meeting >= 0) {
-        const BoxManifold& m = near_.meeting(c);
+        const BoxManifold& m = near_.manifold(c);
         const int lane = c.meeting % kLanes;
         if (!(m.gap[lane] < c.margin)) continue;
         found_.push_back(pair(a, q.body, c.a, c.b));
         found_.back().words[0] = m.words[0][lane], found_.back().words[1] = m.words[1][lane];
-      } else if (nearest(cores_, p, poses[a], q, poses[q.body], features, c.margin) < c.margin) {
+      } else if (find_features(cores_, p, poses[a], q, poses[q.body], features, c.margin) < c.margin) {
         add(pair(a, q.body, c.a, c.b));
       }
     }
@@ -93,7 +93,7 @@ void Pairs::gather_found(const std::vector<Pose>& poses) {
 }
 
 bool Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span, int patience) {
-  if (!near_.look(state, poses, span, patience)) return false;
+  if (!near_.find(state, poses, span, patience)) return false;
   gather_found(poses);
 
   // the same pairs: only what is new of their features
@@ -147,45 +147,46 @@ bool Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span, i
 void Pairs::inherit(const Pair& pair, const std::vector<Pose>& poses, const Contact<2>* old, int count,
                     Contact<2>* now) const {
   // the same features
-  bool taken[2] = {false, false}, filled[2] = {false, false};
+  bool used[2] = {false, false}, filled[2] = {false, false};
   for (int k = 0; k < pair.touches; ++k) {
     for (int o = 0; o < count; ++o) {
-      if (taken[o] || old[o].key.feature != now[k].key.feature) continue;
-      now[k] = old[o], taken[o] = filled[k] = true;
+      if (used[o] || old[o].key.feature != now[k].key.feature) continue;
+      now[k] = old[o], used[o] = filled[k] = true;
     }
   }
   // else the nearest place: where corners of both lie over each other rounding chooses between them
   for (int k = 0; k < pair.touches; ++k) {
     const Feature feature = Feature::of(now[k].key.feature);
     if (filled[k] || feature.kind == Feature::none) continue;
-    const Place at = place(pair, poses, feature);
+    const ContactPoint at = place(pair, poses, feature);
     const double near = 0.2 * cores_.half_thickness[pair.a];
     double least = near * near;
     int best = -1;
     for (int o = 0; o < count; ++o) {
-      if (taken[o]) continue;
+      if (used[o]) continue;
       const double dx = old[o].point[0] - at.x, dy = old[o].point[1] - at.y;
       if (dx * dx + dy * dy < least) least = dx * dx + dy * dy, best = o;
     }
     if (best < 0) continue;
     const ContactKey key = now[k].key;
-    now[k] = old[best], now[k].key = key, taken[best] = true;
+    now[k] = old[best], now[k].key = key, used[best] = true;
   }
 }
 
-Place Pairs::place(const Pair& pair, const std::vector<Pose>& poses, Feature feature) const {
+ContactPoint Pairs::place(const Pair& pair, const std::vector<Pose>& poses, Feature feature) const {
   if (pair.b < 0)
-    return touch(cores_, cores_.all[pair.core_a], poses[pair.a], model_.walls[-1 - pair.b], feature);
-  return touch(cores_, cores_.all[pair.core_a], poses[pair.a], cores_.all[pair.core_b], poses[pair.b],
-               feature);
+    return evaluate_feature(cores_, cores_.all[pair.core_a], poses[pair.a], model_.walls[-1 - pair.b],
+                            feature);
+  return evaluate_feature(cores_, cores_.all[pair.core_a], poses[pair.a], cores_.all[pair.core_b],
+                          poses[pair.b], feature);
 }
 
 void Pairs::features(const Pair& pair, const Pose& a, const Pose& b, int words[2]) const {
   Feature found[2];
   if (pair.b < 0) {
-    nearest(cores_, cores_.all[pair.core_a], a, model_.walls[-1 - pair.b], found);
+    find_features(cores_, cores_.all[pair.core_a], a, model_.walls[-1 - pair.b], found);
   } else {
-    nearest(cores_, cores_.all[pair.core_a], a, cores_.all[pair.core_b], b, found);
+    find_features(cores_, cores_.all[pair.core_a], a, cores_.all[pair.core_b], b, found);
   }
   words[0] = found[0].word(), words[1] = found[1].word();
   if (pair.touches == 2 && words[1] < words[0]) std::swap(words[0], words[1]);

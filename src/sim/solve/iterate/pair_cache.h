@@ -19,10 +19,10 @@ struct Pair {
   int first = 0, touches = 1;
   int words[2] = {0, 0};  // of the features of its touches, ascending
   int slot = -1;          // lane + kLanes * group; -1: asleep
-  int colour = -1;        // of its seat
-  bool alone = false;     // colours ran out: nobody sits beside it
-  bool fresh = false;     // its features have changed since it took its seat
-  float blow = 0;         // m/s: no slower approach is a blow
+  int colour = -1;        // of its lane
+  bool alone = false;     // colours ran out: it has a batch of its own
+  bool fresh = false;     // its features have changed since it took its lane
+  float blow = 0;         // m/s: no slower approach is an impact
   Material material;
 };
 
@@ -39,8 +39,8 @@ class Pairs {
   /// Makes the pairs those of state.contacts, where they are not already.
   void adopt(const State<2>& state);
 
-  /// Pairs whose features are others than their seats say, `share` of the time between two looks after the
-  /// last. They are not changed yet.
+  /// Pairs whose features are others than their lanes say, `share` of the time between two pair searches
+  /// after the last. They are not changed yet.
   const std::vector<Outdated>& outdated(const std::vector<ContactBatch>& seats, const std::vector<Motion>& v,
                                         const std::vector<Pose>& poses, double share);
   /// Changes the features of a pair to these. Forces move with their keys or, failing that, their places.
@@ -53,14 +53,14 @@ class Pairs {
   /// Grows whenever the pairs change.
   long version() const { return version_; }
 
-  Place place(const Pair& pair, const std::vector<Pose>& poses, Feature feature) const;
+  ContactPoint place(const Pair& pair, const std::vector<Pose>& poses, Feature feature) const;
 
   /// Words of the features nearest to each other where its bodies stand so, ascending.
   void features(const Pair& pair, const Pose& a, const Pose& b, int words[2]) const;
-  /// Features into the pair's lane of its seats, or of others like them; forces are let be.
+  /// Features into the pair's lane of its lanes, or of others like them; forces are let be.
   void put(const Pair& pair, const int words[2], ContactBatch& seats) const;
 
-  /// How far a body may come by speed (m/s) that it may gain within `span` s, by blows.
+  /// How far a body may come by speed (m/s) that it may gain within `span` s, by impacts.
   double spare(int body, double speed, double span) const { return near_.spare(body, speed, span); }
 
  private:

@@ -1,10 +1,10 @@
-// One step of bodies with contacts: pairs anew, if it is time; then, at low rates in several stretches so
+// One step of bodies with contacts: pairs anew, if it is time; then, at low rates in several substeps so
 // that none is longer than 1/240 s, from v to v'
 //   1. features of pairs that move
 //   2. free motion: dv, dx of the step without contacts, springs and hands by Runge-Kutta
 //   3. forces of the last step
-//   4. blows: touches that close in this step faster than the resting speed
-//   5. warm sweeps: v_n' >= -g / h
+//   4. impacts: touches that close in this step faster than the resting speed
+//   5. warm iterations: v_n' >= -g / h
 //      between them joints, all at once
 //   6. positions: by the mean of old and new velocity; a body struck at tau by that up to tau and after it;
 //      by the new one where a slow touch closed; back onto the joints
@@ -26,13 +26,13 @@ using plane::Pair;
 
 namespace {
 
-constexpr double kLooks = 60;       // a second: how often pairs are looked for
+constexpr double kUpdates = 60;     // a second: how often pairs are looked for
 constexpr double kStretches = 240;  // a second, at least
 constexpr int kMostSweeps = 40;     // of few pairs
 constexpr int kJointSweeps = 16;    // where there are joints: those are solved exactly in each
 constexpr int kStrainSweeps = 64;   // where they press something far into another
 constexpr double kStrained = 0.02;  // of its thickness: how far that is
-constexpr int kPairSweeps = 2000;   // pairs times sweeps where there are more; at least one sweep
+constexpr int kPairSweeps = 2000;   // pairs times iterations where there are more; at least one iteration
 constexpr int kFirstSweeps = 100;   // of the first step, which knows no forces
 constexpr double kProject = 0.2;    // of a penetration each time pairs are looked for
 
@@ -43,16 +43,16 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
     : model_(model),
       cores_(model),
       pairs_(model, cores_),
-      blows_(cores_, pairs_),
+      impacts_(cores_, pairs_),
       rest_(model, cores_),
-      tied_(model, paths),
-      linkage_(model) {
+      dynamics_(model, paths),
+      joints_(model) {
   const int n = int(model.bodies.size());
   const double h = 1 / value(model.rate);
-  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kLooks));
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kUpdates));
   span_ = double(every_) * h;
-  stretches_ = std::max(1, int(std::ceil(kStretches * h - 1e-9)));
-  rest_speed_ = 2 * h / stretches_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
+  substeps_ = std::max(1, int(std::ceil(kStretches * h - 1e-9)));
+  restitution_threshold_ = 2 * h / substeps_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
   asked_ = slow(model).asked;
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
   v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
@@ -69,15 +69,15 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
-  if (!linkage_.empty()) linkage_.ready(state);
-  if (state.step == 0) linkage_.set_off(state);
+  if (!joints_.empty()) joints_.prepare(state);
+  if (state.step == 0) joints_.project_initial_velocities(state);
 
   const bool due = state.step % every_ == 0;
 
-  // whom springs and hands hold
-  if (tied_.ever()) {
-    tied_.gather(state);
-    for (int i = 0; i < n; ++i) movers_[i] = tied_.has(i);
+  // bodies that springs and mice hold
+  if (dynamics_.ever()) {
+    dynamics_.gather(state);
+    for (int i = 0; i < n; ++i) movers_[i] = dynamics_.has(i);
   }
   bool held = false, asleep = true;
   for (int i = 0; i < n; ++i) {
@@ -91,88 +91,91 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   const bool known = gather(state);
   if (!known) pairs_.adopt(state);
   if (due || held) {
-    look(state, known);
+    update_pairs(state, known);
   } else if (!known) {
-    seat(state, false);
+    build_batches(state, false);
   }
   if (state.step == 0 && due && !blasting(state) && rest_.begin(state, pairs_, poses_, v_, movers_))
-    stand(state);
-  blows_.begin();
+    clear_sleeping(state);
+  impacts_.begin();
   outran_ = false;
-  const double part = h / stretches_;
-  for (int i = 0; i < stretches_; ++i) stretch(state, t + i * part, part, i);
-  blows_.keep(state.contacts);
+  const double part = h / substeps_;
+  for (int i = 0; i < substeps_; ++i) substep(state, t + i * part, part, i);
+  impacts_.keep(state.contacts);
   // the next step looks anyway, unless this was a part of one
   const bool whole = h * value(model_.rate) > 1 - 1e-9;
-  if (outran_ && !(whole && (state.step + 1) % every_ == 0)) look(state, true);
-  if (due && rest_.freeze(state, pairs_, seats_, linkage_, poses_, v_, movers_, part, span_)) stand(state);
+  if (outran_ && !(whole && (state.step + 1) % every_ == 0)) update_pairs(state, true);
+  if (due && rest_.freeze(state, pairs_, batches_, joints_, poses_, v_, movers_, part, span_))
+    clear_sleeping(state);
   next_step_ = state.step + 1;
 }
 
-// who has just been frozen
+// zeroes the velocities of bodies that have just fallen asleep
 template <int D>
-void PlaneIterative<D>::stand(const State<D>& state) {
+void PlaneIterative<D>::clear_sleeping(const State<D>& state) {
   for (std::size_t i = 0; i < turns_.size(); ++i) {
     if (state.frozen[i]) v_[i] = {};
   }
-  seat(state, true);
+  build_batches(state, true);
 }
 
-// from t to t + h, between two looks: forces stay in the seats until the last
+// from t to t + h, between two pair searches: forces stay in the lanes until the last
 template <int D>
-void PlaneIterative<D>::stretch(State<D>& state, double t, double h, int which) {
-  const bool first = which == 0 && state.step % every_ == 0, last = which + 1 == stretches_;
+void PlaneIterative<D>::substep(State<D>& state, double t, double h, int which) {
+  const bool first = which == 0 && state.step % every_ == 0, last = which + 1 == substeps_;
   if (outran_) {
     for (const Pair& pair : pairs_.all()) report(pair, state);
-    look(state, true);
+    update_pairs(state, true);
     outran_ = false;
   }
-  if (!linkage_.empty()) linkage_.gather(state);
-  const double share = (double(state.step % every_) * stretches_ + which) / double(every_ * stretches_);
+  if (!joints_.empty()) joints_.gather(state);
+  const double share = (double(state.step % every_) * substeps_ + which) / double(every_ * substeps_);
   double fastest = 0;
   for (int i = 0; i < int(turns_.size()); ++i) {
     const Motion& m = v_[i];
     fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.bounding_radius[i]);
   }
   if (share > 0 && 2 * share * fastest > calmest_) {
-    for (const plane::Outdated& old : pairs_.outdated(seats_, v_, poses_, share)) {
+    for (const plane::Outdated& old : pairs_.outdated(batches_, v_, poses_, share)) {
       const Pair& pair = pairs_.all()[old.pair];
-      if (stretches_ > 1) report(pair, state);
+      if (substeps_ > 1) report(pair, state);
       pairs_.renew(old, state, poses_);
-      sit(pair, state);
+      write_lane(pair, state);
     }
   }
 
-  fall(state, t, h);
-  plane::Pace pace{h, 0.05 * rest_speed_, h * std::sqrt(model_.gravity.squaredNorm()), cores_.allowed};
-  const int count = int(seats_.size());
+  integrate_unconstrained(state, t, h);
+  plane::StepConstants pace{h, 0.05 * restitution_threshold_, h * std::sqrt(model_.gravity.squaredNorm()),
+                            cores_.linear_slop};
+  const int count = int(batches_.size());
   const bool deep =
-      plane::start(seats_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
-  if (!linkage_.empty()) {
-    lend();
-    linkage_.lay();
+      plane::start(batches_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
+  if (!joints_.empty()) {
+    copy_to_joints();
+    joints_.compute_rows();
   }
-  blows_.run(fast_, pairs_.all(), seats_, poses_, old_, dv_, v_, pace, linkage_);
-  pace.least = blows_.least();
-  int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
-  if (state.step == 0 && first) sweeps = kFirstSweeps;
-  if (!linkage_.empty()) {
-    lend();
-    linkage_.begin(h);
-    take();
+  impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, pace, joints_);
+  pace.least = impacts_.least();
+  int iterations = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  if (state.step == 0 && first) iterations = kFirstSweeps;
+  if (!joints_.empty()) {
+    copy_to_joints();
+    joints_.begin(h);
+    copy_from_joints();
     const int most = strained(state) ? kStrainSweeps : kJointSweeps;
-    sweeps = count == 0 && linkage_.plain() ? 1 : std::clamp(most / 4 * sweeps, 4, most);
+    iterations = count == 0 && joints_.plain() ? 1 : std::clamp(most / 4 * iterations, 4, most);
   }
-  for (int i = 1; i < sweeps; ++i) {
-    hold();
-    plane::sweep(seats_.data(), count, poses_.data(), v_.data(), pace);
+  for (int i = 1; i < iterations; ++i) {
+    solve_joint_velocities();
+    plane::iterate(batches_.data(), count, poses_.data(), v_.data(), pace);
   }
-  hold();
-  plane::finish(seats_.data(), count, poses_.data(), v_.data(), pace, last ? state.contacts.data() : nullptr);
-  blows_.note(pairs_.all(), state.contacts, seats_);
+  solve_joint_velocities();
+  plane::finish(batches_.data(), count, poses_.data(), v_.data(), pace,
+                last ? state.contacts.data() : nullptr);
+  impacts_.note(pairs_.all(), state.contacts, batches_);
   if (first && deep) project(state);
   advance(state, h, first && deep);
-  if (!linkage_.empty()) rejoin(state, h);
+  if (!joints_.empty()) project_joints(state, h);
   outran_ = outran(h, (1 - share) * span_);
 }
 
@@ -184,30 +187,30 @@ bool PlaneIterative<D>::strained(const State<D>& state) const {
   return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact<D>& c) {
     const int a = c.key.a, b = c.key.b;
     const bool awake = v_[a].im > 0 || (b >= 0 && v_[b].im > 0);
-    const bool tied = linkage_.has(a) || (b >= 0 && linkage_.has(b));
+    const bool tied = joints_.has(a) || (b >= 0 && joints_.has(b));
     return awake && tied && c.gap < -(b < 0 ? far(a) : std::min(far(a), far(b)));
   });
 }
 
-// a pair's forces, from its seat
+// a pair's forces, from its lane
 template <int D>
 void PlaneIterative<D>::report(const Pair& pair, State<D>& state) const {
   if (pair.slot < 0) return;
-  const ContactBatch& g = seats_[pair.slot / kLanes];
+  const ContactBatch& g = batches_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
   for (int k = 0; k < pair.touches; ++k) {
     Contact<D>& contact = state.contacts[pair.first + k];
     const Feature f = Feature::of(contact.key.feature);
     contact.force = {g.p[k][lane], g.q[k][lane]};
     if (f.kind == Feature::none) continue;
-    const plane::Place at = pairs_.place(pair, poses_, f);
+    const plane::ContactPoint at = pairs_.place(pair, poses_, f);
     contact.point = {at.x, at.y};
   }
 }
 
-// pairs anew, who wakes by them, and seats for all
+// finds pairs, wakes what they touch, and assigns lanes
 template <int D>
-void PlaneIterative<D>::look(State<D>& state, bool known) {
+void PlaneIterative<D>::update_pairs(State<D>& state, bool known) {
   const int patience = state.contacts.empty() ? 0 : plane::NearPairs::patience(state.step / every_);
   bool changed = pairs_.find(state, poses_, span_, patience);
   if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) {
@@ -215,13 +218,13 @@ void PlaneIterative<D>::look(State<D>& state, bool known) {
     changed = true;
   }
   if (known && !changed && frozen_ == state.frozen) return;
-  seat(state, known);
+  build_batches(state, known);
   const bool fresh =
       state.step == 0 && std::all_of(state.contacts.begin(), state.contacts.end(),
                                      [](const Contact<D>& c) { return c.force == Vec<D>::Zero(); });
   if (fresh) {
-    guess(state);
-    seat(state, false);
+    first_guess(state);
+    build_batches(state, false);
   }
 }
 
@@ -252,7 +255,7 @@ bool PlaneIterative<D>::gather(const State<D>& state) {
 
 // how each body would move in the step if nothing touched
 template <int D>
-void PlaneIterative<D>::fall(State<D>& state, double t, double h) {
+void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, double h) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
   const double gx = model_.gravity[0], gy = model_.gravity[1];
   for (int i = 0; i < n; ++i) {
@@ -268,10 +271,10 @@ void PlaneIterative<D>::fall(State<D>& state, double t, double h) {
   }
 
   // springs and hands
-  if (!tied_.ever()) return;
-  const std::vector<int>& bodies = tied_.bodies();
+  if (!dynamics_.ever()) return;
+  const std::vector<int>& bodies = dynamics_.bodies();
   stages_.reserve(bodies.size() * (D + kAngular<D>));
-  tied_.step(integrate(model_.integrator), state, t, h, stages_);
+  dynamics_.step(integrate(model_.integrator), state, t, h, stages_);
   for (const int i : bodies) {
     if (v_[i].im > 0) {
       v_[i].x = state.v[i][0], v_[i].y = state.v[i][1];
@@ -289,49 +292,49 @@ void PlaneIterative<D>::fall(State<D>& state, double t, double h) {
 
 // bodies of joints to the joints, and their velocities back
 template <int D>
-void PlaneIterative<D>::lend() {
-  for (const int i : linkage_.bodies()) {
-    BodyMotion<D>& at = linkage_.body_motion(i);
+void PlaneIterative<D>::copy_to_joints() {
+  for (const int i : joints_.bodies()) {
+    BodyMotion<D>& at = joints_.body_motion(i);
     at.x = {poses_[i].x, poses_[i].y}, at.v = {v_[i].x, v_[i].y}, at.w[0] = v_[i].w;
     at.room_from_body << poses_[i].c, -poses_[i].s, poses_[i].s, poses_[i].c;
-    linkage_.turn(i)[0] = turns_[i];
+    joints_.turn(i)[0] = turns_[i];
   }
 }
 
 template <int D>
-void PlaneIterative<D>::take() {
-  for (const int i : linkage_.bodies()) {
-    const BodyMotion<D>& at = linkage_.body_motion(i);
+void PlaneIterative<D>::copy_from_joints() {
+  for (const int i : joints_.bodies()) {
+    const BodyMotion<D>& at = joints_.body_motion(i);
     v_[i].x = at.v[0], v_[i].y = at.v[1], v_[i].w = at.w[0];
   }
 }
 
 template <int D>
-void PlaneIterative<D>::hold() {
-  if (linkage_.empty()) return;
-  for (const int i : linkage_.bodies())
-    linkage_.body_motion(i).v = {v_[i].x, v_[i].y}, linkage_.body_motion(i).w[0] = v_[i].w;
-  linkage_.sweep();
-  take();
+void PlaneIterative<D>::solve_joint_velocities() {
+  if (joints_.empty()) return;
+  for (const int i : joints_.bodies())
+    joints_.body_motion(i).v = {v_[i].x, v_[i].y}, joints_.body_motion(i).w[0] = v_[i].w;
+  joints_.iterate();
+  copy_from_joints();
 }
 
 // what the step has pulled apart
 template <int D>
-void PlaneIterative<D>::rejoin(State<D>& state, double h) {
-  lend();
-  linkage_.finish(h);
-  linkage_.keep(state, h);
-  linkage_.break_joints(state);
-  take();
+void PlaneIterative<D>::project_joints(State<D>& state, double h) {
+  copy_to_joints();
+  joints_.finish(h);
+  joints_.keep(state, h);
+  joints_.break_joints(state);
+  copy_from_joints();
   const int still = int(turns_.size() - state.turn.size());
-  for (const int i : linkage_.bodies()) {
+  for (const int i : joints_.bodies()) {
     if (v_[i].im == 0) continue;
-    const BodyMotion<D>& at = linkage_.body_motion(i);
+    const BodyMotion<D>& at = joints_.body_motion(i);
     state.x[i] = at.x, state.v[i] = at.v;
     poses_[i].x = at.x[0], poses_[i].y = at.x[1];
     if (i < still) continue;
-    state.spin[i - still] = at.w, state.turn[i - still] = linkage_.turn(i);
-    turns_[i] = linkage_.turn(i)[0];
+    state.spin[i - still] = at.w, state.turn[i - still] = joints_.turn(i);
+    turns_[i] = joints_.turn(i)[0];
     const SinCos sc = sin_cos(turns_[i]);
     poses_[i].c = sc.cos, poses_[i].s = sc.sin;
   }
@@ -342,19 +345,19 @@ template <int D>
 void PlaneIterative<D>::project(const State<D>& state) {
   std::fill(projections_.begin(), projections_.end(), plane::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
-  int sweeps = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
-  if (!linkage_.empty() && strained(state)) sweeps = kStrainSweeps;
-  for (int i = 0; i < sweeps; ++i) {
+  int iterations = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  if (!joints_.empty() && strained(state)) iterations = kStrainSweeps;
+  for (int i = 0; i < iterations; ++i) {
     // joints go along
-    for (const int k : linkage_.bodies())
-      linkage_.body_motion(k).v = {push_[k].x, push_[k].y}, linkage_.body_motion(k).w[0] = push_[k].w;
-    if (!linkage_.empty()) linkage_.agree();
-    for (const int k : linkage_.bodies()) {
-      const BodyMotion<D>& at = linkage_.body_motion(k);
+    for (const int k : joints_.bodies())
+      joints_.body_motion(k).v = {push_[k].x, push_[k].y}, joints_.body_motion(k).w[0] = push_[k].w;
+    if (!joints_.empty()) joints_.solve_positions();
+    for (const int k : joints_.bodies()) {
+      const BodyMotion<D>& at = joints_.body_motion(k);
       push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
     }
-    plane::project(seats_.data(), projections_.data(), int(seats_.size()), poses_.data(), push_.data(),
-                   kProject, cores_.allowed);
+    plane::project(batches_.data(), projections_.data(), int(batches_.size()), poses_.data(), push_.data(),
+                   kProject, cores_.linear_slop);
   }
 }
 

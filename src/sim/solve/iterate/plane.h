@@ -15,10 +15,10 @@
 namespace obscura::sim {
 
 /// Contact for thousands of bodies: pairs are found a tenth as often as steps are taken, forces by a few warm
-/// sweeps a step. What is carried from step to step is in the state: contacts, all pairs that may touch soon
-/// among them, hold forces and name their features. Scratch follows from these, so a run cut in two is the
-/// run in one; a state whose step and motion are to the bit those that the last step left is taken to be that
-/// state, contacts and all.
+/// iterations a step. What is carried from step to step is in the state: contacts, all pairs that may touch
+/// soon among them, hold forces and name their features. Scratch follows from these, so a run cut in two is
+/// the run in one; a state whose step and motion are to the bit those that the last step left is taken to be
+/// that state, contacts and all.
 template <int D>
 class PlaneIterative final : public ContactSolver<D> {
  public:
@@ -35,25 +35,25 @@ class PlaneIterative final : public ContactSolver<D> {
   static constexpr double kSight = 0.5;  // of its thickness: what may pass within a step is swept instead
 
   bool gather(const State<D>& state);
-  void stretch(State<D>& state, double t, double h, int which);
+  void substep(State<D>& state, double t, double h, int which);
   bool strained(const State<D>& state) const;
   void report(const plane::Pair& pair, State<D>& state) const;
-  void seat(const State<D>& state, bool known);
-  void stand(const State<D>& state);
-  bool reseat(const State<D>& state);
+  void build_batches(const State<D>& state, bool known);
+  void clear_sleeping(const State<D>& state);
+  bool update_batches(const State<D>& state);
   int colour(const plane::Pair& pair);
-  void vacate(int slot);
-  void take_seat(int pair, const State<D>& state);
-  void sit(const plane::Pair& pair, const State<D>& state);
-  void guess(State<D>& state);
-  void fall(State<D>& state, double t, double h);
-  void lend();
-  void take();
-  void hold();
-  void rejoin(State<D>& state, double h);
+  void clear_lane(int slot);
+  void fill_lane(int pair, const State<D>& state);
+  void write_lane(const plane::Pair& pair, const State<D>& state);
+  void first_guess(State<D>& state);
+  void integrate_unconstrained(State<D>& state, double t, double h);
+  void copy_to_joints();
+  void copy_from_joints();
+  void solve_joint_velocities();
+  void project_joints(State<D>& state, double h);
   void project(const State<D>& state);
-  void advance(State<D>& state, double h, bool look);
-  void look(State<D>& state, bool known);
+  void advance(State<D>& state, double h, bool apply_push_out);
+  void update_pairs(State<D>& state, bool known);
   bool outran(double h, double left) const;
   double clear(int body, const plane::Pose& from, const Motion& way, bool walls) const;
   Motion mean_way(int body, double h) const;
@@ -63,17 +63,17 @@ class PlaneIterative final : public ContactSolver<D> {
   const Model<D>& model_;
   plane::CoreShapes cores_;
   plane::Pairs pairs_;
-  plane::Impacts blows_;
+  plane::Impacts impacts_;
   plane::Rest rest_;
-  ForwardDynamics<D> tied_;
-  JointSolver<D> linkage_;
+  ForwardDynamics<D> dynamics_;
+  JointSolver<D> joints_;
   Stages stages_;
-  std::int64_t every_ = 1;  // steps between two looks for pairs
-  double span_ = 0;         // and s
-  int stretches_ = 1;       // of a step
-  bool outran_ = false;     // someone came farther than pairs foresaw
-  double rest_speed_ = 0;   // m/s: slower approaches do not bounce
-  double asked_ = 0;        // m/s: who is slower may rest (sim/constraint/mobility.h)
+  std::int64_t every_ = 1;            // steps between two pair searches for pairs
+  double span_ = 0;                   // and s
+  int substeps_ = 1;                  // of a step
+  bool outran_ = false;               // someone came farther than pairs foresaw
+  double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
+  double asked_ = 0;                  // m/s: slower bodies may be asleep (sim/constraint/mobility.h)
   bool drag_ = false;
 
   // of bodies; one more that never moves, for walls
@@ -84,7 +84,7 @@ class PlaneIterative final : public ContactSolver<D> {
   std::vector<Motion> dv_, dx_;  // what the step would do without contacts
   std::vector<Motion> push_;     // by projection
   std::vector<char> closing_;    // a slow touch closed in this step
-  std::vector<char> frozen_;     // that the seats are of
+  std::vector<char> frozen_;     // that the lanes are of
   std::vector<char> fixed_;
   struct Light {
     double im, ii;  // 1/kg, 1/(kg m^2)
@@ -93,12 +93,12 @@ class PlaneIterative final : public ContactSolver<D> {
   std::vector<char> movers_;  // springs and hands hold them
 
   std::vector<std::uint64_t> colours_;     // used on each body
-  std::vector<int> count_, begin_, ends_;  // of each colour; where its seats begin and end
-  std::vector<plane::ContactBatch> seats_;
+  std::vector<int> count_, begin_, ends_;  // of each colour; where its lanes begin and end
+  std::vector<plane::ContactBatch> batches_;
   std::vector<plane::Projection> projections_;
   plane::Found slow_, fast_;
   std::vector<int> slots_, next_slots_;  // which pair sits where
-  std::vector<int> moved_;               // pairs that take another seat
+  std::vector<int> moved_;               // pairs that take another lane
   std::int64_t next_step_ = -1;          // of the state that this has left
   long version_ = -1;
   int awake_pairs_ = 0;

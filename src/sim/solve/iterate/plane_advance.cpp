@@ -14,13 +14,13 @@ using plane::kLanes;
 using plane::Pair;
 
 template <int D>
-void PlaneIterative<D>::advance(State<D>& state, double h, bool look) {
+void PlaneIterative<D>::advance(State<D>& state, double h, bool apply_push_out) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
 
-  // whose slow touches closed
+  // bodies with slow contacts that closed
   std::fill(closing_.begin(), closing_.end(), 0);
   for (const int i : slow_)
-    closing_[seats_[i / kLanes].a[i % kLanes]] = closing_[seats_[i / kLanes].b[i % kLanes]] = 1;
+    closing_[batches_[i / kLanes].a[i % kLanes]] = closing_[batches_[i / kLanes].b[i % kLanes]] = 1;
 
   const double asked2 = asked_ * asked_;
   for (int i = 0; i < n; ++i) {
@@ -28,12 +28,12 @@ void PlaneIterative<D>::advance(State<D>& state, double h, bool look) {
     const Motion &v = v_[i], &o = old_[i];
     const double radius = cores_.bounding_radius[i], far = 0.5 * kSight * cores_.half_thickness[i];
     Motion d;
-    if (blows_.when(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
+    if (impacts_.when(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
       d = course(i, h);
     } else {
       d = closing_[i] ? Motion{h * v.x, h * v.y, h * v.w, 0} : mean_way(i, h);
     }
-    if (look) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
+    if (apply_push_out) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
     state.x[i][0] = poses_[i].x += d.x, state.x[i][1] = poses_[i].y += d.y;
     state.v[i][0] = v.x, state.v[i][1] = v.y;
     if (i >= still) {
@@ -59,11 +59,11 @@ plane::Motion PlaneIterative<D>::mean_way(int i, double h) const {
 template <int D>
 plane::Motion PlaneIterative<D>::course(int i, double h) {
   const Motion &v = v_[i], &o = old_[i], &dv = dv_[i];
-  const double when = blows_.when(i);
+  const double when = impacts_.when(i);
   Motion d;
   if (when >= 0) {
     const double one = 0.5 * when, two = 0.5 * (h - when);
-    const Motion &b = blows_.before(i), &a = blows_.after(i);
+    const Motion &b = impacts_.before(i), &a = impacts_.after(i);
     const Motion there{one * (o.x + b.x), one * (o.y + b.y), one * (o.w + b.w), 0};
     Motion back{two * (a.x + v.x), two * (a.y + v.y), two * (a.w + v.w), 0};
     if (fast(i, back)) {
@@ -78,12 +78,12 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
   } else {
     d = mean_way(i, h);
   }
-  // who is too fast to have been seen comes as far as what it meets, and strikes in the next step
+  // continuous collision: a fast body stops at its first hit and collides in the next step
   const Motion way{h * o.x, h * o.y, h * o.w, 0};
   if (!fast(i, way)) return d;
   const double part = clear(i, poses_[i], way, false);
   if (part >= 1) return d;
-  // the blow it met is what was seen, within half of its thickness
+  // the impact it met is what was seen, within half of its thickness
   const double over = when - part * h;
   if (when >= 0 && (over <= 0 || !fast(i, {over * o.x, over * o.y, 0, 0}))) return d;
   // what another was given against it stays given
@@ -110,13 +110,13 @@ double PlaneIterative<D>::clear(int body, const plane::Pose& from, const Motion&
   const double length = std::sqrt(way.x * way.x + way.y * way.y);
   double part = 1;
   Feature features[2];
-  for (const int i : blows_.around(body)) {
+  for (const int i : impacts_.around(body)) {
     const Pair& pair = pairs_.all()[i];
     const plane::CoreShape& a = cores_.all[pair.core_a];
     if (pair.b < 0) {
       const Wall<D>& wall = model_.walls[-1 - pair.b];
       const double nears = -(wall.normal[0] * way.x + wall.normal[1] * way.y);
-      const double gap = nearest(cores_, a, from, wall, features) + 0.02 * a.half_thickness;
+      const double gap = find_features(cores_, a, from, wall, features) + 0.02 * a.half_thickness;
       if (walls && nears > gap) part = std::min(part, std::max(gap, 0.0) / nears);
       continue;
     }
@@ -125,8 +125,8 @@ double PlaneIterative<D>::clear(int body, const plane::Pose& from, const Motion&
     plane::Pose at = from;
     for (double gone = 0; gone < part;) {
       at.x = from.x + gone * way.x, at.y = from.y + gone * way.y;
-      const double left = body == pair.a ? nearest(cores_, a, at, b, poses_[pair.b], features)
-                                         : nearest(cores_, a, poses_[pair.a], b, at, features);
+      const double left = body == pair.a ? find_features(cores_, a, at, b, poses_[pair.b], features)
+                                         : find_features(cores_, a, poses_[pair.a], b, at, features);
       if (left <= close) {
         if (gone > 0) part = gone;
         break;

@@ -51,7 +51,7 @@ bool balance(std::vector<Support>& supports, double weight, double moment) {
 }  // namespace
 
 template <int D>
-void PlaneIterative<D>::guess(State<D>& state) {
+void PlaneIterative<D>::first_guess(State<D>& state) {
   const double g = std::sqrt(model_.gravity.squaredNorm());
   if (g == 0) return;
   const int n = int(turns_.size());
@@ -77,7 +77,7 @@ void PlaneIterative<D>::guess(State<D>& state) {
         Contact<D>& contact = state.contacts[pair.first + k];
         const Feature f = Feature::of(contact.key.feature);
         if (f.kind == Feature::none) continue;
-        const plane::Place at = pairs_.place(pair, poses_, f);
+        const plane::ContactPoint at = pairs_.place(pair, poses_, f);
         contact.normal = {at.nx, at.ny}, contact.point = {at.x, at.y};
         const Vec<D> normal = pair.a == body ? contact.normal : Vec<D>(-contact.normal);
         if (at.gap > 1e-3 * cores_.half_thickness[body] || up.dot(normal) <= 0.5) continue;
@@ -103,6 +103,6 @@ void PlaneIterative<D>::guess(State<D>& state) {
   }
 }
 
-template void PlaneIterative<2>::guess(State<2>&);
+template void PlaneIterative<2>::first_guess(State<2>&);
 
 }  // namespace obscura::sim

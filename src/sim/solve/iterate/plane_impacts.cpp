@@ -1,4 +1,4 @@
-// A blow, handout §3.5, of both touches of a pair, normals and friction together
+// A impact, handout §3.5, of both touches of a pair, normals and friction together
 // (sim/solve/iterate/pair_impact.h):
 //   v_n' = -e v_n,  l >= 0,  |lt| <= mu l
 // at the time tau at which the first of them closes, and where the bodies stand then: until then a body flies
@@ -24,7 +24,7 @@ constexpr std::size_t kPairsAhead = 4;  // pairs
 constexpr double kLocked = 1e-9;        // of what a push moves without joints
 constexpr double kTogether =
     1e-6;                  // of the larger bounding radius: no wider open, a touch meets with the other
-constexpr int kTimes = 8;  // Newton steps for the time of a blow
+constexpr int kTimes = 8;  // Newton steps for the time of an impact
 constexpr double kInTime = 1e-9;   // of the step: the next would be by its square
 constexpr double kForward = 0.01;  // of the step: by so much at least features are looked for on the way
 constexpr double kLatest = 1.5;    // steps: so late a touch may close that its tangent would close in one
@@ -83,8 +83,8 @@ const Rows& Impacts::rows(int group, const std::vector<ContactBatch>& seats, con
   return rows_[known_[group]];
 }
 
-// a body meets its first blow of the step
-void Impacts::reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace) {
+// a body meets its first impact of the step
+void Impacts::reach(int body, double when, const std::vector<Motion>& dv, const StepConstants& pace) {
   if (now_[body].im == 0 || when_[body] >= 0) return;
   when_[body] = when;
   bodies_.push_back(body);
@@ -93,9 +93,9 @@ void Impacts::reach(int body, double when, const std::vector<Motion>& dv, const 
   before_[body] = now_[body];
 }
 
-// where a body is at a time after its last blow, and how it moves there
+// where a body is at a time after its last impact, and how it moves there
 void Impacts::move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                   const Pace& pace, Pose& pose, Motion& v) const {
+                   const StepConstants& pace, Pose& pose, Motion& v) const {
   pose = poses[body], v = now_[body];
   if (v.im == 0) return;
   const Motion& gain = dv[body];
@@ -123,9 +123,9 @@ void Impacts::move(int body, double when, const std::vector<Pose>& poses, const 
 }
 
 // a pair at a time
-Impacts::Standing Impacts::stand(const Pair& pair, double when, const ContactBatch& g,
-                                 const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                                 const Pace& pace) const {
+Impacts::Standing Impacts::clear_sleeping(const Pair& pair, double when, const ContactBatch& g,
+                                          const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                                          const StepConstants& pace) const {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   Standing at;
   at.when = when;
@@ -140,9 +140,9 @@ Impacts::Standing Impacts::stand(const Pair& pair, double when, const ContactBat
   return at;
 }
 
-// when a touch closes with a blow, by its course from where it stands, s; never: 1e300
+// when a touch closes with an impact, by its course from where it stands, s; never: 1e300
 double Impacts::closing(const Pair& pair, int k, const ContactBatch& g, const Standing& at,
-                        const std::vector<Motion>& dv, const Pace& pace) const {
+                        const std::vector<Motion>& dv, const StepConstants& pace) const {
   const int lane = pair.slot % kLanes;
   const Motion &a = at.a, &b = at.b, &gain_a = dv[g.a[lane]], &gain_b = dv[g.b[lane]];
   const TouchRow& r = at.rows[k];
@@ -161,9 +161,9 @@ double Impacts::closing(const Pair& pair, int k, const ContactBatch& g, const St
 
 // The same where its bodies stand by then: Newton's method along the course; where the bodies turn so far
 // that this misleads, by halving.
-double Impacts::meeting(const Pair& pair, int k, const ContactBatch& g, const Standing& start,
-                        const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                        const Pace& pace) const {
+double Impacts::manifold(const Pair& pair, int k, const ContactBatch& g, const Standing& start,
+                         const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                         const StepConstants& pace) const {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   const TouchRow& r = start.rows[k];
   const double from = start.when;
@@ -173,13 +173,13 @@ double Impacts::meeting(const Pair& pair, int k, const ContactBatch& g, const St
   const bool closes = r.gap + (pace.h - from) * (vn + 0.5 * dvn) < 0;
   double low = from, high = -1;
   for (int i = 0; i < kTimes && when <= from + kLatest * pace.h; ++i) {
-    const Standing at = stand(pair, when, g, poses, dv, pace);
+    const Standing at = clear_sleeping(pair, when, g, poses, dv, pace);
     const double gap = at.rows[k].gap, speed = along(at.rows[k], at.a, at.b);
     if (gap > 0 && !(speed < 0)) {
       // it has come nearest before: was it closed then?
       for (double parts = when; parts - low > kInTime * pace.h && high < 0;) {
         const double mid = 0.5 * (low + parts);
-        const Standing then = stand(pair, mid, g, poses, dv, pace);
+        const Standing then = clear_sleeping(pair, mid, g, poses, dv, pace);
         if (then.rows[k].gap <= 0)
           high = mid;
         else
@@ -194,20 +194,20 @@ double Impacts::meeting(const Pair& pair, int k, const ContactBatch& g, const St
     when = std::clamp(next, from, from + kLatest * pace.h);
   }
   if (high < 0) {
-    if (from >= pace.h || stand(pair, pace.h, g, poses, dv, pace).rows[k].gap > 0) return 1e300;
+    if (from >= pace.h || clear_sleeping(pair, pace.h, g, poses, dv, pace).rows[k].gap > 0) return 1e300;
     high = pace.h;
   }
   while (high - low > kInTime * pace.h) {
     when = 0.5 * (low + high);
-    (stand(pair, when, g, poses, dv, pace).rows[k].gap > 0 ? low : high) = when;
+    (clear_sleeping(pair, when, g, poses, dv, pace).rows[k].gap > 0 ? low : high) = when;
   }
-  const Standing at = stand(pair, low, g, poses, dv, pace);
+  const Standing at = clear_sleeping(pair, low, g, poses, dv, pace);
   return along(at.rows[k], at.a, at.b) < g.blow[lane] ? low : 1e300;
 }
 
-// Whether a pair may meet with a blow in the step, as its rows were when it began: most do not.
+// Whether a pair may meet with an impact in the step, as its rows were when it began: most do not.
 bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vector<Pose>& poses,
-                       const std::vector<Motion>& dv, const Pace& pace) const {
+                       const std::vector<Motion>& dv, const StepConstants& pace) const {
   const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   const Motion &va = now_[a], &vb = now_[b];
   double spare = -1;  // what it may come nearer than by these rows and velocities, m
@@ -218,7 +218,7 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vecto
   for (int k = 0; k < pair.touches; ++k) {
     const TouchRow r = row(g, lane, k, poses[a], poses[b]);
     const double vn = along(r, va, vb);
-    if (other_corners(g, k, lane) && r.gap < pace.h * (fastest() + pace.gain)) return true;
+    if (other_corners(g, k, lane) && r.gap < pace.h * (fastest() + pace.gravity_dv)) return true;
     if (vn > -pair.blow) continue;
     const double left = r.gap + pace.h * (vn + 0.5 * along(r, dv[a], dv[b]));
     if (left >= 0 && spare < 0) {
@@ -240,24 +240,25 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vecto
   return false;
 }
 
-// when the first of a pair's touches closes with a blow, and which
+// when the first of a pair's touches closes with an impact, and which
 double Impacts::first_closing(const Pair& pair, const ContactBatch& g, const Standing& start,
-                              const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
-                              int& which) const {
+                              const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                              const StepConstants& pace, int& which) const {
   double first = 1e300;
   which = 0;
   for (int k = 0; k < pair.touches; ++k) {
-    const double when = meeting(pair, k, g, start, poses, dv, pace);
+    const double when = manifold(pair, k, g, start, poses, dv, pace);
     if (when < first) first = when, which = k;
   }
   return first;
 }
 
-// Moves `at`, how a pair stands, to where it meets with a blow; false where it does not. By the features of
-// its seat or, where others are nearest by then, by those: then it goes as far as it surely does not meet,
+// Moves `at`, how a pair stands, to where it meets with an impact; false where it does not. By the features
+// of its lane or, where others are nearest by then, by those: then it goes as far as it surely does not meet,
 // again and again, until the features that are nearest there are so when they close.
 bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, Standing& at,
-                           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) {
+                           const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                           const StepConstants& pace) {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   int which, words[2];
   double when = first_closing(pair, g, at, poses, dv, pace, which);
@@ -272,7 +273,7 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, Standing& at
   };
   const auto stand_anew = [&](double time) {
     pairs_.put(pair, words, fresh_);
-    at = stand(pair, time, fresh_, poses, dv, pace);
+    at = clear_sleeping(pair, time, fresh_, poses, dv, pace);
     at.renewed = true;
   };
   // whether that is all there is to find
@@ -281,14 +282,14 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, Standing& at
     if (g.calm[lane] < 1e300) {
       find_features(std::min(when, pace.h));
       if (!knows(by, 0) || (pair.touches > 1 && !knows(by, 1))) {
-        if (&by != &fresh_) copy_seat(by, lane, fresh_, lane);
+        if (&by != &fresh_) copy_lane(by, lane, fresh_, lane);
         if (when == 1e300 || !knows(by, which)) return false;
         stand_anew(when);
         return true;
       }
     }
     if (when < 1e300 && when != at.when) {
-      at = stand(pair, when, by, poses, dv, pace);
+      at = clear_sleeping(pair, when, by, poses, dv, pace);
       at.renewed = &by != &g;
     }
     return true;
@@ -325,12 +326,12 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, Standing& at
   return false;
 }
 
-// When and where a pair meets with a blow in the step, into `blow`; false where it does not.
-bool Impacts::meet(const Pair& pair, Blow& blow, const ContactBatch& g, const std::vector<Pose>& poses,
-                   const std::vector<Motion>& dv, const Pace& pace) {
+// When and where a pair meets with an impact in the step, into `impact`; false where it does not.
+bool Impacts::meet(const Pair& pair, Impact& blow, const ContactBatch& g, const std::vector<Pose>& poses,
+                   const std::vector<Motion>& dv, const StepConstants& pace) {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   const double from = std::max({0.0, when_[a], when_[b]});
-  Standing at = stand(pair, from, g, poses, dv, pace);
+  Standing at = clear_sleeping(pair, from, g, poses, dv, pace);
   if (!find_meeting(pair, g, at, poses, dv, pace)) return false;
   const double when = at.when;
   blow.when = when, blow.renewed = at.renewed;
@@ -348,41 +349,41 @@ bool Impacts::meet(const Pair& pair, Blow& blow, const ContactBatch& g, const st
   return any;
 }
 
-// whether one of a pair hangs on joints: what hangs there with it meets the blow too
-bool Impacts::tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
-                  const JointSolver<2>& linkage) {
+// whether one of a pair hangs on joints: what hangs there with it meets the impact too
+bool Impacts::tie(const Pair& pair, double when, const std::vector<Motion>& dv, const StepConstants& pace,
+                  const JointSolver<2>& joints) {
   bool tied = false;
   for (const int body : {pair.a, pair.b}) {
-    const int part = body < 0 ? -1 : linkage.part(body);
+    const int part = body < 0 ? -1 : joints.part(body);
     if (part < 0) continue;
     tied = true;
-    for (const int member : linkage.members(part)) reach(member, when, dv, pace);
+    for (const int member : joints.members(part)) reach(member, when, dv, pace);
   }
   return tied;
 }
 
 // what joints answer to pushes of those touches that close
 void Impacts::hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2],
-                   JointSolver<2>& linkage) {
+                   JointSolver<2>& joints) {
   for (int across = 0; across < 2; ++across) {
     for (int k = 0; k < 2; ++k) {
       if (!closes[k]) continue;
       const Push& push = pushes[across][k];
-      Row<2>& row = echoes_[across][k].row;
+      Row<2>& row = responses_[across][k].row;
       row.a = pair.a, row.b = pair.b;
       row.along = {push.x, push.y}, row.angular_a[0] = push.a, row.angular_b[0] = push.b;
-      linkage.hear(echoes_[across][k]);
+      joints.compute_response(responses_[across][k]);
     }
   }
 }
 
 // one pair, both touches together; false where it does not approach
 bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
-                  const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
-                  JointSolver<2>& linkage) {
+                  const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace,
+                  JointSolver<2>& joints) {
   const Pair& pair = pairs[i];
   const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
-  // too slow for a blow however they meet: most are, and their seats are far away in memory
+  // too slow for an impact however they meet: most are, and their lanes are far away in memory
   if (std::fabs(now_[a].x - now_[b].x) + std::fabs(now_[a].y - now_[b].y) +
           std::fabs(now_[a].w) * bounding_radius_[a] + std::fabs(now_[b].w) * bounding_radius_[b] <
       pair.blow)
@@ -393,19 +394,19 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
   // when, and which touches
   bool closes[2] = {false, false};
   if (blow_[i] < 0) {
-    Blow blow;
+    Impact blow;
     if (!may_meet(pair, g, poses, dv, pace)) return false;
     if (!meet(pair, blow, g, poses, dv, pace)) {
       passing_.push_back(i);
       return false;
     }
-    blow.pair = i, blow_[i] = int(blows_.size());
-    blows_.push_back(blow);
+    blow.pair = i, blow_[i] = int(impacts_.size());
+    impacts_.push_back(blow);
     reach(a, blow.when, dv, pace), reach(b, blow.when, dv, pace);
     closes[0] = blow.met[0], closes[1] = blow.met[1];
   } else {
     // again, after others: what has met and does not part, and what comes together now
-    const Blow& blow = blows_[blow_[i]];
+    const Impact& blow = impacts_[blow_[i]];
     bool any = false;
     for (int k = 0; k < pair.touches; ++k) {
       const double vn = speed(blow.pushes[0][k], a, b);
@@ -414,15 +415,16 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
     }
     if (!any) return false;
   }
-  Blow& blow = blows_[blow_[i]];
+  Impact& blow = impacts_[blow_[i]];
   const auto& pushes = blow.pushes;
-  const bool tied = !linkage.empty() && tie(pair, blow.when, dv, pace, linkage);
+  const bool tied = !joints.empty() && tie(pair, blow.when, dv, pace, joints);
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
   if (tied) {
-    hear(pair, pushes, closes, linkage);
+    hear(pair, pushes, closes, joints);
     // joints may leave it nothing to move
     for (int k = 0; k < 2; ++k)
-      closes[k] = closes[k] && linkage.couple(echoes_[0][k], echoes_[0][k]) > kLocked * (ima + imb);
+      closes[k] =
+          closes[k] && joints.response_between(responses_[0][k], responses_[0][k]) > kLocked * (ima + imb);
   }
 
   PairImpact impact;
@@ -437,7 +439,7 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
       if (!closes[c / 2]) continue;
       const Push& q = pushes[c % 2][c / 2];
       impact.K[r][c] = impact.K[c][r] =
-          tied ? linkage.couple(echoes_[r % 2][r / 2], echoes_[c % 2][c / 2])
+          tied ? joints.response_between(responses_[r % 2][r / 2], responses_[c % 2][c / 2])
                : (ima + imb) * (p.x * q.x + p.y * q.y) + (iia * (p.a * q.a) + iib * (p.b * q.b));
     }
   }
@@ -445,7 +447,7 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
   solve(impact, impulses);
   const auto push = [&](int across, int k, double l) {
     if (tied) {
-      linkage.each_push(echoes_[across][k], l, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
+      joints.each_push(responses_[across][k], l, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
         now_[body].x += v[0], now_[body].y += v[1], now_[body].w += w[0];
       });
       return;
@@ -463,12 +465,12 @@ bool Impacts::hit(int i, const std::vector<Pair>& pairs, std::vector<ContactBatc
   return true;
 }
 
-// What is left to the sweeps of pairs that met, in their rows, of the step's start: of what met that it does
-// not come nearer than the blow left it; of the other touch that it does not close in what is left of the
-// step. Where it met by other features than the rows have, these may part fast while those hardly do: to keep
-// up such a speed would take energy from nowhere.
+// What is left to the iterations of pairs that met, in their rows, of the step's start: of what met that it
+// does not come nearer than the impact left it; of the other touch that it does not close in what is left of
+// the step. Where it met by other features than the rows have, these may part fast while those hardly do: to
+// keep up such a speed would take energy from nowhere.
 void Impacts::leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
-                    const std::vector<Pose>& poses, const Pace& pace) {
+                    const std::vector<Pose>& poses, const StepConstants& pace) {
   if (least_.size() < seats.size()) least_.resize(seats.size());
   const int room = int(now_.size()) - 1;
   for (const int i : passing_) {
@@ -482,7 +484,7 @@ void Impacts::leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& s
       least_[group].n[k][lane] = -1e9;
     }
   }
-  for (const Blow& blow : blows_) {
+  for (const Impact& blow : impacts_) {
     const Pair& pair = pairs[blow.pair];
     const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
     ContactBatch& g = seats[group];
@@ -501,13 +503,13 @@ void Impacts::leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& s
 
 void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
                   const std::vector<Pose>& poses, const std::vector<Motion>& old,
-                  const std::vector<Motion>& dv, std::vector<Motion>& v, const Pace& pace,
-                  JointSolver<2>& linkage) {
+                  const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
+                  JointSolver<2>& joints) {
   for (const int body : bodies_) when_[body] = -1;
-  for (const Blow& blow : blows_) {
+  for (const Impact& blow : impacts_) {
     if (blow.pair < int(blow_.size())) blow_[blow.pair] = -1;
   }
-  bodies_.clear(), blows_.clear(), queue_.clear(), passing_.clear(), rows_.clear(), groups_.clear();
+  bodies_.clear(), impacts_.clear(), queue_.clear(), passing_.clear(), rows_.clear(), groups_.clear();
   if (found.empty()) return;
   std::copy(old.begin(), old.end(), now_.begin());
 
@@ -519,7 +521,7 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
     const ContactBatch& g = seats[seat / kLanes];
     const int i = g.pair[seat % kLanes];
     const Pair& pair = pairs[i];
-    const Standing at = stand(pair, 0, g, poses, dv, pace);
+    const Standing at = clear_sleeping(pair, 0, g, poses, dv, pace);
     double when = 1e300;
     for (int k = 0; k < pair.touches; ++k) when = std::min(when, closing(pair, k, g, at, dv, pace));
     first_.emplace_back(when, i);
@@ -530,7 +532,7 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
   const std::size_t most = 40 * queue_.size() + 100;
   std::size_t at = 0;
   for (; at < queue_.size() && at < most; ++at) {
-    // pairs and their seats are far apart in memory: ask for those of later ones
+    // pairs and their lanes are far apart in memory: ask for those of later ones
     if (at + 2 * kPairsAhead < queue_.size()) __builtin_prefetch(&pairs[queue_[at + 2 * kPairsAhead]]);
     if (at + kPairsAhead < queue_.size()) {
       const Pair& later = pairs[queue_[at + kPairsAhead]];
@@ -539,7 +541,7 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
     }
     const int i = queue_[at];
     waiting_[i] = 0;
-    if (!hit(i, pairs, seats, poses, dv, pace, linkage)) continue;
+    if (!hit(i, pairs, seats, poses, dv, pace, joints)) continue;
     const auto ask = [&](int body) {
       for (const int next : around(body)) {
         if (waiting_[next]) continue;
@@ -549,11 +551,11 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
     };
     for (const int body : {pairs[i].a, pairs[i].b}) {
       if (body < 0 || now_[body].im == 0) continue;
-      const int part = linkage.empty() ? -1 : linkage.part(body);
+      const int part = joints.empty() ? -1 : joints.part(body);
       if (part < 0) {
         ask(body);
       } else {
-        for (const int member : linkage.members(part)) ask(member);
+        for (const int member : joints.members(part)) ask(member);
       }
     }
   }
@@ -568,7 +570,7 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
 
 void Impacts::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
                    [[maybe_unused]] const std::vector<ContactBatch>& seats) {
-  for (const Blow& blow : blows_) {
+  for (const Impact& blow : impacts_) {
     const Pair& pair = pairs[blow.pair];
     assert(seats[pair.slot / kLanes].pair[pair.slot % kLanes] == blow.pair);
     for (int k = 0; k < pair.touches; ++k) {
@@ -600,7 +602,7 @@ void Impacts::keep(std::vector<Contact<2>>& contacts) const {
     }
     if (at == contacts.end()) continue;
     at->impulse += struck.impulse;
-    if (at->touching == Touching::open && struck.pushed) at->touching = Touching::slide;
+    if (at->touching == ContactMode::open && struck.pushed) at->touching = ContactMode::slide;
   }
 }
 

@@ -20,17 +20,17 @@ class Impacts {
   /// `pairs` is kept by reference.
   Impacts(const CoreShapes& cores, const Pairs& pairs);
 
-  /// Who is with whom: the awake pairs of each body.
+  /// Builds, for each body, the list of its awake pairs.
   void join(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
 
-  /// Beginning with the seats in `found`. `old`: velocities at the start; dv: what the step adds to them
-  /// without contacts; v gains what the blows do. Marks seats as struck, and says of those what is left to
-  /// the sweeps: least().
+  /// Beginning with the lanes in `found`. `old`: velocities at the start; dv: what the step adds to them
+  /// without contacts; v gains what the impacts do. Marks lanes as struck, and says of those what is left to
+  /// the iterations: least().
   void run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
-           std::vector<Motion>& v, const Pace& pace, JointSolver<2>& linkage);
+           std::vector<Motion>& v, const StepConstants& pace, JointSolver<2>& joints);
 
-  /// By group: the least normal speeds (m/s) that sweeps leave the seats that are struck.
+  /// By group: the least normal speeds (m/s) that iterations leave the lanes that are struck.
   const Least* least() const { return least_.data(); }
 
   /// Forgets the impulses of the step before.
@@ -46,7 +46,7 @@ class Impacts {
     return {around_.data() + around_start_[body], around_.data() + around_start_[body + 1]};
   }
 
-  /// Who was struck; when (s from the start of the step), with which velocity before and after.
+  /// Bodies with impacts: when (s from the start of the step), velocity before and after.
   const std::vector<int>& bodies() const { return bodies_; }
   double when(int body) const { return when_[body]; }
   const Motion& before(int body) const { return before_[body]; }
@@ -62,10 +62,10 @@ class Impacts {
   struct Push {
     double x, y, a, b;
   };
-  struct Blow {
+  struct Impact {
     int pair = -1;
     double when = 0;       // s: the rows are those of then
-    bool renewed = false;  // its features are others than those of the seat
+    bool renewed = false;  // its features are others than those of the lane
     bool met[2] = {false, false};
     double gap[2] = {0, 0};               // m
     double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
@@ -74,40 +74,42 @@ class Impacts {
   // a pair as it stands at a time, and how its bodies move
   struct Standing {
     double when = 0;
-    bool renewed = false;  // by other features than those of the seat
+    bool renewed = false;  // by other features than those of the lane
     Motion a, b;
     TouchRow rows[2];
   };
-  void reach(int body, double when, const std::vector<Motion>& dv, const Pace& pace);
+  void reach(int body, double when, const std::vector<Motion>& dv, const StepConstants& pace);
   void move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-            const Pace& pace, Pose& pose, Motion& v) const;
-  Standing stand(const Pair& pair, double when, const ContactBatch& seats, const std::vector<Pose>& poses,
-                 const std::vector<Motion>& dv, const Pace& pace) const;
+            const StepConstants& pace, Pose& pose, Motion& v) const;
+  Standing clear_sleeping(const Pair& pair, double when, const ContactBatch& seats,
+                          const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                          const StepConstants& pace) const;
   double closing(const Pair& pair, int k, const ContactBatch& seats, const Standing& at,
-                 const std::vector<Motion>& dv, const Pace& pace) const;
-  double meeting(const Pair& pair, int k, const ContactBatch& seats, const Standing& start,
-                 const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace) const;
+                 const std::vector<Motion>& dv, const StepConstants& pace) const;
+  double manifold(const Pair& pair, int k, const ContactBatch& seats, const Standing& start,
+                  const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                  const StepConstants& pace) const;
   bool may_meet(const Pair& pair, const ContactBatch& seats, const std::vector<Pose>& poses,
-                const std::vector<Motion>& dv, const Pace& pace) const;
+                const std::vector<Motion>& dv, const StepConstants& pace) const;
   double first_closing(const Pair& pair, const ContactBatch& seats, const Standing& start,
-                       const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
-                       int& which) const;
+                       const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                       const StepConstants& pace, int& which) const;
   bool find_meeting(const Pair& pair, const ContactBatch& seats, Standing& at, const std::vector<Pose>& poses,
-                    const std::vector<Motion>& dv, const Pace& pace);
-  bool meet(const Pair& pair, Blow& blow, const ContactBatch& seats, const std::vector<Pose>& poses,
-            const std::vector<Motion>& dv, const Pace& pace);
+                    const std::vector<Motion>& dv, const StepConstants& pace);
+  bool meet(const Pair& pair, Impact& blow, const ContactBatch& seats, const std::vector<Pose>& poses,
+            const std::vector<Motion>& dv, const StepConstants& pace);
   bool hit(int pair, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
-           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const Pace& pace,
-           JointSolver<2>& linkage);
-  bool tie(const Pair& pair, double when, const std::vector<Motion>& dv, const Pace& pace,
-           const JointSolver<2>& linkage);
-  void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], JointSolver<2>& linkage);
+           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace,
+           JointSolver<2>& joints);
+  bool tie(const Pair& pair, double when, const std::vector<Motion>& dv, const StepConstants& pace,
+           const JointSolver<2>& joints);
+  void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], JointSolver<2>& joints);
   double speed(const Push& push, int a, int b) const {
     return push.x * (now_[a].x - now_[b].x) + push.y * (now_[a].y - now_[b].y) +
            (push.a * now_[a].w - push.b * now_[b].w);
   }
   void leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats, const std::vector<Pose>& poses,
-             const Pace& pace);
+             const StepConstants& pace);
   const Rows& rows(int group, const std::vector<ContactBatch>& seats, const std::vector<Pose>& poses);
 
   const Pairs& pairs_;
@@ -122,14 +124,14 @@ class Impacts {
   std::vector<int> queue_;
   std::vector<char> waiting_;  // of pairs
   std::vector<int> blow_;      // of pairs: place in blows_, or -1
-  std::vector<Blow> blows_;
+  std::vector<Impact> impacts_;
   std::vector<Struck> struck_;
-  std::vector<int> passing_;  // pairs that come near without a blow
+  std::vector<int> passing_;  // pairs that come near without an impact
   std::vector<int> known_;    // of groups: place in rows_, or -1
   std::vector<int> groups_;
   std::vector<Rows> rows_;
-  std::vector<Least> least_;                    // of groups
-  JointSolver<2>::JointResponse echoes_[2][2];  // of normals, and of tangents
+  std::vector<Least> least_;                       // of groups
+  JointSolver<2>::JointResponse responses_[2][2];  // of normals, and of tangents
 };
 
 }  // namespace obscura::sim::plane

@@ -1,7 +1,8 @@
 // A quiet island at rest needs forces with
 //   g + sum f / m = 0,  sum r x f = 0        each f in its friction cone
-// which sweeps look for as in a step of bodies without speed: what speed they leave, over h, is the residual.
-// Of small islands they are found exactly, at the beginning, and later where sweeps do not come near.
+// which iterations search for as in a step of bodies without speed: what speed they leave, over h, is the
+// residual. Of small islands they are found exactly, at the beginning, and later where iterations do not come
+// near.
 
 #include "sim/solve/iterate/plane_sleep.h"
 
@@ -13,7 +14,7 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr double kHeld = 1e-6;      // of gravity
-constexpr int kPairSweeps = 40000;  // pairs times sweeps of an island at a time
+constexpr int kPairSweeps = 40000;  // pairs times iterations of an island at a time
 constexpr int kMostSweeps = 400;
 constexpr int kBetweenChecks = 10;
 constexpr double kClosed = 1e-6;  // of its thickness: no wider a gap bears
@@ -32,7 +33,7 @@ Rest::Rest(const Model<2>& model, const CoreShapes& cores)
 
 // whether a touch makes an island of two bodies
 bool Rest::joins(const Contact<2>& touch, const Pair& pair) const {
-  return touch.touching != Touching::open ||
+  return touch.touching != ContactMode::open ||
          touch.gap < 1e-3 * std::min(cores_.half_thickness[pair.a], cores_.half_thickness[pair.b]);
 }
 
@@ -63,7 +64,7 @@ bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
       Contact<2>& contact = state.contacts[k];
       const Feature feature = Feature::of(contact.key.feature);
       if (feature.kind == Feature::none) continue;
-      const Place at = pairs.place(pair, poses, feature);
+      const ContactPoint at = pairs.place(pair, poses, feature);
       contact.point = {at.x, at.y}, contact.normal = {at.nx, at.ny}, contact.gap = at.gap;
       if (at.gap > kClosed * thin) continue;
       BearingContact<2> touch{.a = moving(pair.a), .b = moving(pair.b), .normal = contact.normal};
@@ -74,7 +75,7 @@ bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
     }
     if (touches_.size() > Statics<2>::kMost) return false;
   }
-  if (!statics_.hold(touches_, turns_)) return false;
+  if (!statics_.in_equilibrium(touches_, turns_)) return false;
   std::size_t bears = 0;
   for (const int i : of) {
     const Pair& pair = pairs.all()[i];
@@ -82,7 +83,7 @@ bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
       const bool does = bears < bearing_.size() && bearing_[bears] == k;
       Contact<2>& contact = state.contacts[k];
       contact.force = does ? touches_[bears].force : Vec<2>(Vec<2>::Zero()), contact.impulse.setZero();
-      contact.touching = contact.force.dot(contact.normal) > 0 ? Touching::stick : Touching::open;
+      contact.touching = contact.force.dot(contact.normal) > 0 ? ContactMode::stick : ContactMode::open;
       bears += does;
     }
   }
@@ -90,7 +91,7 @@ bool Rest::held(State<2>& state, const Pairs& pairs, std::span<const int> of,
 }
 
 // whether what bears an island leaves its motion `v` any freedom
-Mobile Rest::mobile(const State<2>& state, const Pairs& pairs, const JointSolver<2>& linkage,
+Mobile Rest::mobile(const State<2>& state, const Pairs& pairs, const JointSolver<2>& joints,
                     std::span<const int> of, std::span<const std::pair<int, int>> members,
                     const std::vector<Motion>& v, double h) {
   mobility_.clear();
@@ -106,11 +107,11 @@ Mobile Rest::mobile(const State<2>& state, const Pairs& pairs, const JointSolver
       touch.arm_a = contact.point - state.x[pair.a], touch.friction = pair.material.friction;
       if (pair.b >= 0) touch.arm_b = contact.point - state.x[pair.b];
       touch.force = contact.force;
-      mobility_.hold(touch);
+      mobility_.add_contact(touch);
     }
   }
   for (const int part : parts_)
-    linkage.each_bearing(part, [&](const Row<2>& row, double gain) { mobility_.hold(row, gain / h); });
+    joints.each_bearing(part, [&](const Row<2>& row, double gain) { mobility_.add_row(row, gain / h); });
   return mobility_.mobile();
 }
 
@@ -162,7 +163,7 @@ bool Rest::begin(State<2>& state, const Pairs& pairs, const std::vector<Pose>& p
 }
 
 bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>& seats,
-                  JointSolver<2>& linkage, const std::vector<Pose>& poses, const std::vector<Motion>& v,
+                  JointSolver<2>& joints, const std::vector<Pose>& poses, const std::vector<Motion>& v,
                   const std::vector<char>& movers, double h, double span) {
   const std::vector<Pair>& pairs = found.all();
   const int n = int(model_.bodies.size());
@@ -193,7 +194,8 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
     const int body = v[pair.a].im > 0 ? pair.a : pair.b;
     bool deep = false;
     for (int k = 0; k < pair.touches; ++k)
-      deep = deep || state.contacts[pair.first + k].gap < -2 * cores_.allowed * cores_.bounding_radius[body];
+      deep =
+          deep || state.contacts[pair.first + k].gap < -2 * cores_.linear_slop * cores_.bounding_radius[body];
     if (deep) restless_[islands_.root(body)] = 1;
     order_.push_back(i);
   }
@@ -206,7 +208,7 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
 
   // bodies without speed for a step
   const double g = std::sqrt(model_.gravity.squaredNorm());
-  const Pace pace{h, 1e300, 0};
+  const StepConstants pace{h, 1e300, 0};
   members_.clear();
   for (int i = 0; i < n; ++i) {
     v_[i] = {0, 0, 0, v[i].im};
@@ -215,20 +217,20 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
     members_.emplace_back(islands_.root(i), i);
   }
   std::sort(members_.begin(), members_.end());
-  const auto lend = [&](int body) {
-    linkage.body_motion(body).v = {v_[body].x, v_[body].y}, linkage.body_motion(body).w[0] = v_[body].w;
+  const auto copy_to_joints = [&](int body) {
+    joints.body_motion(body).v = {v_[body].x, v_[body].y}, joints.body_motion(body).w[0] = v_[body].w;
   };
-  const auto take = [&](int body) {
-    const BodyMotion<2>& at = linkage.body_motion(body);
+  const auto copy_from_joints = [&](int body) {
+    const BodyMotion<2>& at = joints.body_motion(body);
     v_[body].x = at.v[0], v_[body].y = at.v[1], v_[body].w = at.w[0];
   };
-  if (!linkage.empty()) {
+  if (!joints.empty()) {
     for (const auto& member : members_) {
-      if (linkage.has(member.second)) lend(member.second);
+      if (joints.has(member.second)) copy_to_joints(member.second);
     }
-    linkage.begin(h);
+    joints.begin(h);
     for (const auto& member : members_) {
-      if (linkage.has(member.second)) take(member.second);
+      if (joints.has(member.second)) copy_from_joints(member.second);
     }
   }
 
@@ -239,7 +241,7 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
     parts_.clear();
     for (; last < members_.size() && members_[last].first == which; ++last) {
       const int body = members_[last].second;
-      if (linkage.has(body)) parts_.push_back(linkage.part(body));
+      if (joints.has(body)) parts_.push_back(joints.part(body));
     }
     while (end < order_.size() && island(order_[end]) == which) ++end;
     if (begin == end && parts_.empty()) continue;
@@ -250,7 +252,7 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
     std::sort(parts_.begin(), parts_.end());
     parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
 
-    // seats of its own: those of one colour stay together
+    // lanes of its own: those of one colour stay together
     some_.clear();
     int lane = kLanes, colour = -1;
     ContactBatch empty{};
@@ -261,26 +263,26 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
       const Pair& pair = pairs[order_[at]];
       if (lane == kLanes || pair.colour != colour || pair.alone)
         some_.push_back(empty), lane = 0, colour = pair.colour;
-      copy_seat(seats[pair.slot / kLanes], pair.slot % kLanes, some_.back(), lane++);
+      copy_lane(seats[pair.slot / kLanes], pair.slot % kLanes, some_.back(), lane++);
     }
     const int count = int(some_.size());
-    const auto hold = [&] {
+    const auto solve_joint_velocities = [&] {
       if (parts_.empty()) return;
       const auto each = [&](const auto& act) {
         for (std::size_t k = first; k < last; ++k) {
-          if (linkage.has(members_[k].second)) act(members_[k].second);
+          if (joints.has(members_[k].second)) act(members_[k].second);
         }
       };
-      each(lend);
-      for (const int part : parts_) linkage.sweep(part);
-      each(take);
+      each(copy_to_joints);
+      for (const int part : parts_) joints.iterate(part);
+      each(copy_from_joints);
     };
     start(some_.data(), count, poses.data(), zero_.data(), v_.data(), pace, slow_, fast_);
     const int most = std::clamp(kPairSweeps / std::max(1, int(end - begin)), kBetweenChecks, kMostSweeps);
     double worst = 1e300;
     for (int i = 1; worst > kHeld * g * h && i < most; ++i) {
-      hold();
-      sweep(some_.data(), count, poses.data(), v_.data(), pace);
+      solve_joint_velocities();
+      iterate(some_.data(), count, poses.data(), v_.data(), pace);
       if (i % kBetweenChecks != 0 && i + 1 < most) continue;
       worst = 0;
       for (std::size_t k = first; k < last; ++k) {
@@ -290,17 +292,17 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
       }
     }
     bool held = worst <= kHeld * g * h;
-    hold();
+    solve_joint_velocities();
     finish(some_.data(), count, poses.data(), v_.data(), pace, state.contacts.data());
     for (ContactBatch& g4 : some_) {
       for (int k = 0; k < kLanes; ++k) {
         if (g4.pair[k] >= 0)
-          copy_forces(g4, k, seats[pairs[g4.pair[k]].slot / kLanes], pairs[g4.pair[k]].slot % kLanes);
+          copy_lane_forces(g4, k, seats[pairs[g4.pair[k]].slot / kLanes], pairs[g4.pair[k]].slot % kLanes);
       }
     }
     if (!parts_.empty()) {
       for (std::size_t k = first; k < last; ++k) marked_[members_[k].second] = 1;
-      linkage.keep(state, h, &marked_);
+      joints.keep(state, h, &marked_);
       for (std::size_t k = first; k < last; ++k) marked_[members_[k].second] = 0;
     }
     if (!held && parts_.empty()) {
@@ -310,7 +312,7 @@ bool Rest::freeze(State<2>& state, const Pairs& found, std::vector<ContactBatch>
       if (quiet - span < due) held = this->held(state, found, {order_.data() + begin, end - begin}, poses);
     }
     if (!held) continue;
-    const Mobile moves = mobile(state, found, linkage, {order_.data() + begin, end - begin},
+    const Mobile moves = mobile(state, found, joints, {order_.data() + begin, end - begin},
                                 {members_.data() + first, last - first}, v, h);
     for (std::size_t k = first; k < last; ++k) {
       const int body = members_[k].second;
@@ -345,7 +347,7 @@ bool Rest::wake(State<2>& state, const std::vector<Pair>& pairs, const std::vect
       const double along = contact.normal.dot(Vec<2>(m.x - m.w * arm[1], m.y + m.w * arm[0]));
       nears = std::max(nears, other == pair.a ? -along : along);
     }
-    // who has been slow between two looks does not fall; two that lie beside each other would wake each
+    // a body that was slow between two searches does not fall; two beside each other would wake each
     // other in turns. It may come nearer all the same
     const bool slow = !bears && state.quiet[other] > span;
     if (gap < (slow ? span * nears : span * fast + falls)) restless_[sleeper] = 1, any = true;

@@ -13,7 +13,7 @@
 
 namespace obscura::sim::plane {
 
-/// Who may rest, by the rule of sim/constraint/mobility.h. Bodies that touch are an island.
+/// Puts islands to sleep, by the rule of sim/constraint/mobility.h. Bodies that touch are an island.
 class Rest {
  public:
   Rest(const Model<2>& model, const CoreShapes& cores);
@@ -21,7 +21,7 @@ class Rest {
   /// Freezes islands; forces of those that have waited but are not yet held are improved. `movers`: bodies
   /// that springs and hands hold are never frozen. `span`: s since it was last asked. True where someone
   /// froze.
-  bool freeze(State<2>& state, const Pairs& pairs, std::vector<ContactBatch>& seats, JointSolver<2>& linkage,
+  bool freeze(State<2>& state, const Pairs& pairs, std::vector<ContactBatch>& seats, JointSolver<2>& joints,
               const std::vector<Pose>& poses, const std::vector<Motion>& v, const std::vector<char>& movers,
               double h, double span);
 
@@ -40,7 +40,7 @@ class Rest {
   bool held(State<2>& state, const Pairs& pairs, std::span<const int> of, const std::vector<Pose>& poses);
   void freeze(State<2>& state, int body) const;
   bool joins(const Contact<2>& touch, const Pair& pair) const;
-  Mobile mobile(const State<2>& state, const Pairs& pairs, const JointSolver<2>& linkage,
+  Mobile mobile(const State<2>& state, const Pairs& pairs, const JointSolver<2>& joints,
                 std::span<const int> of, std::span<const std::pair<int, int>> members,
                 const std::vector<Motion>& v, double h);
   template <class Alike>
@@ -56,7 +56,7 @@ class Rest {
   std::vector<char> free_;
   Islands islands_;
   std::vector<char> restless_;
-  std::vector<int> order_;                    // pairs by island, then by seat
+  std::vector<int> order_;                    // pairs by island, then by lane
   std::vector<std::pair<int, int>> members_;  // island, body
   std::vector<int> parts_;                    // of the joints of an island
   std::vector<char> marked_;                  // bodies of an island

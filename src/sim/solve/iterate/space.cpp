@@ -1,8 +1,8 @@
 // One step of many bodies with contacts, from v to v':
-//   1. all gaps that may close within the step, and who wakes by them
+//   1. contact candidates that may close within the step; waking
 //   2. free motion, by Runge-Kutta: v -> v_free
 //   3. impacts of few, each at its time (sim/solve/iterate/space_impacts.cpp)
-//   4. forces of the last step, then sweeps from gap to gap, over and over:
+//   4. forces of the last step, then iterations from gap to gap, over and over:
 //        v_n' >= -g / h,  of what closes fast  v_n' >= -e v_n         p_n >= 0
 //        p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
 //      a step along the velocity and not by the inverse block: cut back, that would brake a sliding box with
@@ -24,7 +24,7 @@ namespace {
 constexpr double kUpdates = 60;          // a second: how often rest is looked for
 constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
-constexpr int kTouchIterations = 20000;  // touches times sweeps between
+constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
 constexpr double kSpare = 0.02;          // of their bounding radius: what two may come nearer by being struck
 constexpr double kAllowed = 1e-6;        // of a body's bounding radius: how deep is not too deep
@@ -40,16 +40,16 @@ template <int D>
 SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model),
       may_touch_(model),
-      tied_(model, paths),
-      linkage_(model),
+      dynamics_(model, paths),
+      joints_(model),
       statics_(model),
       mobility_(model),
       response_(model),
-      account_(model) {
+      energy_guard_(model) {
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kUpdates));
   g_ = std::sqrt(model.gravity.squaredNorm());
-  rest_speed_ = 2 * h * g_ + 1e-9 * model.scale;
+  restitution_threshold_ = 2 * h * g_ + 1e-9 * model.scale;
   asked_ = slow(model).asked;
   for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
 }
@@ -58,62 +58,62 @@ template <int D>
 void SpaceIterative<D>::step(State<D>& state, double t, double h) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n);
-  linkage_.ready(state);
-  if (state.step == 0) linkage_.set_off(state);
-  ready(state);
+  joints_.prepare(state);
+  if (state.step == 0) joints_.project_initial_velocities(state);
+  prepare(state);
   find(h);
-  if (wake(state, h) || (state.step == 0 && begin_still(state, h))) ready(state), find(h);
-  fall(state, t, h);
-  strike(state, h);
-  begin(state, h);
-  int sweeps =
+  if (wake(state, h) || (state.step == 0 && sleep_at_start(state, h))) prepare(state), find(h);
+  integrate_unconstrained(state, t, h);
+  resolve_impacts(state, h);
+  warm_start(state, h);
+  int iterations =
       std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
-  if (state.step == 0) sweeps = kFirstIterations;
-  if (!linkage_.empty()) {
-    linkage_.gather(state);
-    for (const int i : linkage_.bodies()) {
-      linkage_.body_motion(i) = stances_[i];
-      if (const int k = turning(state, i); k >= 0) linkage_.turn(i) = turn_[k];
+  if (state.step == 0) iterations = kFirstIterations;
+  if (!joints_.empty()) {
+    joints_.gather(state);
+    for (const int i : joints_.bodies()) {
+      joints_.body_motion(i) = stances_[i];
+      if (const int k = turning(state, i); k >= 0) joints_.turn(i) = turn_[k];
     }
     // what hangs together is struck together
-    parts_.assign(linkage_.parts(), 0);
-    for (const int i : linkage_.bodies()) {
-      if (closing_[i] && linkage_.part(i) >= 0) parts_[linkage_.part(i)] = 1;
+    parts_.assign(joints_.parts(), 0);
+    for (const int i : joints_.bodies()) {
+      if (closing_[i] && joints_.part(i) >= 0) parts_[joints_.part(i)] = 1;
     }
-    for (const int i : linkage_.bodies()) {
-      if (linkage_.part(i) >= 0 && parts_[linkage_.part(i)]) closing_[i] = 1;
+    for (const int i : joints_.bodies()) {
+      if (joints_.part(i) >= 0 && parts_[joints_.part(i)]) closing_[i] = 1;
     }
-    lend();
-    linkage_.lay();
-    linkage_.begin(h);
-    if (touches_.empty() && linkage_.plain()) sweeps = 1;
+    copy_to_joints();
+    joints_.compute_rows();
+    joints_.begin(h);
+    if (touches_.empty() && joints_.plain()) iterations = 1;
   }
   for (int round = 0; round < kTempering; ++round) {
-    for (int i = 0; i < sweeps; ++i) {
-      hold();
-      sweep(all_, i % 2 != 0);
+    for (int i = 0; i < iterations; ++i) {
+      solve_joint_velocities();
+      iterate(all_, i % 2 != 0);
     }
     advance(state, h);
     if (!temper(state)) break;
   }
-  arrive(state, h);
-  part(state);
-  if (!linkage_.empty()) rejoin(state, h);
+  update_velocities(state, h);
+  correct_overlaps(state);
+  if (!joints_.empty()) project_joints(state, h);
   report(state, h);
-  if (state.step % every_ == 0) rest(state, h);
+  if (state.step % every_ == 0) put_to_sleep(state, h);
 }
 
-// who moves, and where everyone stands
+// poses, velocities and inverse inertias
 template <int D>
-void SpaceIterative<D>::ready(const State<D>& state) {
+void SpaceIterative<D>::prepare(const State<D>& state) {
   const int n = int(model_.bodies.size());
-  stances_.resize(n), moving_.assign(n + 1, {}), still_.resize(n);
+  stances_.resize(n), moving_.assign(n + 1, {}), inactive_.resize(n);
   for (int i = 0; i < n; ++i) {
     const Body<D>& body = model_.bodies[i];
     stances_[i] = body_motion(state, i);
-    still_[i] = body.fixed || state.frozen[i];
-    response_.set(i, !still_[i]);
-    if (!still_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
+    inactive_[i] = body.fixed || state.frozen[i];
+    response_.set(i, !inactive_[i]);
+    if (!inactive_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
   }
 }
 
@@ -128,7 +128,7 @@ template <int D>
 void SpaceIterative<D>::find(double h) {
   const int n = int(model_.bodies.size());
   const auto margin = [&](int body) {
-    return still_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
+    return inactive_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
   };
   bounds_.resize(n), touches_.clear(), features_.clear();
   for (int i = 0; i < n; ++i) {
@@ -136,13 +136,13 @@ void SpaceIterative<D>::find(double h) {
     const Vec<D> more = Vec<D>::Constant(margin(i));
     bounds_[i].lower -= more, bounds_[i].upper += more;
   }
-  const auto& pairs = broad_.find(bounds_, still_, [&](int a, int b) { return may_touch_(a, b); });
+  const auto& pairs = broad_.find(bounds_, inactive_, [&](int a, int b) { return may_touch_(a, b); });
 
   // ascending: of a body first its walls, from the last
   auto pair = pairs.begin();
   for (int a = 0; a < n; ++a) {
     const Body<D>& p = model_.bodies[a];
-    for (int wall = int(model_.walls.size()); !still_[a] && !p.handout && wall-- > 0;) {
+    for (int wall = int(model_.walls.size()); !inactive_[a] && !p.handout && wall-- > 0;) {
       const Wall<D>& w = model_.walls[wall];
       if ((stances_[a].x - w.point).dot(w.normal) > bounding_radius_[a] + margin(a)) continue;
       gaps_.clear();
@@ -173,7 +173,7 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
   const int a = gap.key.a, b = gap.key.b < 0 ? none : gap.key.b;
   const BodyMotion<D>& at_b = b == none ? room : stances_[b];
   const EvaluatedContact<D> now = evaluate(gap, stances_[a], at_b);
-  Touch touch;
+  ContactConstraint touch;
   touch.key = gap.key, touch.a = a, touch.b = b;
   touch.n = now.normal, touch.point = now.point, touch.gap = now.value;
   // each is pushed on its own skin: by the time they touch those have come together
@@ -196,18 +196,18 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
   touches_.push_back(touch), features_.push_back(gap);
 }
 
-// where and how fast everyone would be without contacts
+// positions and velocities without contacts
 template <int D>
-void SpaceIterative<D>::fall(State<D>& state, double t, double h) {
+void SpaceIterative<D>::integrate_unconstrained(State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   x_ = state.x, turn_ = state.turn;
-  tied_.gather(state, true);
-  stages_.reserve(std::size_t(tied_.size()));
-  tied_.step(integrate(model_.integrator), state, t, h, stages_);
+  dynamics_.gather(state, true);
+  stages_.reserve(std::size_t(dynamics_.size()));
+  dynamics_.step(integrate(model_.integrator), state, t, h, stages_);
   v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
-  account_.open(state);
+  energy_guard_.open(state);
   for (int i = 0; i < n; ++i) {
-    if (still_[i]) continue;
+    if (inactive_[i]) continue;
     moving_[i].v = state.v[i];
     if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
   }
@@ -215,54 +215,55 @@ void SpaceIterative<D>::fall(State<D>& state, double t, double h) {
 
 // what each touch wants of the step, and the forces it had in the last
 template <int D>
-void SpaceIterative<D>::begin(const State<D>& state, double h) {
+void SpaceIterative<D>::warm_start(const State<D>& state, double h) {
   static const BodyMotion<D> room;
   const int n = int(model_.bodies.size());
   closing_.assign(n + 1, 0), all_.clear();
   auto known = state.contacts.begin();
   for (int i = 0; i < int(touches_.size()); ++i) {
-    Touch& touch = touches_[i];
+    ContactConstraint& touch = touches_[i];
     all_.push_back(i);
     const BodyMotion<D>& b = touch.b == n ? room : stances_[touch.b];
     const double before = touch.n.dot(stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b));
     if (touch.after) {
       // what is left of the step
-    } else if (before < -rest_speed_ && touch.gap + h * (before - g_ * h) < 0) {
+    } else if (before < -restitution_threshold_ && touch.gap + h * (before - g_ * h) < 0) {
       touch.least = touch.passes ? -1e9 : -touch.bounce * before;
       touch.bounces = !touch.passes && touch.bounce > 0;
       touch.closing = !touch.passes && touch.bounce == 0;
     } else {
       touch.least = std::min(-touch.gap / h, 0.0);
-      touch.closing = before < -0.05 * rest_speed_ && touch.gap + h * before < 0;
+      touch.closing = before < -0.05 * restitution_threshold_ && touch.gap + h * before < 0;
     }
     if (touch.closing) closing_[touch.a] = closing_[touch.b] = 1;
     while (known != state.contacts.end() && known->key < touch.key) ++known;
     if (known == state.contacts.end() || known->key != touch.key) continue;
-    touch.pressed = std::max(0.0, h * known->force.dot(touch.n));
-    touch.rubbed = h * (known->force - touch.n * touch.n.dot(known->force));
-    const double size = std::sqrt(touch.rubbed.squaredNorm()), most = touch.mu * touch.pressed;
-    if (size > most) touch.rubbed *= most / size;
-    push(touch, touch.pressed * touch.n + touch.rubbed);
+    touch.normal_impulse = std::max(0.0, h * known->force.dot(touch.n));
+    touch.tangent_impulse = h * (known->force - touch.n * touch.n.dot(known->force));
+    const double size = std::sqrt(touch.tangent_impulse.squaredNorm()),
+                 most = touch.mu * touch.normal_impulse;
+    if (size > most) touch.tangent_impulse *= most / size;
+    push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
   }
 }
 
 template <int D>
-void SpaceIterative<D>::sweep(const std::vector<int>& order, bool back) {
+void SpaceIterative<D>::iterate(const std::vector<int>& order, bool back) {
   const int count = int(order.size());
   for (int i = 0; i < count; ++i) {
-    Touch& touch = touches_[order[back ? count - 1 - i : i]];
+    ContactConstraint& touch = touches_[order[back ? count - 1 - i : i]];
     const Vec<D> u = slip(touch);
     const double along = touch.n.dot(u);
-    const double pressed = std::max(0.0, touch.pressed + (touch.least - along) / touch.normal);
-    Vec<D> impulse = (pressed - touch.pressed) * touch.n;
-    touch.pressed = pressed;
-    const double most = touch.mu * pressed;
-    if (most > 0 || !touch.rubbed.isZero(0)) {
-      const Vec<D> wanted = touch.rubbed - (u - along * touch.n) / touch.across;
+    const double normal_impulse = std::max(0.0, touch.normal_impulse + (touch.least - along) / touch.normal);
+    Vec<D> impulse = (normal_impulse - touch.normal_impulse) * touch.n;
+    touch.normal_impulse = normal_impulse;
+    const double most = touch.mu * normal_impulse;
+    if (most > 0 || !touch.tangent_impulse.isZero(0)) {
+      const Vec<D> wanted = touch.tangent_impulse - (u - along * touch.n) / touch.across;
       const double size = std::sqrt(wanted.squaredNorm());
-      const Vec<D> rubbed = size > most ? Vec<D>(wanted * (most / size)) : wanted;
-      impulse += rubbed - touch.rubbed;
-      touch.rubbed = rubbed;
+      const Vec<D> tangent_impulse = size > most ? Vec<D>(wanted * (most / size)) : wanted;
+      impulse += tangent_impulse - touch.tangent_impulse;
+      touch.tangent_impulse = tangent_impulse;
     }
     if (!impulse.isZero(0)) push(touch, impulse);
   }
@@ -270,28 +271,28 @@ void SpaceIterative<D>::sweep(const std::vector<int>& order, bool back) {
 
 // velocities to the joints, of all that they have or of those marked, and back
 template <int D>
-void SpaceIterative<D>::lend(const std::vector<char>* of) {
-  for (const int i : linkage_.bodies()) {
-    if (!of || (*of)[i]) linkage_.body_motion(i).v = moving_[i].v, linkage_.body_motion(i).w = moving_[i].w;
+void SpaceIterative<D>::copy_to_joints(const std::vector<char>* of) {
+  for (const int i : joints_.bodies()) {
+    if (!of || (*of)[i]) joints_.body_motion(i).v = moving_[i].v, joints_.body_motion(i).w = moving_[i].w;
   }
 }
 
 template <int D>
 void SpaceIterative<D>::take(const std::vector<char>* of) {
-  for (const int i : linkage_.bodies()) {
-    if (!of || (*of)[i]) moving_[i].v = linkage_.body_motion(i).v, moving_[i].w = linkage_.body_motion(i).w;
+  for (const int i : joints_.bodies()) {
+    if (!of || (*of)[i]) moving_[i].v = joints_.body_motion(i).v, moving_[i].w = joints_.body_motion(i).w;
   }
 }
 
 template <int D>
-void SpaceIterative<D>::hold() {
-  if (linkage_.empty()) return;
-  lend();
-  linkage_.sweep();
+void SpaceIterative<D>::solve_joint_velocities() {
+  if (joints_.empty()) return;
+  copy_to_joints();
+  joints_.iterate();
   take();
 }
 
-// Several blows in one instant, with friction or on joints, may leave more energy than was there if each
+// Several impacts in one instant, with friction or on joints, may leave more energy than was there if each
 // keeps its restitution (Kane and Levinson 1985); those of such an island keep less. Energy is that of the
 // step's end: a body struck within it had not yet fallen all of its way. With
 //   dK = p . v' - p W p / 2
@@ -299,18 +300,19 @@ void SpaceIterative<D>::hold() {
 // any.
 template <int D>
 bool SpaceIterative<D>::temper(const State<D>& state) {
-  if (std::none_of(touches_.begin(), touches_.end(),
-                   [](const Touch& touch) { return touch.bounces && touch.least > 0 && touch.pressed > 0; }))
+  if (std::none_of(touches_.begin(), touches_.end(), [](const ContactConstraint& touch) {
+        return touch.bounces && touch.least > 0 && touch.normal_impulse > 0;
+      }))
     return false;
-  account_.risen(state);
+  energy_guard_.risen(state);
   const int n = int(model_.bodies.size());
   islands_.reset(n);
   const auto link = [&](int a, int b) {
     if (a >= 0 && a < n && b >= 0 && b < n && moving_[a].inverse_mass > 0 && moving_[b].inverse_mass > 0)
       islands_.join(a, b);
   };
-  for (const Touch& touch : touches_) {
-    if (touch.pressed > 0) link(touch.a, touch.b);
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.normal_impulse > 0) link(touch.a, touch.b);
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
@@ -322,18 +324,19 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
     double moves = v_free_[i].squaredNorm();
     if (const int k = turning(state, i); k >= 0)
       moves += bounding_radius_[i] * bounding_radius_[i] * w_free_[k].squaredNorm();
-    before_[islands_.root(i)] += 0.5 * moves / m.inverse_mass, gained_[islands_.root(i)] += account_.gain(i);
+    before_[islands_.root(i)] += 0.5 * moves / m.inverse_mass,
+        gained_[islands_.root(i)] += energy_guard_.gain(i);
   }
-  const auto island = [&](const Touch& touch) {
+  const auto island = [&](const ContactConstraint& touch) {
     return islands_.root(moving_[touch.a].inverse_mass > 0 ? touch.a : touch.b);
   };
-  for (const Touch& touch : touches_) {
-    if (touch.bounces && touch.least > 0 && touch.pressed > 0)
-      returned_[island(touch)] += touch.pressed * touch.least;
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.bounces && touch.least > 0 && touch.normal_impulse > 0)
+      returned_[island(touch)] += touch.normal_impulse * touch.least;
   }
   bool any = false;
-  for (Touch& touch : touches_) {
-    if (!(touch.bounces && touch.least > 0 && touch.pressed > 0)) continue;
+  for (ContactConstraint& touch : touches_) {
+    if (!(touch.bounces && touch.least > 0 && touch.normal_impulse > 0)) continue;
     const int of = island(touch);
     if (gained_[of] <= kRoundingGain * before_[of]) continue;
     touch.least *= std::max(0.0, 1 - 1.5 * gained_[of] / returned_[of]), any = true;
@@ -341,12 +344,12 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
   return any;
 }
 
-// where everyone comes to, from where all would be without contacts
+// positions at the end of the step, from those without contacts
 template <int D>
 void SpaceIterative<D>::advance(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
-    if (still_[i]) continue;
+    if (inactive_[i]) continue;
     const PointBody<D>& m = moving_[i];
     const bool closing = closing_[i] && when_[i] < 0;
     if (closing) {
@@ -372,11 +375,11 @@ void SpaceIterative<D>::advance(State<D>& state, double h) {
   }
 }
 
-// how everyone moves there, and how long it has been quiet
+// velocities at the end of the step, and sleep timers
 template <int D>
-void SpaceIterative<D>::arrive(State<D>& state, double h) {
+void SpaceIterative<D>::update_velocities(State<D>& state, double h) {
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
-    if (still_[i]) continue;
+    if (inactive_[i]) continue;
     double fast = state.v[i].squaredNorm();
     if (const int k = turning(state, i); k >= 0) {
       moving_[i].w = state.spin[k];
@@ -388,15 +391,15 @@ void SpaceIterative<D>::arrive(State<D>& state, double h) {
 
 // positions out of each other, a part of the way, by the same rows
 template <int D>
-void SpaceIterative<D>::part(State<D>& state) {
+void SpaceIterative<D>::correct_overlaps(State<D>& state) {
   const int n = int(model_.bodies.size());
-  const auto hangs = [&](int body) { return body < n && linkage_.has(body); };
-  const auto allowed = [&](const Touch& touch) {
+  const auto hangs = [&](int body) { return body < n && joints_.has(body); };
+  const auto allowed = [&](const ContactConstraint& touch) {
     return (hangs(touch.a) || hangs(touch.b) ? kHung : kAllowed) * bounding_radius_[touch.a];
   };
   some_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
-    const Touch& touch = touches_[i];
+    const ContactConstraint& touch = touches_[i];
     if (touch.gap < -allowed(touch)) some_.push_back(i);
   }
   if (some_.empty()) return;
@@ -405,18 +408,18 @@ void SpaceIterative<D>::part(State<D>& state) {
   const int rounds = std::clamp(kPartRounds / int(some_.size()), 4, 16);
   for (int round = 0; round < rounds; ++round) {
     for (const int i : some_) {
-      const Touch& touch = touches_[i];
+      const ContactConstraint& touch = touches_[i];
       const double wanted = kPart * (-touch.gap - allowed(touch));
       const double left = wanted - touch.n.dot(slip(touch));
       if (left > 0) push(touch, left / touch.normal * touch.n);
     }
-    if (linkage_.empty()) continue;
-    lend();
-    linkage_.agree();
+    if (joints_.empty()) continue;
+    copy_to_joints();
+    joints_.solve_positions();
     take();
   }
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
-    if (still_[i]) continue;
+    if (inactive_[i]) continue;
     state.x[i] += moving_[i].v;
     if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
   }
@@ -425,41 +428,43 @@ void SpaceIterative<D>::part(State<D>& state) {
 
 // what the step has pulled apart
 template <int D>
-void SpaceIterative<D>::rejoin(State<D>& state, double h) {
-  for (const int i : linkage_.bodies()) {
-    linkage_.body_motion(i) = body_motion(state, i);
-    if (const int k = turning(state, i); k >= 0) linkage_.turn(i) = state.turn[k];
+void SpaceIterative<D>::project_joints(State<D>& state, double h) {
+  for (const int i : joints_.bodies()) {
+    joints_.body_motion(i) = body_motion(state, i);
+    if (const int k = turning(state, i); k >= 0) joints_.turn(i) = state.turn[k];
   }
-  linkage_.finish(h);
-  linkage_.keep(state, h);
-  linkage_.break_joints(state);
+  joints_.finish(h);
+  joints_.keep(state, h);
+  joints_.break_joints(state);
   take();
-  for (const int i : linkage_.bodies()) {
-    if (still_[i]) continue;
-    state.x[i] = linkage_.body_motion(i).x, state.v[i] = moving_[i].v;
+  for (const int i : joints_.bodies()) {
+    if (inactive_[i]) continue;
+    state.x[i] = joints_.body_motion(i).x, state.v[i] = moving_[i].v;
     if (const int k = turning(state, i); k >= 0)
-      state.turn[k] = linkage_.turn(i), state.spin[k] = moving_[i].w;
+      state.turn[k] = joints_.turn(i), state.spin[k] = moving_[i].w;
   }
 }
 
 // the forces of this step; what sleeps keeps its own
 template <int D>
 void SpaceIterative<D>::report(State<D>& state, double h) const {
-  const auto asleep = [&](int body) { return body < 0 || still_[body]; };
+  const auto asleep = [&](int body) { return body < 0 || inactive_[body]; };
   std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
   const std::size_t kept = state.contacts.size();
-  for (const Touch& touch : touches_) {
+  for (const ContactConstraint& touch : touches_) {
     Contact<D> contact;
     contact.key = touch.key, contact.point = touch.point, contact.normal = touch.n, contact.gap = touch.gap;
-    const Vec<D> impulse = touch.pressed * touch.n + touch.rubbed;
+    const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
     contact.force = impulse / h;
     if (touch.bounces && touch.least > 0) contact.impulse = impulse;
-    contact.impulse += touch.struck;
-    contact.touching = touch.pressed <= 0 ? Touching::open
-                       : std::sqrt(touch.rubbed.squaredNorm()) < touch.mu * touch.pressed * (1 - 1e-9)
-                           ? Touching::stick
-                           : Touching::slide;
-    if (contact.touching == Touching::open && !touch.struck.isZero(0)) contact.touching = Touching::slide;
+    contact.impulse += touch.impact_impulse;
+    contact.touching =
+        touch.normal_impulse <= 0 ? ContactMode::open
+        : std::sqrt(touch.tangent_impulse.squaredNorm()) < touch.mu * touch.normal_impulse * (1 - 1e-9)
+            ? ContactMode::stick
+            : ContactMode::slide;
+    if (contact.touching == ContactMode::open && !touch.impact_impulse.isZero(0))
+      contact.touching = ContactMode::slide;
     state.contacts.push_back(contact);
   }
   std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),

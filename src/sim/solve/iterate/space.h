@@ -20,8 +20,8 @@
 namespace obscura::sim {
 
 /// Contact for hundreds of bodies of space: all that may touch within a step is found anew in each, forces by
-/// warm sweeps over it, impacts of few exactly and at their time, joints exactly in each sweep. All that is
-/// carried from step to step is in the state, so a run cut in two is the run in one.
+/// warm iterations over it, impacts of few exactly and at their time, joints exactly in each iteration. All
+/// that is carried from step to step is in the state, so a run cut in two is the run in one.
 template <int D>
 class SpaceIterative final : public ContactSolver<D> {
  public:
@@ -34,20 +34,20 @@ class SpaceIterative final : public ContactSolver<D> {
 
  private:
   // a gap that may close in the step
-  struct Touch {
+  struct ContactConstraint {
     ContactKey key;
     int a = 0, b = 0;  // in moving_; walls and the room are its last
     Vec<D> n, arm_a, arm_b, point;
     double gap = 0, mu = 0, bounce = 0;
-    double normal = 0, across = 0;   // what a push answers, 1/kg; across: at most
-    double least = 0;                // of the normal speed after the step, m/s
-    double pressed = 0;              // impulse along n, N s
-    Vec<D> rubbed = Vec<D>::Zero();  // and across it
-    Vec<D> struck = Vec<D>::Zero();  // impulse of impacts within the step, N s
-    bool after = false;              // of a body that had one
-    bool passes = false;             // however it looks, it does not close with an impact
-    bool bounces = false;            // an impact that is left to the sweeps
-    bool closing = false;            // slowly
+    double normal = 0, across = 0;            // what a push answers, 1/kg; across: at most
+    double least = 0;                         // of the normal speed after the step, m/s
+    double normal_impulse = 0;                // impulse along n, N s
+    Vec<D> tangent_impulse = Vec<D>::Zero();  // and across it
+    Vec<D> impact_impulse = Vec<D>::Zero();   // impulse of impacts within the step, N s
+    bool after = false;                       // of a body that had one
+    bool passes = false;                      // however it looks, it does not close with an impact
+    bool bounces = false;                     // an impact that is left to the iterations
+    bool closing = false;                     // slowly
   };
 
   // a body at a time within the step
@@ -67,68 +67,68 @@ class SpaceIterative final : public ContactSolver<D> {
     int touch = 0, rounds = 0;
   };
 
-  void ready(const State<D>& state);
+  void prepare(const State<D>& state);
   void find(double h);
   void add(const ContactCandidate<D>& gap, const Material& pair);
   bool wake(State<D>& state, double h);
-  void fall(State<D>& state, double t, double h);
-  void strike(State<D>& state, double h);
+  void integrate_unconstrained(State<D>& state, double t, double h);
+  void resolve_impacts(State<D>& state, double h);
   Flown flown(int body, double t, double h) const;
   Instant instant(int touch, double t, double h) const;
   double closing_time(int touch, double h) const;
   bool gather_impact(int touch, double t, double h);
   bool solve_impact(double t, double h);
-  void begin(const State<D>& state, double h);
-  void sweep(const std::vector<int>& order, bool back);
+  void warm_start(const State<D>& state, double h);
+  void iterate(const std::vector<int>& order, bool back);
   // an impulse on a, and back on b
-  void push(const Touch& touch, const Vec<D>& impulse) {
+  void push(const ContactConstraint& touch, const Vec<D>& impulse) {
     apply(impulse, moving_[touch.a], touch.arm_a, moving_[touch.b], touch.arm_b);
   }
   // how fast a's matter moves against b's
-  Vec<D> slip(const Touch& touch) const {
+  Vec<D> slip(const ContactConstraint& touch) const {
     const PointBody<D>&a = moving_[touch.a], &b = moving_[touch.b];
     return a.v + cross_velocity<D>(a.w, touch.arm_a) - b.v - cross_velocity<D>(b.w, touch.arm_b);
   }
   bool temper(const State<D>& state);
-  void lend(const std::vector<char>* of = nullptr);
+  void copy_to_joints(const std::vector<char>* of = nullptr);
   void take(const std::vector<char>* of = nullptr);
-  void hold();
+  void solve_joint_velocities();
   void advance(State<D>& state, double h);
-  void arrive(State<D>& state, double h);
-  void part(State<D>& state);
-  void rejoin(State<D>& state, double h);
+  void update_velocities(State<D>& state, double h);
+  void correct_overlaps(State<D>& state);
+  void project_joints(State<D>& state, double h);
   void report(State<D>& state, double h) const;
   void join(const State<D>& state);
   bool held(int island, double h, int most);
   Mobile mobile(int island, double h);
-  bool begin_still(State<D>& state, double h);
-  bool rest(State<D>& state, double h);
+  bool sleep_at_start(State<D>& state, double h);
+  bool put_to_sleep(State<D>& state, double h);
   double swiftness(int body) const;
 
   const Model<D>& model_;
   MayTouch<D> may_touch_;
   BroadPhase<D> broad_;
-  ForwardDynamics<D> tied_;
-  JointSolver<D> linkage_;
+  ForwardDynamics<D> dynamics_;
+  JointSolver<D> joints_;
   Statics<D> statics_;
   Mobility<D> mobility_;
   Response<D> response_;
   std::vector<BearingContact<D>> exact_;
   std::vector<int> bearing_;
   std::vector<Rotation<D>> rotations_;
-  EnergyGuard<D> account_;
+  EnergyGuard<D> energy_guard_;
   Stages stages_;
-  std::int64_t every_ = 1;  // steps between two looks for rest
-  double g_ = 0, rest_speed_ = 0;
-  double asked_ = 0;  // m/s: who is slower may rest
+  std::int64_t every_ = 1;  // steps between two pair searches for rest
+  double g_ = 0, restitution_threshold_ = 0;
+  double asked_ = 0;  // m/s: slower bodies may fall asleep
   std::vector<double> bounding_radius_;
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<PointBody<D>> moving_;
   std::vector<Bounds<D>> bounds_;
-  std::vector<char> still_;
+  std::vector<char> inactive_;
   std::vector<ContactCandidate<D>> gaps_;
-  std::vector<Touch> touches_;                 // ascending by key
+  std::vector<ContactConstraint> touches_;     // ascending by key
   std::vector<ContactCandidate<D>> features_;  // theirs
   std::vector<int> all_, some_;
   std::vector<Vec<D>> x_, x_free_, v_free_;
@@ -138,8 +138,8 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<int> parts_;                        // and of their joints
   Islands islands_;
   std::vector<PointBody<D>> kept_;
-  std::vector<double> before_, gained_, returned_;  // of each island's blows, J
-  bool struck_ = false;                             // somebody, within this step
+  std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
+  bool struck_ = false;                             // whether any body had an impact in this step
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
   std::vector<Flown> flown_;                        // after it, or as the step began
   std::vector<Due> due_;

@@ -1,9 +1,9 @@
 // Impacts in space, each at its own time within the step and where its bodies stand then:
 //   w = K p + J v,   p_n >= 0,   w_n + e v_n >= 0,   p_n (w_n + e v_n) = 0,   p_t in Coulomb's cone
 // of all that touches there at once, exactly (sim/solve/exact/cone.h). Until then a body flies as it would
-// without contacts, after it with the velocity it got; where it comes to so is what the sweeps begin from.
-// What hangs on joints and large heaps are left to the sweeps. Newton's law with friction can raise the
-// energy; then e is halved until it does not.
+// without contacts, after it with the velocity it got; where it comes to so is what the iterations begin
+// from. What hangs on joints and large heaps are left to the iterations. Newton's law with friction can raise
+// the energy; then e is halved until it does not.
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ constexpr int kTurns = 40;             // impacts, of those that there are at fi
 template <int D>
 typename SpaceIterative<D>::Flown SpaceIterative<D>::flown(int body, double t, double h) const {
   Flown at = flown_[body];
-  if (body >= int(model_.bodies.size()) || still_[body]) return at;
+  if (body >= int(model_.bodies.size()) || inactive_[body]) return at;
   const double time = t - std::max(0.0, when_[body]);
   if (time == 0) return at;
   const Body<D>& it = model_.bodies[body];
@@ -42,12 +42,12 @@ typename SpaceIterative<D>::Flown SpaceIterative<D>::flown(int body, double t, d
   // Runge and Kutta, as the body sees itself (sim/math/lie_step.h)
   const int pieces = pieces_of_turn<D>(at.stance.w, time);
   const double part = time / pieces;
-  const AngularVec<D> momentum = spinning<D>(it.inertia, at.stance.room_from_body, at.stance.w);
+  const AngularVec<D> momentum = inertia_times<D>(it.inertia, at.stance.room_from_body, at.stance.w);
   for (int i = 0; i < pieces; ++i) {
     const AngularVec<D> w0 = from_room<D>(at.stance.room_from_body, at.stance.w);
     AngularVec<D> d[4], w[4], step = AngularVec<D>::Zero(), spin = w0;
     for (int s = 0; s < 4; ++s) {
-      d[s] = displacing<D>(step, spin), w[s] = gyration<D>(it.inertia, spin);
+      d[s] = displacement_rate<D>(step, spin), w[s] = gyroscopic_acceleration<D>(it.inertia, spin);
       const double by = s < 2 ? 0.5 * part : part;
       step = by * d[s], spin = w0 + by * w[s];
     }
@@ -63,7 +63,7 @@ typename SpaceIterative<D>::Flown SpaceIterative<D>::flown(int body, double t, d
 template <int D>
 typename SpaceIterative<D>::Instant SpaceIterative<D>::instant(int i, double t, double h) const {
   Instant at;
-  const Touch& touch = touches_[i];
+  const ContactConstraint& touch = touches_[i];
   at.a = flown(touch.a, t, h).stance, at.b = flown(touch.b, t, h).stance;
   at.now = evaluate(features_[i], at.a, at.b);
   at.speed = at.now.normal.dot(at.a.velocity(at.now.point - at.a.x) - at.b.velocity(at.now.point - at.b.x));
@@ -74,10 +74,10 @@ typename SpaceIterative<D>::Instant SpaceIterative<D>::instant(int i, double t, 
 // far that this misleads, by halving.
 template <int D>
 double SpaceIterative<D>::closing_time(int i, double h) const {
-  const Touch& touch = touches_[i];
+  const ContactConstraint& touch = touches_[i];
   const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
   Instant at = instant(i, from, h);
-  const bool nears = at.speed < -rest_speed_;
+  const bool nears = at.speed < -restitution_threshold_;
   const double gap = at.now.value;
   if (gap <= 0) return nears ? from : 1e300;
   const bool closes = nears && gap + (h - from) * (at.speed - g_ * h) < 0;
@@ -97,7 +97,7 @@ double SpaceIterative<D>::closing_time(int i, double h) const {
       if (high < 0) return 1e300;
       break;
     }
-    if (!(at.speed < -rest_speed_)) break;
+    if (!(at.speed < -restitution_threshold_)) break;
     const double next = when - at.now.value / at.speed;
     if (std::abs(next - when) <= kInTime * h) return closes || when <= h ? when : 1e300;
     when = std::clamp(next, from, from + kLatest * h);
@@ -110,7 +110,7 @@ double SpaceIterative<D>::closing_time(int i, double h) const {
     when = 0.5 * (low + high);
     (instant(i, when, h).now.value > 0 ? low : high) = when;
   }
-  return instant(i, low, h).speed < -rest_speed_ ? low : 1e300;
+  return instant(i, low, h).speed < -restitution_threshold_ ? low : 1e300;
 }
 
 // what meets with a gap at a time, through gaps that are closed; false where that is not for here
@@ -120,8 +120,8 @@ bool SpaceIterative<D>::gather_impact(int first, double t, double h) {
   meets_.assign(1, first);
   for (std::size_t k = 0; k < meets_.size(); ++k) {
     for (const int body : {touches_[meets_[k]].a, touches_[meets_[k]].b}) {
-      if (body == n || still_[body]) continue;
-      if (linkage_.has(body)) return false;
+      if (body == n || inactive_[body]) continue;
+      if (joints_.has(body)) return false;
       for (int at = around_start_[body]; at < around_start_[body + 1]; ++at) {
         const int other = around_[at];
         if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
@@ -148,7 +148,7 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
   Eigen::VectorXd& v = speeds_;
   v.resize(rows);
   for (int k = 0; k < count; ++k) {
-    const Touch& touch = touches_[meets_[k]];
+    const ContactConstraint& touch = touches_[meets_[k]];
     const Instant at = instant(meets_[k], t, h);
     Vec<D> ways[D];
     ways[0] = at.now.normal, ways[1] = perpendicular<D>(at.now.normal);
@@ -171,7 +171,7 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
   for (double bounce = 1;; bounce = bounce > kLeast ? 0.5 * bounce : 0) {
     b_ = v;
     for (int k = 0; k < count; ++k) {
-      if (v[D * k] < -rest_speed_) b_[D * k] += bounce * touches_[meets_[k]].bounce * v[D * k];
+      if (v[D * k] < -restitution_threshold_) b_[D * k] += bounce * touches_[meets_[k]].bounce * v[D * k];
     }
     modes_.assign(count, {}), p_.setZero();
     if (!cone_.solve(K_, b_, blocks_, modes_, p_).found) return false;
@@ -194,26 +194,26 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
                     BodyMotion<D>& it = flown_[body].stance;
                     it.v += dv, it.w += p * spin;
                   });
-    touches_[meets_[i / D]].struck += p_[i] * J[i].along;
+    touches_[meets_[i / D]].impact_impulse += p_[i] * J[i].along;
   }
   return true;
 }
 
-// Impacts of the step into where everyone would be without contacts, and what is left to the sweeps of the
+// Adds the step's impacts to the positions without contacts, and leaves the rest to the iterations of the
 // gaps of those that had one.
 template <int D>
-void SpaceIterative<D>::strike(State<D>& state, double h) {
+void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   struck_ = false;
   when_.assign(n + 1, -1), due_.clear();
   const auto fast = [&](int i) {
-    const Touch& touch = touches_[i];
+    const ContactConstraint& touch = touches_[i];
     const auto speed = [&](int body) {
       return body == n ? 0
                        : std::sqrt(stances_[body].v.squaredNorm()) +
                              bounding_radius_[body] * std::sqrt(stances_[body].w.squaredNorm());
     };
-    return speed(touch.a) + speed(touch.b) >= rest_speed_;
+    return speed(touch.a) + speed(touch.b) >= restitution_threshold_;
   };
   bool any = false;
   for (int i = 0; i < int(touches_.size()) && !any; ++i) any = fast(i);
@@ -238,7 +238,7 @@ void SpaceIterative<D>::strike(State<D>& state, double h) {
   const auto each = [&](const auto& act) {
     for (int i = 0; i < int(touches_.size()); ++i) {
       for (const int body : {touches_[i].a, touches_[i].b}) {
-        if (body < n && !still_[body]) act(i, body);
+        if (body < n && !inactive_[body]) act(i, body);
       }
     }
   };
@@ -271,7 +271,7 @@ void SpaceIterative<D>::strike(State<D>& state, double h) {
     changed_.clear();
     for (const int i : meets_) {
       for (const int body : {touches_[i].a, touches_[i].b}) {
-        if (body == n || still_[body]) continue;
+        if (body == n || inactive_[body]) continue;
         changed_.insert(changed_.end(), around_.begin() + around_start_[body],
                         around_.begin() + around_start_[body + 1]);
       }
@@ -288,7 +288,7 @@ void SpaceIterative<D>::strike(State<D>& state, double h) {
   if (!struck_) return;
 
   for (int i = 0; i < int(touches_.size()); ++i) {
-    Touch& touch = touches_[i];
+    ContactConstraint& touch = touches_[i];
     if (when_[touch.a] < 0 && when_[touch.b] < 0) continue;
     const double t = std::max(when_[touch.a], when_[touch.b]), left = h - t;
     const Instant at = instant(i, t, h);
@@ -297,7 +297,7 @@ void SpaceIterative<D>::strike(State<D>& state, double h) {
     };
     touch.after = true;
     touch.least = along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed;
-    if (!touch.struck.isZero(0) || at.now.value <= 0) continue;
+    if (!touch.impact_impulse.isZero(0) || at.now.value <= 0) continue;
     touch.least = left > kInTime * h ? touch.least - at.now.value / left : -1e9;
   }
   for (int i = 0; i < n; ++i) {
@@ -308,9 +308,9 @@ void SpaceIterative<D>::strike(State<D>& state, double h) {
       state.turn[k] = turn_free_[k] = end.turn, state.spin[k] = w_free_[k] = moving_[i].w = end.stance.w;
     }
   }
-  account_.open(state);
+  energy_guard_.open(state);
 }
 
-template void SpaceIterative<3>::strike(State<3>&, double);
+template void SpaceIterative<3>::resolve_impacts(State<3>&, double);
 
 }  // namespace obscura::sim

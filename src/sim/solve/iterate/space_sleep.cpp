@@ -1,7 +1,8 @@
 // Rest. A quiet island at rest needs forces that leave it there,
 //   g + sum f / m = 0,  sum r x f = 0        each f in its friction cone
-// which sweeps look for as in a step of bodies without speed: what speed they leave, over h, is the residual.
-// Of small islands they are found exactly, at the beginning, and later where sweeps do not come near.
+// which iterations search for as in a step of bodies without speed: what speed they leave, over h, is the
+// residual. Of small islands they are found exactly, at the beginning, and later where iterations do not come
+// near.
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +31,7 @@ bool SpaceIterative<D>::wake(State<D>& state, double h) {
     return false;
   ripe_.assign(n, 0);
   bool any = false;
-  for (const Touch& touch : touches_) {
+  for (const ContactConstraint& touch : touches_) {
     if (touch.b == n || state.frozen[touch.a] == state.frozen[touch.b]) continue;
     const int sleeper = state.frozen[touch.a] ? touch.a : touch.b, other = touch.a + touch.b - sleeper;
     if (model_.bodies[other].fixed) continue;
@@ -63,7 +64,7 @@ bool SpaceIterative<D>::wake(State<D>& state, double h) {
   return true;
 }
 
-// who is joined to whom, by contacts that bear or are closed, springs and joints; fixed bodies join nobody
+// islands: bodies joined by contacts that bear or are closed, springs and joints; fixed bodies join none
 template <int D>
 void SpaceIterative<D>::join(const State<D>& state) {
   islands_.reset(int(model_.bodies.size()));
@@ -73,7 +74,7 @@ void SpaceIterative<D>::join(const State<D>& state) {
   };
   for (const Contact<D>& contact : state.contacts) {
     const bool near =
-        contact.touching != Touching::open || contact.gap < 1e-3 * bounding_radius_[contact.key.a];
+        contact.touching != ContactMode::open || contact.gap < 1e-3 * bounding_radius_[contact.key.a];
     if (near) link(contact.key.a, contact.key.b);
   }
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
@@ -85,10 +86,10 @@ void SpaceIterative<D>::join(const State<D>& state) {
 // whether exact forces hold an island of bodies that stand still; its touches take them
 template <int D>
 bool SpaceIterative<D>::held(int island, double h, int most) {
-  const auto moving = [&](int body) { return body < int(still_.size()) && !still_[body] ? body : -1; };
+  const auto moving = [&](int body) { return body < int(inactive_.size()) && !inactive_[body] ? body : -1; };
   exact_.clear(), bearing_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
-    const Touch& touch = touches_[i];
+    const ContactConstraint& touch = touches_[i];
     const int a = moving(touch.a), b = moving(touch.b);
     if ((a < 0 && b < 0) || islands_.root(a < 0 ? b : a) != island) continue;
     bearing_.push_back(i);
@@ -99,7 +100,7 @@ bool SpaceIterative<D>::held(int island, double h, int most) {
                       .arm_a = touch.arm_a,
                       .arm_b = touch.arm_b,
                       .friction = touch.mu,
-                      .force = (touch.pressed * touch.n + touch.rubbed) / h});
+                      .force = (touch.normal_impulse * touch.n + touch.tangent_impulse) / h});
     if (int(exact_.size()) > most) return false;
   }
   rotations_.resize(stances_.size());
@@ -108,14 +109,14 @@ bool SpaceIterative<D>::held(int island, double h, int most) {
       if (body >= 0) rotations_[body] = stances_[body].room_from_body;
     }
   }
-  if (!statics_.hold(exact_, rotations_)) return false;
+  if (!statics_.in_equilibrium(exact_, rotations_)) return false;
   auto bears = exact_.begin();
   for (const int i : bearing_) {
-    Touch& touch = touches_[i];
-    touch.pressed = 0, touch.rubbed.setZero(), touch.least = 0;
+    ContactConstraint& touch = touches_[i];
+    touch.normal_impulse = 0, touch.tangent_impulse.setZero(), touch.least = 0;
     if (touch.gap > kClosed * bounding_radius_[touch.a]) continue;
-    touch.pressed = h * bears->force.dot(touch.n);
-    touch.rubbed = h * bears->force - touch.pressed * touch.n;
+    touch.normal_impulse = h * bears->force.dot(touch.n);
+    touch.tangent_impulse = h * bears->force - touch.normal_impulse * touch.n;
     ++bears;
   }
   return true;
@@ -127,34 +128,35 @@ template <int D>
 Mobile SpaceIterative<D>::mobile(int island, double h) {
   const int n = int(model_.bodies.size());
   mobility_.clear();
-  const auto member = [&](int body) { return body < n && !still_[body] && islands_.root(body) == island; };
+  const auto member = [&](int body) { return body < n && !inactive_[body] && islands_.root(body) == island; };
   for (int i = 0; i < n; ++i) {
     if (member(i)) mobility_.add(i, kept_[i].v, kept_[i].w, stances_[i].room_from_body);
   }
   for (const int i : some_) {
-    const Touch& touch = touches_[i];
+    const ContactConstraint& touch = touches_[i];
     if (!member(touch.a) && !member(touch.b)) continue;
-    mobility_.hold({.a = touch.a,
-                    .b = touch.b < n ? touch.b : -1,
-                    .normal = touch.n,
-                    .arm_a = touch.arm_a,
-                    .arm_b = touch.arm_b,
-                    .friction = touch.mu,
-                    .force = (touch.pressed * touch.n + touch.rubbed) / h});
+    mobility_.add_contact({.a = touch.a,
+                           .b = touch.b < n ? touch.b : -1,
+                           .normal = touch.n,
+                           .arm_a = touch.arm_a,
+                           .arm_b = touch.arm_b,
+                           .friction = touch.mu,
+                           .force = (touch.normal_impulse * touch.n + touch.tangent_impulse) / h});
   }
   for (const int part : parts_)
-    linkage_.each_bearing(part, [&](const Row<D>& row, double gain) { mobility_.hold(row, gain / h); });
+    joints_.each_bearing(part, [&](const Row<D>& row, double gain) { mobility_.add_row(row, gain / h); });
   return mobility_.mobile();
 }
 
 // freezes what begins without speed and in equilibrium, small islands without springs, hands and joints
 template <int D>
-bool SpaceIterative<D>::begin_still(State<D>& state, double h) {
+bool SpaceIterative<D>::sleep_at_start(State<D>& state, double h) {
   if (blasting(state)) return false;
   const int n = int(model_.bodies.size());
   islands_.reset(n), ripe_.assign(n, 1);
-  for (const Touch& touch : touches_) {
-    if (touch.b < n && touch.gap < 1e-3 * bounding_radius_[touch.a] && !still_[touch.a] && !still_[touch.b])
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.b < n && touch.gap < 1e-3 * bounding_radius_[touch.a] && !inactive_[touch.a] &&
+        !inactive_[touch.b])
       islands_.join(touch.a, touch.b);
   }
   const auto restless = [&](int body) {
@@ -168,10 +170,10 @@ bool SpaceIterative<D>::begin_still(State<D>& state, double h) {
   for (const Joint<D>& joint : model_.joints) restless(joint.a.body), restless(joint.b.body);
   bool froze = false;
   for (int root = 0; root < n; ++root) {
-    if (still_[root] || islands_.root(root) != root || !ripe_[root] || !held(root, h, Statics<D>::kMost))
+    if (inactive_[root] || islands_.root(root) != root || !ripe_[root] || !held(root, h, Statics<D>::kMost))
       continue;
     for (int i = 0; i < n; ++i) {
-      if (!still_[i] && islands_.root(i) == root) state.frozen[i] = 1, froze = true;
+      if (!inactive_[i] && islands_.root(i) == root) state.frozen[i] = 1, froze = true;
     }
   }
   if (froze) report(state, h);
@@ -180,15 +182,15 @@ bool SpaceIterative<D>::begin_still(State<D>& state, double h) {
 
 // freezes quiet islands; forces found on the way are kept
 template <int D>
-bool SpaceIterative<D>::rest(State<D>& state, double h) {
+bool SpaceIterative<D>::put_to_sleep(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   bool ripe = false;
-  for (int i = 0; i < n; ++i) ripe = ripe || (!still_[i] && state.quiet[i] >= kWait);
+  for (int i = 0; i < n; ++i) ripe = ripe || (!inactive_[i] && state.quiet[i] >= kWait);
   if (!ripe || blasting(state)) return false;
   join(state);
   ripe_.assign(n, 1);
   for (int i = 0; i < n; ++i) {
-    if (!still_[i] && state.quiet[i] < kWait) ripe_[islands_.root(i)] = 0;
+    if (!inactive_[i] && state.quiet[i] < kWait) ripe_[islands_.root(i)] = 0;
   }
   for (const Spring<D>& spring : model_.springs) {
     for (const int body : {spring.a.body, spring.b.body}) {
@@ -198,10 +200,10 @@ bool SpaceIterative<D>::rest(State<D>& state, double h) {
   for (const Grip<D>& grip : state.grips) {
     if (grip.body >= 0) ripe_[islands_.root(grip.body)] = 0;
   }
-  const auto resting = [&](int body) { return body < n && !still_[body] && ripe_[islands_.root(body)]; };
+  const auto resting = [&](int body) { return body < n && !inactive_[body] && ripe_[islands_.root(body)]; };
   some_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
-    const Touch& touch = touches_[i];
+    const ContactConstraint& touch = touches_[i];
     if (!resting(touch.a) && !resting(touch.b)) continue;
     // too deep to stay so, or awake beyond
     const int body = resting(touch.a) ? touch.a : touch.b;
@@ -222,28 +224,28 @@ bool SpaceIterative<D>::rest(State<D>& state, double h) {
     moving_[i].v = h * model_.gravity, moving_[i].w.setZero();
   }
   for (const int i : some_) {
-    Touch& touch = touches_[i];
+    ContactConstraint& touch = touches_[i];
     touch.least = std::min(-touch.gap / h, 0.0);
-    push(touch, touch.pressed * touch.n + touch.rubbed);
+    push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
   }
   on_joints_.assign(n, 0), parts_.clear();
-  for (const int i : linkage_.bodies()) {
+  for (const int i : joints_.bodies()) {
     if (!resting(i)) continue;
-    on_joints_[i] = 1, parts_.push_back(linkage_.part(i));
+    on_joints_[i] = 1, parts_.push_back(joints_.part(i));
   }
   std::sort(parts_.begin(), parts_.end());
   parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
-  if (!parts_.empty()) lend(&on_joints_), linkage_.begin(h);
+  if (!parts_.empty()) copy_to_joints(&on_joints_), joints_.begin(h);
   const auto hold = [&] {
     if (parts_.empty()) return;
-    lend(&on_joints_);
-    for (const int part : parts_) linkage_.sweep(part);
+    copy_to_joints(&on_joints_);
+    for (const int part : parts_) joints_.iterate(part);
     take(&on_joints_);
   };
   double worst = 1e300;
   for (int i = 1; i < kRestSweeps && worst > kHeld * g_ * h; ++i) {
-    hold();
-    sweep(some_, i % 2 != 0);
+    solve_joint_velocities();
+    iterate(some_, i % 2 != 0);
     if (i % kBetweenChecks != 0) continue;
     worst = 0;
     for (int k = 0; k < n; ++k) {
@@ -256,7 +258,7 @@ bool SpaceIterative<D>::rest(State<D>& state, double h) {
     if (resting(i)) left_[islands_.root(i)] = std::max(left_[islands_.root(i)], swiftness(i));
   }
   const auto on_joints = [&](int root) {
-    return std::any_of(linkage_.bodies().begin(), linkage_.bodies().end(),
+    return std::any_of(joints_.bodies().begin(), joints_.bodies().end(),
                        [&](int i) { return resting(i) && islands_.root(i) == root; });
   };
   for (int root = 0; root < n; ++root) {
@@ -265,7 +267,7 @@ bool SpaceIterative<D>::rest(State<D>& state, double h) {
     // after one wait, two, four, ...
     double quiet = 1e300, due = kWait;
     for (int i = 0; i < n; ++i) {
-      if (!still_[i] && islands_.root(i) == root) quiet = std::min(quiet, state.quiet[i]);
+      if (!inactive_[i] && islands_.root(i) == root) quiet = std::min(quiet, state.quiet[i]);
     }
     while (2 * due <= quiet) due *= 2;
     if (quiet - double(every_) * h < due && held(root, h, kFew)) left_[root] = 0;
@@ -283,7 +285,7 @@ bool SpaceIterative<D>::rest(State<D>& state, double h) {
     state.v[i].setZero();
     if (const int k = turning(state, i); k >= 0) state.spin[k].setZero();
   }
-  if (!parts_.empty()) linkage_.keep(state, h, &on_joints_);
+  if (!parts_.empty()) joints_.keep(state, h, &on_joints_);
   moving_.swap(kept_);
   report(state, h);
   return froze;
@@ -291,7 +293,7 @@ bool SpaceIterative<D>::rest(State<D>& state, double h) {
 
 template void SpaceIterative<3>::join(const State<3>&);
 template bool SpaceIterative<3>::wake(State<3>&, double);
-template bool SpaceIterative<3>::begin_still(State<3>&, double);
-template bool SpaceIterative<3>::rest(State<3>&, double);
+template bool SpaceIterative<3>::sleep_at_start(State<3>&, double);
+template bool SpaceIterative<3>::put_to_sleep(State<3>&, double);
 
 }  // namespace obscura::sim
