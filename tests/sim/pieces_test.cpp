@@ -42,12 +42,6 @@ void set_moving(World<3>& world, Vec3 v, Vec3 w) {
   }
 }
 
-double moving(const Model<3>& model, const State<3>& state) {
-  double sum = 0;
-  for (int i = 0; i < int(model.bodies.size()); ++i) sum += kinetic(model, state, i);
-  return sum;
-}
-
 TEST(Bonds, MakeTheirPartsOneRigidBody) {
   World<3> world = block(2, 3, 1, 1e300);
   set_moving(world, {1, 2, 0.5}, {1, 5, 2});

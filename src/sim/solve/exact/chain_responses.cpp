@@ -6,33 +6,34 @@ namespace obscura::sim {
 
 // K of a row of a contact with itself: what it answers to a force along it, 1/kg
 template <int D>
-double ExactSolver<D>::answer(int row) const {
+double ExactSolver<D>::self_coupling(int row) const {
   const Row<D>& it = rows_[row];
-  double sum = coupling(it, response_.of(it, stances_), it);
+  double sum = coupling(it, response_.of(it, poses_), it);
   sum += chain_response_.coupling(row, row);
   return sum;
 }
 
 // M^-1 J' f_ onto the velocities of a state, or onto its places
 template <int D>
-void ExactSolver<D>::jump(State<D>& state, bool places) {
+void ExactSolver<D>::apply_impulses(State<D>& state, bool places) {
   const bool chains = free_.chains().size() > 0;
-  if (chains) chain_change_.assign(std::size_t(free_.chains().size()), 0.0);
+  if (chains) scratch_.chain_change.assign(std::size_t(free_.chains().size()), 0.0);
   for (int i = 0; i < int(rows_.size()); ++i) {
     if (f_[i] == 0) continue;
-    jump(state, rows_[i], f_[i], places);
+    apply_impulses(state, rows_[i], f_[i], places);
     if (!chain_response_.moves(i)) continue;
     const auto U = chain_response_.response(i);
-    for (std::size_t k = 0; k < U.size(); ++k) chain_change_[k] += f_[i] * U[k];
+    for (std::size_t k = 0; k < U.size(); ++k) scratch_.chain_change[k] += f_[i] * U[k];
   }
   if (!chains) return;
-  free_.chains().jump(state, chain_change_, places);
+  free_.chains().jump(state, scratch_.chain_change, places);
   free_.chains().follow(state);
 }
 
-// what the joints of chains bear under the forces of the instant, into joint_forces_; before those of rows
+// what the joints of chains bear under the forces of the instant, into outcome_.joint_forces; before those of
+// rows
 template <int D>
-void ExactSolver<D>::chain_forces() {
+void ExactSolver<D>::record_chain_forces() {
   Articulated<D>& chains = free_.chains();
   if (chains.size() == 0) return;
   for (int i = 0; i < int(rows_.size()); ++i) {
@@ -42,13 +43,13 @@ void ExactSolver<D>::chain_forces() {
     if (response_.linked(row.b))
       chains.pull(chains.link(row.b), Wrench<D>{row.angular_b, row.along} * -f_[i]);
   }
-  chains.joint_forces(joint_forces_);
+  chains.joint_forces(outcome_.joint_forces);
 }
 
-#define OBSCURA_INSTANTIATE(D)                         \
-  template double ExactSolver<D>::answer(int) const;   \
-  template void ExactSolver<D>::jump(State<D>&, bool); \
-  template void ExactSolver<D>::chain_forces()
+#define OBSCURA_INSTANTIATE(D)                                   \
+  template double ExactSolver<D>::self_coupling(int) const;      \
+  template void ExactSolver<D>::apply_impulses(State<D>&, bool); \
+  template void ExactSolver<D>::record_chain_forces()
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
 #undef OBSCURA_INSTANTIATE

@@ -1,6 +1,6 @@
 // Where smooth motion ends before its time: something closes, or what slides stops.
 //
-// Between its ends a stretch is followed on the cubic through both poses and velocities: a closing found
+// Between its ends an interval is followed on the cubic through both poses and velocities: a closing found
 // there is exact to the fourth order, and exact where it is found again from nearer by.
 
 #include <algorithm>
@@ -15,11 +15,11 @@ namespace {
 
 constexpr int kFiner = 3;  // steps for one, where there are joints of rows, but few
 constexpr int kFewJoints = 8;
-constexpr double kNever = 2;        // a part of the stretch
+constexpr double kNever = 2;        // a part of the interval
 constexpr double kAtOnce = 1e-9;    // a part too short to go
 constexpr double kFine = 0.25;      // of the thinner body: how far two may move between two looks
-constexpr int kMostLooks = 200000;  // of a couple in a stretch
-constexpr double kSteepest = 2.5;   // of its way: how fast one goes in its stretch, at most (Hermite's cubic)
+constexpr int kMostLooks = 200000;  // of a couple in an interval
+constexpr double kSteepest = 2.5;  // of its way: how fast one goes in its interval, at most (Hermite's cubic)
 constexpr int kMostRoots = 100;
 constexpr double kStraight = 0.8;  // how far a straight line is right about when a force has gone, at least
 constexpr double kSlight = 1e-6;   // of the largest force: what may pull before it lets go
@@ -29,30 +29,32 @@ constexpr double kSlight = 1e-6;   // of the largest force: what may pull before
 // every gap below the margin, if they are near at all
 template <int D>
 template <class Found>
-void ExactSolver<D>::near(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found) {
+void ExactSolver<D>::near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin,
+                                   Found&& found) {
   const auto [a, b] = couple;
-  some_.clear();
+  scratch_.candidates.clear();
   if (b < 0) {
     const Wall<D>& wall = model_.walls[-1 - b];
-    if ((at[a].x - wall.point).dot(wall.normal) > bounding_radius_[a] + margin) return;
-    collide(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, some_);
+    if ((at[a].x - wall.point).dot(wall.normal) > limits_.bounding_radius[a] + margin) return;
+    collide(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, scratch_.candidates);
   } else {
-    const double far = bounding_radius_[a] + bounding_radius_[b] + margin;
+    const double far = limits_.bounding_radius[a] + limits_.bounding_radius[b] + margin;
     if ((at[a].x - at[b].x).squaredNorm() > far * far) return;
-    collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin, some_);
+    collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin, scratch_.candidates);
   }
-  for (const ContactCandidate<D>& gap : some_) found(gap);
+  for (const ContactCandidate<D>& gap : scratch_.candidates) found(gap);
 }
 
 template <int D>
-void ExactSolver<D>::find(const State<D>& state, double margin) {
-  stand(state);
-  gaps_.clear();
+void ExactSolver<D>::find_contacts(const State<D>& state, double margin) {
+  update_poses(state);
+  candidates_.clear();
   for (const Couple& couple : active_.couples) {
     if (!response_.moves(couple.a) && !response_.moves(couple.b)) continue;
-    near(stances_, couple, margin, [&](const ContactCandidate<D>& gap) { gaps_.push_back(gap); });
+    near_contacts(poses_, couple, margin,
+                  [&](const ContactCandidate<D>& gap) { candidates_.push_back(gap); });
   }
-  std::sort(gaps_.begin(), gaps_.end(),
+  std::sort(candidates_.begin(), candidates_.end(),
             [](const ContactCandidate<D>& p, const ContactCandidate<D>& q) { return p.key < q.key; });
 }
 
@@ -60,35 +62,38 @@ void ExactSolver<D>::find(const State<D>& state, double margin) {
 template <int D>
 double ExactSolver<D>::gap_of(const ContactKey& key, double otherwise) {
   double value = otherwise;
-  near(stances_, {key.a, key.b}, model_.scale, [&](const ContactCandidate<D>& gap) {
+  near_contacts(poses_, {key.a, key.b}, model_.scale, [&](const ContactCandidate<D>& gap) {
     if (gap.key == key) value = gap.value;
   });
   return value;
 }
 
-// the pose of a body a part of the way from begun_ to `state`
+// the pose of a body a part of the way from interval_.begun to `state`
 template <int D>
-BodyMotion<D> ExactSolver<D>::between(const State<D>& state, int body, double h, double part) const {
+BodyMotion<D> ExactSolver<D>::pose_at(const State<D>& state, int body, double h, double part) const {
   const double s = part, r = 1 - s;
   const double p0 = r * r * (1 + 2 * s), p1 = s * s * (3 - 2 * s), m0 = h * s * r * r, m1 = -h * s * s * r;
   BodyMotion<D> at;
-  at.x = p0 * begun_.x[body] + p1 * state.x[body] + m0 * begun_.v[body] + m1 * state.v[body];
+  at.x =
+      p0 * interval_.begun.x[body] + p1 * state.x[body] + m0 * interval_.begun.v[body] + m1 * state.v[body];
   if (const int k = turning(state, body); k >= 0) {
-    at.room_from_body =
-        rotation<D>(sim::between<D>(begun_.turn[k], begun_.spin[k], state.turn[k], state.spin[k], h, s));
+    at.room_from_body = rotation<D>(sim::between<D>(interval_.begun.turn[k], interval_.begun.spin[k],
+                                                    state.turn[k], state.spin[k], h, s));
   }
   return at;
 }
 
 // how far a body went at most, m
 template <int D>
-double ExactSolver<D>::way(const State<D>& state, int body, double h) const {
+double ExactSolver<D>::travel(const State<D>& state, int body, double h) const {
   if (!response_.moves(body)) return 0;
-  double sum = std::sqrt((state.x[body] - begun_.x[body]).squaredNorm());
-  sum = std::max(sum, h * std::sqrt(std::max(begun_.v[body].squaredNorm(), state.v[body].squaredNorm())));
+  double sum = std::sqrt((state.x[body] - interval_.begun.x[body]).squaredNorm());
+  sum = std::max(sum,
+                 h * std::sqrt(std::max(interval_.begun.v[body].squaredNorm(), state.v[body].squaredNorm())));
   if (const int k = turning(state, body); k >= 0) {
-    const double fast = std::sqrt(std::max(begun_.spin[k].squaredNorm(), state.spin[k].squaredNorm()));
-    sum += bounding_radius_[body] * std::min(2.0, h * fast);
+    const double fast =
+        std::sqrt(std::max(interval_.begun.spin[k].squaredNorm(), state.spin[k].squaredNorm()));
+    sum += limits_.bounding_radius[body] * std::min(2.0, h * fast);
   }
   return sum;
 }
@@ -100,54 +105,56 @@ bool ExactSolver<D>::may_close(const State<D>& state, double h, Couple couple) c
   if (!response_.moves(a) && !response_.moves(b)) return false;
   if (b < 0) {
     const Wall<D>& wall = model_.walls[-1 - b];
-    return (stances_[a].x - wall.point).dot(wall.normal) <= bounding_radius_[a] + way(state, a, h) + closed_;
+    return (poses_[a].x - wall.point).dot(wall.normal) <=
+           limits_.bounding_radius[a] + travel(state, a, h) + limits_.touching_gap;
   }
-  const double far =
-      bounding_radius_[a] + bounding_radius_[b] + way(state, a, h) + way(state, b, h) + closed_;
-  return (stances_[a].x - stances_[b].x).squaredNorm() <= far * far;
+  const double far = limits_.bounding_radius[a] + limits_.bounding_radius[b] + travel(state, a, h) +
+                     travel(state, b, h) + limits_.touching_gap;
+  return (poses_[a].x - poses_[b].x).squaredNorm() <= far * far;
 }
 
-// the part of the stretch at which a couple closes, beyond what is held; kNever where it does not. Moves
+// the part of the interval at which a couple closes, beyond what is held; kNever where it does not. Moves
 // their stances.
 template <int D>
-double ExactSolver<D>::closing(const State<D>& state, double h, Couple couple) {
+double ExactSolver<D>::closing_time(const State<D>& state, double h, Couple couple) {
   const int a = couple.a, b = couple.b;  // no binding: lambdas of clang 14 cannot hold one
-  const double ways = way(state, a, h) + way(state, b, h);
-  const auto held = [&](const ContactKey& key) {
-    for (const Held& one : held_) {
-      if (one.kind == Held::Kind::contact && gaps_[one.of].key == key) return acts(one);
+  const double ways = travel(state, a, h) + travel(state, b, h);
+  const auto is_held = [&](const ContactKey& key) {
+    for (const Constraint& one : constraints_) {
+      if (one.kind == Constraint::Kind::contact && candidates_[one.of].key == key) return active(one);
     }
     return false;
   };
   // the least gap at a part of the way
   const auto least = [&](double part) {
-    if (response_.moves(a)) stances_[a] = between(state, a, h, part);
-    if (response_.moves(b)) stances_[b] = between(state, b, h, part);
+    if (response_.moves(a)) poses_[a] = pose_at(state, a, h, part);
+    if (response_.moves(b)) poses_[b] = pose_at(state, b, h, part);
     double value = 1e300;
-    near(stances_, couple, ways + closed_, [&](const ContactCandidate<D>& gap) {
-      if (!held(gap.key)) value = std::min(value, gap.value);
+    near_contacts(poses_, couple, ways + limits_.touching_gap, [&](const ContactCandidate<D>& gap) {
+      if (!is_held(gap.key)) value = std::min(value, gap.value);
     });
     return value;
   };
 
   // walls are never left behind: the end tells. Bodies may pass through each other between
   double high = kNever, before = 0;
-  const double thin = b < 0 ? 0
-                            : std::min(half_thickness_[a] > 0 ? half_thickness_[a] : half_thickness_[b],
-                                       half_thickness_[b] > 0 ? half_thickness_[b] : half_thickness_[a]);
+  const double thin =
+      b < 0 ? 0
+            : std::min(limits_.half_thickness[a] > 0 ? limits_.half_thickness[a] : limits_.half_thickness[b],
+                       limits_.half_thickness[b] > 0 ? limits_.half_thickness[b] : limits_.half_thickness[a]);
   const double pieces = thin > 0 && std::isfinite(ways) ? ways / (kFine * thin) : 0;
   const int looks = int(std::min<double>(pieces, kMostLooks - 1)) + 1;
   for (int i = 1; i <= looks; ++i) {
     const double part = double(i) / looks;
-    looks_ += i > 1;
-    if (least(part) < -closed_) {
+    progress_.searches += i > 1;
+    if (least(part) < -limits_.touching_gap) {
       high = part;
       break;
     }
     // no look is needed before what is between them can be used up
     const double apart = b < 0 ? 0
-                               : std::sqrt((stances_[a].x - stances_[b].x).squaredNorm()) -
-                                     bounding_radius_[a] - bounding_radius_[b];
+                               : std::sqrt((poses_[a].x - poses_[b].x).squaredNorm()) -
+                                     limits_.bounding_radius[a] - limits_.bounding_radius[b];
     const double spare = apart / (kSteepest * ways) * looks - 1;
     if (spare >= 1) i += int(std::min(spare, double(looks - i)));
     before = double(i) / looks;
@@ -161,16 +168,17 @@ double ExactSolver<D>::closing(const State<D>& state, double h, Couple couple) {
     at_low = least(low);
   }
   const auto force = [&] {
-    forced_again_ =
-        forced_again_ || std::find(forced_.begin(), forced_.end(), std::pair(a, b)) != forced_.end();
-    forced_.push_back({a, b});
+    progress_.forced_again = progress_.forced_again ||
+                             std::find(progress_.forced.begin(), progress_.forced.end(), std::pair(a, b)) !=
+                                 progress_.forced.end();
+    progress_.forced.push_back({a, b});
     return 0.0;
   };
   if (at_low <= 0) return force();
-  const bool touching = least(0) <= closed_;
+  const bool touching = least(0) <= limits_.touching_gap;
 
   // regula falsi, Illinois
-  double at_high = least(high), fine = 0.1 * closed_;
+  double at_high = least(high), fine = 0.1 * limits_.touching_gap;
   for (int i = 0; i < kMostRoots && high - low > 1e-15; ++i) {
     double part = (low * at_high - high * at_low) / (at_high - at_low);
     if (!(part > low && part < high)) part = 0.5 * (low + high);
@@ -187,126 +195,135 @@ double ExactSolver<D>::closing(const State<D>& state, double h, Couple couple) {
   return touching && high < kAtOnce ? force() : 0.5 * (low + high);
 }
 
-// the part of the stretch at which the first of what slides has stopped, by a straight line; and whose slide
+// the part of the interval at which the first of what slides has stopped, by a straight line; and whose slide
 template <int D>
-double ExactSolver<D>::stopping(Couple& which) const {
+double ExactSolver<D>::stopping_time(Couple& which) const {
   double first = kNever;
-  for (const Held& held : held_) {
+  for (const Constraint& constraint : constraints_) {
     double begun = 0, now = 0;
-    if (held.kind == Held::Kind::contact) {
-      const ConeBlock<D>& block = blocks_[held.block];
-      if (!block.sliding || modes_[held.block].hold != Hold::slide) continue;
-      const Tangent<D>& way = D > 2 ? holding_[held.block].along : block.direction;
+    if (constraint.kind == Constraint::Kind::contact) {
+      const ConeBlock<D>& block = blocks_[constraint.block];
+      if (!block.sliding || modes_[constraint.block].hold != Hold::slide) continue;
+      const Tangent<D>& way = D > 2 ? interval_.modes[constraint.block].along : block.direction;
       for (int i = 0; i < D - 1; ++i) {
-        begun += way[i] * slips_[held.first + 1 + i];
-        now += way[i] * moves(held.first + 1 + i);
+        begun += way[i] * interval_.velocities[constraint.first + 1 + i];
+        now += way[i] * row_velocity(constraint.first + 1 + i);
       }
       if (D > 2 && begun <= 0) continue;
-    } else if (held.kind == Held::Kind::motor || held.kind == Held::Kind::friction) {
-      const ConeBlock<D>& block = blocks_[held.block];
+    } else if (constraint.kind == Constraint::Kind::motor || constraint.kind == Constraint::Kind::friction) {
+      const ConeBlock<D>& block = blocks_[constraint.block];
       if (block.lower != block.upper) continue;
-      const double aim = held.kind == Held::Kind::motor ? model_.joints[held.of].motor->speed : 0;
-      const double sign = slips_[held.first] > aim ? 1 : -1;
-      begun = sign * (slips_[held.first] - aim), now = sign * (moves(held.first) - aim);
+      const double aim =
+          constraint.kind == Constraint::Kind::motor ? model_.joints[constraint.of].motor->speed : 0;
+      const double sign = interval_.velocities[constraint.first] > aim ? 1 : -1;
+      begun = sign * (interval_.velocities[constraint.first] - aim),
+      now = sign * (row_velocity(constraint.first) - aim);
     } else {
       continue;
     }
-    if (!(now < -still_ && begun / (begun - now) < first)) continue;
+    if (!(now < -still_speed_ && begun / (begun - now) < first)) continue;
     first = begun / (begun - now);
-    which = {rows_[held.first].a, rows_[held.first].b};
+    which = {rows_[constraint.first].a, rows_[constraint.first].b};
   }
   return first;
 }
 
 // how much force is left, of these, until a contact lets go; in event mode, until it slips
 template <int D>
-double ExactSolver<D>::grasp(const Held& held, const Eigen::VectorXd& f) const {
-  const double pressed = f[held.first];
-  if (model_.collision != Collision::event || holding_[held.block].hold != Hold::stick) return pressed;
-  return blocks_[held.block].mu * pressed - std::sqrt(f.segment(held.first + 1, D - 1).squaredNorm());
+double ExactSolver<D>::force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const {
+  const double pressed = f[constraint.first];
+  if (model_.collision != Collision::event || interval_.modes[constraint.block].hold != Hold::stick)
+    return pressed;
+  return blocks_[constraint.block].mu * pressed -
+         std::sqrt(f.segment(constraint.first + 1, D - 1).squaredNorm());
 }
 
-// the part of the stretch at which the first contact lets go or slips, by a straight line: where its force
+// the part of the interval at which the first contact lets go or slips, by a straight line: where its force
 // has gone beyond by a little, so that it does indeed. Beyond, what pulls would hold on, and friction would
 // drive the slip
 template <int D>
-double ExactSolver<D>::letting_go(const Held*& which) {
+double ExactSolver<D>::release_time(const Constraint*& which) {
   double most = 0, first = kNever;
-  for (const Held& held : held_) {
-    if (held.kind == Held::Kind::contact) most = std::max(most, pressed_[held.first]);
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::contact)
+      most = std::max(most, interval_.forces[constraint.first]);
   }
-  slight_ = kSlight * most;
-  for (const Held& held : held_) {
-    if (held.kind != Held::Kind::contact || !acts(held)) continue;
-    if (std::find(vague_.begin(), vague_.end(), gaps_[held.of].key) != vague_.end()) continue;
-    const double begun = grasp(held, pressed_), now = grasp(held, f_);
-    if (begun <= slight_ || now >= -slight_) continue;
-    const double part = (begun + 0.5 * slight_) / (begun - now);
-    if (part < first) first = part, which = &held;
+  interval_.slight = kSlight * most;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact || !active(constraint)) continue;
+    if (std::find(progress_.unclear.begin(), progress_.unclear.end(), candidates_[constraint.of].key) !=
+        progress_.unclear.end())
+      continue;
+    const double begun = force_reserve(constraint, interval_.forces), now = force_reserve(constraint, f_);
+    if (begun <= interval_.slight || now >= -interval_.slight) continue;
+    const double part = (begun + 0.5 * interval_.slight) / (begun - now);
+    if (part < first) first = part, which = &constraint;
   }
   return first;
 }
 
-// the part of the stretch from begun_ to `state` of the first event, and the pair concerned; kNever:
-// nothing does
+// the part of the interval from interval_.begun to `state` at which the first thing happens, and to whom;
+// kNever: nothing does
 template <int D>
-double ExactSolver<D>::crossing(const State<D>& state, double h, Couple& which) {
+double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which) {
   // what slides, by its rows at the end
-  stand(state);
+  update_poses(state);
   rows_.clear();
-  for (Held& held : held_) {
-    lay_rows(held, held.kind == Held::Kind::contact ? AngularVec<D>::Zero().eval()
-                                                    : turn_between(state, model_.joints[held.of]));
+  for (Constraint& constraint : constraints_) {
+    build_jacobian(constraint, constraint.kind == Constraint::Kind::contact
+                                   ? AngularVec<D>::Zero().eval()
+                                   : turn_between(state, model_.joints[constraint.of]));
   }
-  double first = stopping(which);
+  double first = stopping_time(which);
 
   // ropes and limits that are not held, and so have no row, by theirs
   Couple joint{-1, -1};
-  if (const double part = tightening(state, h, joint); part < first) first = part, which = joint;
+  if (const double part = tightening_time(state, h, joint); part < first) first = part, which = joint;
   for (const Couple& couple : active_.couples) {
     if (!may_close(state, h, couple)) continue;
-    if (const double part = closing(state, h, couple); part < first) first = part, which = couple;
-    stances_[couple.a] = body_motion(state, couple.a);
-    if (couple.b >= 0) stances_[couple.b] = body_motion(state, couple.b);
+    if (const double part = closing_time(state, h, couple); part < first) first = part, which = couple;
+    poses_[couple.a] = body_motion(state, couple.a);
+    if (couple.b >= 0) poses_[couple.b] = body_motion(state, couple.b);
   }
   return first;
 }
 
 // the turn between the sides of a joint a part of the way
 template <int D>
-AngularVec<D> ExactSolver<D>::turn_part(const State<D>& state, const Joint<D>& joint, double h,
-                                        double part) const {
+AngularVec<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint<D>& joint, double h,
+                                              double part) const {
   const auto at = [&](int body) -> AngularVec<D> {
     const int k = body < 0 ? -1 : turning(state, body);
     if (k < 0) return AngularVec<D>::Zero();
-    return rounds<D>(sim::between<D>(begun_.turn[k], begun_.spin[k], state.turn[k], state.spin[k], h, part));
+    return rounds<D>(sim::between<D>(interval_.begun.turn[k], interval_.begun.spin[k], state.turn[k],
+                                     state.spin[k], h, part));
   };
   return at(joint.a.body) - at(joint.b.body);
 }
 
 // ropes that become tight and limits that are met
 template <int D>
-double ExactSolver<D>::tightening(const State<D>& state, double h, Couple& which) {
-  using Kind = typename Held::Kind;
+double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& which) {
+  using Kind = typename Constraint::Kind;
   double first = kNever;
   const auto look = [&](Kind kind, int joint) {
-    for (const Held& held : held_) {
-      if (held.kind == kind && held.of == joint && acts(held)) return;
+    for (const Constraint& constraint : constraints_) {
+      if (constraint.kind == kind && constraint.of == joint && active(constraint)) return;
     }
-    Held held{};
-    held.kind = kind, held.of = joint;
+    Constraint constraint{};
+    constraint.kind = kind, constraint.of = joint;
     const std::size_t rows = rows_.size();
     const auto left = [&](double part) {
       for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
-        if (response_.moves(body)) stances_[body] = between(state, body, h, part);
+        if (response_.moves(body)) poses_[body] = pose_at(state, body, h, part);
       }
-      lay_rows(held, turn_part(state, model_.joints[joint], h, part));
+      build_jacobian(constraint, turn_between_at(state, model_.joints[joint], h, part));
       rows_.resize(rows);
-      return held.off;
+      return constraint.off;
     };
     double high = 1, at_high = left(1);
     const double before = first;
-    if (at_high < -closed_) {
+    if (at_high < -limits_.touching_gap) {
       double low = 0, at_low = left(0);
       for (int i = 0; i < 60 && at_low <= 0; ++i) {
         low = i == 0 ? 0.5 : 0.5 * low;
@@ -324,7 +341,7 @@ double ExactSolver<D>::tightening(const State<D>& state, double h, Couple& which
     }
     if (first < before) which = {model_.joints[joint].a.body, model_.joints[joint].b.body};
     for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
-      if (response_.moves(body)) stances_[body] = body_motion(state, body);
+      if (response_.moves(body)) poses_[body] = body_motion(state, body);
     }
   };
   for (const int i : active_.joints) {
@@ -340,59 +357,61 @@ double ExactSolver<D>::tightening(const State<D>& state, double h, Couple& which
 
 // smooth motion up to the first event, at most h; answers how long it was. `cut`: an event ended it
 template <int D>
-double ExactSolver<D>::stretch(State<D>& state, double t, double h, bool& cut) {
-  keep(state, begun_);
-  slips_.resize(Eigen::Index(rows_.size()));
-  for (int i = 0; i < int(rows_.size()); ++i) slips_[i] = moves(i);
+double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, bool& cut) {
+  save(state, interval_.begun);
+  interval_.velocities.resize(Eigen::Index(rows_.size()));
+  for (int i = 0; i < int(rows_.size()); ++i) interval_.velocities[i] = row_velocity(i);
   double length = h;
-  cut = false, charged_ = {-1, -1};
-  pressed_ = f_;
+  cut = false, progress_.cut_by = {-1, -1};
+  interval_.forces = f_;
   for (int tries = 0; tries < 20; ++tries) {
-    smooth(state, t, length);
-    // a force may grow without bound within a stretch
-    if (!sound(state)) {
-      restore(begun_, state);
-      stand(state);
+    integrate(state, t, length);
+    // a force may grow without bound within an interval
+    if (!all_finite(state)) {
+      restore(interval_.begun, state);
+      update_poses(state);
       cut = true;
       return 0;
     }
-    const Held* which = nullptr;
-    double opens = openings_ > 0 ? letting_go(which) : kNever;
+    const Constraint* which = nullptr;
+    double opens = progress_.openings > 0 ? release_time(which) : kNever;
     // a force that comes down as far in a shorter time is one of many that may bear the same load
-    if (let_go_ && opens < kStraight) vague_.push_back(gaps_[which->of].key), opens = kNever;
+    if (progress_.released && opens < kStraight)
+      progress_.unclear.push_back(candidates_[which->of].key), opens = kNever;
     Couple meets{-1, -1};
-    const double part = std::min(opens, crossing(state, length, meets));
+    const double part = std::min(opens, first_event(state, length, meets));
     if (part > 1) return length;
     cut = true;
-    let_go_.reset();
+    progress_.released.reset();
     if (part == opens) {
-      let_go_ = gaps_[which->of].key, grasp_at_let_go_ = grasp(*which, pressed_);
-      meets = {let_go_->a, let_go_->b};
+      progress_.released = candidates_[which->of].key,
+      progress_.reserve_at_release = force_reserve(*which, interval_.forces);
+      meets = {progress_.released->a, progress_.released->b};
     }
-    charged_ = meets;
-    restore(begun_, state);
-    stand(state);
+    progress_.cut_by = meets;
+    restore(interval_.begun, state);
+    update_poses(state);
     if (part * length < 1e-14 * h) return 0;
     length *= part;
   }
-  smooth(state, t, length);
+  integrate(state, t, length);
   return length;
 }
 
 // in finer steps where there are joints: what they hold swings faster than what flies
 template <int D>
-void ExactSolver<D>::smooth(State<D>& state, double t, double h) {
-  const int pieces = row_joints_ == 0 || row_joints_ > kFewJoints ? 1 : kFiner;
+void ExactSolver<D>::integrate(State<D>& state, double t, double h) {
+  const int pieces = limits_.row_joints == 0 || limits_.row_joints > kFewJoints ? 1 : kFiner;
   for (int i = 0; i < pieces; ++i)
     free_.step(integrate_, state, t + i * (h / pieces), h / pieces, stages_, this);
 }
 
-template double ExactSolver<2>::stretch(State<2>&, double, double, bool&);
-template void ExactSolver<2>::find(const State<2>&, double);
-template double ExactSolver<2>::grasp(const Held&, const Eigen::VectorXd&) const;
-template double ExactSolver<3>::stretch(State<3>&, double, double, bool&);
-template void ExactSolver<3>::find(const State<3>&, double);
-template double ExactSolver<3>::grasp(const Held&, const Eigen::VectorXd&) const;
+template double ExactSolver<2>::advance_to_event(State<2>&, double, double, bool&);
+template void ExactSolver<2>::find_contacts(const State<2>&, double);
+template double ExactSolver<2>::force_reserve(const Constraint&, const Eigen::VectorXd&) const;
+template double ExactSolver<3>::advance_to_event(State<3>&, double, double, bool&);
+template void ExactSolver<3>::find_contacts(const State<3>&, double);
+template double ExactSolver<3>::force_reserve(const Constraint&, const Eigen::VectorXd&) const;
 template double ExactSolver<2>::gap_of(const ContactKey&, double);
 template double ExactSolver<3>::gap_of(const ContactKey&, double);
 

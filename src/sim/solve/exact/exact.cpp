@@ -32,47 +32,55 @@ constexpr int kMostLoneCuts =
 }  // namespace
 
 template <int D>
-ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
-    : model_(model),
-      may_touch_(model),
-      integrate_(sim::integrate(model.integrator)),
-      free_(model, paths),
-      response_(model) {
+typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& model, Serves whom) {
+  Limits limits;
   const double g = std::sqrt(model.gravity.squaredNorm()), h = 1 / value(model.rate);
   const bool exact = model.collision == Collision::event;
-  pace_ = std::sqrt(g * model.scale);
-  if (pace_ == 0) pace_ = model.scale;
-  closed_ = (exact ? 1e-12 : 1e-9) * model.scale;
-  rest_ = exact ? 1e-6 * pace_ : std::max(1e-6 * pace_, 0.1 * g * h);
-  most_cuts_ = exact ? 2000 + 100 * int(model.bodies.size()) : 12;
-  most_openings_ = exact ? most_cuts_ : 6;
-  patience_ = exact ? 8 + int(model.bodies.size()) : 4;
-  short_ = exact ? 1.0 / 64 : 1.0 / 4;
-  budget_ = exact ? 1e300 : 1e7;
-  if (!exact) cone_.enough = 1e-7;
-  for (const Joint<D>& joint : model.joints) row_joints_ += !joint.linked;
+  limits.unit_speed = std::sqrt(g * model.scale);
+  if (limits.unit_speed == 0) limits.unit_speed = model.scale;
+  limits.touching_gap = (exact ? 1e-12 : 1e-9) * model.scale;
+  limits.rest_speed = exact ? 1e-6 * limits.unit_speed : std::max(1e-6 * limits.unit_speed, 0.1 * g * h);
+  limits.most_cuts = exact ? 2000 + 100 * int(model.bodies.size()) : 12;
+  limits.most_openings = exact ? limits.most_cuts : 6;
+  limits.patience = exact ? 8 + int(model.bodies.size()) : 4;
+  limits.short_step = exact ? 1.0 / 64 : 1.0 / 4;
+  limits.budget = exact ? 1e300 : 1e7;
+  for (const Joint<D>& joint : model.joints) limits.row_joints += !joint.linked;
   for (const Body<D>& body : model.bodies) {
-    bounding_radius_.push_back(sim::bounding_radius(body.shape));
-    half_thickness_.push_back(half_thickness(body.shape));
+    limits.bounding_radius.push_back(sim::bounding_radius(body.shape));
+    limits.half_thickness.push_back(sim::half_thickness(body.shape));
   }
   if (whom == Serves::all) {
-    list_couples<D>(model, [&](int a, int b) { couples_.push_back({a, b}); });
+    list_couples<D>(model, [&](int a, int b) { limits.couples.push_back({a, b}); });
   } else {
     for (int a = 0; a < int(model.bodies.size()); ++a)
-      if (model.bodies[a].fixed) fixed_.push_back(a);
+      if (model.bodies[a].fixed) limits.fixed.push_back(a);
   }
   const auto number = [](std::vector<int>& list, std::size_t size) {
     list.resize(size);
     std::iota(list.begin(), list.end(), 0);
   };
-  number(every_body_, model.bodies.size()), number(every_joint_, model.joints.size());
-  number(every_spring_, model.springs.size()), number(every_chain_, model.chains.size());
-  reach_.resize(model.bodies.size());
-  groups_.reserve(model.bodies.size());
+  number(limits.bodies, model.bodies.size()), number(limits.joints, model.joints.size());
+  number(limits.springs, model.springs.size()), number(limits.chains, model.chains.size());
+  return limits;
 }
 
 template <int D>
-void ExactSolver<D>::keep(const State<D>& state, Motion& motion) const {
+ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
+    : model_(model),
+      may_touch_(model),
+      limits_(make_limits(model, whom)),
+      integrate_(sim::integrate(model.integrator)),
+      free_(model, paths),
+      response_(model) {
+  if (model.collision != Collision::event) cone_.enough = 1e-7;
+  progress_.rest_speed = limits_.rest_speed;
+  step_.travel_bound.resize(model.bodies.size());
+  step_.groups.reserve(model.bodies.size());
+}
+
+template <int D>
+void ExactSolver<D>::save(const State<D>& state, Motion& motion) const {
   motion.x.resize(state.x.size()), motion.v.resize(state.v.size());
   motion.turn.resize(state.turn.size()), motion.spin.resize(state.spin.size());
   motion.own.resize(state.own.size()), motion.postures.resize(state.postures.size());
@@ -100,7 +108,7 @@ void ExactSolver<D>::restore(const Motion& motion, State<D>& state) const {
 
 // whether every number of the bodies at hand is finite
 template <int D>
-bool ExactSolver<D>::sound(const State<D>& state) const {
+bool ExactSolver<D>::all_finite(const State<D>& state) const {
   for (const int body : active_.subset.bodies) {
     if (!state.x[body].array().isFinite().all() || !state.v[body].array().isFinite().all()) return false;
     const int k = turning(state, body);
@@ -112,7 +120,7 @@ bool ExactSolver<D>::sound(const State<D>& state) const {
 
 // kinetic energy of the bodies at hand, J
 template <int D>
-double ExactSolver<D>::motion(const State<D>& state) const {
+double ExactSolver<D>::kinetic_energy(const State<D>& state) const {
   double sum = 0;
   for (const int body : active_.subset.bodies) {
     if (!model_.bodies[body].fixed) sum += kinetic(model_, state, body);
@@ -122,13 +130,13 @@ double ExactSolver<D>::motion(const State<D>& state) const {
 
 // collects the bodies at hand, whatever of them is awake
 template <int D>
-void ExactSolver<D>::ready(State<D>& state) {
+void ExactSolver<D>::collect_bodies(State<D>& state) {
   double fastest = 0;
   for (const int body : active_.subset.bodies) {
     response_.set(body, !model_.bodies[body].fixed && !state.frozen[body]);
     fastest = std::max(fastest, state.v[body].squaredNorm());
   }
-  still_ = 1e-11 * std::max(pace_, std::sqrt(fastest));
+  still_speed_ = 1e-11 * std::max(limits_.unit_speed, std::sqrt(fastest));
   free_.gather(state, active_.subset);
   stages_.reserve(std::size_t(free_.size()));
 }
@@ -136,171 +144,179 @@ void ExactSolver<D>::ready(State<D>& state) {
 template <int D>
 void ExactSolver<D>::step(State<D>& state, double t, double h) {
   const std::size_t n = model_.bodies.size();
-  begin_groups(state);
-  all_contacts_.clear(), all_impulses_.clear();
-  joint_forces_ = state.joint_forces;
+  resize_for(state);
+  step_.contacts.clear(), step_.impulses.clear();
+  outcome_.joint_forces = state.joint_forces;
   cone_.thorough = model_.collision == Collision::event || state.step % kThorough == 0;
 
-  enter_all();
-  ready(state);
-  keep(state, first_);
-  frozen_then_ = state.frozen, quiet_then_ = state.quiet;
-  bound_ways(state, t, h);
-  near_.reset(int(n)), old_root_.assign(n, -1), strayed_.assign(n, 0.0), spent_.assign(n, 0);
+  activate_all();
+  collect_bodies(state);
+  save(state, step_.begun);
+  step_.frozen = state.frozen, step_.quiet = state.quiet;
+  bound_travel(state, t, h);
+  step_.near.reset(int(n)), step_.old_root.assign(n, -1), step_.travelled.assign(n, 0.0),
+      step_.cuts.assign(n, 0);
   for (int round = 0; round < kMostRounds; ++round) {
     // bodies that got farther than expected, into the reach of others, are stepped again together with them
-    join_near(state);
+    join_near_bodies(state);
     bool any = false;
     list_groups(state);
-    for (const Group& group : groups_) {
-      bool known = old_root_[group.root] == group.root;
-      for (const int body : group.subset.bodies) known = known && old_root_[body] == group.root;
+    for (const Group& group : step_.groups) {
+      bool known = step_.old_root[group.root] == group.root;
+      for (const int body : group.subset.bodies) known = known && step_.old_root[body] == group.root;
       if (known) continue;
       any = true;
-      enter(group);
+      activate(group);
       if (round > 0) {
-        restore(first_, state);
+        restore(step_.begun, state);
         for (const int body : group.subset.bodies)
-          state.frozen[body] = frozen_then_[body], state.quiet[body] = quiet_then_[body];
+          state.frozen[body] = step_.frozen[body], state.quiet[body] = step_.quiet[body];
         const auto of_group = [&](const Contact<D>& c) {
-          return group_of_[c.key.a] == group_of_[group.root];
+          return step_.group_of[c.key.a] == step_.group_of[group.root];
         };
-        std::erase_if(all_contacts_, of_group), std::erase_if(all_impulses_, of_group);
+        std::erase_if(step_.contacts, of_group), std::erase_if(step_.impulses, of_group);
       }
-      for (const int body : group.subset.bodies) old_root_[body] = group.root, spent_[body] = 0;
-      advance(state, t, h);
-      all_contacts_.insert(all_contacts_.end(), contacts_.begin(), contacts_.end());
-      all_impulses_.insert(all_impulses_.end(), impulses_.begin(), impulses_.end());
+      for (const int body : group.subset.bodies) step_.old_root[body] = group.root, step_.cuts[body] = 0;
+      step_group(state, t, h);
+      step_.contacts.insert(step_.contacts.end(), outcome_.contacts.begin(), outcome_.contacts.end());
+      step_.impulses.insert(step_.impulses.end(), outcome_.impulses.begin(), outcome_.impulses.end());
     }
     if (!any) break;
   }
-  contacts_.swap(all_contacts_), impulses_.swap(all_impulses_);
+  outcome_.contacts.swap(step_.contacts), outcome_.impulses.swap(step_.impulses);
   const auto sooner = [](const auto& p, const auto& q) { return p.key < q.key; };
-  std::sort(contacts_.begin(), contacts_.end(), sooner);
+  std::sort(outcome_.contacts.begin(), outcome_.contacts.end(), sooner);
 
-  enter_all();
-  ready(state);
-  report(state);
-  rest(state, t + h, h);
-  report(state);
+  activate_all();
+  collect_bodies(state);
+  write_contacts(state);
+  put_to_sleep(state, t + h, h);
+  write_contacts(state);
   break_joints(state);
 }
 
 // moves the group at hand from t to t + h
 template <int D>
-void ExactSolver<D>::advance(State<D>& state, double t, double h) {
-  ready(state);
-  contacts_.clear(), impulses_.clear();
-  known_ = &state.contacts;
+void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
+  collect_bodies(state);
+  outcome_.contacts.clear(), outcome_.impulses.clear();
+  progress_.known = &state.contacts;
   double done = 0;
   int tiny = 0;  // cuts in a row that led nowhere
-  forced_.clear(), forced_again_ = false;
-  rough_ = false, work_ = 0, looks_ = 0;
-  openings_ = most_openings_, let_go_.reset(), vague_.clear();
+  progress_.forced.clear(), progress_.forced_again = false;
+  progress_.rough = false, progress_.work = 0, progress_.searches = 0;
+  progress_.openings = limits_.most_openings, progress_.released.reset(), progress_.unclear.clear();
   const bool exact = model_.collision == Collision::event;
-  const int most_cuts = exact ? most_cuts_ : active_.lone ? kMostLoneCuts : most_cuts_;
-  const double slowest = rest_, fastest = std::max(rest_, pace_ * pace_ / model_.scale * h);
+  const int most_cuts = exact ? limits_.most_cuts : active_.lone ? kMostLoneCuts : limits_.most_cuts;
+  const double slowest = progress_.rest_speed,
+               fastest =
+                   std::max(progress_.rest_speed, limits_.unit_speed * limits_.unit_speed / model_.scale * h);
   int grown = 0;  // cuts at which rest has grown
-  // `event` counts the cuts of all bodies of the group
-  for (int spent = 0; done < h; spent = exact ? spent + 1 : most_spent()) {
-    find(state, closed_);
+  // `event` counts all cuts of the group, whoever they are of
+  for (int spent = 0; done < h; spent = exact ? spent + 1 : cuts_so_far()) {
+    find_contacts(state, limits_.touching_gap);
     if (wake(state)) {
-      ready(state);
-      find(state, closed_);
+      collect_bodies(state);
+      find_contacts(state, limits_.touching_gap);
     }
     resolve_impacts(state);
     bool cut = true;
     double length = 0;
     bool held_again = false;  // what let go is to be held: the same instant once more
     // what is as fast as 1e6 room heights a second has as many places to be looked for
-    if ((work_ > budget_ || looks_ > kManyLooks) && done > 0) rough_ = true;
-    const bool chosen = !rough_ && choose(state, t + done) && !jammed();
-    if (!chosen) rough_ = !exact;
+    if ((progress_.work > limits_.budget || progress_.searches > kManyLooks) && done > 0)
+      progress_.rough = true;
+    const bool chosen = !progress_.rough && solve_modes(state, t + done) && !jammed();
+    if (!chosen) progress_.rough = !exact;
     if (chosen && spent < most_cuts && tiny <= kStuck) {
-      if (let_go_) part_ways();
-      remember();
+      if (progress_.released) release_contact();
+      record_forces();
       if (coming_apart()) project(state);
-      // on the brink nothing slips: as an equality it is a stick
-      holding_ = modes_;
-      for (ConeMode<D>& mode : holding_) {
+      // on the at_friction_limit nothing slips: as an equality it is a stick
+      interval_.modes = modes_;
+      for (ConeMode<D>& mode : interval_.modes) {
         if (mode.hold == Hold::at_friction_limit) mode.hold = Hold::stick;
       }
-      if (D > 2) begin_slides(state, t + done, h - done);
-      const std::size_t forced = forced_.size();
-      length = stretch(state, t + done, h - done, cut);
-      held_again = forced_.size() > forced && !forced_again_;
+      if (D > 2) begin_slip_directions(state, t + done, h - done);
+      const std::size_t forced = progress_.forced.size();
+      length = advance_to_event(state, t + done, h - done, cut);
+      held_again = progress_.forced.size() > forced && !progress_.forced_again;
       if (length > 0) project(state);
-      if (cut) charge(charged_.a, charged_.b);
+      if (cut) count_cut(progress_.cut_by.a, progress_.cut_by.b);
     }
     if (length == 0 && !held_again) {
       // no way to go on but a short one at once
-      length = std::min(spent < most_cuts && !rough_ ? short_ * h : std::max(h / kMostPieces, unseen(state)),
+      length = std::min(spent < most_cuts && !progress_.rough ? limits_.short_step * h
+                                                              : std::max(h / kMostPieces, time_unseen(state)),
                         h - done);
-      settle(state, t + done, length);
+      step_by_impulses(state, t + done, length);
       cut = length < h - done;
-      charge(-1, -1);
+      count_cut(-1, -1);
     }
     if (length > 0) {
-      measure_ways(state);
-      forced_.clear(), forced_again_ = false;
+      measure_travel(state);
+      progress_.forced.clear(), progress_.forced_again = false;
       tiny = length < kTiny * h ? tiny + 1 : 0;
     }
     done = cut ? done + length : h;
     // ever faster impacts count as rest, so that what bounces ever faster comes to an end
-    if (spent > patience_ && spent % 2 == 0 && spent > grown) {
-      rest_ = std::min(fastest, 2 * rest_);
+    if (spent > limits_.patience && spent % 2 == 0 && spent > grown) {
+      progress_.rest_speed = std::min(fastest, 2 * progress_.rest_speed);
       grown = spent;
     }
   }
-  rest_ = slowest;
-  find(state, closed_);
+  progress_.rest_speed = slowest;
+  find_contacts(state, limits_.touching_gap);
   if (wake(state)) {
-    ready(state);
-    find(state, closed_);
+    collect_bodies(state);
+    find_contacts(state, limits_.touching_gap);
   }
   resolve_impacts(state);
   // the forces that joints are shown with and break by are those of the end
-  if (!active_.joints.empty() && choose(state, t + h)) remember();
+  if (!active_.joints.empty() && solve_modes(state, t + h)) record_forces();
   // what was pushed out of another has another gap now than when its force was found
-  if (!rough_) return;
-  stand(state);
-  for (Contact<D>& contact : contacts_) contact.gap = gap_of(contact.key, contact.gap);
+  if (!progress_.rough) return;
+  update_poses(state);
+  for (Contact<D>& contact : outcome_.contacts) contact.gap = gap_of(contact.key, contact.gap);
 }
 
-// what the last stretch ended by lets go, or slips, if it bears next to nothing more now
+// what the last interval ended by lets go, or slips, if it bears next to nothing more now
 template <int D>
-void ExactSolver<D>::part_ways() {
-  --openings_;
-  for (const Held& held : held_) {
-    if (held.kind != Held::Kind::contact || gaps_[held.of].key != *let_go_ || !acts(held)) continue;
-    ConeMode<D>& mode = modes_[held.block];
-    const Tangent<D> drag = f_.segment(held.first + 1, D - 1);
-    const double left = grasp(held, f_);
-    if (f_[held.first] <= slight_) {
+void ExactSolver<D>::release_contact() {
+  --progress_.openings;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact ||
+        candidates_[constraint.of].key != *progress_.released || !active(constraint))
+      continue;
+    ConeMode<D>& mode = modes_[constraint.block];
+    const Tangent<D> drag = f_.segment(constraint.first + 1, D - 1);
+    const double left = force_reserve(constraint, f_);
+    if (f_[constraint.first] <= interval_.slight) {
       mode.hold = Hold::open;
-      f_.segment(held.first, D).setZero();
-    } else if (left <= slight_ && mode.hold != Hold::slide) {
+      f_.segment(constraint.first, D).setZero();
+    } else if (left <= interval_.slight && mode.hold != Hold::slide) {
       mode.hold = Hold::slide, mode.along = -drag / std::sqrt(drag.squaredNorm());
-    } else if (left > 0.25 * grasp_at_let_go_) {
-      vague_.push_back(*let_go_);  // one of many that may bear the same load: its force tells nothing
+    } else if (left > 0.25 * progress_.reserve_at_release) {
+      progress_.unclear.push_back(
+          *progress_.released);  // one of many that may bear the same load: its force tells nothing
     }
   }
-  let_go_.reset();
+  progress_.released.reset();
 }
 
 // s: how long all may move on and not come far into one another
 template <int D>
-double ExactSolver<D>::unseen(const State<D>& state) const {
+double ExactSolver<D>::time_unseen(const State<D>& state) const {
   double least = 1e300;
   for (const int body : active_.subset.bodies) {
-    if (half_thickness_[body] > 0) least = std::min(least, half_thickness_[body]);
+    if (limits_.half_thickness[body] > 0) least = std::min(least, limits_.half_thickness[body]);
   }
   double fastest = 0;
   for (const int body : active_.subset.bodies) {
     if (!response_.moves(body)) continue;
     double speed = std::sqrt(state.v[body].squaredNorm());
     if (const int k = turning(state, body); k >= 0)
-      speed += bounding_radius_[body] * std::sqrt(state.spin[k].squaredNorm());
+      speed += limits_.bounding_radius[body] * std::sqrt(state.spin[k].squaredNorm());
     fastest = std::max(fastest, speed);
   }
   return fastest > 0 ? kSunk * least / fastest : 1e300;
@@ -310,51 +326,51 @@ template <int D>
 void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const double> v,
                            std::span<double> d_rate, std::span<double> v_rate) {
   free_.rates(t, d, v, d_rate, v_rate);
-  if (held_.empty()) return;
+  if (constraints_.empty()) return;
 
   // rows at the poses of this stage
   const auto& members = free_.bodies();
-  for (std::size_t i = 0; i < members.size(); ++i) stances_[members[i]] = free_.stances()[i];
+  for (std::size_t i = 0; i < members.size(); ++i) poses_[members[i]] = free_.stances()[i];
   const auto& links = free_.chains().links();
-  for (std::size_t i = 0; i < links.size(); ++i) stances_[links[i]] = free_.stances()[members.size() + i];
+  for (std::size_t i = 0; i < links.size(); ++i) poses_[links[i]] = free_.stances()[members.size() + i];
   rows_.clear();
-  for (Held& held : held_) lay_rows(held, AngularVec<D>::Zero());
+  for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
   chain_response_.build(rows_, response_, free_.chains());
   b_.resize(Eigen::Index(rows_.size()));
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = along(i, v_rate) + rows_[i].velocity_product;
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, v_rate) + rows_[i].velocity_product;
 
   // what holds goes on holding
-  if (D > 2) turn_slides();
-  hold();
-  for (int i = 0; i < int(rows_.size()); ++i) push(i, f_[i], v_rate);
+  if (D > 2) turn_slip_directions();
+  solve_held();
+  for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], v_rate);
 }
 
 // contacts and joints and their forces as they were chosen last; joints of what is frozen keep theirs
 template <int D>
-void ExactSolver<D>::remember() {
-  contacts_.clear(), known_ = &contacts_;
+void ExactSolver<D>::record_forces() {
+  outcome_.contacts.clear(), progress_.known = &outcome_.contacts;
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (response_.moves(joint.a.body) || response_.moves(joint.b.body)) joint_forces_[i].setZero();
+    if (response_.moves(joint.a.body) || response_.moves(joint.b.body)) outcome_.joint_forces[i].setZero();
   }
-  chain_forces();
-  for (const Held& held : held_) {
-    if (held.kind == Held::Kind::contact) continue;
-    for (int i = held.first; i < held.first + held.rows; ++i)
-      joint_forces_[held.of] += f_[i] * rows_[i].along;
+  record_chain_forces();
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::contact) continue;
+    for (int i = constraint.first; i < constraint.first + constraint.rows; ++i)
+      outcome_.joint_forces[constraint.of] += f_[i] * rows_[i].along;
   }
-  for (const Held& held : held_) {
-    if (held.kind != Held::Kind::contact) continue;
-    const Hold hold = modes_[held.block].hold;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact) continue;
+    const Hold hold = modes_[constraint.block].hold;
     if (hold == Hold::open) continue;
     Contact<D> contact;
-    contact.key = gaps_[held.of].key;
+    contact.key = candidates_[constraint.of].key;
     contact.touching = hold == Hold::slide               ? ContactMode::slide
                        : hold == Hold::at_friction_limit ? ContactMode::at_friction_limit
                                                          : ContactMode::stick;
-    contact.point = held.point, contact.normal = held.normal, contact.gap = held.off;
-    for (int i = 0; i < D; ++i) contact.force += f_[held.first + i] * rows_[held.first + i].along;
-    contacts_.push_back(contact);
+    contact.point = constraint.point, contact.normal = constraint.normal, contact.gap = constraint.off;
+    for (int i = 0; i < D; ++i) contact.force += f_[constraint.first + i] * rows_[constraint.first + i].along;
+    outcome_.contacts.push_back(contact);
   }
 }
 
@@ -362,31 +378,31 @@ void ExactSolver<D>::remember() {
 template <int D>
 void ExactSolver<D>::break_joints(State<D>& state) {
   bool any = false;
-  ripe_.assign(model_.bodies.size(), 0);
+  scratch_.ripe.assign(model_.bodies.size(), 0);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > joint.breaks)) continue;
-    if (!any) join(state);
+    if (!any) join_touching(state);
     state.broken[i] = 1, any = true;
     for (const int body : {joint.a.body, joint.b.body}) {
-      if (body >= 0) ripe_[islands_.root(body)] = 1;
+      if (body >= 0) scratch_.ripe[touching_.root(body)] = 1;
     }
   }
-  for (std::size_t i = 0; any && i < ripe_.size(); ++i) {
-    if (ripe_[islands_.root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
+  for (std::size_t i = 0; any && i < scratch_.ripe.size(); ++i) {
+    if (scratch_.ripe[touching_.root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
   }
 }
 
 template <int D>
-void ExactSolver<D>::report(State<D>& state) {
-  state.joint_forces = joint_forces_;
-  for (const Contact<D>& struck : impulses_) {
-    const auto at = std::lower_bound(contacts_.begin(), contacts_.end(), struck,
+void ExactSolver<D>::write_contacts(State<D>& state) {
+  state.joint_forces = outcome_.joint_forces;
+  for (const Contact<D>& struck : outcome_.impulses) {
+    const auto at = std::lower_bound(outcome_.contacts.begin(), outcome_.contacts.end(), struck,
                                      [](const auto& p, const auto& q) { return p.key < q.key; });
-    if (at != contacts_.end() && at->key == struck.key) {
+    if (at != outcome_.contacts.end() && at->key == struck.key) {
       at->impulse = struck.impulse;
     } else {
-      contacts_.insert(at, struck);
+      outcome_.contacts.insert(at, struck);
     }
   }
   // what was frozen keeps its forces
@@ -397,7 +413,7 @@ void ExactSolver<D>::report(State<D>& state) {
     state.contacts[kept++] = contact;
   }
   state.contacts.resize(kept);
-  state.contacts.insert(state.contacts.end(), contacts_.begin(), contacts_.end());
+  state.contacts.insert(state.contacts.end(), outcome_.contacts.begin(), outcome_.contacts.end());
   std::sort(state.contacts.begin(), state.contacts.end(),
             [](const auto& p, const auto& q) { return p.key < q.key; });
 }
@@ -405,57 +421,61 @@ void ExactSolver<D>::report(State<D>& state) {
 // the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
 // end
 template <int D>
-void ExactSolver<D>::settle(State<D>& state, double t, double h) {
-  find(state, closed_);
-  stand(state);
-  gather(state, true);
-  keep(state, begun_);
-  lay_blocks(true);
-  split();
+void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
+  find_contacts(state, limits_.touching_gap);
+  update_poses(state);
+  collect_constraints(state, true);
+  save(state, interval_.begun);
+  build_blocks(true);
+  find_islands();
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i)
-    b_[i] = moves(i) + h * (along(i, rate) + rows_[i].velocity_product);
+    b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
   // What all but rests is begun with the forces of the step before. With these sweeps would go on holding
   // what has begun to fall
   double fastest = 0;
-  for (int i = 0; i < int(rows_.size()); ++i) fastest = std::max(fastest, std::abs(moves(i)));
+  for (int i = 0; i < int(rows_.size()); ++i) fastest = std::max(fastest, std::abs(row_velocity(i)));
   const auto& members = free_.bodies();
   for (std::size_t i = 0; i < members.size(); ++i) {
     const int body = members[i];
     state.v[body] += h * Eigen::Map<const Vec<D>>(rate.data() + D * i);
     if (const int at = free_.spin_start(int(i)); at >= 0)
       state.spin[turning(state, body)] +=
-          h * to_room<D>(stances_[body].room_from_body, Eigen::Map<const AngularVec<D>>(rate.data() + at));
+          h * to_room<D>(poses_[body].room_from_body, Eigen::Map<const AngularVec<D>>(rate.data() + at));
   }
   Articulated<D>& chains = free_.chains();
-  chain_change_.assign(rate.begin() + free_.chain_start(), rate.end());
-  for (double& change : chain_change_) change *= h;
-  chains.jump(state, chain_change_, false);
-  guess(fastest < kCreep * pace_ ? h : 0);
+  scratch_.chain_change.assign(rate.begin() + free_.chain_start(), rate.end());
+  for (double& change : scratch_.chain_change) change *= h;
+  chains.jump(state, scratch_.chain_change, false);
+  warm_start(fastest < kCreep * limits_.unit_speed ? h : 0);
   solve();
-  jump(state, false);
+  apply_impulses(state, false);
   for (const int body : members) {
-    state.x[body] += 0.5 * h * (begun_.v[body] + state.v[body]);
+    state.x[body] += 0.5 * h * (interval_.begun.v[body] + state.v[body]);
     if (const int k = turning(state, body); k >= 0)
-      state.turn[k] = turned<D>(begun_.turn[k], AngularVec<D>(0.5 * h * (begun_.spin[k] + state.spin[k])));
+      state.turn[k] = turned<D>(interval_.begun.turn[k],
+                                AngularVec<D>(0.5 * h * (interval_.begun.spin[k] + state.spin[k])));
   }
-  chains.advance(begun_.postures, h, state);
+  chains.advance(interval_.begun.postures, h, state);
   f_ /= h;
-  remember();
+  record_forces();
 
   // whatever is inside now, and was not: out again
-  find(state, closed_);
-  gather(state, true);
-  lay_blocks(true);
-  split();
-  for (const Held& held : held_) {
-    if (held.kind == Held::Kind::contact && held.off >= -closed_) modes_[held.block].hold = Hold::open;
-    if (held.kind == Held::Kind::contact && held.off < -closed_) modes_[held.block].hold = Hold::slide;
-    if (held.kind == Held::Kind::motor || held.kind == Held::Kind::friction)
-      modes_[held.block].hold = Hold::at_lower;
-    if (held.kind == Held::Kind::rope || held.kind == Held::Kind::lower || held.kind == Held::Kind::upper)
-      modes_[held.block].hold = held.off < -closed_ ? Hold::free : Hold::at_lower;
+  find_contacts(state, limits_.touching_gap);
+  collect_constraints(state, true);
+  build_blocks(true);
+  find_islands();
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::contact && constraint.off >= -limits_.touching_gap)
+      modes_[constraint.block].hold = Hold::open;
+    if (constraint.kind == Constraint::Kind::contact && constraint.off < -limits_.touching_gap)
+      modes_[constraint.block].hold = Hold::slide;
+    if (constraint.kind == Constraint::Kind::motor || constraint.kind == Constraint::Kind::friction)
+      modes_[constraint.block].hold = Hold::at_lower;
+    if (constraint.kind == Constraint::Kind::rope || constraint.kind == Constraint::Kind::lower ||
+        constraint.kind == Constraint::Kind::upper)
+      modes_[constraint.block].hold = constraint.off < -limits_.touching_gap ? Hold::free : Hold::at_lower;
   }
   project(state, true);
 }

@@ -37,30 +37,31 @@ void by_group(int groups, int count, const GroupOf& group_of, std::vector<int>& 
 
 // bounds how far each body may get in a step of h from t
 template <int D>
-void ExactSolver<D>::bound_ways(const State<D>& state, double t, double h) {
+void ExactSolver<D>::bound_travel(const State<D>& state, double t, double h) {
   const auto rate = free_.accelerations(state, t);
   const double g = std::sqrt(model_.gravity.squaredNorm());
-  for (int body = 0; body < int(reach_.size()); ++body) {
-    reach_[body] = 0;
+  for (int body = 0; body < int(step_.travel_bound.size()); ++body) {
+    step_.travel_bound[body] = 0;
     if (!response_.moves(body)) continue;
     double a = g;
     if (const int place = free_.place(body); !model_.bodies[body].linked && place >= 0)
       a = std::sqrt(Eigen::Map<const Vec<D>>(rate.data() + D * place).squaredNorm());
     const double v = std::sqrt(2 * kinetic(model_, state, body) / model_.bodies[body].mass);
-    reach_[body] = kSpare * h * v + h * h * a;
+    step_.travel_bound[body] = kSpare * h * v + h * h * a;
   }
   // fixed bodies too
-  stand(state);
+  update_poses(state);
 }
 
-// near_: which bodies may meet, or are tied together
+// step_.near: which bodies may meet, or are tied together
 template <int D>
-void ExactSolver<D>::join_near(const State<D>& state) {
-  near_.reset(every_body_);
-  for (int body = 0; body < int(reach_.size()); ++body) reach_[body] = std::max(reach_[body], strayed_[body]);
+void ExactSolver<D>::join_near_bodies(const State<D>& state) {
+  step_.near.reset(limits_.bodies);
+  for (int body = 0; body < int(step_.travel_bound.size()); ++body)
+    step_.travel_bound[body] = std::max(step_.travel_bound[body], step_.travelled[body]);
   const auto link = [&](int a, int b) {
     if (a < 0 || b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) return;
-    near_.join(a, b);
+    step_.near.join(a, b);
   };
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
   for (const Articulation<D>& chain : model_.chains) {
@@ -69,154 +70,158 @@ void ExactSolver<D>::join_near(const State<D>& state) {
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
   }
-  for (const Couple& couple : couples_) {
+  for (const Couple& couple : limits_.couples) {
     const auto [a, b] = couple;
     if (b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) continue;
-    const double far = bounding_radius_[a] + bounding_radius_[b] + reach_[a] + reach_[b] + closed_;
-    if ((first_.x[a] - first_.x[b]).squaredNorm() <= far * far) near_.join(a, b);
+    const double far = limits_.bounding_radius[a] + limits_.bounding_radius[b] + step_.travel_bound[a] +
+                       step_.travel_bound[b] + limits_.touching_gap;
+    if ((step_.begun.x[a] - step_.begun.x[b]).squaredNorm() <= far * far) step_.near.join(a, b);
   }
 }
 
-// groups_ of near_. Groups of which all are frozen, and held by no mouse, are left out; single bodies that
-// reach nothing are one group: nothing cuts their step.
+// step_.groups of step_.near. Groups of which all are frozen, and held by no mouse, are left out; single
+// bodies that reach nothing are one group: nothing cuts their step.
 template <int D>
 void ExactSolver<D>::list_groups(const State<D>& state) {
   const int n = int(model_.bodies.size());
   constexpr char kAsleep = 0, kFree = 1, kBusy = 2;
-  std::vector<char>& kind = kinds_;  // at the root of each set
-  std::vector<int>& size = group_sizes_;
+  std::vector<char>& kind = step_.kinds;  // at the root of each set
+  std::vector<int>& size = step_.group_sizes;
   kind.assign(n, kAsleep), size.assign(n, 0);
   for (int body = 0; body < n; ++body) {
     if (model_.bodies[body].fixed) continue;
-    const int root = near_.root(body);
+    const int root = step_.near.root(body);
     ++size[root];
     if (!state.frozen[body]) kind[root] = size[root] > 1 ? kBusy : std::max<char>(kind[root], kFree);
     if (size[root] > 1 && kind[root] == kFree) kind[root] = kBusy;
   }
   const auto busy = [&](int body) {
     if (body < 0 || model_.bodies[body].fixed) return;
-    char& it = kind[near_.root(body)];
+    char& it = kind[step_.near.root(body)];
     if (it == kFree) it = kBusy;
   };
   for (const Grip<D>& grip : state.grips) {
-    if (grip.body >= 0 && !model_.bodies[grip.body].fixed) kind[near_.root(grip.body)] = kBusy;
+    if (grip.body >= 0 && !model_.bodies[grip.body].fixed) kind[step_.near.root(grip.body)] = kBusy;
   }
   for (const Joint<D>& joint : model_.joints) busy(joint.a.body), busy(joint.b.body);
-  for (const Couple& couple : couples_) {
+  for (const Couple& couple : limits_.couples) {
     const auto [a, b] = couple;
     const bool a_fixed = model_.bodies[a].fixed;
     const int body = a_fixed ? b : a;
     if (!a_fixed && b >= 0 && !model_.bodies[b].fixed) continue;
-    if (kind[near_.root(body)] != kFree) continue;
-    const double far = bounding_radius_[body] + reach_[body] + closed_;
+    if (kind[step_.near.root(body)] != kFree) continue;
+    const double far = limits_.bounding_radius[body] + step_.travel_bound[body] + limits_.touching_gap;
     bool meets;
     if (b < 0) {
       const Wall<D>& wall = model_.walls[-1 - b];
-      meets = (first_.x[body] - wall.point).dot(wall.normal) <= far;
+      meets = (step_.begun.x[body] - wall.point).dot(wall.normal) <= far;
     } else {
       const int other = a_fixed ? a : b;
-      const double all = far + bounding_radius_[other];
-      meets = (first_.x[body] - stances_[other].x).squaredNorm() <= all * all;
+      const double all = far + limits_.bounding_radius[other];
+      meets = (step_.begun.x[body] - poses_[other].x).squaredNorm() <= all * all;
     }
-    if (meets) kind[near_.root(body)] = kBusy;
+    if (meets) kind[step_.near.root(body)] = kBusy;
   }
 
   // numbers of groups, by their lowest bodies
-  groups_.clear();
+  step_.groups.clear();
   int free = -1;
-  group_of_.assign(n, -1);
+  step_.group_of.assign(n, -1);
   for (int body = 0; body < n; ++body) {
     if (model_.bodies[body].fixed) continue;
-    const int root = near_.root(body);
+    const int root = step_.near.root(body);
     if (kind[root] == kAsleep) continue;
-    int& group = kind[root] == kFree ? free : group_of_[root];
+    int& group = kind[root] == kFree ? free : step_.group_of[root];
     if (group < 0) {
-      group = int(groups_.size());
-      groups_.emplace_back();
-      groups_.back().root = body;
-      groups_.back().lone = kind[root] != kFree && size[root] == 1;
+      group = int(step_.groups.size());
+      step_.groups.emplace_back();
+      step_.groups.back().root = body;
+      step_.groups.back().lone = kind[root] != kFree && size[root] == 1;
     }
-    group_of_[body] = group;
+    step_.group_of[body] = group;
   }
 
   // their members
-  const int groups = int(groups_.size());
+  const int groups = int(step_.groups.size());
   const auto lay = [&](auto& list, int count, const auto& group_of, const auto& item, const auto& give) {
-    by_group(groups, count, group_of, group_ends_, list, item);
+    by_group(groups, count, group_of, step_.group_ends, list, item);
     for (int g = 0; g < groups; ++g) {
-      const int from = g > 0 ? group_ends_[g - 1] : 0;
-      give(groups_[g], std::span(list).subspan(std::size_t(from), std::size_t(group_ends_[g] - from)));
+      const int from = g > 0 ? step_.group_ends[g - 1] : 0;
+      give(step_.groups[g],
+           std::span(list).subspan(std::size_t(from), std::size_t(step_.group_ends[g] - from)));
     }
   };
   const auto self = [](int i) { return i; };
   const auto either = [&](int a, int b) {
-    return a >= 0 && group_of_[a] >= 0 ? group_of_[a] : b >= 0 ? group_of_[b] : -1;
+    return a >= 0 && step_.group_of[a] >= 0 ? step_.group_of[a] : b >= 0 ? step_.group_of[b] : -1;
   };
   lay(
-      group_bodies_, n, [&](int i) { return group_of_[i]; }, self,
+      step_.group_bodies, n, [&](int i) { return step_.group_of[i]; }, self,
       [](Group& group, auto list) { group.subset.bodies = list; });
   lay(
-      group_springs_, int(model_.springs.size()),
+      step_.group_springs, int(model_.springs.size()),
       [&](int i) { return either(model_.springs[i].a.body, model_.springs[i].b.body); }, self,
       [](Group& group, auto list) { group.subset.springs = list; });
   lay(
-      group_chains_, int(model_.chains.size()), [&](int i) { return group_of_[model_.chains[i].bodies[0]]; },
-      self, [](Group& group, auto list) { group.subset.chains = list; });
+      step_.group_chains, int(model_.chains.size()),
+      [&](int i) { return step_.group_of[model_.chains[i].bodies[0]]; }, self,
+      [](Group& group, auto list) { group.subset.chains = list; });
   lay(
-      group_joints_, int(model_.joints.size()),
+      step_.group_joints, int(model_.joints.size()),
       [&](int i) { return either(model_.joints[i].a.body, model_.joints[i].b.body); }, self,
       [](Group& group, auto list) { group.joints = list; });
   lay(
-      group_couples_, int(couples_.size()),
+      step_.group_couples, int(limits_.couples.size()),
       [&](int i) {
-        const auto [a, b] = couples_[i];
-        const int of_a = group_of_[a];
+        const auto [a, b] = limits_.couples[i];
+        const int of_a = step_.group_of[a];
         if (b < 0) return of_a;
-        const int of_b = group_of_[b];
+        const int of_b = step_.group_of[b];
         if (model_.bodies[a].fixed) return of_b;
         if (model_.bodies[b].fixed) return of_a;
         return of_a == of_b ? of_a : -1;
       },
-      [&](int i) { return couples_[i]; }, [](Group& group, auto list) { group.couples = list; });
+      [&](int i) { return limits_.couples[i]; }, [](Group& group, auto list) { group.couples = list; });
 }
 
 // sizes what groups need of a state
 template <int D>
-void ExactSolver<D>::begin_groups(State<D>& state) {
+void ExactSolver<D>::resize_for(State<D>& state) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
   state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
-  stances_.resize(n), part_of_.resize(n);
+  poses_.resize(n), island_of_.resize(n);
   roots_.reset(int(n));
 }
 
 template <int D>
 void ExactSolver<D>::step_alone(State<D>& state, int body, double t, double h) {
-  if (stances_.size() != model_.bodies.size()) {
-    begin_groups(state);
-    strayed_.resize(stances_.size()), spent_.resize(stances_.size());
-    for (const int fixed : fixed_) stances_[fixed] = body_motion(state, fixed);
+  if (poses_.size() != model_.bodies.size()) {
+    resize_for(state);
+    step_.travelled.resize(poses_.size()), step_.cuts.resize(poses_.size());
+    for (const int fixed : limits_.fixed) poses_[fixed] = body_motion(state, fixed);
   }
-  lone_body_.assign(1, body), group_couples_.clear();
-  for (int wall = 0; wall < int(model_.walls.size()); ++wall) group_couples_.push_back({body, -1 - wall});
-  for (const int fixed : fixed_) {
+  step_.lone_body.assign(1, body), step_.group_couples.clear();
+  for (int wall = 0; wall < int(model_.walls.size()); ++wall)
+    step_.group_couples.push_back({body, -1 - wall});
+  for (const int fixed : limits_.fixed) {
     const auto [a, b] = std::minmax(body, fixed);
-    if (may_touch_(a, b)) group_couples_.push_back({a, b});
+    if (may_touch_(a, b)) step_.group_couples.push_back({a, b});
   }
   active_ = {};
   active_.root = body, active_.lone = true;
-  active_.subset.bodies = lone_body_, active_.couples = group_couples_;
-  strayed_[body] = 0, spent_[body] = 0;
+  active_.subset.bodies = step_.lone_body, active_.couples = step_.group_couples;
+  step_.travelled[body] = 0, step_.cuts[body] = 0;
   cone_.thorough = model_.collision == Collision::event;
-  keep(state, first_);
-  advance(state, t, h);
+  save(state, step_.begun);
+  step_group(state, t, h);
   for (Contact<D>& contact : state.contacts) {
     if (contact.key.a != body && contact.key.b != body) continue;
     contact.force.setZero(), contact.impulse.setZero();
-    for (const Contact<D>& now : contacts_) {
+    for (const Contact<D>& now : outcome_.contacts) {
       if (now.key == contact.key) contact = now;
     }
-    for (const Contact<D>& struck : impulses_) {
+    for (const Contact<D>& struck : outcome_.impulses) {
       if (struck.key == contact.key) contact.impulse = struck.impulse;
     }
   }
@@ -224,55 +229,56 @@ void ExactSolver<D>::step_alone(State<D>& state, int body, double t, double h) {
 
 // what follows is of this group
 template <int D>
-void ExactSolver<D>::enter(const Group& group) {
+void ExactSolver<D>::activate(const Group& group) {
   active_ = group;
 }
 
 // what follows is of all bodies
 template <int D>
-void ExactSolver<D>::enter_all() {
+void ExactSolver<D>::activate_all() {
   active_ = {};
-  active_.subset = {every_body_, every_spring_, every_chain_};
-  active_.joints = every_joint_;
-  active_.couples = couples_;
-  known_ = &contacts_;
+  active_.subset = {limits_.bodies, limits_.springs, limits_.chains};
+  active_.joints = limits_.joints;
+  active_.couples = limits_.couples;
+  progress_.known = &outcome_.contacts;
 }
 
 // how far the bodies at hand have got
 template <int D>
-void ExactSolver<D>::measure_ways(const State<D>& state) {
+void ExactSolver<D>::measure_travel(const State<D>& state) {
   for (const int body : active_.subset.bodies)
-    strayed_[body] = std::max(strayed_[body], std::sqrt((state.x[body] - first_.x[body]).squaredNorm()));
+    step_.travelled[body] =
+        std::max(step_.travelled[body], std::sqrt((state.x[body] - step_.begun.x[body]).squaredNorm()));
 }
 
 // counts a cut that two took part in (below zero: none, or a wall); of all at hand where neither is a body
 template <int D>
-void ExactSolver<D>::charge(int a, int b) {
-  if (a >= 0) ++spent_[a];
-  if (b >= 0) ++spent_[b];
+void ExactSolver<D>::count_cut(int a, int b) {
+  if (a >= 0) ++step_.cuts[a];
+  if (b >= 0) ++step_.cuts[b];
   if (a >= 0 || b >= 0) return;
-  for (const int body : active_.subset.bodies) ++spent_[body];
+  for (const int body : active_.subset.bodies) ++step_.cuts[body];
 }
 
 // the most cuts that one of the bodies at hand took part in
 template <int D>
-int ExactSolver<D>::most_spent() const {
+int ExactSolver<D>::cuts_so_far() const {
   int most = 0;
-  for (const int body : active_.subset.bodies) most = std::max(most, spent_[body]);
+  for (const int body : active_.subset.bodies) most = std::max(most, step_.cuts[body]);
   return most;
 }
 
-#define OBSCURA_INSTANTIATE(D)                                               \
-  template void ExactSolver<D>::bound_ways(const State<D>&, double, double); \
-  template void ExactSolver<D>::join_near(const State<D>&);                  \
-  template void ExactSolver<D>::list_groups(const State<D>&);                \
-  template void ExactSolver<D>::enter(const Group&);                         \
-  template void ExactSolver<D>::begin_groups(State<D>&);                     \
-  template void ExactSolver<D>::step_alone(State<D>&, int, double, double);  \
-  template void ExactSolver<D>::enter_all();                                 \
-  template void ExactSolver<D>::measure_ways(const State<D>&);               \
-  template void ExactSolver<D>::charge(int, int);                            \
-  template int ExactSolver<D>::most_spent() const
+#define OBSCURA_INSTANTIATE(D)                                                 \
+  template void ExactSolver<D>::bound_travel(const State<D>&, double, double); \
+  template void ExactSolver<D>::join_near_bodies(const State<D>&);             \
+  template void ExactSolver<D>::list_groups(const State<D>&);                  \
+  template void ExactSolver<D>::activate(const Group&);                        \
+  template void ExactSolver<D>::resize_for(State<D>&);                         \
+  template void ExactSolver<D>::step_alone(State<D>&, int, double, double);    \
+  template void ExactSolver<D>::activate_all();                                \
+  template void ExactSolver<D>::measure_travel(const State<D>&);               \
+  template void ExactSolver<D>::count_cut(int, int);                           \
+  template int ExactSolver<D>::cuts_so_far() const
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
 #undef OBSCURA_INSTANTIATE

@@ -20,18 +20,19 @@ constexpr double kRounding = 1000;  // of what is still: what a solve leaves
 
 // how fast what touches comes closer, or joints come apart, at most
 template <int D>
-double ExactSolver<D>::approach() const {
+double ExactSolver<D>::closing_speed() const {
   double most = 0;
-  for (const Held& held : held_) {
-    switch (held.kind) {
-      case Held::Kind::motor:
-      case Held::Kind::friction:
+  for (const Constraint& constraint : constraints_) {
+    switch (constraint.kind) {
+      case Constraint::Kind::motor:
+      case Constraint::Kind::friction:
         break;
-      case Held::Kind::joint:
-        for (int i = 0; i < held.rows; ++i) most = std::max(most, std::abs(moves(held.first + i)));
+      case Constraint::Kind::joint:
+        for (int i = 0; i < constraint.rows; ++i)
+          most = std::max(most, std::abs(row_velocity(constraint.first + i)));
         break;
       default:
-        most = std::max(most, -moves(held.first));
+        most = std::max(most, -row_velocity(constraint.first));
     }
   }
   return most;
@@ -40,10 +41,11 @@ double ExactSolver<D>::approach() const {
 // whether anything that is held from now on comes apart yet
 template <int D>
 bool ExactSolver<D>::coming_apart() const {
-  for (const Held& held : held_) {
-    const bool one_sided =
-        held.kind != Held::Kind::joint && held.kind != Held::Kind::motor && held.kind != Held::Kind::friction;
-    if (one_sided && acts(held) && moves(held.first) > still_) return true;
+  for (const Constraint& constraint : constraints_) {
+    const bool one_sided = constraint.kind != Constraint::Kind::joint &&
+                           constraint.kind != Constraint::Kind::motor &&
+                           constraint.kind != Constraint::Kind::friction;
+    if (one_sided && active(constraint) && row_velocity(constraint.first) > still_speed_) return true;
   }
   return false;
 }
@@ -53,96 +55,98 @@ template <int D>
 void ExactSolver<D>::resolve_impacts(State<D>& state) {
   double before = 0;
   for (int round = 0; round < kRounds; ++round) {
-    stand(state);
-    gather(state, true);
+    update_poses(state);
+    collect_constraints(state, true);
     // a second time only for what the first has set off, not for its rounding
-    const double fast = approach();
-    if (fast <= (round == 0 ? still_ : kRounding * still_)) return;
+    const double fast = closing_speed();
+    if (fast <= (round == 0 ? still_speed_ : kRounding * still_speed_)) return;
     const bool in_turn = model_.impacts == Impacts::sequential && round + 1 < kRounds;
     if (!in_turn && round > 0 && fast > 0.5 * before) return;
     before = fast;
-    if (in_turn) only_worst_pair();
-    strike(state, round + 1 == kRounds ? 0 : 1);
+    if (in_turn) keep_fastest_pair();
+    solve_impacts(state, round + 1 == kRounds ? 0 : 1);
   }
 }
 
 // of the contacts only those of the pair that comes together fastest
 template <int D>
-void ExactSolver<D>::only_worst_pair() {
-  const Held* worst = nullptr;
-  for (const Held& held : held_) {
-    if (held.kind == Held::Kind::contact && (!worst || moves(held.first) < moves(worst->first)))
-      worst = &held;
+void ExactSolver<D>::keep_fastest_pair() {
+  const Constraint* worst = nullptr;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::contact &&
+        (!worst || row_velocity(constraint.first) < row_velocity(worst->first)))
+      worst = &constraint;
   }
-  if (!worst || moves(worst->first) >= -still_) return;
-  const ContactKey pair = gaps_[worst->of].key;
-  std::erase_if(held_, [&](const Held& held) {
-    if (held.kind != Held::Kind::contact) return false;
-    const ContactKey& key = gaps_[held.of].key;
+  if (!worst || row_velocity(worst->first) >= -still_speed_) return;
+  const ContactKey pair = candidates_[worst->of].key;
+  std::erase_if(constraints_, [&](const Constraint& constraint) {
+    if (constraint.kind != Constraint::Kind::contact) return false;
+    const ContactKey& key = candidates_[constraint.of].key;
     return key.a != pair.a || key.b != pair.b;
   });
   rows_.clear();
-  for (Held& held : held_) lay_rows(held, AngularVec<D>::Zero());
+  for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
   chain_response_.build(rows_, response_, free_.chains());
 }
 
 // Newton's law with Coulomb's friction for all that is held; `bounce` scales e. Where energy would rise e is
 // scaled down further.
 template <int D>
-void ExactSolver<D>::strike(State<D>& state, double bounce) {
-  lay_blocks(true);
-  split();
+void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {
+  build_blocks(true);
+  find_islands();
   b_.resize(Eigen::Index(rows_.size()));
-  keep(state, saved_);
-  const double before = motion(state);
+  save(state, scratch_.saved);
+  const double before = kinetic_energy(state);
   double low = 0, high = bounce;
   for (int tries = 0; tries < 30; ++tries) {
-    for (int i = 0; i < int(rows_.size()); ++i) b_[i] = moves(i);
-    for (const Held& held : held_) {
-      const double vn = moves(held.first);
-      if (held.kind == Held::Kind::contact && vn < -rest_)
-        b_[held.first] += bounce * material(gaps_[held.of].key).elasticity * vn;
+    for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_velocity(i);
+    for (const Constraint& constraint : constraints_) {
+      const double vn = row_velocity(constraint.first);
+      if (constraint.kind == Constraint::Kind::contact && vn < -progress_.rest_speed)
+        b_[constraint.first] += bounce * material(candidates_[constraint.of].key).elasticity * vn;
     }
     modes_.assign(blocks_.size(), {}), warm_.setZero(Eigen::Index(rows_.size()));
     bool found = solve();
-    if (!found && model_.collision != Collision::event) rough_ = true, found = solve();
-    jump(state, false);
-    const double after = motion(state);
+    if (!found && model_.collision != Collision::event) progress_.rough = true, found = solve();
+    apply_impulses(state, false);
+    const double after = kinetic_energy(state);
     if ((found && after <= before * (1 + 1e-13)) || bounce == 0) break;
     // too much: less of e, at most half as often as it takes to know how much to 1e-6
     high = bounce;
     if (tries > 20) low = 0;
     bounce = tries > 20 || !found ? 0 : 0.5 * (low + high);
     if (bounce < 1e-6) bounce = 0;
-    restore(saved_, state);
+    restore(scratch_.saved, state);
   }
-  for (const Held& held : held_) {
-    if (held.kind != Held::Kind::contact || f_[held.first] == 0) continue;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact || f_[constraint.first] == 0) continue;
     Vec<D> p = Vec<D>::Zero();
-    for (int i = 0; i < D; ++i) p += f_[held.first + i] * rows_[held.first + i].along;
-    note(gaps_[held.of].key, held, p);
+    for (int i = 0; i < D; ++i) p += f_[constraint.first + i] * rows_[constraint.first + i].along;
+    record_impulse(candidates_[constraint.of].key, constraint, p);
   }
 }
 
 // adds an impulse to those of this step
 template <int D>
-void ExactSolver<D>::note(const ContactKey& key, const Held& held, const Vec<D>& impulse) {
-  for (Contact<D>& known : impulses_) {
+void ExactSolver<D>::record_impulse(const ContactKey& key, const Constraint& constraint,
+                                    const Vec<D>& impulse) {
+  for (Contact<D>& known : outcome_.impulses) {
     if (known.key != key) continue;
     known.impulse += impulse;
     return;
   }
   Contact<D> contact;
   contact.key = key;
-  contact.point = held.point, contact.normal = held.normal, contact.gap = held.off;
+  contact.point = constraint.point, contact.normal = constraint.normal, contact.gap = constraint.off;
   contact.impulse = impulse;
-  impulses_.push_back(contact);
+  outcome_.impulses.push_back(contact);
 }
 
-template double ExactSolver<2>::approach() const;
+template double ExactSolver<2>::closing_speed() const;
 template bool ExactSolver<2>::coming_apart() const;
 template void ExactSolver<2>::resolve_impacts(State<2>&);
-template double ExactSolver<3>::approach() const;
+template double ExactSolver<3>::closing_speed() const;
 template bool ExactSolver<3>::coming_apart() const;
 template void ExactSolver<3>::resolve_impacts(State<3>&);
 

@@ -13,46 +13,46 @@ constexpr double kThoroughSize = 5e8;  // of the size of all systems that a thor
 
 }  // namespace
 
-// what of held_ belongs together, by the bodies it moves
+// what of constraints_ belongs together, by the bodies it moves
 template <int D>
-void ExactSolver<D>::split() {
+void ExactSolver<D>::find_islands() {
   roots_.reset(active_.subset.bodies);
   for (const int number : active_.subset.chains) {
     const Articulation<D>& chain = model_.chains[number];
     for (const int body : chain.bodies) roots_.join(body, chain.bodies[0]);
   }
-  for (const Held& held : held_) {
-    const Row<D>& row = rows_[held.first];
+  for (const Constraint& constraint : constraints_) {
+    const Row<D>& row = rows_[constraint.first];
     if (response_.moves(row.a) && response_.moves(row.b)) roots_.join(row.a, row.b);
   }
-  for (const int body : active_.subset.bodies) part_of_[body] = -1;
-  parts_ = 0;
-  for (const Held& held : held_) {
-    const Row<D>& row = rows_[held.first];
+  for (const int body : active_.subset.bodies) island_of_[body] = -1;
+  islands_ = 0;
+  for (const Constraint& constraint : constraints_) {
+    const Row<D>& row = rows_[constraint.first];
     const int body = roots_.root(response_.moves(row.a) ? row.a : row.b);
-    if (part_of_[body] < 0) part_of_[body] = parts_++;
-    if (int(members_.size()) < parts_) members_.emplace_back();
+    if (island_of_[body] < 0) island_of_[body] = islands_++;
+    if (int(island_members_.size()) < islands_) island_members_.emplace_back();
   }
-  for (int part = 0; part < parts_; ++part) members_[part].clear();
-  for (int i = 0; i < int(held_.size()); ++i) {
-    const Row<D>& row = rows_[held_[i].first];
-    members_[part_of_[roots_.root(response_.moves(row.a) ? row.a : row.b)]].push_back(i);
+  for (int part = 0; part < islands_; ++part) island_members_[part].clear();
+  for (int i = 0; i < int(constraints_.size()); ++i) {
+    const Row<D>& row = rows_[constraints_[i].first];
+    island_members_[island_of_[roots_.root(response_.moves(row.a) ? row.a : row.b)]].push_back(i);
   }
 }
 
-// K of the rows in part_rows_
+// K of the rows in scratch_.rows
 template <int D>
-void ExactSolver<D>::assemble() {
-  const int n = int(part_rows_.size());
-  K_.resize(n, n), part_b_.resize(n), part_f_.setZero(n);
+void ExactSolver<D>::build_K() {
+  const int n = int(scratch_.rows.size());
+  scratch_.K.resize(n, n), scratch_.island_b.resize(n), scratch_.island_f.setZero(n);
   for (int i = 0; i < n; ++i) {
-    const Row<D>& r = rows_[part_rows_[i]];
-    part_b_[i] = b_[part_rows_[i]];
-    const RowResponse<D> response = response_.of(r, stances_);
+    const Row<D>& r = rows_[scratch_.rows[i]];
+    scratch_.island_b[i] = b_[scratch_.rows[i]];
+    const RowResponse<D> response = response_.of(r, poses_);
     for (int j = 0; j <= i; ++j) {
-      double k = coupling(r, response, rows_[part_rows_[j]]);
-      k += chain_response_.coupling(part_rows_[i], part_rows_[j]);
-      K_(i, j) = k, K_(j, i) = k;
+      double k = coupling(r, response, rows_[scratch_.rows[j]]);
+      k += chain_response_.coupling(scratch_.rows[i], scratch_.rows[j]);
+      scratch_.K(i, j) = k, scratch_.K(j, i) = k;
     }
   }
 }
@@ -60,98 +60,102 @@ void ExactSolver<D>::assemble() {
 // f_ and modes_ of all rows under b_, exactly; false where a part has none. Or roughly
 template <int D>
 bool ExactSolver<D>::solve() {
-  if (rough_) {
-    sweep(kRoughIterations);
+  if (progress_.rough) {
+    solve_roughly(kRoughIterations);
     return true;
   }
   bool found = true;
-  each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
-    const double rows = double(part_rows_.size()), size = rows * rows * rows;
+  each_island(modes_, [&](std::vector<ConeMode<D>>& modes) {
+    const double rows = double(scratch_.rows.size()), size = rows * rows * rows;
     const int patience = cone_.patience;
     if (cone_.thorough && model_.collision != Collision::event)
       cone_.patience = int(std::min<double>(patience, kThoroughSize / size));
-    const ConeReport report = cone_.solve(K_, part_b_, part_blocks_, modes, part_f_);
+    const ConeReport report =
+        cone_.solve(scratch_.K, scratch_.island_b, scratch_.island_blocks, modes, scratch_.island_f);
     cone_.patience = patience;
     found = report.found && found;
-    work_ += report.tries * size;
+    progress_.work += report.tries * size;
   });
   return found;
 }
 
 // the same, roughly
 template <int D>
-void ExactSolver<D>::sweep(int sweeps) {
-  each_part(modes_, [&](std::vector<ConeMode<D>>& modes) {
-    cone_.sweep(K_, part_b_, part_blocks_, modes, part_f_, sweeps);
+void ExactSolver<D>::solve_roughly(int sweeps) {
+  each_island(modes_, [&](std::vector<ConeMode<D>>& modes) {
+    cone_.sweep(scratch_.K, scratch_.island_b, scratch_.island_blocks, modes, scratch_.island_f, sweeps);
   });
 }
 
 // f_ where what holds goes on holding
 template <int D>
-void ExactSolver<D>::hold() {
-  each_part(holding_,
-            [&](std::vector<ConeMode<D>>& modes) { cone_.hold(K_, part_b_, part_blocks_, modes, part_f_); });
+void ExactSolver<D>::solve_held() {
+  each_island(interval_.modes, [&](std::vector<ConeMode<D>>& modes) {
+    cone_.hold(scratch_.K, scratch_.island_b, scratch_.island_blocks, modes, scratch_.island_f);
+  });
 }
 
 template <int D>
 template <class Solve>
-void ExactSolver<D>::each_part(std::vector<ConeMode<D>>& modes, Solve&& solve) {
+void ExactSolver<D>::each_island(std::vector<ConeMode<D>>& modes, Solve&& solve) {
   f_.setZero(Eigen::Index(rows_.size()));
-  for (int part = 0; part < parts_; ++part) {
-    part_rows_.clear(), part_blocks_.clear(), part_modes_.clear();
+  for (int part = 0; part < islands_; ++part) {
+    scratch_.rows.clear(), scratch_.island_blocks.clear(), scratch_.island_modes.clear();
     const auto blocks_end = [&](int i) {
-      return i + 1 < int(held_.size()) ? held_[i + 1].block : int(blocks_.size());
+      return i + 1 < int(constraints_.size()) ? constraints_[i + 1].block : int(blocks_.size());
     };
-    for (const int i : members_[part]) {
-      for (int row = 0; row < held_[i].rows; ++row) part_rows_.push_back(held_[i].first + row);
-      for (int block = held_[i].block; block < blocks_end(i); ++block) {
-        part_blocks_.push_back(blocks_[block]);
-        part_modes_.push_back(modes[block]);
+    for (const int i : island_members_[part]) {
+      for (int row = 0; row < constraints_[i].rows; ++row)
+        scratch_.rows.push_back(constraints_[i].first + row);
+      for (int block = constraints_[i].block; block < blocks_end(i); ++block) {
+        scratch_.island_blocks.push_back(blocks_[block]);
+        scratch_.island_modes.push_back(modes[block]);
       }
     }
-    assemble();
-    for (int i = 0; i < int(part_rows_.size()) && warm_.size() == f_.size(); ++i)
-      part_f_[i] = warm_[part_rows_[i]];
-    work_ += double(part_rows_.size()) * part_rows_.size() * part_rows_.size();
-    solve(part_modes_);
-    for (int i = 0; i < int(part_rows_.size()); ++i) f_[part_rows_[i]] = part_f_[i];
+    build_K();
+    for (int i = 0; i < int(scratch_.rows.size()) && warm_.size() == f_.size(); ++i)
+      scratch_.island_f[i] = warm_[scratch_.rows[i]];
+    progress_.work += double(scratch_.rows.size()) * scratch_.rows.size() * scratch_.rows.size();
+    solve(scratch_.island_modes);
+    for (int i = 0; i < int(scratch_.rows.size()); ++i) f_[scratch_.rows[i]] = scratch_.island_f[i];
     int at = 0;
-    for (const int i : members_[part]) {
-      for (int block = held_[i].block; block < blocks_end(i); ++block) modes[block] = part_modes_[at++];
+    for (const int i : island_members_[part]) {
+      for (int block = constraints_[i].block; block < blocks_end(i); ++block)
+        modes[block] = scratch_.island_modes[at++];
     }
   }
 }
 
-// f_ of least norm that gives the rows in chosen_ what b_ has for them
+// f_ of least norm that gives the rows in scratch_.chosen what b_ has for them
 template <int D>
-void ExactSolver<D>::least() {
+void ExactSolver<D>::solve_least_norm() {
   f_.setZero(Eigen::Index(rows_.size()));
-  wanted_.assign(rows_.size(), 0);
-  for (const int row : chosen_) wanted_[row] = 1;
-  for (int part = 0; part < parts_; ++part) {
-    part_rows_.clear(), part_chosen_.clear();
-    for (const int i : members_[part]) {
-      for (int row = held_[i].first; row < held_[i].first + held_[i].rows; ++row) {
-        if (wanted_[row]) part_rows_.push_back(row);
+  scratch_.wanted.assign(rows_.size(), 0);
+  for (const int row : scratch_.chosen) scratch_.wanted[row] = 1;
+  for (int part = 0; part < islands_; ++part) {
+    scratch_.rows.clear(), scratch_.wanted_rows.clear();
+    for (const int i : island_members_[part]) {
+      for (int row = constraints_[i].first; row < constraints_[i].first + constraints_[i].rows; ++row) {
+        if (scratch_.wanted[row]) scratch_.rows.push_back(row);
       }
     }
-    if (part_rows_.empty()) continue;
-    assemble();
-    for (int i = 0; i < int(part_rows_.size()); ++i) part_chosen_.push_back(i);
-    cone_.least(K_, part_b_, part_chosen_, part_f_);
-    for (int i = 0; i < int(part_rows_.size()); ++i) f_[part_rows_[i]] = part_f_[i];
+    if (scratch_.rows.empty()) continue;
+    build_K();
+    for (int i = 0; i < int(scratch_.rows.size()); ++i) scratch_.wanted_rows.push_back(i);
+    cone_.least(scratch_.K, scratch_.island_b, scratch_.wanted_rows, scratch_.island_f);
+    for (int i = 0; i < int(scratch_.rows.size()); ++i) f_[scratch_.rows[i]] = scratch_.island_f[i];
   }
 }
 
-template void ExactSolver<2>::split();
+template void ExactSolver<2>::find_islands();
 template bool ExactSolver<2>::solve();
-template void ExactSolver<2>::sweep(int);
-template void ExactSolver<2>::hold();
-template void ExactSolver<2>::least();
-template void ExactSolver<3>::split();
+template void ExactSolver<2>::solve_roughly(int);
+template void ExactSolver<2>::solve_held();
+template void ExactSolver<2>::solve_least_norm();
+template void ExactSolver<3>::find_islands();
 template bool ExactSolver<3>::solve();
-template void ExactSolver<3>::sweep(int);
-template void ExactSolver<3>::hold();
-template void ExactSolver<3>::least();
+template void ExactSolver<3>::solve_roughly(int);
+template void ExactSolver<3>::solve_held();
+template void ExactSolver<3>::solve_least_norm();
 
 }  // namespace obscura::sim

@@ -278,7 +278,7 @@ void SpaceIterative<D>::copy_to_joints(const std::vector<char>* of) {
 }
 
 template <int D>
-void SpaceIterative<D>::take(const std::vector<char>* of) {
+void SpaceIterative<D>::copy_from_joints(const std::vector<char>* of) {
   for (const int i : joints_.bodies()) {
     if (!of || (*of)[i]) moving_[i].v = joints_.body_motion(i).v, moving_[i].w = joints_.body_motion(i).w;
   }
@@ -289,7 +289,7 @@ void SpaceIterative<D>::solve_joint_velocities() {
   if (joints_.empty()) return;
   copy_to_joints();
   joints_.iterate();
-  take();
+  copy_from_joints();
 }
 
 // Several impacts in one instant, with friction or on joints, may leave more energy than was there if each
@@ -416,7 +416,7 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state) {
     if (joints_.empty()) continue;
     copy_to_joints();
     joints_.solve_positions();
-    take();
+    copy_from_joints();
   }
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (inactive_[i]) continue;
@@ -436,7 +436,7 @@ void SpaceIterative<D>::project_joints(State<D>& state, double h) {
   joints_.finish(h);
   joints_.keep(state, h);
   joints_.break_joints(state);
-  take();
+  copy_from_joints();
   for (const int i : joints_.bodies()) {
     if (inactive_[i]) continue;
     state.x[i] = joints_.body_motion(i).x, state.v[i] = moving_[i].v;

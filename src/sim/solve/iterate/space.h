@@ -91,7 +91,7 @@ class SpaceIterative final : public ContactSolver<D> {
   }
   bool temper(const State<D>& state);
   void copy_to_joints(const std::vector<char>* of = nullptr);
-  void take(const std::vector<char>* of = nullptr);
+  void copy_from_joints(const std::vector<char>* of = nullptr);
   void solve_joint_velocities();
   void advance(State<D>& state, double h);
   void update_velocities(State<D>& state, double h);

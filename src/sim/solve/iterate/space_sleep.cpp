@@ -236,15 +236,15 @@ bool SpaceIterative<D>::put_to_sleep(State<D>& state, double h) {
   std::sort(parts_.begin(), parts_.end());
   parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
   if (!parts_.empty()) copy_to_joints(&on_joints_), joints_.begin(h);
-  const auto hold = [&] {
+  const auto solve_held_joints = [&] {
     if (parts_.empty()) return;
     copy_to_joints(&on_joints_);
     for (const int part : parts_) joints_.iterate(part);
-    take(&on_joints_);
+    copy_from_joints(&on_joints_);
   };
   double worst = 1e300;
   for (int i = 1; i < kRestSweeps && worst > kHeld * g_ * h; ++i) {
-    solve_joint_velocities();
+    solve_held_joints();
     iterate(some_, i % 2 != 0);
     if (i % kBetweenChecks != 0) continue;
     worst = 0;
