@@ -13,8 +13,6 @@
 
 namespace obscura::media {
 
-namespace {
-
 // a segment by one of libav's encoders
 class LibavEncoder {
  public:
@@ -77,8 +75,6 @@ class LibavEncoder {
   Packet packet_;
   Segment segment_;
 };
-
-}  // namespace
 
 struct SegmentEncoder::Impl {
   template <typename Encoder>

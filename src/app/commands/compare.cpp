@@ -24,7 +24,7 @@ namespace obscura::app {
 
 namespace {
 
-struct Flags {
+struct CompareFlags {
   std::string a, b;
   Format format = Format::text;
   std::optional<std::string> diff, report;
@@ -33,7 +33,7 @@ struct Flags {
 };
 
 // whether a file that is to be written is one of those that are read: A, B, or a picture in either folder
-void spare_inputs(const Flags& flags) {
+void spare_inputs(const CompareFlags& flags) {
   namespace fs = std::filesystem;
   for (const auto& [name, out] : {std::pair("--diff", flags.diff), {"--report", flags.report}}) {
     if (!out || !fs::exists(*out)) continue;
@@ -54,7 +54,7 @@ bool is_table(const std::string& path) {
 }
 
 // what a person or a program is told; GitHub beside it where the two are not the same
-void tell(const Flags& flags, bool same, const std::string& text, const std::string& json) {
+void tell(const CompareFlags& flags, bool same, const std::string& text, const std::string& json) {
   if (flags.format != Format::github) {
     clear_waiting();
     say_lines(stdout, flags.format == Format::json ? json : text);
@@ -67,7 +67,7 @@ void tell(const Flags& flags, bool same, const std::string& text, const std::str
                          (same ? "" : github::quoted(text)));
 }
 
-int compare_runs(const Flags& flags) {
+int compare_runs(const CompareFlags& flags) {
   if (flags.diff || flags.report) throw UsageError("--diff and --report are for pictures, not for tables");
   const Tolerance tolerance{flags.rtol.value_or(0), flags.atol.value_or(0)};
   const RunComparison found = compare(read_table(flags.a), read_table(flags.b), tolerance, flags.interpolate);
@@ -94,7 +94,7 @@ void write_report(const Comparison& found, const std::string& path) {
   write_text(path, report({fmt::format("{} and {}", found.a, found.b), ""}, findings));
 }
 
-int run(const Flags& flags) {
+int run(const CompareFlags& flags) {
   if (is_table(flags.a) != is_table(flags.b))
     throw UsageError(fmt::format("{} is a table and {} is not", is_table(flags.a) ? flags.a : flags.b,
                                  is_table(flags.a) ? flags.b : flags.a));
@@ -118,7 +118,7 @@ int run(const Flags& flags) {
 OBSCURA_COMMAND(100, compare) {
   const Command command(program, exit, "compare",
                         "Say whether two pictures, sequences or runs are the same, and why not");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<CompareFlags>();
   command.option("A", flags->a, "A PNG, a folder of them, a movie, or a run as CSV or JSON: what is expected")
       .required();
   command.option("B", flags->b, "The same again: what there is").required();

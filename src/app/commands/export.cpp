@@ -142,13 +142,13 @@ class Stage {
   double depth_;  // m
 };
 
-struct Flags {
+struct ExportFlags {
   std::string scene;
   std::optional<std::string> out, fps;
   std::vector<std::string> sets;
 };
 
-int run(const Flags& flags) {
+int run(const ExportFlags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
   const sim::Rational fps = flags.fps ? parse_fps(*flags.fps) : scene.film.fps;
   const std::string out = flags.out.value_or(scene.name + ".glb");
@@ -184,7 +184,7 @@ int run(const Flags& flags) {
 
 OBSCURA_COMMAND(90, export) {
   const Command command(program, exit, "export", "Write a run as one animated glTF, for another renderer");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ExportFlags>();
   add_scene(command, flags->scene);
   command.option("-o,--output", flags->out, "Where to, a name that ends with .glb [SCENE.glb]").type("OUT");
   command.option("--fps", flags->fps, "Instants per second [film.fps]").type("RATE");

@@ -28,7 +28,7 @@ namespace obscura::app {
 
 namespace {
 
-struct Flags {
+struct FigureFlags {
   std::string scene;
   std::vector<std::string> sets, vary;
   std::optional<std::string> out, at, width, font, theme, every;
@@ -117,7 +117,7 @@ media::Image lit_pixels(const Page& page, const Size& size, const gl::ContextOpt
   return pixels(blank, page.lit, size, context);
 }
 
-int run(const Flags& flags) {
+int run(const FigureFlags& flags) {
   if (flags.out) check_ending(*flags.out);
   const std::string first = flags.scene == "-" ? "scene" : std::filesystem::path(flags.scene).stem().string();
   const std::string out = flags.out.value_or("render_out/" + first + ".svg");
@@ -175,7 +175,7 @@ int run(const Flags& flags) {
 
 OBSCURA_COMMAND(30, figure) {
   const Command command(program, exit, "figure", "A figure for print: SVG, PDF or PNG");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<FigureFlags>();
   add_scene(command, flags->scene);
   command
       .option("-o,--output", flags->out,

@@ -36,7 +36,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Flags {
+struct GoldenFlags {
   std::vector<std::string> scenes, sets, only;
   Format format = Format::text;
   std::optional<std::string> junit, report;
@@ -67,7 +67,7 @@ bool wanted(const std::string& file) {
   }
 }
 
-std::vector<std::string> files(const Flags& flags) {
+std::vector<std::string> files(const GoldenFlags& flags) {
   std::vector<std::string> named = flags.scenes;
   if (named.empty()) named = {fs::is_directory("scenes") ? "scenes" : "."};
   std::vector<std::string> all;
@@ -143,7 +143,7 @@ std::string word(const std::string& text) {
 }
 
 // the command that makes what a report's reader approves the references: --only follows
-std::string update_command(const Flags& flags) {
+std::string update_command(const GoldenFlags& flags) {
   std::string text = "obscura golden";
   const auto option = [&](const char* name, const std::string& value) {
     if (!value.empty()) text += fmt::format(" {} {}", name, word(value));
@@ -155,7 +155,7 @@ std::string update_command(const Flags& flags) {
   return text + " --update";
 }
 
-Outcome check(const std::string& file, const Flags& flags) {
+Outcome check(const std::string& file, const GoldenFlags& flags) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point began = Clock::now();
   Outcome outcome;
@@ -207,7 +207,7 @@ void print(Format format, const std::string& text) {
   std::fflush(stdout);
 }
 
-void write_page(const Flags& flags, const std::vector<GoldenCase>& cases) {
+void write_page(const GoldenFlags& flags, const std::vector<GoldenCase>& cases) {
   // what --set changed is no reference of the scene as it is written
   const auto approvable = [&](const GoldenCase& it) { return !it.good() && flags.sets.empty(); };
   std::vector<Finding> findings;
@@ -227,7 +227,7 @@ void write_page(const Flags& flags, const std::vector<GoldenCase>& cases) {
   write_text(*flags.report, report({"Golden images", update_command(flags)}, findings));
 }
 
-int golden(Flags& flags) {
+int golden(GoldenFlags& flags) {
   if (flags.golden.update && !flags.sets.empty())
     throw UsageError("--update takes the scenes as their files are: leave --set out, or write it into them");
   for (const std::string& each : flags.only) flags.golden.only.push_back(GoldenChoice::parse(each));
@@ -287,7 +287,7 @@ int golden(Flags& flags) {
 OBSCURA_COMMAND(120, golden) {
   const Command command(program, exit, "golden",
                         "Check what scenes look like, and their states, against references");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<GoldenFlags>();
   command.option("SCENE", flags->scenes,
                  "Scenes, or folders of them: there those with a [golden] table [scenes, or .]");
   command

@@ -13,11 +13,11 @@ using sim::Vec3;
 
 constexpr int kAround = 32;  // corners of what is round
 
-std::array<float, 3> narrow(const Vec3& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
+std::array<float, 3> narrowed(const Vec3& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
 
 void add_vertex(Mesh& mesh, const Vec3& place, const Vec3& normal) {
-  mesh.positions.push_back(narrow(place));
-  mesh.normals.push_back(narrow(normal.normalized()));
+  mesh.positions.push_back(narrowed(place));
+  mesh.normals.push_back(narrowed(normal.normalized()));
 }
 
 // a flat face, corners counter-clockwise seen from outside

@@ -23,7 +23,7 @@ namespace obscura::app {
 
 namespace {
 
-struct Flags {
+struct RenderFlags {
   std::string scene;
   std::vector<std::string> sets;
   std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec, camera, states;
@@ -41,7 +41,7 @@ sim::Rational seconds(const std::string& flag, const std::string& text) {
 }
 
 // small, where no flag says otherwise: 480 lines, at most 30 frames a second
-void make_draft(const Flags& flags, scene::Film& film) {
+void make_draft(const RenderFlags& flags, scene::Film& film) {
   if (!flags.size && film.height > 480) {
     film.width = std::max(2, int(std::lround(480.0 * film.width / film.height / 2)) * 2);
     film.height = 480;
@@ -50,7 +50,7 @@ void make_draft(const Flags& flags, scene::Film& film) {
 }
 
 // and quick: the quickest preset of an encoder that has presets
-void make_quick(const Flags& flags, const Output& out, scene::Scene& scene) {
+void make_quick(const RenderFlags& flags, const Output& out, scene::Scene& scene) {
   if (flags.preset || out.form != Output::Form::movie) return;
   scene.film.preset.clear();
   const std::string encoder = media::codec_name(out.path, movie_spec(scene));
@@ -58,7 +58,7 @@ void make_quick(const Flags& flags, const Output& out, scene::Scene& scene) {
 }
 
 // flags override the scene
-void override_film(const Flags& flags, scene::Scene& scene) {
+void override_film(const RenderFlags& flags, scene::Scene& scene) {
   if (flags.draft) make_draft(flags, scene.film);
   if (flags.size) std::tie(scene.film.width, scene.film.height) = parse_size(*flags.size);
   if (flags.fps) scene.film.fps = parse_fps(*flags.fps);
@@ -69,7 +69,7 @@ void override_film(const Flags& flags, scene::Scene& scene) {
 }
 
 // a file for each camera: their names in OUT's {camera}
-int render_each(const scene::Scene& scene, const Shots& shots, const Flags& flags) {
+int render_each(const scene::Scene& scene, const Shots& shots, const RenderFlags& flags) {
   for (const draw::Camera& camera : scene.cameras) {
     if (camera.name.empty())
       throw UsageError(fmt::format("-o {}: the scene's camera has no name", *flags.out));
@@ -95,7 +95,7 @@ void suit_gif(const std::string& out, scene::Film& film) {
   }
 }
 
-Shots shots_of(const Flags& flags, const scene::Scene& scene) {
+Shots shots_of(const RenderFlags& flags, const scene::Scene& scene) {
   if (flags.at) {
     if (flags.frames || flags.from || flags.to)
       throw UsageError("--at names one instant: leave out --frames, --from and --to");
@@ -112,7 +112,7 @@ Shots shots_of(const Flags& flags, const scene::Scene& scene) {
 }
 
 // another program's run instead of the simulation
-void take_run(const Flags& flags, scene::Scene& scene) {
+void take_run(const RenderFlags& flags, scene::Scene& scene) {
   std::vector<std::string> notes;
   show_run(read_table(*flags.states), flags.interpolate, scene, notes);
   if (scene.film.shutter > 0)
@@ -123,7 +123,7 @@ void take_run(const Flags& flags, scene::Scene& scene) {
 }
 
 // what it has no rows of cannot be filmed
-void suit_run(const Flags& flags, const scene::Scene& scene, Shots& shots) {
+void suit_run(const RenderFlags& flags, const scene::Scene& scene, Shots& shots) {
   const sim::Trajectory& run = *scene.trajectory;
   if (!flags.at && !flags.to) {
     // up to its last row
@@ -144,7 +144,7 @@ void suit_run(const Flags& flags, const scene::Scene& scene, Shots& shots) {
 }
 
 // what is made of a film, and from where
-void divide(Flags& flags, const Output& out) {
+void divide(RenderFlags& flags, const Output& out) {
   if (flags.shard) {
     const Shard shard = parse_shard(*flags.shard);
     flags.film.shard = {int(shard.number), int(shard.of)};
@@ -176,7 +176,7 @@ void see_what_it_needs(const scene::Scene& scene, const Shots& shots, const Outp
       time_text(seconds), all.disk > 0 ? " and " + bytes_text(all.disk) : "");
 }
 
-int render(Flags flags) {
+int render(RenderFlags flags) {
   flags.film.overwrite = !flags.no_overwrite;
   scene::Scene scene = scene::read(flags.scene, flags.sets);
   override_film(flags, scene);
@@ -207,7 +207,7 @@ int render(Flags flags) {
 OBSCURA_COMMAND(10, render) {
   const Command command(program, exit, "render",
                         "Film a scene: a movie, a sequence of PNGs, one PNG or a stream");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<RenderFlags>();
   add_scene(command, flags->scene);
   command
       .option(

@@ -157,14 +157,14 @@ const char* solver_name(const sim::Model<D>& model) {
   return sim::solver(model) == sim::Solver::direct ? "\"direct\"" : "\"iterative\"";
 }
 
-struct Flags {
+struct StatesFlags {
   std::string scene;
   std::optional<std::string> at, every, from_checkpoint, format, out;
   std::vector<std::string> sets;
 };
 
 // as asked for, or by the ending of the file
-std::string form(const Flags& flags) {
+std::string form(const StatesFlags& flags) {
   if (flags.format) return *flags.format;
   if (!flags.out || *flags.out == "-") return "json";
   const std::string ending = std::filesystem::path(*flags.out).extension().string();
@@ -173,7 +173,7 @@ std::string form(const Flags& flags) {
       fmt::format("-o {}: expected a name that ends with .csv or .json, or --format", *flags.out));
 }
 
-std::vector<sim::Rational> times_of(const Flags& flags, const scene::Scene& scene) {
+std::vector<sim::Rational> times_of(const StatesFlags& flags, const scene::Scene& scene) {
   if (flags.at && flags.every) throw UsageError("--at and --every exclude each other");
   if (flags.at) return instants(*flags.at);
   const sim::Rational every =
@@ -183,7 +183,7 @@ std::vector<sim::Rational> times_of(const Flags& flags, const scene::Scene& scen
   return instants(fmt::format("0:{}:{}", sim::text(scene.duration), sim::text(every)));
 }
 
-int states(const Flags& flags) {
+int states(const StatesFlags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
   auto times = times_of(flags, scene);
   const auto run = flags.from_checkpoint ? run_from(*flags.from_checkpoint, scene) : scene.run();
@@ -247,7 +247,7 @@ int states(const Flags& flags) {
 OBSCURA_COMMAND(60, states) {
   const Command command(program, exit, "states",
                         "Print the state at given instants as data, without drawing");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<StatesFlags>();
   add_scene(command, flags->scene);
   command.option("--at", flags->at, "Instants (s), as in 0,0.5,2 or 0:10:0.5").type("LIST");
   command.option("--every", flags->every, "Instants from 0 to the duration, this far apart (s) [1]")

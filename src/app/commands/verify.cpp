@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Flags {
+struct VerifyFlags {
   std::vector<std::string> files;
   std::vector<std::shared_ptr<const Table>> runs;  // tables among the files
   std::optional<std::string> scene;
@@ -64,14 +64,14 @@ struct Verdict {
   void no(std::string line) { good = false, lines.push_back(std::move(line)); }
 };
 
-gl::ContextOptions context_of(const Origin& origin, const Flags& flags) {
+gl::ContextOptions context_of(const Origin& origin, const VerifyFlags& flags) {
   gl::ContextOptions context = flags.film.context;
   context.native = origin.native;
   return context;
 }
 
 // the cause of other pixels is told where other states have not told it
-void judge_still(const media::Image& image, const Origin& origin, const Origin& now, const Flags& flags,
+void judge_still(const media::Image& image, const Origin& origin, const Origin& now, const VerifyFlags& flags,
                  Verdict& verdict) {
   const bool told = !verdict.good;
   const scene::Scene scene = scene_of(now);
@@ -113,7 +113,7 @@ void judge_states(const Origin& origin, const Origin& now, Verdict& verdict) {
 }
 
 // makes the movie anew, at another place; `now` becomes its origin
-bool film_again(const std::string& file, const Flags& flags, const std::string& again, Origin& now) {
+bool film_again(const std::string& file, const VerifyFlags& flags, const std::string& again, Origin& now) {
   scene::Scene scene = scene_of(now);
   if (fs::path(file).extension() == ".gif") scene.film.codec.clear();
   FilmOptions options = flags.film;
@@ -140,7 +140,7 @@ void judge_movie(const std::string& file, const std::string& again, Verdict& ver
 }
 
 // the table of the run that a file shows: the one of its name, or the only one
-std::shared_ptr<const Table> run_of(const std::string& file, const Origin& origin, const Flags& flags) {
+std::shared_ptr<const Table> run_of(const std::string& file, const Origin& origin, const VerifyFlags& flags) {
   for (const auto& run : flags.runs)
     if (fs::path(run->file).filename() == origin.trajectory || flags.runs.size() == 1) return run;
   throw media::Error(fmt::format(
@@ -149,7 +149,7 @@ std::shared_ptr<const Table> run_of(const std::string& file, const Origin& origi
       file, origin.trajectory));
 }
 
-Verdict judge(const std::string& file, const Flags& flags) {
+Verdict judge(const std::string& file, const VerifyFlags& flags) {
   Frames frames(file);
   if (frames.kind() == Frames::Kind::folder)
     throw media::Error(file + ": is a folder; name its pictures, as in frames/*.png");
@@ -230,7 +230,7 @@ std::string scene_text(const std::string& file) {
   return text;
 }
 
-int verify(Flags flags) {
+int verify(VerifyFlags flags) {
   if (flags.scene) flags.scene_text = scene_text(*flags.scene);
   const auto is_run = [](const std::string& file) {
     const fs::path ending = fs::path(file).extension();
@@ -283,7 +283,7 @@ int verify(Flags flags) {
 OBSCURA_COMMAND(110, verify) {
   const Command command(program, exit, "verify",
                         "Make a picture or movie again from its origin: is it still true?");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<VerifyFlags>();
   command
       .option("FILE", flags->files,
               "PNGs and movies that obscura wrote; the tables (.csv) of the runs that they show, where "

@@ -37,7 +37,7 @@ namespace {
 
 constexpr std::int64_t kMostTiles = 144;
 
-struct Flags {
+struct SweepFlags {
   std::string scene;
   std::vector<std::string> sets, vary, measure;
   std::optional<std::string> out, format, shard, at;
@@ -53,7 +53,7 @@ struct Row {
   int exit = kDone;
 };
 
-RowForm form(const Flags& flags) {
+RowForm form(const SweepFlags& flags) {
   const std::string ending =
       flags.out ? std::filesystem::path(*flags.out).extension().string() : std::string(".csv");
   const auto named = [](const std::string& name) { return name == "csv" ? RowForm::csv : RowForm::jsonl; };
@@ -67,7 +67,7 @@ RowForm form(const Flags& flags) {
 class Sweep {
  public:
   /// Reads the scene; run 0 must be one, and have what is asked. Throws UsageError, scene::Error.
-  explicit Sweep(const Flags& flags)
+  explicit Sweep(const SweepFlags& flags)
       : file_(flags.scene), sets_(flags.sets), form_(form(flags)), variations_(flags.vary) {
     if (flags.measure.empty())
       throw UsageError(
@@ -136,7 +136,7 @@ std::int64_t earlier(const Sweep& sweep, const RowFile& file, std::int64_t from,
 }
 
 // all runs in one picture, or one movie
-int pictures(const Flags& flags, bool still) {
+int pictures(const SweepFlags& flags, bool still) {
   if (!flags.measure.empty() || flags.shard || flags.resume || flags.anew || flags.format)
     throw UsageError(
         fmt::format("-o {}: --measure, --shard, --resume, --anew and --format are for tables", *flags.out));
@@ -168,7 +168,7 @@ bool ends_in(const std::string& name, std::initializer_list<std::string_view> en
          endings.end();
 }
 
-int sweep(Flags flags) {
+int sweep(SweepFlags flags) {
   if (flags.out == "-") flags.out.reset();
   if (flags.out && ends_in(*flags.out, {".png"})) return pictures(flags, true);
   if (flags.out && ends_in(*flags.out, {".mp4", ".mkv", ".mov", ".webm", ".gif"}))
@@ -239,7 +239,7 @@ int sweep(Flags flags) {
 void check_sweep(const std::string& scene, const std::vector<std::string>& sets,
                  const std::vector<std::string>& vary, const std::vector<std::string>& measure,
                  const std::string& out) {
-  Flags flags;
+  SweepFlags flags;
   flags.scene = scene, flags.sets = sets, flags.vary = vary, flags.measure = measure, flags.out = out;
   const Sweep sweep(flags);
 }
@@ -247,7 +247,7 @@ void check_sweep(const std::string& scene, const std::vector<std::string>& sets,
 OBSCURA_COMMAND(70, sweep) {
   const Command command(program, exit, "sweep",
                         "Run a scene many times, and measure: a table, without drawing");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SweepFlags>();
   add_scene(command, flags->scene);
   command
       .option("--vary", flags->vary,

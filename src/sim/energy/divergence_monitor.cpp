@@ -36,7 +36,7 @@ std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit) 
   for (int i = 0; i < D; ++i) {
     if (std::isinf(numbers[i])) return "is infinite";
   }
-  return std::string("grew past ") + limit;
+  return std::string("grew past ").append(limit);
 }
 
 }  // namespace
