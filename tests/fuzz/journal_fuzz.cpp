@@ -37,7 +37,7 @@ struct Film {
     origin.frames = 600, origin.shots = "0..599", origin.shot = app::Shot{};
     origin.encoder = "libx264", origin.preset = "medium", origin.crf = 18;
     journal.takes = 10, journal.take_frames = 60, journal.shards = 4;
-    { const app::Store store(output, journal, 0, journal.takes, false); }
+    { const app::Store store(output, journal, 0, journal.takes, app::Earlier::replace); }
     written = app::file_bytes(path());
   }
   ~Film() {
@@ -99,6 +99,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     for (int k = 1; k <= journal.shards; ++k) app::Store::share(journal.takes, k, journal.shards);
   });
   // as --resume does, of another film
-  refused_or_done([&] { const app::Store store(film.output, film.journal, 0, film.journal.takes, true); });
+  refused_or_done([&] { const app::Store store(film.output, film.journal, 0, film.journal.takes, app::Earlier::go_on); });
   return 0;
 }
