@@ -49,9 +49,14 @@ double newton(const sim::SceneInfo& cast) {
   return usual > 0 ? kForceArrow * cast.scale / usual : 0;
 }
 
-Stage::Stage(const sim::SceneInfo& who, const Look& looks_, const Camera& camera_, const Layout& page,
+Stage::Stage(const sim::SceneInfo& info, const Look& looks_, const Camera& camera_, const Layout& page,
              const Charts& beside)
-    : cast(who), look(looks_), camera(camera_), colours(palette(looks_.theme)), layout(page), charts(beside) {
+    : cast(info),
+      look(looks_),
+      camera(camera_),
+      colours(palette(looks_.theme)),
+      layout(page),
+      charts(beside) {
   const std::vector<char> net = knots(cast);
   auto knot = [&](int body) { return body >= 0 && net[body]; };
 

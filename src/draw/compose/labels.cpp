@@ -85,10 +85,10 @@ void draw_labels(const Stage& stage, const View& view, const sim::Snapshot& now,
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < now.bodies.size(); ++i) {
     const std::string& words = stage.look.bodies[i].label;
     if (words.empty()) continue;
-    const sim::SceneInfo::Body& who = stage.cast.bodies[i];
+    const sim::SceneInfo::Body& body = stage.cast.bodies[i];
     Label label{words, view.page(now.bodies[i].position), {}};
-    if (who.parts.empty()) add_form(who, sim::Vec3::Zero(), now.bodies[i], view, label.body);
-    for (const sim::SceneInfo::Part& part : who.parts)
+    if (body.parts.empty()) add_form(body, sim::Vec3::Zero(), now.bodies[i], view, label.body);
+    for (const sim::SceneInfo::Part& part : body.parts)
       add_form(part, part.center, now.bodies[i], view, label.body);
     label.body.add(label.center.y(), stage.dots[i]);
     labels.push_back(label);

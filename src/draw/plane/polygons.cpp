@@ -120,12 +120,12 @@ std::vector<std::uint64_t> seams_of(const sim::SceneInfo::Body& body) {
 void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;
   for (int i : stage.polygons) {
-    const sim::SceneInfo::Body& who = stage.cast.bodies[i];
+    const sim::SceneInfo::Body& info = stage.cast.bodies[i];
     const sim::Snapshot::Body& body = now.bodies[i];
     const Paint& paint = stage.paints[i];
-    std::vector<Part> parts = who.parts;
-    if (who.kind == sim::ShapeKind::polygon)
-      parts.push_back({sim::ShapeKind::polygon, 0, sim::Vec3::Zero(), sim::Vec3::Zero(), who.vertices});
+    std::vector<Part> parts = info.parts;
+    if (info.kind == sim::ShapeKind::polygon)
+      parts.push_back({sim::ShapeKind::polygon, 0, sim::Vec3::Zero(), sim::Vec3::Zero(), info.vertices});
 
     // one width for all of its outline
     std::vector<Form> forms;

@@ -114,9 +114,9 @@ bool same(const CameraProjection& a, const CameraProjection& b) {
 
 }  // namespace
 
-SpaceStage::SpaceStage(const sim::SceneInfo& who, const Look& looks_, const std::vector<Camera>& cameras,
+SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std::vector<Camera>& cameras,
                        const Extent& extent, double aspect, const Charts& beside)
-    : cast(who),
+    : cast(info),
       look(looks_),
       colours(palette(looks_.theme)),
       charts(beside),

@@ -36,10 +36,9 @@ struct CoreShapes {
   std::vector<double> x, y;       // corners in the body's frame, m
   std::vector<double> nx, ny, d;  // faces: outward normal and its distance from the body's centre
   std::vector<double> bounding_radius, half_thickness;  // of bodies, m
-  /// Of the larger bounding radius of two: how deep one may lie in the other for good. Where few lie it is
-  /// next to nothing. The few sweeps that many have leave some of those apart that they push out of one
-  /// another, and who stands apart bears nothing until it has fallen back: a heap that is put right to the
-  /// last creeps for ever.
+  /// Overlap that is left uncorrected, as a share of the larger bounding radius of two bodies; next to
+  /// nothing where there are few. With many, the few iterations separate some contacts that are corrected to
+  /// zero; a separated contact bears nothing until it closes again, and the heap creeps.
   double linear_slop = 0;
 };
 
