@@ -1,9 +1,9 @@
 #pragma once
 
 // Response of bodies to an impulse p along a row of the Jacobian J = (s, r x s), M^-1 J' p:
-//   free body                          dv = p s / m,  dw = p I^-1 (r x s)
-//   link of a chain                    M^-1 J' of its whole tree, by Featherstone's algorithm
-//   (multibody/chains.h) wall; fixed or sleeping body       nothing
+//   free body                dv = p s / m,  dw = p I^-1 (r x s)
+//   link of a chain          M^-1 J' of its whole tree, by Featherstone's algorithm (sim/multibody/chains.h)
+//   wall; fixed, sleeping    nothing
 // and of a row i by a row j, K_ij = J_i M^-1 J_j'; 1 / K_ii is the effective mass of row i. The solvers keep
 // three forms of it, which round differently: Side, RowResponse and PointBody.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §8.5; Catto, Iterative Dynamics with Temporal

@@ -1,6 +1,6 @@
 // The touches of an island at rest, J their rows (normal, then tangents), M of the bodies:
-//   K f + b = w,   K = J M^-1 J',   b = J g        f in the cones, w obeys their laws
-//   (sim/solve/exact/cone_law.h) a = g + M^-1 J' f = 0                          is what rest is
+//   K f + b = w,   K = J M^-1 J',   b = J g        f in the cones, w obeys their laws (cone_law.h)
+//   a = g + M^-1 J' f = 0                          is what rest is
 
 #include "sim/solve/exact/statics.h"
 
