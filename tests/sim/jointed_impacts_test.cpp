@@ -1,7 +1,7 @@
 // Boxes of a chain that falls on a corner of one of them, with friction: the impact of the solvers for many
-// bodies against that of the exact one. All of it flies alike until then, so that joints bear nothing, and it
-// meets the floor a millionth of a step before the step ends: what joints do after the impact is less than
-// the bounds.
+// bodies, in the plane and in space, against that of the exact one. All of it flies alike until then, so that
+// joints bear nothing, and it meets the floor a millionth of a step before the step ends: what joints do
+// after the impact is less than the bounds.
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sim/jointed.h"
+#include "sim/space_rooms.h"
 #include "sim/touching.h"
 
 namespace obscura::sim {
@@ -45,11 +46,12 @@ World<2> chain(int seed, int lowest, int rate) {
   return world;
 }
 
-void expect_same(World<2> world, const std::string& name) {
+template <int D>
+void expect_same(World<D> world, const std::string& name) {
   world.model.solver = Solver::direct;
-  const State<2> want = stepped(world, kSteps);
+  const State<D> want = stepped(world, kSteps);
   world.model.solver = Solver::iterative;
-  const State<2> got = stepped(world, kSteps);
+  const State<D> got = stepped(world, kSteps);
   EXPECT_GT((want.v[0] - world.state.v[0]).norm(), 1e-3) << name << ": it must have landed";
   for (std::size_t i = 0; i < want.v.size(); ++i) {
     EXPECT_NEAR((got.v[i] - want.v[i]).norm(), 0, kBound) << name << " box " << i;
@@ -62,6 +64,65 @@ TEST(JointedImpacts, ABoxOfAChainLeavesTheFloorAsByTheExactSolver) {
     for (int seed = 0; seed < 40; ++seed)
       expect_same(chain(seed, seed % 4, rate),
                   "seed " + std::to_string(seed) + " at " + std::to_string(rate));
+  }
+}
+
+TEST(JointedImpacts, ABoxOfAChainInSpaceLeavesTheFloorAsByTheExactSolver) {
+  for (const int rate : {60, 600, 6000}) {
+    for (int seed = 0; seed < 40; ++seed) {
+      const World<2> flat = chain(seed, seed % 4, rate);
+      World<3> world = extruded(flat, 0.2);
+      for (Joint<3>& joint : world.model.joints) joint.turn.setZero();
+      world.model.ignore = flat.model.ignore;
+      expect_same(world, "seed " + std::to_string(seed) + " at " + std::to_string(rate));
+    }
+  }
+}
+
+// Bricks turned anyhow in ball joints, one of which comes down first, on a corner.
+World<3> figure(int seed, int rate) {
+  Chance chance(std::uint64_t(seed) * 7919 + 5);
+  World<3> world = space({0, 0, 0});
+  world.model.collision = Collision::contact, world.model.scale = 4;
+  world.model.rate = {rate, 1};
+  add_wall(world, {0, 0, 0}, {0, 1, 0});
+  const auto vec = [&](double size) -> Vec3 {
+    return {chance.between(-size, size), chance.between(-size, size), chance.between(-size, size)};
+  };
+  const int lowest = seed % 3;
+  const Vec3 half(0.2, 0.15, 0.1);
+  Vec3 v = vec(2);
+  v.y() = -chance.between(1, 4);
+  const double e = chance.between(0.2, 1);
+  for (int i = 0; i < 3; ++i) {
+    const int body =
+        add_solid(world, brick(2 * half), chance.between(0.5, 3), {0.6 * i, i == lowest ? 2.0 : 2.6, 0.1 * i},
+                  v, exponential(vec(2)), {0, 0, 0}, e);
+    world.model.bodies[body].friction = seed % 4 == 0 ? 0 : 0.4, world.model.bodies[body].group = 1;
+    if (i == 0) continue;
+    const Vec3 middle = 0.5 * (world.state.x[i - 1] + world.state.x[i]);
+    const auto end = [&](int of) -> End<3> {
+      return {of, rotation<3>(world.state.turn[of]).transpose() * (middle - world.state.x[of])};
+    };
+    Joint<3> ball;
+    ball.a = end(i), ball.b = end(i - 1);
+    world.model.joints.push_back(ball);
+  }
+  world.model.ignore = {{1, 1}};
+  double down = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 at(corner & 1 ? half.x() : -half.x(), corner & 2 ? half.y() : -half.y(),
+                  corner & 4 ? half.z() : -half.z());
+    down = std::max(down, -(rotation<3>(world.state.turn[lowest]) * at).y());
+  }
+  for (Vec3& x : world.state.x) x.y() += down - v.y() * (kSteps - 2e-7) / rate - 2.0;
+  return world;
+}
+
+TEST(JointedImpacts, AFigureOnBallJointsLeavesTheFloorAsByTheExactSolver) {
+  for (const int rate : {60, 600, 6000}) {
+    for (int seed = 0; seed < 60; ++seed)
+      expect_same(figure(seed, rate), "seed " + std::to_string(seed) + " at " + std::to_string(rate));
   }
 }
 

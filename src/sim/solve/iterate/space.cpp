@@ -63,6 +63,7 @@ void SpaceIterative<D>::step(State<D>& state, double t, double h) {
   prepare(state);
   find(h);
   if (wake(state, h) || (state.step == 0 && sleep_at_start(state, h))) prepare(state), find(h);
+  if (!joints_.empty()) build_joint_rows(state);
   integrate_unconstrained(state, t, h);
   resolve_impacts(state, h);
   warm_start(state, h);
@@ -70,11 +71,6 @@ void SpaceIterative<D>::step(State<D>& state, double t, double h) {
       std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
   if (state.step == 0) iterations = kFirstIterations;
   if (!joints_.empty()) {
-    joints_.gather(state);
-    for (const int i : joints_.bodies()) {
-      joints_.body_motion(i) = stances_[i];
-      if (const int k = turning(state, i); k >= 0) joints_.turn(i) = turn_[k];
-    }
     // what hangs together is struck together
     parts_.assign(joints_.parts(), 0);
     for (const int i : joints_.bodies()) {
@@ -84,7 +80,6 @@ void SpaceIterative<D>::step(State<D>& state, double t, double h) {
       if (joints_.part(i) >= 0 && parts_[joints_.part(i)]) closing_[i] = 1;
     }
     copy_to_joints();
-    joints_.compute_rows();
     joints_.begin(h);
     if (touches_.empty() && joints_.plain()) iterations = 1;
   }
@@ -196,6 +191,17 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
   touches_.push_back(touch), features_.push_back(gap);
 }
 
+// rows of the joints where the step begins
+template <int D>
+void SpaceIterative<D>::build_joint_rows(const State<D>& state) {
+  joints_.gather(state);
+  for (const int i : joints_.bodies()) {
+    joints_.body_motion(i) = stances_[i];
+    if (const int k = turning(state, i); k >= 0) joints_.turn(i) = state.turn[k];
+  }
+  joints_.compute_rows();
+}
+
 // positions and velocities without contacts
 template <int D>
 void SpaceIterative<D>::integrate_unconstrained(State<D>& state, double t, double h) {
@@ -230,6 +236,7 @@ void SpaceIterative<D>::warm_start(const State<D>& state, double h) {
     } else if (before < -restitution_threshold_ && touch.gap + h * (before - g_ * h) < 0) {
       touch.least = touch.passes ? -1e9 : -touch.bounce * before;
       touch.bounces = !touch.passes && touch.bounce > 0;
+      touch.closes = std::clamp(-touch.gap / before, 0.0, h);
       touch.closing = !touch.passes && touch.bounce == 0;
     } else {
       touch.least = std::min(-touch.gap / h, 0.0);
@@ -344,18 +351,37 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
   return any;
 }
 
+// When each body meets an impact that the iterations change its motion at, s from the start of the step: the
+// first that is left to them, or its last, if joints answered it. h: none.
+template <int D>
+void SpaceIterative<D>::find_strikes(double h) {
+  const int n = int(model_.bodies.size());
+  strikes_.assign(n + 1, h);
+  for (const ContactConstraint& touch : touches_) {
+    if (!touch.bounces || touch.normal_impulse <= 0) continue;
+    for (const int side : {touch.a, touch.b})
+      each_tied(side, [&](int body) { strikes_[body] = std::min(strikes_[body], touch.closes); });
+  }
+  for (const int body : joints_.bodies()) {
+    if (when_[body] >= 0 && strikes_[body] == h) strikes_[body] = when_[body];
+  }
+}
+
 // positions at the end of the step, from those without contacts
 template <int D>
 void SpaceIterative<D>::advance(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
+  find_strikes(h);
   for (int i = 0; i < n; ++i) {
     if (inactive_[i]) continue;
     const PointBody<D>& m = moving_[i];
     const bool closing = closing_[i] && when_[i] < 0;
+    // how long it moves with what the iterations changed: all of the step in the mean, or since its impact
+    const double with = strikes_[i] < h ? h - strikes_[i] : 0.5 * h;
     if (closing) {
       state.x[i] = x_[i] + h * m.v;
     } else {
-      state.x[i] = x_free_[i] + 0.5 * h * (m.v - v_free_[i]);
+      state.x[i] = x_free_[i] + with * (m.v - v_free_[i]);
     }
     state.v[i] = m.v;
     const int k = turning(state, i);
@@ -368,7 +394,7 @@ void SpaceIterative<D>::advance(State<D>& state, double h) {
     const AngularVec<D>& inertia = model_.bodies[i].inertia;
     const Rotation<D> fallen = rotation<D>(turn_free_[k]);
     state.turn[k] = closing ? turned<D>(turn_[k], AngularVec<D>(h * m.w))
-                            : turned<D>(turn_free_[k], AngularVec<D>(0.5 * h * change));
+                            : turned<D>(turn_free_[k], AngularVec<D>(with * change));
     const Rotation<D> now = rotation<D>(state.turn[k]);
     state.spin[k] = carried_spin<D>(inertia, fallen, now, w_free_[k]) +
                     carried_spin<D>(inertia, stances_[i].room_from_body, now, change);

@@ -48,6 +48,7 @@ class SpaceIterative final : public ContactSolver<D> {
     bool passes = false;                      // however it looks, it does not close with an impact
     bool bounces = false;                     // an impact that is left to the iterations
     bool closing = false;                     // slowly
+    double closes = 0;                        // when it bounces, s from the start of the step
   };
 
   // a body at a time within the step
@@ -71,13 +72,26 @@ class SpaceIterative final : public ContactSolver<D> {
   void find(double h);
   void add(const ContactCandidate<D>& gap, const Material& pair);
   bool wake(State<D>& state, double h);
+  void build_joint_rows(const State<D>& state);
   void integrate_unconstrained(State<D>& state, double t, double h);
   void resolve_impacts(State<D>& state, double h);
   Flown flown(int body, double t, double h) const;
   Instant instant(int touch, double t, double h) const;
   double closing_time(int touch, double h) const;
   bool gather_impact(int touch, double t, double h);
+  bool build_impact_rows(double t, double h);
   bool solve_impact(double t, double h);
+  // act(body) for what moves of a side of a touch, and for all that hangs together with it on joints
+  template <class Act>
+  void each_tied(int body, Act&& act) const {
+    if (body == int(model_.bodies.size()) || inactive_[body]) return;
+    const int component = joints_.empty() ? -1 : joints_.part(body);
+    if (component < 0) {
+      act(body);
+    } else {
+      for (const int member : joints_.members(component)) act(member);
+    }
+  }
   void warm_start(const State<D>& state, double h);
   void iterate(const std::vector<int>& order, bool back);
   // an impulse on a, and back on b
@@ -93,6 +107,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void copy_to_joints(const std::vector<char>* of = nullptr);
   void copy_from_joints(const std::vector<char>* of = nullptr);
   void solve_joint_velocities();
+  void find_strikes(double h);
   void advance(State<D>& state, double h);
   void update_velocities(State<D>& state, double h);
   void correct_overlaps(State<D>& state);
@@ -143,6 +158,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
   std::vector<Flown> flown_;                        // after it, or as the step began
   std::vector<Due> due_;
+  std::vector<double> strikes_;             // bodies: s, when what the iterations change begins to move them
   std::vector<int> rounds_;                 // impacts of each body
   std::vector<int> around_, around_start_;  // touches of each body
   std::vector<int> meets_, changed_;        // touches of an impact, and of all that it moves
@@ -151,6 +167,8 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<ConeMode<D>> modes_;
   std::vector<Row<D>> impact_rows_;
   std::vector<RowResponse<D>> impact_responses_;
+  std::vector<typename JointSolver<D>::JointResponse> tied_responses_;
+  bool impact_tied_ = false;  // whether joints answer the impact
   Eigen::MatrixXd K_;
   Eigen::VectorXd b_, p_, speeds_;
   std::vector<double> left_;   // of each island's fastest point, m/s

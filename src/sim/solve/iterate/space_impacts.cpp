@@ -2,8 +2,9 @@
 //   w = K p + J v,   p_n >= 0,   w_n + e v_n >= 0,   p_n (w_n + e v_n) = 0,   p_t in Coulomb's cone
 // of all that touches there at once, exactly (sim/solve/exact/cone.h). Until then a body flies as it would
 // without contacts, after it with the velocity it got; where it comes to so is what the iterations begin
-// from. What hangs on joints and large heaps are left to the iterations. Newton's law with friction can raise
-// the energy; then e is halved until it does not.
+// from. What hangs together on joints meets the impact together: M^-1 is that of the bodies and their joints,
+// with the rows of the joints where the step begins. Large heaps are left to the iterations. Newton's law
+// with friction can raise the energy; then e is halved until it does not.
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,7 @@ constexpr double kInTime = 1e-9;  // of the step: the next would be by its squar
 constexpr double kLatest = 1.5;   // steps: so late a gap may close that its tangent would close in one
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
 constexpr double kLeast = 1e-6;        // of e: halved so far it is none
+constexpr double kLocked = 1e-9;       // of what a push moves without joints
 constexpr int kTurns = 40;             // impacts, of those that there are at first
 
 }  // namespace
@@ -116,37 +118,32 @@ double SpaceIterative<D>::closing_time(int i, double h) const {
 // what meets with a gap at a time, through gaps that are closed; false where that is not for here
 template <int D>
 bool SpaceIterative<D>::gather_impact(int first, double t, double h) {
-  const int n = int(model_.bodies.size());
   meets_.assign(1, first);
-  for (std::size_t k = 0; k < meets_.size(); ++k) {
-    for (const int body : {touches_[meets_[k]].a, touches_[meets_[k]].b}) {
-      if (body == n || inactive_[body]) continue;
-      if (joints_.has(body)) return false;
-      for (int at = around_start_[body]; at < around_start_[body + 1]; ++at) {
-        const int other = around_[at];
-        if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
-        if (instant(other, t, h).now.value > kTogether * bounding_radius_[body]) continue;
-        if (int(meets_.size()) == kMost) return false;
-        meets_.push_back(other);
-      }
+  bool few = true;
+  for (std::size_t k = 0; few && k < meets_.size(); ++k) {
+    for (const int side : {touches_[meets_[k]].a, touches_[meets_[k]].b}) {
+      each_tied(side, [&](int body) {
+        for (int at = around_start_[body]; few && at < around_start_[body + 1]; ++at) {
+          const int other = around_[at];
+          if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
+          if (instant(other, t, h).now.value > kTogether * bounding_radius_[body]) continue;
+          few = int(meets_.size()) < kMost;
+          if (few) meets_.push_back(other);
+        }
+      });
     }
   }
-  return true;
+  return few;
 }
 
-// all that meets at a time, at once; false where no impulses were found
+// the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; false where joints
+// leave it nothing to move
 template <int D>
-bool SpaceIterative<D>::solve_impact(double t, double h) {
-  const int count = int(meets_.size()), rows = D * count;
-  std::vector<Row<D>>& J = impact_rows_;
-  J.assign(rows, {});
-  K_.resize(rows, rows), b_.resize(rows), p_.resize(rows);
-  blocks_.assign(count, {});
-  const int n = int(model_.bodies.size());
-  std::vector<RowResponse<D>>& responses = impact_responses_;
-  responses.resize(rows);
-  Eigen::VectorXd& v = speeds_;
-  v.resize(rows);
+bool SpaceIterative<D>::build_impact_rows(double t, double h) {
+  const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
+  K_.resize(rows, rows), speeds_.resize(rows), blocks_.assign(count, {});
+  impact_rows_.assign(rows, {}), impact_responses_.resize(rows);
+  impact_tied_ = false;
   for (int k = 0; k < count; ++k) {
     const ContactConstraint& touch = touches_[meets_[k]];
     const Instant at = instant(meets_[k], t, h);
@@ -155,19 +152,49 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
     if constexpr (D == 3) ways[2] = ways[0].cross(ways[1]);
     blocks_[k].mu = touch.mu;
     for (int i = 0; i < D; ++i) {
-      Row<D>& row = J[D * k + i];
+      Row<D>& row = impact_rows_[D * k + i];
       row.a = touch.a, row.b = touch.b == n ? -1 : touch.b, row.along = ways[i];
       row.angular_a = moment<D>(Vec<D>(at.now.point - at.a.x), ways[i]);
       row.angular_b = moment<D>(Vec<D>(at.now.point - at.b.x), ways[i]);
-      responses[D * k + i] = response_.of(row, at.a, at.b);
-      v[D * k + i] = row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
+      impact_responses_[D * k + i] = response_.of(row, at.a, at.b);
+      speeds_[D * k + i] =
+          row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
+    }
+    if (joints_.empty()) continue;
+    for (const auto& [body, it] : {std::pair(touch.a, &at.a), std::pair(touch.b, &at.b)}) {
+      if (body == n) continue;
+      const bool tied = joints_.part(body) >= 0;
+      impact_tied_ = impact_tied_ || tied;
+      if (!tied) joints_.body_motion(body) = *it;
     }
   }
+  if (!impact_tied_) {
+    for (int i = 0; i < rows; ++i) {
+      for (int j = 0; j <= i; ++j)
+        K_(i, j) = K_(j, i) = coupling(impact_rows_[i], impact_responses_[i], impact_rows_[j]);
+    }
+    return true;
+  }
+  if (int(tied_responses_.size()) < rows) tied_responses_.resize(rows);
   for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      K_(i, j) = K_(j, i) = coupling(J[i], responses[i], J[j]);
-    }
+    tied_responses_[i].row = impact_rows_[i];
+    joints_.compute_response(tied_responses_[i]);
+    for (int j = 0; j <= i; ++j)
+      K_(i, j) = K_(j, i) = joints_.response_between(tied_responses_[i], tied_responses_[j]);
+    const Row<D>& row = impact_rows_[i];
+    const double without = response_.inverse_mass(row.a) + response_.inverse_mass(row.b);
+    if (i % D == 0 && !(K_(i, i) > kLocked * without)) return false;
   }
+  return true;
+}
+
+// all that meets at a time, at once; false where no impulses were found
+template <int D>
+bool SpaceIterative<D>::solve_impact(double t, double h) {
+  if (!build_impact_rows(t, h)) return false;
+  const int count = int(meets_.size()), rows = D * count;
+  const Eigen::VectorXd& v = speeds_;
+  b_.resize(rows), p_.resize(rows);
   for (double bounce = 1;; bounce = bounce > kLeast ? 0.5 * bounce : 0) {
     b_ = v;
     for (int k = 0; k < count; ++k) {
@@ -183,18 +210,27 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
     if (gain <= kImpactGain * size) break;
   }
 
-  const auto reach = [&](int body) {
-    if (moving_[body].inverse_mass == 0 || when_[body] == t) return;
-    flown_[body] = flown(body, t, h), when_[body] = t;
-  };
-  for (const int i : meets_) reach(touches_[i].a), reach(touches_[i].b);
+  for (const int i : meets_) {
+    for (const int side : {touches_[i].a, touches_[i].b}) {
+      each_tied(side, [&](int body) {
+        if (when_[body] == t) return;
+        flown_[body] = flown(body, t, h), when_[body] = t;
+      });
+    }
+  }
   for (int i = 0; i < rows; ++i) {
-    each_response(J[i], responses[i], p_[i],
+    touches_[meets_[i / D]].impact_impulse += p_[i] * impact_rows_[i].along;
+    if (impact_tied_) {
+      joints_.each_push(tied_responses_[i], p_[i], [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
+        flown_[body].stance.v += dv, flown_[body].stance.w += dw;
+      });
+      continue;
+    }
+    each_response(impact_rows_[i], impact_responses_[i], p_[i],
                   [&](int body, const Vec<D>& dv, const AngularVec<D>& spin, double p) {
                     BodyMotion<D>& it = flown_[body].stance;
                     it.v += dv, it.w += p * spin;
                   });
-    touches_[meets_[i / D]].impact_impulse += p_[i] * J[i].along;
   }
   return true;
 }
@@ -263,17 +299,14 @@ void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
     if (due.rounds != rounds(due.touch)) continue;
     if (!gather_impact(due.touch, due.when, h) || !solve_impact(due.when, h)) continue;
     struck_ = true;
-    for (const int i : meets_) {
-      for (const int body : {touches_[i].a, touches_[i].b}) {
-        if (moving_[body].inverse_mass > 0) ++rounds_[body];
-      }
-    }
     changed_.clear();
     for (const int i : meets_) {
-      for (const int body : {touches_[i].a, touches_[i].b}) {
-        if (body == n || inactive_[body]) continue;
-        changed_.insert(changed_.end(), around_.begin() + around_start_[body],
-                        around_.begin() + around_start_[body + 1]);
+      for (const int side : {touches_[i].a, touches_[i].b}) {
+        each_tied(side, [&](int body) {
+          ++rounds_[body];
+          changed_.insert(changed_.end(), around_.begin() + around_start_[body],
+                          around_.begin() + around_start_[body + 1]);
+        });
       }
     }
     std::sort(changed_.begin(), changed_.end());
