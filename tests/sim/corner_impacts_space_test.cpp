@@ -267,5 +267,70 @@ TEST(CornerImpactsInSpace, AnOffCentreRoughImpactKeepsAngularMomentum) {
   }
 }
 
+// two balls or cubes, whose spin stays in flight, that fly at each other
+World<3> meeting(int seed, Collision collision, int rate) {
+  Chance chance(std::uint64_t(seed) * 977 + 5);
+  World<3> world = space({0, 0, 0});
+  world.model.collision = collision, world.model.scale = 4, world.model.rate = {rate, 1};
+  if (collision == Collision::contact) world.model.solver = Solver::iterative;
+  const auto vec = [&](double size) -> Vec3 {
+    return {chance.between(-size, size), chance.between(-size, size), chance.between(-size, size)};
+  };
+  const double e = seed % 3 == 0 ? 1 : chance.between(0.2, 1),
+               mu = seed % 4 == 0 ? 0 : chance.between(0.05, 1);
+  for (int side = 0; side < 2; ++side) {
+    Vec3 x = vec(0.2), v = vec(0.2);
+    x.x() = side ? 1.0 : 0, v.x() = side ? chance.between(-3, 0) : chance.between(1, 3);
+    const double size = chance.between(0.2, 0.5);
+    const bool ball = (seed / (side ? 3 : 1)) % 3 == 0;
+    const int body = add_solid(world, ball ? round(size / 2) : brick({size, size, size}),
+                               chance.between(0.2, 5), x, v, exponential(vec(2)), vec(4), e);
+    world.model.bodies[body].friction = mu;
+  }
+  return world;
+}
+
+struct Met {
+  double time = -1;
+  State<3> state;
+};
+
+// the first step with an impact in it, and how many there are in it and until `after` s later
+std::pair<Met, int> first_impact(const World<3>& world, double after) {
+  State<3> state = world.state;
+  Stepper<3> stepper(world.model);
+  stepper.begin(state);
+  const double rate = value(world.model.rate);
+  Met met;
+  int impacts = 0;
+  while (double(state.step) < rate && (met.time < 0 || double(state.step) / rate < met.time + after)) {
+    if (stepper.step(state)) break;
+    for (const Contact<3>& contact : state.contacts) impacts += contact.impulse.norm() > 0;
+    if (impacts == 0 || met.time >= 0) continue;
+    met = {double(state.step) / rate, state};
+  }
+  return {met, impacts};
+}
+
+TEST(CornerImpactsInSpace, TwoBodiesPartAsTheExactSolverSays) {
+  int met = 0;
+  for (int seed = 0; seed < 300; ++seed) {
+    const auto [want, impacts] = first_impact(meeting(seed, Collision::event, 600), 1.0 / 15);
+    if (impacts != 1 || want.time > 0.9) continue;  // none, or two near each other
+    for (const int rate : {60, 600, 6000}) {
+      const auto [got, all] = first_impact(meeting(seed, Collision::contact, rate), 1.0 / 30);
+      EXPECT_GE(got.time, 0) << seed << " at " << rate;
+      if (got.time < 0) continue;
+      ++met;
+      EXPECT_EQ(all, 1) << seed << " at " << rate;
+      for (int i = 0; i < 2; ++i) {
+        EXPECT_NEAR((got.state.v[i] - want.state.v[i]).norm(), 0, 1e-7) << seed << " at " << rate;
+        EXPECT_NEAR((got.state.spin[i] - want.state.spin[i]).norm(), 0, 1e-6) << seed << " at " << rate;
+      }
+    }
+  }
+  EXPECT_GT(met, 80);
+}
+
 }  // namespace
 }  // namespace obscura::sim

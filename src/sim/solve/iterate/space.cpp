@@ -119,16 +119,30 @@ double SpaceIterative<D>::swiftness(int body) const {
   return std::sqrt(m.v.squaredNorm()) + bounding_radius_[body] * std::sqrt(m.w.squaredNorm());
 }
 
+// how far a body may come in a step, m
+template <int D>
+double SpaceIterative<D>::margin(int body, double h) const {
+  return inactive_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
+}
+
+// How near features of a pair may come to touch in the step, m. Of two that fly side by side none comes
+// nearer, but for what strikes them meanwhile.
+template <int D>
+double SpaceIterative<D>::pair_margin(int a, int b, double h) const {
+  const double passes = std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
+                        bounding_radius_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
+                        bounding_radius_[b] * std::sqrt(moving_[b].w.squaredNorm());
+  return std::min(margin(a, h) + margin(b, h),
+                  h * (passes + 2 * g_ * h) + kSpare * (bounding_radius_[a] + bounding_radius_[b]));
+}
+
 template <int D>
 void SpaceIterative<D>::find(double h) {
   const int n = int(model_.bodies.size());
-  const auto margin = [&](int body) {
-    return inactive_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
-  };
   bounds_.resize(n), touches_.clear(), features_.clear();
   for (int i = 0; i < n; ++i) {
     bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
-    const Vec<D> more = Vec<D>::Constant(margin(i));
+    const Vec<D> more = Vec<D>::Constant(margin(i, h));
     bounds_[i].lower -= more, bounds_[i].upper += more;
   }
   const auto& pairs = broad_.find(bounds_, inactive_, [&](int a, int b) { return may_touch_(a, b); });
@@ -139,21 +153,15 @@ void SpaceIterative<D>::find(double h) {
     const Body<D>& p = model_.bodies[a];
     for (int wall = int(model_.walls.size()); !inactive_[a] && !p.handout && wall-- > 0;) {
       const Wall<D>& w = model_.walls[wall];
-      if ((stances_[a].x - w.point).dot(w.normal) > bounding_radius_[a] + margin(a)) continue;
+      if ((stances_[a].x - w.point).dot(w.normal) > bounding_radius_[a] + margin(a, h)) continue;
       gaps_.clear();
-      collide(a, p.shape, stances_[a], wall, w, margin(a), gaps_);
+      collide(a, p.shape, stances_[a], wall, w, margin(a, h), gaps_);
       for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, -1 - wall));
     }
     for (; pair != pairs.end() && pair->first == a; ++pair) {
       const int b = pair->second;
       const Body<D>& q = model_.bodies[b];
-      // of two that fly side by side none comes nearer, but for what strikes them meanwhile
-      const double passes = std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
-                            bounding_radius_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
-                            bounding_radius_[b] * std::sqrt(moving_[b].w.squaredNorm());
-      const double near =
-          std::min(margin(a) + margin(b),
-                   h * (passes + 2 * g_ * h) + kSpare * (bounding_radius_[a] + bounding_radius_[b]));
+      const double near = pair_margin(a, b, h);
       gaps_.clear();
       collide(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
       for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, b));

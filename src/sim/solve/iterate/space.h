@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -44,6 +45,7 @@ class SpaceIterative final : public ContactSolver<D> {
     double normal_impulse = 0;                // impulse along n, N s
     Vec<D> tangent_impulse = Vec<D>::Zero();  // and across it
     Vec<D> impact_impulse = Vec<D>::Zero();   // impulse of impacts within the step, N s
+    int renewals = 0;                         // of its features, since the step began
     bool after = false;                       // of a body that had one
     bool passes = false;                      // however it looks, it does not close with an impact
     bool bounces = false;                     // an impact that is left to the iterations
@@ -66,6 +68,11 @@ class SpaceIterative final : public ContactSolver<D> {
   struct Due {
     double when = 0;
     int touch = 0, rounds = 0;
+
+    // so that the first is the top of a heap
+    bool operator<(const Due& other) const {
+      return when != other.when ? when > other.when : touch > other.touch;
+    }
   };
 
   void prepare(const State<D>& state);
@@ -76,8 +83,23 @@ class SpaceIterative final : public ContactSolver<D> {
   void integrate_unconstrained(State<D>& state, double t, double h);
   void resolve_impacts(State<D>& state, double h);
   Flown flown(int body, double t, double h) const;
+  Flown fly(int body, double t, double h) const;
   Instant instant(int touch, double t, double h) const;
   double closing_time(int touch, double h) const;
+  int rounds(int touch) const {
+    return rounds_[touches_[touch].a] + rounds_[touches_[touch].b] + touches_[touch].renewals;
+  }
+  void push_due(int touch, double when) {
+    due_.push_back({when, touch, rounds(touch)});
+    std::push_heap(due_.begin(), due_.end());
+  }
+  double margin(int body, double h) const;
+  double pair_margin(int a, int b, double h) const;
+  double find_features(int a, int b, double t, double h);
+  bool features_change(const ContactConstraint& touch) const;
+  void renew_features(int first, double low, double high, double h);
+  void find_turned_pairs(double h);
+  bool has_nearest_features(const Due& due, double h);
   bool gather_impact(int touch, double t, double h);
   bool build_impact_rows(double t, double h);
   bool solve_impact(double t, double h);
@@ -157,6 +179,8 @@ class SpaceIterative final : public ContactSolver<D> {
   bool struck_ = false;                             // whether any body had an impact in this step
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
   std::vector<Flown> flown_;                        // after it, or as the step began
+  mutable std::vector<Flown> landed_;               // where the step ends, of those marked
+  mutable std::vector<char> ended_;
   std::vector<Due> due_;
   std::vector<double> strikes_;             // bodies: s, when what the iterations change begins to move them
   std::vector<int> rounds_;                 // impacts of each body

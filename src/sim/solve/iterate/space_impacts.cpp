@@ -25,6 +25,7 @@ constexpr double kLatest = 1.5;   // steps: so late a gap may close that its tan
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
 constexpr double kLeast = 1e-6;        // of e: halved so far it is none
 constexpr double kLocked = 1e-9;       // of what a push moves without joints
+constexpr int kRenewals = 4;           // of a gap's features in a step
 constexpr int kTurns = 40;             // impacts, of those that there are at first
 
 }  // namespace
@@ -32,8 +33,16 @@ constexpr int kTurns = 40;             // impacts, of those that there are at fi
 // where a body is at a time of the step, after its last impact if it had one
 template <int D>
 typename SpaceIterative<D>::Flown SpaceIterative<D>::flown(int body, double t, double h) const {
+  if (body >= int(model_.bodies.size()) || inactive_[body]) return flown_[body];
+  if (t != h) return fly(body, t, h);
+  // most gaps do not close: they are asked for where the step ends
+  if (!ended_[body]) landed_[body] = fly(body, h, h), ended_[body] = 1;
+  return landed_[body];
+}
+
+template <int D>
+typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, double h) const {
   Flown at = flown_[body];
-  if (body >= int(model_.bodies.size()) || inactive_[body]) return at;
   const double time = t - std::max(0.0, when_[body]);
   if (time == 0) return at;
   const Body<D>& it = model_.bodies[body];
@@ -113,6 +122,94 @@ double SpaceIterative<D>::closing_time(int i, double h) const {
     (instant(i, when, h).now.value > 0 ? low : high) = when;
   }
   return instant(i, low, h).speed < -restitution_threshold_ ? low : 1e300;
+}
+
+// the gaps of a pair at a time, by the features that are nearest then, into gaps_; how wide the least of them
+template <int D>
+double SpaceIterative<D>::find_features(int a, int b, double t, double h) {
+  const BodyMotion<D> at_a = flown(a, t, h).stance, at_b = flown(b, t, h).stance;
+  gaps_.clear();
+  collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps_);
+  double least = 1e300;
+  for (ContactCandidate<D>& gap : gaps_) {
+    gap.value = evaluate(gap, at_a, at_b).value;
+    least = std::min(least, gap.value);
+  }
+  return least;
+}
+
+// whether other features of a pair may come nearer while they turn
+template <int D>
+bool SpaceIterative<D>::features_change(const ContactConstraint& touch) const {
+  const auto is_round = [&](int body) {
+    const ShapeKind kind = model_.bodies[body].shape.kind;
+    return kind == ShapeKind::point || kind == ShapeKind::ball;
+  };
+  return touch.b < int(model_.bodies.size()) && touch.renewals < kRenewals &&
+         !(is_round(touch.a) && is_round(touch.b));
+}
+
+// Gives the gaps of a pair, from `first` on, those features by which it meets between `low` and `high`, when
+// some gap is closed or, where none is, those that are nearest then; they are due anew.
+template <int D>
+void SpaceIterative<D>::renew_features(int first, double low, double high, double h) {
+  const int a = touches_[first].a, b = touches_[first].b;
+  if (find_features(a, b, high, h) < 0 && find_features(a, b, low, h) > 0) {
+    while (high - low > kInTime * h) {
+      const double mid = 0.5 * (low + high);
+      (find_features(a, b, mid, h) > 0 ? low : high) = mid;
+    }
+    find_features(a, b, low, h);
+  }
+  if (gaps_.empty()) return;
+  std::stable_sort(gaps_.begin(), gaps_.end(),
+                   [](const auto& p, const auto& q) { return p.value < q.value; });
+  for (int i = first; i < int(touches_.size()) && touches_[i].a == a && touches_[i].b == b; ++i) {
+    features_[i] = gaps_[std::min(i - first, int(gaps_.size()) - 1)];
+    ++touches_[i].renewals;
+    const double when = closing_time(i, h);
+    touches_[i].passes = when == 1e300;
+    if (when < 1e300) push_due(i, when);
+  }
+}
+
+// Whether a pair meets by the features that are nearest then. Where others are, or have met before, its gaps
+// are due by those.
+template <int D>
+bool SpaceIterative<D>::has_nearest_features(const Due& due, double h) {
+  const ContactConstraint& touch = touches_[due.touch];
+  if (!features_change(touch)) return true;
+  const double least = find_features(touch.a, touch.b, due.when, h);
+  const auto feature = features_[due.touch].key.feature;
+  if (least >= -kTogether * bounding_radius_[touch.a] &&
+      std::any_of(gaps_.begin(), gaps_.end(),
+                  [&](const ContactCandidate<D>& gap) { return gap.key.feature == feature; }))
+    return true;
+  int first = due.touch;
+  while (first > 0 && touches_[first - 1].a == touch.a && touches_[first - 1].b == touch.b) --first;
+  renew_features(first, std::max({0.0, when_[touch.a], when_[touch.b]}), due.when, h);
+  return false;
+}
+
+// pairs that come to lie in each other by other features than those of the step's start, none of which closes
+template <int D>
+void SpaceIterative<D>::find_turned_pairs(double h) {
+  for (int first = 0, end = 0; first < int(touches_.size()); first = end) {
+    const ContactConstraint& touch = touches_[first];
+    bool due = false;
+    double least = 1e300;
+    for (end = first; end < int(touches_.size()) && touches_[end].a == touch.a && touches_[end].b == touch.b;
+         ++end)
+      due = due || !touches_[end].passes;
+    if (due || !features_change(touch)) continue;
+    for (int i = first; i < end; ++i) least = std::min(least, instant(i, h, h).now.value);
+    const auto turned = [&](int body) {
+      return 2 * h * bounding_radius_[body] * std::sqrt(stances_[body].w.squaredNorm());
+    };
+    if (least > turned(touch.a) + turned(touch.b)) continue;
+    if (find_features(touch.a, touch.b, h, h) < -kTogether * bounding_radius_[touch.a])
+      renew_features(first, 0, h, h);
+  }
 }
 
 // what meets with a gap at a time, through gaps that are closed; false where that is not for here
@@ -214,7 +311,7 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
     for (const int side : {touches_[i].a, touches_[i].b}) {
       each_tied(side, [&](int body) {
         if (when_[body] == t) return;
-        flown_[body] = flown(body, t, h), when_[body] = t;
+        flown_[body] = flown(body, t, h), when_[body] = t, ended_[body] = 0;
       });
     }
   }
@@ -254,7 +351,7 @@ void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
   bool any = false;
   for (int i = 0; i < int(touches_.size()) && !any; ++i) any = fast(i);
   if (!any) return;
-  flown_.assign(n + 1, {});
+  flown_.assign(n + 1, {}), landed_.resize(n + 1), ended_.assign(n + 1, 0);
   for (int i = 0; i < n; ++i) {
     flown_[i].stance = stances_[i];
     if (const int k = turning(state, i); k >= 0) flown_[i].turn = turn_[k];
@@ -267,6 +364,9 @@ void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
     else
       touches_[i].passes = true;
   }
+  rounds_.assign(n + 1, 0);
+  std::make_heap(due_.begin(), due_.end());
+  find_turned_pairs(h);
   if (due_.empty()) return;
 
   // the gaps of each body
@@ -286,17 +386,12 @@ void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
   each([&](int i, int body) { around_[next[body]++] = i; });
 
   // in the order of time, then of gaps
-  rounds_.assign(n + 1, 0);
-  const auto later = [](const Due& p, const Due& q) {
-    return p.when != q.when ? p.when > q.when : p.touch > q.touch;
-  };
-  std::make_heap(due_.begin(), due_.end(), later);
-  const auto rounds = [&](int i) { return rounds_[touches_[i].a] + rounds_[touches_[i].b]; };
   for (std::size_t left = kTurns * due_.size() + 100; left > 0 && !due_.empty(); --left) {
-    std::pop_heap(due_.begin(), due_.end(), later);
+    std::pop_heap(due_.begin(), due_.end());
     const Due due = due_.back();
     due_.pop_back();
     if (due.rounds != rounds(due.touch)) continue;
+    if (!has_nearest_features(due, h)) continue;
     if (!gather_impact(due.touch, due.when, h) || !solve_impact(due.when, h)) continue;
     struck_ = true;
     changed_.clear();
@@ -313,9 +408,7 @@ void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
     changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     for (const int i : changed_) {
       const double when = closing_time(i, h);
-      if (when == 1e300) continue;
-      due_.push_back({when, i, rounds(i)});
-      std::push_heap(due_.begin(), due_.end(), later);
+      if (when < 1e300) push_due(i, when);
     }
   }
   if (!struck_) return;
@@ -330,6 +423,8 @@ void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
     };
     touch.after = true;
     touch.least = along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed;
+    // by other features than those of its row, which may part more slowly
+    if (touch.renewals > 0) touch.least = std::min(touch.least, 0.0);
     if (!touch.impact_impulse.isZero(0) || at.now.value <= 0) continue;
     touch.least = left > kInTime * h ? touch.least - at.now.value / left : -1e9;
   }
