@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/fields.h"
 #include "sim/multibody/chains.h"
+#include "sim/solve/contact_solver.h"
 
 namespace obscura::scene {
 
@@ -25,18 +27,24 @@ std::string unfit(const sim::Body<D>& body) {
              : "does not turn, as a link must";
 }
 
+// Whether the links stay bodies on joints: beside many others, or by the solver that the scene names. Chains
+// in reduced coordinates are the direct solver's.
+template <int D>
+bool stay_jointed(const sim::Model<D>& reduced) {
+  if (reduced.collision != sim::Collision::contact || reduced.solver == sim::Solver::direct) return false;
+  return reduced.solver == sim::Solver::iterative || !sim::body_counts(reduced).template few<D>();
+}
+
 }  // namespace
 
 template <int D>
 void chains(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints) {
   const Node* all = top.find("chain");
   if (!all || all->list().empty()) return;
-  if (world.model.solver == sim::Solver::iterative)
-    complaints.add(Fields::of(top, "physics").place("solver"),
-                   "chains are the direct solver's: leave 'solver' out, or the [[chain]]");
   if (const Node* bonds = top.find("bond"); bonds && !bonds->list().empty())
     complaints.add(bonds->list().front().place, "a scene has [[bond]]s or [[chain]]s, not both yet");
 
+  sim::World<D> reduced = world;
   for (const Node& table : all->list()) {
     const Fields fields(table, "chain");
     const Node* of = fields.given("of");
@@ -45,7 +53,7 @@ void chains(const Node& top, const NameTable& roster, sim::World<D>& world, Diag
     std::vector<int> links;
     for (const Node& each : of->list()) {
       for (const int body : roster.bodies(each.text(), each.place, complaints)) {
-        const sim::Body<D>& it = world.model.bodies[std::size_t(body)];
+        const sim::Body<D>& it = reduced.model.bodies[std::size_t(body)];
         if (const std::string why = unfit(it); !why.empty()) {
           complaints.add(each.place, fmt::format("'{}' {}", it.name, why));
           break;
@@ -55,14 +63,14 @@ void chains(const Node& top, const NameTable& roster, sim::World<D>& world, Diag
     }
     if (complaints.count() != wrong) continue;
 
-    const std::size_t chains = world.model.chains.size();
-    sim::articulate(world, links);
+    const std::size_t chains = reduced.model.chains.size();
+    sim::articulate(reduced, links);
     bool joined = false;
-    for (std::size_t i = chains; i < world.model.chains.size(); ++i) {
-      for (const int joint : world.model.chains[i].joints) {
+    for (std::size_t i = chains; i < reduced.model.chains.size(); ++i) {
+      for (const int joint : reduced.model.chains[i].joints) {
         if (joint < 0) continue;
         joined = true;
-        if (const sim::Joint<D>& it = world.model.joints[std::size_t(joint)]; it.breaks < 1e299)
+        if (const sim::Joint<D>& it = reduced.model.joints[std::size_t(joint)]; it.breaks < 1e299)
           complaints.add(
               of->place,
               fmt::format("'{}' breaks, and what holds a chain cannot; leave out its 'breaks'", it.name));
@@ -72,6 +80,7 @@ void chains(const Node& top, const NameTable& roster, sim::World<D>& world, Diag
       complaints.add(of->place,
                      "no pin, hinge, ball, weld or slider joins any of these, to one another or to the room");
   }
+  if (!stay_jointed(reduced.model)) world = std::move(reduced);
 }
 
 template void chains<2>(const Node&, const NameTable&, sim::World<2>&, Diagnostics&);

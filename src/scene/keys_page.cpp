@@ -210,6 +210,9 @@ of = ["trunk", "head", "arm[*]", "leg[*]"]
 ```
 
 Velocities at the start that the joints do not allow are put right by impulses between the links. The joints of a chain do not break.
+So it is with the direct solver, which serves up to 100 links (30 in space) beside the bodies that it serves. Where more lies about, or `solver =
+"iterative"` is said, the links hold by their joints as other bodies do, in the plane and in space: a figure falls into a pile of hundreds. They do not drift there
+either (1e-13 of the room); how they swing is then of second order in the step.
 
 ## Pieces
 

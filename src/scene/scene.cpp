@@ -115,17 +115,14 @@ void refuse_crowd(const Node& top, const sim::Model<D>& model, Diagnostics& comp
   const double all = sim::couples(model);
   if (all <= sim::kMostCouples) return;
   const Fields physics = Fields::of(top, "physics");
-  const bool event = model.collision == sim::Collision::event, chains = !model.chains.empty();
-  const Place where = event    ? physics.place("collision")
-                      : chains ? top.find("chain")->list().front().place
-                               : physics.place("solver");
+  const bool event = model.collision == sim::Collision::event;
+  const Place where = physics.place(event ? "collision" : "solver");
   complaints.add(
       where, fmt::format("the direct solver looks at all couples of bodies and walls, {:.0f} here, and takes "
                          "{:.0f} at most; {}",
                          all, sim::kMostCouples,
-                         event    ? "collision = \"contact\" is for thousands of bodies"
-                         : chains ? "a scene with a [[chain]] has few bodies beside it"
-                                  : "leave 'solver' out: the iterative one is for thousands of bodies"));
+                         event ? "collision = \"contact\" is for thousands of bodies"
+                               : "leave 'solver' out: the iterative one is for thousands of bodies"));
 }
 
 // what happens in the plane, or in space, and what it looks like

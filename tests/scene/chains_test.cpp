@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "sim/model/stance.h"
 #include "sim/multibody/chain.h"
 #include "sim/solve/contact_solver.h"
+#include "sim/step/stepper.h"
 
 namespace obscura::scene {
 namespace {
@@ -132,7 +135,6 @@ TEST(Chains, RefuseWhatTheyCannotHold) {
   EXPECT_THAT(wrong(kFigure + of + of), testing::Contains("'trunk' is a link of another chain"));
   EXPECT_THAT(wrong(kFigure + of, {"joint[0].breaks=5"}), ElementsAre(HasSubstr("'joint[0]' breaks")));
   EXPECT_THAT(wrong(kFigure + of, {"string.breaks=5"}), IsEmpty());
-  EXPECT_THAT(wrong(kFigure + of, {"physics.solver=iterative"}), ElementsAre(HasSubstr("direct solver's")));
   EXPECT_THAT(wrong(kFigure + "[[chain]]\nof = [\"trunk\", \"foot\"]"),
               ElementsAre(HasSubstr("joins any of these")));
   EXPECT_THAT(wrong(kFigure + of + "[[bond]]\nof = [\"trunk\", \"foot\"]\nwithin = 1"),
@@ -143,6 +145,136 @@ TEST(Chains, RefuseWhatTheyCannotHold) {
   EXPECT_THAT(wrong("[[box]]\n[[chain]]\nof = [\"bx\"]"), ElementsAre(HasSubstr("bx")));
   EXPECT_THAT(wrong(kFigure + of + "[physics]\ncollision = \"handout\""),
               testing::Contains(HasSubstr("[[chain]] is not in")));
+}
+
+// A pendulum of three arms, held to the room, and boxes far off beside it.
+std::string pendulum(int boxes) {
+  return R"([room]
+size = [40, 8]
+[[box]]
+name = "arm"
+size = [0.6, 0.1]
+position = [2.3, 6]
+copies = { count = 3, offset = [0.6, 0] }
+[[joint]]
+type = "pin"
+between = ["arm[0]", [2, 6]]
+[[joint]]
+type = "pin"
+between = ["arm[0]", "arm[1]"]
+at = [2.6, 6]
+[[joint]]
+type = "pin"
+between = ["arm[1]", "arm[2]"]
+at = [3.2, 6]
+[[chain]]
+of = ["arm[*]"]
+[[box]]
+name = "far"
+size = [0.3, 0.3]
+position = [10, 0.15]
+copies = { count = )" +
+         std::to_string(boxes) + ", offset = [0.5, 0] }\n";
+}
+
+template <int D>
+sim::State<D> after(const sim::World<D>& world, double time) {
+  sim::State<D> state = world.state;
+  sim::Stepper<D> stepper(world.model);
+  stepper.begin(state);
+  while (double(state.step) < time * sim::value(world.model.rate) - 0.5) EXPECT_FALSE(stepper.step(state));
+  return state;
+}
+
+// how far the ends of a joint are from each other, m, of those that hold two points together
+template <int D>
+double gape(const sim::World<D>& world, const sim::State<D>& state) {
+  double worst = 0;
+  for (const sim::Joint<D>& joint : world.model.joints) {
+    const auto place = [&](const sim::End<D>& end) -> sim::Vec<D> {
+      if (end.body < 0) return end.local;
+      const sim::BodyMotion<D> at = sim::body_motion(state, end.body);
+      return at.x + at.room_from_body * end.local;
+    };
+    worst = std::max(worst, (place(joint.a) - place(joint.b)).norm());
+  }
+  return worst;
+}
+
+TEST(Chains, BesideManyBodiesTheirJointsHoldAsOthers) {
+  const auto solver = [](const Scene& scene) { return sim::solver(scene.plane().model); };
+  const Scene few = parse(pendulum(20), "a.toml"), many = parse(pendulum(21), "a.toml");
+  EXPECT_EQ(few.plane().model.chains.size(), 1u);
+  EXPECT_EQ(solver(few), sim::Solver::direct) << "links do not count as the bodies beside them";
+  EXPECT_TRUE(many.plane().model.chains.empty());
+  EXPECT_EQ(solver(many), sim::Solver::iterative);
+  for (const sim::Body<2>& body : many.plane().model.bodies) EXPECT_FALSE(body.linked);
+  const auto by = [](const std::string& name) {
+    return parse(pendulum(1), "a.toml", {"physics.solver=" + name});
+  };
+  EXPECT_EQ(by("direct").plane().model.chains.size(), 1u);
+  EXPECT_TRUE(by("iterative").plane().model.chains.empty());
+  EXPECT_EQ(parse(pendulum(60), "a.toml", {"physics.solver=direct"}).plane().model.chains.size(), 1u);
+  EXPECT_EQ(parse(pendulum(60), "a.toml", {"physics.collision=event"}).plane().model.chains.size(), 1u);
+}
+
+// the pendulum swings as in reduced coordinates: of second order in the step
+TEST(Chains, BesideManyBodiesTheySwingAsAlone) {
+  double before = 0;
+  for (const int rate : {300, 600, 1200}) {
+    const std::vector<std::string> sets = {"physics.rate=" + std::to_string(rate)};
+    const sim::State<2> alone = after(parse(pendulum(1), "a.toml", sets).plane(), 0.7);
+    const Scene crowd = parse(pendulum(40), "a.toml", sets);
+    const sim::State<2> beside = after(crowd.plane(), 0.7);
+    double off = 0;
+    for (int link = 0; link < 3; ++link) off = std::max(off, (alone.x[link] - beside.x[link]).norm());
+    EXPECT_LT(gape(crowd.plane(), beside), 1e-13) << rate;
+    EXPECT_LT(off, 2e-4 * 600 * 600 / rate / rate) << rate;
+    if (before > 0) {
+      EXPECT_NEAR(before / off, 4, 0.4) << rate;
+    }
+    before = off;
+  }
+}
+
+// a figure falls onto a heap and lies there, in one piece
+TEST(Chains, LieInPiles) {
+  const Scene plane = parse(R"([room]
+size = [4, 4]
+[[box]]
+name = "limb"
+size = [0.5, 0.12]
+position = [1.3, 3]
+copies = { count = 4, offset = [0.5, 0] }
+[[joint]]
+type = "pin"
+between = ["limb[0]", "limb[1]"]
+at = [1.55, 3]
+[[joint]]
+type = "pin"
+between = ["limb[1]", "limb[2]"]
+at = [2.05, 3]
+limits = [-60, 60]
+[[joint]]
+type = "pin"
+between = ["limb[2]", "limb[3]"]
+at = [2.55, 3]
+[[chain]]
+of = ["limb[*]"]
+[[box]]
+name = "box"
+size = [0.2, 0.2]
+position = [0.5, 0.2]
+copies = { count = [10, 6], offset = [[0.3, 0], [0.02, 0.25]], jitter = 0.02 }
+)",
+                            "a.toml");
+  const sim::State<2> lies = after(plane.plane(), 3);
+  EXPECT_LT(gape(plane.plane(), lies), 1e-12);
+  for (int limb = 0; limb < 4; ++limb) {
+    EXPECT_GT(lies.x[limb].y(), 0.05) << limb;
+    EXPECT_LT(lies.x[limb].y(), 2.0) << limb;
+    EXPECT_LT(lies.v[limb].norm(), 0.05) << limb;
+  }
 }
 
 }  // namespace

@@ -49,8 +49,6 @@ std::string contact(const sim::Model<D>& model) {
     why = "every event at its own time";
   else if (!model.chains.empty())
     why = count(model.chains.size(), "chain", "chains");
-  else if (!model.joints.empty())
-    why = count(model.joints.size(), "joint", "joints");
   else if (model.solver != sim::Solver::automatic)
     why = "as the scene says";
   else

@@ -24,16 +24,25 @@ class ContactSolver {
 template <int D>
 inline constexpr int kMostBodies = D == 2 ? 20 : 6;
 inline constexpr int kMostPoints = 400;
+/// The same of the links of chains, whose joints cost it no rows.
+template <int D>
+inline constexpr int kMostLinks = 5 * kMostBodies<D>;
 
-/// How many bodies that move may touch others, with an extent; and points.
+/// How many bodies that move may touch others, with an extent; links of chains; and points.
 struct BodyCounts {
-  int bodies = 0, points = 0;
+  int bodies = 0, links = 0, points = 0;
+
+  /// Whether the direct solver serves so many on its own accord.
+  template <int D>
+  bool few() const {
+    return points <= kMostPoints && bodies <= kMostBodies<D> && links <= kMostLinks<D>;
+  }
 };
 template <int D>
 BodyCounts body_counts(const Model<D>& model);
 
 /// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event`
-/// and chains are the direct one's.
+/// and chains in reduced coordinates are the direct one's: for the other a scene leaves a chain its joints.
 template <int D>
 Solver solver(const Model<D>& model);
 

@@ -79,7 +79,8 @@ template <int D>
 BodyCounts body_counts(const Model<D>& model) {
   BodyCounts all;
   for (const Body<D>& body : model.bodies) {
-    if (!body.fixed) ++(body.shape.kind == ShapeKind::point ? all.points : all.bodies);
+    if (body.fixed) continue;
+    ++(body.linked ? all.links : body.shape.kind == ShapeKind::point ? all.points : all.bodies);
   }
   return all;
 }
@@ -89,8 +90,7 @@ Solver solver(const Model<D>& model) {
   if (model.collision == Collision::event) return Solver::direct;
   if (!model.chains.empty()) return Solver::direct;  // links are sides of its rows alone
   if (model.solver != Solver::automatic) return model.solver;
-  const BodyCounts all = body_counts(model);
-  return all.points <= kMostPoints && all.bodies <= kMostBodies<D> ? Solver::direct : Solver::iterative;
+  return body_counts(model).template few<D>() ? Solver::direct : Solver::iterative;
 }
 
 template <int D>
