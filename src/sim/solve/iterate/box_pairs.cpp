@@ -129,13 +129,13 @@ OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const
 }
 
 template <class V>
-OBSCURA_INLINE void outdated_all(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
+OBSCURA_INLINE void outdated_all(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
                                  const Half* halves, double share, std::vector<Outdated>& boxes,
                                  Found& others) {
   const V part = V{} + share;
   BoxManifold m;
   for (int i = 0; i < count; ++i) {
-    const ContactBatch& g = seats[i];
+    const ContactBatch& g = batches[i];
     if (!g.used) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
@@ -157,10 +157,10 @@ OBSCURA_INLINE void outdated_all(const ContactBatch* seats, int count, const Mot
     }
   }
 }
-OBSCURA_WIDE void outdated_wide(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
+OBSCURA_WIDE void outdated_wide(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
                                 const Half* halves, double share, std::vector<Outdated>& boxes,
                                 Found& others) {
-  outdated_all<V4>(seats, count, v, poses, halves, share, boxes, others);
+  outdated_all<V4>(batches, count, v, poses, halves, share, boxes, others);
 }
 
 template <class V>
@@ -186,11 +186,11 @@ std::vector<Half> halves(const CoreShapes& cores) {
   return all;
 }
 
-void find_outdated(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
+void find_outdated(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
                    const Half* halves, double share, std::vector<Outdated>& boxes, Found& others) {
   boxes.clear(), others.clear();
-  kWide ? outdated_wide(seats, count, v, poses, halves, share, boxes, others)
-        : outdated_all<V2>(seats, count, v, poses, halves, share, boxes, others);
+  kWide ? outdated_wide(batches, count, v, poses, halves, share, boxes, others)
+        : outdated_all<V2>(batches, count, v, poses, halves, share, boxes, others);
 }
 
 void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves) {

@@ -31,7 +31,7 @@ struct Outdated {
 
 /// Among the pairs whose features may have changed in `share` of the time between two pair searches: the
 /// boxes whose features have, and the lanes of all others.
-void find_outdated(const ContactBatch* seats, int count, const Motion* v, const Pose* poses,
+void find_outdated(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
                    const Half* halves, double share, std::vector<Outdated>& boxes, Found& others);
 
 /// What nearest() finds for one pair, for all of them. Pairs of anything else get something.

@@ -41,7 +41,7 @@ void PlaneIterative<D>::build_batches(const State<D>& state, bool known) {
   }
   version_ = pairs_.version();
   if (known && frozen_ == state.frozen && update_batches(state)) {
-    impacts_.join(all, v_);
+    impacts_.list_pairs(all, v_);
     return;
   }
   const int n = int(turns_.size());
@@ -102,7 +102,7 @@ void PlaneIterative<D>::build_batches(const State<D>& state, bool known) {
       fill_lane(slots_[slot], state);
     }
   }
-  impacts_.join(all, v_);
+  impacts_.list_pairs(all, v_);
 }
 
 // The colour of a pair, the next in order; -1 where it is asleep.
@@ -209,9 +209,10 @@ void PlaneIterative<D>::fill_lane(int i, const State<D>& state) {
   g.a[lane] = pair.a, g.iia[lane] = ii_[pair.a];
   g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
   g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
-  g.blow[lane] = -(pair.material.elasticity > 0 ? restitution_threshold_
-                                                : std::max(restitution_threshold_, kSoft * thin / span_));
-  pair.blow = float(-0.999 * g.blow[lane]);
+  g.impact_speed[lane] =
+      -(pair.material.elasticity > 0 ? restitution_threshold_
+                                     : std::max(restitution_threshold_, kSoft * thin / span_));
+  pair.impact_speed = float(-0.999 * g.impact_speed[lane]);
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
   // in terms of bodies' own bounding radii

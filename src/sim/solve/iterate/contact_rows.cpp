@@ -148,13 +148,13 @@ OBSCURA_INLINE void expand_one(const ContactBatch& g, const Pose* poses, Rows& o
 }
 
 template <class V>
-OBSCURA_INLINE bool start_all(ContactBatch* seats, int count, const Pose* poses, const Motion* old, Motion* v,
-                              const StepConstants& pace, Found& closing, Found& blows) {
+OBSCURA_INLINE bool start_all(ContactBatch* batches, int count, const Pose* poses, const Motion* old,
+                              Motion* v, const StepConstants& pace, Found& closing, Found& blows) {
   const V h = V{} + pace.h, creep = V{} - pace.min_closing_speed, gain = V{} + pace.gravity_dv, none{};
   const V bend = 0.5 * (h * h);
   Mask<V> deep{};
   for (int i = 0; i < count; ++i) {
-    ContactBatch& g = seats[i];
+    ContactBatch& g = batches[i];
     g.struck[0] = g.struck[1] = 0;
     if (!g.used) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
@@ -171,7 +171,7 @@ OBSCURA_INLINE bool start_all(ContactBatch* seats, int count, const Pose* poses,
       const V v1 = magnitude<V>(before.a.x - before.b.x) + magnitude<V>(before.a.y - before.b.y);
       const V far = load<V>(g.far + lane);
       const V fastest = v1 + far * w, turns = bend * (far * w2 + 2.0 * w * fastest);
-      const V blow = load<V>(g.blow + lane);
+      const V impact_speed = load<V>(g.impact_speed + lane);
       const Mask<V> polygons = load<V>(g.radius + lane) <= none;
       Mask<V> slow{}, fast{};
       for (int k = 0; k < 2; ++k) {
@@ -180,9 +180,10 @@ OBSCURA_INLINE bool start_all(ContactBatch* seats, int count, const Pose* poses,
         const V vn = before.along(r.nx, r.ny, r.na, r.nb);
         deep |= r.gap < -allowed;
         slow |= (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
-        fast |= (vn < blow) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
+        fast |= (vn < impact_speed) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
         if (g.corners[k])
-          fast |= mask<V>(g.corners[k], lane) & polygons & (-fastest < blow) & (r.gap < h * (fastest + gain));
+          fast |= mask<V>(g.corners[k], lane) & polygons & (-fastest < impact_speed) &
+                  (r.gap < h * (fastest + gain));
         const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
         const V ln = larger<V>(h * (px * r.nx + py * r.ny), none), most = mu * ln;
         const V lt = larger<V>(smaller<V>(h * (py * r.nx - px * r.ny), most), -most);
@@ -223,15 +224,15 @@ OBSCURA_INLINE void keep(const ContactBatch& g, const Rows& rows, Contact<2>* co
 }
 
 template <class V, bool kLast, bool kKeep>
-OBSCURA_INLINE void sweep_all(ContactBatch* seats, int count, const Pose* poses, Motion* v,
+OBSCURA_INLINE void sweep_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
                               const StepConstants& pace, Contact<2>* contacts) {
   const V per_h = V{} + 1 / pace.h, none{};
-  for (ContactBatch* g = seats; g < seats + count; ++g) {
+  for (ContactBatch* g = batches; g < batches + count; ++g) {
     if (!g->used) continue;
     [[maybe_unused]] Rows kept;
     if constexpr (kKeep) {
       // contacts are far apart in memory: ask for those of a later group
-      if (g + kAhead < seats + count) {
+      if (g + kAhead < batches + count) {
         for (int lane = 0; lane < kLanes; ++lane) {
           const char* at = reinterpret_cast<const char*>(contacts + g[kAhead].first[lane]);
           __builtin_prefetch(at, 1), __builtin_prefetch(at + 64, 1), __builtin_prefetch(at + 128, 1);
@@ -254,7 +255,7 @@ OBSCURA_INLINE void sweep_all(ContactBatch* seats, int count, const Pose* poses,
       const V open1 = pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none));
       V target0 = open0, target1 = open1;
       if (g->struck[0] | g->struck[1]) {
-        const Least& least = pace.least[g - seats];
+        const Least& least = pace.least[g - batches];
         target0 = pick<V>(mask<V>(g->struck[0], lane), load<V>(least.n[0] + lane), open0);
         target1 = pick<V>(mask<V>(g->struck[1], lane), load<V>(least.n[1] + lane), open1);
       }
@@ -286,10 +287,10 @@ OBSCURA_INLINE void sweep_all(ContactBatch* seats, int count, const Pose* poses,
 }
 
 template <class V>
-OBSCURA_INLINE void project_all(const ContactBatch* seats, Projection* p, int count, const Pose* poses,
+OBSCURA_INLINE void project_all(const ContactBatch* batches, Projection* p, int count, const Pose* poses,
                                 Motion* d, double share, double deep) {
   const V none{}, part = V{} + share;
-  for (const ContactBatch* g = seats; g < seats + count; ++g, ++p) {
+  for (const ContactBatch* g = batches; g < batches + count; ++g, ++p) {
     if (!g->used) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
       Quad<V> a, b;
@@ -341,7 +342,7 @@ void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k) {
   to.a[k] = from.a[i], to.b[k] = from.b[i], to.pair[k] = from.pair[i], to.first[k] = from.first[i];
   to.touches[k] = from.touches[i], to.used = static_cast<unsigned char>(to.used | 1 << k);
   to.mu[k] = from.mu[i], to.iia[k] = from.iia[i], to.iib[k] = from.iib[i];
-  to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.blow[k] = from.blow[i],
+  to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.impact_speed[k] = from.impact_speed[i],
   to.radius[k] = from.radius[i];
   to.sight[k] = from.sight[i];
   for (int side = 0; side < 2; ++side) {

@@ -33,7 +33,7 @@ struct alignas(64) ContactBatch {
   unsigned short words[2][kLanes];  // of the features
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
   double calm[kLanes], far[kLanes];  // m/s up to which features stay; the larger bounding radius of both, m
-  double blow[kLanes];               // -m/s: faster approaches are impacts
+  double impact_speed[kLanes];       // -m/s: faster approaches are impacts
   double sight[kLanes];              // m: touches farther off are none
   double radius[kLanes];             // of both together, m
   double cx[2][kLanes], cy[2][kLanes];
@@ -76,29 +76,38 @@ void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k);
 void copy_lane_forces(const ContactBatch& from, int i, ContactBatch& to, int k);
 
 /// Rows of one group.
-void expand(const ContactBatch& seats, const Pose* poses, Rows& out);
+void expand(const ContactBatch& batches, const Pose* poses, Rows& out);
 
 /// The row of a touch, as one lane of Rows.
 struct TouchRow {
   double nx, ny, x, y, gap, na, nb, ta, tb;
 };
 /// Touch k of one lane, whose bodies stand at these poses.
-TouchRow row(const ContactBatch& seats, int lane, int k, const Pose& a, const Pose& b);
+TouchRow row(const ContactBatch& batches, int lane, int k, const Pose& a, const Pose& b);
+
+/// Normal speed of a touch, m/s: a against b.
+inline double normal_speed(const TouchRow& r, const Motion& a, const Motion& b) {
+  return r.nx * (a.x - b.x) + r.ny * (a.y - b.y) + (r.na * a.w - r.nb * b.w);
+}
+inline double normal_speed(const Rows& r, int k, int lane, const Motion& a, const Motion& b) {
+  return r.nx[k][lane] * (a.x - b.x) + r.ny[k][lane] * (a.y - b.y) +
+         (r.na[k][lane] * a.w - r.nb[k][lane] * b.w);
+}
 
 /// Makes impulses of the forces and applies them to v. `old`: velocities at the start. Which close slowly in
 /// the step, and which with an impact. True where something is deeper than project() lets it.
-bool start(ContactBatch* seats, int count, const Pose* poses, const Motion* old, Motion* v,
+bool start(ContactBatch* batches, int count, const Pose* poses, const Motion* old, Motion* v,
            const StepConstants& pace, Found& closing, Found& blows);
 
 /// One iteration: every pair once, in order.
-void iterate(ContactBatch* seats, int count, const Pose* poses, Motion* v, const StepConstants& pace);
+void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
 /// The last one of a substep: forces into the lanes and, where there are some, into the contacts.
-void finish(ContactBatch* seats, int count, const Pose* poses, Motion* v, const StepConstants& pace,
+void finish(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             Contact<2>* contacts);
 
 /// One iteration over positions: `share` of what is deeper than `allowed` of the larger bounding radius is to
 /// go. Friction holds there too, or piles would slide apart by being mended.
-void project(const ContactBatch* seats, Projection* projections, int count, const Pose* poses, Motion* d,
+void project(const ContactBatch* batches, Projection* projections, int count, const Pose* poses, Motion* d,
              double share, double allowed);
 
 }  // namespace obscura::sim::plane

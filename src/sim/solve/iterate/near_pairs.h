@@ -51,10 +51,10 @@ class NearPairs {
 
   /// Whether both are one box about their centre.
   bool boxes(int a, int b) const { return halves_[a].wide > 0 && halves_[b].wide > 0; }
-  void find_outdated(const std::vector<ContactBatch>& seats, const std::vector<Motion>& v,
+  void find_outdated(const std::vector<ContactBatch>& batches, const std::vector<Motion>& v,
                      const std::vector<Pose>& poses, double share, std::vector<Outdated>& boxes,
                      Found& others) const {
-    plane::find_outdated(seats.data(), int(seats.size()), v.data(), poses.data(), halves_.data(), share,
+    plane::find_outdated(batches.data(), int(batches.size()), v.data(), poses.data(), halves_.data(), share,
                          boxes, others);
   }
 

@@ -123,7 +123,7 @@ bool Pairs::find(State<2>& state, const std::vector<Pose>& poses, double span, i
     pair.first = int(contacts_.size()) + int(end - begin);
     if (known)
       pair.slot = known->slot, pair.colour = known->colour, pair.alone = known->alone,
-      pair.blow = known->blow;
+      pair.impact_speed = known->impact_speed;
     pair.fresh =
         !known || known->words[0] != pair.words[0] || (known->words[1] != pair.words[1] && pair.touches > 1);
     if (!pair.fresh) {
@@ -227,12 +227,12 @@ void Pairs::put(const Pair& pair, const int words[2], ContactBatch& g) const {
   }
 }
 
-const std::vector<Outdated>& Pairs::outdated(const std::vector<ContactBatch>& seats,
+const std::vector<Outdated>& Pairs::outdated(const std::vector<ContactBatch>& batches,
                                              const std::vector<Motion>& v, const std::vector<Pose>& poses,
                                              double share) {
-  near_.find_outdated(seats, v, poses, share, outdated_, others_);
+  near_.find_outdated(batches, v, poses, share, outdated_, others_);
   for (const int seat : others_) {
-    const int i = seats[seat / kLanes].pair[seat % kLanes];
+    const int i = batches[seat / kLanes].pair[seat % kLanes];
     const Pair& pair = pairs_[i];
     Outdated now{i, {0, 0}};
     features(pair, poses[pair.a], poses[pair.b < 0 ? pair.a : pair.b], now.words);

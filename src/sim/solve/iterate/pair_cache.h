@@ -17,12 +17,12 @@ struct Pair {
   int a = -1, b = -1;            // bodies; b = -1 - wall
   int core_a = -1, core_b = -1;  // -1: a wall
   int first = 0, touches = 1;
-  int words[2] = {0, 0};  // of the features of its touches, ascending
-  int slot = -1;          // lane + kLanes * group; -1: asleep
-  int colour = -1;        // of its lane
-  bool alone = false;     // colours ran out: it has a batch of its own
-  bool fresh = false;     // its features have changed since it took its lane
-  float blow = 0;         // m/s: no slower approach is an impact
+  int words[2] = {0, 0};   // of the features of its touches, ascending
+  int slot = -1;           // lane + kLanes * group; -1: asleep
+  int colour = -1;         // of its lane
+  bool alone = false;      // colours ran out: it has a batch of its own
+  bool fresh = false;      // its features have changed since it took its lane
+  float impact_speed = 0;  // m/s: no slower approach is an impact
   Material material;
 };
 
@@ -41,8 +41,9 @@ class Pairs {
 
   /// Pairs whose features are others than their lanes say, `share` of the time between two pair searches
   /// after the last. They are not changed yet.
-  const std::vector<Outdated>& outdated(const std::vector<ContactBatch>& seats, const std::vector<Motion>& v,
-                                        const std::vector<Pose>& poses, double share);
+  const std::vector<Outdated>& outdated(const std::vector<ContactBatch>& batches,
+                                        const std::vector<Motion>& v, const std::vector<Pose>& poses,
+                                        double share);
   /// Changes the features of a pair to these. Forces move with their keys or, failing that, their places.
   void renew(const Outdated& found, State<2>& state, const std::vector<Pose>& poses);
   bool boxes(const Pair& pair) const { return pair.b >= 0 && near_.boxes(pair.a, pair.b); }
@@ -58,7 +59,7 @@ class Pairs {
   /// Words of the features nearest to each other where its bodies stand so, ascending.
   void features(const Pair& pair, const Pose& a, const Pose& b, int words[2]) const;
   /// Features into the pair's lane of its lanes, or of others like them; forces are let be.
-  void put(const Pair& pair, const int words[2], ContactBatch& seats) const;
+  void put(const Pair& pair, const int words[2], ContactBatch& batches) const;
 
   /// How far a body may come by speed (m/s) that it may gain within `span` s, by impacts.
   double spare(int body, double speed, double span) const { return near_.spare(body, speed, span); }

@@ -11,22 +11,22 @@
 
 namespace obscura::sim::plane {
 
-/// Blows: touches that close within a step faster than the resting speed. Newton's law with Coulomb friction,
-/// normals and friction of a pair together, where its bodies stand when they meet; from pair to pair until
-/// none approaches, in the order in which they come up. Bodies on joints are struck as one with all that
-/// hangs on them.
+/// Impacts: touches that close within a step faster than the resting speed. Newton's law with Coulomb
+/// friction, normals and friction of a pair together, where its bodies stand when they meet; from pair to
+/// pair until none approaches, in the order in which they come up. Bodies on joints are struck as one with
+/// all that hangs on them.
 class Impacts {
  public:
   /// `pairs` is kept by reference.
   Impacts(const CoreShapes& cores, const Pairs& pairs);
 
   /// Builds, for each body, the list of its awake pairs.
-  void join(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
+  void list_pairs(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
 
   /// Beginning with the lanes in `found`. `old`: velocities at the start; dv: what the step adds to them
   /// without contacts; v gains what the impacts do. Marks lanes as struck, and says of those what is left to
   /// the iterations: least().
-  void run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
+  void run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
            std::vector<Motion>& v, const StepConstants& pace, JointSolver<2>& joints);
 
@@ -37,7 +37,7 @@ class Impacts {
   void begin() { struck_.clear(); }
   /// Remembers the impulses of the last run, under the keys of the contacts.
   void note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
-            const std::vector<ContactBatch>& seats);
+            const std::vector<ContactBatch>& batches);
   /// What was remembered, into the contacts.
   void keep(std::vector<Contact<2>>& contacts) const;
 
@@ -53,6 +53,9 @@ class Impacts {
   const Motion& after(int body) const { return now_[body]; }
 
  private:
+  static constexpr double kInTime =
+      1e-9;  // of the step: the next step of Newton's method would be by its square
+
   struct Struck {
     ContactKey key;
     Vec<2> impulse;  // on a, N s
@@ -72,7 +75,7 @@ class Impacts {
     Push pushes[2][2] = {};               // along normals and across them, of each touch
   };
   // a pair as it stands at a time, and how its bodies move
-  struct Standing {
+  struct PlacedPair {
     double when = 0;
     bool renewed = false;  // by other features than those of the lane
     Motion a, b;
@@ -81,36 +84,37 @@ class Impacts {
   void reach(int body, double when, const std::vector<Motion>& dv, const StepConstants& pace);
   void move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
             const StepConstants& pace, Pose& pose, Motion& v) const;
-  Standing clear_sleeping(const Pair& pair, double when, const ContactBatch& seats,
-                          const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                          const StepConstants& pace) const;
-  double closing(const Pair& pair, int k, const ContactBatch& seats, const Standing& at,
-                 const std::vector<Motion>& dv, const StepConstants& pace) const;
-  double manifold(const Pair& pair, int k, const ContactBatch& seats, const Standing& start,
-                  const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                  const StepConstants& pace) const;
-  bool may_meet(const Pair& pair, const ContactBatch& seats, const std::vector<Pose>& poses,
+  PlacedPair placed_at(const Pair& pair, double when, const ContactBatch& batches,
+                       const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                       const StepConstants& pace) const;
+  double closing_guess(const Pair& pair, int k, const ContactBatch& batches, const PlacedPair& at,
+                       const std::vector<Motion>& dv, const StepConstants& pace) const;
+  double closing_time(const Pair& pair, int k, const ContactBatch& batches, const PlacedPair& start,
+                      const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                      const StepConstants& pace) const;
+  bool may_meet(const Pair& pair, const ContactBatch& batches, const std::vector<Pose>& poses,
                 const std::vector<Motion>& dv, const StepConstants& pace) const;
-  double first_closing(const Pair& pair, const ContactBatch& seats, const Standing& start,
+  double first_closing(const Pair& pair, const ContactBatch& batches, const PlacedPair& start,
                        const std::vector<Pose>& poses, const std::vector<Motion>& dv,
                        const StepConstants& pace, int& which) const;
-  bool find_meeting(const Pair& pair, const ContactBatch& seats, Standing& at, const std::vector<Pose>& poses,
-                    const std::vector<Motion>& dv, const StepConstants& pace);
-  bool meet(const Pair& pair, Impact& blow, const ContactBatch& seats, const std::vector<Pose>& poses,
-            const std::vector<Motion>& dv, const StepConstants& pace);
-  bool hit(int pair, const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats,
-           const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace,
-           JointSolver<2>& joints);
-  bool tie(const Pair& pair, double when, const std::vector<Motion>& dv, const StepConstants& pace,
-           const JointSolver<2>& joints);
-  void hear(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2], JointSolver<2>& joints);
+  bool find_meeting(const Pair& pair, const ContactBatch& batches, PlacedPair& at,
+                    const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace);
+  bool find_impact(const Pair& pair, Impact& impact, const ContactBatch& batches,
+                   const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace);
+  bool resolve_pair(int pair, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
+                    const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace,
+                    JointSolver<2>& joints);
+  bool reach_component(const Pair& pair, double when, const std::vector<Motion>& dv,
+                       const StepConstants& pace, const JointSolver<2>& joints);
+  void compute_responses(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2],
+                         JointSolver<2>& joints);
   double speed(const Push& push, int a, int b) const {
     return push.x * (now_[a].x - now_[b].x) + push.y * (now_[a].y - now_[b].y) +
            (push.a * now_[a].w - push.b * now_[b].w);
   }
-  void leave(const std::vector<Pair>& pairs, std::vector<ContactBatch>& seats, const std::vector<Pose>& poses,
-             const StepConstants& pace);
-  const Rows& rows(int group, const std::vector<ContactBatch>& seats, const std::vector<Pose>& poses);
+  void leave_to_iterations(const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
+                           const std::vector<Pose>& poses, const StepConstants& pace);
+  const Rows& rows(int group, const std::vector<ContactBatch>& batches, const std::vector<Pose>& poses);
 
   const Pairs& pairs_;
   ContactBatch fresh_{};                    // of a pair: the features that are nearest when it meets
@@ -122,8 +126,8 @@ class Impacts {
 
   std::vector<std::pair<double, int>> first_;
   std::vector<int> queue_;
-  std::vector<char> waiting_;  // of pairs
-  std::vector<int> blow_;      // of pairs: place in blows_, or -1
+  std::vector<char> waiting_;   // of pairs
+  std::vector<int> impact_of_;  // of pairs: place in impacts_, or -1
   std::vector<Impact> impacts_;
   std::vector<Struck> struck_;
   std::vector<int> passing_;  // pairs that come near without an impact

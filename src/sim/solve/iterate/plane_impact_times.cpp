@@ -1,0 +1,286 @@
+// When a pair meets with an impact in a step, and how it stands then: with the velocity that each body has
+// after its last impact, or when the step began,
+//   g(x + v tau + a tau^2 / 2) = 0
+// of the features that are nearest at tau.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/math/trig.h"
+#include "sim/solve/iterate/plane_impacts.h"
+
+namespace obscura::sim::plane {
+
+namespace {
+
+constexpr double kTogether =
+    1e-6;                  // of the larger bounding radius: no wider open, a touch meets with the other
+constexpr int kTimes = 8;  // Newton steps for the time of an impact
+constexpr double kForward = 0.01;  // of the step: by so much at least features are looked for on the way
+constexpr double kLatest = 1.5;    // steps: so late a touch may close that its tangent would close in one
+
+// two corners of polygons: others may come nearer, however these move
+bool other_corners(const ContactBatch& g, int k, int lane) {
+  return (g.corners[k] >> lane & 1) != 0 && g.radius[lane] == 0;
+}
+
+}  // namespace
+
+// where a body is at a time after its last impact, and how it moves there
+void Impacts::move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                   const StepConstants& pace, Pose& pose, Motion& v) const {
+  pose = poses[body], v = now_[body];
+  if (v.im == 0) return;
+  const Motion& gain = dv[body];
+  double x = 0, y = 0, w = 0;
+  const auto fly = [&](const Motion& from, double time) {
+    const double half = 0.5 * time / pace.h;
+    x += time * (from.x + half * gain.x), y += time * (from.y + half * gain.y);
+    w += time * (from.w + half * gain.w);
+  };
+  if (when_[body] < 0) {
+    fly(v, when);
+    const double part = when / pace.h;
+    v.x += part * gain.x, v.y += part * gain.y, v.w += part * gain.w;
+  } else {
+    const double part = when_[body] / pace.h;
+    const Motion& to = before_[body];
+    fly({to.x - part * gain.x, to.y - part * gain.y, to.w - part * gain.w, 0}, when_[body]);
+    fly(v, when - when_[body]);
+  }
+  pose.x += x, pose.y += y;
+  if (w == 0) return;
+  const SinCos turn = sin_cos(w);
+  const double c = pose.c;
+  pose.c = c * turn.cos - pose.s * turn.sin, pose.s = pose.s * turn.cos + c * turn.sin;
+}
+
+// a pair at a time
+Impacts::PlacedPair Impacts::placed_at(const Pair& pair, double when, const ContactBatch& g,
+                                       const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                                       const StepConstants& pace) const {
+  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
+  PlacedPair at;
+  at.when = when;
+  Pose pose_a, pose_b;
+  const bool start = when == 0;
+  if (start)
+    at.a = now_[a], at.b = now_[b];
+  else
+    move(a, when, poses, dv, pace, pose_a, at.a), move(b, when, poses, dv, pace, pose_b, at.b);
+  for (int k = 0; k < pair.touches; ++k)
+    at.rows[k] = row(g, lane, k, start ? poses[a] : pose_a, start ? poses[b] : pose_b);
+  return at;
+}
+
+// when a touch closes with an impact, by its course from where it stands, s; never: 1e300
+double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, const PlacedPair& at,
+                              const std::vector<Motion>& dv, const StepConstants& pace) const {
+  const int lane = pair.slot % kLanes;
+  const Motion &a = at.a, &b = at.b, &gain_a = dv[g.a[lane]], &gain_b = dv[g.b[lane]];
+  const TouchRow& r = at.rows[k];
+  const double vn = normal_speed(r, a, b), gap = r.gap;
+  if (gap > g.sight[lane] || !(vn < g.impact_speed[lane])) return 1e300;
+  const double dvn = normal_speed(r, gain_a, gain_b), left = std::max(0.0, gap);
+  // two corners: |l n + v t| = radius, if they do not pass
+  if (g.corners[k] >> lane & 1) {
+    const double vt = r.nx * (a.y - b.y) - r.ny * (a.x - b.x) + (r.ta * a.w - r.tb * b.w);
+    const double p = (left + g.radius[lane]) * vn, q = left * (left + 2 * g.radius[lane]);
+    const double under = p * p - (vn * vn + vt * vt) * q;
+    if (under > 0) return at.when + q / (std::sqrt(under) - p);
+  }
+  return at.when + left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn));
+}
+
+// The same where its bodies stand by then: Newton's method along the course; where the bodies turn so far
+// that this misleads, by halving.
+double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, const PlacedPair& start,
+                             const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                             const StepConstants& pace) const {
+  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
+  const TouchRow& r = start.rows[k];
+  const double from = start.when;
+  double when = closing_guess(pair, k, g, start, dv, pace);
+  if (when == 1e300 || r.gap <= 0) return when;
+  const double vn = normal_speed(r, start.a, start.b), dvn = normal_speed(r, dv[a], dv[b]);
+  const bool closes = r.gap + (pace.h - from) * (vn + 0.5 * dvn) < 0;
+  double low = from, high = -1;
+  for (int i = 0; i < kTimes && when <= from + kLatest * pace.h; ++i) {
+    const PlacedPair at = placed_at(pair, when, g, poses, dv, pace);
+    const double gap = at.rows[k].gap, speed = normal_speed(at.rows[k], at.a, at.b);
+    if (gap > 0 && !(speed < 0)) {
+      // it has come nearest before: was it closed then?
+      for (double parts = when; parts - low > kInTime * pace.h && high < 0;) {
+        const double mid = 0.5 * (low + parts);
+        const PlacedPair then = placed_at(pair, mid, g, poses, dv, pace);
+        if (then.rows[k].gap <= 0)
+          high = mid;
+        else
+          (normal_speed(then.rows[k], then.a, then.b) < 0 ? low : parts) = mid;
+      }
+      if (high < 0) return 1e300;
+      break;
+    }
+    if (!(speed < g.impact_speed[lane])) break;
+    const double next = when - gap / speed;
+    if (std::fabs(next - when) <= kInTime * pace.h) return closes || when <= pace.h ? when : 1e300;
+    when = std::clamp(next, from, from + kLatest * pace.h);
+  }
+  if (high < 0) {
+    if (from >= pace.h || placed_at(pair, pace.h, g, poses, dv, pace).rows[k].gap > 0) return 1e300;
+    high = pace.h;
+  }
+  while (high - low > kInTime * pace.h) {
+    when = 0.5 * (low + high);
+    (placed_at(pair, when, g, poses, dv, pace).rows[k].gap > 0 ? low : high) = when;
+  }
+  const PlacedPair at = placed_at(pair, low, g, poses, dv, pace);
+  return normal_speed(at.rows[k], at.a, at.b) < g.impact_speed[lane] ? low : 1e300;
+}
+
+// Whether a pair may meet with an impact in the step, as its rows were when it began: most do not.
+bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vector<Pose>& poses,
+                       const std::vector<Motion>& dv, const StepConstants& pace) const {
+  const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
+  const Motion &va = now_[a], &vb = now_[b];
+  double spare = -1;  // what it may come nearer than by these rows and velocities, m
+  const auto fastest = [&] {
+    return std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) +
+           g.far[lane] * (std::fabs(va.w) + std::fabs(vb.w));
+  };
+  for (int k = 0; k < pair.touches; ++k) {
+    const TouchRow r = row(g, lane, k, poses[a], poses[b]);
+    const double vn = normal_speed(r, va, vb);
+    if (other_corners(g, k, lane) && r.gap < pace.h * (fastest() + pace.gravity_dv)) return true;
+    if (vn > -pair.impact_speed) continue;
+    const double left = r.gap + pace.h * (vn + 0.5 * normal_speed(r, dv[a], dv[b]));
+    if (left >= 0 && spare < 0) {
+      const double far = std::max(bounding_radius_[a], bounding_radius_[b]),
+                   w = std::fabs(va.w) + std::fabs(vb.w);
+      spare = 0.5 * pace.h * pace.h *
+              (far * (va.w * va.w + vb.w * vb.w) +
+               2 * w * (std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) + far * w));
+      for (const int body : {a, b}) {
+        if (!(when_[body] > 0)) continue;
+        const Motion &p = before_[body], &q = now_[body];
+        spare += when_[body] * (std::fabs(q.x - p.x) + std::fabs(q.y - p.y) +
+                                std::fabs(q.w - p.w) * bounding_radius_[body]);
+      }
+    }
+    if (left >= 0 && left >= spare) continue;
+    if (r.gap <= g.sight[lane] && vn < g.impact_speed[lane]) return true;
+  }
+  return false;
+}
+
+// when the first of a pair's touches closes with an impact, and which
+double Impacts::first_closing(const Pair& pair, const ContactBatch& g, const PlacedPair& start,
+                              const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                              const StepConstants& pace, int& which) const {
+  double first = 1e300;
+  which = 0;
+  for (int k = 0; k < pair.touches; ++k) {
+    const double when = closing_time(pair, k, g, start, poses, dv, pace);
+    if (when < first) first = when, which = k;
+  }
+  return first;
+}
+
+// Moves `at`, how a pair stands, to where it meets with an impact; false where it does not. By the features
+// of its lane or, where others are nearest by then, by those: then it goes as far as it surely does not meet,
+// again and again, until the features that are nearest there are so when they close.
+bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& at,
+                           const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                           const StepConstants& pace) {
+  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
+  int which, words[2];
+  double when = first_closing(pair, g, at, poses, dv, pace, which);
+  const auto find_features = [&](double time) {
+    Pose pose_a, pose_b;
+    Motion v_a, v_b;
+    move(a, time, poses, dv, pace, pose_a, v_a), move(b, time, poses, dv, pace, pose_b, v_b);
+    pairs_.features(pair, pose_a, pose_b, words);
+  };
+  const auto knows = [&](const ContactBatch& by, int k) {
+    return by.words[k][lane] == words[0] || (pair.touches > 1 && by.words[k][lane] == words[1]);
+  };
+  const auto place_renewed = [&](double time) {
+    pairs_.put(pair, words, fresh_);
+    at = placed_at(pair, time, fresh_, poses, dv, pace);
+    at.renewed = true;
+  };
+  // whether that is all there is to find
+  const auto found = [&](const ContactBatch& by) {
+    // round things have no other features
+    if (g.calm[lane] < 1e300) {
+      find_features(std::min(when, pace.h));
+      if (!knows(by, 0) || (pair.touches > 1 && !knows(by, 1))) {
+        if (&by != &fresh_) copy_lane(by, lane, fresh_, lane);
+        if (when == 1e300 || !knows(by, which)) return false;
+        place_renewed(when);
+        return true;
+      }
+    }
+    if (when < 1e300 && when != at.when) {
+      at = placed_at(pair, when, by, poses, dv, pace);
+      at.renewed = &by != &g;
+    }
+    return true;
+  };
+  if (found(g)) return when < 1e300;
+
+  const double from = at.when;
+  const Motion &p = at.a, &q = at.b;
+  const double fastest = std::fabs(p.x - q.x) + std::fabs(p.y - q.y) + std::fabs(dv[a].x - dv[b].x) +
+                         std::fabs(dv[a].y - dv[b].y) +
+                         (std::fabs(p.w) + std::fabs(dv[a].w)) * bounding_radius_[a] +
+                         (std::fabs(q.w) + std::fabs(dv[b].w)) * bounding_radius_[b];
+  const auto gap = [&] {
+    return pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap;
+  };
+  double apart = -1;  // s: when it was last
+  for (double time = from; time <= pace.h;) {
+    find_features(time), place_renewed(time);
+    if (gap() <= 0 && apart >= 0) {
+      // on the way
+      for (double low = apart; time - low > kInTime * pace.h;) {
+        const double mid = 0.5 * (low + time);
+        find_features(mid), place_renewed(mid);
+        (gap() > 0 ? low : time) = mid;
+      }
+      find_features(time), place_renewed(time);
+    }
+    when = first_closing(pair, fresh_, at, poses, dv, pace, which);
+    if (when == time) return true;
+    if (found(fresh_)) return when < 1e300;
+    apart = gap() > 0 ? time : -1;
+    time += std::max(kForward * pace.h, gap() / fastest);
+  }
+  return false;
+}
+
+// When and where a pair meets with an impact in the step, into `impact`; false where it does not.
+bool Impacts::find_impact(const Pair& pair, Impact& impact, const ContactBatch& g,
+                          const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                          const StepConstants& pace) {
+  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
+  const double from = std::max({0.0, when_[a], when_[b]});
+  PlacedPair at = placed_at(pair, from, g, poses, dv, pace);
+  if (!find_meeting(pair, g, at, poses, dv, pace)) return false;
+  const double when = at.when;
+  impact.when = when, impact.renewed = at.renewed;
+  bool any = false;
+  for (int k = 0; k < pair.touches; ++k) {
+    const TouchRow& r = at.rows[k];
+    impact.gap[k] = r.gap, impact.met[k] = r.gap <= kTogether * g.far[lane];
+    // what meets is pushed in one point, so that angular momentum stays; what is to come together yet is
+    // rubbed where it is touched
+    const double apart = impact.met[k] ? 0 : 0.5 * r.gap;
+    impact.pushes[0][k] = {r.nx, r.ny, r.na, r.nb};
+    impact.pushes[1][k] = {-r.ny, r.nx, r.ta + apart, r.tb - apart};
+    any = any || (impact.met[k] && normal_speed(r, at.a, at.b) < g.impact_speed[lane]);
+  }
+  return any;
+}
+
+}  // namespace obscura::sim::plane
