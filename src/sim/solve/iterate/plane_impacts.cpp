@@ -194,7 +194,8 @@ bool Impacts::resolve_pair(int i, const std::vector<Pair>& pairs, std::vector<Co
 // the step. Where it met by other features than the rows have, these may part fast while those hardly do: to
 // keep up such a speed would take energy from nowhere.
 void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-                                  const std::vector<Pose>& poses, const StepConstants& pace) {
+                                  const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                                  const StepConstants& pace) {
   if (least_.size() < batches.size()) least_.resize(batches.size());
   const int room = int(now_.size()) - 1;
   for (const int i : passing_) {
@@ -202,9 +203,12 @@ void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<Co
     const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
     ContactBatch& g = batches[group];
     const Rows& r = rows(group, batches, poses);
+    // what overlapped when the step began may have parted before another impact turned it back
+    const double from = std::max({0.0, when_[pair.a], when_[b]});
+    const PlacedPair at = placed_at(pair, from, g, poses, dv, pace);
     for (int k = 0; k < pair.touches; ++k) {
-      if (!(normal_speed(r, k, lane, now_[pair.a], now_[b]) < g.impact_speed[lane]) || r.gap[k][lane] <= 0)
-        continue;
+      if (!(normal_speed(r, k, lane, now_[pair.a], now_[b]) < g.impact_speed[lane])) continue;
+      if (at.rows[k].gap <= 0) continue;
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
       least_[group].n[k][lane] = -1e9;
     }
@@ -290,7 +294,7 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
     const Motion &p = before_[body], &q = now_[body];
     v[body].x += q.x - p.x, v[body].y += q.y - p.y, v[body].w += q.w - p.w;
   }
-  leave_to_iterations(pairs, batches, poses, pace);
+  leave_to_iterations(pairs, batches, poses, dv, pace);
 }
 
 void Impacts::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,

@@ -113,7 +113,8 @@ class Impacts {
            (push.a * now_[a].w - push.b * now_[b].w);
   }
   void leave_to_iterations(const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-                           const std::vector<Pose>& poses, const StepConstants& pace);
+                           const std::vector<Pose>& poses, const std::vector<Motion>& dv,
+                           const StepConstants& pace);
   const Rows& rows(int group, const std::vector<ContactBatch>& batches, const std::vector<Pose>& poses);
 
   const Pairs& pairs_;
