@@ -185,6 +185,37 @@ TEST(EveryImpact, OfAGasOfPointsKeepsItsEnergy) {
   }
 }
 
+// Balls of e = 1 that meet one another and walls, several times in a step where it is long: what energy is
+// left after 2 s. `across`: how many along each axis.
+template <int D>
+void expect_elastic(const int (&across)[D], double radius, double width, double speed, int rate, double off) {
+  SCOPED_TRACE(std::to_string(D) + "D, " + std::to_string(speed) + " m/s at " + std::to_string(rate));
+  World<D> world = walled<D>(width, 0, Solver::iterative, rate);
+  int all = 1;
+  for (const int n : across) all *= n;
+  for (int i = 0; i < all; ++i) {
+    Vec<D> at, v;
+    for (int axis = 0, rest = i; axis < D; rest /= across[axis++]) {
+      const double cell = width / across[axis], room = cell - 2 * radius;
+      at[axis] = cell * (rest % across[axis] + 0.5) + 0.9 * room * (scattered(i, axis) - 0.5);
+      v[axis] = scattered(7 * i + 3, (axis + 1) % 3) - 0.5;
+    }
+    add_particle<D>(world, at, Vec<D>(speed / v.norm() * v), 1, 1, radius);
+  }
+  EXPECT_NEAR(motion(world, stepped(world, 2 * rate)) / motion(world, world.state), 1, off);
+}
+
+TEST(EveryImpact, OfAGasOfBallsKeepsItsEnergy) {
+  for (const int rate : {60, 120, 240, 600, 6000}) {
+    for (const double speed : {5.0, 40.0}) {
+      expect_elastic<2>({10, 10}, 0.2, 10, speed, rate, 1e-9);
+      if (rate < 6000) expect_elastic<3>({5, 4, 5}, 0.2, 6, speed, rate, 1e-6);
+    }
+    expect_elastic<2>({5, 4}, 0.05, 1, 40, rate, 1e-9);
+    expect_elastic<3>({3, 3, 3}, 0.05, 1, 40, rate, 1e-6);
+  }
+}
+
 // many times through the room in a step
 TEST(EveryImpact, OfABulletKeepsItsSpeed) {
   for (const Solver solver : {Solver::direct, Solver::iterative}) {

@@ -130,8 +130,17 @@ void LoneBodies<D>::find(const State<D>& state, double h) {
 
 template <int D>
 void LoneBodies<D>::step(State<D>& state, double t, double h) {
+  if (began_.empty()) return;
+  // another that was struck on its way may have come farther than it could
+  std::fill(still_.begin(), still_.end(), 0);
+  for (const Contact<D>& contact : state.contacts) {
+    const int a = contact.key.a, b = contact.key.b;
+    if (b < 0 || model_.bodies[a].fixed || model_.bodies[b].fixed) continue;
+    if (!contact.impulse.isZero(0) || !contact.force.isZero(0)) still_[a] = still_[b] = 1;
+  }
   for (const Began& it : began_) {
     const int body = it.body;
+    if (still_[body]) continue;
     state.x[body] = it.x, state.v[body] = it.v;
     if (const int k = turning(state, body); k >= 0) {
       state.turn[k] = it.turn, state.spin[k] = it.spin;

@@ -20,7 +20,7 @@ class LoneBodies {
   /// Finds them in a state before its step from t to t + h (s), and remembers how they stand.
   void find(const State<D>& state, double h);
 
-  /// Moves them, in the state that the other solver has stepped.
+  /// Moves them, in the state that the other solver has stepped; not those that met others there after all.
   void step(State<D>& state, double t, double h);
 
  private:
@@ -39,7 +39,7 @@ class LoneBodies {
   ExactSolver<D> direct_;
   double g_ = 0;                                // m/s^2
   std::vector<char> free_;                      // one a body: nothing ever ties it
-  std::vector<char> still_;                     // one a body: fixed, asleep or no candidate
+  std::vector<char> still_;                     // one a body: it is not to be moved
   std::vector<char> points_;                    // one a body
   std::vector<int> fixed_;                      // bodies
   std::vector<double> bounding_radius_, ways_;  // one a body: bounding radius, how far it gets in the step, m

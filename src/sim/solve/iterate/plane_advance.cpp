@@ -28,7 +28,7 @@ void PlaneIterative<D>::advance(State<D>& state, double h, bool apply_push_out) 
     const Motion &v = v_[i], &o = old_[i];
     const double radius = cores_.bounding_radius[i], far = 0.5 * kSight * cores_.half_thickness[i];
     Motion d;
-    if (impacts_.when(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
+    if (impacts_.last(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
       d = course(i, h);
     } else {
       d = closing_[i] ? Motion{h * v.x, h * v.y, h * v.w, 0} : mean_way(i, h);
@@ -59,12 +59,11 @@ plane::Motion PlaneIterative<D>::mean_way(int i, double h) const {
 template <int D>
 plane::Motion PlaneIterative<D>::course(int i, double h) {
   const Motion &v = v_[i], &o = old_[i], &dv = dv_[i];
-  const double when = impacts_.when(i);
+  const double when = impacts_.first(i);
   Motion d;
   if (when >= 0) {
-    const double one = 0.5 * when, two = 0.5 * (h - when);
-    const Motion &b = impacts_.before(i), &a = impacts_.after(i);
-    const Motion there{one * (o.x + b.x), one * (o.y + b.y), one * (o.w + b.w), 0};
+    const double two = 0.5 * (h - impacts_.last(i));
+    const Motion &there = impacts_.way(i), &a = impacts_.after(i);
     Motion back{two * (a.x + v.x), two * (a.y + v.y), two * (a.w + v.w), 0};
     if (fast(i, back)) {
       plane::Pose from = poses_[i];

@@ -13,9 +13,7 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr double kTogether =
-    1e-6;                  // of the larger bounding radius: no wider open, a touch meets with the other
-constexpr int kTimes = 8;  // Newton steps for the time of an impact
+constexpr int kTimes = 8;          // Newton steps for the time of an impact
 constexpr double kForward = 0.01;  // of the step: by so much at least features are looked for on the way
 constexpr double kLatest = 1.5;    // steps: so late a touch may close that its tangent would close in one
 
@@ -29,25 +27,14 @@ bool other_corners(const ContactBatch& g, int k, int lane) {
 // where a body is at a time after its last impact, and how it moves there
 void Impacts::move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
                    const StepConstants& pace, Pose& pose, Motion& v) const {
-  pose = poses[body], v = now_[body];
-  if (v.im == 0) return;
+  const bool there = when_[body] == when;
+  pose = there ? pose_[body] : poses[body], v = now_[body];
+  if (v.im == 0 || there) return;
   const Motion& gain = dv[body];
-  double x = 0, y = 0, w = 0;
-  const auto fly = [&](const Motion& from, double time) {
-    const double half = 0.5 * time / pace.h;
-    x += time * (from.x + half * gain.x), y += time * (from.y + half * gain.y);
-    w += time * (from.w + half * gain.w);
-  };
-  if (when_[body] < 0) {
-    fly(v, when);
-    const double part = when / pace.h;
-    v.x += part * gain.x, v.y += part * gain.y, v.w += part * gain.w;
-  } else {
-    const double part = when_[body] / pace.h;
-    const Motion& to = before_[body];
-    fly({to.x - part * gain.x, to.y - part * gain.y, to.w - part * gain.w, 0}, when_[body]);
-    fly(v, when - when_[body]);
-  }
+  const double time = when - std::max(0.0, when_[body]), part = time / pace.h, half = 0.5 * part;
+  double x = time * (v.x + half * gain.x), y = time * (v.y + half * gain.y), w = time * (v.w + half * gain.w);
+  if (when_[body] >= 0) x += way_[body].x, y += way_[body].y, w += way_[body].w;
+  v.x += part * gain.x, v.y += part * gain.y, v.w += part * gain.w;
   pose.x += x, pose.y += y;
   if (w == 0) return;
   const SinCos turn = sin_cos(w);
@@ -97,13 +84,10 @@ double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, co
 double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, const PlacedPair& start,
                              const std::vector<Pose>& poses, const std::vector<Motion>& dv,
                              const StepConstants& pace) const {
-  const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
-  const TouchRow& r = start.rows[k];
+  const int lane = pair.slot % kLanes;
   const double from = start.when;
   double when = closing_guess(pair, k, g, start, dv, pace);
-  if (when == 1e300 || r.gap <= 0) return when;
-  const double vn = normal_speed(r, start.a, start.b), dvn = normal_speed(r, dv[a], dv[b]);
-  const bool closes = r.gap + (pace.h - from) * (vn + 0.5 * dvn) < 0;
+  if (when == 1e300 || start.rows[k].gap <= 0) return when;
   double low = from, high = -1;
   for (int i = 0; i < kTimes && when <= from + kLatest * pace.h; ++i) {
     const PlacedPair at = placed_at(pair, when, g, poses, dv, pace);
@@ -123,7 +107,7 @@ double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, con
     }
     if (!(speed < g.impact_speed[lane])) break;
     const double next = when - gap / speed;
-    if (std::fabs(next - when) <= kInTime * pace.h) return closes || when <= pace.h ? when : 1e300;
+    if (std::fabs(next - when) <= kInTime * pace.h) return when <= pace.h ? when : 1e300;
     when = std::clamp(next, from, from + kLatest * pace.h);
   }
   if (high < 0) {
@@ -138,34 +122,31 @@ double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, con
   return normal_speed(at.rows[k], at.a, at.b) < g.impact_speed[lane] ? low : 1e300;
 }
 
-// Whether a pair may meet with an impact in the step, as its rows were when it began: most do not.
+// Whether a pair may meet with an impact in what is left of the step, by its rows as it stands: most do not.
 bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vector<Pose>& poses,
                        const std::vector<Motion>& dv, const StepConstants& pace) const {
   const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
-  const Motion &va = now_[a], &vb = now_[b];
   double spare = -1;  // what it may come nearer than by these rows and velocities, m
+  const double from = std::max({0.0, when_[a], when_[b]}), time = pace.h - from;
+  Pose pose_a = poses[a], pose_b = poses[b];
+  Motion va = now_[a], vb = now_[b];
+  if (from > 0) move(a, from, poses, dv, pace, pose_a, va), move(b, from, poses, dv, pace, pose_b, vb);
   const auto fastest = [&] {
     return std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) +
            g.far[lane] * (std::fabs(va.w) + std::fabs(vb.w));
   };
   for (int k = 0; k < pair.touches; ++k) {
-    const TouchRow r = row(g, lane, k, poses[a], poses[b]);
+    const TouchRow r = row(g, lane, k, pose_a, pose_b);
     const double vn = normal_speed(r, va, vb);
-    if (other_corners(g, k, lane) && r.gap < pace.h * (fastest() + pace.gravity_dv)) return true;
+    if (other_corners(g, k, lane) && r.gap < time * (fastest() + pace.gravity_dv)) return true;
     if (vn > -pair.impact_speed) continue;
-    const double left = r.gap + pace.h * (vn + 0.5 * normal_speed(r, dv[a], dv[b]));
+    const double left = r.gap + time * (vn + 0.5 * time / pace.h * normal_speed(r, dv[a], dv[b]));
     if (left >= 0 && spare < 0) {
       const double far = std::max(bounding_radius_[a], bounding_radius_[b]),
                    w = std::fabs(va.w) + std::fabs(vb.w);
-      spare = 0.5 * pace.h * pace.h *
+      spare = 0.5 * time * time *
               (far * (va.w * va.w + vb.w * vb.w) +
                2 * w * (std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) + far * w));
-      for (const int body : {a, b}) {
-        if (!(when_[body] > 0)) continue;
-        const Motion &p = before_[body], &q = now_[body];
-        spare += when_[body] * (std::fabs(q.x - p.x) + std::fabs(q.y - p.y) +
-                                std::fabs(q.w - p.w) * bounding_radius_[body]);
-      }
     }
     if (left >= 0 && left >= spare) continue;
     if (r.gap <= g.sight[lane] && vn < g.impact_speed[lane]) return true;
@@ -278,7 +259,9 @@ bool Impacts::find_impact(const Pair& pair, Impact& impact, const ContactBatch& 
     const double apart = impact.met[k] ? 0 : 0.5 * r.gap;
     impact.pushes[0][k] = {r.nx, r.ny, r.na, r.nb};
     impact.pushes[1][k] = {-r.ny, r.nx, r.ta + apart, r.tb - apart};
-    any = any || (impact.met[k] && normal_speed(r, at.a, at.b) < g.impact_speed[lane]);
+    const double vn = normal_speed(r, at.a, at.b);
+    if (impact.met[k]) impact.speed = std::max(impact.speed, -vn);
+    any = any || (impact.met[k] && vn < g.impact_speed[lane]);
   }
   return any;
 }

@@ -18,7 +18,7 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr std::size_t kPairsAhead = 4;  // pairs
+constexpr std::size_t kPairsAhead = 4;  // pairs that are asked for, as they are far apart in memory
 constexpr double kLocked = 1e-9;        // of what a push moves without joints
 
 }  // namespace
@@ -28,8 +28,8 @@ Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs)
   const int bodies = int(bounding_radius_.size());
   bounding_radius_.push_back(0);
   around_start_.resize(bodies + 2);
-  when_.assign(bodies + 1, -1);
-  before_.resize(bodies + 1), now_.resize(bodies + 1);
+  first_.assign(bodies + 1, -1), when_.assign(bodies + 1, -1), rounds_.assign(bodies + 1, 0);
+  pose_.resize(bodies + 1), way_.resize(bodies + 1), now_.resize(bodies + 1), given_.resize(bodies + 1);
 }
 
 void Impacts::list_pairs(const std::vector<Pair>& pairs, const std::vector<Motion>& v) {
@@ -47,7 +47,7 @@ void Impacts::list_pairs(const std::vector<Pair>& pairs, const std::vector<Motio
   for (int i = 2; i < n + 2; ++i) around_start_[i] += around_start_[i - 1];
   around_.resize(around_start_[n + 1]);
   each([&](int i, int body) { around_[around_start_[body + 1]++] = i; });
-  waiting_.assign(pairs.size(), 0), impact_of_.assign(pairs.size(), -1);
+  waiting_.assign(pairs.size(), 0), impacts_of_.assign(pairs.size(), 0);
 }
 
 // as the step begins
@@ -62,25 +62,33 @@ const Rows& Impacts::rows(int group, const std::vector<ContactBatch>& batches,
   return rows_[known_[group]];
 }
 
-// a body meets its first impact of the step
-void Impacts::reach(int body, double when, const std::vector<Motion>& dv, const StepConstants& pace) {
-  if (now_[body].im == 0 || when_[body] >= 0) return;
+// brings a body to an impact
+void Impacts::reach(int body, double when, const Step& step) {
+  Motion& v = now_[body];
+  if (v.im == 0 || when_[body] == when) return;
+  Motion ignored;
+  move(body, when, step.poses, step.dv, step.pace, pose_[body], ignored);
+  if (when_[body] < 0) {
+    bodies_.push_back(body);
+    first_[body] = when, way_[body] = given_[body] = {};
+  }
+  const double time = when - std::max(0.0, when_[body]), part = time / step.pace.h, half = 0.5 * part;
+  const Motion& gain = step.dv[body];
+  Motion& way = way_[body];
+  way.x += time * (v.x + half * gain.x), way.y += time * (v.y + half * gain.y);
+  way.w += time * (v.w + half * gain.w);
+  v.x += part * gain.x, v.y += part * gain.y, v.w += part * gain.w;
   when_[body] = when;
-  bodies_.push_back(body);
-  const double part = when / pace.h;
-  now_[body].x += part * dv[body].x, now_[body].y += part * dv[body].y, now_[body].w += part * dv[body].w;
-  before_[body] = now_[body];
 }
 
 // whether one of a pair hangs on joints: what hangs there with it meets the impact too
-bool Impacts::reach_component(const Pair& pair, double when, const std::vector<Motion>& dv,
-                              const StepConstants& pace, const JointSolver<2>& joints) {
+bool Impacts::reach_component(const Pair& pair, double when, const Step& step, const JointSolver<2>& joints) {
   bool tied = false;
   for (const int body : {pair.a, pair.b}) {
     const int part = body < 0 ? -1 : joints.part(body);
     if (part < 0) continue;
     tied = true;
-    for (const int member : joints.members(part)) reach(member, when, dv, pace);
+    for (const int member : joints.members(part)) reach(member, when, step);
   }
   return tied;
 }
@@ -100,48 +108,45 @@ void Impacts::compute_responses(const Pair& pair, const Push (&pushes)[2][2], co
   }
 }
 
-// one pair, both touches together; false where it does not approach
-bool Impacts::resolve_pair(int i, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-                           const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                           const StepConstants& pace, JointSolver<2>& joints) {
-  const Pair& pair = pairs[i];
+void Impacts::look_at(int pair) {
+  if (waiting_[pair]) return;
+  waiting_[pair] = 1, queue_.push_back(pair);
+}
+
+// a pair's next impact, as its bodies move now; false where it has none
+bool Impacts::predict(int i, Impact& impact, const std::vector<ContactBatch>& batches, const Step& step) {
+  waiting_[i] = 0;
+  const Pair& pair = step.pairs[i];
   const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   // too slow for an impact however they meet: most are, and their lanes are far away in memory
   if (std::fabs(now_[a].x - now_[b].x) + std::fabs(now_[a].y - now_[b].y) +
           std::fabs(now_[a].w) * bounding_radius_[a] + std::fabs(now_[b].w) * bounding_radius_[b] <
       pair.impact_speed)
     return false;
+  const ContactBatch& g = batches[pair.slot / kLanes];
+  if (!may_meet(pair, g, step.poses, step.dv, step.pace)) return false;
+  if (!find_impact(pair, impact, g, step.poses, step.dv, step.pace)) {
+    passing_.push_back(i);
+    return false;
+  }
+  // once it has met in this step, one that would hardly bounce again touches: in a pile there is no end of
+  // them
+  if (impacts_of_[i] != 0 && pair.material.elasticity * impact.speed < pair.impact_speed) return false;
+  impact.pair = i;
+  return true;
+}
+
+// one pair, both touches together
+void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
+                      JointSolver<2>& joints) {
+  const Pair& pair = step.pairs[impact.pair];
+  const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
   const ContactBatch& g = batches[group];
-
-  // when, and which touches
-  bool closes[2] = {false, false};
-  if (impact_of_[i] < 0) {
-    Impact impact;
-    if (!may_meet(pair, g, poses, dv, pace)) return false;
-    if (!find_impact(pair, impact, g, poses, dv, pace)) {
-      passing_.push_back(i);
-      return false;
-    }
-    impact.pair = i, impact_of_[i] = int(impacts_.size());
-    impacts_.push_back(impact);
-    reach(a, impact.when, dv, pace), reach(b, impact.when, dv, pace);
-    closes[0] = impact.met[0], closes[1] = impact.met[1];
-  } else {
-    // again, after others: what has met and does not part, and what comes together now
-    const Impact& impact = impacts_[impact_of_[i]];
-    bool any = false;
-    for (int k = 0; k < pair.touches; ++k) {
-      const double vn = speed(impact.pushes[0][k], a, b);
-      const bool fast =
-          vn < g.impact_speed[lane] && (impact.met[k] || impact.gap[k] + (pace.h - impact.when) * vn < 0);
-      closes[k] = fast || (impact.met[k] && vn < -g.impact_speed[lane]), any = any || fast;
-    }
-    if (!any) return false;
-  }
-  Impact& impact = impacts_[impact_of_[i]];
+  reach(a, impact.when, step), reach(b, impact.when, step);
+  bool closes[2] = {impact.met[0], impact.met[1]};
   const auto& pushes = impact.pushes;
-  const bool tied = !joints.empty() && reach_component(pair, impact.when, dv, pace, joints);
+  const bool tied = !joints.empty() && reach_component(pair, impact.when, step, joints);
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
   if (tied) {
     compute_responses(pair, pushes, closes, joints);
@@ -169,130 +174,137 @@ bool Impacts::resolve_pair(int i, const std::vector<Pair>& pairs, std::vector<Co
   }
   double impulses[4];
   solve(system, impulses);
+  const auto give = [&](int body, double x, double y, double w) {
+    now_[body].x += x, now_[body].y += y, now_[body].w += w;
+    given_[body].x += x, given_[body].y += y, given_[body].w += w;
+  };
   const auto push = [&](int across, int k, double l) {
     if (tied) {
       joints.each_push(responses_[across][k], l, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
-        now_[body].x += v[0], now_[body].y += v[1], now_[body].w += w[0];
+        give(body, v[0], v[1], w[0]);
       });
       return;
     }
     const Push& p = pushes[across][k];
-    now_[a].x += p.x * (ima * l), now_[a].y += p.y * (ima * l), now_[a].w += iia * (p.a * l);
-    now_[b].x -= p.x * (imb * l), now_[b].y -= p.y * (imb * l), now_[b].w -= iib * (p.b * l);
+    give(a, p.x * (ima * l), p.y * (ima * l), iia * (p.a * l));
+    give(b, -(p.x * (imb * l)), -(p.y * (imb * l)), -(iib * (p.b * l)));
   };
   for (int k = 0; k < 2; ++k) {
     if (!closes[k]) continue;
     const double n = impulses[2 * k], t = impulses[2 * k + 1];
-    impact.met[k] = true, impact.n[k] += n, impact.t[k] += t;
+    impact.n[k] += n, impact.t[k] += t;
     push(0, k, n), push(1, k, t);
   }
-  return true;
 }
 
-// What is left to the iterations of pairs that met, in their rows, of the step's start: of what met that it
-// does not come nearer than the impact left it; of the other touch that it does not close in what is left of
-// the step. Where it met by other features than the rows have, these may part fast while those hardly do: to
-// keep up such a speed would take energy from nowhere.
+// What is left to the iterations of the pairs of bodies that had impacts, in their rows, of the step's start:
+// that what touches does not come nearer, and that what is apart does not close in what is left of the step.
+// Where a pair met by other features than the rows have, these may part fast while those hardly do: to keep
+// up such a speed would take energy from nowhere.
 void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
                                   const std::vector<Pose>& poses, const std::vector<Motion>& dv,
                                   const StepConstants& pace) {
   if (least_.size() < batches.size()) least_.resize(batches.size());
+  for (const Impact& impact : impacts_) waiting_[impact.pair] = impact.renewed ? 2 : 1;
   const int room = int(now_.size()) - 1;
-  for (const int i : passing_) {
+  const auto leave = [&](int i) {
     const Pair& pair = pairs[i];
     const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
     ContactBatch& g = batches[group];
     const Rows& r = rows(group, batches, poses);
-    // what overlapped when the step began may have parted before another impact turned it back
-    const double from = std::max({0.0, when_[pair.a], when_[b]});
-    const PlacedPair at = placed_at(pair, from, g, poses, dv, pace);
+    const char met = waiting_[i];
+    double v[2];
+    bool any = met != 0;
     for (int k = 0; k < pair.touches; ++k) {
-      if (!(normal_speed(r, k, lane, now_[pair.a], now_[b]) < g.impact_speed[lane])) continue;
-      if (at.rows[k].gap <= 0) continue;
-      g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
-      least_[group].n[k][lane] = -1e9;
+      v[k] = normal_speed(r, k, lane, now_[pair.a], now_[b]);
+      any = any || (v[k] < 0 && r.gap[k][lane] + pace.h * v[k] < 0);
     }
-  }
-  for (const Impact& impact : impacts_) {
-    const Pair& pair = pairs[impact.pair];
-    const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
-    ContactBatch& g = batches[group];
-    const Rows& r = rows(group, batches, poses);
-    const double left = pace.h - impact.when;
+    if (!any) return;
+    const PlacedPair at = placed_at(pair, std::max({0.0, when_[pair.a], when_[b]}), g, poses, dv, pace);
+    const double left = pace.h - at.when;
     for (int k = 0; k < pair.touches; ++k) {
+      const double gap = at.rows[k].gap, vn = normal_speed(at.rows[k], at.a, at.b);
       double& least = least_[group].n[k][lane];
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
-      least = normal_speed(r, k, lane, now_[pair.a], now_[b]) - speed(impact.pushes[0][k], pair.a, b);
-      if (impact.renewed) least = std::min(least, 0.0);
-      if (impact.met[k] || impact.gap[k] <= 0) continue;
-      least = left > kInTime * pace.h ? least - impact.gap[k] / left : -1e9;
+      least = v[k] - vn;
+      if (met == 2) least = std::min(least, 0.0);
+      if (gap <= kTogether * g.far[lane]) continue;
+      // what comes near so fast passes: else it would have met
+      const bool passes = vn < g.impact_speed[lane] || left <= kInTime * pace.h;
+      least = passes ? -1e9 : least - gap / left;
     }
+  };
+  for (const int i : passing_) leave(i);
+  for (const int body : bodies_) {
+    for (const int i : around(body)) leave(i);
   }
+  for (const Impact& impact : impacts_) waiting_[impact.pair] = 0;
 }
 
 void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
                   const std::vector<Pose>& poses, const std::vector<Motion>& old,
                   const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
                   JointSolver<2>& joints) {
-  for (const int body : bodies_) when_[body] = -1;
+  for (const int body : bodies_) when_[body] = first_[body] = -1, rounds_[body] = 0;
   for (const Impact& impact : impacts_) {
-    if (impact.pair < int(impact_of_.size())) impact_of_[impact.pair] = -1;
+    if (impact.pair < int(impacts_of_.size())) impacts_of_[impact.pair] = 0;
   }
-  bodies_.clear(), impacts_.clear(), queue_.clear(), passing_.clear(), rows_.clear(), groups_.clear();
+  bodies_.clear(), impacts_.clear(), due_.clear(), predicted_.clear(), passing_.clear();
+  rows_.clear(), groups_.clear(), queue_.clear();
   if (found.empty()) return;
   std::copy(old.begin(), old.end(), now_.begin());
-
   known_.assign(batches.size(), -1);
 
-  // in the order of time, then of pairs
-  first_.clear();
-  for (const int seat : found) {
-    const ContactBatch& g = batches[seat / kLanes];
-    const int i = g.pair[seat % kLanes];
-    const Pair& pair = pairs[i];
-    const PlacedPair at = placed_at(pair, 0, g, poses, dv, pace);
-    double when = 1e300;
-    for (int k = 0; k < pair.touches; ++k) when = std::min(when, closing_guess(pair, k, g, at, dv, pace));
-    first_.emplace_back(when, i);
-  }
-  std::sort(first_.begin(), first_.end());
-  for (const auto& [when, i] : first_) queue_.push_back(i);
-  for (const int i : queue_) waiting_[i] = 1;
-  const std::size_t most = 40 * queue_.size() + 100;
-  std::size_t at = 0;
-  for (; at < queue_.size() && at < most; ++at) {
-    // pairs and their lanes are far apart in memory: ask for those of later ones
-    if (at + 2 * kPairsAhead < queue_.size()) __builtin_prefetch(&pairs[queue_[at + 2 * kPairsAhead]]);
-    if (at + kPairsAhead < queue_.size()) {
-      const Pair& later = pairs[queue_[at + kPairsAhead]];
-      __builtin_prefetch(&now_[later.a]);
-      if (later.b >= 0) __builtin_prefetch(&now_[later.b]);
-    }
-    const int i = queue_[at];
-    waiting_[i] = 0;
-    if (!resolve_pair(i, pairs, batches, poses, dv, pace, joints)) continue;
-    const auto enqueue = [&](int body) {
-      for (const int next : around(body)) {
-        if (waiting_[next]) continue;
-        waiting_[next] = 1;
-        queue_.push_back(next);
+  const Step step{pairs, poses, dv, pace};
+  for (const int lane : found) look_at(batches[lane / kLanes].pair[lane % kLanes]);
+  const std::size_t most = 40 * found.size() + 100;
+  double now = 0;
+  for (std::size_t at = 0; impacts_.size() < most;) {
+    Impact impact;
+    if (at < queue_.size()) {
+      // all that may have changed in this instant
+      const int i = queue_[at++];
+      if (at + kPairsAhead < queue_.size()) __builtin_prefetch(&pairs[queue_[at + kPairsAhead]]);
+      if (!predict(i, impact, batches, step)) continue;
+      if (impact.when > now) {
+        due_.push_back({impact.when, int(predicted_.size()), rounds(pairs[i])});
+        predicted_.push_back(impact);
+        std::push_heap(due_.begin(), due_.end());
+        continue;
       }
+    } else if (!due_.empty()) {
+      std::pop_heap(due_.begin(), due_.end());
+      const Due due = due_.back();
+      due_.pop_back();
+      impact = predicted_[due.impact];
+      if (due.rounds != rounds(pairs[impact.pair])) continue;
+      now = due.when;
+    } else {
+      break;
+    }
+    const Pair& pair = pairs[impact.pair];
+    resolve(impact, batches, step, joints);
+    impacts_.push_back(impact), impacts_of_[impact.pair] = 1;
+    if (at == queue_.size()) queue_.clear(), at = 0;
+    const auto change = [&](int body) {
+      ++rounds_[body];
+      for (const int next : around(body)) look_at(next);
     };
-    for (const int body : {pairs[i].a, pairs[i].b}) {
+    for (const int body : {pair.a, pair.b}) {
       if (body < 0 || now_[body].im == 0) continue;
       const int part = joints.empty() ? -1 : joints.part(body);
       if (part < 0) {
-        enqueue(body);
+        change(body);
       } else {
-        for (const int member : joints.members(part)) enqueue(member);
+        for (const int member : joints.members(part)) change(member);
       }
     }
   }
-  for (; at < queue_.size(); ++at) waiting_[queue_[at]] = 0;
+  for (const int i : queue_) waiting_[i] = 0;
 
   for (const int body : bodies_) {
-    const Motion &p = before_[body], &q = now_[body];
-    v[body].x += q.x - p.x, v[body].y += q.y - p.y, v[body].w += q.w - p.w;
+    const Motion& given = given_[body];
+    v[body].x += given.x, v[body].y += given.y, v[body].w += given.w;
   }
   leave_to_iterations(pairs, batches, poses, dv, pace);
 }

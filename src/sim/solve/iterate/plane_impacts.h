@@ -12,9 +12,9 @@
 namespace obscura::sim::plane {
 
 /// Impacts: touches that close within a step faster than the resting speed. Newton's law with Coulomb
-/// friction, normals and friction of a pair together, where its bodies stand when they meet; from pair to
-/// pair until none approaches, in the order in which they come up. Bodies on joints are struck as one with
-/// all that hangs on them.
+/// friction, normals and friction of a pair together, each pair at its own time and where its bodies stand
+/// then, in the order of time, until none approaches. Bodies on joints are struck as one with all that hangs
+/// on them.
 class Impacts {
  public:
   /// `pairs` is kept by reference.
@@ -46,15 +46,19 @@ class Impacts {
     return {around_.data() + around_start_[body], around_.data() + around_start_[body + 1]};
   }
 
-  /// Bodies with impacts: when (s from the start of the step), velocity before and after.
-  const std::vector<int>& bodies() const { return bodies_; }
-  double when(int body) const { return when_[body]; }
-  const Motion& before(int body) const { return before_[body]; }
+  /// Impacts of a body: when the first and the last of them are (s from the start of the step; -1: none), how
+  /// far it goes until the last, and its velocity after it.
+  double first(int body) const { return first_[body]; }
+  double last(int body) const { return when_[body]; }
+  const Motion& way(int body) const { return way_[body]; }
   const Motion& after(int body) const { return now_[body]; }
 
  private:
   static constexpr double kInTime =
       1e-9;  // of the step: the next step of Newton's method would be by its square
+
+  static constexpr double kTogether =
+      1e-6;  // of the larger bounding radius: no wider open, a touch meets with the other
 
   struct Struck {
     ContactKey key;
@@ -70,6 +74,7 @@ class Impacts {
     double when = 0;       // s: the rows are those of then
     bool renewed = false;  // its features are others than those of the lane
     bool met[2] = {false, false};
+    double speed = 0;                     // m/s: of the fastest touch that closes
     double gap[2] = {0, 0};               // m
     double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
     Push pushes[2][2] = {};               // along normals and across them, of each touch
@@ -81,7 +86,25 @@ class Impacts {
     Motion a, b;
     TouchRow rows[2];
   };
-  void reach(int body, double when, const std::vector<Motion>& dv, const StepConstants& pace);
+  // an impact that is due; no longer so once one of its bodies had another
+  struct Due {
+    double when = 0;
+    int impact = 0;  // in predicted_: of one instant, the first come first
+    int rounds = 0;
+
+    // so that the next is the top of a heap
+    bool operator<(const Due& other) const {
+      return when != other.when ? when > other.when : impact > other.impact;
+    }
+  };
+  // what does not change while the impacts of a step are resolved
+  struct Step {
+    const std::vector<Pair>& pairs;
+    const std::vector<Pose>& poses;
+    const std::vector<Motion>& dv;
+    const StepConstants& pace;
+  };
+  void reach(int body, double when, const Step& step);
   void move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
             const StepConstants& pace, Pose& pose, Motion& v) const;
   PlacedPair placed_at(const Pair& pair, double when, const ContactBatch& batches,
@@ -101,11 +124,12 @@ class Impacts {
                     const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace);
   bool find_impact(const Pair& pair, Impact& impact, const ContactBatch& batches,
                    const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace);
-  bool resolve_pair(int pair, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-                    const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace,
-                    JointSolver<2>& joints);
-  bool reach_component(const Pair& pair, double when, const std::vector<Motion>& dv,
-                       const StepConstants& pace, const JointSolver<2>& joints);
+  int rounds(const Pair& pair) const { return rounds_[pair.a] + (pair.b < 0 ? 0 : rounds_[pair.b]); }
+  void look_at(int pair);
+  bool predict(int pair, Impact& impact, const std::vector<ContactBatch>& batches, const Step& step);
+  void resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
+               JointSolver<2>& joints);
+  bool reach_component(const Pair& pair, double when, const Step& step, const JointSolver<2>& joints);
   void compute_responses(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2],
                          JointSolver<2>& joints);
   double speed(const Push& push, int a, int b) const {
@@ -121,15 +145,20 @@ class Impacts {
   ContactBatch fresh_{};                    // of a pair: the features that are nearest when it meets
   std::vector<double> bounding_radius_;     // of bodies, and of walls, m
   std::vector<int> around_, around_start_;  // pairs of each body
-  std::vector<int> bodies_;
-  std::vector<double> when_;  // -1: not struck
-  std::vector<Motion> before_, now_;
+  std::vector<int> bodies_;                 // with impacts
+  std::vector<double> first_, when_;        // s: of each body's first and last impact; -1: none
+  std::vector<Pose> pose_;                  // of those with impacts: at the last
+  std::vector<Motion> way_;                 // of those with impacts: from the start of the step to the last
+  std::vector<Motion> now_;                 // velocities after it, or as the step begins
+  std::vector<Motion> given_;               // what their impacts gave to them
+  std::vector<int> rounds_;                 // impacts of each body
 
-  std::vector<std::pair<double, int>> first_;
-  std::vector<int> queue_;
-  std::vector<char> waiting_;   // of pairs
-  std::vector<int> impact_of_;  // of pairs: place in impacts_, or -1
-  std::vector<Impact> impacts_;
+  std::vector<int> queue_;  // pairs to be looked at, as one of their bodies just had an impact
+  std::vector<Due> due_;
+  std::vector<char> waiting_;     // of pairs: in queue_
+  std::vector<char> impacts_of_;  // of pairs: whether they had one
+  std::vector<Impact> predicted_;
+  std::vector<Impact> impacts_;  // in the order of time
   std::vector<Struck> struck_;
   std::vector<int> passing_;  // pairs that come near without an impact
   std::vector<int> known_;    // of groups: place in rows_, or -1

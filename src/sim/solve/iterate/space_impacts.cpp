@@ -4,10 +4,11 @@
 // without contacts, after it with the velocity it got; where it comes to so is what the iterations begin
 // from. What hangs together on joints meets the impact together: M^-1 is that of the bodies and their joints,
 // with the rows of the joints where the step begins. Large heaps are left to the iterations. Newton's law
-// with friction can raise the energy; then e is halved until it does not.
+// can raise the energy, with friction or where something already parts; then e is less, so that it does not.
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/math/lie_step.h"
 #include "sim/solve/iterate/space.h"
@@ -23,7 +24,7 @@ constexpr int kTimes = 8;         // Newton steps for its time
 constexpr double kInTime = 1e-9;  // of the step: the next would be by its square
 constexpr double kLatest = 1.5;   // steps: so late a gap may close that its tangent would close in one
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
-constexpr double kLeast = 1e-6;        // of e: halved so far it is none
+constexpr int kShares = 24;            // halvings for the share of e that does so
 constexpr double kLocked = 1e-9;       // of what a push moves without joints
 constexpr int kRenewals = 4;           // of a gap's features in a step
 constexpr int kTurns = 40;             // impacts, of those that there are at first
@@ -91,7 +92,6 @@ double SpaceIterative<D>::closing_time(int i, double h) const {
   const bool nears = at.speed < -restitution_threshold_;
   const double gap = at.now.value;
   if (gap <= 0) return nears ? from : 1e300;
-  const bool closes = nears && gap + (h - from) * (at.speed - g_ * h) < 0;
   double when = nears ? from - gap / at.speed : 1e300, low = from, high = -1;
   for (int n = 0; n < kTimes && when <= from + kLatest * h; ++n) {
     at = instant(i, when, h);
@@ -110,7 +110,7 @@ double SpaceIterative<D>::closing_time(int i, double h) const {
     }
     if (!(at.speed < -restitution_threshold_)) break;
     const double next = when - at.now.value / at.speed;
-    if (std::abs(next - when) <= kInTime * h) return closes || when <= h ? when : 1e300;
+    if (std::abs(next - when) <= kInTime * h) return when <= h ? when : 1e300;
     when = std::clamp(next, from, from + kLatest * h);
   }
   if (high < 0) {
@@ -292,19 +292,27 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
   const int count = int(meets_.size()), rows = D * count;
   const Eigen::VectorXd& v = speeds_;
   b_.resize(rows), p_.resize(rows);
-  for (double bounce = 1;; bounce = bounce > kLeast ? 0.5 * bounce : 0) {
+  // with e times `share`; how much more energy there is after it, of the largest part that an impulse moves
+  const auto gain = [&](double share) {
     b_ = v;
     for (int k = 0; k < count; ++k) {
-      if (v[D * k] < -restitution_threshold_) b_[D * k] += bounce * touches_[meets_[k]].bounce * v[D * k];
+      if (v[D * k] < -restitution_threshold_) b_[D * k] += share * touches_[meets_[k]].bounce * v[D * k];
     }
     modes_.assign(count, {}), p_.setZero();
-    if (!cone_.solve(K_, b_, blocks_, modes_, p_).found) return false;
-    if (bounce == 0) break;
-    double gain = 0, size = 0;
-    for (int i = 0; i < rows; ++i) {
-      gain += p_[i] * (v[i] + 0.5 * K_.row(i).dot(p_)), size = std::max(size, std::abs(p_[i] * v[i]));
+    if (!cone_.solve(K_, b_, blocks_, modes_, p_).found) return std::numeric_limits<double>::infinity();
+    double sum = 0, size = 0;
+    for (int i = 0; i < rows; ++i)
+      sum += p_[i] * (v[i] + 0.5 * K_.row(i).dot(p_)), size = std::max(size, std::abs(p_[i] * v[i]));
+    return sum > kImpactGain * size ? sum / size : 0;
+  };
+  if (gain(1) > 0) {
+    // the largest share that does not raise it
+    double low = 0, high = 1;
+    for (int n = 0; n < kShares; ++n) {
+      const double mid = 0.5 * (low + high);
+      (gain(mid) > 0 ? high : low) = mid;
     }
-    if (gain <= kImpactGain * size) break;
+    if (!std::isfinite(gain(low))) return false;
   }
 
   for (const int i : meets_) {
@@ -425,8 +433,10 @@ void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
     touch.least = along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed;
     // by other features than those of its row, which may part more slowly
     if (touch.renewals > 0) touch.least = std::min(touch.least, 0.0);
-    if (!touch.impact_impulse.isZero(0) || at.now.value <= 0) continue;
-    touch.least = left > kInTime * h ? touch.least - at.now.value / left : -1e9;
+    if (at.now.value <= kTogether * bounding_radius_[touch.a]) continue;
+    // what comes near so fast passes: else it would have met
+    const bool passes = at.speed < -restitution_threshold_ || left <= kInTime * h;
+    touch.least = passes ? -1e9 : touch.least - at.now.value / left;
   }
   for (int i = 0; i < n; ++i) {
     if (when_[i] < 0) continue;
