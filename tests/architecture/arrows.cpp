@@ -27,7 +27,7 @@ const std::map<std::string, Names> kArrows = {
 const std::map<std::string, std::vector<std::string>> kSubRooms = {
     {"sim",
      {"math", "model", "shape", "collide", "force", "multibody", "constraint", "constraint/joints", "motion",
-      "energy", "solve", "solve/exact", "solve/iterate", "handout", "fracture", "step"}},
+      "energy", "solve/cone", "solve", "solve/exact", "solve/iterate", "handout", "fracture", "step"}},
     {"draw", {"picture", "page", "plane", "space", "compose"}},
     {"app", {"console", "run", "film", "study", "compare", "figure", "cluster", "commands"}},
 };

@@ -1,4 +1,4 @@
-#include "sim/solve/exact/cone.h"
+#include "sim/solve/cone/cone.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // What holds bodies apart and together at one instant.
 //   K f + b = w,   K = J M^-1 J',   b = J a + J' v        forces, w what the rows accelerate by
 //                                   b = J v (+ e v_n)     impulses, w what they move with after
-// with the laws of sim/solve/exact/cone.h for f and w.
+// with the laws of sim/solve/cone/cone.h for f and w.
 
 #include <algorithm>
 #include <cmath>

@@ -11,13 +11,13 @@
 #include "sim/constraint/response.h"
 #include "sim/math/islands.h"
 #include "sim/motion/forward_dynamics.h"
+#include "sim/solve/cone/cone.h"
 #include "sim/solve/contact_solver.h"
-#include "sim/solve/exact/cone.h"
 
 namespace obscura::sim {
 
 /// The exact solver: contact and joint forces are part of the Runge-Kutta stages, found exactly
-/// (sim/solve/exact/cone.h). A step is cut where something closes, opens, slips or stops: in `event` always,
+/// (sim/solve/cone/cone.h). A step is cut where something closes, opens, slips or stops: in `event` always,
 /// in `contact` where it closes or stops, and a bounded number of times for each body. Bodies that cannot
 /// meet in a step are stepped apart, so that the cuts of one are none of the other's. For scenes of up to
 /// some hundred rows.

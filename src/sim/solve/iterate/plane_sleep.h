@@ -6,7 +6,7 @@
 #include "sim/constraint/mobility.h"
 #include "sim/math/islands.h"
 #include "sim/model/state.h"
-#include "sim/solve/exact/statics.h"
+#include "sim/solve/cone/statics.h"
 #include "sim/solve/iterate/contact_rows.h"
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/pair_cache.h"

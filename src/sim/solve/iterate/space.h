@@ -13,9 +13,9 @@
 #include "sim/energy/energy_guard.h"
 #include "sim/math/islands.h"
 #include "sim/motion/forward_dynamics.h"
+#include "sim/solve/cone/cone.h"
+#include "sim/solve/cone/statics.h"
 #include "sim/solve/contact_solver.h"
-#include "sim/solve/exact/cone.h"
-#include "sim/solve/exact/statics.h"
 #include "sim/solve/iterate/joint_solver.h"
 
 namespace obscura::sim {

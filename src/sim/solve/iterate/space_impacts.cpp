@@ -1,6 +1,6 @@
 // Impacts in space, each at its own time within the step and where its bodies stand then:
 //   w = K p + J v,   p_n >= 0,   w_n + e v_n >= 0,   p_n (w_n + e v_n) = 0,   p_t in Coulomb's cone
-// of all that touches there at once, exactly (sim/solve/exact/cone.h). Until then a body flies as it would
+// of all that touches there at once, exactly (sim/solve/cone/cone.h). Until then a body flies as it would
 // without contacts, after it with the velocity it got; where it comes to so is what the iterations begin
 // from. What hangs together on joints meets the impact together: M^-1 is that of the bodies and their joints,
 // with the rows of the joints where the step begins. Large heaps are left to the iterations. Newton's law

@@ -8,7 +8,7 @@
 #include "sim/constraint/response.h"
 #include "sim/math/orientation.h"
 #include "sim/model/model.h"
-#include "sim/solve/exact/cone.h"
+#include "sim/solve/cone/cone.h"
 
 namespace obscura::sim {
 

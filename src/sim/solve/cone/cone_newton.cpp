@@ -7,7 +7,7 @@
 // at rest, it finds them. Shifted by mu |w_t| on the normals it is Coulomb's law (de Saxce and Feng, 1998).
 // Coulomb's law f_n = max(0, y_n), |f_t| <= mu f_n is then solved from there by the same method without phi.
 
-#include "sim/solve/exact/cone_newton.h"
+#include "sim/solve/cone/cone_newton.h"
 
 #include <algorithm>
 #include <cmath>

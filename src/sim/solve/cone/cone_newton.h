@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sim/math/full_rank.h"
-#include "sim/solve/exact/cone_law.h"
+#include "sim/solve/cone/cone_law.h"
 
 namespace obscura::sim {
 

@@ -4,7 +4,7 @@
 // sweeps leave, then those a softened problem has; each time the equalities are solved exactly, and the laws
 // looked at.
 
-#include "sim/solve/exact/cone.h"
+#include "sim/solve/cone/cone.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "sim/solve/exact/cone.h"
+#include "sim/solve/cone/cone.h"
 
 namespace obscura::sim {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim/math/full_rank.h"
-#include "sim/solve/exact/cone_law.h"
-#include "sim/solve/exact/cone_newton.h"
+#include "sim/solve/cone/cone_law.h"
+#include "sim/solve/cone/cone_newton.h"
 
 namespace obscura::sim {
 

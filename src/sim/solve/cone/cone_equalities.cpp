@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/solve/exact/cone.h"
+#include "sim/solve/cone/cone.h"
 
 namespace obscura::sim {
 

@@ -2,7 +2,7 @@
 //   K f + b = w,   K = J M^-1 J',   b = J g        f in the cones, w obeys their laws (cone_law.h)
 //   a = g + M^-1 J' f = 0                          is what rest is
 
-#include "sim/solve/exact/statics.h"
+#include "sim/solve/cone/statics.h"
 
 #include <cmath>
 
