@@ -8,8 +8,10 @@
 #include <cmath>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "sim/solve/sleep.h"
 #include "sim/space_rooms.h"
 #include "sim/touching.h"
 
@@ -334,6 +336,17 @@ TEST(Rest, ARoomScaledInLengthsAndGravityRestsAlike) {
   });
 }
 
+TEST(Rest, WithoutGravityWhatDoesNotMoveAtAllRests) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    World<D> world = quiet_room<D>(solver, 0);
+    for (int i = 0; i < 3; ++i)
+      add<D>(world, block<D>(0.2, 0.1), at<D>(0.5 * i, 1), at<D>(0, i == 1 ? 1e-9 : 0), 0.5);
+    const State<D> now = stepped(world, 300);
+    EXPECT_EQ(now.frozen, (std::vector<char>{1, 0, 1}));
+  });
+}
+
 // --- what contacts and joints leave free
 
 template <int D>
@@ -366,6 +379,132 @@ TEST(Mobility, ABallOnTheFloorRollsFreelyAndDoesNotSlip) {
   // r^2) of its turn
   EXPECT_EQ(moves({0.01, 0, 0}, {0, 0, 0.25}, 0.5), Mobile::no);
   EXPECT_EQ(moves({0.01, 0, 0}, {0, 0, 0.26}, 0.5), Mobile::yes);
+}
+
+// --- islands, timers and waking, for all solvers alike
+
+// blocks side by side, of which these touch
+template <int D>
+World<D> blocks_that_touch(int count, const std::vector<std::pair<int, int>>& pairs) {
+  World<D> world = quiet_room<D>(Solver::iterative, kG);
+  for (int i = 0; i < count; ++i) add<D>(world, block<D>(0.2, 0.2), at<D>(0.2 * i, 0.1), at<D>(0, 0), 0.5);
+  for (const auto& [a, b] : pairs) {
+    Contact<D> contact;
+    contact.key = {a, b, 0}, contact.normal = at<D>(-1, 0), contact.point = at<D>(0.2 * a + 0.1, 0.1);
+    world.state.contacts.push_back(contact);
+  }
+  world.state.frozen.assign(std::size_t(count), 0), world.state.quiet.assign(std::size_t(count), 1.0);
+  return world;
+}
+
+// the bodies of each candidate
+template <int D>
+std::vector<std::vector<int>> candidates(Sleep<D>& sleep, const State<D>& state) {
+  std::vector<std::vector<int>> all;
+  for (const auto& island : sleep.candidates(state))
+    all.emplace_back(island.bodies.begin(), island.bodies.end());
+  return all;
+}
+
+using Bodies = std::vector<std::vector<int>>;
+
+template <class Dimension>
+class SleepIn : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(SleepIn, Dimensions);
+
+TYPED_TEST(SleepIn, AnIslandIsAskedOnceAllOfItHasBeenQuiet) {
+  constexpr int D = TypeParam::value;
+  World<D> world = blocks_that_touch<D>(4, {{0, 1}, {1, 2}});
+  Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+  EXPECT_EQ(candidates(sleep, world.state), (Bodies{{0, 1, 2}, {3}}));
+  world.state.quiet[2] = 0.9 * kWait;
+  EXPECT_EQ(candidates(sleep, world.state), (Bodies{{3}}));
+  world.state.contacts[1].gap = 0.01;  // apart, and it bears nothing
+  EXPECT_EQ(candidates(sleep, world.state), (Bodies{{0, 1}, {3}}));
+  world.state.contacts[1].touching = ContactMode::slide;
+  EXPECT_EQ(candidates(sleep, world.state), (Bodies{{3}}));
+}
+
+// what sleeps is as the floor: it joins no islands
+TYPED_TEST(SleepIn, WhatSleepsDoesNotJoinThoseBesideIt) {
+  constexpr int D = TypeParam::value;
+  World<D> world = blocks_that_touch<D>(3, {{0, 1}, {1, 2}});
+  world.state.frozen[1] = 1, world.state.quiet[2] = 0;
+  Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+  EXPECT_EQ(candidates(sleep, world.state), (Bodies{{0}}));
+}
+
+TYPED_TEST(SleepIn, HandsAndDeepOverlapsKeepAnIslandAwake) {
+  constexpr int D = TypeParam::value;
+  World<D> world = blocks_that_touch<D>(4, {{0, 1}, {2, 3}});
+  Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated, 1e-3);
+  world.state.grips.push_back({1, at<D>(0, 0)});
+  EXPECT_EQ(candidates(sleep, world.state), (Bodies{{2, 3}}));
+  world.state.contacts[1].gap = -1.1e-3 * bounding_radius(world.model.bodies[2].shape);
+  EXPECT_EQ(candidates(sleep, world.state), Bodies{});
+  world.state.contacts[1].gap = -0.9e-3 * bounding_radius(world.model.bodies[2].shape);
+  EXPECT_EQ(candidates(sleep, world.state), (Bodies{{2, 3}}));
+}
+
+// by springs the iterative solvers find no forces; the exact solver does
+TYPED_TEST(SleepIn, ASpringKeepsAwakeWhereForcesKnowNothingOfIt) {
+  constexpr int D = TypeParam::value;
+  World<D> world = blocks_that_touch<D>(3, {});
+  Spring<D> spring;
+  spring.a.body = 0, spring.b.body = 1;
+  world.model.springs.push_back(spring);
+  world.state.quiet.assign(3, kWait);
+  Sleep<D> iterated(world.model, Sleep<D>::Forces::iterated), exact(world.model, Sleep<D>::Forces::exact);
+  EXPECT_EQ(candidates(iterated, world.state), (Bodies{{2}}));
+  EXPECT_EQ(candidates(exact, world.state), (Bodies{{0, 1}, {2}}));
+}
+
+// trials leave other forces behind
+TYPED_TEST(SleepIn, WhatHangsOnJointsIsAskedOnceAWait) {
+  constexpr int D = TypeParam::value;
+  World<D> world = blocks_that_touch<D>(2, {});
+  Joint<D> joint;
+  joint.kind = JointKind::rod, joint.a.body = 0, joint.b.body = -1;
+  world.model.joints.push_back(joint), world.state.broken.push_back(0);
+  Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+  const double span = 1.0 / 60;
+  for (const double quiet : {kWait, 1.5 * kWait, 2 * kWait + 0.5 * span, 2 * kWait + 1.5 * span}) {
+    world.state.quiet.assign(2, quiet);
+    const bool asked = std::fmod(quiet, kWait) < span;
+    EXPECT_EQ(candidates(sleep, world.state), asked ? (Bodies{{0}, {1}}) : (Bodies{{1}})) << quiet;
+  }
+  world.state.broken[0] = 1;
+  EXPECT_EQ(candidates(sleep, world.state), (Bodies{{0}, {1}}));
+}
+
+//   gap < span (v + w R) + g span (span + h) / 2
+TYPED_TEST(SleepIn, AnIslandWakesWhenSomethingAwakeComesWithinReach) {
+  constexpr int D = TypeParam::value;
+  const double span = 0.01, h = 0.002, v = 0.3, w = 0.7;
+  for (const double more : {-1e-9, 1e-9}) {
+    World<D> world = blocks_that_touch<D>(4, {{0, 1}, {1, 2}});
+    world.state.frozen = {1, 1, 0, 1}, world.state.quiet.assign(4, 0.0);
+    world.state.v[2] = at<D>(-v, 0), world.state.spin[2] = about_z<D>(w);
+    const double radius = bounding_radius(world.model.bodies[2].shape);
+    world.state.contacts[1].gap = span * (v + w * radius) + 0.5 * kG * span * (span + h) + more;
+    Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+    EXPECT_EQ(sleep.wake(world.state, world.state.contacts, span, h), more < 0);
+    const char asleep = more < 0 ? 0 : 1;
+    EXPECT_EQ(world.state.frozen, (std::vector<char>{asleep, asleep, 0, 1}));
+  }
+}
+
+// two that lie side by side, one of them not yet asleep
+TYPED_TEST(SleepIn, WhatIsQuietWakesOnlyWhatItComesNearerTo) {
+  constexpr int D = TypeParam::value;
+  for (const double v : {-0.01, 0.0, 0.01}) {
+    World<D> world = blocks_that_touch<D>(2, {{0, 1}});
+    world.state.frozen = {1, 0}, world.state.v[1] = at<D>(v, 0);
+    world.state.contacts[0].gap = 3e-4;
+    Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+    EXPECT_EQ(sleep.wake(world.state, world.state.contacts, 0.1, 0.01), v < 0) << v;
+  }
 }
 
 }  // namespace

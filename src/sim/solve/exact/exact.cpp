@@ -72,7 +72,8 @@ ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& p
       limits_(make_limits(model, whom)),
       integrate_(sim::integrate(model.integrator)),
       free_(model, paths),
-      response_(model) {
+      response_(model),
+      sleep_(model, Sleep<D>::Forces::exact) {
   if (model.collision != Collision::event) cone_.enough = 1e-7;
   progress_.rest_speed = limits_.rest_speed;
   step_.travel_bound.resize(model.bodies.size());
@@ -377,20 +378,16 @@ void ExactSolver<D>::record_forces() {
 // joints that are loaded beyond what they bear are no more from the next step on; what they held wakes
 template <int D>
 void ExactSolver<D>::break_joints(State<D>& state) {
-  bool any = false;
-  scratch_.ripe.assign(model_.bodies.size(), 0);
+  scratch_.unheld.clear();
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > joint.breaks)) continue;
-    if (!any) join_touching(state);
-    state.broken[i] = 1, any = true;
+    state.broken[i] = 1;
     for (const int body : {joint.a.body, joint.b.body}) {
-      if (body >= 0) scratch_.ripe[touching_.root(body)] = 1;
+      if (body >= 0) scratch_.unheld.push_back(body);
     }
   }
-  for (std::size_t i = 0; any && i < scratch_.ripe.size(); ++i) {
-    if (scratch_.ripe[touching_.root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
-  }
+  if (!scratch_.unheld.empty()) sleep_.wake(state, scratch_.unheld);
 }
 
 template <int D>

@@ -13,6 +13,7 @@
 #include "sim/motion/forward_dynamics.h"
 #include "sim/solve/cone/cone.h"
 #include "sim/solve/contact_solver.h"
+#include "sim/solve/sleep.h"
 
 namespace obscura::sim {
 
@@ -154,13 +155,16 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<ConeMode<D>> modes;
     Eigen::VectorXd f, ways;
     std::vector<int> rows, wanted_rows, chosen;  // of the island at hand; of them, and of all, those wanted
-    std::vector<char> wanted, ripe;
+    std::vector<char> wanted;
     Eigen::MatrixXd K;  // of the island at hand
     Eigen::VectorXd island_b, island_f;
     std::vector<ConeBlock<D>> island_blocks;
     std::vector<ConeMode<D>> island_modes;
     Motion saved, put;
-    std::vector<Vec<D>> placed;  // x before positions are projected
+    std::vector<Contact<D>> near;
+    std::vector<double> accelerations;  // one a body, m/s^2
+    std::vector<int> unheld;            // bodies of joints that broke
+    std::vector<Vec<D>> placed;         // x before positions are projected
   };
 
   // exact.cpp
@@ -236,9 +240,9 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void record_impulse(const ContactKey& key, const Constraint& constraint, const Vec<D>& impulse);
 
   // sleep.cpp
-  void join_touching(const State<D>& state);
   bool wake(State<D>& state);
   void put_to_sleep(State<D>& state, double t, double h);
+  void find_accelerations(State<D>& state, double t);
 
   // events.cpp
   double advance_to_event(State<D>& state, double t, double h, bool& cut);
@@ -268,6 +272,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   Stages stages_;
   Cone<D> cone_;
   Response<D> response_;
+  Sleep<D> sleep_;
 
   Step step_;
   Group active_;  // that is stepped
@@ -291,7 +296,6 @@ class ExactSolver final : public ContactSolver<D>, private System {
   std::vector<std::vector<int>> island_members_;  // of constraints_, one list an island
   Islands roots_;
   std::vector<int> island_of_;  // one a body
-  Islands touching_;            // bodies that touch or are tied together, for waking and sleep
 };
 
 }  // namespace obscura::sim

@@ -65,6 +65,17 @@ void JointSolver<D>::gather(const State<D>& state) {
 }
 
 template <int D>
+std::span<const int> JointSolver<D>::parts_of(std::span<const int> bodies) {
+  some_parts_.clear();
+  for (const int body : bodies) {
+    if (has(body)) some_parts_.push_back(part(body));
+  }
+  std::sort(some_parts_.begin(), some_parts_.end());
+  some_parts_.erase(std::unique(some_parts_.begin(), some_parts_.end()), some_parts_.end());
+  return some_parts_;
+}
+
+template <int D>
 void JointSolver<D>::plan() {
   held_.clear(), pairs_.clear();
   std::vector<int> sizes;

@@ -58,6 +58,8 @@ class JointSolver {
   int parts() const { return factors_.parts(); }
   /// The part that a body's joints are of, or -1.
   int part(int body) const { return part_of_body_[body]; }
+  /// The parts of the joints of these bodies, ascending, -1 among them. Valid until the next call.
+  std::span<const int> parts_of(std::span<const int> bodies);
   /// The bodies of a part, ascending.
   std::span<const int> members(int part) const { return members_[part]; }
 
@@ -173,7 +175,8 @@ class JointSolver {
   std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
   std::vector<int> part_of_body_;
   std::vector<std::vector<int>> members_;  // of parts
-  Blocks<kMostHeld<D>> factors_;           // of K = J M^-1 J'
+  std::vector<int> some_parts_;
+  Blocks<kMostHeld<D>> factors_;  // of K = J M^-1 J'
   std::vector<Row<D>> rows_, old_rows_;
   std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
   std::vector<Bounded> bounded_;  // the first `active_`

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/force/explosion.h"
 #include "sim/motion/free_motion.h"
 
 namespace obscura::sim {
@@ -44,7 +43,8 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
       cores_(model),
       pairs_(model, cores_),
       impacts_(cores_, pairs_),
-      rest_(model, cores_),
+      sleep_(model, Sleep<D>::Forces::iterated, 2 * cores_.linear_slop),
+      equilibrium_(model, cores_),
       dynamics_(model, paths),
       joints_(model) {
   const int n = int(model.bodies.size());
@@ -53,7 +53,6 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
   span_ = double(every_) * h;
   substeps_ = std::max(1, int(std::ceil(kStretches * h - 1e-9)));
   restitution_threshold_ = 2 * h / substeps_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
-  asked_ = slow(model).asked;
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
   v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
   closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);
@@ -95,8 +94,10 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   } else if (!known) {
     build_batches(state, false);
   }
-  if (state.step == 0 && due && !blasting(state) && rest_.begin(state, pairs_, poses_, v_, movers_))
-    clear_sleeping(state);
+  if (state.step == 0 && due) {
+    place_contacts(state);
+    if (sleep_.at_start(state, state.contacts)) clear_sleeping(state);
+  }
   impacts_.begin();
   outran_ = false;
   const double part = h / substeps_;
@@ -105,9 +106,29 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   // the next step looks anyway, unless this was a part of one
   const bool whole = h * value(model_.rate) > 1 - 1e-9;
   if (outran_ && !(whole && (state.step + 1) % every_ == 0)) update_pairs(state, true);
-  if (due && rest_.freeze(state, pairs_, batches_, joints_, poses_, v_, movers_, part, span_))
-    clear_sleeping(state);
+  if (sleep_.due(state) && put_to_sleep(state, part)) clear_sleeping(state);
   next_step_ = state.step + 1;
+}
+
+// where the contacts are now
+template <int D>
+void PlaneIterative<D>::place_contacts(State<D>& state) const {
+  for (const Pair& pair : pairs_.all()) {
+    for (int k = pair.first; k < pair.first + pair.touches; ++k) {
+      Contact<D>& contact = state.contacts[k];
+      const Feature feature = Feature::of(contact.key.feature);
+      contact.gap = plane::kNowhere;
+      if (feature.kind == Feature::none) continue;
+      const plane::ContactPoint at = pairs_.place(pair, poses_, feature);
+      contact.point = {at.x, at.y}, contact.normal = {at.nx, at.ny}, contact.gap = at.gap;
+    }
+  }
+}
+
+template <int D>
+bool PlaneIterative<D>::put_to_sleep(State<D>& state, double h) {
+  equilibrium_.find(sleep_.candidates(state), sleep_, state, {pairs_.all(), batches_, joints_, poses_}, h);
+  return sleep_.settle(state);
 }
 
 // zeroes the velocities of bodies that have just fallen asleep
@@ -213,7 +234,7 @@ template <int D>
 void PlaneIterative<D>::update_pairs(State<D>& state, bool known) {
   const int patience = state.contacts.empty() ? 0 : plane::NearPairs::patience(state.step / every_);
   bool changed = pairs_.find(state, poses_, span_, patience);
-  if (rest_.wake(state, pairs_.all(), v_, movers_, span_)) {
+  if (sleep_.wake(state, state.contacts, span_, span_ / double(every_ * substeps_))) {
     pairs_.find(state, poses_, span_, 0);
     changed = true;
   }

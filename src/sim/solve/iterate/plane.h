@@ -9,8 +9,9 @@
 #include "sim/solve/iterate/contact_rows.h"
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/pair_cache.h"
+#include "sim/solve/iterate/plane_equilibrium.h"
 #include "sim/solve/iterate/plane_impacts.h"
-#include "sim/solve/iterate/plane_sleep.h"
+#include "sim/solve/sleep.h"
 
 namespace obscura::sim {
 
@@ -39,7 +40,9 @@ class PlaneIterative final : public ContactSolver<D> {
   bool strained(const State<D>& state) const;
   void report(const plane::Pair& pair, State<D>& state) const;
   void build_batches(const State<D>& state, bool known);
+  void place_contacts(State<D>& state) const;
   void clear_sleeping(const State<D>& state);
+  bool put_to_sleep(State<D>& state, double h);
   bool update_batches(const State<D>& state);
   int colour(const plane::Pair& pair);
   void clear_lane(int slot);
@@ -64,7 +67,8 @@ class PlaneIterative final : public ContactSolver<D> {
   plane::CoreShapes cores_;
   plane::Pairs pairs_;
   plane::Impacts impacts_;
-  plane::Rest rest_;
+  Sleep<D> sleep_;
+  plane::Equilibrium equilibrium_;
   ForwardDynamics<D> dynamics_;
   JointSolver<D> joints_;
   Stages stages_;
@@ -73,7 +77,6 @@ class PlaneIterative final : public ContactSolver<D> {
   int substeps_ = 1;                  // of a step
   bool outran_ = false;               // someone came farther than pairs foresaw
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
-  double asked_ = 0;                  // m/s: slower bodies may be asleep (sim/constraint/mobility.h)
   bool drag_ = false;
 
   // of bodies; one more that never moves, for walls

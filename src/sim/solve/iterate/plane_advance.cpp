@@ -22,11 +22,10 @@ void PlaneIterative<D>::advance(State<D>& state, double h, bool apply_push_out) 
   for (const int i : slow_)
     closing_[batches_[i / kLanes].a[i % kLanes]] = closing_[batches_[i / kLanes].b[i % kLanes]] = 1;
 
-  const double asked2 = asked_ * asked_;
   for (int i = 0; i < n; ++i) {
     if (v_[i].im == 0) continue;
     const Motion &v = v_[i], &o = old_[i];
-    const double radius = cores_.bounding_radius[i], far = 0.5 * kSight * cores_.half_thickness[i];
+    const double far = 0.5 * kSight * cores_.half_thickness[i];
     Motion d;
     if (impacts_.last(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
       d = course(i, h);
@@ -40,8 +39,7 @@ void PlaneIterative<D>::advance(State<D>& state, double h, bool apply_push_out) 
       state.spin[i - still][0] = v.w;
       state.turn[i - still][0] = turns_[i] += d.w;
     }
-    const bool quiet = v.x * v.x + v.y * v.y + v.w * v.w * (radius * radius) <= asked2;
-    state.quiet[i] = quiet ? state.quiet[i] + h : 0;
+    sleep_.time(state, i, v.x * v.x + v.y * v.y, v.w * v.w, h);
   }
   plane::turn_all(turns_.data() + still, poses_.data() + still, n - still);
 }

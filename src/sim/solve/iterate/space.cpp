@@ -21,7 +21,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kUpdates = 60;          // a second: how often rest is looked for
+constexpr double kDeepest = 2e-3;        // of a body's bounding radius: deeper nothing rests
 constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
@@ -42,15 +42,12 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
       may_touch_(model),
       dynamics_(model, paths),
       joints_(model),
-      statics_(model),
-      mobility_(model),
+      sleep_(model, Sleep<D>::Forces::iterated, kDeepest),
       response_(model),
       energy_guard_(model) {
   const double h = 1 / value(model.rate);
-  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kUpdates));
   g_ = std::sqrt(model.gravity.squaredNorm());
   restitution_threshold_ = 2 * h * g_ + 1e-9 * model.scale;
-  asked_ = slow(model).asked;
   for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
 }
 
@@ -62,7 +59,7 @@ void SpaceIterative<D>::step(State<D>& state, double t, double h) {
   if (state.step == 0) joints_.project_initial_velocities(state);
   prepare(state);
   find(h);
-  if (wake(state, h) || (state.step == 0 && sleep_at_start(state, h))) prepare(state), find(h);
+  if (update_sleep(state, h)) prepare(state), find(h);
   if (!joints_.empty()) build_joint_rows(state);
   integrate_unconstrained(state, t, h);
   resolve_impacts(state, h);
@@ -95,7 +92,7 @@ void SpaceIterative<D>::step(State<D>& state, double t, double h) {
   correct_overlaps(state);
   if (!joints_.empty()) project_joints(state, h);
   report(state, h);
-  if (state.step % every_ == 0) put_to_sleep(state, h);
+  if (sleep_.due(state)) put_to_sleep(state, h);
 }
 
 // poses, velocities and inverse inertias
@@ -414,12 +411,8 @@ template <int D>
 void SpaceIterative<D>::update_velocities(State<D>& state, double h) {
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (inactive_[i]) continue;
-    double fast = state.v[i].squaredNorm();
-    if (const int k = turning(state, i); k >= 0) {
-      moving_[i].w = state.spin[k];
-      fast += bounding_radius_[i] * bounding_radius_[i] * state.spin[k].squaredNorm();
-    }
-    state.quiet[i] = fast <= asked_ * asked_ ? state.quiet[i] + h : 0;
+    if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
+    sleep_.time(state, i, state.v[i].squaredNorm(), moving_[i].w.squaredNorm(), h);
   }
 }
 
@@ -485,22 +478,7 @@ void SpaceIterative<D>::report(State<D>& state, double h) const {
   const auto asleep = [&](int body) { return body < 0 || inactive_[body]; };
   std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
   const std::size_t kept = state.contacts.size();
-  for (const ContactConstraint& touch : touches_) {
-    Contact<D> contact;
-    contact.key = touch.key, contact.point = touch.point, contact.normal = touch.n, contact.gap = touch.gap;
-    const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
-    contact.force = impulse / h;
-    if (touch.bounces && touch.least > 0) contact.impulse = impulse;
-    contact.impulse += touch.impact_impulse;
-    contact.touching =
-        touch.normal_impulse <= 0 ? ContactMode::open
-        : std::sqrt(touch.tangent_impulse.squaredNorm()) < touch.mu * touch.normal_impulse * (1 - 1e-9)
-            ? ContactMode::stick
-            : ContactMode::slide;
-    if (contact.touching == ContactMode::open && !touch.impact_impulse.isZero(0))
-      contact.touching = ContactMode::slide;
-    state.contacts.push_back(contact);
-  }
+  for (const ContactConstraint& touch : touches_) state.contacts.push_back(contact(touch, h));
   std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),
                      state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
 }

@@ -8,15 +8,14 @@
 #include "sim/collide/may_touch.h"
 #include "sim/collide/narrow_phase.h"
 #include "sim/constraint/material.h"
-#include "sim/constraint/mobility.h"
 #include "sim/constraint/response.h"
 #include "sim/energy/energy_guard.h"
 #include "sim/math/islands.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/solve/cone/cone.h"
-#include "sim/solve/cone/statics.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/iterate/joint_solver.h"
+#include "sim/solve/sleep.h"
 
 namespace obscura::sim {
 
@@ -78,7 +77,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void prepare(const State<D>& state);
   void find(double h);
   void add(const ContactCandidate<D>& gap, const Material& pair);
-  bool wake(State<D>& state, double h);
+  bool update_sleep(State<D>& state, double h);
   void build_joint_rows(const State<D>& state);
   void integrate_unconstrained(State<D>& state, double t, double h);
   void resolve_impacts(State<D>& state, double h);
@@ -135,11 +134,10 @@ class SpaceIterative final : public ContactSolver<D> {
   void correct_overlaps(State<D>& state);
   void project_joints(State<D>& state, double h);
   void report(State<D>& state, double h) const;
-  void join(const State<D>& state);
-  bool held(int island, double h, int most);
-  Mobile mobile(int island, double h);
-  bool sleep_at_start(State<D>& state, double h);
-  bool put_to_sleep(State<D>& state, double h);
+  Contact<D> contact(const ContactConstraint& touch, double h) const;
+  void fall_from_rest(std::span<const typename Sleep<D>::Island> islands, double h);
+  void find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h);
+  void put_to_sleep(State<D>& state, double h);
   double swiftness(int body) const;
 
   const Model<D>& model_;
@@ -147,17 +145,12 @@ class SpaceIterative final : public ContactSolver<D> {
   BroadPhase<D> broad_;
   ForwardDynamics<D> dynamics_;
   JointSolver<D> joints_;
-  Statics<D> statics_;
-  Mobility<D> mobility_;
+  Sleep<D> sleep_;
   Response<D> response_;
-  std::vector<BearingContact<D>> exact_;
-  std::vector<int> bearing_;
-  std::vector<Rotation<D>> rotations_;
+  std::vector<Contact<D>> near_;
   EnergyGuard<D> energy_guard_;
   Stages stages_;
-  std::int64_t every_ = 1;  // steps between two pair searches for rest
   double g_ = 0, restitution_threshold_ = 0;
-  double asked_ = 0;  // m/s: slower bodies may fall asleep
   std::vector<double> bounding_radius_;
 
   std::vector<BodyMotion<D>> stances_;
@@ -195,8 +188,6 @@ class SpaceIterative final : public ContactSolver<D> {
   bool impact_tied_ = false;  // whether joints answer the impact
   Eigen::MatrixXd K_;
   Eigen::VectorXd b_, p_, speeds_;
-  std::vector<double> left_;   // of each island's fastest point, m/s
-  std::vector<Mobile> moves_;  // of each island that is in balance
 };
 
 }  // namespace obscura::sim

@@ -1,0 +1,126 @@
+// Sleep of the solver of space. An island at rest needs forces with
+//   g + sum f / m = 0,  sum r x f = 0        each f in its friction cone
+// which iterations search for as in a step of bodies without speed: what speed they leave, over h, is the
+// residual.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/solve/iterate/space.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kHeld = 1e-6;    // of gravity: near enough
+constexpr int kRestSweeps = 400;  // of all islands at a time
+constexpr int kBetweenChecks = 10;
+
+}  // namespace
+
+// a contact as the state keeps it
+template <int D>
+Contact<D> SpaceIterative<D>::contact(const ContactConstraint& touch, double h) const {
+  Contact<D> it;
+  it.key = touch.key, it.point = touch.point, it.normal = touch.n, it.gap = touch.gap;
+  const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
+  it.force = impulse / h;
+  if (touch.bounces && touch.least > 0) it.impulse = impulse;
+  it.impulse += touch.impact_impulse;
+  it.touching =
+      touch.normal_impulse <= 0 ? ContactMode::open
+      : std::sqrt(touch.tangent_impulse.squaredNorm()) < touch.mu * touch.normal_impulse * (1 - 1e-9)
+          ? ContactMode::stick
+          : ContactMode::slide;
+  if (it.touching == ContactMode::open && !touch.impact_impulse.isZero(0)) it.touching = ContactMode::slide;
+  return it;
+}
+
+// whether bodies have fallen asleep or woken before the step
+template <int D>
+bool SpaceIterative<D>::update_sleep(State<D>& state, double h) {
+  if (state.step > 0 && !sleep_.any(state)) return false;
+  near_.clear();
+  for (const ContactConstraint& touch : touches_) near_.push_back(contact(touch, h));
+  const bool woke = sleep_.wake(state, near_, h, h);
+  if (woke || state.step > 0 || !sleep_.at_start(state, near_)) return woke;
+  state.contacts = near_;
+  return true;
+}
+
+// bodies of candidates for sleep without speed, for a step; what they touch and hang on
+template <int D>
+void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island> islands, double h) {
+  const int n = int(model_.bodies.size());
+  ripe_.assign(n + 1, 0), on_joints_.assign(n, 0);
+  kept_ = moving_;
+  for (PointBody<D>& m : moving_) m = {};
+  for (const auto& island : islands) {
+    for (const int body : island.bodies) {
+      ripe_[body] = 1, on_joints_[body] = island.jointed && joints_.has(body);
+      moving_[body] = kept_[body];
+      moving_[body].v = h * model_.gravity, moving_[body].w.setZero();
+    }
+  }
+  some_.clear(), parts_.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    ContactConstraint& touch = touches_[i];
+    if (!ripe_[touch.a] && !ripe_[touch.b]) continue;
+    some_.push_back(i);
+    touch.least = std::min(-touch.gap / h, 0.0);
+    push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
+  }
+  for (const int i : joints_.bodies()) {
+    if (on_joints_[i]) parts_.push_back(joints_.part(i));
+  }
+  std::sort(parts_.begin(), parts_.end());
+  parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
+  if (!parts_.empty()) copy_to_joints(&on_joints_), joints_.begin(h);
+}
+
+// forces of candidates for sleep, all at once, into their contacts; and what they leave
+template <int D>
+void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h) {
+  const double near = kHeld * g_ * h;
+  for (int i = 1, found = 0; i < kRestSweeps && !found; ++i) {
+    if (!parts_.empty()) {
+      copy_to_joints(&on_joints_);
+      for (const int part : parts_) joints_.iterate(part);
+      copy_from_joints(&on_joints_);
+    }
+    iterate(some_, i % 2 != 0);
+    if (i % kBetweenChecks != 0) continue;
+    found = std::all_of(islands.begin(), islands.end(), [&](const auto& island) {
+      return std::all_of(island.bodies.begin(), island.bodies.end(),
+                         [&](int body) { return swiftness(body) <= near; });
+    });
+  }
+  for (auto& island : islands) {
+    double fastest = 0;
+    for (const int body : island.bodies) fastest = std::max(fastest, swiftness(body));
+    island.residual = fastest / h;
+  }
+}
+
+// forces of candidates for sleep, and which of them fall asleep
+template <int D>
+void SpaceIterative<D>::put_to_sleep(State<D>& state, double h) {
+  const std::span<typename Sleep<D>::Island> islands = sleep_.candidates(state);
+  if (islands.empty()) return;
+  fall_from_rest(islands, h);
+  find_equilibrium(islands, h);
+  if (!parts_.empty()) joints_.keep(state, h, &on_joints_);
+  for (const auto& island : islands) {
+    for (const int part : joints_.parts_of(island.bodies))
+      joints_.each_bearing(part, [&](const Row<D>& row, double gain) { sleep_.hold(island, row, gain / h); });
+  }
+  moving_.swap(kept_);
+  report(state, h);
+  sleep_.settle(state);
+}
+
+template Contact<3> SpaceIterative<3>::contact(const ContactConstraint&, double) const;
+template bool SpaceIterative<3>::update_sleep(State<3>&, double);
+template void SpaceIterative<3>::put_to_sleep(State<3>&, double);
+
+}  // namespace obscura::sim
