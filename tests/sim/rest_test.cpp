@@ -262,6 +262,25 @@ TEST(Rest, WhatAWeakBlastPushesGoesOn) {
   });
 }
 
+// what comes nearer wakes it when it is about to touch, not when it is first seen
+TEST(Rest, WhatRestsSleepsUntilItIsReached) {
+  each([](auto d, Solver solver) {
+    constexpr int D = d;
+    World<D> world = quiet_room<D>(solver, kG);
+    add<D>(world, block<D>(0.2, 0.2), at<D>(0, 0.1), at<D>(0, 0), 0.5);
+    add<D>(world, block<D>(0.2, 0.2), at<D>(-0.3, 0.1), at<D>(0.05, 0), 0);
+    State<D> state = world.state;
+    Stepper<D> stepper(world.model);
+    stepper.begin(state);
+    for (int i = 0; i < 1140; ++i) {  // 100 mm at 50 mm/s: at 5 mm
+      ASSERT_FALSE(stepper.step(state));
+      ASSERT_TRUE(state.frozen[0] || i < 300) << "at step " << i;
+    }
+    for (int i = 1140; i < 1260; ++i) ASSERT_FALSE(stepper.step(state));
+    EXPECT_FALSE(state.frozen[0]);
+  });
+}
+
 // what stands still is as heavy for a slow body as for a fast one
 TEST(Rest, WhatComesSlowlyGivesItsMomentum) {
   each([](auto d, Solver solver) {

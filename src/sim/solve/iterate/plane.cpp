@@ -95,7 +95,7 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
     build_batches(state, false);
   }
   if (state.step == 0 && due) {
-    place_contacts(state);
+    place_contacts(state, true);
     if (sleep_.at_start(state, state.contacts)) clear_sleeping(state);
   }
   impacts_.begin();
@@ -110,12 +110,13 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   next_step_ = state.step + 1;
 }
 
-// where the contacts are now
+// where contacts are now: all, or those that no step has placed yet
 template <int D>
-void PlaneIterative<D>::place_contacts(State<D>& state) const {
+void PlaneIterative<D>::place_contacts(State<D>& state, bool all) const {
   for (const Pair& pair : pairs_.all()) {
     for (int k = pair.first; k < pair.first + pair.touches; ++k) {
       Contact<D>& contact = state.contacts[k];
+      if (!all && !contact.normal.isZero(0)) continue;
       const Feature feature = Feature::of(contact.key.feature);
       contact.gap = plane::kNowhere;
       if (feature.kind == Feature::none) continue;
@@ -234,6 +235,7 @@ template <int D>
 void PlaneIterative<D>::update_pairs(State<D>& state, bool known) {
   const int patience = state.contacts.empty() ? 0 : plane::NearPairs::patience(state.step / every_);
   bool changed = pairs_.find(state, poses_, span_, patience);
+  if (Sleep<D>::any(state)) place_contacts(state, false);
   if (sleep_.wake(state, state.contacts, span_, span_ / double(every_ * substeps_))) {
     pairs_.find(state, poses_, span_, 0);
     changed = true;

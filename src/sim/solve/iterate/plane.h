@@ -40,7 +40,7 @@ class PlaneIterative final : public ContactSolver<D> {
   bool strained(const State<D>& state) const;
   void report(const plane::Pair& pair, State<D>& state) const;
   void build_batches(const State<D>& state, bool known);
-  void place_contacts(State<D>& state) const;
+  void place_contacts(State<D>& state, bool all) const;
   void clear_sleeping(const State<D>& state);
   bool put_to_sleep(State<D>& state, double h);
   bool update_batches(const State<D>& state);
