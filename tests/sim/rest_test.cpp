@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -495,6 +496,102 @@ TYPED_TEST(SleepIn, WhatHangsOnJointsIsAskedOnceAWait) {
   }
   world.state.broken[0] = 1;
   EXPECT_EQ(candidates(sleep, world.state), (Bodies{{0}, {1}}));
+}
+
+// they take long to find for all that moves
+TYPED_TEST(SleepIn, ByExactForcesAnIslandIsAskedOnceAWait) {
+  constexpr int D = TypeParam::value;
+  World<D> world = blocks_that_touch<D>(2, {{0, 1}});
+  Sleep<D> sleep(world.model, Sleep<D>::Forces::exact);
+  const double step = 1.0 / 600;
+  for (const double quiet :
+       {kWait - step, kWait, kWait + 1.5 * step, 2 * kWait - 0.5 * step, 2 * kWait + 0.5 * step}) {
+    world.state.quiet.assign(2, quiet);
+    const bool asked = quiet >= kWait && std::fmod(quiet, kWait) < step;
+    EXPECT_EQ(candidates(sleep, world.state), asked ? (Bodies{{0, 1}}) : Bodies{}) << quiet / kWait;
+  }
+}
+
+// a block on the floor, of which nothing is known but where it touches
+template <int D>
+World<D> block_on_floor() {
+  World<D> world = blocks_that_touch<D>(1, {});
+  for (const double x : {-0.1, 0.1}) {
+    for (const double z : {-0.1, 0.1}) {
+      if (D == 2 && z > 0) continue;
+      Contact<D> contact;
+      contact.key = {0, -1, int(world.state.contacts.size())};
+      contact.normal = at<D>(0, 1), contact.point = at<D>(x, 0, z);
+      world.state.contacts.push_back(contact);
+    }
+  }
+  return world;
+}
+
+TYPED_TEST(SleepIn, WhatIsInEquilibriumAndHeldIsSetAtRestWithItsForces) {
+  constexpr int D = TypeParam::value;
+  // the solver's forces do not hold it, or do: then they stay
+  for (const double residual : {kG, 2e-6 * kG, 0.5e-6 * kG}) {
+    World<D> world = block_on_floor<D>();
+    State<D>& state = world.state;
+    const double weight = residual > 1e-6 * kG ? kG : 0.9 * kG;
+    for (Contact<D>& contact : state.contacts) contact.force = at<D>(0, 0.9 * kG / (D == 2 ? 2 : 4));
+    Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+    const auto islands = sleep.candidates(state);
+    ASSERT_EQ(islands.size(), 1u);
+    islands[0].residual = residual;
+    EXPECT_TRUE(sleep.settle(state));
+    EXPECT_TRUE(state.frozen[0]);
+    double bears = 0;
+    for (const Contact<D>& contact : state.contacts) bears += contact.force[1];
+    EXPECT_NEAR(bears, weight, 1e-9 * kG) << residual;
+  }
+}
+
+// after one wait, two, four, ...
+TYPED_TEST(SleepIn, ExactForcesAreLookedForLessAndLessOften) {
+  constexpr int D = TypeParam::value;
+  World<D> world = block_on_floor<D>();
+  Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+  for (const double waits : {1.0, 1.5, 2.0, 3.0, 4.0}) {
+    State<D> state = world.state;
+    state.quiet[0] = waits * kWait;
+    sleep.candidates(state)[0].residual = kG;
+    EXPECT_EQ(sleep.settle(state), waits != 1.5 && waits != 3) << waits;
+  }
+}
+
+TYPED_TEST(SleepIn, WhatItsContactsDoNotHoldGoesOn) {
+  constexpr int D = TypeParam::value;
+  for (const double mu : {0.0, 0.5}) {
+    World<D> world = block_on_floor<D>();
+    world.model.bodies[0].friction = mu;
+    State<D>& state = world.state;
+    state.v[0] = at<D>(1e-3, 0);
+    for (Contact<D>& contact : state.contacts) contact.force = at<D>(0, kG / (D == 2 ? 2 : 4));
+    Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+    sleep.candidates(state)[0].residual = 0;
+    EXPECT_EQ(sleep.settle(state), mu > 0) << mu;
+    EXPECT_EQ(state.v[0][0], mu > 0 ? 0 : 1e-3) << mu;
+  }
+}
+
+TYPED_TEST(SleepIn, ARowOfAJointHoldsToo) {
+  constexpr int D = TypeParam::value;
+  for (const bool held : {false, true}) {
+    World<D> world = block_on_floor<D>();
+    world.model.bodies[0].friction = 0;
+    State<D>& state = world.state;
+    state.v[0] = at<D>(1e-3, 0);
+    for (Contact<D>& contact : state.contacts) contact.force = at<D>(0, kG / (D == 2 ? 2 : 4));
+    Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
+    const auto islands = sleep.candidates(state);
+    islands[0].residual = 0;
+    Row<D> row;
+    row.a = 0, row.along = at<D>(1, 0);
+    if (held) sleep.hold(islands[0], row, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(sleep.settle(state), held);
+  }
 }
 
 //   gap < span (v + w R) + g span (span + h) / 2

@@ -21,11 +21,11 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kChecks = 60;                      // a second
-constexpr double kIterated = 1e-6, kExact = 1e-10;  // of g: what rest may accelerate by
-constexpr double kNear = 1e-3;                      // of the thinner body: no wider a gap joins
-constexpr double kClosed = 1e-6;                    // of it: no wider a gap bears what rests
-constexpr double kRounding = 1 + 1e-6;              // of a span of time
+constexpr double kChecks = 60;          // a second
+constexpr double kExact = 1e-10;        // of g: what exact forces may leave
+constexpr double kNear = 1e-3;          // of the thinner body: no wider a gap joins
+constexpr double kClosed = 1e-6;        // of it: no wider a gap bears what rests
+constexpr double kRounding = 1 + 1e-6;  // of a span of time
 
 // contacts of an island whose forces are found exactly where the solver's own do not hold it
 template <int D>
@@ -273,7 +273,7 @@ template <int D>
 bool Sleep<D>::settle(State<D>& state) {
   std::stable_sort(rows_.begin(), rows_.end(),
                    [](const JointRow& p, const JointRow& q) { return p.island < q.island; });
-  const double allowed = (exact_ ? kExact : kIterated) * g_;
+  const double allowed = (exact_ ? kExact : kBalanced) * g_;
   bool fell = false;
   for (const Island& island : candidates_) {
     bool balanced = island.residual <= allowed;

@@ -33,6 +33,9 @@ class Sleep {
     exact      // to rounding, springs and explosions among them, and so are its velocities
   };
 
+  /// Of g: what the forces of an island may leave it, where they are iterated.
+  static constexpr double kBalanced = 1e-6;
+
   /// Bodies that contacts, springs and joints join, which may fall asleep together.
   struct Island {
     std::span<const int> bodies;    // ascending

@@ -12,7 +12,6 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr double kHeld = 1e-6;      // of gravity: near enough
 constexpr int kPairSweeps = 40000;  // pairs times iterations of an island at a time
 constexpr int kMostSweeps = 400;
 constexpr int kBetweenChecks = 10;
@@ -113,7 +112,7 @@ double Equilibrium::iterate(const Sleep<2>::Island& island, State<2>& state, con
     for (const int part : parts_) step.joints.iterate(part);
     copy_from_joints(island, step.joints);
   };
-  const double near = kHeld * std::sqrt(model_.gravity.squaredNorm()) * h;
+  const double near = Sleep<2>::kBalanced * std::sqrt(model_.gravity.squaredNorm()) * h;
   const int most = std::clamp(kPairSweeps / std::max(1, int(pairs_.size())), kBetweenChecks, kMostSweeps);
   start(batches_.data(), count, step.poses.data(), zero_.data(), v_.data(), constants, slow_, fast_);
   double worst = 1e300;

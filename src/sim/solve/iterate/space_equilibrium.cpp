@@ -12,7 +12,6 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kHeld = 1e-6;    // of gravity: near enough
 constexpr int kRestSweeps = 400;  // of all islands at a time
 constexpr int kBetweenChecks = 10;
 
@@ -81,7 +80,7 @@ void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island
 // forces of candidates for sleep, all at once, into their contacts; and what they leave
 template <int D>
 void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h) {
-  const double near = kHeld * g_ * h;
+  const double near = Sleep<D>::kBalanced * g_ * h;
   for (int i = 1, found = 0; i < kRestSweeps && !found; ++i) {
     if (!parts_.empty()) {
       copy_to_joints(&on_joints_);
