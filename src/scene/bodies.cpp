@@ -7,6 +7,7 @@
 #include <limits>
 #include <tuple>
 
+#include "scene/body_kinds.h"
 #include "scene/check.h"
 #include "scene/copies.h"
 #include "scene/fields.h"
@@ -49,15 +50,15 @@ bool has(const Node& words, std::string_view word) {
 
 // whether a table of a body that can turn lets it
 template <int D>
-bool rotates(const BuilderContext<D>& making, const Fields& fields, const std::string& kind) {
-  if (kind == "particle") return false;
+bool rotates(const BuilderContext<D>& making, const Fields& fields, const BodyKind& kind) {
+  if (!kind.turns) return false;
   const Node* own = fields.given("rotation");
   return own ? std::get<bool>(own->value) : making.rotation;
 }
 
 // adds the i-th of n to the world
 template <int D>
-void add(BuilderContext<D>& making, const Fields& fields, const std::string& kind, const Solid<D>& solid,
+void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, const Solid<D>& solid,
          const std::string& name, int i, int n, const Start<D>& start) {
   sim::Body<D> body;
   body.name = name;
@@ -75,18 +76,15 @@ void add(BuilderContext<D>& making, const Fields& fields, const std::string& kin
   }
   sim::State<D>& state = making.world.state;
   Seat<D> seat;
-  if (kind != "particle") {
+  body.shape = solid.shape;
+  if (kind.turns) {
     seat = {solid.bulk.center, solid.bulk.axes};
-    body.shape = solid.shape;
     const Node* mass = fields.given("mass");
     body.mass = mass ? number(*mass, i, n) : number(fields.node("density"), i, n) * solid.bulk.content;
     body.inertia = body.mass * (solid.bulk.second / solid.bulk.content);
     if (!(body.inertia.allFinite() && body.inertia.minCoeff() > 0))
-      making.complaints.add(fields.place(kind == "box"                         ? "size"
-                                         : kind == "ball" || kind == "capsule" ? "radius"
-                                         : kind == "body"                      ? "shapes"
-                                                                               : "points"),
-                            fmt::format("the {}'s moment of inertia is too {} to be reckoned with", kind,
+      making.complaints.add(fields.place(kind.measure),
+                            fmt::format("the {}'s moment of inertia is too {} to be reckoned with", kind.name,
                                         body.inertia.array().isInf().any() ? "large" : "small"));
     const sim::Orientation<D> turn = sim::composed<D>(start.turn, seat.axes);
     if (rotates(making, fields, kind)) {
@@ -99,10 +97,6 @@ void add(BuilderContext<D>& making, const Fields& fields, const std::string& kin
     }
   } else {
     body.mass = number(fields.node("mass"), i, n);
-    if (const Node* radius = fields.given("radius")) {
-      body.shape.kind = sim::ShapeKind::ball;
-      body.shape.radius = number(*radius, i, n);
-    }
   }
   state.x.push_back(seat.center.isZero(0) ? start.position
                                           : sim::Vec<D>(start.position + turned<D>(seat.center, start.turn)));
@@ -165,22 +159,21 @@ void refuse_outside(const BuilderContext<D>& making, const Group& group, Place p
   if (outside > 0) making.complaints.add(place, message);
 }
 
-// the stream of random numbers of a kind's n-th table
-std::uint64_t stream(const std::string& kind, int ordinal) {
-  const std::uint64_t of = kind == "ball"      ? 1
-                           : kind == "polygon" ? 2
-                           : kind == "body"    ? 3
-                           : kind == "capsule" ? 4
-                           : kind == "hull"    ? 5
-                                               : 0;
-  return std::uint64_t(ordinal) * 2 + (kind == "box" ? 1 : 0) + (of << 40);
+// the form of the i-th of n
+template <int D>
+Solid<D> solid_of(const BodyKind& kind, const Fields& fields, int i, int n, Diagnostics& complaints) {
+  const Maker<D>& maker = kind.maker<D>();
+  // a kind of the other dimension has been complained of
+  const sim::Shape<D> typed = maker.make ? maker.make(fields, i, n, complaints) : sim::Ball<D>{1};
+  return kind.turns ? solid<D>(typed) : Solid<D>{typed, {}};
 }
 
 template <int D>
-void declaration(BuilderContext<D>& making, const Node& table, const std::string& kind, int ordinal,
+void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& its, int ordinal,
                  const std::vector<CopySet>& sets) {
   using Vec = sim::Vec<D>;
   Seating<D>& roster = making.roster;
+  const std::string kind(its.name);
   const Fields fields(table, kind);
   Diagnostics& complaints = making.complaints;
   Group group;
@@ -206,7 +199,7 @@ void declaration(BuilderContext<D>& making, const Node& table, const std::string
                                        complaints.text(first)));
     return;
   }
-  if (kind != "particle" && fields.given("mass") && fields.given("density"))
+  if (its.turns && fields.given("mass") && fields.given("density"))
     complaints.add(std::max(fields.place("mass"), fields.place("density"),
                             [](Place a, Place b) { return a.line < b.line; }),
                    "'mass' and 'density' both say how heavy it is; leave one out");
@@ -246,11 +239,10 @@ void declaration(BuilderContext<D>& making, const Node& table, const std::string
                    const Node* of = net.find("of");
                    return of && of->text() == group.name;
                  });
-  const bool turns = kind != "particle";
-  if (const Node* spin = fields.given("spin"); spin && !rotates(making, fields, kind))
+  const bool turns = its.turns;
+  if (const Node* spin = fields.given("spin"); spin && !rotates(making, fields, its))
     complaints.add(spin->place, "'spin' of a body that does not turn: 'rotation' is false");
-  const Solid<D> one_for_all = turns ? solid<D>(fields, kind, 0, group.count, complaints) : Solid<D>{};
-  const bool varied = kind == "ball" || kind == "capsule";
+  const Solid<D> one_for_all = solid_of<D>(its, fields, 0, group.count, complaints);
   for (int i = 0; i < group.count; ++i) {
     Start<D> start;
     start.position =
@@ -259,7 +251,7 @@ void declaration(BuilderContext<D>& making, const Node& table, const std::string
     if (turns) start.spin = spin<D>(fields.node("spin", D), i, group.count);
     if (turns) start.turn = copies->orientation(fields, i);
     start.fixed = held[std::size_t(i)];
-    copies->move(start, i, making.seed, stream(kind, ordinal));
+    copies->move(start, i, making.seed, its.stream + std::uint64_t(ordinal) * 2);
 
     const std::string name = copied ? fmt::format("{}[{}]", group.name, i) : group.name;
     std::vector<const CopySet*> own;
@@ -270,30 +262,31 @@ void declaration(BuilderContext<D>& making, const Node& table, const std::string
         turn_set = turn_set || set.path.front().name == kTurnKey<D>;
       }
     if (own.empty() || !copied) {
-      add(making, fields, kind, varied ? solid<D>(fields, kind, i, group.count, complaints) : one_for_all,
-          name, i, group.count, start);
+      add(making, fields, its,
+          its.varies ? solid_of<D>(its, fields, i, group.count, complaints) : one_for_all, name, i,
+          group.count, start);
       continue;
     }
     Node one = single(fields, kind, i, group.count, start, turn_set);
     for (const CopySet* set : own) write(one, kind, set->path, set->value, set->place, D, complaints);
     check(one, kind, making.told, complaints);
-    const Fields its(one, kind);
+    const Fields own_fields(one, kind);
     for (const CopySet* set : own)
       if (const std::string& whole = set->path.front().name;
           whole == "copies" || whole == "name" || whole == "rotation")
         complaints.add(set->place,
                        fmt::format("'{0}' is one for all copies; set {1}.{0}", whole, group.name));
-    if (const Node* own_fixed = its.given("fixed")) {
+    if (const Node* own_fixed = own_fields.given("fixed")) {
       if (own_fixed->is_text())
         complaints.add(own_fixed->place, "'fixed': expected true or false for one copy");
       else
         start.fixed = std::get<bool>(own_fixed->value);
     }
-    if (its.given("position")) start.position = its.vector<D>("position");
-    if (its.given("velocity")) start.velocity = its.vector<D>("velocity");
-    if (its.given("spin")) start.spin = spin<D>(its.node("spin", D), 0, 1);
-    if (turn_set) start.turn = turn<D>(its);
-    add(making, its, kind, turns ? solid<D>(its, kind, 0, 1, complaints) : Solid<D>{}, name, 0, 1, start);
+    if (own_fields.given("position")) start.position = own_fields.vector<D>("position");
+    if (own_fields.given("velocity")) start.velocity = own_fields.vector<D>("velocity");
+    if (own_fields.given("spin")) start.spin = spin<D>(own_fields.node("spin", D), 0, 1);
+    if (turn_set) start.turn = turn<D>(own_fields);
+    add(making, own_fields, its, solid_of<D>(its, own_fields, 0, 1, complaints), name, 0, 1, start);
   }
   for (const CopySet& set : sets)
     if (set.kind == kind && set.table == ordinal && (set.copy >= group.count || !copied))
@@ -323,12 +316,12 @@ Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, cons
   making.contact = has(look.node("arrows"), "contact");
   // the model has those that do not turn first
   for (const bool turning : {false, true}) {
-    for (const std::string_view kind : body_kinds()) {
-      const Node* all = top.find(kind);
+    for (const BodyKind& kind : body_kinds()) {
+      const Node* all = top.find(kind.name);
       for (std::size_t i = 0; all && i < all->list().size(); ++i) {
         const Node& table = all->list()[i];
-        if (rotates(making, Fields(table, std::string(kind)), std::string(kind)) == turning)
-          declaration(making, table, std::string(kind), int(i), sets);
+        if (rotates(making, Fields(table, std::string(kind.name)), kind) == turning)
+          declaration(making, table, kind, int(i), sets);
       }
     }
   }

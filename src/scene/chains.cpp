@@ -9,6 +9,7 @@
 
 #include "scene/fields.h"
 #include "sim/multibody/chains.h"
+#include "sim/shape/shape.h"
 #include "sim/solve/contact_solver.h"
 
 namespace obscura::scene {
@@ -22,9 +23,8 @@ std::string unfit(const sim::Body<D>& body) {
   if (body.fixed) return "is fixed; join a link to the room by a [[joint]], and leave this one out";
   if (body.handout) return "meets walls by the handout's law, which knows no links";
   if (body.turns()) return "";
-  return body.shape.kind == sim::ShapeKind::point || body.shape.kind == sim::ShapeKind::ball
-             ? "is a particle, which does not turn: a link needs a [[ball]]"
-             : "does not turn, as a link must";
+  return sim::round_radius(body.shape) ? "is a particle, which does not turn: a link needs a [[ball]]"
+                                       : "does not turn, as a link must";
 }
 
 // Whether the links stay bodies on joints: beside many others, or by the solver that the scene names. Chains

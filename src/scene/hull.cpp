@@ -154,9 +154,8 @@ class Wrapping {
 
 }  // namespace
 
-sim::Shape<3> hull(const std::vector<Vec3>& typed) {
-  sim::Shape<3> it;
-  it.kind = sim::ShapeKind::hull;
+sim::Hull hull(const std::vector<Vec3>& typed) {
+  sim::Hull it;
   // each place once
   std::vector<Vec3> points;
   Vec3 size = Vec3::Zero();

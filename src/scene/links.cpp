@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "scene/fields.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::scene {
 
@@ -61,13 +62,7 @@ template <int D>
 std::optional<sim::Vec<D>> spot(const sim::Shape<D>& shape, std::string_view word) {
   const auto found = way<D>(word);
   if (!found) return {};
-  const double far = found->cwiseAbs().sum();
-  if (shape.kind == sim::ShapeKind::box) return sim::Vec<D>(found->cwiseProduct(shape.half));
-  if (shape.kind == sim::ShapeKind::ball && far < 1.5) return sim::Vec<D>(*found * shape.radius);
-  if (shape.kind == sim::ShapeKind::capsule && far < 1.5)
-    return sim::Vec<D>(*found * shape.radius + found->cwiseProduct(shape.half));
-  if (found->isZero(0)) return *found;
-  return {};
+  return sim::of_form(shape, [&](const auto& form) { return form.side(*found); });
 }
 
 // what varies over the springs of one table must have as many values as there are springs
@@ -117,8 +112,7 @@ std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const 
   const Node* local = node.find("local");
   const Node* at = node.find("at");
   const sim::Body<D>& first = world.model.bodies[std::size_t(all.front().body)];
-  if ((local || at) && (first.shape.kind == sim::ShapeKind::point ||
-                        (first.shape.kind == sim::ShapeKind::ball && !first.turns()))) {
+  if ((local || at) && sim::round_radius(first.shape) && (sim::is_point(first.shape) || !first.turns())) {
     complaints.add((local ? local : at)->place,
                    fmt::format("{} is a particle, which has no point but its centre", quoted(name.text())));
     return {};
@@ -138,7 +132,7 @@ std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const 
         if (spot<D>(its, word)) words.push_back(word);
       complaints.add(
           at->place,
-          its.kind == sim::ShapeKind::box
+          spot<D>(its, "top right")
               ? fmt::format("'at': expected a corner or side such as \"top right\" or \"left\", got {}{}",
                             quoted(at->text()), did_you_mean(at->text(), words))
               : fmt::format("'at': expected {}, got {}",

@@ -63,7 +63,7 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
     const sim::Body<D>& body = model.bodies[std::size_t(i)];
     boxes.push_back(sim::bounds(body.shape, sim::body_motion(world.state, i)));
     if (body.handout) continue;
-    const Kind kind{body.shape.kind == sim::ShapeKind::point, body.fixed, body.group};
+    const Kind kind{sim::is_point(body.shape), body.fixed, body.group};
     const auto [known, fresh] = index.emplace(kind, int(kinds.size()));
     if (fresh) kinds.push_back(i);
     kind_of[std::size_t(i)] = known->second;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "scene/body_kinds.h"
 #include "scene/dimension.h"
 #include "scene/table.h"
 
@@ -12,8 +13,14 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr const char* kNamed[] = {"particle", "ball", "box",   "capsule", "polygon", "hull",      "body",
-                                  "spring",   "net",  "joint", "chain",   "bond",    "explosion", "mouse"};
+// the tables whose names --set knows
+std::vector<std::string_view> named_tables() {
+  std::vector<std::string_view> all;
+  for (const BodyKind& kind : body_kinds()) all.push_back(kind.name);
+  for (const std::string_view other : {"spring", "net", "joint", "chain", "bond", "explosion", "mouse"})
+    all.push_back(other);
+  return all;
+}
 
 void settle(Node& node, Place place) {
   node.place = place;
@@ -68,12 +75,12 @@ struct NamedTable {
 };
 
 std::optional<NamedTable> named(const Node& top, const std::string& name) {
-  for (const char* kind : kNamed) {
+  for (const std::string_view kind : named_tables()) {
     const Node* all = top.find(kind);
     if (!all || !all->is_list()) continue;
     for (std::size_t i = 0; i < all->list().size(); ++i) {
       const Node* its = all->list()[i].find("name");
-      if (its && its->is_text() && its->text() == name) return NamedTable{kind, int(i)};
+      if (its && its->is_text() && its->text() == name) return NamedTable{std::string(kind), int(i)};
     }
   }
   return {};
@@ -83,7 +90,7 @@ std::optional<NamedTable> named(const Node& top, const std::string& name) {
 std::string starts(const Node& top, const std::string& word) {
   std::vector<std::string_view> words;
   for (const Key* each : keys_of("")) words.push_back(each->last());
-  for (const char* kind : kNamed)
+  for (const std::string_view kind : named_tables())
     if (const Node* all = top.find(kind); all && all->is_list())
       for (const Node& each : all->list())
         if (const Node* its = each.find("name"); its && its->is_text()) words.push_back(its->text());

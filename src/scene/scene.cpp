@@ -6,6 +6,7 @@
 #include <map>
 
 #include "scene/bodies.h"
+#include "scene/body_kinds.h"
 #include "scene/bonds.h"
 #include "scene/chains.h"
 #include "scene/check.h"
@@ -51,23 +52,18 @@ sim::Solver solver(const std::string& word) {
 
 // the handout knows particles and boxes, each alone
 void refuse_beyond_handout(const Node& top, int dimension, Diagnostics& complaints) {
-  for (const std::string kind : {"ball", "polygon", "body", "joint", "chain"}) {
+  std::vector<std::string_view> kinds;
+  for (const BodyKind& kind : body_kinds())
+    if (dimension == 2 && kind.dimension != 3 && !kind.handout) kinds.push_back(kind.name);
+  kinds.push_back("joint"), kinds.push_back("chain");
+  for (const std::string_view kind : kinds) {
     const Node* all = top.find(kind);
-    if (!all || all->list().empty() || (dimension == 3 && kind != "joint" && kind != "chain")) continue;
+    if (!all || all->list().empty()) continue;
     complaints.add(all->list().front().place,
                    fmt::format("[[{}]] is not in `collision = \"handout\"`, which knows particles and boxes; "
                                "[physics] collision = \"contact\" has it",
                                kind));
   }
-}
-
-// a turn, in the plane about z
-Eigen::Quaterniond quaternion(const sim::Orientation<2>& turn) {
-  const auto [s, c] = sim::sin_cos(0.5 * turn[0]);
-  return {c, 0, 0, s};
-}
-Eigen::Quaterniond quaternion(const sim::Orientation<3>& turn) {
-  return {turn[3], turn[0], turn[1], turn[2]};
 }
 
 // groups that do not touch, as the bodies number them
@@ -144,7 +140,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   model.walls = walls.walls;
   const Seating<D> roster =
       bodies<D>(top, walls, scene.seed, copy_sets, told, world, scene.look.bodies, complaints);
-  for (const Seat<D>& seat : roster.seats) scene.axes.push_back(quaternion(seat.axes));
+  for (const Seat<D>& seat : roster.seats) scene.axes.push_back(sim::quaternion<D>(seat.axes));
   springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, world, complaints);

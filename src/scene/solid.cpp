@@ -65,20 +65,11 @@ std::vector<Vec> corners(const Node& points, Diagnostics& complaints) {
   return all;
 }
 
-sim::Shape<2> polygon(std::vector<Vec> corners) {
-  sim::Shape<2> it;
-  it.kind = sim::ShapeKind::polygon;
-  it.vertices = std::move(corners);
-  return it;
-}
-
-// the convex solid of points: a polygon in the plane, a hull in space
-template <int D>
-sim::Shape<D> convex(const Node& points, Diagnostics& complaints);
+}  // namespace
 
 template <>
 sim::Shape<2> convex(const Node& points, Diagnostics& complaints) {
-  return polygon(corners(points, complaints));
+  return sim::Polygon{corners(points, complaints)};
 }
 
 template <>
@@ -90,31 +81,13 @@ sim::Shape<3> convex(const Node& points, Diagnostics& complaints) {
                                              all.size(), kMostPoints));
     all.resize(4);
   }
-  sim::Shape<3> it = hull(all);
+  sim::Hull it = hull(all);
   if (!it.faces.empty()) return it;
   complaints.add(points.place, "the points lie in one plane: a hull must be a solid");
   return hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
 }
 
-template <int D>
-sim::Shape<D> ball(double radius) {
-  sim::Shape<D> it;
-  it.kind = sim::ShapeKind::ball;
-  it.radius = radius;
-  return it;
-}
-
-template <int D>
-sim::Shape<D> box(const sim::Vec<D>& size) {
-  sim::Shape<D> it;
-  it.kind = sim::ShapeKind::box;
-  it.half = size / 2;
-  return it;
-}
-
-// from end to end
-template <int D>
-sim::Shape<D> capsule(const Fields& fields, double length, double radius, Diagnostics& complaints) {
+sim::Capsule capsule(const Fields& fields, double length, double radius, Diagnostics& complaints) {
   if (length <= 2 * radius) {
     complaints.add(
         fields.place("length"),
@@ -122,37 +95,18 @@ sim::Shape<D> capsule(const Fields& fields, double length, double radius, Diagno
                     radius, length));
     length = 3 * radius;
   }
-  sim::Shape<D> it;
-  it.kind = sim::ShapeKind::capsule;
-  it.radius = radius;
-  it.half[1] = length / 2 - radius;
-  return it;
+  return {.half = length / 2 - radius, .radius = radius};
 }
+
+namespace {
 
 // a shape turned about its origin and then moved
-sim::Shape<2> moved(sim::Shape<2> it, const sim::Orientation<2>& turn, const Vec& to) {
-  if (it.kind == sim::ShapeKind::box && turn[0] != 0) {
-    const Vec h = it.half, c = it.center;
-    it = polygon({c - h, c + Vec(h.x(), -h.y()), c + h, c + Vec(-h.x(), h.y())});
-  }
-  const sim::Rotation<2> axes = sim::rotation<2>(turn);
-  for (Vec& vertex : it.vertices) vertex = to + axes * vertex;
-  for (sim::Shape<2>& each : it.parts) each = moved(std::move(each), turn, to);
-  if (it.vertices.empty() && it.parts.empty()) it.center = to + axes * it.center;
-  return it;
-}
-
-sim::Shape<3> moved(sim::Shape<3> it, const sim::Orientation<3>& turn, const sim::Vec3& to) {
-  const bool turns = turn != sim::no_rotation<3>();
-  const sim::Rotation<3> axes =
-      turns ? sim::rotation<3>(turn) : sim::Rotation<3>(sim::Rotation<3>::Identity());
-  for (sim::Vec3& vertex : it.vertices) vertex = to + axes * vertex;
-  for (sim::Shape<3>& each : it.parts) each = moved(std::move(each), turn, to);
-  if (it.vertices.empty() && it.parts.empty()) {
-    it.center = to + axes * it.center;
-    if (turns && it.kind != sim::ShapeKind::ball) it.turn = sim::composed<3>(turn, it.turn);
-  }
-  return it;
+template <int D>
+sim::Shape<D> moved(const sim::Shape<D>& shape, const sim::Orientation<D>& turn, const sim::Vec<D>& to) {
+  const sim::Rotation<D> axes =
+      turn == sim::no_rotation<D>() ? sim::Rotation<D>(sim::Rotation<D>::Identity()) : sim::rotation<D>(turn);
+  const auto placing = [&](const sim::Vec<D>& place) { return sim::Vec<D>(to + axes * place); };
+  return sim::moved<D>(shape, placing, turn);
 }
 
 // a part where it lies on the body; a box that is turned there in the plane is a polygon
@@ -164,67 +118,56 @@ sim::Shape<D> part(const Fields& fields, Diagnostics& complaints) {
   if (fields.given("length") && !balls)
     complaints.add(fields.place("length"), "'length' is that of a capsule, and needs its 'radius'");
   const double radius = balls ? fields.number("radius") : 1;
-  sim::Shape<D> it = points  ? convex<D>(*fields.given("points"), complaints)
-                     : boxes ? box<D>(fields.vector<D>("size"))
-                     : fields.given("length")
-                         ? capsule<D>(fields, fields.number("length"), radius, complaints)
-                         : ball<D>(radius);
-  return moved(it, turn<D>(fields), fields.vector<D>("position"));
-}
-
-template <int D>
-sim::Shape<D> compound(const Node& shapes, Diagnostics& complaints) {
-  sim::Shape<D> it;
-  it.kind = sim::ShapeKind::compound;
-  for (const Node& each : shapes.list()) it.parts.push_back(part<D>(Fields(each, "body.shapes"), complaints));
-  if (it.parts.empty()) {
-    complaints.add(shapes.place, "'shapes' is empty: expected a part at least");
-    it.parts.push_back(ball<D>(1));
+  sim::Shape<D> it = sim::Ball<D>{radius};
+  if (points) {
+    it = convex<D>(*fields.given("points"), complaints);
+  } else if (boxes) {
+    it = sim::Box<D>{fields.vector<D>("size") / 2};
+  } else if constexpr (D == 3) {
+    if (fields.given("length")) it = capsule(fields, fields.number("length"), radius, complaints);
   }
-  return it;
-}
-
-template <int D>
-sim::Shape<D> form(const Fields& fields, const std::string& kind, int i, int n, Diagnostics& complaints) {
-  if (kind == "ball") return ball<D>(number(fields.node("radius"), i, n));
-  if (kind == "box") return box<D>(fields.vector<D>("size"));
-  if (kind == "capsule")
-    return capsule<D>(fields, number(fields.node("length"), i, n), number(fields.node("radius"), i, n),
-                      complaints);
-  if ((kind == "polygon" || kind == "hull") && fields.given("points"))
-    return convex<D>(*fields.given("points"), complaints);
-  if (kind == "body" && fields.given("shapes")) return compound<D>(*fields.given("shapes"), complaints);
-  return ball<D>(1);
+  return moved<D>(it, turn<D>(fields), fields.vector<D>("position"));
 }
 
 }  // namespace
 
 template <int D>
-Solid<D> solid(const Fields& fields, const std::string& kind, int i, int n, Diagnostics& complaints) {
+sim::Shape<D> compound(const Node& shapes, Diagnostics& complaints) {
+  sim::Compound<D> it;
+  for (const Node& each : shapes.list()) it.parts.push_back(part<D>(Fields(each, "body.shapes"), complaints));
+  if (it.parts.empty()) {
+    complaints.add(shapes.place, "'shapes' is empty: expected a part at least");
+    it.parts.push_back(sim::Ball<D>{1});
+  }
+  return it;
+}
+
+template sim::Shape<2> compound<2>(const Node&, Diagnostics&);
+template sim::Shape<3> compound<3>(const Node&, Diagnostics&);
+
+template <int D>
+Solid<D> solid(const sim::Shape<D>& typed) {
   Solid<D> it;
-  const sim::Shape<D> typed = form<D>(fields, kind, i, n, complaints);
   it.bulk = sim::mass_properties(typed);
   it.shape = sim::seated(typed, it.bulk);
   return it;
 }
 
-template <>
-sim::Shape<2> held(const sim::Shape<2>& shape, const sim::Orientation<2>& turn) {
-  return moved(shape, turn, Vec(Vec::Zero()));
-}
+template Solid<2> solid<2>(const sim::Shape<2>&);
+template Solid<3> solid<3>(const sim::Shape<3>&);
 
-template <>
-sim::Shape<3> held(const sim::Shape<3>& shape, const sim::Orientation<3>& turn) {
-  sim::Shape<3> it = moved(shape, turn, sim::Vec3(sim::Vec3::Zero()));
-  if (it.turn == sim::no_rotation<3>()) return it;
+template <int D>
+sim::Shape<D> held(const sim::Shape<D>& shape, const sim::Orientation<D>& turn) {
+  sim::Shape<D> it = moved<D>(shape, turn, sim::Vec<D>::Zero());
+  const bool askew = sim::of_form(it, [](const auto& form) {
+    if constexpr (requires { form.turn; }) return form.turn != sim::no_rotation<D>();
+    return false;
+  });
   // only parts have a turn of their own
-  sim::Shape<3> whole;
-  whole.kind = sim::ShapeKind::compound;
-  whole.parts = {it};
-  return whole;
+  if (askew) return sim::Compound<D>{{it}};
+  return it;
 }
 
-template Solid<2> solid<2>(const Fields&, const std::string&, int, int, Diagnostics&);
-template Solid<3> solid<3>(const Fields&, const std::string&, int, int, Diagnostics&);
-
+template sim::Shape<2> held<2>(const sim::Shape<2>&, const sim::Orientation<2>&);
+template sim::Shape<3> held<3>(const sim::Shape<3>&, const sim::Orientation<3>&);
 }  // namespace obscura::scene

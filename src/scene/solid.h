@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "scene/complaints.h"
 #include "scene/fields.h"
 #include "sim/shape/shape.h"
@@ -16,10 +14,26 @@ struct Solid {
   sim::MassProperties<D> bulk;
 };
 
-/// The form of the i-th of n copies of a ball, box, capsule, polygon, hull or body. Complains, and gives some
-/// form, where points make no solid or a part is none.
+/// Of the form that was typed.
 template <int D>
-Solid<D> solid(const Fields& fields, const std::string& kind, int i, int n, Diagnostics& complaints);
+Solid<D> solid(const sim::Shape<D>& typed);
+
+/// The convex form of points: a polygon in the plane, a hull in space. Complains, and gives some, where they
+/// make none.
+template <int D>
+sim::Shape<D> convex(const Node& points, Diagnostics& complaints);
+template <>
+sim::Shape<2> convex(const Node& points, Diagnostics& complaints);
+template <>
+sim::Shape<3> convex(const Node& points, Diagnostics& complaints);
+
+/// A capsule by its length from end to end, m. Complains, and gives a longer one, where that is not more than
+/// twice its radius.
+sim::Capsule capsule(const Fields& fields, double length, double radius, Diagnostics& complaints);
+
+/// The parts of a body as one. Complains, and gives some, where a part is none.
+template <int D>
+sim::Shape<D> compound(const Node& shapes, Diagnostics& complaints);
 
 /// The form of a body that is turned so from now on, and cannot turn otherwise.
 template <int D>

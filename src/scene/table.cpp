@@ -7,23 +7,21 @@
 #include <cmath>
 #include <map>
 
+#include "scene/body_kinds.h"
 #include "scene/utf8.h"
 
 namespace obscura::scene {
 
 namespace {
 
-constexpr std::string_view kBodyKinds[] = {"particle", "ball", "box", "capsule", "polygon", "hull", "body"};
-
 // a row for several kinds of body, "any.mass": which kinds
-bool holds(std::string_view prefix, std::string_view kind) {
-  return prefix == kind || prefix == "any" || (prefix == "rigid" && kind != "particle");
+bool holds(std::string_view prefix, const BodyKind& kind) {
+  return prefix == "any" || (prefix == "rigid" && kind.turns) || (prefix == "handout" && kind.handout);
 }
 
 bool of_bodies(const Key& row) {
   const std::string_view prefix = std::string_view(row.path).substr(0, row.path.find('.'));
-  return prefix == "any" || prefix == "rigid" ||
-         std::find(std::begin(kBodyKinds), std::end(kBodyKinds), prefix) != std::end(kBodyKinds);
+  return prefix == "any" || prefix == "rigid" || prefix == "handout" || prefix == "own";
 }
 
 void replace(std::string& text, std::string_view word, std::string_view by) {
@@ -41,15 +39,23 @@ std::vector<Key> built() {
     // the run of rows about bodies, once for each kind
     std::size_t end = i;
     while (end < rows.size() && of_bodies(rows[end])) ++end;
-    for (const std::string_view kind : kBodyKinds) {
-      const bool own_origin = kind == "polygon" || kind == "hull" || kind == "body";
+    for (const BodyKind& kind : body_kinds()) {
+      all.push_back({.path = std::string(kind.name),
+                     .form = Form::tables,
+                     .dimension = kind.dimension,
+                     .instead = std::string(kind.instead),
+                     .doc = std::string(kind.doc)});
       for (std::size_t k = i; k < end; ++k) {
         Key key = rows[k];
-        const std::size_t dot = std::min(key.path.find('.'), key.path.size());
+        if (key.path == "own") {
+          for (Key& own : kind.keys()) all.push_back(std::move(own));
+          continue;
+        }
+        const std::size_t dot = key.path.find('.');
         if (!holds(std::string_view(key.path).substr(0, dot), kind)) continue;
-        key.path.replace(0, dot, kind);
-        replace(key.absent, "KIND", kind);
-        replace(key.doc, "ORIGIN", own_origin ? "own origin" : "centre of mass");
+        key.path.replace(0, dot, kind.name);
+        replace(key.absent, "KIND", kind.name);
+        replace(key.doc, "ORIGIN", kind.own_origin ? "own origin" : "centre of mass");
         all.push_back(std::move(key));
       }
     }
@@ -106,8 +112,6 @@ const Node& fallback(std::string_view path, int dimension) {
   const auto& all = dimension == 2 ? language().planar : language().spatial;
   return all.find(path)->second;
 }
-
-std::span<const std::string_view> body_kinds() { return kBodyKinds; }
 
 std::span<const std::string_view> later_keys() { return kLater; }
 

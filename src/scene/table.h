@@ -81,11 +81,9 @@ struct Key {
 };
 
 /// The rows of the language as they are written; those of any.* stand for every kind of body, those of
-/// rigid.* for the kinds that turn.
+/// rigid.* for the kinds that turn, those of handout.* for those that the handout's collisions know, and
+/// `own` for the keys of the form of each kind (scene/body_kinds.h).
 std::vector<Key> rows();
-
-/// The kinds of body, "particle", "ball", ...: those that do not turn first, as the model has them.
-std::span<const std::string_view> body_kinds();
 
 /// The language: every key, in the order of the page.
 std::span<const Key> keys();

@@ -26,7 +26,7 @@ const std::map<std::string, Names> kArrows = {
 // the second level of the picture: the folders of a room, each of which includes itself and those before it
 const std::map<std::string, std::vector<std::string>> kSubRooms = {
     {"sim",
-     {"math", "model", "shape", "collide", "force", "multibody", "constraint", "constraint/joints", "motion",
+     {"math", "shape", "model", "collide", "force", "multibody", "constraint", "constraint/joints", "motion",
       "energy", "solve/cone", "solve", "solve/exact", "solve/iterate", "handout", "fracture", "step"}},
     {"draw", {"picture", "page", "plane", "space", "compose"}},
     {"app", {"console", "run", "film", "study", "compare", "figure", "cluster", "commands"}},

@@ -66,7 +66,7 @@ double ours(const std::vector<Box>& boxes) {
   for (const auto& [normal, d] : kWalls) world.model.walls.push_back({d * normal, normal, {}, {}});
   for (const Box& box : boxes) {
     Body<3> body;
-    body.shape.kind = ShapeKind::box, body.shape.half = Vec3::Constant(kHalf);
+    body.shape = Box<3>{Vec3::Constant(kHalf)};
     body.mass = kMass, body.elasticity = 0, body.friction = kFriction;
     body.inertia = inertia(body.shape, kMass);
     world.model.bodies.push_back(body);

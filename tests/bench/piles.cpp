@@ -94,7 +94,7 @@ Result ours(const Scene& scene, double seconds, int rate, bool awake) {
   if (scene.wide > 0) wall({-scene.wide, 0}, {1, 0}), wall({scene.wide, 0}, {-1, 0});
   for (const Box& box : scene.boxes) {
     sim::Body<2> body;
-    body.shape.kind = sim::ShapeKind::box, body.shape.half = Vec<2>::Constant(box.side / 2);
+    body.shape = sim::Box<2>{Vec<2>::Constant(box.side / 2)};
     body.mass = box.side * box.side, body.inertia = sim::inertia(body.shape, body.mass);
     body.friction = scene.friction, body.elasticity = 0;
     world.model.bodies.push_back(body);

@@ -32,8 +32,8 @@ std::vector<char> tied(const sim::Model<D>& model) {
   for (const auto& joint : model.joints) tie(joint.a.body), tie(joint.b.body);
   for (int i = 0; i < int(all.size()); ++i) {
     const auto& body = model.bodies[i];
-    const bool round = body.shape.kind == sim::ShapeKind::point || body.shape.kind == sim::ShapeKind::ball;
-    if (!round || body.fixed || body.handout || body.linked || body.drag != 0 || body.ground_drag != 0)
+    if (!sim::round_radius(body.shape) || body.fixed || body.handout || body.linked || body.drag != 0 ||
+        body.ground_drag != 0)
       tie(i);
   }
   return all;
@@ -142,7 +142,7 @@ TEST(Impacts, OfFiveElasticitiesAreAsManyAsTheClosedFormHas) {
       }
       for (std::size_t i = 0; i < struck.size(); ++i) {
         const auto& body = world.model.bodies[i];
-        double t = std::sqrt(2 * (world.state.x[i][1] - body.shape.radius) / g), v = g * t;
+        double t = std::sqrt(2 * (world.state.x[i][1] - *sim::round_radius(body.shape)) / g), v = g * t;
         // one within a step of the slowest, or of the end, may be counted or not
         for (; t < 8 && v > kSlowest + 1.5 * g * h; t += 2 * v / g) ++want[i], v *= body.elasticity;
         EXPECT_NEAR(struck[i], want[i], v > kSlowest && t < 8 + 2 * h ? 1 : 0)

@@ -7,6 +7,7 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "sim/shape/shape.h"
 #include "sim/math/trig.h"
 
 namespace obscura::scene {
@@ -25,13 +26,13 @@ const sim::Body<2>& only(const Scene& it) { return it.plane().model.bodies.front
 
 TEST(Ball, IsADiscThatTurns) {
   const Scene it = scene("[[ball]]\nradius = 0.3\ndensity = 2\nspin = 180\nangle = 90");
-  EXPECT_EQ(only(it).shape.kind, sim::ShapeKind::ball);
+  EXPECT_TRUE(sim::form<sim::Ball<2>>(only(it).shape));
   EXPECT_TRUE(only(it).turns());
   EXPECT_NEAR(only(it).mass, 2 * std::numbers::pi * 0.09, kExact);
   EXPECT_NEAR(only(it).inertia[0], only(it).mass * 0.09 / 2, kExact);
   EXPECT_DOUBLE_EQ(it.plane().state.spin[0][0], std::numbers::pi);
   EXPECT_DOUBLE_EQ(it.plane().state.turn[0][0], std::numbers::pi / 2);
-  EXPECT_EQ(only(scene("[[ball]]")).shape.radius, 0.2);
+  EXPECT_EQ(sim::round_radius(only(scene("[[ball]]")).shape), 0.2);
 }
 
 TEST(Polygon, IsKeptAboutItsCentreOfMass) {
@@ -41,11 +42,13 @@ TEST(Polygon, IsKeptAboutItsCentreOfMass) {
         scene(std::string("[[polygon]]\nposition = [1, 2]\nangle = 90\nmass = 3\npoints = ") + points);
     EXPECT_NEAR((it.plane().state.x[0] - Vec(1 - 0.1, 2 + 0.2)).norm(), 0, kExact);
     EXPECT_NEAR(only(it).inertia[0], 3 * (0.36 + 0.09) / 18, kExact);
-    ASSERT_EQ(only(it).shape.vertices.size(), 3u);
+    const sim::Polygon* shape = sim::form<sim::Polygon>(only(it).shape);
+    ASSERT_TRUE(shape);
+    ASSERT_EQ(shape->vertices.size(), 3u);
     double twice = 0;
     Vec sum = Vec::Zero();
     for (int i = 0; i < 3; ++i) {
-      const Vec a = only(it).shape.vertices[i], b = only(it).shape.vertices[(i + 1) % 3];
+      const Vec a = shape->vertices[i], b = shape->vertices[(i + 1) % 3];
       twice += a.x() * b.y() - a.y() * b.x(), sum += a;
     }
     EXPECT_NEAR(twice, 0.18, kExact) << "counter-clockwise, whichever way it was written";
@@ -69,21 +72,22 @@ TEST(Body, ItsPartsAreOne) {
   const Scene it = scene(
       "[[body]]\nmass = 2\nposition = [1, 1]\nshapes = [{ radius = 0.1, position = [-0.25, 0] }, "
       "{ radius = 0.1, position = [0.75, 0] }]");
-  EXPECT_EQ(only(it).shape.kind, sim::ShapeKind::compound);
+  ASSERT_TRUE(sim::form<sim::Compound<2>>(only(it).shape));
   EXPECT_NEAR((it.plane().state.x[0] - Vec(1.25, 1)).norm(), 0, kExact);
   EXPECT_NEAR(only(it).inertia[0], 2 * (0.005 + 0.25), kExact);
-  EXPECT_NEAR((only(it).shape.parts[0].center - Vec(-0.5, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((sim::form<sim::Ball<2>>(sim::part(only(it).shape, 0))->center - Vec(-0.5, 0)).norm(), 0,
+              kExact);
 }
 
 TEST(Body, ATurnedBoxIsAPolygon) {
   const Scene it = scene(
       "[[body]]\nshapes = [{ size = [0.4, 0.2] }, { size = [0.4, 0.2], angle = 90, position = [0.4, 0] }]");
-  const auto& parts = only(it).shape.parts;
-  EXPECT_EQ(parts[0].kind, sim::ShapeKind::box);
-  EXPECT_EQ(parts[1].kind, sim::ShapeKind::polygon);
-  EXPECT_NEAR((parts[0].center - Vec(-0.2, 0)).norm(), 0, kExact);
+  const auto* upright = sim::form<sim::Box<2>>(sim::part(only(it).shape, 0));
+  const auto* turned = sim::form<sim::Polygon>(sim::part(only(it).shape, 1));
+  ASSERT_TRUE(upright && turned);
+  EXPECT_NEAR((upright->center - Vec(-0.2, 0)).norm(), 0, kExact);
   // its lower left corner comes to the lower right
-  EXPECT_NEAR((parts[1].vertices[0] - Vec(0.3, -0.2)).norm(), 0, kExact);
+  EXPECT_NEAR((turned->vertices[0] - Vec(0.3, -0.2)).norm(), 0, kExact);
   const double box = 0.08 * (0.16 + 0.04) / 12;
   EXPECT_NEAR(only(it).inertia[0], 2 * (box + 0.08 * 0.04), kExact);
 }
@@ -220,8 +224,8 @@ TEST(Overrides, ReachWhatIsNew) {
   const Scene it =
       scene("[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 2, offset = [1, 0] }",
             {"ball[1].radius=0.4", "ball.friction=0.1", "ball[1].angle=90", "physics.solver=iterative"});
-  EXPECT_EQ(it.plane().model.bodies[0].shape.radius, 0.2);
-  EXPECT_EQ(it.plane().model.bodies[1].shape.radius, 0.4);
+  EXPECT_EQ(sim::round_radius(it.plane().model.bodies[0].shape), 0.2);
+  EXPECT_EQ(sim::round_radius(it.plane().model.bodies[1].shape), 0.4);
   EXPECT_EQ(it.plane().model.bodies[1].friction, 0.1);
   EXPECT_DOUBLE_EQ(it.plane().state.turn[1][0], std::numbers::pi / 2);
   EXPECT_EQ(it.plane().model.solver, sim::Solver::iterative);

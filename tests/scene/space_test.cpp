@@ -115,9 +115,9 @@ TEST(Space, DensityIsMassForVolume) {
 
 TEST(Space, ACapsuleIsAsLongAsItSays) {
   const Scene it = scene(kRoom + "[[capsule]]\nlength = 1\nradius = 0.2");
-  const auto& shape = it.space().model.bodies[0].shape;
-  EXPECT_EQ(shape.kind, sim::ShapeKind::capsule);
-  EXPECT_NEAR(shape.half[1], 0.3, kExact);
+  const sim::Capsule* shape = sim::form<sim::Capsule>(it.space().model.bodies[0].shape);
+  ASSERT_TRUE(shape);
+  EXPECT_NEAR(shape->half, 0.3, kExact);
   EXPECT_THAT(complaint(kRoom + "[[capsule]]\nlength = 0.4\nradius = 0.2"),
               HasSubstr("more than twice the radius"));
 }
@@ -132,8 +132,10 @@ TEST(Space, AHullStandsOnItsPrincipalAxesWhereItWasTyped) {
             "{ body = \"bar\", local = [1.5, 1, 2] }]");
   const auto& world = it.space();
   const auto& body = world.model.bodies[0];
-  ASSERT_EQ(body.shape.vertices.size(), 8u);
-  EXPECT_EQ(body.shape.faces.size(), 6u);
+  const sim::Hull* hull = sim::form<sim::Hull>(body.shape);
+  ASSERT_TRUE(hull);
+  ASSERT_EQ(hull->vertices.size(), 8u);
+  EXPECT_EQ(hull->faces.size(), 6u);
   EXPECT_NEAR(body.mass, 2, 1e-12);
   const Eigen::Matrix3d axes = sim::matrix(world.state.turn[0]);
   // turned a quarter about y, x goes to -z and z to x
@@ -145,7 +147,7 @@ TEST(Space, AHullStandsOnItsPrincipalAxesWhereItWasTyped) {
   EXPECT_NEAR(std::abs(typed.dot(Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Vec::UnitY())))),
               1, kExact);
   double nearest = 1;
-  for (const Vec& v : body.shape.vertices)
+  for (const Vec& v : hull->vertices)
     nearest = std::min(nearest, (world.state.x[0] + axes * v - corner).norm());
   EXPECT_NEAR(nearest, 0, 1e-13);
 }
@@ -153,11 +155,11 @@ TEST(Space, AHullStandsOnItsPrincipalAxesWhereItWasTyped) {
 TEST(Space, HullsHaveWholeFacesAndNoInnerPoints) {
   std::vector<sim::Vec3> points;
   for (int i = 0; i < 27; ++i) points.push_back({double(i % 3), double(i / 3 % 3), double(i / 9)});
-  const sim::Shape<3> cube = hull(points);  // 27 points of a grid: the corners and faces of a cube
+  const sim::Hull cube = hull(points);  // 27 points of a grid: the corners and faces of a cube
   EXPECT_EQ(cube.vertices.size(), 8u);
   ASSERT_EQ(cube.faces.size(), 6u);
   for (const auto& face : cube.faces) EXPECT_EQ(face.size(), 4u);
-  EXPECT_NEAR(sim::mass_properties(cube).content, 8,
+  EXPECT_NEAR(sim::mass_properties<3>(cube).content, 8,
               1e-12);  // of loops that go around the other way it is negative
 
   // points on a ball: Euler's 2 n - 4 triangles, each with all others on its inner side
@@ -166,7 +168,7 @@ TEST(Space, HullsHaveWholeFacesAndNoInnerPoints) {
     const double z = -1 + (2 * i + 1) / 60.0, r = std::sqrt(1 - z * z), turn = 2.4 * i;
     points.push_back({r * std::cos(turn), r * std::sin(turn), z});
   }
-  const sim::Shape<3> ball = hull(points);
+  const sim::Hull ball = hull(points);
   EXPECT_EQ(ball.vertices.size(), 60u);
   EXPECT_EQ(ball.faces.size(), 116u);
   for (const auto& face : ball.faces) {
@@ -197,7 +199,7 @@ TEST(Space, WhatDoesNotTurnComesFirstAndKeepsItsForm) {
               HasSubstr("'spin' of a body that does not turn"));
   const Scene plane = scene("[[box]]\nangle = 90\nsize = [1, 0.5]\nrotation = false");
   EXPECT_EQ(plane.plane().model.particles(), 1);
-  EXPECT_EQ(plane.plane().model.bodies[0].shape.kind, sim::ShapeKind::polygon);
+  EXPECT_TRUE(sim::form<sim::Polygon>(plane.plane().model.bodies[0].shape));
 }
 
 TEST(Space, CopiesGoThreeWaysAndTurnAboutAnAxis) {

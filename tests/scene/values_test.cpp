@@ -43,7 +43,7 @@ TEST(Values, ABareParticleHasEveryDefault) {
   EXPECT_EQ(it.plane().state.v[0], Vec(0, 0));
   const sim::Body<2>& body = it.plane().model.bodies[0];
   EXPECT_EQ(body.name, "particle[0]");
-  EXPECT_EQ(body.shape.kind, sim::ShapeKind::point);
+  EXPECT_TRUE(sim::is_point(body.shape));
   EXPECT_EQ(body.mass, 1);
   EXPECT_EQ(body.elasticity, 0.8);
   EXPECT_EQ(body.drag, 0);

@@ -206,7 +206,7 @@ TEST(Explosion, BlowsABodyAwayAsItsPoints) {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   const Eigen::Matrix3d axes = rotation<3>(turn);
   for (int i = 0; i < 8; ++i) {
-    const Vec3 r = axes * corner(world.model.bodies[0].shape, i), from = r - it.center;
+    const Vec3 r = axes * form<Box<3>>(world.model.bodies[0].shape)->corner(i), from = r - it.center;
     const Vec3 f = 10 * from / std::pow(from.norm(), 3);
     force += f, torque += r.cross(f);
   }

@@ -15,8 +15,7 @@ TEST(BulkInSpace, OfABoxBallAndCapsuleIsTheClosedForm) {
   EXPECT_NEAR(box[0], 6.5, 1e-15);
   EXPECT_NEAR(box[1], 5.0, 1e-15);
   EXPECT_NEAR(box[2], 2.5, 1e-15);
-  Shape<3> ball;
-  ball.kind = ShapeKind::ball, ball.radius = 0.5;
+  const Shape<3> ball = Ball<3>{0.5};
   EXPECT_NEAR(solid_inertia(ball, 2)[1], 0.2, 1e-16);
   EXPECT_EQ(inertia(ball, 2), Vec3::Zero());
 
@@ -50,10 +49,8 @@ TEST(BulkInSpace, OfACapsuleIsThatOfItsDiscs) {
 
 TEST(BulkInSpace, OfATetrahedronIsTheClosedForm) {
   // the corner of a cube: V = 1/6, centroid 1/4, int x^2 = 1/60, int x y = 1/120
-  Shape<3> hull;
-  hull.kind = ShapeKind::hull;
-  hull.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  hull.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const Shape<3> hull =
+      Hull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   const MassProperties<3> got = mass_properties(hull);
   EXPECT_NEAR(got.content, 1.0 / 6, 1e-16);
   EXPECT_LE((got.center - Vec3::Constant(0.25)).norm(), 1e-16);
@@ -69,14 +66,14 @@ TEST(BulkInSpace, SeatedShapesHaveTheirAxesAndStandWhereTheyStood) {
   Dice dice(5);
   for (int trial = 0; trial < 200; ++trial) {
     // a box anywhere, as a hull: its seat is its centre and its own axes
-    Shape<3> box = brick({dice.between(0.2, 1), dice.between(1.1, 2), dice.between(2.2, 3)});
+    Box<3> box{Vec3(dice.between(0.2, 1), dice.between(1.1, 2), dice.between(2.2, 3)) / 2};
     box.center = dice.vector<3>(4);
     box.turn = exponential(dice.vector<3>(2));
     const Shape<3> hull = as_hull(box);
     const MassProperties<3> got = mass_properties(hull);
     EXPECT_NEAR(got.content, 8 * box.half.prod(), 1e-13);
     EXPECT_LE((got.center - box.center).norm(), 1e-13);
-    Vec3 want = solid_inertia(box, 1), moments = got.second / got.content;
+    Vec3 want = solid_inertia<3>(box, 1), moments = got.second / got.content;
     std::sort(want.data(), want.data() + 3), std::sort(moments.data(), moments.data() + 3);
     EXPECT_LE((want - moments).norm(), 1e-12);
 
@@ -88,15 +85,14 @@ TEST(BulkInSpace, SeatedShapesHaveTheirAxesAndStandWhereTheyStood) {
     EXPECT_LE((again.axes - no_rotation<3>()).norm(), 1e-12);
     const Eigen::Matrix3d axes = rotation<3>(got.axes);
     for (int i = 0; i < 8; ++i)
-      EXPECT_LE((got.center + axes * seat.vertices[i] - hull.vertices[i]).norm(), 1e-14);
+      EXPECT_LE((got.center + axes * form<Hull>(seat)->vertices[i] - form<Hull>(hull)->vertices[i]).norm(),
+                1e-14);
 
     // the same as a compound of two halves, one a box and one a hull
-    Shape<3> one = brick({2 * box.half[0], box.half[1], 2 * box.half[2]}), two = one;
-    one.turn = two.turn = box.turn;
+    Box<3> one{{box.half[0], box.half[1] / 2, box.half[2]}, Vec3::Zero(), box.turn}, two = one;
     const Vec3 off = rotation<3>(box.turn) * Vec3(0, box.half[1] / 2, 0);
     one.center = box.center + off, two.center = box.center - off;
-    Shape<3> whole;
-    whole.kind = ShapeKind::compound, whole.parts = {one, as_hull(two)};
+    const Shape<3> whole = Compound<3>{{one, as_hull(two)}};
     const MassProperties<3> halves = mass_properties(whole);
     EXPECT_LE((halves.center - got.center).norm(), 1e-13);
     Vec3 both = halves.second / halves.content;
@@ -110,11 +106,7 @@ TEST(BulkInSpace, SeatedShapesHaveTheirAxesAndStandWhereTheyStood) {
 }
 
 TEST(BulkInSpace, AShapeWhoseAxesAreItsFramesKeepsThem) {
-  Shape<3> whole;
-  whole.kind = ShapeKind::compound;
-  Shape<3> handle = capsule(0.5, 0.1), head = brick({0.6, 0.2, 0.3});
-  head.center = {0, 0.6, 0};
-  whole.parts = {handle, head};
+  const Shape<3> whole = Compound<3>{{Capsule{0.5, 0.1}, Box<3>{{0.3, 0.1, 0.15}, {0, 0.6, 0}}}};
   EXPECT_EQ(mass_properties(whole).axes, no_rotation<3>());
 }
 
@@ -124,12 +116,11 @@ TEST(BoundsInSpace, HoldEveryTipAndTouchOne) {
     BodyMotion<3> at;
     at.x = dice.vector<3>(5);
     at.room_from_body = rotation<3>(exponential(dice.vector<3>(2)));
-    Shape<3> whole;
-    whole.kind = ShapeKind::compound;
-    whole.parts = {capsule(0.5, 0.1), brick({1, 0.3, 0.5}), as_hull(brick({0.2, 1, 0.2}))};
-    whole.parts[0].center = dice.vector<3>(1), whole.parts[1].center = dice.vector<3>(1);
-    whole.parts[0].turn = exponential(dice.vector<3>(2)),
-    whole.parts[1].turn = exponential(dice.vector<3>(2));
+    Capsule rod{0.5, 0.1};
+    Box<3> box{{0.5, 0.15, 0.25}};
+    rod.center = dice.vector<3>(1), box.center = dice.vector<3>(1);
+    rod.turn = exponential(dice.vector<3>(2)), box.turn = exponential(dice.vector<3>(2));
+    const Shape<3> whole = Compound<3>{{rod, box, as_hull(brick({0.2, 1, 0.2}))}};
     const Bounds<3> around = bounds(whole, at);
     Vec3 lower = Vec3::Constant(1e9), upper = -lower;
     double most = 0;

@@ -35,13 +35,9 @@ World<2> thrown(int seed, Collision collision) {
   }
   // a T of two boxes
   const int t = add_box(world, {0.5, 0.5}, 2, {1.5, 2.5}, throw_v(), chance.between(-3, 3), 1, 0.5);
-  Shape<2>&shape = world.model.bodies[t].shape, bar = shape, stem = shape;
-  bar.half = {0.25, 0.05}, stem.half = {0.05, 0.2};
-  bar.center = {0, 0.11}, stem.center = {0, -0.14};
-  shape = {};
-  shape.kind = ShapeKind::compound, shape.parts = {bar, stem};
-  const Vec2 c = mass_properties(shape).center;
-  for (auto& part : shape.parts) part.center -= c;
+  Shape<2>& shape = world.model.bodies[t].shape;
+  shape = Compound<2>{{Box<2>{{0.25, 0.05}, {0, 0.11}}, Box<2>{{0.05, 0.2}, {0, -0.14}}}};
+  shape = seated(shape, mass_properties(shape));
   world.model.bodies[t].inertia = inertia(shape, 2);
   rub(world, chance.between(0, 1));
   return world;

@@ -95,7 +95,6 @@ TEST(Contact, ABeamObeysTheLeverRule) {
   add_box(world, {0.2, 0.2}, 1, {3, 0.1});
   add_box(world, {4, 0.1}, 6, {1.3, 0.25});
   world.model.bodies[0].fixed = world.model.bodies[1].fixed = true;
-  world.model.bodies[0].shape.kind = world.model.bodies[1].shape.kind = ShapeKind::box;
   const State<2> now = stepped(world, 10);
   // supports act at the four edges of their tops; their moments about the two midpoints are determined
   double left = 0, right = 0, moment = 0;

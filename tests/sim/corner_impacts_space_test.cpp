@@ -19,11 +19,7 @@ namespace {
 
 const Vec3 kUp(0, 1, 0);
 
-Shape<3> round(double radius) {
-  Shape<3> shape;
-  shape.kind = ShapeKind::ball, shape.radius = radius;
-  return shape;
-}
+Shape<3> round(double radius) { return Ball<3>{radius}; }
 
 struct Fall {
   double side = 0.5, mass = 2, e = 0.5, mu = 0.5, y = 2;

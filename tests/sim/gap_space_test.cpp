@@ -19,11 +19,11 @@ using Place = Eigen::Matrix<long double, 3, 1>;
 
 std::vector<Place> corners(const Shape<3>& shape, const BodyMotion<3>& at) {
   std::vector<Vec<3>> local = {Vec<3>::Zero()};
-  if (shape.kind == ShapeKind::hull) local = shape.vertices;
-  if (shape.kind == ShapeKind::capsule) local = {-shape.half, shape.half};
-  if (shape.kind == ShapeKind::box) {
+  if (const Hull* hull = form<Hull>(shape)) local = hull->vertices;
+  if (const Capsule* rod = form<Capsule>(shape)) local = {{0, -rod->half, 0}, {0, rod->half, 0}};
+  if (const Box<3>* box = form<Box<3>>(shape)) {
     local.clear();
-    for (int i = 0; i < 8; ++i) local.push_back(corner(shape, i));
+    for (int i = 0; i < 8; ++i) local.push_back(box->corner(i));
   }
   std::vector<Place> out;
   for (const Vec<3>& p : local) {
@@ -91,7 +91,8 @@ TEST(SpaceSeparation, IsTheDistanceOrDepthOfTheDifferencesHull) {
   for (int n = 0; n < 400; ++n) {
     const Shape<3> a = dice.solid(1), b = dice.solid(0.8);
     const BodyMotion<3> at_a = dice.place(1), at_b = dice.place(1);
-    const double want = double(brute_force(corners(a, at_a), corners(b, at_b))) - a.radius - b.radius;
+    const double want =
+        double(brute_force(corners(a, at_a), corners(b, at_b))) - core(a).radius - core(b).radius;
     overlapping += want < 0;
     // coordinates of order 1, some dozens of roundings, normals of short edges
     EXPECT_NEAR(separation(a, at_a, b, at_b), want, 1e-13) << n;
@@ -109,11 +110,11 @@ TEST(SpaceGaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
     const BodyMotion<3> at_a = dice.place(1), at_b = dice.place(1);
     const double apart = separation(a, at_a, b, at_b), margin = dice.between(-0.3, 0.5);
     const auto all = found(a, at_a, b, at_b, margin);
-    const bool points = a.kind == ShapeKind::point && b.kind == ShapeKind::point;
+    const bool points = is_point(a) && is_point(b);
     ASSERT_EQ(all.empty(), points || apart >= margin) << n << " " << apart << " " << margin;
     if (all.empty()) continue;
     // places within 1e-6 of each other are one
-    EXPECT_NEAR(least(all), apart, 1e-12) << n << " " << int(a.kind) << " " << int(b.kind);
+    EXPECT_NEAR(least(all), apart, 1e-12) << n << " " << a.index() << " " << b.index();
     for (const ContactCandidate<3>& gap : all) {
       ++kinds[int(gap.kind)];
       EXPECT_LT(gap.value, margin);
@@ -135,7 +136,7 @@ TEST(SpaceGaps, AreTheSameFromEitherSideAndInATurnedRoom) {
       at->x = turn * at->x, at->room_from_body = turn * at->room_from_body;
     }
     const auto three = found(a, turned_a, b, turned_b, 0.2);
-    ASSERT_EQ(one.size(), two.size()) << n << " " << int(a.kind) << " " << int(b.kind);
+    ASSERT_EQ(one.size(), two.size()) << n << " " << a.index() << " " << b.index();
     ASSERT_EQ(one.size(), three.size()) << n;
     for (std::size_t i = 0; i < one.size(); ++i) {
       const EvaluatedContact<3> now = evaluate(one[i], at_a, at_b);
@@ -146,7 +147,7 @@ TEST(SpaceGaps, AreTheSameFromEitherSideAndInATurnedRoom) {
                                        (there.point - now.point).norm() < 1e-10 &&
                                        (there.normal + now.normal).norm() < 1e-10;
                               }))
-          << n << " " << int(a.kind) << " " << int(b.kind);
+          << n << " " << a.index() << " " << b.index();
       EXPECT_EQ(three[i].key, one[i].key);
       const EvaluatedContact<3> there = evaluate(three[i], turned_a, turned_b);
       EXPECT_NEAR(there.value, now.value, 1e-12);
@@ -205,9 +206,8 @@ TEST(SpaceGaps, OfExtrudedShapesAreThoseOfThePlane) {
     std::vector<ContactCandidate<2>> flat;
     collide(0, flat_a, at_a, 1, flat_b, at_b, 0.2, flat);
     const auto deep = found(a, extruded(at_a), b, extruded(at_b), 0.2);
-    const bool round = a.kind == ShapeKind::ball || a.kind == ShapeKind::point || b.kind == ShapeKind::ball ||
-                       b.kind == ShapeKind::point;
-    ASSERT_EQ(deep.size(), flat.size() * (round ? 1 : 2)) << n << " " << int(a.kind) << " " << int(b.kind);
+    const bool round = round_radius(a) || round_radius(b);
+    ASSERT_EQ(deep.size(), flat.size() * (round ? 1 : 2)) << n << " " << a.index() << " " << b.index();
     for (const ContactCandidate<3>& gap : deep) {
       const EvaluatedContact<3> now = evaluate(gap, extruded(at_a), extruded(at_b));
       EXPECT_NEAR(std::abs(now.point[2]), round ? 0 : std::min(depth_a, depth_b) / 2, 1e-12);
@@ -261,8 +261,10 @@ TEST(SpaceGaps, OfAStackAreFourAndKeepTheirFeatures) {
             // the corners of what they share
             for (const int axis : {0, 2}) {
               const double half =
-                  std::min({(upper.half[axis] + lower.half[axis] - std::abs(offset[axis])) / 2,
-                            upper.half[axis], lower.half[axis]});
+                  std::min({(form<Box<3>>(upper)->half[axis] + form<Box<3>>(lower)->half[axis] -
+                             std::abs(offset[axis])) /
+                                2,
+                            form<Box<3>>(upper)->half[axis], form<Box<3>>(lower)->half[axis]});
               EXPECT_NEAR(high[axis] - low[axis], 2 * half, 3e-6);
             }
           }
@@ -342,10 +344,9 @@ TEST(SpaceGaps, ABoxIsAHullToAllOthers) {
 }
 
 TEST(SpaceGaps, OfACompoundAreThoseOfItsTurnedParts) {
-  Shape<3> left = brick({0.2, 0.4, 0.2}), right = ball_shape<3>(0.1), bar = capsule(0.2, 0.1);
-  left.center = {-0.5, 0, 0}, left.turn = exponential(Vec<3>(0, 0, std::numbers::pi / 2));
-  right.center = {0.5, 0, 0};
-  bar.turn = exponential(Vec<3>(0, 0, std::numbers::pi / 2));
+  const Orientation<3> quarter = exponential(Vec<3>(0, 0, std::numbers::pi / 2));
+  const Shape<3> left = Box<3>{{0.1, 0.2, 0.1}, {-0.5, 0, 0}, quarter}, right = Ball<3>{0.1, {0.5, 0, 0}},
+                 bar = Capsule{0.2, 0.1, Vec<3>::Zero(), quarter};
   const Shape<3> all_three = compound_shape<3>({left, right, bar});
   const Shape<3> floor = brick({4, 0.2, 4});
   const auto all = found(all_three, placed({0, 0.2, 0}), floor, placed({0, 0, 0}), 1e-3);

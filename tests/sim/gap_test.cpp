@@ -20,8 +20,8 @@ using Place = Eigen::Matrix<long double, 2, 1>;
 
 std::vector<Place> placed(const Shape<2>& shape, const BodyMotion<2>& at) {
   std::vector<Vec<2>> local = {Vec<2>::Zero()};
-  if (shape.kind == ShapeKind::box) local = as_polygon(shape).vertices;
-  if (shape.kind == ShapeKind::polygon) local = shape.vertices;
+  if (const Box<2>* box = form<Box<2>>(shape)) local = box->outline().vertices;
+  if (const Polygon* polygon = form<Polygon>(shape)) local = polygon->vertices;
   std::vector<Place> out;
   for (const Vec<2>& p : local) {
     out.push_back(at.x.cast<long double>() + at.room_from_body.cast<long double>() * p.cast<long double>());
@@ -66,7 +66,8 @@ TEST(Separation, IsTheDistanceOrDepthOfTheDifferencesHull) {
   for (int n = 0; n < 3000; ++n) {
     const Shape<2> a = dice.simple(1), b = dice.simple(0.8);
     const BodyMotion<2> at_a = dice.body_motion(1.2), at_b = dice.body_motion(1.2);
-    const double want = double(brute_force(placed(a, at_a), placed(b, at_b))) - a.radius - b.radius;
+    const double want =
+        double(brute_force(placed(a, at_a), placed(b, at_b))) - core(a).radius - core(b).radius;
     overlapping += want < 0;
     // coordinates of order 1, a dozen roundings
     EXPECT_NEAR(separation(a, at_a, b, at_b), want, 1e-14) << n;
@@ -83,7 +84,7 @@ TEST(Gaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
     const BodyMotion<2> at_a = dice.body_motion(1.2), at_b = dice.body_motion(1.2);
     const double apart = separation(a, at_a, b, at_b), margin = dice.between(-0.3, 0.5);
     const auto all = found(a, at_a, b, at_b, margin);
-    const bool points = a.kind == ShapeKind::point && b.kind == ShapeKind::point;
+    const bool points = is_point(a) && is_point(b);
     ASSERT_EQ(all.empty(), points || apart >= margin) << n << " " << apart << " " << margin;
     ASSERT_LE(all.size(), 2u);
     if (all.empty()) continue;
@@ -170,7 +171,8 @@ TEST(Gaps, OfAStackAreTwoAndKeepTheirFeatures) {
                 << offset << " " << tilt << " " << shift << " " << height;
             // the ends of what they share
             const double half = std::min(
-                {(upper.half[0] + lower.half[0] - std::abs(offset)) / 2, upper.half[0], lower.half[0]});
+                {(form<Box<2>>(upper)->half[0] + form<Box<2>>(lower)->half[0] - std::abs(offset)) / 2,
+                 form<Box<2>>(upper)->half[0], form<Box<2>>(lower)->half[0]});
             for (const ContactCandidate<2>& gap : all) {
               const EvaluatedContact<2> now =
                   swapped ? evaluate(gap, below, above) : evaluate(gap, above, below);
@@ -282,9 +284,7 @@ TEST(Gaps, ABoxIsAPolygonToAllOthers) {
 }
 
 TEST(Gaps, OfACompoundAreThoseOfItsParts) {
-  Shape<2> left = box_shape(0.2, 0.2), right = ball_shape(0.1);
-  left.center = {-0.5, 0};
-  right.center = {0.5, 0};
+  const Shape<2> left = Box<2>{{0.1, 0.1}, {-0.5, 0}}, right = Ball<2>{0.1, {0.5, 0}};
   const Shape<2> dumbbell = compound_shape({left, right});
   const Shape<2> floor = box_shape(4, 0.2);
   const auto all = found(dumbbell, standing({0, 0.2}), floor, standing({0, 0}), 1e-3);

@@ -196,9 +196,10 @@ double deepest(const World<2>& world, const State<2>& state, int body) {
   const auto at = body_motion(state, body);
   for (const auto& wall : world.model.walls) {
     const Shape<2>& shape = world.model.bodies[body].shape;
-    if (shape.kind != ShapeKind::box) depth = std::max(depth, -(at.x - wall.point).dot(wall.normal));
-    for (int i = 0; shape.kind == ShapeKind::box && i < 4; ++i) {
-      depth = std::max(depth, -(at.x + at.arm(corner(shape, i)) - wall.point).dot(wall.normal));
+    const Box<2>* box = form<Box<2>>(shape);
+    if (!box) depth = std::max(depth, -(at.x - wall.point).dot(wall.normal));
+    for (int i = 0; box && i < 4; ++i) {
+      depth = std::max(depth, -(at.x + at.arm(box->corner(i)) - wall.point).dot(wall.normal));
     }
   }
   return depth;
@@ -389,7 +390,8 @@ TEST(Bounce, LeavesNobodyOutsideAndMovingOut) {
         const Shape<2>& shape = world.model.bodies[body].shape;
         for (const auto& wall : world.model.walls) {
           for (int k = 0; k < (body < 5 ? 1 : 4); ++k) {
-            const Vec2 arm = body < 5 ? Vec2(-shape.radius * wall.normal) : at.arm(corner(shape, k));
+            const Vec2 arm =
+                body < 5 ? Vec2(-*round_radius(shape) * wall.normal) : at.arm(form<Box<2>>(shape)->corner(k));
             const double distance = (at.x + arm - wall.point).dot(wall.normal);
             const double speed = at.velocity(arm).dot(wall.normal);
             ASSERT_FALSE(distance < -1e-12 && speed < -1e-10)

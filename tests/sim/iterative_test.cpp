@@ -36,7 +36,7 @@ struct Room {
   }
   int disc(double radius, Vec2 x, double friction, double elasticity, Vec2 v = {0, 0}, double spin = 0) {
     Body<2> body;
-    body.shape.kind = ShapeKind::ball, body.shape.radius = radius;
+    body.shape = Ball<2>{radius};
     body.mass = 1, body.inertia[0] = 0.5 * radius * radius;
     body.friction = friction, body.elasticity = elasticity;
     world.model.bodies.push_back(body);

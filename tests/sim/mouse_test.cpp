@@ -57,13 +57,9 @@ TEST(Grip, TakesCornersOfPolygonsAndParts) {
   World<2> world = room();
   const int stone = add_box(world, {1, 1}, 1, {2, 2}, {0, 0}, std::acos(-1) / 2);
   Shape<2>& shape = world.model.bodies[stone].shape;
-  shape.kind = ShapeKind::polygon;
-  shape.vertices = {{-0.4, -0.2}, {0.6, -0.2}, {-0.2, 0.4}};
+  shape = Polygon{{{-0.4, -0.2}, {0.6, -0.2}, {-0.2, 0.4}}};
   EXPECT_EQ(closest<2>(world.model, world.state, {2.2, 3}).local, Vec2(0.6, -0.2));
-  Shape<2> ball, polygon = shape;
-  ball.kind = ShapeKind::ball, ball.center = {1, 0};
-  shape = {};
-  shape.kind = ShapeKind::compound, shape.parts = {polygon, ball};
+  shape = Compound<2>{{shape, Ball<2>{0, {1, 0}}}};
   EXPECT_EQ(closest<2>(world.model, world.state, {2, 3.1}).local, Vec2(1, 0));
   EXPECT_EQ(closest<2>(world.model, world.state, {1.5, 1.7}).local, Vec2(-0.2, 0.4));
 }

@@ -50,8 +50,6 @@ TEST(Bonds, MakeTheirPartsOneRigidBody) {
   world.model.springs.push_back({{3, {0.25, 0.25, 0.25}}, {-1, {0, 3, 0}}, 1, 40, 0.1});
 
   // the same by hand: a compound in its principal frame
-  Shape<3> whole;
-  whole.kind = ShapeKind::compound;
   Vec3 center = Vec3::Zero();
   double mass = 0;
   for (int i = 0; i < 6; ++i)

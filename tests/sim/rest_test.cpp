@@ -68,10 +68,7 @@ Shape<D> round_shape(double radius) {
 
 template <int D>
 Shape<D> block(double width, double height) {
-  Shape<D> shape;
-  shape.kind = ShapeKind::box;
-  shape.half = at<D>(width / 2, height / 2, width / 2);
-  return shape;
+  return Box<D>{at<D>(width / 2, height / 2, width / 2)};
 }
 
 // act(dimension, solver) for both of both
@@ -323,7 +320,11 @@ World<D> scaled(const World<D>& world, int k) {
   World<D> it = world;
   const double s = std::ldexp(1.0, k);
   it.model.gravity *= s, it.model.scale *= s;
-  for (Body<D>& body : it.model.bodies) body.shape.radius *= s, body.shape.half *= s, body.inertia *= s * s;
+  for (Body<D>& body : it.model.bodies) {
+    if (Ball<D>* ball = form<Ball<D>>(body.shape)) ball->radius *= s;
+    if (Box<D>* box = form<Box<D>>(body.shape)) box->half *= s;
+    body.inertia *= s * s;
+  }
   for (Vec<D>& x : it.state.x) x *= s;
   for (Vec<D>& v : it.state.v) v *= s;
   return it;

@@ -31,8 +31,7 @@ int add_particle(World<D>& world, std::type_identity_t<Vec<D>> x,
                  double radius = 0) {
   Body<D> body;
   body.name = "particle[" + std::to_string(world.model.bodies.size()) + "]";
-  body.shape.kind = radius > 0 ? ShapeKind::ball : ShapeKind::point;
-  body.shape.radius = radius;
+  if (radius > 0) body.shape = Ball<D>{radius};
   body.mass = mass, body.elasticity = elasticity;
   world.model.bodies.push_back(body);
   world.state.x.push_back(x), world.state.v.push_back(v);
@@ -43,8 +42,7 @@ inline int add_box(World<2>& world, Vec2 size, double mass, Vec2 x, Vec2 v = {0,
                    double spin = 0, double elasticity = 1) {
   Body<2> body;
   body.name = "box[" + std::to_string(world.model.bodies.size()) + "]";
-  body.shape.kind = ShapeKind::box;
-  body.shape.half = size / 2;
+  body.shape = Box<2>{size / 2};
   body.mass = mass, body.elasticity = elasticity;
   body.inertia = inertia(body.shape, mass);
   world.model.bodies.push_back(body);

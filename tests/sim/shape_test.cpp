@@ -14,8 +14,7 @@ namespace obscura::sim {
 namespace {
 
 TEST(MassProperties, OfAPolygonIsThatOfTheBoxItDraws) {
-  Shape<2> box = box_shape(0.7, 0.4);
-  box.center = {3, -5};
+  const Shape<2> box = Box<2>{{0.35, 0.2}, {3, -5}};
   const MassProperties<2> one = mass_properties(box), two = mass_properties(as_polygon(box));
   EXPECT_NEAR(two.content, one.content, 1e-15);
   EXPECT_NEAR((two.center - one.center).norm(), 0, 2e-15);  // a rounding of 5
@@ -40,9 +39,7 @@ TEST(MassProperties, OfARegularPolygonIsTheClosedForm) {
 }
 
 TEST(MassProperties, OfPartsIsThatOfTheWholeTheyMake) {
-  Shape<2> left = box_shape(0.3, 1), right = box_shape(0.7, 1);
-  left.center = {-0.35, 2};
-  right.center = {0.15, 2};
+  const Shape<2> left = Box<2>{{0.15, 0.5}, {-0.35, 2}}, right = Box<2>{{0.35, 0.5}, {0.15, 2}};
   const Shape<2> both = compound_shape({left, as_polygon(right)}), whole = box_shape(1, 1);
   EXPECT_NEAR(mass_properties(both).content, 1, 1e-15);
   EXPECT_NEAR((mass_properties(both).center - Vec<2>(0, 2)).norm(), 0, 1e-15);
@@ -76,8 +73,8 @@ TEST(HalfThickness, IsTheLeastOfAShape) {
 TEST(Bounds, HoldTheShapeTightly) {
   ShapeDice dice(6);
   for (int n = 0; n < 200; ++n) {
-    Shape<2> box = box_shape(dice.between(0.2, 1), dice.between(0.2, 1)), ball = ball_shape(0.3);
-    ball.center = {0.6, 0.1};
+    const Shape<2> box = box_shape(dice.between(0.2, 1), dice.between(0.2, 1));
+    const Ball<2> ball{0.3, {0.6, 0.1}};
     const Shape<2> polygon = dice.polygon(1), all = compound_shape({box, ball, polygon});
     const BodyMotion<2> at = dice.body_motion(3);
     const Bounds<2> a = bounds(box, at), b = bounds(as_polygon(box), at), c = bounds(all, at);
@@ -87,7 +84,7 @@ TEST(Bounds, HoldTheShapeTightly) {
     EXPECT_EQ(c.upper, a.upper.cwiseMax(bounds(polygon, at).upper).cwiseMax(center + r));
     EXPECT_LE((c.upper - at.x).maxCoeff(), bounding_radius(all) + 1e-15);
     EXPECT_GE(bounding_radius(all), ball.center.norm() + 0.3);
-    EXPECT_EQ(bounding_radius(box), box.half.norm());
+    EXPECT_EQ(bounding_radius(box), form<Box<2>>(box)->half.norm());
   }
 }
 

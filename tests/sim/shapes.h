@@ -12,41 +12,22 @@ namespace obscura::sim {
 
 template <int D = 2>
 Shape<D> ball_shape(double radius) {
-  Shape<D> shape;
-  shape.kind = radius > 0 ? ShapeKind::ball : ShapeKind::point;
-  shape.radius = radius;
-  return shape;
+  if (radius > 0) return Ball<D>{radius};
+  return Point<D>{};
 }
 
 /// A box by its sides, m.
-inline Shape<2> box_shape(double x, double y) {
-  Shape<2> shape;
-  shape.kind = ShapeKind::box;
-  shape.half = Vec<2>(x, y) / 2;
-  return shape;
-}
+inline Shape<2> box_shape(double x, double y) { return Box<2>{Vec<2>(x, y) / 2}; }
 
-inline Shape<2> polygon_shape(std::vector<Vec<2>> vertices) {
-  Shape<2> shape;
-  shape.kind = ShapeKind::polygon;
-  shape.vertices = std::move(vertices);
-  return shape;
-}
+inline Shape<2> polygon_shape(std::vector<Vec<2>> vertices) { return Polygon{std::move(vertices)}; }
 
 template <int D = 2>
 Shape<D> compound_shape(std::vector<Shape<D>> parts) {
-  Shape<D> shape;
-  shape.kind = ShapeKind::compound;
-  shape.parts = std::move(parts);
-  return shape;
+  return Compound<D>{std::move(parts)};
 }
 
 /// The corners of a box as a polygon.
-inline Shape<2> as_polygon(const Shape<2>& box) {
-  std::vector<Vec<2>> around;
-  for (const int i : {0, 1, 3, 2}) around.push_back(box.center + corner(box, i));
-  return polygon_shape(around);
-}
+inline Shape<2> as_polygon(const Shape<2>& box) { return form<Box<2>>(box)->outline(); }
 
 inline BodyMotion<2> standing(const Vec<2>& x, double angle = 0) {
   BodyMotion<2> at;

@@ -12,21 +12,10 @@ namespace obscura::sim {
 // Shapes of space.
 
 /// A box by its sides, m.
-inline Shape<3> brick(const Vec<3>& size) {
-  Shape<3> shape;
-  shape.kind = ShapeKind::box;
-  shape.half = size / 2;
-  return shape;
-}
+inline Shape<3> brick(const Vec<3>& size) { return Box<3>{size / 2}; }
 
 /// `half` of its straight part along y, m.
-inline Shape<3> capsule(double half, double radius) {
-  Shape<3> shape;
-  shape.kind = ShapeKind::capsule;
-  shape.half = {0, half, 0};
-  shape.radius = radius;
-  return shape;
-}
+inline Shape<3> capsule(double half, double radius) { return Capsule{half, radius}; }
 
 /// The hull of some places, by trying every plane through three of them.
 inline Shape<3> hull_solid(const std::vector<Vec<3>>& places) {
@@ -61,8 +50,7 @@ inline Shape<3> hull_solid(const std::vector<Vec<3>>& places) {
   }
   // only those that are corners
   std::vector<int> to(places.size(), -1);
-  Shape<3> shape;
-  shape.kind = ShapeKind::hull;
+  Hull shape;
   for (std::vector<int>& face : faces) {
     for (int& corner : face) {
       if (to[corner] < 0) {
@@ -78,19 +66,19 @@ inline Shape<3> hull_solid(const std::vector<Vec<3>>& places) {
 
 /// A box as a hull: corners as in corner(), faces counter-clockwise from outside.
 inline Shape<3> as_hull(const Shape<3>& box) {
-  Shape<3> shape;
-  shape.kind = ShapeKind::hull;
-  for (int i = 0; i < 8; ++i) shape.vertices.push_back(box.center + rotation<3>(box.turn) * corner(box, i));
+  const Box<3>& it = *form<Box<3>>(box);
+  Hull shape;
+  for (int i = 0; i < 8; ++i) shape.vertices.push_back(it.center + rotation<3>(it.turn) * it.corner(i));
   shape.faces = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   return shape;
 }
 
 /// A shape of the plane given a thickness, m, along z.
 inline Shape<3> extruded(const Shape<2>& flat, double depth) {
-  if (flat.kind == ShapeKind::ball || flat.kind == ShapeKind::point) return ball_shape<3>(flat.radius);
-  if (flat.kind == ShapeKind::box) return brick({2 * flat.half[0], 2 * flat.half[1], depth});
+  if (const auto radius = round_radius(flat)) return ball_shape<3>(*radius);
+  if (const Box<2>* box = form<Box<2>>(flat)) return brick({2 * box->half[0], 2 * box->half[1], depth});
   std::vector<Vec<3>> all;
-  for (const Vec<2>& v : flat.vertices) {
+  for (const Vec<2>& v : form<Polygon>(flat)->vertices) {
     all.push_back({v[0], v[1], -depth / 2}), all.push_back({v[0], v[1], depth / 2});
   }
   return hull_solid(all);

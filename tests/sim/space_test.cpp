@@ -138,13 +138,14 @@ World<3> in_space(const World<2>& plane, double depth) {
   for (std::size_t i = 0; i < plane.model.bodies.size(); ++i) {
     const Body<2>& it = plane.model.bodies[i];
     if (it.turns()) {
-      Shape<3> box = brick({2 * it.shape.half[0], 2 * it.shape.half[1], depth});
+      const Vec2 half = form<Box<2>>(it.shape)->half;
+      const Shape<3> box = brick({2 * half[0], 2 * half[1], depth});
       const int k = turning(plane.state, int(i));
       add_solid(out, box, it.mass, to_3d<2>(plane.state.x[i]), to_3d<2>(plane.state.v[i]),
                 exponential({0, 0, plane.state.turn[k][0]}), {0, 0, plane.state.spin[k][0]}, it.elasticity);
     } else {
       add_particle(out, to_3d<2>(plane.state.x[i]), to_3d<2>(plane.state.v[i]), it.mass, it.elasticity,
-                   it.shape.radius);
+                   *round_radius(it.shape));
     }
     out.model.bodies.back().drag = it.drag;
   }
@@ -292,7 +293,7 @@ TEST(WallsInSpace, GiveACornerItsImpulse) {
   const Eigen::Matrix3d axes = rotation<3>(turn);
   Vec3 r = Vec3::Zero();
   for (int i = 0; i < 8; ++i) {
-    const Vec3 arm = axes * corner(world.model.bodies[0].shape, i);
+    const Vec3 arm = axes * form<Box<3>>(world.model.bodies[0].shape)->corner(i);
     if (arm[1] < r[1]) r = arm;
   }
   world.state.x[0][1] = -r[1] + 1e-9;

@@ -29,8 +29,7 @@ inline int add_ball(World<2>& world, double radius, double mass, Vec2 x, Vec2 v 
                     double elasticity = 1) {
   Body<2> body;
   body.name = "ball[" + std::to_string(world.model.bodies.size()) + "]";
-  body.shape.kind = ShapeKind::ball;
-  body.shape.radius = radius;
+  body.shape = Ball<2>{radius};
   body.mass = mass, body.elasticity = elasticity;
   body.inertia = AngularVec<2>(0.5 * mass * radius * radius);
   world.model.bodies.push_back(body);
@@ -77,10 +76,9 @@ inline int add_polygon(World<2>& world, std::vector<Vec2> corners, double mass, 
                        double angle = 0, double spin = 0, double elasticity = 1) {
   Body<2> body;
   body.name = "polygon[" + std::to_string(world.model.bodies.size()) + "]";
-  body.shape.kind = ShapeKind::polygon;
-  body.shape.vertices = std::move(corners);
-  const Vec2 c = mass_properties(body.shape).center;
-  for (Vec2& corner : body.shape.vertices) corner -= c;
+  const Vec2 c = mass_properties(Shape<2>(Polygon{corners})).center;
+  for (Vec2& corner : corners) corner -= c;
+  body.shape = Polygon{std::move(corners)};
   body.mass = mass, body.elasticity = elasticity;
   body.inertia = inertia(body.shape, mass);
   world.model.bodies.push_back(body);

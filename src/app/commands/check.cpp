@@ -1,9 +1,9 @@
 // obscura check: reads, validates and builds scenes without opening GL; says what a render would do.
 
-#include <array>
-#include <iterator>
 #include <memory>
+#include <string_view>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,6 +21,7 @@
 #include "app/film/film.h"
 #include "app/run/shots.h"
 #include "media/error.h"
+#include "scene/body_kinds.h"
 #include "scene/error.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/step/run.h"
@@ -31,7 +32,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string count(std::size_t n, const char* one, const char* many) {
+std::string count(std::size_t n, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);
 }
 
@@ -60,27 +61,12 @@ std::string contact(const sim::Model<D>& model) {
                      direct ? "" : "; impacts go from pair to pair");
 }
 
-// as sim::ShapeKind counts them
-constexpr const char* kKinds[][2] = {{"particle", "particles"},
-                                     {"ball", "balls"},
-                                     {"box", "boxes"},
-                                     {"polygon", "polygons"},
-                                     {"body of several shapes", "bodies of several shapes"},
-                                     {"capsule", "capsules"},
-                                     {"hull", "hulls"}};
-
 // how many there are of each kind; bodies by what they are made of
 template <int D>
-std::array<std::size_t, std::size(kKinds)> numbers_of(const sim::Model<D>& model) {
-  using sim::ShapeKind;
-  std::array<std::size_t, std::size(kKinds)> numbers{};
-  for (const sim::Body<D>& body : model.bodies) {
-    ShapeKind kind = body.shape.kind;
-    // what stands askew and does not turn is a body of one part
-    if (kind == ShapeKind::compound && body.shape.parts.size() == 1) kind = body.shape.parts[0].kind;
-    if (kind == ShapeKind::ball && !body.turns()) kind = ShapeKind::point;
-    ++numbers[std::size_t(kind)];
-  }
+std::vector<std::size_t> numbers_of(const sim::Model<D>& model) {
+  std::vector<std::size_t> numbers(scene::body_kinds().size());
+  for (const sim::Body<D>& body : model.bodies)
+    ++numbers[std::size_t(&scene::kind_of(body) - scene::body_kinds().data())];
   return numbers;
 }
 
@@ -95,9 +81,11 @@ std::size_t links_of(const sim::Model<D>& model) {
 template <int D>
 std::string bodies(const sim::Model<D>& model) {
   const auto numbers = numbers_of(model);
-  std::string text = count(numbers[0], kKinds[0][0], kKinds[0][1]);
-  for (std::size_t k = 1; k < numbers.size(); ++k) {
-    if (numbers[k] > 0) text += ", " + count(numbers[k], kKinds[k][0], kKinds[k][1]);
+  std::string text;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const scene::BodyKind& kind = scene::body_kinds()[k];
+    if (k > 0 && numbers[k] == 0) continue;
+    text += (k > 0 ? ", " : "") + count(numbers[k], kind.called, kind.plural);
   }
   text += ", " + count(model.springs.size(), "spring", "springs");
   if (!model.joints.empty()) text += ", " + count(model.joints.size(), "joint", "joints");
@@ -158,7 +146,7 @@ template <int D>
 Json json(const scene::Scene& scene, const sim::Model<D>& model, const Plan& plan) {
   Json bodies = Json::object();
   const auto numbers = numbers_of(model);
-  for (std::size_t k = 0; k < numbers.size(); ++k) bodies[kKinds[k][1]] = numbers[k];
+  for (std::size_t k = 0; k < numbers.size(); ++k) bodies[scene::body_kinds()[k].plural] = numbers[k];
   return {{"file", scene.file},
           {"good", true},
           {"dimension", D},

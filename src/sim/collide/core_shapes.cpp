@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/shape/convex_polygon.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim::plane {
@@ -136,25 +137,20 @@ double at_corner(const CoreShapes& cores, const CoreShape& round, const Pose& at
 }  // namespace
 
 CoreShapes::CoreShapes(const Model<2>& model) {
-  const auto moving = std::count_if(model.bodies.begin(), model.bodies.end(), [](const Body<2>& body) {
-    return !body.fixed && body.shape.kind != ShapeKind::point;
-  });
+  const auto moving = std::count_if(model.bodies.begin(), model.bodies.end(),
+                                    [](const Body<2>& body) { return !body.fixed && !is_point(body.shape); });
   const double crowded = std::clamp((double(moving) - kFew) / (kMany - kFew), 0.0, 1.0);
   linear_slop = kLeastAllowed + (kMostAllowed - kLeastAllowed) * crowded * crowded * crowded;
   const auto add = [&](int body, int part, const Shape<2>& shape) {
     CoreShape core;
     core.body = body, core.part = part, core.first = int(x.size());
-    core.radius = shape.kind == ShapeKind::ball ? shape.radius : 0;
-    if (shape.kind == ShapeKind::box) {
-      if (shape.center == Vec<2>::Zero()) core.wide = shape.half[0], core.high = shape.half[1];
-      for (const int i : {0, 1, 3, 2}) {
-        const Vec<2> at = shape.center + sim::corner(shape, i);
-        x.push_back(at[0]), y.push_back(at[1]);
-      }
-    } else if (shape.kind == ShapeKind::polygon) {
-      for (const Vec<2>& at : shape.vertices) x.push_back(at[0]), y.push_back(at[1]);
-    } else {
-      x.push_back(shape.center[0]), y.push_back(shape.center[1]);
+    const ConvexPolygon outline(shape);
+    core.radius = outline.radius();
+    if (outline.is_box() && outline.middle() == Vec<2>::Zero())
+      core.wide = outline.half()[0], core.high = outline.half()[1];
+    for (int i = 0; i < outline.corners(); ++i) {
+      const Vec<2> at = outline.corner(i);
+      x.push_back(at[0]), y.push_back(at[1]);
     }
     core.count = int(x.size()) - core.first;
     assert(core.count <= Feature::kMostCorners && part <= Feature::kMostParts);
@@ -170,11 +166,7 @@ CoreShapes::CoreShapes(const Model<2>& model) {
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     begin.push_back(int(all.size()));
     const Shape<2>& shape = model.bodies[body].shape;
-    if (shape.kind == ShapeKind::compound) {
-      for (int part = 0; part < int(shape.parts.size()); ++part) add(body, part, shape.parts[part]);
-    } else {
-      add(body, 0, shape);
-    }
+    for (int i = 0; i < parts(shape); ++i) add(body, i, part(shape, i));
     bounding_radius.push_back(sim::bounding_radius(shape));
     half_thickness.push_back(sim::half_thickness(shape));
   }

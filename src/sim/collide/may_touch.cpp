@@ -7,7 +7,7 @@ namespace obscura::sim {
 template <int D>
 MayTouch<D>::MayTouch(const Model<D>& model) : jointed_(model.bodies.size()) {
   for (const Body<D>& body : model.bodies) {
-    const bool point = body.shape.kind == ShapeKind::point;
+    const bool point = is_point(body.shape);
     kind_.push_back(char((body.fixed ? kFixed : 0) | (point ? kPoint : 0) | (body.handout ? kHandout : 0)));
   }
 

@@ -223,9 +223,8 @@ void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin,
 int digits(const Shape<2>& shape) {
   int most = 1;
   for (int i = 0; i < parts(shape); ++i) {
-    const Shape<2>& one = part(shape, i);
-    if (one.kind == ShapeKind::box) most = std::max(most, 4);
-    if (one.kind == ShapeKind::polygon) most = std::max(most, int(one.vertices.size()));
+    const Core<2> one = core(part(shape, i));
+    most = std::max(most, one.box ? 4 : int(one.corners.size()));
   }
   return most;
 }

@@ -32,7 +32,7 @@ constexpr double kSharp = 0.05;      // sine between edges that cross
 constexpr double kRounding = 1e-12;
 
 using Kind = ContactCandidate<3>::Kind;
-using Point = Vec<2>;
+using Flat = Vec<2>;
 
 // a list that allocates only when it is long
 template <class T, int N>
@@ -144,27 +144,27 @@ void keep(const ContactCandidate<3>& gap, double margin, std::vector<ContactCand
 // a face seen along a normal: its corners, where they are seen, and how high they lie
 struct Seen {
   int corner;
-  Point at;
+  Flat at;
   double height;
 };
 using Loop = Few<Seen, 16>;
 
-double cross(const Point& p, const Point& q) { return p[0] * q[1] - p[1] * q[0]; }
+double cross(const Flat& p, const Flat& q) { return p[0] * q[1] - p[1] * q[0]; }
 
 // whether a point lies within a loop, up to `slack` beyond it. A loop of two holds none.
-bool within(const Loop& loop, const Point& p, double slack) {
+bool within(const Loop& loop, const Flat& p, double slack) {
   if (loop.size() < 3) return false;
   for (int i = 0; i < loop.size(); ++i) {
-    const Point from = loop[i].at, side = loop[i + 1 < loop.size() ? i + 1 : 0].at - from;
+    const Flat from = loop[i].at, side = loop[i + 1 < loop.size() ? i + 1 : 0].at - from;
     if (cross(side, p - from) < -slack * std::sqrt(side.squaredNorm())) return false;
   }
   return true;
 }
 
 // how wide what lies about the points is, across the way between the farthest two
-double width(const Few<Point, 16>& points) {
+double width(const Few<Flat, 16>& points) {
   double most = 0;
-  Point from = Point::Zero(), way = Point::Zero();
+  Flat from = Flat::Zero(), way = Flat::Zero();
   for (int i = 0; i < points.size(); ++i) {
     for (int k = i + 1; k < points.size(); ++k) {
       const double d = (points[k] - points[i]).squaredNorm();
@@ -252,7 +252,7 @@ class Shared {
     return {corner, {t_.dot(place), u_.dot(place)}, n_.dot(place)};
   }
 
-  bool taken(const Point& at) const {
+  bool taken(const Flat& at) const {
     for (int i = 0; i < places_.size(); ++i) {
       if ((places_[i] - at).squaredNorm() <= 4 * aligned_ * aligned_) return true;
     }
@@ -260,7 +260,7 @@ class Shared {
   }
 
   // real: its nearest places lie on the features
-  void add(const Point& at, const ContactCandidate<3>& gap, bool real) {
+  void add(const Flat& at, const ContactCandidate<3>& gap, bool real) {
     places_.push_back(at), gaps_.push_back(gap);
     if (real || touching_.best <= 0) least_ = std::min(least_, gap.value + couple_.radii());
   }
@@ -287,11 +287,11 @@ class Shared {
     const int sides = its_.size() > 2 ? its_.size() : 1;
     for (int i = 0; i < own_.size(); ++i) {
       const Seen &p0 = own_[i], &p1 = own_[i + 1 < own_.size() ? i + 1 : 0];
-      const Point p = p1.at - p0.at;
+      const Flat p = p1.at - p0.at;
       const double p_length = std::sqrt(p.squaredNorm());
       for (int k = 0; k < sides; ++k) {
         const Seen &q0 = its_[k], &q1 = its_[k + 1 < its_.size() ? k + 1 : 0];
-        const Point q = q1.at - q0.at;
+        const Flat q = q1.at - q0.at;
         const double q_length = std::sqrt(q.squaredNorm());
         if (q_length <= aligned_) continue;
         const double d0 = cross(p, q0.at - p0.at) / p_length, d1 = cross(p, q1.at - p0.at) / p_length;
@@ -301,13 +301,13 @@ class Shared {
         };
         if (!across(d0, d1) || !across(e0, e1)) continue;
         const double on_q = d0 / (d0 - d1);
-        const Point at = q0.at + on_q * q;
+        const Flat at = q0.at + on_q * q;
         if (!taken(at)) cross_at(at, p0.corner, p1.corner, q0, q1, on_q);
       }
     }
   }
 
-  void cross_at(const Point& at, int p0, int p1, const Seen& q0, const Seen& q1, double on_q) {
+  void cross_at(const Flat& at, int p0, int p1, const Seen& q0, const Seen& q1, double on_q) {
     const Polyhedron &base = touching_.base, &other = touching_.other;
     const int of_base = base.edge_between(p0, p1), of_other = other.edge_between(q0.corner, q1.corner);
     const Vec<3> from = base.corner(p0), to = other.corner(q0.corner);
@@ -343,7 +343,7 @@ class Shared {
   bool parallel_ = false;
   double aligned_ = 0, least_ = 1e300;
   Loop own_, its_;
-  Few<Point, 16> places_;
+  Few<Flat, 16> places_;
   std::vector<ContactCandidate<3>>& gaps_;
   std::size_t begin_;
 };
@@ -472,9 +472,8 @@ void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidat
 int digits(const Shape<3>& shape) {
   int most = 2;
   for (int i = 0; i < parts(shape); ++i) {
-    const Shape<3>& one = part(shape, i);
-    if (one.kind == ShapeKind::box) most = std::max(most, 12);
-    if (one.kind == ShapeKind::hull) most = std::max(most, int(one.vertices.size() + one.faces.size()));
+    const Core<3> one = core(part(shape, i));
+    most = std::max(most, one.box ? 12 : int(one.corners.size() + one.faces.size()));
   }
   return most;
 }

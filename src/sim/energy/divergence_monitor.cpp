@@ -14,6 +14,7 @@
 #include "sim/energy/energy.h"
 #include "sim/math/lie_step.h"
 #include "sim/math/limits.h"
+#include "sim/model/stance.h"
 #include "sim/motion/stability.h"
 #include "sim/shape/shape.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "sim/math/spatial.h"
+#include "sim/model/stance.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim {

@@ -124,7 +124,7 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
 template <int D>
 bool Handout<D>::particle_like(int body) const {
   const Body<D>& b = model_.bodies[body];
-  return !b.turns() && (b.shape.kind == ShapeKind::point || b.shape.kind == ShapeKind::ball);
+  return !b.turns() && round_radius(b.shape);
 }
 
 // the plain case, and the only one that happens often: a particle that no spring holds meets one wall. False,
@@ -137,13 +137,13 @@ bool Handout<D>::bounce(State<D>& state, int body) const {
     if (grip.body == body) return false;
   }
   Vec<D> x = state.x[body], v = state.v[body];
-  const double speed = v.squaredNorm();
+  const double speed = v.squaredNorm(), radius = *round_radius(b.shape);
   int met = -1;
   double jump = 0;
   for (int round = 0; round < 2; ++round) {
     for (int wall = 0; wall < int(model_.walls.size()); ++wall) {
       const Wall<D>& w = model_.walls[wall];
-      const double distance = (x - w.point).dot(w.normal) - b.shape.radius;
+      const double distance = (x - w.point).dot(w.normal) - radius;
       if (!(distance < 0)) continue;
       const double vn = v.dot(w.normal);
       if (!strikes(vn, speed)) continue;
@@ -158,14 +158,14 @@ bool Handout<D>::bounce(State<D>& state, int body) const {
   state.ledger.displacement -= b.mass * model_.gravity.dot(x - state.x[body]);
   state.ledger.impacts += 0.5 * b.mass * (v.squaredNorm() - speed);
   state.x[body] = x, state.v[body] = v;
-  state.touches.push_back({body, met, x - b.shape.radius * w.normal, b.mass * jump * w.normal});
+  state.touches.push_back({body, met, x - radius * w.normal, b.mass * jump * w.normal});
   return true;
 }
 
 // a particle at each wall in turn, §2.5; false where nothing happened
 template <int D>
 bool Handout<D>::particle(Striker& s) {
-  const double mass = s.body->mass, radius = s.body->shape.radius;
+  const double mass = s.body->mass, radius = *round_radius(s.body->shape);
   Vec<D>&x = s.at.x, &v = s.at.v;
   for (int round = 0; round < kRounds; ++round) {
     bool quiet = true;

@@ -48,6 +48,17 @@ Rotation<D> rotation(const Orientation<D>& turn) {
   }
 }
 
+/// The same turn as a quaternion of space: one in the plane is about z.
+template <int D>
+Eigen::Quaterniond quaternion(const Orientation<D>& turn) {
+  if constexpr (D == 2) {
+    const auto [s, c] = sin_cos(0.5 * turn[0]);
+    return {c, 0, 0, s};
+  } else {
+    return {turn[3], turn[0], turn[1], turn[2]};
+  }
+}
+
 /// Where a body comes to that turns from `turn` by `by` (rad; in space a rotation vector in the room's frame,
 /// as spins are).
 template <int D>

@@ -31,4 +31,12 @@ Orientation<D> no_rotation() {
 
 using Vec3 = Eigen::Vector3d;
 
+/// A place of the plane at z = 0.
+template <int D>
+Vec3 to_3d(const Vec<D>& x) {
+  Vec3 place = Vec3::Zero();
+  place.head<D>() = x;
+  return place;
+}
+
 }  // namespace obscura::sim

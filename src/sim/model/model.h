@@ -8,6 +8,7 @@
 
 #include "sim/math/rational.h"
 #include "sim/math/vec.h"
+#include "sim/shape/form.h"
 
 namespace obscura::sim {
 
@@ -27,23 +28,6 @@ enum class Impacts { simultaneous, sequential };
 
 /// What is done with bodies that overlap at the start: they are refused, or gently pushed apart.
 enum class Overlap { refuse, separate };
-
-/// A polygon is of the plane, a hull of space.
-enum class ShapeKind { point, ball, box, polygon, compound, capsule, hull };
-
-/// The form of a body about its centre of mass, in its own frame.
-template <int D>
-struct Shape {
-  ShapeKind kind = ShapeKind::point;
-  double radius = 0;               // ball, capsule, m
-  Vec<D> half = Vec<D>::Zero();    // box: half its sides, m; capsule: its axis goes from -half[1] to half[1]
-                                   // along y
-  Vec<D> center = Vec<D>::Zero();  // of a ball, box or capsule that is a part, m
-  std::vector<Vec<D>> vertices;    // polygon: convex, counter-clockwise; hull: convex; m
-  std::vector<Shape> parts;        // compound: in the body's frame, m
-  std::vector<std::vector<int>> faces = {};  // hull: loops of vertices, counter-clockwise seen from outside
-  Orientation<D> turn = no_rotation<D>();    // of a box or capsule that is a part
-};
 
 /// What stays true of a body while the room moves. A particle is a point or a ball that does not turn; a
 /// rigid body is a particle that also turns.

@@ -15,16 +15,7 @@ namespace obscura::sim {
 
 /// What is the same at every instant: names, shapes and masses of all that is in the room.
 struct SceneInfo {
-  /// A piece of a body of several, in the body's frame.
-  struct Part {
-    ShapeKind kind = ShapeKind::ball;
-    double radius = 0;           // m
-    Vec3 half = Vec3::Zero();    // m
-    Vec3 center = Vec3::Zero();  // of a ball, box or capsule, m
-    std::vector<Vec3> vertices;  // of a polygon, counter-clockwise, or a hull; in the body's frame, m
-    std::vector<std::vector<int>> faces = {};                  // of a hull, as a body's
-    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  // of a box or capsule
-  };
+  using Part = DrawnForm;  // of a body of several, in the body's frame
   struct Body {
     std::string name;
     ShapeKind kind = ShapeKind::point;
@@ -33,8 +24,8 @@ struct SceneInfo {
     double mass = 0;           // kg
     bool fixed = false;
     bool turns = false;
-    std::vector<Vec3> vertices;  // of a polygon or hull, in its own frame from its centre of mass, m
-    std::vector<Part> parts;     // of a compound
+    std::vector<Vec3> vertices;    // of a polygon or hull, in its own frame from its centre of mass, m
+    std::vector<DrawnForm> parts;  // of a compound
     std::vector<std::vector<int>> faces = {};  // of a hull: loops of vertices, counter-clockwise from outside
     double friction = 0;                       // Coulomb's mu
   };

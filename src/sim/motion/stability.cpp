@@ -200,7 +200,8 @@ std::vector<Trouble> foreseen(const Model<D>& model) {
       const Body<D>& body = model.bodies[free.body];
       if (body.fixed) continue;
       Tightness held = free;
-      const double yields = yielding(model, End<D>{free.body, body.shape.half});
+      const double yields = yielding(
+          model, End<D>{free.body, of_form(body.shape, [](const auto& form) { return form.hold(); })});
       held.stiffness += model.mice[mouse].stiffness * yields,
           held.damping += model.mice[mouse].damping * yields;
       ++held.ties, held.hand = true, held.strongest = mouse;

@@ -7,7 +7,6 @@
 #include "sim/shape/convex_polygon.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace obscura::sim {
@@ -42,31 +41,18 @@ Separation of_boxes(const ConvexPolygon& of, const ConvexPolygon& other, const L
 
 }  // namespace
 
-ConvexPolygon::ConvexPolygon(const Shape<2>& shape) : shape_(&shape) {
-  assert(shape.kind != ShapeKind::compound);
-  switch (shape.kind) {
-    case ShapeKind::ball:
-      radius_ = shape.radius;
-      middle_ = shape.center;
-      break;
-    case ShapeKind::box:
-      corners_ = 4;
-      middle_ = shape.center;
-      bounding_radius_ = shape.half.norm();
-      break;
-    case ShapeKind::polygon:
-      corners_ = int(shape.vertices.size());
-      for (const Vec<2>& vertex : shape.vertices) middle_ += vertex / corners_;
-      for (const Vec<2>& vertex : shape.vertices) {
-        bounding_radius_ = std::max(bounding_radius_, (vertex - middle_).squaredNorm());
-      }
-      bounding_radius_ = std::sqrt(bounding_radius_);
-      break;
-    case ShapeKind::point:
-    case ShapeKind::compound:
-    case ShapeKind::capsule:
-    case ShapeKind::hull:
-      break;
+ConvexPolygon::ConvexPolygon(const Core<2>& core)
+    : vertices_(core.corners.data()), box_(core.box), radius_(core.radius), middle_(core.middle) {
+  if (box_) {
+    corners_ = 4;
+    bounding_radius_ = box_->half.norm();
+  } else if (!core.corners.empty()) {
+    corners_ = int(core.corners.size());
+    for (const Vec<2>& vertex : core.corners) middle_ += vertex / corners_;
+    for (const Vec<2>& vertex : core.corners) {
+      bounding_radius_ = std::max(bounding_radius_, (vertex - middle_).squaredNorm());
+    }
+    bounding_radius_ = std::sqrt(bounding_radius_);
   }
 }
 
@@ -77,9 +63,9 @@ int ConvexPolygon::farthest(const Vec<2>& d) const {
     return d[0] > 0 ? 1 : 0;
   }
   int best = 0;
-  double most = d.dot(shape_->vertices[0]);
+  double most = d.dot(vertices_[0]);
   for (int i = 1; i < corners_; ++i) {
-    const double here = d.dot(shape_->vertices[i]);
+    const double here = d.dot(vertices_[i]);
     if (here > most) {
       most = here;
       best = i;

@@ -4,14 +4,15 @@
 
 namespace obscura::sim {
 
-/// The convex core of a point, ball, box or polygon of the plane, seen in the frame of its body: its corners
+/// The convex core of a form of the plane, seen in the frame of its body: its corners
 /// counter-clockwise, and the radius that rounds it. Corner i of a box counts around it from the lower left.
 /// Face i runs from corner i to the next. A point and a ball have one corner and no face. Refers to the
-/// shape, which must live longer.
+/// form, which must live longer.
 class ConvexPolygon {
  public:
-  /// Requires any kind but compound.
-  explicit ConvexPolygon(const Shape<2>& shape);
+  /// Requires any form but a compound.
+  explicit ConvexPolygon(const Shape<2>& shape) : ConvexPolygon(core(shape)) {}
+  explicit ConvexPolygon(const Core<2>& core);
 
   int corners() const { return corners_; }
   int faces() const { return corners_ > 1 ? corners_ : 0; }
@@ -19,7 +20,7 @@ class ConvexPolygon {
   double radius() const { return radius_; }
   Vec<2> corner(int i) const {
     if (corners_ == 1) return middle_;
-    if (!is_box()) return shape_->vertices[i];
+    if (!box_) return vertices_[i];
     return {middle_[0] + (i == 1 || i == 2 ? half()[0] : -half()[0]),
             middle_[1] + (i >= 2 ? half()[1] : -half()[1])};
   }
@@ -27,7 +28,7 @@ class ConvexPolygon {
   /// Outward unit normal of face i.
   Vec<2> normal(int i) const {
     if (is_box()) return i % 2 ? Vec<2>(2 - i, 0) : Vec<2>(0, i - 1);
-    const Vec<2> along = shape_->vertices[next(i)] - shape_->vertices[i];
+    const Vec<2> along = vertices_[next(i)] - vertices_[i];
     return Vec<2>(along[1], -along[0]) / along.norm();
   }
 
@@ -41,23 +42,16 @@ class ConvexPolygon {
   /// Which face's normal lies most along d, the first of equals. Requires faces.
   int facing(const Vec<2>& d) const;
 
-  bool is_box() const { return shape_->kind == ShapeKind::box; }
-  const Vec<2>& half() const { return shape_->half; }  // of a box
+  bool is_box() const { return box_ != nullptr; }
+  const Vec<2>& half() const { return box_->half; }  // of a box
 
  private:
-  const Shape<2>* shape_;
+  const Vec<2>* vertices_;
+  const Box<2>* box_;
   int corners_ = 1;
   double radius_ = 0, bounding_radius_ = 0;
   Vec<2> middle_ = Vec<2>::Zero();
 };
-
-/// Parts of a shape that each have an outline: those of a compound, or itself.
-inline int parts(const Shape<2>& shape) {
-  return shape.kind == ShapeKind::compound ? int(shape.parts.size()) : 1;
-}
-inline const Shape<2>& part(const Shape<2>& shape, int i) {
-  return shape.kind == ShapeKind::compound ? shape.parts[i] : shape;
-}
 
 /// How a lies in the frame of b.
 struct Lie {

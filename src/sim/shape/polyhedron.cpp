@@ -11,7 +11,6 @@
 #include "sim/shape/polyhedron.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace obscura::sim {
@@ -35,54 +34,45 @@ constexpr Polyhedron::Edge box_edge(int number) {
 }
 
 // of a loop, by Newell: every corner has its say
-Vec<3> loop_normal(const Shape<3>& hull, int face) {
+Vec<3> loop_normal(const Core<3>& hull, int face) {
   const std::vector<int>& loop = hull.faces[face];
-  const Vec<3>& first = hull.vertices[loop[0]];
+  const Vec<3>& first = hull.corners[loop[0]];
   Vec<3> sum = Vec<3>::Zero();
   for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-    sum += (hull.vertices[loop[i]] - first).cross(hull.vertices[loop[i + 1]] - first);
+    sum += (hull.corners[loop[i]] - first).cross(hull.corners[loop[i + 1]] - first);
   }
   return sum / std::sqrt(sum.squaredNorm());
 }
 
 }  // namespace
 
-Polyhedron::Polyhedron(const Shape<3>& shape, const BodyMotion<3>& at, const Vec<3>& origin)
-    : shape_(&shape), x_(at.x - origin), turn_(at.room_from_body) {
-  assert(shape.kind != ShapeKind::compound && shape.kind != ShapeKind::polygon);
+Polyhedron::Polyhedron(const Core<3>& core, const BodyMotion<3>& at, const Vec<3>& origin)
+    : core_(core), radius_(core.radius), x_(at.x - origin), turn_(at.room_from_body) {
   middle_ = x_;
-  if (!shape.center.isZero(0)) middle_ += turn_ * shape.center;
-  switch (shape.kind) {
-    case ShapeKind::ball:
-      radius_ = shape.radius;
-      break;
-    case ShapeKind::box:
-      corners_ = 8, edges_ = 12, faces_ = 6;
-      bounding_radius_ = std::sqrt(shape.half.squaredNorm());
-      break;
-    case ShapeKind::capsule:
-      corners_ = 2, edges_ = 1;
-      radius_ = shape.radius, bounding_radius_ = shape.half[1];
-      break;
-    case ShapeKind::hull: {
-      corners_ = int(shape.vertices.size()), faces_ = int(shape.faces.size());
-      Vec<3> middle = Vec<3>::Zero();
-      for (const Vec<3>& vertex : shape.vertices) middle += vertex;
-      middle /= corners_;
-      for (const Vec<3>& vertex : shape.vertices) {
-        bounding_radius_ = std::max(bounding_radius_, (vertex - middle).squaredNorm());
-      }
-      bounding_radius_ = std::sqrt(bounding_radius_);
-      middle_ = x_ + turn_ * middle;
-      find_edges();
-      break;
+  if (!core.middle.isZero(0)) middle_ += turn_ * core.middle;
+  const auto stand = [&](const Orientation<3>& turn, const Vec<3>& half) {
+    axes_ = turn == no_rotation<3>() ? turn_ : Rotation<3>(turn_ * rotation<3>(turn));
+    arms_ = axes_ * half.asDiagonal();
+  };
+  if (core.box) {
+    corners_ = 8, edges_ = 12, faces_ = 6;
+    bounding_radius_ = std::sqrt(core.box->half.squaredNorm());
+    stand(core.box->turn, core.box->half);
+  } else if (core.capsule) {
+    corners_ = 2, edges_ = 1;
+    bounding_radius_ = core.capsule->half;
+    stand(core.capsule->turn, {0, core.capsule->half, 0});
+  } else if (!core.corners.empty()) {
+    corners_ = int(core.corners.size()), faces_ = int(core.faces.size());
+    Vec<3> middle = Vec<3>::Zero();
+    for (const Vec<3>& vertex : core.corners) middle += vertex;
+    middle /= corners_;
+    for (const Vec<3>& vertex : core.corners) {
+      bounding_radius_ = std::max(bounding_radius_, (vertex - middle).squaredNorm());
     }
-    default:
-      break;
-  }
-  if (shape.kind == ShapeKind::box || shape.kind == ShapeKind::capsule) {
-    axes_ = shape.turn == no_rotation<3>() ? turn_ : Rotation<3>(turn_ * rotation<3>(shape.turn));
-    arms_ = axes_ * shape.half.asDiagonal();
+    bounding_radius_ = std::sqrt(bounding_radius_);
+    middle_ = x_ + turn_ * middle;
+    find_edges();
   }
 }
 
@@ -98,7 +88,7 @@ void Polyhedron::find_edges() {
   };
   const auto behind = [&](int from, int to) {
     for (int face = 0; face < faces_; ++face) {
-      const std::vector<int>& loop = shape_->faces[face];
+      const std::vector<int>& loop = core_.faces[face];
       for (std::size_t i = 0; i < loop.size(); ++i) {
         if (loop[i] == to && loop[i + 1 < loop.size() ? i + 1 : 0] == from) return face;
       }
@@ -106,7 +96,7 @@ void Polyhedron::find_edges() {
     return -1;
   };
   for (int face = 0; face < faces_; ++face) {
-    const std::vector<int>& loop = shape_->faces[face];
+    const std::vector<int>& loop = core_.faces[face];
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const int from = loop[i], to = loop[i + 1 < loop.size() ? i + 1 : 0];
       if (from < to) add({from, to, face, behind(from, to)});
@@ -122,19 +112,19 @@ Polyhedron::Edge Polyhedron::edge(int i) const {
 
 std::span<const int> Polyhedron::loop(int face) const {
   if (is_box()) return kBoxLoops[face];
-  return shape_->faces[face];
+  return core_.faces[face];
 }
 
 Vec<3> Polyhedron::normal(int face) const {
   if (is_box()) return (face & 1 ? 1 : -1) * axes_.col(face >> 1);
-  return turn_ * loop_normal(*shape_, face);
+  return turn_ * loop_normal(core_, face);
 }
 
 Vec<3> Polyhedron::along(int edge) const {
   if (is_box()) return axes_.col(edge >> 2);
   if (faces_ == 0) return axes_.col(1);
   const Edge of = this->edge(edge);
-  const Vec<3> way = shape_->vertices[of.to] - shape_->vertices[of.from];
+  const Vec<3> way = core_.corners[of.to] - core_.corners[of.from];
   return turn_ * (way / std::sqrt(way.squaredNorm()));
 }
 
@@ -151,21 +141,16 @@ int Polyhedron::edge_between(int corner, int other) const {
 }
 
 Vec<3> Polyhedron::own_corner(int i) const {
+  if (!core_.corners.empty()) return core_.corners[i];
   Vec<3> place = Vec<3>::Zero();
-  switch (shape_->kind) {
-    case ShapeKind::hull:
-      return shape_->vertices[i];
-    case ShapeKind::box:
-      place = sim::corner(*shape_, i);
-      break;
-    case ShapeKind::capsule:
-      place[1] = i ? shape_->half[1] : -shape_->half[1];
-      break;
-    default:
-      break;
+  Orientation<3> turn = no_rotation<3>();
+  if (core_.box) {
+    place = core_.box->corner(i), turn = core_.box->turn;
+  } else if (core_.capsule) {
+    place[1] = i ? core_.capsule->half : -core_.capsule->half, turn = core_.capsule->turn;
   }
-  if (shape_->turn != no_rotation<3>()) place = rotation<3>(shape_->turn) * place;
-  return shape_->center + place;
+  if (turn != no_rotation<3>()) place = rotation<3>(turn) * place;
+  return core_.middle + place;
 }
 
 int Polyhedron::farthest(const Vec<3>& d) const {
@@ -177,9 +162,9 @@ int Polyhedron::farthest(const Vec<3>& d) const {
   if (faces_ == 0) return axes_.col(1).dot(d) > 0 ? 1 : 0;
   const Vec<3> own = turn_.transpose() * d;
   int best = 0;
-  double most = own.dot(shape_->vertices[0]);
+  double most = own.dot(core_.corners[0]);
   for (int i = 1; i < corners_; ++i) {
-    const double here = own.dot(shape_->vertices[i]);
+    const double here = own.dot(core_.corners[i]);
     if (here > most) {
       most = here;
       best = i;

@@ -8,10 +8,10 @@
 
 namespace obscura::sim {
 
-/// The convex core of a point, ball, capsule, box or hull of space, where it stands: corners, edges between
+/// The convex core of a form of space, where it stands: corners, edges between
 /// two of them, faces around loops of them, and the radius that rounds it. A point and a ball have one corner
 /// and nothing else, a capsule one edge and no face. Places are in the axes of the room, about an origin near
-/// by. Refers to the shape, which must live longer; allocates only for hulls of more than kFewEdges edges.
+/// by. Refers to the form, which must live longer; allocates only for hulls of more than kFewEdges edges.
 class Polyhedron {
  public:
   static constexpr int kFewEdges = 48;
@@ -21,8 +21,10 @@ class Polyhedron {
     int from, to, left, right;
   };
 
-  /// Requires any kind but polygon and compound.
-  Polyhedron(const Shape<3>& shape, const BodyMotion<3>& at, const Vec<3>& origin);
+  /// Requires any form but a compound.
+  Polyhedron(const Shape<3>& shape, const BodyMotion<3>& at, const Vec<3>& origin)
+      : Polyhedron(sim::core(shape), at, origin) {}
+  Polyhedron(const Core<3>& core, const BodyMotion<3>& at, const Vec<3>& origin);
 
   int corners() const { return corners_; }
   int edges() const { return edges_; }
@@ -30,17 +32,12 @@ class Polyhedron {
   double radius() const { return radius_; }
 
   Vec<3> corner(int i) const {
-    switch (shape_->kind) {
-      case ShapeKind::box:
-        return middle_ + (i & 1 ? 1 : -1) * arms_.col(0) + (i & 2 ? 1 : -1) * arms_.col(1) +
-               (i & 4 ? 1 : -1) * arms_.col(2);
-      case ShapeKind::capsule:
-        return middle_ + (i ? 1 : -1) * arms_.col(1);
-      case ShapeKind::hull:
-        return x_ + turn_ * shape_->vertices[i];
-      default:
-        return middle_;
-    }
+    if (core_.box)
+      return middle_ + (i & 1 ? 1 : -1) * arms_.col(0) + (i & 2 ? 1 : -1) * arms_.col(1) +
+             (i & 4 ? 1 : -1) * arms_.col(2);
+    if (!core_.corners.empty()) return x_ + turn_ * core_.corners[i];
+    if (core_.capsule) return middle_ + (i ? 1 : -1) * arms_.col(1);
+    return middle_;
   }
   Edge edge(int i) const;
   std::span<const int> loop(int face) const;  // corners, counter-clockwise seen from outside
@@ -63,15 +60,15 @@ class Polyhedron {
   /// Which of the faces around a corner has its normal most along d, the first of equals. Requires faces.
   int facing(int corner, const Vec<3>& d) const;
 
-  bool is_box() const { return shape_->kind == ShapeKind::box; }
-  const Rotation<3>& axes() const { return axes_; }  // of a box, unit
-  const Rotation<3>& arms() const { return arms_; }  // of a box: its axes times half its sides
-  const Vec<3>& half() const { return shape_->half; }
+  bool is_box() const { return core_.box != nullptr; }
+  const Rotation<3>& axes() const { return axes_; }       // of a box, unit
+  const Rotation<3>& arms() const { return arms_; }       // of a box: its axes times half its sides
+  const Vec<3>& half() const { return core_.box->half; }  // of a box
 
  private:
   void find_edges();
 
-  const Shape<3>* shape_;
+  Core<3> core_;
   int corners_ = 1, edges_ = 0, faces_ = 0;
   double radius_ = 0, bounding_radius_ = 0;
   Vec<3> x_, middle_;
@@ -80,14 +77,6 @@ class Polyhedron {
   std::array<Edge, kFewEdges> few_;
   std::vector<Edge> many_;
 };
-
-/// Parts of a shape that each have a core: those of a compound, or itself.
-inline int parts(const Shape<3>& shape) {
-  return shape.kind == ShapeKind::compound ? int(shape.parts.size()) : 1;
-}
-inline const Shape<3>& part(const Shape<3>& shape, int i) {
-  return shape.kind == ShapeKind::compound ? shape.parts[i] : shape;
-}
 
 /// A face of one core, how far the corners of the other stay from it (m), and which is the nearest.
 struct FaceAxis {

@@ -1,18 +1,71 @@
 // Moments of inertia about the centre, handout §3.1; where a shape reaches.
-//   I = m K / A        A  content,   K  second moment: sim/shape/mass_properties.cpp
+//   plane   I = m K / A               A  content,  K = int |r - c|^2 dA
+//   space   I = m (tr C - C) / V      V  content,  C = int (r - c)(r - c)' dV; its eigenvectors are the
+//                                     principal axes
+// with K and C of each form in its own file.
 
 #include "sim/shape/shape.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "sim/shape/answers.h"
+
 namespace obscura::sim {
+
+static_assert(all_forms_answer<2>() && all_forms_answer<3>(), "a form leaves out an answer");
+
+// Jacobi's rotations: turns a symmetric matrix into a diagonal one, smallest turns first to last, so that
+// axes stay as near to those of the frame as they can. The axes it finds, as a turn.
+Orientation<3> principal_axes(Eigen::Matrix3d& a) {
+  Orientation<3> turn = no_rotation<3>();
+  for (int sweep = 0; sweep < 50; ++sweep) {
+    // what is rounding counts as none: a shape whose axes are its frame's keeps them
+    const double small = 1e-14 * a.trace();
+    bool done = true;
+    for (int p = 0; p < 2; ++p) {
+      for (int q = p + 1; q < 3; ++q) {
+        if (std::fabs(a(p, q)) <= small) continue;
+        done = false;
+        const double tau = (a(q, q) - a(p, p)) / (2 * a(p, q));
+        const double t = (tau < 0 ? -1 : 1) / (std::fabs(tau) + std::sqrt(1 + tau * tau));
+        const double c = 1 / std::sqrt(1 + t * t), s = t * c;
+        Eigen::Matrix3d j = Eigen::Matrix3d::Identity();
+        j(p, p) = c, j(q, q) = c, j(p, q) = s, j(q, p) = -s;
+        a = (j.transpose() * a * j).eval();
+        // the same as a quaternion about the third axis: half the angle from its cosine
+        const int axis = 3 - p - q;
+        const double half_cos = std::sqrt(0.5 * (1 + c)), half_sin = s / (2 * half_cos);
+        Orientation<3> by = Orientation<3>::Zero();
+        by[axis] = axis == 1 ? half_sin : -half_sin, by[3] = half_cos;
+        turn = product(turn, by);
+      }
+    }
+    if (done) break;
+  }
+  return turn / std::sqrt(turn.squaredNorm());
+}
+
+template <int D>
+MassProperties<D> mass_properties(const Shape<D>& shape) {
+  Spread<D> whole = of_form(shape, [](const auto& form) { return form.spread(); });
+  MassProperties<D> out;
+  out.content = whole.content, out.center = whole.center;
+  if constexpr (D == 2) {
+    out.second[0] = whole.second(0);
+  } else {
+    out.axes = principal_axes(whole.second);
+    const Vec3 c = whole.second.diagonal();
+    out.second = Vec3(c[1] + c[2], c[2] + c[0], c[0] + c[1]);
+  }
+  return out;
+}
 
 template <int D>
 AngularVec<D> solid_inertia(const Shape<D>& shape, double mass) {
   // the handout's own words for a box, to the bit
-  if (shape.kind == ShapeKind::box) {
-    const Vec<D> side = 2 * shape.half;
+  if (const Box<D>* box = form<Box<D>>(shape)) {
+    const Vec<D> side = 2 * box->half;
     AngularVec<D> moments;
     for (int axis = 0; axis < kAngular<D>; ++axis) {
       const double x = side[(axis + 1) % D], y = side[(axis + 2) % D];
@@ -21,9 +74,9 @@ AngularVec<D> solid_inertia(const Shape<D>& shape, double mass) {
     }
     return moments;
   }
-  if (shape.kind == ShapeKind::ball) {
-    return AngularVec<D>::Constant(D == 2 ? mass * shape.radius * shape.radius / 2
-                                          : 2 * mass * shape.radius * shape.radius / 5);
+  if (const Ball<D>* ball = form<Ball<D>>(shape)) {
+    return AngularVec<D>::Constant(D == 2 ? mass * ball->radius * ball->radius / 2
+                                          : 2 * mass * ball->radius * ball->radius / 5);
   }
   const MassProperties<D> whole = mass_properties(shape);
   return whole.content > 0 ? AngularVec<D>(mass * whole.second / whole.content) : AngularVec<D>::Zero();
@@ -31,74 +84,25 @@ AngularVec<D> solid_inertia(const Shape<D>& shape, double mass) {
 
 template <int D>
 AngularVec<D> inertia(const Shape<D>& shape, double mass) {
-  const bool particle = shape.kind == ShapeKind::point || shape.kind == ShapeKind::ball;
-  return particle ? AngularVec<D>::Zero() : solid_inertia(shape, mass);
+  return round_radius(shape) ? AngularVec<D>::Zero() : solid_inertia(shape, mass);
 }
 
 template <int D>
 Shape<D> seated(const Shape<D>& shape, const MassProperties<D>& bulk) {
-  Shape<D> out = shape;
   const bool turns = bulk.axes != no_rotation<D>();
   const Rotation<D> back = turns ? Rotation<D>(rotation<D>(bulk.axes).transpose()) : Rotation<D>::Identity();
-  const auto seen = [&](Vec<D>& place) {
-    place -= bulk.center;
-    if (turns) place = (back * place).eval();
+  const auto seen = [&](const Vec<D>& place) {
+    const Vec<D> off = place - bulk.center;
+    return turns ? Vec<D>(back * off) : off;
   };
-  for (Vec<D>& vertex : out.vertices) seen(vertex);
-  for (Shape<D>& part : out.parts) part = seated(part, bulk);
-  if (out.kind == ShapeKind::ball || out.kind == ShapeKind::box || out.kind == ShapeKind::capsule) {
-    seen(out.center);
-    if (turns) out.turn = composed<D>(inverse<D>(bulk.axes), out.turn);
-  }
-  return out;
+  return moved<D>(shape, seen, turns ? inverse<D>(bulk.axes) : no_rotation<D>());
 }
-
-namespace {
-
-template <int D>
-void add_tips(const Shape<D>& shape, std::vector<SupportVertex<D>>& all) {
-  const auto placed = [&](const Vec<D>& own) {
-    if (shape.turn == no_rotation<D>()) return Vec<D>(shape.center + own);
-    return Vec<D>(shape.center + rotation<D>(shape.turn) * own);
-  };
-  switch (shape.kind) {
-    case ShapeKind::point:
-    case ShapeKind::ball:
-      all.push_back({shape.center, shape.radius});
-      break;
-    case ShapeKind::box:
-      for (int i = 0; i < kCorners<D>; ++i) all.push_back({placed(corner(shape, i)), 0});
-      break;
-    case ShapeKind::capsule:
-      for (const double end : {-shape.half[1], shape.half[1]})
-        all.push_back({placed(Vec<D>::Unit(1) * end), shape.radius});
-      break;
-    case ShapeKind::polygon:
-    case ShapeKind::hull:
-      for (const Vec<D>& vertex : shape.vertices) all.push_back({vertex, 0});
-      break;
-    case ShapeKind::compound:
-      for (const Shape<D>& part : shape.parts) add_tips(part, all);
-      break;
-  }
-}
-
-}  // namespace
 
 template <int D>
 std::vector<SupportVertex<D>> support_vertices(const Shape<D>& shape) {
   std::vector<SupportVertex<D>> all;
-  add_tips(shape, all);
+  of_form(shape, [&](const auto& form) { form.add_support_vertices(all); });
   return all;
-}
-
-template <int D>
-SupportVertices<D>::SupportVertices(const std::vector<Body<D>>& bodies) {
-  for (const Body<D>& body : bodies) {
-    first_.push_back(int(all_.size()));
-    add_tips(body.shape, all_);
-  }
-  first_.push_back(int(all_.size()));
 }
 
 template <int D>
@@ -108,129 +112,22 @@ int SupportVertices<D>::most() const {
   return most;
 }
 
-namespace {
-
-// the least half depth below a face of a hull
-double half_hull_thickness(const Shape<3>& hull) {
-  double least = 1e300;
-  for (const std::vector<int>& face : hull.faces) {
-    const Vec<3>& p = hull.vertices[face[0]];
-    const Vec<3> n = (hull.vertices[face[1]] - p).cross(hull.vertices[face[2]] - p);
-    double most = 0;
-    for (const Vec<3>& v : hull.vertices) most = std::max(most, -n.dot(v - p));
-    least = std::min(least, 0.5 * most / std::sqrt(n.squaredNorm()));
-  }
-  return least;
-}
-double half_hull_thickness(const Shape<2>&) { return 0; }
-
-}  // namespace
-
 template <int D>
 double half_thickness(const Shape<D>& shape) {
-  switch (shape.kind) {
-    case ShapeKind::point:
-      return 0;
-    case ShapeKind::hull:
-      return half_hull_thickness(shape);
-    case ShapeKind::ball:
-    case ShapeKind::capsule:
-      return shape.radius;
-    case ShapeKind::box:
-      return shape.half.minCoeff();
-    case ShapeKind::polygon: {
-      // the least half width across an edge: the vertex farthest from an edge comes after that of the edge
-      // before
-      double least = 1e300;
-      const std::size_t n = shape.vertices.size();
-      std::size_t farthest = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        const Vec<D> edge = shape.vertices[(i + 1) % n] - shape.vertices[i];
-        const double length = edge.norm();
-        const auto across = [&](std::size_t k) {
-          const Vec<D> d = shape.vertices[k % n] - shape.vertices[i];
-          return std::abs(edge[0] * d[1] - edge[1] * d[0]) / length;
-        };
-        farthest = std::max(farthest, i + 1);
-        double most = across(farthest);
-        for (double next; farthest < i + n && (next = across(farthest + 1)) >= most; ++farthest) most = next;
-        least = std::min(least, 0.5 * most);
-      }
-      return least;
-    }
-    case ShapeKind::compound: {
-      double least = 1e300;
-      for (const Shape<D>& part : shape.parts) least = std::min(least, half_thickness(part));
-      return least;
-    }
-  }
-  return 0;
+  return of_form(shape, [](const auto& form) { return form.half_thickness(); });
 }
 
 template <int D>
 double bounding_radius(const Shape<D>& shape) {
-  double most = 0;
-  switch (shape.kind) {
-    case ShapeKind::point:
-      break;
-    case ShapeKind::ball:
-      return shape.center.norm() + shape.radius;
-    case ShapeKind::box:
-      if (shape.turn == no_rotation<D>()) return (shape.center.cwiseAbs() + shape.half).norm();
-      [[fallthrough]];
-    case ShapeKind::capsule:
-    case ShapeKind::polygon:
-    case ShapeKind::hull:
-      for (const SupportVertex<D>& tip : support_vertices(shape))
-        most = std::max(most, tip.at.norm() + tip.radius);
-      break;
-    case ShapeKind::compound:
-      for (const Shape<D>& part : shape.parts) most = std::max(most, bounding_radius(part));
-      break;
-  }
-  return most;
+  return of_form(shape, [](const auto& form) { return form.bounding_radius(); });
 }
 
 template <int D>
 Bounds<D> bounds(const Shape<D>& shape, const BodyMotion<D>& at) {
-  const Vec<D> center = at.x + at.arm(shape.center);
-  const auto around = [&](const Vec<D>& far) { return Bounds<D>{center - far, center + far}; };
-  const auto axes = [&]() -> Rotation<D> {
-    if (shape.turn == no_rotation<D>()) return at.room_from_body;
-    return at.room_from_body * rotation<D>(shape.turn);
-  };
-  switch (shape.kind) {
-    case ShapeKind::point:
-      break;
-    case ShapeKind::ball:
-      return around(Vec<D>::Constant(shape.radius));
-    case ShapeKind::box:
-      return around(axes().cwiseAbs() * shape.half);
-    case ShapeKind::capsule:
-      return around(axes().col(1).cwiseAbs() * shape.half[1] + Vec<D>::Constant(shape.radius));
-    case ShapeKind::polygon:
-    case ShapeKind::hull: {
-      Bounds<D> all{at.x + at.arm(shape.vertices[0]), at.x + at.arm(shape.vertices[0])};
-      for (const Vec<D>& vertex : shape.vertices) {
-        const Vec<D> place = at.x + at.arm(vertex);
-        all.lower = all.lower.cwiseMin(place);
-        all.upper = all.upper.cwiseMax(place);
-      }
-      return all;
-    }
-    case ShapeKind::compound: {
-      Bounds<D> all = bounds(shape.parts[0], at);
-      for (const Shape<D>& part : shape.parts) {
-        const Bounds<D> own = bounds(part, at);
-        all.lower = all.lower.cwiseMin(own.lower);
-        all.upper = all.upper.cwiseMax(own.upper);
-      }
-      return all;
-    }
-  }
-  return {at.x, at.x};
+  return of_form(shape, [&](const auto& form) { return form.bounds(at.x, at.room_from_body); });
 }
 
+template MassProperties<2> mass_properties<2>(const Shape<2>&);
 template AngularVec<2> solid_inertia<2>(const Shape<2>&, double);
 template AngularVec<2> inertia<2>(const Shape<2>&, double);
 template Shape<2> seated<2>(const Shape<2>&, const MassProperties<2>&);
@@ -239,6 +136,7 @@ template class SupportVertices<2>;
 template double half_thickness<2>(const Shape<2>&);
 template double bounding_radius<2>(const Shape<2>&);
 template Bounds<2> bounds<2>(const Shape<2>&, const BodyMotion<2>&);
+template MassProperties<3> mass_properties<3>(const Shape<3>&);
 template AngularVec<3> solid_inertia<3>(const Shape<3>&, double);
 template AngularVec<3> inertia<3>(const Shape<3>&, double);
 template Shape<3> seated<3>(const Shape<3>&, const MassProperties<3>&);

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cassert>
+#include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
-#include "sim/model/model.h"
-#include "sim/model/stance.h"
+#include "sim/math/body_motion.h"
+#include "sim/shape/form.h"
 
 namespace obscura::sim {
 
@@ -35,10 +38,6 @@ struct MassProperties {
 /// Of a point: nothing.
 template <int D>
 MassProperties<D> mass_properties(const Shape<D>& shape);
-template <>
-MassProperties<2> mass_properties<2>(const Shape<2>& shape);
-template <>
-MassProperties<3> mass_properties<3>(const Shape<3>& shape);
 
 /// Turns a symmetric tensor into its diagonal; the turn of the axes in which it is that. Axes stay those of
 /// the frame where they are principal ones already.
@@ -49,26 +48,44 @@ Orientation<3> principal_axes(Eigen::Matrix3d& tensor);
 template <int D>
 Shape<D> seated(const Shape<D>& shape, const MassProperties<D>& bulk);
 
-/// Corners of a box: corner i lies on the positive side of axis a where bit a of i is set.
+/// The radius of what is the same however it turns: of a ball, and zero of a point. None of all else.
 template <int D>
-inline constexpr int kCorners = 1 << D;
-
-/// Corner i of a box in its own frame, m.
-template <int D>
-Vec<D> corner(const Shape<D>& shape, int i) {
-  Vec<D> place = shape.half;
-  for (int axis = 0; axis < D; ++axis) {
-    if (!(i >> axis & 1)) place[axis] = -place[axis];
-  }
-  return place;
+std::optional<double> round_radius(const Shape<D>& shape) {
+  if (form<Point<D>>(shape)) return 0;
+  const Ball<D>* ball = form<Ball<D>>(shape);
+  return ball ? std::optional(ball->radius) : std::nullopt;
 }
 
-/// A point of a shape that may be the first to touch a plane, rounded by a radius.
+/// How many forms collide: the parts of a compound, or itself.
 template <int D>
-struct SupportVertex {
-  Vec<D> at = Vec<D>::Zero();  // in the body's frame, m
-  double radius = 0;           // m
-};
+int parts(const Shape<D>& shape) {
+  const Compound<D>* several = form<Compound<D>>(shape);
+  return several ? int(several->parts.size()) : 1;
+}
+template <int D>
+const Shape<D>& part(const Shape<D>& shape, int i) {
+  const Compound<D>* several = form<Compound<D>>(shape);
+  return several ? several->parts[i] : shape;
+}
+
+/// What collides of a part. Requires any form but a compound.
+template <int D>
+Core<D> core(const Shape<D>& part) {
+  return of_form(part, []<class F>(const F& form) -> Core<D> {
+    if constexpr (std::is_same_v<F, Compound<D>>) {
+      assert(false && "a compound has no core of its own");
+      return {};
+    } else {
+      return form.core();
+    }
+  });
+}
+
+/// The same shape in another frame, where `turn` is how that frame turns what stands in it.
+template <int D>
+Shape<D> moved(const Shape<D>& shape, const Placing<D>& placing, const Orientation<D>& turn) {
+  return of_form(shape, [&](const auto& form) { return form.moved(placing, turn); });
+}
 
 /// All of them: the centre of a point or ball, the ends of a capsule, the corners of all else; of a compound
 /// those of its parts in order.
@@ -79,7 +96,14 @@ std::vector<SupportVertex<D>> support_vertices(const Shape<D>& shape);
 template <int D>
 class SupportVertices {
  public:
-  explicit SupportVertices(const std::vector<Body<D>>& bodies);
+  template <class Body>
+  explicit SupportVertices(const std::vector<Body>& bodies) {
+    for (const Body& body : bodies) {
+      first_.push_back(int(all_.size()));
+      of_form(body.shape, [&](const auto& form) { form.add_support_vertices(all_); });
+    }
+    first_.push_back(int(all_.size()));
+  }
 
   std::span<const SupportVertex<D>> operator[](int body) const {
     return std::span(all_).subspan(first_[body], first_[body + 1] - first_[body]);
@@ -101,16 +125,6 @@ double half_thickness(const Shape<D>& shape);
 /// The farthest the shape reaches from its centre (the origin of its frame), m.
 template <int D>
 double bounding_radius(const Shape<D>& shape);
-
-/// An upright box in the room, m.
-template <int D>
-struct Bounds {
-  Vec<D> lower = Vec<D>::Zero(), upper = Vec<D>::Zero();
-
-  bool meets(const Bounds& other) const {
-    return (lower.array() <= other.upper.array()).all() && (other.lower.array() <= upper.array()).all();
-  }
-};
 
 /// The smallest upright box around a shape.
 template <int D>

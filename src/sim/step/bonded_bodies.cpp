@@ -48,8 +48,7 @@ bool may_turn(const Model<D>& model, const std::vector<int>& parts) {
   bool extended = false;
   for (const int i : parts) {
     if (model.bodies[i].turns()) return true;
-    const ShapeKind kind = model.bodies[i].shape.kind;
-    extended = extended || (kind != ShapeKind::point && kind != ShapeKind::ball);
+    extended = extended || !round_radius(model.bodies[i].shape);
   }
   return !extended;
 }
@@ -97,63 +96,18 @@ Seat<D> seen(const Solid<D>& from, const Seat<D>& place) {
 template <int D>
 void add_seated(const Shape<D>& shape, const Seat<D>& seat, std::vector<Shape<D>>& parts) {
   const Rotation<D> turn = rotation<D>(seat.turn);
-  const auto moved = [&](const Vec<D>& x) { return Vec<D>(seat.x + turn * x); };
-  for (const Shape<D>& part : shape.parts) add_seated(part, seat, parts);
-  if (shape.kind == ShapeKind::compound) return;
-  Shape<D> own = shape;
-  if (D == 2 && shape.kind == ShapeKind::box) {
-    // in the plane a box that is a part stands upright: this one is a polygon
-    own = {};
-    own.kind = ShapeKind::polygon;
-    for (const int i : {0, 1, 3, 2}) own.vertices.push_back(moved(shape.center + corner(shape, i)));
-  } else {
-    if (own.kind == ShapeKind::point) own.kind = ShapeKind::ball;
-    own.center = moved(shape.center);
-    own.turn = composed<D>(seat.turn, shape.turn);
-    for (Vec<D>& vertex : own.vertices) vertex = moved(vertex);
-  }
-  parts.push_back(own);
-}
-
-// how far outside a shape a point of its frame is, m; about, and negative inside
-template <int D>
-double outside(const Shape<D>& shape, const Vec<D>& point) {
-  double most = -1e300, least = 1e300;
-  const Vec<D> own = shape.turn == no_rotation<D>()
-                         ? Vec<D>(point - shape.center)
-                         : Vec<D>(rotation<D>(shape.turn).transpose() * (point - shape.center));
-  switch (shape.kind) {
-    case ShapeKind::point:
-    case ShapeKind::ball:
-      return own.norm() - shape.radius;
-    case ShapeKind::box:
-      return (own.cwiseAbs() - shape.half).maxCoeff();
-    case ShapeKind::capsule: {
-      Vec<D> off = own;
-      off[1] -= std::clamp(own[1], -shape.half[1], shape.half[1]);
-      return off.norm() - shape.radius;
+  const auto placing = [&](const Vec<D>& x) { return Vec<D>(seat.x + turn * x); };
+  for (int i = 0; i < sim::parts(shape); ++i) {
+    const Shape<D>& own = part(shape, i);
+    if constexpr (D == 2) {
+      // in the plane a box that is a part stands upright: this one is a polygon, even where it is not turned
+      if (const Box<2>* box = form<Box<2>>(own)) {
+        parts.push_back(moved<2>(box->outline(), placing, seat.turn));
+        continue;
+      }
     }
-    case ShapeKind::polygon:
-      for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
-        const Vec<D>&a = shape.vertices[i], &b = shape.vertices[(i + 1) % shape.vertices.size()];
-        const Vec<D> edge = b - a, to = point - a;
-        most = std::max(most, (edge[1] * to[0] - edge[0] * to[1]) / edge.norm());
-      }
-      return most;
-    case ShapeKind::hull:
-      if constexpr (D == 3) {
-        for (const std::vector<int>& face : shape.faces) {
-          const Vec<D>& a = shape.vertices[face[0]];
-          const Vec<D> n = (shape.vertices[face[1]] - a).cross(shape.vertices[face[2]] - a);
-          most = std::max(most, n.dot(point - a) / n.norm());
-        }
-      }
-      return most;
-    case ShapeKind::compound:
-      for (const Shape<D>& part : shape.parts) least = std::min(least, outside(part, point));
-      return least;
+    parts.push_back(moved<D>(own, placing, seat.turn));
   }
-  return most;
 }
 
 }  // namespace
@@ -192,18 +146,18 @@ void BondedBodies<D>::gather(const State<D>& state) {
       if (parts.size() > 1) {
         const Solid<D> one = solid(model_, parts, state.seats);
         body.mass = one.mass, body.inertia = one.inertia;
-        body.shape = {};
-        body.shape.kind = ShapeKind::compound;
+        Compound<D> whole;
         body.elasticity = body.friction = body.drag = body.ground_drag = 0;
         for (const int i : parts) {
           const Body<D>& part = model_.bodies[i];
-          add_seated(part.shape, state.seats[i], body.shape.parts);
+          add_seated(part.shape, state.seats[i], whole.parts);
           // surfaces by mass
           body.elasticity += part.elasticity * part.mass / one.mass;
           body.friction += part.friction * part.mass / one.mass;
           body.drag += part.drag, body.ground_drag += part.ground_drag;
           body.fixed = body.fixed || part.fixed, body.handout = body.handout || part.handout;
         }
+        body.shape = std::move(whole);
       }
       if (body.turns() != turning) continue;
       whole_.alone[first] = parts.size() == 1;
@@ -310,8 +264,9 @@ int BondedBodies<D>::part_at(int body, const Vec<D>& point, const State<D>& stat
   double least = 1e300;
   for (const int i : parts_[body]) {
     BodyMotion<D> at = body_motion(state, i);
-    const double far =
-        outside(model_.bodies[i].shape, Vec<D>(at.room_from_body.transpose() * (point - at.x)));
+    const double far = of_form(model_.bodies[i].shape, [&](const auto& form) {
+      return form.outside(at.room_from_body.transpose() * (point - at.x));
+    });
     if (far < least) least = far, nearest = i;
   }
   return nearest;

@@ -80,7 +80,7 @@ BodyCounts body_counts(const Model<D>& model) {
   BodyCounts all;
   for (const Body<D>& body : model.bodies) {
     if (body.fixed) continue;
-    ++(body.linked ? all.links : body.shape.kind == ShapeKind::point ? all.points : all.bodies);
+    ++(body.linked ? all.links : is_point(body.shape) ? all.points : all.bodies);
   }
   return all;
 }

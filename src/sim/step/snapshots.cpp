@@ -1,6 +1,7 @@
 #include "sim/step/snapshots.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sim/constraint/material.h"
 #include "sim/energy/energy.h"
@@ -23,34 +24,22 @@ Vec3 inertia_times(const AngularVec<D>& w) {
   }
 }
 
-template <int D>
-std::vector<Vec3> each_lifted(const std::vector<Vec<D>>& places) {
-  std::vector<Vec3> all;
-  for (const Vec<D>& place : places) all.push_back(to_3d<D>(place));
-  return all;
-}
-
-// in the plane about z
-template <int D>
-Eigen::Quaterniond oriented(const Orientation<D>& turn) {
-  if constexpr (D == 2) {
-    const auto [s, c] = sin_cos(0.5 * turn[0]);
-    return {c, 0, 0, s};
-  } else {
-    return {turn[3], turn[0], turn[1], turn[2]};
-  }
-}
-
+// of one form that stands as its body does that form, and else a body of several
 template <int D>
 SceneInfo::Body shown(const Body<D>& body) {
-  const Shape<D>& shape = body.shape;
-  SceneInfo::Body it{body.name, shape.kind,  shape.radius, to_3d<D>(shape.half),
-                     body.mass, body.fixed,  body.turns(), each_lifted<D>(shape.vertices),
-                     {},        shape.faces, body.friction};
-  for (const Shape<D>& part : shape.parts) {
-    it.parts.push_back({part.kind, part.radius, to_3d<D>(part.half), to_3d<D>(part.center),
-                        each_lifted<D>(part.vertices), part.faces, oriented<D>(part.turn)});
+  SceneInfo::Body it;
+  it.name = body.name;
+  it.mass = body.mass, it.friction = body.friction;
+  it.fixed = body.fixed, it.turns = body.turns();
+  std::vector<DrawnForm> forms = of_form(body.shape, [](const auto& form) { return form.drawn(); });
+  if (forms.size() > 1 || form<Compound<D>>(body.shape)) {
+    it.kind = ShapeKind::compound;
+    it.parts = std::move(forms);
+    return it;
   }
+  DrawnForm& only = forms[0];
+  it.kind = only.kind, it.radius = only.radius, it.half = only.half;
+  it.vertices = std::move(only.vertices), it.faces = std::move(only.faces);
   return it;
 }
 
@@ -137,7 +126,7 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
     if (const int k = turning(state, i); k >= 0) {
       body.spin = inertia_times<D>(state.spin[k]);
       if (D == 2) body.angle = state.turn[k][0];
-      body.orientation = oriented<D>(state.turn[k]);
+      body.orientation = quaternion<D>(state.turn[k]);
     }
   }
   if (blasting(state)) blow(model, state, now);

@@ -16,12 +16,4 @@ template <int D>
 Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, TimeStamp at,
                   double t);
 
-/// A place of the plane at z = 0.
-template <int D>
-Vec3 to_3d(const Vec<D>& x) {
-  Vec3 place = Vec3::Zero();
-  place.head<D>() = x;
-  return place;
-}
-
 }  // namespace obscura::sim

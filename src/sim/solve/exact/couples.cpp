@@ -12,7 +12,7 @@ double couples(const Model<D>& model) {
   double bodies = 0, points = 0, fixed = 0, fixed_points = 0;
   for (const Body<D>& body : model.bodies) {
     if (body.handout) continue;
-    const bool point = body.shape.kind == ShapeKind::point;
+    const bool point = is_point(body.shape);
     ++(body.fixed ? (point ? fixed_points : fixed) : (point ? points : bodies));
   }
   return 0.5 * bodies * (bodies - 1) + bodies * (points + fixed + fixed_points) + points * fixed +
@@ -27,7 +27,7 @@ void list_couples(const Model<D>& model, const std::function<void(int, int)>& fo
     if (it.handout) continue;
     all.push_back(body);
     if (!it.fixed) moving.push_back(body);
-    if (it.shape.kind != ShapeKind::point) wide.push_back(body);
+    if (!is_point(it.shape)) wide.push_back(body);
   }
   const MayTouch<D> allowed(model);
   for (const int a : all) {
@@ -35,11 +35,11 @@ void list_couples(const Model<D>& model, const std::function<void(int, int)>& fo
     if (!p.fixed) {
       for (int wall = 0; wall < int(model.walls.size()); ++wall) found(a, -1 - wall);
     }
-    const bool point = p.shape.kind == ShapeKind::point;
+    const bool point = is_point(p.shape);
     const std::vector<int>& others = p.fixed ? moving : point ? wide : all;
     for (auto b = std::upper_bound(others.begin(), others.end(), a); b != others.end(); ++b) {
       const Body<D>& q = model.bodies[*b];
-      if ((p.fixed && q.fixed) || (point && q.shape.kind == ShapeKind::point)) continue;
+      if ((p.fixed && q.fixed) || (point && is_point(q.shape))) continue;
       if (allowed(a, *b)) found(a, *b);
     }
   }

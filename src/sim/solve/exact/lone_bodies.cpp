@@ -19,11 +19,6 @@ constexpr double kNearby = 1e-6;        // of the room's size
 constexpr double kSlowApproach = 1e-9;  // of the room's size, 1/s: slower is no impact
 constexpr std::size_t kFew = 50000;     // couples to look at one by one
 
-template <int D>
-bool round(const Shape<D>& shape) {
-  return shape.kind == ShapeKind::point || shape.kind == ShapeKind::ball;
-}
-
 }  // namespace
 
 template <int D>
@@ -39,7 +34,7 @@ LoneBodies<D>::LoneBodies(const Model<D>& model, const std::vector<Path<D>>& pat
   for (int i = 0; i < n; ++i) {
     const Body<D>& body = model.bodies[i];
     bounding_radius_.push_back(bounding_radius(body.shape));
-    points_.push_back(body.shape.kind == ShapeKind::point);
+    points_.push_back(is_point(body.shape));
     if (body.fixed) fixed_.push_back(i);
     if (body.fixed || body.handout || body.linked) tie(i);
   }
@@ -55,7 +50,7 @@ bool LoneBodies<D>::strikes(const State<D>& state, int body, double h) const {
   // as far as others count it as an impact: with some to spare
   const double least = g_ * h + kSlowApproach * model_.scale, fall = 2 * g_ * h * h + kNearby * model_.scale;
   double skin = 0;  // speed of its skin by its spin
-  if (const int k = turning(state, body); k >= 0 && !round(shape))
+  if (const int k = turning(state, body); k >= 0 && !round_radius(shape))
     skin = bounding_radius_[body] * std::sqrt(state.spin[k].squaredNorm());
   for (const Wall<D>& wall : model_.walls) {
     const double u = v.dot(wall.normal) - skin;
@@ -76,7 +71,7 @@ void LoneBodies<D>::leave_out_near(const State<D>& state) {
   const int n = int(model_.bodies.size());
   const auto apart = [&](int a, int b) {
     const Shape<D>&p = model_.bodies[a].shape, &q = model_.bodies[b].shape;
-    if (p.kind == ShapeKind::point && q.kind == ShapeKind::point) return true;
+    if (is_point(p) && is_point(q)) return true;
     const double far = bounding_radius_[a] + bounding_radius_[b] + ways_[a] + ways_[b];
     return (state.x[a] - state.x[b]).squaredNorm() > far * far;
   };
