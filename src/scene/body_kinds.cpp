@@ -13,7 +13,7 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr Range kPositive{0, std::numeric_limits<double>::infinity(), true};
+constexpr Range kAboveZero{0, std::numeric_limits<double>::infinity(), true};
 
 // which of Forms<D> is F
 template <class F, int D>
@@ -31,7 +31,7 @@ constexpr Maker<D> makes(sim::Shape<D> (*make)(const Fields&, int, int, Diagnost
 }
 
 template <int D>
-constexpr Maker<D> kNone{-1, nullptr};
+constexpr Maker<D> kNeither{-1, nullptr};
 
 template <int D>
 sim::Shape<D> particle(const Fields& fields, int i, int n, Diagnostics&) {
@@ -73,9 +73,9 @@ constexpr BodyKind kKinds[] = {
      .dimension = 0, .instead = "", .turns = false, .handout = true, .own_origin = false, .varies = true,
      .measure = "radius", .stream = 0,
      .keys = [] { return std::vector<Key>{
-         {.path = "particle.mass", .form = Form::number, .unit = "kg", .fallback = "1", .range = kPositive, .varies = true,
+         {.path = "particle.mass", .form = Form::number, .unit = "kg", .fallback = "1", .range = kAboveZero, .varies = true,
           .doc = "How heavy it is.", .example = "0.5"},
-         {.path = "particle.radius", .form = Form::number, .unit = "m", .absent = "a point, drawn as a dot", .range = kPositive,
+         {.path = "particle.radius", .form = Form::number, .unit = "m", .absent = "a point, drawn as a dot", .range = kAboveZero,
           .varies = true, .doc = "Walls stop it at its rim.", .example = "0.06"}}; },
      .plane = makes<sim::Point<2>, 2>(particle<2>), .space = makes<sim::Point<3>, 3>(particle<3>)},
 
@@ -83,7 +83,7 @@ constexpr BodyKind kKinds[] = {
      .dimension = 0, .instead = "", .turns = true, .handout = false, .own_origin = false, .varies = true,
      .measure = "radius", .stream = 1ull << 40,
      .keys = [] { return std::vector<Key>{
-         {.path = "ball.radius", .form = Form::number, .unit = "m", .fallback = "0.2", .range = kPositive, .varies = true,
+         {.path = "ball.radius", .form = Form::number, .unit = "m", .fallback = "0.2", .range = kAboveZero, .varies = true,
           .doc = "To its rim.", .example = "0.1"}}; },
      .plane = makes<sim::Ball<2>, 2>(ball<2>), .space = makes<sim::Ball<3>, 3>(ball<3>)},
 
@@ -100,11 +100,11 @@ constexpr BodyKind kKinds[] = {
      .turns = true, .handout = false, .own_origin = false, .varies = true,
      .measure = "radius", .stream = 4ull << 40,
      .keys = [] { return std::vector<Key>{
-         {.path = "capsule.length", .form = Form::number, .unit = "m", .fallback = "0.8", .range = kPositive, .varies = true,
+         {.path = "capsule.length", .form = Form::number, .unit = "m", .fallback = "0.8", .range = kAboveZero, .varies = true,
           .doc = "From end to end.", .example = "0.5"},
-         {.path = "capsule.radius", .form = Form::number, .unit = "m", .fallback = "0.15", .range = kPositive, .varies = true,
+         {.path = "capsule.radius", .form = Form::number, .unit = "m", .fallback = "0.15", .range = kAboveZero, .varies = true,
           .doc = "Of the rod and its ends.", .example = "0.1"}}; },
-     .plane = kNone<2>, .space = makes<sim::Capsule, 3>(rod)},
+     .plane = kNeither<2>, .space = makes<sim::Capsule, 3>(rod)},
 
     {.name = "polygon", .called = "polygon", .plural = "polygons",
      .doc = "A convex rigid body of any number of corners. In the plane.",
@@ -114,7 +114,7 @@ constexpr BodyKind kKinds[] = {
          {.path = "polygon.points", .form = Form::points, .unit = "m", .required = true,
           .doc = "Its corners in its own frame, one after another, either way around.",
           .example = "[[0, 0], [0.3, 0], [0.2, 0.25]]"}}; },
-     .plane = makes<sim::Polygon, 2>(of_points<2>), .space = kNone<3>},
+     .plane = makes<sim::Polygon, 2>(of_points<2>), .space = kNeither<3>},
 
     {.name = "hull", .called = "hull", .plural = "hulls",
      .doc = "A convex rigid body: all that lies between its points. In space.",
@@ -124,7 +124,7 @@ constexpr BodyKind kKinds[] = {
          {.path = "hull.points", .form = Form::points, .unit = "m", .dimension = 3, .required = true,
           .doc = "Points in its own frame; its corners are those that no others lie around. What is flat is one face.",
           .example = "[[0, 0, 0], [0.3, 0, 0], [0, 0.3, 0], [0, 0, 0.3]]"}}; },
-     .plane = kNone<2>, .space = makes<sim::Hull, 3>(of_points<3>)},
+     .plane = kNeither<2>, .space = makes<sim::Hull, 3>(of_points<3>)},
 
     {.name = "body", .called = "body of several shapes", .plural = "bodies of several shapes",
      .doc = "A rigid body made of several shapes.",
@@ -133,9 +133,9 @@ constexpr BodyKind kKinds[] = {
      .keys = [] { return std::vector<Key>{
          {.path = "body.shapes", .form = Form::tables, .required = true,
           .doc = "Its parts, in its own frame: each a ball, a box or a polygon, in space also a capsule or a hull. Where they overlap the mass is counted twice."},
-         {.path = "body.shapes.radius", .form = Form::number, .unit = "m", .absent = "no ball", .range = kPositive,
+         {.path = "body.shapes.radius", .form = Form::number, .unit = "m", .absent = "no ball", .range = kAboveZero,
           .doc = "The part is a ball; with a `length`, a capsule.", .example = "0.1"},
-         {.path = "body.shapes.length", .form = Form::number, .unit = "m", .absent = "no capsule", .range = kPositive, .dimension = 3,
+         {.path = "body.shapes.length", .form = Form::number, .unit = "m", .absent = "no capsule", .range = kAboveZero, .dimension = 3,
           .doc = "The part is a capsule along its own y, so long from end to end.", .example = "0.5"},
          {.path = "body.shapes.size", .form = Form::vector, .unit = "m", .absent = "no box", .range = {0, 1e6, true},
           .doc = "The part is a box.", .example = "[0.6, 0.1]"},

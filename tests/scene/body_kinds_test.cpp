@@ -14,7 +14,7 @@ namespace obscura::scene {
 namespace {
 
 // the least table of one: what is required, as its examples have it
-std::string least(const BodyKind& kind, int dimension) {
+std::string least_table(const BodyKind& kind, int dimension) {
   const std::string owner(kind.name);
   std::string text = "[physics]\ncollision = \"contact\"\n[room]\nsize = " +
                      std::string(dimension == 2 ? "[9, 9]" : "[9, 9, 9]") + "\n[[" + owner + "]]\n";
@@ -33,10 +33,10 @@ void expect_made(const BodyKind& kind) {
   EXPECT_EQ(maker.make != nullptr, here) << kind.name;
   EXPECT_EQ(maker.form >= 0, here) << kind.name;
   if (!here) {
-    EXPECT_ANY_THROW(parse(least(kind, D), "a.toml")) << kind.name;
+    EXPECT_ANY_THROW(parse(least_table(kind, D), "a.toml")) << kind.name;
     return;
   }
-  const Scene it = parse(least(kind, D), "a.toml");
+  const Scene it = parse(least_table(kind, D), "a.toml");
   const auto& body = std::get<sim::World<D>>(it.world).model.bodies.at(0);
   EXPECT_EQ(kind_of(body).name, kind.name);
   EXPECT_EQ(int(body.shape.index()), maker.form) << kind.name;

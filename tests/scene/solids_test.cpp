@@ -7,8 +7,8 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
-#include "sim/shape/shape.h"
 #include "sim/math/trig.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::scene {
 namespace {
