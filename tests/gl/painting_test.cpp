@@ -14,8 +14,8 @@ using draw::Color;
 
 const Color kRed{213, 94, 0}, kBlue{0, 114, 178}, kGround{255, 255, 255};
 
-// one of everything, 108 px high
-draw::Picture everything() {
+// one of each, 108 px high
+draw::Picture all_shapes() {
   draw::Picture picture;
   picture.aspect = 2;
   picture.ground = kGround;
@@ -81,7 +81,7 @@ TEST(Painting, ClipsHoldUntilTheyAreLifted) {
 
 TEST(Painting, ATransparentPictureOverItsGroundIsTheOpaqueOne) {
   Renderer renderer(216, 108);
-  draw::Picture picture = everything();
+  draw::Picture picture = all_shapes();
   const media::Image opaque = drawn(renderer, picture);
   picture.transparent = true;
   const media::Image clear = drawn(renderer, picture);
@@ -99,7 +99,7 @@ TEST(Painting, ATransparentPictureOverItsGroundIsTheOpaqueOne) {
 
 TEST(Painting, DoesNotDependOnWhatWasDrawnBefore) {
   Renderer renderer(216, 108), fresh(216, 108);
-  draw::Picture picture = everything();
+  draw::Picture picture = all_shapes();
   const media::Image first = drawn(renderer, picture);
   draw::Picture other;
   other.aspect = 2;
@@ -118,14 +118,14 @@ TEST(Painting, DoesNotDependOnWhatWasDrawnBefore) {
 
 TEST(Painting, SeveralThreadsDrawTheSameBytes) {
   Renderer renderer(216, 108);
-  const media::Image expected = drawn(renderer, everything());
+  const media::Image expected = drawn(renderer, all_shapes());
   std::vector<media::Image> images(3);
   {
     std::vector<std::jthread> threads;
     for (media::Image& image : images) {
       threads.emplace_back([&image] {
         Renderer own(216, 108);
-        for (int i = 0; i < 5; ++i) own.draw(everything(), image);
+        for (int i = 0; i < 5; ++i) own.draw(all_shapes(), image);
       });
     }
   }
@@ -136,7 +136,7 @@ TEST(Painting, BothBackEndsDrawTheSameBytes) {
   OBSCURA_NEEDS_BOTH_BACK_ENDS();
   Renderer osmesa(216, 108, {.backend = Backend::osmesa});
   Renderer egl(216, 108, {.backend = Backend::egl});
-  EXPECT_EQ(drawn(egl, everything()), drawn(osmesa, everything()));
+  EXPECT_EQ(drawn(egl, all_shapes()), drawn(osmesa, all_shapes()));
   EXPECT_NE(egl.device(), osmesa.device());
 }
 

@@ -27,7 +27,7 @@ void write_gif(const std::string& path, const MovieSpec& spec, const std::vector
   writer.close();
 }
 
-MovieSpec spec_of(int width, int height, int num, int den = 1) {
+MovieSpec gif_spec(int width, int height, int num, int den = 1) {
   MovieSpec spec;
   spec.width = width, spec.height = height, spec.fps_num = num, spec.fps_den = den;
   return spec;
@@ -49,7 +49,7 @@ TEST(Gif, FewColoursComeBackToTheBit) {
     image.row(100)[4 * 50] ^= 1, image.row(100)[4 * 50 + 1] = 0;
     frames.push_back(image);  // a pixel does
   }
-  write_gif(folder / "a.gif", spec_of(203, 151, 5), frames);
+  write_gif(folder / "a.gif", gif_spec(203, 151, 5), frames);
   MovieReader reader(folder / "a.gif");
   Image frame;
   for (std::size_t n = 0; n < frames.size(); ++n) {
@@ -63,7 +63,7 @@ TEST(Gif, FewColoursComeBackToTheBit) {
 // 255 colours for thousands: the ground and the fills exact, edges within the nearest of boxes that small.
 TEST(Gif, OfManyColoursTheFrequentStayExact) {
   Folder folder;
-  const MovieSpec spec = spec_of(320, 180, 10);
+  const MovieSpec spec = gif_spec(320, 180, 10);
   std::vector<Image> frames;
   for (int n = 0; n < 20; ++n) frames.push_back(moving_picture(320, 180, n / 10.0));
   write_gif(folder / "a.gif", spec, frames);
@@ -87,7 +87,7 @@ TEST(Gif, OfManyColoursTheFrequentStayExact) {
 TEST(Gif, DelaysNeverDrift) {
   Folder folder;
   const std::vector<Image> frames(62, moving_picture(16, 16, 0));
-  write_gif(folder / "a.gif", spec_of(16, 16, 30000, 1001), frames);
+  write_gif(folder / "a.gif", gif_spec(16, 16, 30000, 1001), frames);
   const auto times = probe(folder / "a.gif", "packet=pts");
   ASSERT_EQ(times.size(), 62u);
   for (int n = 0; n < 62; ++n)
@@ -96,7 +96,7 @@ TEST(Gif, DelaysNeverDrift) {
 
 TEST(Gif, OpensInFfprobe) {
   Folder folder;
-  write_gif(folder / "a.gif", spec_of(320, 180, 25), std::vector<Image>(3, moving_picture(320, 180, 0)));
+  write_gif(folder / "a.gif", gif_spec(320, 180, 25), std::vector<Image>(3, moving_picture(320, 180, 0)));
   EXPECT_THAT(probe(folder / "a.gif", "stream=codec_name,width,height,r_frame_rate,nb_frames"),
               ElementsAre("gif", "320", "180", "25/1", "3"));
 }

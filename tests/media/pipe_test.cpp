@@ -15,7 +15,7 @@
 namespace obscura::media {
 namespace {
 
-MovieSpec spec_of(int width, int height, int num, int den = 1) {
+MovieSpec pipe_spec(int width, int height, int num, int den = 1) {
   MovieSpec spec;
   spec.width = width, spec.height = height, spec.fps_num = num, spec.fps_den = den;
   return spec;
@@ -25,7 +25,7 @@ TEST(Pipe, FfmpegReadsTheSamePlanesFromY4m) {
   Folder folder;
   const std::string path = folder / "a.y4m";
   const int file = ::open(path.c_str(), O_CREAT | O_WRONLY, 0666);
-  const MovieSpec spec = spec_of(66, 50, 30000, 1001);
+  const MovieSpec spec = pipe_spec(66, 50, 30000, 1001);
   PipeWriter pipe(file, PipeFormat::y4m, spec);
   std::vector<std::uint8_t> planes;
   for (unsigned n = 0; n < 4; ++n) {
@@ -46,7 +46,7 @@ TEST(Pipe, FfmpegReadsTheSamePlanesFromY4m) {
 TEST(Pipe, RawFramesAreThePixels) {
   Folder folder;
   const int file = ::open((folder / "a.rgba").c_str(), O_CREAT | O_WRONLY, 0666);
-  PipeWriter pipe(file, PipeFormat::rgba, spec_of(7, 5, 60));
+  PipeWriter pipe(file, PipeFormat::rgba, pipe_spec(7, 5, 60));
   const Image image = random_image(7, 5, 1);
   EXPECT_TRUE(pipe.write(image));
   EXPECT_TRUE(pipe.write(image));
@@ -60,7 +60,7 @@ TEST(Pipe, AClosedPipeIsFalse) {
   std::signal(SIGPIPE, SIG_IGN);
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
-  PipeWriter pipe(ends[1], PipeFormat::y4m, spec_of(640, 480, 60));
+  PipeWriter pipe(ends[1], PipeFormat::y4m, pipe_spec(640, 480, 60));
   const Image image = random_image(640, 480, 1);
   // the reader takes a little of the first frame and goes
   std::jthread reader([&] {
@@ -83,7 +83,7 @@ TEST(Pipe, WaitsForASlowReaderThatDoesNotBlock) {
     std::uint8_t some[5000];
     for (ssize_t n; (n = ::read(ends[0], some, sizeof some)) > 0;) got.insert(got.end(), some, some + n);
   });
-  PipeWriter pipe(ends[1], PipeFormat::rgba, spec_of(640, 480, 60));
+  PipeWriter pipe(ends[1], PipeFormat::rgba, pipe_spec(640, 480, 60));
   EXPECT_TRUE(pipe.write(image));
   ::close(ends[1]);
   reader.join();
@@ -93,13 +93,13 @@ TEST(Pipe, WaitsForASlowReaderThatDoesNotBlock) {
 
 TEST(Pipe, AFullDeviceIsAnError) {
   const int file = ::open("/dev/full", O_WRONLY);
-  PipeWriter pipe(file, PipeFormat::rgba, spec_of(4, 4, 60));
+  PipeWriter pipe(file, PipeFormat::rgba, pipe_spec(4, 4, 60));
   EXPECT_THROW(pipe.write(random_image(4, 4, 1)), Error);
   ::close(file);
 }
 
 TEST(Pipe, OddSizesAreRefusedInY4m) {
-  EXPECT_THROW(PipeWriter(1, PipeFormat::y4m, spec_of(5, 4, 60)), Error);
+  EXPECT_THROW(PipeWriter(1, PipeFormat::y4m, pipe_spec(5, 4, 60)), Error);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ type = "rope"
 between = ["foot", "trunk"]
 )";
 
-std::vector<std::string> wrong(const std::string& text, const std::vector<std::string>& sets = {}) {
+std::vector<std::string> wrong_chains(const std::string& text, const std::vector<std::string>& sets = {}) {
   try {
     parse(text, "a.toml", sets);
   } catch (const Error& error) {
@@ -129,21 +129,22 @@ of = ["a", "b"]
 
 TEST(Chains, RefuseWhatTheyCannotHold) {
   const std::string of = "[[chain]]\nof = [\"trunk\", \"arm[*]\"]\n";
-  EXPECT_THAT(wrong(kFigure + of), IsEmpty());
-  EXPECT_THAT(wrong(kFigure + of, {"arm[0].fixed=true"}), ElementsAre(HasSubstr("'arm[0]' is fixed")));
-  EXPECT_THAT(wrong(kFigure + of, {"trunk.rotation=false"}), testing::Contains(HasSubstr("does not turn")));
-  EXPECT_THAT(wrong(kFigure + of + of), testing::Contains("'trunk' is a link of another chain"));
-  EXPECT_THAT(wrong(kFigure + of, {"joint[0].breaks=5"}), ElementsAre(HasSubstr("'joint[0]' breaks")));
-  EXPECT_THAT(wrong(kFigure + of, {"string.breaks=5"}), IsEmpty());
-  EXPECT_THAT(wrong(kFigure + "[[chain]]\nof = [\"trunk\", \"foot\"]"),
+  EXPECT_THAT(wrong_chains(kFigure + of), IsEmpty());
+  EXPECT_THAT(wrong_chains(kFigure + of, {"arm[0].fixed=true"}), ElementsAre(HasSubstr("'arm[0]' is fixed")));
+  EXPECT_THAT(wrong_chains(kFigure + of, {"trunk.rotation=false"}),
+              testing::Contains(HasSubstr("does not turn")));
+  EXPECT_THAT(wrong_chains(kFigure + of + of), testing::Contains("'trunk' is a link of another chain"));
+  EXPECT_THAT(wrong_chains(kFigure + of, {"joint[0].breaks=5"}), ElementsAre(HasSubstr("'joint[0]' breaks")));
+  EXPECT_THAT(wrong_chains(kFigure + of, {"string.breaks=5"}), IsEmpty());
+  EXPECT_THAT(wrong_chains(kFigure + "[[chain]]\nof = [\"trunk\", \"foot\"]"),
               ElementsAre(HasSubstr("joins any of these")));
-  EXPECT_THAT(wrong(kFigure + of + "[[bond]]\nof = [\"trunk\", \"foot\"]\nwithin = 1"),
+  EXPECT_THAT(wrong_chains(kFigure + of + "[[bond]]\nof = [\"trunk\", \"foot\"]\nwithin = 1"),
               ElementsAre(HasSubstr("not both yet")));
-  EXPECT_THAT(wrong("[[particle]]\nname = \"p\"\n[[chain]]\nof = [\"p\"]"),
+  EXPECT_THAT(wrong_chains("[[particle]]\nname = \"p\"\n[[chain]]\nof = [\"p\"]"),
               ElementsAre(HasSubstr("a link needs a [[ball]]")));
-  EXPECT_THAT(wrong("[[box]]\n[[chain]]\n"), ElementsAre(HasSubstr("needs 'of'")));
-  EXPECT_THAT(wrong("[[box]]\n[[chain]]\nof = [\"bx\"]"), ElementsAre(HasSubstr("bx")));
-  EXPECT_THAT(wrong(kFigure + of + "[physics]\ncollision = \"handout\""),
+  EXPECT_THAT(wrong_chains("[[box]]\n[[chain]]\n"), ElementsAre(HasSubstr("needs 'of'")));
+  EXPECT_THAT(wrong_chains("[[box]]\n[[chain]]\nof = [\"bx\"]"), ElementsAre(HasSubstr("bx")));
+  EXPECT_THAT(wrong_chains(kFigure + of + "[physics]\ncollision = \"handout\""),
               testing::Contains(HasSubstr("[[chain]] is not in")));
 }
 

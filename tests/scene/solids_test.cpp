@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using Vec = sim::Vec<2>;
 
-constexpr double kExact = 1e-15;  // a few roundings of numbers about one
+constexpr double kRounded = 1e-15;  // a few roundings of numbers about one
 
 Scene scene(const std::string& text, const std::vector<std::string>& sets = {}) {
   return parse("[physics]\ncollision = \"contact\"\n" + text, "a.toml", sets);
@@ -28,8 +28,8 @@ TEST(Ball, IsADiscThatTurns) {
   const Scene it = scene("[[ball]]\nradius = 0.3\ndensity = 2\nspin = 180\nangle = 90");
   EXPECT_TRUE(sim::form<sim::Ball<2>>(only(it).shape));
   EXPECT_TRUE(only(it).turns());
-  EXPECT_NEAR(only(it).mass, 2 * std::numbers::pi * 0.09, kExact);
-  EXPECT_NEAR(only(it).inertia[0], only(it).mass * 0.09 / 2, kExact);
+  EXPECT_NEAR(only(it).mass, 2 * std::numbers::pi * 0.09, kRounded);
+  EXPECT_NEAR(only(it).inertia[0], only(it).mass * 0.09 / 2, kRounded);
   EXPECT_DOUBLE_EQ(it.plane().state.spin[0][0], std::numbers::pi);
   EXPECT_DOUBLE_EQ(it.plane().state.turn[0][0], std::numbers::pi / 2);
   EXPECT_EQ(sim::round_radius(only(scene("[[ball]]")).shape), 0.2);
@@ -40,8 +40,8 @@ TEST(Polygon, IsKeptAboutItsCentreOfMass) {
   for (const char* points : {"[[0, 0], [0.6, 0], [0, 0.3]]", "[[0, 0.3], [0.6, 0], [0, 0]]"}) {
     const Scene it =
         scene(std::string("[[polygon]]\nposition = [1, 2]\nangle = 90\nmass = 3\npoints = ") + points);
-    EXPECT_NEAR((it.plane().state.x[0] - Vec(1 - 0.1, 2 + 0.2)).norm(), 0, kExact);
-    EXPECT_NEAR(only(it).inertia[0], 3 * (0.36 + 0.09) / 18, kExact);
+    EXPECT_NEAR((it.plane().state.x[0] - Vec(1 - 0.1, 2 + 0.2)).norm(), 0, kRounded);
+    EXPECT_NEAR(only(it).inertia[0], 3 * (0.36 + 0.09) / 18, kRounded);
     const sim::Polygon* shape = sim::form<sim::Polygon>(only(it).shape);
     ASSERT_TRUE(shape);
     ASSERT_EQ(shape->vertices.size(), 3u);
@@ -51,8 +51,8 @@ TEST(Polygon, IsKeptAboutItsCentreOfMass) {
       const Vec a = shape->vertices[i], b = shape->vertices[(i + 1) % 3];
       twice += a.x() * b.y() - a.y() * b.x(), sum += a;
     }
-    EXPECT_NEAR(twice, 0.18, kExact) << "counter-clockwise, whichever way it was written";
-    EXPECT_NEAR(sum.norm(), 0, kExact);
+    EXPECT_NEAR(twice, 0.18, kRounded) << "counter-clockwise, whichever way it was written";
+    EXPECT_NEAR(sum.norm(), 0, kRounded);
   }
 }
 
@@ -62,9 +62,9 @@ TEST(Polygon, ASquareIsABox) {
       "group = \"one\"\n[[box]]\ngroup = \"one\"\n[contact]\nignore = [[\"one\", \"one\"]]");
   const auto& bodies = it.plane().model.bodies;
   EXPECT_EQ(bodies[0].name, "box[0]");
-  EXPECT_NEAR(bodies[0].mass, bodies[1].mass, kExact);
-  EXPECT_NEAR(bodies[0].inertia[0], bodies[1].inertia[0], kExact);
-  EXPECT_NEAR((it.plane().state.x[0] - it.plane().state.x[1]).norm(), 0, kExact);
+  EXPECT_NEAR(bodies[0].mass, bodies[1].mass, kRounded);
+  EXPECT_NEAR(bodies[0].inertia[0], bodies[1].inertia[0], kRounded);
+  EXPECT_NEAR((it.plane().state.x[0] - it.plane().state.x[1]).norm(), 0, kRounded);
 }
 
 TEST(Body, ItsPartsAreOne) {
@@ -73,10 +73,10 @@ TEST(Body, ItsPartsAreOne) {
       "[[body]]\nmass = 2\nposition = [1, 1]\nshapes = [{ radius = 0.1, position = [-0.25, 0] }, "
       "{ radius = 0.1, position = [0.75, 0] }]");
   ASSERT_TRUE(sim::form<sim::Compound<2>>(only(it).shape));
-  EXPECT_NEAR((it.plane().state.x[0] - Vec(1.25, 1)).norm(), 0, kExact);
-  EXPECT_NEAR(only(it).inertia[0], 2 * (0.005 + 0.25), kExact);
+  EXPECT_NEAR((it.plane().state.x[0] - Vec(1.25, 1)).norm(), 0, kRounded);
+  EXPECT_NEAR(only(it).inertia[0], 2 * (0.005 + 0.25), kRounded);
   EXPECT_NEAR((sim::form<sim::Ball<2>>(sim::part(only(it).shape, 0))->center - Vec(-0.5, 0)).norm(), 0,
-              kExact);
+              kRounded);
 }
 
 TEST(Body, ATurnedBoxIsAPolygon) {
@@ -85,11 +85,11 @@ TEST(Body, ATurnedBoxIsAPolygon) {
   const auto* upright = sim::form<sim::Box<2>>(sim::part(only(it).shape, 0));
   const auto* turned = sim::form<sim::Polygon>(sim::part(only(it).shape, 1));
   ASSERT_TRUE(upright && turned);
-  EXPECT_NEAR((upright->center - Vec(-0.2, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((upright->center - Vec(-0.2, 0)).norm(), 0, kRounded);
   // its lower left corner comes to the lower right
-  EXPECT_NEAR((turned->vertices[0] - Vec(0.3, -0.2)).norm(), 0, kExact);
+  EXPECT_NEAR((turned->vertices[0] - Vec(0.3, -0.2)).norm(), 0, kRounded);
   const double box = 0.08 * (0.16 + 0.04) / 12;
-  EXPECT_NEAR(only(it).inertia[0], 2 * (box + 0.08 * 0.04), kExact);
+  EXPECT_NEAR(only(it).inertia[0], 2 * (box + 0.08 * 0.04), kRounded);
 }
 
 TEST(Bodies, ThoseThatDoNotTurnComeFirst) {
@@ -108,9 +108,9 @@ TEST(Bodies, CopiesOfAPolygonTurnAboutAPlace) {
   const Scene it = scene(
       "[[polygon]]\nname = \"stone\"\npoints = [[1, -0.1], [1.3, -0.1], [1.3, 0.1], [1, 0.1]]\n"
       "position = [4, 2]\ncopies = { count = 3, turn = 90, around = [4, 2] }");
-  EXPECT_NEAR((it.plane().state.x[0] - Vec(5.15, 2)).norm(), 0, kExact);
-  EXPECT_NEAR((it.plane().state.x[1] - Vec(4, 3.15)).norm(), 0, kExact);
-  EXPECT_NEAR((it.plane().state.x[2] - Vec(2.85, 2)).norm(), 0, kExact);
+  EXPECT_NEAR((it.plane().state.x[0] - Vec(5.15, 2)).norm(), 0, kRounded);
+  EXPECT_NEAR((it.plane().state.x[1] - Vec(4, 3.15)).norm(), 0, kRounded);
+  EXPECT_NEAR((it.plane().state.x[2] - Vec(2.85, 2)).norm(), 0, kRounded);
 }
 
 TEST(Bodies, FrictionIsTheirsAndTheWallsOnlyWhereTheySay) {
@@ -163,12 +163,12 @@ TEST(Joints, APinIsAPointOfBoth) {
   EXPECT_EQ(joint.name, "hinge");
   EXPECT_EQ(joint.a.body, 1);  // balls come before boxes
   EXPECT_EQ(joint.b.body, 0);
-  EXPECT_NEAR((joint.a.local - Vec(0.25, -0.5)).norm(), 0, kExact);
-  EXPECT_NEAR((joint.b.local - Vec(-0.5, 0.25)).norm(), 0, kExact);
-  EXPECT_NEAR(joint.turn[0], std::numbers::pi / 2, kExact);
-  EXPECT_NEAR(joint.lower, -std::numbers::pi / 2, kExact);
-  EXPECT_NEAR(joint.upper, std::numbers::pi / 4, kExact);
-  EXPECT_NEAR(joint.motor->speed, std::numbers::pi, kExact);
+  EXPECT_NEAR((joint.a.local - Vec(0.25, -0.5)).norm(), 0, kRounded);
+  EXPECT_NEAR((joint.b.local - Vec(-0.5, 0.25)).norm(), 0, kRounded);
+  EXPECT_NEAR(joint.turn[0], std::numbers::pi / 2, kRounded);
+  EXPECT_NEAR(joint.lower, -std::numbers::pi / 2, kRounded);
+  EXPECT_NEAR(joint.upper, std::numbers::pi / 4, kRounded);
+  EXPECT_NEAR(joint.motor->speed, std::numbers::pi, kRounded);
   EXPECT_EQ(joint.motor->most, 3);
   EXPECT_EQ(joint.breaks, 50);
   EXPECT_TRUE(joint.touching);
@@ -206,7 +206,7 @@ TEST(Joints, ASliderGoesWithItsSecondEnd) {
       "[[box]]\nname = \"cart\"\nposition = [2, 1]\n[[box]]\nname = \"rail\"\nposition = [4, 3]\nangle = 90\n"
       "[[joint]]\ntype = \"slider\"\nbetween = [\"cart\", \"rail\"]\naxis = [0, 2]\nlimits = [-1, 2]");
   const sim::Joint<2>& joint = it.plane().model.joints[0];
-  EXPECT_NEAR((joint.axis - Vec(1, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((joint.axis - Vec(1, 0)).norm(), 0, kRounded);
   EXPECT_EQ(joint.a.local, Vec(0, 0));
   EXPECT_EQ(joint.upper, 2);
 }
@@ -216,7 +216,7 @@ TEST(Ends, CountFromAPolygonsOwnOrigin) {
       "[[polygon]]\nname = \"p\"\npoints = [[0, 0], [0.6, 0], [0, 0.3]]\nposition = [1, 2]\n"
       "[[spring]]\nbetween = [[1, 4], { body = \"p\", local = [0, 0.3] }]\n"
       "[[spring]]\nbetween = [[1, 4], { body = \"p\", at = \"center\" }]");
-  EXPECT_NEAR(it.plane().model.springs[0].rest_length, 4 - 2.3, kExact);
+  EXPECT_NEAR(it.plane().model.springs[0].rest_length, 4 - 2.3, kRounded);
   EXPECT_EQ(it.plane().model.springs[1].b.local, Vec(0, 0));
 }
 

@@ -18,7 +18,7 @@ namespace {
 using testing::EndsWith;
 using testing::HasSubstr;
 
-using Vec = sim::Vec<3>;
+using Vec3 = sim::Vec<3>;
 
 constexpr double kExact = 1e-14;  // a few roundings of numbers near one
 
@@ -49,10 +49,10 @@ TEST(Space, ThreeNumbersTellIt) {
 
 TEST(Space, DefaultsHaveAThirdNumber) {
   const Scene it = scene(kRoom + "[[box]]");
-  EXPECT_EQ(it.space().model.gravity, Vec(0, -9.81, 0));
-  EXPECT_EQ(it.space().state.x[0], Vec(0, 1.5, 0));  // the middle of the room
-  EXPECT_EQ(it.space().state.v[0], Vec(0, 0, 0));
-  EXPECT_EQ(it.space().state.spin[0], Vec(0, 0, 0));
+  EXPECT_EQ(it.space().model.gravity, Vec3(0, -9.81, 0));
+  EXPECT_EQ(it.space().state.x[0], Vec3(0, 1.5, 0));  // the middle of the room
+  EXPECT_EQ(it.space().state.v[0], Vec3(0, 0, 0));
+  EXPECT_EQ(it.space().state.spin[0], Vec3(0, 0, 0));
   EXPECT_EQ(it.space().state.turn[0], sim::no_rotation<3>());
   EXPECT_EQ(it.space().model.scale, 3);
   EXPECT_EQ(it.extent.low, sim::Vec3(-2, 0, -1));
@@ -62,14 +62,14 @@ TEST(Space, DefaultsHaveAThirdNumber) {
 TEST(Space, SixWallsInTheirOrderOrTheGroundAlone) {
   const auto walls = scene(kRoom + "[[box]]").space().model.walls;
   ASSERT_EQ(walls.size(), 6u);
-  const Vec normals[] = {{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  const Vec3 normals[] = {{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (int i = 0; i < 6; ++i) EXPECT_EQ(walls[std::size_t(i)].normal, normals[i]) << i;
-  EXPECT_EQ(walls[0].point, Vec(-2, 0, -1));
-  EXPECT_EQ(walls[5].point, Vec(2, 3, 1));
+  EXPECT_EQ(walls[0].point, Vec3(-2, 0, -1));
+  EXPECT_EQ(walls[5].point, Vec3(2, 3, 1));
 
   const Scene ground = scene(kRoom + "walls = \"ground\"\n[[box]]\nposition = [9, 2, 0]");
   ASSERT_EQ(ground.space().model.walls.size(), 1u);
-  EXPECT_EQ(ground.space().model.walls[0].normal, Vec(0, 1, 0));
+  EXPECT_EQ(ground.space().model.walls[0].normal, Vec3(0, 1, 0));
   EXPECT_EQ(ground.extent.high, sim::Vec3(2, 3, 1));
   EXPECT_TRUE(scene(kRoom + "walls = \"none\"\n[[box]]").space().model.walls.empty());
   EXPECT_EQ(scene("[room]\nsize = [4, 3]\nwalls = \"ground\"\n[[box]]").plane().model.walls.size(), 1u);
@@ -93,13 +93,13 @@ TEST(Space, OrientationIsThreeTurnsOrAnAxisAndAnAngle) {
   }
   // about x, then about z of the room: the box's y goes to z and stays there
   const auto turn = scene(kRoom + "[[box]]\norientation = [90, 0, 90]").space().state.turn[0];
-  EXPECT_NEAR((sim::matrix(turn) * Vec(0, 1, 0) - Vec(0, 0, 1)).norm(), 0, kExact);
-  EXPECT_NEAR((sim::matrix(turn) * Vec(1, 0, 0) - Vec(0, 1, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((sim::matrix(turn) * Vec3(0, 1, 0) - Vec3(0, 0, 1)).norm(), 0, kExact);
+  EXPECT_NEAR((sim::matrix(turn) * Vec3(1, 0, 0) - Vec3(0, 1, 0)).norm(), 0, kExact);
 }
 
 TEST(Space, SpinIsAVectorInDegrees) {
   const Scene it = scene(kRoom + "[[box]]\nspin = [0, 180, 90]");
-  EXPECT_NEAR((it.space().state.spin[0] - Vec(0, std::numbers::pi, std::numbers::pi / 2)).norm(), 0, kExact);
+  EXPECT_NEAR((it.space().state.spin[0] - Vec3(0, std::numbers::pi, std::numbers::pi / 2)).norm(), 0, kExact);
 }
 
 TEST(Space, DensityIsMassForVolume) {
@@ -139,15 +139,15 @@ TEST(Space, AHullStandsOnItsPrincipalAxesWhereItWasTyped) {
   EXPECT_NEAR(body.mass, 2, 1e-12);
   const Eigen::Matrix3d axes = sim::matrix(world.state.turn[0]);
   // turned a quarter about y, x goes to -z and z to x
-  const Vec corner = Vec(0.25, 1, 0) + Vec(2, 1, -1.5);
+  const Vec3 corner = Vec3(0.25, 1, 0) + Vec3(2, 1, -1.5);
   EXPECT_NEAR((world.state.x[0] + axes * world.model.springs[0].b.local - corner).norm(), 0, 1e-13);
   const Eigen::Quaterniond typed = Eigen::Quaterniond(world.state.turn[0][3], world.state.turn[0][0],
                                                       world.state.turn[0][1], world.state.turn[0][2]) *
                                    it.axes[0].conjugate();
-  EXPECT_NEAR(std::abs(typed.dot(Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Vec::UnitY())))),
+  EXPECT_NEAR(std::abs(typed.dot(Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitY())))),
               1, kExact);
   double nearest = 1;
-  for (const Vec& v : hull->vertices)
+  for (const Vec3& v : hull->vertices)
     nearest = std::min(nearest, (world.state.x[0] + axes * v - corner).norm());
   EXPECT_NEAR(nearest, 0, 1e-13);
 }
@@ -174,8 +174,8 @@ TEST(Space, HullsHaveWholeFacesAndNoInnerPoints) {
   for (const auto& face : ball.faces) {
     ASSERT_EQ(face.size(), 3u);
     const auto at = [&](std::size_t k) { return ball.vertices[std::size_t(face[k])]; };
-    const Vec normal = (at(1) - at(0)).cross(at(2) - at(0));
-    for (const Vec& v : ball.vertices) EXPECT_LE((v - at(0)).dot(normal), 1e-12);
+    const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
+    for (const Vec3& v : ball.vertices) EXPECT_LE((v - at(0)).dot(normal), 1e-12);
   }
   EXPECT_TRUE(hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}).faces.empty());
 }
@@ -208,14 +208,14 @@ TEST(Space, CopiesGoThreeWaysAndTurnAboutAnAxis) {
       "= "
       "[[1, 0, 0], [0, 1, 0], [0, 0, 1]] }");
   ASSERT_EQ(grid.space().state.x.size(), 8u);
-  EXPECT_EQ(grid.space().state.x[7], Vec(1, 2, 1));
-  EXPECT_EQ(grid.space().state.x[4], Vec(0, 1, 1));
+  EXPECT_EQ(grid.space().state.x[7], Vec3(1, 2, 1));
+  EXPECT_EQ(grid.space().state.x[4], Vec3(0, 1, 1));
   const Scene ring = scene(
       "[room]\nsize = [20, 20, 20]\n[[box]]\nposition = [2, 1, 0]\nsize = [0.1, 0.1, 0.3]\n"
       "copies = { count = 4, turn = 90, around = [0, 0, 0] }");
-  EXPECT_NEAR((ring.space().state.x[1] - Vec(0, 1, -2)).norm(), 0, kExact);
-  const Vec side = sim::matrix(ring.space().state.turn[1]) * Vec(0, 0, 1);
-  EXPECT_NEAR((side - Vec(1, 0, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((ring.space().state.x[1] - Vec3(0, 1, -2)).norm(), 0, kExact);
+  const Vec3 side = sim::matrix(ring.space().state.turn[1]) * Vec3(0, 0, 1);
+  EXPECT_NEAR((side - Vec3(1, 0, 0)).norm(), 0, kExact);
 }
 
 TEST(Space, JointsKnowTheirAxisAndHowTheyStand) {
@@ -229,10 +229,10 @@ TEST(Space, JointsKnowTheirAxisAndHowTheyStand) {
   ASSERT_EQ(joints.size(), 2u);
   EXPECT_EQ(joints[0].kind, sim::JointKind::hinge);
   EXPECT_EQ(joints[1].kind, sim::JointKind::pin);
-  EXPECT_NEAR((joints[0].axis - Vec(0, 1, 0)).norm(), 0, kExact);
-  EXPECT_NEAR((joints[0].turn - Vec(0, -std::numbers::pi / 6, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((joints[0].axis - Vec3(0, 1, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((joints[0].turn - Vec3(0, -std::numbers::pi / 6, 0)).norm(), 0, kExact);
   EXPECT_NEAR(joints[0].lower, -std::numbers::pi / 2, kExact);
-  EXPECT_NEAR((joints[0].a.local - Vec(-0.5, 0, 0)).norm(), 0, kExact);
+  EXPECT_NEAR((joints[0].a.local - Vec3(-0.5, 0, 0)).norm(), 0, kExact);
 }
 
 TEST(Space, SidesOfThingsHaveNames) {
@@ -240,7 +240,7 @@ TEST(Space, SidesOfThingsHaveNames) {
       scene(kRoom +
             "[[box]]\nname = \"crate\"\nsize = [0.2, 0.4, 0.6]\n[[spring]]\nbetween = [[0, 3, 0], "
             "{ body = \"crate\", at = \"top left front\" }]");
-  EXPECT_EQ(it.space().model.springs[0].b.local, Vec(-0.1, 0.2, 0.3));
+  EXPECT_EQ(it.space().model.springs[0].b.local, Vec3(-0.1, 0.2, 0.3));
   EXPECT_THAT(complaint("[[box]]\nposition = [1, 1]\n[[spring]]\nbetween = [[0, 3], { body = \"box[0]\", at "
                         "= \"front\" }]"),
               HasSubstr("expected a corner or side"));
@@ -332,13 +332,13 @@ TEST(Space, CamerasStandBesideEachOther) {
 TEST(Space, SetWritesTheThirdNumber) {
   const Scene it =
       scene(kRoom + "[[particle]]\nname = \"ball\"", {"room.gravity.z=-1", "ball.velocity=[1,2,3]"});
-  EXPECT_EQ(it.space().model.gravity, Vec(0, -9.81, -1));
-  EXPECT_EQ(it.space().state.v[0], Vec(1, 2, 3));
+  EXPECT_EQ(it.space().model.gravity, Vec3(0, -9.81, -1));
+  EXPECT_EQ(it.space().state.v[0], Vec3(1, 2, 3));
   const Scene copies = scene(kRoom +
                                  "[[box]]\nname = \"b\"\nsize = [0.1, 0.1, 0.1]\norientation = [0, 30, 0]\n"
                                  "copies = { count = 2, offset = [0.5, 0, 0] }",
                              {"b[1].position.z=0.5", "b[0].orientation=[0,0,0]"});
-  EXPECT_EQ(copies.space().state.x[1], Vec(0.5, 1.5, 0.5));
+  EXPECT_EQ(copies.space().state.x[1], Vec3(0.5, 1.5, 0.5));
   EXPECT_EQ(copies.space().state.turn[0], sim::no_rotation<3>());
   EXPECT_NE(copies.space().state.turn[1], sim::no_rotation<3>());
 }

@@ -10,11 +10,10 @@
 #include "sim/energy/energy.h"
 #include "sim/reference.h"
 #include "sim/space_rooms.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kDegree = 3.14159265358979324 / 180;
 
 // n links end to end from the origin, rods or points at their ends, hanging where q is zero
 World<2> hung(int n, double length, double mass, bool rods) {

@@ -6,6 +6,7 @@
 
 #include "chain_cases.h"
 #include "reference.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
@@ -95,8 +96,6 @@ TEST(ChainReference, SixJointTreeSwingsFreely) {
     EXPECT_NEAR(coarse[row] / fine[row], 16, 1);
   }
 }
-
-constexpr double kDegree = 3.14159265358979324 / 180;
 
 TEST(ChainReference, FreeTopFlips) {
   std::vector<Link<3>> links(1);

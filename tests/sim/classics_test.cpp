@@ -12,11 +12,12 @@
 #include "sim/jointed.h"
 #include "sim/space_rooms.h"
 #include "sim/touching.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
 
-constexpr double kG = 9.81, kPi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;
 
 void add_floor(World<2>& world, double friction) {
   world.model.walls.push_back({{0, 0}, {0, 1}, {}, friction});

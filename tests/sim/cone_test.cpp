@@ -9,14 +9,13 @@
 
 #include "sim/allocations.h"
 #include "sim/math/vec.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kG = 9.81;
 
 // Rows and bodies of the plane: what an assembler would hand over.
 struct Heap {

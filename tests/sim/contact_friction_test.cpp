@@ -6,11 +6,10 @@
 
 #include "sim/reference.h"
 #include "sim/touching.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kG = 9.81;
 
 TEST(ContactFriction, StopDistanceHoldsForEveryMuSpeedAndRate) {
   // d = v^2/(2 mu g), from the slowest speed of the claim, 50 mu g h, up; the claim is 1e-4. The moment of

@@ -8,11 +8,11 @@
 
 #include "sim/reference.h"
 #include "sim/touching.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
 
-constexpr double kG = 9.81;
 constexpr Collision kModes[] = {Collision::contact, Collision::event};
 
 TEST(ContactImpacts, TwoBallsPartAsTheClosedFormsSay) {

@@ -6,11 +6,10 @@
 
 #include "sim/reference.h"
 #include "sim/touching.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kG = 9.81;
 
 State<2> on(const World<2>& world, State<2> state, int steps) {
   Stepper<2> stepper(world.model);

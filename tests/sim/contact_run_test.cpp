@@ -6,12 +6,12 @@
 #include <string>
 
 #include "sim/touching.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
 
-constexpr double kG = 9.81;
-constexpr Collision kModes[] = {Collision::contact, Collision::event};
+constexpr Collision kBothModes[] = {Collision::contact, Collision::event};
 
 // anything, thrown into a room: points, balls, boxes, polygons, a compound
 World<2> thrown(int seed, Collision collision) {
@@ -46,7 +46,7 @@ World<2> thrown(int seed, Collision collision) {
 TEST(ContactRun, EnergyNeverRisesInRandomRooms) {
   // flight keeps gravity's energy to rounding, and contact is kept account of
   for (const int seed : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 37}) {
-    const World<2> world = thrown(seed, kModes[seed > 9 ? 0 : seed % 2]);
+    const World<2> world = thrown(seed, kBothModes[seed > 9 ? 0 : seed % 2]);
     expect_no_gain(world, 900, 1e-12, "seed " + std::to_string(seed), std::abs(energy(world, world.state)));
   }
 }
@@ -70,7 +70,7 @@ World<2> chain(int links, double angle, Collision collision) {
 }
 
 TEST(ContactRun, AChainThatSwingsAgainstWallsNeverGains) {
-  for (const auto collision : kModes) {
+  for (const auto collision : kBothModes) {
     World<2> world = chain(4, 0.9, collision);
     add_wall(world, {-0.5, 0}, {1, 0});
     // between impacts what hangs together is as exact as RK4 at a third of a step: 1e-8 a step of the whole
@@ -88,7 +88,7 @@ TEST(ContactRun, ASwingingChainKeepsItsEnergyForAMinute) {
 
 TEST(ContactRun, ARunCutInTwoIsTheRunInOne) {
   for (int seed = 0; seed < 6; ++seed) {
-    const World<2> world = thrown(seed + 50, kModes[seed % 2]);
+    const World<2> world = thrown(seed + 50, kBothModes[seed % 2]);
     const State<2> whole = stepped(world, 700);
     State<2> half = stepped(world, 313);
     Stepper<2> fresh(world.model);
@@ -174,7 +174,7 @@ TEST(ContactRun, GroupsThatAreToldNotToTouchPassThroughEachOther) {
 }
 
 TEST(ContactRun, APointBouncesOffABoxAsOffAMirror) {
-  for (const auto collision : kModes) {
+  for (const auto collision : kBothModes) {
     World<2> world = touching_room(collision, {0, 0});
     add_particle(world, {-1, 0}, {2, 0.3}, 0.1, 0.64);
     const double angle = 0.4;

@@ -9,11 +9,10 @@
 #include "sim/solve/contact_solver.h"
 #include "sim/space_rooms.h"
 #include "sim/touching.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kG = 9.81;
 
 World<3> floor_room(Vec3 gravity = {0, -kG, 0}) {
   World<3> world = space(gravity);

@@ -6,11 +6,10 @@
 #include <string>
 
 #include "sim/touching.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kG = 9.81;
 
 TEST(Contact, ABlockStopsAfterVSquaredOverTwoMuG) {
   for (const double mu : {0.1, 0.3, 0.5, 0.9}) {

@@ -8,11 +8,10 @@
 #include <tuple>
 
 #include "sim/rooms.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kG = 9.81;
 
 // A ball that falls from rest through `fall` (m) onto a floor of elasticity e, after t (s):
 //   t_1 = sqrt(2 fall / g),   v_k = e^k g t_1   its speed after bounce k,   2 v_k / g   its flight until the

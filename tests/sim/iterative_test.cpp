@@ -15,11 +15,10 @@
 #include "sim/math/trig.h"
 #include "sim/solve/iterate/wide_sin_cos.h"
 #include "sim/step/stepper.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kG = 9.81;
 
 // a world, its solver and its clock
 struct Room {

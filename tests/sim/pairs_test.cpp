@@ -26,14 +26,14 @@ Found all_pairs(const std::vector<Bounds<2>>& bounds, const std::vector<char>& s
   return out;
 }
 
-struct BodyCounts {
+struct RandomBodies {
   std::vector<Bounds<2>> bounds;
   std::vector<char> still;
 };
 
 // bodies of like size, some of them floors, towers, points, and one far away
-BodyCounts body_counts(ShapeDice& dice, int n, double room) {
-  BodyCounts all;
+RandomBodies body_counts(ShapeDice& dice, int n, double room) {
+  RandomBodies all;
   for (int i = 0; i < n; ++i) {
     const Vec<2> x(dice.between(-room, room), dice.between(-room, room));
     Vec<2> half(dice.between(0.1, 1), dice.between(0.1, 1));
@@ -52,7 +52,7 @@ BodyCounts body_counts(ShapeDice& dice, int n, double room) {
 TEST(BroadPhase, FindsAllPairsAndNoOther) {
   ShapeDice dice(1);
   for (int n = 0; n < 60; ++n) {
-    const BodyCounts all = body_counts(dice, 1 + dice.below(300), dice.between(1, 60));
+    const RandomBodies all = body_counts(dice, 1 + dice.below(300), dice.between(1, 60));
     BroadPhase<2> phase;
     EXPECT_EQ(phase.find(all.bounds, all.still), all_pairs(all.bounds, all.still)) << n;
   }
@@ -61,7 +61,7 @@ TEST(BroadPhase, FindsAllPairsAndNoOther) {
 TEST(BroadPhase, FindsTheSameWhateverCameBefore) {
   ShapeDice dice(2);
   BroadPhase<2> phase;
-  BodyCounts all = body_counts(dice, 400, 10);
+  RandomBodies all = body_counts(dice, 400, 10);
   for (int n = 0; n < 60; ++n) {
     // drift, now and then a jump
     const double far = n % 10 == 9 ? 20 : 0.1;
@@ -78,7 +78,7 @@ TEST(BroadPhase, TellsNoPairOfPointsNorOfStillBodies) {
   ShapeDice dice(3);
   BroadPhase<2> phase;
   for (int n = 0; n < 60; ++n) {
-    const BodyCounts all = body_counts(dice, 1 + dice.below(300), dice.between(1, 20));
+    const RandomBodies all = body_counts(dice, 1 + dice.below(300), dice.between(1, 20));
     std::vector<char> points;
     for (std::size_t i = 0; i < all.bounds.size(); ++i) points.push_back(dice.below(3) == 0);
     Found right = all_pairs(all.bounds, all.still);
@@ -120,7 +120,7 @@ TEST(BroadPhase, TellsTouchingBoundsAndNeverNaN) {
 
 TEST(BroadPhase, AllocatesNothingOnceWarm) {
   ShapeDice dice(3);
-  BodyCounts all = body_counts(dice, 500, 10);
+  RandomBodies all = body_counts(dice, 500, 10);
   BroadPhase<2> phase;
   for (int n = 0; n < 3; ++n) phase.find(all.bounds, all.still);
   const auto before = allocations();

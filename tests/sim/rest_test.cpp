@@ -15,11 +15,10 @@
 #include "sim/solve/sleep.h"
 #include "sim/space_rooms.h"
 #include "sim/touching.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kG = 9.81;
 
 // a vector of the plane, in space with what it is along z
 template <int D>

@@ -10,11 +10,10 @@
 
 #include "sim/solids.h"
 #include "sim/space_rooms.h"
+#include "sim/units.h"
 
 namespace obscura::sim {
 namespace {
-
-constexpr double kG = 9.81;
 
 World<3> swept_room(double mu, Vec3 gravity = {0, -kG, 0}) {
   World<3> world = space(gravity);
