@@ -48,7 +48,10 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
   const double h = 1 / value(model.rate);
   g_ = std::sqrt(model.gravity.squaredNorm());
   restitution_threshold_ = 2 * h * g_ + 1e-9 * model.scale;
-  for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
+  for (const Body<D>& body : model.bodies) {
+    bounding_radius_.push_back(bounding_radius(body.shape));
+    points_.push_back(is_point(body.shape));
+  }
 }
 
 template <int D>
@@ -142,7 +145,8 @@ void SpaceIterative<D>::find(double h) {
     const Vec<D> more = Vec<D>::Constant(margin(i, h));
     bounds_[i].lower -= more, bounds_[i].upper += more;
   }
-  const auto& pairs = broad_.find(bounds_, inactive_, [&](int a, int b) { return may_touch_(a, b); });
+  const auto& pairs = broad_.find(
+      bounds_, inactive_, [&](int a, int b) { return may_touch_(a, b); }, points_);
 
   // ascending: of a body first its walls, from the last
   auto pair = pairs.begin();

@@ -156,7 +156,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<BodyMotion<D>> stances_;
   std::vector<PointBody<D>> moving_;
   std::vector<Bounds<D>> bounds_;
-  std::vector<char> inactive_;
+  std::vector<char> inactive_, points_;
   std::vector<ContactCandidate<D>> gaps_;
   std::vector<ContactConstraint> touches_;     // ascending by key
   std::vector<ContactCandidate<D>> features_;  // theirs
