@@ -8,7 +8,7 @@
 namespace obscura::app {
 namespace {
 
-const std::string kSmall = " --set film.size=[160,90] --set film.fps=10";
+const std::string kSmallFilm = " --set film.size=[160,90] --set film.fps=10";
 
 using Submit = Program;
 
@@ -144,14 +144,14 @@ class Slurm : public WithSlurm {};
 
 TEST_F(Slurm, FourShardsAndAJoinAreOneRun) {
   scene(kRoom);
-  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + kSmall).exit, 0);
-  const Outcome run = obscura("submit scene.toml --tasks 4 -o room.mp4 --progress plain" + kSmall);
+  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + kSmallFilm).exit, 0);
+  const Outcome run = obscura("submit scene.toml --tasks 4 -o room.mp4 --progress plain" + kSmallFilm);
   ASSERT_EQ(run.exit, 0) << run.err << contents(path("room.mp4.slurm/prepare.log"))
                          << contents(path("room.mp4.slurm/shard-1.log"))
                          << contents(path("room.mp4.slurm/join.log"));
   EXPECT_NE(run.out.find("room.mp4: 100 frames, made by 4 tasks"), std::string::npos) << run.out;
   EXPECT_TRUE(contents(path("room.mp4")) == contents(path("one.mp4")));
-  const Outcome again = obscura("submit scene.toml --tasks 4 -o room.mp4" + kSmall);
+  const Outcome again = obscura("submit scene.toml --tasks 4 -o room.mp4" + kSmallFilm);
   EXPECT_EQ(again.exit, 0);
   EXPECT_NE(again.out.find("is whole"), std::string::npos) << again.out;
 
@@ -166,8 +166,8 @@ TEST_F(Slurm, FourShardsAndAJoinAreOneRun) {
 
 TEST_F(Slurm, AFailedTaskIsNamedWithItsLogAndRepairedBySubmittingAgain) {
   scene(kRoom);
-  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + kSmall).exit, 0);
-  const std::string submit = "submit scene.toml --tasks 4 -o room.mp4 --progress none" + kSmall;
+  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + kSmallFilm).exit, 0);
+  const std::string submit = "submit scene.toml --tasks 4 -o room.mp4 --progress none" + kSmallFilm;
   // the scripts are a person's to change: shard 3 is made to fail
   ASSERT_EQ(obscura(submit + " --no-wait -- --hold").exit, 0);
   ASSERT_EQ(
@@ -193,7 +193,7 @@ TEST_F(Slurm, AFailedTaskIsNamedWithItsLogAndRepairedBySubmittingAgain) {
 
 TEST_F(Slurm, WhoFollowsIsToldWhatIsHeld) {
   scene(kRoom);
-  const std::string submit = "submit scene.toml --tasks 2 -o room.mp4 --progress none" + kSmall;
+  const std::string submit = "submit scene.toml --tasks 2 -o room.mp4 --progress none" + kSmallFilm;
   ASSERT_EQ(obscura(submit + " --no-wait -- --hold").exit, 0);
   shell("{ " OBSCURA_BINARY " " + submit + "; echo $?; } >followed 2>&1 & true");
   ASSERT_TRUE(soon("grep -q 'holds job 3 (.*); scontrol release 3 ' followed")) << contents(path("followed"));
@@ -204,8 +204,8 @@ TEST_F(Slurm, WhoFollowsIsToldWhatIsHeld) {
 
 TEST_F(Slurm, ATaskThatIsToldToStopAndANodeThatDiesLoseNothing) {
   scene(kRoom);
-  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + kSmall).exit, 0);
-  const std::string submit = "submit scene.toml --tasks 2 -o room.mp4 --progress none" + kSmall;
+  ASSERT_EQ(obscura("render scene.toml -o one.mp4" + kSmallFilm).exit, 0);
+  const std::string submit = "submit scene.toml --tasks 2 -o room.mp4 --progress none" + kSmallFilm;
   // the scripts are a person's to change: each task stands still at its ninth file, of two or three a part,
   // until it is told to go on
   ASSERT_EQ(obscura(submit + " --no-wait -- --hold").exit, 0);
@@ -224,9 +224,11 @@ TEST_F(Slurm, ATaskThatIsToldToStopAndANodeThatDiesLoseNothing) {
   // task 1 gets SIGTERM where it has a part, and goes on
   ASSERT_EQ(shell("ls room.mp4.parts/*000000-*.mp4").exit, 0);
   ASSERT_EQ(shell("scancel --full --signal=TERM " + array + "_1").exit, 0);
-  // CONT again and again: the file met1 is there a moment before the task stands still
-  ASSERT_TRUE(soon("scancel --full --signal=CONT " + array + "_1; squeue -h -r -j " + array +
-                   " -o '%K %T %r' | grep -qx '1 PENDING BeginTime'"))
+  // CONT again and again: the file met1 is there a moment before the task stands still. Not to a task that
+  // has ended: scancel then tries for a minute and a half
+  ASSERT_TRUE(soon("squeue -h -r -t RUNNING -j " + array +
+                   " -o %K | grep -qx 1 && scancel --full --signal=CONT " + array + "_1; squeue -h -r -j " +
+                   array + " -o '%K %T %r' | grep -qx '1 PENDING BeginTime'"))
       << story() << contents(path("room.mp4.slurm/shard-1.log"));
   ASSERT_TRUE(begun(array)) << story();
 
