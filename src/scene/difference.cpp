@@ -96,7 +96,7 @@ void compare(const std::string& path, const Node* a, const Node* b, std::vector<
   if (a && b ? literal(*a) != literal(*b) : a != b) found.push_back({one_line(path), left, right});
 }
 
-Node read(const Source& source, Diagnostics& complaints) {
+Node read_source(const Source& source, Diagnostics& complaints) {
   Node top = document(source.text, "");
   apply(source.sets, top, complaints);
   return top;
@@ -107,7 +107,7 @@ Node read(const Source& source, Diagnostics& complaints) {
 std::vector<KeyDifference> differences(const Source& a, const Source& b) {
   Diagnostics complaints("", {});
   std::vector<KeyDifference> found;
-  const Node left = read(a, complaints), right = read(b, complaints);
+  const Node left = read_source(a, complaints), right = read_source(b, complaints);
   compare_tables("", left, right, found);
   return found;
 }

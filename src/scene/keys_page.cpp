@@ -454,7 +454,7 @@ std::string type(const Key& key) {
   return "";
 }
 
-std::string range(const Key& key) {
+std::string range_text(const Key& key) {
   const bool worth = key.form != Form::integer || key.path != "version";
   if (!worth || (!std::isfinite(key.range.low) && !std::isfinite(key.range.high))) return "";
   if (key.range.low == 0 && (!std::isfinite(key.range.high) || key.range.high >= 1e6))
@@ -470,7 +470,7 @@ std::string row(const Key& key, const std::string& section) {
   if (!section.empty()) name = name.substr(section.size() + 1);
   std::string kind = type(key);
   if (!key.unit.empty()) kind += ", " + key.unit;
-  if (const std::string r = range(key); !r.empty()) kind += ", " + r;
+  if (const std::string r = range_text(key); !r.empty()) kind += ", " + r;
   if (key.varies) kind += key.form == Form::color ? "; or a list" : "; *varies*";
   const std::string absent = key.required           ? "needed"
                              : !key.absent.empty()  ? key.absent

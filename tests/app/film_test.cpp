@@ -15,7 +15,7 @@ namespace {
 
 using Film = Program;
 
-nlohmann::json origin(const std::string& png) {
+nlohmann::json origin_of(const std::string& png) {
   return nlohmann::json::parse(media::read_png(png).tags.at("obscura"));
 }
 
@@ -41,12 +41,12 @@ TEST_F(Film, SlowFramesShowTheStatesOfTheirInstants) {
   ASSERT_EQ(obscura(small + "-o 'a/{frame}.png' --from 1 --to 2").exit, 0);
   ASSERT_EQ(obscura(small + "-o 'b/{frame}.png' --from 1 --to 2 --set film.speed=1/2").exit, 0);
   for (int n = 30; n < 60; ++n) {
-    const auto a = origin(path("a/" + std::to_string(n) + ".png")),
-               b = origin(path("b/" + std::to_string(2 * n) + ".png"));
+    const auto a = origin_of(path("a/" + std::to_string(n) + ".png")),
+               b = origin_of(path("b/" + std::to_string(2 * n) + ".png"));
     EXPECT_EQ(a["time"], b["time"]);
     EXPECT_EQ(a["state"], b["state"]);
   }
-  EXPECT_EQ(origin(path("b/61.png"))["time"], "61/60");
+  EXPECT_EQ(origin_of(path("b/61.png"))["time"], "61/60");
   // the picture as well: its clock is the run's
   EXPECT_EQ(media::read_png(path("a/45.png")).image, media::read_png(path("b/90.png")).image);
 }
@@ -163,7 +163,7 @@ TEST_F(Film, TheClockIsThatOfTheInstantHoweverLongTheShutterIsOpen) {
   EXPECT_NE(a, b);
   const auto caption = std::ptrdiff_t(4) * a.width * 30;
   EXPECT_TRUE(std::equal(a.pixels.begin(), a.pixels.begin() + caption, b.pixels.begin()));
-  EXPECT_EQ(origin(path("a.png"))["state"], origin(path("b.png"))["state"]);
+  EXPECT_EQ(origin_of(path("a.png"))["state"], origin_of(path("b.png"))["state"]);
 }
 
 TEST_F(Film, OneAndThreeWorkersMakeTheSameBytesOfAllOfItTogether) {

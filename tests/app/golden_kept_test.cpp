@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const char* const kScene = R"(duration = 2
+const char* const kKeptScene = R"(duration = 2
 [room]
 size = [4, 2.25]
 [[ball]]
@@ -30,13 +30,13 @@ class GoldenKept : public Program {
  protected:
   void SetUp() override {
     Program::SetUp();
-    scene(kScene);
+    scene(kKeptScene);
   }
   Outcome golden(const std::string& arguments = "") const {
     return obscura("golden scene.toml " + arguments);
   }
   void change(const std::string& from, const std::string& to) const {
-    std::string text = kScene;
+    std::string text = kKeptScene;
     text.replace(text.find(from), from.size(), to);
     scene(text);
   }
@@ -95,7 +95,7 @@ TEST_F(GoldenKept, OfASceneThatKeepsHashesPicturesStayOutsideGit) {
 
 TEST_F(GoldenKept, ByAHashADifferenceIsSeenAndWithThePictureAtHandMeasured) {
   const auto purple = [&] {
-    std::string text = kScene;
+    std::string text = kKeptScene;
     text.replace(text.find("\"green\""), 7, "\"purple\"");
     text.replace(text.find("at = [0"), 0, "keep = \"hash\"\n");
     scene(text);
@@ -131,7 +131,7 @@ TEST_F(GoldenKept, ByAHashADifferenceIsSeenAndWithThePictureAtHandMeasured) {
 TEST_F(GoldenKept, OfHashesOnlyTheMomentThatIsNamedIsTaken) {
   change("at = [0, 0.5]", "keep = \"hash\"\nat = [0, 0.5]");
   ASSERT_EQ(golden("--update").exit, 0);
-  std::string text = kScene;
+  std::string text = kKeptScene;
   text.replace(text.find("\"green\""), 7, "\"purple\"");
   text.replace(text.find("at = [0"), 0, "keep = \"hash\"\n");
   scene(text);
@@ -145,7 +145,7 @@ TEST_F(GoldenKept, ByAHashAStateThatDoesNotShowFailsAllTheSame) {
   change("at = [0, 0.5]", "keep = \"hash\"\nat = [0, 0.5]");
   ASSERT_EQ(golden("--update").exit, 0);
   std::filesystem::remove_all(path("golden/pictures"));
-  std::string text = kScene;
+  std::string text = kKeptScene;
   text.replace(text.find("[1, 1]\ncolor"), 6, "[1.0000000000000002, 1]");
   text.replace(text.find("at = [0"), 0, "keep = \"hash\"\n");
   scene(text);
@@ -184,7 +184,7 @@ TEST_F(GoldenKept, FromPicturesToHashesAndBackLeavesNothingBehind) {
   EXPECT_THAT(golden().out, HasSubstr("golden/scene.json: t = 0.5 s is no moment of the scene any more"));
   ASSERT_EQ(golden("--update").exit, 0);
   EXPECT_THAT(contents(path("golden/scene.json")), Not(HasSubstr("0.5")));
-  scene(kScene);
+  scene(kKeptScene);
   EXPECT_THAT(golden().out, HasSubstr("golden/scene.json is not needed; --update removes it"));
   ASSERT_EQ(golden("--update").exit, 0);
   EXPECT_EQ(files(), "pictures\nscene-0.5.png\nscene-0.png\n");
@@ -227,7 +227,7 @@ TEST_F(GoldenOfARun, IsHeldWithoutSimulatingIt) {
 TEST_F(GoldenOfARun, MayBeNamedByTheSceneAndLiesBesideIt) {
   std::filesystem::create_directories(path("deep/runs"));
   std::filesystem::rename(path("run.csv"), path("deep/runs/run.csv"));
-  std::string text = kScene;
+  std::string text = kKeptScene;
   text.replace(text.find("at = [0"), 0, "states = \"runs/run.csv\"\nkeep = \"hash\"\n");
   scene(text, "deep/scene.toml");
   ASSERT_EQ(obscura("golden deep --update").exit, 0);
@@ -255,7 +255,7 @@ TEST_F(GoldenOfARun, SaysWhatIsNotThere) {
   EXPECT_THAT(run.out,
               HasSubstr("run.csv: has no row at t = 0.4 s, a moment of scene's [golden]; the nearest are at "
                         "0.25 s and 0.5 s"));
-  scene(kScene, "other.toml");
+  scene(kKeptScene, "other.toml");
   run = obscura("golden scene.toml other.toml --states run.csv");
   EXPECT_EQ(run.exit, 2);
   EXPECT_THAT(run.err, HasSubstr("--states run.csv is one scene's run, and there are 2"));

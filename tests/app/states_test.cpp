@@ -13,7 +13,7 @@ namespace {
 
 using States = Program;
 
-const char* const kFlight = R"(
+const char* const kParabola = R"(
 duration = 3
 [room]
 size = [100, 100]
@@ -25,7 +25,7 @@ velocity = [3, 4]
 
 TEST_F(States, AThrownBallIsWhereTheParabolaSays) {
   // RK4 is exact for a parabola; 1e-12 is a few roundings of numbers near 50
-  scene(kFlight);
+  scene(kParabola);
   const Outcome run = obscura("states scene.toml --at 0,0.5,1");
   ASSERT_EQ(run.exit, 0) << run.err;
   const auto json = nlohmann::json::parse(run.out);
@@ -42,7 +42,7 @@ TEST_F(States, AThrownBallIsWhereTheParabolaSays) {
 }
 
 TEST_F(States, NumbersReadBackToTheBit) {
-  scene(kFlight);
+  scene(kParabola);
   const Outcome once = obscura("states scene.toml --at 0.7");
   const auto json = nlohmann::json::parse(once.out);
   const double x = json["states"][0]["bodies"][0]["position"][1];
@@ -56,7 +56,7 @@ TEST_F(States, NumbersReadBackToTheBit) {
 }
 
 TEST_F(States, GoIntoAFileWhoseEndingIsTheFormat) {
-  scene(kFlight);
+  scene(kParabola);
   const std::string csv = obscura("states scene.toml --every 1 --format csv").out,
                     json = obscura("states scene.toml --every 1").out;
   const Outcome run = obscura("states scene.toml --every 1 -o new/folder/a.csv");
@@ -77,7 +77,7 @@ TEST_F(States, GoIntoAFileWhoseEndingIsTheFormat) {
 }
 
 TEST_F(States, ARangeThatRunsBackwardsIsRefused) {
-  scene(kFlight);
+  scene(kParabola);
   const Outcome run = obscura("states scene.toml --at 1:0:0.1");
   EXPECT_EQ(run.exit, 2);
   EXPECT_EQ(run.out, "");
@@ -113,7 +113,7 @@ TEST_F(States, TimesThatItPrintsItTakesBack) {
 }
 
 TEST_F(States, CsvHasOneRowAnInstantUnderThePathsOfTheLanguage) {
-  scene(kFlight);
+  scene(kParabola);
   const Outcome run = obscura("states scene.toml --every 0.1 --format csv");
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 1 + 31);
   EXPECT_NE(
@@ -122,7 +122,7 @@ TEST_F(States, CsvHasOneRowAnInstantUnderThePathsOfTheLanguage) {
 }
 
 TEST_F(States, SetChangesAKeyFromOutside) {
-  scene(kFlight);
+  scene(kParabola);
   const auto json = nlohmann::json::parse(
       obscura("states scene.toml --at 0 --set ball.position.y=60 --set ball.mass=3").out);
   EXPECT_EQ(json["states"][0]["bodies"][0]["position"][1], 60.0);
@@ -208,7 +208,7 @@ TEST_F(States, NameTheSolver) {
   EXPECT_NE(said.find("iterative solver: 42 bodies and 0 points that move; up to 20 and 400"),
             std::string::npos);
   EXPECT_NE(said.find("impacts go from pair to pair"), std::string::npos);
-  scene(kFlight);
+  scene(kParabola);
   EXPECT_NE(obscura("check scene.toml").out.find("direct solver: "), std::string::npos);
   EXPECT_EQ(nlohmann::json::parse(
                 obscura("states scene.toml --at 0 --set physics.collision=handout").out)["solver"],
@@ -216,7 +216,7 @@ TEST_F(States, NameTheSolver) {
 }
 
 TEST_F(States, OpenNoGl) {
-  scene(kFlight);
+  scene(kParabola);
   const Outcome run = shell("LD_DEBUG=files " OBSCURA_BINARY " states scene.toml --at 0");
   EXPECT_EQ(run.exit, 0);
   EXPECT_EQ(run.err.find("OSMesa"), std::string::npos);

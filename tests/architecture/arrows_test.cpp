@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
+#include "architecture/planted.h"
 #include "where.h"
 
 namespace obscura::architecture {
@@ -17,22 +17,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 const std::filesystem::path kTop = OBSCURA_SOURCE_DIR;
-
-// A tree of sources of the test's own.
-class Planted : public testing::Test {
- protected:
-  void SetUp() override { std::filesystem::create_directories(src_); }
-  void TearDown() override { std::filesystem::remove_all(src_); }
-
-  void plant(const std::string& name, const std::string& text) {
-    std::filesystem::create_directories((src_ / name).parent_path());
-    std::ofstream(src_ / name) << text;
-  }
-
-  const std::filesystem::path src_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("obscura_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-};
 
 TEST(Arrows, EveryIncludeFollowsThem) { EXPECT_THAT(wrong_includes(kTop / "src"), IsEmpty()); }
 

@@ -12,13 +12,13 @@ namespace {
 
 using sim::Vec3;
 
-const Rect kPage{0, 0, 1920, 1080};
+const Rect kFullPage{0, 0, 1920, 1080};
 
 CameraProjection front(Camera::Projection projection = Camera::Projection::orthographic) {
   Camera camera = side();
   camera.elevation = 0;
   camera.projection = projection;
-  return lens_at(camera, {Vec3::Zero(), 9.6}, kPage, 0);
+  return lens_at(camera, {Vec3::Zero(), 9.6}, kFullPage, 0);
 }
 
 TEST(HiddenLines, ABoxHidesWhatLiesBehindItAndNoMore) {

@@ -5,6 +5,7 @@
 
 #include "gl/back_ends.h"
 #include "gl/error.h"
+#include "gl/pictures.h"
 #include "gl/renderer.h"
 
 namespace obscura::gl {
@@ -33,12 +34,6 @@ draw::Picture all_shapes() {
       {{{300, 300}, 40, kRed}, {{700, 800}, 40, Color{213, 94, 0, 0}}, {{900, 300}, 10, kRed}});
   picture.moving.add({{1500, 200}, {1700, 300}, {1500, 400}, {1560, 300}}, kRed);
   return picture;
-}
-
-media::Image drawn(Renderer& renderer, const draw::Picture& picture) {
-  media::Image image;
-  renderer.draw(picture, image);
-  return image;
 }
 
 Color at(const media::Image& image, int x, int y) {

@@ -59,11 +59,11 @@ std::string place(bool space, double x, double y) {
 }
 
 // Shapes 0.2 m high, of 1 kg, friction 0.3 and elasticity 0.5. The middle lies 0.1 m above what they lie on.
-struct Form {
+struct TestedForm {
   std::string name, keys;
   bool rolls = false;
 };
-std::vector<Form> forms(bool space) {
+std::vector<TestedForm> forms(bool space) {
   const std::string square = "points = [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]]";
   const std::string cube =
       "points = [[-0.1, -0.1, -0.1], [0.1, -0.1, -0.1], [0.1, 0.1, -0.1], [-0.1, 0.1, -0.1], [-0.1, -0.1, "
@@ -82,7 +82,7 @@ std::vector<Form> forms(bool space) {
           {space ? "hull" : "polygon", space ? "[[hull]]\n" + cube : "[[polygon]]\n" + square},
           {"body of two", "[[body]]\n" + halves}};
 }
-std::string body(const Form& form, bool space, const std::string& name, double x, double y, double vx) {
+std::string body(const TestedForm& form, bool space, const std::string& name, double x, double y, double vx) {
   return form.keys + fmt::format(
                          "\nname = \"{}\"\nmass = 1\nfriction = 0.3\nelasticity = 0.5\nposition = {}\n"
                          "velocity = {}\n",
@@ -103,7 +103,7 @@ std::string empty_room(bool space, double gravity) {
 
 void add_contacts(bool space, std::vector<Case>& table) {
   const std::string where = space ? "space" : "plane";
-  for (const Form& form : forms(space)) {
+  for (const TestedForm& form : forms(space)) {
     const bool turns = form.rolls;
     // two that lie on each other and on the plank (a ball on a ball would fall)
     if (!turns && form.name != "particle" && form.name != "capsule")

@@ -18,28 +18,28 @@ using Vec = sim::Vec<2>;
 
 constexpr double kRounded = 1e-15;  // a few roundings of numbers about one
 
-Scene scene(const std::string& text, const std::vector<std::string>& sets = {}) {
+Scene contact_scene(const std::string& text, const std::vector<std::string>& sets = {}) {
   return parse("[physics]\ncollision = \"contact\"\n" + text, "a.toml", sets);
 }
 
 const sim::Body<2>& only(const Scene& it) { return it.plane().model.bodies.front(); }
 
 TEST(Ball, IsADiscThatTurns) {
-  const Scene it = scene("[[ball]]\nradius = 0.3\ndensity = 2\nspin = 180\nangle = 90");
+  const Scene it = contact_scene("[[ball]]\nradius = 0.3\ndensity = 2\nspin = 180\nangle = 90");
   EXPECT_TRUE(sim::form<sim::Ball<2>>(only(it).shape));
   EXPECT_TRUE(only(it).turns());
   EXPECT_NEAR(only(it).mass, 2 * std::numbers::pi * 0.09, kRounded);
   EXPECT_NEAR(only(it).inertia[0], only(it).mass * 0.09 / 2, kRounded);
   EXPECT_DOUBLE_EQ(it.plane().state.spin[0][0], std::numbers::pi);
   EXPECT_DOUBLE_EQ(it.plane().state.turn[0][0], std::numbers::pi / 2);
-  EXPECT_EQ(sim::round_radius(only(scene("[[ball]]")).shape), 0.2);
+  EXPECT_EQ(sim::round_radius(only(contact_scene("[[ball]]")).shape), 0.2);
 }
 
 TEST(Polygon, IsKeptAboutItsCentreOfMass) {
   // a right triangle of sides 0.6 and 0.3: its centre a third along each, I = m (a^2 + b^2) / 18
   for (const char* points : {"[[0, 0], [0.6, 0], [0, 0.3]]", "[[0, 0.3], [0.6, 0], [0, 0]]"}) {
-    const Scene it =
-        scene(std::string("[[polygon]]\nposition = [1, 2]\nangle = 90\nmass = 3\npoints = ") + points);
+    const Scene it = contact_scene(
+        std::string("[[polygon]]\nposition = [1, 2]\nangle = 90\nmass = 3\npoints = ") + points);
     EXPECT_NEAR((it.plane().state.x[0] - Vec(1 - 0.1, 2 + 0.2)).norm(), 0, kRounded);
     EXPECT_NEAR(only(it).inertia[0], 3 * (0.36 + 0.09) / 18, kRounded);
     const sim::Polygon* shape = sim::form<sim::Polygon>(only(it).shape);
@@ -57,7 +57,7 @@ TEST(Polygon, IsKeptAboutItsCentreOfMass) {
 }
 
 TEST(Polygon, ASquareIsABox) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[polygon]]\npoints = [[0, 0], [0.8, 0], [0.8, 0.5], [0, 0.5]]\nposition = [3.6, 2]\n"
       "group = \"one\"\n[[box]]\ngroup = \"one\"\n[contact]\nignore = [[\"one\", \"one\"]]");
   const auto& bodies = it.plane().model.bodies;
@@ -69,7 +69,7 @@ TEST(Polygon, ASquareIsABox) {
 
 TEST(Body, ItsPartsAreOne) {
   // two balls of 1 kg (density 1 / pi r^2) at +-0.5 about a point 0.25 to the right of the origin
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[body]]\nmass = 2\nposition = [1, 1]\nshapes = [{ radius = 0.1, position = [-0.25, 0] }, "
       "{ radius = 0.1, position = [0.75, 0] }]");
   ASSERT_TRUE(sim::form<sim::Compound<2>>(only(it).shape));
@@ -80,7 +80,7 @@ TEST(Body, ItsPartsAreOne) {
 }
 
 TEST(Body, ATurnedBoxIsAPolygon) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[body]]\nshapes = [{ size = [0.4, 0.2] }, { size = [0.4, 0.2], angle = 90, position = [0.4, 0] }]");
   const auto* upright = sim::form<sim::Box<2>>(sim::part(only(it).shape, 0));
   const auto* turned = sim::form<sim::Polygon>(sim::part(only(it).shape, 1));
@@ -93,7 +93,7 @@ TEST(Body, ATurnedBoxIsAPolygon) {
 }
 
 TEST(Bodies, ThoseThatDoNotTurnComeFirst) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[polygon]]\nname = \"stone\"\npoints = [[0, 0], [1, 0], [0, 1]]\n[[box]]\nposition = [1, 1]\n"
       "[[ball]]\nposition = [2, 3]\n[[particle]]\nradius = 0.1\nposition = [6, 2]");
   std::vector<std::string> names;
@@ -105,7 +105,7 @@ TEST(Bodies, ThoseThatDoNotTurnComeFirst) {
 
 TEST(Bodies, CopiesOfAPolygonTurnAboutAPlace) {
   // the stones of a ring: each the one before, turned by 90 degrees about the same place
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[polygon]]\nname = \"stone\"\npoints = [[1, -0.1], [1.3, -0.1], [1.3, 0.1], [1, 0.1]]\n"
       "position = [4, 2]\ncopies = { count = 3, turn = 90, around = [4, 2] }");
   EXPECT_NEAR((it.plane().state.x[0] - Vec(5.15, 2)).norm(), 0, kRounded);
@@ -114,18 +114,18 @@ TEST(Bodies, CopiesOfAPolygonTurnAboutAPlace) {
 }
 
 TEST(Bodies, FrictionIsTheirsAndTheWallsOnlyWhereTheySay) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[room]\nsize = [4, 3]\nfriction = 0.8\nwalls = [{ point = [0, 0], normal = [1, 1], friction = 0 }]\n"
       "[[box]]\n[[ball]]\nposition = [1, 1]\nfriction = 0.1");
   EXPECT_EQ(it.plane().model.walls[0].friction, 0.8);
   EXPECT_EQ(it.plane().model.walls[4].friction, 0.0);
   EXPECT_EQ(it.plane().model.bodies[0].friction, 0.1);
   EXPECT_EQ(it.plane().model.bodies[1].friction, 0.5);
-  EXPECT_FALSE(scene("[[box]]").plane().model.walls[0].friction);
+  EXPECT_FALSE(contact_scene("[[box]]").plane().model.walls[0].friction);
 }
 
 TEST(Groups, ThatIgnoreEachOtherAreNumbered) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[box]]\ngroup = \"a\"\n[[box]]\nposition = [1, 1]\ngroup = \"b\"\n[[box]]\nposition = [7, 3]\n"
       "[contact]\nignore = [[\"b\", \"a\"], [\"a\", \"a\"]]");
   EXPECT_EQ(it.plane().model.bodies[0].group, 1);
@@ -135,7 +135,7 @@ TEST(Groups, ThatIgnoreEachOtherAreNumbered) {
 }
 
 TEST(Physics, ABodyMayKeepTheHandoutsLaw) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[box]]\ncollision = \"handout\"\n[[box]]\nposition = [4.1, 2.2]\n[[particle]]\ncollision = "
       "\"handout\"");
   EXPECT_TRUE(it.plane().model.bodies[0].handout);
@@ -155,7 +155,7 @@ TEST(Physics, WordsChooseItsWays) {
 }
 
 TEST(Joints, APinIsAPointOfBoth) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[box]]\nname = \"a\"\nposition = [2, 2]\nangle = 90\n[[ball]]\nname = \"b\"\nposition = [3, 2]\n"
       "[[joint]]\nname = \"hinge\"\ntype = \"pin\"\nbetween = [\"a\", \"b\"]\nat = [2.5, 2.25]\n"
       "limits = [-90, 45]\nmotor = { speed = 180, most = 3 }\nbreaks = 50\ntouching = true");
@@ -176,7 +176,7 @@ TEST(Joints, APinIsAPointOfBoth) {
 }
 
 TEST(Joints, ManyJoinEachToTheNext) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[box]]\nname = \"plank\"\nsize = [0.5, 0.1]\nposition = [2, 2]\ncopies = { count = 4, offset = [0.5, "
       "0] }\n"
       "[[joint]]\ntype = \"pin\"\nbetween = [{ body = \"plank[0..2]\", at = \"right\" }, "
@@ -189,7 +189,7 @@ TEST(Joints, ManyJoinEachToTheNext) {
 }
 
 TEST(Joints, AgainstTheRoomTheBodyIsTheFirst) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[ball]]\nname = \"bob\"\nposition = [2, 1]\n[[joint]]\ntype = \"rod\"\nbetween = [[2, 3], \"bob\"]\n"
       "[[joint]]\ntype = \"rope\"\nlength = 3\nbetween = [\"bob\", [2, 3]]\n"
       "[[joint]]\ntype = \"pin\"\nbetween = [\"room\", \"bob\"]");
@@ -202,7 +202,7 @@ TEST(Joints, AgainstTheRoomTheBodyIsTheFirst) {
 }
 
 TEST(Joints, ASliderGoesWithItsSecondEnd) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[box]]\nname = \"cart\"\nposition = [2, 1]\n[[box]]\nname = \"rail\"\nposition = [4, 3]\nangle = 90\n"
       "[[joint]]\ntype = \"slider\"\nbetween = [\"cart\", \"rail\"]\naxis = [0, 2]\nlimits = [-1, 2]");
   const sim::Joint<2>& joint = it.plane().model.joints[0];
@@ -212,7 +212,7 @@ TEST(Joints, ASliderGoesWithItsSecondEnd) {
 }
 
 TEST(Ends, CountFromAPolygonsOwnOrigin) {
-  const Scene it = scene(
+  const Scene it = contact_scene(
       "[[polygon]]\nname = \"p\"\npoints = [[0, 0], [0.6, 0], [0, 0.3]]\nposition = [1, 2]\n"
       "[[spring]]\nbetween = [[1, 4], { body = \"p\", local = [0, 0.3] }]\n"
       "[[spring]]\nbetween = [[1, 4], { body = \"p\", at = \"center\" }]");
@@ -222,7 +222,7 @@ TEST(Ends, CountFromAPolygonsOwnOrigin) {
 
 TEST(Overrides, ReachWhatIsNew) {
   const Scene it =
-      scene("[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 2, offset = [1, 0] }",
+      contact_scene("[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 2, offset = [1, 0] }",
             {"ball[1].radius=0.4", "ball.friction=0.1", "ball[1].angle=90", "physics.solver=iterative"});
   EXPECT_EQ(sim::round_radius(it.plane().model.bodies[0].shape), 0.2);
   EXPECT_EQ(sim::round_radius(it.plane().model.bodies[1].shape), 0.4);

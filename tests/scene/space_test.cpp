@@ -22,13 +22,13 @@ using Vec3 = sim::Vec<3>;
 
 constexpr double kExact = 1e-14;  // a few roundings of numbers near one
 
-Scene scene(const std::string& text, const std::vector<std::string>& sets = {}) {
+Scene room_scene(const std::string& text, const std::vector<std::string>& sets = {}) {
   return parse(text, "a.toml", sets);
 }
 
 std::string complaint(const std::string& text, const std::vector<std::string>& sets = {}) {
   try {
-    scene(text, sets);
+    room_scene(text, sets);
   } catch (const Error& error) {
     return error.complaints.front().text();
   }
@@ -38,17 +38,17 @@ std::string complaint(const std::string& text, const std::vector<std::string>& s
 const std::string kRoom = "[room]\nsize = [4, 3, 2]\n";
 
 TEST(Space, ThreeNumbersTellIt) {
-  EXPECT_EQ(scene(kRoom + "[[box]]").dimension(), 3);
-  EXPECT_EQ(scene("[[particle]]\nposition = [1, 1, 1]").dimension(), 3);
-  EXPECT_EQ(scene("[[particle]]\n[[spring]]\nbetween = [\"particle[0]\", [1, 1, 1]]").dimension(), 3);
-  EXPECT_EQ(scene("[[particle]]\n[[mouse]]\npath = [[0, 1, 1, 1], [1, 2, 2, 2]]").dimension(), 3);
-  EXPECT_EQ(scene("[[box]]").dimension(), 2);
+  EXPECT_EQ(room_scene(kRoom + "[[box]]").dimension(), 3);
+  EXPECT_EQ(room_scene("[[particle]]\nposition = [1, 1, 1]").dimension(), 3);
+  EXPECT_EQ(room_scene("[[particle]]\n[[spring]]\nbetween = [\"particle[0]\", [1, 1, 1]]").dimension(), 3);
+  EXPECT_EQ(room_scene("[[particle]]\n[[mouse]]\npath = [[0, 1, 1, 1], [1, 2, 2, 2]]").dimension(), 3);
+  EXPECT_EQ(room_scene("[[box]]").dimension(), 2);
   // a list with one for each copy is no vector
-  EXPECT_EQ(scene("[[box]]\nspin = [1, 2, 3]\ncopies = { count = 3, offset = [1, 0] }").dimension(), 2);
+  EXPECT_EQ(room_scene("[[box]]\nspin = [1, 2, 3]\ncopies = { count = 3, offset = [1, 0] }").dimension(), 2);
 }
 
 TEST(Space, DefaultsHaveAThirdNumber) {
-  const Scene it = scene(kRoom + "[[box]]");
+  const Scene it = room_scene(kRoom + "[[box]]");
   EXPECT_EQ(it.space().model.gravity, Vec3(0, -9.81, 0));
   EXPECT_EQ(it.space().state.x[0], Vec3(0, 1.5, 0));  // the middle of the room
   EXPECT_EQ(it.space().state.v[0], Vec3(0, 0, 0));
@@ -60,24 +60,24 @@ TEST(Space, DefaultsHaveAThirdNumber) {
 }
 
 TEST(Space, SixWallsInTheirOrderOrTheGroundAlone) {
-  const auto walls = scene(kRoom + "[[box]]").space().model.walls;
+  const auto walls = room_scene(kRoom + "[[box]]").space().model.walls;
   ASSERT_EQ(walls.size(), 6u);
   const Vec3 normals[] = {{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (int i = 0; i < 6; ++i) EXPECT_EQ(walls[std::size_t(i)].normal, normals[i]) << i;
   EXPECT_EQ(walls[0].point, Vec3(-2, 0, -1));
   EXPECT_EQ(walls[5].point, Vec3(2, 3, 1));
 
-  const Scene ground = scene(kRoom + "walls = \"ground\"\n[[box]]\nposition = [9, 2, 0]");
+  const Scene ground = room_scene(kRoom + "walls = \"ground\"\n[[box]]\nposition = [9, 2, 0]");
   ASSERT_EQ(ground.space().model.walls.size(), 1u);
   EXPECT_EQ(ground.space().model.walls[0].normal, Vec3(0, 1, 0));
   EXPECT_EQ(ground.extent.high, sim::Vec3(2, 3, 1));
-  EXPECT_TRUE(scene(kRoom + "walls = \"none\"\n[[box]]").space().model.walls.empty());
-  EXPECT_EQ(scene("[room]\nsize = [4, 3]\nwalls = \"ground\"\n[[box]]").plane().model.walls.size(), 1u);
+  EXPECT_TRUE(room_scene(kRoom + "walls = \"none\"\n[[box]]").space().model.walls.empty());
+  EXPECT_EQ(room_scene("[room]\nsize = [4, 3]\nwalls = \"ground\"\n[[box]]").plane().model.walls.size(), 1u);
 }
 
 TEST(Space, SlantedWallsBoundTheRoom) {
   const Scene it =
-      scene("[room]\nsize = [4, 4, 4]\nwalls = [{ point = [0, 3, 0], normal = [0, -1, 0] }]\n[[box]]");
+      room_scene("[room]\nsize = [4, 4, 4]\nwalls = [{ point = [0, 3, 0], normal = [0, -1, 0] }]\n[[box]]");
   EXPECT_NEAR(it.extent.high.y(), 3, 1e-9);  // corners by Cramer's rule: far walls round off 1e-10
   EXPECT_THAT(
       complaint("[room]\nsize = [4, 4, 4]\nwalls = [{ point = [0, 5, 0], normal = [0, 1, 0] }]\n[[box]]"),
@@ -88,33 +88,33 @@ TEST(Space, OrientationIsThreeTurnsOrAnAxisAndAnAngle) {
   // a quarter turn about y, as either
   const double half = std::sqrt(0.5);
   for (const char* words : {"[0, 90, 0]", "{ axis = [0, 3, 0], angle = 90 }"}) {
-    const auto turn = scene(kRoom + "[[box]]\norientation = " + words).space().state.turn[0];
+    const auto turn = room_scene(kRoom + "[[box]]\norientation = " + words).space().state.turn[0];
     EXPECT_NEAR((turn - sim::Orientation<3>(0, half, 0, half)).norm(), 0, kExact) << words;
   }
   // about x, then about z of the room: the box's y goes to z and stays there
-  const auto turn = scene(kRoom + "[[box]]\norientation = [90, 0, 90]").space().state.turn[0];
+  const auto turn = room_scene(kRoom + "[[box]]\norientation = [90, 0, 90]").space().state.turn[0];
   EXPECT_NEAR((sim::matrix(turn) * Vec3(0, 1, 0) - Vec3(0, 0, 1)).norm(), 0, kExact);
   EXPECT_NEAR((sim::matrix(turn) * Vec3(1, 0, 0) - Vec3(0, 1, 0)).norm(), 0, kExact);
 }
 
 TEST(Space, SpinIsAVectorInDegrees) {
-  const Scene it = scene(kRoom + "[[box]]\nspin = [0, 180, 90]");
+  const Scene it = room_scene(kRoom + "[[box]]\nspin = [0, 180, 90]");
   EXPECT_NEAR((it.space().state.spin[0] - Vec3(0, std::numbers::pi, std::numbers::pi / 2)).norm(), 0, kExact);
 }
 
 TEST(Space, DensityIsMassForVolume) {
-  const Scene it = scene(kRoom + "[[box]]\nsize = [0.5, 0.4, 0.2]\ndensity = 100");
+  const Scene it = room_scene(kRoom + "[[box]]\nsize = [0.5, 0.4, 0.2]\ndensity = 100");
   const auto& body = it.space().model.bodies[0];
   EXPECT_DOUBLE_EQ(body.mass, 4);
   // m (y^2 + z^2) / 12 about x
   EXPECT_NEAR(body.inertia[0], 4 * (0.16 + 0.04) / 12, kExact);
   EXPECT_NEAR(body.inertia[1], 4 * (0.25 + 0.04) / 12, kExact);
-  const auto ball = scene(kRoom + "[[ball]]\nradius = 0.5\nmass = 2").space().model.bodies[0];
+  const auto ball = room_scene(kRoom + "[[ball]]\nradius = 0.5\nmass = 2").space().model.bodies[0];
   EXPECT_NEAR(ball.inertia[0], 0.4 * 2 * 0.25, kExact);
 }
 
 TEST(Space, ACapsuleIsAsLongAsItSays) {
-  const Scene it = scene(kRoom + "[[capsule]]\nlength = 1\nradius = 0.2");
+  const Scene it = room_scene(kRoom + "[[capsule]]\nlength = 1\nradius = 0.2");
   const sim::Capsule* shape = sim::form<sim::Capsule>(it.space().model.bodies[0].shape);
   ASSERT_TRUE(shape);
   EXPECT_NEAR(shape->half, 0.3, kExact);
@@ -127,9 +127,9 @@ TEST(Space, AHullStandsOnItsPrincipalAxesWhereItWasTyped) {
   const std::string points =
       "points = [[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0.5,0,2],[1.5,0,2],[1.5,1,2],[0.5,1,2]]\n";
   const Scene it =
-      scene("[room]\nsize = [9, 9, 9]\n[[hull]]\nname = \"bar\"\n" + points +
-            "position = [0.25, 1, 0]\norientation = [0, 90, 0]\n[[spring]]\nbetween = [[0, 9, 0], "
-            "{ body = \"bar\", local = [1.5, 1, 2] }]");
+      room_scene("[room]\nsize = [9, 9, 9]\n[[hull]]\nname = \"bar\"\n" + points +
+                 "position = [0.25, 1, 0]\norientation = [0, 90, 0]\n[[spring]]\nbetween = [[0, 9, 0], "
+                 "{ body = \"bar\", local = [1.5, 1, 2] }]");
   const auto& world = it.space();
   const auto& body = world.model.bodies[0];
   const sim::Hull* hull = sim::form<sim::Hull>(body.shape);
@@ -181,10 +181,10 @@ TEST(Space, HullsHaveWholeFacesAndNoInnerPoints) {
 }
 
 TEST(Space, WhatDoesNotTurnComesFirstAndKeepsItsForm) {
-  const Scene it =
-      scene(kRoom +
-            "[[box]]\nname = \"free\"\n[[box]]\nname = \"stiff\"\nrotation = false\nposition = [1, 1, 0]\n"
-            "size = [0.2, 0.4, 0.6]\norientation = [0, 0, 90]\n[physics]\noverlap = \"separate\"");
+  const Scene it = room_scene(
+      kRoom +
+      "[[box]]\nname = \"free\"\n[[box]]\nname = \"stiff\"\nrotation = false\nposition = [1, 1, 0]\n"
+      "size = [0.2, 0.4, 0.6]\norientation = [0, 0, 90]\n[physics]\noverlap = \"separate\"");
   const auto& world = it.space();
   EXPECT_EQ(world.model.bodies[0].name, "stiff");
   EXPECT_EQ(world.model.particles(), 1);
@@ -197,20 +197,20 @@ TEST(Space, WhatDoesNotTurnComesFirstAndKeepsItsForm) {
   EXPECT_NEAR(widest, 0.2, kExact);
   EXPECT_THAT(complaint(kRoom + "[physics]\nrotation = false\n[[box]]\nspin = [0, 1, 0]"),
               HasSubstr("'spin' of a body that does not turn"));
-  const Scene plane = scene("[[box]]\nangle = 90\nsize = [1, 0.5]\nrotation = false");
+  const Scene plane = room_scene("[[box]]\nangle = 90\nsize = [1, 0.5]\nrotation = false");
   EXPECT_EQ(plane.plane().model.particles(), 1);
   EXPECT_TRUE(sim::form<sim::Polygon>(plane.plane().model.bodies[0].shape));
 }
 
 TEST(Space, CopiesGoThreeWaysAndTurnAboutAnAxis) {
-  const Scene grid = scene(
+  const Scene grid = room_scene(
       "[room]\nsize = [20, 20, 20]\n[[particle]]\nposition = [0, 1, 0]\ncopies = { count = [2, 2, 2], offset "
       "= "
       "[[1, 0, 0], [0, 1, 0], [0, 0, 1]] }");
   ASSERT_EQ(grid.space().state.x.size(), 8u);
   EXPECT_EQ(grid.space().state.x[7], Vec3(1, 2, 1));
   EXPECT_EQ(grid.space().state.x[4], Vec3(0, 1, 1));
-  const Scene ring = scene(
+  const Scene ring = room_scene(
       "[room]\nsize = [20, 20, 20]\n[[box]]\nposition = [2, 1, 0]\nsize = [0.1, 0.1, 0.3]\n"
       "copies = { count = 4, turn = 90, around = [0, 0, 0] }");
   EXPECT_NEAR((ring.space().state.x[1] - Vec3(0, 1, -2)).norm(), 0, kExact);
@@ -219,7 +219,7 @@ TEST(Space, CopiesGoThreeWaysAndTurnAboutAnAxis) {
 }
 
 TEST(Space, JointsKnowTheirAxisAndHowTheyStand) {
-  const Scene it = scene(
+  const Scene it = room_scene(
       "[room]\nsize = [9, 9, 9]\n[[box]]\nname = \"door\"\nsize = [1, 2, 0.1]\nposition = [0.5, 2, 0]\n"
       "[[box]]\nname = \"post\"\nsize = [0.1, 2, 0.1]\nposition = [-0.1, 2, 0]\norientation = [0, 30, 0]\n"
       "[[joint]]\ntype = \"hinge\"\nbetween = [\"door\", \"post\"]\nat = [0, 2, 0]\naxis = [0, 1, 0]\nlimits "
@@ -237,9 +237,9 @@ TEST(Space, JointsKnowTheirAxisAndHowTheyStand) {
 
 TEST(Space, SidesOfThingsHaveNames) {
   const Scene it =
-      scene(kRoom +
-            "[[box]]\nname = \"crate\"\nsize = [0.2, 0.4, 0.6]\n[[spring]]\nbetween = [[0, 3, 0], "
-            "{ body = \"crate\", at = \"top left front\" }]");
+      room_scene(kRoom +
+                 "[[box]]\nname = \"crate\"\nsize = [0.2, 0.4, 0.6]\n[[spring]]\nbetween = [[0, 3, 0], "
+                 "{ body = \"crate\", at = \"top left front\" }]");
   EXPECT_EQ(it.space().model.springs[0].b.local, Vec3(-0.1, 0.2, 0.3));
   EXPECT_THAT(complaint("[[box]]\nposition = [1, 1]\n[[spring]]\nbetween = [[0, 3], { body = \"box[0]\", at "
                         "= \"front\" }]"),
@@ -270,14 +270,14 @@ TEST(Space, WhatIsOfTheOtherDimensionIsNamed) {
 TEST(Space, AnExplosionThrowsAParticleAsTheTableSays) {
   // the far end of tests/reference/explosion_radial_free.csv: F = 10 / r^2 for a second, from rest at r = 1.
   // Its error by RK4 at 1/600 s is 1e-9
-  const Scene it = scene(
+  const Scene it = room_scene(
       "duration = 2\n[room]\nsize = [40, 40, 40]\nwalls = \"none\"\ngravity = [0, 0, 0]\n[[particle]]\n"
       "position = [1, 0, 0]\n[[explosion]]\nstrength = 10\n");
   ASSERT_EQ(it.space().model.explosions.size(), 1u);
   const auto run = it.run();
   const auto now = std::get<sim::Snapshot>(run->at(sim::rational(1)));
   EXPECT_NEAR(now.bodies[0].position.x(), 3.7340253024638946617, 1e-8);
-  const Scene paper = scene(
+  const Scene paper = room_scene(
       "[[explosion]]\nname = \"bomb\"\ncenter = [1, 2]\nstrength = 3\nstart = 0.5\nduration = 0.2\ninterval "
       "= 0.02\n"
       "softening = 0.1\nscheme = \"paper\"\n[[particle]]\nground_drag = 0.25",
@@ -297,7 +297,7 @@ TEST(Space, BondsHoldNeighbours) {
                           "[[box]]\nname = \"piece\"\nsize = [0.2, 0.2, 0.2]\nposition = [-0.5, 1, 0]\n"
                           "copies = { count = 3, offset = [0.2, 0, 0] }\n"
                           "[[box]]\nname = \"far\"\nsize = [0.2, 0.2, 0.2]\nposition = [1, 1, 0]\n";
-  const Scene it = scene(row + "[[bond]]\nof = [\"piece[*]\", \"far\"]\nbreaks = 50");
+  const Scene it = room_scene(row + "[[bond]]\nof = [\"piece[*]\", \"far\"]\nbreaks = 50");
   const auto& bonds = it.space().model.bonds;
   ASSERT_EQ(bonds.size(), 2u);
   EXPECT_EQ(std::pair(bonds[0].a, bonds[0].b), std::pair(0, 1));
@@ -308,9 +308,10 @@ TEST(Space, BondsHoldNeighbours) {
 }
 
 TEST(Space, CamerasStandBesideEachOther) {
-  const Scene it = scene(kRoom +
-                         "[[box]]\n[[camera]]\nview = \"side\"\n[[camera]]\nname = \"bird\"\nazimuth = 90\n"
-                         "projection = \"orthographic\"\norbit = 36\nfollow = \"box[0]\"\n");
+  const Scene it =
+      room_scene(kRoom +
+                 "[[box]]\n[[camera]]\nview = \"side\"\n[[camera]]\nname = \"bird\"\nazimuth = 90\n"
+                 "projection = \"orthographic\"\norbit = 36\nfollow = \"box[0]\"\n");
   ASSERT_EQ(it.cameras.size(), 2u);
   EXPECT_EQ(it.cameras[0].name, "side");
   EXPECT_EQ(it.cameras[1].name, "bird");
@@ -318,7 +319,7 @@ TEST(Space, CamerasStandBesideEachOther) {
   EXPECT_NEAR(it.cameras[1].orbit, std::numbers::pi / 5, kExact);
   EXPECT_EQ(it.cameras[1].projection, draw::Camera::Projection::orthographic);
   EXPECT_EQ(it.cameras[1].follow, 0);
-  const Scene eye = scene(kRoom + "[[box]]\n[camera]\neye = [1, 2, 3]\ncenter = [0, 1, 0]");
+  const Scene eye = room_scene(kRoom + "[[box]]\n[camera]\neye = [1, 2, 3]\ncenter = [0, 1, 0]");
   ASSERT_EQ(eye.cameras.size(), 1u);
   EXPECT_EQ(eye.cameras[0].keys[0].eye, sim::Vec3(1, 2, 3));
   EXPECT_THAT(complaint(kRoom + "[[box]]\n[[camera]]\n[[camera]]"),
@@ -331,13 +332,14 @@ TEST(Space, CamerasStandBesideEachOther) {
 
 TEST(Space, SetWritesTheThirdNumber) {
   const Scene it =
-      scene(kRoom + "[[particle]]\nname = \"ball\"", {"room.gravity.z=-1", "ball.velocity=[1,2,3]"});
+      room_scene(kRoom + "[[particle]]\nname = \"ball\"", {"room.gravity.z=-1", "ball.velocity=[1,2,3]"});
   EXPECT_EQ(it.space().model.gravity, Vec3(0, -9.81, -1));
   EXPECT_EQ(it.space().state.v[0], Vec3(1, 2, 3));
-  const Scene copies = scene(kRoom +
-                                 "[[box]]\nname = \"b\"\nsize = [0.1, 0.1, 0.1]\norientation = [0, 30, 0]\n"
-                                 "copies = { count = 2, offset = [0.5, 0, 0] }",
-                             {"b[1].position.z=0.5", "b[0].orientation=[0,0,0]"});
+  const Scene copies =
+      room_scene(kRoom +
+                     "[[box]]\nname = \"b\"\nsize = [0.1, 0.1, 0.1]\norientation = [0, 30, 0]\n"
+                     "copies = { count = 2, offset = [0.5, 0, 0] }",
+                 {"b[1].position.z=0.5", "b[0].orientation=[0,0,0]"});
   EXPECT_EQ(copies.space().state.x[1], Vec3(0.5, 1.5, 0.5));
   EXPECT_EQ(copies.space().state.turn[0], sim::no_rotation<3>());
   EXPECT_NE(copies.space().state.turn[1], sim::no_rotation<3>());

@@ -38,7 +38,7 @@ World<2> hung(int n, double length, double mass, bool rods) {
   return world;
 }
 
-double energy(const World<2>& world, const State<2>& state) {
+double total_energy(const World<2>& world, const State<2>& state) {
   return energies(world.model, state, {}, 0).total();
 }
 
@@ -86,14 +86,14 @@ double energy_error(double amplitude, int rate) {
   State<2> state = world.state;
   Stepper<2> stepper(world.model);
   stepper.begin(state);
-  const double hanging = energy(world, state);
+  const double hanging = total_energy(world, state);
   state.postures[0].q[0] = amplitude;
   stepper.begin(state);
-  const double start = energy(world, state);
+  const double start = total_energy(world, state);
   double worst = 0;
   while (state.step < 60 * rate) {
     EXPECT_FALSE(stepper.step(state));
-    if (state.step % rate == 0) worst = std::max(worst, std::abs(energy(world, state) - start));
+    if (state.step % rate == 0) worst = std::max(worst, std::abs(total_energy(world, state) - start));
   }
   return worst / (start - hanging);
 }

@@ -4,16 +4,11 @@
 
 #include <cmath>
 
+#include "sim/jointed.h"
 #include "sim/touching.h"
 
 namespace obscura::sim {
 namespace {
-
-Joint<2> rod(End<2> a, End<2> b, double length) {
-  Joint<2> joint;
-  joint.kind = JointKind::rod, joint.a = a, joint.b = b, joint.length = length;
-  return joint;
-}
 
 // m = 2 kg on a rod of 1 m about the origin, let go level
 World<2> cross_velocity() {

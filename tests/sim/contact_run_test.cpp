@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "sim/jointed.h"
 #include "sim/touching.h"
 #include "sim/units.h"
 
@@ -49,12 +50,6 @@ TEST(ContactRun, EnergyNeverRisesInRandomRooms) {
     const World<2> world = thrown(seed, kBothModes[seed > 9 ? 0 : seed % 2]);
     expect_no_gain(world, 900, 1e-12, "seed " + std::to_string(seed), std::abs(energy(world, world.state)));
   }
-}
-
-Joint<2> pin(End<2> a, End<2> b) {
-  Joint<2> joint;
-  joint.a = a, joint.b = b;
-  return joint;
 }
 
 // boxes hanging in a row from (0, 0), let go where the row is straight

@@ -58,7 +58,7 @@ double first_touch(const Fall& fall) {
   return 0.5 * (low + high);
 }
 
-Landed closed_form(const Fall& fall) {
+Landed landing_of(const Fall& fall) {
   Landed out;
   out.time = first_touch(fall);
   const double m = fall.mass, I = fall.inertia();
@@ -163,7 +163,7 @@ Compared compare(const std::vector<Fall>& falls, Solver solver, int rate, double
   stepper.begin(state);
   std::vector<Landed> want;
   double last = 0;
-  for (const Fall& it : falls) want.push_back(closed_form(it)), last = std::max(last, want.back().time);
+  for (const Fall& it : falls) want.push_back(landing_of(it)), last = std::max(last, want.back().time);
   Compared count;
   std::vector<char> done(falls.size(), 0);
   const double h = 1.0 / rate;

@@ -64,7 +64,7 @@ double first_touch(const Drop& drop) {
   return 0.5 * (low + high);
 }
 
-Landing closed_form(const Drop& drop) {
+Landing landing_of(const Drop& drop) {
   Landing out;
   out.time = first_touch(drop);
   const double m = drop.mass, I = drop.inertia(), w = drop.spin;
@@ -133,7 +133,7 @@ World<2> room_of(const std::vector<Drop>& drops, Solver solver, int rate) {
 void add_neighbours(World<2>& world, const std::vector<Drop>& drops, int rate) {
   for (std::size_t i = 0; i < drops.size(); ++i) {
     const Drop& it = drops[i];
-    const double radius = 0.01, side = closed_form(it).v.x() > it.v.x() ? -1 : 1;
+    const double radius = 0.01, side = landing_of(it).v.x() > it.v.x() ? -1 : 1;
     const double apart = std::hypot(it.width, it.height) / 2 + radius + 0.5 * it.v.norm() / rate;
     add_ball(world, radius, it.mass, world.state.x[i] + Vec2(side * apart, 0), it.v, 0, it.e);
   }
@@ -151,7 +151,7 @@ Compared compare(const std::vector<Drop>& drops, Solver solver, int rate, double
   Stepper<2> stepper(world.model);
   stepper.begin(state);
   std::vector<Landing> want;
-  for (const Drop& it : drops) want.push_back(closed_form(it));
+  for (const Drop& it : drops) want.push_back(landing_of(it));
   double last = 0;
   for (const Landing& it : want) last = std::max(last, it.time);
   Compared count;

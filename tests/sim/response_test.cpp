@@ -14,7 +14,6 @@
 namespace obscura::sim {
 namespace {
 
-using Vec3 = Vec<3>;
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 

@@ -86,7 +86,7 @@ void each(Act&& act) {
   }
 }
 
-struct BodyCounts {
+struct Flight {
   int rate, count;
   double speed, seconds;
 };
@@ -94,10 +94,10 @@ struct BodyCounts {
 TEST(Rest, WhatFliesWithoutGravityFliesOn) {
   each([](auto d, Solver solver) {
     constexpr int D = d;
-    for (const BodyCounts& it :
-         {BodyCounts{60, 1, 0.015, 100}, BodyCounts{60, 1, 1e-9, 10}, BodyCounts{60, 7, 0.015, 10},
-          BodyCounts{60, 20, 1e-4, 3}, BodyCounts{60, 100, 0.015, 1}, BodyCounts{60, 1000, 0.015, 1},
-          BodyCounts{600, 7, 0.015, 2}, BodyCounts{6000, 1, 1e-6, 1}, BodyCounts{6000, 7, 0.015, 0.5}}) {
+    for (const Flight& it :
+         {Flight{60, 1, 0.015, 100}, Flight{60, 1, 1e-9, 10}, Flight{60, 7, 0.015, 10},
+          Flight{60, 20, 1e-4, 3}, Flight{60, 100, 0.015, 1}, Flight{60, 1000, 0.015, 1},
+          Flight{600, 7, 0.015, 2}, Flight{6000, 1, 1e-6, 1}, Flight{6000, 7, 0.015, 0.5}}) {
       if (solver == Solver::direct && it.count > 100) continue;
       World<D> world = quiet_room<D>(solver, 0, it.rate);
       for (int i = 0; i < it.count; ++i) {
@@ -134,9 +134,9 @@ TEST(Rest, WhatTouchesAndFliesAlongWithoutGravityFliesOn) {
 TEST(Rest, PucksSlideOnWithoutFriction) {
   each([](auto d, Solver solver) {
     constexpr int D = d;
-    for (const BodyCounts& it :
-         {BodyCounts{60, 1, 0.015, 60}, BodyCounts{60, 1, 1e-6, 20}, BodyCounts{60, 20, 0.01, 5},
-          BodyCounts{60, 1000, 0.01, 0.5}, BodyCounts{600, 7, 0.003, 1}, BodyCounts{6000, 1, 0.015, 0.4}}) {
+    for (const Flight& it :
+         {Flight{60, 1, 0.015, 60}, Flight{60, 1, 1e-6, 20}, Flight{60, 20, 0.01, 5},
+          Flight{60, 1000, 0.01, 0.5}, Flight{600, 7, 0.003, 1}, Flight{6000, 1, 0.015, 0.4}}) {
       if (solver == Solver::direct && it.count > 20) continue;
       World<D> world = quiet_room<D>(solver, kG, it.rate);
       for (int i = 0; i < it.count; ++i)
@@ -154,9 +154,9 @@ TEST(Rest, PucksSlideOnWithoutFriction) {
 TEST(Rest, WhatRollsRollsOn) {
   each([](auto d, Solver solver) {
     constexpr int D = d;
-    for (const BodyCounts& it :
-         {BodyCounts{60, 1, 0.01, 120}, BodyCounts{60, 1, 1e-6, 20}, BodyCounts{60, 20, 0.01, 5},
-          BodyCounts{60, 1000, 0.01, 0.5}, BodyCounts{600, 7, 0.015, 1}, BodyCounts{6000, 1, 0.01, 0.4}}) {
+    for (const Flight& it :
+         {Flight{60, 1, 0.01, 120}, Flight{60, 1, 1e-6, 20}, Flight{60, 20, 0.01, 5},
+          Flight{60, 1000, 0.01, 0.5}, Flight{600, 7, 0.015, 1}, Flight{6000, 1, 0.01, 0.4}}) {
       if (solver == Solver::direct && it.count > 20) continue;
       World<D> world = quiet_room<D>(solver, kG, it.rate);
       for (int i = 0; i < it.count; ++i)

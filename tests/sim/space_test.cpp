@@ -205,7 +205,7 @@ TEST(PlanarMotionInSpace, IsThePlanesOwn) {
 }
 
 // a free top of which a corner hangs on a spring, under gravity and drag: nothing is planar
-World<3> hanging(int rate, Integrator which) {
+World<3> hanging_top(int rate, Integrator which) {
   World<3> world = space();
   world.model.rate = {rate, 1}, world.model.integrator = which;
   add_solid(world, brick({1, 0.6, 0.3}), 2, {0, 0, 0}, {0.3, 0.1, 0.5}, exponential({0.3, -0.5, 0.2}),
@@ -217,7 +217,7 @@ World<3> hanging(int rate, Integrator which) {
 }
 
 TEST(SpringsInSpace, ConvergeWithTheOrderOfTheScheme) {
-  const State<3> exact = stepped(hanging(16000, Integrator::rk4), 16000);
+  const State<3> exact = stepped(hanging_top(16000, Integrator::rk4), 16000);
   const struct {
     Integrator which;
     double order;
@@ -227,7 +227,7 @@ TEST(SpringsInSpace, ConvergeWithTheOrderOfTheScheme) {
                  {Integrator::semi_implicit, 1}};
   for (const auto& [which, order] : schemes) {
     const auto off = [&, which = which](int rate) {
-      const State<3> now = stepped(hanging(rate, which), rate);
+      const State<3> now = stepped(hanging_top(rate, which), rate);
       return (now.x[0] - exact.x[0]).norm() + (now.spin[1] - exact.spin[1]).norm() +
              (rotation<3>(now.turn[0]) - rotation<3>(exact.turn[0])).norm();
     };
@@ -238,7 +238,7 @@ TEST(SpringsInSpace, ConvergeWithTheOrderOfTheScheme) {
 }
 
 TEST(SpringsInSpace, KeepEnergyAndMomentum) {
-  World<3> world = hanging(1000, Integrator::rk4);
+  World<3> world = hanging_top(1000, Integrator::rk4);
   world.model.springs[0].damping = world.model.springs[1].damping = 0;
   const std::vector<Path<3>> none;
   const double before = energies(world.model, world.state, none, 0).total();
@@ -255,7 +255,7 @@ TEST(SpringsInSpace, KeepEnergyAndMomentum) {
 }
 
 TEST(SpringsInSpace, TurnWithTheWholeScene) {
-  World<3> world = hanging(1000, Integrator::rk4), other = world;
+  World<3> world = hanging_top(1000, Integrator::rk4), other = world;
   const Orientation<3> by = exponential({0.7, -1.1, 0.4});
   const Eigen::Matrix3d turn = rotation<3>(by);
   other.model.gravity = turn * world.model.gravity;
@@ -397,7 +397,7 @@ TEST(HandInSpace, TakesTheClosestCorner) {
 }
 
 TEST(RunInSpace, GivesTheSameStateAtEveryFrameRateAndCutInTwo) {
-  const World<3> world = hanging(1000, Integrator::rk4);
+  const World<3> world = hanging_top(1000, Integrator::rk4);
   const auto by = [&](int fps) {
     auto it = run(world);
     for (int frame = 0; frame <= fps; ++frame) shown(*it, {frame, fps});

@@ -25,8 +25,8 @@ World<3> swept_room(double mu, Vec3 gravity = {0, -kG, 0}) {
   return world;
 }
 
-int add_box(World<3>& world, Vec3 size, Vec3 x, Vec3 v = Vec3::Zero(), Vec3 turn = Vec3::Zero(),
-            double mu = 0.5) {
+int add_block(World<3>& world, Vec3 size, Vec3 x, Vec3 v = Vec3::Zero(), Vec3 turn = Vec3::Zero(),
+              double mu = 0.5) {
   const int i = add_solid(world, brick(size), size.prod() * 1000, x, v, exponential(turn), Vec3::Zero(), 0);
   world.model.bodies[i].friction = mu;
   return i;
@@ -49,8 +49,8 @@ World<3> heap(int n, int side, double mu) {
   for (int i = 0; i < n; ++i) {
     const Vec3 place(0.45 * (i % side) - 0.2 * side, 0.3 + 0.45 * (i / (side * side)),
                      0.45 * (i / side % side) - 0.2 * side);
-    add_box(world, {dice.between(0.2, 0.3), dice.between(0.2, 0.3), dice.between(0.2, 0.3)}, place,
-            Vec3::Zero(), dice.vec(1), mu);
+    add_block(world, {dice.between(0.2, 0.3), dice.between(0.2, 0.3), dice.between(0.2, 0.3)}, place,
+              Vec3::Zero(), dice.vec(1), mu);
   }
   return world;
 }
@@ -61,7 +61,7 @@ TEST(SpaceIterative, ABoxStopsAfterVSquaredOverTwoMuGInEveryDirection) {
     const double angle = (30 * i + 7) * std::numbers::pi / 180;
     const Vec3 way(std::cos(angle), 0, std::sin(angle));
     World<3> world = swept_room(mu);
-    add_box(world, {0.4, 0.1, 0.4}, {0, 0.05, 0}, v * way, Vec3::Zero(), mu);
+    add_block(world, {0.4, 0.1, 0.4}, {0, 0.05, 0}, v * way, Vec3::Zero(), mu);
     const State<3> now = stepped(world, 400);
     // the step in which it stops: (mu g h)^2 / (8 mu g), and what sweeps leave
     EXPECT_NEAR((now.x[0] - Vec3(0, 0.05, 0) - v * v / (2 * mu * kG) * way).norm(), 0, 1e-5) << i;
@@ -136,8 +136,8 @@ TEST(SpaceIterative, EnergyOfAHeapOnlyFalls) {
 World<3> blown_apart() {
   World<3> world = swept_room(0.5);
   for (int i = 0; i < 100; ++i) {
-    const int box =
-        add_box(world, {0.3, 0.3, 0.3}, {0.32 * (i % 5 - 2), 0.15 + 0.3 * (i / 25), 0.32 * (i / 5 % 5 - 2)});
+    const int box = add_block(world, {0.3, 0.3, 0.3},
+                              {0.32 * (i % 5 - 2), 0.15 + 0.3 * (i / 25), 0.32 * (i / 5 % 5 - 2)});
     world.model.bodies[box].elasticity = 0.3;
   }
   Explosion<3> blast;

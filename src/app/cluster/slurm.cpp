@@ -16,16 +16,16 @@ namespace obscura::app::slurm {
 
 namespace {
 
-struct Said {
+struct Reply {
   int exit = 127;
   std::string text;
 };
 
 // a command's output, errors too
-Said ask(const std::vector<std::string>& words) {
+Reply ask(const std::vector<std::string>& words) {
   std::string line;
   for (const std::string& word : words) line += shell_word(word) + " ";
-  Said said;
+  Reply said;
   std::FILE* pipe = ::popen((line + "2>&1").c_str(), "r");
   if (!pipe) return said;
   std::array<char, 65536> buffer{};
@@ -45,7 +45,7 @@ std::string line_of(const std::string& text) {
 }
 
 std::string config() {
-  const Said said = ask({"scontrol", "show", "config"});
+  const Reply said = ask({"scontrol", "show", "config"});
   if (said.exit == 127)
     throw media::Error(
         "scontrol: there is no Slurm here; --dry-run shows the scripts, docs/shards.md does it without");
@@ -68,7 +68,7 @@ std::string submit(const std::string& script, const std::vector<std::string>& op
   std::vector<std::string> words{"sbatch", "--parsable"};
   words.insert(words.end(), options.begin(), options.end());
   words.push_back(script);
-  const Said said = ask(words);
+  const Reply said = ask(words);
   // "12", "12;cluster", behind whatever a site's own filters say
   const std::size_t last = said.text.find_last_not_of('\n');
   const std::size_t begin = said.text.rfind('\n', last) + 1;
@@ -80,7 +80,7 @@ std::string submit(const std::string& script, const std::vector<std::string>& op
 
 bool states(const std::vector<std::string>& jobs, std::map<std::string, State>& found) {
   for (const std::string& job : jobs) {
-    const Said said =
+    const Reply said =
         ask({"squeue", "--noheader", "--array", "--states=all", "--jobs=" + job, "--format=%i %T %r"});
     if (said.exit != 0) {
       // a job that ended long ago is forgotten

@@ -28,14 +28,14 @@ struct Conduct {
 /// Runs it all to the end. The first exception of anyone, in the order of the jobs, comes out here.
 template <class Job, class Result>
 void conduct(const Conduct<Job, Result>& parts, int workers) {
-  struct Outcome {
+  struct Finished {
     std::optional<Result> result;
     std::exception_ptr error;
   };
   std::mutex mutex;
   std::condition_variable_any jobs_changed, outcomes_changed;
   std::deque<std::pair<long, Job>> jobs;
-  std::map<long, Outcome> outcomes;
+  std::map<long, Finished> outcomes;
   long made = 0, taken = 0;
 
   auto labour = [&](std::stop_token stop) {
@@ -52,7 +52,7 @@ void conduct(const Conduct<Job, Result>& parts, int workers) {
       auto [number, job] = std::move(jobs.front());
       jobs.pop_front();
       lock.unlock();
-      Outcome outcome;
+      Finished outcome;
       try {
         if (unfit) std::rethrow_exception(unfit);
         outcome.result = work(std::move(job));
@@ -88,7 +88,7 @@ void conduct(const Conduct<Job, Result>& parts, int workers) {
       parts.wait();
       lock.lock();
     }
-    Outcome outcome = std::move(outcomes.extract(taken++).mapped());
+    Finished outcome = std::move(outcomes.extract(taken++).mapped());
     lock.unlock();
     if (outcome.error) std::rethrow_exception(outcome.error);
     if (!parts.consume(std::move(*outcome.result))) return;

@@ -57,7 +57,7 @@ struct Couple {
 };
 
 // Two outlines of which the first owns the touching face, in its frame.
-struct ContactMode {
+struct ReferenceFace {
   const ConvexPolygon &base, &other;
   const Lie& lies;  // of the other
   bool base_is_b;   // else a
@@ -83,7 +83,7 @@ void keep(const ContactCandidate<2>& gap, double margin, std::vector<ContactCand
 }
 
 // no face is nearest: the two nearest corners; at one place, the deepest corner at the touching face
-void corner_at_corner(const Couple& couple, const ContactMode& touching, double aligned, int deepest,
+void corner_at_corner(const Couple& couple, const ReferenceFace& touching, double aligned, int deepest,
                       double margin, std::vector<ContactCandidate<2>>& out) {
   double least = 1e300;
   int of_base = 0, of_other = 0;
@@ -104,7 +104,7 @@ void corner_at_corner(const Couple& couple, const ContactMode& touching, double 
        margin, out);
 }
 
-void corner_at_face(const Couple& couple, const ContactMode& touching, double margin,
+void corner_at_face(const Couple& couple, const ReferenceFace& touching, double margin,
                     std::vector<ContactCandidate<2>>& out) {
   const Vec<2> r0 = touching.base.corner(touching.face);
   const Vec<2> r1 = touching.base.corner(touching.base.next(touching.face));
@@ -118,7 +118,7 @@ void corner_at_face(const Couple& couple, const ContactMode& touching, double ma
   }
 }
 
-void face_at_face(const Couple& couple, const ContactMode& touching, double margin,
+void face_at_face(const Couple& couple, const ReferenceFace& touching, double margin,
                   std::vector<ContactCandidate<2>>& out) {
   // the touching face and its partner, in the base's frame
   const ConvexPolygon &base = touching.base, &other = touching.other;
@@ -206,8 +206,8 @@ void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin,
   if (by_a.value >= far) return;
 
   const bool base_is_b = b.faces() && by_b.value >= by_a.value;
-  const ContactMode touching = base_is_b ? ContactMode{b, a, a_in_b, true, by_b.face, by_b.value}
-                                         : ContactMode{a, b, b_in_a, false, by_a.face, by_a.value};
+  const ReferenceFace touching = base_is_b ? ReferenceFace{b, a, a_in_b, true, by_b.face, by_b.value}
+                                           : ReferenceFace{a, b, b_in_a, false, by_a.face, by_a.value};
   if (touching.other.faces()) {
     const std::size_t before = out.size();
     face_at_face(couple, touching, margin, out);

@@ -123,7 +123,7 @@ struct Couple {
 };
 
 // Two cores of which the first owns the touching face.
-struct ContactMode {
+struct ReferenceFace {
   const Polyhedron &base, &other;
   bool base_is_b;  // else a
   FaceAxis by;     // of the base
@@ -194,7 +194,7 @@ bool cross_within(const Polyhedron& a, const Polyhedron& b, int of_a, int of_b) 
 class Shared {
  public:
   // Appends its gaps to `out`.
-  Shared(const Couple& couple, const ContactMode& touching, std::vector<ContactCandidate<3>>& out)
+  Shared(const Couple& couple, const ReferenceFace& touching, std::vector<ContactCandidate<3>>& out)
       : couple_(couple), touching_(touching), gaps_(out), begin_(out.size()) {
     const Polyhedron &base = touching.base, &other = touching.other;
     n_ = base.normal(touching.by.face);
@@ -337,7 +337,7 @@ class Shared {
   }
 
   const Couple& couple_;
-  const ContactMode& touching_;
+  const ReferenceFace& touching_;
   Vec<3> n_, t_, u_, origin_, partner_n_ = Vec<3>::Zero(), partner_origin_ = Vec<3>::Zero();
   int partner_ = -1;
   bool parallel_ = false;
@@ -349,7 +349,7 @@ class Shared {
 };
 
 // no face is nearest, nor edges that cross: corners and edges; of parallel edges both ends of what they share
-void nearest_features(const Couple& couple, const ContactMode* touching, double margin,
+void nearest_features(const Couple& couple, const ReferenceFace* touching, double margin,
                       std::vector<ContactCandidate<3>>& out) {
   const Polyhedron &a = couple.of_a, &b = couple.of_b;
   const int edges_a = std::max(1, a.edges()), edges_b = std::max(1, b.edges());
@@ -442,8 +442,8 @@ void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidat
   if (by_edges.value >= far) return;
 
   const bool base_is_b = b.faces() && by_b.value >= by_a.value;
-  const ContactMode touching{base_is_b ? b : a, base_is_b ? a : b, base_is_b, base_is_b ? by_b : by_a,
-                             std::max({by_a.value, by_b.value, by_edges.value})};
+  const ReferenceFace touching{base_is_b ? b : a, base_is_b ? a : b, base_is_b, base_is_b ? by_b : by_a,
+                               std::max({by_a.value, by_b.value, by_edges.value})};
   if (touching.by.face < 0) return;  // what stands nowhere, of a state that is no more
   if (touching.other.edges() == 0) {
     const double slack = kAligned * touching.base.bounding_radius();

@@ -8,8 +8,8 @@ namespace obscura::sim {
 
 namespace {
 
-void unconstrained_rates(std::size_t n, const double* __restrict gravity, const double* __restrict drag,
-                         const double* __restrict v, double* __restrict out) {
+void component_rates(std::size_t n, const double* __restrict gravity, const double* __restrict drag,
+                     const double* __restrict v, double* __restrict out) {
   for (std::size_t i = 0; i < n; ++i) out[i] = gravity[i] - drag[i] * v[i];
 }
 
@@ -20,7 +20,7 @@ void unconstrained_rates(std::span<const double> gravity, std::span<const double
   if (drag.empty()) {
     std::copy(gravity.begin(), gravity.end(), v_rate.begin());
   } else {
-    unconstrained_rates(v.size(), gravity.data(), drag.data(), v.data(), v_rate.data());
+    component_rates(v.size(), gravity.data(), drag.data(), v.data(), v_rate.data());
   }
 }
 

@@ -22,7 +22,7 @@ constexpr int kSmall = 64;        // rows: so few that a factorisation costs not
 constexpr int kSweeps[] = {200, 1000};
 constexpr long kMostSets = 5000;  // of modes, tried one by one
 
-std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
+std::uint64_t hash_with(std::uint64_t hash, std::uint64_t value) {
   hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
   return hash ^ (hash >> 29);
 }
@@ -31,8 +31,8 @@ template <int D>
 std::uint64_t name(std::span<const ConeMode<D>> modes) {
   std::uint64_t hash = 0;
   for (const ConeMode<D>& mode : modes) {
-    hash = mixed(hash, std::uint64_t(mode.hold) + 1);
-    for (int k = 0; k < D - 1; ++k) hash = mixed(hash, mode.along[k] > 0 ? 2 : mode.along[k] < 0 ? 1 : 0);
+    hash = hash_with(hash, std::uint64_t(mode.hold) + 1);
+    for (int k = 0; k < D - 1; ++k) hash = hash_with(hash, mode.along[k] > 0 ? 2 : mode.along[k] < 0 ? 1 : 0);
   }
   return hash;
 }

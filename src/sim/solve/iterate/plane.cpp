@@ -25,15 +25,15 @@ using plane::Pair;
 
 namespace {
 
-constexpr double kUpdates = 60;     // a second: how often pairs are looked for
-constexpr double kStretches = 240;  // a second, at least
-constexpr int kMostSweeps = 40;     // of few pairs
-constexpr int kJointSweeps = 16;    // where there are joints: those are solved exactly in each
-constexpr int kStrainSweeps = 64;   // where they press something far into another
-constexpr double kStrained = 0.02;  // of its thickness: how far that is
-constexpr int kPairSweeps = 2000;   // pairs times iterations where there are more; at least one iteration
-constexpr int kFirstSweeps = 100;   // of the first step, which knows no forces
-constexpr double kProject = 0.2;    // of a penetration each time pairs are looked for
+constexpr double kPairUpdates = 60;  // a second: how often pairs are looked for
+constexpr double kStretches = 240;   // a second, at least
+constexpr int kMostSweeps = 40;      // of few pairs
+constexpr int kJointSweeps = 16;     // where there are joints: those are solved exactly in each
+constexpr int kStrainSweeps = 64;    // where they press something far into another
+constexpr double kStrained = 0.02;   // of its thickness: how far that is
+constexpr int kPairSweeps = 2000;    // pairs times iterations where there are more; at least one iteration
+constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
+constexpr double kProject = 0.2;     // of a penetration each time pairs are looked for
 
 }  // namespace
 
@@ -49,7 +49,7 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
       joints_(model) {
   const int n = int(model.bodies.size());
   const double h = 1 / value(model.rate);
-  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kUpdates));
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairUpdates));
   span_ = double(every_) * h;
   substeps_ = std::max(1, int(std::ceil(kStretches * h - 1e-9)));
   restitution_threshold_ = 2 * h / substeps_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;

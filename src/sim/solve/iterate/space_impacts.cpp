@@ -25,7 +25,7 @@ constexpr double kInTime = 1e-9;  // of the step: the next would be by its squar
 constexpr double kLatest = 1.5;   // steps: so late a gap may close that its tangent would close in one
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
 constexpr int kShares = 24;            // halvings for the share of e that does so
-constexpr double kLocked = 1e-9;       // of what a push moves without joints
+constexpr double kLockedPush = 1e-9;       // of what a push moves without joints
 constexpr int kRenewals = 4;           // of a gap's features in a step
 constexpr int kTurns = 40;             // impacts, of those that there are at first
 
@@ -280,7 +280,7 @@ bool SpaceIterative<D>::build_impact_rows(double t, double h) {
       K_(i, j) = K_(j, i) = joints_.response_between(tied_responses_[i], tied_responses_[j]);
     const Row<D>& row = impact_rows_[i];
     const double without = response_.inverse_mass(row.a) + response_.inverse_mass(row.b);
-    if (i % D == 0 && !(K_(i, i) > kLocked * without)) return false;
+    if (i % D == 0 && !(K_(i, i) > kLockedPush * without)) return false;
   }
   return true;
 }

@@ -17,13 +17,13 @@ namespace {
 typedef double V __attribute__((vector_size(32)));
 typedef long long I __attribute__((vector_size(32)));
 
-constexpr int kLanes = 4;
+constexpr int kAngles = 4;
 constexpr double kWhole = 4503599627370496;  // 2^52: from there on doubles are whole
 
 // false where a turn is too far for it
 [[gnu::always_inline]] inline bool four(const double* turns, Pose* poses) {
   V x{};
-  for (int i = 0; i < kLanes; ++i) x[i] = turns[i];
+  for (int i = 0; i < kAngles; ++i) x[i] = turns[i];
   const I sign = I{} + (1LL << 63);
   const V a = V(I(x) & ~sign);
   const I near = a <= V{} + trig::kFar;
@@ -39,15 +39,15 @@ constexpr double kWhole = 4503599627370496;  // 2^52: from there on doubles are 
   const I minus_sin = ((quarter & 2) << 62) ^ (I(x) & sign), minus_cos = ((quarter + 1) & 2) << 62;
   const V sin = V(((I(s) & ~odd) | (I(c) & odd)) ^ minus_sin);
   const V cos = V(((I(c) & ~odd) | (I(s) & odd)) ^ minus_cos);
-  for (int i = 0; i < kLanes; ++i) poses[i].c = cos[i], poses[i].s = sin[i];
+  for (int i = 0; i < kAngles; ++i) poses[i].c = cos[i], poses[i].s = sin[i];
   return true;
 }
 
 [[gnu::always_inline]] inline void all(const double* turns, Pose* poses, int count) {
   int i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
+  for (; i + kAngles <= count; i += kAngles) {
     if (four(turns + i, poses + i)) continue;
-    for (int k = i; k < i + kLanes; ++k) {
+    for (int k = i; k < i + kAngles; ++k) {
       const SinCos sc = sin_cos(turns[k]);
       poses[k].c = sc.cos, poses[k].s = sc.sin;
     }

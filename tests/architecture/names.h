@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+
+#include "architecture/arrows.h"
+
+namespace obscura::architecture {
+
+/// Names in the unnamed namespace of a .cpp under `top` that another .cpp of its folder defines too, or that
+/// hide a name of a header: with OBSCURA_UNITY (src/CMakeLists.txt) the .cpp of a folder are compiled as one,
+/// which then does not compile, or calls the other function. The files `apart` (relative to `top`) are
+/// compiled alone; `roots` are the folders that #include "..." starts from. It reads declarations, not C++:
+/// what it does not follow (friends, function pointers, names from macros) it leaves out.
+Complaints clashing_names(const std::filesystem::path& top, const std::set<std::filesystem::path>& apart,
+                          const std::vector<std::filesystem::path>& roots);
+
+/// The files that a CMakeLists.txt has compiled alone (SKIP_UNITY_BUILD_INCLUSION), as it names them.
+std::set<std::filesystem::path> compiled_apart(const std::filesystem::path& cmake_lists);
+
+}  // namespace obscura::architecture
