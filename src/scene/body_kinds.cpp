@@ -69,22 +69,22 @@ sim::Shape<D> of_shapes(const Fields& fields, int, int, Diagnostics& complaints)
 // clang-format off
 constexpr BodyKind kKinds[] = {
     {.name = "particle", .called = "particle", .plural = "particles",
-     .doc = "A point mass, or with a `radius` a ball. It does not turn.",
+     .doc = "A point mass, or a ball if it has a `radius`. It does not turn.",
      .dimension = 0, .instead = "", .turns = false, .handout = true, .own_origin = false, .varies = true,
      .measure = "radius", .stream = 0,
      .keys = [] { return std::vector<Key>{
          {.path = "particle.mass", .form = Form::number, .unit = "kg", .fallback = "1", .range = kAboveZero, .varies = true,
-          .doc = "How heavy it is.", .example = "0.5"},
+          .doc = "Its mass.", .example = "0.5"},
          {.path = "particle.radius", .form = Form::number, .unit = "m", .absent = "a point, drawn as a dot", .range = kAboveZero,
-          .varies = true, .doc = "Walls stop it at its rim.", .example = "0.06"}}; },
+          .varies = true, .doc = "Its radius; its surface touches walls.", .example = "0.06"}}; },
      .plane = makes<sim::Point<2>, 2>(particle<2>), .space = makes<sim::Point<3>, 3>(particle<3>)},
 
-    {.name = "ball", .called = "ball", .plural = "balls", .doc = "A disc, in space a ball, that turns: it rolls.",
+    {.name = "ball", .called = "ball", .plural = "balls", .doc = "A disc, in space a ball, that turns and rolls.",
      .dimension = 0, .instead = "", .turns = true, .handout = false, .own_origin = false, .varies = true,
      .measure = "radius", .stream = 1ull << 40,
      .keys = [] { return std::vector<Key>{
          {.path = "ball.radius", .form = Form::number, .unit = "m", .fallback = "0.2", .range = kAboveZero, .varies = true,
-          .doc = "To its rim.", .example = "0.1"}}; },
+          .doc = "Its radius.", .example = "0.1"}}; },
      .plane = makes<sim::Ball<2>, 2>(ball<2>), .space = makes<sim::Ball<3>, 3>(ball<3>)},
 
     {.name = "box", .called = "box", .plural = "boxes", .doc = "A rigid body with sides at right angles.",
@@ -101,9 +101,9 @@ constexpr BodyKind kKinds[] = {
      .measure = "radius", .stream = 4ull << 40,
      .keys = [] { return std::vector<Key>{
          {.path = "capsule.length", .form = Form::number, .unit = "m", .fallback = "0.8", .range = kAboveZero, .varies = true,
-          .doc = "From end to end.", .example = "0.5"},
+          .doc = "Its length from end to end.", .example = "0.5"},
          {.path = "capsule.radius", .form = Form::number, .unit = "m", .fallback = "0.15", .range = kAboveZero, .varies = true,
-          .doc = "Of the rod and its ends.", .example = "0.1"}}; },
+          .doc = "Radius of the rod and its ends.", .example = "0.1"}}; },
      .plane = kNeither<2>, .space = makes<sim::Capsule, 3>(rod)},
 
     {.name = "polygon", .called = "polygon", .plural = "polygons",
@@ -112,17 +112,17 @@ constexpr BodyKind kKinds[] = {
      .measure = "points", .stream = 2ull << 40,
      .keys = [] { return std::vector<Key>{
          {.path = "polygon.points", .form = Form::points, .unit = "m", .required = true,
-          .doc = "Its corners in its own frame, one after another, either way around.",
+          .doc = "Its corners in its own frame, in order, clockwise or counter-clockwise.",
           .example = "[[0, 0], [0.3, 0], [0.2, 0.25]]"}}; },
      .plane = makes<sim::Polygon, 2>(of_points<2>), .space = kNeither<3>},
 
     {.name = "hull", .called = "hull", .plural = "hulls",
-     .doc = "A convex rigid body: all that lies between its points. In space.",
+     .doc = "A rigid body: the convex hull of its points. In space.",
      .dimension = 3, .instead = "it is a [[polygon]]", .turns = true, .handout = false, .own_origin = true, .varies = false,
      .measure = "points", .stream = 5ull << 40,
      .keys = [] { return std::vector<Key>{
          {.path = "hull.points", .form = Form::points, .unit = "m", .dimension = 3, .required = true,
-          .doc = "Points in its own frame; its corners are those that no others lie around. What is flat is one face.",
+          .doc = "Points in its own frame. Points inside the hull of the others are ignored; triangles in one plane make one face.",
           .example = "[[0, 0, 0], [0.3, 0, 0], [0, 0.3, 0], [0, 0, 0.3]]"}}; },
      .plane = kNeither<2>, .space = makes<sim::Hull, 3>(of_points<3>)},
 
@@ -132,21 +132,21 @@ constexpr BodyKind kKinds[] = {
      .measure = "shapes", .stream = 3ull << 40,
      .keys = [] { return std::vector<Key>{
          {.path = "body.shapes", .form = Form::tables, .required = true,
-          .doc = "Its parts, in its own frame: each a ball, a box or a polygon, in space also a capsule or a hull. Where they overlap the mass is counted twice."},
+          .doc = "Its parts, in its own frame: each a ball, a box or a polygon, in space also a capsule or a hull. Where parts overlap, mass is counted twice."},
          {.path = "body.shapes.radius", .form = Form::number, .unit = "m", .absent = "no ball", .range = kAboveZero,
           .doc = "The part is a ball; with a `length`, a capsule.", .example = "0.1"},
          {.path = "body.shapes.length", .form = Form::number, .unit = "m", .absent = "no capsule", .range = kAboveZero, .dimension = 3,
-          .doc = "The part is a capsule along its own y, so long from end to end.", .example = "0.5"},
+          .doc = "The part is a capsule along its own y, of this length from end to end.", .example = "0.5"},
          {.path = "body.shapes.size", .form = Form::vector, .unit = "m", .absent = "no box", .range = {0, 1e6, true},
           .doc = "The part is a box.", .example = "[0.6, 0.1]"},
          {.path = "body.shapes.points", .form = Form::points, .unit = "m", .absent = "no polygon",
           .doc = "The part is a convex polygon, in space a hull.", .example = "[[0, 0], [0.3, 0], [0.2, 0.25]]"},
          {.path = "body.shapes.position", .form = Form::vector, .unit = "m", .fallback = "[0, 0]",
-          .doc = "Where the part's own origin is on the body.", .example = "[0.2, 0]"},
+          .doc = "Position of the part's origin in the body's frame.", .example = "[0.2, 0]"},
          {.path = "body.shapes.angle", .form = Form::number, .unit = "deg", .fallback = "0", .dimension = 2, .instead = "it is 'orientation'",
-          .doc = "How the part is turned on the body. In the plane.", .example = "45"},
+          .doc = "Angle of the part in the body's frame. In the plane.", .example = "45"},
          {.path = "body.shapes.orientation", .form = Form::turn, .absent = "upright", .dimension = 3, .instead = "it is 'angle'",
-          .doc = "How the part is turned on the body. In space.", .example = "[0, 0, 45]"}}; },
+          .doc = "Orientation of the part in the body's frame. In space.", .example = "[0, 0, 45]"}}; },
      .plane = makes<sim::Compound<2>, 2>(of_shapes<2>), .space = makes<sim::Compound<3>, 3>(of_shapes<3>)},
 };
 // clang-format on

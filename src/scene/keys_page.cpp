@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* kOpening = R"(# The scene language
 
-A scene is a [TOML](https://toml.io) file that says what is in a room, what it looks like and how it is filmed. Everything has a
-default; this is a whole scene:
+A scene is a [TOML](https://toml.io) file that says what is in a room, what it looks like and how it is filmed. Most keys have a
+default; this is a complete scene:
 
 ```toml
 title    = "A bouncing box"
@@ -33,21 +33,21 @@ elasticity = 0.8
 trails = 1.0
 ```
 
-`obscura new NAME` writes a commented one to start from, `obscura check SCENE` says what is wrong with one. A first line
-`#:schema ../docs/scene.schema.json` lets editors complete keys and check values.
+`obscura new NAME` writes a commented scene to start from; `obscura check SCENE` lists a scene's errors. With the first line
+`#:schema ../docs/scene.schema.json` editors complete keys and check values.
 
-Metres, kilograms, seconds; angles are degrees, counter-clockwise. x goes to the right, y up, and the origin is the left end of the
-floor, unless `room.corner` moves it. Numbers may be written `2` or `2.0`. Times are exact: `duration = 0.1` is one tenth.
+Units are metres, kilograms and seconds; angles are in degrees, counter-clockwise. x points right, y up, and the origin is the left end of
+the floor, unless `room.corner` moves it. Numbers may be written `2` or `2.0`. Times are exact: `duration = 0.1` is one tenth.
 
 ## The plane and space
 
-A scene is in the plane, or in space where `room.size`, or else the first place in it, has three numbers. Wherever the tables
-below say [x, y], a scene in space has [x, y, z]: x to the right, y up, z towards the viewer; the origin is the middle of the floor.
+A scene is in space if `room.size`, or without it the first position in the file, has three numbers; otherwise it is in the plane. Where
+the tables below say [x, y], a scene in space has [x, y, z]: x right, y up, z towards the viewer; the origin is the middle of the floor.
 
 ```toml
 [room]
 size  = [6, 3, 4]                                                # six walls
-walls = "ground"                                                 # of them only the floor
+walls = "ground"                                                 # only the floor of them
 
 [[box]]
 size        = [0.6, 0.4, 0.3]
@@ -61,15 +61,15 @@ length   = 0.8
 radius   = 0.1
 position = [1, 1, 0]
 
-[[hull]]                                                         # a wedge: all that lies between its points
+[[hull]]                                                         # a wedge: the convex hull of its points
 points   = [[0, 0, 0], [1, 0, 0], [1, 0.5, 0], [0, 0, 1], [1, 0, 1], [1, 0.5, 1]]
 position = [-2, 0, 0]
 fixed    = true
 ```
 
-`rotation = false`, of a body or of `[physics]` for all, keeps bodies from turning.
+`rotation = false` keeps a body from turning; in `[physics]` it applies to all bodies.
 
-Without a `[camera]` the picture shows the room from the right and above. Several cameras look at one run, beside each other:
+Without a `[camera]` the picture shows the room from the right and above. Several cameras show the same run side by side:
 
 ```toml
 [[camera]]
@@ -83,17 +83,17 @@ orbit     = 12                                                   # degrees per s
 follow    = "box[0]"
 ```
 
-`obscura render SCENE --camera side` films one of them, `-o '{camera}.mp4'` each into a file of its own.
+`obscura render SCENE --camera side` films one of them; `-o '{camera}.mp4'` makes a movie for each.
 
-This page is written by the program from the table that it checks scenes with.
+The program writes this page from the table that it checks scenes with.
 
 ## Names and references
 
-A body may have a `name`; springs, trails and `--set` use it. Without one it is called after its place in the file, `box[0]`,
-`particle[2]`. Copies are numbered from 0: `ball[0]`, `ball[1]`, ... Where several may be meant, `ball[*]` is all of them, `ball[0..4]` the
-first five, `ball[0,5]` two.
+Springs, trails and `--set` refer to a body by its `name`. A body without a name is numbered in the order of the file: `box[0]`,
+`particle[2]`. Copies are numbered from 0: `ball[0]`, `ball[1]`, ... Where several bodies are allowed, `ball[*]` means all of them,
+`ball[0..4]` the first five, `ball[0,5]` two.
 
-`--set` uses the same names as paths to any key:
+`--set` uses the same names in paths to any key:
 
     --set crate.elasticity=0.5      --set film.fps=30              --set ball[3].position.y=2
     --set room.gravity=[0,-1.62]    --set mouse[0].stiffness=20    --set look.theme=screen
@@ -107,29 +107,29 @@ first five, `ball[0,5]` two.
 name       = "ball"
 position   = [1, 4]
 elasticity = { from = 0, to = 1 }                           # evenly from the first copy to the last
-color      = ["blue", "orange"]                             # again and again
+color      = ["blue", "orange"]                             # in turn
 copies     = { count = 6, offset = [0.5, 0] }               # a row
 # copies   = { count = [6, 2], offset = [[0.5, 0], [0, 0.5]] }   # a grid
 # copies   = { count = 12, turn = 30, around = [4, 2] }     # a ring
 ```
 
-Where the table below says *varies*, a number may also be a list with one for each copy, or `{ from, to }`; a place or velocity may be
-`{ from, to }`. In a grid the copies are counted along the first direction, then the next row. `jitter` moves each a little; it depends on
-`seed` and on the copy alone, so that it stays when other things in the scene change.
+Where the table below says *varies*, a number may also be a list with one value for each copy, or `{ from, to }`; a position or velocity
+may be `{ from, to }`. In a grid the copies are counted along the first direction, then row by row. `jitter` moves each copy a little; it
+depends only on `seed` and on the copy, so it stays the same when other parts of the scene change.
 
 ## Springs and nets
 
-An end of a spring is a body (its centre of mass), a point of one that turns, or a place in the room:
+An end of a spring is a body (its centre of mass), a point of a body that turns, or a place in the room:
 
 ```toml
 between = ["ball", "crate"]
 between = ["ball", { body = "crate", at = "top right" }]         # of a box: a corner, a side, the center; of a ball: a side
 between = [[4, 4.5], { body = "crate", local = [0.2, 0] }]       # metres in the body's own frame, from its origin
-between = ["peg[*]", "ball[*]"]                                  # each with its own: as many springs as there are copies
+between = ["peg[*]", "ball[*]"]                                  # a spring for each pair of copies
 ```
 
-The numbers of a spring that is many may vary over them as those of copies do. A `[[net]]` joins the copies of one body to their
-neighbours; hold some of them with `fixed`:
+If `between` makes many springs, their numbers may vary as those of copies do. A `[[net]]` joins the copies of one body to their
+neighbours; `fixed` holds some of them:
 
 ```toml
 [[particle]]
@@ -144,11 +144,11 @@ of        = "knot"
 stiffness = 60
 ```
 
-## Bodies of other forms
+## Bodies of other shapes
 
-A box and a ball have their origin at their centre. The `points` of a polygon, and the `shapes` of a body of several, are about an origin of
-their own: `position` is where that origin is, `angle` turns about it, and `local` of a spring or joint counts from it. The centre of mass lies
-where the form says: what moves, what trails follow and what `states` reports is the centre of mass.
+A box and a ball have their origin at their centre. The `points` of a polygon, and the `shapes` of a body with several, are given in the
+body's own frame. `position` is where the origin of this frame lies, `angle` turns about it, and `local` of a spring or joint is measured
+from it. The centre of mass follows from the shape; `velocity`, trails and `states` are those of the centre of mass.
 
 ```toml
 [[polygon]]                                                      # a stone of an arch, and ten more
@@ -170,7 +170,7 @@ ignore = [["stones", "stones"]]                                  # these do not 
 
 ## Joints
 
-A joint is between two bodies, or a body and the `"room"`. A pin, weld or slider is at one place, given as `at`, or as a point of either end; a
+A joint connects two bodies, or a body and the `"room"`. A pin, weld or slider is at one place, given as `at` or as a point of either end. A
 rod or rope goes from one point to another, as a spring does:
 
 ```toml
@@ -178,7 +178,7 @@ rod or rope goes from one point to another, as a spring does:
 type    = "pin"
 between = ["door", "room"]
 at      = [2, 1.5]
-limits  = [-30, 90]                                              # degrees from how it hangs at the start
+limits  = [-30, 90]                                              # degrees from its angle at the start
 
 [[joint]]                                                        # nine: each plank to the next
 type    = "pin"
@@ -196,27 +196,27 @@ between = [[4, 4], { body = "crate", at = "top" }]
 breaks  = 50
 ```
 
-Two bodies with a joint between them do not touch each other, unless it says `touching = true`.
+Two bodies with a joint between them do not touch each other, unless the joint has `touching = true`.
 
 ## Articulated bodies
 
-`[[chain]]` makes the joints of a figure, a crane or a pendulum hold exactly, by Featherstone's algorithm: they cannot drift, and they
-keep their energy for long. Its links are bodies as others, with joints as others, limits, motors and friction among them; they touch, hang
-on springs and are taken by the mouse. If no joint is with the room it flies:
+`[[chain]]` makes the joints of a figure, a crane or a pendulum hold exactly, by Featherstone's algorithm: they cannot drift, and the energy
+is conserved for long. The links are ordinary bodies with ordinary joints, limits, motors and friction included; they touch other bodies,
+and springs and the mouse can pull them. A chain without a joint to the room moves freely:
 
 ```toml
 [[chain]]
 of = ["trunk", "head", "arm[*]", "leg[*]"]
 ```
 
-Velocities at the start that the joints do not allow are put right by impulses between the links. The joints of a chain do not break.
-So it is with the direct solver, which serves up to 100 links (30 in space) beside the bodies that it serves. Where more lies about, or `solver =
-"iterative"` is said, the links hold by their joints as other bodies do, in the plane and in space: a figure falls into a pile of hundreds. They do not drift there
-either (1e-13 of the room); how they swing is then of second order in the step.
+If the joints do not allow the velocities at the start, impulses between the links correct them. The joints of a chain do not break.
+All this is done by the direct solver, for up to 100 links (30 in space) beside its other bodies. With more links or bodies, or `solver =
+"iterative"`, the links are held by their joints as other bodies are, in the plane and in space: a figure may fall into a pile of hundreds.
+The joints do not drift there either (1e-13 of the room); the motion is then of second order in the step.
 
 ## Pieces
 
-`[[bond]]` makes one body of several, until it breaks:
+`[[bond]]` joins several bodies into one, until it breaks:
 
 ```toml
 [[box]]
@@ -225,14 +225,14 @@ size   = [0.2, 0.2, 0.2]
 copies = { count = [3, 3, 3], offset = [[0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.2]] }
 
 [[bond]]
-of     = ["piece[*]"]                                            # each with those that it touches
+of     = ["piece[*]"]                                            # each piece with those it touches
 breaks = 300                                                     # newtons
 ```
 
 ## Explosions
 
-An explosion pushes every point of every body away from its centre for a while: the corners of a box, the ends of a capsule, a
-particle, the middle of a ball. Each point feels the force, so that a box of eight corners feels eight times what a particle does there.
+For a given time an explosion pushes every point of every body away from its centre: the corners of a box, the ends of a capsule, a
+particle, the middle of a ball. The force acts on each point: a box with eight corners feels eight times the force on a particle there.
 
 ```toml
 [[explosion]]
@@ -240,37 +240,37 @@ center   = [0, 0, 0]
 strength = 20                                                    # newtons on a point a metre away
 start    = 0.5
 duration = 1
-scheme   = "paper"                                               # the force is held for 10 ms at a time
+scheme   = "paper"                                               # the force is held constant for 10 ms at a time
 
 [room]
 ground_drag = 0.5                                                # the paper's friction on the ground
 
 [physics]
-rotation = false                                                 # the paper's own: forces move bodies as a whole
+rotation = false                                                 # as in the paper: forces do not turn bodies
 ```
 
 ## Films
 
-A film goes as fast as its run, unless `speed` says otherwise: one number for all of it, or keys by the run's time, from each of which it
-goes to the next. Before the first key its speed holds, and after the last that one's.
+Without `speed` a second of the film shows a second of the run. `speed` is one number for the whole film, or a list of keys at times of the
+run, and changes from key to key as `ease` says. Before the first key the first speed holds, after the last key the last.
 
 ```toml
 [film]
 speed = 0.5                                                      # ten seconds become twenty
 # speed = [                                                      # from 2 s to 3 s at a tenth
-#   { time = 1.8 },                                              # 1, where nothing is said
+#   { time = 1.8 },                                              # speed 1, the default
 #   { time = 2, speed = 0.1 },
 #   { time = 3, speed = 0.1 },
 #   { time = 3.2 },
 # ]
 ```
 
-All other times of a scene, those of cameras, mice and `[golden]`, are the run's too, and so are the clock on the picture, `--at`, `--from`
-and `--to`; `--frames` counts the film's frames. A frame at f seconds of the film shows the run at the integral of the speed up to f, exact
-where that is a fraction of whole numbers up to a million, and else to the nearest microsecond.
+All other times are times of the run: those of cameras, mice and `[golden]`, the clock on the picture, `--at`, `--from` and `--to`;
+`--frames` counts the film's frames. The frame at f seconds of the film shows the run at the integral of the speed up to f: exactly, if that
+is a fraction of whole numbers up to a million, otherwise to the nearest microsecond.
 
-A `[[film.plot]]` shows what happens over time below the picture, or at its right, while it happens: axes for all of the run, each line up to
-now with a dot at its end. The quantities are those of `[[figure.plot]]`.
+A `[[film.plot]]` below the picture, or at its right, plots quantities over time in step with the film: the axes span the whole run, and
+each line ends at the current instant with a dot. The quantities are those of `[[figure.plot]]`.
 
 ```toml
 [[film.plot]]
@@ -283,29 +283,29 @@ place    = "right"
 size     = 40                                                    # percent of the picture's width
 ```
 
-What the axes span is known from a run of the scene ahead of the film's: simulating takes twice as long.
+To find the range of the axes the scene is simulated once before the film, so simulating takes twice as long.
 
-With a `shutter` what moves is blurred as on film: a frame is the mean, in linear light, of what is seen from its instant on while the shutter
-is open, 180 of 360 degrees being half of a frame's time.
+`shutter` adds motion blur: a frame is the mean, in linear light, of the pictures from its instant on while the shutter is open. 360 degrees
+is the whole time of a frame, 180 half of it.
 
 ```toml
 [film]
 shutter = 180
 ```
 
-The picture is drawn once for each pixel that something moves meanwhile, by its velocity and the camera's when the shutter opens: 4 to 64
-times; where nothing moves, once, and that is the picture without a shutter. With many bodies it is fewer times (2 MB of them a frame: of a
-thousand bodies about 14). Clock and plots are those of the frame's instant.
+A frame is drawn once for each pixel that the fastest motion crosses while the shutter is open (by the velocities of things and camera when
+it opens), 4 to 64 times. If nothing moves it is drawn once, the same as without a shutter. With many bodies it is drawn fewer times: the
+states of one frame take at most 2 MB, about 14 states of a thousand bodies. Clock and plots show the frame's instant.
 
 ## Figures
 
-`obscura figure` makes a figure for print of an instant, or of several. `[figure]` says what it shows and what is named, measured and drawn on it;
-every value is the run's:
+`obscura figure` makes a figure for print of one instant or several. `[figure]` says what the figure shows, names and measures; every
+value comes from the run:
 
 ```toml
 [figure]
-impact = "crate"                                                 # the step in which it is first struck
-at     = [-0.1, 0, 0.1]                                          # seconds from there, a panel each
+impact = "crate"                                                 # the step of its first impact
+at     = [-0.1, 0, 0.1]                                          # seconds from there, one panel each
 width  = 174                                                     # mm
 
 [[figure.vector]]
@@ -325,16 +325,16 @@ label   = "h"
 quantity = ["energy", "kinetic", "potential"]
 ```
 
-In space each camera has a panel for each instant: what is lit is pixels, and lines, arrows and type are vectors over them. Points, vectors, lengths
-and angles between places are drawn there too. `axes = true` puts rulers beside a picture of the plane, and the three axes into one of space.
+In space each camera has a panel for each instant: lit surfaces are pixels; lines, arrows and text are vectors over them. Points, vectors,
+lengths and angles between places are drawn there too. `axes = true` draws rulers beside a picture of the plane, and three axes in space.
 
-A plot goes over time, `against` another quantity, or `over` the values of a key, a run for each; with `reference` it shows how far each run ends from
-another one, and on logarithmic axes by which power:
+A plot shows quantities over time, `against` another quantity, or `over` the values of a key, with one run for each value. With `reference`
+it shows how far each run ends from a reference run; on logarithmic axes the slope is the power:
 
 ```toml
 [figure]
-vary = "physics.integrator=euler,midpoint,rk4"                   # a line each
-room = false                                                     # the plot alone
+vary = "physics.integrator=euler,midpoint,rk4"                   # one line each
+room = false                                                     # only the plot
 
 [[figure.plot]]
 quantity  = ["x"]
@@ -345,35 +345,33 @@ reference = "physics.rate=10000; physics.integrator=rk4"
 scale     = "log"
 ```
 
-Labels are mathematics: letters are italic, words of three letters and more and digits upright. `_` and `^` make sub- and superscripts (`v_center`,
-`a_{ij}`, `x^2`), `'` a prime, `*r*` a vector, `"in quotes"` words; `\omega` and the other Greek letters, `\Delta`, `\times`, `\cdot`, `\perp`, `\dot{q}`,
-`\bar{v}`, `\vec{r}`. In TOML a backslash is written twice, or the string stands in single quotes.
+Labels are set as mathematics: letters are italic; digits and words of three or more letters are upright. `_` and `^` make sub- and
+superscripts (`v_center`, `a_{ij}`, `x^2`), `'` a prime, `*r*` a vector, `"in quotes"` plain words. There are `\omega` and the other Greek
+letters, `\Delta`, `\times`, `\cdot`, `\perp`, `\dot{q}`, `\bar{v}`, `\vec{r}`. In TOML write a backslash twice, or use single quotes.
 
 )";
 
 const char* const kNotes[][2] = {
     {"room",
-     "Without `[room]`, or with one that says nothing of `size` or `walls`, the room is 8 m by 4.5 m. With "
-     "`walls` alone it has only "
-     "those, and may be open. Where there is no size, the reference pixel of the mouse is 1/480 of the "
-     "height that the camera fits."},
+     "Without `size` and `walls` the room is 8 m by 4.5 m. With `walls` alone it has only those walls, and "
+     "may be open. Without a size, the reference pixel of the mouse is 1/480 of the height that the camera "
+     "fits."},
     {"physics",
      "In the plane, balls, polygons and bodies of several shapes need `collision = \"contact\"` or "
-     "`\"event\"`; in space `handout` has bodies of every form, which meet walls alone. Joints, friction and "
-     "bodies that meet other bodies need `contact` or `event` in both.\n\n"
-     "In `contact` and `event` a body comes to rest, to the bit, where contacts and joints hold it; what "
-     "they "
-     "leave free goes on: a puck on ice, a ball that rolls, a pendulum. With g for gravity and L for the "
-     "room's height, a body rests once it and all that it touches have been slower than 0.002 s g for a "
-     "quarter of a second, forces within the laws leave it less than g / 1,000,000 of acceleration, and less "
-     "than 1e-8 sqrt(g L) of its velocity is motion that those contacts and joints leave free, or that "
-     "friction, beside what it bears, would not stop within 0.01 s. The direct solver asks for less: no "
-     "velocity above 1e-8 sqrt(g L), no acceleration above 1e-10 g. All of it scales with the scene; without "
-     "gravity only what does not move at all rests."},
+     "`\"event\"`. In space `handout` takes bodies of every shape; they collide only with walls. Joints, "
+     "friction and collisions between bodies need `contact` or `event`, in the plane and in space.\n\n"
+     "In `contact` and `event` a body comes to rest, to the bit, where contacts and joints hold it. Motion "
+     "that they leave free continues: a puck on ice, a rolling ball, a pendulum. Let g be gravity and L the "
+     "room's height. A body is put to rest when three things are true of it and all that it touches. It has "
+     "been slower than 0.002 s g for a quarter of a second. Forces within the laws of contact leave it less "
+     "acceleration than g / 1,000,000. And of its velocity, the part that contacts and joints leave free, or "
+     "that their spare friction would not stop within 0.01 s, is less than 1e-8 sqrt(g L). The direct solver "
+     "asks only for a velocity below 1e-8 sqrt(g L) and an acceleration below 1e-10 g. All this scales with "
+     "the scene; without gravity a body rests only if it does not move at all."},
     {"mouse",
      "The reference pixel is 1/480 of the room's height, so that a larger picture shows the same motion."},
     {"camera",
-     "`center` and `width` stand for one view; with `keys` the camera moves from each to the next, and rests "
+     "`center` and `width` give a fixed view; with `keys` the camera moves from key to key, and stands still "
      "before the first and after the last. In space it looks at `center` from `azimuth` and `elevation`, or "
      "from `eye`."},
 };
@@ -427,7 +425,7 @@ std::string type(const Key& key) {
     case Form::pixels:
       return "[width, height]";
     case Form::count:
-      return "whole number, or one a direction";
+      return "whole number, or one per direction";
     case Form::offset:
       return "[x, y], or a list of them";
     case Form::which:
