@@ -141,10 +141,7 @@ double SpaceIterative<D>::find_features(int a, int b, double t, double h) {
 // whether other features of a pair may come nearer while they turn
 template <int D>
 bool SpaceIterative<D>::features_change(const ContactConstraint& touch) const {
-  const auto is_round = [&](int body) {
-    const ShapeKind kind = model_.bodies[body].shape.kind;
-    return kind == ShapeKind::point || kind == ShapeKind::ball;
-  };
+  const auto is_round = [&](int body) { return bool(round_radius(model_.bodies[body].shape)); };
   return touch.b < int(model_.bodies.size()) && touch.renewals < kRenewals &&
          !(is_round(touch.a) && is_round(touch.b));
 }
