@@ -516,41 +516,40 @@ int submit(Flags flags) {
 }  // namespace
 
 OBSCURA_COMMAND(80, submit) {
-  const Command command(program, exit, "submit",
-                        "Share a film, or a sweep, out among the tasks of a Slurm array");
+  const Command command(program, exit, "submit", "Split a film or a sweep into the tasks of a Slurm array");
   auto flags = std::make_shared<Flags>();
   add_scene(command, flags->scene);
-  command.option("SBATCH", flags->options, "Behind --: options of sbatch, as in -- --partition=long");
-  command.option("--tasks", flags->tasks, "Shards, each a task of the array")
+  command.option("SBATCH", flags->options, "After --: options of sbatch, as in -- --partition=long");
+  command.option("--tasks", flags->tasks, "Number of shards; each is a task of the array")
       .type("N")
       .required()
       .range(1, 1'000'000);
-  command.option("--at-once", flags->at_once, "So many tasks side by side at most")
+  command.option("--at-once", flags->at_once, "At most this many tasks at a time")
       .type("K")
       .range(1, 1'000'000);
   command
       .option("-o,--output", flags->out,
-              "Where to, as for render: a movie or a sequence of PNGs [render_out/SCENE.mp4]; of a sweep "
+              "The output, as for render: a movie or a sequence of PNGs [render_out/SCENE.mp4]; for a sweep "
               "a table")
       .type("OUT");
-  command.option("--vary", flags->vary, "A sweep instead of a film: as for sweep")
+  command.option("--vary", flags->vary, "Makes it a sweep instead of a film: as for sweep")
       .type("PATH=VALUES")
       .repeated();
-  command.option("--measure", flags->measure, "What a sweep puts down: as for sweep").type("LIST").repeated();
+  command.option("--measure", flags->measure, "What a sweep measures: as for sweep").type("LIST").repeated();
   add_sets(command, flags->sets);
-  command.flag("--anew", flags->anew, "Begin anew whatever an earlier submit left, whole shards too");
-  command.flag("--dry-run", flags->dry_run, "Show the scripts, and do nothing; needs no Slurm");
-  command.flag("--no-wait", flags->no_wait, "Hand it in and end");
+  command.flag("--anew", flags->anew,
+               "Start again and discard what an earlier submit left, even finished shards");
+  command.flag("--dry-run", flags->dry_run, "Only show the scripts; needs no Slurm");
+  command.flag("--no-wait", flags->no_wait, "Submit and end");
   add_memory_limit(command, &flags->memory_limit);
   add_backend(command, flags->context.backend);
   command.flag("--native", flags->context.native, "As for render");
   add_progress(command, flags->progress);
   command.footer(
       "Writes plain sbatch scripts into the folder OUT.slurm, where the logs go too: one simulates and "
-      "leaves a "
-      "checkpoint for every shard, an array draws the shards, one joins them. The bytes are those of one "
-      "render.\n"
-      "Submitted again, only what is missing is done; while its jobs run, they are followed.\n\n"
+      "writes a checkpoint for every shard, an array draws the shards, one joins them. The bytes are those "
+      "of one render.\n"
+      "A second submit does only what is missing; while jobs of the first still run, it follows them.\n\n"
       "Examples:\n"
       "  obscura submit scenes/room.toml --tasks 32 -o room.mp4\n"
       "  obscura submit scenes/room.toml --tasks 100 --at-once 20 -o room.mp4 -- --partition=long "

@@ -232,10 +232,10 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
 }  // namespace
 
 OBSCURA_COMMAND(50, check) {
-  const Command command(program, exit, "check", "Read scenes and say what would be filmed, without drawing");
+  const Command command(program, exit, "check", "Check scenes and say what would be filmed, without drawing");
   auto files = std::make_shared<std::vector<std::string>>();
   auto sets = std::make_shared<std::vector<std::string>>();
-  command.option("SCENE", *files, "Scenes to read").required();
+  command.option("SCENE", *files, "Scenes to check").required();
   auto format = std::make_shared<Format>(Format::text);
   add_sets(command, *sets);
   add_format(command, *format);

@@ -117,33 +117,31 @@ int run(const CompareFlags& flags) {
 
 OBSCURA_COMMAND(100, compare) {
   const Command command(program, exit, "compare",
-                        "Say whether two pictures, sequences or runs are the same, and why not");
+                        "Say whether two pictures, sequences or runs are the same, and if not, why");
   auto flags = std::make_shared<CompareFlags>();
-  command.option("A", flags->a, "A PNG, a folder of them, a movie, or a run as CSV or JSON: what is expected")
+  command.option("A", flags->a, "The expected one: a PNG, a folder of them, a movie, or a run as CSV or JSON")
       .required();
-  command.option("B", flags->b, "The same again: what there is").required();
-  command.option("--diff", flags->diff, "Write what differs, of a sequence in its worst frame")
+  command.option("B", flags->b, "The actual one, of the same kind").required();
+  command
+      .option("--diff", flags->diff, "Write a picture of the differences; for a sequence, of its worst frame")
       .type("OUT.png");
   command.option("--report", flags->report, "Write a page with both, a slider and a blink").type("OUT.html");
   add_format(command, flags->format);
-  command.option("--rtol", flags->rtol, "Of runs: relative tolerance, of A's value [0]").range(0.0, 1e300);
-  command.option("--atol", flags->atol, "Of runs: absolute tolerance, in the quantity's unit [0]")
+  command.option("--rtol", flags->rtol, "For runs: tolerance relative to A's value [0]").range(0.0, 1e300);
+  command.option("--atol", flags->atol, "For runs: absolute tolerance, in the quantity's unit [0]")
       .range(0.0, 1e300);
-  command.flag("--interpolate", flags->interpolate, "Of runs: straight lines between B's rows");
+  command.flag("--interpolate", flags->interpolate, "For runs: straight lines between B's rows");
   command.footer(
-      "Files of the same bytes are the same. Else pixels are compared: how many differ, the largest "
-      "difference "
-      "of a channel, how many differ by more than an edge that moved by less than a pixel (solid), the box "
-      "around them. Where both carry their origin, as all that obscura writes does, the cause is named: "
-      "other "
-      "scene, other state (both are simulated again, and the step, body and quantity where they part are "
-      "told), other look, other OpenGL, or pixels only.\n"
+      "Files with the same bytes are the same. Otherwise pixels are compared: how many differ, the largest "
+      "difference of a channel, how many differ by more than an edge that moved by less than a pixel "
+      "(solid), the box around them. If both files carry their origin, as all that obscura writes do, "
+      "compare names the cause: other scene, other state (both are simulated again to find the step, body "
+      "and quantity of the first difference), other look, other OpenGL, or pixels only.\n"
       "Runs are tables as `obscura states` writes them, as CSV or JSON. A is the reference: its columns and "
       "its "
-      "times must be in B. Times are one within half a microsecond; |b - a| <= atol + rtol |a|; inf and nan "
-      "are the "
-      "same as themselves alone.\n\n"
-      "Exit codes: 0 the same, 1 they differ, 2 usage, 4 something is not readable.\n\n"
+      "times must be in B. Times within half a microsecond are equal; values need |b - a| <= atol + rtol "
+      "|a|; inf and nan are equal only to themselves.\n\n"
+      "Exit codes: 0 the same, 1 they differ, 2 usage, 4 something cannot be read.\n\n"
       "Examples:\n"
       "  obscura compare old.png new.png --diff difference.png\n"
       "  obscura compare frames/ again/ --report report.html\n"

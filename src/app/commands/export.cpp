@@ -186,14 +186,13 @@ OBSCURA_COMMAND(90, export) {
   const Command command(program, exit, "export", "Write a run as one animated glTF, for another renderer");
   auto flags = std::make_shared<ExportFlags>();
   add_scene(command, flags->scene);
-  command.option("-o,--output", flags->out, "Where to, a name that ends with .glb [SCENE.glb]").type("OUT");
+  command.option("-o,--output", flags->out, "The output, a name that ends with .glb [SCENE.glb]").type("OUT");
   command.option("--fps", flags->fps, "Instants per second [film.fps]").type("RATE");
   add_sets(command, flags->sets);
   add_memory_limit(command);
   command.footer(
-      "One node a body, with its name, and a thin rod for each spring; metres, y up. At the instants "
-      "themselves "
-      "positions are the run's, between them lie straight lines.\n\n"
+      "One node per body, with its name, and a thin rod for each spring; metres, y up. At the instants the "
+      "positions are those of the run; between them they are interpolated linearly.\n\n"
       "Examples:\n"
       "  obscura export scenes/room.toml\n"
       "  obscura export scenes/room.toml -o room.glb --fps 120");

@@ -174,36 +174,36 @@ int run(const FigureFlags& flags) {
 }  // namespace
 
 OBSCURA_COMMAND(30, figure) {
-  const Command command(program, exit, "figure", "A figure for print: SVG, PDF or PNG");
+  const Command command(program, exit, "figure", "Draw a figure for print: SVG, PDF or PNG");
   auto flags = std::make_shared<FigureFlags>();
   add_scene(command, flags->scene);
   command
       .option("-o,--output", flags->out,
-              "Where to: .svg or .pdf (vectors; type stays type) or .png [render_out/SCENE.svg]")
+              "The output: .svg or .pdf (vectors, with text as text) or .png [render_out/SCENE.svg]")
       .type("OUT");
   command
       .option("--at", flags->at,
-              "The instant (s); of several, as in 0,0.5,1 or 0:2:0.5, each has its panel [figure.at, or a "
+              "The instant (s), or several, as in 0,0.5,1 or 0:2:0.5, with a panel for each [figure.at, or a "
               "quarter of the duration]")
       .type("SECONDS");
   command
-      .option(
-          "--width", flags->width,
-          "Of the figure, as in 84mm, 3.3in or 240pt; type and lines keep their size [figure.width, 84mm]")
+      .option("--width", flags->width,
+              "Width of the figure, as in 84mm, 3.3in or 240pt; text and lines keep their size "
+              "[figure.width, 84mm]")
       .type("LENGTH");
-  command
-      .option("--every", flags->every, "Earlier exposures, one every so many seconds, fading [figure.every]")
+  command.option("--every", flags->every, "Also draw earlier instants, this far apart, fading [figure.every]")
       .type("SECONDS");
   command
       .option(
           "--vary", flags->vary,
-          "A panel, and a line of each plot, for each value of a key, as in --vary crate.elasticity=0,0.5,1 "
+          "A panel, and a line in each plot, for each value of a key, as in --vary crate.elasticity=0,0.5,1 "
           "[figure.vary]")
       .type("PATH=VALUES")
       .repeated();
-  command.option("--columns", flags->columns, "Of panels beside each other").range(1, 20);
-  command.option("--font", flags->font, "The family of words, as in 'Source Sans 3' [Inter]").type("NAME");
-  command.option("--dpi", flags->dpi, "Pixels an inch of a PNG, and of what is lit in space [300]")
+  command.option("--columns", flags->columns, "Panels in a row").range(1, 20);
+  command.option("--font", flags->font, "Font family of the text, as in 'Source Sans 3' [Inter]")
+      .type("NAME");
+  command.option("--dpi", flags->dpi, "Pixels per inch of a PNG, and of lit surfaces in space [300]")
       .range(10.0, 4800.0);
   command.option("--theme", flags->theme, "paper (white) or screen (dark) [paper]")
       .one_of({"paper", "screen"});
@@ -211,7 +211,7 @@ OBSCURA_COMMAND(30, figure) {
   add_sets(command, flags->sets);
   add_memory_limit(command);
   command.footer(
-      "What is named, measured and drawn on it says the scene's [figure], see docs/scene.md.\n\n"
+      "The scene's [figure] says what the figure names, measures and draws: see docs/scene.md.\n\n"
       "Examples:\n"
       "  obscura figure scenes/box.toml -o box.svg --at 0.8\n"
       "  obscura figure scenes/bounce.toml -o bounce.pdf --at 1.2 --every 0.1 --width 120mm\n"

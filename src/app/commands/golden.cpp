@@ -285,51 +285,48 @@ int golden(GoldenFlags& flags) {
 }  // namespace
 
 OBSCURA_COMMAND(120, golden) {
-  const Command command(program, exit, "golden",
-                        "Check what scenes look like, and their states, against references");
+  const Command command(program, exit, "golden", "Compare pictures and states of scenes with references");
   auto flags = std::make_shared<GoldenFlags>();
   command.option("SCENE", flags->scenes,
-                 "Scenes, or folders of them: there those with a [golden] table [scenes, or .]");
+                 "Scenes, or folders; in a folder those with a [golden] table [scenes, or .]");
   command
       .option("--references", flags->golden.references,
               "The folder of the references [golden/ beside each scene]")
       .type("DIR");
-  command.option("--root", flags->golden.root, "Call scenes by their path from here [the current folder]")
+  command.option("--root", flags->golden.root, "Name scenes by their path from here [the current folder]")
       .type("DIR");
   command
       .option("--states", flags->golden.states,
-              "Another program's run, which is shown and held instead of the simulation's [golden.states]")
+              "Another program's run, drawn and compared instead of the simulation's [golden.states]")
       .type("RUN.csv");
-  command.flag("--update", flags->golden.update, "Take what there is now as the reference");
+  command.flag("--update", flags->golden.update, "Take the current pictures and states as references");
   command
       .option("--only", flags->only,
-              "Only this moment of this scene, as in room@2.5; of --report, only if it is still that "
-              "picture; may "
-              "be given again")
+              "Only this moment of this scene, as in room@2.5; with the name given by --report, only if it "
+              "is still that picture; may be repeated")
       .type("SCENE@SECONDS")
       .repeated();
   command
       .option("--actual", flags->golden.actual,
-              "Where pictures of what fails go, and differences [render_out/golden]")
+              "Folder for the pictures of failures and their differences [render_out/golden]")
       .type("DIR");
-  command.option("--junit", flags->junit, "Write the outcome as JUnit's XML").type("OUT.xml");
+  command.option("--junit", flags->junit, "Write the results as JUnit's XML").type("OUT.xml");
   command
       .option("--report", flags->report,
               "Write a page with expected, actual and difference, where single pictures are approved")
       .type("OUT.html");
   add_format(command, flags->format);
   command.flag("--other-gl-states", flags->golden.states_only_on_other_gl,
-               "Where a reference was drawn by another OpenGL, compare states alone");
-  command.option("-j,--jobs", flags->workers, "Scenes side by side [one a core]").range(1, 256);
+               "If another OpenGL drew a reference, compare only states");
+  command.option("-j,--jobs", flags->workers, "Scenes in parallel [one per core]").range(1, 256);
   add_backend(command, flags->golden.picture.context.backend);
   add_sets(command, flags->sets);
   command.footer(
       "A scene's [golden] table names the moments, the size, and what may differ, with a reason. States are "
-      "compared first, then pixels. A reference is a PNG of render's, SCENE-SECONDS.png, and carries its "
-      "origin: so the cause of a difference is named. A missing one fails, and the picture is written. "
-      "With --references, and for pictures of what fails, a scene is called by its path from --root, "
-      "without .toml. "
-      "docs/golden.md has recipes.\n\n"
+      "compared first, then pixels. A reference is a PNG, SCENE-SECONDS.png, with its origin, so golden can "
+      "name the cause of a difference. If a reference is missing, the moment fails and its picture is "
+      "written. With --references, and for pictures of failures, a scene is named by its path from --root, "
+      "without .toml. docs/golden.md has recipes.\n\n"
       "Exit codes: 0 all are the same, 1 something differs or is missing, 3 a scene cannot be read, 4 a "
       "reference or run cannot, 6 one diverged.\n\n"
       "Examples:\n"

@@ -41,7 +41,7 @@ int make(const std::string& name, const std::string& program) {
 OBSCURA_COMMAND(40, new) {
   const Command command(program, exit, "new", "Write a short commented scene to start from");
   auto name = std::make_shared<std::string>();
-  command.option("NAME", *name, "The scene's name: NAME.toml is written, never over another").required();
+  command.option("NAME", *name, "The scene's name: writes NAME.toml, never over an existing file").required();
   command.footer("Examples:\n  obscura new ball\n  obscura new lectures/pendulum.toml");
   command.run([name, command] { return make(*name, command.program()); });
 }

@@ -210,20 +210,18 @@ OBSCURA_COMMAND(10, render) {
   auto flags = std::make_shared<RenderFlags>();
   add_scene(command, flags->scene);
   command
-      .option(
-          "-o,--output", flags->out,
-          "Where to: its form chooses the output. movie.mp4 (.mkv .mov .webm .gif), frames/{frame:04}.png or "
-          "frames/%04d.png, one picture.png with --at, - for a stream. Left out: render_out/SCENE.mp4")
+      .option("-o,--output", flags->out,
+              "The output; its form decides what is made: movie.mp4 (.mkv .mov .webm .gif), "
+              "frames/{frame:04}.png or "
+              "frames/%04d.png, one picture.png with --at, - for a stream. Left out: render_out/SCENE.mp4")
       .type("OUT");
   add_sets(command, flags->sets);
-  command
-      .option("--camera", flags->camera,
-              "Of several cameras this one alone; -o '{camera}.mp4' writes a file for each")
+  command.option("--camera", flags->camera, "Only this camera; -o '{camera}.mp4' writes a file for each")
       .type("NAME");
-  command.option("--at", flags->at, "One picture, of this instant (s), be it after the duration")
+  command.option("--at", flags->at, "One picture, at this instant (s), which may be after the duration")
       .type("SECONDS");
   command.option("--from", flags->from, "The first instant (s of the run) that is filmed").type("SECONDS");
-  command.option("--to", flags->to, "Where the film stops (s), not itself filmed").type("SECONDS");
+  command.option("--to", flags->to, "The end of the film (s); this instant is not filmed").type("SECONDS");
   command.option("--frames", flags->frames, "Only these frames, counted from 0, as in 1,3,5..9").type("LIST");
   command.option("--size", flags->size, "Pixels, as in 1280x720; even for movies").type("WxH");
   command.option("--fps", flags->fps, "Frames per second, as in 60 or 30000/1001").type("RATE");
@@ -231,33 +229,33 @@ OBSCURA_COMMAND(10, render) {
       .one_of({"paper", "screen"});
   command
       .option("--states", flags->states,
-              "Film this run of another program instead of simulating: a table as `obscura states --format "
-              "csv` writes it, names matched to the scene's bodies")
+              "Film another program's run instead of simulating: a table as `obscura states --format csv` "
+              "writes it, with the names of the scene's bodies")
       .type("RUN.csv");
   command.flag("--interpolate", flags->interpolate, "With --states: straight lines between its rows");
   command.flag("--draft", flags->draft,
                "Small and quick: 480 lines, at most 30 frames per second, ultrafast");
   command.flag("--transparent", flags->film.transparent, "PNG: leave the page's colour out");
-  command.flag("--no-overwrite", flags->no_overwrite, "Refuse to write over an earlier render");
+  command.flag("--no-overwrite", flags->no_overwrite, "Refuse to overwrite an earlier render");
   command.option("--crf", flags->crf, "Quality of the movie, lower is better [18]").range(1.0, 63.0);
-  command.option("--preset", flags->preset, "x264's preset; left out: quick settings of medium's quality");
-  command.option("--codec", flags->codec, "An encoder by libavcodec's name, as in libx264 or libvpx-vp9");
+  command.option("--preset", flags->preset, "x264's preset [fast settings with medium's quality]");
+  command.option("--codec", flags->codec, "The encoder, by libavcodec's name, as in libx264 or libvpx-vp9");
   command
       .choice("--pipe", flags->film.pipe,
               {{"y4m", media::PipeFormat::y4m}, {"rgba", media::PipeFormat::rgba}},
               "With -o -: y4m or rgba, raw frames [y4m]")
       .type("FORM");
   command.flag("--resume", flags->film.resume,
-               "Go on from what is whole of a film that was stopped, to the same bytes");
+               "Continue a film that was stopped from its finished parts, to the same bytes");
   command.flag("--anew", flags->film.anew,
-               "Begin anew whatever an earlier render left, shards and hours of work too");
+               "Start again and discard what an earlier render left, even shards and hours of work");
   command
       .option("--shard", flags->shard,
-              "Make this share of the film alone, as in 2/4; obscura join makes the movie of them")
+              "Make only this shard of the film, as in 2/4; obscura join makes the movie of all")
       .type("I/N");
   command
       .option("--prepare", flags->film.prepare,
-              "Draw nothing: simulate once, and leave the state that each of N shards begins with")
+              "Draw nothing: simulate once, and write the state at the beginning of each of N shards")
       .type("N")
       .range(1, 100000);
   command
@@ -266,15 +264,15 @@ OBSCURA_COMMAND(10, render) {
       .type("SECONDS");
   command
       .option("--from-checkpoint", flags->film.from_checkpoint,
-              "Begin with the state in this file; for --from at its time or later")
+              "Start from the state in this file; --from must be at its time or later")
       .type("FILE");
   add_memory_limit(command);
-  command.option("-j,--jobs", flags->film.workers, "Workers that draw and encode side by side [one a core]")
+  command.option("-j,--jobs", flags->film.workers, "Workers that draw and encode in parallel [one per core]")
       .range(1, 256);
   add_backend(command, flags->film.context.backend);
   command.flag("--native", flags->film.context.native,
-               "Draw with all of this processor's instructions: a tenth quicker, pixels may differ by a "
-               "level elsewhere");
+               "Use all instructions of this processor: a tenth faster, but pixels may differ by a level on "
+               "other machines");
   add_progress(command, flags->film.progress);
   command.footer(
       "Examples:\n"
@@ -286,7 +284,8 @@ OBSCURA_COMMAND(10, render) {
       "  obscura render scenes/room.toml --states student.csv --fps 30\n"
       "  obscura render scenes/room.toml -o - | ffplay -\n"
       "  obscura render scenes/room.toml --resume       after a power cut\n"
-      "While a film is made, what is whole of it lies in OUT.parts: it plays, and --resume goes on from it.");
+      "While a film is made, its finished parts lie in OUT.parts: they can be played, and --resume continues "
+      "from them.");
   command.run([flags] { return render(*flags); });
 }
 

@@ -1,4 +1,4 @@
-// obscura states: where everything is, as data, without GL. 17 significant digits, so that every double reads
+// obscura states: the states, as data, without GL. 17 significant digits, so that every double reads
 // back.
 
 #include <unistd.h>
@@ -254,21 +254,21 @@ OBSCURA_COMMAND(60, states) {
       .type("SECONDS");
   command
       .option("--from-checkpoint", flags->from_checkpoint,
-              "Begin with the state in this file (render --checkpoint-every)")
+              "Start from the state in this file (render --checkpoint-every)")
       .type("FILE");
-  command.option("-o,--output", flags->out, "Where to: a name that ends with .json or .csv [standard output]")
+  command
+      .option("-o,--output", flags->out, "The output: a name that ends with .json or .csv [standard output]")
       .type("OUT");
   command.option("--format", flags->format, "json or csv [by OUT's ending, json]").one_of({"json", "csv"});
   add_sets(command, flags->sets);
   add_memory_limit(command);
   command.footer(
       "SI units; angles in radians, counter-clockwise; in space an orientation is a unit quaternion x, y, z, "
-      "w, and a spin a vector, about axes of the room. Numbers have 17 significant digits: they read back to "
+      "w, and a spin a vector in the axes of the room. Numbers have 17 significant digits: they read back to "
       "the bit.\n"
-      "A contact is where a body touches a wall (floor, left, right, ceiling, then the scene's own: 0, 1, "
-      "...) or "
-      "an other body; normal, force (N) and the impulse (N s) of the last step are towards and on the body. "
-      "A joint's force is that on the first of its two. at_rest: proved to stay.\n"
+      "A contact is between a body and a wall (floor, left, right, ceiling, then the scene's own: 0, 1, ...) "
+      "or another body; the normal points to the body, and the force (N) and the impulse (N s) of the last "
+      "step act on it. A joint's force acts on its first body. at_rest: proved to stay.\n"
       "energy.displacement and energy.impacts are what collision = \"handout\" gained and lost since the "
       "start.\n\n"
       "Examples:\n"

@@ -282,27 +282,25 @@ int verify(VerifyFlags flags) {
 
 OBSCURA_COMMAND(110, verify) {
   const Command command(program, exit, "verify",
-                        "Make a picture or movie again from its origin: is it still true?");
+                        "Make pictures and movies again from their origin, and check that they are the same");
   auto flags = std::make_shared<VerifyFlags>();
   command
       .option("FILE", flags->files,
-              "PNGs and movies that obscura wrote; the tables (.csv) of the runs that they show, where "
-              "those are another program's")
+              "PNGs and movies that obscura wrote; and, if they show another program's run, its table (.csv)")
       .required();
-  command.option("--scene", flags->scene, "Hold it against this scene as it is now, not as it was")
+  command.option("--scene", flags->scene, "Compare with this scene as it is now, not as it was")
       .type("SCENE");
-  command.flag("--states", flags->states, "Simulate, and draw nothing");
+  command.flag("--states", flags->states, "Only simulate, and draw nothing");
   add_format(command, flags->format);
-  command.option("-j,--jobs", flags->film.workers, "Workers, of a movie [one a core]").range(1, 256);
+  command.option("-j,--jobs", flags->film.workers, "Workers for a movie [one per core]").range(1, 256);
   add_backend(command, flags->film.context.backend);
   command.footer(
-      "Every PNG and movie of obscura's carries its origin: the scene's text, what was set, the instant, the "
-      "hash of the state, what drew it. verify simulates that again, compares the states of all frames, "
-      "draws "
-      "it again and "
-      "compares pixels, of a movie bytes or else all frames.\n\n"
-      "Exit codes: 0 all are still true, 1 one is not, 4 one is not readable or has no origin, or SCENE is "
-      "missing; the others are verified all the same.\n\n"
+      "Every PNG and movie that obscura writes carries its origin: the scene's text, the keys set, the "
+      "instant, the hash of the state, what drew it. verify simulates the scene again, compares the states "
+      "of all frames, draws it again and compares pixels; for a movie it compares bytes, and if they differ "
+      "all frames.\n\n"
+      "Exit codes: 0 all are the same, 1 one differs, 4 one cannot be read or has no origin, or SCENE is "
+      "missing; the others are verified anyway.\n\n"
       "Examples:\n"
       "  obscura verify room.png\n"
       "  obscura verify docs/*.png --states\n"

@@ -15,8 +15,7 @@ void add_scene(const Command& command, std::string& file) {
 
 void add_sets(const Command& command, std::vector<std::string>& sets) {
   command
-      .option("--set", sets,
-              "Change a key of the scene, as in --set crate.elasticity=0.5; may be given again")
+      .option("--set", sets, "Change a key of the scene, as in --set crate.elasticity=0.5; may be repeated")
       .type("PATH=VALUE")
       .repeated();
 }
@@ -28,7 +27,7 @@ void add_progress(const Command& command, ProgressKind& kind) {
                {"plain", ProgressKind::plain},
                {"json", ProgressKind::json},
                {"none", ProgressKind::none}},
-              "auto, plain, json (a line an event) or none [auto]")
+              "auto, plain, json (one line per event) or none [auto]")
       .type("KIND");
 }
 
@@ -37,7 +36,9 @@ void add_memory_limit(const Command& command, std::string* kept) {
     hold_memory(parse_bytes(text));
     if (kept) *kept = text;
   };
-  command.option("--memory-limit", hold, "Never take more memory, as in 2GB [nine tenths of the machine's]")
+  command
+      .option("--memory-limit", hold,
+              "Never use more memory than this, as in 2GB [nine tenths of the machine's]")
       .type("SIZE");
 }
 

@@ -180,17 +180,17 @@ int join_command(const Flags& flags) {
 }  // namespace
 
 OBSCURA_COMMAND(20, join) {
-  const Command command(program, exit, "join", "Make the movie of the parts that shards have left");
+  const Command command(program, exit, "join", "Join the parts of all shards into the movie");
   auto flags = std::make_shared<Flags>();
   command.option("OUT", flags->out, "The movie, as `render -o` named it, or the pattern of its pictures")
       .required()
       .type("");
   command.flag("--partial", flags->partial,
-               "Join what there is, into a movie whose name says that it is partial");
+               "Join the finished parts into a movie whose name says that it is partial");
   command.flag("--missing", flags->missing,
-               "Join nothing: print the shards that are missing, as --array of sbatch takes them");
+               "Join nothing: print the missing shards, in the form of sbatch's --array");
   command.footer(
-      "Says what is missing, and which shard makes it; exit 4 then.\n\n"
+      "If parts are missing, join says which shards make them, and exits with 4.\n\n"
       "Examples:\n"
       "  for i in 1 2 3 4; do obscura render scenes/room.toml -o room.mp4 --shard $i/4; done\n"
       "  obscura join room.mp4\n"

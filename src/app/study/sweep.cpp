@@ -246,44 +246,43 @@ void check_sweep(const std::string& scene, const std::vector<std::string>& sets,
 
 OBSCURA_COMMAND(70, sweep) {
   const Command command(program, exit, "sweep",
-                        "Run a scene many times, and measure: a table, without drawing");
+                        "Run a scene many times and write measured values as a table, without drawing");
   auto flags = std::make_shared<SweepFlags>();
   add_scene(command, flags->scene);
   command
       .option("--vary", flags->vary,
               "A key and its values, as in crate.elasticity=0,0.5,1 or 0:1:0.1, seed=1:100 (both ends); "
-              "given again, all combinations, the last key fastest")
+              "several --vary run all combinations, the last key fastest")
       .type("PATH=VALUES")
       .repeated();
   command
       .option("--measure", flags->measure,
               "Columns of the states, each at an instant (s) or over the run, as in energy.total@5, "
-              "crate.position.y@max; also @min @mean @end @argmax @argmin; may be given again")
+              "crate.position.y@max; also @min @mean @end @argmax @argmin; may be repeated")
       .type("LIST")
       .repeated();
   add_sets(command, flags->sets);
   command
       .option("-o,--output", flags->out,
-              "Where to: .csv or .jsonl, a table; .png with --at, or .mp4 .mkv .mov .webm .gif: all "
-              "runs beside each other [standard output]")
+              "The output: .csv or .jsonl is a table; .png with --at, or .mp4 .mkv .mov .webm .gif shows all "
+              "runs side by side [standard output]")
       .type("OUT");
   command.option("--at", flags->at, "The instant (s) of a picture of all runs").type("SECONDS");
   command.option("--format", flags->format, "csv or jsonl [by OUT's ending, csv]").one_of({"csv", "jsonl"});
-  command.option("-j,--jobs", flags->workers, "Runs side by side [one a core]").range(1, 1024);
+  command.option("-j,--jobs", flags->workers, "Runs in parallel [one per core]").range(1, 1024);
   command
       .option("--shard", flags->shard,
-              "Of N shares of the rows the i-th; the shares' tables, one after the other, are the whole")
+              "Make only shard i of N; the tables of all shards, one after another, are the whole table")
       .type("i/N");
-  command.flag("--resume", flags->resume, "Go on with what an interrupted sweep left");
-  command.flag("--anew", flags->anew, "Begin anew whatever an interrupted sweep left");
+  command.flag("--resume", flags->resume, "Continue an interrupted sweep");
+  command.flag("--anew", flags->anew, "Start again and discard what an interrupted sweep left");
   add_backend(command, flags->context.backend);
   add_progress(command, flags->progress);
   command.footer(
-      "Each row has its run's number, the values of its keys, what was measured, and the trouble it met; a "
-      "run "
-      "that diverges does not end the sweep. The rows stand in order and are the same bytes for every -j.\n"
-      "A number over the run is one over the ends of its steps, from 0 to the duration; @mean is over "
-      "time.\n\n"
+      "Each row has the run's number, the values of its keys, the measured values, and the trouble if there "
+      "was any; a run that diverges does not end the sweep. The rows are in order and the same bytes for "
+      "every -j.\n"
+      "Measures over the run use the ends of its steps, from 0 to the duration; @mean is over time.\n\n"
       "Examples:\n"
       "  obscura sweep scenes/room.toml --vary tumbler.elasticity=0:1:0.1 --measure energy.total@5\n"
       "  obscura sweep scenes/room.toml --vary tumbler.elasticity=0:1:0.1 --vary seed=1:100 \\\n"
