@@ -48,9 +48,9 @@ struct WithoutDrawn : Ball<2> {
 struct WithoutCore : Ball<2> {
   void core() const = delete;
 };
-struct Whole : Ball<2> {};
+struct Complete : Ball<2> {};
 
-static_assert(AnswersAsConvexForm<Whole, 2>);
+static_assert(AnswersAsConvexForm<Complete, 2>);
 static_assert(!AnswersAsForm<WithoutSpread, 2> && !AnswersAsForm<WithoutVertices, 2>);
 static_assert(!AnswersAsForm<WithoutThickness, 2> && !AnswersAsForm<WithoutReach, 2>);
 static_assert(!AnswersAsForm<WithoutBounds, 2> && !AnswersAsForm<WithoutOutside, 2>);

@@ -430,8 +430,8 @@ using Bodies = std::vector<std::vector<int>>;
 
 template <class Dimension>
 class SleepIn : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(SleepIn, Dimensions);
+using RestDimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(SleepIn, RestDimensions);
 
 TYPED_TEST(SleepIn, AnIslandIsAskedOnceAllOfItHasBeenQuiet) {
   constexpr int D = TypeParam::value;

@@ -9,8 +9,8 @@ namespace {
 
 template <class Dimension>
 class Spatial : public ::testing::Test {};
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(Spatial, Dimensions);
+using SpatialDimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(Spatial, SpatialDimensions);
 
 // all tolerances here: a few roundings of numbers near 1
 constexpr double kRounding = 4e-15;

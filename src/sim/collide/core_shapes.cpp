@@ -18,15 +18,15 @@ namespace {
 constexpr double kLeastAllowed = 5e-7, kMostAllowed = 1e-2;  // of a bounding radius
 constexpr double kFew = 50, kMany = 200;                     // bodies that move, beside points
 
-struct Point {
+struct CorePoint {
   double x, y;
 };
 
-Point corner_at(const CoreShapes& cores, const CoreShape& core, const Pose& at, int i) {
+CorePoint corner_at(const CoreShapes& cores, const CoreShape& core, const Pose& at, int i) {
   const double x = cores.x[core.first + i], y = cores.y[core.first + i];
   return {at.x + (at.c * x - at.s * y), at.y + (at.s * x + at.c * y)};
 }
-Point normal(const CoreShapes& cores, const CoreShape& core, const Pose& at, int face) {
+CorePoint normal(const CoreShapes& cores, const CoreShape& core, const Pose& at, int face) {
   const double x = cores.nx[core.first + face], y = cores.ny[core.first + face];
   return {at.c * x - at.s * y, at.s * x + at.c * y};
 }
@@ -65,11 +65,11 @@ Reference reference(const CoreShapes& cores, const CoreShape& a, const Pose& at_
 // polygon a's face against polygon b; `swapped` where a is the contact's b
 double clip(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, int face, const CoreShape& b,
             const Pose& at_b, bool swapped, Feature out[2]) {
-  const Point n = normal(cores, a, at_a, face);
+  const CorePoint n = normal(cores, a, at_a, face);
   int incident = 0;
   double least = 1e300;
   for (int i = 0; i < b.count; ++i) {
-    const Point m = normal(cores, b, at_b, i);
+    const CorePoint m = normal(cores, b, at_b, i);
     const double along = n.x * m.x + n.y * m.y;
     if (along < least) least = along, incident = i;
   }
@@ -78,8 +78,8 @@ double clip(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, int f
   const int a0 = face, a1 = face + 1 == a.count ? 0 : face + 1;
   const int b0 = incident + 1 == b.count ? 0 : incident + 1, b1 = incident;
   const double tx = -n.y, ty = n.x;
-  const Point pa0 = corner_at(cores, a, at_a, a0), pa1 = corner_at(cores, a, at_a, a1);
-  const Point pb0 = corner_at(cores, b, at_b, b0), pb1 = corner_at(cores, b, at_b, b1);
+  const CorePoint pa0 = corner_at(cores, a, at_a, a0), pa1 = corner_at(cores, a, at_a, a1);
+  const CorePoint pb0 = corner_at(cores, b, at_b, b0), pb1 = corner_at(cores, b, at_b, b1);
   const double sa0 = tx * pa0.x + ty * pa0.y, sa1 = tx * pa1.x + ty * pa1.y;
   const double sb0 = tx * pb0.x + ty * pb0.y, sb1 = tx * pb1.x + ty * pb1.y;
 
@@ -107,7 +107,7 @@ double clip(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, int f
 double at_corner(const CoreShapes& cores, const CoreShape& round, const Pose& at_round,
                  const CoreShape& polygon, const Pose& at, bool swapped, Feature out[2]) {
   // the round one's corner in the polygon's frame
-  const Point p = corner_at(cores, round, at_round, 0);
+  const CorePoint p = corner_at(cores, round, at_round, 0);
   const double wx = p.x - at.x, wy = p.y - at.y;
   const double x = at.c * wx + at.s * wy, y = at.c * wy - at.s * wx;
   int face = 0;
@@ -176,7 +176,7 @@ CoreShapes::CoreShapes(const Model<2>& model) {
 double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
                      const Pose& at_b, Feature out[2], double margin) {
   if (a.count == 1 && b.count == 1) {
-    const Point p = corner_at(cores, a, at_a, 0), q = corner_at(cores, b, at_b, 0);
+    const CorePoint p = corner_at(cores, a, at_a, 0), q = corner_at(cores, b, at_b, 0);
     out[0] = {Feature::corners, 0, 0}, out[1] = {};
     return std::sqrt((p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y)) - a.radius - b.radius;
   }
@@ -196,7 +196,8 @@ ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const
                               const CoreShape& b, const Pose& at_b, Feature feature) {
   ContactPoint at;
   if (feature.kind == Feature::corners) {
-    const Point p = corner_at(cores, a, at_a, feature.corner), q = corner_at(cores, b, at_b, feature.face);
+    const CorePoint p = corner_at(cores, a, at_a, feature.corner),
+                    q = corner_at(cores, b, at_b, feature.face);
     double nx = p.x - q.x, ny = p.y - q.y;
     const double l = std::sqrt(nx * nx + ny * ny);
     if (l > 1e-12 * (a.bounding_radius + b.bounding_radius)) {
@@ -212,8 +213,8 @@ ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const
   const bool of_a = feature.kind == Feature::corner_of_a;
   const CoreShape &pointed = of_a ? a : b, &flat = of_a ? b : a;
   const Pose &at_pointed = of_a ? at_a : at_b, &at_flat = of_a ? at_b : at_a;
-  const Point p = corner_at(cores, pointed, at_pointed, feature.corner);
-  const Point n = normal(cores, flat, at_flat, feature.face);
+  const CorePoint p = corner_at(cores, pointed, at_pointed, feature.corner);
+  const CorePoint n = normal(cores, flat, at_flat, feature.face);
   at.gap = n.x * (p.x - at_flat.x) + n.y * (p.y - at_flat.y) - cores.d[flat.first + feature.face] - a.radius -
            b.radius;
   const double back = pointed.radius + 0.5 * at.gap;
@@ -228,7 +229,7 @@ double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at
   int low[2] = {0, -1};
   double gap[2] = {1e300, 1e300};
   for (int i = 0; i < a.count; ++i) {
-    const Point p = corner_at(cores, a, at_a, i);
+    const CorePoint p = corner_at(cores, a, at_a, i);
     const double g = nx * (p.x - wall.point[0]) + ny * (p.y - wall.point[1]) - a.radius;
     if (g < gap[0]) {
       gap[1] = gap[0], low[1] = low[0], gap[0] = g, low[0] = i;
@@ -244,7 +245,7 @@ double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at
 
 ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,
                               const Wall<2>& wall, Feature feature) {
-  const Point p = corner_at(cores, a, at_a, feature.corner);
+  const CorePoint p = corner_at(cores, a, at_a, feature.corner);
   ContactPoint at;
   at.nx = wall.normal[0], at.ny = wall.normal[1];
   at.gap = at.nx * (p.x - wall.point[0]) + at.ny * (p.y - wall.point[1]) - a.radius;

@@ -25,7 +25,7 @@ constexpr double kInTime = 1e-9;  // of the step: the next would be by its squar
 constexpr double kLatest = 1.5;   // steps: so late a gap may close that its tangent would close in one
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
 constexpr int kShares = 24;            // halvings for the share of e that does so
-constexpr double kLockedPush = 1e-9;       // of what a push moves without joints
+constexpr double kLockedPush = 1e-9;   // of what a push moves without joints
 constexpr int kRenewals = 4;           // of a gap's features in a step
 constexpr int kTurns = 40;             // impacts, of those that there are at first
 
@@ -302,15 +302,19 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
       sum += p_[i] * (v[i] + 0.5 * K_.row(i).dot(p_)), size = std::max(size, std::abs(p_[i] * v[i]));
     return sum > kImpactGain * size ? sum / size : 0;
   };
-  if (gain(1) > 0) {
-    // the largest share that does not raise it
-    double low = 0, high = 1;
-    for (int n = 0; n < kShares; ++n) {
+  double rise = gain(1), low = rise > 0 ? 0 : 1, high = 1;
+  if (rise > 0) {
+    // with friction half of it and half again, as by the other solvers; without, the largest share that keeps
+    // it
+    const bool rubs =
+        std::any_of(blocks_.begin(), blocks_.end(), [](const auto& block) { return block.mu > 0; });
+    for (int n = 0; n < kShares && (low == 0 || !rubs); ++n) {
       const double mid = 0.5 * (low + high);
       (gain(mid) > 0 ? high : low) = mid;
     }
-    if (!std::isfinite(gain(low))) return false;
+    rise = gain(low);
   }
+  if (!std::isfinite(rise)) return false;
 
   for (const int i : meets_) {
     for (const int side : {touches_[i].a, touches_[i].b}) {
