@@ -84,7 +84,7 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
     body.inertia = body.mass * (solid.bulk.second / solid.bulk.content);
     if (!(body.inertia.allFinite() && body.inertia.minCoeff() > 0))
       making.complaints.add(fields.place(kind.measure),
-                            fmt::format("the {}'s moment of inertia is too {} to be reckoned with", kind.name,
+                            fmt::format("the {}'s moment of inertia is too {} to compute with", kind.name,
                                         body.inertia.array().isInf().any() ? "large" : "small"));
     const sim::Orientation<D> turn = sim::composed<D>(start.turn, seat.axes);
     if (rotates(making, fields, kind)) {

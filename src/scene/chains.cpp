@@ -21,7 +21,7 @@ template <int D>
 std::string unfit(const sim::Body<D>& body) {
   if (body.linked) return "is a link of another chain";
   if (body.fixed) return "is fixed; join a link to the room by a [[joint]], and leave this one out";
-  if (body.handout) return "meets walls by the handout's law, which knows no links";
+  if (body.handout) return "collides by the handout's law, which has no links";
   if (body.turns()) return "";
   return sim::round_radius(body.shape) ? "is a particle, which does not turn: a link needs a [[ball]]"
                                        : "does not turn, as a link must";

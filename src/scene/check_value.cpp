@@ -270,7 +270,7 @@ class Values : private Reporter {
       return wrong(node,
                    fmt::format("'{}': the lowest comes first, got {} before {}", key.last(), low, high));
     return (low <= 0 && high >= 0) ||
-           wrong(node, fmt::format("'{}' leave out where it starts: expected 0 between {} and {}", key.last(),
+           wrong(node, fmt::format("'{}' exclude where it starts: expected 0 between {} and {}", key.last(),
                                    low, high));
   }
 

@@ -36,7 +36,7 @@ bool Reporter::unknown(const Entry& entry, const std::string& in, const std::str
 }
 
 std::string Reporter::because() const {
-  if (told_.key.empty()) return "no place of this scene has three numbers";
+  if (told_.key.empty()) return "no position in this scene has three numbers";
   return fmt::format("'{}' at {} has {}", told_.key.substr(told_.key.rfind('.') + 1),
                      complaints_.text(told_.place), told_.n);
 }

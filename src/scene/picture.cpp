@@ -223,7 +223,7 @@ Golden golden(const Node& top, sim::Rational duration, Diagnostics& complaints) 
   golden.reason = fields.text("reason");
   const bool lenient = golden.level > 0 || golden.pixels > 0 || !golden.states;
   if (lenient && golden.reason.empty())
-    complaints.add(fields.place(), "[golden] lets differences pass and does not say why: give it a 'reason'");
+    complaints.add(fields.place(), "[golden] tolerates differences without saying why: give it a 'reason'");
   return golden;
 }
 

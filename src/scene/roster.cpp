@@ -51,8 +51,8 @@ std::vector<int> NameTable::bodies(const std::string& text, Place place, Diagnos
   }
   const auto its = reference(text);
   if (!its) {
-    complaints.add(
-        place, fmt::format("{} is no name of a body; expected one such as ball or ball[3]", quoted(text)));
+    complaints.add(place, fmt::format("{} is not the name of a body; expected one such as ball or ball[3]",
+                                      quoted(text)));
     return {};
   }
   const Group* it = group(its->bracketed ? its->name : text, place, complaints);

@@ -114,7 +114,7 @@ void refuse_crowd(const Node& top, const sim::Model<D>& model, Diagnostics& comp
   const bool event = model.collision == sim::Collision::event;
   const Place where = physics.place(event ? "collision" : "solver");
   complaints.add(
-      where, fmt::format("the direct solver looks at all couples of bodies and walls, {:.0f} here, and takes "
+      where, fmt::format("the direct solver looks at all pairs of bodies and walls, {:.0f} here, and takes "
                          "{:.0f} at most; {}",
                          all, sim::kMostCouples,
                          event ? "collision = \"contact\" is for thousands of bodies"

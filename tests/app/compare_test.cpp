@@ -270,7 +270,7 @@ TEST_F(Runs, WhatIsNotFiniteIsTheSameAsItselfAloneAtAnyTolerance) {
       const Outcome run = obscura("compare a.csv b.csv --rtol 2 --atol 1e300");
       EXPECT_EQ(run.exit, exit) << a << " " << b << run.out;
       if (exit == 0) continue;
-      EXPECT_THAT(run.out, HasSubstr(a + " and " + b + "; what is not finite is the same as itself alone"));
+      EXPECT_THAT(run.out, HasSubstr(a + " and " + b + "; values that are not finite equal only themselves"));
       const Json json = compared("a.csv b.csv --rtol 1e300", 1);
       EXPECT_EQ(json["part"]["body"], "ball");
       EXPECT_EQ(json["quantities"][0]["largest"], "inf");
@@ -383,8 +383,7 @@ TEST_F(Verify, OfAnOldOriginTheFirstStateAloneIsKnownAndThatIsSaid) {
   scene(bytes, "a.mp4");
   Outcome run = obscura("verify a.mp4 --states");
   EXPECT_EQ(run.exit, 0);
-  EXPECT_THAT(run.out,
-              HasSubstr("a.mp4: still true of its state at t = 0 s, which is all that its origin tells"));
+  EXPECT_THAT(run.out, HasSubstr("a.mp4: still true of its state at t = 0 s, the only state in its origin"));
   run = obscura("verify a.mp4");
   EXPECT_EQ(run.exit, 0);
   EXPECT_THAT(run.out, HasSubstr("a.mp4: still true\n"));
@@ -402,7 +401,7 @@ TEST_F(Verify, FilmsInSharesAndThoseThatWereStoppedTellOfTheSameStates) {
   const Outcome run = obscura("verify b.mp4 c.partial.mp4 --states");
   EXPECT_EQ(run.exit, 0) << run.out;
   EXPECT_THAT(run.out, HasSubstr("states of 90 frames: the same"));
-  EXPECT_THAT(run.out, HasSubstr("c.partial.mp4: still true of its state at t = 2 s, which is all"));
+  EXPECT_THAT(run.out, HasSubstr("c.partial.mp4: still true of its state at t = 2 s, the only state"));
 }
 
 TEST_F(Verify, APictureWithoutAnOriginCannotBe) {
@@ -410,7 +409,7 @@ TEST_F(Verify, APictureWithoutAnOriginCannotBe) {
   ASSERT_EQ(obscura("compare a.png " + still("b.png", "--theme screen") + " --diff d.png").exit, 1);
   const Outcome run = obscura("verify d.png");
   EXPECT_EQ(run.exit, 4);
-  EXPECT_THAT(run.err, HasSubstr("d.png: carries no origin"));
+  EXPECT_THAT(run.err, HasSubstr("d.png: has no origin"));
 }
 
 TEST_F(Verify, OneFileThatIsNotReadableDoesNotEndTheList) {

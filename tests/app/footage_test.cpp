@@ -100,7 +100,7 @@ TEST_F(Footage, NeedsThePlacesOfTheScenesBodiesAndSaysWhatItLeavesOut) {
       "run.csv");
   run = obscura("render scene.toml --at 0 --size 160x90 --states run.csv -o a.png");
   EXPECT_EQ(run.exit, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("left out, for the scene has no such body: cat"));
+  EXPECT_THAT(run.err, HasSubstr("left out, because the scene has no such body: cat"));
   EXPECT_THAT(run.err, HasSubstr("does not say how ball, crate turns"));
 }
 
@@ -127,7 +127,7 @@ TEST_F(HandMade, WhatIsNotFiniteIsRefusedAtItsCell) {
   scene(head_ + ",ball.heat\n0,1,1,3,1,nan\n", "hand.csv");
   const Outcome run = obscura("render scene.toml --at 0 --size 160x90 --states hand.csv -o a.png");
   EXPECT_EQ(run.exit, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("left out, for a film does not show it: ball.heat"));
+  EXPECT_THAT(run.err, HasSubstr("left out, because a film does not show it: ball.heat"));
 }
 
 TEST_F(HandMade, MisspeltAndMissingColumnsAreRefusedByName) {

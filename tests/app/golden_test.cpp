@@ -66,7 +66,7 @@ TEST_F(Golden, AChangeIsNamedLeavesItsDifferenceAndIsTakenByUpdate) {
   Outcome run = golden("--junit out.xml");
   EXPECT_EQ(run.exit, 1);
   EXPECT_THAT(run.out, HasSubstr("ball.color is \"green\" and \"purple\""));
-  EXPECT_THAT(run.out, HasSubstr("states are the same: it is how they are shown"));
+  EXPECT_THAT(run.out, HasSubstr("states are the same: only the drawing differs"));
   EXPECT_TRUE(std::filesystem::exists(path("render_out/golden/scene-0.difference.png")));
   const std::string xml = contents(path("out.xml"));
   EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"2\" errors=\"0\""));

@@ -65,7 +65,7 @@ TEST_F(Pytest, ShowsTheCauseAndThePicture) {
   EXPECT_EQ(run.exit, 1) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("scenes/ball, t = 0.5 s: differs"));
   EXPECT_THAT(run.out, HasSubstr("ball.color is \"green\" and \"purple\""));
-  EXPECT_THAT(run.out, HasSubstr("states are the same: it is how they are shown"));
+  EXPECT_THAT(run.out, HasSubstr("states are the same: only the drawing differs"));
   EXPECT_THAT(run.out, HasSubstr("expected    " + path("scenes/golden/ball-0.5.png")));
   const std::string actual = path("render_out/golden/scenes/ball-0.5.png"),
                     difference = path("render_out/golden/scenes/ball-0.5.difference.png");

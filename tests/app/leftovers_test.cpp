@@ -57,7 +57,7 @@ TEST_F(Leftovers, OfShardsAreNotThrownAway) {
   Outcome run = render("");
   EXPECT_EQ(run.exit, 4);
   EXPECT_THAT(run.err, HasSubstr("film.mp4.parts: holds 20 of 40 frames, work of 2 shards"));
-  EXPECT_THAT(run.err, HasSubstr("--resume goes on from there, --anew throws it away"));
+  EXPECT_THAT(run.err, HasSubstr("--resume continues from there, --anew discards it"));
   EXPECT_EQ(parts(), 2);
   // of another scene neither
   edit("other.toml");
@@ -69,7 +69,7 @@ TEST_F(Leftovers, OfShardsAreNotThrownAway) {
   EXPECT_THAT(render("", "other.toml").err, HasSubstr("work of 2 shards, 1.5 s of work of another film: "));
   run = render("--resume", "other.toml");
   EXPECT_EQ(run.exit, 4);
-  EXPECT_THAT(run.err, HasSubstr("--anew throws them away"));
+  EXPECT_THAT(run.err, HasSubstr("--anew discards them"));
   EXPECT_EQ(parts(), 2);
   EXPECT_EQ(render("--resume").exit, 0);
   EXPECT_EQ(contents(path("film.mp4")), bytes);
@@ -154,9 +154,8 @@ TEST_F(Leftovers, ADamagedJournalNamesTheWayOnAndResumeIsIt) {
     const Outcome joined = obscura("join film.mp4 --partial");
     EXPECT_EQ(joined.exit, 4);
     if (std::string(damage) != "rm") {
-      EXPECT_THAT(joined.err,
-                  HasSubstr("journal.json: is damaged; the same render with --resume writes it anew and "
-                            "keeps the parts that are whole"));
+      EXPECT_THAT(joined.err, HasSubstr("journal.json: is damaged; the same render with --resume rewrites it "
+                                        "and keeps the complete parts"));
       EXPECT_EQ(render("").exit, 4);
     }
     // parts of another film are not taken for this one's
@@ -222,7 +221,7 @@ TEST_F(SweepLeftovers, OfMoreThanAMinuteAreNotThrownAway) {
     const Outcome run = obscura(kSweep);
     EXPECT_EQ(run.exit, 4);
     EXPECT_THAT(run.err, HasSubstr("runs.partial.csv: holds 3 lines of a sweep that is not whole"));
-    EXPECT_THAT(run.err, HasSubstr("--resume goes on from there, --anew throws them away"));
+    EXPECT_THAT(run.err, HasSubstr("--resume continues from there, --anew discards them"));
     EXPECT_EQ(contents(path("runs.partial.csv")), left);
     EXPECT_EQ(obscura(std::string(kSweep) + "--resume").exit, 0);
     EXPECT_EQ(contents(path("runs.csv")), whole);

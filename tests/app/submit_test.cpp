@@ -80,7 +80,7 @@ TEST_F(Submit, TellsWhatIsWrongWithASweepBeforeItAsksSlurm) {
   const std::string submit = "submit scene.toml --tasks 4 -o a.csv ";
   for (const auto& [flags, told] : {std::pair{"--measure nobody.position.x@1", "nobody"},
                                     {"--measure hash", "hash"},
-                                    {"--vary seed=1:3", "--measure says what is put down of each run"},
+                                    {"--vary seed=1:3", "--measure says what is measured in each run"},
                                     {"--vary nobody.mass=1,2 --measure hash@end", "nobody"},
                                     {"--vary seed=3:1 --measure hash@end", "runs backwards"},
                                     {"--vary seed=1:3 --measure hash@end,hash@end", "two columns"}}) {
@@ -118,8 +118,7 @@ TEST_F(Submit, RefusesOptionsOfSbatchThatItNeedsItself) {
                                      {"--open-mode=truncate", "--open-mode"}}) {
     const Outcome run = obscura(submit + option);
     EXPECT_EQ(run.exit, 2) << option;
-    EXPECT_THAT(run.err,
-                testing::HasSubstr(std::string(name) + " is not for sbatch here: submit needs it itself"))
+    EXPECT_THAT(run.err, testing::HasSubstr(std::string(name) + " cannot be given: submit sets it itself"))
         << option << run.err;
   }
   for (const char* option :

@@ -128,9 +128,9 @@ TEST(Diagnostics, TimesAreExactOrRefused) {
 
 TEST(Diagnostics, WhatIsTooSmallOrTooLargeToTurnSaysWhich) {
   refused("[[box]]\nsize = [1e-200, 1e-200]\nposition = [1, 1]",
-          "a.toml:2:8: the box's moment of inertia is too small to be reckoned with");
+          "a.toml:2:8: the box's moment of inertia is too small to compute with");
   refused("[[box]]\nsize = [1e-170, 1e-170]\nposition = [1, 1]\nmass = 1",
-          "a.toml:2:8: the box's moment of inertia is too small to be reckoned with");
+          "a.toml:2:8: the box's moment of inertia is too small to compute with");
 }
 
 TEST(Diagnostics, WordsComeFromTheirList) {
@@ -200,7 +200,7 @@ TEST(Diagnostics, JointsSayWhereTheyAre) {
       two + "type = \"pin\"\nbetween = [{ body = \"a\", at = \"right\" }, { body = \"b\", at = \"left\" }]",
       "a.toml:14:11: the two points of this pin are 0.6 m apart at the start");
   refused(two + "type = \"pin\"\nbetween = [\"a\", \"room\"]\nlimits = [10, 20]",
-          "a.toml:15:10: 'limits' leave out where it starts: expected 0 between 10 and 20");
+          "a.toml:15:10: 'limits' exclude where it starts: expected 0 between 10 and 20");
   refused(two + "type = \"hook\"\nbetween = [\"a\", \"room\"]",
           "a.toml:13:8: 'type': expected one of pin, hinge, ball, weld, slider, rod, rope, got 'hook'");
 }

@@ -368,7 +368,7 @@ TEST(Hostile, MoreCouplesThanTheDirectSolverTakesAreRefused) {
   };
   EXPECT_EQ(
       complaint(room + "[physics]\nsolver = \"direct\"\n" + balls(grid)),
-      "a.toml:4:10: the direct solver looks at all couples of bodies and walls, 5000350000 here, and takes "
+      "a.toml:4:10: the direct solver looks at all pairs of bodies and walls, 5000350000 here, and takes "
       "20000000 at most; leave 'solver' out: the iterative one is for thousands of bodies");
   EXPECT_THAT(
       complaint(room + "[physics]\ncollision = \"event\"\n" + balls(grid)),

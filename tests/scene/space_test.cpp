@@ -253,10 +253,10 @@ TEST(Space, WhatIsOfTheOtherDimensionIsNamed) {
   EXPECT_EQ(
       complaint("[room]\nsize = [4, 3]\n[[box]]\norientation = [0, 0, 30]"),
       "a.toml:4:1: 'orientation' is of space, and 'size' at a.toml:2:8 has 2; in the plane it is 'angle'");
-  EXPECT_EQ(
-      complaint("[[hull]]\npoints = 3"),
-      "a.toml:1:3: [[hull]] is of space, and no place of this scene has three numbers; in the plane it is a "
-      "[[polygon]]");
+  EXPECT_EQ(complaint("[[hull]]\npoints = 3"),
+            "a.toml:1:3: [[hull]] is of space, and no position in this scene has three numbers; in the plane "
+            "it is a "
+            "[[polygon]]");
   EXPECT_EQ(
       complaint(kRoom + "[[box]]\nspin = 90"),
       "a.toml:4:8: 'spin' is one number, as in the plane, and 'size' at a.toml:2:8 has 3: expected three "

@@ -48,7 +48,8 @@ std::string config() {
   const Reply said = ask({"scontrol", "show", "config"});
   if (said.exit == 127)
     throw media::Error(
-        "scontrol: there is no Slurm here; --dry-run shows the scripts, docs/shards.md does it without");
+        "scontrol: there is no Slurm here; --dry-run shows the scripts, docs/shards.md shows how to do "
+        "without");
   if (said.exit != 0) throw media::Error("Slurm does not answer: " + line_of(said.text));
   return said.text;
 }

@@ -111,7 +111,7 @@ constexpr Needed kNeeded[] = {
 constexpr std::string_view kFlags = "HOQksv";
 
 [[noreturn]] void refuse_needed(const std::string& option, std::string_view name) {
-  throw UsageError(fmt::format("-- {}: --{} is not for sbatch here: submit needs it itself{}", option, name,
+  throw UsageError(fmt::format("-- {}: --{} cannot be given: submit sets it itself{}", option, name,
                                name == "array" ? "; --tasks and --at-once say how many" : ""));
 }
 
@@ -187,7 +187,7 @@ void film_work(const Flags& flags, const scene::Scene& scene, const std::vector<
   const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
   const Output out = output(flags.out, scene.name, false, shots.size());
   if (out.form != Output::Form::movie && out.form != Output::Form::frames)
-    throw UsageError(fmt::format("{}: what is shared out is a movie or a sequence of PNGs", out.path));
+    throw UsageError(fmt::format("{}: submit makes a movie or a sequence of PNGs", out.path));
   const media::MovieSpec spec = movie_spec(scene);
   const bool movie = out.form == Output::Form::movie;
   if (movie) media::check(out.path, spec);
@@ -231,7 +231,7 @@ void sweep_work(const Flags& flags, const std::vector<std::string>& program, Wor
   const std::string out = flags.out.value_or("");
   const std::string ending = fs::path(out).extension().string();
   if (ending != ".csv" && ending != ".jsonl")
-    throw UsageError("a sweep is shared out into a table: -o with a name that ends with .csv or .jsonl");
+    throw UsageError("submit makes a table of a sweep: -o with a name that ends with .csv or .jsonl");
   if (!drawing(flags).empty())
     throw UsageError("--backend and --native are for a film: a sweep's table draws nothing");
   check_sweep(flags.scene, flags.sets, flags.vary, flags.measure, out);
@@ -255,7 +255,7 @@ void sweep_work(const Flags& flags, const std::vector<std::string>& program, Wor
 }
 
 Work work_of(const Flags& flags, int tasks) {
-  if (flags.scene == "-") throw UsageError("the tasks read the scene each for itself: name a file");
+  if (flags.scene == "-") throw UsageError("each task reads the scene itself: name a file");
   // the scripts' comments and #SBATCH lines would end at such a character, and what follows be commands
   const auto refuse_controls = [](const std::string& text) {
     const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
@@ -400,7 +400,7 @@ int report(const Work& work, const Folder& folder, const Jobs& jobs, const State
   const auto failed = failures(work, folder, jobs, states);
   if (failed.empty())
     throw media::Error(fmt::format(
-        "{}: its jobs are gone and it is not whole; submit again does what is missing", work.errand.made));
+        "{}: its jobs are gone and it is not whole; submit again to do what is missing", work.errand.made));
   const auto& [step, state] = failed.front();
   const auto code = folder.exit(step);
   std::string line = fmt::format("{}: {} failed", work.errand.made, step);
@@ -411,7 +411,7 @@ int report(const Work& work, const Folder& folder, const Jobs& jobs, const State
   line += said.empty() ? fmt::format("; its log: {}", folder.file(log))
                        : fmt::format("; the last line of {}: {}", folder.file(log), said);
   if (failed.size() > 1) line += fmt::format("; {} more failed", failed.size() - 1);
-  say(stderr, "obscura: {}; submit again does what is missing\n", line);
+  say(stderr, "obscura: {}; submit again to do what is missing\n", line);
   return code && *code >= kDiffers && *code <= kDiverged ? *code : kFiles;
 }
 
@@ -433,7 +433,7 @@ int follow(const Work& work, const Folder& folder, const Jobs& jobs, ProgressKin
     if (interrupted()) {
       progress.finish(
           work.done(),
-          fmt::format("interrupted: the jobs go on; submit again follows them, scancel {} ends them",
+          fmt::format("interrupted: the jobs go on; submit again to follow them, scancel {} ends them",
                       fmt::join(numbers(jobs), " ")),
           false);
       return kInterrupted;
@@ -463,7 +463,7 @@ int submit(Flags flags) {
   Work work = work_of(flags, flags.tasks);
   if (!flags.dry_run) {
     if (const int most = slurm::last_task(); flags.tasks > most) {
-      say(stderr, "obscura: --tasks {}: arrays have up to {} tasks here: {} it is\n", flags.tasks, most,
+      say(stderr, "obscura: --tasks {}: arrays have up to {} tasks here: {} are used\n", flags.tasks, most,
           most);
       work = work_of(flags, most);
     }
@@ -489,7 +489,7 @@ int submit(Flags flags) {
   if (flags.anew) {
     fs::remove_all(work.parts);
   } else if (same && folder.exit("join") == 0 && fs::exists(work.made)) {
-    say(stdout, "{}: is whole; without {} it is made anew\n", errand.made, folder.file("plan"));
+    say(stdout, "{}: is complete; without {} it would be made again\n", errand.made, folder.file("plan"));
     return kDone;
   }
   if (!same || !fs::exists(work.parts)) {
@@ -506,7 +506,7 @@ int submit(Flags flags) {
   }
   const Jobs jobs = hand_in(work, folder, flags.options);
   if (flags.no_wait) {
-    say(stdout, "{}: jobs {}; submit again follows them\n", errand.made,
+    say(stdout, "{}: jobs {}; submit again to follow them\n", errand.made,
         fmt::format("{}", fmt::join(numbers(jobs), " ")));
     return kDone;
   }

@@ -42,7 +42,8 @@ constexpr double kPatience = 0.5;
 // what holds bodies apart, and why that
 template <int D>
 std::string contact(const sim::Model<D>& model) {
-  if (model.collision == sim::Collision::handout) return "the handout's: walls alone, put back and pushed";
+  if (model.collision == sim::Collision::handout)
+    return "the handout's: only walls; bodies are put back and get an impulse";
   const bool direct = sim::solver(model) == sim::Solver::direct;
   const sim::BodyCounts crowd = sim::body_counts(model);
   std::string why;
@@ -53,12 +54,12 @@ std::string contact(const sim::Model<D>& model) {
   else if (model.solver != sim::Solver::automatic)
     why = "as the scene says";
   else
-    why = fmt::format("{} and {} that move; up to {} and {} it is the direct one",
+    why = fmt::format("{} and {} that move; up to {} and {} the direct solver is used",
                       count(std::size_t(crowd.bodies), "body", "bodies"),
                       count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies<D>,
                       sim::kMostPoints);
   return fmt::format("{} solver: {}{}", direct ? "direct" : "iterative", why,
-                     direct ? "" : "; impacts go from pair to pair");
+                     direct ? "" : "; impacts are solved pair after pair");
 }
 
 // how many there are of each kind; bodies by what they are made of

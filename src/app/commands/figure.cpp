@@ -67,7 +67,7 @@ void check_ending(const std::string& out) {
   if (!form) throw UsageError(fmt::format("-o {}: expected a name that ends with .svg, .pdf or .png", out));
   if (!page::writes(*form))
     throw UsageError(fmt::format(
-        "-o {}: this obscura was built without Cairo and writes no PDF; .svg and .png it does", out));
+        "-o {}: this obscura was built without Cairo and cannot write PDF; use .svg or .png", out));
 }
 
 void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {

@@ -159,7 +159,7 @@ void divide(RenderFlags& flags, const Output& out) {
     throw UsageError("--resume, --anew, --shard and --prepare are for movies and sequences of pictures");
   if (flags.film.resume && flags.film.anew) throw UsageError("--resume and --anew exclude each other");
   if (flags.film.shard && flags.film.anew)
-    throw UsageError("--anew throws away what all shards made: it is for --prepare, or for the whole film");
+    throw UsageError("--anew discards what all shards made: it is for --prepare, or for the whole film");
   if (out.form == Output::Form::pipe && flags.checkpoint_every)
     throw UsageError("--checkpoint-every needs an output with a name");
 }

@@ -109,7 +109,7 @@ void judge_states(const Origin& origin, const Origin& now, Verdict& verdict) {
       for (const std::string& line : cause(origin, now).lines) verdict.lines.push_back("  " + line);
     }
   }
-  if (!still && !origin.states) verdict.only = first + ", which is all that its origin tells of its states";
+  if (!still && !origin.states) verdict.only = first + ", the only state in its origin";
 }
 
 // makes the movie anew, at another place; `now` becomes its origin
@@ -155,11 +155,10 @@ Verdict judge(const std::string& file, const VerifyFlags& flags) {
     throw media::Error(file + ": is a folder; name its pictures, as in frames/*.png");
   media::Image image;
   if (!frames.next(image)) throw media::Error(file + ": has no picture in it");
-  if (!frames.origin()) throw media::Error(file + ": carries no origin of obscura's: nothing to verify");
+  if (!frames.origin()) throw media::Error(file + ": has no origin from obscura: nothing to verify");
   const Origin& origin = *frames.origin();
   Verdict verdict;
-  if (hash(origin.scene_text) != origin.scene_hash)
-    verdict.no("scene: its text is not the one that its hash was taken of");
+  if (hash(origin.scene_text) != origin.scene_hash) verdict.no("scene: its text does not match its hash");
   Origin now = origin;
   if (!origin.trajectory.empty()) now.run = run_of(file, origin, flags);
   if (flags.scene) {

@@ -137,9 +137,9 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
   });
   if (!absent.empty()) found.plain.push_back(fmt::format("{} has no {}", b.file, several(absent)));
   if (!missing.empty())
-    found.others.push_back(fmt::format("not compared, for only {} has it: {}", a.file, several(missing)));
+    found.others.push_back(fmt::format("not compared, because only {} has it: {}", a.file, several(missing)));
   if (!extra.empty())
-    found.others.push_back(fmt::format("not compared, for only {} has it: {}", b.file, several(extra)));
+    found.others.push_back(fmt::format("not compared, because only {} has it: {}", b.file, several(extra)));
 
   std::size_t without = 0;
   double first_without = 0;
@@ -198,7 +198,7 @@ std::string text(const RunComparison& c, const Tolerance& tolerance) {
                       p.line_a, p.line_b, what, p.a, p.b);
     const double allowed = tolerance.absolute + tolerance.relative * std::abs(p.a);
     if (!std::isfinite(p.a) || !std::isfinite(p.b))
-      all += "; what is not finite is the same as itself alone\n";
+      all += "; values that are not finite equal only themselves\n";
     else
       all += fmt::format(", off by {:.3g}{}\n", std::abs(p.b - p.a),
                          allowed > 0 ? fmt::format(", allowed {:.3g}", allowed) : "");

@@ -200,7 +200,7 @@ std::function<Filming::DrawnSegment(FilmSegment)> Filming::hire(const draw::Char
     Origin here = journal_.origin;
     here.gl_version = darkroom->renderer().version(), here.gl_renderer = darkroom->renderer().device();
     if (const std::string why = discord(*before, here); !why.empty())
-      throw media::Error(fmt::format("{}: holds parts that cannot go with these: {}", store_->folder(), why));
+      throw media::Error(fmt::format("{}: holds parts that do not fit these: {}", store_->folder(), why));
   }
   return [this, darkroom](FilmSegment take) { return print(std::move(take), *darkroom); };
 }
@@ -339,7 +339,7 @@ int Filming::run() {
     // what is whole waits for another try
     if (!store_ || done_ + found_ == 0) throw;
     throw media::Error(
-        fmt::format("{}; {} frames are whole: --resume goes on", error.what(), done_ + found_));
+        fmt::format("{}; {} frames are complete: --resume continues", error.what(), done_ + found_));
   }
   return finish(progress, simulation, wanted);
 }
@@ -373,7 +373,7 @@ int Filming::finish(Progress& progress, const Simulation& simulation, std::int64
   if (interrupted()) {
     progress.finish(frames,
                     frames > 0 ? fmt::format("interrupted: {} of {} frames are in {}{}", frames, wanted, made,
-                                             store_ ? "; --resume goes on" : "")
+                                             store_ ? "; --resume continues" : "")
                                : "interrupted: nothing was written",
                     false);
     return kInterrupted;

@@ -26,7 +26,7 @@ constexpr std::size_t kMostOfMov = 60'000;  // bytes of an origin, with what sta
 
 Origin origin_of_part(const std::string& path, const media::Tags& tags) {
   auto origin = origin_in(tags);
-  if (!origin) throw media::Error(path + ": does not say what film it is of");
+  if (!origin) throw media::Error(path + ": does not say which film it belongs to");
   return std::move(*origin);
 }
 
@@ -78,7 +78,7 @@ std::int64_t join(Store& store, const std::string& movie, const Joining& joining
       writer.emplace(movie, spec);
     }
     if (const std::string why = discord(*first, origin); !why.empty())
-      throw media::Error(fmt::format("{}: cannot go behind the parts before it: {}", path, why));
+      throw media::Error(fmt::format("{}: does not fit the parts before it: {}", path, why));
     writer->add(part.segment);
   };
   for (const std::string& path : parts) add(path);
@@ -133,8 +133,7 @@ struct Flags {
 int join_command(const Flags& flags) {
   const Output out = output(flags.out, "", false, 2);
   if (out.form != Output::Form::movie && out.form != Output::Form::frames)
-    throw UsageError(
-        fmt::format("{}: a movie is joined, or a sequence of pictures looked through", flags.out));
+    throw UsageError(fmt::format("{}: join takes a movie or a sequence of pictures", flags.out));
   Store store(out);
   const Journal& journal = store.journal();
   const bool pictures = out.form == Output::Form::frames;
@@ -157,7 +156,7 @@ int join_command(const Flags& flags) {
   if (flags.missing) {
     if (journal.shards == 0)
       throw media::Error(
-          fmt::format("{}: is not made in shards; --resume of its render does what is missing", flags.out));
+          fmt::format("{}: is not made in shards; render --resume makes what is missing", flags.out));
     const std::vector<int> shards = shards_of(journal, absent);
     if (!shards.empty()) say(stdout, "{}\n", ranges(shards));
     return kDone;

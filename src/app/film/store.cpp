@@ -49,10 +49,8 @@ struct Damaged : media::Error {
 
 Journal journal_in(const std::string& path) {
   const auto refuse = [&](const char* why) {
-    return Damaged(
-        fmt::format("{}: {}; the same render with --resume writes it anew and keeps the parts that "
-                    "are whole",
-                    path, why));
+    return Damaged(fmt::format(
+        "{}: {}; the same render with --resume rewrites it and keeps the complete parts", path, why));
   };
   try {
     const auto json = nlohmann::json::parse(file_bytes(path));
@@ -149,8 +147,7 @@ struct Store::Impl {
     return discord(there, ours);
   }
   [[noreturn]] void refuse_other(const std::string& why) const {
-    throw media::Error(
-        fmt::format("{}: holds parts of another film: {}; --anew throws them away", folder, why));
+    throw media::Error(fmt::format("{}: holds parts of another film: {}; --anew discards them", folder, why));
   }
 
   // the parts say themselves which film they are of
@@ -189,8 +186,8 @@ struct Store::Impl {
     if (!any) return clear();
     if (!there)
       throw media::Error(
-          fmt::format("{}: holds parts, and its journal.json cannot be read: --resume goes on with "
-                      "those that are of this film, --anew throws them away",
+          fmt::format("{}: holds parts, and its journal.json cannot be read: --resume continues with those "
+                      "of this film, --anew discards them",
                       folder));
     const std::string why = discord_with(there->origin);
     const bool much = spent->before().value_or(2 * kWorthKeeping) > kWorthKeeping;
@@ -200,10 +197,10 @@ struct Store::Impl {
     if (there->shards > 0 || (much && !edited))
       throw media::Error(
           why.empty()
-              ? fmt::format("{}: holds {}: --resume goes on from there, --anew throws it away", folder,
+              ? fmt::format("{}: holds {}: --resume continues from there, --anew discards it", folder,
                             held(*there))
               : fmt::format(
-                    "{}: holds {} of another film: {}; --anew throws it away, --resume goes on from there "
+                    "{}: holds {} of another film: {}; --anew discards it, --resume continues from there "
                     "with the scene and flags that it was begun with",
                     folder, held(*there), why));
     if (!why.empty()) note = fmt::format("{}: replaces {} of an earlier film: {}", folder, held(*there), why);

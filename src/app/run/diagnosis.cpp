@@ -91,7 +91,7 @@ void judge_scenes(const Origin& a, const Origin& b, Cause& cause) {
   cause.lines.push_back(scene_line(a, b));
   if (a.shot->time != b.shot->time) return;
   if (same_states(a, b) && (a.frames == 0 || (a.states && b.states && a.shots == b.shots))) {
-    cause.lines.push_back("states are the same: it is how they are shown");
+    cause.lines.push_back("states are the same: only the drawing differs");
     return;
   }
   try {
@@ -104,7 +104,7 @@ void judge_scenes(const Origin& a, const Origin& b, Cause& cause) {
     if (cause.states)
       cause.lines.push_back(cause.states->text());
     else if (same_states(a, b))
-      cause.lines.push_back("states are the same: it is how they are shown");
+      cause.lines.push_back("states are the same: only the drawing differs");
     else
       cause.lines.push_back(
           fmt::format("states differ there, and not when this obscura ({}) simulates both", OBSCURA_VERSION));
@@ -203,7 +203,7 @@ std::string first_difference(const Origin& a, const Origin& b) {
     text += fmt::format(", first between {} and {}", frame(std::max<std::int64_t>(0, apart->same)),
                         frame(*apart->first));
   if (!apart->bodies_known) return text;
-  if (apart->bodies.empty()) return text + ": no body is anywhere else, or moves otherwise";
+  if (apart->bodies.empty()) return text + ": every body has the same position and motion";
   const auto run = scene.run();
   std::string names;
   std::size_t told = 0;

@@ -54,7 +54,7 @@ Parting first_difference(const Snapshot& a, const Snapshot& b, const sim::SceneI
   for (std::size_t i = 0; i < a.joints.size() && i < b.joints.size(); ++i)
     if (a.joints[i].force != b.joints[i].force || a.joints[i].broken != b.joints[i].broken)
       found.quantity = "force on joint " + cast.joints[i].name;
-  if (found.quantity.empty()) found.quantity = "contact forces, or what else is kept";
+  if (found.quantity.empty()) found.quantity = "contact forces, or other kept values";
   return found;
 }
 

@@ -130,9 +130,9 @@ void Footage::check_columns(std::vector<std::string>& notes) const {
     unknown.push_back(name);
   }
   if (!strangers.empty())
-    notes.push_back(fmt::format("left out, for the scene has no such body: {}", several(strangers)));
+    notes.push_back(fmt::format("left out, because the scene has no such body: {}", several(strangers)));
   if (!unknown.empty())
-    notes.push_back(fmt::format("left out, for a film does not show it: {}", several(unknown)));
+    notes.push_back(fmt::format("left out, because a film does not show it: {}", several(unknown)));
 }
 
 // of "position" its x, y and in space z; none where there is none of them
@@ -157,7 +157,7 @@ double Footage::cell(std::size_t row, std::size_t column) const {
   const double x = table_.rows[row][column];
   if (!std::isfinite(x))
     refuse(table_.lines[row], column,
-           fmt::format("{} is {}: what is filmed is finite", table_.columns[column], x));
+           fmt::format("{} is {}: expected a finite number", table_.columns[column], x));
   return x;
 }
 

@@ -69,7 +69,7 @@ Table table_of_json(const std::string& file, const std::string& text) {
         if (cells[i].first == table.columns[i]) numbers.push_back(cells[i].second);
       if (cells.size() != table.columns.size() || numbers.size() != cells.size())
         throw media::Error(
-            fmt::format("{}, state {}: has not the numbers that the first one has", file, number));
+            fmt::format("{}, state {}: does not have the same numbers as the first", file, number));
       if (!add_row(std::move(numbers), number, table))
         throw media::Error(fmt::format("{}, state {}: times must increase", file, number));
     }

@@ -33,7 +33,7 @@ std::optional<std::vector<std::string>> range(std::string_view value, std::strin
   if (parts.size() > 3)
     throw UsageError(fmt::format("--vary {}: a range is from:to or from:to:stride", text));
   const sim::Rational from = parts[0], to = parts[1], by = parts.size() == 3 ? parts[2] : sim::rational(1);
-  if (by.num == 0) throw UsageError(fmt::format("--vary {}: a range's stride is not 0", text));
+  if (by.num == 0) throw UsageError(fmt::format("--vary {}: a range's stride must not be 0", text));
   const double n = (sim::value(to) - sim::value(from)) / sim::value(by);
   if (n < 0)
     throw UsageError(fmt::format("--vary {}: {} runs backwards: with a stride {} 0 it would not", text, value,

@@ -89,8 +89,8 @@ RowFile::RowFile(const std::optional<std::string>& path, Begin begin) {
   if (begin == Begin::fresh && good > 0 && spent_->before().value_or(2 * kWorthKeeping) > kWorthKeeping) {
     ::close(descriptor_);
     throw media::Error(fmt::format(
-        "{}: holds {} lines of a sweep that is not whole{}: --resume goes on from there, "
-        "--anew throws them away",
+        "{}: holds {} lines of a sweep that is not whole{}: --resume continues from there, "
+        "--anew discards them",
         name_, earlier_.lines, spent_->before() ? ", " + time_text(*spent_->before()) + " of work" : ""));
   }
   if (begin != Begin::go_on) good = 0, earlier_ = {};

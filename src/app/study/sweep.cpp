@@ -71,7 +71,7 @@ class Sweep {
       : file_(flags.scene), sets_(flags.sets), form_(form(flags)), variations_(flags.vary) {
     if (flags.measure.empty())
       throw UsageError(
-          "--measure says what is put down of each run, as in --measure energy.total@5,crate.position.y@max");
+          "--measure says what is measured in each run, as in --measure energy.total@5,crate.position.y@max");
     for (const std::string& list : flags.measure)
       for (Question& each : questions(list)) asked_.push_back(std::move(each));
     heads_.push_back("run");
@@ -127,7 +127,7 @@ std::int64_t earlier(const Sweep& sweep, const RowFile& file, std::int64_t from,
   if (left.lines == 0) return 0;
   const std::int64_t heads = head.empty() ? 0 : 1, rows = left.lines - heads;
   const auto refuse = [&](const std::string& why) {
-    throw media::Error(fmt::format("{}: {}; --anew in place of --resume throws it away", file.name(), why));
+    throw media::Error(fmt::format("{}: {}; --anew instead of --resume discards it", file.name(), why));
   };
   if (heads && left.first + "\n" != head) refuse("it has other columns");
   if (rows > 0 && sweep.row(from + rows - 1).line != left.last + "\n")
@@ -141,7 +141,7 @@ int pictures(const SweepFlags& flags, bool still) {
     throw UsageError(
         fmt::format("-o {}: --measure, --shard, --resume, --anew and --format are for tables", *flags.out));
   if (still != flags.at.has_value())
-    throw UsageError(still ? fmt::format("-o {}: --at says of which instant (s)", *flags.out)
+    throw UsageError(still ? fmt::format("-o {}: --at gives the instant (s)", *flags.out)
                            : fmt::format("-o {}: --at is for a picture, which ends in .png", *flags.out));
   const auto at = sim::parse_rational(flags.at.value_or("0"));
   if (!at || *at < sim::Rational{0, 1} || kLongest < *at)
@@ -175,7 +175,7 @@ int sweep(SweepFlags flags) {
     return pictures(flags, false);
   if (flags.at)
     throw UsageError(
-        "--at is for a picture: -o with a name that ends in .png; of a table it is --measure NAME@SECONDS");
+        "--at is for a picture: -o with a name that ends in .png; for a table use --measure NAME@SECONDS");
   const Sweep all(flags);
 
   // the share of a shard; the first one's table has the heads, so that all of them in order are one table
@@ -183,7 +183,7 @@ int sweep(SweepFlags flags) {
   std::int64_t from = shard.begin(all.size());
   const std::int64_t begin = from, end = shard.end(all.size());
   const std::string head = shard.number == 1 ? all.head() : "";
-  if (flags.resume && !flags.out) throw UsageError("--resume needs -o: a stream is not gone on with");
+  if (flags.resume && !flags.out) throw UsageError("--resume needs -o: a stream cannot be continued");
   if (flags.resume && flags.anew) throw UsageError("--resume and --anew exclude each other");
   RowFile file(flags.out, flags.resume ? RowFile::Begin::go_on
                           : flags.anew ? RowFile::Begin::anew
@@ -220,7 +220,7 @@ int sweep(SweepFlags flags) {
   if (done < end) {
     progress.finish(done - begin,
                     fmt::format("interrupted: {} of {} runs are in {}{}", done - begin, end - begin,
-                                file.name(), flags.out ? "; --resume goes on" : ""),
+                                file.name(), flags.out ? "; --resume continues" : ""),
                     false);
     return kInterrupted;
   }
