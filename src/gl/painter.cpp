@@ -323,7 +323,7 @@ void Painter::draw(const Run& run, draw::Color ground, bool transparent) {
     case Shape::lighten: {
       stroke_program_.use();
       strip_array_.bind();
-      // where there is no ground to mix with, more of a colour is more of its ink on either theme
+      // without a ground to mix with, more of a colour is more of its ink on either theme
       const bool mixed = run.shape != Shape::stroke && !transparent;
       const auto level = [&](std::uint8_t c) { return mixed ? float(c) / 255.0f : 0.0f; };
       gl_.Uniform4f(ground_uniform_, level(ground.r), level(ground.g), level(ground.b), level(255));

@@ -43,7 +43,7 @@ class Painter {
     draw::Color ink;
   };
   enum class Shape { disc, dot, box, slab, frame, stroke, darken, lighten, polygon, glyph };
-  /// What is drawn in one call.
+  /// The geometry of one draw call.
   struct Run {
     Shape shape;
     int first = 0, end = 0;  // instances; of strokes, indices

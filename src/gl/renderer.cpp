@@ -82,7 +82,7 @@ class Current {
 struct Renderer::Impl {
   int width, height;
   std::unique_ptr<Context> context;
-  // what follows lives in the context, and goes before it
+  // the members below live in the context and are destroyed before it
   Functions gl;
   std::string version, device;
   std::string trouble;     // the last GL error of a debug build
@@ -180,7 +180,7 @@ Renderer::Renderer(int width, int height, const ContextOptions& options)
 }
 
 Renderer::~Renderer() {
-  // what is in the context is deleted in it
+  // delete the context's objects inside it
   if (impl_) impl_->context->make_current();
 }
 
@@ -200,7 +200,7 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
     my.draw_backdrop(picture);
   }
 
-  // what moves, on what the last picture left of the backdrop
+  // moving things, over the rest of the backdrop from the last picture
   const bool anew = !my.drawn;
   Damage changed = my.damage;
   my.restore();
@@ -212,7 +212,7 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
   my.frame.bind();
   my.painter.paint(picture.moving, picture.ground, picture.transparent, my.damage);
 
-  // what either picture drew on is read
+  // read the pixels that either picture drew on
   my.image.width = my.width;
   my.image.height = my.height;
   my.image.pixels.resize(std::size_t(4) * my.width * my.height);

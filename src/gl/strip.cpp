@@ -260,7 +260,7 @@ Bounds add_stroke(std::span<const draw::Node> line, const draw::Stroke& stroke, 
   }
   const bool closed = stroke.closed && nodes.size() > 2;
 
-  // where it is broken
+  // the places where it is broken
   const int count = int(nodes.size());
   std::vector<Tip> breaks(static_cast<std::size_t>(count));
   std::vector<int> broken;

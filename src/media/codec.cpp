@@ -134,7 +134,7 @@ std::string encoder_name(const std::string& path, const MovieSpec& spec,
   if (spec.codec.empty()) {
     const std::string name = first_of(kind.encoders);
     if (!name.empty()) return name;
-    // what else could be written here
+    // the formats that can be written here
     std::string hint = "install an FFmpeg that has one";
     const std::string likely = kind.ending == "webm" ? "a.mp4" : "a.webm";
     const Container& other = container(likely);

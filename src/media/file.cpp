@@ -118,7 +118,7 @@ void File::write(std::span<const std::uint8_t> bytes) {
 }
 
 void File::place(bool durable, const std::string& instead) {
-  // what cannot be synced (a pipe, a device) answers EINVAL or EROFS, and has no disk to wait for
+  // a file that cannot be synced (a pipe, a device) gives EINVAL or EROFS, and has no disk to wait for
   if (durable && again([&] { return ::fsync(descriptor_); }) != 0 && errno != EINVAL && errno != EROFS) {
     fail(path_, "cannot write to disk", errno);
   }

@@ -118,7 +118,7 @@ void put_lzw(std::vector<std::uint8_t>& out, std::span<const std::uint8_t> indic
   blocks.end();
 }
 
-// what differs between two pictures
+// the difference of two pictures
 Rectangle changed(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now, int width,
                   int height) {
   int x0 = width, x1 = -1, y0 = height, y1 = -1;

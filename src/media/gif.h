@@ -49,7 +49,7 @@ class GifWriter {
   std::int64_t frames_ = 0;
 };
 
-/// What a GIF of one segment holds that GifWriter made. Throws Error where it is none, or not whole.
+/// Reads a GIF of one segment by GifWriter. Throws Error if it is not one, or is incomplete.
 Part gif_part(const std::string& path, std::span<const std::uint8_t> bytes);
 
 }  // namespace obscura::media

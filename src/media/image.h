@@ -18,7 +18,7 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-/// What a file says of itself: keyword -> text, UTF-8 (PNG: iTXt; movies: one JSON object in `comment`).
+/// Metadata of a file: keyword -> text, UTF-8 (PNG: iTXt; movies: one JSON object in `comment`).
 using Tags = std::map<std::string, std::string>;
 
 }  // namespace obscura::media

@@ -11,7 +11,7 @@
 
 namespace obscura::media {
 
-/// What a movie file is to be. The container follows from the path's ending: mp4 mkv mov webm gif.
+/// Settings of a movie file. The container follows from the path's ending: mp4 mkv mov webm gif.
 struct MovieSpec {
   int width = 0, height = 0;
   std::int64_t fps_num = 60, fps_den = 1;

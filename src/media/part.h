@@ -9,13 +9,13 @@ namespace obscura::media {
 // A part is a segment in a file of its own: a movie that plays, and that gives the segment back, so that a
 // film that was made in pieces, at several times or in several places, is joined of them by stream copy.
 
-/// What the names of a movie's parts end in: "mp4", of a GIF "gif".
+/// The ending of the names of a movie's parts: "mp4", for a GIF "gif".
 std::string part_ending(const std::string& movie);
 
 /// Writes a segment as a part; `spec` is the movie's, with the part's own tags. Throws media::Error.
 void write_part(const std::string& path, const MovieSpec& spec, const Segment& segment);
 
-/// What a part holds.
+/// The content of a part.
 struct Part {
   Segment segment;
   Tags tags;

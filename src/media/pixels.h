@@ -36,7 +36,7 @@ struct Box {
 /// Requires one size.
 std::vector<Box> difference_boxes(const Image& expected, const Image& actual, std::size_t most);
 
-/// What differs, on the expected picture made pale: solid differences in vermilion, those of edges in blue.
+/// The differences on the paled expected picture: solid ones in vermilion, those of edges in blue.
 /// Pictures of two sizes: as large as either, what only one of them has in vermilion.
 Image difference_picture(const Image& expected, const Image& actual);
 

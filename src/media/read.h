@@ -8,7 +8,7 @@
 
 namespace obscura::media {
 
-/// What a movie file says of itself.
+/// The metadata of a movie file.
 struct MovieFacts {
   int width = 0, height = 0;
   std::int64_t fps_num = 0, fps_den = 1;

@@ -9,7 +9,7 @@
 
 namespace obscura::page {
 
-/// What a style sheet calls a face: its family, weight (400: regular) and slant.
+/// A face as in a style sheet: its family, weight (400: regular) and slant.
 struct FaceName {
   std::string family;
   int weight = 400;

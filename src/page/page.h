@@ -22,7 +22,7 @@ std::string libraries();
 /// Whether this build writes it: PDF needs Cairo.
 bool writes(Form form);
 
-/// What a page is besides its picture.
+/// Properties of a page besides its picture.
 struct Sheet {
   double width = 238.11;  // pt; its height follows from the picture's aspect
   std::string title;      // of the file's properties

@@ -22,7 +22,7 @@ std::string owner_text(const std::string& owner) {
   return it->form == Form::tables ? "[[" + owner + "]]" : "[" + owner + "]";
 }
 
-// where else a key of this name lives
+// other tables with a key of this name
 std::string elsewhere(std::string_view last) {
   for (const Key& each : keys())
     if (each.last() == last && each.owner().find('.') == std::string_view::npos)

@@ -10,7 +10,7 @@
 
 namespace obscura::scene {
 
-/// What is wrong with one scene, as it is found.
+/// The errors of one scene, as they are found.
 class Diagnostics {
  public:
   Diagnostics(std::string file, std::vector<std::string> sets)

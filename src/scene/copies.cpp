@@ -64,7 +64,7 @@ std::optional<std::vector<int>> grid(const Fields& copies, std::int64_t so_far, 
   return sides;
 }
 
-// what varies over copies must have copies to vary over, and as many values as there are
+// a value that varies over copies needs copies, and one value for each
 void refuse_odd_lists(const Fields& fields, const std::string& kind, bool copied, int n, int dimension,
                       Diagnostics& complaints) {
   for (const Key* key : keys_of(kind)) {
@@ -123,7 +123,7 @@ sim::Orientation<3> between_copies(double by, const sim::Vec<3>& axis) {
   return sim::exponential(radians(by) * axis);
 }
 
-// what copies turn about; of the plane there is but one way
+// the axis that copies turn about; the plane has only one
 sim::Vec<2> copies_axis(const Fields&, const sim::Vec<2>&) { return {0, 0}; }
 sim::Vec<3> copies_axis(const Fields& copies, const sim::Vec<3>&) {
   return copies.vector<3>("axis").stableNormalized();

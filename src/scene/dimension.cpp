@@ -11,7 +11,7 @@ namespace {
 
 using Told = std::optional<Dimension>;
 
-// what a list of numbers tells, `beside` of which are no components
+// the dimension that a list of numbers implies; `beside` of them are not components
 Told list(const Node& node, const std::string& key, std::size_t beside = 0) {
   if (!node.is_list()) return {};
   const Node::List& all = node.list();

@@ -54,7 +54,7 @@ void refuse_what_is_not_text(std::string_view text, const std::string& file) {
   }
 }
 
-// what the parser would recurse over: brackets open at once, and dots in one key
+// counts what the parser would recurse over: brackets open at once, and dots in one key
 void refuse_what_is_too_deep(std::string_view text, const std::string& file) {
   Cursor here;
   int depth = 0, dots = 0;

@@ -56,7 +56,7 @@ struct Entry {
   Node node;
 };
 
-/// What a complaint calls it: "a string", "a list", "-1", "true".
+/// Its name in an error message: "a string", "a list", "-1", "true".
 std::string described(const Node& node);
 
 /// Reads TOML into a tree, in the order of the file. Throws Error where the text is too long or too deep, has

@@ -29,7 +29,7 @@ class Reporter {
 
   /// "'size' at a.toml:2:8 has 3": why the scene has the dimension that it has.
   std::string because() const;
-  /// What a key takes in this scene.
+  /// The values that a key takes in this scene.
   std::string expected(const Key& key) const { return scene::expected(key, dimension()); }
   int dimension() const { return told_.n; }
   /// Whether a key is of scenes such as this one.

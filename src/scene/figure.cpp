@@ -53,7 +53,7 @@ class Reader {
     site.local.template head<D>() = all.front().local;
     return site;
   }
-  // what a plot shows, and of which body
+  // the quantities of a plot, and their body
   draw::Measured measured(const Fields& fields) const {
     draw::Measured found;
     const Node* wanted = fields.given("quantity");

@@ -9,12 +9,12 @@
 
 namespace obscura::scene {
 
-/// What the scene says of a figure of it. Reports names that do not exist.
+/// The scene's [figure]. Reports names that do not exist.
 template <int D>
 draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                     Diagnostics& complaints);
 
-/// What of the run its film shows beside the picture.
+/// The scene's [[film.plot]]s.
 template <int D>
 std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                                 Diagnostics& complaints);

@@ -381,7 +381,7 @@ std::string cell(std::string text) {
   return text;
 }
 
-// what may stand there, in a word or two
+// the type of value, in a word or two
 std::string type(const Key& key) {
   switch (key.form) {
     case Form::table:

@@ -1,4 +1,4 @@
-// What is left of a plane or of space between walls: a convex region, and the box around it.
+// The convex region of the plane or of space that walls leave, and the box around it.
 //   plane: a large square, cut by one wall after the other
 //   space: the points where three walls meet and that no other leaves outside; |x| = kFar count as walls
 
@@ -14,7 +14,7 @@ namespace obscura::scene {
 namespace {
 
 constexpr double kFar = 1e7;            // m: a side of a room that goes on to here is open
-constexpr std::size_t kMostWalls = 40;  // in space; of more nothing is said, for their points are many
+constexpr std::size_t kMostWalls = 40;  // in space; with more the check is skipped: too many points
 
 // a corner of what the walls leave, and the wall along the side from it to the next
 struct Corner {
@@ -33,7 +33,7 @@ sim::Vec<2> meeting(const Corner& corner, const sim::Wall<2>& b) {
   return at + sim::Vec<2>::Zero();  // -0 is 0
 }
 
-// what a wall leaves of a convex polygon
+// the part of a convex polygon inside a wall
 std::vector<Corner> clipped(const std::vector<Corner>& polygon, const sim::Wall<2>& wall) {
   std::vector<Corner> left;
   for (std::size_t i = 0; i < polygon.size(); ++i) {

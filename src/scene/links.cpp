@@ -57,7 +57,7 @@ std::vector<std::string> all_words() {
   return all;
 }
 
-// where that is on a shape, if it has it
+// the position of that point on a shape, if the shape has it
 template <int D>
 std::optional<sim::Vec<D>> spot(const sim::Shape<D>& shape, std::string_view word) {
   const auto found = way<D>(word);
@@ -65,7 +65,7 @@ std::optional<sim::Vec<D>> spot(const sim::Shape<D>& shape, std::string_view wor
   return sim::of_form(shape, [&](const auto& form) { return form.side(*found); });
 }
 
-// what varies over the springs of one table must have as many values as there are springs
+// a value that varies over the springs of one table needs one value for each spring
 bool fits(const Fields& fields, const char* key, int n, Diagnostics& complaints) {
   const Node* node = fields.given(key);
   if (!node || node->is_number()) return true;

@@ -55,7 +55,7 @@ class Grid {
       if (kinds[i] >= 0)
         farthest =
             std::max({farthest, boxes[i].lower.cwiseAbs().maxCoeff(), boxes[i].upper.cwiseAbs().maxCoeff()});
-    // what rounding may hide is less than a cell
+    // rounding may hide less than a cell
     slack_ = 8 * std::numeric_limits<double>::epsilon() * farthest;
     const int least = std::ilogb(std::max(16 * slack_, 1e-290));
     level_.assign(boxes.size(), least);

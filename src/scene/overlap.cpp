@@ -31,7 +31,7 @@ struct OverlapsFound {
   int more = 0;
 };
 
-// what a body is, as far as it says which others it need not keep apart from
+// the properties of a body that decide which others it may overlap
 struct Kind {
   bool point = false, fixed = false;
   int group = 0;

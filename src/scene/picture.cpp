@@ -79,7 +79,7 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
 
 namespace {
 
-// where a camera of space stands
+// the position of a camera in space
 draw::Camera standing(const Fields& fields) {
   const std::string& view = fields.text("view");
   draw::Camera camera = view == "side" || view == "front" ? draw::side() : draw::slant();

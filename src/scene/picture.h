@@ -20,10 +20,10 @@ std::vector<draw::Camera> cameras(const Node& top, const NameTable& roster, Diag
 /// How the scene asks to be filmed.
 Film film(const Node& top, Diagnostics& complaints);
 
-/// What is checked of it against references: its own moments, or the start and half the duration.
+/// The moments compared with references: its own, or the start and half the duration.
 Golden golden(const Node& top, sim::Rational duration, Diagnostics& complaints);
 
-/// What the camera fits: the room, or where it is open all that is in it at the start, with a margin.
+/// The extent that the camera fits: the room; if it is open, everything in it at the start, with a margin.
 template <int D>
 draw::Extent extent(const Room<D>& room, const sim::World<D>& world);
 

@@ -121,7 +121,7 @@ void refuse_crowd(const Node& top, const sim::Model<D>& model, Diagnostics& comp
                                : "leave 'solver' out: the iterative one is for thousands of bodies"));
 }
 
-// what happens in the plane, or in space, and what it looks like
+// builds the world, in the plane or in space, and its looks
 template <int D>
 sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, const Dimension& told,
                     Scene& scene, Diagnostics& complaints) {
@@ -152,18 +152,18 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   refuse_crowd(top, model, complaints);
   refuse_taken_names(top, roster, complaints);
 
-  // what the camera fits, and with it the length of a reference pixel
+  // the extent that the camera fits; it sets the length of a reference pixel
   scene.extent = extent(walls, world);
   model.scale = walls.height ? *walls.height : scene.extent.high.y() - scene.extent.low.y();
   mice(top, world, complaints);
 
-  // what it looks like
+  // the looks
   look(top, roster, scene.look, complaints);
   scene.cameras = cameras<D>(top, roster, complaints);
   scene.figure = figure<D>(top, roster, world, complaints);
   scene.film.charts = charts<D>(top, roster, world, complaints);
 
-  // overlaps may come of other mistakes: they are told where there are none
+  // overlaps may follow from other errors: report them only if there are none
   if (complaints.none() && model.collision != sim::Collision::handout)
     refuse_overlaps(roster, world, complaints);
   return world;

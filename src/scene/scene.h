@@ -31,7 +31,7 @@ struct Film {
   std::vector<draw::Chart> charts;  // beside the picture, in step with it
 };
 
-/// What is drawn of a scene and held against references.
+/// The moments of a scene that are drawn and compared with references.
 struct Golden {
   std::vector<sim::Rational> at;  // s, increasing
   int width = 320, height = 180;

@@ -11,7 +11,7 @@
 
 namespace obscura::scene {
 
-/// What may stand behind a key.
+/// The type of a key's value.
 enum class Form {
   table,   // [room]
   tables,  // [[box]]
@@ -100,13 +100,13 @@ const Node& fallback(std::string_view path, int dimension);
 /// Keys of the language's next versions, which this one refuses by name.
 std::span<const std::string_view> later_keys();
 
-/// What a key takes, in words: "a number of kilograms", "two numbers [x, y] in metres".
+/// The values of a key, in words: "a number of kilograms", "two numbers [x, y] in metres".
 std::string expected(const Key& key, int dimension = 2);
 
 /// "kg" as "kilograms"; the unit itself where it has no better word.
 std::string unit_words(std::string_view unit);
 
-/// What a number outside a range must be: "must be positive", "must be between 0 and 1".
+/// The range that a number must be in, in words: "must be positive", "must be between 0 and 1".
 std::string bounds(const Range& range, const std::string& unit, double x);
 
 }  // namespace obscura::scene

@@ -6,7 +6,7 @@
 
 namespace obscura::app::slurm {
 
-// What is asked of Slurm, by its own commands.
+// Queries of Slurm, by its own commands.
 
 /// The largest number that a task of an array may have. Throws media::Error where there is no Slurm, or it
 /// does not answer.

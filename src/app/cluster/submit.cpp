@@ -147,7 +147,7 @@ std::vector<std::string> option_lines(const std::vector<std::string>& options) {
   return lines;
 }
 
-/// What is submitted: its commands, and how far it is.
+/// The submitted work: its commands, and its progress.
 struct Work {
   Errand errand;
   std::string made;   // the file, or the first of its frames, that is there when all is done
@@ -167,7 +167,7 @@ std::int64_t count(const std::string& folder, const std::function<bool(const fs:
   return n;
 }
 
-// what --memory-limit says of every task
+// the --memory-limit of every task
 std::vector<std::string> limits(const Flags& flags) {
   if (flags.memory_limit.empty()) return {};
   return {"--memory-limit", flags.memory_limit};
@@ -383,7 +383,7 @@ std::vector<std::pair<std::string, std::string>> failures(const Work& work, cons
   const auto look = [&](const std::string& step, const std::string& job) {
     if (folder.exit(step) == 0) return;
     const auto state = states.find(job);
-    // what never began is not to blame
+    // a job that never began is not the cause
     const bool began = folder.exit(step) || fs::exists(folder.file(step + ".log"));
     if (began || (state != states.end() && !state->second.name.starts_with("CANCELLED")))
       found.emplace_back(step, state == states.end() ? "" : state->second.name);
@@ -395,7 +395,7 @@ std::vector<std::pair<std::string, std::string>> failures(const Work& work, cons
   return found;
 }
 
-/// What went wrong, in one line, and its exit code.
+/// The failure, in one line, and its exit code.
 int report(const Work& work, const Folder& folder, const Jobs& jobs, const States& states) {
   const auto failed = failures(work, folder, jobs, states);
   if (failed.empty())
@@ -459,7 +459,7 @@ int follow(const Work& work, const Folder& folder, const Jobs& jobs, ProgressKin
 }
 
 int submit(Flags flags) {
-  // what is wrong with it is told before Slurm is asked for anything
+  // report errors of the scene before asking Slurm
   Work work = work_of(flags, flags.tasks);
   if (!flags.dry_run) {
     if (const int most = slurm::last_task(); flags.tasks > most) {
@@ -473,7 +473,7 @@ int submit(Flags flags) {
     return kDone;
   }
 
-  // of the same plan as before, what is whole stays so, and the scripts are whose they are
+  // with the same plan as before, finished shards and edited scripts stay
   const Errand& errand = work.errand;
   const Folder folder(errand);
   media::make_folder_of(folder.file("plan"));

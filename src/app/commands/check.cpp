@@ -39,7 +39,7 @@ std::string count(std::size_t n, std::string_view one, std::string_view many) {
 // how long the first steps are watched, s
 constexpr double kPatience = 0.5;
 
-// what holds bodies apart, and why that
+// the contact solver, and why this one
 template <int D>
 std::string contact(const sim::Model<D>& model) {
   if (model.collision == sim::Collision::handout)
@@ -97,7 +97,7 @@ std::string bodies(const sim::Model<D>& model) {
          count(model.mice.size(), "mouse", "mice");
 }
 
-// what a render of it would be
+// the film that render would make
 struct Plan {
   Shots shots;
   Needs film;

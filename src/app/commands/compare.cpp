@@ -53,7 +53,7 @@ bool is_table(const std::string& path) {
   return ending == ".csv" || ending == ".json";
 }
 
-// what a person or a program is told; GitHub beside it where the two are not the same
+// output for people or programs; also for GitHub if the two differ
 void tell(const CompareFlags& flags, bool same, const std::string& text, const std::string& json) {
   if (flags.format != Format::github) {
     clear_waiting();

@@ -29,7 +29,7 @@ namespace {
 using media::Glb;
 using sim::Vec3;
 
-// of colours as screens have them, what light is reckoned with
+// sRGB to linear light
 float linear(std::uint8_t c) {
   const double x = c / 255.0;
   return float(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
@@ -39,7 +39,7 @@ std::array<float, 4> linear(draw::Color c) { return {linear(c.r), linear(c.g), l
 
 std::array<float, 3> narrow(const Vec3& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
 
-// of the two quaternions of one turn the one nearer to that before: between them turns are short
+// of the two quaternions of an orientation, the one nearer to the previous: interpolation takes the short way
 std::array<float, 4> narrow(Eigen::Quaterniond q, const std::vector<std::array<float, 4>>& before) {
   if (!before.empty()) {
     const auto& b = before.back();

@@ -87,7 +87,7 @@ Size size_at(const draw::Picture& picture, double width, double dpi) {
   return {std::max(1, int(std::ceil(across - 0.01))), std::max(1, int(std::ceil(down - 0.01))), down / 1080};
 }
 
-// what is drawn by depth lies where the lines over it do, to the part of a pixel
+// solids are placed as the lines over them, to a fraction of a pixel
 media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, const Size& size,
                     const gl::ContextOptions& context) {
   require_memory_to_draw(double(size.width) * size.height);
@@ -110,7 +110,7 @@ media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, c
   return renderer.draw(exact);
 }
 
-// what is lit, at its places on the page's ground
+// lit surfaces, at their places on the page
 media::Image lit_pixels(const Page& page, const Size& size, const gl::ContextOptions& context) {
   draw::Picture blank;
   blank.ground = page.picture.ground;

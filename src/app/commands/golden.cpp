@@ -44,7 +44,7 @@ struct GoldenFlags {
   GoldenOptions golden;
 };
 
-// what one scene came to
+// the result of one scene
 struct Outcome {
   std::string name;
   std::vector<GoldenCase> cases;
@@ -63,7 +63,7 @@ bool wanted(const std::string& file) {
   try {
     return scene::read(file).golden.given;
   } catch (const scene::Error&) {
-    return true;  // and is told what is wrong
+    return true;  // the error is reported later
   }
 }
 
@@ -110,7 +110,7 @@ void know_apart(const std::vector<std::string>& all, const GoldenOptions& option
   }
 }
 
-// of these scenes those that --only names a moment of
+// the scenes with a moment named by --only
 std::vector<std::string> chosen(const std::vector<std::string>& all, const GoldenOptions& options) {
   if (options.only.empty()) return all;
   std::map<std::string, std::string> files;
@@ -184,7 +184,7 @@ std::string text(const Outcome& outcome) {
     word += (word.empty() ? "" : ", ") + (states.size() == 1 ? state : fmt::format("{} {}", count, state));
   all = fmt::format("{:<18} {:>2} {:<8} {:<22} {:6.2f} s\n", outcome.name, outcome.cases.size(),
                     outcome.cases.size() == 1 ? "moment" : "moments", word, outcome.seconds);
-  // one of the two, by whether ctest may ask somebody
+  // ctest sets one of the two, interactive or not
   const bool ctest = std::getenv("CTEST_INTERACTIVE_DEBUG_MODE") != nullptr ||
                      std::getenv("DASHBOARD_TEST_FROM_CTEST") != nullptr;
   for (const GoldenCase& it : outcome.cases) {
@@ -208,7 +208,7 @@ void print(Format format, const std::string& text) {
 }
 
 void write_page(const GoldenFlags& flags, const std::vector<GoldenCase>& cases) {
-  // what --set changed is no reference of the scene as it is written
+  // a scene changed by --set makes no reference of the scene as written
   const auto approvable = [&](const GoldenCase& it) { return !it.good() && flags.sets.empty(); };
   std::vector<Finding> findings;
   for (const GoldenCase& it : cases) {
@@ -222,7 +222,7 @@ void write_page(const GoldenFlags& flags, const std::vector<GoldenCase>& cases) 
                     approvable(it) ? it.choice : std::string()};
     findings.push_back(std::move(finding));
   }
-  // what asks for eyes comes first
+  // results to look at come first
   std::stable_partition(findings.begin(), findings.end(), [](const Finding& f) { return f.state != "same"; });
   write_text(*flags.report, report({"Golden images", update_command(flags)}, findings));
 }

@@ -83,7 +83,7 @@ int render_each(const scene::Scene& scene, const Shots& shots, const RenderFlags
   return kDone;
 }
 
-// GIF counts in hundredths of a second: a rate that is none of them becomes the next below, and that is said
+// GIF counts in hundredths of a second: another rate becomes the next lower one, with a message
 void suit_gif(const std::string& out, scene::Film& film) {
   if (!out.ends_with(".gif")) return;
   for (const int fps : {50, 25, 20, 10}) {
@@ -122,7 +122,7 @@ void take_run(const RenderFlags& flags, scene::Scene& scene) {
   for (const std::string& note : notes) say(stderr, "{}\n", note);
 }
 
-// what it has no rows of cannot be filmed
+// instants without rows cannot be filmed
 void suit_run(const RenderFlags& flags, const scene::Scene& scene, Shots& shots) {
   const sim::Trajectory& run = *scene.trajectory;
   if (!flags.at && !flags.to) {
@@ -143,7 +143,7 @@ void suit_run(const RenderFlags& flags, const scene::Scene& scene, Shots& shots)
   }
 }
 
-// what is made of a film, and from where
+// the part of a film that is made, and where it starts
 void divide(RenderFlags& flags, const Output& out) {
   if (flags.shard) {
     const Shard shard = parse_shard(*flags.shard);
@@ -164,7 +164,7 @@ void divide(RenderFlags& flags, const Output& out) {
     throw UsageError("--checkpoint-every needs an output with a name");
 }
 
-// what it needs is known before any of it is asked for; what takes longer than a minute is said
+// estimates the resources first; prints them if the film takes longer than a minute
 void see_what_it_needs(const scene::Scene& scene, const Shots& shots, const Output& out, FilmOptions& film) {
   constexpr double kPatience = 0.03, kLong = 60;
   const Needs all = needs(scene, shots, out, kPatience);

@@ -70,7 +70,7 @@ gl::ContextOptions context_of(const Origin& origin, const VerifyFlags& flags) {
   return context;
 }
 
-// the cause of other pixels is told where other states have not told it
+// name the cause of different pixels unless different states already name it
 void judge_still(const media::Image& image, const Origin& origin, const Origin& now, const VerifyFlags& flags,
                  Verdict& verdict) {
   const bool told = !verdict.good;
@@ -185,7 +185,7 @@ Verdict judge(const std::string& file, const VerifyFlags& flags) {
   return verdict;
 }
 
-// what was found of each file, in the order of the line
+// the results of each file, in the order of the command line
 struct Findings {
   struct Of {
     std::string file, text;

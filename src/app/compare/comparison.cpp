@@ -96,7 +96,7 @@ void compare_frames(Frames& a, Frames& b, Comparison& found) {
     keep_if_telling(found, std::move(frame), left, right);
   }
   if (found.differing.empty()) {
-    // what they say otherwise though they look the same
+    // differences of their origins, though they look the same
     const Cause told = first_a && first_b && found.plain.empty() ? cause(first_a, first_b) : Cause{};
     if (told.kind != Cause::Kind::pixels) found.others = told.lines;
     return;

@@ -11,7 +11,7 @@
 
 namespace obscura::app {
 
-/// What two pictures or sequences of them have in common and what not.
+/// The differences of two pictures or sequences of them.
 struct Comparison {
   /// A frame that differs.
   struct Frame {

@@ -18,7 +18,7 @@ enum class Format { text, json, github };
 /// --format.
 void add_format(const Command& command, Format& format);
 
-/// What every such object begins with: the version, the command, the exit code.
+/// The first keys of every object: the version, the command, the exit code.
 nlohmann::ordered_json json_head(const char* command, int exit);
 
 /// The parts that several have in common.

@@ -69,7 +69,7 @@ std::string command(const Annotation& annotation) {
 std::string commands(const scene::Error& error) {
   std::string all;
   for (const scene::Complaint& it : error.complaints) {
-    // what --set says wrong is in no file
+    // an error of --set is in no file
     const bool file = it.line > 0 || std::filesystem::exists(it.file);
     all += command({.file = file ? it.file : "",
                     .line = it.line,

@@ -72,7 +72,7 @@ void judge(const scene::Golden& golden, const media::Png& reference, const Pictu
   const bool pixels = sizes && d.beyond <= golden.pixels;
   if (pixels && state && d.same()) return;
 
-  // what is let pass
+  // the tolerance
   const bool lenient = (golden.level > 0 || golden.pixels > 0 || !golden.states);
   if (pixels && (state || !golden.states) && lenient) {
     it.state = "tolerated";
@@ -148,7 +148,7 @@ void judge_record(const scene::Golden& golden, const GoldenRecord& record, const
     try {
       if (!picture) keep_picture(it, made);
     } catch (const media::Error&) {
-      // where nothing may be written, the next difference is told without it
+      // if the folder is not writable, the next difference is reported without it
     }
     return;
   }
@@ -252,7 +252,7 @@ void miss(const scene::Scene& scene, const GoldenOptions& options, GoldenCase& i
                                    fs::path(scene.file).parent_path().string()));
 }
 
-// Another program's run instead of the simulation, if one is named. What a person should know of it is told.
+// Another program's run instead of the simulation, if one is named. Reports remarks about it.
 void take_run(const GoldenOptions& options, scene::Scene& scene, std::vector<std::string>& notes) {
   std::string file = options.states;
   if (file.empty() && !scene.golden.run.empty())
@@ -332,7 +332,7 @@ std::string picture_name(const Pictured& made) {
       .substr(0, 16);
 }
 
-// what --only says of a moment; none where it is not among those
+// the argument of --only for a moment; none if it is not among those
 const GoldenChoice* chosen(const std::string& name, sim::Rational time, const GoldenOptions& options) {
   for (const GoldenChoice& each : options.only)
     if (each.scene == name && sim::value(each.time) == sim::value(time)) return &each;

@@ -62,7 +62,7 @@ struct GoldenOptions {
 /// row at a moment.
 std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOptions& options);
 
-/// What a scene is called among others: its path from the root, without its ending, as in "wheels/car".
+/// The name of a scene among others: its path from the root, without its ending, as in "wheels/car".
 /// Outside of the current folder, where no root is given, the file's stem. Throws UsageError where the scene
 /// lies outside of the root, or --references needs a root to tell scenes apart.
 std::string golden_name(const std::string& scene_file, const GoldenOptions& options);

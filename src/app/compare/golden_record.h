@@ -21,7 +21,7 @@ struct GoldenRecord {
   std::string text() const;
 };
 
-/// Of pictures, as the record has it. Requires one picture at least, all of one scene.
+/// The record of these pictures. Requires at least one picture, all of one scene.
 GoldenRecord record_of(const std::vector<std::string>& times, const std::vector<Pictured>& made);
 
 /// A moment's hashes, as a record has them.

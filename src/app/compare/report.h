@@ -18,7 +18,7 @@ struct Finding {
   std::string choice;  // what --only takes to make the actual picture the reference; empty: nothing does
 };
 
-/// What a report says at its top.
+/// The heading of a report.
 struct ReportTitle {
   std::string title;
   std::string command;  // of a shell, to which `--only CHOICE` is added; empty: nothing is to be approved

@@ -176,7 +176,7 @@ function tell_scale() {
   document.querySelector(".scale").textContent = percent ? Math.round(percent) + " %" : "";
 }
 
-// what lies at (u, v) of the view stays there
+// the point at (u, v) of the view stays there
 function zoom(it, by, u = .5, v = .5) {
   const px = it.x + (u - .5) / it.s, py = it.y + (v - .5) / it.s;
   it.s = bounded(it.s * by, 1, most);
@@ -297,7 +297,7 @@ const acts = {
 };
 for (const button of all("[data-act]")) button.addEventListener("click", () => acts[button.dataset.act]());
 
-// what is chosen as a reference becomes a command
+// pictures chosen as references become a command
 const bar = document.querySelector(".approve"), boxes = all(".take input");
 const word = (text) => /^[\w@%+=:,.\/-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 function approve() {

@@ -119,7 +119,7 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
     column.group = std::size_t(group - all.begin());
     columns.push_back(column);
   }
-  // of one time, what a body does is told before what it sums up to
+  // at one time, report bodies before sums over bodies
   std::stable_partition(columns.begin(), columns.end(),
                         [](const Column& column) { return is_body(column.body); });
   for (const std::string& name : b.columns)

@@ -20,7 +20,7 @@ class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
 
-  /// What stands for its value in --help, as in SECONDS.
+  /// The placeholder for its value in --help, as in SECONDS.
   Option type(const char* name) const;
   Option required() const;
   /// One of these words, else a usage error.
@@ -65,9 +65,9 @@ class Command {
         names, std::move(numbered), [&value](int chosen) { value = T(chosen); }, about);
   }
 
-  /// What --help ends with.
+  /// The end of --help.
   void footer(const std::string& text) const;
-  /// What it does when its line is read; returns its exit code.
+  /// Runs the command; returns its exit code.
   void run(std::function<int()> what) const;
   /// The program's own name, as it was called.
   std::string program() const;

@@ -18,7 +18,7 @@ void ask(int signal) {
 
 void heed_interrupts() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // what a parent told us to ignore (nohup) stays ignored
+    // a signal that the parent set to ignored (nohup) stays ignored
     if (std::signal(signal, ask) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);

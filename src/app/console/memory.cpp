@@ -36,7 +36,7 @@ double soft_limit(int which) {
   return double(limit.rlim_cur);
 }
 
-// of this machine, or of the control group that this process is in
+// the memory of this machine, or of this process's control group
 double memory_there() {
   double bytes = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
   for (const char* file : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {

@@ -11,7 +11,7 @@ void hold_memory(double bytes);
 /// Nine tenths of what this machine has, or of what its control group may have: what is held to unless told.
 double most_memory();
 
-/// What this process may have, bytes.
+/// The memory that this process may use, bytes.
 double memory_limit();
 
 /// Throws std::bad_alloc unless there is memory left to draw and encode so many pixels: asked before OpenGL

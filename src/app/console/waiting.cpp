@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPatience(2000), kBetween(500);
 
-// what there is to be said, for the one Waiting there is
+// the text for the only Waiting
 struct Notices {
   std::mutex mutex;
   std::condition_variable_any ended;
@@ -50,7 +50,7 @@ Waiting::Waiting(const std::string& command) : command_(command) {
     const std::lock_guard lock(said().mutex);
     said().heard = true;
   } catch (const std::system_error&) {
-    // where no thread can be had, nothing is told
+    // without a thread nothing is shown
   }
 }
 

@@ -24,14 +24,14 @@ class Waiting {
   std::jthread teller_;
 };
 
-/// What is done now, and how much of it: "reading a.toml"; "simulating", 3.2 of 10 "s". Cheap enough to be
+/// The current work and its progress: "reading a.toml"; "simulating", 3.2 of 10 "s". Cheap enough to be
 /// said at every instant of a run. From every thread.
 void doing(const std::string& what, double done = 0, double of = 0, const std::string& unit = "");
 
 /// Clears the line before something else is printed; it comes back half a second later.
 void clear_waiting();
 
-/// Nothing more is said while it lives: something else shows how far the command is.
+/// Silences Waiting while it lives: something else shows the progress.
 class Hushed {
  public:
   Hushed();

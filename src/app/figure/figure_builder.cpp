@@ -222,7 +222,7 @@ Page FigureBuilder::page() const {
   return page;
 }
 
-// of several runs, their lines in one plot, each with the value that sets it apart
+// the lines of several runs in one plot, each labelled with its value
 std::vector<draw::Plot> FigureBuilder::plots() const {
   std::vector<double> marks;
   if (panels_.front().scene.figure.room)
@@ -266,7 +266,7 @@ draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell
   const Panel& panel = *cell.panel;
   const draw::Palette colours = draw::palette(panel.scene.look.theme);
 
-  // what stands still, earlier exposures from the oldest on, the instant itself, what is said of it
+  // fixed things, earlier exposures from the oldest on, the instant itself, its annotations
   draw::Picture picture = depictor.depict(panel.now, panel.ways);
   draw::List list = *picture.still;
   for (std::size_t k = 0; k < panel.before.size(); ++k) {

@@ -16,7 +16,7 @@
 
 namespace obscura::app {
 
-/// What the command line says of a figure; what it leaves out the scene's [figure] says.
+/// The command line's settings of a figure; the scene's [figure] has the others.
 struct AlbumOptions {
   std::vector<sim::Rational> at;  // s, one a panel
   std::optional<double> width;    // pt
@@ -26,7 +26,7 @@ struct AlbumOptions {
   std::optional<draw::Theme> theme;
 };
 
-/// What of a page no vector says: surfaces, their light and their shadows.
+/// The part of a page that is pixels: surfaces, their light and their shadows.
 struct Lit {
   draw::Rect where;       // in the page's units
   draw::Picture picture;  // without what moves
@@ -59,7 +59,7 @@ class FigureBuilder {
     std::string words;                                    // what sets it apart from the others
   };
   void take(const scene::Scene& scene, const std::vector<sim::Rational>& times, const std::string& words);
-  /// What stands at one place of the page.
+  /// The content of one place of the page.
   struct Cell {
     const Panel* panel = nullptr;
     int camera = 0;

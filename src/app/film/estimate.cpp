@@ -1,4 +1,4 @@
-// What a film takes, by what the shipped scenes take, from drafts to 4k, in bytes and ns:
+// Estimates for a film, fitted to the shipped scenes, from drafts to 4k, in bytes and ns:
 //   disk, a movie    u (90 H a second, of space half as much again, + 9.3 L^0.63 a frame)
 //         a GIF      0.08 (space 0.25) a pixel once a second, + 22 L^0.63 a frame
 //         pictures   0.058 a pixel, + 3.5 a px of outlines; space 0.062 a pixel, + 93 H, + 2 a px of outlines
@@ -46,7 +46,7 @@ double size_of(const sim::Snapshot& moment) {
                 moment.contacts.size() * sizeof(sim::Snapshot::Contact));
 }
 
-// what a run is made of, as large as it is in memory: the world twice, and what the solvers keep
+// the memory of a run: the world twice, and the data that the solvers keep
 template <int D>
 double size_of(const sim::World<D>& world) {
   const sim::Model<D>& model = world.model;

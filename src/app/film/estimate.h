@@ -9,7 +9,7 @@
 
 namespace obscura::app {
 
-/// What a film asks of a machine, told before any of it is asked for. All but the frames is estimated.
+/// The resources that a film needs. All but the number of frames is estimated.
 struct Needs {
   std::int64_t frames = 0;
   double disk = 0;      // bytes

@@ -108,7 +108,7 @@ Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& ou
     origin.preset = spec_.preset, origin.crf = spec_.crf;
   }
 
-  // what stands in the way of the files is told before anything is simulated
+  // report obstacles to the files before simulating
   if (output.form == Output::Form::pipe) return;
   const std::string first = movie() ? output.path : output.file(shots[0].frame);
   if (!options.overwrite && fs::exists(first))
@@ -336,7 +336,7 @@ int Filming::run() {
   try {
     shoot(simulation, charts, progress);
   } catch (const media::Error& error) {
-    // what is whole waits for another try
+    // finished parts stay for another try
     if (!store_ || done_ + found_ == 0) throw;
     throw media::Error(
         fmt::format("{}; {} frames are complete: --resume continues", error.what(), done_ + found_));

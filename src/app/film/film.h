@@ -31,7 +31,7 @@ struct FilmOptions {
   std::optional<std::string> from_checkpoint;
 };
 
-/// What libav is asked for by this scene.
+/// The encoder settings for this scene.
 media::MovieSpec movie_spec(const scene::Scene& scene);
 
 /// How many frames of such an output one worker makes at a time.

@@ -30,7 +30,7 @@ Origin origin_of_part(const std::string& path, const media::Tags& tags) {
   return std::move(*origin);
 }
 
-// what all parts show, for the movie's own origin stands before its frames; none where one has none
+// the origin common to all parts, because a movie's origin precedes its frames; none if a part has none
 std::optional<Checksums> states_of(const std::vector<std::string>& parts) {
   std::optional<Checksums> all;
   for (const std::string& path : parts) {
@@ -90,7 +90,7 @@ std::int64_t join(Store& store, const std::string& movie, const Joining& joining
 
 namespace {
 
-// what is missing, in words: "frames 120 to 179 (shard 2 of 4)"
+// the missing frames, in words: "frames 120 to 179 (shard 2 of 4)"
 std::string missing(const Journal& journal, const std::vector<std::int64_t>& takes) {
   std::string text;
   int told = 0;

@@ -9,7 +9,7 @@
 
 namespace obscura::app {
 
-/// What of a film is made of its takes.
+/// The part of a film that its drawn segments make.
 struct Joining {
   std::int64_t takes = 0;                // the first so many, those that are missing left out
   std::optional<std::string> instead{};  // the name of a film that is not whole

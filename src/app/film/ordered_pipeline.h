@@ -25,7 +25,7 @@ struct Conduct {
   std::function<void()> wait = [] {};                // on the caller's thread, about ten times a second
 };
 
-/// Runs it all to the end. The first exception of anyone, in the order of the jobs, comes out here.
+/// Runs all jobs to the end. Rethrows the first exception, in the order of the jobs.
 template <class Job, class Result>
 void conduct(const Conduct<Job, Result>& parts, int workers) {
   struct Finished {

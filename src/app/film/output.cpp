@@ -11,7 +11,7 @@ namespace obscura::app {
 
 namespace {
 
-// where the frame number stands in a name, and how wide it is
+// the place and width of the frame number in a name
 struct Pattern {
   std::size_t begin = 0, end = 0;
   int width = 0;

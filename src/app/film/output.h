@@ -15,7 +15,7 @@ struct Output {
 
   /// The file of frame n. Requires: frames or still.
   std::string file(std::int64_t n) const;
-  /// What stands beside `path` when the film ended early: room.partial.mp4.
+  /// The name beside `path` of a film that ended early: room.partial.mp4.
   std::string partial() const;
   /// The folders for what is whole before all of it is, and for checkpoints that were asked for:
   /// room.mp4.parts, room.mp4.checkpoints; of frames/{frame:04}.png frames/frame.png.parts.

@@ -13,13 +13,13 @@ inline constexpr double kWorthKeeping = 60;
 /// be thrown away. A failure to write it is ignored.
 class Spent {
  public:
-  /// What an earlier process put down in the file.
+  /// The time that an earlier process wrote to the file.
   explicit Spent(std::string path);
   ~Spent();
   Spent(const Spent&) = delete;
   Spent& operator=(const Spent&) = delete;
 
-  /// Of earlier processes, s; none where they did not say.
+  /// The time of earlier processes, s; none if they did not write it.
   std::optional<double> before() const { return before_; }
   /// Work begins: from now on the time is counted, on top of `before`.
   void begin(double before);

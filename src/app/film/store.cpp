@@ -119,7 +119,7 @@ struct Store::Impl {
       throw media::Error(folder + ": another obscura is making this film");
   }
 
-  // what is there
+  // the parts on disk
   void look() {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -218,7 +218,7 @@ struct Store::Impl {
     }
     refuse_other_parts();
     if (damaged) note = fmt::format("{}: was damaged, and is written anew", at("journal.json"));
-    // of states nothing says that they are of this film
+    // prepared states do not say which film they belong to
     std::error_code ignored;
     for (const auto& [step, name] : checkpoints) fs::remove(at(name), ignored);
     checkpoints.clear(), there.reset();

@@ -15,7 +15,7 @@
 
 namespace obscura::app {
 
-/// What a film in the making is to be: it stays the same from the first part to the last.
+/// The properties of a film in the making that stay the same from the first part to the last.
 struct Journal {
   Origin origin;                 // but for what one frame alone has, and OpenGL
   std::int64_t takes = 0;        // closed pieces it is made in, numbered from 0
@@ -23,7 +23,7 @@ struct Journal {
   int shards = 0;                // how many were prepared for; 0: none
 };
 
-/// What becomes of what an earlier process left of a film that is not whole.
+/// How to treat the parts that an earlier process left of an unfinished film.
 enum class Earlier {
   go_on,    // it is gone on with
   replace,  // it is thrown away where not much is lost, else that is refused
@@ -46,7 +46,7 @@ class Store {
   ~Store();
   Store(Store&&) noexcept;
 
-  /// What is to be said of what was there: that it was replaced, or mended. Empty: nothing.
+  /// A message about the earlier parts: that they were replaced, or repaired. Empty: none.
   const std::string& note() const;
   const std::string& folder() const;
   const Journal& journal() const;

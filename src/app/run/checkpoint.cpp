@@ -34,7 +34,7 @@ bool of_the_look(const std::string& path) {
   throw media::Error(path + ": " + why);
 }
 
-// what stands in the way of going on with `scene` from a checkpoint of `of`
+// why `scene` cannot continue from a checkpoint of `of`
 std::string other_scene(const scene::Source& of, const scene::Scene& scene) {
   if (of.text == scene.text && of.sets == scene.sets) return "";
   try {

@@ -31,7 +31,7 @@ class Checksums {
   bool operator==(const Checksums&) const = default;
 
   nlohmann::ordered_json json() const;
-  /// What json() wrote; none where it is no such.
+  /// Reads the output of json(); none if it is not one.
   static std::optional<Checksums> read(const nlohmann::json& json);
 
   /// Where two films part, by the indices of their frames.

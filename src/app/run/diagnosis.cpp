@@ -39,7 +39,7 @@ std::string scene_line(const Origin& a, const Origin& b) {
   return line;
 }
 
-// what flags chose
+// the settings that flags chose
 std::vector<std::string> look_lines(const Origin& a, const Origin& b) {
   std::vector<std::string> lines;
   const auto differ = [&](const char* what, const std::string& left, const std::string& right) {

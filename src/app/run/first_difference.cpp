@@ -20,7 +20,7 @@ std::string text(const sim::Vec3& v, int dimension) {
   return all + "]";
 }
 
-// what of one body differs, all of it; the values of the first
+// all quantities of one body that differ; the values of the first
 std::optional<Parting> of_body(const Snapshot::Body& a, const Snapshot::Body& b, int dimension) {
   Parting found;
   const auto differ = [&](const char* quantity, const std::string& left, const std::string& right) {

@@ -71,7 +71,7 @@ class Footage {
   std::unordered_map<std::string, std::size_t> index_;  // of columns
 };
 
-// what has three dimensions in a scene of two, or the other way round, would lose something
+// a table in space for a scene in the plane, or the reverse, would lose something
 void Footage::check_dimension(std::size_t column) const {
   const std::string& name = table_.columns[column];
   const std::string body = body_of(name), quantity = quantity_of(name);
@@ -98,7 +98,7 @@ void Footage::check_dimension(std::size_t column) const {
 }
 
 void Footage::check_columns(std::vector<std::string>& notes) const {
-  // of each name that columns begin with: what may follow
+  // for each name that columns begin with: the allowed rest
   std::map<std::string, std::vector<std::string>> known;
   for (const Column& column : app::columns(cast_, scene_.axes))
     known[body_of(column.name)].push_back(quantity_of(column.name));
@@ -135,7 +135,7 @@ void Footage::check_columns(std::vector<std::string>& notes) const {
     notes.push_back(fmt::format("left out, because a film does not show it: {}", several(unknown)));
 }
 
-// of "position" its x, y and in space z; none where there is none of them
+// for "position" its x, y and in space z; none if the table has none of them
 std::optional<Columns> Footage::columns(const std::string& body, const std::string& quantity,
                                         const std::vector<std::string>& parts,
                                         std::vector<std::string>& missing) const {

@@ -28,7 +28,7 @@ constexpr std::array<std::pair<std::string_view, Over>, 6> kOver{{{"end", Over::
                                                                   {"argmax", Over::argmax},
                                                                   {"argmin", Over::argmin}}};
 constexpr std::string_view kHash = "hash";
-// what plots know of a body and no column says
+// quantities of a body that plots have and no column has
 constexpr std::array<std::string_view, 3> kPlotted{"speed", "length", "push"};
 
 std::string_view trimmed(std::string_view text) {
@@ -72,7 +72,7 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
   for (const Column& column : all)
     if (column.name == asked.path) return column.read;
 
-  // of a body, what a plot calls so
+  // a plot's quantity of a body
   std::vector<std::string> more{std::string(kHash)};
   for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
     const int body = int(i);
@@ -94,7 +94,7 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
   throw UsageError(fmt::format("--measure {}: states have no '{}'{}", asked.text, asked.path, meant));
 }
 
-// what the instants so far come to
+// the value over the instants so far
 struct Tally {
   bool any = false;
   double extreme = 0, when = 0;       // the extreme, and when first

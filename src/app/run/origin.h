@@ -26,7 +26,7 @@ std::string state_hash(const std::vector<std::uint64_t>& words);
 /// The whole number that a file holds, none where it is no such from `least` to `most`.
 std::optional<std::int64_t> whole(const nlohmann::json& json, std::int64_t least, std::int64_t most);
 
-/// What made a picture or a movie: enough to make it again, and to say why another one differs.
+/// How a picture or a movie was made: enough to make it again, and to say why another one differs.
 struct Origin {
   std::string version;  // of obscura
   std::string scene_hash, scene_file, scene_text;
@@ -47,18 +47,19 @@ struct Origin {
   std::string trajectory;            // the file of another program's run, where that is shown
   std::shared_ptr<const Table> run;  // that run, where it is at hand; not in the file
 
-  /// What drew it: "obscura 0.2.0, OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// The program and library that drew it: "obscura 0.2.0, OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe
+  /// (LLVM 15.0.6, 256 bits)".
   std::string drawn_by() const;
 
   /// As the tags of a file: "Software", "Title", and the whole as JSON under "obscura".
   media::Tags tags(const std::string& title) const;
 };
 
-/// What keeps pictures of two origins from being of one film, in words: "the size is 640x360 there, and
+/// Why pictures of two origins cannot be of one film, in words: "the size is 640x360 there, and
 /// 320x180 here". Empty where nothing does; frame, instant and state may differ.
 std::string discord(const Origin& there, const Origin& here);
 
-/// What all pictures of a scene have in common.
+/// The part of an origin that all pictures of a scene share.
 Origin origin_of(const scene::Scene& scene);
 
 /// The origin that a file's tags carry; none where they carry none, or not all of it.
@@ -72,7 +73,7 @@ scene::Scene scene_of(const Origin& origin);
 /// The shots of it that a movie shows, or the one of a still. Throws UsageError where the scene has no such.
 Shots shots_of(const Origin& origin, const scene::Scene& scene);
 
-/// Of several cameras only the one of this name. Throws UsageError where there is none.
+/// Keeps only the camera of this name. Throws UsageError if there is none.
 void choose_camera(const std::string& name, scene::Scene& scene);
 
 }  // namespace obscura::app

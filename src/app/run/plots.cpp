@@ -21,7 +21,7 @@ namespace {
 constexpr std::int64_t kPoints = 480;   // of a line
 constexpr std::int64_t kPixels = 1920;  // of a line in a film
 
-// what a run gives at one more instant
+// the values of a run at one more instant
 void add(const sim::Snapshot& now, const draw::Measured& measured, draw::Plot& plot) {
   plot.times.push_back(now.time);
   const std::vector<const draw::Measure*> measures = measured.measures();

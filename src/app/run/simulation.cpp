@@ -70,7 +70,7 @@ std::int64_t Simulation::step_before(sim::Rational t) const {
   return sim::floor(t * run_->rate());
 }
 
-// what Run::at says, and on the way there at_every
+// the result of Run::at, with at_every on the way
 std::variant<sim::Snapshot, sim::Trouble, sim::Stopped> Simulation::at(sim::Rational t) {
   while (options_.every.num > 0 && due_ <= t) {
     auto moment = run_->at(due_);

@@ -25,7 +25,7 @@ void add(const std::string& name, const Json& value, Cells& cells) {
     cells.emplace_back(name + "." + kAxes[k], value[k].get<double>());
 }
 
-// what CSV has of an instant too
+// the columns that CSV has for an instant too
 Cells cells_of(const Json& state) {
   Cells cells;
   for (const char* name : {"time", "step"})

@@ -75,7 +75,7 @@ RowFile::RowFile(const std::optional<std::string>& path, Begin begin) {
     throw media::Error(fmt::format("{}: another obscura is writing it", name_));
   }
 
-  // what was left, up to its last whole line
+  // the earlier file, up to its last complete line
   off_t good = 0;
   std::ifstream in(name_, std::ios::binary);
   std::string line;

@@ -89,7 +89,7 @@ class Sweep {
   std::int64_t size() const { return variations_.size; }
   std::string head() const { return app::head(form_, heads_); }
 
-  /// Of run `run`, from 0. Throws Interrupted, and UsageError where it has not what is asked.
+  /// The row of run `run`, from 0. Throws Interrupted; UsageError if the run does not have what is measured.
   Row row(std::int64_t run) const {
     Answers found;
     found.values.resize(asked_.size());

@@ -330,7 +330,7 @@ void Notes::cone(const Figure::Cone& cone, const Scales& scales) {
   }
 }
 
-// Of space: from the origin, all of one length.
+// In space: from the origin, all of one length.
 void Notes::axes() {
   const Rect& window = view_.window();
   const double length = kAxes * std::min(window.width, window.height) / view_.scale_at(Vec3::Zero());

@@ -120,7 +120,7 @@ Stage::Stage(const sim::SceneInfo& info, const Look& looks_, const Camera& camer
   }
 }
 
-// Of a run in the plane.
+// A run in the plane.
 struct Illustrator::Plan {
   Stage stage;
   // the last still list, and the view it is of
@@ -231,7 +231,7 @@ void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list)
     for (Color* color : {&paint.fill, &paint.outline, &paint.axis})
       *color = mix(faded.colours.room, *color, strength);
   }
-  // what is held is where it was
+  // a held body does not move
   const auto still = [&](int body) { return faded.cast.bodies[std::size_t(body)].fixed; };
   std::erase_if(faded.boxes, still);
   std::erase_if(faded.polygons, still);

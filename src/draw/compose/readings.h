@@ -9,7 +9,7 @@
 
 namespace obscura::draw {
 
-/// What an arrow shows, before it is scaled.
+/// The value of an arrow, before it is scaled.
 struct Reading {
   sim::Vec3 tail, value;
   double signed_value = 0;  // of what turns: in the plane counter-clockwise, in space how much about `value`

@@ -21,7 +21,7 @@ constexpr double kFarNumbers = 26 * kPoint,
 
 void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list) {
   const Rect& w = layout.window;
-  // what is shown of the world: inside the hatching
+  // the visible part of the world: inside the hatching
   const double band = layout.clipped ? 0 : kBand * layout.weight + 2 * kPoint;
   const double left = w.x + band, right = w.x + w.width - band;
   const double top = w.y + band, bottom = w.y + w.height - band;

@@ -16,7 +16,7 @@ using sim::Vec3;
 
 constexpr double kNearestDepth = 0.05;  // depth over the target's, nearer than which nothing is looked at
 
-// where a hand is on its way
+// the position of a pointer on its path
 Vec3 along(const sim::SceneInfo::Mouse& mouse, double time) {
   const double span = mouse.release - mouse.press, n = double(mouse.path.size() - 1);
   const double at = span > 0 ? std::clamp((time - mouse.press) / span, 0.0, 1.0) * n : 0;

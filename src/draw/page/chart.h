@@ -9,7 +9,7 @@
 
 namespace obscura::draw {
 
-/// What a film's picture shows of its run over time, in step with it.
+/// A plot over time beside a film's picture, in step with it.
 struct Chart : Measured {
   enum class Place { below, right };  // of the picture
   Place place = Place::below;

@@ -11,7 +11,7 @@
 
 namespace obscura::draw {
 
-// What a figure shows besides the picture: what is named, measured and drawn on it. Values are the run's.
+// The parts of a figure besides the picture: names, measures and drawings on it. Values are the run's.
 
 /// A place of the room, or of a body that takes it along.
 struct Site {
@@ -19,7 +19,7 @@ struct Site {
   sim::Vec3 local = sim::Vec3::Zero();  // in the body's frame, or the room's, m
 };
 
-/// What an arrow stands for.
+/// The quantity of an arrow.
 enum class Quantity { position, velocity, weight, spring, contact, impulse, blast, normal, spin, torque };
 
 struct Figure {

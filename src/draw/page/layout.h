@@ -27,7 +27,7 @@ struct Layout {
   Text clock;               // its span's text is the instant's
 };
 
-/// What is fitted: the room where its walls close, else the extent, and the ground near it.
+/// The fitted region: the room if its walls close, else the extent, and the ground near it.
 struct Fitted {
   bool closed = false;
   sim::Vec3 low, high;

@@ -13,7 +13,7 @@ class Placing {
  public:
   explicit Placing(const Rect& page) : page_(page) {}
 
-  /// What words should not lie on; a heavier line is avoided more.
+  /// Lines that labels should not cover; a heavier line is avoided more.
   void avoid(const Point& a, const Point& b, double weight);
   void avoid(const Rect& rect) { taken_.push_back(rect); }
 

@@ -56,7 +56,7 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
 void draw_lines(const Plot& plot, const PlotArea& area, List& list);
 /// The dots with names.
 void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
-/// What the lines are called, beside their ends.
+/// The names of the lines, beside their ends.
 void draw_names(const Plot& plot, const PlotArea& area, List& list);
 
 /// Puts a plot down in a rectangle of a sheet (kPoint units a point): all of the above.

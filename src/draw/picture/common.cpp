@@ -16,7 +16,7 @@ std::vector<Point> within_all(const std::vector<HalfPlane>& halves) {
   const auto outside = [](const HalfPlane& half, const Point& p) {
     return (p - half.point).dot(half.normal) < 0;
   };
-  // where two lines meet; none where they are parallel but for rounding
+  // the intersection of two lines; none if they are parallel to rounding
   const auto meeting = [&](const HalfPlane& a, const HalfPlane& b) -> std::optional<Point> {
     const double det = cross(a.normal, b.normal);
     if (std::abs(det) < 1e-14) return {};

@@ -6,7 +6,7 @@
 
 namespace obscura::draw {
 
-/// What has (p - point) . normal >= 0.
+/// The half-plane (p - point) . normal >= 0.
 struct HalfPlane {
   Point point;
   Point normal;  // unit
@@ -29,7 +29,7 @@ struct Convex {
 /// A rectangle, of border edges.
 Convex border(const Rect& rect);
 
-/// What of `shape` lies in `half`; the new edge belongs to `side`.
+/// The part of `shape` in `half`; the new edge belongs to `side`.
 Convex cut(const Convex& shape, const HalfPlane& half, int side = -1);
 
 /// Moved inwards by `distance` (negative: outwards).

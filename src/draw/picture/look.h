@@ -12,7 +12,7 @@ namespace obscura::draw {
 
 enum class Theme { paper, screen };
 
-/// What the scene says about the looks of one body.
+/// The scene's looks of one body.
 struct BodyLook {
   std::optional<Color> color;  // none: the palette's next
   double trail = 0;            // s; 0: none
@@ -21,7 +21,7 @@ struct BodyLook {
   std::string label = {};      // words beside it
 };
 
-/// What the scene says about the looks of the picture.
+/// The scene's looks of the picture.
 struct Look {
   Theme theme = Theme::paper;
   std::string title, subtitle;

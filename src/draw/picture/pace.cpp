@@ -74,7 +74,7 @@ Pace::Pace(const std::vector<PaceKey>& keys) {
   if (keys.empty()) return;
   stretches_.push_back({{}, {}, keys[0].speed, keys[0].speed, CameraKey::Ease::hold});
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    // where the key is in the film: that is where the stretch before it ends
+    // the key's time in the film: there the interval before it ends
     const Rational begins = film(keys[i].time);
     const bool last = i + 1 == keys.size();
     Stretch next{begins, keys[i].time, keys[i].speed, keys[i].speed, CameraKey::Ease::hold};

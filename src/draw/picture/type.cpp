@@ -50,7 +50,7 @@ std::vector<fs::path> folders() {
   }
   if (const char* home = std::getenv("HOME")) found.push_back(fs::path(home) / ".local/share/fonts");
   found.emplace_back("/usr/local/share/fonts");
-  // where Debian puts them, before the whole tree is walked
+  // Debian's folders first, then the whole tree
   found.emplace_back("/usr/share/fonts/opentype/inter");
   found.emplace_back("/usr/share/fonts/opentype/stix-word");
   found.emplace_back("/usr/share/fonts");

@@ -84,7 +84,7 @@ std::vector<Push> pushes(const sim::SceneInfo& cast, const Look& look, const sim
     const bool on_other = first.other >= 0 && wanted(first.other);
     if ((!on_body && !on_other) || !(pressed > 0)) continue;
     point /= pressed;
-    // of the two, the one that is carried
+    // the body of the two that is carried
     if (!on_body || (on_other && force.dot(up) < 0)) force = -force;
     found.push_back({point, force});
   }

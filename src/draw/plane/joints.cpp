@@ -1,5 +1,4 @@
-// What joints look like. A rope that is longer than the way between its ends hangs in a parabola of its
-// length,
+// Draws joints. A rope that is longer than the distance of its ends hangs in a parabola of its length,
 //   p(u) = a + u (b - a) + 4 s u (1 - u) d        d  down, s  how far it sags
 
 #include <algorithm>

@@ -74,7 +74,7 @@ Form form(const Part& part, std::uint64_t seams, const View& view, const sim::Sn
 
 /// The part within its outline.
 std::vector<Point> inner(const Form& form, double line) {
-  // of many edges they are not cut one after the other
+  // with many edges they are not cut one by one
   if (form.corners.size() > kMostEdges) {
     std::vector<HalfPlane> edges;
     for (std::size_t i = 0; i < form.corners.size(); ++i) {

@@ -12,7 +12,7 @@
 
 namespace obscura::draw {
 
-/// What the pictures of one run have in common, and the layers they are made of.
+/// Data common to the pictures of one run, and the layers they are made of.
 struct Stage {
   sim::SceneInfo cast;
   Look look;
@@ -40,7 +40,7 @@ struct Stage {
   bool solid(int body) const { return body >= 0 && cast.bodies[body].turns; }
 };
 
-/// Of each part of a body, which of its edges lie within another part, see draw/plane/polygons.cpp.
+/// For each part of a body, the edges that lie within another part, see draw/plane/polygons.cpp.
 std::vector<std::uint64_t> seams_of(const sim::SceneInfo::Body& body);
 
 using Ways = std::span<const std::shared_ptr<const sim::Track>>;

@@ -143,7 +143,7 @@ void draw_still(const Stage& stage, const View& view, List& list) {
     if (!room.empty()) draw_walls(room, kWallLine * weight, stage.colours.wall, list);
     list.unclip();
 
-    // where the strip cuts the room a thin line says so
+    // a thin line marks where the strip cuts the room
     if (stage.layout.clipped && stage.layout.caption) {
       double over = 0;
       for (const Convex::Corner& c : room.corners) over = std::max(over, w.y - c.at.y());

@@ -118,7 +118,7 @@ GroundShadow::Ray GroundShadow::ray(const Vec3& along) const {
 void GroundShadow::cast(std::span<const Vec3> corners, double radius, bool many, std::uint32_t rays,
                         Solids& solids) {
   if (slope_ <= kLevel) return;
-  // what is under the ground casts nothing on it
+  // bodies under the ground cast no shadow on it
   double high = -1e300;
   seen_.clear(), heights_.clear();
   for (const Vec3& c : corners) {

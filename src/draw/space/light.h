@@ -21,7 +21,7 @@ struct Light {
 /// `toward`: a direction to the light; from above.
 Light light(const sim::Vec3& toward);
 
-/// What a surface looks like in the light and out of it.
+/// The colours of a surface in light and in shadow.
 struct Shaded {
   Color lit, shaded;
 };

@@ -81,7 +81,7 @@ Polyhedron cut(const Polyhedron& body, const Vec3& point, const Vec3& normal, in
   }
   if (all) return body;
 
-  // what is kept of each face; where an edge is cut, a new vertex
+  // the kept part of each face; a cut edge gets a new vertex
   Polyhedron left;
   std::vector<int> kept(body.vertices.size(), -1);
   std::map<std::pair<int, int>, int> crossings;

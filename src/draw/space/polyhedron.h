@@ -33,7 +33,7 @@ Polyhedron box(const sim::Vec3& half);
 /// By its faces, see sim::SceneInfo::Body.
 Polyhedron polyhedron(std::span<const sim::Vec3> vertices, std::span<const std::vector<int>> faces);
 
-/// What of `body` has (p - point) . normal >= 0; the new face is of `side`.
+/// The part of `body` with (p - point) . normal >= 0; the new face is of `side`.
 Polyhedron cut(const Polyhedron& body, const sim::Vec3& point, const sim::Vec3& normal, int side);
 
 }  // namespace obscura::draw

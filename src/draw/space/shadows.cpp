@@ -31,7 +31,7 @@ struct LightFrame {
   Vec3 operator()(const Vec3& p) const { return {p.dot(u), p.dot(v), p.dot(away)}; }
 };
 
-/// What the light sees of a thing: a box around it.
+/// The box around a thing in the light's view.
 struct Extents {
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   void add(const Vec3& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
@@ -163,7 +163,7 @@ void cast_on_each_other(SpaceFrame& s) {
   frame.v = frame.away.cross(frame.u);
   const double soft = kSoft * s.lens.window.width / s.lens.scale;
 
-  // what the light sees of each thing
+  // each thing in the light's view
   std::vector<Extents> things(s.chunks.size());
   std::vector<Outline> outlines(s.chunks.size());  // empty: a box around it is all that is known
   for (std::size_t i = 0; i < s.chunks.size(); ++i) {

@@ -169,7 +169,7 @@ void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts
   const double y0 = std::min(a.y(), b.y()), y1 = std::max(a.y(), b.y());
   if (x1 < w.x || y1 < w.y || x0 > w.x + w.width || y0 > w.y + w.height) return;
 
-  // what each piece hides
+  // the lines that each piece hides
   hidden_.clear();
   ++stamps_;
   const auto visit = [&](int index) {

@@ -43,7 +43,7 @@ Piece flat(int body, Polyhedron form) {
   return piece;
 }
 
-/// What a shape is made of, placed in its body by `turn` and `center`.
+/// The parts of a shape, placed in its body by `turn` and `center`.
 template <class Form>
 void add_pieces(int body, const Form& form, const Eigen::Matrix3d& turn, const Vec3& center,
                 std::vector<Piece>& pieces) {
@@ -69,7 +69,7 @@ void add_pieces(int body, const Form& form, const Eigen::Matrix3d& turn, const V
   }
 }
 
-/// What the cameras fit: the room, or the bodies and what of the ground is under them.
+/// The region that cameras fit: the room, or the bodies and the ground under them.
 std::vector<Vec3> fitted_corners(const SpaceStage& stage, const Extent& extent) {
   if (stage.closed) return stage.room.vertices;
   Vec3 low = extent.low.cwiseMin(extent.high), high = extent.low.cwiseMax(extent.high);
@@ -247,7 +247,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
                        {}};
     scenery.solids.window = panel.window;
     picture.moving.clip(panel.window);
-    // what hides, then what is seen
+    // first the hiding bodies, then the lines
     add_bodies(scenery);
     add_links(scenery);
     scenery.sight.finish();

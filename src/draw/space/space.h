@@ -33,7 +33,7 @@ struct Panel {
   std::vector<Text> words;
 };
 
-/// What the pictures of one run in space have in common.
+/// Data common to the pictures of one run in space.
 struct SpaceStage {
   sim::SceneInfo cast;
   Look look;
