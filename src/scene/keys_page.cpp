@@ -364,8 +364,8 @@ const char* const kNotes[][2] = {
      "that they leave free continues: a puck on ice, a rolling ball, a pendulum. Let g be gravity and L the "
      "room's height. A body is put to rest when three things are true of it and all that it touches. It has "
      "been slower than 0.002 s g for a quarter of a second. Forces within the laws of contact leave it less "
-     "acceleration than g / 1,000,000. And of its velocity, the part that contacts and joints leave free, or "
-     "that their spare friction would not stop within 0.01 s, is less than 1e-8 sqrt(g L). The direct solver "
+     "acceleration than g / 1,000,000. The part of its velocity that contacts and joints leave free, or that "
+     "their spare friction would not stop within 0.01 s, is less than 1e-8 sqrt(g L). The direct solver "
      "asks only for a velocity below 1e-8 sqrt(g L) and an acceleration below 1e-10 g. All this scales with "
      "the scene; without gravity a body rests only if it does not move at all."},
     {"mouse",

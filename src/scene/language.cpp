@@ -33,7 +33,7 @@ std::vector<Key> rows() {
        .doc = "Seed of all random numbers. The same seed gives the same scene everywhere.", .example = "4"},
 
       {.path = "room", .form = table,
-       .doc = "The room: its walls and what acts everywhere in it. Left out: 8 m by 4.5 m, four walls."},
+       .doc = "The room: its walls, and forces everywhere in it. Left out: 8 m by 4.5 m, four walls."},
       {.path = "room.size", .form = vector, .unit = "m", .fallback = "[8, 4.5]", .range = {0, 1e6, true}, .in_space = "[12, 4.5, 8]",
        .doc = "Width and height. Gives four walls, in this order: floor, left, right, ceiling; in space width, height and depth, and "
               "also back and front. Left out with `walls` given: only those walls.",
@@ -48,9 +48,9 @@ std::vector<Key> rows() {
        .doc = "The explosion paper's friction, for every body without its own `ground_drag`: drag c along the ground, f = -c v, while the body is on it.",
        .example = "0.5"},
       {.path = "room.elasticity", .form = number, .absent = "the body's own value", .range = kUnit,
-       .doc = "Elasticity of the walls. If given, an impact of a body on a wall uses the root of the product of both.", .example = "0.5"},
+       .doc = "Elasticity of the walls. If given, an impact on a wall uses the geometric mean of wall and body.", .example = "0.5"},
       {.path = "room.friction", .form = number, .absent = "the body's own value", .range = kNotNegative,
-       .doc = "Friction of the walls. If given, a contact of a body with a wall uses the root of the product of both.", .example = "0.8"},
+       .doc = "Friction of the walls. If given, a contact with a wall uses the geometric mean of wall and body.", .example = "0.8"},
       {.path = "room.walls", .form = walls, .absent = "those of `size`", .choices = {"ground", "none"},
        .doc = "`\"ground\"`: only the floor, without end; `\"none\"`: no walls, and `size` is what is shown. Or tables: walls at any "
               "angle, in addition to those of `size` or instead of them: at most 1000, and at most eight in one plane.",
@@ -115,10 +115,10 @@ std::vector<Key> rows() {
       {.path = "any.elasticity", .form = number, .fallback = "0.8", .range = kUnit, .varies = true,
        .doc = "Coefficient of restitution e: 0: no bounce, 1: it bounces at full speed.", .example = "0.9"},
       {.path = "any.friction", .form = number, .fallback = "0.5", .range = kNotNegative, .varies = true,
-       .doc = "Coulomb's mu, static and kinetic; a pair uses the root of the product. Not in `handout`.",
+       .doc = "Coulomb's mu, static and kinetic; a pair uses the geometric mean. Not in `handout`.",
        .example = "0.3"},
       {.path = "handout.collision", .form = choice, .absent = "`physics.collision`", .choices = {"handout"},
-       .doc = "Its own: it meets walls as in the handout, and no bodies.", .example = "\"handout\""},
+       .doc = "It collides with walls as in the handout, and with no bodies.", .example = "\"handout\""},
       {.path = "any.drag", .form = number, .unit = "N s/m", .absent = "`room.drag`", .range = kNotNegative, .varies = true,
        .doc = "Linear drag c: f = -c v.", .example = "0.2"},
       {.path = "any.ground_drag", .form = number, .unit = "N s/m", .absent = "`room.ground_drag`", .range = kNotNegative, .varies = true,
@@ -224,7 +224,7 @@ std::vector<Key> rows() {
       {.path = "bond.within", .form = number, .unit = "m", .fallback = "0.001", .range = kNotNegative,
        .doc = "The largest distance of such a pair.", .example = "0.01"},
       {.path = "bond.breaks", .form = number, .unit = "N", .absent = "never", .range = kPositive,
-       .doc = "The force that breaks the bond of one pair; a torque counts as a force at half the distance of the two bodies.", .example = "200"},
+       .doc = "The force that breaks the bond of one pair; a torque counts as a force with half the distance of the two bodies as lever arm.", .example = "200"},
 
       {.path = "explosion", .form = tables,
        .doc = "A force away from a centre on each point of each body (a particle, its ends, its corners): F = S r / (r^2 + s^2)^(3/2)."},
