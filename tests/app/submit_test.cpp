@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <sstream>
 
+#include "app/console/scripts.h"
 #include "where.h"
 #include "with_slurm.h"
 
@@ -139,6 +141,24 @@ TEST_F(Submit, WritesNoCommandsThatANameBringsAlong) {
   }
 }
 
+// SIGTERM goes to all of a job, and may come late: to what asks Slurm whether the job is to queue again
+TEST_F(Submit, AScriptThatIsToldToStopTwiceQueuesAgain) {
+  Errand errand;
+  errand.made = "room.mp4", errand.folder = ".", errand.where = path("");
+  errand.prepare = "sh -c 'trap \"exit 130\" TERM; touch ready; while :; do sleep 0.02; done'";
+  std::ofstream(path("job.sh")) << prepare_script(errand);
+  std::ofstream(path("scontrol"))
+      << "#!/bin/sh\n"
+         "if [ $1 = requeue ]; then touch requeued; exit 1; fi\n"
+         "touch shown; while [ ! -e go ]; do sleep 0.02; done; echo ' JobState=RUNNING '\n";
+  const Outcome run = shell(
+      "chmod +x scontrol; PATH=$PWD:$PATH setsid sh job.sh & job=$!; "
+      "until [ -e ready ]; do sleep 0.02; done; kill -TERM -$job; "
+      "until [ -e shown ]; do sleep 0.02; done; kill -TERM -$job; touch go; wait $job; echo code $?");
+  EXPECT_NE(run.out.find("code 130"), std::string::npos) << run.out << run.err;
+  EXPECT_TRUE(std::filesystem::exists(path("requeued")));
+}
+
 class Slurm : public WithSlurm {};
 
 TEST_F(Slurm, FourShardsAndAJoinAreOneRun) {
@@ -152,7 +172,7 @@ TEST_F(Slurm, FourShardsAndAJoinAreOneRun) {
   EXPECT_TRUE(contents(path("room.mp4")) == contents(path("one.mp4")));
   const Outcome again = obscura("submit scene.toml --tasks 4 -o room.mp4" + kSmallFilm);
   EXPECT_EQ(again.exit, 0);
-  EXPECT_NE(again.out.find("is whole"), std::string::npos) << again.out;
+  EXPECT_NE(again.out.find("is complete"), std::string::npos) << again.out;
 
   // arrays here end at task 8
   const Outcome table =

@@ -38,6 +38,8 @@ std::string body(const Errand& errand, const std::string& command, const std::st
       "trap 'kill -TERM $child' TERM\n"
       "wait $child; code=$?\n"
       "while kill -0 $child 2>/dev/null; do wait $child; code=$?; done\n"
+      "# the same SIGTERM may reach what follows too\n"
+      "trap '' TERM\n"
       "{}"
       "echo $code >{}/{}.exit\n"
       "# told to stop, once (130) or twice (143), and not by scancel: it queues again and goes on from "
