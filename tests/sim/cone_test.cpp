@@ -176,7 +176,7 @@ TEST(Cone, BlockSticksJustBelowTheAngleOfFriction) {
     ASSERT_TRUE(s.report.found);
     EXPECT_LT(s.w.cwiseAbs().maxCoeff(), kExact * kG);
     for (const ConeMode<2>& mode : s.modes)
-      EXPECT_TRUE(mode.hold == Hold::stick || mode.hold == Hold::at_friction_limit);
+      EXPECT_TRUE(mode.kind == ModeKind::stick || mode.kind == ModeKind::at_friction_limit);
   }
 }
 
@@ -188,7 +188,7 @@ TEST(Cone, BlockSlidesJustAboveTheAngleOfFriction) {
     const double a = kG * (std::sin(angle) - mu * std::cos(angle));
     for (const int i : {1, 3}) EXPECT_NEAR(s.w[i], a, kExact * kG);
     for (const int i : {0, 2}) EXPECT_NEAR(s.w[i], 0, kExact * kG);
-    for (const ConeMode<2>& mode : s.modes) EXPECT_EQ(mode.hold, Hold::slide);
+    for (const ConeMode<2>& mode : s.modes) EXPECT_EQ(mode.kind, ModeKind::slide);
   }
 }
 
@@ -275,7 +275,7 @@ TEST(Cone, NothingIsPulled) {
   const Solved<2> s = solve(heap);
   ASSERT_TRUE(s.report.found);
   EXPECT_EQ(s.f.norm(), 0);
-  for (const ConeMode<2>& mode : s.modes) EXPECT_EQ(mode.hold, Hold::open);
+  for (const ConeMode<2>& mode : s.modes) EXPECT_EQ(mode.kind, ModeKind::open);
 }
 
 TEST(Cone, ABoxPushedAtTheTopTips) {
@@ -284,8 +284,8 @@ TEST(Cone, ABoxPushedAtTheTopTips) {
   heap.gravity = {1.2 * kG, -kG};
   const Solved<2> s = solve(heap);
   ASSERT_TRUE(s.report.found);
-  EXPECT_EQ(s.modes[0].hold, Hold::open);
-  EXPECT_EQ(s.modes[1].hold, Hold::stick);
+  EXPECT_EQ(s.modes[0].kind, ModeKind::open);
+  EXPECT_EQ(s.modes[1].kind, ModeKind::stick);
   // turning about a corner of a unit cube: I = 2/3, moment (1.2 - 1) g / 2
   EXPECT_NEAR(s.w[0], 0.2 * kG / 2 / (2.0 / 3), kExact * kG);
 }
@@ -429,7 +429,7 @@ TEST(Cone, HoldRepeatsWhatSolveFound) {
   std::vector<ConeMode<2>> modes(heap.blocks.size());
   VectorXd f = VectorXd::Zero(b.size()), again(b.size());
   ASSERT_TRUE(cone.solve(K, b, heap.blocks, modes, f).found);
-  const ConeReport report = cone.hold(K, b, heap.blocks, modes, again);
+  const ConeReport report = cone.solve_modes(K, b, heap.blocks, modes, again);
   EXPECT_TRUE(report.found);
   EXPECT_LT((f - again).norm(), kExact * f.norm());
 }
@@ -448,7 +448,7 @@ TEST(Cone, SweepsComeNearTheForces) {
   EXPECT_NEAR(f[4] + f[6], 3 * kG, 1e-9);
   EXPECT_NEAR(f[8] + f[10], kG, 1e-9);
   EXPECT_LT((K * f + b).lpNorm<Eigen::Infinity>(), 1e-9 * kG);
-  for (const ConeMode<2>& mode : modes) EXPECT_EQ(mode.hold, Hold::stick);
+  for (const ConeMode<2>& mode : modes) EXPECT_EQ(mode.kind, ModeKind::stick);
 }
 
 TEST(Cone, LeastNormSharesAlike) {

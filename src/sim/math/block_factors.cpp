@@ -54,25 +54,26 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
   for (int i = 0; i < n; ++i) first_[i] = rows_, rows_ += sizes[i];
   diagonal_.assign(n, {}), inverse_.assign(n, {}), entries_.assign(pairs.size(), {});
 
-  // parts, each told by its lowest block
-  Islands parts;
-  parts.reset(n);
+  // components, each told by its lowest block
+  Islands components;
+  components.reset(n);
   std::vector<std::set<int>> near(n);
   for (const auto& [i, j] : pairs) {
     near[i].insert(j), near[j].insert(i);
-    parts.join(i, j);
+    components.join(i, j);
   }
   std::vector<std::vector<int>> members(n);
-  for (int i = 0; i < n; ++i) members[parts.root(i)].push_back(i);
+  for (int i = 0; i < n; ++i) members[components.root(i)].push_back(i);
 
   // eliminate the block with the fewest remaining neighbours first, then by number
-  part_.assign(n, 0), parts_.assign(1, 0), order_.clear();
+  component_.assign(n, 0), components_.assign(1, 0), order_.clear();
   std::vector<int> place(n, -1);
   std::vector<std::vector<int>> left(n);
   for (int r = 0; r < n; ++r) {
     if (members[r].empty()) continue;
     std::set<std::pair<int, int>> queue;
-    for (const int i : members[r]) queue.emplace(int(near[i].size()), i), part_[i] = int(parts_.size()) - 1;
+    for (const int i : members[r])
+      queue.emplace(int(near[i].size()), i), component_[i] = int(components_.size()) - 1;
     while (!queue.empty()) {
       const int k = queue.begin()->second;
       queue.erase(queue.begin());
@@ -87,7 +88,7 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
       }
       for (const int i : left[k]) queue.emplace(int(near[i].size()), i);
     }
-    parts_.push_back(int(order_.size()));
+    components_.push_back(int(order_.size()));
   }
 
   // entries below each, in the order of elimination
@@ -120,7 +121,7 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
 
 template <int M>
 void Blocks<M>::factorise() {
-  implied_.assign(parts(), 0);
+  implied_.assign(components(), 0);
   if (eliminate()) eliminate();
 }
 
@@ -144,7 +145,7 @@ bool Blocks<M>::eliminate() {
     double own = 0;
     for (int i = 0; i < n; ++i) own = std::max(own, diagonal_[k][i * M + i]);
     const Block pivot = d[k];
-    char& implied = implied_[part_[k]];
+    char& implied = implied_[component_[k]];
     const double least = invert<M>(pivot, n, (implied ? kStiff : kSlight) * own, d[k]);
     if (!implied && least < kImplied * own) implied = 1, found = true;
     for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
@@ -179,14 +180,14 @@ bool Blocks<M>::eliminate() {
 
 template <int M>
 void Blocks<M>::solve(double* x) const {
-  for (int part = 0; part + 1 < int(parts_.size()); ++part) solve(x, part);
+  for (int component = 0; component + 1 < int(components_.size()); ++component) solve(x, component);
 }
 
 template <int M>
-void Blocks<M>::solve(double* x, int part) const {
-  if (!implied_[part]) return substitute(x, part);
+void Blocks<M>::solve(double* x, int component) const {
+  if (!implied_[component]) return substitute(x, component);
   const auto each = [&](auto&& act) {
-    for (int p = parts_[part]; p < parts_[part + 1]; ++p) {
+    for (int p = components_[component]; p < components_[component + 1]; ++p) {
       for (int r = first_[order_[p]]; r < first_[order_[p]] + sizes_[order_[p]]; ++r) act(r);
     }
   };
@@ -194,35 +195,35 @@ void Blocks<M>::solve(double* x, int part) const {
   each([&](int r) { right_[r] = x[r], x[r] = 0; });
   for (int round = 0; round < kRefinements; ++round) {
     each([&](int r) { rest_[r] = right_[r], way_[r] = 0; });
-    take_product(x, rest_.data(), part);
-    substitute(rest_.data(), part);
-    take_product(rest_.data(), way_.data(), part);
-    substitute(way_.data(), part);
+    take_product(x, rest_.data(), component);
+    substitute(rest_.data(), component);
+    take_product(rest_.data(), way_.data(), component);
+    substitute(way_.data(), component);
     each([&](int r) { x[r] -= way_[r]; });
   }
 }
 
 // y := y - A x
 template <int M>
-void Blocks<M>::take_product(const double* x, double* y, int part) const {
+void Blocks<M>::take_product(const double* x, double* y, int component) const {
   const auto take = [&](const Block& a, int i, int j, bool turned) {
     for (int r = 0; r < sizes_[i]; ++r) {
       for (int c = 0; c < sizes_[j]; ++c)
         y[first_[i] + r] -= (turned ? a[c * M + r] : a[r * M + c]) * x[first_[j] + c];
     }
   };
-  for (int p = parts_[part]; p < parts_[part + 1]; ++p)
+  for (int p = components_[component]; p < components_[component + 1]; ++p)
     take(diagonal_[order_[p]], order_[p], order_[p], false);
   for (std::size_t e = 0; e < pairs_.size(); ++e) {
     const auto [i, j] = pairs_[e];
-    if (part_[i] == part) take(entries_[e], i, j, false), take(entries_[e], j, i, true);
+    if (component_[i] == component) take(entries_[e], i, j, false), take(entries_[e], j, i, true);
   }
 }
 
 // by L and D alone
 template <int M>
-void Blocks<M>::substitute(double* x, int part) const {
-  for (int p = parts_[part]; p < parts_[part + 1]; ++p) {
+void Blocks<M>::substitute(double* x, int component) const {
+  for (int p = components_[component]; p < components_[component + 1]; ++p) {
     const int k = order_[p], n = sizes_[k];
     const double* from = x + first_[k];
     for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
@@ -233,7 +234,7 @@ void Blocks<M>::substitute(double* x, int part) const {
       }
     }
   }
-  for (int p = parts_[part + 1]; p-- > parts_[part];) {
+  for (int p = components_[component + 1]; p-- > components_[component];) {
     const int k = order_[p], n = sizes_[k];
     double* to = x + first_[k];
     double z[M] = {};

@@ -7,8 +7,8 @@
 namespace obscura::sim {
 
 /// A sparse symmetric positive matrix of small blocks, of up to M rows each, factorised as L D L' in an order
-/// of few neighbours first: trees fill in nothing. Blocks that no entries connect are parts, solved apart.
-/// Vectors have the rows of the blocks one after another.
+/// of few neighbours first: trees fill in nothing. Blocks that no entries connect are components, solved
+/// apart. Vectors have the rows of the blocks one after another.
 template <int M>
 class Blocks {
  public:
@@ -22,11 +22,11 @@ class Blocks {
   /// Where the rows of a block begin; how many they are.
   int first(int block) const { return first_[block]; }
   int size(int block) const { return sizes_[block]; }
-  /// The part that a block belongs to, and the blocks of a part, in the order of elimination.
-  int part(int block) const { return part_[block]; }
-  int parts() const { return int(parts_.size()) - 1; }
-  int begin(int part) const { return parts_[part]; }
-  int end(int part) const { return parts_[part + 1]; }
+  /// The component that a block belongs to, and the blocks of a component, in the order of elimination.
+  int component(int block) const { return component_[block]; }
+  int components() const { return int(components_.size()) - 1; }
+  int begin(int component) const { return components_[component]; }
+  int end(int component) const { return components_[component + 1]; }
   int at(int place) const { return order_[place]; }
 
   /// The block on the diagonal, and the entry of pair e, rows of i and columns of j: to be written, all,
@@ -34,18 +34,18 @@ class Blocks {
   Block& diagonal(int block) { return diagonal_[block]; }
   Block& entry(int e) { return entries_[e]; }
 
-  /// Rows that others imply, as of a door on two hinges, are told by their pivots: what solves a part with
-  /// such is the least, nearly, and misses what is right by nothing that moves.
+  /// Rows that others imply, as of a door on two hinges, are told by their pivots: what solves a component
+  /// with such is the least, nearly, and misses what is right by nothing that moves.
   void factorise();
 
-  /// x := A^-1 x; of one part only.
+  /// x := A^-1 x; of one component only.
   void solve(double* x) const;
-  void solve(double* x, int part) const;
+  void solve(double* x, int component) const;
 
  private:
   bool eliminate();
-  void substitute(double* x, int part) const;
-  void take_product(const double* x, double* y, int part) const;
+  void substitute(double* x, int component) const;
+  void take_product(const double* x, double* y, int component) const;
 
   struct Below {
     int block;
@@ -56,10 +56,10 @@ class Blocks {
     bool turned;  // the entry's rows are the column's
   };
 
-  std::vector<int> sizes_, first_, part_, parts_ = {0}, order_;
+  std::vector<int> sizes_, first_, component_, components_ = {0}, order_;
   int rows_ = 0;
   std::vector<std::pair<int, int>> pairs_;
-  std::vector<char> implied_;  // of each part: whether rows of it imply others
+  std::vector<char> implied_;  // of each component: whether rows of it imply others
   mutable std::vector<double> right_, rest_, way_;
   std::vector<Block> diagonal_, entries_, inverse_;
   std::vector<int> begin_;  // of below_, by place

@@ -31,7 +31,7 @@ template <int D>
 std::uint64_t name(std::span<const ConeMode<D>> modes) {
   std::uint64_t hash = 0;
   for (const ConeMode<D>& mode : modes) {
-    hash = hash_with(hash, std::uint64_t(mode.hold) + 1);
+    hash = hash_with(hash, std::uint64_t(mode.kind) + 1);
     for (int k = 0; k < D - 1; ++k) hash = hash_with(hash, mode.along[k] > 0 ? 2 : mode.along[k] < 0 ? 1 : 0);
   }
   return hash;
@@ -40,18 +40,18 @@ std::uint64_t name(std::span<const ConeMode<D>> modes) {
 // the mode if the law knows it, else the one to begin with
 template <int D>
 ConeMode<D> fit(const ConeBlock<D>& block, ConeMode<D> mode) {
-  if (block.law == Law::equal) return {Hold::free, Tangent<D>::Zero()};
+  if (block.law == Law::equal) return {ModeKind::free, Tangent<D>::Zero()};
   if (block.law == Law::bounded) {
-    const bool bound = (mode.hold == Hold::at_lower && std::isfinite(block.lower)) ||
-                       (mode.hold == Hold::at_upper && std::isfinite(block.upper));
-    return {bound ? mode.hold : Hold::free, Tangent<D>::Zero()};
+    const bool bound = (mode.kind == ModeKind::at_lower && std::isfinite(block.lower)) ||
+                       (mode.kind == ModeKind::at_upper && std::isfinite(block.upper));
+    return {bound ? mode.kind : ModeKind::free, Tangent<D>::Zero()};
   }
-  if (mode.hold == Hold::open) return {Hold::open, Tangent<D>::Zero()};
-  if (block.sliding) return {Hold::slide, block.direction};
-  if (block.mu == 0) return {Hold::slide, Tangent<D>::Zero()};
-  const bool slips = mode.hold == Hold::slide || mode.hold == Hold::at_friction_limit;
-  if (slips && mode.along.norm() > 0.5) return {Hold::slide, mode.along.normalized()};
-  return {Hold::stick, Tangent<D>::Zero()};
+  if (mode.kind == ModeKind::open) return {ModeKind::open, Tangent<D>::Zero()};
+  if (block.sliding) return {ModeKind::slide, block.direction};
+  if (block.mu == 0) return {ModeKind::slide, Tangent<D>::Zero()};
+  const bool slips = mode.kind == ModeKind::slide || mode.kind == ModeKind::at_friction_limit;
+  if (slips && mode.along.norm() > 0.5) return {ModeKind::slide, mode.along.normalized()};
+  return {ModeKind::stick, Tangent<D>::Zero()};
 }
 
 }  // namespace
@@ -137,11 +137,11 @@ bool Cone<D>::enumerate(std::span<const ConeBlock<D>> blocks) {
       rest /= choices(blocks[i]);
       ConeMode<D> mode;
       if (blocks[i].law == Law::bounded) {
-        mode.hold = choice == 0 ? Hold::free : choice == 1 ? Hold::at_lower : Hold::at_upper;
+        mode.kind = choice == 0 ? ModeKind::free : choice == 1 ? ModeKind::at_lower : ModeKind::at_upper;
       } else if (choice == 1) {
-        mode.hold = Hold::open;
+        mode.kind = ModeKind::open;
       } else if (choice > 1) {
-        mode = {Hold::slide, (choice == 2 ? 1 : -1) * Tangent<D>::Unit(0)};
+        mode = {ModeKind::slide, (choice == 2 ? 1 : -1) * Tangent<D>::Unit(0)};
       }
       trial_[i] = fit(blocks[i], mode);
     }
@@ -199,13 +199,13 @@ ConeReport Cone<D>::solve(const Eigen::Ref<const Eigen::MatrixXd>& K,
   answer();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     modes[i] = best_[i];
-    if (best_[i].hold != Hold::slide || blocks[i].sliding) continue;
+    if (best_[i].kind != ModeKind::slide || blocks[i].sliding) continue;
     // on the cone's surface, does it slip?
     const Tangent<D> wt = Eigen::Map<const Tangent<D>>(w_.data() + first_[i] + 1);
     double size = 0;
     for (int k = 0; k < D; ++k) size = std::max(size, size_[first_[i] + k]);
     const bool slips = wt.norm() > kTolerance * size + sigma_[first_[i]] * negligible;
-    if (!slips) modes[i].hold = Hold::at_friction_limit;
+    if (!slips) modes[i].kind = ModeKind::at_friction_limit;
     if (slips && blocks[i].mu == 0) modes[i].along = wt.normalized();
   }
   return {found, best_residual_, tries_};

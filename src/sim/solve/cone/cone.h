@@ -60,9 +60,9 @@ class Cone {
   /// f where the modes are known, as equalities; inequalities are not looked at: free and stick: w = 0; open:
   /// f = 0; slide and brink: w_n = 0, f_t = -mu f_n `along` (the mode's, not the block's); at a bound: f is
   /// the bound. The residual is that of the equalities; found is false where they contradict one another.
-  ConeReport hold(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
-                  std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes,
-                  Eigen::Ref<Eigen::VectorXd> f);
+  ConeReport solve_modes(const Eigen::Ref<const Eigen::MatrixXd>& K,
+                         const Eigen::Ref<const Eigen::VectorXd>& b, std::span<const ConeBlock<D>> blocks,
+                         std::span<const ConeMode<D>> modes, Eigen::Ref<Eigen::VectorXd> f);
 
   /// K x = r on the rows `rows` (ascending), x = 0 elsewhere: the x of least norm, each row weighed by its
   /// own response; of least squares where the rows contradict one another, and then found is false.

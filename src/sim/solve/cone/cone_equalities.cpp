@@ -17,7 +17,7 @@ constexpr double kLargestTurn = 0.5;  // of a slip's direction at once, rad
 constexpr int kRefinements = 3;
 constexpr double kSafe = 1e-5;  // no pivot is so small where rows are far from dependent
 
-bool on_cone(Hold hold) { return hold == Hold::slide || hold == Hold::at_friction_limit; }
+bool on_cone(ModeKind kind) { return kind == ModeKind::slide || kind == ModeKind::at_friction_limit; }
 
 // a quarter turn
 Eigen::Matrix<double, 1, 1> across(const Eigen::Matrix<double, 1, 1>&) {
@@ -58,8 +58,8 @@ void Cone<D>::start(std::span<const ConeBlock<D>> blocks, std::span<const ConeMo
   std::fill(g_.begin(), g_.end(), 0.0);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const int row = first_[i];
-    if (modes[i].hold == Hold::at_lower) g_[row] = blocks[i].lower / sigma_[row];
-    if (modes[i].hold == Hold::at_upper) g_[row] = blocks[i].upper / sigma_[row];
+    if (modes[i].kind == ModeKind::at_lower) g_[row] = blocks[i].lower / sigma_[row];
+    if (modes[i].kind == ModeKind::at_upper) g_[row] = blocks[i].upper / sigma_[row];
   }
 }
 
@@ -72,12 +72,12 @@ void Cone<D>::gather(std::span<const ConeBlock<D>> blocks, std::span<const ConeM
   for (int i = 0; i < int(blocks.size()); ++i) {
     const int row = first_[i];
     const ConeMode<D>& mode = modes[i];
-    if (mode.hold == Hold::free || mode.hold == Hold::stick) {
+    if (mode.kind == ModeKind::free || mode.kind == ModeKind::stick) {
       for (int k = 0; k < blocks[i].rows(); ++k) unknowns_.push_back({Kind::row, row + k, i});
-    } else if (on_cone(mode.hold)) {
+    } else if (on_cone(mode.kind)) {
       unknowns_.push_back({Kind::cone, row, i});
       symmetric = symmetric && (blocks[i].mu == 0 || mode.along.isZero(0));
-      if (turning && mode.hold == Hold::slide && !blocks[i].sliding && blocks[i].mu > 0 && g_[row] > 0) {
+      if (turning && mode.kind == ModeKind::slide && !blocks[i].sliding && blocks[i].mu > 0 && g_[row] > 0) {
         unknowns_.push_back({Kind::turn, row, i});
         symmetric = false;
       }
@@ -271,9 +271,10 @@ double Cone<D>::contradiction(std::span<const ConeBlock<D>> blocks) {
 }
 
 template <int D>
-ConeReport Cone<D>::hold(const Eigen::Ref<const Eigen::MatrixXd>& K,
-                         const Eigen::Ref<const Eigen::VectorXd>& b, std::span<const ConeBlock<D>> blocks,
-                         std::span<const ConeMode<D>> modes, Eigen::Ref<Eigen::VectorXd> f) {
+ConeReport Cone<D>::solve_modes(const Eigen::Ref<const Eigen::MatrixXd>& K,
+                                const Eigen::Ref<const Eigen::VectorXd>& b,
+                                std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes,
+                                Eigen::Ref<Eigen::VectorXd> f) {
   scale(K, b, blocks);
   trial_.assign(modes.begin(), modes.end());
   tries_ = 0;

@@ -62,14 +62,16 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const ConeBlock<D>& block = blocks[i];
     const int n = first_[i];
-    modes[i] = {Hold::free, Tangent<D>::Zero()};
-    if (block.law == Law::bounded && f[n] == block.lower) modes[i].hold = Hold::at_lower;
-    if (block.law == Law::bounded && f[n] == block.upper) modes[i].hold = Hold::at_upper;
+    modes[i] = {ModeKind::free, Tangent<D>::Zero()};
+    if (block.law == Law::bounded && f[n] == block.lower) modes[i].kind = ModeKind::at_lower;
+    if (block.law == Law::bounded && f[n] == block.upper) modes[i].kind = ModeKind::at_upper;
     if (block.law != Law::contact) continue;
     const Eigen::Map<const Tangent<D>> drag(f.data() + n + 1);
     const double size = std::sqrt(drag.squaredNorm());
-    modes[i].hold = f[n] == 0 ? Hold::open : size < 0.999 * block.mu * f[n] ? Hold::stick : Hold::slide;
-    if (modes[i].hold == Hold::slide && size > 0) modes[i].along = -drag / size;
+    modes[i].kind = f[n] == 0                        ? ModeKind::open
+                    : size < 0.999 * block.mu * f[n] ? ModeKind::stick
+                                                     : ModeKind::slide;
+    if (modes[i].kind == ModeKind::slide && size > 0) modes[i].along = -drag / size;
   }
 }
 

@@ -18,14 +18,13 @@ enum class Law : std::uint8_t {
 };
 
 /// How a block obeys its law.
-enum class Hold : std::uint8_t {
+enum class ModeKind : std::uint8_t {
   free,               // w = 0: equal, or bounded between its bounds
   at_lower,           // bounded: f = lower
   at_upper,           // bounded: f = upper
   open,               // contact: f = 0
   stick,              // contact: w = 0, f inside the cone
-  at_friction_limit,  // contact: on the cone's surface, f_t = -mu f_n d, and w = 0 all the same, as others
-                      // hold it
+  at_friction_limit,  // contact: on the cone's surface, f_t = -mu f_n d, and w = 0 all the same
   slide               // contact: w_n = 0, f_t = -mu f_n d
 };
 
@@ -45,8 +44,9 @@ struct ConeBlock {
 /// What a block does: its mode, and d of a contact on the cone's surface.
 template <int D>
 struct ConeMode {
-  Hold hold = Hold::stick;
-  Tangent<D> along = Tangent<D>::Zero();  // unit where hold is brink or slide: where it (would) slip to
+  ModeKind kind = ModeKind::stick;
+  Tangent<D> along =
+      Tangent<D>::Zero();  // unit at the friction limit and where it slides: where it (would) slip to
 
   bool operator==(const ConeMode&) const = default;
 };

@@ -219,19 +219,19 @@ void ConeGuess<D>::modes(double softness, std::span<ConeMode<D>> modes) const {
     ConeMode<D>& mode = modes[block];
     mode.along.setZero();
     if (law.law == Law::equal) {
-      mode.hold = Hold::free;
+      mode.kind = ModeKind::free;
     } else if (law.law == Law::bounded) {
       const double y = -w_[row] / softness;
-      mode.hold = f == y ? Hold::free : y < f ? Hold::at_lower : Hold::at_upper;
+      mode.kind = f == y ? ModeKind::free : y < f ? ModeKind::at_lower : ModeKind::at_upper;
     } else if (!(f > 0)) {
-      mode.hold = Hold::open;
+      mode.kind = ModeKind::open;
     } else if (law.sliding) {
-      mode = {Hold::slide, law.direction};
+      mode = {ModeKind::slide, law.direction};
     } else {
       const Tangent<D> wt = Eigen::Map<const Tangent<D>>(w_.data() + row + 1);
       const double speed = wt.norm(), most = law.mu * f * softness;
       const bool slips = speed > most * (1 + 1e-9);
-      mode.hold = slips ? Hold::slide : Hold::stick;
+      mode.kind = slips ? ModeKind::slide : ModeKind::stick;
       if (slips) mode.along = wt / speed;
     }
   }

@@ -29,55 +29,55 @@ template <int D>
 double Cone<D>::check(const ConeBlock<D>& block, const ConeMode<D>& mode, int row,
                       ConeMode<D>& better) const {
   double worst = 0;
-  const auto see = [&](double violation, Hold hold) {
-    if (!(violation <= worst)) worst = violation, better.hold = hold;
+  const auto see = [&](double violation, ModeKind kind) {
+    if (!(violation <= worst)) worst = violation, better.kind = kind;
   };
   const double f = g_[row], w = w_[row];
-  switch (mode.hold) {
-    case Hold::free:
-      see(std::fabs(w), Hold::free);
+  switch (mode.kind) {
+    case ModeKind::free:
+      see(std::fabs(w), ModeKind::free);
       if (block.law == Law::equal) break;
-      see(block.lower / sigma_[row] - f, Hold::at_lower);
-      see(f - block.upper / sigma_[row], Hold::at_upper);
+      see(block.lower / sigma_[row] - f, ModeKind::at_lower);
+      see(f - block.upper / sigma_[row], ModeKind::at_upper);
       break;
-    case Hold::at_lower:
-      if (block.lower < block.upper) see(-w, Hold::free);
+    case ModeKind::at_lower:
+      if (block.lower < block.upper) see(-w, ModeKind::free);
       break;
-    case Hold::at_upper:
-      if (block.lower < block.upper) see(w, Hold::free);
+    case ModeKind::at_upper:
+      if (block.lower < block.upper) see(w, ModeKind::free);
       break;
-    case Hold::open:
-      see(-w, block.sliding || block.mu == 0 ? Hold::slide : Hold::stick);
-      if (better.hold == Hold::slide) better.along = block.direction;
+    case ModeKind::open:
+      see(-w, block.sliding || block.mu == 0 ? ModeKind::slide : ModeKind::stick);
+      if (better.kind == ModeKind::slide) better.along = block.direction;
       break;
-    case Hold::stick: {
+    case ModeKind::stick: {
       const Tangent<D> ft = Eigen::Map<const Tangent<D>>(g_.data() + row + 1);
       const double pull = ft.norm();
-      see(std::fabs(w), Hold::stick);
-      see(Eigen::Map<const Tangent<D>>(w_.data() + row + 1).norm(), Hold::stick);
-      see(-f, Hold::open);
-      if (f > 0) see(pull - block.mu * f, Hold::slide);
-      if (better.hold == Hold::slide) better.along = -ft / pull;
+      see(std::fabs(w), ModeKind::stick);
+      see(Eigen::Map<const Tangent<D>>(w_.data() + row + 1).norm(), ModeKind::stick);
+      see(-f, ModeKind::open);
+      if (f > 0) see(pull - block.mu * f, ModeKind::slide);
+      if (better.kind == ModeKind::slide) better.along = -ft / pull;
       break;
     }
-    case Hold::at_friction_limit:
-    case Hold::slide: {
-      see(std::fabs(w), mode.hold);
-      see(-f, Hold::open);
+    case ModeKind::at_friction_limit:
+    case ModeKind::slide: {
+      see(std::fabs(w), mode.kind);
+      see(-f, ModeKind::open);
       if (block.sliding || block.mu == 0) break;
       // friction may be large enough to matter, and must not push the way it slips
       const Tangent<D> wt = Eigen::Map<const Tangent<D>>(w_.data() + row + 1);
       const double along = wt.dot(mode.along), most = block.mu * std::max(0.0, f);
-      see(std::min(-along, most), Hold::stick);
+      see(std::min(-along, most), ModeKind::stick);
       if constexpr (D > 2) {
         const Tangent<D> aside = wt - along * mode.along;
-        see(std::min(aside.norm(), most), mode.hold);
-        if (better.hold == mode.hold && along > 0) better.along = wt.normalized();
+        see(std::min(aside.norm(), most), mode.kind);
+        if (better.kind == mode.kind && along > 0) better.along = wt.normalized();
       }
       break;
     }
   }
-  if (better.hold != Hold::slide && better.hold != Hold::at_friction_limit) better.along.setZero();
+  if (better.kind != ModeKind::slide && better.kind != ModeKind::at_friction_limit) better.along.setZero();
   return worst;
 }
 

@@ -222,12 +222,12 @@ void ExactSolver<D>::warm_start(double h) {
     for (int i = 0; i < D; ++i)
       warm_[constraint.first + i] = h * known->force.dot(rows_[constraint.first + i].along);
     ConeMode<D>& mode = modes_[constraint.block];
-    if (known->touching == ContactMode::open) mode.hold = Hold::open;
+    if (known->touching == ContactMode::open) mode.kind = ModeKind::open;
     if (known->touching != ContactMode::slide && known->touching != ContactMode::at_friction_limit) continue;
     Tangent<D> drag;
     for (int i = 0; i < D - 1; ++i) drag[i] = h * known->force.dot(rows_[constraint.first + 1 + i].along);
     const double size = std::sqrt(drag.squaredNorm());
-    if (size > 0) mode.hold = Hold::slide, mode.along = -drag / size;
+    if (size > 0) mode.kind = ModeKind::slide, mode.along = -drag / size;
   }
 }
 
@@ -249,11 +249,11 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
     if (progress_.forced.empty() || constraint.kind != Constraint::Kind::contact) continue;
     const ContactKey& key = candidates_[constraint.of].key;
     ConeMode<D>& mode = modes_[constraint.block];
-    if (mode.hold != Hold::open || std::find(progress_.forced.begin(), progress_.forced.end(),
-                                             std::pair(key.a, key.b)) == progress_.forced.end())
+    if (mode.kind != ModeKind::open || std::find(progress_.forced.begin(), progress_.forced.end(),
+                                                 std::pair(key.a, key.b)) == progress_.forced.end())
       continue;
     const ConeBlock<D>& block = blocks_[constraint.block];
-    mode.hold = Hold::slide, mode.along = block.sliding ? block.direction : Tangent<D>::Zero();
+    mode.kind = ModeKind::slide, mode.along = block.sliding ? block.direction : Tangent<D>::Zero();
   }
   return found;
 }
@@ -265,7 +265,7 @@ template <int D>
 bool ExactSolver<D>::jammed() const {
   double most = 0, load = 0;
   for (const Constraint& constraint : constraints_) {
-    if (constraint.kind != Constraint::Kind::contact || modes_[constraint.block].hold != Hold::slide)
+    if (constraint.kind != Constraint::Kind::contact || modes_[constraint.block].kind != ModeKind::slide)
       continue;
     most = std::max(most, f_[constraint.first]);
   }
@@ -285,9 +285,9 @@ bool ExactSolver<D>::active(const Constraint& constraint) const {
     case Constraint::Kind::joint:
       return true;
     case Constraint::Kind::contact:
-      return modes_[constraint.block].hold != Hold::open;
+      return modes_[constraint.block].kind != ModeKind::open;
     default:
-      return modes_[constraint.block].hold == Hold::free;
+      return modes_[constraint.block].kind == ModeKind::free;
   }
 }
 
@@ -379,11 +379,11 @@ void ExactSolver<D>::project(State<D>& state, bool impacts_follow) {
   b_.setZero(rows_.size());
   for (const Constraint& constraint : constraints_) {
     if (!active(constraint)) continue;
-    const Hold hold = modes_[constraint.block].hold;
+    const ModeKind kind = modes_[constraint.block].kind;
     if (impacts_follow && constraint.kind == Kind::contact &&
         row_velocity(constraint.first) < -progress_.rest_speed)
       continue;
-    const int n = constraint.kind != Kind::contact ? constraint.rows : hold == Hold::slide ? 1 : D;
+    const int n = constraint.kind != Kind::contact ? constraint.rows : kind == ModeKind::slide ? 1 : D;
     for (int i = 0; i < n; ++i) {
       const int row = constraint.first + i;
       const double aim = constraint.kind == Kind::motor ? model_.joints[constraint.of].motor->speed : 0;

@@ -203,7 +203,7 @@ double ExactSolver<D>::stopping_time(Couple& which) const {
     double begun = 0, now = 0;
     if (constraint.kind == Constraint::Kind::contact) {
       const ConeBlock<D>& block = blocks_[constraint.block];
-      if (!block.sliding || modes_[constraint.block].hold != Hold::slide) continue;
+      if (!block.sliding || modes_[constraint.block].kind != ModeKind::slide) continue;
       const Tangent<D>& way = D > 2 ? interval_.modes[constraint.block].along : block.direction;
       for (int i = 0; i < D - 1; ++i) {
         begun += way[i] * interval_.velocities[constraint.first + 1 + i];
@@ -232,7 +232,7 @@ double ExactSolver<D>::stopping_time(Couple& which) const {
 template <int D>
 double ExactSolver<D>::force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const {
   const double pressed = f[constraint.first];
-  if (model_.collision != Collision::event || interval_.modes[constraint.block].hold != Hold::stick)
+  if (model_.collision != Collision::event || interval_.modes[constraint.block].kind != ModeKind::stick)
     return pressed;
   return blocks_[constraint.block].mu * pressed -
          std::sqrt(f.segment(constraint.first + 1, D - 1).squaredNorm());

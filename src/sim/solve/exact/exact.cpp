@@ -236,7 +236,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       // on the at_friction_limit nothing slips: as an equality it is a stick
       interval_.modes = modes_;
       for (ConeMode<D>& mode : interval_.modes) {
-        if (mode.hold == Hold::at_friction_limit) mode.hold = Hold::stick;
+        if (mode.kind == ModeKind::at_friction_limit) mode.kind = ModeKind::stick;
       }
       if (D > 2) begin_slip_directions(state, t + done, h - done);
       const std::size_t forced = progress_.forced.size();
@@ -293,10 +293,10 @@ void ExactSolver<D>::release_contact() {
     const Tangent<D> drag = f_.segment(constraint.first + 1, D - 1);
     const double left = force_reserve(constraint, f_);
     if (f_[constraint.first] <= interval_.slight) {
-      mode.hold = Hold::open;
+      mode.kind = ModeKind::open;
       f_.segment(constraint.first, D).setZero();
-    } else if (left <= interval_.slight && mode.hold != Hold::slide) {
-      mode.hold = Hold::slide, mode.along = -drag / std::sqrt(drag.squaredNorm());
+    } else if (left <= interval_.slight && mode.kind != ModeKind::slide) {
+      mode.kind = ModeKind::slide, mode.along = -drag / std::sqrt(drag.squaredNorm());
     } else if (left > 0.25 * progress_.reserve_at_release) {
       progress_.unclear.push_back(
           *progress_.released);  // one of many that may bear the same load: its force tells nothing
@@ -362,13 +362,13 @@ void ExactSolver<D>::record_forces() {
   }
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact) continue;
-    const Hold hold = modes_[constraint.block].hold;
-    if (hold == Hold::open) continue;
+    const ModeKind kind = modes_[constraint.block].kind;
+    if (kind == ModeKind::open) continue;
     Contact<D> contact;
     contact.key = candidates_[constraint.of].key;
-    contact.touching = hold == Hold::slide               ? ContactMode::slide
-                       : hold == Hold::at_friction_limit ? ContactMode::at_friction_limit
-                                                         : ContactMode::stick;
+    contact.touching = kind == ModeKind::slide               ? ContactMode::slide
+                       : kind == ModeKind::at_friction_limit ? ContactMode::at_friction_limit
+                                                             : ContactMode::stick;
     contact.point = constraint.point, contact.normal = constraint.normal, contact.gap = constraint.off;
     for (int i = 0; i < D; ++i) contact.force += f_[constraint.first + i] * rows_[constraint.first + i].along;
     outcome_.contacts.push_back(contact);
@@ -465,14 +465,15 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   find_islands();
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind == Constraint::Kind::contact && constraint.off >= -limits_.touching_gap)
-      modes_[constraint.block].hold = Hold::open;
+      modes_[constraint.block].kind = ModeKind::open;
     if (constraint.kind == Constraint::Kind::contact && constraint.off < -limits_.touching_gap)
-      modes_[constraint.block].hold = Hold::slide;
+      modes_[constraint.block].kind = ModeKind::slide;
     if (constraint.kind == Constraint::Kind::motor || constraint.kind == Constraint::Kind::friction)
-      modes_[constraint.block].hold = Hold::at_lower;
+      modes_[constraint.block].kind = ModeKind::at_lower;
     if (constraint.kind == Constraint::Kind::rope || constraint.kind == Constraint::Kind::lower ||
         constraint.kind == Constraint::Kind::upper)
-      modes_[constraint.block].hold = constraint.off < -limits_.touching_gap ? Hold::free : Hold::at_lower;
+      modes_[constraint.block].kind =
+          constraint.off < -limits_.touching_gap ? ModeKind::free : ModeKind::at_lower;
   }
   project(state, true);
 }

@@ -91,7 +91,7 @@ void ExactSolver<D>::solve_roughly(int sweeps) {
 template <int D>
 void ExactSolver<D>::solve_held() {
   each_island(interval_.modes, [&](std::vector<ConeMode<D>>& modes) {
-    cone_.hold(scratch_.K, scratch_.island_b, scratch_.island_blocks, modes, scratch_.island_f);
+    cone_.solve_modes(scratch_.K, scratch_.island_b, scratch_.island_blocks, modes, scratch_.island_f);
   });
 }
 

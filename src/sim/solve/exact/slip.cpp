@@ -32,7 +32,8 @@ void ExactSolver<D>::begin_slip_directions(State<D>& state, double t, double h) 
   bool any = false;
   for (Constraint& constraint : constraints_) {
     constraint.slip.setZero(), constraint.slow = false;
-    if (constraint.kind != Constraint::Kind::contact || interval_.modes[constraint.block].hold != Hold::slide)
+    if (constraint.kind != Constraint::Kind::contact ||
+        interval_.modes[constraint.block].kind != ModeKind::slide)
       continue;
     Tangent<D> slip;
     double most = 0;
@@ -78,7 +79,8 @@ void ExactSolver<D>::aim_slow_slips(State<D>& state, double t, double h) {
 template <int D>
 void ExactSolver<D>::turn_slip_directions() {
   for (const Constraint& constraint : constraints_) {
-    if (constraint.kind != Constraint::Kind::contact || interval_.modes[constraint.block].hold != Hold::slide)
+    if (constraint.kind != Constraint::Kind::contact ||
+        interval_.modes[constraint.block].kind != ModeKind::slide)
       continue;
     Tangent<D> way, slip;
     for (int i = 0; i < D - 1; ++i) {

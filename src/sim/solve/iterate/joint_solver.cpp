@@ -20,11 +20,11 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kRounds = 8;           // of Newton's
-constexpr int kSearches = 12;        // the same, with a search along each
-constexpr double kStride = 0.1;      // rad, and of the scene's size: farther nothing is put in a step
-constexpr double kLeastPart = 1e-3;  // of a way, in it
-constexpr double kPut = 1e-9;        // of the scene's size: how far off joints may stay
+constexpr int kRounds = 8;               // of Newton's
+constexpr int kSearches = 12;            // the same, with a search along each
+constexpr double kStride = 0.1;          // rad, and of the scene's size: farther nothing is put in a step
+constexpr double kLeastFraction = 1e-3;  // of a way, in it
+constexpr double kPut = 1e-9;            // of the scene's size: how far off joints may stay
 constexpr int kBoundedRounds =
     16;  // an iteration, of rows with bounds among themselves: they begin from nothing
 constexpr double kLocked = 1e-6;  // of a row's own: what it can move once joints have answered
@@ -36,7 +36,7 @@ constexpr double kEndless = 1e300;
 template <int D>
 JointSolver<D>::JointSolver(const Model<D>& model) : model_(model), response_(model) {
   const std::size_t n = model.bodies.size();
-  member_.assign(n, 0), part_of_body_.assign(n, -1);
+  member_.assign(n, 0), component_of_body_.assign(n, -1);
   at_.resize(n), turn_.resize(n);
   for (Orientation<D>& turn : turn_) turn.setZero();
   for (const Joint<D>& joint : model.joints) {
@@ -65,10 +65,10 @@ void JointSolver<D>::gather(const State<D>& state) {
 }
 
 template <int D>
-std::span<const int> JointSolver<D>::parts_of(std::span<const int> bodies) {
+std::span<const int> JointSolver<D>::components_of(std::span<const int> bodies) {
   some_parts_.clear();
   for (const int body : bodies) {
-    if (has(body)) some_parts_.push_back(part(body));
+    if (has(body)) some_parts_.push_back(component(body));
   }
   std::sort(some_parts_.begin(), some_parts_.end());
   some_parts_.erase(std::unique(some_parts_.begin(), some_parts_.end()), some_parts_.end());
@@ -111,10 +111,10 @@ void JointSolver<D>::plan() {
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   factors_.plan(sizes, pairs_);
   for (std::size_t body = 0; body < of.size(); ++body)
-    part_of_body_[body] = of[body].empty() ? -1 : factors_.part(of[body].front());
-  members_.assign(std::size_t(parts()), {});
+    component_of_body_[body] = of[body].empty() ? -1 : factors_.component(of[body].front());
+  members_.assign(std::size_t(components()), {});
   for (const int i : bodies_) {
-    if (part_of_body_[i] >= 0) members_[part_of_body_[i]].push_back(i);
+    if (component_of_body_[i] >= 0) members_[component_of_body_[i]].push_back(i);
   }
   rows_.resize(factors_.rows()), old_rows_.resize(factors_.rows());
   for (auto* numbers : {&impulses_, &totals_, &rhs_, &shifts_}) numbers->resize(factors_.rows());
@@ -241,21 +241,21 @@ void JointSolver<D>::collect_bounded(double h) {
 
 template <int D>
 void JointSolver<D>::compute_response(JointResponse& response) {
-  const auto part = [&](int body) { return body < 0 ? -1 : part_of_body_[body]; };
-  int* const parts = response.parts;
-  parts[0] = part(response.row.a), parts[1] = part(response.row.b);
-  if (parts[0] < 0) std::swap(parts[0], parts[1]);
-  if (parts[1] == parts[0]) parts[1] = -1;
+  const auto component = [&](int body) { return body < 0 ? -1 : component_of_body_[body]; };
+  int* const components = response.components;
+  components[0] = component(response.row.a), components[1] = component(response.row.b);
+  if (components[0] < 0) std::swap(components[0], components[1]);
+  if (components[1] == components[0]) components[1] = -1;
   for (int s = 0; s < 2; ++s) {
     response.answer[s].clear(), response.affected[s].clear();
-    if (parts[s] < 0) continue;
-    each_row(parts[s], [&](int k, int r) {
+    if (components[s] < 0) continue;
+    each_row(components[s], [&](int k, int r) {
       const double fast = response_.coupling(rows_[r], response.row, at_);
       rhs_[r] = -fast;
       if (fast != 0) response.affected[s].emplace_back(k, fast);
     });
-    factors_.solve(rhs_.data(), parts[s]);
-    each_row(parts[s], [&](int, int r) { response.answer[s].push_back(rhs_[r]); });
+    factors_.solve(rhs_.data(), components[s]);
+    each_row(components[s], [&](int, int r) { response.answer[s].push_back(rhs_[r]); });
   }
 }
 
@@ -263,8 +263,8 @@ template <int D>
 double JointSolver<D>::response_between(const JointResponse& p, const JointResponse& q) const {
   double sum = response_.coupling(p.row, q.row, at_);
   for (int s = 0; s < 2; ++s) {
-    for (int r = 0; r < 2 && p.parts[s] >= 0; ++r) {
-      if (q.parts[r] != p.parts[s]) continue;
+    for (int r = 0; r < 2 && p.components[s] >= 0; ++r) {
+      if (q.components[r] != p.components[s]) continue;
       for (const auto& [k, fast] : p.affected[s]) sum += fast * q.answer[r][k];
     }
   }
@@ -278,43 +278,44 @@ double JointSolver<D>::give(const Bounded& b) const {
   return gives > kLocked * own ? 1 / gives : 0;
 }
 
-// by parts, and how they move each other
+// by components, and how they move each other
 template <int D>
 void JointSolver<D>::couple_bounded() {
-  // part_first_[p + 1] begins part p, the next one ends it
-  part_first_.assign(parts() + 2, 0), by_part_.resize(active_);
-  for (std::size_t k = 0; k < active_; ++k) ++part_first_[bounded_[k].parts[0] + 1];
+  // component_first_[p + 1] begins component p, the next one ends it
+  component_first_.assign(components() + 2, 0), by_component_.resize(active_);
+  for (std::size_t k = 0; k < active_; ++k) ++component_first_[bounded_[k].components[0] + 1];
   int before = 0;
-  for (int& first : part_first_) before += std::exchange(first, before);
-  for (std::size_t k = 0; k < active_; ++k) by_part_[part_first_[bounded_[k].parts[0] + 1]++] = int(k);
-  for (std::size_t p = part_first_.size(); p-- > 1;) part_first_[p] = part_first_[p - 1];
-  part_first_[0] = 0;
+  for (int& first : component_first_) before += std::exchange(first, before);
+  for (std::size_t k = 0; k < active_; ++k)
+    by_component_[component_first_[bounded_[k].components[0] + 1]++] = int(k);
+  for (std::size_t p = component_first_.size(); p-- > 1;) component_first_[p] = component_first_[p - 1];
+  component_first_[0] = 0;
 
   yields_.clear();
-  for (int part = -1; part < parts(); ++part) {
-    const int begin = part_first_[part + 1], end = part_first_[part + 2];
+  for (int component = -1; component < components(); ++component) {
+    const int begin = component_first_[component + 1], end = component_first_[component + 2];
     for (int i = begin; i < end; ++i) {
-      Bounded& b = bounded_[by_part_[i]];
+      Bounded& b = bounded_[by_component_[i]];
       b.first = int(yields_.size());
-      for (int j = begin; j < end; ++j) yields_.push_back(response_between(b, bounded_[by_part_[j]]));
+      for (int j = begin; j < end; ++j) yields_.push_back(response_between(b, bounded_[by_component_[j]]));
     }
   }
 }
 
-// changes_ of a part onto the velocities, with what the joints answer
+// changes_ of a component onto the velocities, with what the joints answer
 template <int D>
-void JointSolver<D>::push_bounded(int part) {
-  const int begin = part_first_[part + 1], end = part_first_[part + 2];
+void JointSolver<D>::push_bounded(int component) {
+  const int begin = component_first_[component + 1], end = component_first_[component + 2];
   bool any = false;
   for (int i = begin; i < end; ++i) {
     if (changes_[i] == 0) continue;
     any = true;
-    push(bounded_[by_part_[i]].row, changes_[i]);
+    push(bounded_[by_component_[i]].row, changes_[i]);
   }
   if (!any) return;
-  each_row(part, [&](int k, int r) {
+  each_row(component, [&](int k, int r) {
     double sum = 0;
-    for (int i = begin; i < end; ++i) sum += bounded_[by_part_[i]].answer[0][k] * changes_[i];
+    for (int i = begin; i < end; ++i) sum += bounded_[by_component_[i]].answer[0][k] * changes_[i];
     impulses_[r] += sum, totals_[r] += sum;
     push(rows_[r], sum);
   });
@@ -324,7 +325,7 @@ void JointSolver<D>::push_bounded(int part) {
 template <int D>
 void JointSolver<D>::shift_bounded(const Bounded& bounded, double by) {
   shift(bounded.row, by);
-  each_row(bounded.parts[0], [&](int k, int r) { shift(rows_[r], bounded.answer[0][k] * by); });
+  each_row(bounded.components[0], [&](int k, int r) { shift(rows_[r], bounded.answer[0][k] * by); });
 }
 
 template <int D>
@@ -357,28 +358,28 @@ void JointSolver<D>::begin(double h) {
 
 template <int D>
 void JointSolver<D>::iterate() {
-  for (int part = -1; part < parts(); ++part) iterate(part);
+  for (int component = -1; component < components(); ++component) iterate(component);
 }
 
 template <int D>
-void JointSolver<D>::iterate(int part) {
-  if (part >= 0) {
-    each_row(part, [&](int, int r) { rhs_[r] = -speed(rows_[r], at_); });
-    factors_.solve(rhs_.data(), part);
-    each_row(part, [&](int, int r) {
+void JointSolver<D>::iterate(int component) {
+  if (component >= 0) {
+    each_row(component, [&](int, int r) { rhs_[r] = -speed(rows_[r], at_); });
+    factors_.solve(rhs_.data(), component);
+    each_row(component, [&](int, int r) {
       impulses_[r] += rhs_[r], totals_[r] += rhs_[r];
       push(rows_[r], rhs_[r]);
     });
   }
-  const int begin = part_first_[part + 1], end = part_first_[part + 2];
+  const int begin = component_first_[component + 1], end = component_first_[component + 2];
   if (begin == end) return;
   for (int i = begin; i < end; ++i) {
-    const Bounded& b = bounded_[by_part_[i]];
+    const Bounded& b = bounded_[by_component_[i]];
     speeds_[i] = speed(b.row, at_) - b.target, changes_[i] = 0;
   }
   for (int round = 0; round < kBoundedRounds; ++round) {
     for (int i = begin; i < end; ++i) {
-      Bounded& b = bounded_[by_part_[i]];
+      Bounded& b = bounded_[by_component_[i]];
       const double next = std::clamp(b.impulse - b.give * speeds_[i], b.least, b.most);
       const double change = next - b.impulse;
       if (change == 0) continue;
@@ -386,7 +387,7 @@ void JointSolver<D>::iterate(int part) {
       for (int j = begin; j < end; ++j) speeds_[j] += yields_[b.first + j - begin] * change;
     }
   }
-  push_bounded(part);
+  push_bounded(component);
 }
 
 template <int D>
@@ -473,11 +474,11 @@ void JointSolver<D>::damped_newton() {
     begun_at_ = at_, begun_turn_ = turn_, ways_ = rhs_;
     const double before = worst;
     bool helped = false;
-    for (double part = 1; !helped && part > kLeastPart; part /= 2) {
+    for (double fraction = 1; !helped && fraction > kLeastFraction; fraction /= 2) {
       at_ = begun_at_, turn_ = begun_turn_;
-      for (std::size_t r = 0; r < rows_.size(); ++r) shift(rows_[r], part * ways_[r]);
+      for (std::size_t r = 0; r < rows_.size(); ++r) shift(rows_[r], fraction * ways_[r]);
       worst = position_error();
-      helped = worst < (1 - part / 4) * before && near();
+      helped = worst < (1 - fraction / 4) * before && near();
     }
     if (!helped) at_ = begun_at_, turn_ = begun_turn_;
     if (!helped || worst > 0.9 * before) break;
@@ -510,8 +511,8 @@ void JointSolver<D>::finish(double h) {
   for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
 }
 
-// Motors where bodies now stand, with what they have left to give; what else has bounds has done its part.
-// False where there are none.
+// Motors where bodies now stand, with what they have left to give; what else has bounds has done its
+// component. False where there are none.
 template <int D>
 bool JointSolver<D>::update_bounded() {
   bool any = false;

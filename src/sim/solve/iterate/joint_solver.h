@@ -49,25 +49,25 @@ class JointSolver {
   /// A step of h (s) from there. All forces begin at zero.
   void begin(double h);
 
-  /// Velocities under which no joint comes apart: of all, or of one part. What shares no body that moves is a
-  /// part; part -1: of ropes between bodies that nothing else joins.
+  /// Velocities under which no joint comes apart: of all, or of one component. What shares no body that moves
+  /// is a component; component -1: of ropes between bodies that nothing else joins.
   void iterate();
-  void iterate(int part);
+  void iterate(int component);
   /// The same once, of velocities that are none: places that are put right. Impulses stay as they are.
   void solve_positions();
-  int parts() const { return factors_.parts(); }
-  /// The part that a body's joints are of, or -1.
-  int part(int body) const { return part_of_body_[body]; }
-  /// The parts of the joints of these bodies, ascending, -1 among them. Valid until the next call.
-  std::span<const int> parts_of(std::span<const int> bodies);
-  /// The bodies of a part, ascending.
-  std::span<const int> members(int part) const { return members_[part]; }
+  int components() const { return factors_.components(); }
+  /// The component that a body's joints are of, or -1.
+  int component(int body) const { return component_of_body_[body]; }
+  /// The components of the joints of these bodies, ascending, -1 among them. Valid until the next call.
+  std::span<const int> components_of(std::span<const int> bodies);
+  /// The bodies of a component, ascending.
+  std::span<const int> members(int component) const { return members_[component]; }
 
   /// A push of two bodies along a row, and what the joints answer to a unit of it. A body without joints may
   /// be pushed too: its stance is the caller's to write, where that has a say.
   struct JointResponse {
     Row<D> row;
-    int parts[2] = {-1, -1};        // of its bodies; the second, if it is another
+    int components[2] = {-1, -1};   // of its bodies; the second, if it is another
     std::vector<double> answer[2];  // impulses of the rows of each, in the order of elimination
     std::vector<std::pair<int, double>> affected[2];  // which of them it moves by a unit, and how fast
   };
@@ -80,7 +80,7 @@ class JointSolver {
   void each_push(const JointResponse& response, double impulse, Act&& act) const {
     each_push(response.row, impulse, act);
     for (int s = 0; s < 2; ++s) {
-      each_row(response.parts[s],
+      each_row(response.components[s],
                [&](int k, int r) { each_push(rows_[r], response.answer[s][k] * impulse, act); });
     }
   }
@@ -88,13 +88,14 @@ class JointSolver {
   /// After a step: places back onto the joints, velocities along them where bodies now stand.
   void finish(double h);
 
-  /// act(row, how much faster it could make it within the step, beside what it bears) for each row of a part
-  /// that bears something: without end of what joints keep and of limits and ropes that are pulled at.
+  /// act(row, how much faster it could make it within the step, beside what it bears) for each row of a
+  /// component that bears something: without end of what joints keep and of limits and ropes that are pulled
+  /// at.
   template <class Act>
-  void each_bearing(int part, Act&& act) const {
-    each_row(part, [&](int, int r) { act(rows_[r], kWithoutEnd); });
-    for (int i = part_first_[part + 1]; i < part_first_[part + 2]; ++i) {
-      const Bounded& b = bounded_[by_part_[i]];
+  void each_bearing(int component, Act&& act) const {
+    each_row(component, [&](int, int r) { act(rows_[r], kWithoutEnd); });
+    for (int i = component_first_[component + 1]; i < component_first_[component + 2]; ++i) {
+      const Bounded& b = bounded_[by_component_[i]];
       if (b.load == lower || b.load == upper) {
         if (b.impulse > 0) act(b.row, kWithoutEnd);
       } else {
@@ -137,12 +138,12 @@ class JointSolver {
                   });
   }
   void shift(const Row<D>& row, double by);
-  // rows of a part in the order of elimination: the k-th of it is row r
+  // rows of a component in the order of elimination: the k-th of it is row r
   template <class Act>
-  void each_row(int part, Act&& act) const {
-    if (part < 0) return;
+  void each_row(int component, Act&& act) const {
+    if (component < 0) return;
     int k = 0;
-    for (int place = factors_.begin(part); place < factors_.end(part); ++place) {
+    for (int place = factors_.begin(component); place < factors_.end(component); ++place) {
       const int block = factors_.at(place), first = factors_.first(block);
       for (int r = first; r < first + factors_.size(block); ++r) act(k++, r);
     }
@@ -151,7 +152,7 @@ class JointSolver {
   double give(const Bounded& bounded) const;
   bool update_bounded();
   void couple_bounded();
-  void push_bounded(int part);
+  void push_bounded(int component);
   void shift_bounded(const Bounded& bounded, double by);
   bool left(const Bounded& bounded, double& off) const;
   double position_error();
@@ -173,16 +174,17 @@ class JointSolver {
   bool planned_ = false;
   std::vector<int> held_;                   // joints with equalities: the blocks
   std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
-  std::vector<int> part_of_body_;
-  std::vector<std::vector<int>> members_;  // of parts
+  std::vector<int> component_of_body_;
+  std::vector<std::vector<int>> members_;  // of components
   std::vector<int> some_parts_;
   Blocks<kMostHeld<D>> factors_;  // of K = J M^-1 J'
   std::vector<Row<D>> rows_, old_rows_;
   std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
   std::vector<Bounded> bounded_;  // the first `active_`
   std::size_t active_ = 0;
-  std::vector<int> by_part_, part_first_;  // of them, those of part -1 first; where each part's begin
-  std::vector<double> yields_;             // of a part: what its rows with bounds do to each other
+  std::vector<int> by_component_,
+      component_first_;         // of them, those of component -1 first; where each component's begin
+  std::vector<double> yields_;  // of a component: what its rows with bounds do to each other
   std::vector<double> speeds_, changes_;
 };
 

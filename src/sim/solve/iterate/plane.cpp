@@ -100,13 +100,13 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   }
   impacts_.begin();
   outran_ = false;
-  const double part = h / substeps_;
-  for (int i = 0; i < substeps_; ++i) substep(state, t + i * part, part, i);
+  const double substep_h = h / substeps_;
+  for (int i = 0; i < substeps_; ++i) substep(state, t + i * substep_h, substep_h, i);
   impacts_.keep(state.contacts);
-  // the next step looks anyway, unless this was a part of one
+  // the next step looks anyway, unless this was a fraction of one
   const bool whole = h * value(model_.rate) > 1 - 1e-9;
   if (outran_ && !(whole && (state.step + 1) % every_ == 0)) update_pairs(state, true);
-  if (sleep_.due(state) && put_to_sleep(state, part)) clear_sleeping(state);
+  if (sleep_.due(state) && put_to_sleep(state, substep_h)) clear_sleeping(state);
   next_step_ = state.step + 1;
 }
 

@@ -35,8 +35,8 @@ void Equilibrium::find(std::span<Sleep<2>::Island> islands, Sleep<2>& sleep, Sta
   for (Sleep<2>::Island& island : islands) {
     gather(island, state, step);
     island.residual = iterate(island, state, step, h) / h;
-    for (const int part : parts_) {
-      step.joints.each_bearing(part,
+    for (const int component : components_) {
+      step.joints.each_bearing(component,
                                [&](const Row<2>& row, double gain) { sleep.hold(island, row, gain / h); });
     }
   }
@@ -74,9 +74,9 @@ void Equilibrium::copy_from_joints(const Sleep<2>::Island& island, JointSolver<2
   }
 }
 
-// the pairs of an island in batches of its own, those of one colour together; the parts of its joints
+// the pairs of an island in batches of its own, those of one colour together; the components of its joints
 void Equilibrium::gather(const Sleep<2>::Island& island, const State<2>& state, const Step& step) {
-  pairs_.clear(), parts_.clear(), batches_.clear();
+  pairs_.clear(), components_.clear(), batches_.clear();
   for (const int contact : island.contacts) {
     const int pair = pair_of_[contact];
     if (pairs_.empty() || pairs_.back() != pair) pairs_.push_back(pair);
@@ -84,8 +84,8 @@ void Equilibrium::gather(const Sleep<2>::Island& island, const State<2>& state, 
   std::sort(pairs_.begin(), pairs_.end(),
             [&](int i, int j) { return step.pairs[i].slot < step.pairs[j].slot; });
   if (island.jointed) {
-    const std::span<const int> parts = step.joints.parts_of(island.bodies);
-    parts_.assign(parts.begin(), parts.end());
+    const std::span<const int> components = step.joints.components_of(island.bodies);
+    components_.assign(components.begin(), components.end());
   }
 
   const int none = int(state.x.size());
@@ -109,7 +109,7 @@ double Equilibrium::iterate(const Sleep<2>::Island& island, State<2>& state, con
   const int count = int(batches_.size());
   const auto solve_joint_velocities = [&] {
     copy_to_joints(island, step.joints);
-    for (const int part : parts_) step.joints.iterate(part);
+    for (const int component : components_) step.joints.iterate(component);
     copy_from_joints(island, step.joints);
   };
   const double near = Sleep<2>::kBalanced * std::sqrt(model_.gravity.squaredNorm()) * h;
@@ -136,7 +136,7 @@ double Equilibrium::iterate(const Sleep<2>::Island& island, State<2>& state, con
       copy_lane_forces(own, k, step.batches[slot / kLanes], slot % kLanes);
     }
   }
-  if (parts_.empty()) return worst;
+  if (components_.empty()) return worst;
   for (const int body : island.bodies) marked_[body] = 1;
   step.joints.keep(state, h, &marked_);
   for (const int body : island.bodies) marked_[body] = 0;

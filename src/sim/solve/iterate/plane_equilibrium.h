@@ -41,7 +41,7 @@ class Equilibrium {
   std::vector<Motion> v_, zero_;
   std::vector<int> pair_of_;           // of each contact of the state
   std::vector<int> pairs_;             // of the island at hand, by lane
-  std::vector<int> parts_;             // of its joints
+  std::vector<int> components_;        // of its joints
   std::vector<ContactBatch> batches_;  // its pairs, by themselves
   std::vector<char> marked_;           // its bodies
   Found slow_, fast_;

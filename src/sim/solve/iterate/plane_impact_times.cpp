@@ -31,10 +31,10 @@ void Impacts::move(int body, double when, const std::vector<Pose>& poses, const 
   pose = there ? pose_[body] : poses[body], v = now_[body];
   if (v.im == 0 || there) return;
   const Motion& gain = dv[body];
-  const double time = when - std::max(0.0, when_[body]), part = time / pace.h, half = 0.5 * part;
+  const double time = when - std::max(0.0, when_[body]), share = time / pace.h, half = 0.5 * share;
   double x = time * (v.x + half * gain.x), y = time * (v.y + half * gain.y), w = time * (v.w + half * gain.w);
   if (when_[body] >= 0) x += way_[body].x, y += way_[body].y, w += way_[body].w;
-  v.x += part * gain.x, v.y += part * gain.y, v.w += part * gain.w;
+  v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
   pose.x += x, pose.y += y;
   if (w == 0) return;
   const SinCos turn = sin_cos(w);
@@ -94,13 +94,13 @@ double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, con
     const double gap = at.rows[k].gap, speed = normal_speed(at.rows[k], at.a, at.b);
     if (gap > 0 && !(speed < 0)) {
       // it has come nearest before: was it closed then?
-      for (double parts = when; parts - low > kInTime * pace.h && high < 0;) {
-        const double mid = 0.5 * (low + parts);
+      for (double parted = when; parted - low > kInTime * pace.h && high < 0;) {
+        const double mid = 0.5 * (low + parted);
         const PlacedPair then = placed_at(pair, mid, g, poses, dv, pace);
         if (then.rows[k].gap <= 0)
           high = mid;
         else
-          (normal_speed(then.rows[k], then.a, then.b) < 0 ? low : parts) = mid;
+          (normal_speed(then.rows[k], then.a, then.b) < 0 ? low : parted) = mid;
       }
       if (high < 0) return 1e300;
       break;

@@ -72,12 +72,12 @@ void Impacts::reach(int body, double when, const Step& step) {
     bodies_.push_back(body);
     first_[body] = when, way_[body] = given_[body] = {};
   }
-  const double time = when - std::max(0.0, when_[body]), part = time / step.pace.h, half = 0.5 * part;
+  const double time = when - std::max(0.0, when_[body]), share = time / step.pace.h, half = 0.5 * share;
   const Motion& gain = step.dv[body];
   Motion& way = way_[body];
   way.x += time * (v.x + half * gain.x), way.y += time * (v.y + half * gain.y);
   way.w += time * (v.w + half * gain.w);
-  v.x += part * gain.x, v.y += part * gain.y, v.w += part * gain.w;
+  v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
   when_[body] = when;
 }
 
@@ -85,10 +85,10 @@ void Impacts::reach(int body, double when, const Step& step) {
 bool Impacts::reach_component(const Pair& pair, double when, const Step& step, const JointSolver<2>& joints) {
   bool tied = false;
   for (const int body : {pair.a, pair.b}) {
-    const int part = body < 0 ? -1 : joints.part(body);
-    if (part < 0) continue;
+    const int component = body < 0 ? -1 : joints.component(body);
+    if (component < 0) continue;
     tied = true;
-    for (const int member : joints.members(part)) reach(member, when, step);
+    for (const int member : joints.members(component)) reach(member, when, step);
   }
   return tied;
 }
@@ -292,11 +292,11 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
     };
     for (const int body : {pair.a, pair.b}) {
       if (body < 0 || now_[body].im == 0) continue;
-      const int part = joints.empty() ? -1 : joints.part(body);
-      if (part < 0) {
+      const int component = joints.empty() ? -1 : joints.component(body);
+      if (component < 0) {
         change(body);
       } else {
-        for (const int member : joints.members(part)) change(member);
+        for (const int member : joints.members(component)) change(member);
       }
     }
   }

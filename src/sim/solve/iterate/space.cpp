@@ -72,12 +72,12 @@ void SpaceIterative<D>::step(State<D>& state, double t, double h) {
   if (state.step == 0) iterations = kFirstIterations;
   if (!joints_.empty()) {
     // what hangs together is struck together
-    parts_.assign(joints_.parts(), 0);
+    components_.assign(joints_.components(), 0);
     for (const int i : joints_.bodies()) {
-      if (closing_[i] && joints_.part(i) >= 0) parts_[joints_.part(i)] = 1;
+      if (closing_[i] && joints_.component(i) >= 0) components_[joints_.component(i)] = 1;
     }
     for (const int i : joints_.bodies()) {
-      if (joints_.part(i) >= 0 && parts_[joints_.part(i)]) closing_[i] = 1;
+      if (joints_.component(i) >= 0 && components_[joints_.component(i)]) closing_[i] = 1;
     }
     copy_to_joints();
     joints_.begin(h);

@@ -106,7 +106,7 @@ class SpaceIterative final : public ContactSolver<D> {
   template <class Act>
   void each_tied(int body, Act&& act) const {
     if (body == int(model_.bodies.size()) || inactive_[body]) return;
-    const int component = joints_.empty() ? -1 : joints_.part(body);
+    const int component = joints_.empty() ? -1 : joints_.component(body);
     if (component < 0) {
       act(body);
     } else {
@@ -165,7 +165,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<Orientation<D>> turn_, turn_free_;
   std::vector<AngularVec<D>> w_free_;
   std::vector<char> closing_, ripe_, on_joints_;  // the last: of those that rest
-  std::vector<int> parts_;                        // and of their joints
+  std::vector<int> components_;                   // and of their joints
   Islands islands_;
   std::vector<PointBody<D>> kept_;
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J

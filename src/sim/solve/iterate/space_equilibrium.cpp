@@ -61,7 +61,7 @@ void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island
       moving_[body].v = h * model_.gravity, moving_[body].w.setZero();
     }
   }
-  some_.clear(), parts_.clear();
+  some_.clear(), components_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
     ContactConstraint& touch = touches_[i];
     if (!ripe_[touch.a] && !ripe_[touch.b]) continue;
@@ -70,11 +70,11 @@ void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island
     push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
   }
   for (const int i : joints_.bodies()) {
-    if (on_joints_[i]) parts_.push_back(joints_.part(i));
+    if (on_joints_[i]) components_.push_back(joints_.component(i));
   }
-  std::sort(parts_.begin(), parts_.end());
-  parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
-  if (!parts_.empty()) copy_to_joints(&on_joints_), joints_.begin(h);
+  std::sort(components_.begin(), components_.end());
+  components_.erase(std::unique(components_.begin(), components_.end()), components_.end());
+  if (!components_.empty()) copy_to_joints(&on_joints_), joints_.begin(h);
 }
 
 // forces of candidates for sleep, all at once, into their contacts; and what they leave
@@ -82,9 +82,9 @@ template <int D>
 void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h) {
   const double near = Sleep<D>::kBalanced * g_ * h;
   for (int i = 1, found = 0; i < kRestSweeps && !found; ++i) {
-    if (!parts_.empty()) {
+    if (!components_.empty()) {
       copy_to_joints(&on_joints_);
-      for (const int part : parts_) joints_.iterate(part);
+      for (const int component : components_) joints_.iterate(component);
       copy_from_joints(&on_joints_);
     }
     iterate(some_, i % 2 != 0);
@@ -108,10 +108,11 @@ void SpaceIterative<D>::put_to_sleep(State<D>& state, double h) {
   if (islands.empty()) return;
   fall_from_rest(islands, h);
   find_equilibrium(islands, h);
-  if (!parts_.empty()) joints_.keep(state, h, &on_joints_);
+  if (!components_.empty()) joints_.keep(state, h, &on_joints_);
   for (const auto& island : islands) {
-    for (const int part : joints_.parts_of(island.bodies))
-      joints_.each_bearing(part, [&](const Row<D>& row, double gain) { sleep_.hold(island, row, gain / h); });
+    for (const int component : joints_.components_of(island.bodies))
+      joints_.each_bearing(component,
+                           [&](const Row<D>& row, double gain) { sleep_.hold(island, row, gain / h); });
   }
   moving_.swap(kept_);
   report(state, h);

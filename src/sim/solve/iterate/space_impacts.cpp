@@ -53,17 +53,17 @@ typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, dou
   if (k < 0 || !it.turns()) return at;
   // Runge and Kutta, as the body sees itself (sim/math/lie_step.h)
   const int pieces = pieces_of_turn<D>(at.stance.w, time);
-  const double part = time / pieces;
+  const double piece = time / pieces;
   const AngularVec<D> momentum = inertia_times<D>(it.inertia, at.stance.room_from_body, at.stance.w);
   for (int i = 0; i < pieces; ++i) {
     const AngularVec<D> w0 = from_room<D>(at.stance.room_from_body, at.stance.w);
     AngularVec<D> d[4], w[4], step = AngularVec<D>::Zero(), spin = w0;
     for (int s = 0; s < 4; ++s) {
       d[s] = displacement_rate<D>(step, spin), w[s] = gyroscopic_acceleration<D>(it.inertia, spin);
-      const double by = s < 2 ? 0.5 * part : part;
+      const double by = s < 2 ? 0.5 * piece : piece;
       step = by * d[s], spin = w0 + by * w[s];
     }
-    const AngularVec<D> by = part / 6 * (d[0] + 2 * d[1] + 2 * d[2] + d[3]);
+    const AngularVec<D> by = piece / 6 * (d[0] + 2 * d[1] + 2 * d[2] + d[3]);
     at.turn = displaced<D>(at.turn, by);
     at.stance.room_from_body = rotation<D>(at.turn);
     at.stance.w = inverse_inertia_times<D>(it.inertia, at.stance.room_from_body, momentum);
@@ -97,13 +97,13 @@ double SpaceIterative<D>::closing_time(int i, double h) const {
     at = instant(i, when, h);
     if (at.now.value > 0 && !(at.speed < 0)) {
       // it has come nearest before: was it closed then?
-      for (double parts = when; parts - low > kInTime * h && high < 0;) {
-        const double mid = 0.5 * (low + parts);
+      for (double parted = when; parted - low > kInTime * h && high < 0;) {
+        const double mid = 0.5 * (low + parted);
         const Instant then = instant(i, mid, h);
         if (then.now.value <= 0)
           high = mid;
         else
-          (then.speed < 0 ? low : parts) = mid;
+          (then.speed < 0 ? low : parted) = mid;
       }
       if (high < 0) return 1e300;
       break;
@@ -257,7 +257,7 @@ bool SpaceIterative<D>::build_impact_rows(double t, double h) {
     if (joints_.empty()) continue;
     for (const auto& [body, it] : {std::pair(touch.a, &at.a), std::pair(touch.b, &at.b)}) {
       if (body == n) continue;
-      const bool tied = joints_.part(body) >= 0;
+      const bool tied = joints_.component(body) >= 0;
       impact_tied_ = impact_tied_ || tied;
       if (!tied) joints_.body_motion(body) = *it;
     }
