@@ -8,14 +8,64 @@
 
 namespace obscura::sim {
 
-/// A solver of `contact` and `event`: moves a state on, with everything that touches, hangs and pulls.
+/// A part of a step, from t to t + h (s): all of it, or one of its substeps.
+template <int D>
+struct StepPart {
+  State<D>& state;
+  double t = 0, h = 0;
+  int substep = 0;
+};
+
+/// A solver of `contact` and `event`: the stages of its step. It overrides those that it has work for.
 template <int D>
 class ContactSolver {
  public:
   virtual ~ContactSolver() = default;
 
-  /// Moves `state` from t to t + h (s): bodies, contacts, joints, and which bodies sleep.
-  virtual void step(State<D>& state, double t, double h) = 0;
+  /// Moves `state` from t to t + h (s): bodies, contacts, joints, and which bodies sleep. The same list for
+  /// every solver and both dimensions; energy is ContactStep's (sim/step/contact_step.h).
+  void step(State<D>& state, double t, double h) {
+    const StepPart<D> whole{state, t, h};
+    if (!collide(whole)) return;
+    wake(whole);
+    const int all = substeps();
+    for (int i = 0; i < all; ++i) {
+      const StepPart<D> part{state, t + i * (h / all), h / all, i};
+      move_free(part);
+      resolve_impacts(part);
+      warm_start(part);
+      iterate(part);
+      advance(part);
+      project(part);
+    }
+    report(whole);
+    sleep(whole);
+  }
+
+  /// Finds what may touch within the step. False: all bodies sleep, and the step is done.
+  virtual bool collide(StepPart<D> step) = 0;
+  /// Wakes what is touched or pulled; what begins at rest falls asleep.
+  virtual void wake(StepPart<D>) {}
+
+  /// Into how many substeps the following stages divide the step.
+  virtual int substeps() const { return 1; }
+  /// Moves all bodies without contacts and joints.
+  virtual void move_free(StepPart<D>) {}
+  /// Impacts within the substep, each at its time.
+  virtual void resolve_impacts(StepPart<D>) {}
+  /// Begins with the forces of the last step.
+  virtual void warm_start(StepPart<D>) {}
+  /// Impulses of contacts and joints, by iteration.
+  virtual void iterate(StepPart<D>) {}
+  /// Positions and velocities at the end of the substep.
+  virtual void advance(StepPart<D> step) = 0;
+  /// Positions back onto the constraints.
+  virtual void project(StepPart<D>) {}
+
+  /// Forces of the step, into the state.
+  virtual void report(StepPart<D>) {}
+  /// Puts to sleep what rests.
+  virtual void sleep(StepPart<D>) {}
 };
 
 /// Up to how many bodies the direct solver serves on its own accord: of those that move, with an extent, and
@@ -46,7 +96,7 @@ BodyCounts body_counts(const Model<D>& model);
 template <int D>
 Solver solver(const Model<D>& model);
 
-/// That solver. Both are kept by reference.
+/// That solver. Both are kept by reference; steps are ContactStep's.
 template <int D>
 std::unique_ptr<ContactSolver<D>> make_contact_solver(const Model<D>& model,
                                                       const std::vector<Path<D>>& paths);

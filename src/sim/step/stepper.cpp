@@ -76,7 +76,8 @@ Stepper<D>::Stepper(const Model<D>& model)
   d_.resize(std::max(D, kAngular<D>) * kBlock), w_.resize(kAngular<D> * kBlock), base_.resize(kBlock);
   assert(model.bonds.empty() || model.chains.empty());
   if (!model.bonds.empty()) pieces_ = std::make_unique<BondedBodies<D>>(model, paths_);
-  if (model.collision != Collision::handout && !pieces_) contact_ = make_contact_solver(model, paths_);
+  if (model.collision != Collision::handout && !pieces_)
+    contact_ = std::make_unique<ContactStep<D>>(model, paths_);
   suspects_.reserve(model.bodies.size());
   watch_every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / 60));
 }

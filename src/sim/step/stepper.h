@@ -10,7 +10,7 @@
 #include "sim/model/script.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/motion/integrator.h"
-#include "sim/solve/contact_solver.h"
+#include "sim/step/contact_step.h"
 
 namespace obscura::sim {
 
@@ -66,8 +66,8 @@ class Stepper {
   Integrate* integrate_;
   Handout<D> handout_;
   Blasts<D> blasts_;
-  std::unique_ptr<ContactSolver<D>> contact_;  // of `contact` and `event`
-  std::unique_ptr<BondedBodies<D>> pieces_;    // of a model with bonds: all is done there
+  std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
+  std::unique_ptr<BondedBodies<D>> pieces_;  // of a model with bonds: all is done there
   DivergenceMonitor<D> divergence_;
   ForwardDynamics<D> tied_;
   std::vector<int> gripped_;  // by each mouse, as the plan knows

@@ -36,11 +36,12 @@ void ExactSolver<D>::near_contacts(const std::vector<BodyMotion<D>>& at, Couple 
   if (b < 0) {
     const Wall<D>& wall = model_.walls[-1 - b];
     if ((at[a].x - wall.point).dot(wall.normal) > limits_.bounding_radius[a] + margin) return;
-    collide(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, scratch_.candidates);
+    sim::collide(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, scratch_.candidates);
   } else {
     const double far = limits_.bounding_radius[a] + limits_.bounding_radius[b] + margin;
     if ((at[a].x - at[b].x).squaredNorm() > far * far) return;
-    collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin, scratch_.candidates);
+    sim::collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin,
+                 scratch_.candidates);
   }
   for (const ContactCandidate<D>& gap : scratch_.candidates) found(gap);
 }

@@ -143,7 +143,8 @@ void ExactSolver<D>::collect_bodies(State<D>& state) {
 }
 
 template <int D>
-void ExactSolver<D>::step(State<D>& state, double t, double h) {
+bool ExactSolver<D>::collide(StepPart<D> step) {
+  State<D>& state = step.state;
   const std::size_t n = model_.bodies.size();
   resize_for(state);
   step_.contacts.clear(), step_.impulses.clear();
@@ -154,9 +155,15 @@ void ExactSolver<D>::step(State<D>& state, double t, double h) {
   collect_bodies(state);
   save(state, step_.begun);
   step_.frozen = state.frozen, step_.quiet = state.quiet;
-  bound_travel(state, t, h);
+  bound_travel(state, step.t, step.h);
   step_.near.reset(int(n)), step_.old_root.assign(n, -1), step_.travelled.assign(n, 0.0),
       step_.cuts.assign(n, 0);
+  return true;
+}
+
+template <int D>
+void ExactSolver<D>::advance(StepPart<D> step) {
+  State<D>& state = step.state;
   for (int round = 0; round < kMostRounds; ++round) {
     // bodies that got farther than expected, into the reach of others, are stepped again together with them
     join_near_bodies(state);
@@ -178,22 +185,30 @@ void ExactSolver<D>::step(State<D>& state, double t, double h) {
         std::erase_if(step_.contacts, of_group), std::erase_if(step_.impulses, of_group);
       }
       for (const int body : group.subset.bodies) step_.old_root[body] = group.root, step_.cuts[body] = 0;
-      step_group(state, t, h);
+      step_group(state, step.t, step.h);
       step_.contacts.insert(step_.contacts.end(), outcome_.contacts.begin(), outcome_.contacts.end());
       step_.impulses.insert(step_.impulses.end(), outcome_.impulses.begin(), outcome_.impulses.end());
     }
     if (!any) break;
   }
+}
+
+template <int D>
+void ExactSolver<D>::report(StepPart<D> step) {
   outcome_.contacts.swap(step_.contacts), outcome_.impulses.swap(step_.impulses);
   const auto sooner = [](const auto& p, const auto& q) { return p.key < q.key; };
   std::sort(outcome_.contacts.begin(), outcome_.contacts.end(), sooner);
 
   activate_all();
-  collect_bodies(state);
-  write_contacts(state);
-  put_to_sleep(state, t + h, h);
-  write_contacts(state);
-  break_joints(state);
+  collect_bodies(step.state);
+  write_contacts(step.state);
+}
+
+template <int D>
+void ExactSolver<D>::sleep(StepPart<D> step) {
+  put_to_sleep(step.state, step.t + step.h, step.h);
+  write_contacts(step.state);
+  break_joints(step.state);
 }
 
 // moves the group at hand from t to t + h

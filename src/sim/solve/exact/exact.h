@@ -31,8 +31,12 @@ class ExactSolver final : public ContactSolver<D>, private System {
   /// Both are kept by reference.
   ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom = Serves::all);
 
-  /// Moves `state` from t to t + h: its bodies, contacts, and which bodies sleep.
-  void step(State<D>& state, double t, double h) override;
+  /// Divides the bodies into groups that cannot meet within the step.
+  bool collide(StepPart<D> step) override;
+  /// Moves group after group, from event to event, with contact forces inside the stages of the integrator.
+  void advance(StepPart<D> step) override;
+  void report(StepPart<D> step) override;
+  void sleep(StepPart<D> step) override;
 
   /// Moves one body that meets nothing but walls and fixed bodies, and tells its contacts in `state` that are
   /// there already what they bear. Of Serves::lone.

@@ -64,7 +64,8 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
 }
 
 template <int D>
-void PlaneIterative<D>::step(State<D>& state, double t, double h) {
+bool PlaneIterative<D>::collide(StepPart<D> step) {
+  State<D>& state = step.state;
   const int n = int(model_.bodies.size());
   if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
@@ -85,7 +86,7 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   }
   if (asleep && !held) {
     next_step_ = -1;
-    return;
+    return false;
   }
   const bool known = gather(state);
   if (!known) pairs_.adopt(state);
@@ -94,20 +95,31 @@ void PlaneIterative<D>::step(State<D>& state, double t, double h) {
   } else if (!known) {
     build_batches(state, false);
   }
-  if (state.step == 0 && due) {
-    place_contacts(state, true);
-    if (sleep_.at_start(state, state.contacts)) clear_sleeping(state);
+  return true;
+}
+
+template <int D>
+void PlaneIterative<D>::wake(StepPart<D> step) {
+  if (step.state.step == 0) {
+    place_contacts(step.state, true);
+    if (sleep_.at_start(step.state, step.state.contacts)) clear_sleeping(step.state);
   }
   impacts_.begin();
   outran_ = false;
-  const double substep_h = h / substeps_;
-  for (int i = 0; i < substeps_; ++i) substep(state, t + i * substep_h, substep_h, i);
-  impacts_.keep(state.contacts);
+}
+
+template <int D>
+void PlaneIterative<D>::report(StepPart<D> step) {
+  impacts_.keep(step.state.contacts);
   // the next step looks anyway, unless this was a fraction of one
-  const bool whole = h * value(model_.rate) > 1 - 1e-9;
-  if (outran_ && !(whole && (state.step + 1) % every_ == 0)) update_pairs(state, true);
-  if (sleep_.due(state) && put_to_sleep(state, substep_h)) clear_sleeping(state);
-  next_step_ = state.step + 1;
+  const bool whole = step.h * value(model_.rate) > 1 - 1e-9;
+  if (outran_ && !(whole && (step.state.step + 1) % every_ == 0)) update_pairs(step.state, true);
+}
+
+template <int D>
+void PlaneIterative<D>::sleep(StepPart<D> step) {
+  if (sleep_.due(step.state) && put_to_sleep(step.state, step.h / substeps_)) clear_sleeping(step.state);
+  next_step_ = step.state.step + 1;
 }
 
 // where contacts are now: all, or those that no step has placed yet
@@ -141,64 +153,96 @@ void PlaneIterative<D>::clear_sleeping(const State<D>& state) {
   build_batches(state, true);
 }
 
-// from t to t + h, between two pair searches: forces stay in the lanes until the last
+// how far a substep is between two pair searches, of the way
 template <int D>
-void PlaneIterative<D>::substep(State<D>& state, double t, double h, int which) {
-  const bool first = which == 0 && state.step % every_ == 0, last = which + 1 == substeps_;
+double PlaneIterative<D>::share(StepPart<D> step) const {
+  return (double(step.state.step % every_) * substeps_ + step.substep) / double(every_ * substeps_);
+}
+
+// pairs whose features have changed since the last search, or all of them
+template <int D>
+void PlaneIterative<D>::renew_pairs(StepPart<D> step) {
+  State<D>& state = step.state;
   if (outran_) {
-    for (const Pair& pair : pairs_.all()) report(pair, state);
+    for (const Pair& pair : pairs_.all()) report_pair(pair, state);
     update_pairs(state, true);
     outran_ = false;
   }
   if (!joints_.empty()) joints_.gather(state);
-  const double share = (double(state.step % every_) * substeps_ + which) / double(every_ * substeps_);
   double fastest = 0;
   for (int i = 0; i < int(turns_.size()); ++i) {
     const Motion& m = v_[i];
     fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.bounding_radius[i]);
   }
-  if (share > 0 && 2 * share * fastest > calmest_) {
-    for (const plane::Outdated& old : pairs_.outdated(batches_, v_, poses_, share)) {
-      const Pair& pair = pairs_.all()[old.pair];
-      if (substeps_ > 1) report(pair, state);
-      pairs_.renew(old, state, poses_);
-      write_lane(pair, state);
-    }
+  const double gone = share(step);
+  if (gone == 0 || 2 * gone * fastest <= calmest_) return;
+  for (const plane::Outdated& old : pairs_.outdated(batches_, v_, poses_, gone)) {
+    const Pair& pair = pairs_.all()[old.pair];
+    if (substeps_ > 1) report_pair(pair, state);
+    pairs_.renew(old, state, poses_);
+    write_lane(pair, state);
   }
+}
 
-  integrate_unconstrained(state, t, h);
-  plane::StepConstants pace{h, 0.05 * restitution_threshold_, h * std::sqrt(model_.gravity.squaredNorm()),
-                            cores_.linear_slop};
-  const int count = int(batches_.size());
-  const bool deep =
-      plane::start(batches_.data(), count, poses_.data(), old_.data(), v_.data(), pace, slow_, fast_);
+template <int D>
+void PlaneIterative<D>::move_free(StepPart<D> step) {
+  renew_pairs(step);
+  integrate_unconstrained(step.state, step.t, step.h);
+}
+
+// The wide kernel that finds what closes applies the forces of the last step as well.
+template <int D>
+void PlaneIterative<D>::resolve_impacts(StepPart<D> step) {
+  constants_ = {step.h, 0.05 * restitution_threshold_, step.h * std::sqrt(model_.gravity.squaredNorm()),
+                cores_.linear_slop};
+  deep_ = plane::start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), v_.data(),
+                       constants_, slow_, fast_);
   if (!joints_.empty()) {
     copy_to_joints();
     joints_.compute_rows();
   }
-  impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, pace, joints_);
-  pace.least = impacts_.least();
-  int iterations = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
-  if (state.step == 0 && first) iterations = kFirstSweeps;
-  if (!joints_.empty()) {
-    copy_to_joints();
-    joints_.begin(h);
-    copy_from_joints();
-    const int most = strained(state) ? kStrainSweeps : kJointSweeps;
-    iterations = count == 0 && joints_.plain() ? 1 : std::clamp(most / 4 * iterations, 4, most);
-  }
-  for (int i = 1; i < iterations; ++i) {
+  impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, constants_, joints_);
+  constants_.least = impacts_.least();
+}
+
+template <int D>
+void PlaneIterative<D>::warm_start(StepPart<D> step) {
+  iterations_ = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  if (step.state.step == 0 && first(step)) iterations_ = kFirstSweeps;
+  if (joints_.empty()) return;
+  copy_to_joints();
+  joints_.begin(step.h);
+  copy_from_joints();
+  const int most = strained(step.state) ? kStrainSweeps : kJointSweeps;
+  iterations_ = batches_.empty() && joints_.plain() ? 1 : std::clamp(most / 4 * iterations_, 4, most);
+}
+
+// forces stay in the lanes until the last substep
+template <int D>
+void PlaneIterative<D>::iterate(StepPart<D> step) {
+  const int count = int(batches_.size());
+  const bool last = step.substep + 1 == substeps_;
+  for (int i = 1; i < iterations_; ++i) {
     solve_joint_velocities();
-    plane::iterate(batches_.data(), count, poses_.data(), v_.data(), pace);
+    plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_);
   }
   solve_joint_velocities();
-  plane::finish(batches_.data(), count, poses_.data(), v_.data(), pace,
-                last ? state.contacts.data() : nullptr);
-  impacts_.note(pairs_.all(), state.contacts, batches_);
-  if (first && deep) project(state);
-  advance(state, h, first && deep);
-  if (!joints_.empty()) project_joints(state, h);
-  outran_ = outran(h, (1 - share) * span_);
+  plane::finish(batches_.data(), count, poses_.data(), v_.data(), constants_,
+                last ? step.state.contacts.data() : nullptr);
+  impacts_.note(pairs_.all(), step.state.contacts, batches_);
+}
+
+template <int D>
+void PlaneIterative<D>::advance(StepPart<D> step) {
+  const bool correct = first(step) && deep_;
+  if (correct) correct_overlaps(step.state);
+  place_bodies(step.state, step.h, correct);
+}
+
+template <int D>
+void PlaneIterative<D>::project(StepPart<D> step) {
+  if (!joints_.empty()) project_joints(step.state, step.h);
+  outran_ = outran(step.h, (1 - share(step)) * span_);
 }
 
 // Whether joints press something that is awake far into another: pushes by contacts alone, each with its own
@@ -216,7 +260,7 @@ bool PlaneIterative<D>::strained(const State<D>& state) const {
 
 // a pair's forces, from its lane
 template <int D>
-void PlaneIterative<D>::report(const Pair& pair, State<D>& state) const {
+void PlaneIterative<D>::report_pair(const Pair& pair, State<D>& state) const {
   if (pair.slot < 0) return;
   const ContactBatch& g = batches_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
@@ -365,7 +409,7 @@ void PlaneIterative<D>::project_joints(State<D>& state, double h) {
 
 // positions out of each other, a part of the way
 template <int D>
-void PlaneIterative<D>::project(const State<D>& state) {
+void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
   std::fill(projections_.begin(), projections_.end(), plane::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
   int iterations = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);

@@ -26,9 +26,17 @@ class PlaneIterative final : public ContactSolver<D> {
   /// Both are kept by reference.
   explicit PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// Moves `state` from t to t + h (s): forces, impacts, contacts with friction, rest. Uses and writes
-  /// state.contacts, frozen, quiet.
-  void step(State<D>& state, double t, double h) override;
+  bool collide(StepPart<D> step) override;
+  void wake(StepPart<D> step) override;
+  int substeps() const override { return substeps_; }
+  void move_free(StepPart<D> step) override;
+  void resolve_impacts(StepPart<D> step) override;
+  void warm_start(StepPart<D> step) override;
+  void iterate(StepPart<D> step) override;
+  void advance(StepPart<D> step) override;
+  void project(StepPart<D> step) override;
+  void report(StepPart<D> step) override;
+  void sleep(StepPart<D> step) override;
 
  private:
   using Motion = plane::Motion;
@@ -36,9 +44,11 @@ class PlaneIterative final : public ContactSolver<D> {
   static constexpr double kSight = 0.5;  // of its thickness: what may pass within a step is swept instead
 
   bool gather(const State<D>& state);
-  void substep(State<D>& state, double t, double h, int which);
+  bool first(StepPart<D> step) const { return step.substep == 0 && step.state.step % every_ == 0; }
+  double share(StepPart<D> step) const;
+  void renew_pairs(StepPart<D> step);
   bool strained(const State<D>& state) const;
-  void report(const plane::Pair& pair, State<D>& state) const;
+  void report_pair(const plane::Pair& pair, State<D>& state) const;
   void build_batches(const State<D>& state, bool known);
   void place_contacts(State<D>& state, bool all) const;
   void clear_sleeping(const State<D>& state);
@@ -54,8 +64,8 @@ class PlaneIterative final : public ContactSolver<D> {
   void copy_from_joints();
   void solve_joint_velocities();
   void project_joints(State<D>& state, double h);
-  void project(const State<D>& state);
-  void advance(State<D>& state, double h, bool apply_push_out);
+  void correct_overlaps(const State<D>& state);
+  void place_bodies(State<D>& state, double h, bool apply_push_out);
   void update_pairs(State<D>& state, bool known);
   bool outran(double h, double left) const;
   double clear(int body, const plane::Pose& from, const Motion& way, bool walls) const;
@@ -100,6 +110,9 @@ class PlaneIterative final : public ContactSolver<D> {
   std::vector<plane::ContactBatch> batches_;
   std::vector<plane::Projection> projections_;
   plane::Found slow_, fast_;
+  plane::StepConstants constants_;  // of the substep
+  bool deep_ = false;               // whether something is too deep in another
+  int iterations_ = 0;
   std::vector<int> slots_, next_slots_;  // which pair sits where
   std::vector<int> moved_;               // pairs that take another lane
   std::int64_t next_step_ = -1;          // of the state that this has left

@@ -14,7 +14,7 @@ using plane::kLanes;
 using plane::Pair;
 
 template <int D>
-void PlaneIterative<D>::advance(State<D>& state, double h, bool apply_push_out) {
+void PlaneIterative<D>::place_bodies(State<D>& state, double h, bool apply_push_out) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
 
   // bodies with slow contacts that closed
@@ -155,7 +155,7 @@ bool PlaneIterative<D>::outran(double h, double left) const {
   return false;
 }
 
-template void PlaneIterative<2>::advance(State<2>&, double, bool);
+template void PlaneIterative<2>::place_bodies(State<2>&, double, bool);
 template bool PlaneIterative<2>::outran(double, double) const;
 
 }  // namespace obscura::sim

@@ -55,47 +55,68 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
 }
 
 template <int D>
-void SpaceIterative<D>::step(State<D>& state, double t, double h) {
+bool SpaceIterative<D>::collide(StepPart<D> step) {
+  State<D>& state = step.state;
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n);
   joints_.prepare(state);
   if (state.step == 0) joints_.project_initial_velocities(state);
   prepare(state);
-  find(h);
-  if (update_sleep(state, h)) prepare(state), find(h);
-  if (!joints_.empty()) build_joint_rows(state);
-  integrate_unconstrained(state, t, h);
-  resolve_impacts(state, h);
-  warm_start(state, h);
-  int iterations =
+  find(step.h);
+  return true;
+}
+
+template <int D>
+void SpaceIterative<D>::wake(StepPart<D> step) {
+  if (update_sleep(step.state, step.h)) prepare(step.state), find(step.h);
+}
+
+template <int D>
+void SpaceIterative<D>::warm_start(StepPart<D> step) {
+  warm_start_contacts(step.state, step.h);
+  iterations_ =
       std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
-  if (state.step == 0) iterations = kFirstIterations;
-  if (!joints_.empty()) {
-    // what hangs together is struck together
-    components_.assign(joints_.components(), 0);
-    for (const int i : joints_.bodies()) {
-      if (closing_[i] && joints_.component(i) >= 0) components_[joints_.component(i)] = 1;
-    }
-    for (const int i : joints_.bodies()) {
-      if (joints_.component(i) >= 0 && components_[joints_.component(i)]) closing_[i] = 1;
-    }
-    copy_to_joints();
-    joints_.begin(h);
-    if (touches_.empty() && joints_.plain()) iterations = 1;
+  if (step.state.step == 0) iterations_ = kFirstIterations;
+  if (joints_.empty()) return;
+  // what hangs together is struck together
+  components_.assign(joints_.components(), 0);
+  for (const int i : joints_.bodies()) {
+    if (closing_[i] && joints_.component(i) >= 0) components_[joints_.component(i)] = 1;
   }
+  for (const int i : joints_.bodies()) {
+    if (joints_.component(i) >= 0 && components_[joints_.component(i)]) closing_[i] = 1;
+  }
+  copy_to_joints();
+  joints_.begin(step.h);
+  if (touches_.empty() && joints_.plain()) iterations_ = 1;
+}
+
+template <int D>
+void SpaceIterative<D>::iterate(StepPart<D> step) {
   for (int round = 0; round < kTempering; ++round) {
-    for (int i = 0; i < iterations; ++i) {
+    for (int i = 0; i < iterations_; ++i) {
       solve_joint_velocities();
-      iterate(all_, i % 2 != 0);
+      iterate_contacts(all_, i % 2 != 0);
     }
-    advance(state, h);
-    if (!temper(state)) break;
+    place_bodies(step.state, step.h);
+    if (!temper(step.state)) break;
   }
-  update_velocities(state, h);
-  correct_overlaps(state);
-  if (!joints_.empty()) project_joints(state, h);
-  report(state, h);
-  if (sleep_.due(state)) put_to_sleep(state, h);
+}
+
+template <int D>
+void SpaceIterative<D>::project(StepPart<D> step) {
+  correct_overlaps(step.state);
+  if (!joints_.empty()) project_joints(step.state, step.h);
+}
+
+template <int D>
+void SpaceIterative<D>::report(StepPart<D> step) {
+  report_contacts(step.state, step.h);
+}
+
+template <int D>
+void SpaceIterative<D>::sleep(StepPart<D> step) {
+  if (sleep_.due(step.state)) put_to_sleep(step.state, step.h);
 }
 
 // poses, velocities and inverse inertias
@@ -156,7 +177,7 @@ void SpaceIterative<D>::find(double h) {
       const Wall<D>& w = model_.walls[wall];
       if ((stances_[a].x - w.point).dot(w.normal) > bounding_radius_[a] + margin(a, h)) continue;
       gaps_.clear();
-      collide(a, p.shape, stances_[a], wall, w, margin(a, h), gaps_);
+      sim::collide(a, p.shape, stances_[a], wall, w, margin(a, h), gaps_);
       for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, -1 - wall));
     }
     for (; pair != pairs.end() && pair->first == a; ++pair) {
@@ -164,7 +185,7 @@ void SpaceIterative<D>::find(double h) {
       const Body<D>& q = model_.bodies[b];
       const double near = pair_margin(a, b, h);
       gaps_.clear();
-      collide(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
+      sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
       for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, b));
     }
   }
@@ -213,12 +234,14 @@ void SpaceIterative<D>::build_joint_rows(const State<D>& state) {
 
 // positions and velocities without contacts
 template <int D>
-void SpaceIterative<D>::integrate_unconstrained(State<D>& state, double t, double h) {
+void SpaceIterative<D>::move_free(StepPart<D> step) {
+  State<D>& state = step.state;
+  if (!joints_.empty()) build_joint_rows(state);
   const int n = int(model_.bodies.size());
   x_ = state.x, turn_ = state.turn;
   dynamics_.gather(state, true);
   stages_.reserve(std::size_t(dynamics_.size()));
-  dynamics_.step(integrate(model_.integrator), state, t, h, stages_);
+  dynamics_.step(integrate(model_.integrator), state, step.t, step.h, stages_);
   v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
   energy_guard_.open(state);
   for (int i = 0; i < n; ++i) {
@@ -230,7 +253,7 @@ void SpaceIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
 
 // what each touch wants of the step, and the forces it had in the last
 template <int D>
-void SpaceIterative<D>::warm_start(const State<D>& state, double h) {
+void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
   static const BodyMotion<D> room;
   const int n = int(model_.bodies.size());
   closing_.assign(n + 1, 0), all_.clear();
@@ -264,7 +287,7 @@ void SpaceIterative<D>::warm_start(const State<D>& state, double h) {
 }
 
 template <int D>
-void SpaceIterative<D>::iterate(const std::vector<int>& order, bool back) {
+void SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool back) {
   const int count = int(order.size());
   for (int i = 0; i < count; ++i) {
     ContactConstraint& touch = touches_[order[back ? count - 1 - i : i]];
@@ -378,7 +401,7 @@ void SpaceIterative<D>::find_strikes(double h) {
 
 // positions at the end of the step, from those without contacts
 template <int D>
-void SpaceIterative<D>::advance(State<D>& state, double h) {
+void SpaceIterative<D>::place_bodies(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   find_strikes(h);
   for (int i = 0; i < n; ++i) {
@@ -412,11 +435,12 @@ void SpaceIterative<D>::advance(State<D>& state, double h) {
 
 // velocities at the end of the step, and sleep timers
 template <int D>
-void SpaceIterative<D>::update_velocities(State<D>& state, double h) {
+void SpaceIterative<D>::advance(StepPart<D> step) {
+  State<D>& state = step.state;
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (inactive_[i]) continue;
     if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
-    sleep_.time(state, i, state.v[i].squaredNorm(), moving_[i].w.squaredNorm(), h);
+    sleep_.time(state, i, state.v[i].squaredNorm(), moving_[i].w.squaredNorm(), step.h);
   }
 }
 
@@ -478,7 +502,7 @@ void SpaceIterative<D>::project_joints(State<D>& state, double h) {
 
 // the forces of this step; what sleeps keeps its own
 template <int D>
-void SpaceIterative<D>::report(State<D>& state, double h) const {
+void SpaceIterative<D>::report_contacts(State<D>& state, double h) const {
   const auto asleep = [&](int body) { return body < 0 || inactive_[body]; };
   std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
   const std::size_t kept = state.contacts.size();

@@ -28,9 +28,16 @@ class SpaceIterative final : public ContactSolver<D> {
   /// Both are kept by reference.
   SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// Moves `state` from t to t + h (s): forces, impacts, contacts with friction, rest. Uses and writes
-  /// state.contacts, frozen, quiet.
-  void step(State<D>& state, double t, double h) override;
+  bool collide(StepPart<D> step) override;
+  void wake(StepPart<D> step) override;
+  void move_free(StepPart<D> step) override;
+  void resolve_impacts(StepPart<D> step) override;
+  void warm_start(StepPart<D> step) override;
+  void iterate(StepPart<D> step) override;
+  void advance(StepPart<D> step) override;
+  void project(StepPart<D> step) override;
+  void report(StepPart<D> step) override;
+  void sleep(StepPart<D> step) override;
 
  private:
   // a gap that may close in the step
@@ -79,8 +86,6 @@ class SpaceIterative final : public ContactSolver<D> {
   void add(const ContactCandidate<D>& gap, const Material& pair);
   bool update_sleep(State<D>& state, double h);
   void build_joint_rows(const State<D>& state);
-  void integrate_unconstrained(State<D>& state, double t, double h);
-  void resolve_impacts(State<D>& state, double h);
   Flown flown(int body, double t, double h) const;
   Flown fly(int body, double t, double h) const;
   Instant instant(int touch, double t, double h) const;
@@ -113,8 +118,8 @@ class SpaceIterative final : public ContactSolver<D> {
       for (const int member : joints_.members(component)) act(member);
     }
   }
-  void warm_start(const State<D>& state, double h);
-  void iterate(const std::vector<int>& order, bool back);
+  void warm_start_contacts(const State<D>& state, double h);
+  void iterate_contacts(const std::vector<int>& order, bool back);
   // an impulse on a, and back on b
   void push(const ContactConstraint& touch, const Vec<D>& impulse) {
     apply(impulse, moving_[touch.a], touch.arm_a, moving_[touch.b], touch.arm_b);
@@ -129,11 +134,10 @@ class SpaceIterative final : public ContactSolver<D> {
   void copy_from_joints(const std::vector<char>* of = nullptr);
   void solve_joint_velocities();
   void find_strikes(double h);
-  void advance(State<D>& state, double h);
-  void update_velocities(State<D>& state, double h);
+  void place_bodies(State<D>& state, double h);
   void correct_overlaps(State<D>& state);
   void project_joints(State<D>& state, double h);
-  void report(State<D>& state, double h) const;
+  void report_contacts(State<D>& state, double h) const;
   Contact<D> contact(const ContactConstraint& touch, double h) const;
   void fall_from_rest(std::span<const typename Sleep<D>::Island> islands, double h);
   void find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h);
@@ -158,6 +162,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<Bounds<D>> bounds_;
   std::vector<char> inactive_, points_;
   std::vector<ContactCandidate<D>> gaps_;
+  int iterations_ = 0;
   std::vector<ContactConstraint> touches_;     // ascending by key
   std::vector<ContactCandidate<D>> features_;  // theirs
   std::vector<int> all_, some_;

@@ -87,7 +87,7 @@ void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> is
       for (const int component : components_) joints_.iterate(component);
       copy_from_joints(&on_joints_);
     }
-    iterate(some_, i % 2 != 0);
+    iterate_contacts(some_, i % 2 != 0);
     if (i % kBetweenChecks != 0) continue;
     found = std::all_of(islands.begin(), islands.end(), [&](const auto& island) {
       return std::all_of(island.bodies.begin(), island.bodies.end(),
@@ -115,7 +115,7 @@ void SpaceIterative<D>::put_to_sleep(State<D>& state, double h) {
                            [&](const Row<D>& row, double gain) { sleep_.hold(island, row, gain / h); });
   }
   moving_.swap(kept_);
-  report(state, h);
+  report_contacts(state, h);
   sleep_.settle(state);
 }
 

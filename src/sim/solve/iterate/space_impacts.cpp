@@ -129,7 +129,7 @@ template <int D>
 double SpaceIterative<D>::find_features(int a, int b, double t, double h) {
   const BodyMotion<D> at_a = flown(a, t, h).stance, at_b = flown(b, t, h).stance;
   gaps_.clear();
-  collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps_);
+  sim::collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps_);
   double least = 1e300;
   for (ContactCandidate<D>& gap : gaps_) {
     gap.value = evaluate(gap, at_a, at_b).value;
@@ -344,7 +344,9 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
 // Adds the step's impacts to the positions without contacts, and leaves the rest to the iterations of the
 // gaps of those that had one.
 template <int D>
-void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
+void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
+  State<D>& state = step.state;
+  const double h = step.h;
   const int n = int(model_.bodies.size());
   struck_ = false;
   when_.assign(n + 1, -1), due_.clear();
@@ -450,6 +452,6 @@ void SpaceIterative<D>::resolve_impacts(State<D>& state, double h) {
   energy_guard_.open(state);
 }
 
-template void SpaceIterative<3>::resolve_impacts(State<3>&, double);
+template void SpaceIterative<3>::resolve_impacts(StepPart<3>);
 
 }  // namespace obscura::sim

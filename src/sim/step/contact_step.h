@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "sim/energy/energy_guard.h"
+#include "sim/solve/contact_solver.h"
+#include "sim/solve/exact/lone_bodies.h"
+
+namespace obscura::sim {
+
+/// One step of bodies in contact, whichever solver serves them: its stages, and after them energy. Bodies
+/// that meet nothing but walls are moved by the exact solver (sim/solve/exact/lone_bodies.h), and none of it
+/// leaves more energy than there was.
+template <int D>
+class ContactStep {
+ public:
+  /// Both are kept by reference.
+  ContactStep(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+  /// Moves `state` from t to t + h (s): bodies, contacts, joints, and which bodies sleep.
+  void step(State<D>& state, double t, double h);
+
+ private:
+  void take_energy_back(State<D>& state);
+
+  const Model<D>& model_;
+  bool direct_;
+  std::unique_ptr<ContactSolver<D>> solver_;
+  EnergyGuard<D> energy_guard_;
+  std::unique_ptr<LoneBodies<D>> lone_bodies_;  // beside a solver for many
+  std::vector<std::pair<int, int>> touched_;
+};
+
+}  // namespace obscura::sim
