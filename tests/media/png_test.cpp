@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "media/error.h"
@@ -66,7 +67,10 @@ TEST(Png, CarriesTagsInAnyLanguage) {
 
 TEST(Png, SaysItIsSrgbAndNotWhenItWasMade) {
   const auto bytes = encode_png(random_image(8, 8, 4), {.tags = {{"Title", "a"}}});
-  EXPECT_THAT(chunks(bytes), ElementsAre("IHDR", "gAMA", "sRGB", "cHRM", "iTXt", "IDAT", "IEND"));
+  auto all = chunks(bytes);
+  ASSERT_EQ(all.size(), 7u);
+  std::sort(all.begin() + 1, all.begin() + 4);  // of one colour space: their order is libpng's
+  EXPECT_THAT(all, ElementsAre("IHDR", "cHRM", "gAMA", "sRGB", "iTXt", "IDAT", "IEND"));
 }
 
 TEST(Png, IsTheSameBytesEveryTime) {
