@@ -18,6 +18,7 @@
 #include "sim/motion/free_motion.h"
 #include "sim/step/archive.h"
 #include "sim/step/bonded_bodies.h"
+#include "sim/step/contact_step.h"
 
 namespace obscura::sim {
 

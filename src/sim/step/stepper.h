@@ -10,12 +10,14 @@
 #include "sim/model/script.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/motion/integrator.h"
-#include "sim/step/contact_step.h"
+#include "sim/solve/contact_solver.h"
 
 namespace obscura::sim {
 
 template <int D>
 class BondedBodies;
+template <int D>
+class ContactStep;
 
 /// Carries states of one model forward. What it owns belongs to the step at hand and is never saved; a warm
 /// step allocates nothing. The model is kept by reference.
