@@ -221,9 +221,9 @@ TEST(Ends, CountFromAPolygonsOwnOrigin) {
 }
 
 TEST(Overrides, ReachWhatIsNew) {
-  const Scene it =
-      contact_scene("[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 2, offset = [1, 0] }",
-            {"ball[1].radius=0.4", "ball.friction=0.1", "ball[1].angle=90", "physics.solver=iterative"});
+  const Scene it = contact_scene(
+      "[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 2, offset = [1, 0] }",
+      {"ball[1].radius=0.4", "ball.friction=0.1", "ball[1].angle=90", "physics.solver=iterative"});
   EXPECT_EQ(sim::round_radius(it.plane().model.bodies[0].shape), 0.2);
   EXPECT_EQ(sim::round_radius(it.plane().model.bodies[1].shape), 0.4);
   EXPECT_EQ(it.plane().model.bodies[1].friction, 0.1);
