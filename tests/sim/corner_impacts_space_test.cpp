@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/first_impact.h"
 #include "sim/space_rooms.h"
 #include "sim/touching.h"
 
@@ -284,28 +285,6 @@ World<3> meeting(int seed, Collision collision, int rate) {
     world.model.bodies[body].friction = mu;
   }
   return world;
-}
-
-struct Met {
-  double time = -1;
-  State<3> state;
-};
-
-// the first step with an impact in it, and how many there are in it and until `after` s later
-std::pair<Met, int> first_impact(const World<3>& world, double after) {
-  State<3> state = world.state;
-  Stepper<3> stepper(world.model);
-  stepper.begin(state);
-  const double rate = value(world.model.rate);
-  Met met;
-  int impacts = 0;
-  while (double(state.step) < rate && (met.time < 0 || double(state.step) / rate < met.time + after)) {
-    if (stepper.step(state)) break;
-    for (const Contact<3>& contact : state.contacts) impacts += contact.impulse.norm() > 0;
-    if (impacts == 0 || met.time >= 0) continue;
-    met = {double(state.step) / rate, state};
-  }
-  return {met, impacts};
 }
 
 TEST(CornerImpactsInSpace, TwoBodiesPartAsTheExactSolverSays) {

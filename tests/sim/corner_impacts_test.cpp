@@ -12,6 +12,7 @@
 #include <numbers>
 #include <optional>
 
+#include "sim/first_impact.h"
 #include "sim/touching.h"
 
 namespace obscura::sim {
@@ -273,28 +274,6 @@ World<2> meeting(int seed, Collision collision, int rate) {
   }
   rub(world, seed % 4 == 0 ? 0 : chance.between(0.05, 1));
   return world;
-}
-
-struct Met {
-  double time = -1;
-  State<2> state;
-};
-
-// the first step with an impact in it, and how many there are in it and until `after` s later
-std::pair<Met, int> first_impact(const World<2>& world, double after) {
-  State<2> state = world.state;
-  Stepper<2> stepper(world.model);
-  stepper.begin(state);
-  const double rate = value(world.model.rate);
-  Met met;
-  int impacts = 0;
-  while (double(state.step) < rate && (met.time < 0 || double(state.step) / rate < met.time + after)) {
-    if (stepper.step(state)) break;
-    for (const Contact<2>& contact : state.contacts) impacts += contact.impulse.norm() > 0;
-    if (impacts == 0 || met.time >= 0) continue;
-    met = {double(state.step) / rate, state};
-  }
-  return {met, impacts};
 }
 
 // Against the exact solver, and every impact keeps momentum and angular momentum to rounding.
