@@ -15,7 +15,7 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr double kLeastAllowed = 5e-7, kMostAllowed = 1e-2;  // of a bounding radius
+constexpr double kLeastAllowed = 5e-7, kMostAllowed = 4e-3;  // of a bounding radius
 constexpr double kFew = 50, kMany = 200;                     // bodies that move, beside points
 
 struct CorePoint {

@@ -53,7 +53,7 @@ double EnergyGuard<D>::kinetic(const State<D>& state, int body) const {
 template <int D>
 void EnergyGuard<D>::open(const State<D>& state) {
   const int n = int(weights_.size());
-  x_ = state.x, moved_.resize(n), before_.resize(n), now_.resize(n);
+  x_ = state.x, moved_.resize(n), before_.resize(n), now_.resize(n), booked_.assign(n, 0);
   for (int i = 0; i < n; ++i) {
     moved_[i] = kinetic(state, i);
     before_[i] = moved_[i] - weights_[i].mass * model_.gravity.dot(state.x[i]);
@@ -68,7 +68,7 @@ bool EnergyGuard<D>::risen(const State<D>& state) {
   for (int i = 0; i < n; ++i) {
     const double moves = kinetic(state, i);
     now_[i] = moves - weights_[i].mass * model_.gravity.dot(state.x[i]);
-    sum += now_[i] - before_[i], motion += moves;
+    sum += gain(i), motion += moves;
   }
   for (int i = 0; i < int(springs_now_.size()); ++i) {
     springs_now_[i] = spring_energy(model_, state, i);

@@ -18,11 +18,13 @@ class EnergyGuard {
 
   /// Notes what there is, of motion, height and springs, before a step.
   void open(const State<D>& state);
+  /// What was done to a body since then on purpose, J: it may stay.
+  void book(int body, double work) { booked_[body] += work; }
   /// Whether there is more now, beyond rounding: of all together. What hands, motors and blasts work on
   /// counts too.
   bool risen(const State<D>& state);
   /// By how much body i has more since open(), as risen() found it, J.
-  double gain(int body) const { return now_[body] - before_[body]; }
+  double gain(int body) const { return now_[body] - before_[body] - booked_[body]; }
 
   /// Where it has risen: a and b (a body; below zero a wall) have touched in the step.
   void touch(int a, int b);
@@ -69,8 +71,8 @@ class EnergyGuard {
   std::vector<Weight> weights_;
   double size_ = 0;  // J: m g times the room's height
   std::vector<Vec<D>> x_;
-  std::vector<double> moved_, before_, now_;          // one a body, J
-  std::vector<double> springs_before_, springs_now_;  // J
+  std::vector<double> moved_, before_, now_, booked_;  // one a body, J
+  std::vector<double> springs_before_, springs_now_;   // J
   Islands islands_, groups_;
   std::vector<char> touched_, rooted_, tied_, jointed_;
   std::vector<double> granted_, parts_;  // one a body

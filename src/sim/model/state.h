@@ -41,9 +41,9 @@ struct BodySpin {
   bool operator==(const BodySpin&) const = default;
 };
 
-/// What the displacement and the impulses of `handout` did to the energy since t = 0, J.
+/// What has been done to the energy since t = 0 other than by forces, J.
 struct Ledger {
-  double displacement = 0;  // gained (+) or lost by putting bodies back on the wall
+  double displacement = 0;  // gained (+) or lost by putting bodies back on a wall, or out of each other
   double impacts = 0;       // lost (-) in impacts
 
   bool operator==(const Ledger&) const = default;

@@ -47,6 +47,9 @@ class ContactSolver {
   /// Wakes what is touched or pulled; what begins at rest falls asleep.
   virtual void wake(StepPart<D>) {}
 
+  /// How far the last step has pushed each body out of others, m; null: none. The work of it is no contact's.
+  virtual const Vec<D>* corrections() const { return nullptr; }
+
   /// Into how many substeps the following stages divide the step.
   virtual int substeps() const { return 1; }
   /// Moves all bodies without contacts and joints.

@@ -38,14 +38,20 @@ void ContactStep<D>::step(State<D>& state, double t, double h) {
 // contact may only take
 template <int D>
 void ContactStep<D>::take_energy_back(State<D>& state) {
+  // what overlaps is pushed apart, and the work of that is booked
+  if (const Vec<D>* ways = solver_->corrections()) {
+    for (int i = 0; i < int(model_.bodies.size()); ++i) {
+      const double work = -model_.bodies[i].mass * model_.gravity.dot(ways[i]);
+      energy_guard_.book(i, work);
+      state.ledger.displacement += work;
+    }
+  }
   // what overlaps at the start is to be lifted apart
   if (model_.overlap == Overlap::separate || !energy_guard_.risen(state)) return;
   for (const auto& [a, b] : touched_) energy_guard_.touch(a, b);
   for (const Contact<D>& contact : state.contacts) energy_guard_.touch(contact.key.a, contact.key.b);
-  // so is what overlaps by next to nothing; joints of second order give and take; and a heap that is put
-  // right sixty times a second has sunk by as much between
-  const double share = state.step == 0 ? kAll : D == 2 && !direct_ ? kSinks : 0;
-  for (int i = 0; share > 0 && i < int(model_.bodies.size()); ++i) energy_guard_.excuse(i, share);
+  // so is what overlaps by next to nothing; joints of second order give and take
+  for (int i = 0; state.step == 0 && i < int(model_.bodies.size()); ++i) energy_guard_.excuse(i, kAll);
   for (const Joint<D>& joint : model_.joints) {
     if (direct_) break;
     for (const int body : {joint.a.body, joint.b.body}) {

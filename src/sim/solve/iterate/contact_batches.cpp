@@ -20,9 +20,10 @@ constexpr double kCalm =
     0.02;  // of its thickness: what a pair may move between two pair searches, features kept
 constexpr double kSoft =
     0.05;  // of its thickness between two pair searches: slower inelastic closings are no impacts
-constexpr int kColours = 40;    // lanes of more colours hold one pair each
-constexpr int kPerSpare = 128;  // lanes of a colour: one group more for so many
-constexpr int kAhead = 8;       // lanes
+constexpr double kPointWidth = 1e-3;  // of the room: what is no wider, as a point, has this width
+constexpr int kColours = 40;          // lanes of more colours hold one pair each
+constexpr int kPerSpare = 128;        // lanes of a colour: one group more for so many
+constexpr int kAhead = 8;             // lanes
 
 bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind == Feature::corners; }
 
@@ -86,6 +87,7 @@ void PlaneIterative<D>::build_batches(const State<D>& state, bool known) {
   // in the order of memory
   calmest_ = 1e300;
   batches_.resize(end / kLanes), projections_.resize(end / kLanes);
+  slow_.reserve(std::size_t(end)), fast_.reserve(std::size_t(end));
   for (int slot = 0; slot < end; ++slot) {
     // pairs and contacts are far apart in memory: ask for those of later lanes
     if (slot + 2 * kAhead < end && slots_[slot + 2 * kAhead] >= 0) {
@@ -214,6 +216,7 @@ void PlaneIterative<D>::fill_lane(int i, const State<D>& state) {
                                      : std::max(restitution_threshold_, kSoft * thin / span_));
   pair.impact_speed = float(-0.999 * g.impact_speed[lane]);
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
+  g.per_width[lane] = 1 / std::max(2 * thin, kPointWidth * model_.scale);
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
   // in terms of bodies' own bounding radii
   double least = cores_.bounding_radius[pair.a];

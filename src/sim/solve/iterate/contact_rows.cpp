@@ -9,6 +9,7 @@
 
 #include "sim/solve/iterate/contact_rows.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/math/lanes.h"
@@ -17,8 +18,10 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr int kAhead = 4;         // groups
-constexpr double kTiny = 1e-300;  // against division by zero in empty lanes: changes no other number
+constexpr int kAhead = 4;          // groups
+constexpr double kPassing = 0.25;  // of the speed of polygons against each other
+constexpr double kNearly = 0.1;    // of its width: how near is nearly touching
+constexpr double kTiny = 1e-300;   // against division by zero in empty lanes: changes no other number
 
 template <class V>
 struct WideRow {
@@ -223,10 +226,47 @@ OBSCURA_INLINE void keep(const ContactBatch& g, const Rows& rows, Contact<2>* co
   }
 }
 
+template <class V>
+OBSCURA_INLINE double largest(const V& v) {
+  double most = v[0];
+  for (int k = 1; k < Of<V>::lanes; ++k) most = std::max(most, v[k]);
+  return most;
+}
+
+template <class V>
+OBSCURA_INLINE double closing_rate_all(const ContactBatch* batches, int count, const Pose* poses,
+                                       const Motion* v, double step) {
+  const V none{}, h = V{} + step;
+  V most{};
+  for (const ContactBatch* g = batches; g < batches + count; ++g) {
+    if (!g->used) continue;
+    for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+      Quad<V> a, b;
+      gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
+      const Two<V> two(*g, lane, v);
+      const V per_width = load<V>(g->per_width + lane);
+      const Mask<V> polygons = load<V>(g->radius + lane) <= none;
+      const V dx = two.a.x - two.b.x, dy = two.a.y - two.b.y;
+      const V speed =
+          root(dx * dx + dy * dy) + load<V>(g->far + lane) * (magnitude<V>(two.a.z) + magnitude<V>(two.b.z));
+      const V passes = pick<V>(polygons, kPassing * speed, none);
+      for (int k = 0; k < 2; ++k) {
+        WideRow<V> r;
+        make<V>(*g, lane, k, a, b, r);
+        const V closes = larger<V>(-two.along(r.nx, r.ny, r.na, r.nb), passes);
+        most = larger<V>(most,
+                         pick<V>((r.gap - h * closes) * per_width < V{} + kNearly, closes * per_width, none));
+      }
+    }
+  }
+  return largest<V>(most);
+}
+
 template <class V, bool kLast, bool kKeep>
-OBSCURA_INLINE void sweep_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
-                              const StepConstants& pace, Contact<2>* contacts) {
+OBSCURA_INLINE double sweep_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
+                                const StepConstants& pace, Contact<2>* contacts) {
   const V per_h = V{} + 1 / pace.h, none{};
+  [[maybe_unused]] V worst{};
   for (ContactBatch* g = batches; g < batches + count; ++g) {
     if (!g->used) continue;
     [[maybe_unused]] Rows kept;
@@ -259,6 +299,13 @@ OBSCURA_INLINE void sweep_all(ContactBatch* batches, int count, const Pose* pose
         target0 = pick<V>(mask<V>(g->struck[0], lane), load<V>(least.n[0] + lane), open0);
         target1 = pick<V>(mask<V>(g->struck[1], lane), load<V>(least.n[1] + lane), open1);
       }
+      if constexpr (!kLast) {
+        const V left0 = target0 - two.along(r0.nx, r0.ny, r0.na, r0.nb),
+                left1 = target1 - two.along(r1.nx, r1.ny, r1.na, r1.nb);
+        const V wrong0 = pick<V>(l0 > none, magnitude<V>(left0), left0),
+                wrong1 = pick<V>(l1 > none, magnitude<V>(left1), left1);
+        worst = larger<V>(worst, larger<V>(wrong0, wrong1) * load<V>(g->per_width + lane));
+      }
       press<V>(two, r0, r1, target0, target1, l0, l1);
       two.back(*g, lane, v);
       if constexpr (!kLast) {
@@ -284,6 +331,7 @@ OBSCURA_INLINE void sweep_all(ContactBatch* batches, int count, const Pose* pose
     }
     if constexpr (kKeep) keep(*g, kept, contacts);
   }
+  return largest<V>(worst);
 }
 
 template <class V>
@@ -320,8 +368,12 @@ OBSCURA_WIDE bool start_wide(ContactBatch* s, int n, const Pose* at, const Motio
                              const StepConstants& pace, Found& closing, Found& blows) {
   return start_all<V4>(s, n, at, old, v, pace, closing, blows);
 }
-OBSCURA_WIDE void sweep_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
+OBSCURA_WIDE double closing_rate_wide(const ContactBatch* s, int n, const Pose* at, const Motion* v,
+                                      double h) {
+  return closing_rate_all<V4>(s, n, at, v, h);
+}
+OBSCURA_WIDE double sweep_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
+  return sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
 }
 OBSCURA_WIDE void finish_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
                               Contact<2>* contacts) {
@@ -344,7 +396,7 @@ void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k) {
   to.mu[k] = from.mu[i], to.iia[k] = from.iia[i], to.iib[k] = from.iib[i];
   to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.impact_speed[k] = from.impact_speed[i],
   to.radius[k] = from.radius[i];
-  to.sight[k] = from.sight[i];
+  to.sight[k] = from.sight[i], to.per_width[k] = from.per_width[i];
   for (int side = 0; side < 2; ++side) {
     to.cx[side][k] = from.cx[side][i], to.cy[side][k] = from.cy[side][i];
     to.fx[side][k] = from.fx[side][i], to.fy[side][k] = from.fy[side][i], to.d[side][k] = from.d[side][i];
@@ -395,8 +447,11 @@ bool start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
   return kWide ? start_wide(s, n, at, old, v, pace, closing, blows)
                : start_all<V2>(s, n, at, old, v, pace, closing, blows);
 }
-void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
+double closing_rate(const ContactBatch* s, int n, const Pose* at, const Motion* v, double h) {
+  return kWide ? closing_rate_wide(s, n, at, v, h) : closing_rate_all<V2>(s, n, at, v, h);
+}
+double iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
+  return kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
 }
 void finish(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
             Contact<2>* contacts) {

@@ -35,6 +35,7 @@ struct alignas(64) ContactBatch {
   double calm[kLanes], far[kLanes];  // m/s up to which features stay; the larger bounding radius of both, m
   double impact_speed[kLanes];       // -m/s: faster approaches are impacts
   double sight[kLanes];              // m: touches farther off are none
+  double per_width[kLanes];          // 1/m: of the narrower of both
   double radius[kLanes];             // of both together, m
   double cx[2][kLanes], cy[2][kLanes];
   double fx[2][kLanes], fy[2][kLanes];
@@ -99,8 +100,13 @@ inline double normal_speed(const Rows& r, int k, int lane, const Motion& a, cons
 bool start(ContactBatch* batches, int count, const Pose* poses, const Motion* old, Motion* v,
            const StepConstants& pace, Found& closing, Found& blows);
 
-/// One iteration: every pair once, in order.
-void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
+/// How fast pairs close that touch, or may within h s: the most, in widths of the narrower body, 1/s. Of
+/// polygons a part of how fast they pass counts too, as others of their corners may come near.
+double closing_rate(const ContactBatch* batches, int count, const Pose* poses, const Motion* v, double h);
+
+/// One iteration: every pair once, in order. Returns by how much the fastest was to be slowed down, in widths
+/// of the narrower body, 1/s: what the iterations before had left.
+double iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
 /// The last one of a substep: forces into the lanes and, where there are some, into the contacts.
 void finish(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             Contact<2>* contacts);

@@ -25,15 +25,20 @@ using plane::Pair;
 
 namespace {
 
-constexpr double kPairUpdates = 60;  // a second: how often pairs are looked for
-constexpr double kStretches = 240;   // a second, at least
-constexpr int kMostSweeps = 40;      // of few pairs
-constexpr int kJointSweeps = 16;     // where there are joints: those are solved exactly in each
-constexpr int kStrainSweeps = 64;    // where they press something far into another
-constexpr double kStrained = 0.02;   // of its thickness: how far that is
-constexpr int kPairSweeps = 2000;    // pairs times iterations where there are more; at least one iteration
-constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
-constexpr double kProject = 0.2;     // of a penetration each time pairs are looked for
+constexpr double kPairUpdates = 60;     // a second: how often pairs are looked for
+constexpr double kSubsteps = 240;       // a second, at least
+constexpr double kMostSubsteps = 4800;  // a second, at most
+constexpr double kCloser = 0.05;        // of the narrower width: what pairs may come nearer in a substep
+constexpr int kMostSweeps = 40;         // of few pairs
+constexpr int kJointSweeps = 16;        // where there are joints: those are solved exactly in each
+constexpr int kStrainSweeps = 64;       // where they press something far into another
+constexpr double kStrained = 0.02;      // of its thickness: how far that is
+constexpr int kPairSweeps = 2000;       // pairs times iterations where there are more; at least one iteration
+constexpr int kMoreSweeps = 5;          // times as many while pairs have not settled
+constexpr int kUnsettledSweeps = 8;     // and at least so many
+constexpr double kSettled = 0.1;        // of the narrower width, 1/s: what a pair may still close by
+constexpr int kFirstSweeps = 100;       // of the first step, which knows no forces
+constexpr double kOverlapLife = 1.0 / 60;  // s: after so long an overlap is half as deep
 
 }  // namespace
 
@@ -51,9 +56,11 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairUpdates));
   span_ = double(every_) * h;
-  substeps_ = std::max(1, int(std::ceil(kStretches * h - 1e-9)));
+  project_ = span_ / (span_ + kOverlapLife);
+  substeps_ = std::max(1, int(std::ceil(kSubsteps * h - 1e-9)));
   restitution_threshold_ = 2 * h / substeps_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
+  gain_.resize(n + 1), bend_.resize(n + 1), corrections_.resize(n);
   v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
   closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);
   for (const Body<D>& body : model.bodies) {
@@ -105,7 +112,15 @@ void PlaneIterative<D>::wake(StepPart<D> step) {
     if (sleep_.at_start(step.state, step.state.contacts)) clear_sleeping(step.state);
   }
   impacts_.begin();
-  outran_ = false;
+  outran_ = corrected_ = false;
+  substeps_ = needed_substeps(step.h);
+}
+
+// so many that no pair that touches closes by more than a part of its width in one
+template <int D>
+int PlaneIterative<D>::needed_substeps(double h) const {
+  const double rate = plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), v_.data(), h);
+  return std::max(1, int(std::ceil(h * std::clamp(rate / kCloser, kSubsteps, kMostSubsteps) - 1e-9)));
 }
 
 template <int D>
@@ -187,7 +202,8 @@ void PlaneIterative<D>::renew_pairs(StepPart<D> step) {
 template <int D>
 void PlaneIterative<D>::move_free(StepPart<D> step) {
   renew_pairs(step);
-  integrate_unconstrained(step.state, step.t, step.h);
+  if (step.substep == 0) integrate_unconstrained(step.state, step.t, substeps_ * step.h);
+  share_free_motion(step.h);
 }
 
 // The wide kernel that finds what closes applies the forces of the last step as well.
@@ -206,15 +222,27 @@ void PlaneIterative<D>::resolve_impacts(StepPart<D> step) {
 }
 
 template <int D>
+int PlaneIterative<D>::fewest_iterations() const {
+  return std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+}
+
+template <int D>
+int PlaneIterative<D>::most_iterations() const {
+  return std::max(kUnsettledSweeps, kMoreSweeps * fewest_iterations());
+}
+
+template <int D>
 void PlaneIterative<D>::warm_start(StepPart<D> step) {
-  iterations_ = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  iterations_ = fewest_iterations(), most_iterations_ = most_iterations();
   if (step.state.step == 0 && first(step)) iterations_ = kFirstSweeps;
+  most_iterations_ = std::max(iterations_, most_iterations_);
   if (joints_.empty()) return;
   copy_to_joints();
   joints_.begin(step.h);
   copy_from_joints();
   const int most = strained(step.state) ? kStrainSweeps : kJointSweeps;
   iterations_ = batches_.empty() && joints_.plain() ? 1 : std::clamp(most / 4 * iterations_, 4, most);
+  most_iterations_ = iterations_;
 }
 
 // forces stay in the lanes until the last substep
@@ -222,9 +250,10 @@ template <int D>
 void PlaneIterative<D>::iterate(StepPart<D> step) {
   const int count = int(batches_.size());
   const bool last = step.substep + 1 == substeps_;
-  for (int i = 1; i < iterations_; ++i) {
+  double left = 2 * kSettled;
+  for (int i = 1; i < iterations_ || (i < most_iterations_ && left > kSettled); ++i) {
     solve_joint_velocities();
-    plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_);
+    left = plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_);
   }
   solve_joint_velocities();
   plane::finish(batches_.data(), count, poses_.data(), v_.data(), constants_,
@@ -236,6 +265,7 @@ template <int D>
 void PlaneIterative<D>::advance(StepPart<D> step) {
   const bool correct = first(step) && deep_;
   if (correct) correct_overlaps(step.state);
+  corrected_ = corrected_ || correct;
   place_bodies(step.state, step.h, correct);
 }
 
@@ -320,21 +350,21 @@ bool PlaneIterative<D>::gather(const State<D>& state) {
   return known;
 }
 
-// how each body would move in the step if nothing touched
+// how each body would move in the step if nothing touched: by the integrator that the scene names
 template <int D>
 void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, double h) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
   const double gx = model_.gravity[0], gy = model_.gravity[1];
   for (int i = 0; i < n; ++i) {
-    old_[i] = v_[i];
-    if (v_[i].im == 0) {
-      old_[i] = v_[i] = dv_[i] = dx_[i] = {};
+    // of what sleeps too: it may wake within the step
+    if (fixed_[i]) {
+      gain_[i] = bend_[i] = {};
       continue;
     }
-    const FreeStep by = free_step(model_.integrator, drag_ ? -h * model_.bodies[i].drag * v_[i].im : 0);
-    dv_[i] = {v_[i].x * by.p + h * by.q * gx, v_[i].y * by.p + h * by.q * gy, 0, 0};
-    dx_[i] = {h * (v_[i].x * by.u + h * by.r * gx), h * (v_[i].y * by.u + h * by.r * gy), h * v_[i].w, 0};
-    v_[i].x += dv_[i].x, v_[i].y += dv_[i].y;
+    const FreeStep by = free_step(model_.integrator, drag_ ? -h * model_.bodies[i].drag * light_[i].im : 0);
+    gain_[i] = {v_[i].x * by.p + h * by.q * gx, v_[i].y * by.p + h * by.q * gy, 0, 0};
+    const double u = by.u - 1 - 0.5 * by.p, r = by.r - 0.5 * by.q;
+    bend_[i] = {h * (v_[i].x * u + h * r * gx), h * (v_[i].y * u + h * r * gy), 0, 0};
   }
 
   // springs and hands
@@ -343,17 +373,38 @@ void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
   stages_.reserve(bodies.size() * (D + kAngular<D>));
   dynamics_.step(integrate(model_.integrator), state, t, h, stages_);
   for (const int i : bodies) {
-    if (v_[i].im > 0) {
-      v_[i].x = state.v[i][0], v_[i].y = state.v[i][1];
-      dv_[i].x = v_[i].x - old_[i].x, dv_[i].y = v_[i].y - old_[i].y;
-      dx_[i].x = state.x[i][0] - poses_[i].x, dx_[i].y = state.x[i][1] - poses_[i].y;
+    const Motion& v = v_[i];
+    if (v.im > 0) {
+      Motion &gain = gain_[i], &bend = bend_[i];
+      gain.x = state.v[i][0] - v.x, gain.y = state.v[i][1] - v.y;
+      bend.x = state.x[i][0] - poses_[i].x - h * (v.x + 0.5 * gain.x);
+      bend.y = state.x[i][1] - poses_[i].y - h * (v.y + 0.5 * gain.y);
       if (i >= still) {
-        v_[i].w = state.spin[i - still][0];
-        dv_[i].w = v_[i].w - old_[i].w, dx_[i].w = state.turn[i - still][0] - turns_[i];
+        gain.w = state.spin[i - still][0] - v.w;
+        bend.w = state.turn[i - still][0] - turns_[i] - h * (v.w + 0.5 * gain.w);
       }
     }
-    state.x[i] = {poses_[i].x, poses_[i].y}, state.v[i] = {old_[i].x, old_[i].y};
-    if (i >= still) state.turn[i - still][0] = turns_[i], state.spin[i - still][0] = old_[i].w;
+    state.x[i] = {poses_[i].x, poses_[i].y}, state.v[i] = {v.x, v.y};
+    if (i >= still) state.turn[i - still][0] = turns_[i], state.spin[i - still][0] = v.w;
+  }
+}
+
+// the part of it that a substep of h has
+template <int D>
+void PlaneIterative<D>::share_free_motion(double h) {
+  const double part = 1 / double(substeps_), half = 0.5 * h;
+  for (std::size_t i = 0; i < turns_.size(); ++i) {
+    Motion &v = v_[i], &dv = dv_[i];
+    const Motion &gain = gain_[i], &bend = bend_[i];
+    if (v.im == 0) {
+      old_[i] = v = dv = dx_[i] = {};
+      continue;
+    }
+    old_[i] = v;
+    dv = {part * gain.x, part * gain.y, part * gain.w, 0};
+    dx_[i] = {h * v.x + (half * dv.x + part * bend.x), h * v.y + (half * dv.y + part * bend.y),
+              h * v.w + (half * dv.w + part * bend.w), 0};
+    v.x += dv.x, v.y += dv.y, v.w += dv.w;
   }
 }
 
@@ -412,7 +463,7 @@ template <int D>
 void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
   std::fill(projections_.begin(), projections_.end(), plane::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
-  int iterations = std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  int iterations = most_iterations();
   if (!joints_.empty() && strained(state)) iterations = kStrainSweeps;
   for (int i = 0; i < iterations; ++i) {
     // joints go along
@@ -424,8 +475,9 @@ void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
       push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
     }
     plane::project(batches_.data(), projections_.data(), int(batches_.size()), poses_.data(), push_.data(),
-                   kProject, cores_.linear_slop);
+                   project_, cores_.linear_slop);
   }
+  for (std::size_t i = 0; i < corrections_.size(); ++i) corrections_[i] = {push_[i].x, push_[i].y};
 }
 
 template class PlaneIterative<2>;

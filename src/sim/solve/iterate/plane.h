@@ -29,6 +29,7 @@ class PlaneIterative final : public ContactSolver<D> {
   bool collide(StepPart<D> step) override;
   void wake(StepPart<D> step) override;
   int substeps() const override { return substeps_; }
+  const Vec<D>* corrections() const override { return corrected_ ? corrections_.data() : nullptr; }
   void move_free(StepPart<D> step) override;
   void resolve_impacts(StepPart<D> step) override;
   void warm_start(StepPart<D> step) override;
@@ -59,7 +60,11 @@ class PlaneIterative final : public ContactSolver<D> {
   void fill_lane(int pair, const State<D>& state);
   void write_lane(const plane::Pair& pair, const State<D>& state);
   void first_guess(State<D>& state);
+  int needed_substeps(double h) const;
+  int fewest_iterations() const;
+  int most_iterations() const;
   void integrate_unconstrained(State<D>& state, double t, double h);
+  void share_free_motion(double h);
   void copy_to_joints();
   void copy_from_joints();
   void solve_joint_velocities();
@@ -84,20 +89,25 @@ class PlaneIterative final : public ContactSolver<D> {
   Stages stages_;
   std::int64_t every_ = 1;            // steps between two pair searches for pairs
   double span_ = 0;                   // and s
-  int substeps_ = 1;                  // of a step
+  double project_ = 0;                // of an overlap, each time
+  int substeps_ = 1;                  // of this step
   bool outran_ = false;               // someone came farther than pairs foresaw
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   bool drag_ = false;
 
   // of bodies; one more that never moves, for walls
   std::vector<plane::Pose> poses_;
-  std::vector<double> turns_;    // that the poses are of, rad
-  std::vector<double> ii_;       // 1/(kg m^2); 0 where asleep or fixed
-  std::vector<Motion> v_, old_;  // now, and when the step began
-  std::vector<Motion> dv_, dx_;  // what the step would do without contacts
-  std::vector<Motion> push_;     // by projection
-  std::vector<char> closing_;    // a slow touch closed in this step
-  std::vector<char> frozen_;     // that the lanes are of
+  std::vector<double> turns_;        // that the poses are of, rad
+  std::vector<double> ii_;           // 1/(kg m^2); 0 where asleep or fixed
+  std::vector<Motion> v_, old_;      // now, and when the step began
+  std::vector<Motion> gain_, bend_;  // of the whole step without contacts: of velocity, and of the way beside
+                                     // that by the mean velocity
+  std::vector<Motion> dv_, dx_;      // what the substep would do without contacts
+  std::vector<Motion> push_;         // by projection
+  std::vector<Vec<D>> corrections_;  // likewise, in this step
+  bool corrected_ = false;
+  std::vector<char> closing_;  // a slow touch closed in this step
+  std::vector<char> frozen_;   // that the lanes are of
   std::vector<char> fixed_;
   struct Light {
     double im, ii;  // 1/kg, 1/(kg m^2)
@@ -110,12 +120,12 @@ class PlaneIterative final : public ContactSolver<D> {
   std::vector<plane::ContactBatch> batches_;
   std::vector<plane::Projection> projections_;
   plane::Found slow_, fast_;
-  plane::StepConstants constants_;  // of the substep
-  bool deep_ = false;               // whether something is too deep in another
-  int iterations_ = 0;
-  std::vector<int> slots_, next_slots_;  // which pair sits where
-  std::vector<int> moved_;               // pairs that take another lane
-  std::int64_t next_step_ = -1;          // of the state that this has left
+  plane::StepConstants constants_;            // of the substep
+  bool deep_ = false;                         // whether something is too deep in another
+  int iterations_ = 0, most_iterations_ = 0;  // of this substep; the latter while pairs have not settled
+  std::vector<int> slots_, next_slots_;       // which pair sits where
+  std::vector<int> moved_;                    // pairs that take another lane
+  std::int64_t next_step_ = -1;               // of the state that this has left
   long version_ = -1;
   int awake_pairs_ = 0;
   double calmest_ = 0;  // m/s: if no point of a body is faster than half of it, all features stay

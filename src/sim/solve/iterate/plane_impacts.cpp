@@ -48,6 +48,7 @@ void Impacts::list_pairs(const std::vector<Pair>& pairs, const std::vector<Motio
   around_.resize(around_start_[n + 1]);
   each([&](int i, int body) { around_[around_start_[body + 1]++] = i; });
   waiting_.assign(pairs.size(), 0), impacts_of_.assign(pairs.size(), 0);
+  queue_.reserve(pairs.size()), passing_.reserve(pairs.size());
 }
 
 // as the step begins

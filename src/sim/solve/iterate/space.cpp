@@ -452,12 +452,13 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state) {
   const auto allowed = [&](const ContactConstraint& touch) {
     return (hangs(touch.a) || hangs(touch.b) ? kHung : kAllowed) * bounding_radius_[touch.a];
   };
-  some_.clear();
+  some_.clear(), corrected_ = false;
   for (int i = 0; i < int(touches_.size()); ++i) {
     const ContactConstraint& touch = touches_[i];
     if (touch.gap < -allowed(touch)) some_.push_back(i);
   }
   if (some_.empty()) return;
+  corrected_ = true, corrections_.resize(model_.bodies.size());
   kept_ = moving_;
   for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();
   const int rounds = std::clamp(kPartRounds / int(some_.size()), 4, 16);
@@ -474,8 +475,9 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state) {
     copy_from_joints();
   }
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    corrections_[i].setZero();
     if (inactive_[i]) continue;
-    state.x[i] += moving_[i].v;
+    state.x[i] += corrections_[i] = moving_[i].v;
     if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
   }
   moving_.swap(kept_);

@@ -30,6 +30,7 @@ class SpaceIterative final : public ContactSolver<D> {
 
   bool collide(StepPart<D> step) override;
   void wake(StepPart<D> step) override;
+  const Vec<D>* corrections() const override { return corrected_ ? corrections_.data() : nullptr; }
   void move_free(StepPart<D> step) override;
   void resolve_impacts(StepPart<D> step) override;
   void warm_start(StepPart<D> step) override;
@@ -173,6 +174,8 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<int> components_;                   // and of their joints
   Islands islands_;
   std::vector<PointBody<D>> kept_;
+  std::vector<Vec<D>> corrections_;  // how far this step has pushed each body out of others, m
+  bool corrected_ = false;
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
   bool struck_ = false;                             // whether any body had an impact in this step
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
