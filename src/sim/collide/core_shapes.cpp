@@ -15,9 +15,6 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr double kLeastAllowed = 5e-7, kMostAllowed = 4e-3;  // of a bounding radius
-constexpr double kFew = 50, kMany = 200;                     // bodies that move, beside points
-
 struct CorePoint {
   double x, y;
 };
@@ -137,10 +134,6 @@ double at_corner(const CoreShapes& cores, const CoreShape& round, const Pose& at
 }  // namespace
 
 CoreShapes::CoreShapes(const Model<2>& model) {
-  const auto moving = std::count_if(model.bodies.begin(), model.bodies.end(),
-                                    [](const Body<2>& body) { return !body.fixed && !is_point(body.shape); });
-  const double crowded = std::clamp((double(moving) - kFew) / (kMany - kFew), 0.0, 1.0);
-  linear_slop = kLeastAllowed + (kMostAllowed - kLeastAllowed) * crowded * crowded * crowded;
   const auto add = [&](int body, int part, const Shape<2>& shape) {
     CoreShape core;
     core.body = body, core.part = part, core.first = int(x.size());

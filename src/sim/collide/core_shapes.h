@@ -36,10 +36,6 @@ struct CoreShapes {
   std::vector<double> x, y;       // corners in the body's frame, m
   std::vector<double> nx, ny, d;  // faces: outward normal and its distance from the body's centre
   std::vector<double> bounding_radius, half_thickness;  // of bodies, m
-  /// Overlap that is left uncorrected, as a share of the larger bounding radius of two bodies; next to
-  /// nothing where there are few. With many, the few iterations separate some contacts that are corrected to
-  /// zero; a separated contact bears nothing until it closes again, and the heap creeps.
-  double linear_slop = 0;
 };
 
 /// Which features touch. `none` pads a pair whose two cores have one touch only.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/solve/iterate/plane.h"
+#include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim {
 
@@ -20,10 +21,9 @@ constexpr double kCalm =
     0.02;  // of its thickness: what a pair may move between two pair searches, features kept
 constexpr double kSoft =
     0.05;  // of its thickness between two pair searches: slower inelastic closings are no impacts
-constexpr double kPointWidth = 1e-3;  // of the room: what is no wider, as a point, has this width
-constexpr int kColours = 40;          // lanes of more colours hold one pair each
-constexpr int kPerSpare = 128;        // lanes of a colour: one group more for so many
-constexpr int kAhead = 8;             // lanes
+constexpr int kColours = 40;    // lanes of more colours hold one pair each
+constexpr int kPerSpare = 128;  // lanes of a colour: one group more for so many
+constexpr int kAhead = 8;       // lanes
 
 bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind == Feature::corners; }
 

@@ -13,15 +13,14 @@
 #include <cmath>
 
 #include "sim/math/lanes.h"
+#include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim::plane {
 
 namespace {
 
-constexpr int kAhead = 4;          // groups
-constexpr double kPassing = 0.25;  // of the speed of polygons against each other
-constexpr double kNearly = 0.1;    // of its width: how near is nearly touching
-constexpr double kTiny = 1e-300;   // against division by zero in empty lanes: changes no other number
+constexpr int kAhead = 4;         // groups
+constexpr double kTiny = 1e-300;  // against division by zero in empty lanes: changes no other number
 
 template <class V>
 struct WideRow {
@@ -166,7 +165,7 @@ OBSCURA_INLINE bool start_all(ContactBatch* batches, int count, const Pose* pose
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
-      const V sight = load<V>(g.sight + lane), allowed = pace.linear_slop * load<V>(g.far + lane);
+      const V sight = load<V>(g.sight + lane), allowed = pace.allowed_overlap * load<V>(g.far + lane);
       // What turns may come sooner than along its tangent: gap'' >= -(w_a^2 + w_b^2) r - 2 w_b v_t. Of two
       // corners of polygons others may come nearer, however these move.
       const V w2 = before.a.z * before.a.z + before.b.z * before.b.z;

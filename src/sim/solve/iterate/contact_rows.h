@@ -68,7 +68,7 @@ struct StepConstants {
   double h = 0;                  // s
   double min_closing_speed = 0;  // m/s: slower approaches are none
   double gravity_dv = 0;         // m/s that gravity may add in the step
-  double linear_slop = 0;        // of the larger bounding radius: what is deeper is to be put right
+  double allowed_overlap = 0;    // of the larger bounding radius: what is deeper is to be put right
   const Least* least = nullptr;  // by group, of lanes that are struck
 };
 

@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "sim/motion/free_motion.h"
+#include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim {
 
@@ -25,20 +26,15 @@ using plane::Pair;
 
 namespace {
 
-constexpr double kPairUpdates = 60;     // a second: how often pairs are looked for
-constexpr double kSubsteps = 240;       // a second, at least
-constexpr double kMostSubsteps = 4800;  // a second, at most
-constexpr double kCloser = 0.05;        // of the narrower width: what pairs may come nearer in a substep
-constexpr int kMostSweeps = 40;         // of few pairs
-constexpr int kJointSweeps = 16;        // where there are joints: those are solved exactly in each
-constexpr int kStrainSweeps = 64;       // where they press something far into another
-constexpr double kStrained = 0.02;      // of its thickness: how far that is
-constexpr int kPairSweeps = 2000;       // pairs times iterations where there are more; at least one iteration
-constexpr int kMoreSweeps = 5;          // times as many while pairs have not settled
-constexpr int kUnsettledSweeps = 8;     // and at least so many
-constexpr double kSettled = 0.1;        // of the narrower width, 1/s: what a pair may still close by
-constexpr int kFirstSweeps = 100;       // of the first step, which knows no forces
-constexpr double kOverlapLife = 1.0 / 60;  // s: after so long an overlap is half as deep
+constexpr double kPairUpdates = 60;  // a second: how often pairs are looked for
+constexpr int kMostSweeps = 40;      // of few pairs
+constexpr int kJointSweeps = 16;     // where there are joints: those are solved exactly in each
+constexpr int kStrainSweeps = 64;    // where they press something far into another
+constexpr double kStrained = 0.02;   // of its thickness: how far that is
+constexpr int kPairSweeps = 2000;    // pairs times iterations where there are more; at least one iteration
+constexpr int kMoreSweeps = 5;       // times as many while pairs have not settled
+constexpr int kUnsettledSweeps = 8;  // and at least so many
+constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
 
 }  // namespace
 
@@ -48,7 +44,7 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
       cores_(model),
       pairs_(model, cores_),
       impacts_(cores_, pairs_),
-      sleep_(model, Sleep<D>::Forces::iterated, 2 * cores_.linear_slop),
+      sleep_(model, Sleep<D>::Forces::iterated, 2 * allowed_overlap(model)),
       equilibrium_(model, cores_),
       dynamics_(model, paths),
       joints_(model) {
@@ -56,8 +52,8 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairUpdates));
   span_ = double(every_) * h;
-  project_ = span_ / (span_ + kOverlapLife);
-  substeps_ = std::max(1, int(std::ceil(kSubsteps * h - 1e-9)));
+  allowed_overlap_ = allowed_overlap(model);
+  substeps_ = substeps_for(0, h);
   restitution_threshold_ = 2 * h / substeps_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
   gain_.resize(n + 1), bend_.resize(n + 1), corrections_.resize(n);
@@ -113,14 +109,9 @@ void PlaneIterative<D>::wake(StepPart<D> step) {
   }
   impacts_.begin();
   outran_ = corrected_ = false;
-  substeps_ = needed_substeps(step.h);
-}
-
-// so many that no pair that touches closes by more than a part of its width in one
-template <int D>
-int PlaneIterative<D>::needed_substeps(double h) const {
-  const double rate = plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), v_.data(), h);
-  return std::max(1, int(std::ceil(h * std::clamp(rate / kCloser, kSubsteps, kMostSubsteps) - 1e-9)));
+  const double rate =
+      plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), v_.data(), step.h);
+  substeps_ = substeps_for(rate, step.h);
 }
 
 template <int D>
@@ -210,7 +201,7 @@ void PlaneIterative<D>::move_free(StepPart<D> step) {
 template <int D>
 void PlaneIterative<D>::resolve_impacts(StepPart<D> step) {
   constants_ = {step.h, 0.05 * restitution_threshold_, step.h * std::sqrt(model_.gravity.squaredNorm()),
-                cores_.linear_slop};
+                allowed_overlap_};
   deep_ = plane::start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), v_.data(),
                        constants_, slow_, fast_);
   if (!joints_.empty()) {
@@ -475,7 +466,7 @@ void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
       push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
     }
     plane::project(batches_.data(), projections_.data(), int(batches_.size()), poses_.data(), push_.data(),
-                   project_, cores_.linear_slop);
+                   corrected_share(span_), allowed_overlap_);
   }
   for (std::size_t i = 0; i < corrections_.size(); ++i) corrections_[i] = {push_[i].x, push_[i].y};
 }

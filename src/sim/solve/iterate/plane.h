@@ -60,7 +60,6 @@ class PlaneIterative final : public ContactSolver<D> {
   void fill_lane(int pair, const State<D>& state);
   void write_lane(const plane::Pair& pair, const State<D>& state);
   void first_guess(State<D>& state);
-  int needed_substeps(double h) const;
   int fewest_iterations() const;
   int most_iterations() const;
   void integrate_unconstrained(State<D>& state, double t, double h);
@@ -89,7 +88,7 @@ class PlaneIterative final : public ContactSolver<D> {
   Stages stages_;
   std::int64_t every_ = 1;            // steps between two pair searches for pairs
   double span_ = 0;                   // and s
-  double project_ = 0;                // of an overlap, each time
+  double allowed_overlap_ = 0;        // of the larger bounding radius of two bodies
   int substeps_ = 1;                  // of this step
   bool outran_ = false;               // someone came farther than pairs foresaw
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce

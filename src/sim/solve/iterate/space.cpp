@@ -17,6 +17,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/solve/iterate/substeps.h"
+
 namespace obscura::sim {
 
 namespace {
@@ -27,10 +29,8 @@ constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
 constexpr double kSpare = 0.02;          // of their bounding radius: what two may come nearer by being struck
-constexpr double kAllowed = 1e-6;        // of a body's bounding radius: how deep is not too deep
-constexpr double kHung = 1e-4;           // the same on joints, which pushes strain
 constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds
-constexpr double kPart = 0.1;            // of what is too deep, in a step
+constexpr int kMoreIterations = 5;       // times as many while pairs have not settled
 constexpr int kTempering = 5;            // rounds
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
 
@@ -47,8 +47,11 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
       energy_guard_(model) {
   const double h = 1 / value(model.rate);
   g_ = std::sqrt(model.gravity.squaredNorm());
-  restitution_threshold_ = 2 * h * g_ + 1e-9 * model.scale;
+  restitution_threshold_ = 2 * h / substeps_for(0, h) * g_ + 1e-9 * model.scale;
+  allowed_overlap_ = allowed_overlap(model);
   for (const Body<D>& body : model.bodies) {
+    width_.push_back(std::max(2 * half_thickness(body.shape), kPointWidth * model.scale));
+    round_.push_back(bool(round_radius(body.shape)));
     bounding_radius_.push_back(bounding_radius(body.shape));
     points_.push_back(is_point(body.shape));
   }
@@ -69,6 +72,53 @@ bool SpaceIterative<D>::collide(StepPart<D> step) {
 template <int D>
 void SpaceIterative<D>::wake(StepPart<D> step) {
   if (update_sleep(step.state, step.h)) prepare(step.state), find(step.h);
+  substeps_ = substeps_for(closing_rate(step.h), step.h);
+  impulses_.clear(), corrected_ = false;
+}
+
+// how fast those close that touch, or may within h s: the most, in widths of the narrower body, 1/s
+template <int D>
+double SpaceIterative<D>::closing_rate(double h) const {
+  const int n = int(model_.bodies.size());
+  double most = 0;
+  for (const ContactConstraint& touch : touches_) {
+    const Vec<D> u = slip(touch);
+    double closes = -touch.n.dot(u);
+    if (!(round_[touch.a] && (touch.b == n || round_[touch.b]))) {
+      double passes = std::sqrt(u.squaredNorm());
+      for (const int body : {touch.a, touch.b}) {
+        if (body < n) passes += bounding_radius_[body] * std::sqrt(moving_[body].w.squaredNorm());
+      }
+      closes = std::max(closes, kPassing * passes);
+    }
+    if ((touch.gap - h * closes) * touch.per_width < kNearly) most = std::max(most, closes * touch.per_width);
+  }
+  return most;
+}
+
+// impulses of a substep that is not the last
+template <int D>
+void SpaceIterative<D>::keep_impulses(const State<D>& state) {
+  for (const Contact<D>& contact : state.contacts) {
+    if (contact.impulse.isZero(0)) continue;
+    impulses_.push_back(contact);
+    impulses_.back().force.setZero();
+  }
+}
+
+// those of a step, to its contacts
+template <int D>
+void SpaceIterative<D>::add_impulses(State<D>& state) const {
+  for (const Contact<D>& struck : impulses_) {
+    const auto at = std::lower_bound(state.contacts.begin(), state.contacts.end(), struck,
+                                     [](const auto& p, const auto& q) { return p.key < q.key; });
+    if (at == state.contacts.end() || at->key != struck.key) {
+      state.contacts.insert(at, struck);
+      continue;
+    }
+    at->impulse += struck.impulse;
+    if (at->touching == ContactMode::open) at->touching = struck.touching;
+  }
 }
 
 template <int D>
@@ -76,7 +126,8 @@ void SpaceIterative<D>::warm_start(StepPart<D> step) {
   warm_start_contacts(step.state, step.h);
   iterations_ =
       std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
-  if (step.state.step == 0) iterations_ = kFirstIterations;
+  most_iterations_ = kMoreIterations * iterations_;
+  if (step.state.step == 0 && step.substep == 0) iterations_ = kFirstIterations;
   if (joints_.empty()) return;
   // what hangs together is struck together
   components_.assign(joints_.components(), 0);
@@ -88,15 +139,16 @@ void SpaceIterative<D>::warm_start(StepPart<D> step) {
   }
   copy_to_joints();
   joints_.begin(step.h);
-  if (touches_.empty() && joints_.plain()) iterations_ = 1;
+  if (touches_.empty() && joints_.plain()) iterations_ = most_iterations_ = 1;
 }
 
 template <int D>
 void SpaceIterative<D>::iterate(StepPart<D> step) {
   for (int round = 0; round < kTempering; ++round) {
-    for (int i = 0; i < iterations_; ++i) {
+    double left = 2 * kSettled;
+    for (int i = 0; i < iterations_ || (i < most_iterations_ && left > kSettled); ++i) {
       solve_joint_velocities();
-      iterate_contacts(all_, i % 2 != 0);
+      left = iterate_contacts(all_, i % 2 != 0);
     }
     place_bodies(step.state, step.h);
     if (!temper(step.state)) break;
@@ -105,18 +157,20 @@ void SpaceIterative<D>::iterate(StepPart<D> step) {
 
 template <int D>
 void SpaceIterative<D>::project(StepPart<D> step) {
-  correct_overlaps(step.state);
+  correct_overlaps(step.state, step.h);
   if (!joints_.empty()) project_joints(step.state, step.h);
+  report_contacts(step.state, step.h);
+  if (step.substep + 1 < substeps_) keep_impulses(step.state);
 }
 
 template <int D>
 void SpaceIterative<D>::report(StepPart<D> step) {
-  report_contacts(step.state, step.h);
+  add_impulses(step.state);
 }
 
 template <int D>
 void SpaceIterative<D>::sleep(StepPart<D> step) {
-  if (sleep_.due(step.state)) put_to_sleep(step.state, step.h);
+  if (sleep_.due(step.state)) put_to_sleep(step.state, step.h / substeps_);
 }
 
 // poses, velocities and inverse inertias
@@ -205,6 +259,7 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
   const Vec<D> apart = 0.5 * std::max(0.0, now.value) * now.normal;
   touch.arm_a = now.point + apart - stances_[a].x, touch.arm_b = now.point - apart - at_b.x;
   touch.mu = pair.friction, touch.bounce = pair.elasticity;
+  touch.per_width = 1 / (b == none ? width_[a] : std::min(width_[a], width_[b]));
 
   // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
   const auto answer = [&](const Vec<D>& s, const Vec<D>& t) {
@@ -236,6 +291,10 @@ void SpaceIterative<D>::build_joint_rows(const State<D>& state) {
 template <int D>
 void SpaceIterative<D>::move_free(StepPart<D> step) {
   State<D>& state = step.state;
+  if (substeps_ > 1) {
+    if (step.substep > 0 && !joints_.empty()) joints_.prepare(state);
+    prepare(state), find(step.h);
+  }
   if (!joints_.empty()) build_joint_rows(state);
   const int n = int(model_.bodies.size());
   x_ = state.x, turn_ = state.turn;
@@ -287,13 +346,16 @@ void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
 }
 
 template <int D>
-void SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool back) {
+double SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool back) {
   const int count = int(order.size());
+  double worst = 0;
   for (int i = 0; i < count; ++i) {
     ContactConstraint& touch = touches_[order[back ? count - 1 - i : i]];
     const Vec<D> u = slip(touch);
     const double along = touch.n.dot(u);
-    const double normal_impulse = std::max(0.0, touch.normal_impulse + (touch.least - along) / touch.normal);
+    const double wrong = touch.least - along;
+    worst = std::max(worst, (touch.normal_impulse > 0 ? std::fabs(wrong) : wrong) * touch.per_width);
+    const double normal_impulse = std::max(0.0, touch.normal_impulse + wrong / touch.normal);
     Vec<D> impulse = (normal_impulse - touch.normal_impulse) * touch.n;
     touch.normal_impulse = normal_impulse;
     const double most = touch.mu * normal_impulse;
@@ -306,6 +368,7 @@ void SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool bac
     }
     if (!impulse.isZero(0)) push(touch, impulse);
   }
+  return worst;
 }
 
 // velocities to the joints, of all that they have or of those marked, and back
@@ -446,26 +509,28 @@ void SpaceIterative<D>::advance(StepPart<D> step) {
 
 // positions out of each other, a part of the way, by the same rows
 template <int D>
-void SpaceIterative<D>::correct_overlaps(State<D>& state) {
+void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
-  const auto hangs = [&](int body) { return body < n && joints_.has(body); };
   const auto allowed = [&](const ContactConstraint& touch) {
-    return (hangs(touch.a) || hangs(touch.b) ? kHung : kAllowed) * bounding_radius_[touch.a];
+    const double far = bounding_radius_[touch.a];
+    return allowed_overlap_ * (touch.b == n ? far : std::max(far, bounding_radius_[touch.b]));
   };
-  some_.clear(), corrected_ = false;
+  const double share = corrected_share(h);
+  some_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
     const ContactConstraint& touch = touches_[i];
     if (touch.gap < -allowed(touch)) some_.push_back(i);
   }
   if (some_.empty()) return;
-  corrected_ = true, corrections_.resize(model_.bodies.size());
+  if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
+  corrected_ = true;
   kept_ = moving_;
   for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();
   const int rounds = std::clamp(kPartRounds / int(some_.size()), 4, 16);
   for (int round = 0; round < rounds; ++round) {
     for (const int i : some_) {
       const ContactConstraint& touch = touches_[i];
-      const double wanted = kPart * (-touch.gap - allowed(touch));
+      const double wanted = share * (-touch.gap - allowed(touch));
       const double left = wanted - touch.n.dot(slip(touch));
       if (left > 0) push(touch, left / touch.normal * touch.n);
     }
@@ -475,9 +540,8 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state) {
     copy_from_joints();
   }
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
-    corrections_[i].setZero();
     if (inactive_[i]) continue;
-    state.x[i] += corrections_[i] = moving_[i].v;
+    state.x[i] += moving_[i].v, corrections_[i] += moving_[i].v;
     if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
   }
   moving_.swap(kept_);
@@ -502,7 +566,7 @@ void SpaceIterative<D>::project_joints(State<D>& state, double h) {
   }
 }
 
-// the forces of this step; what sleeps keeps its own
+// the forces of this substep; what sleeps keeps its own
 template <int D>
 void SpaceIterative<D>::report_contacts(State<D>& state, double h) const {
   const auto asleep = [&](int body) { return body < 0 || inactive_[body]; };

@@ -30,6 +30,7 @@ class SpaceIterative final : public ContactSolver<D> {
 
   bool collide(StepPart<D> step) override;
   void wake(StepPart<D> step) override;
+  int substeps() const override { return substeps_; }
   const Vec<D>* corrections() const override { return corrected_ ? corrections_.data() : nullptr; }
   void move_free(StepPart<D> step) override;
   void resolve_impacts(StepPart<D> step) override;
@@ -47,6 +48,7 @@ class SpaceIterative final : public ContactSolver<D> {
     int a = 0, b = 0;  // in moving_; walls and the room are its last
     Vec<D> n, arm_a, arm_b, point;
     double gap = 0, mu = 0, bounce = 0;
+    double per_width = 0;                     // 1/m: of the narrower body
     double normal = 0, across = 0;            // what a push answers, 1/kg; across: at most
     double least = 0;                         // of the normal speed after the step, m/s
     double normal_impulse = 0;                // impulse along n, N s
@@ -120,7 +122,10 @@ class SpaceIterative final : public ContactSolver<D> {
     }
   }
   void warm_start_contacts(const State<D>& state, double h);
-  void iterate_contacts(const std::vector<int>& order, bool back);
+  double iterate_contacts(const std::vector<int>& order, bool back);
+  double closing_rate(double h) const;
+  void keep_impulses(const State<D>& state);
+  void add_impulses(State<D>& state) const;
   // an impulse on a, and back on b
   void push(const ContactConstraint& touch, const Vec<D>& impulse) {
     apply(impulse, moving_[touch.a], touch.arm_a, moving_[touch.b], touch.arm_b);
@@ -136,7 +141,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void solve_joint_velocities();
   void find_strikes(double h);
   void place_bodies(State<D>& state, double h);
-  void correct_overlaps(State<D>& state);
+  void correct_overlaps(State<D>& state, double h);
   void project_joints(State<D>& state, double h);
   void report_contacts(State<D>& state, double h) const;
   Contact<D> contact(const ContactConstraint& touch, double h) const;
@@ -156,16 +161,21 @@ class SpaceIterative final : public ContactSolver<D> {
   EnergyGuard<D> energy_guard_;
   Stages stages_;
   double g_ = 0, restitution_threshold_ = 0;
-  std::vector<double> bounding_radius_;
+  std::vector<double> bounding_radius_, width_;  // of bodies, m
+  std::vector<char> round_;
+  double allowed_overlap_ = 0;        // of the larger bounding radius of two bodies
+  int substeps_ = 1;                  // of this step
+  std::vector<Contact<D>> impulses_;  // of the substeps before
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<PointBody<D>> moving_;
   std::vector<Bounds<D>> bounds_;
   std::vector<char> inactive_, points_;
   std::vector<ContactCandidate<D>> gaps_;
-  int iterations_ = 0;
-  std::vector<ContactConstraint> touches_;     // ascending by key
-  std::vector<ContactCandidate<D>> features_;  // theirs
+  int iterations_ = 0, most_iterations_ = 0;       // of this substep; the latter while pairs have not settled
+  std::vector<ContactConstraint> touches_;         // ascending by key
+  std::vector<ContactCandidate<D>> features_;      // theirs
+  std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows
   std::vector<int> all_, some_;
   std::vector<Vec<D>> x_, x_free_, v_free_;
   std::vector<Orientation<D>> turn_, turn_free_;

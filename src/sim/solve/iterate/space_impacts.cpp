@@ -178,13 +178,16 @@ bool SpaceIterative<D>::has_nearest_features(const Due& due, double h) {
   if (!features_change(touch)) return true;
   const double least = find_features(touch.a, touch.b, due.when, h);
   const auto feature = features_[due.touch].key.feature;
-  if (least >= -kTogether * bounding_radius_[touch.a] &&
-      std::any_of(gaps_.begin(), gaps_.end(),
-                  [&](const ContactCandidate<D>& gap) { return gap.key.feature == feature; }))
+  const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
+  const bool found = std::any_of(gaps_.begin(), gaps_.end(),
+                                 [&](const ContactCandidate<D>& gap) { return gap.key.feature == feature; });
+  // what lies in each other from the first has not met before
+  if (found &&
+      (least >= -kTogether * bounding_radius_[touch.a] || find_features(touch.a, touch.b, from, h) <= 0))
     return true;
   int first = due.touch;
   while (first > 0 && touches_[first - 1].a == touch.a && touches_[first - 1].b == touch.b) --first;
-  renew_features(first, std::max({0.0, when_[touch.a], when_[touch.b]}), due.when, h);
+  renew_features(first, from, due.when, h);
   return false;
 }
 
@@ -375,10 +378,14 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
     else
       touches_[i].passes = true;
   }
+  row_features_ = features_;
   rounds_.assign(n + 1, 0);
   std::make_heap(due_.begin(), due_.end());
   find_turned_pairs(h);
-  if (due_.empty()) return;
+  if (due_.empty()) {
+    features_.swap(row_features_);
+    return;
+  }
 
   // the gaps of each body
   around_start_.assign(n + 2, 0);
@@ -422,6 +429,7 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
       if (when < 1e300) push_due(i, when);
     }
   }
+  features_.swap(row_features_);
   if (!struck_) return;
 
   for (int i = 0; i < int(touches_.size()); ++i) {
@@ -434,8 +442,6 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
     };
     touch.after = true;
     touch.least = along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed;
-    // by other features than those of its row, which may part more slowly
-    if (touch.renewals > 0) touch.least = std::min(touch.least, 0.0);
     if (at.now.value <= kTogether * bounding_radius_[touch.a]) continue;
     // what comes near so fast passes: else it would have met
     const bool passes = at.speed < -restitution_threshold_ || left <= kInTime * h;

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/model/model.h"
+#include "sim/shape/shape.h"
+
+// How the solvers for many bodies push bodies out of each other, in both dimensions: by time, however many
+// steps it takes, and down to an overlap that is let be.
+
+namespace obscura::sim {
+
+/// Of how much of an overlap is pushed apart in `time` s: half of it in a sixtieth of a second.
+inline double corrected_share(double time) {
+  constexpr double kHalfLife = 1.0 / 60;
+  return time / (time + kHalfLife);
+}
+
+/// The overlap that is let be, of the larger bounding radius of two bodies: next to nothing where there are
+/// few. Of many, the few iterations would part some contacts that are corrected to zero; a contact that has
+/// parted bears nothing until it closes again, and the heap creeps.
+template <int D>
+double allowed_overlap(const Model<D>& model) {
+  constexpr double kLeast = 5e-7, kMost = 4e-3;
+  constexpr double kFew = 50, kMany = 200;  // bodies that move, beside points
+  const auto moving = std::count_if(model.bodies.begin(), model.bodies.end(),
+                                    [](const Body<D>& body) { return !body.fixed && !is_point(body.shape); });
+  const double crowded = std::clamp((double(moving) - kFew) / (kMany - kFew), 0.0, 1.0);
+  return kLeast + (kMost - kLeast) * crowded * crowded * crowded;
+}
+
+/// By how much two bodies may come nearer in a substep, of the narrower one's width; how many substeps a
+/// second there are at least and at most; and how fast a pair may still close where iterations end, in widths
+/// of the narrower body, 1/s.
+inline constexpr double kCloser = 0.05, kFewestSubsteps = 240, kMostSubsteps = 4800, kSettled = 0.1;
+/// Of the speed of bodies with corners against each other: as others of their corners may come near.
+inline constexpr double kPassing = 0.25;
+/// Of a width: how near is nearly touching.
+inline constexpr double kNearly = 0.1;
+/// Of the room: how wide a point counts.
+inline constexpr double kPointWidth = 1e-3;
+
+/// Into how many substeps to divide a step of h s, where pairs close by at most `rate` widths a second.
+inline int substeps_for(double rate, double h) {
+  return std::max(1, int(std::ceil(h * std::clamp(rate / kCloser, kFewestSubsteps, kMostSubsteps) - 1e-9)));
+}
+
+}  // namespace obscura::sim
