@@ -26,8 +26,8 @@ struct ContextOptions {
   bool native = false;  // leave out GALLIUM_OVERRIDE_CPU_CAPS=sse2; the process's first context decides
 };
 
-/// Sets Mesa's environment variables for the process, those that the user has not set; once. To be called
-/// before there are threads: whatever reads the environment while it is set may crash.
+/// Sets Mesa's environment variables for the process, except those that the user has set; once. Call it
+/// before there are threads: a thread that reads the environment meanwhile may crash.
 void ready(const ContextOptions& options);
 
 /// Creates a context and makes it current. Throws gl::Error saying what was tried and which package has it,

@@ -35,7 +35,7 @@ class Damage {
   const std::vector<Rect>& rects();
   /// The same in few: one a row of tiles, from its first to its last, tall where rows are alike.
   const std::vector<Rect>& bands();
-  /// Marks what `other` marks; of the same size.
+  /// Marks all that `other` marks; the sizes must be equal.
   void add(const Damage& other);
   /// Marked tiles over all.
   double share() const;

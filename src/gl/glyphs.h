@@ -10,7 +10,7 @@
 
 namespace obscura::gl {
 
-/// Where a glyph's picture lies in the atlas, and where it goes from the pen's whole pixel.
+/// The place of a glyph's picture in the atlas, and its offset from the pen's whole pixel.
 struct GlyphPicture {
   int left = 0, top = 0;  // px, from the pen to its first column and row, y down
   int width = 0, height = 0;

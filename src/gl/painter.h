@@ -17,8 +17,8 @@ class Painter {
  public:
   Painter(const Functions& gl, int width, int height);
 
-  /// `ground`: what darkened and lightened strokes are mixed with; the colours are premultiplied on the way,
-  /// and so is the framebuffer. Marks what it draws on.
+  /// `ground`: the colour with which darkened and lightened strokes are mixed; the colours are premultiplied
+  /// on the way, and so is the framebuffer. Marks the area that it draws on.
   void paint(const draw::List& list, draw::Color ground, bool transparent, Damage& damage);
 
  private:

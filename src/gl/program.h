@@ -16,7 +16,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void use() const { gl_.UseProgram(name_); }
-  /// Where a uniform is, -1 for none.
+  /// The location of a uniform, -1 if there is none.
   int uniform(const char* name) const { return gl_.GetUniformLocation(name_, name); }
 
  private:

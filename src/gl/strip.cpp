@@ -2,7 +2,7 @@
 //
 // At a joint with turn theta, half width d (antialiased margin included), the edges of both segments meet on
 // the line that halves the joint, d / cos(theta / 2) from the node. On the inside the edge of a segment is
-// shortened by d tan(theta / 2) there: where that is more than half the segment, the inner corners stop at
+// shortened by d tan(theta / 2) there: if that is more than half the segment, the inner corners stop at
 //   d_in = length / (2 tan(theta / 2)),
 // for even nodes on a smooth curve its centre of curvature: neighbours never overlap, whatever the width.
 // A turn that is sharp as well has no mitre. The stroke is broken there, in two round ends. Each keeps to its

@@ -26,9 +26,9 @@ struct Strip {
   void clear();
 };
 
-/// Adds the strip of one stroke, `scale` px a page unit, and returns what it covers. Pieces share their edges
-/// and do not overlap: mitres where they fit; where a turn is too sharp for that, round ends, each kept to
-/// its own side.
+/// Adds the strip of one stroke, `scale` px a page unit, and returns its bounds. Pieces share their edges and
+/// do not overlap: mitres where they fit; round ends where a turn is too sharp for that, each cut off at its
+/// own side.
 Bounds add_stroke(std::span<const draw::Node> nodes, const draw::Stroke& stroke, double scale, Strip& strip);
 
 }  // namespace obscura::gl

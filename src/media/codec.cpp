@@ -1,6 +1,6 @@
-// Which encoder makes a movie, and with which settings.
+// The choice of an encoder for a movie, and its settings.
 //
-// Where no preset is asked for, x264 runs `veryfast` without B-frames, look-ahead, macroblock tree and
+// If no preset is asked for, x264 runs `veryfast` without B-frames, look-ahead, macroblock tree and
 // weighted prediction. Those spend time to save bytes on camera pictures; ours are flat, with sharp edges,
 // and nothing fades. Without the tree, a CRF gives quiet films less than busy ones, next to `medium`: qcomp
 // 0.7 levels that in part, and a stronger adaptive quantisation pays for it at the edges. Four seconds of
@@ -65,8 +65,8 @@ int references(const std::string& preset) {
 }
 
 // Level 4.2 (ITU-T H.264 table A-1), the highest that every player takes: 8,704 macroblocks a frame, 522,240
-// a second, 34,816 in the frames referred to. Where the picture fits, the references are kept to what fits
-// too.
+// a second, 34,816 in the frames referred to. If the picture fits, the number of reference frames is limited
+// so that they fit too.
 std::string within_level(const MovieSpec& spec) {
   const std::int64_t blocks = std::int64_t((spec.width + 15) / 16) * ((spec.height + 15) / 16);
   if (blocks > 8704 || double(blocks) * double(spec.fps_num) > 522240.0 * double(spec.fps_den)) return "";

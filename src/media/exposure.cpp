@@ -1,7 +1,7 @@
 // sRGB (IEC 61966-2-1) says how much light L a level c of 0 to 1 stands for,
 //   L = c / 12.92 up to c = 0.04045, else ((c + 0.055) / 1.055)^2.4
 // Light is counted in 65535 steps, three to five of them between the darkest levels, so that the mean of one
-// level is that level. Where pictures are not opaque, light counts as much as its alpha:
+// level is that level. In pictures that are not opaque, light is weighted by its alpha:
 //   L = sum a_i L_i / sum a_i,  a = sum a_i / n
 
 #include "media/exposure.h"

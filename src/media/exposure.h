@@ -7,8 +7,8 @@
 
 namespace obscura::media {
 
-/// The mean of several pictures in linear light: what an open shutter sees. Of parts in which all of them are
-/// alike it is theirs, to the bit.
+/// The mean of several pictures in linear light, as an open shutter sees them. Where all of them are equal,
+/// the mean has the same bits.
 class Exposure {
  public:
   /// At most 64 pictures, all of one size.

@@ -82,7 +82,7 @@ int write_all(int descriptor, std::span<const std::uint8_t> bytes) noexcept {
 File::File(const std::string& path) : path_(path) {
   std::error_code ignored;
   fs::path target = path;
-  // a link stays a link: what it points at is replaced
+  // a link stays a link: the file that it points at is replaced
   if (fs::is_symlink(target, ignored)) {
     const fs::path real = fs::weakly_canonical(target, ignored);
     if (!ignored) target = real;

@@ -24,7 +24,7 @@ class File {
   void place(bool durable, const std::string& instead = {});
 
   int descriptor() const { return descriptor_; }
-  /// Where the bytes lie until place().
+  /// The temporary name, under which the bytes lie until place().
   const std::string& temporary() const { return temporary_; }
 
  private:
@@ -35,8 +35,8 @@ class File {
 /// Makes the folder that a file of this path lies in, and those around it. Throws media::Error naming it.
 void make_folder_of(const std::string& path);
 
-/// Removes what a killed program left beside files of this folder under temporary names: of those that `ours`
-/// accepts by their final names. Requires: no other process writes them.
+/// Removes the temporary files that a killed program left in this folder: those whose final names `ours`
+/// accepts. Requires that no other process writes them.
 void remove_leftovers(const std::string& folder, const std::function<bool(const std::string& name)>& ours);
 
 /// Writes all of `bytes` to a descriptor, whatever interrupts or shortens it. 0, or errno of the failure.

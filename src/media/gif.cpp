@@ -207,7 +207,7 @@ Segment GifEncoder::finish() {
     }
     for (std::size_t i = 0; i < pixels; ++i) now[i] = index_of[packed(&rgba[4 * i])];
 
-    // the first frame whole, so that a segment needs none before it; of the others what changed
+    // the first frame whole, so that a segment needs none before it; later ones only where they changed
     const Rectangle part = n == 0 ? Rectangle{0, 0, width_, height_} : changed(before, now, width_, height_);
     indices.clear();
     for (int y = part.y; y < part.y + part.height; ++y) {

@@ -98,7 +98,7 @@ void write_glb(const std::string& path, const Glb& scene) {
          {"primitives", {{{"attributes", attributes}, {"indices", triangles}, {"material", same}}}}});
   }
 
-  // a node stands as it begins; what changes has a channel
+  // a node stands as at the beginning; a property that changes has a channel
   Json samplers = Json::array(), channels = Json::array(), roots = Json::array();
   int times = -1;
   const auto animate = [&](const auto& values, const char* type, const char* target) {

@@ -26,11 +26,11 @@ using Packet = std::unique_ptr<AVPacket, FreeLibav>;
 Frame make_frame();
 Packet make_packet();
 
-/// Keeps libav from writing to stderr, and begins to listen: what it complains of in this thread from here on
-/// is what `complaint` tells.
+/// Keeps libav from writing to stderr, and begins to record: `complaint` tells the errors that it logs in
+/// this thread from here on.
 void listen();
 
-/// What a libav call that returned `code` has to say: the last line it logged as an error in this thread, or
+/// The message for a libav call that returned `code`: the last line it logged as an error in this thread, or
 /// else the meaning of the code.
 std::string complaint(int code);
 

@@ -25,8 +25,8 @@ namespace obscura::media {
 
 namespace {
 
-// QuickTime counts the bytes of a comment in 16 bits: what does not fit is left out, the longest first, in
-// words
+// QuickTime counts the bytes of a comment in 16 bits: tags that do not fit are left out, the longest first,
+// and a remark says so
 std::string fitting_comment(Tags tags, const Container& kind) {
   std::string text = comment(tags);
   while (kind.ending == "mov" && text.size() > 65000 && !tags.empty()) {

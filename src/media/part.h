@@ -26,7 +26,7 @@ struct Part {
 /// Throws media::Error where the file is no whole part.
 Part read_part(const std::string& path);
 
-/// Its tags alone: of a movie's part no packet is read. Throws media::Error as well.
+/// Its tags alone: reads no packet of a movie's part. Throws media::Error as well.
 Tags part_tags(const std::string& path);
 
 }  // namespace obscura::media

@@ -8,8 +8,8 @@
 
 namespace obscura::media {
 
-/// Where two pictures of one size differ: what is largest first, for one number of likeness rates a lost
-/// pixel above a level of noise everywhere.
+/// The differences of two pictures of one size. The largest counts first: a single measure of likeness would
+/// rate a lost pixel better than a level of noise everywhere.
 struct Difference {
   std::int64_t pixels = 0;  // that differ in any channel
   std::int64_t beyond = 0;  // of them: by more than the level asked for
@@ -22,7 +22,7 @@ struct Difference {
   bool same() const { return pixels == 0; }
 };
 
-/// Compares pixel by pixel, alpha too; `level`: what `beyond` is counted from. Requires one size.
+/// Compares pixel by pixel, alpha too; `beyond` counts differences larger than `level`. Requires one size.
 Difference difference(const Image& expected, const Image& actual, int level = 0);
 
 /// A rectangle of pixels.

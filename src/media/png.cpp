@@ -29,7 +29,7 @@ namespace obscura::media {
 
 namespace {
 
-// What libpng's callbacks share with us. They keep a failure here and jump; nothing is thrown across libpng's
+// Shared with libpng's callbacks. They keep a failure here and jump; nothing is thrown across libpng's
 // frames.
 struct Call {
   char failure[200] = "";

@@ -13,14 +13,14 @@ namespace obscura::page {
 using draw::Color;
 using draw::Point;
 
-/// What writes one form of page. Lengths in points, y down from the top left corner.
+/// Writes one form of page. Lengths in points, y down from the top left corner.
 class Pen {
  public:
   virtual ~Pen() = default;
 
   virtual void fill_circle(const Point& center, double radius, Color color) = 0;
   virtual void ring(const Point& center, double radius, double width, Color color) = 0;
-  /// Closed outlines; where they cover each other they are one.
+  /// Closed outlines; overlaps are filled once.
   virtual void fill(const std::vector<Point>& outline, Color color) = 0;
   /// Mitred up to four times the width.
   virtual void stroke(const std::vector<Point>& line, double width, Color color, draw::Cap cap,
@@ -39,8 +39,8 @@ std::unique_ptr<Pen> svg_pen(double width, double height, const Sheet& sheet);
 /// Null where this build has no Cairo.
 std::unique_ptr<Pen> pdf_pen(double width, double height, const Sheet& sheet);
 
-/// Puts a list down, `scale` points a page unit. `ground`: what colours of strokes that darken or lighten are
-/// mixed with.
+/// Puts a list on a page, `scale` points a page unit. `ground`: the colour with which strokes that darken or
+/// lighten are mixed.
 void put(const draw::List& list, double scale, Color ground, Pen& pen);
 
 }  // namespace obscura::page

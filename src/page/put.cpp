@@ -1,6 +1,6 @@
 // A list as strokes and fills. An outline lies within its rim: a stroke of width w is drawn w/2 inside, and
 // the fill reaches to its middle, so that no ground shows between. A stroke that tapers or fades is a chain
-// of pieces, each reaching under the next; where GL takes the darker of two, the newer lies on top.
+// of pieces, each extending under the next; GL takes the darker of two pieces, here the newer lies on top.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The table of the kinds of body. The parser, the schema, the page of keys, the names of --set, the counts of
-// `check` and the making of bodies all read it; what is drawn and exported comes from the form that it makes.
+// `check` and the making of bodies all read it; pictures and exports follow from the form that it makes.
 
 #include "scene/body_kinds.h"
 

@@ -51,8 +51,8 @@ struct BodyKind {
 /// All kinds of body: those that do not turn first, as the model has them.
 std::span<const BodyKind> body_kinds();
 
-/// The kind that a body is counted as: what does not turn and is round is a particle; what stands askew and
-/// does not turn is a compound of one part, and counts as that.
+/// The kind that a body is counted as: a round body that does not turn is a particle; one that is tilted and
+/// does not turn is a compound of one part, and counts as that part.
 template <int D>
 const BodyKind& kind_of(const sim::Body<D>& body);
 

@@ -7,9 +7,8 @@
 
 namespace obscura::scene {
 
-/// Holds a document against the table of keys: what it does not know, what has the wrong type or is out of
-/// range, or of another dimension, is complained about and taken out, so that what is left may be read
-/// without asking.
+/// Checks a document against the table of keys: reports keys that are unknown, of the wrong type, out of
+/// range or of another dimension, and removes them, so that the rest may be read without checks.
 void check(Node& top, const Dimension& told, Diagnostics& complaints);
 
 /// The same for one table ("box") of a document.

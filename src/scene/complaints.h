@@ -37,8 +37,8 @@ class Diagnostics {
   std::vector<std::pair<Place, std::string>> found_;
 };
 
-/// With a space for each control character and a question mark for each byte that is not UTF-8: what is said
-/// of a file is one line, and no terminal's command.
+/// Replaces each control character by a space and each byte that is not UTF-8 by a question mark, so that a
+/// message about a file is one line and no command to a terminal.
 std::string one_line(std::string_view text);
 
 /// "'ball'", cut where it is long: a word of the scene as a complaint quotes it.

@@ -32,14 +32,14 @@ struct Copies {
   double jitter = 0;  // m
 
   int count() const;
-  /// Of the i-th, of a body whose table is `fields`.
+  /// The orientation of the i-th copy, for a body whose table is `fields`.
   sim::Orientation<D> orientation(const Fields& fields, int i) const;
   /// Moves what begins as it was typed to where the i-th does; the random numbers are those of a stream.
   void move(Start<D>& start, int i, std::uint64_t seed, std::uint64_t stream) const;
 };
 
-/// What a body's table says of copies. Complains, and gives nothing, where with `so_far` there would be too
-/// many bodies, or where a list over copies has another number of values than there are.
+/// The copies that a body's table asks for. Complains, and returns nothing, if with `so_far` there would be
+/// too many bodies, or if a list over copies has another number of values than there are copies.
 template <int D>
 std::optional<Copies<D>> copies(const Fields& fields, const std::string& kind, int so_far,
                                 Diagnostics& complaints);

@@ -60,7 +60,7 @@ void compare_tables(const std::string& path, const Node& a, const Node& b,
     if (!a.find(each.key)) compare(under(path, each.key), nullptr, &each.node, found);
 }
 
-// of [[box]]es: by name, those without one by their place
+// compares lists of tables such as [[box]]: by name, those without one by their position
 void compare_lists(const std::string& path, const Node& a, const Node& b, std::vector<KeyDifference>& found) {
   const auto twin = [](const Node& of, std::size_t place, const Node& in) -> const Node* {
     if (const std::string* its = name(of)) {

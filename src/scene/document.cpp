@@ -140,8 +140,8 @@ std::string lowered(std::string_view description) {
   return text;
 }
 
-// what a person has most likely forgotten where the parser stopped: a quote, a bracket, or the quotes about a
-// word; empty where none of them
+// guesses what was forgotten at the place where the parser stopped: a quote, a bracket, or the quotes around
+// a word; empty if none of these
 std::string forgotten(std::string_view text, int line, int column) {
   std::vector<std::string_view> lines;
   for (std::size_t at = 0; at <= text.size();) {
@@ -261,7 +261,7 @@ std::string repeated(std::string_view text, int line, std::string_view descripti
   const std::string name = header ? header_name(here) : bare(description.substr(open + 1, close - open - 1));
   const bool other_kind = description.substr(close).find(" as ") != description.npos;
 
-  // the last one before: of a key within the same table
+  // the one before: the last key in the same table
   int first = 0;
   for (int i = line - 1; i >= 1 && first == 0; --i) {
     const std::string_view one = lines[std::size_t(i - 1)];

@@ -10,7 +10,7 @@
 
 namespace obscura::scene {
 
-/// Where a piece of a scene was written.
+/// The place in a file where a piece of a scene was written.
 struct Place {
   int set = 0;               // 0: the file; n: the n-th --set
   int line = 0, column = 0;  // from 1, in code points; 0: the source as a whole

@@ -21,7 +21,7 @@ bool Reporter::wrong(const Node& node, std::string message) {
 }
 
 bool Reporter::mistyped(const Node& node, const Key& key, const std::string& what) {
-  // a string that is a number: what was meant, but said otherwise
+  // a number in quotes: the value was right, its form was not
   const bool in_quotes = takes_numbers(key.form) && node.is_text() && sim::parse_rational(node.text());
   return instead(node, key, what, described(node) + (in_quotes ? "; write it without the quotes" : ""));
 }

@@ -9,8 +9,8 @@
 
 namespace obscura::scene {
 
-/// Words what is wrong with a value of a scene that is planar or in space. What complains is false, so that a
-/// check may end with it.
+/// Words the faults of a value in a scene of the plane or of space. Its functions that complain return false,
+/// so that a check may end with them.
 class Reporter {
  public:
   Reporter(const Dimension& told, Diagnostics& complaints) : told_(told), complaints_(complaints) {}

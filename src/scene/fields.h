@@ -10,7 +10,8 @@
 
 namespace obscura::scene {
 
-/// A checked table read by the names of its keys; what it leaves out has the default of the table of keys.
+/// A checked table, read by the names of its keys; keys that are absent have the default of the table of
+/// keys.
 class Fields {
  public:
   Fields(const Node& table, std::string owner) : table_(&table), owner_(std::move(owner)) {}
@@ -18,10 +19,10 @@ class Fields {
   static Fields of(const Node& top, const std::string& owner);
 
   Place place() const { return table_->place; }
-  /// Where a value was written, or where its table begins.
+  /// The place where a value was written; if it was not, the place where its table begins.
   Place place(std::string_view key) const;
   const Node* given(std::string_view key) const { return table_->find(key); }
-  /// The value; where it is left out the default in the plane, or in space.
+  /// The value; if it is absent, the default in the plane, or in space.
   const Node& node(std::string_view key, int dimension = 2) const;
   const Node& table() const { return *table_; }
 
@@ -57,8 +58,8 @@ sim::AngularVec<2> spin<2>(const Node& node, int i, int n);
 template <>
 sim::AngularVec<3> spin<3>(const Node& node, int i, int n);
 
-/// The turn that `angle` (in the plane) or `orientation` (in space) of a table says, in radians and as a unit
-/// quaternion; of the i-th of n copies. Upright where neither is given.
+/// The orientation that `angle` (in the plane) or `orientation` (in space) of a table gives, in radians or as
+/// a unit quaternion; for the i-th of n copies. The identity if neither is given.
 template <int D>
 sim::Orientation<D> turn(const Fields& fields, int i = 0, int n = 1);
 template <>

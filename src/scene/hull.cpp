@@ -111,7 +111,7 @@ class Wrapping {
     return loop(in_plane, up, a, b);
   }
 
-  // from 0 to pi; what is in the known face is at pi, but for rounding
+  // from 0 to pi; points in the known face are at pi, but for rounding
   static double turn(const Vec3& way, const Vec3& in, const Vec3& from) {
     const double angle = std::atan2(-way.dot(from), way.dot(in));
     return angle < -1 ? angle + 2 * std::numbers::pi : angle;

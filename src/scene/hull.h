@@ -6,8 +6,8 @@
 
 namespace obscura::scene {
 
-/// The convex hull of points in space: of all that lie on it the corners, and its faces, flat ones whole,
-/// loops counter-clockwise seen from outside. No faces where the points lie in a plane.
+/// The convex hull of points in space: the vertices on it, and its faces, coplanar triangles merged, loops
+/// counter-clockwise seen from outside. No faces if the points lie in a plane.
 sim::Hull hull(const std::vector<sim::Vec3>& typed);
 
 }  // namespace obscura::scene

@@ -9,8 +9,8 @@ namespace obscura::scene {
 /// Thrown where reading a pipe was ended.
 struct Stopped {};
 
-/// What an idle pipe asks ten times a second: true ends the wait. Set once, before anything is read; none: it
-/// waits for ever.
+/// Sets the function that a waiting read of a pipe calls ten times a second; if it returns true, the wait
+/// ends. Call once, before anything is read. None: reads wait for ever.
 void heed(bool (*stop)());
 
 /// Throws Stopped where an end has been asked for: before what was read is judged, for a pipe that the same

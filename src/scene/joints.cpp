@@ -19,7 +19,7 @@ namespace {
 using sim::JointKind;
 
 constexpr std::size_t kMostJoints = 1'000'000;
-// of a lever, in the largest coordinate of a room or a body
+// the longest lever, as a multiple of the largest coordinate of a room or a body
 constexpr double kLongest = 100;
 
 constexpr double kSamePlace = 1e-9;  // of the room's size: places this near are one
@@ -58,7 +58,7 @@ sim::AngularVec<3> against(const sim::World<3>& world, int a, int b) {
   return sim::logarithm(sim::composed<3>(sim::inverse<3>(turn_of(world, b)), turn_of(world, a)));
 }
 
-// one side of `between`: what it means, and whether it says where
+// one side of `between`: its meaning, and whether it gives a place
 template <int D>
 struct JointSide {
   std::vector<sim::End<D>> ends;

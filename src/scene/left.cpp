@@ -22,7 +22,8 @@ struct Corner {
   sim::Wall<2> side;
 };
 
-// where the side from a corner meets a wall; the corner itself where they are one line but for rounding
+// the point where the side from a vertex meets a wall; the vertex itself if the two are one line but for
+// rounding
 sim::Vec<2> meeting(const Corner& corner, const sim::Wall<2>& b) {
   const sim::Wall<2>& a = corner.side;
   const double ca = a.normal.dot(a.point), cb = b.normal.dot(b.point);

@@ -15,7 +15,7 @@ template <int D>
 std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
                               Diagnostics& complaints);
 
-/// Where an end is at the start.
+/// The place of an end at the start.
 template <int D>
 sim::Vec<D> start(const sim::World<D>& world, const sim::End<D>& end);
 

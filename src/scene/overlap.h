@@ -7,9 +7,9 @@
 namespace obscura::scene {
 
 /// Complains of bodies that overlap at the start by more than a millionth of their size, unless the model
-/// separates them: the first pair of each declaration, and how many more there are. Complains also where more
-/// pairs are near each other than can be simulated. What need not keep apart may overlap: fixed bodies among
-/// themselves, groups that ignore each other, bodies with a joint between them. Requires the joints.
+/// separates them: the first pair of each declaration, and how many more there are. Complains also if more
+/// pairs are near each other than can be simulated. These may overlap: fixed bodies among themselves, groups
+/// that ignore each other, bodies with a joint between them. Requires the joints.
 template <int D>
 void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagnostics& complaints);
 

@@ -19,8 +19,8 @@ struct CopySet {
   Place place;
 };
 
-/// Writes the overrides ("crate.elasticity=0.5") into a document, before it is checked: what is wrong with
-/// them is found where all else is. What means one copy ("ball[3].mass=2") is handed back.
+/// Writes the overrides ("crate.elasticity=0.5") into a document, before it is checked, so that their faults
+/// are found with all others. Returns those that mean one copy ("ball[3].mass=2").
 std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Diagnostics& complaints);
 
 /// Writes a value under a table of the language ("box", "room") along a path, of a scene in the plane or in

@@ -25,7 +25,7 @@ struct Reference {
   bool bracketed = false;
 };
 
-/// Reads a reference; nothing where it is none. What is in the brackets is read by `range`.
+/// Reads a reference; empty if the text is none. `range` reads the text in the brackets.
 std::optional<Reference> reference(std::string_view text);
 
 /// The whole numbers of "0..4", "0,5", "1,3,5..9" or "*" out of 0 .. n-1, in the order written. Nothing where

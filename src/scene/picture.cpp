@@ -60,7 +60,7 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
   look.ground = fields.flag("ground");
   if (const Node* tile = fields.given("tile")) look.tile = tile->number();
 
-  // trails by name: of a body, or of all its copies
+  // trails by name, for a body or for all its copies
   const Node& trails = fields.node("trails");
   if (!trails.is_table()) return;
   for (const Entry& entry : trails.table()) {

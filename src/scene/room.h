@@ -29,8 +29,8 @@ struct Room {
 template <int D>
 Room<D> room(const Node& top, Diagnostics& complaints);
 
-/// What walls leave: nothing where they leave no room, and else the box around it; the box has no corners
-/// where it goes on for ever.
+/// The region that walls leave free: empty if they leave none, else the box around it; the box has no
+/// vertices in directions in which it is unbounded.
 template <int D>
 struct Left {
   int walls =

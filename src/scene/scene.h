@@ -45,7 +45,7 @@ struct Golden {
   int line = 0;         // of it in the file; 0: not in the file
 };
 
-/// A scene, read, checked and built: what happens, what it looks like, how it is filmed.
+/// A scene, read, checked and built: its world, its look and its film.
 struct Scene {
   std::string file;               // as given
   std::string name;               // the file's stem
@@ -65,8 +65,8 @@ struct Scene {
   std::string trajectory_file;                        // its name
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
-  /// A run of it from its start, or from a state that was saved of one; none where that is no state of this
-  /// scene. What is known to go wrong before it does. See sim/step/run.h.
+  /// A run of it from its start, or from a state that was saved of one; null if that is no state of this
+  /// scene. The troubles that are known beforehand. See sim/step/run.h.
   std::unique_ptr<sim::Run> run(std::span<const std::uint64_t> saved = {}) const;
   std::vector<sim::Trouble> stability_warnings() const;
 

@@ -14,7 +14,7 @@ struct Solid {
   sim::MassProperties<D> bulk;
 };
 
-/// Of the form that was typed.
+/// A body of the form that was typed.
 template <int D>
 Solid<D> solid(const sim::Shape<D>& typed);
 

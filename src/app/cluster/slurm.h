@@ -16,14 +16,14 @@ int last_task();
 /// sbatch says.
 std::string submit(const std::string& script, const std::vector<std::string>& options);
 
-/// What Slurm says of a job: "RUNNING", and why it waits, as "launch failed requeued held"; "None" where it
-/// does not.
+/// A job's state as Slurm reports it: "RUNNING", and the reason why it waits, as "launch failed requeued
+/// held"; "None" if it does not wait.
 struct State {
   std::string name, reason;
 };
 
-/// The states of jobs, under "12", or "12_3" for task 3 of an array. What Slurm has forgotten is not there.
-/// False: Slurm does not answer now.
+/// The states of jobs, under "12", or "12_3" for task 3 of an array. Jobs that Slurm has forgotten are
+/// absent. False: Slurm does not answer now.
 bool states(const std::vector<std::string>& jobs, std::map<std::string, State>& found);
 
 /// Ends jobs.

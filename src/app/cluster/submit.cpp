@@ -49,7 +49,7 @@ struct Flags {
   ProgressKind progress = ProgressKind::automatic;
 };
 
-/// The files of an errand: what is kept of it from one submit to the next.
+/// The files of an errand: the state that one submit leaves to the next.
 class Folder {
  public:
   explicit Folder(const Errand& errand) : path_(errand.folder) {}
@@ -96,8 +96,8 @@ std::string words(const std::vector<std::string>& all) {
   return line;
 }
 
-// Options of sbatch that would undo what the scripts and their submission rest on: where jobs run and in
-// which order, what an array is, where logs and exit codes lie, how SIGTERM comes.
+// Options of sbatch on which the scripts and their submission rely, and which users must not change: the
+// place and order of jobs, arrays, the places of logs and exit codes, the delivery of SIGTERM.
 struct Needed {
   std::string_view name;
   char letter;  // 0: none

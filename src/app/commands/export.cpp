@@ -39,7 +39,8 @@ std::array<float, 4> linear(draw::Color c) { return {linear(c.r), linear(c.g), l
 
 std::array<float, 3> narrow(const Vec3& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
 
-// of the two quaternions of an orientation, the one nearer to the previous: interpolation takes the short way
+// takes, of the two quaternions of an orientation, the one nearer to the previous: interpolation goes the
+// short way
 std::array<float, 4> narrow(Eigen::Quaterniond q, const std::vector<std::array<float, 4>>& before) {
   if (!before.empty()) {
     const auto& b = before.back();
@@ -127,7 +128,7 @@ class Stage {
     glb.nodes.push_back(std::move(node));
   }
 
-  // a rod from a to b; what is broken is too small to be seen
+  // a rod from a to b; a broken one is too small to be seen
   void stretch(Glb::Node& node, const Vec3& a, const Vec3& b, bool whole) const {
     const Vec3 way = b - a;
     const double length = way.norm(), thick = whole ? depth_ / 20 : 0;

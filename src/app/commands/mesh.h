@@ -5,8 +5,8 @@
 
 namespace obscura::app {
 
-/// The surface of a body in its own frame. What has no depth gets `depth` (m): bodies of the plane; what has
-/// no size, a point, is a small ball of a tenth of it.
+/// The surface of a body in its own frame. Bodies of the plane, which have no depth, get `depth` (m); a
+/// point, which has no size, is a small ball of a tenth of it.
 media::Glb::Mesh surface(const sim::SceneInfo::Body& body, double depth);
 
 /// A round rod along y from -1/2 to 1/2, of radius one: a spring or a rod between two places is one, scaled.

@@ -219,7 +219,7 @@ struct Findings {
   }
 };
 
-// The scene that all of them are held against: what is wrong with it is no verdict on a file.
+// The scene that all files are compared with: a fault in it is no verdict on a file.
 std::string scene_text(const std::string& file) {
   std::error_code none;
   if (file != "-" && !fs::exists(file, none))

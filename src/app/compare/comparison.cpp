@@ -24,7 +24,7 @@ using Frame = Comparison::Frame;
 
 std::string size(const media::Image& image) { return fmt::format("{}x{}", image.width, image.height); }
 
-// which of two frames is the worse: what everybody sees counts first
+// whether frame a differs more than b: visible differences count first
 bool worse(const Frame& a, const Frame& b) {
   if (a.sizes != b.sizes) return a.sizes;
   const auto key = [](const media::Difference& d) { return std::tuple(d.solid, d.pixels, d.largest); };

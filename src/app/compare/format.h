@@ -26,7 +26,7 @@ nlohmann::ordered_json json_of(const media::Difference& difference);
 nlohmann::ordered_json json_of(const Cause& cause);
 nlohmann::ordered_json json_of(const scene::Error& error);
 
-/// As text, with the end of its line. What is no UTF-8 in it is replaced.
+/// As text, with the end of its line. Bytes that are not UTF-8 are replaced.
 std::string text_of(const nlohmann::ordered_json& json);
 
 }  // namespace obscura::app

@@ -1,6 +1,6 @@
 // Workflow commands of GitHub Actions.
-// Source: docs.github.com, "Workflow commands for GitHub Actions"; what is escaped is what the runner takes
-// back: %25 %0D %0A in messages, in properties %3A %2C too.
+// Source: docs.github.com, "Workflow commands for GitHub Actions"; escaped are the sequences that the runner
+// unescapes: %25 %0D %0A in messages, in properties %3A %2C too.
 
 #include "app/compare/github.h"
 

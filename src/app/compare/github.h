@@ -7,7 +7,8 @@
 
 namespace obscura::app::github {
 
-/// What GitHub shows at a line of a file, on the page of a workflow's run and of its pull request.
+/// An annotation that GitHub shows at a line of a file, on the page of a workflow's run and of its pull
+/// request.
 struct Annotation {
   enum class Level { error, warning, notice };
   Level level = Level::error;
@@ -16,8 +17,8 @@ struct Annotation {
   std::string title = {}, message = {};
 };
 
-/// The workflow command of it, a line: "::error file=a.toml,line=3,title=...::...\n". What its texts hold is
-/// never a command of its own: line ends, percent signs and, in properties, colons and commas are escaped.
+/// Its workflow command, a line: "::error file=a.toml,line=3,title=...::...\n". Its texts cannot form a
+/// command of their own: line ends, percent signs and, in properties, colons and commas are escaped.
 std::string command(const Annotation& annotation);
 
 /// One for each thing that is wrong with a scene, at its line.

@@ -260,7 +260,7 @@ void take_run(const GoldenOptions& options, scene::Scene& scene, std::vector<std
   if (file.empty()) return;
   show_run(read_table(file), false, scene, notes);
   scene.film.shutter = 0;
-  // what lets pixels of it pass lets its states pass: how exact another program is it says itself
+  // tolerances for pixels tolerate other states too: another program says itself how exact it is
   if (scene.golden.level > 0 || scene.golden.pixels > 0) scene.golden.states = false;
   const std::vector<double>& times = scene.trajectory->times;
   for (const sim::Rational& each : scene.golden.at) {
@@ -310,7 +310,7 @@ void sweep(const scene::Scene& scene, const std::string& references, const std::
   }
 }
 
-// removes the pictures that an earlier check left of this scene: what lies there is of this one
+// removes the pictures that an earlier check of this scene left: all pictures there belong to this scene
 void remove_evidence(const std::string& scene_file, const GoldenOptions& options) {
   const fs::path actual = actual_of(scene_file, options);
   const std::string start = actual.filename().string() + "-";

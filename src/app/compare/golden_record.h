@@ -7,8 +7,8 @@
 
 namespace obscura::app {
 
-/// What `[golden] keep = "hash"` keeps of a scene's moments instead of pictures: hashes, as a few lines of
-/// JSON.
+/// The record that `[golden] keep = "hash"` keeps of a scene's moments instead of pictures: hashes, as a few
+/// lines of JSON.
 struct GoldenRecord {
   struct Moment {
     std::string state, pixels;  // beginnings of hashes: of the state as it is printed, of the picture

@@ -21,10 +21,10 @@ using page::escaped;
 
 constexpr std::size_t kMostBoxes = 12;  // around what differs, of one picture
 
-// "'sha256-...'": what a content security policy names a style or a script by
+// "'sha256-...'": the name of a style or a script in a content security policy
 std::string by_hash(const char* text) { return "'sha256-" + page::base64(page::sha256(text)) + "'"; }
 
-// `about`: what stands under it
+// `about`: the words under it
 std::string picture(const media::Image& image, const std::string& kind, const std::string& about) {
   std::string html = fmt::format(
       "<figure class=\"{0}\"><figcaption>{0}</figcaption>"

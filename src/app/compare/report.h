@@ -24,10 +24,10 @@ struct ReportTitle {
   std::string command;  // of a shell, to which `--only CHOICE` is added; empty: nothing is to be approved
 };
 
-/// A page of HTML that needs nothing beside itself: for each finding the expected picture, the actual one and
-/// their difference, beside each other, under a slider or blinking, with one zoom for all three and boxes
-/// around what differs; a filter by state; and of those that are approved the command that makes them the
-/// references. What is the same has one picture.
+/// A page of HTML that needs no other file: for each finding the expected picture, the actual one and their
+/// difference, beside each other, under a slider or blinking, with one zoom for all three and boxes around
+/// the differences; a filter by state; and the command that makes the approved pictures the references. A
+/// scene without differences has one picture.
 std::string report(const ReportTitle& title, const std::vector<Finding>& findings);
 
 /// Now, or what SOURCE_DATE_EPOCH says instead, in UTC: "2026-01-31 09:30".

@@ -50,7 +50,7 @@ Column named(const std::string& name) {
   return column;
 }
 
-// infinite of one sign, or both no number; of finite ones equal
+// equal; or both infinite of one sign, or both not a number
 bool the_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 // JSON has no word for what is not finite

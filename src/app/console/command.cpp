@@ -39,7 +39,7 @@ Option Option::range(double least, double most) const {
   return Option(option_->check(CLI::Validator(outside, fmt::format("in [{} - {}]", least, most))));
 }
 Option Option::repeated() const {
-  // of extra arguments it would swallow a -- behind it
+  // if extra arguments were allowed, it would swallow a -- behind it
   return Option(option_->expected(1)->allow_extra_args(false)->take_all());
 }
 

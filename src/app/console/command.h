@@ -14,8 +14,8 @@ class Option;
 
 namespace obscura::app {
 
-/// What may stand on a command's line, one option of it. Here, so that CLI11, which is long to compile, is
-/// compiled where a line is read and not in every command.
+/// One option of a command's line. CLI11, which is long to compile, is included only where a line is read,
+/// and not in every command.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}

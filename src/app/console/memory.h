@@ -8,7 +8,7 @@ namespace obscura::app {
 /// asking for more throws std::bad_alloc. The kernel keeps it (RLIMIT_DATA), libraries included.
 void hold_memory(double bytes);
 
-/// Nine tenths of what this machine has, or of what its control group may have: what is held to unless told.
+/// The default limit: nine tenths of this machine's memory, or of that which its control group allows.
 double most_memory();
 
 /// The memory that this process may use, bytes.
@@ -21,8 +21,8 @@ void require_memory_to_draw(double pixels);
 /// "out of memory: the limit is 2.0 GB".
 std::string out_of_memory();
 
-/// Where memory ends inside a library that does not check for it, the program ends with that line and exit
-/// code 4 all the same.
+/// If memory ends inside a library that does not check for it, the program still ends with that line and exit
+/// code 4.
 void survive_libraries();
 
 /// "2GB", "1.5 GiB", "500M": bytes. Throws UsageError.

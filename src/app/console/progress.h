@@ -15,8 +15,8 @@ enum class ProgressKind { automatic, plain, json, none };
 /// then elsewhere, JSON lines for programs.
 class Progress {
  public:
-  /// `what` is made; `frames` of it; a frame lasts `frame_seconds` of the film. `unit`: what is counted where
-  /// it is not frames, as in "runs"; `frame_seconds` is then of no matter.
+  /// `what` is made; `frames` of it; a frame lasts `frame_seconds` of the film. `unit`: the thing that is
+  /// counted if it is not frames, as "runs"; `frame_seconds` is then ignored.
   Progress(ProgressKind kind, std::string what, std::int64_t frames, double frame_seconds,
            std::string unit = "frames");
   ~Progress();

@@ -8,8 +8,8 @@ namespace obscura::app {
 /// Text as one word of a shell's command line.
 std::string shell_word(const std::string& text);
 
-/// What is to be shared out, as commands of a shell; each leaves its exit code in a file of `folder`:
-/// prepare.exit, shard-3.exit, join.exit.
+/// A job split into commands for a shell; each writes its exit code into a file of `folder`: prepare.exit,
+/// shard-3.exit, join.exit.
 struct Errand {
   std::string made;                  // "room.mp4": what it all comes to
   std::string folder;                // "room.mp4.slurm": scripts, logs, exit codes

@@ -11,7 +11,7 @@ namespace obscura::app {
 /// error that is redrawn and cleared; nothing elsewhere. Commands that show a Progress say no more than that.
 class Waiting {
  public:
-  /// Of `command`, until it is destroyed. At most one at a time.
+  /// Waits in the name of `command`, until it is destroyed. At most one at a time.
   explicit Waiting(const std::string& command);
   ~Waiting();
   Waiting(const Waiting&) = delete;

@@ -4,12 +4,13 @@
 //         pictures   0.058 a pixel, + 3.5 a px of outlines; space 0.062 a pixel, + 93 H, + 2 a px of outlines
 //                      H  lines of the picture
 //                      L  px of outlines of bodies and springs, times the px that they move from frame to
-//                         frame, 20 at most: what is encoded anew
+//                         frame, 20 at most: the pixels that are encoded anew
 //                      u  2 of the quickest presets, times 2^((18 - crf) / 6)
 //   drawing          9 a pixel (quick presets 5, GIF 20, pictures 12); space 20 (GIF 25) and 6 ms a frame;
 //                    and 0.3 s to begin with
 // on a processor that takes kReference for a loop of known work; others are as much slower or faster.
-// A worker has three layers of its picture, what was read back, and the encoder's: 60 bytes a pixel at most.
+// A worker keeps three layers of its picture, a copy of the pixels, and the encoder's: 60 bytes a pixel at
+// most.
 
 #include "app/film/estimate.h"
 
@@ -103,7 +104,7 @@ class Outlines {
   std::vector<double> reach_;  // m, one a body
 };
 
-// Time that this thread has had, s: what other programs take of the processor does not count.
+// The processor time of this thread, s: the time that other programs take does not count.
 double own_time() {
   timespec now{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -158,7 +159,7 @@ Measured measure(const scene::Scene& scene, std::int64_t steps, double patience)
   return found;
 }
 
-// what is made, as far as it decides what that takes
+// the properties of an output on which the estimates depend
 struct Kind {
   bool movie = false, gif = false, pipe = false, quick = false, space = false;
 

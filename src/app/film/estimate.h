@@ -25,8 +25,8 @@ struct Needs {
   double seconds(int workers) const;
 };
 
-/// Of these shots, put there. Takes `patience` seconds of this thread (and a step at least) to see how long
-/// steps take and how much moves.
+/// The needs of these shots with this output. Takes `patience` seconds of this thread (and a step at least)
+/// to see how long steps take and how much moves.
 Needs needs(const scene::Scene& scene, const Shots& shots, const Output& output, double patience);
 
 /// So many workers (0: one a core), or as many as fit into the memory that this process may have. Throws

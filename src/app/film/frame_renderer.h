@@ -12,8 +12,8 @@
 
 namespace obscura::app {
 
-/// Makes pictures of takes, one of each frame: of its instant, or where the shutter is open while things
-/// move the mean of several. Used from one thread at a time; several work side by side.
+/// Makes the pictures of segments, one for each frame: of its instant, or, while things move and the shutter
+/// is open, the mean of several. Used from one thread at a time; several work in parallel.
 class FrameRenderer {
  public:
   FrameRenderer(const scene::Scene& scene, const draw::Charts& charts, const gl::ContextOptions& context);

@@ -13,9 +13,9 @@
 
 namespace obscura::app {
 
-// Jobs in order, work side by side, results in order: what is simulated one after the other is drawn and
-// encoded by several workers, and joined one after the other again. At most workers + 2 jobs are under way,
-// so that memory is bounded by workers and not by the length of the film.
+// Ordered jobs, parallel work, ordered results: one thread simulates segments in order, several workers draw
+// and encode them, and one thread joins the results in order. At most workers + 2 jobs are under way, so that
+// memory is bounded by the workers and not by the length of the film.
 
 template <class Job, class Result>
 struct Conduct {

@@ -6,7 +6,7 @@
 
 namespace obscura::app {
 
-/// Where a film goes. The form of the name chooses it: a movie, a sequence of PNGs, one PNG, a pipe.
+/// The destination of a film. The form of the name chooses it: a movie, a sequence of PNGs, one PNG, a pipe.
 struct Output {
   enum class Form { movie, frames, still, pipe };
   Form form = Form::movie;
@@ -17,8 +17,8 @@ struct Output {
   std::string file(std::int64_t n) const;
   /// The name beside `path` of a film that ended early: room.partial.mp4.
   std::string partial() const;
-  /// The folders for what is whole before all of it is, and for checkpoints that were asked for:
-  /// room.mp4.parts, room.mp4.checkpoints; of frames/{frame:04}.png frames/frame.png.parts.
+  /// The folders for finished parts of an unfinished film, and for checkpoints that were asked for:
+  /// room.mp4.parts, room.mp4.checkpoints; for frames/{frame:04}.png frames/frame.png.parts.
   std::string parts() const;
   std::string checkpoints() const;
 };

@@ -9,8 +9,8 @@ namespace obscura::app {
 /// Work of so many seconds is not thrown away without being asked.
 inline constexpr double kWorthKeeping = 60;
 
-/// How long was worked at a thing that is not whole yet, in a small file beside it: what says whether it may
-/// be thrown away. A failure to write it is ignored.
+/// The time spent on an unfinished output, in a small file beside it, by which to decide whether it may be
+/// thrown away. A failure to write it is ignored.
 class Spent {
  public:
   /// The time that an earlier process wrote to the file.

@@ -42,7 +42,7 @@ std::string text(const Journal& journal) {
   return json.dump(1) + "\n";
 }
 
-// of one that cannot be read
+// for a record that cannot be read
 struct Damaged : media::Error {
   using media::Error::Error;
 };

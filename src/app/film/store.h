@@ -36,10 +36,10 @@ enum class Earlier {
 /// shared file systems too.
 class Store {
  public:
-  /// Makes or opens the folder for the takes [first, last). Throws media::Error: where another process makes
-  /// these takes already; where `go_on` finds parts of another film; where `replace` would lose shards,
-  /// prepared states, or more than a minute of work, but for those of one process alone at a scene that was
-  /// edited since.
+  /// Makes or opens the folder for the takes [first, last). Throws media::Error if another process makes
+  /// these takes already; if `go_on` finds parts of another film; if `replace` would lose shards, prepared
+  /// states, or more than a minute of work, except those of one process alone at a scene that was edited
+  /// since.
   Store(const Output& output, const Journal& journal, std::int64_t first, std::int64_t last, Earlier earlier);
   /// Opens the folder of a film to take all of it. Throws media::Error where there is none.
   explicit Store(const Output& output);

@@ -13,7 +13,7 @@ namespace obscura::app {
 
 namespace {
 
-// of one film: how many frames have a checksum of their own, and how many bodies of frames
+// limits for one film: frames with a checksum of their own, and bodies times frames
 constexpr std::int64_t kMostFrames = 2048, kMostBodies = 4096;
 constexpr std::int64_t kLetters = 2;                      // of a checksum of 12 bits
 constexpr std::int64_t kMostOfAFilm = 1'000'000'000'000;  // more frames than any film has

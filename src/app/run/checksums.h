@@ -16,7 +16,7 @@ namespace obscura::app {
 /// differ are found.
 class Checksums {
  public:
-  /// Of a film of so many frames, of which this may be a part, and of so many bodies.
+  /// For a film of `frames` frames, of which this may be a part, and `bodies` bodies.
   Checksums(std::int64_t frames, std::size_t bodies);
 
   /// Adds frame `index` of the film: the hash of its state (state_hash), and where its bodies are. In order.
@@ -34,7 +34,7 @@ class Checksums {
   /// Reads the output of json(); none if it is not one.
   static std::optional<Checksums> read(const nlohmann::json& json);
 
-  /// Where two films part, by the indices of their frames.
+  /// The first difference of two films, by the indices of their frames.
   struct Apart {
     std::int64_t same = -1;             // the last that is the same before the first that differs
     std::optional<std::int64_t> first;  // that differs; none: one without a checksum of its own
@@ -62,7 +62,7 @@ class Checksums {
   Rows of_frames_, of_bodies_;
 };
 
-/// Of one picture.
+/// Checksums of one picture.
 Checksums checksums(const std::string& state, const sim::Snapshot& moment);
 
 }  // namespace obscura::app

@@ -85,7 +85,7 @@ void judge_one_scene(const Origin& a, const Origin& b, Cause& cause) {
   }
 }
 
-// two scenes: where their states part, if they do
+// for two scenes: the first difference of their states, if there is one
 void judge_scenes(const Origin& a, const Origin& b, Cause& cause) {
   cause.kind = Cause::Kind::scene;
   cause.lines.push_back(scene_line(a, b));
@@ -222,7 +222,7 @@ std::optional<Origin> simulated(const Origin& origin) {
   const Shots shots = shots_of(origin, scene);
   const auto run = scene.run();
   run->heed(interrupted);
-  // of a film that was cut short as much as there is; of one that tells no more its first state alone
+  // as many frames as a film that was cut short has; only the first state if the origin has no others
   const std::int64_t count = origin.states ? std::min(origin.states->frames(), shots.size()) : 1;
   Origin again = origin;
   again.states.reset();

@@ -24,11 +24,11 @@ const char* name(Cause::Kind kind);
 /// about its look; another OpenGL; or pixels alone. Simulates both scenes again where their states differ.
 Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b);
 
-/// Whether two origins tell of the same states: of the first they show, and of all where both tell of all.
+/// Whether two origins have the same states: the first that they show, and all if both have all.
 bool same_states(const Origin& a, const Origin& b);
 
-/// Of two that do not: the frame where they part, and the bodies that do there, as far as their checksums
-/// tell: "states differ from frame 137 on (t = 2.283 s): body ball". Empty where they tell nothing.
+/// For origins whose states differ: the first frame and the bodies that do, as far as their checksums tell:
+/// "states differ from frame 137 on (t = 2.283 s): body ball". Empty if they do not tell.
 std::string first_difference(const Origin& a, const Origin& b);
 
 /// An origin with the states of its frames as this program simulates them, up to where the run ends. Throws

@@ -8,7 +8,7 @@
 
 namespace obscura::app {
 
-/// Where two runs part.
+/// The first difference of two runs.
 struct Parting {
   std::int64_t step = 0;  // of the physics clock
   double time = 0;        // s

@@ -22,15 +22,15 @@ class Frames {
   Frames(Frames&&) noexcept;
 
   Kind kind() const;
-  /// Of a folder the names of its PNGs, numbers in them by their value; else empty.
+  /// For a folder the names of its PNGs, numbers in them by their value; else empty.
   const std::vector<std::string>& names() const;
-  /// Of a folder: only these, in this order.
+  /// For a folder: reads only these, in this order.
   void only(std::vector<std::string> names);
 
   /// The next picture. False after the last. Throws media::Error.
   bool next(media::Image& image);
-  /// Of the last picture: its file's name, or "frame 12"; its time (s) where that is known; its origin, or
-  /// that of the whole movie.
+  /// For the last picture: its file's name, or "frame 12"; its time (s) if known; its origin, or that of the
+  /// whole movie.
   std::string name() const;
   std::optional<double> time() const;
   const std::optional<Origin>& origin() const;

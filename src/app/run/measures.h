@@ -10,8 +10,8 @@
 
 namespace obscura::app {
 
-/// What is asked of a run: one of its states' numbers (app/run/columns.h), or their hash, at an instant or
-/// over all of the run. "energy.total@5", "crate.position.y@max".
+/// A question about a run: one number of its states (app/run/columns.h), or their hash, at an instant or over
+/// the whole run. "energy.total@5", "crate.position.y@max".
 struct Question {
   /// `at` 5 s, at the `end` of the duration, or over the instants at the ends of its steps, from 0 to the
   /// duration, both counted: the largest, the smallest, the mean over time (of straight lines between them),

@@ -29,7 +29,7 @@ void add(const sim::Snapshot& now, const draw::Measured& measured, draw::Plot& p
     plot.lines[k].values.push_back(measures[k]->at(now, measured.body));
 }
 
-// the instants of a run that a chart is made of: ends of steps, which cost nothing beside the run; of another
+// the instants of a run from which a chart is made: ends of steps, which cost nothing extra; for another
 // program's run its rows
 std::vector<sim::Rational> beats(const scene::Scene& scene, sim::Rational rate) {
   std::vector<sim::Rational> times;

@@ -42,7 +42,7 @@ class Shots {
   sim::Rational fps() const { return fps_; }
   /// The largest frame number, for the width of a name.
   std::int64_t last_frame() const;
-  /// What only() reads: "0..599". Of stills nothing.
+  /// The text that only() reads: "0..599". Empty for stills.
   std::string text() const;
 
  private:

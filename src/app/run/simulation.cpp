@@ -14,8 +14,8 @@ namespace obscura::app {
 
 namespace {
 
-// of motion blur: the longest way, px, that is no motion; how many moments a frame has where things move, one
-// a pixel of the longest way; and how much memory they may take, 2 MiB a frame
+// motion blur: the longest way, px, that counts as no motion; the fewest and most moments of a frame in which
+// things move, one for each pixel of the longest way; and the memory that they may take, 2 MiB a frame
 constexpr double kStill = 0.05, kFewest = 4, kMost = 64, kMostBytes = 2 << 20;
 
 constexpr double kTrailMargin = 0.1;  // s

@@ -37,7 +37,7 @@ std::vector<std::string_view> cells(std::string_view line) {
   }
 }
 
-// "run.csv:17:42": where a cell begins, from 1
+// "run.csv:17:42": the place where a cell begins, from 1
 std::string place(const std::string& file, int line, const std::string& text, std::string_view cell) {
   return fmt::format("{}:{}:{}", file, line, cell.data() - text.data() + 1);
 }

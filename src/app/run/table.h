@@ -16,7 +16,7 @@ struct Table {
   int head = 1;                    // the line of names
   std::vector<std::size_t> cells;  // which of a line's cells each column is
 
-  /// Where a column is; none where there is no such.
+  /// The index of a column; empty if there is no such column.
   std::optional<std::size_t> column(const std::string& name) const;
   double time(std::size_t row) const { return rows[row][time_column]; }
   std::size_t time_column = 0;
@@ -34,8 +34,8 @@ Table table_of_json(const std::string& file, const std::string& text);
 /// Adds a row. False, and nothing is added, where its time is not finite or not after the last one's.
 bool add_row(std::vector<double> numbers, int line, Table& table);
 
-/// Where a column's cell in a line of the file is: "run.csv:17:42". Of a file that cannot be read again, as
-/// from a pipe, "run.csv:17"; of JSON "run.json, state 3".
+/// The place of a column's cell in a line of the file: "run.csv:17:42". For a file that cannot be read again,
+/// as from a pipe, "run.csv:17"; for JSON "run.json, state 3".
 std::string place(const Table& table, int line, std::size_t column);
 
 /// Two times, s, that are one: within half a microsecond.

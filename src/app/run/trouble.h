@@ -12,7 +12,7 @@ std::string text(const sim::Trouble& trouble);
 
 /// A run that could not go on.
 struct TroubleError : std::runtime_error {
-  /// `kept`: what of the film is there, or nothing.
+  /// `kept`: the part of the film that exists, or nothing.
   TroubleError(const std::string& scene, const sim::Trouble& trouble, const std::string& kept);
 };
 

@@ -16,7 +16,8 @@ struct Tile {
   std::string words;  // over it
 };
 
-/// Where `n` equal tiles lie in a picture, row by row, each under a line of words: as large as they can be.
+/// The places of `n` equal tiles in a picture, row by row, each under a line of words: as large as they can
+/// be.
 struct Mosaic {
   int columns = 0, rows = 0;
   int width = 0, height = 0;  // of a tile, px

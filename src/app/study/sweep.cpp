@@ -120,8 +120,8 @@ class Sweep {
   std::vector<std::string> heads_;
 };
 
-// where to go on: how many of the runs from `from` on have their rows; the last of them is made again, to
-// know that it is this sweep's
+// finds where to continue: how many of the runs from `from` on have their rows; makes the last of them again,
+// to check that it is this sweep's
 std::int64_t earlier(const Sweep& sweep, const RowFile& file, std::int64_t from, const std::string& head) {
   const RowFile::Earlier& left = file.earlier();
   if (left.lines == 0) return 0;

@@ -10,8 +10,8 @@
 
 namespace obscura::draw {
 
-/// Where places of the world lie on a sheet (`kPoint` units a point): of the plane by a view, of space by a
-/// lens.
+/// The mapping from places of the world to a sheet (`kPoint` units a point): a view in the plane, a lens in
+/// space.
 class Projection {
  public:
   explicit Projection(const View& view) : view_(view), window_(view.window) {}

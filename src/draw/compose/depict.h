@@ -34,7 +34,7 @@ class Illustrator {
   /// (draw/page/sheet.h).
   Illustrator(const sim::SceneInfo& cast, const Look& look, const Extent& extent, const Sheet& sheet);
 
-  /// In the plane: where the world lies on the page at time t (s).
+  /// In the plane: the view from the world to the page at time t (s).
   View view(double t) const;
 
   /// In space: how it lies in a panel.
@@ -44,7 +44,8 @@ class Illustrator {
   /// first.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways) const;
 
-  /// The same, with the clock and the charts of another instant: of the frame that `now` is a moment of.
+  /// The same, with the clock and the charts of another instant: that of the frame in which `now` is a
+  /// moment.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
                  const sim::Snapshot& frame) const;
 
@@ -62,7 +63,7 @@ class Illustrator {
   /// The longest trail, s: how far back depict's `ways` must reach.
   double longest_trail() const;
 
-  /// The bodies with trails: what a run must track.
+  /// The bodies with trails, which a run must track.
   std::vector<int> trailed() const;
 
  private:

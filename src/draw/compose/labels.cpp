@@ -1,6 +1,6 @@
 // Labels: the words of a body stand over the highest of its places on the page, upright however it or the
-// camera turns; where there is no room above, under the lowest. A plate of the room's colour keeps them
-// readable over what they cover.
+// camera turns; if there is no room above, under the lowest. A plate of the room's colour keeps them readable
+// over other things.
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@ namespace {
 
 using sim::Vec3;
 
-/// What turns about a body's middle.
+/// A reading of a rotation about a body's centre.
 Reading turning(const sim::SceneInfo& cast, const Vec3& middle, const Vec3& value) {
   return {middle, value, cast.dimension == 2 ? value.z() : value.norm()};
 }

@@ -1,8 +1,9 @@
-// How far things move on the page. Of a body with velocity v, spin w and reach r, seen at p and then at p',
-// no point goes farther than
+// How far things move on the page. No point of a body with velocity v, spin w and bounding radius r, seen at
+// p and then at p', moves farther than
 //   |p' - p| + scale |w| r dt
-// and of what stands still, as the camera moves, no point of the window farther than one of its corners: in
-// the plane, where a view is a scale and a shift; in space that is tried at its corners and at two depths.
+// For things that stand still while the camera moves, no point of the window moves farther than one of its
+// corners: exactly in the plane, where a view is a scale and a shift; in space, corners are tried at two
+// depths.
 
 #include "draw/compose/travel.h"
 

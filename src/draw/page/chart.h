@@ -21,7 +21,7 @@ struct Chart : Measured {
 class Charts {
  public:
   Charts() = default;
-  /// `plots`: one a chart, of a run of `seconds`, which the axes span. `aspect`: of the page.
+  /// `plots`: one for each chart, from a run of `seconds`, which the axes span. `aspect`: of the page.
   Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
          double aspect, double seconds);
 
@@ -30,7 +30,7 @@ class Charts {
   double right() const { return right_; }
   double below() const { return below_; }
 
-  /// Axes, ticks and names: what stands still.
+  /// Axes, ticks and names: the things that do not move.
   void draw_still(List& list) const;
   /// The lines up to `now`, and where they are now.
   void draw_lines(const sim::Snapshot& now, List& list) const;

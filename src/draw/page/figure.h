@@ -85,7 +85,7 @@ struct Figure {
   std::vector<Plot> plots;
 };
 
-/// Where a site is at an instant.
+/// The place of a site at an instant.
 sim::Vec3 place(const Site& site, const sim::Snapshot& now);
 
 }  // namespace obscura::draw

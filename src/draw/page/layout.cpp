@@ -216,8 +216,8 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   }
   layout.scale = scale(strip);
 
-  // what height is left over goes above and below alike; a camera that moves, or a world without an end,
-  // keeps the caption at the top
+  // height that is left over goes above and below in equal parts; with a camera that moves, or an unbounded
+  // world, the caption stays at the top
   const double spare = layout.height - strip - 2 * band - w * kPageMargin - layout.scale * size.y();
   const bool still = camera.keys.empty() && !camera.follow;
   const double above = world.closed && still ? spare / 2 : 0;

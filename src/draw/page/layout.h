@@ -9,8 +9,8 @@
 
 namespace obscura::draw {
 
-/// Where things lie on the page, once for a whole run: the caption strip, the window below it that shows the
-/// world, and how large the world is where the camera fits it.
+/// The arrangement of the page, computed once for a whole run: the caption strip, the window below it that
+/// shows the world, and the scale of the world if the camera fits it.
 struct Layout {
   double width = 1920;            // of the page, less what charts take of it
   double height = 1080;           // the same; a sheet's is another, see draw/page/sheet.h

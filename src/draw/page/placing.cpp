@@ -1,6 +1,6 @@
 // The cost of a place: the length of the lines that run through its rectangle, each by its weight, the area
-// it shares with other words, and how far it is from what is usual. Where it leaves the page it is out of
-// question.
+// it shares with other words, and its distance from the usual place. A place that leaves the page is
+// excluded.
 
 #include "draw/page/placing.h"
 

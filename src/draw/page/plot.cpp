@@ -1,5 +1,5 @@
 // A plot. Only the two axes it needs, ticks at 1, 2 or 5 times a power of ten, and words at the ends of the
-// lines instead of a key. Where ends lie close together their words are pushed apart.
+// lines instead of a key. Words at ends that lie close together are pushed apart.
 
 #include "draw/page/plot.h"
 
@@ -73,7 +73,7 @@ struct Range {
   void take(double x) { low = std::min(low, x), high = std::max(high, x); }
 };
 
-/// Where a line ends: its point farthest to the right.
+/// The end of a line: its point farthest to the right.
 Point end_of(const Plot& plot, const PlotArea& area, const Series& line) {
   const std::vector<double>& way = along(plot, line);
   Point end(area.left - 1, area.bottom);

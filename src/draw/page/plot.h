@@ -33,7 +33,7 @@ struct Plot {
   std::vector<Dot> dots;
 };
 
-/// Where a plot's values lie on the page.
+/// The mapping from a plot's values to the page.
 struct PlotArea {
   double point = 1;                                 // page units: of type, lines and ticks
   double left = 0, right = 0, top = 0, bottom = 0;  // page units: of what the axes span

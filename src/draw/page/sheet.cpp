@@ -1,5 +1,4 @@
-// A sheet, from the top: what is left free, margin, band of the hatching, world, band, margin, what is left
-// free.
+// A sheet, from the top: free space, margin, band of the hatching, world, band, margin, free space.
 
 #include "draw/page/sheet.h"
 

@@ -20,7 +20,7 @@ struct CameraProjection {
   Rect window;              // the part of the page that it fills
 
   bool perspective() const { return per_distance > 0; }
-  /// The eye's place; of a perspective camera alone.
+  /// The eye's place; only for a perspective camera.
   sim::Vec3 eye() const { return target + back / per_distance; }
   /// Towards the eye from a place, unit.
   sim::Vec3 sight(const sim::Vec3& from) const {
@@ -30,13 +30,13 @@ struct CameraProjection {
   double depth(const sim::Vec3& place) const { return 1 - per_distance * (place - target).dot(back); }
   /// Page units a metre at a place.
   double scale_at(const sim::Vec3& place) const { return scale / depth(place); }
-  /// Where a place in front of the eye lies.
+  /// The point on the page of a place in front of the eye.
   Point page(const sim::Vec3& place) const { return seen(place).head<2>(); }
-  /// Where it lies, and how near it is, in page units: straight lines and planes of space stay straight, and
-  /// of two on one sight line the larger third is nearer.
+  /// The point on the page, and the nearness, in page units: straight lines and planes of space stay
+  /// straight, and of two places on one sight line the nearer one has the larger third coordinate.
   sim::Vec3 seen(const sim::Vec3& place) const;
-  /// (x w, y w, z, w) with page = (x, y): what can be cut before it is divided. z grows towards the eye and
-  /// is 1 for a perspective camera, metres from the target for an orthographic one.
+  /// (x w, y w, z, w) with page = (x, y): homogeneous, so that it can be clipped before the division. z grows
+  /// towards the eye and is 1 for a perspective camera, metres from the target for an orthographic one.
   Eigen::Vector4d homogeneous(const sim::Vec3& place) const;
   /// The direction in which one looks through a point of the page, unit, and a place on that line: the eye,
   /// or the point in the target's plane.

@@ -92,7 +92,7 @@ struct Text {
 
 enum class Kind : std::uint8_t { disc, box, stroke, polygon, text };
 
-/// Consecutive things of one kind: what is drawn in one go.
+/// Consecutive things of one kind, which are drawn in one go.
 struct Batch {
   Kind kind;
   int begin = 0, end = 0;  // into the list of that kind
@@ -122,7 +122,7 @@ struct List {
            bool closed = false);
   /// A filled polygon.
   void add(const std::vector<Point>& outline, Color fill);
-  /// What follows is clipped to `rect` until the next call of clip or unclip.
+  /// Clips everything that is added after this call to `rect`, until the next call of clip or unclip.
   void clip(const Rect& rect);
   void unclip();
   /// Another list on top of this one: each of its lengths times `scale`, its origin at `at`.

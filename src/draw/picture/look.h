@@ -40,7 +40,7 @@ struct Look {
   enum class Springs { automatic, coils, lines } springs = Springs::automatic;
 };
 
-/// Where the camera is at one time; between two keys it moves with the ease of the later one.
+/// The camera at one time; between two keys it moves with the ease of the later one.
 struct CameraKey {
   enum class Ease { linear, in, out, in_out, hold };
   double time = 0;                       // s

@@ -9,10 +9,10 @@
 
 namespace obscura::draw {
 
-// What is drawn by depth, as one camera sees it: triangles that hide each other, each with the colour that it
-// has in the light and the one in shadow; what casts shadows, as the light sees it; and the shadows on the
-// ground, already on the page. Edges, trails and arrows are no part of it: depict has found which of them is
-// seen, and they are strokes of the list that is drawn after.
+// Things drawn by depth, as one camera sees them: triangles that hide each other, each with its colour in
+// light and in shadow; the casters of shadows, as the light sees them; and the shadows on the ground, already
+// on the page. Edges, trails and arrows are not among them: depict has found which of them are visible, and
+// they are strokes of the list that is drawn after.
 
 /// How many rays stand for the light: a shadow's edge has so many steps.
 inline constexpr int kRays = 32;

@@ -57,7 +57,7 @@ std::vector<fs::path> folders() {
   return found;
 }
 
-/// The files of a face: of words, those of the family in $OBSCURA_FONT, as its files are usually called.
+/// The files of a typeface; for words those of the family in $OBSCURA_FONT, as its files are usually called.
 std::vector<std::string> files_of(Face face) {
   const Source& source = kSources[std::size_t(face)];
   const char* family = std::getenv("OBSCURA_FONT");
@@ -81,7 +81,7 @@ std::string find(Face face) {
     std::vector<std::string> here(files.size());
     const auto skip =
         fs::directory_options::skip_permission_denied | fs::directory_options::follow_directory_symlink;
-    // the best file of this folder; of two alike, the first by name
+    // the best file of this folder; on a tie the first by name
     for (fs::recursive_directory_iterator it(folder, skip, ignored), end; !ignored && it != end;
          it.increment(ignored)) {
       if (it.depth() > 8) it.disable_recursion_pending();

@@ -29,8 +29,8 @@ std::vector<Point> placed(const std::vector<Point>& form, const Point& at, doubl
   return points;
 }
 
-/// Dots at equal distances along the hand's way; what it has gone is stronger than what it will go. A way
-/// that comes back over itself is dotted once.
+/// Dots at equal distances along the hand's way; the part behind the hand is stronger than the part before
+/// it. A way that comes back over itself is dotted once.
 void dot_way(const sim::SceneInfo::Mouse& mouse, const Stage& stage, const View& view, double time,
              double alpha, List& list) {
   const double step = kStep * stage.layout.weight, radius = kWayDot * stage.layout.weight;

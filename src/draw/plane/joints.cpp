@@ -38,7 +38,7 @@ double sag(const Point& a, const Point& b, const Point& down, double rope) {
   return low;
 }
 
-/// Half the narrowest of the bodies at a joint, page units: what is drawn on them is not larger.
+/// Half the narrowest of the bodies at a joint, page units: the limit on the size of the joint's picture.
 double room_for(const Stage& stage, const View& view, const sim::SceneInfo::Joint& joint) {
   double least = 1e300;
   for (int i : {joint.a, joint.b}) {

@@ -1,7 +1,7 @@
 // Convex polygons, and bodies of several parts. A part is its form in the outline's colour, and on it the
-// same form moved inwards by the outline's width in the fill's. Of a body of several, first all the forms and
-// then all the fills, which cover the outlines within; where an edge lies within another part its fill goes
-// on beyond it, so that the parts are drawn as one.
+// same form moved inwards by the outline's width in the fill's. For a body of several parts, first all the
+// forms and then all the fills, which cover the inner outlines; if an edge lies within another part, its fill
+// extends beyond it, so that the parts look like one.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr int kMostEdges = 64;  // bits of a part's seams
 
 using Part = sim::SceneInfo::Part;
 
-/// The corners of a box or polygon in the body's frame, counter-clockwise; of a ball none.
+/// The vertices of a box or polygon in the body's frame, counter-clockwise; none for a ball.
 std::vector<Point> corners(const Part& part) {
   std::vector<Point> all;
   if (part.kind == sim::ShapeKind::box) {

@@ -64,7 +64,7 @@ struct Arrow {
   double grow = 1;  // of its head and shaft
 };
 
-/// An arrow large enough to be seen. What begins in the window ends there.
+/// An arrow, if it is large enough to be seen. One that begins in the window ends there.
 void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows);
 
 /// Halos of all below all arrows.
@@ -84,10 +84,10 @@ void draw_pointer(const Point& at, double alpha, double weight, const Palette& c
 /// How strongly a hand is shown at a time: it appears before the press and leaves after the release.
 double shown(const sim::SceneInfo::Mouse& mouse, double time);
 
-/// Where the hand is then, also before the press and after the release.
+/// The hand's place at a time, also before the press and after the release.
 sim::Vec3 pointer(const sim::SceneInfo::Mouse& mouse, const sim::Snapshot::Mouse& now, double time);
 
-/// Hatching, room, walls, title: what stands still while the camera does.
+/// Hatching, room, walls, title: the things that stand still while the camera does.
 void draw_still(const Stage& stage, const View& view, List& list);
 
 void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now, Ways ways, List& list);

@@ -37,7 +37,8 @@ Point hatch_direction(const std::vector<HalfPlane>& walls) {
   return best;
 }
 
-/// Where the line p + s u enters and leaves a convex shape: the distances, and the sides it meets.
+/// The points at which the line p + s u enters and leaves a convex shape: the distances s, and the sides that
+/// it meets.
 struct Chord {
   double from = 0, to = 0;
   int in = -1, out = -1;

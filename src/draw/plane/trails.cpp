@@ -1,7 +1,7 @@
-// A trail of duration T: a body's way from t - T to t, at age a as wide as W (0.25 + 0.75 s) and as strong as
-// s^1.3, s = 1 - a / T. Its nodes are chosen on the physics clock, the first point of each T/240 and every
-// cusp, so that they do not wander from frame to frame. Drawn by minimum or maximum: where pieces overlap
-// nothing shows.
+// A trail of duration T: a body's way from t - T to t; at age a its width is W (0.25 + 0.75 s) and its
+// strength s^1.3, with s = 1 - a / T. Its nodes are chosen on the physics clock, the first point of each
+// T/240 and every cusp, so that they do not wander from frame to frame. Drawn by minimum or maximum, so that
+// overlaps of its pieces do not show.
 
 #include <algorithm>
 #include <cmath>

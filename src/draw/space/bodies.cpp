@@ -116,7 +116,7 @@ double line_width(const SpaceFrame& s, const Vec3& center, double least) {
   return std::clamp(2 * kThinEdge * least * s.lens.scale_at(center), 0.5 * weight, kEdgeLine * weight);
 }
 
-/// The outline of a capsule on the page: of its two ends' contours, the hull.
+/// The outline of a capsule on the page: the hull of its two ends' contours.
 std::vector<Vec3> outline(const CameraProjection& lens, const Vec3& a, const Vec3& b, double radius) {
   struct Place {
     Point page;

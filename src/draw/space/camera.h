@@ -11,7 +11,7 @@ namespace obscura::draw {
 /// How far a move has come at the part u of its time; 0 at 0 and 1 at 1, exactly.
 double eased(CameraKey::Ease ease, double u);
 
-/// Where the world lies on the page at time t (s).
+/// The view from the world to the page at time t (s).
 View view_at(const Camera& camera, const Layout& layout, double t);
 
 // In space.
@@ -20,8 +20,7 @@ View view_at(const Camera& camera, const Layout& layout, double t);
 Camera side();
 Camera slant();
 
-/// What a camera looks at where no key says otherwise: a place, and how many metres its window shows across
-/// there.
+/// The default aim of a camera: a place, and the width (m) that its window shows there.
 struct Aim {
   sim::Vec3 target = sim::Vec3::Zero();
   double width = 1;
@@ -30,7 +29,8 @@ struct Aim {
 /// The aim from which all of `corners` lie in the window, with a margin, whatever the orbit.
 Aim aim(const Camera& camera, const std::vector<sim::Vec3>& corners, const Rect& window);
 
-/// How space lies in the window at time t (s). `followed`: where the body is that the camera follows.
+/// The projection from space into the window at time t (s). `followed`: the place of the body that the camera
+/// follows.
 CameraProjection lens_at(const Camera& camera, const Aim& fitted, const Rect& window, double t,
                          const std::optional<sim::Vec3>& followed = {});
 

@@ -97,7 +97,7 @@ Aim aim(const Camera& camera, const std::vector<Vec3>& corners, const Rect& wind
   const double wide = std::max(1.0, window.width / 2 - margin),
                tall = std::max(1.0, window.height / 2 - margin);
   const bool turns = camera.orbit != 0;
-  // a few rounds: what a camera nearer by shows larger lies elsewhere, too
+  // a few rounds: a nearer camera shows things larger, and elsewhere too
   for (int round = 0; round < 24; ++round) {
     double over = 0;  // how much too large the picture is
     Point away = Point::Zero();

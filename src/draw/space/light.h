@@ -47,8 +47,8 @@ class GroundShadow {
  public:
   GroundShadow(const Ground& ground, const Light& light, const CameraProjection& lens);
 
-  /// Adds the shadow of a convex body that has these corners, each a ball of `radius`, and stops `rays`.
-  /// Where there are `many` bodies every second ray will do.
+  /// Adds the shadow of a convex body that has these corners, each a ball of `radius`, and stops `rays`. With
+  /// `many` bodies every second ray is enough.
   void cast(std::span<const sim::Vec3> corners, double radius, bool many, std::uint32_t rays, Solids& solids);
 
  private:

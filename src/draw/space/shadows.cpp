@@ -44,7 +44,7 @@ bool over(const Extents& caster, const Extents& receiver, double soft) {
          caster.high.y() > receiver.low.y() - soft;
 }
 
-/// What the light sees of a convex body of flat faces: its corners, and the ways of its edges across the
+/// A convex body of flat faces as the light sees it: its vertices, and the directions of its edges across the
 /// light.
 struct Outline {
   std::vector<Vec3> corners;
@@ -186,7 +186,7 @@ void cast_on_each_other(SpaceFrame& s) {
   }
   const auto casters = pair_up(things, s.chunks, soft);
 
-  // the nearest things first, since they hide others; of each, the triangles in the light that others may
+  // the nearest things first, since they hide others; from each, the triangles in the light that others may
   // darken
   std::vector<int> order(s.chunks.size());
   std::iota(order.begin(), order.end(), 0);
@@ -230,7 +230,7 @@ void cast_on_each_other(SpaceFrame& s) {
   }
   const bool any = !s.solids.shadowed.empty();
   if (any) {
-    // across: where there are both; along the light: all of it
+    // across the light: the range that both have; along the light: all of it
     fitted.low.head<2>() = fitted.low.cwiseMax(fitted_casters.low).head<2>();
     fitted.high.head<2>() = fitted.high.cwiseMin(fitted_casters.high).head<2>();
     fitted.low.z() = std::min(fitted.low.z(), fitted_casters.low.z());

@@ -1,12 +1,12 @@
-// Which parts of a line a convex body hides. In page space (CameraProjection::seen) a plane n . p = d of the
-// world is the plane
+// The part of a line that a convex body hides. In page space (CameraProjection::seen) a plane n . p = d of
+// the world is the plane
 //   N = (n_r, -n_u, n_b - d' k),  D = n_b s/k + n_r m_x - n_u m_y        (perspective)
 //   N = (n_r, -n_u, n_b),         D = s d' + n_r m_x - n_u m_y           (orthographic)
 // n_r, n_u, n_b  the normal along the lens's right, up and back, d' = d - n . target, k = 1/distance, s  the
 // scale, m  the middle of the page. It keeps its sides, and faces the eye where N_z > 0. A point of the page
 // lies under the body if it is inside its outline; it is behind the body's front if it is behind every face
-// that looks at the eye. Both are half spaces: of a line a body hides one interval, the intersection of so
-// many half lines.
+// that looks at the eye. Each condition is a half space, so a body hides one interval of a line: the
+// intersection of as many half lines.
 
 #include "draw/space/sight.h"
 
@@ -96,7 +96,7 @@ void HiddenLines::add_disc(const std::vector<Vec3>& rim, const Vec3& center, int
     piece.x0 = std::min(piece.x0, at.back().x()), piece.x1 = std::max(piece.x1, at.back().x());
     piece.y0 = std::min(piece.y0, at.back().y()), piece.y1 = std::max(piece.y1, at.back().y());
   }
-  // what is behind the contour's plane: nothing but the ball lies between it and the ball's front
+  // the region behind the contour's plane: nothing but the ball lies between it and the ball's front
   planes_.push_back(plane(lens_, lens_.sight(center), rim[0]));
   planes_.back().w() -= kBehind;
   const Point middle = lens_.page(center);

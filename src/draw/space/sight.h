@@ -8,9 +8,9 @@
 
 namespace obscura::draw {
 
-/// What is seen of lines in a space of convex bodies. Everything is in the coordinates of
+/// Finds the visible parts of lines in a space of convex bodies. Everything is in the coordinates of
 /// CameraProjection::seen, where sight lines are parallel to the third axis and the nearer of two points has
-/// the larger third.
+/// the larger third coordinate.
 class HiddenLines {
  public:
   explicit HiddenLines(const CameraProjection& lens);
@@ -34,7 +34,8 @@ class HiddenLines {
   bool seen(const sim::Vec3& place, int own, int too = -1) const;
 
  private:
-  /// What has n . (x, y, z) < d for all of its planes is hidden; outlines are planes along the third axis.
+  /// A region that hides: all places with n . (x, y, z) < d for all of its planes; outlines are planes along
+  /// the third axis.
   struct Piece {
     int number = 0;
     int begin = 0, end = 0;  // into planes_
@@ -53,7 +54,7 @@ class HiddenLines {
   mutable Parts hidden_;
 };
 
-/// Where sight lines touch a ball: `count` places on a circle, counter-clockwise as seen.
+/// The points where sight lines touch a ball: `count` of them on a circle, counter-clockwise as seen.
 std::vector<sim::Vec3> contour(const CameraProjection& lens, const sim::Vec3& center, double radius,
                                int count);
 

@@ -66,7 +66,7 @@ struct SpaceStage {
 /// How a panel sees space at an instant.
 CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now);
 
-/// `frame`: of which the clock and the charts are.
+/// `frame`: the instant whose clock and charts are shown.
 Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways,
                      const sim::Snapshot& frame);
 
@@ -91,8 +91,7 @@ struct Corner {
   Shaded color;
 };
 
-/// What a spring, rod or rope throws on the ground: the shadow of a round rod that stops a share of the
-/// light.
+/// The shadow of a spring, rod or rope on the ground: that of a round rod that stops a share of the light.
 struct Rod {
   sim::Vec3 a, b;
   double radius = 0, share = 1;
@@ -116,7 +115,7 @@ struct SpaceFrame {
   std::vector<Rod> rods;
 };
 
-/// Grid, room, caption: what stands still while the camera does.
+/// Grid, room, caption: the things that stand still while the camera does.
 void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjection>& lenses, List& list);
 
 /// The hairlines of the room that lie between it and the eye.
@@ -126,7 +125,7 @@ void draw_room_front(const SpaceStage& stage, const CameraProjection& lens, List
 void add_tube(SpaceFrame& scenery, const std::vector<sim::Vec3>& way, double radius, Color color, int number);
 void add_ball(SpaceFrame& scenery, const sim::Vec3& center, double radius, Color color, int number);
 
-/// Bodies: what hides, then what is seen of them.
+/// Bodies: first the regions that they hide, then their visible parts.
 void add_bodies(SpaceFrame& scenery);
 /// Springs, rods, ropes, pins, the hands' springs; before lines are traced, since they hide them.
 void add_links(SpaceFrame& scenery);

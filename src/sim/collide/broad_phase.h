@@ -11,8 +11,8 @@
 
 namespace obscura::sim {
 
-/// Finds which bodies are near each other. Keeps the order it found for the next time, which only makes that
-/// time faster: what it finds depends on nothing but the arguments.
+/// Finds which bodies are near each other. Keeps its order for the next call, which only makes that call
+/// faster: the result depends on the arguments alone.
 template <int D>
 class BroadPhase {
  public:

@@ -179,7 +179,7 @@ double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at
   if (ra.gap >= margin) return ra.gap;
   const Reference rb = reference(cores, b, at_b, a, at_a);
   if (rb.gap >= margin) return rb.gap;
-  // of nearly equals a's face, so that rounding does not choose
+  // on a near tie a's face, so that rounding does not choose
   if (rb.gap > ra.gap + 1e-6 * std::min(a.half_thickness, b.half_thickness))
     return clip(cores, b, at_b, rb.face, a, at_a, true, out);
   return clip(cores, a, at_a, ra.face, b, at_b, false, out);

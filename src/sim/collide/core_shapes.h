@@ -13,7 +13,7 @@
 
 namespace obscura::sim::plane {
 
-/// Where a body stands: its centre (m), and cosine and sine of its turn.
+/// A body's pose: its centre (m), and cosine and sine of its angle.
 struct alignas(32) Pose {
   double x = 0, y = 0, c = 1, s = 0;
 };
@@ -51,7 +51,7 @@ struct Feature {
   bool operator==(const Feature&) const = default;
 };
 
-/// Where two features are: point (m), normal from b to a, gap (m).
+/// A contact point between two features: point (m), normal from b to a, gap (m).
 struct ContactPoint {
   double x = 0, y = 0, nx = 0, ny = 1, gap = 0;
 };
@@ -63,7 +63,7 @@ double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at
 ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,
                               const CoreShape& b, const Pose& at_b, Feature feature);
 
-/// Of a wall: the two corners that lie lowest.
+/// Against a wall: the two lowest vertices.
 double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const Wall<2>& wall,
                      Feature out[2]);
 ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,

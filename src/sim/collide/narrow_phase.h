@@ -8,15 +8,15 @@
 
 namespace obscura::sim {
 
-// Every shape is a convex core of corners and faces, in space of edges too, rounded by a radius: a point and
-// a ball have one corner, a capsule one edge, a box, a polygon and a hull no radius. Where two shapes touch,
-// a corner of one lies at a face of the other, or two corners lie at each other; in space two edges cross, or
-// a corner lies at an edge. What keeps them apart is a function of their poses,
+// Every shape is a convex core of vertices, faces and (in space) edges, rounded by a radius: a point and a
+// ball have one vertex, a capsule one edge, a box, a polygon and a hull no radius. Two shapes touch at two
+// features: a vertex of one at a face of the other, or two vertices; in space also two edges that cross, or a
+// vertex at an edge. The gap between the features is a function of the poses,
 //   g = n . (p - p_face) - r_a - r_b        corner at a face, n turning with the face's body
 //   g = |p_a - p_b| - r_a - r_b             corner at a corner
 //   g = n . (p_a - p_b) - r_a - r_b         edges that cross, n = e_a x e_b / |e_a x e_b|, turning with both
 //   g = |d - e e . d| - r_a - r_b           corner at an edge along e, d from a place on it to the corner
-// which holds through a step, while the features stay the same.
+// which stays valid through a step, while the features stay the same.
 
 /// One such function, and what it was when it was found.
 template <int D>
@@ -74,9 +74,9 @@ struct EvaluatedContact {
   Vec<D> normal = Vec<D>::Unit(0);  // world frame, unit, from b to a
 };
 
-/// What a gap is where its bodies stand so; of a wall, b stands still at the origin. Its rate is the normal's
-/// component of the velocity of a's material at `point` against b's, exactly: both turn about it, and a shift
-/// along the normal changes nothing. Corners that coincide part along x.
+/// The gap of a contact at given poses; for a wall, b stands at the origin. Its rate is the normal component
+/// of the velocity of a's material at `point` relative to b's, exactly: the normal turns with both bodies,
+/// and a shift of the point along the normal changes nothing. For coincident vertices the normal is x.
 template <int D>
 EvaluatedContact<D> evaluate(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b) {
   const Vec<D> on_a = a.x + a.arm(gap.on_a), on_b = b.x + b.arm(gap.on_b), apart = on_a - on_b;
@@ -127,33 +127,34 @@ EvaluatedContact<D> evaluate(const ContactCandidate<D>& gap, const BodyMotion<D>
   return now;
 }
 
-/// The gaps below `margin` (m) between two shapes, nearest features only: two for faces that lie on each
-/// other, one otherwise, none where they are farther apart; of compounds, those of all their parts. Appends
-/// to `out`, with a and b for the key. A corner that lies deep inside is told by the face it is nearest to.
-/// In the plane, the two are the corners that bound what the touching faces share, be they a's or b's; where
-/// corners of both lie at one place (within 1e-6 of the face) a's is taken. Corner at corner only where no
-/// face is nearer: where a ball takes part, or shapes are apart. Parallel faces in line with each other's
-/// ends pass by, within 1e-6 of the face: a box slides over a row of boxes. Two points never touch. Depends
-/// on nothing but the two poses; `feature` counts kind, parts, and the corner or face of each.
+/// Appends to `out` the contact candidates between the nearest features of two shapes with gaps below
+/// `margin` (m), with a and b for the key: two for faces that lie on each other, else one, none if the shapes
+/// are farther apart; for compounds those of all their parts. A vertex deep inside is paired with the face
+/// that is nearest to it. Depends on the two poses alone; `feature` counts kind, parts, and the vertex or
+/// face of each. Two points never touch.
 ///
-/// In space, of faces that lie on each other all the corners that bound what they share: a's, b's, and the
-/// crossings of their edges, which are gaps between edges; of crossings under 3 degrees the place on the one
-/// edge is taken as a corner. Of parallel edges that are nearest the ends of what they share, as corners at
-/// edges.
+/// In the plane, the two for faces are the vertices that bound their overlap, be they a's or b's; if vertices
+/// of both are at one place (within 1e-6 of the face), a's is taken. Vertex at vertex only if no face is
+/// nearer: for balls, and for shapes apart. Parallel faces in line with each other's ends pass by, within
+/// 1e-6 of the face: a box slides over a row of boxes.
+///
+/// In space, faces that lie on each other give all the vertices of their overlap: a's, b's, and the crossings
+/// of their edges, which are gaps between edges; at crossings under 3 degrees the place on the one edge is
+/// taken as a vertex. Parallel edges that are nearest give the ends of their overlap, as vertices at edges.
 template <int D>
 void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, const Shape<D>& shape_b,
              const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out);
 
-/// The gaps below `margin` between a shape and a wall: of every corner.
+/// The gaps below `margin` between a shape and a wall, one for each vertex.
 template <int D>
 void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, const Wall<D>& half_space,
              double margin, std::vector<ContactCandidate<D>>& out);
 
-/// Distance (m) between two shapes; where they overlap minus the depth.
+/// Distance (m) between two shapes; if they overlap, minus the depth.
 template <int D>
 double separation(const Shape<D>& a, const BodyMotion<D>& at_a, const Shape<D>& b, const BodyMotion<D>& at_b);
 
-// of space, narrow_phase_space.cpp
+// for space in narrow_phase_space.cpp
 template <>
 void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
              const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out);

@@ -1,15 +1,16 @@
-// Which corners lie at which faces, in the plane. The face of greatest separation is the touching face; the
-// other outline's face most against it is its partner. Seen along the touching face,
+// Narrow phase in the plane: which vertices lie at which faces. The face of greatest separation is the
+// touching (reference) face; the other polygon's face most against it is its partner (the incident face).
+// Seen along the touching face,
 //
-//        i1 ______________ i0          partner, of the other outline
+//        i1 ______________ i0          partner, of the other polygon
 //     r0 ______________ r1             touching face
 //         lo          hi               the inner of both ends, on either side
 //
-// each end of what the two share is a corner of the one over the face of the other. Where the outlines
-// overlap, the deepest corner always lies over the touching face, for a shift by the depth leaves them
-// touching there; and no end of the touching face lies deeper in the partner. Parallel faces that share
-// nothing but a corner (bricks across a joint's crossing, a box about to slide from one onto the next) do not
-// touch: whichever normal it had, it would stop what may pass.
+// each end of their overlap is a vertex of the one over the face of the other. If the polygons overlap, the
+// deepest vertex always lies over the touching face, since a shift by the depth leaves them touching there;
+// and no end of the touching face lies deeper in the partner. Parallel faces that share only a vertex (bricks
+// across a joint's crossing, a box about to slide from one onto the next) do not touch: with either normal,
+// the contact would stop a body that may pass.
 
 #include "sim/collide/narrow_phase.h"
 

@@ -1,6 +1,6 @@
-// Which features touch, in space. The face of greatest separation is the touching face; the face most against
-// it, of those around the other's deepest corner, is its partner. Seen along the touching face's normal n,
-// what the two share is a convex region, and each of its corners is one of three:
+// Narrow phase in space: which features touch. The face of greatest separation is the touching face; among
+// the faces around the other's deepest vertex, the one most against it is its partner. Seen along the
+// touching face's normal n, their overlap is a convex region, and each of its vertices is one of three:
 //
 //        ________________             a corner of the other over the touching face    n . (p - p_face)
 //       |     1----------|---2        a corner of the touching face over its partner  n' . (p - p_partner)
@@ -8,11 +8,11 @@
 //       x e'|
 //       |_____3__________4
 //
-// Heights are counted along n: none of them is lower than the deepest corner, so none of the gaps is deeper
-// than the greatest separation. Where the least of these gaps is the greatest separation they are the
-// contact; of shapes apart only the gaps count for it whose own nearest places lie on the features. Otherwise
-// the touching features are two edges alone, or the shapes are apart and their nearest features are corners
-// and edges. Parallel faces that share nothing but a line do not touch, as in the plane.
+// Heights are measured along n: none is lower than the deepest vertex, so no gap is deeper than the greatest
+// separation. If the least of these gaps is the greatest separation, they are the contact; for shapes apart
+// only gaps count whose own nearest places lie on the features. Otherwise the touching features are two edges
+// alone, or the shapes are apart and their nearest features are vertices and edges. Parallel faces that share
+// only a line do not touch, as in the plane.
 
 #include <algorithm>
 #include <cmath>
@@ -190,7 +190,7 @@ bool cross_within(const Polyhedron& a, const Polyhedron& b, int of_a, int of_b) 
          at.t >= -kRounding * length_b && at.t <= length_b * (1 + kRounding);
 }
 
-// What a touching face shares with its partner.
+// The region that a touching face shares with its partner.
 class Shared {
  public:
   // Appends its gaps to `out`.
@@ -348,7 +348,8 @@ class Shared {
   std::size_t begin_;
 };
 
-// no face is nearest, nor edges that cross: corners and edges; of parallel edges both ends of what they share
+// No face is nearest and no crossing edges: vertices and edges; for parallel edges both ends of the part that
+// they share.
 void nearest_features(const Couple& couple, const ReferenceFace* touching, double margin,
                       std::vector<ContactCandidate<3>>& out) {
   const Polyhedron &a = couple.of_a, &b = couple.of_b;

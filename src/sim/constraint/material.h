@@ -1,8 +1,8 @@
 #pragma once
 
-// What a pair that touches takes of the materials of its two sides (docs/scene.md, `friction`, `elasticity`):
-//   mu = sqrt(mu_a mu_b),  e = sqrt(e_a e_b)      the body's own, where a wall has none
-// A geometric mean keeps what one side makes zero: ice under rubber slides, clay does not bounce.
+// Friction and elasticity of a pair in contact, from its two sides (docs/scene.md, `friction`, `elasticity`):
+//   mu = sqrt(mu_a mu_b),  e = sqrt(e_a e_b)      the body's own value if a wall has none
+// The geometric mean is zero if one side is: ice under rubber slides, clay does not bounce.
 
 #include <cmath>
 #include <optional>
@@ -11,9 +11,9 @@
 
 namespace obscura::sim {
 
-/// Of one value each; equal ones stay to the bit, though their square be out of range.
+/// Mixes two values. Equal values stay the same bits, even where their product is out of range.
 inline double mixed(double a, double b) { return a == b ? a : std::sqrt(a * b); }
-/// Of a body and a wall, which may have none.
+/// Mixes a body's value with a wall's, which may be absent.
 inline double mixed(double body, const std::optional<double>& wall) {
   return wall ? mixed(body, *wall) : body;
 }
@@ -37,7 +37,7 @@ Material mixed(const Material& body, const Wall<D>& wall) {
   return {mixed(body.friction, wall.friction), mixed(body.elasticity, wall.elasticity)};
 }
 
-/// Of a body and what it touches: another body, or wall -1 - b where b is below zero.
+/// Mixes the materials of body a and of b: another body, or wall -1 - b if b is negative.
 template <int D>
 Material material(const Model<D>& model, int a, int b) {
   const Material own(model.bodies[a]);

@@ -107,7 +107,7 @@ void Mobility<D>::add_row(const Row<D>& row, double spare) {
   if (std::fabs(moves(it)) <= kAtOnce * spare) keep(it);
 }
 
-// of the fastest point, at most
+// an upper bound on the speed of a body's fastest point
 template <int D>
 double Mobility<D>::fastest() const {
   double most = 0;

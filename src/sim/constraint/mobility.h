@@ -40,10 +40,10 @@ struct BearingContact {
 /// rounds do not tell.
 enum class Mobile { no, yes, unknown };
 
-/// The motion that contacts and joints leave free: of bodies that move by v,
+/// The motion that contacts and joints leave free of the velocities v:
 ///   v_free = v - M^-1 J' l,   J v_free = 0
-/// J the rows of what holds: joints; of a contact that presses, its normal, and its tangents where friction
-/// stops the slip at once, beside what it bears.
+/// J has the rows of joints, of the normals of contacts that press, and of their tangents if friction stops
+/// the slip at once in addition to its present load.
 template <int D>
 class Mobility {
  public:

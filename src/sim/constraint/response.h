@@ -76,7 +76,8 @@ double coupling(const Row<D>& i, const RowResponse<D>& response, const Row<D>& j
   return k;
 }
 
-/// What responds at present: which bodies are free, which are links, which do not move.
+/// The bodies of a system and how each responds to an impulse: free bodies, links of chains, bodies that do
+/// not move.
 template <int D>
 class Response {
  public:
@@ -137,8 +138,8 @@ class Response {
 template <int D>
 class ChainResponse {
  public:
-  /// Of `rows`, at the poses that `chains` have. To the velocity-product term of a row on a link comes the
-  /// acceleration of the link where no joint accelerates.
+  /// Builds the responses of `rows` at the present poses of `chains`. Adds to the velocity-product term of a
+  /// row on a link the acceleration that the link has if no joint accelerates.
   void build(std::vector<Row<D>>& rows, const Response<D>& bodies, Articulated<D>& chains);
 
   /// Whether a row moves a chain.

@@ -1,10 +1,10 @@
-// Rows of contacts, and how they change by the motion alone.
+// Rows of contacts, and their velocity-product terms.
 //   v_c = v + w x (c - x)                               the body's matter at the point of contact c
 //   row   s . (v_ca - v_cb)                             s  normal or tangent
 //   drift s' . (v_ca - v_cb) + s . (w_a x (c' - v_a) - w_b x (c' - v_b))
-// with c' the velocity of the point of contact and s' that of the direction: of a face w x s, between corners
-// n' = (v_rel - n n . v_rel) / |p_a - p_b| and t' = -(t . n') n. A corner at an edge is one at the foot of it
-// on the edge, which moves along. Of edges that cross, u = e_a x e_b and n = u / |u|:
+// with c' the velocity of the point of contact and s' that of the direction: for a face w x s; between
+// vertices n' = (v_rel - n n . v_rel) / |p_a - p_b| and t' = -(t . n') n. A vertex at an edge is treated as
+// one at its foot on the edge, which moves along. For edges that cross, u = e_a x e_b and n = u / |u|:
 //   n' = (u' - n n . u') / |u|,  u' = e_a' x e_b + e_a x e_b',  e' = w x e
 //   c = p_a + s e_a,  s = (c_ab d . e_b - d . e_a) / |u|^2,  c_ab = e_a . e_b,  d = p_a - p_b
 

@@ -6,10 +6,11 @@
 
 namespace obscura::sim {
 
-// What two bodies may not do against each other, row by row,
+// Rows of the Jacobian: the relative motions that a contact or joint constrains,
 //   J v = along . (v_a - v_b) + turn_a . w_a - turn_b . w_b
 //   d(J v)/dt = J v' + drift,  drift = J' v
-// A contact has its normal and D-1 tangents as rows; a joint has those of what it holds.
+// A contact has a row for its normal and one for each of D-1 tangents; a joint one for each motion that it
+// forbids.
 
 /// One row of J, at given stances.
 template <int D>

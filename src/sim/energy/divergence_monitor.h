@@ -20,7 +20,7 @@ class DivergenceMonitor {
   /// The first body with a velocity or position beyond its limit, in a state at time t (s).
   std::optional<Trouble> check_bounds(const State<D>& state, double t) const;
 
-  /// Takes this state at time t as the start: what energy there is comes from it and from the hands.
+  /// Takes `state` at time t as the start: the energy budget is counted from it.
   void start(State<D>& state, double t) const;
 
   /// Whether the springs hold far more energy than could have come from anywhere. Only springs can make it

@@ -8,9 +8,9 @@
 
 namespace obscura::sim {
 
-// What a state holds. Fixed bodies are part of the room: they hold nothing.
+// The energy of a state. Fixed bodies are part of the room and count nothing.
 
-/// Where end `end` is, m.
+/// The place of an end of a spring, joint or grip, m.
 template <int D>
 Vec<D> place(const State<D>& state, const End<D>& end);
 

@@ -168,7 +168,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
   }
 }
 
-// of islands that nothing holds: how they move as one, and what energy is left beside that
+// for islands that nothing holds: their motion as one body, and the energy of the motion relative to it
 template <int D>
 void EnergyGuard<D>::move_as_one(const State<D>& state) {
   const int n = int(weights_.size());
@@ -195,7 +195,7 @@ void EnergyGuard<D>::move_as_one(const State<D>& state) {
   });
   for (Island& it : sums_) {
     if (!it.touched || it.rooted) continue;
-    // of points in a line nothing turns about it
+    // points on a line have no inertia about it
     const double least = 1e-12 * it.inertia.trace();
     for (int axis = 0; axis < kAngular<D>; ++axis) it.inertia(axis, axis) += least;
     const AngularVec<D> w =

@@ -7,9 +7,9 @@
 
 namespace obscura::sim {
 
-/// What everything has of energy before a step and after it, and what is done where a step has made some:
-/// contact may only take. A step that finds forces at one configuration and moves through it to another is
-/// wrong by its own order either way; what it would so add is taken out of the motion of those that touched.
+/// Compares the energy after a step with that before it, and removes what contacts added: contact only takes
+/// energy. A step that finds forces at one configuration and moves through it to another errs by its own
+/// order, up or down; energy added by this error is removed from the motion of the bodies that touched.
 template <int D>
 class EnergyGuard {
  public:
@@ -18,32 +18,32 @@ class EnergyGuard {
 
   /// Notes what there is, of motion, height and springs, before a step.
   void open(const State<D>& state);
-  /// What was done to a body since then on purpose, J: it may stay.
+  /// Records work (J) that was done on a body on purpose since then: it may stay.
   void book(int body, double work) { booked_[body] += work; }
-  /// Whether there is more now, beyond rounding: of all together. What hands, motors and blasts work on
-  /// counts too.
+  /// Whether the total energy has risen by more than rounding, bodies driven by hands, motors and explosions
+  /// included.
   bool risen(const State<D>& state);
   /// By how much body i has more since open(), as risen() found it, J.
   double gain(int body) const { return now_[body] - before_[body] - booked_[body]; }
 
-  /// Where it has risen: a and b (a body; below zero a wall) have touched in the step.
+  /// If it has risen: records that a and b (a body; a wall if negative) touched in the step.
   void touch(int a, int b);
-  /// Where it has risen: what this body's island has gained is granted up to `share` of what the body could
-  /// fall through the room for, and up to `part` of the energy of its motion before the step.
+  /// If it has risen: allows the island of `body` a gain of `share` of the energy that the body could fall
+  /// for in the room, and of `part` of its kinetic energy before the step.
   void excuse(int body, double share, double part = 0) { granted_[body] = share, parts_[body] = part; }
-  /// Takes from each island of what touched what it has gained: of its motion, in proportion; of what touches
-  /// nothing that stays, of its motion against each other, so that momentum and angular momentum stay. Where
-  /// there is not so much it lies as much lower. Islands that hands, motors or blasts work on keep what they
-  /// have. `state` is that of risen().
+  /// Removes from each island of touching bodies the energy that it gained, by scaling its velocities; for an
+  /// island that touches nothing fixed, its velocities relative to each other, so that momentum and angular
+  /// momentum stay. If the motion has too little energy, bodies that rose are lowered. Islands on which
+  /// hands, motors or explosions do work are left alone. `state` is that of risen().
   void take_back(State<D>& state);
 
  private:
-  // what a body weighs; nothing of what does not count
+  // a body's mass and inertia; zero if it does not count
   struct Weight {
     double mass = 0;                                // kg
     AngularVec<D> inertia = AngularVec<D>::Zero();  // kg m^2
   };
-  // what touches together
+  // bodies that touch each other, directly or through others
   struct Island {
     double gain = 0, granted = 0, kinetic = 0, mass = 0,
            height = 0;                                          // J, J, J, kg; J of new height of what rose
@@ -56,7 +56,7 @@ class EnergyGuard {
         Eigen::Matrix<double, kAngular<D>, kAngular<D>>::Zero();
     double keeps = 1, lowers = 0;  // of its velocities; of the height
   };
-  // what joints make move together
+  // bodies that joints tie together
   struct Bound {
     double lift = 0, mass = 0;  // J of new height, kg
     bool held = false;          // by the room too, or links of a chain: cannot be lowered

@@ -11,9 +11,9 @@ namespace obscura::sim {
 template <int D>
 Vec<D> blast(const Explosion<D>& explosion, const Vec<D>& place);
 
-/// What explosions do to whole bodies: the force on each of a body's points (its tips), added up, and its
-/// torque about the centre of mass. Of n points a body feels about n times what a particle feels there, as
-/// the explosion paper has it.
+/// Forces of explosions on whole bodies: the sum of the forces on the body's points (its tips), and their
+/// torque about the centre of mass. A body of n points feels about n times the force on a particle there, as
+/// in the explosion paper.
 template <int D>
 class Blasts {
  public:
@@ -23,8 +23,8 @@ class Blasts {
   /// On body `body` that stands so, in the room's frame.
   Wrench<D> push(const Explosion<D>& explosion, int body, const BodyMotion<D>& at) const;
 
-  /// Lets explosion `explosion` begin, or its next interval: what is held through it is taken anew. At the
-  /// beginning what has come to rest wakes.
+  /// Begins explosion `explosion`, or its next interval: computes the forces that are held through the
+  /// interval. When the explosion begins, sleeping bodies wake.
   void begin(State<D>& state, int explosion) const;
 
   /// Ends it.

@@ -4,9 +4,9 @@
 
 namespace obscura::sim {
 
-/// What a click at `place` takes: the closest particle or ball (its centre), end of a capsule or corner of
-/// anything else that is not fixed; of equals the lower body, then the lower corner. Nothing where nothing
-/// can be taken. Handout §2.2.
+/// The place that a click at `place` grips: the nearest centre of a particle or ball, end of a capsule or
+/// vertex of another body that is not fixed; on a tie the lower body, then the lower vertex. Empty if there
+/// is no such body. Handout §2.2.
 template <int D>
 Grip<D> closest(const Model<D>& model, const State<D>& state, const Vec<D>& place);
 

@@ -11,7 +11,7 @@ namespace obscura::sim {
 // Where both ends lie in one place the axis is taken along x: a spring with a rest length pushes them apart
 // there too.
 
-/// What is the same in a spring of the scene and in that of a mouse.
+/// The law that springs of the scene and the mouse's spring share.
 struct SpringLaw {
   double rest_length = 0;  // m
   double stiffness = 0;    // N/m
@@ -33,7 +33,7 @@ Vec<D> pull(const SpringLaw& s, const Vec<D>& a, const Vec<D>& va, const Vec<D>&
   return -(s.stiffness * (l - s.rest_length) + s.damping * rate) * d;
 }
 
-/// What it holds when its ends are at a and b, J.
+/// The energy stored when the ends are at a and b, J.
 template <int D>
 double spring_energy(const SpringLaw& s, const Vec<D>& a, const Vec<D>& b) {
   const double stretch = std::sqrt((a - b).squaredNorm()) - s.rest_length;

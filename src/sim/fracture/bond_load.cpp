@@ -1,11 +1,11 @@
-// What bonds bear. For part i of a rigid body at d_i from its centre of mass, m_i, T_i (room's frame),
+// The loads on bonds. For part i of a rigid body at d_i from its centre of mass, m_i, T_i (room's frame),
 //   A = sum F / M,   alpha = I^-1 (sum (N_i + d_i x F_i) - w x I w)
-//   f_i = m_i (A + alpha x d_i + w x (w x d_i)) - F_i         what its bonds give it
-//   n_i = T_i alpha + w x T_i w - N_i
+//   f_i = m_i (A + alpha x d_i + w x (w x d_i)) - F_i         force of its bonds on it
+//   n_i = T_i alpha + w x T_i w - N_i                         torque of its bonds on it
 // A bond k of a and b at p gives a (f, (p - x_a) x f + tau) and b the opposite. With z = (f, tau / l),
-//   G z = (f_i, n_i),   z = G' (G G')^-1 (f_i, n_i)           the least of all z that do
-// one part of a free body left out: it follows from the others. Of an impact the same with impulses, and
-// without w; it counts as a force for as long as the bond says that it lasts.
+//   G z = (f_i, n_i),   z = G' (G G')^-1 (f_i, n_i)           the solution of least norm
+// without one part of a free body, whose equation follows from the others. For an impact the same with
+// impulses and without w; an impulse counts as a force through the bond's impact time.
 
 #include "sim/fracture/bond_load.h"
 
@@ -35,7 +35,7 @@ template <int D>
 BondLoads<D>::BondLoads(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model), paths_(paths), blasts_(model), loads_(model.bonds.size(), 0.0) {}
 
-// what comes from outside
+// forces and torques from outside
 template <int D>
 void BondLoads<D>::push(const State<D>& state, double t) {
   const int n = int(model_.bodies.size());
@@ -133,7 +133,7 @@ bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const BodyMotion<
     }
   }
 
-  // what the bonds of each part give it: steadily, and in the blow
+  // force and torque that the bonds of each part exert on it: steadily, and in the impact
   const int rows = turns ? kRows : D;
   std::vector<int> place(model_.bodies.size(), -1);
   int free = 0;

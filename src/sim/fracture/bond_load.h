@@ -8,17 +8,17 @@
 
 namespace obscura::sim {
 
-/// What bonds bear. A rigid body says how each of its parts accelerates; what the forces from outside do not
-/// give a part comes through its bonds. Where bonds form loops, those loads that are least together (what
-/// equally stiff bonds would bear).
+/// The loads on bonds. A rigid body prescribes how each of its parts accelerates; the force that this needs
+/// beyond the outside forces comes through the part's bonds. If bonds form loops, the loads of least norm are
+/// taken, as equally stiff bonds would bear them.
 template <int D>
 class BondLoads {
  public:
   /// Both are kept by reference.
   BondLoads(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// Breaks the bonds of `state` that are loaded beyond their strength: clears their `holds`. `whole`: what
-  /// they make of the parts; `body`: of each part, its body there. Returns whether any broke.
+  /// Breaks the bonds of `state` that are loaded beyond their strength: clears their `holds`. `whole`: the
+  /// model of the bonded bodies; `body`: for each part, its body there. Returns whether any broke.
   bool snap(State<D>& state, const Model<D>& whole, const std::vector<int>& body, double t);
 
   /// The load of bond `bond` when last looked for, N: the root of |f|^2 + |tau|^2 / l^2, f the force through

@@ -74,7 +74,7 @@ Vec<D> Handout<D>::arm(const Striker& s, int point, const Wall<D>& wall) const {
   return radius == 0 ? arms_[point] : Vec<D>(arms_[point] - radius * wall.normal);
 }
 
-// what the springs on a body hold, J
+// the energy stored in the springs on a body, J
 template <int D>
 double Handout<D>::springs(const State<D>& state, int body, double t) const {
   double sum = 0;
@@ -107,7 +107,7 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
     }
     put_inside(s);
 
-    // what it did to the energy
+    // the change of energy by the displacement
     const double held = springs(state, body, t), moving = kinetic(model_, state, body);
     state.ledger.displacement -= b.mass * model_.gravity.dot(s.at.x - state.x[body]);
     state.x[body] = s.at.x, state.v[body] = s.at.v;
@@ -224,7 +224,7 @@ bool Handout<D>::meet(Striker& s, int wall) {
   for (int i = 0; i < int(s.tips.size()); ++i) {
     if (striking_[i] && std::fabs(distances_[i] + depth) <= kTogether * span) met_.push_back(i);
   }
-  // of a face with more corners than are solved together, every second one, or third, ...
+  // if a face has more vertices than are solved together, take every second one, or third, ...
   const int stride = (int(met_.size()) + kMostRows - 1) / kMostRows;
   Row rows[kMostRows];
   int n = 0;
@@ -236,7 +236,7 @@ bool Handout<D>::meet(Striker& s, int wall) {
   return true;
 }
 
-// all walls that are touched or passed, at once: what a narrow wedge comes to
+// treats all touched or passed walls at once, as in a narrow wedge
 template <int D>
 void Handout<D>::meet_all(Striker& s) {
   const double span = bounding_radius_[s.body - model_.bodies.data()];
@@ -285,8 +285,8 @@ void Handout<D>::strike(Striker& s, const Row* rows, int n, int rank) {
   s.at.w += respond(turn);
 }
 
-// what several walls displaced may have come back through one of them: the nearest place inside all it
-// touched
+// A body displaced by several walls may have come back through one of them: find the nearest place inside all
+// that it touched.
 //   x += sum p_i n_i,  p >= 0,  gap_i + n_i . sum p_j n_j >= 0
 template <int D>
 void Handout<D>::put_inside(Striker& s) const {

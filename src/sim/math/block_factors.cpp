@@ -1,9 +1,9 @@
-// L D L' by blocks. For each k in the order of elimination, of the entries A_ik below it
+// L D L' by blocks. For each k in the order of elimination, for the entries A_ik below it
 //   L_ik = A_ik D_k^-1,   A_ij -= L_ik A_jk'
-// and a solution by L y = x, z = D^-1 y, L' x = z. Where rows imply others A has no inverse: with S = (A +
-// e)^-1, which has, over and over
+// and a solution by L y = x, z = D^-1 y, L' x = z. If rows are redundant, A has no inverse: then repeat, with
+// S = (A + e)^-1,
 //   x := x + S A S (b - A x)
-// which finds what A can reach of b, and nothing along what it cannot.
+// which converges for the part of b in the range of A, and adds nothing along its null space.
 
 #include "sim/math/block_factors.h"
 

@@ -19,7 +19,7 @@ class Blocks {
 
   int count() const { return int(sizes_.size()); }
   int rows() const { return rows_; }
-  /// Where the rows of a block begin; how many they are.
+  /// The first row of a block; the number of its rows.
   int first(int block) const { return first_[block]; }
   int size(int block) const { return sizes_[block]; }
   /// The component that a block belongs to, and the blocks of a component, in the order of elimination.
@@ -34,11 +34,11 @@ class Blocks {
   Block& diagonal(int block) { return diagonal_[block]; }
   Block& entry(int e) { return entries_[e]; }
 
-  /// Rows that others imply, as of a door on two hinges, are told by their pivots: what solves a component
-  /// with such is the least, nearly, and misses what is right by nothing that moves.
+  /// Factorises A. Redundant rows, as of a door on two hinges, are recognised by their pivots; a component
+  /// that has them is solved nearly in the least-norm sense, with an error that moves nothing.
   void factorise();
 
-  /// x := A^-1 x; of one component only.
+  /// x := A^-1 x, for the rows of one component only.
   void solve(double* x) const;
   void solve(double* x, int component) const;
 

@@ -15,13 +15,13 @@ Eigen::Vector4d exponential(const Vec3& turn);
 /// The rotation vector of a unit quaternion, at most pi long: exponential(logarithm(q)) is q or -q.
 Vec3 logarithm(const Eigen::Vector4d& q);
 
-/// Where `q` comes to that turns further by `by`, seen from what turns: q exp(by), of unit length. The same
-/// bits as `q` where `by` is zero.
+/// q exp(by): the orientation `q` turned further by the rotation vector `by` in the body's frame; of unit
+/// length. The same bits as `q` if `by` is zero.
 Eigen::Vector4d turned(const Eigen::Vector4d& q, const Vec3& by);
 
-/// The rate of the rotation vector d in q0 exp(d(t)) while that turns with spin w (rad/s), seen from what
-/// turns: dexp^-1. Requires |d| < 2 pi. What Runge-Kutta-Munthe-Kaas integrates. (For exp(d) q0 and w seen
-/// from outside: of -d.)
+/// dexp^-1: the rate of the rotation vector d in q0 exp(d(t)) for the angular velocity w (rad/s), both in the
+/// body's frame. Runge-Kutta-Munthe-Kaas integrates it. (For exp(d) q0 and w in the outer frame pass -d.)
+/// Requires |d| < 2 pi.
 Vec3 turn_rate(const Vec3& d, const Vec3& w);
 
 /// The spin (rad/s) of q0 exp(d(t)) whose rotation vector changes at `rate`, seen from what turns: dexp, the

@@ -9,17 +9,17 @@ namespace obscura::sim {
 /// another, and its pseudo-inverse. Matrices lie column by column. Grows only: a warm one allocates nothing.
 class FullRank {
  public:
-  /// A: n x n, symmetric, positive semidefinite; G = F^T. By Cholesky's method with diagonal pivots; what is
-  /// left once no pivot exceeds `tolerance` of the first counts as zero.
+  /// A: n x n, symmetric, positive semidefinite; G = F^T. By Cholesky's method with diagonal pivots; the
+  /// remainder counts as zero once no pivot exceeds `tolerance` of the first.
   void symmetric(std::span<const double> A, int n, double tolerance);
 
   /// A: n x n, any; overwritten. By elimination with complete pivoting; tolerance as above.
   void general(std::span<double> A, int n, double tolerance);
 
-  /// A = E B (E + T share)^T, where forces on n rows lean on others: B: all x all, symmetric, positive
+  /// A = E B (E + T share)^T, for forces on n rows that lean on others: B: all x all, symmetric, positive
   /// semidefinite; E its first n rows, T the others; T's row j adds `share[j]` times to E's row `to[j]`. Then
-  /// solve() gives the x in the span of A, which is the limit of (A + eps)^-1 r: what slightly soft rows
-  /// would do. False, and nothing else, where that does not exist and general() must be asked.
+  /// solve() gives the x in the span of A, which is the limit of (A + eps)^-1 r: the solution for slightly
+  /// soft rows. False, and nothing is factorised, if the limit does not exist; then call general().
   bool leaning(std::span<const double> B, int all, int n, std::span<const int> to,
                std::span<const double> share, double tolerance);
 
@@ -39,7 +39,7 @@ class FullRank {
   /// Pivot k.
   double pivot(int k) const { return d_[k]; }
 
-  /// x = A^+ r: of least norm among those of least squares. n numbers each; `x` may be `r`.
+  /// x = A^+ r: the least-squares solution of least norm. n numbers each; `x` may be `r`.
   void solve(std::span<const double> r, std::span<double> x);
 
  private:

@@ -7,9 +7,9 @@
 
 namespace obscura::sim {
 
-/// Disjoint sets of the numbers 0 .. n-1: what is joined to what, directly or by way of others. A set is told
-/// by its lowest member, whatever the order of joining, so that results do not depend on it.
-/// Path halving after Tarjan and van Leeuwen (1984).
+/// Disjoint sets of the numbers 0 .. n-1: those joined directly or through others. The name of a set is its
+/// lowest member, whatever the order of joining, so that results do not depend on it. Path halving after
+/// Tarjan and van Leeuwen (1984).
 class Islands {
  public:
   /// n sets of one member each; keeps its memory.

@@ -62,7 +62,7 @@ bool balance(const Square& A, const Rows& b, const Active& active, Rows& p) {
   return true;
 }
 
-// p >= 0 and w >= 0 to rounding; what is negative by rounding becomes zero
+// p >= 0 and w >= 0 to rounding; sets numbers that are negative by rounding to zero
 bool feasible(const Square& A, const Rows& b, double slack, Rows& p) {
   const double most = p.cwiseAbs().maxCoeff();
   for (int i = 0; i < p.size(); ++i) {

@@ -15,8 +15,8 @@
 
 namespace obscura::sim {
 
-/// How far a step may turn a body in one piece, and how far each piece does where it is cut, rad: of 0.1 rad
-/// classical Runge-Kutta keeps the energy of a wobble to 1e-8.
+/// A step turns a body at most kFarTurn rad in one piece; a longer turn is cut into pieces of kPieceOfTurn.
+/// At 0.1 rad classical Runge-Kutta keeps the energy of a wobble to 1e-8.
 inline constexpr double kFarTurn = 0.25, kPieceOfTurn = 0.1;
 
 /// Whether a body of these principal moments wobbles as it turns: in the plane none does, in space all but
@@ -69,7 +69,7 @@ AngularVec<D> whole_spin([[maybe_unused]] const AngularVec<D>& base, const Angul
   }
 }
 
-/// Where a turn comes to that is displaced by d.
+/// The orientation displaced by d.
 template <int D>
 Orientation<D> displaced(const Orientation<D>& turn, const AngularVec<D>& d) {
   if constexpr (D == 2) {
@@ -79,8 +79,9 @@ Orientation<D> displaced(const Orientation<D>& turn, const AngularVec<D>& d) {
   }
 }
 
-/// The turn a part s of the way between two, h (s) apart, with the spins w (room's frame) at either: of the
-/// displacement from the first, the cubic through its values and rates. In the plane that of the angles.
+/// The orientation at the fraction s of the way between two, h (s) apart, with the angular velocities w
+/// (room's frame) at either end: the cubic Hermite interpolant of the displacement from the first. In the
+/// plane that of the angles.
 template <int D>
 Orientation<D> between(const Orientation<D>& from, const AngularVec<D>& w_from, const Orientation<D>& to,
                        const AngularVec<D>& w_to, double h, double s) {
@@ -96,7 +97,7 @@ Orientation<D> between(const Orientation<D>& from, const AngularVec<D>& w_from, 
   }
 }
 
-/// The angle of a turn of the plane with all its rounds; of space nothing, where the rotation tells all.
+/// The angle of a turn in the plane, whole rounds included; zero in space, where the rotation says all.
 template <int D>
 AngularVec<D> rounds([[maybe_unused]] const Orientation<D>& turn) {
   if constexpr (D == 2) {

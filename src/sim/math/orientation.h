@@ -59,8 +59,7 @@ Eigen::Quaterniond quaternion(const Orientation<D>& turn) {
   }
 }
 
-/// Where a body comes to that turns from `turn` by `by` (rad; in space a rotation vector in the room's frame,
-/// as spins are).
+/// `turn` rotated by `by` (rad; in space a rotation vector in the room's frame, like angular velocities).
 template <int D>
 Orientation<D> turned(const Orientation<D>& turn, const AngularVec<D>& by) {
   if constexpr (D == 2) {

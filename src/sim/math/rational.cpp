@@ -26,7 +26,7 @@ std::optional<Rational> reduce(Wide num, Wide den) {
   return Rational{std::int64_t(num), std::int64_t(den)};
 }
 
-// in lowest terms; what does not fit 64 bits, by what does and is near it
+// num/den in lowest terms; if that does not fit 64 bits, a near fraction that does
 Rational nearest(Wide num, Wide den) {
   if (const auto exact = reduce(num, den)) return *exact;
   if (den < 0) num = -num, den = -den;

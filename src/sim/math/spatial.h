@@ -99,7 +99,7 @@ AngularVec<D> spin_cross([[maybe_unused]] const AngularVec<D>& w, [[maybe_unused
   }
 }
 
-/// What a link with all that hangs on it weighs against acceleration: symmetric, twist -> wrench.
+/// Articulated or rigid inertia of a link, with all that hangs on it: symmetric, twist -> wrench.
 /// Featherstone §7.1.
 template <int D>
 struct ArticulatedInertia {
@@ -156,7 +156,7 @@ void eliminate_freedom(ArticulatedInertia<D>& i, const Wrench<D>& u, double over
   i.M.noalias() -= scaled.f * u.f.transpose();
 }
 
-/// A frame: where it is and which way it looks, seen from another.
+/// A frame: its place and orientation in another frame.
 template <int D>
 struct Pose {
   Rotation<D> turn = Rotation<D>::Identity();

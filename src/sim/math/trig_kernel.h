@@ -1,6 +1,6 @@
 #pragma once
 
-// What sim/math/trig.h and its vectors share, for T a double or a vector of them.
+// Kernels that sim/math/trig.h and its vector form share, for T a double or a vector of them.
 //   sin(hi + lo) = sin hi + lo cos hi,  cos(hi + lo) = cos hi - lo sin hi
 // pi/2 is the sum of four pieces; the first three have 33 bits, so that k times a piece is exact for k <=
 // 2^20.
@@ -46,7 +46,7 @@ template <class T>
   return r.hi + (r.hi * z * horner(kSin, z) + r.lo * (1 - 0.5 * z));
 }
 
-// cos(r) = 1 - hi^2/2 + hi^4 Q(hi^2) - hi lo; what 1 - hi^2/2 rounds away is put back
+// cos(r) = 1 - hi^2/2 + hi^4 Q(hi^2) - hi lo; the rounding error of 1 - hi^2/2 is added back
 template <class T>
 [[gnu::always_inline]] inline T cos_kernel(const Twin<T>& r) {
   const T z = r.hi * r.hi;

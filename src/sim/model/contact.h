@@ -15,7 +15,7 @@ struct ContactKey {
   auto operator<=>(const ContactKey&) const = default;
 };
 
-/// What a contact does at an instant.
+/// The mode of a contact at an instant.
 enum class ContactMode : std::uint8_t {
   open,
   stick,

@@ -14,9 +14,9 @@ namespace obscura::sim {
 
 enum class Integrator { rk4, midpoint, euler, semi_implicit };
 
-/// What happens where things touch. `contact` and `event` hold bodies apart by forces, see
-/// sim/model/contact.h; `event` locates every impact and every change of a contact in time, `contact` a
-/// bounded number a step.
+/// How contact is treated. `contact` and `event` keep bodies apart by forces, see sim/model/contact.h;
+/// `event` locates every impact and every change of a contact in time, `contact` a bounded number in each
+/// step.
 enum class Collision { handout, contact, event };
 
 /// The solver for contact forces (sim/model/contact.h). `automatic` decides from the scene.
@@ -26,11 +26,11 @@ enum class Solver { automatic, direct, iterative };
 /// approaches.
 enum class Impacts { simultaneous, sequential };
 
-/// What is done with bodies that overlap at the start: they are refused, or gently pushed apart.
+/// The treatment of bodies that overlap at the start: an error, or a gentle push apart.
 enum class Overlap { refuse, separate };
 
-/// What stays true of a body while the room moves. A particle is a point or a ball that does not turn; a
-/// rigid body is a particle that also turns.
+/// The constant properties of a body. A particle is a point or a ball that does not turn; a rigid body is a
+/// particle that also turns.
 template <int D>
 struct Body {
   std::string name;
@@ -49,7 +49,7 @@ struct Body {
   bool turns() const { return inertia != AngularVec<D>::Zero(); }
 };
 
-/// An immobile half space: what has (q - point) . normal < 0 is on the wrong side. Handout §2.3.
+/// An immobile half space: places q with (q - point) . normal < 0 are on the wrong side. Handout §2.3.
 template <int D>
 struct Wall {
   Vec<D> point = Vec<D>::Zero();
@@ -74,9 +74,9 @@ struct Spring {
   double damping = 0;      // c, N s/m
 };
 
-/// What two ends may not do against each other. Of the rows: weld D + D(D-1)/2, pin D, slider and hinge those
-/// of a weld but one, rod and rope one. A pin of space is a ball joint; in the plane a pin and a hinge are
-/// one.
+/// The kinds of joint, by the relative motions of two ends that they forbid. Numbers of rows: weld D +
+/// D(D-1)/2, pin D, slider and hinge one less than a weld, rod and rope one. In space a pin is a ball joint;
+/// in the plane a pin and a hinge are the same.
 enum class JointKind { pin, weld, slider, rod, rope, hinge };
 
 /// A joint between two bodies, or a body and the room, as it stood at the start.
@@ -158,8 +158,8 @@ struct Articulation {
   std::vector<double> offsets;  // one a link, in the plane: its angle where all q are zero, rad
 };
 
-/// What does not change while the room runs. Bodies are ordered: those that do not turn first, then those
-/// that do; a body's index here is its index everywhere.
+/// All that is constant in a run. Order of the bodies: first those that do not turn, then those that do; a
+/// body's index here is its index everywhere.
 template <int D>
 struct Model {
   Rational rate = {600, 1};  // steps per second

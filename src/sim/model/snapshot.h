@@ -13,7 +13,7 @@ namespace obscura::sim {
 
 // One instant, without a dimension: above it nothing knows D. The plane lies at z = 0, seen from +z.
 
-/// What is the same at every instant: names, shapes and masses of all that is in the room.
+/// All that is the same at every instant: names, shapes and masses of everything in the room.
 struct SceneInfo {
   using Part = DrawnForm;  // of a body of several, in the body's frame
   struct Body {
@@ -120,8 +120,8 @@ struct Snapshot {
 /// Coulomb's mu between the two that touch.
 double friction(const SceneInfo& cast, const Snapshot::Contact& contact);
 
-/// The ways of chosen bodies on the physics clock, the same for every frame rate: what a trail is drawn from.
-/// Points come at equal steps and at each impact, so that a bounce keeps its cusp.
+/// The paths of chosen bodies on the physics clock, the same for every frame rate; trails are drawn from
+/// them. Points come at equal steps and at each impact, so that a bounce keeps its cusp.
 struct Track {
   struct Point {
     double time = 0;

@@ -9,7 +9,7 @@
 
 namespace obscura::sim {
 
-/// What a pressed mouse holds.
+/// The grip of a pressed mouse.
 template <int D>
 struct Grip {
   int body = -1;  // -1: nothing
@@ -18,7 +18,7 @@ struct Grip {
   bool operator==(const Grip&) const = default;
 };
 
-/// A touch in the last step: where, and the impulse (N s) that the wall gave.
+/// A touch in the last step: its place, and the wall's impulse (N s).
 template <int D>
 struct Touch {
   int body = -1;
@@ -41,7 +41,7 @@ struct BodySpin {
   bool operator==(const BodySpin&) const = default;
 };
 
-/// What has been done to the energy since t = 0 other than by forces, J.
+/// The energy that was added since t = 0 other than by forces, J.
 struct Ledger {
   double displacement = 0;  // gained (+) or lost by putting bodies back on a wall, or out of each other
   double impacts = 0;       // lost (-) in impacts
@@ -49,8 +49,8 @@ struct Ledger {
   bool operator==(const Ledger&) const = default;
 };
 
-/// What energy there may be: what there was at the start and what hands can give. The watch over runs that
-/// go wrong measures by it (sim/energy/divergence_monitor.cpp).
+/// The energy that a run may have: that at the start and that which hands can give. The divergence monitor
+/// compares with it (sim/energy/divergence_monitor.cpp).
 struct EnergyBudget {
   double level = 0;   // gravity's potential at the start, J
   double amount = 0;  // energy that could be there, J
@@ -103,13 +103,12 @@ struct State {
   std::vector<Blast<D>> blasts;      // one an explosion
   std::vector<ChainState> postures;  // one a chain of the model
 
-  // of what is bonded, see sim/step/bonded_bodies.h: everything above is then told of the parts, and this is
-  // what moves
+  // bonded bodies (sim/step/bonded_bodies.h): all above is then about their parts, and this moves
   std::vector<char> holds;        // one a bond
   std::vector<Seat<D>> seats;     // one a body
   std::vector<State> whole = {};  // one: of the bodies that the bonds make
 
-  // of `contact` and `event`
+  // for `contact` and `event`
   std::vector<Contact<D>> contacts;  // sorted by key
   std::vector<char> frozen;          // one a body: at rest by proof, steps leave it alone
   std::vector<double> quiet;         // one a body: how long it has been still, s
@@ -119,7 +118,7 @@ struct State {
   bool operator==(const State&) const = default;
 };
 
-/// The state as 64-bit words in a fixed order, -0 as 0: what a state hash is taken of.
+/// The state as 64-bit words in a fixed order, -0 as 0. State hashes are computed from them.
 template <int D>
 std::vector<std::uint64_t> words(const State<D>& state);
 

@@ -4,7 +4,7 @@
 
 namespace obscura::sim {
 
-/// Why a run cannot go on: what became of which body, when, and what probably did it.
+/// Why a run cannot go on: which body failed, how, when, and the probable cause.
 struct Trouble {
   double time = 0;       // s
   std::string body;      // its name

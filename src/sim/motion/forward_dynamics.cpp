@@ -155,7 +155,7 @@ void ForwardDynamics<D>::load(const State<D>& state) {
   chains_.load(state, std::span<double>(v_).subspan(std::size_t(chain_start())));
   std::fill(d_.begin(), d_.end(), 0.0);
 
-  // what explodes
+  // explosions
   acting_.clear(), held_.clear();
   for (int i = 0; i < int(state.blasts.size()); ++i) {
     const Blast<D>& blast = state.blasts[i];
@@ -169,7 +169,7 @@ void ForwardDynamics<D>::load(const State<D>& state) {
       held_[k] += Wrench<D>{blast.torques[all_[k]], blast.forces[all_[k]]};
   }
 
-  // what the ground brakes
+  // friction with the ground
   braked_.clear();
   for (const int member : dragged_) {
     const BodyMotion<D> at = body_motion(state, all_[member]);
@@ -196,8 +196,8 @@ std::span<const double> ForwardDynamics<D>::accelerations(const State<D>& state,
   return v_rate_;
 }
 
-// In how many pieces a step is made: as what turns most asks for. Not where the step is too long for a
-// spring: what that makes spin is to be told, not hidden.
+// The number of pieces of a step: as many as the fastest turn needs. But one if the step is too long for a
+// spring: the spin that this causes is to be reported, not hidden.
 template <int D>
 int ForwardDynamics<D>::pieces(const State<D>& state, double h) const {
   int most = 1;
@@ -269,7 +269,7 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
                                std::span<double> d_rate, std::span<double> v_rate) {
   const int n = int(bodies_.size()), still = n - turning_;
 
-  // what needs no spring: x' = v, v' = g - (c/m) v
+  // bodies without springs: x' = v, v' = g - (c/m) v
   std::copy_n(v.begin(), D * n, d_rate.begin());
   unconstrained_rates(gravity_, drag_, v.first(D * n), v_rate.first(D * n));
 

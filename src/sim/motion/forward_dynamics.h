@@ -18,10 +18,10 @@ struct Subset {
   std::span<const int> bodies, springs, chains;
 };
 
-/// The bodies that springs and hands hold, and the links of chains, gathered into one system: first the
-/// centres, then the turns of those that turn, then the joints of the chains. In space d and v of a turn are
-/// as the body sees them, and v is what base spin lacks (sim/math/lie_step.h): of the rates, a row J in the
-/// room's frame meets J . to_room(room_from_body, v'), and a torque adds from_room(room_from_body, torque) /
+/// The bodies on springs and hands and the links of chains, gathered into one system: first the centres, then
+/// the orientations of bodies that turn, then the joints of the chains. In space d and v of an orientation
+/// are in the body's frame, and v is relative to the base spin (sim/math/lie_step.h): a row J in the room's
+/// frame multiplies to_room(room_from_body, v'), and a torque adds from_room(room_from_body, torque) /
 /// inertia.
 template <int D>
 class ForwardDynamics final : public System {
@@ -60,7 +60,7 @@ class ForwardDynamics final : public System {
   /// How many numbers d and v have: D of each body, then the spins of those that turn, then the chains'.
   int size() const { return int(v_.size()); }
   int chain_start() const { return D * int(bodies_.size()) + kAngular<D> * turning_; }
-  /// Where the spin of the body at `place` in bodies() starts; below zero: it does not turn.
+  /// The index at which the spin of the body at `place` in bodies() starts; negative: it does not turn.
   int spin_start(int place) const {
     const int spinning = place - (int(bodies_.size()) - turning_);
     return spinning < 0 ? -1 : D * int(bodies_.size()) + kAngular<D> * spinning;

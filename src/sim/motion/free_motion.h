@@ -4,9 +4,9 @@
 
 namespace obscura::sim {
 
-// What no spring and no hand holds flies by itself: its centre under gravity and drag, its turning under
-// nothing. A run of such bodies is integrated in blocks that stay in the nearest cache, component by
-// component, so that a body's motion does not depend on which others share its block.
+// Bodies without springs and hands move freely: the centre under gravity and drag, the rotation without
+// torque. A run of such bodies is integrated in blocks that fit the first cache, component by component, so
+// that a body's motion does not depend on which others share its block.
 
 /// Centres of free bodies: x' = v, v' = g - (c/m) v, on flat components.
 class FreeTranslation final : public System {
@@ -38,7 +38,7 @@ class TorqueFreeRotation final : public System {
   std::span<const AngularVec<D>> inertia_, base_;
 };
 
-/// v_rate = gravity - drag v, on n components; what every body feels, tied or free.
+/// v_rate = gravity - drag v, on n components; the same for bodies with springs and without.
 void unconstrained_rates(std::span<const double> gravity, std::span<const double> drag,
                          std::span<const double> v, std::span<double> v_rate);
 

@@ -29,8 +29,8 @@ bool grows(Integrator integrator, const Tightness& oscillator, double h);
 /// The longest step at which it does not, no longer than h (s).
 double longest_step(Integrator integrator, const Tightness& oscillator, double h);
 
-/// What a person can do about it: the step, the limit, the spring and the rate that would do. Empty where the
-/// step is short enough for every spring on every body.
+/// A hint for the user: the step, the limit, the spring, and a rate that is high enough. Empty if the step is
+/// short enough for every spring on every body.
 template <int D>
 std::string step_too_long_message(const Model<D>& model, const Tightness& oscillator);
 
@@ -38,15 +38,15 @@ std::string step_too_long_message(const Model<D>& model, const Tightness& oscill
 template <int D>
 Tightness tightest(const Model<D>& model, const std::vector<Grip<D>>& grips);
 
-/// What to call a body: its name, or "body 3".
+/// A body's name in messages: its own, or "body 3".
 template <int D>
 std::string named(const Model<D>& model, int body);
 
 /// "rk4", "explicit Euler".
 const char* spelled(Integrator integrator);
 
-/// What is known to go wrong before it does: the first spring group whose step is longer than the
-/// integrator's limit, as the Trouble it would end in; empty where nothing is.
+/// Instabilities that are known beforehand: the first spring group whose step is longer than the integrator's
+/// limit, as the Trouble that it would end in; empty if there is none.
 std::vector<Trouble> stability_warnings(const Model<2>& model);
 std::vector<Trouble> stability_warnings(const Model<3>& model);
 

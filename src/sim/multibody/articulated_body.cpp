@@ -1,16 +1,16 @@
 // Dynamics of a chain: Featherstone, Rigid Body Dynamics Algorithms, 2008.
 //
-// Articulated bodies, table 7.1. Backward, I_a the inertia of a link with what hangs on it, p_a the force
-// that takes where it does not accelerate:
+// Articulated bodies, table 7.1. Backward, I_a the articulated inertia of a link, p_a its bias force (that at
+// zero acceleration):
 //   U = I_a S    D = S . U    u = tau - S . p_a
 //   I_a -= U U' / D           p_a += U u / D + (I_a - U U'/D) c         shifted and added to the parent's
 // Forward, from the acceleration of the parent:
 //   a = a_p shifted + c       v' = (u - U . a) / D                      a += S v'
-// The freedoms of one joint are eliminated one after the other, as if links without mass lay between: D is a
+// The freedoms of one joint are eliminated one after the other, as if massless links lay between them: D is a
 // number.
 //
-// Of one link, its centre of mass at r:  f = m w x (w x r),  p = ( w x (I w) + r x f,  f ), less what is
-// applied.
+// For one link, its centre of mass at r:  f = m w x (w x r),  p = ( w x (I w) + r x f,  f ), less the applied
+// force.
 //
 // Newton-Euler, table 5.1:       f = I a + p + sum of f of the children,  tau = S . f
 // Composite bodies, table 6.2:   M_jk = S_k . (I_c S_j carried down to k)
@@ -21,7 +21,7 @@ namespace obscura::sim {
 
 namespace {
 
-// what a link by itself needs to go on turning, less what pulls it
+// the force that a link by itself needs to keep its velocity, less the forces applied
 template <int D>
 Wrench<D> own_resistance(const Chain<D>& chain, const ChainKinematics<D>& stance,
                          const ChainDynamics<D>& dynamics, const Vec<D>& gravity, int i) {

@@ -32,7 +32,7 @@ struct ChainDynamics {
   std::vector<Wrench<D>> impulses;  // one a link
 };
 
-/// Articulated inertias: what accelerate() and respond() share, and depends on q only. After place().
+/// Articulated inertias, which accelerate() and respond() share; they depend on q only. Call place() first.
 /// Requires that no freedom is without inertia, as a ball joint about the line to a point mass would be.
 template <int D>
 void factor(const Chain<D>& chain, const ChainKinematics<D>& stance, ChainDynamics<D>& dynamics);

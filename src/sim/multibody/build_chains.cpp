@@ -26,7 +26,7 @@ double angle(const Rotation<2>& r) {
   return logarithm(half)[2];
 }
 
-// the angle of every link of the plane where all q are zero; of space nothing
+// the angle of every link at q = 0, in the plane; in space unused
 template <int D>
 std::vector<double> offsets([[maybe_unused]] const Chain<D>& chain) {
   std::vector<double> all;
@@ -42,7 +42,7 @@ std::vector<double> offsets([[maybe_unused]] const Chain<D>& chain) {
   return all;
 }
 
-// what a chain makes of a joint between rows
+// the joint type of a chain for a joint of the scene
 template <int D>
 std::optional<JointType> freedom(JointKind kind) {
   switch (kind) {
@@ -157,7 +157,7 @@ class Growing {
     links_.push_back(link), members_.push_back(body), held_.push_back(joint);
   }
 
-  // what the joints leave of the velocities that the bodies have
+  // projects the bodies' velocities onto those that the joints allow
   void carry_over(const Chain<D>& chain, ChainState& posture) {
     ChainKinematics<D> stance(chain);
     ChainDynamics<D> dynamics(chain);
@@ -183,7 +183,7 @@ class Growing {
   World<D>& world_;
   const std::vector<int>& bodies_;
   std::vector<char> free_;  // one a body: whether it is still to be a link
-  // of the tree at hand
+  // the tree under construction
   std::vector<Link<D>> links_;
   std::vector<int> members_, held_;
 };

@@ -1,6 +1,6 @@
 // The tree of a chain: Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 4.
-// Every link gets one frame for all the algorithms, its joint's; what the caller states about the link's own
-// frame is brought there once.
+// Every link has one frame for all the algorithms, its joint's; quantities that the caller gives in the
+// link's own frame are converted once.
 
 #include "sim/multibody/chain.h"
 

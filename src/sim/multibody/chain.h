@@ -17,8 +17,8 @@ struct Link {
   SpinTensor<D> inertia = SpinTensor<D>::Zero();  // about the centre of mass, link's axes, kg m^2
 };
 
-/// A tree of links in reduced coordinates: what stays true of it. The configuration is flat, q and v, link
-/// after link, of positions() and velocities() numbers; both are the caller's.
+/// The constant properties of a tree of links in reduced coordinates. The configuration is flat, q and v,
+/// link after link, of positions() and velocities() numbers; the caller keeps both.
 template <int D>
 class Chain {
  public:
@@ -30,7 +30,7 @@ class Chain {
   int velocities() const { return v_start_.back(); }
   const Link<D>& operator[](int link) const { return links_[link]; }
 
-  /// Where a link's own numbers start in q and in v; for size(), where they end.
+  /// The index of a link's first number in q and in v; for size(), one past the last.
   int q_start(int link) const { return q_start_[link]; }
   int v_start(int link) const { return v_start_[link]; }
 
@@ -47,7 +47,7 @@ class Chain {
   /// The configuration in which the two frames of every joint agree.
   std::vector<double> home() const;
 
-  /// Where q comes to by the displacement d (velocities() numbers) since then. `out` may be `q`.
+  /// q displaced by d (velocities() numbers). `out` may be `q`.
   void displace(std::span<const double> q, std::span<const double> d, std::span<double> out) const;
 
   /// d' of a displacement d under the velocity v.

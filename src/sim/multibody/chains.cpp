@@ -18,7 +18,7 @@ bool turns_first(JointType freedom) {
   return freedom == JointType::revolute || freedom == JointType::ball || freedom == JointType::free;
 }
 
-// how a link is turned; of q and -q the one nearer to `before`
+// a link's orientation; of q and -q the one nearer to `before`
 Orientation<2> turn_of(const Articulation<2>& of, std::span<const double> q, int link, const Rotation<2>&,
                        const Orientation<2>&) {
   const Chain<2>& chain = *of.tree;

@@ -17,11 +17,11 @@ Link<D> link_of(const Body<D>& body);
 template <int D>
 void articulate(World<D>& world, std::vector<Link<D>> links, std::vector<int> bodies);
 
-/// Makes chains of bodies and of what joins them as they stand: pins, hinges, sliders and welds, among
-/// themselves and with the room. Each part that hangs together is a tree of its own; one that nothing joins
-/// to the room flies, and its first body with it. What would close a loop, rods and ropes stay as they are.
-/// Velocities become what the joints leave of those that the bodies have, by impulses between them. Requires
-/// that the bodies turn and that none is fixed or a link.
+/// Builds chains from bodies and the joints between them as they stand: pins, hinges, sliders and welds, to
+/// each other and to the room. Each connected part is a tree of its own; a part without a joint to the room
+/// has a free first body. Joints that would close a loop, rods and ropes stay joints. Impulses between the
+/// bodies project the velocities onto those that the joints allow. Requires that the bodies turn and that
+/// none is fixed or already a link.
 template <int D>
 void articulate(World<D>& world, const std::vector<int>& bodies);
 
@@ -43,7 +43,7 @@ class Articulated {
 
   /// The bodies of the chains that are awake, chain after chain.
   const std::vector<int>& links() const { return links_; }
-  /// Where a body is in links(); -1: not there.
+  /// The index of a body in links(); -1 if it is not a link.
   int link(int body) const { return places_[body]; }
   /// How many numbers d and v have.
   int size() const { return size_; }

@@ -52,14 +52,14 @@ Vec<D> point_acceleration(const ChainKinematics<D>& stance, int link, const Twis
 template <int D>
 Wrench<D> wrench_at(const ChainKinematics<D>& stance, int link, const Vec<D>& point, const Vec<D>& force);
 
-/// Row of J: what each velocity of the chain gives to the power of `wrench` (at the link's origin). A contact
-/// at `point` along `normal` has wrench_at(point, normal); a turn about an axis has (axis, 0). out:
+/// A row of J: the factor of each velocity of the chain in the power of `wrench` (at the link's origin). A
+/// contact at `point` along `normal` has wrench_at(point, normal); a turn about an axis has (axis, 0). out:
 /// chain.velocities() numbers.
 template <int D>
 void row(const Chain<D>& chain, const ChainKinematics<D>& stance, int link, const Wrench<D>& wrench,
          std::span<double> out);
 
-/// What is kept, or should be.
+/// The conserved quantities of a chain.
 template <int D>
 struct ChainTotals {
   double mass = 0;                                         // kg

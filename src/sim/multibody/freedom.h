@@ -8,7 +8,7 @@
 
 namespace obscura::sim {
 
-/// What the joint of a link lets it do against its parent. In the plane a ball is a revolute.
+/// The joint type of a link: its motion relative to the parent. In the plane a ball is a revolute.
 enum class JointType {
   weld,       // nothing
   revolute,   // turn about an axis: q = angle, rad
@@ -17,9 +17,10 @@ enum class JointType {
   free        // fly: q = angle or quaternion, then place. Only where the parent is the room
 };
 
-/// How a link hangs on its parent. Its velocities: the spin about or the speed along `axis`; of a ball the
-/// D(D-1)/2 components of the spin, in the axes of the joint's frame on the link; of a free link those and
-/// then the velocity of the joint's origin, in the axes of the joint's frame on the parent.
+/// The joint between a link and its parent. Its velocities: the angular velocity about or the speed along
+/// `axis`; for a ball the D(D-1)/2 components of the angular velocity, in the axes of the joint's frame on
+/// the link; for a free link those and then the velocity of the joint's origin, in the axes of the joint's
+/// frame on the parent.
 template <int D>
 struct LinkJoint {
   struct Motor {
@@ -59,8 +60,8 @@ template <int D>
 void freedoms(const LinkJoint<D>& joint, const Rotation<D>& on_parent, const Rotation<D>& on_link,
               std::span<Twist<D>> out);
 
-/// Where q comes to by a displacement d, one number a velocity: turns by the exponential, all else by
-/// addition. `out` may be `q`.
+/// q displaced by d, one number for each velocity: rotations by the exponential, all else by addition. `out`
+/// may be `q`.
 template <int D>
 void displace(JointType freedom, std::span<const double> q, std::span<const double> d, std::span<double> out);
 

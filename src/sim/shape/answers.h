@@ -10,8 +10,8 @@
 
 namespace obscura::sim {
 
-/// What a form of D dimensions must answer (sim/shape/form.h says what each is). shape.cpp asserts it of all
-/// in Forms, so that one which forgets an answer fails to compile with the name of this.
+/// The functions that a form of D dimensions must have (sim/shape/form.h says what each is). shape.cpp
+/// asserts this for all Forms, so a form that lacks one fails to compile with the name of this concept.
 template <class F, int D>
 concept AnswersAsForm = requires(const F& it, const Vec<D>& x, const Rotation<D>& axes,
                                  const Orientation<D>& turn, const Placing<D>& placing,

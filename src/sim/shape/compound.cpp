@@ -1,4 +1,4 @@
-// Several forms as one. Where they overlap, what they share counts once for each.
+// Several forms as one. Where they overlap, the overlap counts once for each.
 //   content = sum A_i     c = sum A_i c_i / A
 //   plane   K = sum K_i + A_i |c_i - c|^2
 //   space   C = sum C_i + V_i (c_i - c)(c_i - c)'

@@ -1,8 +1,8 @@
 // Separating axes of convex polygons.
 //   s(face) = min over the other's corners p of n . (p - p_face)        s = max over the faces of both
-// Where s < 0 they overlap, and -s is the least depth: a shift of -s along that n parts them. Where s > 0
-// they are apart. Then s is their distance when the corner lies over the face; otherwise every axis falls
-// short of it, and the distance is between two corners.
+// If s < 0 they overlap, and -s is the least depth: a shift of -s along that n separates them. If s > 0 they
+// are apart. Then s is their distance when the vertex lies over the face; otherwise every axis gives less
+// than the distance, which is between two vertices.
 
 #include "sim/shape/convex_polygon.h"
 

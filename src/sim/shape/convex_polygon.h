@@ -74,8 +74,8 @@ struct Separation {
 Separation greatest_separation(const ConvexPolygon& of, const ConvexPolygon& other, const Lie& lies,
                                double enough);
 
-/// Distance (m) between two outlines without their radii, a lying so in b's frame; where they overlap minus
-/// the depth.
+/// Distance (m) between two polygons without their radii, `a_in_b` the pose of a in b's frame; if they
+/// overlap, minus the depth.
 double core_separation(const ConvexPolygon& a, const ConvexPolygon& b, const Lie& a_in_b);
 
 }  // namespace obscura::sim

@@ -112,7 +112,7 @@ struct DrawnForm {
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  // of a box or capsule
 };
 
-/// What every form in D dimensions answers.
+/// Declares the functions that every form in D dimensions has.
 #define OBSCURA_FORM_ANSWERS(D)                                                \
   Spread<D> spread() const;                                                    \
   void add_support_vertices(std::vector<SupportVertex<D>>& all) const;         \
@@ -163,7 +163,7 @@ struct Box {
   Polygon outline() const;
 };
 
-/// Of space: all that is within a radius of an axis along its own y.
+/// In space: all places within a radius of a segment along its own y axis.
 struct Capsule {
   double half = 0;                         // of the length of its axis, m
   double radius = 0;                       // m
@@ -174,7 +174,7 @@ struct Capsule {
   Core<3> core() const { return {.middle = center, .radius = radius, .capsule = this}; }
 };
 
-/// Of the plane, convex.
+/// In the plane, convex.
 struct Polygon {
   std::vector<Vec<2>> vertices;  // counter-clockwise, m
 
@@ -182,7 +182,7 @@ struct Polygon {
   Core<2> core() const { return {.corners = vertices}; }
 };
 
-/// Of space, convex.
+/// In space, convex.
 struct Hull {
   std::vector<Vec<3>> vertices;         // m
   std::vector<std::vector<int>> faces;  // loops of vertices, counter-clockwise seen from outside
@@ -191,7 +191,7 @@ struct Hull {
   Core<3> core() const { return {.corners = vertices, .faces = faces}; }
 };
 
-/// Several forms as one. It has no core: what collides are its parts.
+/// Several forms as one. It has no core of its own: its parts collide.
 template <int D>
 struct Compound {
   std::vector<Shape<D>> parts;  // in the body's frame; none a compound
@@ -248,7 +248,7 @@ bool is_point(const Shape<D>& shape) {
   return form<Point<D>>(shape) != nullptr;
 }
 
-/// What `answer` says of the form that a shape has.
+/// Calls `answer` with the form that a shape has.
 template <int D, class Answer>
 decltype(auto) of_form(const Shape<D>& shape, Answer&& answer) {
   return std::visit(std::forward<Answer>(answer), static_cast<const Forms<D>&>(shape));

@@ -1,9 +1,9 @@
 // Separating axes of convex polyhedra.
 //   s(face)  = min over the other's corners p of n . (p - p_face)
-//   s(edges) = n . (p_a - p_b)       n = +-(e_a x e_b) / |e_a x e_b|, where both edges are farthest along it
+//   s(edges) = n . (p_a - p_b)       n = +-(e_a x e_b) / |e_a x e_b|, if both edges are farthest along it
 //   s        = max over the faces of both and all pairs of edges
-// Where s < 0 they overlap, and -s is the least depth. Where s > 0 they are apart; then s is their distance
-// when the nearest places are a corner over a face or lie within two edges, and otherwise falls short of it.
+// If s < 0 they overlap, and -s is the least depth. If s > 0 they are apart; then s is their distance when
+// the nearest places are a vertex over a face or lie within two edges, and otherwise less than it.
 //
 // An edge e with faces L and R at its left and right is farthest along n, n across e, where n leads out of
 // both: n . (L x e) <= 0 and n . (e x R) <= 0.
@@ -33,7 +33,7 @@ constexpr Polyhedron::Edge box_edge(int number) {
                 : Polyhedron::Edge{from, from | 1 << axis, beside_last, beside_next};
 }
 
-// of a loop, by Newell: every corner has its say
+// the normal of a loop by Newell's method, which all vertices enter
 Vec<3> loop_normal(const Core<3>& hull, int face) {
   const std::vector<int>& loop = hull.faces[face];
   const Vec<3>& first = hull.corners[loop[0]];
@@ -76,7 +76,7 @@ Polyhedron::Polyhedron(const Core<3>& core, const BodyMotion<3>& at, const Vec<3
   }
 }
 
-// of a hull: each side of a loop once, from its lower corner, with the face on whose loop it runs back
+// finds the edges of a hull: each side of a loop once, from its lower vertex, with the face on the other side
 void Polyhedron::find_edges() {
   const auto add = [&](const Edge& edge) {
     if (edges_ < kFewEdges) {

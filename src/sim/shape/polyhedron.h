@@ -99,7 +99,7 @@ struct EdgeAxis {
 /// within 1e-6 have none.
 EdgeAxis greatest_edge_separation(const Polyhedron& a, const Polyhedron& b, double enough);
 
-/// Where two segments are nearest to each other: the parts of their ways, and how far they are apart, m.
+/// The nearest points of two segments: their fractions along the segments, and their distance, m.
 struct Nearest {
   double on_p = 0, on_q = 0, apart = 0;
 };
@@ -108,7 +108,7 @@ Nearest nearest(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0, const Vec<
 /// Whether a place lies over a face, up to `slack` (m) beyond its edges.
 bool over(const Polyhedron& solid, int face, const Vec<3>& place, double slack);
 
-/// Distance (m) between two cores without their radii; where they overlap minus the depth.
+/// Distance (m) between two cores without their radii; if they overlap, minus the depth.
 double core_separation(const Polyhedron& a, const Polyhedron& b);
 
 }  // namespace obscura::sim

@@ -1,4 +1,4 @@
-// Moments of inertia about the centre, handout §3.1; where a shape reaches.
+// Moments of inertia about the centre, handout §3.1; extents of shapes.
 //   plane   I = m K / A               A  content,  K = int |r - c|^2 dA
 //   space   I = m (tr C - C) / V      V  content,  C = int (r - c)(r - c)' dV; its eigenvectors are the
 //                                     principal axes
@@ -20,7 +20,8 @@ static_assert(all_forms_answer<2>() && all_forms_answer<3>(), "a form leaves out
 Orientation<3> principal_axes(Eigen::Matrix3d& a) {
   Orientation<3> turn = no_rotation<3>();
   for (int sweep = 0; sweep < 50; ++sweep) {
-    // what is rounding counts as none: a shape whose axes are its frame's keeps them
+    // off-diagonal entries of the size of rounding count as zero: a shape whose axes are its frame's keeps
+    // them
     const double small = 1e-14 * a.trace();
     bool done = true;
     for (int p = 0; p < 2; ++p) {

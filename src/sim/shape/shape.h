@@ -11,10 +11,10 @@
 
 namespace obscura::sim {
 
-/// Principal moments of inertia of `shape` about its centre of mass, kg m^2, of uniform density: in the plane
-/// m (x^2 + y^2) / 12 of a box with sides x and y (handout §3.1). Of a hull or compound in space they belong
-/// to the body's axes where it is seated (below). Zero for what does not turn: points and balls, which are
-/// particles; see solid_inertia for a ball that rolls.
+/// Principal moments of inertia of `shape` about its centre of mass, kg m^2, for uniform density: in the
+/// plane m (x^2 + y^2) / 12 for a box with sides x and y (handout §3.1). For a hull or compound in space they
+/// belong to the body's axes once it is seated (below). Zero for points and balls, which are particles and do
+/// not turn; see solid_inertia for a ball that rolls.
 template <int D>
 AngularVec<D> inertia(const Shape<D>& shape, double mass);
 
@@ -23,8 +23,8 @@ AngularVec<D> inertia(const Shape<D>& shape, double mass);
 template <int D>
 AngularVec<D> solid_inertia(const Shape<D>& shape, double mass);
 
-/// How much of the plane (or of space) a shape fills, and how it lies there. Where parts of a compound
-/// overlap, what they share counts once for each.
+/// Content (area or volume), centre and second moments of a shape. Where parts of a compound overlap, the
+/// overlap counts once for each.
 template <int D>
 struct MassProperties {
   double content = 0;              // m^2; in space m^3
@@ -35,20 +35,21 @@ struct MassProperties {
       no_rotation<D>();  // the principal axes in the shape's frame: those it has, where they are
 };
 
-/// Of a point: nothing.
+/// The mass properties of a shape of uniform density; all zero for a point.
 template <int D>
 MassProperties<D> mass_properties(const Shape<D>& shape);
 
-/// Turns a symmetric tensor into its diagonal; the turn of the axes in which it is that. Axes stay those of
-/// the frame where they are principal ones already.
+/// Diagonalises a symmetric tensor, and returns the rotation to its principal axes; the identity if the axes
+/// of the frame are principal ones already.
 Orientation<3> principal_axes(Eigen::Matrix3d& tensor);
 
-/// The shape as its body sees it, whose origin is the centroid and whose axes are the principal ones of
+/// The shape in its body's frame, whose origin is the centroid and whose axes are the principal ones of
 /// `bulk`. The body then stands at room_from_shape * bulk.center, turned by room_from_shape * bulk.axes.
 template <int D>
 Shape<D> seated(const Shape<D>& shape, const MassProperties<D>& bulk);
 
-/// The radius of what is the same however it turns: of a ball, and zero of a point. None of all else.
+/// The radius of a shape that is the same in every orientation: a ball's; zero for a point. Empty for all
+/// others.
 template <int D>
 std::optional<double> round_radius(const Shape<D>& shape) {
   if (form<Point<D>>(shape)) return 0;
@@ -68,7 +69,7 @@ const Shape<D>& part(const Shape<D>& shape, int i) {
   return several ? several->parts[i] : shape;
 }
 
-/// What collides of a part. Requires any form but a compound.
+/// The core shape by which a part collides. Requires a form other than a compound.
 template <int D>
 Core<D> core(const Shape<D>& part) {
   return of_form(part, []<class F>(const F& form) -> Core<D> {
@@ -87,8 +88,8 @@ Shape<D> moved(const Shape<D>& shape, const Placing<D>& placing, const Orientati
   return of_form(shape, [&](const auto& form) { return form.moved(placing, turn); });
 }
 
-/// All of them: the centre of a point or ball, the ends of a capsule, the corners of all else; of a compound
-/// those of its parts in order.
+/// All of them: the centre of a point or ball, the ends of a capsule, the vertices of other forms; for a
+/// compound those of its parts in order.
 template <int D>
 std::vector<SupportVertex<D>> support_vertices(const Shape<D>& shape);
 
@@ -116,9 +117,9 @@ class SupportVertices {
   std::vector<int> first_;  // of each body; one more at the end
 };
 
-/// Half the least thickness, m: the radius of a ball or capsule, of a convex shape half the least distance
-/// from an edge or face to the vertex farthest below it, of several parts the least; 0 of a point. What goes
-/// no farther than this in a step does not pass through it.
+/// Half the least thickness, m: the radius of a ball or capsule; for a convex shape half the least distance
+/// from an edge or face to the vertex farthest below it; for several parts the least of theirs; 0 for a
+/// point. A body that moves no farther than this in a step cannot pass through it.
 template <int D>
 double half_thickness(const Shape<D>& shape);
 

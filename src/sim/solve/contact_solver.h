@@ -44,7 +44,7 @@ class ContactSolver {
 
   /// Finds what may touch within the step. False: all bodies sleep, and the step is done.
   virtual bool collide(StepPart<D> step) = 0;
-  /// Wakes what is touched or pulled; what begins at rest falls asleep.
+  /// Wakes bodies that are touched or pulled; in the first step puts to sleep those that start at rest.
   virtual void wake(StepPart<D>) {}
 
   /// How far the last step has pushed each body out of others, m; null: none. The work of it is no contact's.
@@ -71,9 +71,9 @@ class ContactSolver {
   virtual void sleep(StepPart<D>) {}
 };
 
-/// Up to how many bodies the direct solver serves on its own accord: of those that move, with an extent, and
-/// points. A few hundred rows when all lie in one heap, in space sooner: faces have more corners and friction
-/// more ways. Points touch walls and bodies, not one another.
+/// The largest number of bodies for which the direct solver is chosen by default: moving bodies that have an
+/// extent, and points. A few hundred rows if all lie in one heap; fewer in space, where faces have more
+/// vertices and friction has more directions. Points touch walls and bodies, not one another.
 template <int D>
 inline constexpr int kMostBodies = D == 2 ? 20 : 6;
 inline constexpr int kMostPoints = 400;

@@ -54,7 +54,7 @@ Sleep<D>::Sleep(const Model<D>& model, Forces forces, double deepest)
   }
 }
 
-// of the thinner of two bodies, m; points have none
+// half thickness of the thinner of two bodies, m; points have none
 template <int D>
 double Sleep<D>::thickness(const ContactKey& key) const {
   const double a = half_thickness_[key.a], b = key.b < 0 ? a : half_thickness_[key.b];
@@ -155,7 +155,7 @@ void Sleep<D>::disturb(int body) {
   if (body >= 0) restless_[roots_.root(body)] = 1;
 }
 
-// what hands hold, and springs of which the forces found know nothing
+// bodies that hands hold, and springs that the forces found do not include
 template <int D>
 void Sleep<D>::disturb_pulled(const State<D>& state) {
   for (const Grip<D>& grip : state.grips) disturb(grip.body);
@@ -247,8 +247,8 @@ std::span<typename Sleep<D>::Island> Sleep<D>::candidates(const State<D>& state)
       if (at != candidates_.end() && at->bodies[0] == roots_.root(body)) at->jointed = true;
     }
   }
-  // What the solver tries leaves other forces behind, to which joints have to settle again; and exact forces
-  // of all that moves take long.
+  // The solver's attempts leave other forces behind, to which joints must settle again; and exact forces of
+  // all moving bodies take long.
   std::erase_if(candidates_, [&](const Island& island) {
     return (exact_ || island.jointed) && !due_at_waits(island.quiet);
   });

@@ -14,9 +14,9 @@
 
 namespace obscura::sim {
 
-/// The stages `wake` and `sleep` of a step, for all solvers: which islands of bodies are set at rest and
-/// which wake, by the rule of sim/constraint/mobility.h. A solver shows its contacts, as the state keeps
-/// them, and the forces under which a candidate would stay at rest; what follows is decided here.
+/// The stages `wake` and `sleep` of a step, for all solvers: decides which islands of bodies are put to sleep
+/// and which wake, by the rule of sim/constraint/mobility.h. A solver shows its contacts, as the state keeps
+/// them, and the forces under which a candidate would stay at rest.
 ///
 ///     at the start of a step     wake(), then at_start() in the first
 ///     at its end                 time() of each body that moves
@@ -33,7 +33,7 @@ class Sleep {
     exact      // to rounding, springs and explosions among them, and so are its velocities
   };
 
-  /// Of g: what the forces of an island may leave it, where they are iterated.
+  /// As a fraction of g: the acceleration that iterated forces may leave an island in equilibrium.
   static constexpr double kBalanced = 1e-6;
 
   /// Bodies that contacts, springs and joints join, which may fall asleep together.
@@ -45,8 +45,8 @@ class Sleep {
     double residual = 0;            // m/s^2: what the solver's forces leave any point at most; written by it
   };
 
-  /// Keeps `model` by reference. `deepest`: of a body's bounding radius; islands with deeper overlaps do not
-  /// rest.
+  /// Keeps `model` by reference. `deepest`: relative to a body's bounding radius; islands with deeper
+  /// overlaps do not rest.
   Sleep(const Model<D>& model, Forces forces, double deepest = std::numeric_limits<double>::infinity());
 
   /// Whether to look for candidates after this step: sixty times a second, or with exact forces each time.
@@ -75,9 +75,9 @@ class Sleep {
   /// Statics::kMost contacts at most. Their contacts take the forces of it. True where any fell asleep.
   bool at_start(State<D>& state, std::span<Contact<D>> contacts);
 
-  /// The islands to ask whether they rest: of which no point has been faster than the solver's limit for
-  /// kWait. The solver then finds forces for each, writes them into state.contacts and what they leave into
-  /// `residual`, and shows what bears of joints by hold().
+  /// The islands that may be put to sleep: no point of theirs has been faster than the solver's limit for
+  /// kWait. The solver then finds forces for each, writes them into state.contacts and the remaining
+  /// acceleration into `residual`, and shows the bearing joints by hold().
   std::span<Island> candidates(const State<D>& state);
 
   /// Stops the bodies of an island.
@@ -88,9 +88,9 @@ class Sleep {
     rows_.push_back({int(&island - candidates_.data()), spare, row});
   }
 
-  /// Sets at rest those candidates that are in equilibrium and whose motion is held. Where the solver's
-  /// forces are not enough those of a few contacts are found exactly, and written into the state. True where
-  /// any fell asleep.
+  /// Puts to sleep those candidates that are in equilibrium and whose motion is held. If the solver's forces
+  /// are not enough, those of a few contacts are found exactly and written into the state. True if any fell
+  /// asleep.
   bool settle(State<D>& state);
 
  private:

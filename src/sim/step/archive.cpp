@@ -120,7 +120,7 @@ struct Reader {
   template <class T>
   void operator()(std::vector<T>& all) {
     const std::uint64_t count = next();
-    // whatever is in the list takes a word at least
+    // each element of the list takes at least one word
     if (count > words.size()) sound = false;
     for (std::uint64_t i = 0; sound && i < count; ++i) (*this)(all.emplace_back());
   }

@@ -9,7 +9,7 @@
 
 namespace obscura::sim {
 
-/// The whole state as 64-bit words, every double to its bit: what `loaded` makes the same state of.
+/// The whole state as 64-bit words, every double to its bit; `loaded` reads it back.
 template <int D>
 std::vector<std::uint64_t> saved(const State<D>& state);
 

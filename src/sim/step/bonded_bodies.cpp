@@ -1,7 +1,7 @@
-// What bonds make of parts: a rigid body of mass M, centre c, tensor I,
+// Bonded parts form a rigid body of mass M, centre c, tensor I,
 //   M = sum m_i,   c = sum m_i x_i / M,   I = sum R_i I_i R_i' + m_i (|d_i|^2 - d_i d_i'),   d_i = x_i - c
 //   v = sum m_i v_i / M,   w = I^-1 sum (R_i I_i R_i' w_i + m_i d_i x v_i)
-// and of what comes apart, with c' the centre of what stays together,
+// and a piece that comes off it, with the centre c', has
 //   v' = v + w x (c' - c),   w' = w
 
 #include "sim/step/bonded_bodies.h"
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kLeastMoment = 1e-6;  // of the largest
 
-// of each part, the lowest of those that bonds hold it to
+// for each part, the lowest part that bonds connect it with
 template <int D>
 std::vector<int> roots(const Model<D>& model, const std::vector<char>& holds) {
   Islands held;
@@ -42,7 +42,7 @@ struct Solid {
   AngularVec<D> inertia = AngularVec<D>::Zero();
 };
 
-// what the paper's linear motion does not let turn, does not turn as one either
+// parts that do not turn in the paper's linear motion make a body that does not turn
 template <int D>
 bool may_turn(const Model<D>& model, const std::vector<int>& parts) {
   bool extended = false;
@@ -85,7 +85,7 @@ Solid<D> solid(const Model<D>& model, const std::vector<int>& parts, const std::
   return out;
 }
 
-// where a place is, seen from a solid
+// a place in the frame of a bonded body
 template <int D>
 Seat<D> seen(const Solid<D>& from, const Seat<D>& place) {
   return {rotation<D>(from.axes).transpose() * (place.x - from.center),
@@ -170,7 +170,7 @@ void BondedBodies<D>::gather(const State<D>& state) {
     if (state.holds[k] && model_.bonds[k].b < 0) made.bodies[whole_.body[model_.bonds[k].a]].fixed = true;
   }
 
-  // what hangs on parts hangs on what they are part of
+  // ends on parts become ends on the bodies that the parts belong to
   const auto moved = [&](End<D>& end) {
     if (end.body < 0) return;
     const Seat<D>& seat = state.seats[end.body];
@@ -402,7 +402,7 @@ void BondedBodies<D>::split(State<D>& state) {
   }
   if (D == 2) made.own.clear();
 
-  // what hands hold they hold on; contacts of what has not changed stay
+  // hands keep their grips; contacts of unchanged bodies stay
   for (const Grip<D>& grip : grips) {
     Grip<D> now = grip;
     if (grip.body >= 0) {
@@ -428,7 +428,7 @@ void BondedBodies<D>::split(State<D>& state) {
                                                                        : before.joint_forces[old]);
   }
   state.whole = {made};
-  // what explodes pushes the pieces; nothing is at rest any more
+  // explosions push the pieces; nothing is at rest any more
   const Blasts<D> blasts(whole_.model);
   state.whole[0].blasts.resize(before.blasts.size());
   for (std::size_t k = 0; k < before.blasts.size(); ++k) {

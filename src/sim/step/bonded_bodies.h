@@ -23,9 +23,9 @@ struct Whole {
   std::vector<int> joints, kept;  // of each joint of `model`, that of the parts; and the other way, or -1
 };
 
-/// Steps a model with bonds: moves what they make of the parts, tells the parts of it, and breaks what is
-/// loaded beyond its strength at the end of a step. What comes apart goes on as it moved: momentum, angular
-/// momentum and energy are those before the break.
+/// Steps a model with bonds: moves the bodies that bonds make of the parts, copies their motion to the parts,
+/// and breaks bonds that are loaded beyond their strength at the end of a step. Pieces go on as they moved:
+/// momentum, angular momentum and energy are those before the break.
 template <int D>
 class BondedBodies {
  public:

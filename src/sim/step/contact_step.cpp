@@ -21,7 +21,7 @@ ContactStep<D>::ContactStep(const Model<D>& model, const std::vector<Path<D>>& p
 
 template <int D>
 void ContactStep<D>::step(State<D>& state, double t, double h) {
-  // what lets go within the step is no longer told after it
+  // contacts that separate within the step are not reported after it
   touched_.clear();
   for (const Contact<D>& contact : state.contacts) {
     if (!direct_) break;
@@ -38,7 +38,7 @@ void ContactStep<D>::step(State<D>& state, double t, double h) {
 // contact may only take
 template <int D>
 void ContactStep<D>::take_energy_back(State<D>& state) {
-  // what overlaps is pushed apart, and the work of that is booked
+  // bodies that overlap are pushed apart, and the work of that is booked
   if (const Vec<D>* ways = solver_->corrections()) {
     for (int i = 0; i < int(model_.bodies.size()); ++i) {
       const double work = -model_.bodies[i].mass * model_.gravity.dot(ways[i]);
@@ -46,7 +46,7 @@ void ContactStep<D>::take_energy_back(State<D>& state) {
       state.ledger.displacement += work;
     }
   }
-  // what overlaps at the start is to be lifted apart
+  // bodies that overlap at the start are to be lifted apart
   if (model_.overlap == Overlap::separate || !energy_guard_.risen(state)) return;
   for (const auto& [a, b] : touched_) energy_guard_.touch(a, b);
   for (const Contact<D>& contact : state.contacts) energy_guard_.touch(contact.key.a, contact.key.b);

@@ -45,7 +45,7 @@ class PlaybackOf final : public Run {
         stepper_(model_),
         trajectory_(std::move(trajectory)) {
     stepper_.begin(state_);
-    // what the script would do at once is not this run's
+    // the script's first actions are not part of this run
     for (Grip<D>& grip : state_.grips) grip = {};
     cast_ = sim::cast(model_, stepper_.paths());
   }

@@ -8,7 +8,7 @@
 
 namespace obscura::sim {
 
-/// Where a body is at an instant, as some other program says.
+/// A body's pose at an instant, as another program says.
 struct Sighting {
   Vec3 position = Vec3::Zero();                                     // of the centre of mass, m
   Vec3 velocity = Vec3::Zero();                                     // m/s
@@ -17,7 +17,7 @@ struct Sighting {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // in space: of the body's own frame
 };
 
-/// What another program computed: poses of every body, in the model's order, at times that increase.
+/// The result of another program: poses of every body, in the model's order, at increasing times.
 struct Trajectory {
   std::vector<double> times;                 // s
   std::vector<std::vector<Sighting>> poses;  // one list an instant

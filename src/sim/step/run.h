@@ -33,8 +33,8 @@ class Run {
   /// From now on, `stop` is asked before every step whether to stop there.
   virtual void heed(std::function<bool()> stop) = 0;
 
-  /// The state at the last whole step, for run() to go on from (sim/step/archive.h), and its time (s). Empty:
-  /// of a run that may begin anywhere.
+  /// The state at the last whole step, for run() to go on from (sim/step/archive.h), and its time (s). Empty
+  /// for a run that may begin anywhere.
   virtual std::vector<std::uint64_t> saved() const = 0;
   virtual Rational now() const = 0;
 

@@ -24,7 +24,7 @@ Vec3 inertia_times(const AngularVec<D>& w) {
   }
 }
 
-// of one form that stands as its body does that form, and else a body of several
+// one form if that stands as its body does, else several
 template <int D>
 SceneInfo::Body shown(const Body<D>& body) {
   SceneInfo::Body it;
@@ -60,7 +60,7 @@ Snapshot::Contact shown(const Contact<D>& contact) {
   return it;
 }
 
-// what explosions push each body with: held through their interval, or as it stands now
+// the force of explosions on each body: as held through their interval, or at this instant
 template <int D>
 void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
   const Blasts<D> blasts(model);

@@ -7,7 +7,7 @@ namespace obscura::sim {
 
 // The one place where the dimension is left behind.
 
-/// What takes part in the run.
+/// Names, shapes and masses of all that takes part in the run.
 template <int D>
 SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths);
 

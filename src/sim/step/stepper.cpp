@@ -88,7 +88,7 @@ Stepper<D>::~Stepper() = default;
 
 template <int D>
 void Stepper<D>::begin(State<D>& state) {
-  // what is fixed does not move, whatever the scene says
+  // fixed bodies do not move, whatever velocity the scene gives
   for (int body = 0; body < int(model_.bodies.size()); ++body) {
     if (!model_.bodies[body].fixed) continue;
     state.v[body].setZero();
@@ -174,7 +174,7 @@ void Stepper<D>::touch_script(State<D>& state, TimeStamp at) {
   for (; edge != edges_.end() && edge->at == at; ++edge) {
     if (edge->kind == ScriptEvent::Kind::blast) blasts_.begin(state, edge->mouse);
     if (edge->kind == ScriptEvent::Kind::calm) {
-      // what it gave is no energy out of nowhere
+      // its work was counted: it is no unexplained gain of energy
       blasts_.end(state, edge->mouse);
       divergence_.start(state, time(at, model_.rate));
     }

@@ -19,15 +19,15 @@ class BondedBodies;
 template <int D>
 class ContactStep;
 
-/// Carries states of one model forward. What it owns belongs to the step at hand and is never saved; a warm
-/// step allocates nothing. The model is kept by reference.
+/// Steps states of one model. Its members belong to the present step and are never saved; a step after the
+/// first allocates nothing. Keeps the model by reference.
 template <int D>
 class Stepper {
  public:
   explicit Stepper(const Model<D>& model);
   ~Stepper();
 
-  /// Readies a state that nothing has stepped yet: what the script does at this very instant is done.
+  /// Prepares a state that has not been stepped: does what the script does at its very instant.
   void begin(State<D>& state);
 
   /// Whether a state that was saved can be one of this model's.
@@ -36,8 +36,8 @@ class Stepper {
   /// One whole step, cut at the edges of the script. Trouble leaves the state as it was when it was noticed.
   std::optional<Trouble> step(State<D>& state);
 
-  /// Part of a step, 0 < fraction < 1, for a frame between two steps: of a copy, that is then shown and
-  /// thrown away.
+  /// A fraction of a step, 0 < fraction < 1, for a frame between two steps: of a copy, which is shown and
+  /// then thrown away.
   std::optional<Trouble> partial_step(State<D>& state, double fraction);
 
   const std::vector<Path<D>>& paths() const { return paths_; }

@@ -1,8 +1,8 @@
 #pragma once
 
-// Joints: what two bodies may not do against each other, C(q) = 0 row by row, and what they may. To add one:
-// a file beside pin.h, a name in JointKind and a row in the table of joint.cpp. Both solvers, limits, motors,
-// dry friction and breaking work from the rows:
+// Joints: the relative motions of two bodies that they forbid, C(q) = 0 row by row, and those that they leave
+// free. To add one: a file beside pin.h, a name in JointKind and a row in the table of joint.cpp. All
+// solvers, limits, motors, dry friction and breaking work from the rows:
 //   limit     lower <= c <= upper              a row along the free coordinate c, of one sign
 //   motor     c' = speed, |f| <= most          the same row, bounded both ways; friction: c' = 0, |f| <=
 //   friction breaks    |sum of f_i s_i| > breaks        s_i  linear part of row i: the force of its rows, N
@@ -11,7 +11,7 @@
 
 namespace obscura::sim {
 
-/// A joint and how its two sides lie and move; of a side that is the room, as of a body that stands still.
+/// A joint with the poses and velocities of its two sides. A side that is the room stands still.
 template <int D>
 struct JointPose {
   const Joint<D>& joint;
@@ -22,7 +22,7 @@ struct JointPose {
   Vec<D> arm_b() const { return b.arm(joint.b.local); }
 };
 
-/// What a kind of joint is to the solvers.
+/// A kind of joint as the solvers see it.
 template <int D>
 struct JointEquations {
   JointKind kind = JointKind::pin;
@@ -43,8 +43,8 @@ const JointEquations<D>& equations(JointKind kind);
 template <int D>
 inline constexpr int kMostHeld = D + kAngular<D>;
 
-/// The rows that a joint holds, and by how much each is off, C (m or rad). Returns how many. `turn`: of a
-/// against b (rad), for what keeps one; in space the poses tell it.
+/// Writes the rows that a joint constrains and their errors C (m or rad). Returns their number. `turn`: the
+/// angle of a relative to b (rad), for joints that constrain it; in space the poses give it.
 template <int D>
 int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
          Row<D>* out, double* off);

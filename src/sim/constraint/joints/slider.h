@@ -1,13 +1,12 @@
 #pragma once
 
-// Slider: a point of a stays on a line of b, and the bodies keep their turn against each other.
-//   C    = [ t_i . (x_a + r_a - x_b - r_b);  phi ]      t_i  the D-1 directions across the axis, of b's
-//   frame;
-//                                                       r as of a pin, phi as of a weld
-//   J    = [ t  r x t ... ]                             a vertex of a against a face of b with the normal t
-//   J' v                                                that of such a contact (constraint/row.cpp); of phi
-//   zero free: the way c = n . (x_a + r_a - x_b - r_b) along the axis n; limits, motor and friction act on
-//   it. Breaks by |f|.
+// Slider: a point of a stays on a line of b, and the bodies keep their relative orientation.
+//   C    = [ t_i . (x_a + r_a - x_b - r_b);  phi ]      t_i  the D-1 directions across the axis, fixed in b;
+//                                                       r as in a pin, phi as in a weld
+//   J    = [ t  r x t ... ]                             as of a vertex of a at a face of b with normal t
+//   J' v = that of such a contact (constraint/row.cpp); zero for phi
+//   free: the way c = n . (x_a + r_a - x_b - r_b) along the axis n; limits, motor and friction act on it.
+//   Breaks by |f|.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §8.
 
 #include "sim/constraint/joints/weld.h"

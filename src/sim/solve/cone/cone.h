@@ -11,7 +11,7 @@
 
 namespace obscura::sim {
 
-/// What came of a solve.
+/// The outcome of a solve.
 struct ConeReport {
   bool found = false;   // all conditions hold to Cone::kTolerance
   double residual = 0;  // the worst violation, of the largest term in the row it is in
@@ -20,15 +20,16 @@ struct ConeReport {
 
 /// Forces that obey joints, limits and Coulomb's cone, exactly: w = K f + b with one of the laws above a
 /// block. K: n x n, symmetric, positive semidefinite, J M^-1 J^T; b: n, what the rows would do without f
-/// (m/s^2, or m/s and then f are impulses). Where rows are redundant, of the forces that solve with the modes
-/// found, those of least norm (each block weighed by its own response), or, where some are on their cones, as
-/// slightly soft ones would share: what is symmetric stays so. Sets of modes are guessed by Newton's method
-/// on slightly soft contacts and then solved as equalities, after Baraff, "Fast contact force computation for
-/// nonpenetrating rigid bodies", 1994. Room is kept from solve to solve; a warm one allocates nothing.
+/// (m/s^2, or m/s and then f are impulses). If rows are redundant, the solution with the modes found is that
+/// of least norm (each block weighed by its own response), or, if some contacts are on their cones, the limit
+/// of slightly soft ones: symmetric problems have symmetric solutions. Sets of modes are guessed by Newton's
+/// method on slightly soft contacts and then solved as equalities, after Baraff, "Fast contact force
+/// computation for nonpenetrating rigid bodies", 1994. Memory is kept from solve to solve; a solve of the
+/// same size allocates nothing.
 template <int D>
 class Cone {
  public:
-  /// What counts as solved: violations beside the largest term in their row.
+  /// The tolerance: violations relative to the largest term in their row.
   static constexpr double kTolerance = 1e-10;
 
   /// Whether everything is tried before a solve is given up, however long it takes.
@@ -65,7 +66,7 @@ class Cone {
                          std::span<const ConeMode<D>> modes, Eigen::Ref<Eigen::VectorXd> f);
 
   /// K x = r on the rows `rows` (ascending), x = 0 elsewhere: the x of least norm, each row weighed by its
-  /// own response; of least squares where the rows contradict one another, and then found is false.
+  /// own response; the least-squares solution if rows contradict one another, and then found is false.
   ConeReport least(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& r,
                    std::span<const int> rows, Eigen::Ref<Eigen::VectorXd> x);
 

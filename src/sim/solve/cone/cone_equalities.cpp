@@ -1,8 +1,8 @@
 // The equality solve: forces of given modes.
-//   E (K S x + K f0 + b) = 0      E: rows that must answer zero; S: what each unknown pushes; f0: at bounds
+//   E (K S x + K f0 + b) = 0      E: rows with zero response; S: the force of each unknown; f0: at bounds
 // A row that may push either way is an unknown by itself; a contact on its cone pushes along n - mu d. Then K
-// between rows and unknowns is no longer symmetric. In space d may be unknown too where a contact slips from
-// rest: its turn joins the unknowns, and that the answer w_t has no part across d joins the rows (Newton).
+// between rows and unknowns is no longer symmetric. In space d is unknown too if a contact slips from rest:
+// its angle joins the unknowns, and a zero component of the response w_t across d joins the rows (Newton).
 
 #include <algorithm>
 #include <cmath>
@@ -134,7 +134,7 @@ void Cone<D>::lay_leaning(std::span<const ConeBlock<D>> blocks, std::span<const 
     }
   }
   if (turning) {
-    // what a turn of d does by itself: w_t along d comes to lie across it
+    // the effect of a turn of d by itself: w_t, which was along d, gets a component across it
     answer();
     for (int j = 0; j < m; ++j) {
       const Unknown& u = unknowns_[j];
@@ -253,8 +253,8 @@ bool Cone<D>::turn(std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> 
   return true;
 }
 
-// What joints miss at least, contacts or not: those push upon joints only as they could themselves. The
-// forces at hand are lost.
+// The least residual that any forces leave in the joints' rows, with or without contacts: contacts push
+// joints only as joints could themselves. Overwrites the present forces.
 template <int D>
 double Cone<D>::contradiction(std::span<const ConeBlock<D>> blocks) {
   std::fill(g_.begin(), g_.end(), 0.0);

@@ -20,7 +20,7 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
   int row = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) first_[i] = row, row += blocks[i].rows();
 
-  // of each column what is not zero
+  // the nonzero entries of each column
   starts_.assign(1, 0), places_.clear(), entries_.clear();
   for (int j = 0; j < n_; ++j) {
     for (int i = 0; i < n_; ++i) {

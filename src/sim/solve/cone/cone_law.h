@@ -10,7 +10,7 @@ namespace obscura::sim {
 template <int D>
 using Tangent = Eigen::Matrix<double, D - 1, 1>;
 
-/// What a block of rows asks of its force f and of what it answers, w = K f + b.
+/// The law between a block's force f and its response w = K f + b.
 enum class Law : std::uint8_t {
   equal,    // one row: w = 0, f free. Joints
   bounded,  // one row: lower <= f <= upper; w = 0 inside, w >= 0 at lower, w <= 0 at upper. Motors, limits
@@ -41,7 +41,7 @@ struct ConeBlock {
   int rows() const { return law == Law::contact ? D : 1; }
 };
 
-/// What a block does: its mode, and d of a contact on the cone's surface.
+/// The state of a block: its mode, and d for a contact on the cone's surface.
 template <int D>
 struct ConeMode {
   ModeKind kind = ModeKind::stick;

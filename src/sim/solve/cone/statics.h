@@ -22,9 +22,9 @@ class Statics {
 
   explicit Statics(const Model<D>& model);
 
-  /// `touches`: all of an island, with their forces (out). `turns`: of all bodies, room from body. False, and
-  /// the forces mean nothing, where a body would accelerate by more than 1e-9 of gravity, or no forces were
-  /// found.
+  /// `touches`: all contacts of an island, with their forces (out). `turns`: of all bodies, room from body.
+  /// False (and the forces mean nothing) if a body would accelerate by more than 1e-9 of gravity, or if no
+  /// forces were found.
   bool in_equilibrium(std::vector<BearingContact<D>>& touches, const std::vector<Rotation<D>>& turns);
 
  private:

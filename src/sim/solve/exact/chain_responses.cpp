@@ -4,7 +4,7 @@
 
 namespace obscura::sim {
 
-// K of a row of a contact with itself: what it answers to a force along it, 1/kg
+// the diagonal of K for a contact's row: its response to a force along it, 1/kg
 template <int D>
 double ExactSolver<D>::self_coupling(int row) const {
   const Row<D>& it = rows_[row];
@@ -30,8 +30,7 @@ void ExactSolver<D>::apply_impulses(State<D>& state, bool places) {
   free_.chains().follow(state);
 }
 
-// what the joints of chains bear under the forces of the instant, into outcome_.joint_forces; before those of
-// rows
+// the forces that the joints of chains bear at this instant, into outcome_.joint_forces; before those of rows
 template <int D>
 void ExactSolver<D>::record_chain_forces() {
   Articulated<D>& chains = free_.chains();

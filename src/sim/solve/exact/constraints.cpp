@@ -1,6 +1,6 @@
-// What holds bodies apart and together at one instant.
-//   K f + b = w,   K = J M^-1 J',   b = J a + J' v        forces, w what the rows accelerate by
-//                                   b = J v (+ e v_n)     impulses, w what they move with after
+// Constraint forces and impulses at one instant.
+//   K f + b = w,   K = J M^-1 J',   b = J a + J' v        forces, w the rows' accelerations
+//                                   b = J v (+ e v_n)     impulses, w the rows' velocities after them
 // with the laws of sim/solve/cone/cone.h for f and w.
 
 #include <algorithm>
@@ -72,8 +72,8 @@ double ExactSolver<D>::row_velocity(int row) const {
   return speed(rows_[row], poses_);
 }
 
-// what may hold in this state: `all`, or only what does not come apart already. What comes apart more slowly
-// than rest may yet be held, if it would come back
+// collects the constraints of this state: with `all` every one, else without contacts that separate faster
+// than the resting speed; slower ones may be held if they would come back
 template <int D>
 void ExactSolver<D>::collect_constraints(const State<D>& state, bool all) {
   using Kind = typename Constraint::Kind;
@@ -104,7 +104,8 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, bool all) {
   chain_response_.build(rows_, response_, free_.chains());
 }
 
-// blocks of what is held, at the stances at hand. Of impulses motors and friction in joints have none.
+// builds the blocks of the constraints at the present poses; for impulses without motors and friction in
+// joints
 template <int D>
 void ExactSolver<D>::build_blocks(bool impulses) {
   using Kind = typename Constraint::Kind;
@@ -154,7 +155,7 @@ void ExactSolver<D>::build_blocks(bool impulses) {
   modes_.assign(blocks_.size(), {});
 }
 
-// J a: what the rows accelerate by, of accelerations in the order of free_
+// J a: the acceleration of each row, from accelerations in the order of free_
 template <int D>
 double ExactSolver<D>::row_acceleration(int number, std::span<const double> rate) const {
   const Row<D>& row = rows_[number];
@@ -208,8 +209,7 @@ void ExactSolver<D>::apply_impulses(State<D>& state, const Row<D>& row, double p
   each_response(row, response_.of(row, poses_), p, side);
 }
 
-// what contacts did last is the first guess at what they do now; and so are their forces,
-// times `h` where impulses are asked for
+// takes the last modes and forces of contacts as the first guess; for impulses the forces times `h`
 template <int D>
 void ExactSolver<D>::warm_start(double h) {
   warm_.setZero(Eigen::Index(rows_.size()));
@@ -244,7 +244,7 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, rate) + rows_[i].velocity_product;
   warm_start(1);
   const bool found = solve();
-  // what lets go, but would come closer by the change of the forces alone, is held
+  // hold contacts that separate, but that the change of the forces alone would close
   for (const Constraint& constraint : constraints_) {
     if (progress_.forced.empty() || constraint.kind != Constraint::Kind::contact) continue;
     const ContactKey& key = candidates_[constraint.of].key;
@@ -291,7 +291,7 @@ bool ExactSolver<D>::active(const Constraint& constraint) const {
   }
 }
 
-// What is lifted out of what it had sunk into pays for its height with its motion
+// Scales down the motion of bodies that are lifted out of an overlap, by the energy of their height.
 template <int D>
 void ExactSolver<D>::pay_for_lift(State<D>& state) {
   const auto lifted = [&](int body) {

@@ -11,7 +11,7 @@ namespace obscura::sim {
 template <int D>
 double couples(const Model<D>& model);
 
-/// Of so many its list has 160 MB, and a step takes half a second: scenes of more are refused.
+/// So many take 160 MB, and a step half a second: scenes with more are refused.
 inline constexpr double kMostCouples = 2e7;
 
 /// Calls `found` with all (a, b), a < b, of bodies that may touch each other, and (a, -1 - wall) of those

@@ -1,7 +1,8 @@
-// Where smooth motion ends before its time: something closes, or what slides stops.
+// Events: the first time at which smooth motion ends within an interval, because a gap closes, a rope
+// tightens or a slide stops.
 //
-// Between its ends an interval is followed on the cubic through both poses and velocities: a closing found
-// there is exact to the fourth order, and exact where it is found again from nearer by.
+// Within the interval the motion is approximated by the cubic through both poses and velocities: an event
+// found on it is exact to the fourth order, and exact once it is found again from nearer by.
 
 #include <algorithm>
 #include <cmath>
@@ -239,9 +240,9 @@ double ExactSolver<D>::force_reserve(const Constraint& constraint, const Eigen::
          std::sqrt(f.segment(constraint.first + 1, D - 1).squaredNorm());
 }
 
-// the part of the interval at which the first contact lets go or slips, by a straight line: where its force
-// has gone beyond by a little, so that it does indeed. Beyond, what pulls would hold on, and friction would
-// drive the slip
+// the fraction of the interval at which the first contact separates or slips, by linear interpolation of the
+// forces; slightly after its force leaves the law, so that it does. Later, a contact that pulls would hold
+// on, and friction would drive the slip
 template <int D>
 double ExactSolver<D>::release_time(const Constraint*& which) {
   double most = 0, first = kNever;
@@ -267,7 +268,7 @@ double ExactSolver<D>::release_time(const Constraint*& which) {
 // kNever: nothing does
 template <int D>
 double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which) {
-  // what slides, by its rows at the end
+  // contacts that slide, by their rows at the end
   update_poses(state);
   rows_.clear();
   for (Constraint& constraint : constraints_) {
@@ -399,7 +400,7 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
   return length;
 }
 
-// in finer steps where there are joints: what they hold swings faster than what flies
+// takes finer steps if there are joints: what they hold swings faster than free bodies fly
 template <int D>
 void ExactSolver<D>::integrate(State<D>& state, double t, double h) {
   const int pieces = limits_.row_joints == 0 || limits_.row_joints > kFewJoints ? 1 : kFiner;

@@ -239,7 +239,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     bool cut = true;
     double length = 0;
     bool held_again = false;  // what let go is to be held: the same instant once more
-    // what is as fast as 1e6 room heights a second has as many places to be looked for
+    // at a speed of 1e6 room heights a second a step has as many places to search
     if ((progress_.work > limits_.budget || progress_.searches > kManyLooks) && done > 0)
       progress_.rough = true;
     const bool chosen = !progress_.rough && solve_modes(state, t + done) && !jammed();
@@ -290,13 +290,13 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   resolve_impacts(state);
   // the forces that joints are shown with and break by are those of the end
   if (!active_.joints.empty() && solve_modes(state, t + h)) record_forces();
-  // what was pushed out of another has another gap now than when its force was found
+  // contacts that were pushed apart have another gap now than when their force was found
   if (!progress_.rough) return;
   update_poses(state);
   for (Contact<D>& contact : outcome_.contacts) contact.gap = gap_of(contact.key, contact.gap);
 }
 
-// what the last interval ended by lets go, or slips, if it bears next to nothing more now
+// lets the contact that ended the last interval separate, or slip, if it bears next to nothing now
 template <int D>
 void ExactSolver<D>::release_contact() {
   --progress_.openings;
@@ -355,7 +355,7 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   b_.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, v_rate) + rows_[i].velocity_product;
 
-  // what holds goes on holding
+  // constraints that hold go on holding
   if (D > 2) turn_slip_directions();
   solve_held();
   for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], v_rate);
@@ -390,7 +390,7 @@ void ExactSolver<D>::record_forces() {
   }
 }
 
-// joints that are loaded beyond what they bear are no more from the next step on; what they held wakes
+// removes joints that are loaded beyond their strength, from the next step on, and wakes the bodies they held
 template <int D>
 void ExactSolver<D>::break_joints(State<D>& state) {
   scratch_.unheld.clear();
@@ -417,7 +417,7 @@ void ExactSolver<D>::write_contacts(State<D>& state) {
       outcome_.contacts.insert(at, struck);
     }
   }
-  // what was frozen keeps its forces
+  // contacts of sleeping bodies keep their forces
   std::size_t kept = 0;
   for (Contact<D>& contact : state.contacts) {
     if (response_.moves(contact.key.a) || response_.moves(contact.key.b)) continue;
@@ -444,8 +444,8 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i)
     b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
-  // What all but rests is begun with the forces of the step before. With these sweeps would go on holding
-  // what has begun to fall
+  // Start from the forces of the step before only if nearly all is at rest: with them the iterations would go
+  // on holding bodies that have begun to fall.
   double fastest = 0;
   for (int i = 0; i < int(rows_.size()); ++i) fastest = std::max(fastest, std::abs(row_velocity(i)));
   const auto& members = free_.bodies();
@@ -473,7 +473,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   f_ /= h;
   record_forces();
 
-  // whatever is inside now, and was not: out again
+  // push apart bodies that overlap now and did not before
   find_contacts(state, limits_.touching_gap);
   collect_constraints(state, true);
   build_blocks(true);

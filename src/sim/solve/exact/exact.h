@@ -25,7 +25,7 @@ namespace obscura::sim {
 template <int D>
 class ExactSolver final : public ContactSolver<D>, private System {
  public:
-  /// Whom it serves: all bodies, or single ones of a model that another solver serves.
+  /// The bodies that it steps: all, or single ones in a model that another solver steps.
   enum class Serves { all, lone };
 
   /// Both are kept by reference.
@@ -38,12 +38,12 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void report(StepPart<D> step) override;
   void sleep(StepPart<D> step) override;
 
-  /// Moves one body that meets nothing but walls and fixed bodies, and tells its contacts in `state` that are
-  /// there already what they bear. Of Serves::lone.
+  /// Moves one body that meets only walls and fixed bodies, and writes the forces of its contacts into those
+  /// that `state` has already. Requires Serves::lone.
   void step_alone(State<D>& state, int body, double t, double h);
 
  private:
-  // what keeps rows at the instant at hand
+  // a contact or joint with its rows at this instant
   struct Constraint {
     enum class Kind { contact, joint, rope, lower, upper, motor, friction };
     Kind kind = Kind::contact;
@@ -81,7 +81,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     bool lone = false;  // one body, that nothing but walls can meet
   };
 
-  // parameters: what follows from the model alone
+  // parameters: they follow from the model alone
   struct Limits {
     int row_joints = 0;                   // that no chain holds
     double touching_gap = 0;              // m: gaps up to this touch
@@ -100,7 +100,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   };
   static Limits make_limits(const Model<D>& model, Serves whom);
 
-  // of the step at hand: where it began, and its groups, whose members lie side by side in the lists
+  // the present step: its start, and its groups, whose members lie side by side in the lists
   struct Step {
     Motion begun;
     std::vector<char> frozen;   // where it began
@@ -119,7 +119,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<Contact<D>> contacts, impulses;  // of the groups that are done
   };
 
-  // of the step of the group at hand
+  // progress in the step of the present group
   struct Progress {
     double rest_speed = 0;                    // m/s: that of limits_, or more after many cuts
     bool rough = false;                       // forces by Gauss-Seidel from here on
@@ -135,7 +135,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     const std::vector<Contact<D>>* known = nullptr;  // sorted contacts to begin with
   };
 
-  // of the interval at hand, from one event to the next
+  // the present interval, from one event to the next
   struct Interval {
     Motion begun;                    // where it began
     Eigen::VectorXd velocities;      // J v there
@@ -150,7 +150,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<Vec<D>> joint_forces;
   };
 
-  // what no function leaves to another
+  // scratch: no function reads here what another left
   struct Scratch {
     std::vector<ContactCandidate<D>> candidates;
     std::vector<double> chain_change, rate;
@@ -285,7 +285,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   Outcome outcome_;
   Scratch scratch_;
 
-  // of the instant at hand
+  // the present instant
   double still_speed_ = 0;            // m/s: slower is not at all, at the speeds at hand
   std::vector<BodyMotion<D>> poses_;  // one a body
   std::vector<ContactCandidate<D>> candidates_;

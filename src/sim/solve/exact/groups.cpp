@@ -1,8 +1,8 @@
-// Groups: bodies that cannot meet in a step are stepped apart, each with cuts of its own.
+// Groups: bodies that cannot meet in a step are stepped separately, each group with cuts of its own.
 //   s_i = 1.1 h sqrt(v^2 + 2 E_w / m) + h^2 |a|       E_w  energy of spin: walls may turn it into speed
-// bounds how far body i gets in a step of h. Two whose bounds overlap are of one group, and so is what
-// joints, springs and chains tie together. Where a body got farther all the same, struck by a heavier one,
-// those that it may have reached are stepped again together with it.
+// bounds how far body i gets in a step of h. Two whose bounds overlap are of one group, and so are bodies
+// tied together by joints, springs and chains. If a body got farther all the same, struck by a heavier one,
+// the bodies that it may have reached are stepped again together with it.
 
 #include <algorithm>
 #include <cmath>
@@ -227,13 +227,13 @@ void ExactSolver<D>::step_alone(State<D>& state, int body, double t, double h) {
   }
 }
 
-// what follows is of this group
+// selects a group: all that follows is for it alone
 template <int D>
 void ExactSolver<D>::activate(const Group& group) {
   active_ = group;
 }
 
-// what follows is of all bodies
+// selects all bodies again
 template <int D>
 void ExactSolver<D>::activate_all() {
   active_ = {};
@@ -251,7 +251,7 @@ void ExactSolver<D>::measure_travel(const State<D>& state) {
         std::max(step_.travelled[body], std::sqrt((state.x[body] - step_.begun.x[body]).squaredNorm()));
 }
 
-// counts a cut that two took part in (below zero: none, or a wall); of all at hand where neither is a body
+// counts a cut for the bodies a and b (negative: none, or a wall); for all bodies if neither is one
 template <int D>
 void ExactSolver<D>::count_cut(int a, int b) {
   if (a >= 0) ++step_.cuts[a];

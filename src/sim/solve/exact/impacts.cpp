@@ -68,7 +68,7 @@ void ExactSolver<D>::resolve_impacts(State<D>& state) {
   }
 }
 
-// of the contacts only those of the pair that comes together fastest
+// keeps only the contacts of the pair with the greatest approach speed
 template <int D>
 void ExactSolver<D>::keep_fastest_pair() {
   const Constraint* worst = nullptr;
@@ -89,7 +89,7 @@ void ExactSolver<D>::keep_fastest_pair() {
   chain_response_.build(rows_, response_, free_.chains());
 }
 
-// Newton's law with Coulomb's friction for all that is held; `bounce` scales e. Where energy would rise e is
+// Newton's law with Coulomb's friction for all constraints; `bounce` scales e. If energy would rise, e is
 // scaled down further.
 template <int D>
 void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {

@@ -13,7 +13,7 @@ constexpr double kThoroughSize = 5e8;  // of the size of all systems that a thor
 
 }  // namespace
 
-// what of constraints_ belongs together, by the bodies it moves
+// the connected parts of constraints_, by the bodies that they move
 template <int D>
 void ExactSolver<D>::find_islands() {
   roots_.reset(active_.subset.bodies);

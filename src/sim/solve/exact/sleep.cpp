@@ -49,7 +49,8 @@ void ExactSolver<D>::put_to_sleep(State<D>& state, double t, double h) {
   if (sleep_.settle(state)) record_forces();
 }
 
-// what bodies would do from here, m/s^2 of the fastest point; without end where no forces are found
+// the acceleration that bodies would have from here, m/s^2 of the fastest point; infinite if no forces are
+// found
 template <int D>
 void ExactSolver<D>::find_accelerations(State<D>& state, double t) {
   find_contacts(state, limits_.touching_gap);

@@ -1,10 +1,10 @@
-// The ways in which contacts slide through an interval, in space, where a slip can turn.
+// The directions in which contacts slide through an interval, in space, where a slip can turn.
 //   f_t = -mu f_n s,   s = v_t / |v_t|
 // at every stage: friction is against the slip of that instant. A slow slip turns fast, at up to
-//   mu f_n k / |v_t|                                   k  what a tangent answers to a force, 1/kg
-// a second; where that is more than a few radians in a step, explicit stages would throw s about. Then s is
-// the one that friction has had by the end of the step, as an implicit step finds it, and stays for the
-// interval: such a contact goes less than mu f_n k h^2 in it.
+//   mu f_n k / |v_t|                                   k  response of a tangent to a force, 1/kg
+// radians a second; if that is more than a few radians in a step, explicit stages would make s jump about.
+// Then s is the direction at the end of the step, found implicitly, and stays for the interval: such a
+// contact moves less than mu f_n k h^2 in it.
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kSlowSlip =
     8;  // of what friction takes away from the slip in a step; four corners share a body
-// of what aims: its ways are wanted, not its forces, and four corners that turn about one of them at a crawl
-// have those only after a thousand attempts
+// The tolerance for slip directions: their directions are wanted, not their forces; at a crawl about one of
+// four vertices, the directions take a thousand iterations.
 constexpr double kEnough = 1e-7;
 constexpr int kSlipPatience = 300;
 constexpr int kSlipIterations = 200;  // where it finds none
