@@ -31,7 +31,7 @@ name       = "ball"
 position   = [1, 3.5]
 velocity   = [1.2, 0]
 radius     = 0.1
-elasticity = 0.9                           # 0: stays where it lands; 1: comes back as fast as it came
+elasticity = 0.9                           # 0: it stays where it lands; 1: it rebounds at full speed
 
 [[box]]
 name     = "crate"
@@ -43,9 +43,9 @@ drag     = 0.1
 [[spring]]
 between     = [[5, 4.5], { body = "crate", at = "top" }]   # a place in the room, a point of a body
 stiffness   = 12                           # newtons per metre
-rest_length = 1.2                          # left out: as long as it is at the start
+rest_length = 1.2                          # default: its length at the start
 
-[[mouse]]                                  # takes the closest particle or corner, and lets go at the last time
+[[mouse]]                                  # grips the closest particle or corner; lets go at the last time
 path = [[3, 5.6, 1.6], [4, 7, 2.5], [5, 7.2, 1.2]]         # time, x, y
 
 [look]
