@@ -95,8 +95,9 @@ TEST(Passive, RandomRoomsOfThePlaneOnlyLose) {
   }
 }
 
-// beside the booked work of pushing overlaps apart
-constexpr double kHeap = 1e-12;
+// beside the booked work of pushing overlaps apart: iterations end before the last contact has settled, and
+// err both ways; were only their gains taken back, a pile that topples slowly would be braked
+constexpr double kHeap = 3e-6;
 
 TEST(Passive, RandomHeapsOfThePlaneOnlyLose) {
   for (int seed = 0; seed < 20; ++seed) {
@@ -212,7 +213,7 @@ void expect_taken_back(const World<D>& world) {
   ASSERT_TRUE(account.risen(state));
   const State<D> fast = state;
   for (int i = 1; i < int(state.x.size()); ++i) account.touch(i - 1, i);
-  account.take_back(state);
+  account.take_back(state, true);
   const double had = energy(world, world.state);
   EXPECT_NEAR(energy(world, state), had, 1e-13 * had);
   // of what nothing holds
@@ -238,7 +239,7 @@ TEST(EnergyGuard, LowersWhatRestsAndHasBeenLifted) {
     ASSERT_TRUE(account.risen(state));
     account.touch(0, -1), account.touch(0, 1);
     if (lifted) account.excuse(0, 1);
-    account.take_back(state);
+    account.take_back(state, true);
     EXPECT_NEAR(state.x[1].y(), 0.3 + (lifted ? 3e-6 : 0), 1e-15);
     EXPECT_EQ(state.x[1].x(), 1e-6);
   }

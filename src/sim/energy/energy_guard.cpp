@@ -210,15 +210,21 @@ void EnergyGuard<D>::move_as_one(const State<D>& state) {
 }
 
 template <int D>
-void EnergyGuard<D>::take_back(State<D>& state) {
+double EnergyGuard<D>::take_back(State<D>& state, bool lower) {
   gather(state);
   move_as_one(state);
+  double left = 0;
   for (Island& it : sums_) {
     it.gain -= it.granted;
     if (!it.touched || it.driven || (it.chained && !it.rooted) || !(it.gain > 0)) continue;
     const double has = std::max(it.kinetic, 0.0);
     it.keeps = has > it.gain ? std::sqrt(1 - it.gain / has) : 0;
-    if (it.rooted && it.gain > has && it.height > 0) it.lowers = std::min(1.0, (it.gain - has) / it.height);
+    if (!it.rooted || it.gain <= has || it.height <= 0) continue;
+    if (lower) {
+      it.lowers = std::min(1.0, (it.gain - has) / it.height);
+    } else {
+      left += it.gain - has;
+    }
   }
   const double g2 = model_.gravity.squaredNorm();
   for (int i = 0; i < int(weights_.size()); ++i) {
@@ -241,6 +247,7 @@ void EnergyGuard<D>::take_back(State<D>& state) {
     if (it.keeps == 1) continue;
     for (double& v : state.postures[i].v) v *= it.keeps;
   }
+  return left;
 }
 
 template class EnergyGuard<2>;

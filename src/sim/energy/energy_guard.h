@@ -33,9 +33,10 @@ class EnergyGuard {
   void excuse(int body, double share, double part = 0) { granted_[body] = share, parts_[body] = part; }
   /// Removes from each island of touching bodies the energy that it gained, by scaling its velocities; for an
   /// island that touches nothing fixed, its velocities relative to each other, so that momentum and angular
-  /// momentum stay. If the motion has too little energy, bodies that rose are lowered. Islands on which
-  /// hands, motors or explosions do work are left alone. `state` is that of risen().
-  void take_back(State<D>& state);
+  /// momentum stay. If the motion has too little energy, bodies that rose are lowered, if `lower` says so; of
+  /// many they would be lowered into each other. Islands on which hands, motors or explosions do work are
+  /// left alone. `state` is that of risen(). Returns the energy (J) that is left of what bodies have risen.
+  double take_back(State<D>& state, bool lower);
 
  private:
   // a body's mass and inertia; zero if it does not count

@@ -51,14 +51,15 @@ void ContactStep<D>::take_energy_back(State<D>& state) {
   for (const auto& [a, b] : touched_) energy_guard_.touch(a, b);
   for (const Contact<D>& contact : state.contacts) energy_guard_.touch(contact.key.a, contact.key.b);
   // so is what overlaps by next to nothing; joints of second order give and take
-  for (int i = 0; state.step == 0 && i < int(model_.bodies.size()); ++i) energy_guard_.excuse(i, kAll);
+  const double share = state.step == 0 ? kAll : D == 2 && !direct_ ? kSinks : 0;
+  for (int i = 0; share > 0 && i < int(model_.bodies.size()); ++i) energy_guard_.excuse(i, share);
   for (const Joint<D>& joint : model_.joints) {
     if (direct_) break;
     for (const int body : {joint.a.body, joint.b.body}) {
       if (body >= 0 && state.step > 0) energy_guard_.excuse(body, kSinks, kSwings);
     }
   }
-  energy_guard_.take_back(state);
+  state.ledger.displacement += energy_guard_.take_back(state, direct_);
 }
 
 template class ContactStep<2>;

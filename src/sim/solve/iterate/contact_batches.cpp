@@ -178,7 +178,7 @@ template <int D>
 void PlaneIterative<D>::clear_lane(int slot) {
   static const ContactBatch empty = [] {
     ContactBatch made{};
-    for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -plane::kNowhere;
+    for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -plane::kNowhere, made.per_width[k] = 1;
     return made;
   }();
   ContactBatch& g = batches_[slot / kLanes];

@@ -150,6 +150,11 @@ OBSCURA_INLINE void expand_one(const ContactBatch& g, const Pose* poses, Rows& o
 }
 
 template <class V>
+OBSCURA_INLINE V allowed_overlap(const ContactBatch& g, int lane, const AllowedOverlap& let) {
+  return let.kLeast * load<V>(g.far + lane) + let.share / load<V>(g.per_width + lane);
+}
+
+template <class V>
 OBSCURA_INLINE bool start_all(ContactBatch* batches, int count, const Pose* poses, const Motion* old,
                               Motion* v, const StepConstants& pace, Found& closing, Found& blows) {
   const V h = V{} + pace.h, creep = V{} - pace.min_closing_speed, gain = V{} + pace.gravity_dv, none{};
@@ -165,7 +170,7 @@ OBSCURA_INLINE bool start_all(ContactBatch* batches, int count, const Pose* pose
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
-      const V sight = load<V>(g.sight + lane), allowed = pace.allowed_overlap * load<V>(g.far + lane);
+      const V sight = load<V>(g.sight + lane), allowed = allowed_overlap<V>(g, lane, pace.allowed);
       // What turns may come sooner than along its tangent: gap'' >= -(w_a^2 + w_b^2) r - 2 w_b v_t. Of two
       // corners of polygons others may come nearer, however these move.
       const V w2 = before.a.z * before.a.z + before.b.z * before.b.z;
@@ -335,7 +340,7 @@ OBSCURA_INLINE double sweep_all(ContactBatch* batches, int count, const Pose* po
 
 template <class V>
 OBSCURA_INLINE void project_all(const ContactBatch* batches, Projection* p, int count, const Pose* poses,
-                                Motion* d, double share, double deep) {
+                                Motion* d, double share, AllowedOverlap let) {
   const V none{}, part = V{} + share;
   for (const ContactBatch* g = batches; g < batches + count; ++g, ++p) {
     if (!g->used) continue;
@@ -345,7 +350,7 @@ OBSCURA_INLINE void project_all(const ContactBatch* batches, Projection* p, int 
       WideRow<V> r0, r1;
       make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
       Two<V> two(*g, lane, d);
-      const V mu = load<V>(g->mu + lane), allowed = deep * load<V>(g->far + lane);
+      const V mu = load<V>(g->mu + lane), allowed = allowed_overlap<V>(*g, lane, let);
       V l0 = load<V>(p->push[0] + lane), l1 = load<V>(p->push[1] + lane);
       V t0 = load<V>(p->side[0] + lane), t1 = load<V>(p->side[1] + lane);
       rub<V>(two, r0, mu * l0, t0);
@@ -380,8 +385,8 @@ OBSCURA_WIDE void finish_wide(ContactBatch* s, int n, const Pose* at, Motion* v,
            : sweep_all<V4, true, false>(s, n, at, v, pace, nullptr);
 }
 OBSCURA_WIDE void project_wide(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d,
-                               double share, double deep) {
-  project_all<V4>(s, p, n, at, d, share, deep);
+                               double share, AllowedOverlap let) {
+  project_all<V4>(s, p, n, at, d, share, let);
 }
 
 }  // namespace
@@ -459,7 +464,7 @@ void finish(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstan
            : sweep_all<V2, true, false>(s, n, at, v, pace, nullptr);
 }
 void project(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d, double share,
-             double allowed) {
+             AllowedOverlap allowed) {
   kWide ? project_wide(s, p, n, at, d, share, allowed) : project_all<V2>(s, p, n, at, d, share, allowed);
 }
 

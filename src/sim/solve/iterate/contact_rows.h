@@ -4,6 +4,7 @@
 
 #include "sim/collide/core_shapes.h"
 #include "sim/model/contact.h"
+#include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim::plane {
 
@@ -68,7 +69,7 @@ struct StepConstants {
   double h = 0;                  // s
   double min_closing_speed = 0;  // m/s: slower approaches are none
   double gravity_dv = 0;         // m/s that gravity may add in the step
-  double allowed_overlap = 0;    // of the larger bounding radius: what is deeper is to be put right
+  AllowedOverlap allowed;        // what is deeper is pushed apart
   const Least* least = nullptr;  // by group, of lanes that are struck
 };
 
@@ -111,9 +112,9 @@ double iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, c
 void finish(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             Contact<2>* contacts);
 
-/// One iteration over positions: `share` of what is deeper than `allowed` of the larger bounding radius is to
-/// go. Friction holds there too, or piles would slide apart by being mended.
+/// One iteration over positions: `share` of what is deeper than is allowed is to go. Friction holds there
+/// too, or piles would slide apart by being mended.
 void project(const ContactBatch* batches, Projection* projections, int count, const Pose* poses, Motion* d,
-             double share, double allowed);
+             double share, AllowedOverlap allowed);
 
 }  // namespace obscura::sim::plane

@@ -85,12 +85,13 @@ void NearPairs::compute_bounds(const std::vector<Pose>& poses) {
   }
 }
 
-// Who may be struck within the span: who may reach another as both fly now, or a wall; and, since they may be
-// thrown about, their neighbours. Of two that fly side by side and cannot be struck, none will touch. Of two
-// of whom one is struck, the other comes on: then they near each other as fast as it flies, and faster if the
-// one bounces.
+// Bodies may be struck within the span if they may reach another as both fly now, or a wall; then all that
+// these may be thrown against may be struck, and so on. Two that fly side by side and cannot be struck will
+// not touch. If one of two is struck, the other comes on: they near each other as fast as it flies, and
+// faster if the one bounces.
 void NearPairs::mark_possible_impacts(double span) {
   const int n = int(movers_.size());
+  groups_.reset(n);
   for (int a = 0; a < n; ++a) {
     exposed_[a] = 0;
     if (still_[a]) continue;
@@ -101,7 +102,6 @@ void NearPairs::mark_possible_impacts(double span) {
     }
   }
   const double falls = 2 * span * span * std::sqrt(model_.gravity.squaredNorm());
-  close_.resize(candidates_.size());
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const int a = cores_.all[candidates_[i].a].body, b = cores_.all[candidates_[i].b].body;
     const Mover &p = movers_[a], &q = movers_[b];
@@ -113,18 +113,14 @@ void NearPairs::mark_possible_impacts(double span) {
     const double thrown = std::max(p.speed, q.speed) + elasticity_ * std::min(p.speed, q.speed);
     candidates_[i].margin =
         std::min(both, span * kThrown * std::max(passes, thrown) + falls + kSpare * thick);
-    close_[i] = dx * dx + dy * dy <= far * far;
-    if (close_[i]) exposed_[a] = exposed_[b] = 1;
+    if (dx * dx + dy * dy <= far * far) exposed_[a] = exposed_[b] = 1;
+    if (!still_[a] && !still_[b]) groups_.join(a, b);
   }
-  // the close ones stay
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    const Candidate c = candidates_[i];
-    const int a = cores_.all[c.a].body, b = cores_.all[c.b].body;
-    if (!close_[i] && exposed_[a] != 1 && exposed_[b] != 1) continue;
-    candidates_[kept++] = c;
+  for (int a = 0; a < n; ++a) {
+    if (exposed_[a]) exposed_[groups_.root(a)] = 1;
   }
-  candidates_.resize(kept);
+  const auto struck = [&](int core) { return exposed_[groups_.root(cores_.all[core].body)] != 0; };
+  std::erase_if(candidates_, [&](const Candidate& c) { return !struck(c.a) && !struck(c.b); });
 }
 
 bool NearPairs::find(const State<2>& state, const std::vector<Pose>& poses, double span, int patience) {

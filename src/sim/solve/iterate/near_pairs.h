@@ -6,6 +6,7 @@
 #include "sim/collide/broad_phase.h"
 #include "sim/collide/core_shapes.h"
 #include "sim/collide/may_touch.h"
+#include "sim/math/islands.h"
 #include "sim/model/state.h"
 #include "sim/solve/iterate/box_pairs.h"
 
@@ -81,8 +82,8 @@ class NearPairs {
   std::vector<char> still_;            // bodies
   std::vector<char> still_cores_, points_;
   std::vector<char> exposed_;  // bodies that may be struck within the span
+  Islands groups_;             // of bodies that may be thrown against each other
   std::vector<Candidate> candidates_;
-  std::vector<char> close_;  // of candidates
   std::vector<BoxManifold> manifolds_;
   double calm_ = 0;        // m: how far the calm may come
   double elasticity_ = 0;  // the largest there is

@@ -44,7 +44,8 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
       cores_(model),
       pairs_(model, cores_),
       impacts_(cores_, pairs_),
-      sleep_(model, Sleep<D>::Forces::iterated, 2 * allowed_overlap(model)),
+      sleep_(model, Sleep<D>::Forces::iterated,
+             4 * allowed_overlap(model).share + 2 * AllowedOverlap::kLeast),
       equilibrium_(model, cores_),
       dynamics_(model, paths),
       joints_(model) {

@@ -11,6 +11,7 @@
 #include "sim/solve/iterate/pair_cache.h"
 #include "sim/solve/iterate/plane_equilibrium.h"
 #include "sim/solve/iterate/plane_impacts.h"
+#include "sim/solve/iterate/substeps.h"
 #include "sim/solve/sleep.h"
 
 namespace obscura::sim {
@@ -72,7 +73,8 @@ class PlaneIterative final : public ContactSolver<D> {
   void place_bodies(State<D>& state, double h, bool apply_push_out);
   void update_pairs(State<D>& state, bool known);
   bool outran(double h, double left) const;
-  double clear(int body, const plane::Pose& from, const Motion& way, bool walls) const;
+  double clear(int body, const plane::Pose& from, const Motion& way, double begun, double h,
+               bool walls) const;
   Motion mean_way(int body, double h) const;
   Motion course(int body, double h);
   bool fast(int body, const Motion& way) const;
@@ -86,19 +88,19 @@ class PlaneIterative final : public ContactSolver<D> {
   ForwardDynamics<D> dynamics_;
   JointSolver<D> joints_;
   Stages stages_;
-  std::int64_t every_ = 1;            // steps between two pair searches for pairs
-  double span_ = 0;                   // and s
-  double allowed_overlap_ = 0;        // of the larger bounding radius of two bodies
+  std::int64_t every_ = 1;  // steps between two pair searches for pairs
+  double span_ = 0;         // and s
+  AllowedOverlap allowed_overlap_;
   int substeps_ = 1;                  // of this step
   bool outran_ = false;               // someone came farther than pairs foresaw
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   bool drag_ = false;
 
   // of bodies; one more that never moves, for walls
-  std::vector<plane::Pose> poses_;
-  std::vector<double> turns_;        // that the poses are of, rad
-  std::vector<double> ii_;           // 1/(kg m^2); 0 where asleep or fixed
-  std::vector<Motion> v_, old_;      // now, and when the step began
+  std::vector<plane::Pose> poses_, begun_;  // now, and where the substep began
+  std::vector<double> turns_;               // that the poses are of, rad
+  std::vector<double> ii_;                  // 1/(kg m^2); 0 where asleep or fixed
+  std::vector<Motion> v_, old_;             // now, and when the step began
   std::vector<Motion> gain_, bend_;  // of the whole step without contacts: of velocity, and of the way beside
                                      // that by the mean velocity
   std::vector<Motion> dv_, dx_;      // what the substep would do without contacts

@@ -17,6 +17,7 @@ template <int D>
 void PlaneIterative<D>::place_bodies(State<D>& state, double h, bool apply_push_out) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
 
+  begun_ = poses_;
   // bodies with slow contacts that closed
   std::fill(closing_.begin(), closing_.end(), 0);
   for (const int i : slow_)
@@ -66,7 +67,7 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
     if (fast(i, back)) {
       plane::Pose from = poses_[i];
       from.x += there.x, from.y += there.y;
-      const double part = clear(i, from, back, true);
+      const double part = clear(i, from, back, impacts_.last(i), h, true);
       back.x *= part, back.y *= part, back.w *= part;
     }
     d = {there.x + back.x, there.y + back.y, there.w + back.w, 0};
@@ -78,7 +79,7 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
   // continuous collision: a fast body stops at its first hit and collides in the next step
   const Motion way{h * o.x, h * o.y, h * o.w, 0};
   if (!fast(i, way)) return d;
-  const double part = clear(i, poses_[i], way, false);
+  const double part = clear(i, poses_[i], way, 0, h, false);
   if (part >= 1) return d;
   // the impact it met is what was seen, within half of its thickness
   const double over = when - part * h;
@@ -100,11 +101,11 @@ bool PlaneIterative<D>::fast(int body, const Motion& way) const {
   return way.x * way.x + way.y * way.y > half * half;
 }
 
-// the part of its way that a body may go before it meets another where that stands, or a wall: by steps as
-// long as the distance that is left
+// The part of its way from `begun` s of the substep on that a body may go before it meets another, which
+// flies on as it did, or a wall: by steps as long as the distance that is left.
 template <int D>
-double PlaneIterative<D>::clear(int body, const plane::Pose& from, const Motion& way, bool walls) const {
-  const double length = std::sqrt(way.x * way.x + way.y * way.y);
+double PlaneIterative<D>::clear(int body, const plane::Pose& from, const Motion& way, double begun, double h,
+                                bool walls) const {
   double part = 1;
   Feature features[2];
   for (const int i : impacts_.around(body)) {
@@ -118,14 +119,24 @@ double PlaneIterative<D>::clear(int body, const plane::Pose& from, const Motion&
       continue;
     }
     const plane::CoreShape& b = cores_.all[pair.core_b];
-    const double close = 0.02 * std::max(std::min(a.half_thickness, b.half_thickness), 1e-6 * model_.scale);
-    plane::Pose at = from;
+    const double thin = std::min(a.half_thickness, b.half_thickness);
+    const double sight = kSight * std::max(thin, 0.5 * (a.radius + b.radius));
+    const double close = 0.02 * std::max(thin, 1e-6 * model_.scale);
+    const int other = body == pair.a ? pair.b : pair.a;
+    const Motion& o = old_[other];
+    const double time = h - begun, x = way.x - time * o.x, y = way.y - time * o.y;
+    const double length = std::sqrt(x * x + y * y);
+    if (length == 0) continue;
+    plane::Pose at = from, there = begun_[other];
+    there.x += begun * o.x, there.y += begun * o.y;
     for (double gone = 0; gone < part;) {
-      at.x = from.x + gone * way.x, at.y = from.y + gone * way.y;
-      const double left = body == pair.a ? find_features(cores_, a, at, b, poses_[pair.b], features)
-                                         : find_features(cores_, a, poses_[pair.a], b, at, features);
+      at.x = from.x + gone * x, at.y = from.y + gone * y;
+      const double left = body == pair.a ? find_features(cores_, a, at, b, there, features)
+                                         : find_features(cores_, a, there, b, at, features);
+      // what is as near as this from the first, its rows keep apart
+      if (gone == 0 && left <= sight) break;
       if (left <= close) {
-        if (gone > 0) part = gone;
+        part = gone;
         break;
       }
       gone += std::max(left - 0.5 * close, 0.5 * close) / length;

@@ -92,7 +92,7 @@ void Equilibrium::gather(const Sleep<2>::Island& island, const State<2>& state, 
   ContactBatch empty{};
   for (int k = 0; k < kLanes; ++k) {
     empty.a[k] = empty.b[k] = none, empty.pair[k] = empty.first[k] = -1;
-    empty.d[0][k] = empty.d[1][k] = -kNowhere;
+    empty.d[0][k] = empty.d[1][k] = -kNowhere, empty.per_width[k] = 1;
   }
   int lane = kLanes, colour = -1;
   for (const int i : pairs_) {
@@ -105,7 +105,7 @@ void Equilibrium::gather(const Sleep<2>::Island& island, const State<2>& state, 
 
 // forces into the state and the lanes; what speed they leave its fastest point, m/s
 double Equilibrium::iterate(const Sleep<2>::Island& island, State<2>& state, const Step& step, double h) {
-  const StepConstants constants{h, 1e300, 0};
+  const StepConstants constants{h, 1e300, 0, {}, nullptr};
   const int count = int(batches_.size());
   const auto solve_joint_velocities = [&] {
     copy_to_joints(island, step.joints);

@@ -513,7 +513,8 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   const auto allowed = [&](const ContactConstraint& touch) {
     const double far = bounding_radius_[touch.a];
-    return allowed_overlap_ * (touch.b == n ? far : std::max(far, bounding_radius_[touch.b]));
+    return allowed_overlap_(touch.b == n ? far : std::max(far, bounding_radius_[touch.b]),
+                            1 / touch.per_width);
   };
   const double share = corrected_share(h);
   some_.clear();

@@ -15,6 +15,7 @@
 #include "sim/solve/cone/cone.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/iterate/joint_solver.h"
+#include "sim/solve/iterate/substeps.h"
 #include "sim/solve/sleep.h"
 
 namespace obscura::sim {
@@ -163,7 +164,7 @@ class SpaceIterative final : public ContactSolver<D> {
   double g_ = 0, restitution_threshold_ = 0;
   std::vector<double> bounding_radius_, width_;  // of bodies, m
   std::vector<char> round_;
-  double allowed_overlap_ = 0;        // of the larger bounding radius of two bodies
+  AllowedOverlap allowed_overlap_;
   int substeps_ = 1;                  // of this step
   std::vector<Contact<D>> impulses_;  // of the substeps before
 

@@ -17,23 +17,31 @@ inline double corrected_share(double time) {
   return time / (time + kHalfLife);
 }
 
-/// The overlap that is let be, of the larger bounding radius of two bodies: next to nothing where there are
-/// few. Of many, the few iterations would part some contacts that are corrected to zero; a contact that has
-/// parted bears nothing until it closes again, and the heap creeps.
+/// The overlap of two bodies that is let be: next to nothing where there are few bodies. Of many, the few
+/// iterations would part some contacts that are corrected to zero; a contact that has parted bears nothing
+/// until it closes again, and the heap creeps.
+struct AllowedOverlap {
+  static constexpr double kLeast = 5e-7;  // of the larger bounding radius
+  double share = 0;                       // of the narrower width
+
+  double operator()(double bounding_radius, double width) const {
+    return kLeast * bounding_radius + share * width;
+  }
+};
 template <int D>
-double allowed_overlap(const Model<D>& model) {
-  constexpr double kLeast = 5e-7, kMost = 4e-3;
+AllowedOverlap allowed_overlap(const Model<D>& model) {
+  constexpr double kMost = 1e-3;
   constexpr double kFew = 50, kMany = 200;  // bodies that move, beside points
   const auto moving = std::count_if(model.bodies.begin(), model.bodies.end(),
                                     [](const Body<D>& body) { return !body.fixed && !is_point(body.shape); });
   const double crowded = std::clamp((double(moving) - kFew) / (kMany - kFew), 0.0, 1.0);
-  return kLeast + (kMost - kLeast) * crowded * crowded * crowded;
+  return {kMost * crowded * crowded * crowded};
 }
 
 /// By how much two bodies may come nearer in a substep, of the narrower one's width; how many substeps a
 /// second there are at least and at most; and how fast a pair may still close where iterations end, in widths
 /// of the narrower body, 1/s.
-inline constexpr double kCloser = 0.05, kFewestSubsteps = 240, kMostSubsteps = 4800, kSettled = 0.1;
+inline constexpr double kCloser = 0.025, kFewestSubsteps = 240, kMostSubsteps = 4800, kSettled = 0.1;
 /// Of the speed of bodies with corners against each other: as others of their corners may come near.
 inline constexpr double kPassing = 0.25;
 /// Of a width: how near is nearly touching.

@@ -1,0 +1,176 @@
+// Bodies do not lie in each other, whatever the solver for many bodies is asked for: the deepest overlap of
+// any pair, of the narrower width, while they fall and when they rest; and how high a column stands.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "sim/collide/broad_phase.h"
+#include "sim/collide/may_touch.h"
+#include "sim/collide/narrow_phase.h"
+#include "sim/step/stepper.h"
+#include "where.h"
+
+namespace obscura::scene {
+namespace {
+
+struct Outcome {
+  double falling = 0, resting = 0;  // deepest overlap, of the narrower width: in all of the run, at its end
+  double top = 0;                   // m: the highest centre at its end
+};
+
+// by the narrow phase's distance of shapes, and of corners from walls: not by the solver's own contacts
+template <int D>
+double deepest(const sim::Model<D>& model, const sim::State<D>& state, sim::BroadPhase<D>& broad,
+               const sim::MayTouch<D>& may_touch) {
+  const int n = int(model.bodies.size());
+  std::vector<sim::Bounds<D>> bounds;
+  std::vector<sim::BodyMotion<D>> at;
+  std::vector<char> still;
+  std::vector<double> width;
+  for (int i = 0; i < n; ++i) {
+    at.push_back(sim::body_motion(state, i));
+    bounds.push_back(sim::bounds(model.bodies[i].shape, at[i]));
+    still.push_back(model.bodies[i].fixed);
+    width.push_back(2 * sim::half_thickness(model.bodies[i].shape));
+  }
+  double most = 0;
+  for (const auto& [a, b] : broad.find(bounds, still)) {
+    if (!may_touch(a, b)) continue;
+    most = std::max(most, -sim::separation(model.bodies[a].shape, at[a], model.bodies[b].shape, at[b]) /
+                              std::min(width[a], width[b]));
+  }
+  std::vector<sim::ContactCandidate<D>> gaps;
+  for (int i = 0; i < n; ++i) {
+    for (int wall = 0; !model.bodies[i].fixed && wall < int(model.walls.size()); ++wall) {
+      gaps.clear();
+      sim::collide(i, model.bodies[i].shape, at[i], wall, model.walls[wall], 0.0, gaps);
+      for (const auto& gap : gaps) most = std::max(most, -gap.value / width[i]);
+    }
+  }
+  return most;
+}
+
+template <int D>
+Outcome run(const sim::World<D>& world, double seconds) {
+  sim::Stepper<D> stepper(world.model);
+  sim::State<D> state = world.state;
+  stepper.begin(state);
+  sim::BroadPhase<D> broad;
+  const sim::MayTouch<D> may_touch(world.model);
+  const double rate = sim::value(world.model.rate);
+  const int steps = int(seconds * rate), every = std::max(1, int(rate / 60));
+  Outcome out;
+  for (int i = 1; i <= steps; ++i) {
+    if (stepper.step(state)) ADD_FAILURE() << "trouble at step " << i;
+    if (i % every != 0) continue;
+    out.resting = deepest(world.model, state, broad, may_touch);
+    out.falling = std::max(out.falling, out.resting);
+  }
+  for (int i = 0; i < int(world.model.bodies.size()); ++i) {
+    if (!world.model.bodies[i].fixed) out.top = std::max(out.top, state.x[i][1]);
+  }
+  return out;
+}
+
+Outcome run(const Scene& scene, double seconds) {
+  return scene.dimension() == 2 ? run(scene.plane(), seconds) : run(scene.space(), seconds);
+}
+
+// `count` balls of radius 0.05 m above each other, whose lowest falls half a metre
+std::string column(bool space, int count) {
+  const double height = 0.1 * count + 2;
+  return fmt::format(R"(
+[room]
+size = {}
+[physics]
+solver = "iterative"
+[[ball]]
+radius     = 0.05
+elasticity = 0
+position   = {}
+copies     = {{ count = {}, offset = {} }}
+)",
+                     space ? fmt::format("[4, {}, 4]", height) : fmt::format("[4, {}]", height),
+                     space ? "[0, 0.55, 0]" : "[2, 0.55]", count, space ? "[0, 0.1, 0]" : "[0, 0.1]");
+}
+
+class Column : public testing::TestWithParam<std::tuple<bool, int, int>> {};
+
+TEST_P(Column, FallsAndStacksUp) {
+  const auto [space, count, rate] = GetParam();
+  const Scene scene = parse(column(space, count), "column.toml", {fmt::format("physics.rate={}", rate)});
+  const Outcome out = run(scene, 3);
+  EXPECT_LE(out.falling, 0.05);
+  EXPECT_LE(out.resting, 0.01);
+  EXPECT_NEAR(out.top, (2 * count - 1) * 0.05, 0.002 * (2 * count - 1) * 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Overlaps, Column,
+                         testing::Combine(testing::Bool(), testing::Values(2, 3, 7, 21, 60),
+                                          testing::Values(60, 200, 600)));
+
+// a block of balls, boxes or sticks that falls onto the floor
+std::string heap(bool space, const std::string& kind) {
+  const std::string size = space ? "[0.2, 0.2, 0.2]" : "[0.1, 0.1]";
+  const std::string stick = space ? "[0.5, 0.06, 0.1]" : "[0.25, 0.04]";
+  const std::string body = kind == "balls"   ? std::string("[[ball]]\nradius = ") + (space ? "0.1" : "0.05")
+                           : kind == "boxes" ? "[[box]]\nsize = " + size
+                                             : "[[box]]\nsize = " + stick;
+  const double apart = kind == "sticks" ? (space ? 0.55 : 0.33) : (space ? 0.27 : 0.12);
+  const double above = kind == "sticks" ? (space ? 0.15 : 0.06) : apart;
+  return fmt::format(R"(
+[room]
+size = {}
+[physics]
+solver = "iterative"
+{}
+elasticity = 0.1
+friction   = 0.3
+position   = {}
+copies     = {{ {}, jitter = 0.005 }}
+)",
+                     space ? "[3, 6, 3]" : "[6, 6]", body, space ? "[-1, 0.8, -1]" : "[1.2, 0.8]",
+                     space
+                         ? fmt::format("count = [4, 5, 4], offset = [[{0}, 0.01, 0.02], [0.02, {1}, 0], "
+                                       "[0.01, 0, {0}]]",
+                                       apart, above)
+                         : fmt::format("count = [10, 20], offset = [[{}, 0.005], [0.01, {}]]", apart, above));
+}
+
+class Heap : public testing::TestWithParam<std::tuple<bool, std::string, int>> {};
+
+TEST_P(Heap, FallsAndRests) {
+  const auto [space, kind, rate] = GetParam();
+  const Scene scene = parse(heap(space, kind), "heap.toml", {fmt::format("physics.rate={}", rate)});
+  const Outcome out = run(scene, 3);
+  EXPECT_LE(out.falling, 0.05);
+  EXPECT_LE(out.resting, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Overlaps, Heap,
+                         testing::Combine(testing::Bool(),
+                                          testing::Values(std::string("balls"), std::string("boxes"),
+                                                          std::string("sticks")),
+                                          testing::Values(60, 240, 600)));
+
+class Shipped : public testing::TestWithParam<std::tuple<std::string, int>> {};
+
+TEST_P(Shipped, SceneKeepsItsBodiesApart) {
+  const auto& [name, rate] = GetParam();
+  const Scene scene =
+      read(OBSCURA_SOURCE_DIR "/scenes/" + name + ".toml", {fmt::format("physics.rate={}", rate)});
+  EXPECT_LE(run(scene, name == "cards" ? 9 : 1).falling, 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Overlaps, Shipped,
+                         testing::Combine(testing::Values(std::string("pour"), std::string("cards")),
+                                          testing::Values(60, 600)));
+
+}  // namespace
+}  // namespace obscura::scene
