@@ -97,132 +97,168 @@ bool BondLoads<D>::snap(State<D>& state, const Model<D>& whole, const std::vecto
   bool any = false;
   for (int i = 0; i < int(whole.bodies.size()); ++i) {
     if (bonds[i].empty()) continue;
-    any = snap(state, whole.bodies[i], body_motion(state.whole[0], i), parts[i], bonds[i]) || any;
+    any = snap(state, {whole.bodies[i], body_motion(state.whole[0], i), parts[i], bonds[i]}) || any;
   }
   return any;
 }
 
 // one rigid body
 template <int D>
-bool BondLoads<D>::snap(State<D>& state, const Body<D>& whole, const BodyMotion<D>& at,
-                        const std::vector<int>& parts, const std::vector<int>& bonds) {
-  constexpr int kRows = D + kAngular<D>;
-  const int n = int(parts.size());
-  const bool fixed = whole.fixed, turns = whole.turns();
+bool BondLoads<D>::snap(State<D>& state, const Composite& it) {
+  const Unknown parts = number_parts(it);
+  if (parts.count == 0) return false;
+  const Required want = required(state, it, accelerate(state, it), parts);
+  const std::vector<Lever> arms = levers(state, it);
+  if (!may_break(it, want, arms)) return false;
 
-  // how it accelerates
-  const Vec<D> x = at.x;
-  const AngularVec<D> w = at.w;
+  // z = G' (G G')^-1 (f_i, n_i)
+  const Eigen::SparseMatrix<double> G = equations(state, it, parts, arms);
+  const Eigen::SparseMatrix<double> GG = G * Eigen::SparseMatrix<double>(G.transpose());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(GG);
+  return break_overloaded(state, it, G, factor.solve(want.loads));
+}
+
+template <int D>
+typename BondLoads<D>::Rates BondLoads<D>::accelerate(const State<D>& state, const Composite& it) const {
+  Rates rates;
+  if (it.body.fixed) return rates;
   Wrench<D> force, blow;
-  std::vector<SpinTensor<D>> own(n);
-  for (int p = 0; p < n; ++p) {
-    const int i = parts[p];
-    own[p] = tensor(model_.bodies[i], body_motion(state, i));
-    force += transformed_to_origin(steady_[i], Vec<D>(state.x[i] - x)),
-        blow += transformed_to_origin(blows_[i], Vec<D>(state.x[i] - x));
+  for (const int i : it.parts) {
+    force += transformed_to_origin(steady_[i], Vec<D>(state.x[i] - it.at.x));
+    blow += transformed_to_origin(blows_[i], Vec<D>(state.x[i] - it.at.x));
   }
-  AngularVec<D> alpha = AngularVec<D>::Zero(), dw = AngularVec<D>::Zero();
-  Vec<D> A = Vec<D>::Zero(), dv = Vec<D>::Zero();
-  if (!fixed) {
-    A = force.f / whole.mass, dv = blow.f / whole.mass;
-    if (turns) {
-      const Rotation<D>& axes = at.room_from_body;
-      const AngularVec<D> L = to_room<D>(axes, whole.inertia.cwiseProduct(from_room<D>(axes, w)));
-      alpha = inverse_inertia_times<D>(whole.inertia, axes, AngularVec<D>(force.n - spin_cross<D>(w, L)));
-      dw = inverse_inertia_times<D>(whole.inertia, axes, blow.n);
-    }
-  }
+  rates.A = force.f / it.body.mass, rates.dv = blow.f / it.body.mass;
+  if (!it.body.turns()) return rates;
+  const Rotation<D>& axes = it.at.room_from_body;
+  const AngularVec<D>& w = it.at.w;
+  const AngularVec<D> L = to_room<D>(axes, it.body.inertia.cwiseProduct(from_room<D>(axes, w)));
+  rates.alpha = inverse_inertia_times<D>(it.body.inertia, axes, AngularVec<D>(force.n - spin_cross<D>(w, L)));
+  rates.dw = inverse_inertia_times<D>(it.body.inertia, axes, blow.n);
+  return rates;
+}
 
-  // force and torque that the bonds of each part exert on it: steadily, and in the impact
-  const int rows = turns ? kRows : D;
-  std::vector<int> place(model_.bodies.size(), -1);
-  int free = 0;
-  for (int p = fixed ? 0 : 1; p < n; ++p) {
-    if (!model_.bodies[parts[p]].fixed) place[parts[p]] = free++;
+// all parts that are not fixed, but for one if the body is free: its equation follows from the others
+template <int D>
+typename BondLoads<D>::Unknown BondLoads<D>::number_parts(const Composite& it) const {
+  Unknown parts;
+  parts.place.assign(model_.bodies.size(), -1);
+  for (int p = it.body.fixed ? 0 : 1; p < int(it.parts.size()); ++p) {
+    if (!model_.bodies[it.parts[p]].fixed) parts.place[it.parts[p]] = parts.count++;
   }
-  if (free == 0) return false;
-  Eigen::MatrixXd want = Eigen::MatrixXd::Zero(rows * free, 2);
+  return parts;
+}
+
+// force and torque that the bonds of each part exert on it: steadily, and in the impact
+template <int D>
+typename BondLoads<D>::Required BondLoads<D>::required(const State<D>& state, const Composite& it,
+                                                       const Rates& rates, const Unknown& parts) const {
+  const auto& [A, dv, alpha, dw] = rates;
+  const AngularVec<D>& w = it.at.w;
+  const int rows = it.rows();
   double shortest = 1e300;
-  for (const int k : bonds) shortest = std::min(shortest, model_.bonds[k].blow);
-  double forces = 0, torques = 0, far = 0;
-  for (int p = 0; p < n; ++p) {
-    const int i = parts[p];
+  for (const int k : it.bonds) shortest = std::min(shortest, model_.bonds[k].blow);
+  Required want;
+  want.loads = Eigen::MatrixXd::Zero(rows * parts.count, 2);
+  for (const int i : it.parts) {
     const Body<D>& part = model_.bodies[i];
-    const Vec<D> d = state.x[i] - x;
+    const SpinTensor<D> own = tensor(part, body_motion(state, i));
+    const Vec<D> d = state.x[i] - it.at.x;
     const Vec<D> f =
         part.mass * (A + cross_velocity<D>(alpha, d) + cross_velocity<D>(w, cross_velocity<D>(w, d))) -
         steady_[i].f;
     const Vec<D> j = part.mass * (dv + cross_velocity<D>(dw, d)) - blows_[i].f;
-    const AngularVec<D> nt = own[p] * alpha + spin_cross<D>(w, AngularVec<D>(own[p] * w)) - steady_[i].n;
-    const AngularVec<D> jt = own[p] * dw - blows_[i].n;
-    forces += f.norm() + j.norm() / shortest, torques += nt.norm() + jt.norm() / shortest;
-    far = std::max(far, d.norm());
-    if (place[i] < 0) continue;
-    want.block(rows * place[i], 0, D, 1) = f, want.block(rows * place[i], 1, D, 1) = j;
-    if (turns) {
-      want.block(rows * place[i] + D, 0, kAngular<D>, 1) = nt;
-      want.block(rows * place[i] + D, 1, kAngular<D>, 1) = jt;
+    const AngularVec<D> nt = own * alpha + spin_cross<D>(w, AngularVec<D>(own * w)) - steady_[i].n;
+    const AngularVec<D> jt = own * dw - blows_[i].n;
+    want.forces += f.norm() + j.norm() / shortest, want.torques += nt.norm() + jt.norm() / shortest;
+    want.far = std::max(want.far, d.norm());
+    if (parts.place[i] < 0) continue;
+    const int first = rows * parts.place[i];
+    want.loads.block(first, 0, D, 1) = f, want.loads.block(first, 1, D, 1) = j;
+    if (it.body.turns()) {
+      want.loads.block(first + D, 0, kAngular<D>, 1) = nt;
+      want.loads.block(first + D, 1, kAngular<D>, 1) = jt;
     }
   }
+  return want;
+}
 
-  // no tree of bonds bears more than all of it on its longest lever; the least loads are no more together
-  struct Lever {
-    Vec<D> point;
-    double l;
-  };
-  std::vector<Lever> levers;
-  double least = 1e300, weakest = 1e300;
-  for (const int k : bonds) {
+template <int D>
+std::vector<typename BondLoads<D>::Lever> BondLoads<D>::levers(const State<D>& state,
+                                                               const Composite& it) const {
+  std::vector<Lever> arms;
+  for (const int k : it.bonds) {
     const Bond<D>& bond = model_.bonds[k];
     const Vec<D> other = bond.b < 0 ? state.x[bond.a] : state.x[bond.b];
     double l = (state.x[bond.a] - other).norm() / 2;
     if (l == 0) l = std::max(bounding_radius(model_.bodies[bond.a].shape), 1e-9 * model_.scale);
-    levers.push_back({(state.x[bond.a] + other) / 2, l});
-    least = std::min(least, l), weakest = std::min(weakest, bond.strength);
+    arms.push_back({(state.x[bond.a] + other) / 2, l});
   }
-  const double bent = turns ? (torques + 2 * far * forces) / least : 0;
-  if (std::sqrt(double(bonds.size()) * (forces * forces + bent * bent)) <= weakest) return false;
+  return arms;
+}
 
-  // G, a block of columns a bond
-  std::vector<Eigen::Triplet<double>> entries;
+// A cheap bound: no tree of bonds bears more than all forces and torques on its longest lever, and the norm
+// of the least-norm loads is no larger.
+template <int D>
+bool BondLoads<D>::may_break(const Composite& it, const Required& want,
+                             const std::vector<Lever>& arms) const {
+  double least = 1e300, weakest = 1e300;
+  for (const Lever& arm : arms) least = std::min(least, arm.l);
+  for (const int k : it.bonds) weakest = std::min(weakest, model_.bonds[k].strength);
+  const double bent = it.body.turns() ? (want.torques + 2 * want.far * want.forces) / least : 0;
+  return std::sqrt(double(it.bonds.size()) * (want.forces * want.forces + bent * bent)) > weakest;
+}
+
+// G, a block of columns a bond
+template <int D>
+Eigen::SparseMatrix<double> BondLoads<D>::equations(const State<D>& state, const Composite& it,
+                                                    const Unknown& parts,
+                                                    const std::vector<Lever>& arms) const {
+  constexpr int kRows = D + kAngular<D>;
   using Block = Eigen::Matrix<double, kRows, kRows>;
-  const auto given = [&](int bond, int part, double sign) {
+  const int rows = it.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](int bond, int part, double sign) {
     Block g = Block::Zero();
     g.template topLeftCorner<D, D>().diagonal().setConstant(sign);
     g.template bottomLeftCorner<kAngular<D>, D>() =
-        sign * lever<D>(Vec<D>(levers[bond].point - state.x[part])).transpose();
-    g.template bottomRightCorner<kAngular<D>, kAngular<D>>().diagonal().setConstant(sign * levers[bond].l);
+        sign * lever<D>(Vec<D>(arms[bond].point - state.x[part])).transpose();
+    g.template bottomRightCorner<kAngular<D>, kAngular<D>>().diagonal().setConstant(sign * arms[bond].l);
     for (int r = 0; r < rows; ++r) {
       for (int c = 0; c < rows; ++c) {
-        if (g(r, c) != 0) entries.emplace_back(rows * place[part] + r, rows * bond + c, g(r, c));
+        if (g(r, c) != 0) entries.emplace_back(rows * parts.place[part] + r, rows * bond + c, g(r, c));
       }
     }
   };
-  for (int b = 0; b < int(bonds.size()); ++b) {
-    const Bond<D>& bond = model_.bonds[bonds[b]];
-    if (place[bond.a] >= 0) given(b, bond.a, 1);
-    if (bond.b >= 0 && place[bond.b] >= 0) given(b, bond.b, -1);
+  for (int b = 0; b < int(it.bonds.size()); ++b) {
+    const Bond<D>& bond = model_.bonds[it.bonds[b]];
+    if (parts.place[bond.a] >= 0) add(b, bond.a, 1);
+    if (bond.b >= 0 && parts.place[bond.b] >= 0) add(b, bond.b, -1);
   }
-  Eigen::SparseMatrix<double> G(rows * free, rows * int(bonds.size()));
+  Eigen::SparseMatrix<double> G(rows * parts.count, rows * int(it.bonds.size()));
   G.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SparseMatrix<double> GG = G * Eigen::SparseMatrix<double>(G.transpose());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(GG);
-  const Eigen::MatrixXd give = factor.solve(want);
-  // (G' give): a column of G has few entries; Eigen's own product adds them as its version likes
+  return G;
+}
+
+// breaks the bonds whose loads G' y, y = (G G')^-1 (f_i, n_i), are beyond their strength
+template <int D>
+bool BondLoads<D>::break_overloaded(State<D>& state, const Composite& it,
+                                    const Eigen::SparseMatrix<double>& G, const Eigen::MatrixXd& y) {
+  // a column of G has few entries; the order of Eigen's own product depends on its version
   const auto load = [&](int column, int of) {
     double sum = 0;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(G, column); it; ++it)
-      sum += it.value() * give(it.row(), of);
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(G, column); entry; ++entry)
+      sum += entry.value() * y(entry.row(), of);
     return sum;
   };
-
+  const int rows = it.rows();
   bool any = false;
-  for (int b = 0; b < int(bonds.size()); ++b) {
-    const Bond<D>& bond = model_.bonds[bonds[b]];
+  for (int b = 0; b < int(it.bonds.size()); ++b) {
+    const int k = it.bonds[b];
+    const Bond<D>& bond = model_.bonds[k];
     Eigen::VectorXd all(rows);
     for (int r = 0; r < rows; ++r) all[r] = load(rows * b + r, 0) + load(rows * b + r, 1) / bond.blow;
-    loads_[bonds[b]] = std::sqrt(all.squaredNorm());
-    if (loads_[bonds[b]] > bond.strength) state.holds[bonds[b]] = 0, any = true;
+    loads_[k] = std::sqrt(all.squaredNorm());
+    if (loads_[k] > bond.strength) state.holds[k] = 0, any = true;
   }
   return any;
 }

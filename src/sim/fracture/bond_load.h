@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "sim/force/explosion.h"
@@ -26,9 +27,48 @@ class BondLoads {
   double load(int bond) const { return loads_[bond]; }
 
  private:
+  // a rigid body of bonded parts
+  struct Composite {
+    const Body<D>& body;
+    BodyMotion<D> at;
+    const std::vector<int>&parts, &bonds;
+
+    // equations of a part
+    int rows() const { return body.turns() ? D + kAngular<D> : D; }
+  };
+  // its acceleration, and the change of its velocity by the impacts
+  struct Rates {
+    Vec<D> A = Vec<D>::Zero(), dv = Vec<D>::Zero();
+    AngularVec<D> alpha = AngularVec<D>::Zero(), dw = AngularVec<D>::Zero();
+  };
+  // the parts that have equations
+  struct Unknown {
+    std::vector<int> place;  // one a body of the model: the number of its block of rows; -1: it has none
+    int count = 0;
+  };
+  // the right side of G z = (f_i, n_i)
+  struct Required {
+    Eigen::MatrixXd loads;                    // columns: steady, and of the impacts
+    double forces = 0, torques = 0, far = 0;  // sums of magnitudes; of the part farthest from the centre, m
+  };
+  // the point of a bond, and l
+  struct Lever {
+    Vec<D> point;
+    double l;
+  };
+
   void push(const State<D>& state, double t);
-  bool snap(State<D>& state, const Body<D>& whole, const BodyMotion<D>& at, const std::vector<int>& parts,
-            const std::vector<int>& bonds);
+  bool snap(State<D>& state, const Composite& it);
+  Rates accelerate(const State<D>& state, const Composite& it) const;
+  Unknown number_parts(const Composite& it) const;
+  Required required(const State<D>& state, const Composite& it, const Rates& rates,
+                    const Unknown& parts) const;
+  std::vector<Lever> levers(const State<D>& state, const Composite& it) const;
+  bool may_break(const Composite& it, const Required& required, const std::vector<Lever>& levers) const;
+  Eigen::SparseMatrix<double> equations(const State<D>& state, const Composite& it, const Unknown& parts,
+                                        const std::vector<Lever>& levers) const;
+  bool break_overloaded(State<D>& state, const Composite& it, const Eigen::SparseMatrix<double>& G,
+                        const Eigen::MatrixXd& loads);
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;

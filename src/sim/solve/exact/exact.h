@@ -191,6 +191,10 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void bound_travel(const State<D>& state, double t, double h);
   void join_near_bodies(const State<D>& state);
   void list_groups(const State<D>& state);
+  void classify_sets(const State<D>& state);
+  void find_reached();
+  void number_groups();
+  void list_members();
   void activate(const Group& group);
   void activate_all();
   void resize_for(State<D>& state);

@@ -16,6 +16,9 @@ namespace {
 
 constexpr double kSpare = 1.1;
 
+// kinds of sets of bodies, step_.kinds
+constexpr char kAsleep = 0, kFree = 1, kBusy = 2;
+
 // the list of `count` items by group: items of group g from ends[g - 1] to ends[g]. `group_of` answers an
 // item's group, below zero: none
 template <class Item, class GroupOf>
@@ -79,13 +82,20 @@ void ExactSolver<D>::join_near_bodies(const State<D>& state) {
   }
 }
 
-// step_.groups of step_.near. Groups of which all are frozen, and held by no mouse, are left out; single
-// bodies that reach nothing are one group: nothing cuts their step.
+// step_.groups of step_.near: the sets that are stepped together, and their members
 template <int D>
 void ExactSolver<D>::list_groups(const State<D>& state) {
+  classify_sets(state);
+  number_groups();
+  list_members();
+}
+
+// kind and size of each set, at its root: asleep sets, in which no mouse holds a body, are left out; single
+// bodies that reach nothing are free; all others are busy
+template <int D>
+void ExactSolver<D>::classify_sets(const State<D>& state) {
   const int n = int(model_.bodies.size());
-  constexpr char kAsleep = 0, kFree = 1, kBusy = 2;
-  std::vector<char>& kind = step_.kinds;  // at the root of each set
+  std::vector<char>& kind = step_.kinds;
   std::vector<int>& size = step_.group_sizes;
   kind.assign(n, kAsleep), size.assign(n, 0);
   for (int body = 0; body < n; ++body) {
@@ -104,12 +114,19 @@ void ExactSolver<D>::list_groups(const State<D>& state) {
     if (grip.body >= 0 && !model_.bodies[grip.body].fixed) kind[step_.near.root(grip.body)] = kBusy;
   }
   for (const Joint<D>& joint : model_.joints) busy(joint.a.body), busy(joint.b.body);
+  find_reached();
+}
+
+// sets that reach a wall or a fixed body are busy
+template <int D>
+void ExactSolver<D>::find_reached() {
   for (const Couple& couple : limits_.couples) {
     const auto [a, b] = couple;
     const bool a_fixed = model_.bodies[a].fixed;
     const int body = a_fixed ? b : a;
     if (!a_fixed && b >= 0 && !model_.bodies[b].fixed) continue;
-    if (kind[step_.near.root(body)] != kFree) continue;
+    char& kind = step_.kinds[step_.near.root(body)];
+    if (kind != kFree) continue;
     const double far = limits_.bounding_radius[body] + step_.travel_bound[body] + limits_.touching_gap;
     bool meets;
     if (b < 0) {
@@ -120,10 +137,16 @@ void ExactSolver<D>::list_groups(const State<D>& state) {
       const double all = far + limits_.bounding_radius[other];
       meets = (step_.begun.x[body] - poses_[other].x).squaredNorm() <= all * all;
     }
-    if (meets) kind[step_.near.root(body)] = kBusy;
+    if (meets) kind = kBusy;
   }
+}
 
-  // numbers of groups, by their lowest bodies
+// numbers the groups by their lowest bodies; all free bodies are one group, as nothing cuts their step
+template <int D>
+void ExactSolver<D>::number_groups() {
+  const int n = int(model_.bodies.size());
+  const std::vector<char>& kind = step_.kinds;
+  const std::vector<int>& size = step_.group_sizes;
   step_.groups.clear();
   int free = -1;
   step_.group_of.assign(n, -1);
@@ -140,8 +163,11 @@ void ExactSolver<D>::list_groups(const State<D>& state) {
     }
     step_.group_of[body] = group;
   }
+}
 
-  // their members
+// the members of each group
+template <int D>
+void ExactSolver<D>::list_members() {
   const int groups = int(step_.groups.size());
   const auto lay = [&](auto& list, int count, const auto& group_of, const auto& item, const auto& give) {
     by_group(groups, count, group_of, step_.group_ends, list, item);
@@ -156,7 +182,7 @@ void ExactSolver<D>::list_groups(const State<D>& state) {
     return a >= 0 && step_.group_of[a] >= 0 ? step_.group_of[a] : b >= 0 ? step_.group_of[b] : -1;
   };
   lay(
-      step_.group_bodies, n, [&](int i) { return step_.group_of[i]; }, self,
+      step_.group_bodies, int(model_.bodies.size()), [&](int i) { return step_.group_of[i]; }, self,
       [](Group& group, auto list) { group.subset.bodies = list; });
   lay(
       step_.group_springs, int(model_.springs.size()),
