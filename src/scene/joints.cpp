@@ -1,14 +1,19 @@
 #include "scene/joints.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "scene/fields.h"
+#include "scene/joint_words.h"
 #include "scene/links.h"
+#include "sim/constraint/joints/joint.h"
 #include "sim/math/exponential.h"
 #include "sim/math/orientation.h"
 
@@ -24,16 +29,23 @@ constexpr double kLongest = 100;
 
 constexpr double kSamePlace = 1e-9;  // of the room's size: places this near are one
 
-// in the plane a hinge is a pin; in space a pin is a ball joint
 template <int D>
 JointKind type(const std::string& word) {
-  using enum JointKind;
-  return word == "weld"              ? weld
-         : word == "slider"          ? slider
-         : word == "rod"             ? rod
-         : word == "rope"            ? rope
-         : word == "hinge" && D == 3 ? hinge
-                                     : pin;
+  const auto found = std::ranges::find(kJointWords, word, &JointWord::word);
+  return found == std::end(kJointWords) ? JointKind::pin : found->kind(D);
+}
+
+// "a pin, a weld or a slider": the kinds of joint for which `its` is true
+template <int D>
+std::string kinds(const std::function<bool(const sim::JointEquations<D>&)>& its) {
+  std::vector<std::string> all;
+  std::set<JointKind> known;
+  for (const JointWord& each : kJointWords)
+    if (known.insert(each.kind(D)).second && its(sim::equations<D>(each.kind(D))))
+      all.push_back(fmt::format("a {}", each.word));
+  std::string last = all.back();
+  all.pop_back();
+  return all.empty() ? last : fmt::format("{} or {}", fmt::join(all, ", "), last);
 }
 
 // a direction of the room as the body at an end sees it
@@ -76,22 +88,19 @@ JointSide<D> side(const Node& node, const Seating<D>& roster, const sim::World<D
 }
 
 // keys of some kinds of joint only
-void refuse_others(const Fields& fields, JointKind kind, int dimension, Diagnostics& complaints) {
-  const bool space = dimension == 3;
-  const bool far = kind == JointKind::rod || kind == JointKind::rope;
-  const bool turns = kind == (space ? JointKind::hinge : JointKind::pin);
-  const bool moves = turns || kind == JointKind::slider;
-  const auto only = [&](const char* key, bool good, const char* whose) {
-    if (!good && fields.given(key))
-      complaints.add(fields.place(key),
-                     fmt::format("'{}' is that of {}; a {} has none", key, whose, fields.text("type")));
+template <int D>
+void refuse_others(const Fields& fields, JointKind kind, Diagnostics& complaints) {
+  using Its = sim::JointEquations<D>;
+  const auto only = [&](const char* key, bool (*may)(const Its&)) {
+    if (fields.given(key) && !may(sim::equations<D>(kind)))
+      complaints.add(fields.place(key), fmt::format("'{}' is that of {}; a {} has none", key, kinds<D>(may),
+                                                    fields.text("type")));
   };
-  only("at", !far, "a pin, a weld or a slider");
-  only("axis", kind == JointKind::slider || kind == JointKind::hinge,
-       space ? "a hinge or a slider" : "a slider");
-  only("length", far, "a rod or a rope");
+  only("at", [](const Its& its) { return !its.apart; });
+  only("axis", [](const Its& its) { return its.axis; });
+  only("length", [](const Its& its) { return its.apart; });
   for (const char* key : {"limits", "motor", "friction"})
-    only(key, moves, space ? "a hinge or a slider" : "a pin or a slider");
+    only(key, [](const Its& its) { return its.coordinate != nullptr; });
 }
 
 template <int D>
@@ -102,7 +111,13 @@ class Joining {
 
   Joining(const Fields& fields, JointKind kind, const JointSide<D>& a, const JointSide<D>& b,
           sim::World<D>& world, Diagnostics& complaints)
-      : fields_(fields), kind_(kind), a_(a), b_(b), world_(world), complaints_(complaints) {
+      : fields_(fields),
+        kind_(kind),
+        its_(sim::equations<D>(kind)),
+        a_(a),
+        b_(b),
+        world_(world),
+        complaints_(complaints) {
     for (const sim::Wall<D>& wall : world.model.walls)
       size_ = std::max(size_, wall.point.cwiseAbs().maxCoeff());
     for (const Vec& x : world.state.x) size_ = std::max(size_, x.cwiseAbs().maxCoeff());
@@ -121,9 +136,7 @@ class Joining {
     if (it.a.body < 0) return refuse(place, "'between' names no body: it would hold nothing");
     const sim::Body<D>& body = world_.model.bodies[std::size_t(it.a.body)];
     if (it.a.body == it.b.body) return refuse(place, fmt::format("both ends are on '{}'", body.name));
-    const bool far = kind_ == JointKind::rod || kind_ == JointKind::rope;
-    if (!far && !meet(it, a_says, b_says)) return {};
-    if (far && !stretch(it, b_says)) return {};
+    if (!(its_.apart ? stretch(it, b_says) : meet(it, a_says, b_says))) return {};
     // a lever out of all proportion makes motion of rounding
     for (const End& end : {it.a, it.b}) {
       const double lever = end.body < 0 ? 0 : end.local.stableNorm();
@@ -132,7 +145,7 @@ class Joining {
                       fmt::format("this is {:.3g} m from the middle of '{}': expected at most {:.3g}", lever,
                                   world_.model.bodies[std::size_t(end.body)].name, kLongest * (1 + size_)));
     }
-    if (kind_ == JointKind::weld || kind_ == JointKind::slider || kind_ == JointKind::hinge) {
+    if (its_.turning) {
       for (const End& end : {it.a, it.b})
         if (end.body >= 0 && !world_.model.bodies[std::size_t(end.body)].turns())
           return refuse(place,
@@ -144,17 +157,16 @@ class Joining {
                     fmt::format("'{}' is fixed, and so is the other end: nothing could move", body.name));
 
     it.turn = against(world_, it.a.body, it.b.body);
-    if (kind_ == JointKind::slider || kind_ == JointKind::hinge) {
-      const Vec axis = fields_.given("axis")       ? fields_.vector<D>("axis")
-                       : kind_ == JointKind::hinge ? Vec(Vec::Unit(D - 1))
-                                                   : Vec(Vec::Unit(0));
+    if (its_.axis) {
+      const Vec axis = fields_.given("axis") ? fields_.vector<D>("axis")
+                       : its_.angle          ? Vec(Vec::Unit(D - 1))
+                                             : Vec(Vec::Unit(0));
       if (axis.isZero(0))
         return refuse(fields_.place("axis"), fmt::format("'axis' is zero: expected a direction such as {}",
                                                          D == 2 ? "[1, 0]" : "[1, 0, 0]"));
       it.axis = as_seen<D>(world_, it.b.body, axis.stableNormalized());
     }
-    const bool turns = kind_ == JointKind::pin || kind_ == JointKind::hinge;
-    const auto own = [&](double x) { return turns ? radians(x) : x; };
+    const auto own = [&](double x) { return its_.angle ? radians(x) : x; };
     if (const Node* limits = fields_.given("limits"))
       it.lower = own(limits->list()[0].number()), it.upper = own(limits->list()[1].number());
     if (const Node* motor = fields_.given("motor"); motor && motor->find("speed") && motor->find("most"))
@@ -171,7 +183,11 @@ class Joining {
     return {};
   }
 
-  // pin, weld, slider: one place of both
+  // The place of a pin or a hinge between two bodies matters: they turn about it. A weld or a slider is the
+  // same joint wherever it is.
+  bool turns_about_place() const { return !its_.turning || its_.angle; }
+
+  // its ends are at one place
   bool meet(sim::Joint<D>& it, bool a_says, bool b_says) {
     const Vec from_a = start(world_, it.a), from_b = start(world_, it.b);
     if (const Node* at = fields_.given("at")) {
@@ -193,7 +209,7 @@ class Joining {
     // the one that says where; a body against the room, and bodies that lie on each other, have a place
     if (b_says) {
       it.a = on<D>(world_, it.a.body, from_b);
-    } else if (a_says || it.b.body < 0 || (kind_ != JointKind::pin && kind_ != JointKind::hinge) ||
+    } else if (a_says || it.b.body < 0 || !turns_about_place() ||
                (from_a - from_b).norm() <= kSamePlace * (1 + size_)) {
       it.b = on<D>(world_, it.b.body, from_a);
     } else {
@@ -207,7 +223,7 @@ class Joining {
     return true;
   }
 
-  // rod, rope: two places, and how far apart
+  // its ends are a length apart
   bool stretch(sim::Joint<D>& it, bool b_says) {
     if (it.b.body < 0 && !b_says) {
       complaints_.add(fields_.place("between"),
@@ -225,7 +241,7 @@ class Joining {
     }
     if (!length) return true;
     const double slack = length->number() - apart, rounding = kSamePlace * (1 + size_);
-    if (slack < -rounding || (kind_ == JointKind::rod && slack > rounding)) {
+    if (slack < -rounding || (!its_.one_sided && slack > rounding)) {
       complaints_.add(
           length->place,
           fmt::format("'length' is {} m and its ends are {:.6g} m apart at the start; move an end",
@@ -238,6 +254,7 @@ class Joining {
 
   const Fields& fields_;
   JointKind kind_;
+  const sim::JointEquations<D>& its_;
   const JointSide<D>&a_, &b_;
   sim::World<D>& world_;
   Diagnostics& complaints_;
@@ -254,7 +271,7 @@ void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Dia
     const Node* between = fields.given("between");
     if (!between || !fields.given("type")) continue;
     const JointKind kind = type<D>(fields.text("type"));
-    refuse_others(fields, kind, D, complaints);
+    refuse_others<D>(fields, kind, complaints);
     const JointSide<D> a = side(between->list()[0], roster, world, complaints);
     const JointSide<D> b = side(between->list()[1], roster, world, complaints);
     if (a.ends.empty() || b.ends.empty()) continue;

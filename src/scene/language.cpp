@@ -1,7 +1,11 @@
 // The language, key by key: path, what it takes, its unit, default and range, one line for the reader and an
 // example. All else, the checks, the schema, the page of keys and the typing of --set, is read from here.
 
+#include <fmt/format.h>
+
+#include "scene/joint_words.h"
 #include "scene/table.h"
+#include "sim/solve/contact_solver.h"
 
 namespace obscura::scene {
 
@@ -16,6 +20,34 @@ constexpr Range kSpeeds{0.001, 1000};
 const std::vector<std::string> kQuantities{"energy", "kinetic", "potential", "gravity", "springs",
                                            "x",      "height",  "speed",     "vx",      "vy",
                                            "angle",  "spin",    "length",    "push"};
+
+std::vector<std::string> joint_words() {
+  std::vector<std::string> words;
+  for (const JointWord& each : kJointWords) words.emplace_back(each.word);
+  return words;
+}
+
+// "`pin`: both turn about one point; `weld`: no relative motion."
+std::string joint_doc() {
+  std::string doc;
+  for (const JointWord& each : kJointWords)
+    if (!each.doc.empty()) doc += fmt::format("{}`{}`: {}", doc.empty() ? "" : "; ", each.word, each.doc);
+  return doc + ".";
+}
+
+std::vector<std::string> solver_words() {
+  std::vector<std::string> words{"auto"};
+  for (const sim::SolverKind& each : sim::solver_kinds()) words.emplace_back(each.name);
+  return words;
+}
+
+// "`direct` is exact; `iterative` is for thousands of bodies."
+std::string solver_doc() {
+  std::string doc;
+  for (const sim::SolverKind& each : sim::solver_kinds())
+    doc += fmt::format("{}`{}` {}", doc.empty() ? "" : "; ", each.name, each.doc);
+  return doc + ".";
+}
 
 }  // namespace
 
@@ -75,8 +107,8 @@ std::vector<Key> rows() {
        .doc = "How collisions are treated. `contact`: forces keep bodies apart, with friction; `event`: the same, with every "
               "impact at its own time; `handout`: only walls; a body is put back onto the wall and gets an impulse; a resting body jitters.",
        .example = "\"event\""},
-      {.path = "physics.solver", .form = choice, .fallback = "\"auto\"", .choices = {"auto", "direct", "iterative"},
-       .doc = "The solver that finds the forces of `contact`: `direct` is exact, for up to some hundred contacts; `iterative` is for thousands of bodies.",
+      {.path = "physics.solver", .form = choice, .fallback = "\"auto\"", .choices = solver_words(),
+       .doc = "The solver that finds the forces of `contact`: " + solver_doc(),
        .example = "\"direct\""},
       {.path = "physics.impacts", .form = choice, .fallback = "\"simultaneous\"",
        .choices = {"simultaneous", "sequential"},
@@ -178,10 +210,7 @@ std::vector<Key> rows() {
 
       {.path = "joint", .form = tables, .doc = "A joint between two bodies, or a body and the room: it holds some motions and leaves others free."},
       {.path = "joint.name", .form = name, .absent = "`joint[0]`, ...", .doc = "Its name for `--set`.", .example = "\"hinge\""},
-      {.path = "joint.type", .form = choice, .required = true, .choices = {"pin", "hinge", "ball", "weld", "slider", "rod", "rope"},
-       .doc = "`pin`: both turn about one point, in space about any axis, the same as `ball`; `hinge`: about one axis, in the plane a pin; "
-              "`weld`: no relative motion; `slider`: the first slides along a line of the second; "
-              "`rod`: the distance of two points is constant; `rope`: it has a maximum.",
+      {.path = "joint.type", .form = choice, .required = true, .choices = joint_words(), .doc = joint_doc(),
        .example = "\"pin\""},
       {.path = "joint.between", .form = ends, .required = true,
        .doc = "Its ends, as of a spring; also `\"room\"`. `plank[0..8]` with `plank[1..9]` makes many joints.",

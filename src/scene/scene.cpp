@@ -46,8 +46,9 @@ sim::Collision collision(const std::string& word) {
 }
 
 sim::Solver solver(const std::string& word) {
-  using enum sim::Solver;
-  return word == "direct" ? direct : word == "iterative" ? iterative : automatic;
+  const auto all = sim::solver_kinds();
+  const auto found = std::ranges::find(all, word, &sim::SolverKind::name);
+  return found == all.end() ? sim::Solver::automatic : found->kind;
 }
 
 // the handout knows particles and boxes, each alone

@@ -44,7 +44,7 @@ template <int D>
 std::string contact(const sim::Model<D>& model) {
   if (model.collision == sim::Collision::handout)
     return "the handout's: only walls; bodies are put back and get an impulse";
-  const bool direct = sim::solver(model) == sim::Solver::direct;
+  const sim::SolverKind& its = sim::solver_kind(sim::solver(model));
   const sim::BodyCounts crowd = sim::body_counts(model);
   std::string why;
   if (model.collision == sim::Collision::event)
@@ -58,8 +58,8 @@ std::string contact(const sim::Model<D>& model) {
                       count(std::size_t(crowd.bodies), "body", "bodies"),
                       count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies<D>,
                       sim::kMostPoints);
-  return fmt::format("{} solver: {}{}", direct ? "direct" : "iterative", why,
-                     direct ? "" : "; impacts are solved pair after pair");
+  return fmt::format("{} solver: {}{}", its.name, why,
+                     its.exact ? "" : "; impacts are solved pair after pair");
 }
 
 // how many there are of each kind; bodies by what they are made of

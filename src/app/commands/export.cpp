@@ -16,6 +16,7 @@
 #include "app/console/waiting.h"
 #include "app/film/estimate.h"
 #include "app/run/trouble.h"
+#include "draw/picture/joint_look.h"
 #include "draw/picture/theme.h"
 #include "media/error.h"
 #include "media/file.h"
@@ -115,7 +116,7 @@ class Stage {
 
  private:
   static bool far(const sim::SceneInfo::Joint& joint) {
-    return joint.kind == sim::JointKind::rod || joint.kind == sim::JointKind::rope;
+    return draw::spans(draw::joint_look(joint.kind).space);
   }
 
   void add(const std::string& name, Glb::Mesh mesh) {

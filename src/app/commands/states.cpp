@@ -152,9 +152,9 @@ std::string csv_row(const sim::Snapshot& now, const std::string& hash, const std
 
 // the solver in use; none in the handout's mode
 template <int D>
-const char* solver_name(const sim::Model<D>& model) {
+std::string solver_name(const sim::Model<D>& model) {
   if (model.collision == sim::Collision::handout) return "null";
-  return sim::solver(model) == sim::Solver::direct ? "\"direct\"" : "\"iterative\"";
+  return fmt::format("\"{}\"", sim::solver_kind(sim::solver(model)).name);
 }
 
 struct StatesFlags {

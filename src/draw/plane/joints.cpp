@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "draw/picture/joint_look.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::draw {
@@ -13,8 +14,6 @@ namespace {
 constexpr double kStop = 9;   // page units: half a rail's end
 constexpr int kPieces = 24;   // of a rope that sags
 constexpr double kFar = 1e4;  // page units: a rail without an end
-
-using sim::JointKind;
 
 Point hanging(const Point& a, const Point& b, const Point& down, double sag, double u) {
   return a + u * (b - a) + 4 * sag * u * (1 - u) * down;
@@ -56,7 +55,7 @@ void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, 
   const double weight = stage.layout.weight;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
-    if (joint.kind != JointKind::slider || now.joints[i].broken) continue;
+    if (joint_look(joint.kind).plane != JointMark::rail || now.joints[i].broken) continue;
     const double angle = joint.b < 0 ? 0 : now.bodies[joint.b].angle;
     const double s = std::sin(angle), c = std::cos(angle);
     const Point along(c * joint.axis.x() - s * joint.axis.y(), -(s * joint.axis.x() + c * joint.axis.y()));
@@ -82,8 +81,8 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
-    const bool rope = joint.kind == JointKind::rope;
-    if ((joint.kind != JointKind::rod && !rope) || now.joints[i].broken) continue;
+    const bool rope = joint_look(joint.kind).plane == JointMark::rope;
+    if (!spans(joint_look(joint.kind).plane) || now.joints[i].broken) continue;
     const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
     const double width = (rope ? kRope : kRod) * weight, whole = joint.length * view.scale;
     nodes.clear();
@@ -99,7 +98,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
   // made fast to the room, or to a point of a body
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
-    if ((joint.kind != JointKind::rod && joint.kind != JointKind::rope) || now.joints[i].broken) continue;
+    if (!spans(joint_look(joint.kind).plane) || now.joints[i].broken) continue;
     for (const auto& [body, at] :
          {std::pair(joint.a, now.joints[i].a), std::pair(joint.b, now.joints[i].b)}) {
       const double radius = (body < 0 ? kPin : kJoint) * weight;
@@ -112,7 +111,7 @@ void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, L
   const double weight = stage.layout.weight;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
-    if (joint.kind != JointKind::pin || now.joints[i].broken) continue;
+    if (joint_look(joint.kind).plane != JointMark::dot || now.joints[i].broken) continue;
     const Point at = view.page(now.joints[i].a);
     const double radius = std::max(std::min(kPin * weight, 0.7 * room_for(stage, view, joint)), 1.6 * weight);
     if (outside(view.window, at, radius)) continue;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "draw/picture/joint_look.h"
 #include "draw/space/space.h"
 
 namespace obscura::draw {
@@ -111,10 +112,12 @@ void add_links(SpaceFrame& s) {
     const sim::SceneInfo::Joint& joint = cast.joints[i];
     const sim::Snapshot::Joint& at = s.now.joints[i];
     if (at.broken) continue;
-    switch (joint.kind) {
-      case sim::JointKind::rod:
-      case sim::JointKind::rope: {
-        const bool rope = joint.kind == sim::JointKind::rope;
+    switch (const JointMark mark = joint_look(joint.kind).space; mark) {
+      case JointMark::none:
+        break;
+      case JointMark::line:
+      case JointMark::rope: {
+        const bool rope = mark == JointMark::rope;
         const double radius = 0.5 * (rope ? kRope : kRod) * weight * metre;
         const Vec3 down = cast.gravity.norm() > 0 ? Vec3(cast.gravity.normalized()) : Vec3(-Vec3::UnitY());
         const bool slack = rope && joint.length > (at.b - at.a).norm() * (1 + 1e-6);
@@ -126,7 +129,7 @@ void add_links(SpaceFrame& s) {
         knob(joint.b, at.b, joint.b < 0 ? kPin : kJoint);
         break;
       }
-      case sim::JointKind::slider: {
+      case JointMark::rail: {
         const Eigen::Matrix3d turn = joint.b < 0 ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
                                                  : s.now.bodies[joint.b].orientation.toRotationMatrix();
         const Vec3 along = turn * joint.axis;
@@ -137,7 +140,7 @@ void add_links(SpaceFrame& s) {
                  0.5 * kSpringLine * weight * metre, s.stage.colours.hatch, number);
         break;
       }
-      default:
+      case JointMark::dot:
         add_ball(s, at.a, 0.8 * kPin * weight * metre, color, number);
         break;
     }

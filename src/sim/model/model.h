@@ -1,5 +1,6 @@
 #pragma once
 
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,7 +21,7 @@ enum class Integrator { rk4, midpoint, euler, semi_implicit };
 enum class Collision { handout, contact, event };
 
 /// The solver for contact forces (sim/model/contact.h). `automatic` decides from the scene.
-enum class Solver { automatic, direct, iterative };
+enum class Solver { automatic, direct, iterative, count };
 
 /// Which law holds for impacts in one instant: solved together, or one pair after another until none
 /// approaches.
@@ -77,7 +78,15 @@ struct Spring {
 /// The kinds of joint, by the relative motions of two ends that they forbid. Numbers of rows: weld D +
 /// D(D-1)/2, pin D, slider and hinge one less than a weld, rod and rope one. In space a pin is a ball joint;
 /// in the plane a pin and a hinge are the same.
-enum class JointKind { pin, weld, slider, rod, rope, hinge };
+enum class JointKind { pin, weld, slider, rod, rope, hinge, count };
+inline constexpr int kJointKinds = int(JointKind::count);
+
+/// Whether a table has one row for each kind of joint, in the order of JointKind.
+constexpr bool in_order(const auto& table) {
+  for (int i = 0; i < int(std::size(table)); ++i)
+    if (table[i].kind != JointKind(i)) return false;
+  return std::size(table) == std::size_t(kJointKinds);
+}
 
 /// A joint between two bodies, or a body and the room, as it stood at the start.
 template <int D>

@@ -42,7 +42,7 @@ std::vector<double> offsets([[maybe_unused]] const Chain<D>& chain) {
   return all;
 }
 
-// the joint type of a chain for a joint of the scene
+// the joint type of a chain for a joint of the scene; joints of all other kinds stay as they are
 template <int D>
 std::optional<JointType> freedom(JointKind kind) {
   switch (kind) {
@@ -54,11 +54,9 @@ std::optional<JointType> freedom(JointKind kind) {
       return JointType::prismatic;
     case JointKind::weld:
       return JointType::weld;
-    case JointKind::rod:
-    case JointKind::rope:
-      break;
+    default:
+      return {};
   }
-  return {};
 }
 
 // the turn and then the place of a body, as the numbers of what flies

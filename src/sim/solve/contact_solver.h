@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "sim/model/path.h"
@@ -70,6 +72,21 @@ class ContactSolver {
   /// Puts to sleep what rests.
   virtual void sleep(StepPart<D>) {}
 };
+
+/// A contact solver as scenes name it. To add one: a class that overrides the stages above, a name in Solver,
+/// and a row in the table of sim/step/make_contact_solver.cpp, without which it does not compile.
+struct SolverKind {
+  Solver kind;
+  std::string_view name;  // the word of `physics.solver`
+  std::string_view doc;   // what follows the name on the page of keys
+  bool exact;             // events, chains in reduced coordinates, energy without an allowance
+};
+
+/// All solvers, in the order of Solver from `direct` on.
+std::span<const SolverKind> solver_kinds();
+
+/// The row of a solver. Requires one that is not `automatic`.
+const SolverKind& solver_kind(Solver solver);
 
 /// The largest number of bodies for which the direct solver is chosen by default: moving bodies that have an
 /// extent, and points. A few hundred rows if all lie in one heap; fewer in space, where faces have more

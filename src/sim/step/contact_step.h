@@ -26,7 +26,7 @@ class ContactStep {
   void take_energy_back(State<D>& state);
 
   const Model<D>& model_;
-  bool direct_;
+  bool exact_;
   std::unique_ptr<ContactSolver<D>> solver_;
   EnergyGuard<D> energy_guard_;
   std::unique_ptr<LoneBodies<D>> lone_bodies_;  // beside a solver for many

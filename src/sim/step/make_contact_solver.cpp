@@ -1,5 +1,8 @@
 #include "sim/solve/contact_solver.h"
 
+#include <array>
+#include <iterator>
+
 #include "sim/solve/exact/exact.h"
 #include "sim/solve/iterate/plane.h"
 #include "sim/solve/iterate/space.h"
@@ -8,15 +11,62 @@ namespace obscura::sim {
 
 namespace {
 
-// the solver for many bodies
-std::unique_ptr<ContactSolver<2>> iterative(const Model<2>& model, const std::vector<Path<2>>& paths) {
-  return std::make_unique<PlaneIterative<2>>(model, paths);
-}
-std::unique_ptr<ContactSolver<3>> iterative(const Model<3>& model, const std::vector<Path<3>>& paths) {
-  return std::make_unique<SpaceIterative<3>>(model, paths);
+template <int D>
+using Make = std::unique_ptr<ContactSolver<D>>(const Model<D>& model, const std::vector<Path<D>>& paths);
+
+template <class S, int D>
+std::unique_ptr<ContactSolver<D>> make(const Model<D>& model, const std::vector<Path<D>>& paths) {
+  return std::make_unique<S>(model, paths);
 }
 
+// how each solver is made, in the order of Solver
+struct Maker {
+  Make<2>* plane;
+  Make<3>* space;
+
+  template <int D>
+  constexpr auto* maker() const {
+    if constexpr (D == 2) {
+      return plane;
+    } else {
+      return space;
+    }
+  }
+};
+
+struct Entry {
+  SolverKind its;
+  Maker made_by;
+};
+
+constexpr Entry kEntries[] = {
+    {{Solver::direct, "direct", "is exact, for up to some hundred contacts", true},
+     {make<ExactSolver<2>>, make<ExactSolver<3>>}},
+    {{Solver::iterative, "iterative", "is for thousands of bodies", false},
+     {make<PlaneIterative<2>>, make<SpaceIterative<3>>}},
+};
+
+constexpr auto kKinds = [] {
+  std::array<SolverKind, std::size(kEntries)> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = kEntries[i].its;
+  return all;
+}();
+
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kKinds.size(); ++i)
+        if (kKinds[i].kind != Solver(i + 1)) return false;
+      return kKinds.size() + 1 == std::size_t(Solver::count);
+    }(),
+    "each solver has a row, in the order of Solver");
+
+constexpr std::size_t place(Solver solver) { return std::size_t(solver) - 1; }
+
 }  // namespace
+
+std::span<const SolverKind> solver_kinds() { return kKinds; }
+
+const SolverKind& solver_kind(Solver solver) { return kKinds[place(solver)]; }
 
 template <int D>
 BodyCounts body_counts(const Model<D>& model) {
@@ -39,8 +89,7 @@ Solver solver(const Model<D>& model) {
 template <int D>
 std::unique_ptr<ContactSolver<D>> make_contact_solver(const Model<D>& model,
                                                       const std::vector<Path<D>>& paths) {
-  if (solver(model) == Solver::direct) return std::make_unique<ExactSolver<D>>(model, paths);
-  return iterative(model, paths);
+  return kEntries[place(solver(model))].made_by.template maker<D>()(model, paths);
 }
 
 template BodyCounts body_counts<2>(const Model<2>&);

@@ -57,10 +57,15 @@ inline double angle_about_axis(const JointPose<3>& at, Row<3>& J) {
 }
 
 template <int D>
-inline constexpr JointEquations<D> kHinge = {
-    .kind = JointKind::hinge, .rows = 5, .hold = hold_axis, .coordinate = angle_about_axis};
+inline constexpr JointEquations<D> kHinge = {.kind = JointKind::hinge,
+                                             .rows = 5,
+                                             .axis = true,
+                                             .turning = true,
+                                             .angle = true,
+                                             .hold = hold_axis,
+                                             .coordinate = angle_about_axis};
 template <>
 inline constexpr JointEquations<2> kHinge<2> = {
-    .kind = JointKind::hinge, .rows = 2, .hold = hold_point<2>, .coordinate = plane_angle};
+    .kind = JointKind::hinge, .rows = 2, .angle = true, .hold = hold_point<2>, .coordinate = plane_angle};
 
 }  // namespace obscura::sim

@@ -1,6 +1,7 @@
 #include "sim/constraint/joints/joint.h"
 
-#include <cassert>
+#include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "sim/constraint/joints/hinge.h"
@@ -15,10 +16,12 @@ namespace obscura::sim {
 // in the order of JointKind
 template <int D>
 const JointEquations<D>& equations(JointKind kind) {
-  static constexpr JointEquations<D> kTable[] = {kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>};
-  const JointEquations<D>& found = kTable[std::size_t(kind)];
-  assert(found.kind == kind && found.rows <= kMostHeld<D>);
-  return found;
+  static constexpr auto kTable =
+      std::to_array<JointEquations<D>>({kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>});
+  static_assert(in_order(kTable) && std::ranges::all_of(kTable, [](const auto& its) {
+                  return its.hold && its.rows <= kMostHeld<D>;
+                }));
+  return kTable[std::size_t(kind)];
 }
 
 template <int D>

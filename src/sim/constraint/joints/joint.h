@@ -1,8 +1,10 @@
 #pragma once
 
 // Joints: the relative motions of two bodies that they forbid, C(q) = 0 row by row, and those that they leave
-// free. To add one: a file beside pin.h, a name in JointKind and a row in the table of joint.cpp. All
-// solvers, limits, motors, dry friction and breaking work from the rows:
+// free. To add one: a file beside pin.h, a name in JointKind, and a row in each of three tables, without
+// which it does not compile: joint.cpp here, its word in scene/joint_words.h, its look in
+// draw/picture/joint_look.h. All solvers, limits, motors, dry friction, breaking, messages and the page of
+// keys work from these:
 //   limit     lower <= c <= upper              a row along the free coordinate c, of one sign
 //   motor     c' = speed, |f| <= most          the same row, bounded both ways; friction: c' = 0, |f| <=
 //   friction breaks    |sum of f_i s_i| > breaks        s_i  linear part of row i: the force of its rows, N
@@ -28,6 +30,10 @@ struct JointEquations {
   JointKind kind = JointKind::pin;
   int rows = 0;            // equations, at most kMostHeld<D>
   bool one_sided = false;  // C >= 0 (m) instead of C = 0
+  bool apart = false;      // its ends are a length apart; else they start at one place
+  bool axis = false;       // it has an axis, fixed in b
+  bool turning = false;    // both of its bodies must be able to turn
+  bool angle = false;      // its free coordinate is an angle (rad); else a distance (m)
   /// Writes J and C (m or rad), one a row.
   void (*hold)(const JointPose<D>& at, Row<D>* J, double* C) = nullptr;
   /// Writes J of the free coordinate and returns its value, m or rad. Null: the joint has none that it can

@@ -40,6 +40,6 @@ template <int D>
 inline constexpr JointEquations<D> kPin = {.kind = JointKind::pin, .rows = D, .hold = hold_point<D>};
 template <>
 inline constexpr JointEquations<2> kPin<2> = {
-    .kind = JointKind::pin, .rows = 2, .hold = hold_point<2>, .coordinate = plane_angle};
+    .kind = JointKind::pin, .rows = 2, .angle = true, .hold = hold_point<2>, .coordinate = plane_angle};
 
 }  // namespace obscura::sim

@@ -29,6 +29,7 @@ void hold_length(const JointPose<D>& at, Row<D>* J, double* C) {
 }
 
 template <int D>
-inline constexpr JointEquations<D> kRod = {.kind = JointKind::rod, .rows = 1, .hold = hold_length<D>};
+inline constexpr JointEquations<D> kRod = {
+    .kind = JointKind::rod, .rows = 1, .apart = true, .hold = hold_length<D>};
 
 }  // namespace obscura::sim

@@ -18,6 +18,6 @@ void hold_slack(const JointPose<D>& at, Row<D>* J, double* C) {
 
 template <int D>
 inline constexpr JointEquations<D> kRope = {
-    .kind = JointKind::rope, .rows = 1, .one_sided = true, .hold = hold_slack<D>};
+    .kind = JointKind::rope, .rows = 1, .one_sided = true, .apart = true, .hold = hold_slack<D>};
 
 }  // namespace obscura::sim

@@ -40,6 +40,8 @@ double way_of_slider(const JointPose<D>& at, Row<D>& J) {
 template <int D>
 inline constexpr JointEquations<D> kSlider = {.kind = JointKind::slider,
                                               .rows = D - 1 + kAngular<D>,
+                                              .axis = true,
+                                              .turning = true,
                                               .hold = hold_line<D>,
                                               .coordinate = way_of_slider<D>};
 

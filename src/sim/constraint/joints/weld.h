@@ -38,6 +38,6 @@ void hold_pose(const JointPose<D>& at, Row<D>* J, double* C) {
 
 template <int D>
 inline constexpr JointEquations<D> kWeld = {
-    .kind = JointKind::weld, .rows = D + kAngular<D>, .hold = hold_pose<D>};
+    .kind = JointKind::weld, .rows = D + kAngular<D>, .turning = true, .hold = hold_pose<D>};
 
 }  // namespace obscura::sim
