@@ -49,14 +49,14 @@ void expect_table(const std::string& name, bool rods, double first, double secon
     World<2> world = hung(2, 1, 1, rods);
     world.model.collision = collision;
     world.model.rate = {rate, 1};
-    world.state.postures[0].q = {first, second - first};
+    world.state.chain_states[0].q = {first, second - first};
     const auto allowed = rk4_errors(name, rate);
     State<2> state = world.state;
     Stepper<2> stepper(world.model);
     stepper.begin(state);
     for (const auto& row : table(name + ".csv")) {
       while (state.step < std::lround(row[0] * rate)) ASSERT_FALSE(stepper.step(state));
-      const auto& [q, v] = state.postures[0];
+      const auto& [q, v] = state.chain_states[0];
       const double got[4] = {q[0], q[0] + q[1], v[0], v[0] + v[1]};
       double worst = 0;
       for (int k = 0; k < 4; ++k) worst = std::max(worst, std::abs(got[k] - row[1 + k]));
@@ -87,7 +87,7 @@ double energy_error(double amplitude, int rate) {
   Stepper<2> stepper(world.model);
   stepper.begin(state);
   const double hanging = total_energy(world, state);
-  state.postures[0].q[0] = amplitude;
+  state.chain_states[0].q[0] = amplitude;
   stepper.begin(state);
   const double start = total_energy(world, state);
   double worst = 0;
@@ -124,8 +124,8 @@ World<2> flat_figure() {
   part(0, {0.3, 0.08}, 2, {-0.15, 0.28}, {0.15, 0});
   part(3, {0.28, 0.08}, 1.5, {-0.15, 0}, {0.14, 0});
   articulate(world, links, bodies);
-  world.state.postures[0].q = {0.3, 1, 1.5, 0.2, -0.4, 0.5, 0.1};
-  world.state.postures[0].v = {2, 3, 4, 1.5, -2, 1, 2.5};
+  world.state.chain_states[0].q = {0.3, 1, 1.5, 0.2, -0.4, 0.5, 0.1};
+  world.state.chain_states[0].v = {2, 3, 4, 1.5, -2, 1, 2.5};
   return world;
 }
 
@@ -180,7 +180,7 @@ TEST(Articulated, AFigureThatFliesInSpaceKeepsItsMomenta) {
   }
   articulate(world, links, bodies);
   double at = 0.3;
-  for (double& v : world.state.postures[0].v) v = 2 * std::sin(at), at += 1.7;
+  for (double& v : world.state.chain_states[0].v) v = 2 * std::sin(at), at += 1.7;
   expect_kept(world, 1000, 3, 1e-8);
 }
 
@@ -204,7 +204,7 @@ World<2> pulled(Collision collision) {
     links.back().joint.damping = 0.05;
   }
   const std::vector<int> bodies = world.model.chains[0].bodies;
-  world.model.chains.clear(), world.state.postures.clear();
+  world.model.chains.clear(), world.state.chain_states.clear();
   articulate(world, links, bodies);
   world.model.mice.push_back(
       {{{{1, 10}, {0.1, -2}}, {{1003, 1000}, {1, -1.5}}, {{2, 1}, {1, -1.5}}, {{11, 1}, {1, -1.5}}},
@@ -239,7 +239,7 @@ TEST(Articulated, EveryFrameRateSeesOneTrajectory) {
       EXPECT_EQ(all->words(), first) << text(fps);
     }
     World<2> other = pulled(collision);
-    other.state.postures[0].v[3] = 1e-9;
+    other.state.chain_states[0].v[3] = 1e-9;
     const auto all = run(other);
     shown(*all, {2, 1});
     EXPECT_NE(all->words(), first) << "the joints must be told";
@@ -249,7 +249,7 @@ TEST(Articulated, EveryFrameRateSeesOneTrajectory) {
 TEST(Articulated, APartialStepIsPartOfTheWay) {
   World<2> world = hung(3, 0.5, 1, true);
   world.model.rate = {100, 1};
-  world.state.postures[0].q = {1, 0.5, -0.5};
+  world.state.chain_states[0].q = {1, 0.5, -0.5};
   const auto coarse = run(world);
   world.model.rate = {1000, 1};
   const auto fine = run(world);
@@ -266,7 +266,7 @@ TEST(Articulated, ALinkStandsAsItsFramesSay) {
   link.joint.on_parent = {rotation<2>(Orientation<2>(2.9)), {1, 2}};
   link.joint.on_link = {rotation<2>(Orientation<2>(-0.7)), {0.5, 0}};
   articulate(world, {link}, {body});
-  world.state.postures[0].q = {4 * std::acos(-1.0)};
+  world.state.chain_states[0].q = {4 * std::acos(-1.0)};
   const State<2> state = stepped(world, 0);
   EXPECT_NEAR(state.turn[0][0], 2.9 + 0.7 + 4 * std::acos(-1.0), 1e-14) << "rounds count";
   EXPECT_LE((place(state, End<2>{body, {0.5, 0}}) - Vec2(1, 2)).norm(), 1e-14);

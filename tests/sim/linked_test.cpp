@@ -222,7 +222,7 @@ TEST(Linked, WhatHasFallenLiesStillAndWakes) {
   for (int i = 0; i < 600; ++i) ASSERT_FALSE(stepper.step(state));
   EXPECT_EQ(state.x, resting.x);
   EXPECT_EQ(state.turn, resting.turn);
-  EXPECT_EQ(state.postures, resting.postures);
+  EXPECT_EQ(state.chain_states, resting.chain_states);
   Vec2 carried(0, 0);
   for (const auto& contact : state.contacts) {
     if (contact.key.a < 5 && contact.key.b < 0) carried += contact.force;

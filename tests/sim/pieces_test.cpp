@@ -90,7 +90,7 @@ TEST(Bonds, BearWhatKeepsThemTurning) {
     world.state.v[0] = {0, -2 * w, 0}, world.state.v[1] = {0, w, 0};
     world.model.bonds.push_back({0, 1, load / over});
     const State<3> now = stepped(world, 100);
-    EXPECT_EQ(int(now.holds[0]), over < 1 ? 1 : 0);
+    EXPECT_EQ(int(now.intact[0]), over < 1 ? 1 : 0);
     const double apart = (now.x[0] - now.x[1]).norm();
     if (over < 1) {
       EXPECT_NEAR(apart, 3, 1e-12);
@@ -110,13 +110,13 @@ TEST(Bonds, ThatBreakLoseNothing) {
   stepper.begin(state);
   const Vec3 p = momentum(world.model, state), L = angular_momentum(world.model, state);
   const double energy = kinetic(world.model, state);
-  std::size_t bodies = state.whole[0].x.size();
+  std::size_t bodies = state.bonded[0].x.size();
   EXPECT_EQ(bodies, 1u);
   bool broke = false;
   for (int i = 0; i < 500; ++i) {
     ASSERT_FALSE(stepper.step(state));
-    broke = broke || state.whole[0].x.size() > bodies;
-    bodies = state.whole[0].x.size();
+    broke = broke || state.bonded[0].x.size() > bodies;
+    bodies = state.bonded[0].x.size();
     ASSERT_LE((momentum(world.model, state) - p).norm(), 1e-11 * p.norm()) << i;
     ASSERT_LE((angular_momentum(world.model, state) - L).norm(), 1e-9 * L.norm()) << i;
     ASSERT_NEAR(kinetic(world.model, state), energy, 1e-9 * energy) << i;
@@ -137,7 +137,7 @@ TEST(Bonds, BearWhatABlastPushesOnePartMore) {
     explosion.strength = 10;
     world.model.explosions.push_back(explosion);
     world.model.bonds.push_back({0, 1, load / over});
-    EXPECT_EQ(int(stepped(world, 10).holds[0]), over < 1 ? 1 : 0) << over;
+    EXPECT_EQ(int(stepped(world, 10).intact[0]), over < 1 ? 1 : 0) << over;
     const State<3> now = stepped(world, 10000);
     if (over < 1) {
       EXPECT_NEAR(now.x[1][0] - now.x[0][0], 1, 1e-12);
@@ -158,7 +158,7 @@ TEST(Bonds, BearTheirShareOfABlow) {
       add_particle(world, {0, 0.5}, {0, -v}, m1, e, 0.1), add_particle(world, {0, 0.75}, {0, -v}, m2, e, 0.1);
       world.model.bonds.push_back({0, 1, through / 0.002 / over, 0.002});
       const State<2> now = stepped(world, 300);
-      EXPECT_EQ(int(now.holds[0]), over < 1 ? 1 : 0) << int(collision) << " " << over;
+      EXPECT_EQ(int(now.intact[0]), over < 1 ? 1 : 0) << int(collision) << " " << over;
       EXPECT_NEAR(now.v[1][1], e * v, 1e-9);
       EXPECT_NEAR(now.v[0][1], e * v, 1e-9);
     }
@@ -181,7 +181,7 @@ TEST(Bonds, HoldABeamInTheRoomUntilItIsTooLong) {
     const double torque = m * 9.81 * a * (0.5 + 1.5 + 2.5), force = 3 * m * 9.81;
     world.model.bonds[0].strength = std::hypot(force, torque / l) / over;
     const State<2> now = stepped(world, 100);
-    EXPECT_EQ(int(now.holds[0]), over < 1 ? 1 : 0) << over;
+    EXPECT_EQ(int(now.intact[0]), over < 1 ? 1 : 0) << over;
     EXPECT_EQ(now.x[0], Vec2(0, 2));
     if (over < 1) {
       EXPECT_EQ(now.x[3], Vec2(1.5, 2));
@@ -196,20 +196,20 @@ TEST(Bonds, HoldABeamInTheRoomUntilItIsTooLong) {
 // a bridge of three cubes between two bonds to the room: what is symmetric breaks symmetrically, and neither
 // bond bears less than half the weight of the middle
 TEST(Bonds, InALoopShareTheLoad) {
-  const auto holds = [](double strength) {
+  const auto intact = [](double strength) {
     World<2> world = room();
     world.model.scale = 4;
     for (int i = 0; i < 3; ++i) add_box(world, {0.5, 0.5}, 5, {0.5 * (i - 1), 2});
     world.model.bonds = {{0, -1, 1e300}, {2, -1, 1e300}, {0, 1, strength}, {2, 1, strength}};
     const State<2> now = stepped(world, 1);
-    EXPECT_EQ(now.holds[2], now.holds[3]) << strength;
-    EXPECT_EQ(int(now.holds[0]), 1);
-    return now.holds[2] != 0;
+    EXPECT_EQ(now.intact[2], now.intact[3]) << strength;
+    EXPECT_EQ(int(now.intact[0]), 1);
+    return now.intact[2] != 0;
   };
   const double half = 5 * 9.81 / 2;
-  EXPECT_FALSE(holds(0.999 * half));
+  EXPECT_FALSE(intact(0.999 * half));
   // at most as beams would: with the torque of half the weight over the half spacing
-  EXPECT_TRUE(holds(1.001 * half * std::sqrt(2.0)));
+  EXPECT_TRUE(intact(1.001 * half * std::sqrt(2.0)));
 }
 
 TEST(Bonds, BreakAtTheSameStepAtEveryFrameRateAndCutInTwo) {
@@ -234,7 +234,7 @@ TEST(Bonds, BreakAtTheSameStepAtEveryFrameRateAndCutInTwo) {
     for (const int first : {300, 510, 700})
       EXPECT_EQ(words(stepped(World<3>{world.model, stepped(world, first)}, 1000 - first)), want) << first;
     const State<3> end = stepped(world, 1000);
-    EXPECT_GT(end.whole[0].x.size(), 1u);
+    EXPECT_GT(end.bonded[0].x.size(), 1u);
     for (const Vec3& x : end.x) EXPECT_TRUE(x.allFinite());
   }
 }
@@ -254,7 +254,7 @@ TEST(Bonds, LetAPileOfThePlaneRestAsOne) {
     for (int i = 0; i < 4; ++i) {
       EXPECT_LE((now.x[i] - Vec2(0.5 * (i % 2), 0.25 + 0.5 * (i / 2))).norm(), 1e-5) << int(solver) << i;
       EXPECT_LE(now.v[i].norm(), 1e-6) << int(solver);
-      EXPECT_EQ(int(now.holds[i]), 1);
+      EXPECT_EQ(int(now.intact[i]), 1);
     }
     EXPECT_FALSE(now.contacts.empty());
     for (const Contact<2>& contact : now.contacts) EXPECT_LT(contact.key.a, 2) << "the lower ones stand";

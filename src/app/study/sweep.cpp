@@ -47,8 +47,8 @@ struct SweepFlags {
   gl::ContextOptions context;  // of pictures
 };
 
-// a run's row, and how the run ended
-struct Row {
+// the line of a run in the table, and the exit code of the run
+struct RunResult {
   std::string line;
   int exit = kDone;
 };
@@ -90,11 +90,11 @@ class Sweep {
   std::string head() const { return app::head(form_, heads_); }
 
   /// The row of run `run`, from 0. Throws Interrupted; UsageError if the run does not have what is measured.
-  Row row(std::int64_t run) const {
+  RunResult row(std::int64_t run) const {
     Answers found;
     found.values.resize(asked_.size());
     std::string trouble;
-    Row made;
+    RunResult made;
     try {
       found = answers(scene::parse(text_, file_, variations_.sets(run, sets_)), asked_);
       if (found.trouble) trouble = app::text(*found.trouble), made.exit = kDiverged;
@@ -199,13 +199,13 @@ int sweep(SweepFlags flags) {
   if (!flags.out && isatty(STDOUT_FILENO) == 1) rows.emplace();
   std::int64_t next = from, done = from;
   std::int64_t diverged = 0, refused = 0;
-  Conduct<std::int64_t, Row> parts;
+  Conduct<std::int64_t, RunResult> parts;
   parts.produce = [&]() -> std::optional<std::int64_t> {
     if (next == end || interrupted()) return {};
     return next++;
   };
   parts.hire = [&] { return [&](std::int64_t run) { return all.row(run); }; };
-  parts.consume = [&](const Row& row) {
+  parts.consume = [&](const RunResult& row) {
     file.add(row.line);
     diverged += row.exit == kDiverged, refused += row.exit == kScene || row.exit == kUsage;
     ++done;

@@ -245,7 +245,7 @@ double EnergyGuard<D>::take_back(State<D>& state, bool lower) {
   for (std::size_t i = 0; i < model_.chains.size(); ++i) {
     const Island& it = sums_[islands_.root(model_.chains[i].bodies[0])];
     if (it.keeps == 1) continue;
-    for (double& v : state.postures[i].v) v *= it.keeps;
+    for (double& v : state.chain_states[i].v) v *= it.keeps;
   }
   return left;
 }

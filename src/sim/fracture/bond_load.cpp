@@ -87,7 +87,7 @@ bool BondLoads<D>::snap(State<D>& state, const Model<D>& whole, const std::vecto
   std::vector<std::vector<int>> parts(whole.bodies.size()), bonds(whole.bodies.size());
   bool breakable = false;
   for (int k = 0; k < int(model_.bonds.size()); ++k) {
-    if (!state.holds[k]) continue;
+    if (!state.intact[k]) continue;
     bonds[body[model_.bonds[k].a]].push_back(k);
     breakable = breakable || model_.bonds[k].strength < 1e300;
   }
@@ -97,7 +97,7 @@ bool BondLoads<D>::snap(State<D>& state, const Model<D>& whole, const std::vecto
   bool any = false;
   for (int i = 0; i < int(whole.bodies.size()); ++i) {
     if (bonds[i].empty()) continue;
-    any = snap(state, {whole.bodies[i], body_motion(state.whole[0], i), parts[i], bonds[i]}) || any;
+    any = snap(state, {whole.bodies[i], body_motion(state.bonded[0], i), parts[i], bonds[i]}) || any;
   }
   return any;
 }
@@ -258,7 +258,7 @@ bool BondLoads<D>::break_overloaded(State<D>& state, const Composite& it,
     Eigen::VectorXd all(rows);
     for (int r = 0; r < rows; ++r) all[r] = load(rows * b + r, 0) + load(rows * b + r, 1) / bond.blow;
     loads_[k] = std::sqrt(all.squaredNorm());
-    if (loads_[k] > bond.strength) state.holds[k] = 0, any = true;
+    if (loads_[k] > bond.strength) state.intact[k] = 0, any = true;
   }
   return any;
 }

@@ -18,7 +18,7 @@ class BondLoads {
   /// Both are kept by reference.
   BondLoads(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// Breaks the bonds of `state` that are loaded beyond their strength: clears their `holds`. `whole`: the
+  /// Breaks the bonds of `state` that are loaded beyond their strength: clears their `intact`. `whole`: the
   /// model of the bonded bodies; `body`: for each part, its body there. Returns whether any broke.
   bool snap(State<D>& state, const Model<D>& whole, const std::vector<int>& body, double t);
 

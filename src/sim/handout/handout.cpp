@@ -226,7 +226,7 @@ bool Handout<D>::meet(Striker& s, int wall) {
   }
   // if a face has more vertices than are solved together, take every second one, or third, ...
   const int stride = (int(met_.size()) + kMostRows - 1) / kMostRows;
-  Row rows[kMostRows];
+  PointAtWall rows[kMostRows];
   int n = 0;
   for (std::size_t i = 0; i < met_.size(); i += stride) {
     const Vec<D> r = arm(s, met_[i], w);
@@ -241,7 +241,7 @@ template <int D>
 void Handout<D>::meet_all(Striker& s) {
   const double span = bounding_radius_[s.body - model_.bodies.data()];
   const double near = std::max(kTogether * span, kOutside * model_.scale);
-  Row rows[kMostRows];
+  PointAtWall rows[kMostRows];
   int n = 0;
   for (int wall = 0; wall < int(model_.walls.size()); ++wall) {
     const Wall<D>& w = model_.walls[wall];
@@ -256,7 +256,7 @@ void Handout<D>::meet_all(Striker& s) {
 }
 
 template <int D>
-void Handout<D>::strike(Striker& s, const Row* rows, int n, int rank) {
+void Handout<D>::strike(Striker& s, const PointAtWall* rows, int n, int rank) {
   const Body<D>& body = *s.body;
   const auto respond = [&](const AngularVec<D>& turn) {
     return angular_response<D>(body, s.at.room_from_body, turn);

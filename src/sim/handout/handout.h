@@ -40,8 +40,8 @@ class Handout {
     int wall, point;
     Vec<D> impulse;
   };
-  // a point at a wall that both takes part in one solution
-  struct Row {
+  // a point of the body that is solved at a wall, together with others
+  struct PointAtWall {
     int wall, point;
     Vec<D> arm;
     AngularVec<D> turn;  // arm x normal
@@ -55,7 +55,7 @@ class Handout {
   bool extended(Striker& s);
   bool meet(Striker& s, int wall);
   void meet_all(Striker& s);
-  void strike(Striker& s, const Row* rows, int n, int rank);
+  void strike(Striker& s, const PointAtWall* rows, int n, int rank);
   void put_inside(Striker& s) const;
   void hit(int wall, int point, const Vec<D>& impulse);
 

@@ -63,7 +63,7 @@ std::vector<std::uint64_t> words(const State<D>& state) {
   for (const char broken : state.broken) w.integer(broken);
   w.list(state.joint_forces);
   if constexpr (D == 3) {
-    for (const BodySpin<D>& own : state.own) {
+    for (const BodySpin<D>& own : state.body_spin) {
       w.template numbers<kAngular<D>>(own.w);
       w.template numbers<kAngular<D>>(own.residual);
     }
@@ -73,17 +73,17 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     w.list(blast.forces);
     w.list(blast.torques);
   }
-  for (const ChainState& posture : state.postures) {
+  for (const ChainState& posture : state.chain_states) {
     for (const double x : posture.q) w.number(x);
     for (const double x : posture.v) w.number(x);
   }
-  for (const char holds : state.holds) w.integer(holds);
-  for (const Seat<D>& seat : state.seats) {
-    w.template numbers<D>(seat.x);
-    w.template numbers<Orientation<D>::RowsAtCompileTime>(seat.turn);
+  for (const char intact : state.intact) w.integer(intact);
+  for (const PartPose<D>& pose : state.part_poses) {
+    w.template numbers<D>(pose.x);
+    w.template numbers<Orientation<D>::RowsAtCompileTime>(pose.turn);
   }
-  for (const State<D>& whole : state.whole) {
-    const std::vector<std::uint64_t> more = words(whole);
+  for (const State<D>& bonded : state.bonded) {
+    const std::vector<std::uint64_t> more = words(bonded);
     w.all.insert(w.all.end(), more.begin(), more.end());
   }
   w.number(state.ledger.displacement);

@@ -19,7 +19,7 @@ void take_spin(const State<D>& state, int k, bool whole, AngularVec<D>& base, do
   } else {
     const Rotation<D> axes = rotation<D>(state.turn[k]);
     BodySpin<D> own;
-    if (k < int(state.own.size())) own = state.own[k];
+    if (k < int(state.body_spin.size())) own = state.body_spin[k];
     if (to_room<D>(axes, own.w) != state.spin[k])
       own = {from_room<D>(axes, state.spin[k]), AngularVec<D>::Zero()};
     Eigen::Map<AngularVec<D>> given(v);
@@ -42,7 +42,7 @@ void give_spin(State<D>& state, int k, const Orientation<D>& from, const double*
   } else {
     const AngularVec<D> w = base + more;
     state.spin[k] = to_room<D>(rotation<D>(state.turn[k]), w);
-    if (k < int(state.own.size())) state.own[k] = {w, more - (w - base)};
+    if (k < int(state.body_spin.size())) state.body_spin[k] = {w, more - (w - base)};
   }
 }
 

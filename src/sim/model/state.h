@@ -29,10 +29,10 @@ struct Touch {
   bool operator==(const Touch&) const = default;
 };
 
-/// The spin of a body in space as the body sees it, and what rounding has taken from it since: near its
-/// middle axis a top doubles every error in a fraction of a second, that of rounding too. It counts while
-/// `spin` of the state is what it gives in the room's frame, to the bit; code that changes that or the turn
-/// need not know of it.
+/// The angular velocity of a body in space in its own frame, and the rounding error of its sum so far: near
+/// its middle axis a top doubles every error in a fraction of a second, that of rounding too. It is valid
+/// while the state's `spin` is the same in the room's frame, to the bit; code that changes that or the turn
+/// need not update it.
 template <int D>
 struct BodySpin {
   AngularVec<D> w = AngularVec<D>::Zero();         // rad/s
@@ -68,16 +68,16 @@ struct Blast {
   bool operator==(const Blast&) const = default;
 };
 
-/// How a part sits in the body that bonds make it part of: in that body's frame.
+/// The pose of a part in the frame of the bonded body that it belongs to.
 template <int D>
-struct Seat {
+struct PartPose {
   Vec<D> x = Vec<D>::Zero();  // m
   Orientation<D> turn = no_rotation<D>();
 
-  bool operator==(const Seat&) const = default;
+  bool operator==(const PartPose&) const = default;
 };
 
-/// How an articulated body stands and moves, in the numbers of its tree (sim/multibody/chain.h); the places
+/// Positions and velocities of a chain's joints, in the order of its tree (sim/multibody/chain.h); the poses
 /// of its bodies follow from them.
 struct ChainState {
   std::vector<double> q, v;
@@ -99,19 +99,19 @@ struct State {
   std::vector<Touch<D>> touches;     // of `handout`
   Ledger ledger;
   EnergyBudget energy_budget;
-  std::vector<BodySpin<D>> own;      // in space: one a body that turns
-  std::vector<Blast<D>> blasts;      // one an explosion
-  std::vector<ChainState> postures;  // one a chain of the model
+  std::vector<BodySpin<D>> body_spin;    // in space: one a body that turns
+  std::vector<Blast<D>> blasts;          // one an explosion
+  std::vector<ChainState> chain_states;  // one a chain of the model
 
   // bonded bodies (sim/step/bonded_bodies.h): all above is then about their parts, and this moves
-  std::vector<char> holds;        // one a bond
-  std::vector<Seat<D>> seats;     // one a body
-  std::vector<State> whole = {};  // one: of the bodies that the bonds make
+  std::vector<char> intact;             // one a bond: whether it is whole
+  std::vector<PartPose<D>> part_poses;  // one a body
+  std::vector<State> bonded = {};       // one: that of the bonded bodies
 
   // for `contact` and `event`
   std::vector<Contact<D>> contacts;  // sorted by key
-  std::vector<char> frozen;          // one a body: at rest by proof, steps leave it alone
-  std::vector<double> quiet;         // one a body: how long it has been still, s
+  std::vector<char> frozen;          // one a body: asleep, at rest by proof; steps leave it alone
+  std::vector<double> quiet;         // one a body: sleep timer, how long it has been still, s
   std::vector<char> broken;          // one a joint
   std::vector<Vec<D>> joint_forces;  // one a joint: on its a, N
 

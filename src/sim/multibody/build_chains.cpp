@@ -111,7 +111,7 @@ class Growing {
     articulate(world_, links_, members_);
     Articulation<D>& made = world_.model.chains.back();
     made.joints = held_;
-    ChainState& posture = world_.state.postures.back();
+    ChainState& posture = world_.state.chain_states.back();
     if (joint < 0) {
       std::vector<double> pose;
       put_pose(world_.state, root, pose);
@@ -201,7 +201,7 @@ void articulate(World<D>& world, std::vector<Link<D>> links, std::vector<int> bo
   assert(links.size() == bodies.size());
   for (const int body : bodies) world.model.bodies[body].linked = true;
   auto tree = std::make_shared<const Chain<D>>(std::move(links));
-  world.state.postures.push_back({tree->home(), std::vector<double>(std::size_t(tree->velocities()))});
+  world.state.chain_states.push_back({tree->home(), std::vector<double>(std::size_t(tree->velocities()))});
   std::vector<double> angles = offsets(*tree);
   std::vector<int> none(bodies.size(), -1);
   world.model.chains.push_back({std::move(tree), std::move(bodies), std::move(none), std::move(angles)});

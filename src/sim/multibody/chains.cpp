@@ -97,8 +97,8 @@ void Articulated<D>::load(const State<D>& state, std::span<double> v) {
   for (std::size_t i = 0; i < trees_.size(); ++i) {
     Tree& tree = trees_[i];
     if (!tree.awake) continue;
-    tree.q = state.postures[i].q;
-    std::copy(state.postures[i].v.begin(), state.postures[i].v.end(), tree.own(v).begin());
+    tree.q = state.chain_states[i].q;
+    std::copy(state.chain_states[i].v.begin(), state.chain_states[i].v.end(), tree.own(v).begin());
   }
 }
 
@@ -114,7 +114,7 @@ void Articulated<D>::stand(std::span<const double> d, std::span<const double> v)
 template <int D>
 void Articulated<D>::stand(const State<D>& state) {
   for (std::size_t i = 0; i < trees_.size(); ++i) {
-    if (trees_[i].awake) stand(trees_[i], state.postures[i].q, state.postures[i].v);
+    if (trees_[i].awake) stand(trees_[i], state.chain_states[i].q, state.chain_states[i].v);
   }
 }
 
@@ -220,7 +220,7 @@ void Articulated<D>::give(std::span<const double> d, std::span<const double> v, 
   for (std::size_t i = 0; i < trees_.size(); ++i) {
     Tree& tree = trees_[i];
     if (!tree.awake) continue;
-    ChainState& posture = state.postures[i];
+    ChainState& posture = state.chain_states[i];
     tree.chain().displace(tree.q, tree.own(d), posture.q);
     const std::span<const double> own = tree.own(v);
     std::copy(own.begin(), own.end(), posture.v.begin());
@@ -233,7 +233,7 @@ void Articulated<D>::jump(State<D>& state, std::span<const double> change, bool 
   for (std::size_t i = 0; i < trees_.size(); ++i) {
     const Tree& tree = trees_[i];
     if (!tree.awake) continue;
-    ChainState& posture = state.postures[i];
+    ChainState& posture = state.chain_states[i];
     const std::span<const double> own = tree.own(change);
     if (places) {
       tree.chain().displace(posture.q, own, posture.q);
@@ -248,7 +248,7 @@ void Articulated<D>::advance(const std::vector<ChainState>& begun, double h, Sta
   for (std::size_t i = 0; i < trees_.size(); ++i) {
     Tree& tree = trees_[i];
     if (!tree.awake) continue;
-    ChainState& posture = state.postures[i];
+    ChainState& posture = state.chain_states[i];
     for (std::size_t j = 0; j < posture.v.size(); ++j)
       tree.rate[j] = 0.5 * h * (begun[i].v[j] + posture.v[j]);
     tree.chain().displace(begun[i].q, tree.rate, posture.q);
@@ -260,7 +260,7 @@ template <int D>
 void Articulated<D>::follow(State<D>& state) {
   stand(state);
   for (std::size_t i = 0; i < trees_.size(); ++i) {
-    if (trees_[i].awake) show(trees_[i], state.postures[i].q, state);
+    if (trees_[i].awake) show(trees_[i], state.chain_states[i].q, state);
   }
 }
 
@@ -279,7 +279,7 @@ void Articulated<D>::show(const Tree& tree, std::span<const double> q, State<D>&
 
 template <int D>
 void follow(const Model<D>& model, State<D>& state) {
-  assert(state.postures.size() == model.chains.size());
+  assert(state.chain_states.size() == model.chains.size());
   if (!model.chains.empty()) Articulated<D>(model).follow(state);
 }
 

@@ -25,7 +25,7 @@ void articulate(World<D>& world, std::vector<Link<D>> links, std::vector<int> bo
 template <int D>
 void articulate(World<D>& world, const std::vector<int>& bodies);
 
-/// Puts the bodies of `state` where its postures have them.
+/// Puts the bodies of `state` by its chain_states.
 template <int D>
 void follow(const Model<D>& model, State<D>& state);
 
@@ -91,7 +91,7 @@ class Articulated {
   /// those in `begun`.
   void advance(const std::vector<ChainState>& begun, double h, State<D>& state);
 
-  /// Puts the links' bodies of `state` where its postures have them; stands there.
+  /// Puts the links' bodies of `state` by its chain_states; stands there.
   void follow(State<D>& state);
 
  private:

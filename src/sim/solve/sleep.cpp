@@ -345,7 +345,7 @@ void Sleep<D>::halt(State<D>& state, const Island& island) const {
   }
   for (std::size_t i = 0; i < model_.chains.size(); ++i) {
     if (std::binary_search(island.bodies.begin(), island.bodies.end(), model_.chains[i].bodies[0]))
-      std::fill(state.postures[i].v.begin(), state.postures[i].v.end(), 0.0);
+      std::fill(state.chain_states[i].v.begin(), state.chain_states[i].v.end(), 0.0);
   }
 }
 

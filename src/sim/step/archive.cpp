@@ -31,7 +31,7 @@ void fields(Visit& visit, Blast<D>& it) {
   visit(it.on), visit(it.forces), visit(it.torques);
 }
 template <class Visit, int D>
-void fields(Visit& visit, Seat<D>& it) {
+void fields(Visit& visit, PartPose<D>& it) {
   visit(it.x), visit(it.turn);
 }
 template <class Visit>
@@ -47,9 +47,10 @@ template <class Visit, int D>
 void fields(Visit& visit, State<D>& it) {
   visit(it.step), visit(it.beyond), visit(it.x), visit(it.v), visit(it.turn), visit(it.spin);
   visit(it.grips), visit(it.touches), visit(it.ledger.displacement), visit(it.ledger.impacts);
-  visit(it.energy_budget.level), visit(it.energy_budget.amount), visit(it.own), visit(it.blasts),
-      visit(it.postures);
-  visit(it.holds), visit(it.seats), visit(it.whole), visit(it.contacts), visit(it.frozen), visit(it.quiet);
+  visit(it.energy_budget.level), visit(it.energy_budget.amount), visit(it.body_spin), visit(it.blasts),
+      visit(it.chain_states);
+  visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
+      visit(it.quiet);
   visit(it.broken), visit(it.joint_forces);
 }
 
@@ -156,21 +157,21 @@ bool fits(const State<D>& state, const Model<D>& model) {
 
   bool good = state.step >= 0 && state.step < kMostSteps && state.beyond == 0 && state.x.size() == bodies &&
               state.v.size() == bodies && state.turn.size() == turning && state.spin.size() == turning &&
-              finite(state) && sized(state.own, turning) && state.grips.size() == model.mice.size() &&
+              finite(state) && sized(state.body_spin, turning) && state.grips.size() == model.mice.size() &&
               state.blasts.size() == model.explosions.size() &&
-              state.postures.size() == model.chains.size() && state.holds.size() == model.bonds.size() &&
-              state.whole.size() == std::size_t(!model.bonds.empty()) &&
-              state.seats.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
+              state.chain_states.size() == model.chains.size() && state.intact.size() == model.bonds.size() &&
+              state.bonded.size() == std::size_t(!model.bonds.empty()) &&
+              state.part_poses.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
               state.quiet.size() == state.frozen.size() && sized(state.broken, joints) &&
               state.joint_forces.size() == state.broken.size();
   for (const Grip<D>& grip : state.grips) good = good && (grip.body == -1 || body(grip.body));
   for (const Touch<D>& touch : state.touches) good = good && body(touch.body) && wall(touch.wall);
   for (const Blast<D>& blast : state.blasts)
     good = good && sized(blast.forces, bodies) && blast.torques.size() == blast.forces.size();
-  for (std::size_t i = 0; good && i < state.postures.size(); ++i) {
+  for (std::size_t i = 0; good && i < state.chain_states.size(); ++i) {
     const Chain<D>& tree = *model.chains[i].tree;
-    good = state.postures[i].q.size() == std::size_t(tree.positions()) &&
-           state.postures[i].v.size() == std::size_t(tree.velocities());
+    good = state.chain_states[i].q.size() == std::size_t(tree.positions()) &&
+           state.chain_states[i].v.size() == std::size_t(tree.velocities());
   }
   for (const Contact<D>& contact : state.contacts) {
     good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&

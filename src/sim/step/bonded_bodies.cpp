@@ -54,7 +54,7 @@ bool may_turn(const Model<D>& model, const std::vector<int>& parts) {
 }
 
 template <int D>
-Solid<D> solid(const Model<D>& model, const std::vector<int>& parts, const std::vector<Seat<D>>& places) {
+Solid<D> solid(const Model<D>& model, const std::vector<int>& parts, const std::vector<PartPose<D>>& places) {
   Solid<D> out;
   if (parts.size() == 1) {
     const Body<D>& body = model.bodies[parts[0]];
@@ -87,26 +87,26 @@ Solid<D> solid(const Model<D>& model, const std::vector<int>& parts, const std::
 
 // a place in the frame of a bonded body
 template <int D>
-Seat<D> seen(const Solid<D>& from, const Seat<D>& place) {
+PartPose<D> seen(const Solid<D>& from, const PartPose<D>& place) {
   return {rotation<D>(from.axes).transpose() * (place.x - from.center),
           composed<D>(inverse<D>(from.axes), place.turn)};
 }
 
 // a shape where its part sits, as parts of a compound
 template <int D>
-void add_seated(const Shape<D>& shape, const Seat<D>& seat, std::vector<Shape<D>>& parts) {
-  const Rotation<D> turn = rotation<D>(seat.turn);
-  const auto placing = [&](const Vec<D>& x) { return Vec<D>(seat.x + turn * x); };
+void add_seated(const Shape<D>& shape, const PartPose<D>& pose, std::vector<Shape<D>>& parts) {
+  const Rotation<D> turn = rotation<D>(pose.turn);
+  const auto placing = [&](const Vec<D>& x) { return Vec<D>(pose.x + turn * x); };
   for (int i = 0; i < sim::parts(shape); ++i) {
     const Shape<D>& own = part(shape, i);
     if constexpr (D == 2) {
       // in the plane a box that is a part stands upright: this one is a polygon, even where it is not turned
       if (const Box<2>* box = form<Box<2>>(own)) {
-        parts.push_back(moved<2>(box->outline(), placing, seat.turn));
+        parts.push_back(moved<2>(box->outline(), placing, pose.turn));
         continue;
       }
     }
-    parts.push_back(moved<D>(own, placing, seat.turn));
+    parts.push_back(moved<D>(own, placing, pose.turn));
   }
 }
 
@@ -122,11 +122,11 @@ BondedBodies<D>::~BondedBodies() = default;
 // the rigid bodies that the bonds of a state make, and their stepper
 template <int D>
 void BondedBodies<D>::gather(const State<D>& state) {
-  if (stepper_ && known_ == state.holds) return;
-  known_ = state.holds;
+  if (stepper_ && known_ == state.intact) return;
+  known_ = state.intact;
   stepper_.reset();
   const int n = int(model_.bodies.size());
-  const std::vector<int> root = roots(model_, state.holds);
+  const std::vector<int> root = roots(model_, state.intact);
 
   whole_ = {};
   Model<D>& made = whole_.model;
@@ -144,13 +144,13 @@ void BondedBodies<D>::gather(const State<D>& state) {
       }
       Body<D> body = model_.bodies[first];
       if (parts.size() > 1) {
-        const Solid<D> one = solid(model_, parts, state.seats);
+        const Solid<D> one = solid(model_, parts, state.part_poses);
         body.mass = one.mass, body.inertia = one.inertia;
         Compound<D> whole;
         body.elasticity = body.friction = body.drag = body.ground_drag = 0;
         for (const int i : parts) {
           const Body<D>& part = model_.bodies[i];
-          add_seated(part.shape, state.seats[i], whole.parts);
+          add_seated(part.shape, state.part_poses[i], whole.parts);
           // surfaces by mass
           body.elasticity += part.elasticity * part.mass / one.mass;
           body.friction += part.friction * part.mass / one.mass;
@@ -167,14 +167,14 @@ void BondedBodies<D>::gather(const State<D>& state) {
     }
   }
   for (std::size_t k = 0; k < model_.bonds.size(); ++k) {
-    if (state.holds[k] && model_.bonds[k].b < 0) made.bodies[whole_.body[model_.bonds[k].a]].fixed = true;
+    if (state.intact[k] && model_.bonds[k].b < 0) made.bodies[whole_.body[model_.bonds[k].a]].fixed = true;
   }
 
   // ends on parts become ends on the bodies that the parts belong to
   const auto moved = [&](End<D>& end) {
     if (end.body < 0) return;
-    const Seat<D>& seat = state.seats[end.body];
-    if (!whole_.alone[end.body]) end.local = seat.x + rotation<D>(seat.turn) * end.local;
+    const PartPose<D>& pose = state.part_poses[end.body];
+    if (!whole_.alone[end.body]) end.local = pose.x + rotation<D>(pose.turn) * end.local;
     end.body = whole_.body[end.body];
   };
   for (Spring<D>& spring : made.springs) moved(spring.a), moved(spring.b);
@@ -183,8 +183,8 @@ void BondedBodies<D>::gather(const State<D>& state) {
     Joint<D> joint = model_.joints[k];
     const int a = joint.a.body, b = joint.b.body;
     if (a >= 0 && b >= 0 && whole_.body[a] == whole_.body[b]) continue;
-    const Orientation<D> on_a = a < 0 || whole_.alone[a] ? no_rotation<D>() : state.seats[a].turn;
-    const Orientation<D> on_b = b < 0 || whole_.alone[b] ? no_rotation<D>() : state.seats[b].turn;
+    const Orientation<D> on_a = a < 0 || whole_.alone[a] ? no_rotation<D>() : state.part_poses[a].turn;
+    const Orientation<D> on_b = b < 0 || whole_.alone[b] ? no_rotation<D>() : state.part_poses[b].turn;
     joint.axis = rotation<D>(on_b) * joint.axis;
     if constexpr (D == 2) {
       joint.turn += on_b - on_a;
@@ -202,16 +202,16 @@ void BondedBodies<D>::gather(const State<D>& state) {
 template <int D>
 void BondedBodies<D>::begin(State<D>& state) {
   const int n = int(model_.bodies.size());
-  if (state.whole.empty()) {
-    state.holds.assign(model_.bonds.size(), 1);
+  if (state.bonded.empty()) {
+    state.intact.assign(model_.bonds.size(), 1);
     // poses in the room; then in the bonded body
-    state.seats.resize(n);
+    state.part_poses.resize(n);
     for (int i = 0; i < n; ++i) {
       const int k = turning(state, i);
-      state.seats[i] = {state.x[i], k < 0 ? no_rotation<D>() : state.turn[k]};
+      state.part_poses[i] = {state.x[i], k < 0 ? no_rotation<D>() : state.turn[k]};
     }
-    const std::vector<Seat<D>> places = state.seats;
-    const std::vector<int> root = roots(model_, state.holds);
+    const std::vector<PartPose<D>> places = state.part_poses;
+    const std::vector<int> root = roots(model_, state.intact);
     std::vector<Solid<D>> solids(n);
     std::vector<std::vector<int>> parts(n);
     for (int i = 0; i < n; ++i) parts[root[i]].push_back(i);
@@ -219,7 +219,7 @@ void BondedBodies<D>::begin(State<D>& state) {
       if (parts[first].empty()) continue;
       solids[first] = solid(model_, parts[first], places);
       for (const int i : parts[first])
-        state.seats[i] = parts[first].size() == 1 ? Seat<D>{} : seen(solids[first], places[i]);
+        state.part_poses[i] = parts[first].size() == 1 ? PartPose<D>{} : seen(solids[first], places[i]);
     }
     known_.clear(), stepper_.reset();
     gather(state);
@@ -248,11 +248,11 @@ void BondedBodies<D>::begin(State<D>& state) {
       made.spin.push_back(alone ? state.spin[turning(state, members[0])]
                                 : inverse_inertia_times<D>(one.inertia, rotation<D>(one.axes), L));
     }
-    state.whole = {made};
+    state.bonded = {made};
   } else {
     gather(state);
   }
-  stepper_->begin(state.whole[0]);
+  stepper_->begin(state.bonded[0]);
   tell(state);
 }
 
@@ -275,7 +275,7 @@ int BondedBodies<D>::part_at(int body, const Vec<D>& point, const State<D>& stat
 // the parts as the state of the whole has them
 template <int D>
 void BondedBodies<D>::tell(State<D>& state) const {
-  const State<D>& whole = state.whole[0];
+  const State<D>& whole = state.bonded[0];
   state.step = whole.step, state.beyond = whole.beyond, state.ledger = whole.ledger,
   state.energy_budget = whole.energy_budget;
   for (int i = 0; i < int(whole_.body.size()); ++i) {
@@ -286,10 +286,10 @@ void BondedBodies<D>::tell(State<D>& state) const {
       continue;
     }
     const BodyMotion<D> at = body_motion(whole, body);
-    const Vec<D> arm = at.arm(state.seats[i].x);
+    const Vec<D> arm = at.arm(state.part_poses[i].x);
     state.x[i] = at.x + arm, state.v[i] = at.velocity(arm);
     if (k < 0) continue;
-    state.turn[k] = kw < 0 ? state.seats[i].turn : composed<D>(whole.turn[kw], state.seats[i].turn);
+    state.turn[k] = kw < 0 ? state.part_poses[i].turn : composed<D>(whole.turn[kw], state.part_poses[i].turn);
     state.spin[k] = at.w;
   }
   state.frozen.clear(), state.quiet.clear();
@@ -335,13 +335,13 @@ template <int D>
 bool BondedBodies<D>::fits(const State<D>& state) {
   gather(state);
   // at the same step: it would be stepped until it were
-  return state.whole[0].step == state.step && stepper_->fits(state.whole[0]);
+  return state.bonded[0].step == state.step && stepper_->fits(state.bonded[0]);
 }
 
 template <int D>
 std::optional<Trouble> BondedBodies<D>::step(State<D>& state) {
   gather(state);
-  auto trouble = stepper_->step(state.whole[0]);
+  auto trouble = stepper_->step(state.bonded[0]);
   tell(state);
   if (trouble) return trouble;
   if (loads_.snap(state, whole_.model, whole_.body, time({state.step, 0}, model_.rate))) split(state);
@@ -351,7 +351,7 @@ std::optional<Trouble> BondedBodies<D>::step(State<D>& state) {
 template <int D>
 std::optional<Trouble> BondedBodies<D>::partial_step(State<D>& state, double fraction) {
   gather(state);
-  auto trouble = stepper_->partial_step(state.whole[0], fraction);
+  auto trouble = stepper_->partial_step(state.bonded[0], fraction);
   tell(state);
   return trouble;
 }
@@ -359,23 +359,23 @@ std::optional<Trouble> BondedBodies<D>::partial_step(State<D>& state, double fra
 // bodies anew, after bonds have broken
 template <int D>
 void BondedBodies<D>::split(State<D>& state) {
-  const State<D> before = std::move(state.whole[0]);
+  const State<D> before = std::move(state.bonded[0]);
   const std::vector<int> body_before = whole_.body, kept_before = whole_.kept;
   const std::vector<std::vector<int>> parts_before = parts_;
-  const std::vector<Seat<D>> seats = state.seats;
+  const std::vector<PartPose<D>> poses = state.part_poses;
   const std::vector<Grip<D>> grips = state.grips;
 
   // seats in what stays together
   const int n = int(model_.bodies.size());
-  const std::vector<int> root = roots(model_, state.holds);
+  const std::vector<int> root = roots(model_, state.intact);
   std::vector<std::vector<int>> parts(n);
   std::vector<Solid<D>> solids(n);
   for (int i = 0; i < n; ++i) parts[root[i]].push_back(i);
   for (int first = 0; first < n; ++first) {
     if (parts[first].empty() || parts[first] == parts_before[body_before[first]]) continue;
-    solids[first] = solid(model_, parts[first], seats);
+    solids[first] = solid(model_, parts[first], poses);
     for (const int i : parts[first])
-      state.seats[i] = parts[first].size() == 1 ? Seat<D>{} : seen(solids[first], seats[i]);
+      state.part_poses[i] = parts[first].size() == 1 ? PartPose<D>{} : seen(solids[first], poses[i]);
   }
   gather(state);
 
@@ -389,7 +389,7 @@ void BondedBodies<D>::split(State<D>& state) {
       made.x.push_back(before.x[old]), made.v.push_back(before.v[old]);
       if (k < 0) continue;
       made.turn.push_back(before.turn[k]), made.spin.push_back(before.spin[k]);
-      made.own.push_back(before.own.empty() ? BodySpin<D>{} : before.own[k]);
+      made.body_spin.push_back(before.body_spin.empty() ? BodySpin<D>{} : before.body_spin[k]);
       continue;
     }
     const BodyMotion<D> at = body_motion(before, old);
@@ -398,17 +398,17 @@ void BondedBodies<D>::split(State<D>& state) {
     if (!whole_.model.bodies[body].turns()) continue;
     const Orientation<D> turn = k < 0 ? solids[first].axes : composed<D>(before.turn[k], solids[first].axes);
     made.turn.push_back(D == 2 ? turn : Orientation<D>(turn / std::sqrt(turn.squaredNorm())));
-    made.spin.push_back(at.w), made.own.push_back({});
+    made.spin.push_back(at.w), made.body_spin.push_back({});
   }
-  if (D == 2) made.own.clear();
+  if (D == 2) made.body_spin.clear();
 
   // hands keep their grips; contacts of unchanged bodies stay
   for (const Grip<D>& grip : grips) {
     Grip<D> now = grip;
     if (grip.body >= 0) {
       now.body = whole_.body[grip.body];
-      const Seat<D>& seat = state.seats[grip.body];
-      if (!whole_.alone[grip.body]) now.local = seat.x + rotation<D>(seat.turn) * grip.local;
+      const PartPose<D>& pose = state.part_poses[grip.body];
+      if (!whole_.alone[grip.body]) now.local = pose.x + rotation<D>(pose.turn) * grip.local;
     }
     made.grips.push_back(now);
   }
@@ -427,14 +427,14 @@ void BondedBodies<D>::split(State<D>& state) {
     made.joint_forces.push_back(old < 0 || before.joint_forces.empty() ? Vec<D>(Vec<D>::Zero())
                                                                        : before.joint_forces[old]);
   }
-  state.whole = {made};
+  state.bonded = {made};
   // explosions push the pieces; nothing is at rest any more
   const Blasts<D> blasts(whole_.model);
-  state.whole[0].blasts.resize(before.blasts.size());
+  state.bonded[0].blasts.resize(before.blasts.size());
   for (std::size_t k = 0; k < before.blasts.size(); ++k) {
-    if (before.blasts[k].on) blasts.begin(state.whole[0], int(k));
+    if (before.blasts[k].on) blasts.begin(state.bonded[0], int(k));
   }
-  stepper_->begin(state.whole[0]);
+  stepper_->begin(state.bonded[0]);
   const std::vector<Touch<D>> touches = std::move(state.touches);
   const std::vector<Contact<D>> contacts = std::move(state.contacts);
   tell(state);

@@ -97,7 +97,7 @@ void Stepper<D>::begin(State<D>& state) {
   if (pieces_) return pieces_->begin(state);
   state.grips.resize(model_.mice.size());
   state.blasts.resize(model_.explosions.size());
-  if (D == 3) state.own.resize(state.turn.size());
+  if (D == 3) state.body_spin.resize(state.turn.size());
   if (contact_) {
     state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
     state.broken.resize(model_.joints.size());

@@ -309,7 +309,7 @@ void ExactSolver<D>::pay_for_lift(State<D>& state) {
     double more = 0, has = 0;
     for (const int body : model_.chains[i].bodies) more += lifted(body), has += kinetic(model_, state, body);
     if (more <= 0 || has <= 0) continue;
-    for (double& v : state.postures[i].v) v *= left(more, has);
+    for (double& v : state.chain_states[i].v) v *= left(more, has);
   }
   if (!active_.subset.chains.empty()) free_.chains().follow(state);
 }

@@ -84,15 +84,15 @@ template <int D>
 void ExactSolver<D>::save(const State<D>& state, Motion& motion) const {
   motion.x.resize(state.x.size()), motion.v.resize(state.v.size());
   motion.turn.resize(state.turn.size()), motion.spin.resize(state.spin.size());
-  motion.own.resize(state.own.size()), motion.postures.resize(state.postures.size());
+  motion.body_spin.resize(state.body_spin.size()), motion.chain_states.resize(state.chain_states.size());
   for (const int body : active_.subset.bodies) {
     motion.x[body] = state.x[body], motion.v[body] = state.v[body];
     const int k = turning(state, body);
     if (k < 0) continue;
     motion.turn[k] = state.turn[k], motion.spin[k] = state.spin[k];
-    if (std::size_t(k) < state.own.size()) motion.own[k] = state.own[k];
+    if (std::size_t(k) < state.body_spin.size()) motion.body_spin[k] = state.body_spin[k];
   }
-  for (const int chain : active_.subset.chains) motion.postures[chain] = state.postures[chain];
+  for (const int chain : active_.subset.chains) motion.chain_states[chain] = state.chain_states[chain];
 }
 
 template <int D>
@@ -102,9 +102,9 @@ void ExactSolver<D>::restore(const Motion& motion, State<D>& state) const {
     const int k = turning(state, body);
     if (k < 0) continue;
     state.turn[k] = motion.turn[k], state.spin[k] = motion.spin[k];
-    if (std::size_t(k) < state.own.size()) state.own[k] = motion.own[k];
+    if (std::size_t(k) < state.body_spin.size()) state.body_spin[k] = motion.body_spin[k];
   }
-  for (const int chain : active_.subset.chains) state.postures[chain] = motion.postures[chain];
+  for (const int chain : active_.subset.chains) state.chain_states[chain] = motion.chain_states[chain];
 }
 
 // whether every number of the bodies at hand is finite
@@ -469,7 +469,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
       state.turn[k] = turned<D>(interval_.begun.turn[k],
                                 AngularVec<D>(0.5 * h * (interval_.begun.spin[k] + state.spin[k])));
   }
-  chains.advance(interval_.begun.postures, h, state);
+  chains.advance(interval_.begun.chain_states, h, state);
   f_ /= h;
   record_forces();
 

@@ -63,8 +63,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<Vec<D>> x, v;
     std::vector<Orientation<D>> turn;
     std::vector<AngularVec<D>> spin;
-    std::vector<BodySpin<D>> own;
-    std::vector<ChainState> postures;
+    std::vector<BodySpin<D>> body_spin;
+    std::vector<ChainState> chain_states;
   };
 
   // two that may come through each other: a body and a body or wall

@@ -117,7 +117,7 @@ void LoneBodies<D>::find(const State<D>& state, double h) {
     Began it{i, state.x[i], state.v[i], no_rotation<D>(), AngularVec<D>::Zero(), {}};
     if (const int k = turning(state, i); k >= 0) {
       it.turn = state.turn[k], it.spin = state.spin[k];
-      if (std::size_t(k) < state.own.size()) it.own = state.own[k];
+      if (std::size_t(k) < state.body_spin.size()) it.body_spin = state.body_spin[k];
     }
     began_.push_back(it);
   }
@@ -139,7 +139,7 @@ void LoneBodies<D>::step(State<D>& state, double t, double h) {
     state.x[body] = it.x, state.v[body] = it.v;
     if (const int k = turning(state, body); k >= 0) {
       state.turn[k] = it.turn, state.spin[k] = it.spin;
-      if (std::size_t(k) < state.own.size()) state.own[k] = it.own;
+      if (std::size_t(k) < state.body_spin.size()) state.body_spin[k] = it.body_spin;
     }
     direct_.step_alone(state, body, t, h);
   }

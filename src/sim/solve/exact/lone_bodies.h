@@ -29,7 +29,7 @@ class LoneBodies {
     Vec<D> x, v;
     Orientation<D> turn;
     AngularVec<D> spin;
-    BodySpin<D> own;
+    BodySpin<D> body_spin;
   };
 
   bool strikes(const State<D>& state, int body, double h) const;
