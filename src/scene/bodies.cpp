@@ -168,19 +168,10 @@ Solid<D> solid_of(const BodyKind& kind, const Fields& fields, int i, int n, Diag
   return kind.turns ? solid<D>(typed) : Solid<D>{typed, {}};
 }
 
+// the name of a table of bodies, which must be free; false: it is not
 template <int D>
-void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& its, int ordinal,
-                 const std::vector<CopySet>& sets) {
-  using Vec = sim::Vec<D>;
-  Seating<D>& roster = making.roster;
-  const std::string kind(its.name);
-  const Fields fields(table, kind);
+bool take_name(BuilderContext<D>& making, const Fields& fields, const Group& group) {
   Diagnostics& complaints = making.complaints;
-  Group group;
-  group.name = fields.given("name") ? fields.text("name") : fmt::format("{}[{}]", kind, ordinal);
-  group.place = fields.place("name");
-  group.at = fields.place("position");
-  group.first = int(making.world.model.bodies.size());
   // nameless ones have the names ball[0], ball[1], ...: another name would mean two things
   if (const Node* same = fields.given("name") ? making.top.find(group.name) : nullptr;
       same && same->is_list())
@@ -189,16 +180,124 @@ void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& i
         complaints.add(group.place,
                        fmt::format("the name '{0}' is what [[{0}]]s without one are called, as at {1}",
                                    group.name, complaints.text(each.place)));
-        return;
+        return false;
       }
-  if (const auto before = roster.index.find(group.name); before != roster.index.end()) {
-    // said at the second in the file
-    Place first = roster.groups[std::size_t(before->second)].place, second = group.place;
-    if (std::tie(second.line, second.column) < std::tie(first.line, first.column)) std::swap(first, second);
-    complaints.add(second, fmt::format("the name '{}' is taken by another body at {}", group.name,
-                                       complaints.text(first)));
-    return;
+  const auto before = making.roster.index.find(group.name);
+  if (before == making.roster.index.end()) return true;
+  // said at the second in the file
+  Place first = making.roster.groups[std::size_t(before->second)].place, second = group.place;
+  if (std::tie(second.line, second.column) < std::tie(first.line, first.column)) std::swap(first, second);
+  complaints.add(second, fmt::format("the name '{}' is taken by another body at {}", group.name,
+                                     complaints.text(first)));
+  return false;
+}
+
+// which of the copies are fixed
+std::vector<bool> fixed_copies(const Fields& fields, int count, bool copied, Diagnostics& complaints) {
+  std::vector<bool> held(std::size_t(count), false);
+  const Node& fixed = fields.node("fixed");
+  if (!fixed.is_text()) {
+    held.assign(std::size_t(count), std::get<bool>(fixed.value));
+    return held;
   }
+  const auto which = range(fixed.text(), count);
+  if (!which || !copied) {
+    complaints.add(
+        fixed.place,
+        copied
+            ? fmt::format("'fixed': expected which of the {} copies, such as \"0..{}\" or \"0,{}\", got {}",
+                          count, count - 1, count - 1, quoted(fixed.text()))
+            : "'fixed': expected true or false; a list of copies needs copies");
+  } else {
+    for (const int i : *which) held[std::size_t(i)] = true;
+  }
+  return held;
+}
+
+// whether a net joins the bodies of this group
+bool knots_a_net(const Node& top, const std::string& group) {
+  const Node* nets = top.find("net");
+  return nets && std::any_of(nets->list().begin(), nets->list().end(), [&](const Node& net) {
+           const Node* of = net.find("of");
+           return of && of->text() == group;
+         });
+}
+
+// adds one copy of which --set has changed keys, as `own` says
+template <int D>
+void add_changed(BuilderContext<D>& making, const Fields& fields, const BodyKind& its, const Group& group,
+                 int i, Start<D> start, const std::vector<const CopySet*>& own) {
+  Diagnostics& complaints = making.complaints;
+  const std::string kind(its.name);
+  const bool turn_set =
+      std::ranges::any_of(own, [](const CopySet* set) { return set->path.front().name == kTurnKey<D>; });
+  Node one = single(fields, kind, i, group.count, start, turn_set);
+  for (const CopySet* set : own) write(one, kind, set->path, set->value, set->place, D, complaints);
+  check(one, kind, making.told, complaints);
+  const Fields own_fields(one, kind);
+  for (const CopySet* set : own)
+    if (const std::string& whole = set->path.front().name;
+        whole == "copies" || whole == "name" || whole == "rotation")
+      complaints.add(set->place, fmt::format("'{0}' is one for all copies; set {1}.{0}", whole, group.name));
+  if (const Node* own_fixed = own_fields.given("fixed")) {
+    if (own_fixed->is_text())
+      complaints.add(own_fixed->place, "'fixed': expected true or false for one copy");
+    else
+      start.fixed = std::get<bool>(own_fixed->value);
+  }
+  if (own_fields.given("position")) start.position = own_fields.vector<D>("position");
+  if (own_fields.given("velocity")) start.velocity = own_fields.vector<D>("velocity");
+  if (own_fields.given("spin")) start.spin = spin<D>(own_fields.node("spin", D), 0, 1);
+  if (turn_set) start.turn = turn<D>(own_fields);
+  add(making, own_fields, its, solid_of<D>(its, own_fields, 0, 1, complaints),
+      fmt::format("{}[{}]", group.name, i), 0, 1, start);
+}
+
+// adds all copies of a table; `sets`: those of --set for one copy of it
+template <int D>
+void add_copies(BuilderContext<D>& making, const Fields& fields, const BodyKind& its, int ordinal,
+                const Group& group, const Copies<D>& copies, const std::vector<bool>& held,
+                const std::vector<const CopySet*>& sets) {
+  using Vec = sim::Vec<D>;
+  const Node* at = fields.given("position");
+  const Solid<D> one_for_all = solid_of<D>(its, fields, 0, group.count, making.complaints);
+  for (int i = 0; i < group.count; ++i) {
+    Start<D> start;
+    start.position =
+        at ? vector<D>(*at, i, group.count) : Vec((making.room.bounds->low + making.room.bounds->high) / 2);
+    start.velocity = vector<D>(fields.node("velocity", D), i, group.count);
+    if (its.turns) start.spin = spin<D>(fields.node("spin", D), i, group.count);
+    if (its.turns) start.turn = copies.orientation(fields, i);
+    start.fixed = held[std::size_t(i)];
+    copies.move(start, i, making.seed, its.stream + std::uint64_t(ordinal) * 2);
+
+    std::vector<const CopySet*> own;
+    for (const CopySet* set : sets)
+      if (set->copy == i) own.push_back(set);
+    if (!own.empty() && copies.asked) {
+      add_changed(making, fields, its, group, i, start, own);
+      continue;
+    }
+    const std::string name = copies.asked ? fmt::format("{}[{}]", group.name, i) : group.name;
+    add(making, fields, its,
+        its.varies ? solid_of<D>(its, fields, i, group.count, making.complaints) : one_for_all, name, i,
+        group.count, start);
+  }
+}
+
+// the bodies of one table
+template <int D>
+void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& its, int ordinal,
+                 const std::vector<CopySet>& all_sets) {
+  const std::string kind(its.name);
+  const Fields fields(table, kind);
+  Diagnostics& complaints = making.complaints;
+  Group group;
+  group.name = fields.given("name") ? fields.text("name") : fmt::format("{}[{}]", kind, ordinal);
+  group.place = fields.place("name");
+  group.at = fields.place("position");
+  group.first = int(making.world.model.bodies.size());
+  if (!take_name(making, fields, group)) return;
   if (its.turns && fields.given("mass") && fields.given("density"))
     complaints.add(std::max(fields.place("mass"), fields.place("density"),
                             [](Place a, Place b) { return a.line < b.line; }),
@@ -210,93 +309,28 @@ void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& i
   const bool copied = copies->asked;
   if (copied) group.grid = copies->sides;
   group.count = copies->count();
+  const std::vector<bool> held = fixed_copies(fields, group.count, copied, complaints);
 
-  // which are held
-  std::vector<bool> held(std::size_t(group.count), false);
-  if (const Node& fixed = fields.node("fixed"); fixed.is_text()) {
-    const auto which = range(fixed.text(), group.count);
-    if (!which || !copied) {
-      complaints.add(
-          fixed.place,
-          copied
-              ? fmt::format("'fixed': expected which of the {} copies, such as \"0..{}\" or \"0,{}\", got {}",
-                            group.count, group.count - 1, group.count - 1, quoted(fixed.text()))
-              : "'fixed': expected true or false; a list of copies needs copies");
-    } else {
-      for (const int i : *which) held[std::size_t(i)] = true;
-    }
-  } else {
-    held.assign(std::size_t(group.count), std::get<bool>(fixed.value));
-  }
-
-  const Node* at = fields.given("position");
-  if (!at && !making.room.bounds) {
+  if (!fields.given("position") && !making.room.bounds) {
     complaints.add(fields.place(), fmt::format("[[{}]] needs 'position': an open room has no middle", kind));
     return;
   }
-  const Node* nets = making.top.find("net");
-  making.knots = nets && std::any_of(nets->list().begin(), nets->list().end(), [&](const Node& net) {
-                   const Node* of = net.find("of");
-                   return of && of->text() == group.name;
-                 });
-  const bool turns = its.turns;
+  making.knots = knots_a_net(making.top, group.name);
   if (const Node* spin = fields.given("spin"); spin && !rotates(making, fields, its))
     complaints.add(spin->place, "'spin' of a body that does not turn: 'rotation' is false");
-  const Solid<D> one_for_all = solid_of<D>(its, fields, 0, group.count, complaints);
-  for (int i = 0; i < group.count; ++i) {
-    Start<D> start;
-    start.position =
-        at ? vector<D>(*at, i, group.count) : Vec((making.room.bounds->low + making.room.bounds->high) / 2);
-    start.velocity = vector<D>(fields.node("velocity", D), i, group.count);
-    if (turns) start.spin = spin<D>(fields.node("spin", D), i, group.count);
-    if (turns) start.turn = copies->orientation(fields, i);
-    start.fixed = held[std::size_t(i)];
-    copies->move(start, i, making.seed, its.stream + std::uint64_t(ordinal) * 2);
-
-    const std::string name = copied ? fmt::format("{}[{}]", group.name, i) : group.name;
-    std::vector<const CopySet*> own;
-    bool turn_set = false;
-    for (const CopySet& set : sets)
-      if (set.kind == kind && set.table == ordinal && set.copy == i) {
-        own.push_back(&set);
-        turn_set = turn_set || set.path.front().name == kTurnKey<D>;
-      }
-    if (own.empty() || !copied) {
-      add(making, fields, its,
-          its.varies ? solid_of<D>(its, fields, i, group.count, complaints) : one_for_all, name, i,
-          group.count, start);
-      continue;
-    }
-    Node one = single(fields, kind, i, group.count, start, turn_set);
-    for (const CopySet* set : own) write(one, kind, set->path, set->value, set->place, D, complaints);
-    check(one, kind, making.told, complaints);
-    const Fields own_fields(one, kind);
-    for (const CopySet* set : own)
-      if (const std::string& whole = set->path.front().name;
-          whole == "copies" || whole == "name" || whole == "rotation")
-        complaints.add(set->place,
-                       fmt::format("'{0}' is one for all copies; set {1}.{0}", whole, group.name));
-    if (const Node* own_fixed = own_fields.given("fixed")) {
-      if (own_fixed->is_text())
-        complaints.add(own_fixed->place, "'fixed': expected true or false for one copy");
-      else
-        start.fixed = std::get<bool>(own_fixed->value);
-    }
-    if (own_fields.given("position")) start.position = own_fields.vector<D>("position");
-    if (own_fields.given("velocity")) start.velocity = own_fields.vector<D>("velocity");
-    if (own_fields.given("spin")) start.spin = spin<D>(own_fields.node("spin", D), 0, 1);
-    if (turn_set) start.turn = turn<D>(own_fields);
-    add(making, own_fields, its, solid_of<D>(its, own_fields, 0, 1, complaints), name, 0, 1, start);
-  }
-  for (const CopySet& set : sets)
-    if (set.kind == kind && set.table == ordinal && (set.copy >= group.count || !copied))
-      complaints.add(set.place, copied ? fmt::format("'{}' has {} copies: {}[0] .. {}[{}]", group.name,
-                                                     group.count, group.name, group.name, group.count - 1)
-                                       : fmt::format("'{}' has no copies", group.name));
+  std::vector<const CopySet*> sets;
+  for (const CopySet& set : all_sets)
+    if (set.kind == kind && set.table == ordinal) sets.push_back(&set);
+  add_copies(making, fields, its, ordinal, group, *copies, held, sets);
+  for (const CopySet* set : sets)
+    if (set->copy >= group.count || !copied)
+      complaints.add(set->place, copied ? fmt::format("'{}' has {} copies: {}[0] .. {}[{}]", group.name,
+                                                      group.count, group.name, group.name, group.count - 1)
+                                        : fmt::format("'{}' has no copies", group.name));
   refuse_outside(making, group, fields.place("position"));
   if (!making.knots && !fields.given("color")) ++making.declared;
-  roster.index.emplace(group.name, int(roster.groups.size()));
-  roster.groups.push_back(std::move(group));
+  making.roster.index.emplace(group.name, int(making.roster.groups.size()));
+  making.roster.groups.push_back(std::move(group));
 }
 
 }  // namespace

@@ -85,14 +85,9 @@ const Node::List& tables(const Fields& fields, const char* key) {
   return node ? node->list() : none;
 }
 
-}  // namespace
-
+// the instants, the size and the extent of the picture
 template <int D>
-draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
-                    Diagnostics& complaints) {
-  draw::Figure figure;
-  const Fields fields = Fields::of(top, "figure");
-  const Reader<D> read(roster, world, complaints);
+void read_frame(const Fields& fields, const Reader<D>& read, Diagnostics& complaints, draw::Figure& figure) {
   if (const Node* at = fields.given("at")) {
     if (at->is_list())
       for (const Node& each : at->list()) figure.at.push_back(exact(each));
@@ -123,12 +118,11 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
       fields.given("vary") && (equals == 0 || equals == std::string::npos))
     complaints.add(fields.place("vary"),
                    "'vary': expected a path and its values, as in \"crate.elasticity=0,0.5,1\"");
+}
 
-  for (const Node& node : tables(fields, "point")) {
-    const Fields its(node, "figure.point");
-    if (const auto at = read.site(its, "at"))
-      figure.points.push_back({*at, its.text("label"), its.flag("dot"), read.color(its)});
-  }
+template <int D>
+void read_vectors(const Fields& fields, const Reader<D>& read, Diagnostics& complaints,
+                  draw::Figure& figure) {
   for (const Node& node : tables(fields, "vector")) {
     const Fields its(node, "figure.vector");
     draw::Figure::Vector vector{quantity(its.text("quantity")), read.body(its, "of"), read.site(its, "at"),
@@ -139,6 +133,10 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
                                           : "this vector needs 'of', the body that has it");
     figure.vectors.push_back(vector);
   }
+}
+
+template <int D>
+void read_angles(const Fields& fields, const Reader<D>& read, Diagnostics& complaints, draw::Figure& figure) {
   for (const Node& node : tables(fields, "angle")) {
     const Fields its(node, "figure.angle");
     draw::Figure::Angle angle{read.body(its, "of"), read.site(its, "at"), read.site(its, "from"),
@@ -148,6 +146,16 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
     if (D == 3 && its.given("of"))
       complaints.add(its.place("of"), "in space a body has no one angle: 'at', 'from' and 'to' say which");
     figure.angles.push_back(angle);
+  }
+}
+
+// points, cones, lengths and labels
+template <int D>
+void read_marks(const Fields& fields, const Reader<D>& read, draw::Figure& figure) {
+  for (const Node& node : tables(fields, "point")) {
+    const Fields its(node, "figure.point");
+    if (const auto at = read.site(its, "at"))
+      figure.points.push_back({*at, its.text("label"), its.flag("dot"), read.color(its)});
   }
   for (const Node& node : tables(fields, "cone")) {
     const Fields its(node, "figure.cone");
@@ -165,31 +173,50 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
     const auto at = read.site(its, "at");
     if (at && its.given("text")) figure.labels.push_back({*at, its.text("text")});
   }
-  for (const Node& node : tables(fields, "plot")) {
-    const Fields its(node, "figure.plot");
-    draw::Figure::Plot plot;
-    static_cast<draw::Measured&>(plot) = read.measured(its);
-    plot.from = its.rational("from");
-    plot.to = its.given("to") ? its.rational("to") : Fields(top, "").rational("duration");
-    plot.height = its.number("height");
-    if (const Node* against = its.given("against")) plot.against = against->text();
-    plot.over = its.text("over");
-    plot.reference = its.text("reference");
-    plot.log = its.text("scale") == "log";
-    const auto equals = plot.over.find('=');
-    if (its.given("over") && (equals == 0 || equals == std::string::npos))
-      complaints.add(its.place("over"),
-                     "'over': expected a path and its values, as in \"physics.rate=10,20,40\"");
-    if (its.given("over") && its.given("against"))
-      complaints.add(its.place("against"), "a plot is 'against' a quantity or 'over' a key, not both");
-    if (its.given("reference") && !its.given("over"))
-      complaints.add(its.place("reference"), "'reference' is for a plot 'over' a key");
-    if (const draw::Measure* other = draw::measure(plot.against); other && other->of_body && plot.body < 0)
-      complaints.add(its.place("against"),
-                     fmt::format("a plot against '{}' needs 'of', the body that has it", plot.against));
-    if (!(plot.from < plot.to)) complaints.add(its.place("from"), "a plot needs 'from' before 'to'");
-    figure.plots.push_back(plot);
-  }
+}
+
+template <int D>
+draw::Figure::Plot plot_of(const Node& top, const Node& node, const Reader<D>& read,
+                           Diagnostics& complaints) {
+  const Fields its(node, "figure.plot");
+  draw::Figure::Plot plot;
+  static_cast<draw::Measured&>(plot) = read.measured(its);
+  plot.from = its.rational("from");
+  plot.to = its.given("to") ? its.rational("to") : Fields(top, "").rational("duration");
+  plot.height = its.number("height");
+  if (const Node* against = its.given("against")) plot.against = against->text();
+  plot.over = its.text("over");
+  plot.reference = its.text("reference");
+  plot.log = its.text("scale") == "log";
+  const auto equals = plot.over.find('=');
+  if (its.given("over") && (equals == 0 || equals == std::string::npos))
+    complaints.add(its.place("over"),
+                   "'over': expected a path and its values, as in \"physics.rate=10,20,40\"");
+  if (its.given("over") && its.given("against"))
+    complaints.add(its.place("against"), "a plot is 'against' a quantity or 'over' a key, not both");
+  if (its.given("reference") && !its.given("over"))
+    complaints.add(its.place("reference"), "'reference' is for a plot 'over' a key");
+  if (const draw::Measure* other = draw::measure(plot.against); other && other->of_body && plot.body < 0)
+    complaints.add(its.place("against"),
+                   fmt::format("a plot against '{}' needs 'of', the body that has it", plot.against));
+  if (!(plot.from < plot.to)) complaints.add(its.place("from"), "a plot needs 'from' before 'to'");
+  return plot;
+}
+
+}  // namespace
+
+template <int D>
+draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+                    Diagnostics& complaints) {
+  draw::Figure figure;
+  const Fields fields = Fields::of(top, "figure");
+  const Reader<D> read(roster, world, complaints);
+  read_frame(fields, read, complaints, figure);
+  read_marks(fields, read, figure);
+  read_vectors(fields, read, complaints, figure);
+  read_angles(fields, read, complaints, figure);
+  for (const Node& node : tables(fields, "plot"))
+    figure.plots.push_back(plot_of(top, node, read, complaints));
   if (!figure.room && figure.plots.empty())
     complaints.add(fields.place("room"), "a figure without its picture needs a plot: [[figure.plot]]");
   return figure;

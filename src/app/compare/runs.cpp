@@ -87,20 +87,11 @@ std::string joined(const std::string& body, const std::string& quantity) {
   return body.empty() ? quantity : body + "." + quantity;
 }
 
-}  // namespace
-
-bool Tolerance::holds(double a, double b) const {
-  if (!std::isfinite(a) || !std::isfinite(b)) return the_same(a, b);
-  return a == b || std::abs(b - a) <= absolute + relative * std::abs(a);
-}
-
-RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance, bool interpolate) {
-  RunComparison found;
-  found.a = a.file, found.b = b.file;
-
-  // columns in common, in a's order; "time" is what rows are matched by, "step" another clock's affair
+// the columns in common, in a's order; "time" matches rows, and "step" is another clock's. `missing`: those
+// of a alone
+std::vector<Column> common_columns(const Table& a, const Table& b, std::vector<std::string>& missing,
+                                   RunComparison& found) {
   std::vector<Column> columns;
-  std::vector<std::string> missing, extra;
   for (std::size_t i = 0; i < a.columns.size(); ++i) {
     if (a.columns[i] == "time" || a.columns[i] == "step") continue;
     const auto there = b.column(a.columns[i]);
@@ -122,6 +113,13 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
   // at one time, report bodies before sums over bodies
   std::stable_partition(columns.begin(), columns.end(),
                         [](const Column& column) { return is_body(column.body); });
+  return columns;
+}
+
+// says which columns only one table has
+void report_others(const Table& a, const Table& b, const std::vector<Column>& columns,
+                   std::vector<std::string> missing, RunComparison& found) {
+  std::vector<std::string> extra;
   for (const std::string& name : b.columns)
     if (name != "time" && name != "step" && !a.column(name)) extra.push_back(name);
   if (columns.empty()) found.plain.push_back("they have no column in common but time");
@@ -140,6 +138,37 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
     found.others.push_back(fmt::format("not compared, because only {} has it: {}", a.file, several(missing)));
   if (!extra.empty())
     found.others.push_back(fmt::format("not compared, because only {} has it: {}", b.file, several(extra)));
+}
+
+// b's value of a column in `row`, near a's: angles without whole turns, and of q and -q the nearer one
+double value_near(const std::vector<double>& of_a, const std::vector<double>& row, const Column& column,
+                  const std::vector<Column>& columns) {
+  const double x = of_a[column.a];
+  double y = row[column.b];
+  if (column.quantity == "angle" && std::isfinite(x) && std::isfinite(y))
+    y = x + std::remainder(y - x, 2 * std::numbers::pi);
+  if (column.quantity == "orientation") {
+    double dot = 0;
+    for (const Column& other : columns)
+      if (other.group == column.group) dot += of_a[other.a] * row[other.b];
+    if (dot < 0) y = -y;
+  }
+  return y;
+}
+
+}  // namespace
+
+bool Tolerance::holds(double a, double b) const {
+  if (!std::isfinite(a) || !std::isfinite(b)) return the_same(a, b);
+  return a == b || std::abs(b - a) <= absolute + relative * std::abs(a);
+}
+
+RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance, bool interpolate) {
+  RunComparison found;
+  found.a = a.file, found.b = b.file;
+  std::vector<std::string> missing;
+  const std::vector<Column> columns = common_columns(a, b, missing, found);
+  report_others(a, b, columns, std::move(missing), found);
 
   std::size_t without = 0;
   double first_without = 0;
@@ -154,16 +183,7 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
     ++found.times;
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const Column& column = columns[k];
-      const double x = a.rows[i][column.a];
-      double y = (*row)[column.b];
-      if (column.quantity == "angle" && std::isfinite(x) && std::isfinite(y))
-        y = x + std::remainder(y - x, 2 * std::numbers::pi);
-      if (column.quantity == "orientation") {
-        double dot = 0;
-        for (const Column& other : columns)
-          if (other.group == column.group) dot += a.rows[i][other.a] * (*row)[other.b];
-        if (dot < 0) y = -y;
-      }
+      const double x = a.rows[i][column.a], y = value_near(a.rows[i], *row, column, columns);
       auto& quantity = found.quantities[column.group];
       const double off = the_same(x, y)                         ? 0
                          : std::isfinite(x) && std::isfinite(y) ? std::abs(y - x)

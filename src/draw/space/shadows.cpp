@@ -156,16 +156,26 @@ void far_side(const SpaceFrame& s, const Chunk& chunk, const LightFrame& frame, 
   }
 }
 
-void cast_on_each_other(SpaceFrame& s) {
+namespace {
+
+// all things in the light's view
+struct LightView {
   LightFrame frame;
+  double soft;  // m: how far a soft edge reaches
+  std::vector<Extents> things;
+  std::vector<Outline> outlines;  // empty: a box around it is all that is known
+};
+
+LightView view_from_light(const SpaceFrame& s) {
+  LightView view;
+  LightFrame& frame = view.frame;
   frame.away = -s.stage.light.toward;
   frame.u = (std::abs(frame.away.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitX()).cross(frame.away).normalized();
   frame.v = frame.away.cross(frame.u);
-  const double soft = kSoft * s.lens.window.width / s.lens.scale;
-
-  // each thing in the light's view
-  std::vector<Extents> things(s.chunks.size());
-  std::vector<Outline> outlines(s.chunks.size());  // empty: a box around it is all that is known
+  view.soft = kSoft * s.lens.window.width / s.lens.scale;
+  std::vector<Extents>& things = view.things;
+  std::vector<Outline>& outlines = view.outlines;
+  things.resize(s.chunks.size()), outlines.resize(s.chunks.size());
   for (std::size_t i = 0; i < s.chunks.size(); ++i) {
     const Chunk& chunk = s.chunks[i];
     const bool flat =
@@ -184,27 +194,45 @@ void cast_on_each_other(SpaceFrame& s) {
       things[i].add(at - reach), things[i].add(at + reach);
     }
   }
-  const auto casters = pair_up(things, s.chunks, soft);
+  return view;
+}
 
-  // the nearest things first, since they hide others; from each, the triangles in the light that others may
-  // darken
+// indices of the things, the nearest first, since they hide others
+std::vector<int> nearest_first(const SpaceFrame& s) {
   std::vector<int> order(s.chunks.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return s.lens.depth(s.chunks[a].center) - s.lens.per_distance * s.chunks[a].reach <
            s.lens.depth(s.chunks[b].center) - s.lens.per_distance * s.chunks[b].reach;
   });
-  // a soft edge reaches some texels of the map, whose side is all that is seen at most
+  return order;
+}
+
+// a soft edge reaches some texels of the map, whose side is all that is seen at most
+double reach_of_edges(const LightView& view) {
   Extents all;
-  for (const Extents& thing : things) all.add(thing.low), all.add(thing.high);
-  const double reach =
-      things.empty()
-          ? 0
-          : kReach / kMap *
-                (1.02 * std::max(all.high.x() - all.low.x(), all.high.y() - all.low.y()) + 2 * soft);
-  Extents fitted, fitted_casters;
-  std::vector<char> casts(s.chunks.size(), 0);
-  for (int i : order) {
+  for (const Extents& thing : view.things) all.add(thing.low), all.add(thing.high);
+  return view.things.empty()
+             ? 0
+             : kReach / kMap *
+                   (1.02 * std::max(all.high.x() - all.low.x(), all.high.y() - all.low.y()) + 2 * view.soft);
+}
+
+// the things that cast shadows on others, and what the map must hold, in the light's view
+struct Cast {
+  std::vector<char> casts;  // one a thing
+  Extents darkened, casters;
+};
+
+// Divides the triangles into those that a shadow may fall on and the others, in the order in which they are
+// drawn.
+Cast divide_triangles(SpaceFrame& s, const LightView& view) {
+  const auto& [frame, soft, things, outlines] = view;
+  const auto casters = pair_up(things, s.chunks, soft);
+  const double reach = reach_of_edges(view);
+  Cast cast;
+  cast.casts.resize(s.chunks.size(), 0);
+  for (int i : nearest_first(s)) {
     const Chunk& chunk = s.chunks[i];
     for (std::size_t k = chunk.begin; k < chunk.end; k += 3) {
       Extents triangle;
@@ -219,40 +247,53 @@ void cast_on_each_other(SpaceFrame& s) {
       for (int caster : casters[i]) {
         if (!lit || !over(things[caster], triangle, soft)) continue;
         if (!outlines[caster].corners.empty() && !may_darken(outlines[caster], corners, reach)) continue;
-        darkened = true, casts[caster] = 1;
-        fitted_casters.add(things[caster].low), fitted_casters.add(things[caster].high);
+        darkened = true, cast.casts[caster] = 1;
+        cast.casters.add(things[caster].low), cast.casters.add(things[caster].high);
       }
-      if (darkened) fitted.add(triangle.low), fitted.add(triangle.high);
+      if (darkened) cast.darkened.add(triangle.low), cast.darkened.add(triangle.high);
       auto& list = darkened ? s.solids.shadowed : s.solids.triangles;
       list.insert(list.end(), s.triangles.begin() + std::ptrdiff_t(k),
                   s.triangles.begin() + std::ptrdiff_t(k) + 3);
     }
   }
-  const bool any = !s.solids.shadowed.empty();
-  if (any) {
-    // across the light: the range that both have; along the light: all of it
-    fitted.low.head<2>() = fitted.low.cwiseMax(fitted_casters.low).head<2>();
-    fitted.high.head<2>() = fitted.high.cwiseMin(fitted_casters.high).head<2>();
-    fitted.low.z() = std::min(fitted.low.z(), fitted_casters.low.z());
-    fitted.high.z() = std::max(fitted.high.z(), fitted_casters.high.z());
-  }
-  const Vec3 size = any ? Vec3(fitted.high - fitted.low) : Vec3::Zero();
-  const double side = any ? 1.02 * std::max({size.x(), size.y(), 0.0}) + 2 * soft : 1;
-  const double depth = any ? size.z() + 2 * soft : 1;
-  const Vec3 middle = any ? Vec3((fitted.low + fitted.high) / 2) : Vec3::Zero();
-  const Vec3 origin = middle - Vec3(side, side, depth) / 2;
-  const auto lit = [&](const Vec3& p) {
+  return cast;
+}
+
+// the shadow map: a box in the light's view
+struct ShadowMap {
+  const LightFrame& frame;
+  bool any;
+  double side = 1, depth = 1;
+  Vec3 origin;
+
+  std::array<float, 3> operator()(const Vec3& p) const {
     const Vec3 at = frame(p) - origin;
     return std::array<float, 3>{float(at.x() / side), float(at.y() / side), float(at.z() / depth)};
-  };
-  for (std::size_t i = 0; i < s.chunks.size(); ++i) {
-    if (!casts[i]) continue;
-    far_side(s, s.chunks[i], frame, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-      for (const Vec3& p : {a, b, c}) s.solids.casters.push_back(lit(p));
-    });
   }
+};
 
-  // corners as the eye and the light see them; how near and far they are
+ShadowMap fit_map(const LightView& view, const Cast& cast, bool any) {
+  Extents fitted = cast.darkened;
+  if (any) {
+    // across the light: the range that both have; along the light: all of it
+    fitted.low.head<2>() = fitted.low.cwiseMax(cast.casters.low).head<2>();
+    fitted.high.head<2>() = fitted.high.cwiseMin(cast.casters.high).head<2>();
+    fitted.low.z() = std::min(fitted.low.z(), cast.casters.low.z());
+    fitted.high.z() = std::max(fitted.high.z(), cast.casters.high.z());
+  }
+  const Vec3 size = any ? Vec3(fitted.high - fitted.low) : Vec3::Zero();
+  ShadowMap map{view.frame, any, 1, 1, Vec3::Zero()};
+  if (any) map.side = 1.02 * std::max({size.x(), size.y(), 0.0}) + 2 * view.soft;
+  if (any) map.depth = size.z() + 2 * view.soft;
+  const Vec3 middle = any ? Vec3((fitted.low + fitted.high) / 2) : Vec3::Zero();
+  map.origin = middle - Vec3(map.side, map.side, map.depth) / 2;
+  return map;
+}
+
+// all corners as the eye and the light see them
+void add_vertices(SpaceFrame& s, const ShadowMap& lit) {
+  const LightFrame& frame = lit.frame;
+  // how near and far they are
   double near = 1e300, farthest = -1e300;
   std::vector<Eigen::Vector4d> at;
   at.reserve(s.corners.size());
@@ -270,16 +311,31 @@ void cast_on_each_other(SpaceFrame& s) {
     const double z = s.lens.perspective() ? 0.999 * near : 0.001 + 0.998 * (h.z() + farthest) / span;
     Solids::Vertex v{
         {float(h.x()), float(h.y()), float(z), float(h.w())}, c.color.lit, c.color.shaded, {}, {}};
-    if (any) {
+    if (lit.any) {
       v.light = lit(c.place);
       const double facing = std::max(-c.normal.dot(frame.away), 1e-3);
       const auto slope = [&](const Vec3& along) {
-        return float(std::clamp(c.normal.dot(along) / facing, -kSteep, kSteep) * side / depth);
+        return float(std::clamp(c.normal.dot(along) / facing, -kSteep, kSteep) * lit.side / lit.depth);
       };
       v.slope = {slope(frame.u), slope(frame.v)};
     }
     s.solids.vertices.push_back(v);
   }
+}
+
+}  // namespace
+
+void cast_on_each_other(SpaceFrame& s) {
+  const LightView view = view_from_light(s);
+  const Cast cast = divide_triangles(s, view);
+  const ShadowMap lit = fit_map(view, cast, !s.solids.shadowed.empty());
+  for (std::size_t i = 0; i < s.chunks.size(); ++i) {
+    if (!cast.casts[i]) continue;
+    far_side(s, s.chunks[i], view.frame, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      for (const Vec3& p : {a, b, c}) s.solids.casters.push_back(lit(p));
+    });
+  }
+  add_vertices(s, lit);
 }
 
 void cast_on_ground(SpaceFrame& s) {
