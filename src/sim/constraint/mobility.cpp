@@ -1,7 +1,7 @@
-// The motion that is free is found by conjugate gradients on
+// The free motion is found by conjugate gradients on
 //   J M^-1 J' l = J v         each row weighed by its own response
-// after Hestenes and Stiefel (1952): rows that say the same twice do no harm, and the number of rounds goes
-// with the height of a heap, not with its square.
+// after Hestenes and Stiefel (1952): redundant rows do no harm, and the number of iterations grows with the
+// height of a heap, not with its square.
 
 #include "sim/constraint/mobility.h"
 

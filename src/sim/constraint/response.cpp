@@ -1,5 +1,5 @@
 // J of a row on a link is (r x s, s) at the link's centre, carried down to each joint of its tree; two rows
-// meet in J_i . (M^-1 J_j'), where free bodies meet in the mass of the one they share.
+// couple by J_i . (M^-1 J_j'), and for free bodies by the mass of the body that they share.
 
 #include "sim/constraint/response.h"
 

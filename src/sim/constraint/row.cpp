@@ -1,7 +1,7 @@
 // Rows of contacts, and their velocity-product terms.
 //   v_c = v + w x (c - x)                               the body's matter at the point of contact c
 //   row   s . (v_ca - v_cb)                             s  normal or tangent
-//   drift s' . (v_ca - v_cb) + s . (w_a x (c' - v_a) - w_b x (c' - v_b))
+//   J' v  s' . (v_ca - v_cb) + s . (w_a x (c' - v_a) - w_b x (c' - v_b))
 // with c' the velocity of the point of contact and s' that of the direction: for a face w x s; between
 // vertices n' = (v_rel - n n . v_rel) / |p_a - p_b| and t' = -(t . n') n. A vertex at an edge is treated as
 // one at its foot on the edge, which moves along. For edges that cross, u = e_a x e_b and n = u / |u|:

@@ -8,7 +8,7 @@ namespace obscura::sim {
 
 // Rows of the Jacobian: the relative motions that a contact or joint constrains,
 //   J v = along . (v_a - v_b) + turn_a . w_a - turn_b . w_b
-//   d(J v)/dt = J v' + drift,  drift = J' v
+//   d(J v)/dt = J v' + J' v               J' v  the velocity-product term
 // A contact has a row for its normal and one for each of D-1 tangents; a joint one for each motion that it
 // forbids.
 

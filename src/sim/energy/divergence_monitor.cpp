@@ -1,10 +1,10 @@
-// Energy out of nowhere. Kinetic energy, springs, and gravity's potential above its start stay below what
-// could be there,
-//   fund = what they were + what displacing gave + sum over bodies of m g L + m u^2
+// Energy without a source. Kinetic energy, springs, and gravity's potential above its start stay below the
+// budget
+//   fund = their start + work of displacing + sum over bodies of m g L + m u^2
 //        + sum over springs of k (L/10)^2 / 2 + sum over hands of k (4 L + way)^2 / 2
 //     L  room's height, u  speed of the fastest hand, but L/10 a second at least
-// unless the step feeds them. A hundred times the fund is proof; four times, where the step is longer than
-// the integrator stands.
+// unless the integration adds energy. A hundred times the fund is proof; four times, if the step is longer
+// than the integrator's limit.
 
 #include "sim/energy/divergence_monitor.h"
 

@@ -1,9 +1,10 @@
 // E = sum m v^2 / 2 + w I w / 2 - m g x + springs        before a step, and after it
-// An island that has gained dE keeps of its velocities, or of those against its motion as one,
+// An island that has gained dE keeps a part s of its velocities, or of those relative to its motion as one
+// body,
 //   u = v - V - W x (x - c),   V = P / M,   W = J^-1 L    P, L, J  momentum, angular momentum and inertia
-// the part s that leaves it with what it had
+// such that its energy is that before the step,
 //   K_u s^2 = K_u - dE
-// and where that is too little, what rose in the step comes down again by a part of its way.
+// If that is not enough, bodies that rose in the step are lowered by a part of their way.
 
 #include "sim/energy/energy_guard.h"
 

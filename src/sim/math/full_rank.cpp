@@ -2,6 +2,7 @@
 //   A = F d G        F: n x r with independent columns, G: r x n with independent rows, d diagonal
 //   A^+ = G^T (G G^T)^-1 d^-1 (F^T F)^-1 F^T
 // Pivots are the largest entry left, so entries of F and G stay within 1, and d carries all of A's condition.
+// Source: Ben-Israel and Greville, Generalized Inverses (2003), full-rank factorization.
 
 #include "sim/math/full_rank.h"
 

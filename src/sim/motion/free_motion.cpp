@@ -1,3 +1,8 @@
+// Free motion.
+//   x' = v,   v' = g - (c/m) v                          centre of mass
+//   I w' = -w x (I w),   q' = q (0, w) / 2              torque-free rotation, in the body's frame
+// Source: Goldstein, Poole and Safko, Classical Mechanics (2002), §5.6.
+
 #include "sim/motion/free_motion.h"
 
 #include <algorithm>

@@ -1,10 +1,12 @@
-// Which steps an integrator stands, on x'' = -w^2 x - g x'.
+// Linear stability of the integrators, on x'' = -w^2 x - g x'.
 //   roots  z = h (-g/2 +- sqrt(g^2/4 - w^2))
-//   growth of a step  R(z) = 1 + z (Euler), 1 + z + z^2/2 (midpoint), 1 + z + z^2/2 + z^3/6 + z^4/24
-//   (Runge-Kutta) semi-implicit: the eigenvalues of a matrix of trace 2 - h g - h^2 w^2 and determinant 1 - h
-//   g
-// Without damping: Runge-Kutta stands h w <= 2 sqrt 2, semi-implicit h w <= 2, midpoint and Euler grow at any
-// step.
+//   growth of a step  R(z) = 1 + z                                (Euler)
+//                            1 + z + z^2/2                        (midpoint)
+//                            1 + z + z^2/2 + z^3/6 + z^4/24       (Runge-Kutta)
+//   semi-implicit     the eigenvalues of a matrix of trace 2 - h g - h^2 w^2 and determinant 1 - h g
+// Without damping Runge-Kutta is stable for h w <= 2 sqrt 2, semi-implicit for h w <= 2; midpoint and Euler
+// grow at any step.
+// Source: Hairer and Wanner, Solving Ordinary Differential Equations II (1996), §IV.2.
 
 #include "sim/motion/stability.h"
 

@@ -1,7 +1,7 @@
-// Articulated bodies in the room: the numbers of their joints are what moves, by Featherstone's algorithm
-// (sim/multibody/articulated_body.h), and so no joint drifts.
-//   d' = v, of turns in space dexp^-1(d, v)         v' = M^-1 (J' f - h)
-//     f  all that pulls besides gravity, at the centres of the links
+// Articulated bodies in the room: their joint coordinates are integrated, by Featherstone's algorithm
+// (sim/multibody/articulated_body.h), so joints do not drift.
+//   d' = v, for rotations in space dexp^-1(d, v)    v' = M^-1 (J' f - h)
+//     f  all forces besides gravity, at the centres of the links
 
 #include "sim/multibody/chains.h"
 

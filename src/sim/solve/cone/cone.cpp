@@ -1,8 +1,9 @@
 // Joints, limits and dry contacts by an active set.
 //   w = K f + b        every block obeys its law; a set of modes makes the laws equalities
-// The modes of the last step are tried first, and where few are wrong they are switched; then those that
-// sweeps leave, then those a softened problem has; each time the equalities are solved exactly, and the laws
-// looked at.
+// The modes of the last step are tried first, and switched if few are wrong; then those after some
+// Gauss-Seidel iterations, then those of a softened problem; each time the equalities are solved exactly, and
+// the laws checked.
+// Source: Baraff, Fast contact force computation for nonpenetrating rigid bodies (1994).
 
 #include "sim/solve/cone/cone.h"
 

@@ -1,5 +1,5 @@
-// The residual, block by block: by how much forces and velocities break their law, and the mode to try next.
-// Scaled rows have K_ii <= 1, so that a force and the answer it can make compare with one another.
+// The residual, block by block: by how much forces and velocities violate their law, and the mode to try
+// next. Scaled rows have K_ii <= 1, so that a force is comparable with the response that it can make.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-// The touches of an island at rest, J their rows (normal, then tangents), M of the bodies:
+// Equilibrium of an island. J has the rows of its contacts (normal, then tangents), M the bodies' masses:
 //   K f + b = w,   K = J M^-1 J',   b = J g        f in the cones, w obeys their laws (cone_law.h)
-//   a = g + M^-1 J' f = 0                          is what rest is
+//   a = g + M^-1 J' f = 0                          at rest
 
 #include "sim/solve/cone/statics.h"
 

@@ -2,6 +2,7 @@
 //   K f + b = w,   K = J M^-1 J',   b = J a + J' v        forces, w the rows' accelerations
 //                                   b = J v (+ e v_n)     impulses, w the rows' velocities after them
 // with the laws of sim/solve/cone/cone.h for f and w.
+// Source: Baraff, Fast contact force computation for nonpenetrating rigid bodies (1994).
 
 #include <algorithm>
 #include <cmath>

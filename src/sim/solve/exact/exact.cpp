@@ -4,6 +4,8 @@
 //   3. smooth motion with those modes, up to the next event or the end of the step
 //   4. projection of positions and velocities onto the constraints; again from 1
 // After too many events the rest of the step is done at once, by impulses.
+// Source: Acary and Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (2008), event-driven
+// schemes.
 
 #include "sim/solve/exact/exact.h"
 

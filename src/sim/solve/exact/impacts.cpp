@@ -2,6 +2,7 @@
 //   w = K p + J v,   p_n >= 0,   w_n + e v_n >= 0,   p_n (w_n + e v_n) = 0,   w_t against p_t on the cone
 // or one pair after another, the fastest first, until none approaches. Newton's law with friction can raise
 // the energy: then e is scaled down until it does not; with e = 0 it never does.
+// Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); handout §3.5.
 
 #include <algorithm>
 #include <cmath>

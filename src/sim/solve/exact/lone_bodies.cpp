@@ -1,7 +1,8 @@
-// A body strikes in a step of h where it reaches a wall, or a fixed body, faster than it falls in one step:
+// A body has an impact in a step of h if it reaches a wall, or a fixed body, faster than it falls in one
+// step:
 //   gap + h u - 2 g h^2 < 0,   u < -g h         u  speed of its nearest point along the normal, at least
-// It is alone where no other body can come as far as it can:
-//   |x_i - x_j| > rim_i + rim_j + s_i + s_j       s = 1.1 h sqrt(2 K / m) + g h^2
+// It is alone if no other body can reach it:
+//   |x_i - x_j| > r_i + r_j + s_i + s_j       s = 1.1 h sqrt(2 K / m) + g h^2, r  bounding radius
 
 #include "sim/solve/exact/lone_bodies.h"
 
