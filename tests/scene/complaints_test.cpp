@@ -186,6 +186,12 @@ TEST(Diagnostics, JointsSayWhereTheyAre) {
           "in 'between'");
   refused(two + "type = \"pin\"\nbetween = [\"a\", \"room\"]\nlength = 2",
           "a.toml:15:10: 'length' is that of a rod or a rope; a pin has none");
+  refused(two + "type = \"rod\"\nbetween = [\"a\", \"b\"]\nat = [1.5, 1]",
+          "a.toml:15:6: 'at' is that of a pin, a weld or a slider; a rod has none");
+  refused(two + "type = \"weld\"\nbetween = [\"a\", \"b\"]\naxis = [1, 0]",
+          "a.toml:15:8: 'axis' is that of a slider; a weld has none");
+  refused(two + "type = \"weld\"\nbetween = [\"a\", \"b\"]\nfriction = 1",
+          "a.toml:15:12: 'friction' is that of a pin or a slider; a weld has none");
   refused(two + "type = \"rod\"\nbetween = [\"a\", \"b\"]\nlength = 2",
           "a.toml:15:10: 'length' is 2 m and its ends are 1 m apart at the start; move an end");
   refused(two + "type = \"rope\"\nbetween = [\"a\", \"b\"]\nlength = 0.9",

@@ -13,13 +13,9 @@
 namespace obscura::sim {
 namespace {
 
-constexpr JointKind kKinds[] = {JointKind::pin, JointKind::weld, JointKind::slider,
-                                JointKind::rod, JointKind::rope, JointKind::hinge};
-
 template <int D>
 void expect_equations(JointKind kind, int rows, bool coordinate) {
   const JointEquations<D>& its = equations<D>(kind);
-  EXPECT_EQ(its.kind, kind) << "each in its place";
   EXPECT_EQ(its.rows, rows) << int(kind);
   EXPECT_EQ(its.coordinate != nullptr, coordinate) << int(kind);
   EXPECT_EQ(its.one_sided, kind == JointKind::rope) << int(kind);
@@ -78,7 +74,8 @@ Written written(const Joint<2>& joint, const Placed& a, const Placed& b) {
 TEST(Joints, OfThePlaneChangeByTheirRows) {
   Dice dice(1);
   const double h = 1e-5;
-  for (const JointKind kind : kKinds) {
+  for (int k = 0; k < kJointKinds; ++k) {
+    const JointKind kind = JointKind(k);
     for (int n = 0; n < 100; ++n) {
       Joint<2> joint;
       joint.kind = kind, joint.length = 1;
