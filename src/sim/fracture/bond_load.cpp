@@ -102,6 +102,11 @@ bool BondLoads<D>::snap(State<D>& state, const Model<D>& whole, const std::vecto
   return any;
 }
 
+template <int D>
+struct BondLoads<D>::Equations {
+  Eigen::SparseMatrix<double> G;
+};
+
 // one rigid body
 template <int D>
 bool BondLoads<D>::snap(State<D>& state, const Composite& it) {
@@ -112,10 +117,11 @@ bool BondLoads<D>::snap(State<D>& state, const Composite& it) {
   if (!may_break(it, want, arms)) return false;
 
   // z = G' (G G')^-1 (f_i, n_i)
-  const Eigen::SparseMatrix<double> G = equations(state, it, parts, arms);
+  const Equations system = equations(state, it, parts, arms);
+  const Eigen::SparseMatrix<double>& G = system.G;
   const Eigen::SparseMatrix<double> GG = G * Eigen::SparseMatrix<double>(G.transpose());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(GG);
-  return break_overloaded(state, it, G, factor.solve(want.loads));
+  return break_overloaded(state, it, system, factor.solve(want.loads));
 }
 
 template <int D>
@@ -210,9 +216,9 @@ bool BondLoads<D>::may_break(const Composite& it, const Required& want,
 
 // G, a block of columns a bond
 template <int D>
-Eigen::SparseMatrix<double> BondLoads<D>::equations(const State<D>& state, const Composite& it,
-                                                    const Unknown& parts,
-                                                    const std::vector<Lever>& arms) const {
+typename BondLoads<D>::Equations BondLoads<D>::equations(const State<D>& state, const Composite& it,
+                                                         const Unknown& parts,
+                                                         const std::vector<Lever>& arms) const {
   constexpr int kRows = D + kAngular<D>;
   using Block = Eigen::Matrix<double, kRows, kRows>;
   const int rows = it.rows();
@@ -236,13 +242,14 @@ Eigen::SparseMatrix<double> BondLoads<D>::equations(const State<D>& state, const
   }
   Eigen::SparseMatrix<double> G(rows * parts.count, rows * int(it.bonds.size()));
   G.setFromTriplets(entries.begin(), entries.end());
-  return G;
+  return {std::move(G)};
 }
 
 // breaks the bonds whose loads G' y, y = (G G')^-1 (f_i, n_i), are beyond their strength
 template <int D>
-bool BondLoads<D>::break_overloaded(State<D>& state, const Composite& it,
-                                    const Eigen::SparseMatrix<double>& G, const Eigen::MatrixXd& y) {
+bool BondLoads<D>::break_overloaded(State<D>& state, const Composite& it, const Equations& system,
+                                    const Eigen::MatrixXd& y) {
+  const Eigen::SparseMatrix<double>& G = system.G;
   // a column of G has few entries; the order of Eigen's own product depends on its version
   const auto load = [&](int column, int of) {
     double sum = 0;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/SparseCore>
 #include <vector>
 
 #include "sim/force/explosion.h"
@@ -51,6 +50,7 @@ class BondLoads {
     Eigen::MatrixXd loads;                    // columns: steady, and of the impacts
     double forces = 0, torques = 0, far = 0;  // sums of magnitudes; of the part farthest from the centre, m
   };
+  struct Equations;  // the matrix G
   // the point of a bond, and l
   struct Lever {
     Vec<D> point;
@@ -65,9 +65,9 @@ class BondLoads {
                     const Unknown& parts) const;
   std::vector<Lever> levers(const State<D>& state, const Composite& it) const;
   bool may_break(const Composite& it, const Required& required, const std::vector<Lever>& levers) const;
-  Eigen::SparseMatrix<double> equations(const State<D>& state, const Composite& it, const Unknown& parts,
-                                        const std::vector<Lever>& levers) const;
-  bool break_overloaded(State<D>& state, const Composite& it, const Eigen::SparseMatrix<double>& G,
+  Equations equations(const State<D>& state, const Composite& it, const Unknown& parts,
+                      const std::vector<Lever>& levers) const;
+  bool break_overloaded(State<D>& state, const Composite& it, const Equations& system,
                         const Eigen::MatrixXd& loads);
 
   const Model<D>& model_;

@@ -150,7 +150,7 @@ OBSCURA_INLINE void expand_one(const ContactBatch& g, const Pose* poses, Rows& o
 }
 
 template <class V>
-OBSCURA_INLINE V allowed_overlap(const ContactBatch& g, int lane, const AllowedOverlap& let) {
+OBSCURA_INLINE V allowed_depth(const ContactBatch& g, int lane, const AllowedOverlap& let) {
   return let.kLeast * load<V>(g.far + lane) + let.share / load<V>(g.per_width + lane);
 }
 
@@ -170,7 +170,7 @@ OBSCURA_INLINE bool start_all(ContactBatch* batches, int count, const Pose* pose
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
-      const V sight = load<V>(g.sight + lane), allowed = allowed_overlap<V>(g, lane, pace.allowed);
+      const V sight = load<V>(g.sight + lane), allowed = allowed_depth<V>(g, lane, pace.allowed);
       // What turns may come sooner than along its tangent: gap'' >= -(w_a^2 + w_b^2) r - 2 w_b v_t. Of two
       // corners of polygons others may come nearer, however these move.
       const V w2 = before.a.z * before.a.z + before.b.z * before.b.z;
@@ -350,7 +350,7 @@ OBSCURA_INLINE void project_all(const ContactBatch* batches, Projection* p, int 
       WideRow<V> r0, r1;
       make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
       Two<V> two(*g, lane, d);
-      const V mu = load<V>(g->mu + lane), allowed = allowed_overlap<V>(*g, lane, let);
+      const V mu = load<V>(g->mu + lane), allowed = allowed_depth<V>(*g, lane, let);
       V l0 = load<V>(p->push[0] + lane), l1 = load<V>(p->push[1] + lane);
       V t0 = load<V>(p->side[0] + lane), t1 = load<V>(p->side[1] + lane);
       rub<V>(two, r0, mu * l0, t0);
