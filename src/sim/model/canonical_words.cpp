@@ -77,6 +77,7 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     for (const double x : posture.q) w.number(x);
     for (const double x : posture.v) w.number(x);
   }
+  for (const double work : state.work) w.number(work);
   for (const char holds : state.holds) w.integer(holds);
   for (const Seat<D>& seat : state.seats) {
     w.template numbers<D>(seat.x);

@@ -102,6 +102,7 @@ struct State {
   std::vector<BodySpin<D>> own;      // in space: one a body that turns
   std::vector<Blast<D>> blasts;      // one an explosion
   std::vector<ChainState> postures;  // one a chain of the model
+  std::vector<double> work;  // of a model with forces one number: what those without a potential did, J
 
   // of what is bonded, see sim/step/bonded_bodies.h: everything above is then told of the parts, and this is
   // what moves

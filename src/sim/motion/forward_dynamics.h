@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/force/explosion.h"
+#include "sim/force/forces.h"
 #include "sim/force/spring.h"
 #include "sim/model/path.h"
 #include "sim/model/stance.h"
@@ -18,11 +19,11 @@ struct Subset {
   std::span<const int> bodies, springs, chains;
 };
 
-/// The bodies that springs and hands hold, and the links of chains, gathered into one system: first the
-/// centres, then the turns of those that turn, then the joints of the chains. In space d and v of a turn are
-/// as the body sees them, and v is what base spin lacks (sim/math/lie_step.h): of the rates, a row J in the
-/// room's frame meets J . to_room(room_from_body, v'), and a torque adds from_room(room_from_body, torque) /
-/// inertia.
+/// The bodies that springs, hands and forces act on, and the links of chains, gathered into one system: first
+/// the centres, then the turns of those that turn, then the joints of the chains. In space d and v of a turn
+/// are as the body sees them, and v is what base spin lacks (sim/math/lie_step.h): of the rates, a row J in
+/// the room's frame meets J . to_room(room_from_body, v'), and a torque adds from_room(room_from_body,
+/// torque) / inertia.
 template <int D>
 class ForwardDynamics final : public System {
  public:
@@ -32,9 +33,9 @@ class ForwardDynamics final : public System {
   /// Whether anything of the model may ever tie a body.
   bool ever() const { return ever_; }
 
-  /// Collects the bodies that springs and mice hold in `state`; with `everyone` all that can move and are
-  /// awake, as while an explosion acts. Bodies with drag on the ground count too. To be called whenever a
-  /// grip changes, a body falls asleep or wakes, or an explosion begins or ends.
+  /// Collects the bodies that springs, mice and forces act on in `state`; with `everyone` all that can move
+  /// and are awake, as while an explosion acts. Bodies with drag on the ground count too. To be called
+  /// whenever a grip changes, a body falls asleep or wakes, or an explosion begins or ends.
   void gather(const State<D>& state, bool everyone = false);
   /// The same for a part of the model: all else stays out of it.
   void gather(const State<D>& state, const Subset& of);
@@ -110,6 +111,8 @@ class ForwardDynamics final : public System {
   std::vector<Tie> ties_;        // springs in order, then mice in order
   bool ever_ = false;
   Blasts<D> blasts_;
+  Forces<D> forces_;
+  std::vector<Wrench<D>> pushes_;  // of forces_, one a member
   SupportVertices<D> tips_;
   std::vector<int> acting_;             // explosions that act
   std::vector<Wrench<D>> held_;         // by the paper's scheme, one a member; empty where nothing is

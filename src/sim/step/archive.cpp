@@ -50,7 +50,7 @@ void fields(Visit& visit, State<D>& it) {
   visit(it.energy_budget.level), visit(it.energy_budget.amount), visit(it.own), visit(it.blasts),
       visit(it.postures);
   visit(it.holds), visit(it.seats), visit(it.whole), visit(it.contacts), visit(it.frozen), visit(it.quiet);
-  visit(it.broken), visit(it.joint_forces);
+  visit(it.broken), visit(it.joint_forces), visit(it.work);
 }
 
 template <class T>
@@ -158,6 +158,7 @@ bool fits(const State<D>& state, const Model<D>& model) {
               state.v.size() == bodies && state.turn.size() == turning && state.spin.size() == turning &&
               finite(state) && sized(state.own, turning) && state.grips.size() == model.mice.size() &&
               state.blasts.size() == model.explosions.size() &&
+              state.work.size() == std::size_t(!model.forces.empty()) &&
               state.postures.size() == model.chains.size() && state.holds.size() == model.bonds.size() &&
               state.whole.size() == std::size_t(!model.bonds.empty()) &&
               state.seats.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
