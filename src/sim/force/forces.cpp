@@ -44,7 +44,8 @@ bool formula_of(const Force<D>& force) {
 }  // namespace
 
 template <int D>
-Forces<D>::Forces(const Model<D>& model) : model_(model), pushed_(model.bodies.size(), 0) {
+Forces<D>::Forces(const Model<D>& model)
+    : model_(model), pushed_(model.bodies.size(), 0), flies_(model.bodies.size(), 0) {
   const auto mark = [&](const Subject<D>& subject) {
     if (subject.body >= 0 && !model.bodies[std::size_t(subject.body)].fixed)
       pushed_[std::size_t(subject.body)] = 1;
@@ -61,6 +62,108 @@ Forces<D>::Forces(const Model<D>& model) : model_(model), pushed_(model.bodies.s
         reads_angle_ || (force.on == Force<D>::On::each && force.formula->force.reads(each_slot::angle));
   }
   lanes_.resize(std::size_t(kLanes) * 16);
+  find_flying();
+}
+
+// which bodies fly, and the forces on them by body
+template <int D>
+void Forces<D>::find_flying() {
+  const auto alone = [](const Force<D>& force) {
+    return force.on == Force<D>::On::each && formula_of(force) &&
+           !(force.center && force.center->body >= 0) && !force.formula->force.reads(each_slot::angle) &&
+           !force.formula->force.reads(each_slot::spin);
+  };
+  flies_ = pushed_;
+  for (const Force<D>& force : model_.forces) {
+    for (const Subject<D>& subject : force.subjects) {
+      if (!alone(force) || offset(subject)) flies_[std::size_t(subject.body)] = 0;
+    }
+    if (force.center && force.center->body >= 0) flies_[std::size_t(force.center->body)] = 0;
+  }
+  for (std::size_t i = 0; i < flies_.size(); ++i) {
+    if (model_.bodies[i].linked || model_.bodies[i].ground_drag != 0) flies_[i] = 0;
+  }
+  for (const Spring<D>& spring : model_.springs) {
+    for (const int body : {spring.a.body, spring.b.body})
+      if (body >= 0) flies_[std::size_t(body)] = 0;
+  }
+  for (const Force<D>& force : model_.forces) {
+    if (!alone(force)) continue;
+    std::vector<const Subject<D>*> all;
+    for (const Subject<D>& subject : force.subjects) {
+      if (flies_[std::size_t(subject.body)]) all.push_back(&subject);
+    }
+    if (all.empty()) continue;
+    std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->body < b->body; });
+    Flying& it = flying_.emplace_back(Flying{&force, {}, {}, Evaluation(force.formula->force)});
+    it.fixed.resize(16);
+    for (const Subject<D>* subject : all) {
+      it.bodies.push_back(subject->body);
+      it.fixed[each_slot::mass].push_back(subject->mass),
+          it.fixed[each_slot::charge].push_back(subject->charge);
+      it.fixed[each_slot::copy].push_back(subject->copy), it.fixed[each_slot::drag].push_back(subject->drag);
+      it.fixed[each_slot::quadratic_drag].push_back(subject->quadratic_drag);
+    }
+  }
+}
+
+template <int D>
+void Forces<D>::accelerate(double t, int first, int count, const double* x, const double* d, const double* v,
+                           double* rates) {
+  for (Flying& it : flying_) {
+    const auto begin = std::lower_bound(it.bodies.begin(), it.bodies.end(), first);
+    const auto end = std::lower_bound(begin, it.bodies.end(), first + count);
+    if (begin == end) continue;
+    const Force<D>& force = *it.force;
+    const Program& program = force.formula->force;
+    std::array<double, std::size_t(each_slot::end)> uniform{};
+    uniform[each_slot::time] = t;
+    if (force.center) {
+      for (int k = 0; k < D; ++k) uniform[std::size_t(each_slot::center + k)] = force.center->local[k];
+    }
+    it.evaluation.begin(uniform);
+    std::array<const double*, std::size_t(each_slot::time)> inputs{};
+    for (int at = int(begin - it.bodies.begin()), last = int(end - it.bodies.begin()); at < last;
+         at += kLanes) {
+      const int n = std::min(kLanes, last - at);
+      const int* const bodies = it.bodies.data() + at;
+      for (const int slot : {int(each_slot::mass), int(each_slot::charge), int(each_slot::copy),
+                             int(each_slot::drag), int(each_slot::quadratic_drag)})
+        inputs[std::size_t(slot)] = it.fixed[std::size_t(slot)].data() + at;
+      for (int axis = 0; axis < D; ++axis) {
+        if (program.reads(each_slot::x + axis)) {
+          double* const row = lanes_.data() + std::size_t(each_slot::x + axis) * kLanes;
+          for (int k = 0; k < n; ++k) {
+            const int i = D * (bodies[k] - first) + axis;
+            row[k] = x[i] + d[i];
+          }
+          inputs[std::size_t(each_slot::x + axis)] = row;
+        }
+        if (program.reads(each_slot::vx + axis)) {
+          double* const row = lanes_.data() + std::size_t(each_slot::vx + axis) * kLanes;
+          for (int k = 0; k < n; ++k) row[k] = v[D * (bodies[k] - first) + axis];
+          inputs[std::size_t(each_slot::vx + axis)] = row;
+        }
+      }
+      it.evaluation.run(n, inputs);
+      std::int64_t finite = 0;
+      for (int axis = 0; axis < D; ++axis) {
+        const double* const f = it.evaluation.output(axis);
+        finite |= within(f, n, kFinite);
+        for (int k = 0; k < n; ++k)
+          rates[D * (bodies[k] - first) + axis] += f[k] / model_.bodies[std::size_t(bodies[k])].mass;
+      }
+      if (finite >= 0) continue;
+      for (int k = 0; k < n; ++k) {
+        Vec<D> f, place;
+        for (int axis = 0; axis < D; ++axis) {
+          const int i = D * (bodies[k] - first) + axis;
+          f[axis] = it.evaluation.output(axis)[k], place[axis] = x[i] + d[i];
+        }
+        if (within(f.data(), D, kFinite) < 0) refuse(force, bodies[k], t, f, place);
+      }
+    }
+  }
 }
 
 template <int D>
@@ -173,15 +276,15 @@ BodyMotion<D> Forces<D>::point(const Subject<D>& subject, int member,
 }
 
 template <int D>
-void Forces<D>::refuse(const Active& it, const Subject<D>& subject, double t, const Vec<D>& force,
+void Forces<D>::refuse(const Force<D>& of, int body, double t, const Vec<D>& force,
                        const Vec<D>& place) const {
-  const Body<D>& body = model_.bodies[std::size_t(std::max(0, subject.body))];
+  const std::string& name = model_.bodies[std::size_t(std::max(0, body))].name;
   Trouble trouble;
   trouble.time = t;
-  trouble.body = body.name.empty() ? "body " + std::to_string(subject.body) : body.name;
+  trouble.body = name.empty() ? "body " + std::to_string(body) : name;
   trouble.quantity = "force";
   trouble.what = force.array().isNaN().any() ? "is not a number" : "is infinite";
-  trouble.likely = it.force->name + " at ";
+  trouble.likely = of.name + " at ";
   for (int k = 0; k < D; ++k)
     trouble.likely += (k > 0 ? ", " : "") + std::string(1, "xyz"[k]) + " = " + brief_number(place[k]);
   throw ForceNotFinite(std::move(trouble));
@@ -249,7 +352,7 @@ void Forces<D>::each_force(Active& it, double t, const std::vector<BodyMotion<D>
       for (int axis = 0; axis < D; ++axis) f[axis] = out[axis][k];
       if (finite < 0 && within(f.data(), D, kFinite) < 0) {
         const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(first + k)])];
-        refuse(it, subject, t, f, point(subject, it.members[std::size_t(first + k)], motions).x);
+        refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(first + k)], motions).x);
       }
       found(first + k, f, 0);
       opposite -= f;
@@ -300,7 +403,7 @@ void Forces<D>::each_pair(Active& it, double t, const std::vector<BodyMotion<D>>
       if (within(f.data(), D, kFinite) < 0) {
         const int which = second(k);
         const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(which)])];
-        refuse(it, subject, t, f, point(subject, it.members[std::size_t(which)], motions).x);
+        refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(which)], motions).x);
       }
       found(first(k), Vec<D>(-f), 0), found(second(k), f, 0);
     }
@@ -415,7 +518,7 @@ void Forces<D>::attract(Active& it, double t, const std::vector<BodyMotion<D>>& 
       f[axis] = sums[axis][i] + ((own[axis][0] + own[axis][1]) + (own[axis][2] + own[axis][3]));
     if (within(f.data(), D, kFinite) < 0) {
       const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(i)])];
-      refuse(it, subject, t, f, point(subject, it.members[std::size_t(i)], motions).x);
+      refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(i)], motions).x);
     }
     found(i, f, 0);
   }

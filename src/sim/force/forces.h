@@ -29,6 +29,14 @@ class Forces {
   /// Whether any force may ever push body `body`.
   bool push(int body) const { return pushed_[std::size_t(body)] != 0; }
 
+  /// Whether all forces on a body act on it alone and ask for its place and velocity only: then accelerate()
+  /// serves it.
+  bool flies(int body) const { return flies_[std::size_t(body)] != 0; }
+  /// Adds to `rates` the accelerations at time t of `count` bodies from body `first` on, of those that fly: a
+  /// number an axis, one body after another. They are displaced by d from x.
+  void accelerate(double t, int first, int count, const double* x, const double* d, const double* v,
+                  double* rates);
+
   /// Takes in how bodies are numbered from here on: `member` is the place of each in the motions of apply(),
   /// below zero where it stands still as it does in `state`.
   void gather(const State<D>& state, std::span<const int> member);
@@ -78,11 +86,21 @@ class Forces {
   void float_up(Active& it, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
   template <class Found>
   void all(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
-  [[noreturn]] void refuse(const Active& it, const Subject<D>& subject, double t, const Vec<D>& force,
+  [[noreturn]] void refuse(const Force<D>& of, int body, double t, const Vec<D>& force,
                            const Vec<D>& place) const;
+  void find_flying();
+
+  // a force on bodies that fly, by body
+  struct Flying {
+    const Force<D>* force;
+    std::vector<int> bodies;  // ascending
+    std::vector<std::vector<double>> fixed;
+    Evaluation evaluation;
+  };
 
   const Model<D>& model_;
-  std::vector<char> pushed_;
+  std::vector<char> pushed_, flies_;
+  std::vector<Flying> flying_;
   std::vector<Active> active_;
   std::vector<BodyMotion<D>> still_;
   std::vector<int> gathered_;  // member, as last gathered

@@ -59,6 +59,7 @@ struct SceneInfo {
   std::vector<Spring> springs;
   std::vector<Mouse> mice;
   std::vector<Joint> joints;
+  bool forces = false;  // beside gravity, drag, springs and explosions
 };
 
 struct Energies {

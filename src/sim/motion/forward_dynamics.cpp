@@ -55,7 +55,8 @@ void ForwardDynamics<D>::gather(const State<D>& state, bool everyone) {
   for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
   for (const Grip<D>& grip : state.grips) mark(grip.body);
   for (int body = 0; body < int(member_.size()); ++body) {
-    const bool pushed = model_.bodies[body].ground_drag != 0 || forces_.push(body);
+    const bool pushed = model_.bodies[body].ground_drag != 0 ||
+                        (forces_.push(body) && !(leaves_flying_ && forces_.flies(body)));
     if (pushed && (state.frozen.empty() || !state.frozen[body])) mark(body);
   }
   gather_marked(state, all);

@@ -30,6 +30,9 @@ class ForwardDynamics final : public System {
   /// `paths`: the way of each mouse. Both are kept by reference.
   ForwardDynamics(const Model<D>& model, const std::vector<Path<D>>& paths);
 
+  /// From here on gather() leaves out bodies that fly (Forces::flies), but where an explosion acts.
+  void leave_flying() { leaves_flying_ = true; }
+
   /// Whether anything of the model may ever tie a body.
   bool ever() const { return ever_; }
 
@@ -109,7 +112,7 @@ class ForwardDynamics final : public System {
   std::vector<int> all_;         // bodies_ and the links
   std::vector<int> numbers_[3];  // of all bodies, springs, chains
   std::vector<Tie> ties_;        // springs in order, then mice in order
-  bool ever_ = false;
+  bool ever_ = false, leaves_flying_ = false;
   Blasts<D> blasts_;
   Forces<D> forces_;
   std::vector<Wrench<D>> pushes_;  // of forces_, one a member

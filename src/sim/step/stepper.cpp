@@ -48,6 +48,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       divergence_(model, paths_),
       tied_(model, paths_),
       work_(model),
+      forces_(model),
       springs_(!model.springs.empty() || !model.mice.empty()) {
   // a potential that changes with the time gives energy
   for (const Force<D>& force : model.forces)
@@ -72,6 +73,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       spin_limits_.back() = std::min(spin_limits_.back(), kFarthestTurn * value(model.rate));
   }
   if (!drag) drag_.clear();
+  tied_.leave_flying();
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     if (model.bodies[body].handout) by_handout_.push_back(body);
   }
@@ -270,8 +272,13 @@ bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
   const auto drag =
       drag_.empty() ? std::span<const double>() : std::span<const double>(drag_).subspan(D * block.first, n);
   std::fill(d.begin(), d.end(), 0.0);
-  FreeTranslation flight(gravity_, drag);
-  integrate_(flight, t, h, d, v, stages_);
+  if (forces_.any()) {
+    ForcedTranslation<D> flight(gravity_, drag, forces_, block.first, x);
+    integrate_(flight, t, h, d, v, stages_);
+  } else {
+    FreeTranslation flight(gravity_, drag);
+    integrate_(flight, t, h, d, v, stages_);
+  }
 
   const double limit = kFarthest * model_.scale;
   std::int64_t sound = 0;

@@ -75,6 +75,7 @@ class Stepper {
   DivergenceMonitor<D> divergence_;
   ForwardDynamics<D> tied_;
   WorkBooks<D> work_;
+  Forces<D> forces_;          // on bodies that fly
   std::vector<int> gripped_;  // by each mouse, as the plan knows
   bool planned_ = false, blasting_ = false;
 
