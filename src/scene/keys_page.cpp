@@ -13,7 +13,7 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr const char* kOpening = R"(# The scene language
+constexpr const char* kOpening = R"page(# The scene language
 
 A scene is a [TOML](https://toml.io) file that says what is in a room, what it looks like and how it is filmed. Most keys have a
 default; this is a complete scene:
@@ -424,7 +424,7 @@ Labels are set as mathematics: letters are italic; digits and words of three or 
 superscripts (`v_center`, `a_{ij}`, `x^2`), `'` a prime, `*r*` a vector, `"in quotes"` plain words. There are `\omega` and the other Greek
 letters, `\Delta`, `\times`, `\cdot`, `\perp`, `\dot{q}`, `\bar{v}`, `\vec{r}`. In TOML write a backslash twice, or use single quotes.
 
-)";
+)page";
 
 const char* const kNotes[][2] = {
     {"room",

@@ -150,6 +150,9 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     for (const int body : chain.bodies) link(body, chain.bodies[0], true), bound_[body].held = true;
   }
 
+  // in flight the scheme's own error under a force is no contact's
+  for (int i = 0; forces_.any() && i < n; ++i) tied_[i] = tied_[i] || forces_.push(i);
+
   const auto island = [&](int body) -> Island& { return sums_[islands_.root(body)]; };
   const bool frozen = !state.frozen.empty(), blasting = [&] {
     for (const Blast<D>& blast : state.blasts) {
