@@ -36,7 +36,7 @@ struct BuilderContext {
   Diagnostics& complaints;
   bool rotation = true;                    // the scene's
   double ground_drag = 0;                  // the room's
-  double drag = 0;                         // the room's
+  double drag = 0, quadratic_drag = 0;     // the room's
   double trail = 0;                        // the look's
   bool velocity = false, contact = false;  // arrows on every body
   int declared = 0;                        // groups so far: which colour is next
@@ -68,6 +68,9 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
   body.drag = drag ? number(*drag, i, n) : making.drag;
   const Node* ground_drag = fields.given("ground_drag");
   body.ground_drag = ground_drag ? number(*ground_drag, i, n) : making.ground_drag;
+  const Node* quadratic_drag = fields.given("quadratic_drag");
+  body.quadratic_drag = quadratic_drag ? number(*quadratic_drag, i, n) : making.quadratic_drag;
+  body.charge = number(fields.node("charge"), i, n);
   body.fixed = start.fixed;
   body.handout = fields.given("collision") != nullptr;
   if (fields.given("group")) {
@@ -251,6 +254,7 @@ void add_changed(BuilderContext<D>& making, const Fields& fields, const BodyKind
   if (turn_set) start.turn = turn<D>(own_fields);
   add(making, own_fields, its, solid_of<D>(its, own_fields, 0, 1, complaints),
       fmt::format("{}[{}]", group.name, i), 0, 1, start);
+  making.world.model.bodies.back().copy = i;
 }
 
 // adds all copies of a table; `sets`: those of --set for one copy of it
@@ -282,6 +286,7 @@ void add_copies(BuilderContext<D>& making, const Fields& fields, const BodyKind&
     add(making, fields, its,
         its.varies ? solid_of<D>(its, fields, i, group.count, making.complaints) : one_for_all, name, i,
         group.count, start);
+    making.world.model.bodies.back().copy = i;
   }
 }
 
@@ -342,6 +347,7 @@ Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, cons
   Seating<D> roster;
   BuilderContext<D> making{top, room, seed, told, world, looks, roster, complaints};
   making.drag = Fields::of(top, "room").number("drag");
+  making.quadratic_drag = Fields::of(top, "room").number("quadratic_drag");
   making.ground_drag = Fields::of(top, "room").number("ground_drag");
   making.rotation = Fields::of(top, "physics").flag("rotation");
   const Fields look = Fields::of(top, "look");

@@ -86,6 +86,14 @@ class Values : private Reporter {
         return label(node, key);
       case Form::things:
         return things(node, key);
+      case Form::bodies:
+        return node.is_text() || (things(node, key) && (!node.list().empty() || mistyped(node, key)));
+      case Form::expression:
+        return expression(node, key);
+      case Form::expressions:
+        return expressions(node, key);
+      case Form::numbers:
+        return numbers(node, key);
       case Form::pairs:
         return pairs(node, key);
       case Form::choice:
@@ -335,6 +343,38 @@ class Values : private Reporter {
     if (!node.is_list()) return mistyped(node, key);
     return each(node.list(), [&](const Node& it) {
       return it.is_text() || mistyped(it, key, "names of bodies such as \"plank[*]\"");
+    });
+  }
+
+  bool expression(const Node& node, const Key& key) {
+    if (node.is_number()) return number(node, key);
+    return node.is_text() || mistyped(node, key);
+  }
+
+  bool expressions(const Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key);
+    if (int(node.list().size()) != dimension())
+      return instead(node, key, fmt::format("{} of them", node.list().size()));
+    return each(node.list(), [&](const Node& it) {
+      return it.is_number() ? number(it, key) : it.is_text() || mistyped(it, key, "expressions");
+    });
+  }
+
+  // names of their own
+  bool numbers(const Node& node, const Key& key) {
+    if (!node.is_table()) return mistyped(node, key);
+    return each(node.table(), [&](const Entry& entry) {
+      const std::string& text = entry.key;
+      const bool good = !text.empty() && text.size() <= 100 && letter(text[0]) &&
+                        std::all_of(text.begin(), text.end(), [](char c) { return letter(c) || digit(c); });
+      if (!good) {
+        complaints().add(entry.place,
+                         fmt::format("a constant has a name of letters, digits and _, a letter first, got {}",
+                                     quoted(text)));
+        return false;
+      }
+      const Key own{.path = "constants." + text, .form = Form::expression};
+      return expression(entry.node, own);
     });
   }
 

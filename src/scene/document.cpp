@@ -127,6 +127,12 @@ Node copied(const toml::node& from) {
     node.value = flag->get();
   } else if (const auto* text = from.as_string()) {
     node.value = text->get();
+    const auto& region = from.source();
+    const auto points = std::count_if(text->get().begin(), text->get().end(),
+                                      [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+    if (region.begin.line == region.end.line &&
+        std::ptrdiff_t(region.end.column) - std::ptrdiff_t(region.begin.column) == points + 2)
+      node.inside = 1;
   } else {
     node.value = Node::Date{};
   }

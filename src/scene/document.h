@@ -28,6 +28,7 @@ struct Node {
 
   Place place;
   std::variant<std::int64_t, double, bool, std::string, Date, List, Table> value;
+  int inside = 0;       // of a string in one pair of quotes: columns from its place to its text; 0: not told
   bool header = false;  // a table under a [header] of its own, or a list of such
 
   bool is_table() const { return std::holds_alternative<Table>(value); }

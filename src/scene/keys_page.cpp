@@ -13,7 +13,7 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr const char* kOpening = R"(# The scene language
+constexpr const char* kOpening = R"page(# The scene language
 
 A scene is a [TOML](https://toml.io) file that says what is in a room, what it looks like and how it is filmed. Most keys have a
 default; this is a complete scene:
@@ -249,6 +249,81 @@ ground_drag = 0.5                                                # the paper's f
 rotation = false                                                 # as in the paper: forces do not turn bodies
 ```
 
+## Forces
+
+Gravity and drag are keys of the room. So are the forces of air, charges, masses and a fluid:
+
+```toml
+[room]
+gravitation    = 1                                               # every two bodies attract each other: G m1 m2 / r^2
+coulomb        = 1                                               # charges repel or attract each other: k q1 q2 / r^2
+softening      = 0.05                                            # r^2 + s^2 instead of r^2 in their potentials
+electric       = [0, -2]                                         # f = q E
+magnetic       = 2                                               # f = q v x B, in the plane positive towards the viewer
+quadratic_drag = 0.02                                            # f = -c |v| v
+wind           = [3, 0]                                          # drag acts on the velocity relative to it
+fluid          = { level = 1, density = 2 }                      # buoyancy of what lies below the level
+
+[[particle]]
+charge = -1
+
+[[attractor]]                                                    # a sun that stays where it is
+strength = 5                                                     # G times its mass
+center   = [4, 2]                                                # or the name of a body, which feels the opposite
+```
+
+Any other force is written as an expression: a `potential`, whose negative gradient is the force, or `components`. It acts at the centre of
+mass, within every stage of the integrator, so the scheme keeps its order, in every mode and with both solvers:
+
+```toml
+[constants]                                                      # for expressions, and for --set constants.k=9
+k = 4
+
+[[force]]                                                        # an oscillator, stiffer along y
+of        = "ball"                                               # left out: on every body
+potential = "k*(x^2 + 2*y^2)/2"                                  # joules
+
+[[force]]                                                        # lift: across the velocity
+of         = "ball"
+components = ["-0.1*spin*vy", "0.1*spin*vx"]                     # newtons, one for each axis
+
+[[force]]                                                        # r, dx and dy are measured from the centre
+potential = "-5*m/r"
+center    = [4, 2]
+
+[[force]]                                                        # every two of them, equal and opposite
+among     = ["atom[*]"]
+potential = "4*((0.3/r)^12 - (0.3/r)^6)"
+```
+
+## Expressions
+
+Expressions are in metres, kilograms, seconds and radians (`sin(30*deg)`); axes are the room's. An expression is a string, or a number.
+
+| of a force on each body | |
+|---|---|
+| `x` `y` `z`, `vx` `vy` `vz`, `speed` | its place, velocity and speed; `z` in space |
+| `m`, `charge`, `i` | its mass, its charge, the number of the copy (0, 1, ...) |
+| `angle`, `spin` | in the plane; rounds are counted |
+| `r`, `dx` `dy` `dz`, `dvx` `dvy` `dvz` | distance, place and velocity as seen from `center` |
+| `t` | the time |
+
+| of a force between two | |
+|---|---|
+| `r`, `dx` `dy` `dz`, `dvx` `dvy` `dvz` | from the first to the second; components are the force on the second |
+| `m1` `m2`, `charge1` `charge2`, `t` | their masses and charges; the time |
+
+There are `+ - * / ^`, where `^` binds to the right and before a sign (`-2^2` is -4); `< <= > >= == !=`, which are 1 or 0; `sin cos tan asin
+acos atan atan2 sinh cosh tanh exp log sqrt abs sign floor min max`; `if(condition, then, else)`; `pi` and `deg`. A product needs its sign:
+`2*x`. All functions have the same bits on every machine. An error names the line and column:
+
+    pendulum.toml:12:25: 'components', column 9: nothing is called 'sped' here; did you mean 'speed'?
+
+A potential depends on places and the time, and is differentiated exactly; it counts as potential energy (`fields` in plots and
+`energy.fields` in tables). What components, wind and drag do is booked as `work` (`energy.work`) in scenes that have such forces: the total
+energy minus the work stays constant where nothing collides. A force that comes to no finite number ends the run, with the body, the place
+and the time.
+
 ## Films
 
 Without `speed` a second of the film shows a second of the run. `speed` is one number for the whole film, or a list of keys at times of the
@@ -349,7 +424,7 @@ Labels are set as mathematics: letters are italic; digits and words of three or 
 superscripts (`v_center`, `a_{ij}`, `x^2`), `'` a prime, `*r*` a vector, `"in quotes"` plain words. There are `\omega` and the other Greek
 letters, `\Delta`, `\times`, `\cdot`, `\perp`, `\dot{q}`, `\bar{v}`, `\vec{r}`. In TOML write a backslash twice, or use single quotes.
 
-)";
+)page";
 
 const char* const kNotes[][2] = {
     {"room",
@@ -448,6 +523,14 @@ std::string type(const Key& key) {
       return "number, or table of them";
     case Form::states:
       return "true, false, or a file";
+    case Form::bodies:
+      return "name, or list of names";
+    case Form::expression:
+      return "expression";
+    case Form::expressions:
+      return "one expression a dimension";
+    case Form::numbers:
+      return "numbers with names";
   }
   return "";
 }
@@ -483,7 +566,8 @@ std::string row(const Key& key, const std::string& section) {
 constexpr const char* kHead = "| key | takes | left out | what it is | example |\n|---|---|---|---|---|\n";
 
 bool section(const Key& key) {
-  return key.form == Form::table || key.form == Form::tables || key.form == Form::cameras;
+  return key.form == Form::table || key.form == Form::tables || key.form == Form::cameras ||
+         key.form == Form::numbers;
 }
 
 void rows_under(std::string& page, const std::string& owner, const std::string& section) {
@@ -508,6 +592,10 @@ std::string keys_page() {
                         each->doc);
     for (const auto& note : kNotes)
       if (each->path == note[0]) page += std::string(note[1]) + "\n\n";
+    if (each->form == Form::numbers) {
+      page += "    " + each->example + "\n";
+      continue;
+    }
     page += kHead;
     rows_under(page, each->path, each->path);
   }

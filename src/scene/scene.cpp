@@ -16,6 +16,7 @@
 #include "scene/explosions.h"
 #include "scene/fields.h"
 #include "scene/figure.h"
+#include "scene/forces.h"
 #include "scene/input.h"
 #include "scene/joints.h"
 #include "scene/links.h"
@@ -92,7 +93,8 @@ void ignore(const Node& top, const NameTable& roster, sim::Model<D>& model, Diag
 void refuse_taken_names(const Node& top, const NameTable& roster, Diagnostics& complaints) {
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
-  for (const char* kind : {"spring", "net", "joint", "chain", "bond", "explosion", "mouse"}) {
+  for (const char* kind :
+       {"spring", "net", "joint", "chain", "bond", "explosion", "force", "attractor", "mouse"}) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i) {
       const Node* name = all->list()[i].find("name");
@@ -147,6 +149,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   joints(top, roster, world, complaints);
   chains(top, roster, world, complaints);
   explosions(top, model, complaints);
+  forces(top, roster, world, complaints);
   bonds(top, roster, world, complaints);
   ignore(top, roster, model, complaints);
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);

@@ -143,6 +143,14 @@ Json value(const Key& key) {
     }
     case Form::path:
       return list_of(list_of({{"type", "number"}}, 3, 4), 2, 0);
+    case Form::bodies:
+      return any_of({string, list_of(string, 1, 0)});
+    case Form::expression:
+      return any_of({string, number});
+    case Form::expressions:
+      return list_of(any_of({string, number}), 2, 3);
+    case Form::numbers:
+      return {{"type", "object"}, {"additionalProperties", any_of({number, string})}};
     case Form::trails:
       return any_of(
           {number, {{"type", "object"}, {"additionalProperties", {{"type", "number"}, {"minimum", 0}}}}});

@@ -131,6 +131,10 @@ std::string unit_words(std::string_view unit) {
       {"N m^2", "newton square metres"},
       {"N", "newtons"},
       {"%", "percent"},
+      {"J", "joules"},
+      {"C", "coulombs"},
+      {"T", "teslas"},
+      {"V/m", "volts per metre"},
       {"1/s", "per second"}};
   const auto found = words.find(unit);
   return std::string(found == words.end() ? unit : found->second);
@@ -211,6 +215,15 @@ std::string expected(const Key& key, int dimension) {
       return "a number of seconds, or a table of them by body";
     case Form::states:
       return "true, false, or the file of a run (CSV)";
+    case Form::bodies:
+      return "the name of a body, such as \"ball[*]\", or a list of them";
+    case Form::expression:
+      return "an expression such as \"-2*x\", or a number";
+    case Form::expressions:
+      return space ? "three expressions such as [\"-2*x\", \"0\", \"0\"]"
+                   : "two expressions such as [\"-2*x\", \"0\"]";
+    case Form::numbers:
+      return "a table of numbers with names";
   }
   return "";
 }

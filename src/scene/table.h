@@ -25,27 +25,31 @@ enum class Form {
   choice,
   choices,  // one word, a list of words
   color,
-  vector,   // [x, y], in space [x, y, z]
-  spin,     // a number in the plane, [x, y, z] in space
-  turn,     // in space: [x, y, z] or { axis, angle }
-  pixels,   // [width, height], whole
-  count,    // 12, or [6, 2]
-  offset,   // a vector, or one a direction of the grid
-  which,    // true, or "0..4": all, or those of the copies
-  points,   // [[x, y], ...], three at least; in space four
-  pairs,    // [["a", "b"], ...], names
-  limits,   // [lowest, highest]
-  ends,     // the two ends of a spring
-  thing,    // the name of a body
-  things,   // references to bodies
-  path,     // [[t, x, y], ...]
-  walls,    // "ground", "none", or tables
-  cameras,  // [camera], in space [[camera]] too
-  speeds,   // a speed, or keys of it
-  place,    // one end of a spring: a body, a point of one, a place
-  times,    // an exact time, or a list of them
-  trails,   // seconds, or a table of them by body
-  states,   // true, false, or the file of another program's run
+  vector,       // [x, y], in space [x, y, z]
+  spin,         // a number in the plane, [x, y, z] in space
+  turn,         // in space: [x, y, z] or { axis, angle }
+  pixels,       // [width, height], whole
+  count,        // 12, or [6, 2]
+  offset,       // a vector, or one a direction of the grid
+  which,        // true, or "0..4": all, or those of the copies
+  points,       // [[x, y], ...], three at least; in space four
+  pairs,        // [["a", "b"], ...], names
+  limits,       // [lowest, highest]
+  ends,         // the two ends of a spring
+  thing,        // the name of a body
+  things,       // references to bodies
+  path,         // [[t, x, y], ...]
+  walls,        // "ground", "none", or tables
+  cameras,      // [camera], in space [[camera]] too
+  speeds,       // a speed, or keys of it
+  place,        // one end of a spring: a body, a point of one, a place
+  times,        // an exact time, or a list of them
+  trails,       // seconds, or a table of them by body
+  states,       // true, false, or the file of another program's run
+  bodies,       // references to bodies, or one
+  expression,   // an expression, or a number
+  expressions,  // one a dimension
+  numbers,      // [constants]: any names
 };
 
 struct Range {

@@ -135,6 +135,41 @@ TEST_F(States, TroubleExitsWithSixAfterWhatWasGood) {
   EXPECT_EQ(nlohmann::json::parse(run.out)["states"].size(), 1u);
 }
 
+TEST_F(States, AForceThatIsNoNumberExitsWithSixAndSaysWhere) {
+  scene(R"(
+[room]
+gravity = [0, 0]
+[[particle]]
+name = "ball"
+position = [1, 1]
+velocity = [-1, 0]
+[[force]]
+components = ["sqrt(x - 0.5)", 0]
+)");
+  const Outcome run = obscura("states scene.toml --at 5");
+  EXPECT_EQ(run.exit, 6);
+  EXPECT_NE(run.err.find("ball"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("force is not a number"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("force[0] at x = 0.49"), std::string::npos) << run.err;
+}
+
+TEST_F(States, EnergiesHaveFieldsAndWorkWhereThereAreForces) {
+  scene(R"(
+[[particle]]
+position = [1, 1]
+[[force]]
+potential = "2*x"
+)");
+  const auto with = nlohmann::json::parse(obscura("states scene.toml --at 0").out)["states"][0]["energy"];
+  EXPECT_EQ(with["fields"], 2.0);
+  EXPECT_EQ(with["work"], 0.0);
+  EXPECT_NE(obscura("states scene.toml --at 0 --format csv").out.find("energy.fields,energy.work"),
+            std::string::npos);
+  scene(kParabola);
+  EXPECT_FALSE(nlohmann::json::parse(obscura("states scene.toml --at 0").out)["states"][0]["energy"].contains(
+      "fields"));
+}
+
 TEST_F(States, ReportWhatHoldsABlockOnASlidingOneAndAJoint) {
   // a block at rest on the floor bears half of g m at each corner (1e-9: the direct solver's); a sled slides
   // with mu m g against it; a lamp hangs on a rod

@@ -97,6 +97,18 @@ std::string bodies(const sim::Model<D>& model) {
          count(model.mice.size(), "mouse", "mice");
 }
 
+// how many forces beside gravity and drag, and between how many pairs of bodies they act
+template <int D>
+std::pair<std::size_t, double> forces_of(const sim::Model<D>& model) {
+  double pairs = 0;
+  for (const sim::Force<D>& force : model.forces) {
+    const double n = double(force.subjects.size());
+    if (force.on == sim::Force<D>::On::among) pairs += 0.5 * n * (n - 1);
+    if (force.on == sim::Force<D>::On::between) pairs += 0.5 * n;
+  }
+  return {model.forces.size(), pairs};
+}
+
 // the film that render would make
 struct Plan {
   Shots shots;
@@ -129,6 +141,13 @@ std::string text(const scene::Scene& scene, const sim::Model<D>& model, const Pl
     all += fmt::format("  {:<8} {}\n", name, value);
   };
   row("bodies", bodies(model));
+  if (const auto [forces, pairs] = forces_of(model); forces > 0) {
+    std::string said = count(forces, "force", "forces") + " beside gravity and drag";
+    if (pairs > 0)
+      said += fmt::format(", between {:.0f} {} of bodies in each stage of a step", pairs,
+                          pairs == 1 ? "pair" : "pairs");
+    row("forces", said);
+  }
   row("time", fmt::format("{:g} s in {} steps of 1/{} s", sim::value(scene.duration),
                           sim::ceil(scene.duration * model.rate), sim::text(model.rate)));
   row("contact", contact(model));
@@ -158,6 +177,8 @@ Json json(const scene::Scene& scene, const sim::Model<D>& model, const Plan& pla
           {"links", links_of(model)},
           {"walls", model.walls.size()},
           {"mice", model.mice.size()},
+          {"forces", model.forces.size()},
+          {"force_pairs", forces_of(model).second},
           {"duration", sim::value(scene.duration)},
           {"steps", sim::ceil(scene.duration * model.rate)},
           {"rate", sim::value(model.rate)},

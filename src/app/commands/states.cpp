@@ -89,10 +89,11 @@ std::string json(const sim::Snapshot& now, const sim::SceneInfo& cast, const std
       "    {{\"time\": {}, \"step\": {}, \"hash\": \"{}\",\n"
       "     \"energy\": {{\"kinetic\": {}, \"potential\": {}, \"gravity\": {}, \"springs\": {}, \"total\": "
       "{}, "
-      "\"displacement\": {}, \"impacts\": {}}},\n"
+      "\"displacement\": {}, \"impacts\": {}{}}},\n"
       "     \"momentum\": {}, \"angular_momentum\": {},\n     \"bodies\": [",
       number(now.time), now.step, hash, number(e.kinetic), number(e.potential()), number(e.gravity),
       number(e.springs), number(e.total()), number(e.displacement), number(e.impacts),
+      cast.forces ? fmt::format(", \"fields\": {}, \"work\": {}", number(e.fields), number(e.work)) : "",
       vector(now.momentum, d), spin(now.angular_momentum, d));
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
     const auto& body = now.bodies[i];

@@ -38,6 +38,10 @@ std::vector<Column> columns(const sim::SceneInfo& cast, const std::vector<Eigen:
   list.number("energy.kinetic", [](Now now) { return now.energies.kinetic; });
   list.number("energy.potential", [](Now now) { return now.energies.potential(); });
   list.number("energy.total", [](Now now) { return now.energies.total(); });
+  if (cast.forces) {
+    list.number("energy.fields", [](Now now) { return now.energies.fields; });
+    list.number("energy.work", [](Now now) { return now.energies.work; });
+  }
   list.number("energy.displacement", [](Now now) { return now.energies.displacement; });
   list.number("energy.impacts", [](Now now) { return now.energies.impacts; });
   list.vector("momentum", [](Now now) -> const sim::Vec3& { return now.momentum; });

@@ -23,12 +23,14 @@ const sim::Snapshot::Spring& spring(Now now, int body) {
   return none;
 }
 
-constexpr std::array<Measure, 14> kMeasures{{
+constexpr std::array<Measure, 16> kMeasures{{
     {"energy", "total", "J", "", false, [](Now now, int) { return now.energies.total(); }},
     {"kinetic", "kinetic", "J", "vermilion", false, [](Now now, int) { return now.energies.kinetic; }},
     {"potential", "potential", "J", "blue", false, [](Now now, int) { return now.energies.potential(); }},
     {"gravity", "gravity", "J", "blue", false, [](Now now, int) { return now.energies.gravity; }},
     {"springs", "springs", "J", "green", false, [](Now now, int) { return now.energies.springs; }},
+    {"fields", "fields", "J", "purple", false, [](Now now, int) { return now.energies.fields; }},
+    {"work", "work", "J", "orange", false, [](Now now, int) { return now.energies.work; }},
     {"x", "x", "m", "blue", true, [](Now now, int body) { return of(now, body).position.x(); }},
     {"height", "height", "m", "blue", true, [](Now now, int body) { return of(now, body).position.y(); }},
     {"speed", "speed", "m/s", "green", true, [](Now now, int body) { return of(now, body).velocity.norm(); }},

@@ -80,7 +80,7 @@ std::optional<Trouble> DivergenceMonitor<D>::check_bounds(const State<D>& state,
 template <int D>
 void DivergenceMonitor<D>::start(State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
-  double energy_budget = e.kinetic + e.springs;
+  double energy_budget = e.kinetic + e.springs + std::fabs(e.fields);
   const double little = 0.1 * model_.scale;
   double fastest = little;
   for (const Mouse<D>& mouse : model_.mice) {
@@ -98,14 +98,14 @@ void DivergenceMonitor<D>::start(State<D>& state, double t) const {
   for (const Body<D>& body : model_.bodies) {
     if (!body.fixed) energy_budget += body.mass * (g * model_.scale + fastest * fastest);
   }
-  state.energy_budget = {e.gravity + state.ledger.displacement, energy_budget};
+  state.energy_budget = {e.gravity + e.fields - e.work + state.ledger.displacement, energy_budget};
 }
 
 template <int D>
 std::optional<Trouble> DivergenceMonitor<D>::check_energy(const State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
   const double energy_budget = state.energy_budget.amount + std::max(0.0, state.ledger.displacement);
-  const double now = e.kinetic + e.springs + e.gravity - state.energy_budget.level;
+  const double now = e.kinetic + e.springs + e.gravity + e.fields - e.work - state.energy_budget.level;
   if (now <= kSuspect * energy_budget) return {};
   const Tightness worst = tightest(model_, state.grips);
   if (now <= kProof * energy_budget && worst.body < 0) return {};
@@ -132,6 +132,12 @@ std::string DivergenceMonitor<D>::likely(const State<D>& state, int body) const 
     const bool feeds = model_.integrator == Integrator::euler || model_.integrator == Integrator::midpoint;
     return std::string(feeds ? spelled(model_.integrator) : "the step") +
            " feeds its springs: raise physics.rate" + (feeds ? ", or take rk4 or semi-implicit" : "");
+  }
+  for (const Force<D>& force : model_.forces) {
+    for (const Subject<D>& subject : force.subjects) {
+      if (subject.body == body)
+        return force.name + " drives it: raise physics.rate if it should not, or give it drag or walls";
+    }
   }
   if (model_.walls.empty()) return "nothing stops it: the room has no walls";
   return "nothing stops it: no wall lies on its way, or it started too fast";

@@ -1,5 +1,6 @@
 #include "sim/energy/energy.h"
 
+#include "sim/force/forces.h"
 #include "sim/force/spring.h"
 #include "sim/model/stance.h"
 
@@ -52,6 +53,16 @@ double spring_energy(const Model<D>& model, const State<D>& state, const std::ve
 }
 
 template <int D>
+double field_energy(const Model<D>& model, const State<D>& state, double t, std::vector<double>* each) {
+  if (model.forces.empty()) return 0;
+  Forces<D> forces(model);
+  forces.gather(state);
+  std::vector<BodyMotion<D>> motions;
+  stand(state, motions);
+  return forces.energy(t, motions, each);
+}
+
+template <int D>
 Energies energies(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths, double t) {
   Energies sum;
   for (int body = 0; body < int(model.bodies.size()); ++body) {
@@ -63,6 +74,8 @@ Energies energies(const Model<D>& model, const State<D>& state, const std::vecto
     sum.springs += spring_energy(model, state, spring);
   for (int mouse = 0; mouse < int(model.mice.size()); ++mouse)
     sum.springs += spring_energy(model, state, paths, mouse, t);
+  sum.fields = field_energy(model, state, t);
+  for (const double work : state.work) sum.work += work;
   sum.displacement = state.ledger.displacement;
   sum.impacts = state.ledger.impacts;
   return sum;
@@ -98,6 +111,7 @@ template double kinetic<2>(const Model<2>&, const State<2>&);
 template double gravity_energy<2>(const Model<2>&, const State<2>&, int);
 template double spring_energy<2>(const Model<2>&, const State<2>&, int);
 template double spring_energy<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, int, double);
+template double field_energy<2>(const Model<2>&, const State<2>&, double, std::vector<double>*);
 template Energies energies<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, double);
 template Vec<2> momentum<2>(const Model<2>&, const State<2>&);
 template AngularVec<2> angular_momentum<2>(const Model<2>&, const State<2>&);
@@ -107,6 +121,7 @@ template double kinetic<3>(const Model<3>&, const State<3>&);
 template double gravity_energy<3>(const Model<3>&, const State<3>&, int);
 template double spring_energy<3>(const Model<3>&, const State<3>&, int);
 template double spring_energy<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, int, double);
+template double field_energy<3>(const Model<3>&, const State<3>&, double, std::vector<double>*);
 template Energies energies<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&, double);
 template Vec<3> momentum<3>(const Model<3>&, const State<3>&);
 template AngularVec<3> angular_momentum<3>(const Model<3>&, const State<3>&);

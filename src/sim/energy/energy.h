@@ -35,6 +35,11 @@ template <int D>
 double spring_energy(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths,
                      int mouse, double t);
 
+/// Potentials of the forces at time t, J; added to `each`, one a body, if it is given.
+template <int D>
+double field_energy(const Model<D>& model, const State<D>& state, double t,
+                    std::vector<double>* each = nullptr);
+
 /// All of it, with the ledger, at time t (s).
 template <int D>
 Energies energies(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths, double t);

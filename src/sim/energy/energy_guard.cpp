@@ -27,11 +27,25 @@ Rotation<D> axes(const State<D>& state, int k) {
   return D == 2 ? Rotation<D>(Rotation<D>::Identity()) : rotation<D>(state.turn[k]);
 }
 
+// whether a force may give energy that no potential of its subjects tells
+template <int D>
+bool works(const Force<D>& force) {
+  if (force.on != Force<D>::On::each || (force.center && force.center->body >= 0)) return true;
+  if (!force.formula) return false;
+  return force.formula->potential ? force.formula->timed : force.formula->works && force.formula->feeds;
+}
+
 }  // namespace
 
 template <int D>
 EnergyGuard<D>::EnergyGuard(const Model<D>& model)
-    : model_(model), g_(std::sqrt(model.gravity.squaredNorm())) {
+    : model_(model), g_(std::sqrt(model.gravity.squaredNorm())), forces_(model) {
+  driven_.assign(model.bodies.size(), 0);
+  for (const Force<D>& force : model.forces) {
+    if (!works(force)) continue;
+    for (const Subject<D>& subject : force.subjects) driven_[std::size_t(subject.body)] = 1;
+    if (force.center && force.center->body >= 0) driven_[std::size_t(force.center->body)] = 1;
+  }
   for (const Body<D>& body : model.bodies) {
     Weight weight;
     if (!body.fixed && !body.handout) weight = {body.mass, body.inertia};
@@ -51,14 +65,25 @@ double EnergyGuard<D>::kinetic(const State<D>& state, int body) const {
   return sum;
 }
 
+// the potentials of forces on each body
 template <int D>
-void EnergyGuard<D>::open(const State<D>& state) {
+void EnergyGuard<D>::add_fields(const State<D>& state, std::vector<double>& to) {
+  if (!forces_.any()) return;
+  stand(state, motions_);
+  forces_.energy(t_, motions_, &to);
+}
+
+template <int D>
+void EnergyGuard<D>::open(const State<D>& state, double t) {
+  t_ = t;
+  if (forces_.any()) forces_.gather(state);
   const int n = int(weights_.size());
   x_ = state.x, moved_.resize(n), before_.resize(n), now_.resize(n), booked_.assign(n, 0);
   for (int i = 0; i < n; ++i) {
     moved_[i] = kinetic(state, i);
     before_[i] = moved_[i] - weights_[i].mass * model_.gravity.dot(state.x[i]);
   }
+  add_fields(state, before_);
   for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = spring_energy(model_, state, i);
 }
 
@@ -69,8 +94,10 @@ bool EnergyGuard<D>::risen(const State<D>& state) {
   for (int i = 0; i < n; ++i) {
     const double moves = kinetic(state, i);
     now_[i] = moves - weights_[i].mass * model_.gravity.dot(state.x[i]);
-    sum += gain(i), motion += moves;
+    motion += moves;
   }
+  add_fields(state, now_);
+  for (int i = 0; i < n; ++i) sum += gain(i);
   for (int i = 0; i < int(springs_now_.size()); ++i) {
     springs_now_[i] = spring_energy(model_, state, i);
     sum += springs_now_[i] - springs_before_[i], motion += springs_now_[i];
@@ -124,6 +151,9 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     for (const int body : chain.bodies) link(body, chain.bodies[0], true), bound_[body].held = true;
   }
 
+  // in flight the scheme's own error under a force is no contact's
+  for (int i = 0; forces_.any() && i < n; ++i) tied_[i] = tied_[i] || forces_.push(i);
+
   const auto island = [&](int body) -> Island& { return sums_[islands_.root(body)]; };
   const bool frozen = !state.frozen.empty(), blasting = [&] {
     for (const Blast<D>& blast : state.blasts) {
@@ -141,7 +171,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     Bound& group = bound_[groups_.root(i)];
     group.lift -= m * model_.gravity.dot(state.x[i] - x_[i]), group.mass += m;
     group.held = group.held || bound_[i].held;
-    it.touched = it.touched || touched_[i], it.driven = blasting;
+    it.touched = it.touched || touched_[i], it.driven = it.driven || blasting || driven_[i];
     it.tied = it.tied || tied_[i], it.jointed = it.jointed || jointed_[i];
     it.rooted = it.rooted || rooted_[i] || (frozen && state.frozen[i]);
   }

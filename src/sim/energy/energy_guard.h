@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/force/forces.h"
 #include "sim/math/islands.h"
 #include "sim/model/state.h"
 
@@ -16,8 +17,8 @@ class EnergyGuard {
   /// Kept by reference.
   explicit EnergyGuard(const Model<D>& model);
 
-  /// Notes what there is, of motion, height and springs, before a step.
-  void open(const State<D>& state);
+  /// Notes what there is, of motion, height, springs and fields, before a step from t.
+  void open(const State<D>& state, double t = 0);
   /// Records work (J) that was done on a body on purpose since then: it may stay.
   void book(int body, double work) { booked_[body] += work; }
   /// Whether the total energy has risen by more than rounding, bodies driven by hands, motors and explosions
@@ -64,11 +65,16 @@ class EnergyGuard {
   };
 
   double kinetic(const State<D>& state, int body) const;
+  void add_fields(const State<D>& state, std::vector<double>& to);
   void gather(const State<D>& state);
   void move_as_one(const State<D>& state);
 
   const Model<D>& model_;
   const double g_;  // m/s^2
+  Forces<D> forces_;
+  std::vector<char> driven_;  // one a body: a force works on it whose energy is not known here
+  std::vector<BodyMotion<D>> motions_;
+  double t_ = 0;
   std::vector<Weight> weights_;
   double size_ = 0;  // J: m g times the room's height
   std::vector<Vec<D>> x_;

@@ -33,7 +33,7 @@ SpinTensor<D> tensor(const Body<D>& body, const BodyMotion<D>& at) {
 
 template <int D>
 BondLoads<D>::BondLoads(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), paths_(paths), blasts_(model), loads_(model.bonds.size(), 0.0) {}
+    : model_(model), paths_(paths), blasts_(model), forces_(model), loads_(model.bonds.size(), 0.0) {}
 
 // forces and torques from outside
 template <int D>
@@ -49,6 +49,11 @@ void BondLoads<D>::push(const State<D>& state, double t) {
     for (int k = 0; k < int(state.blasts.size()); ++k) {
       if (state.blasts[k].on) steady_[i] += blasts_.push(model_.explosions[k], i, body_motion(state, i));
     }
+  }
+  if (forces_.any()) {
+    forces_.gather(state);
+    stand(state, motions_);
+    forces_.apply(t, motions_, steady_);
   }
   const auto velocity = [&](const End<D>& end) -> Vec<D> {
     if (end.body < 0) return Vec<D>::Zero();

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "sim/force/explosion.h"
+#include "sim/force/forces.h"
 #include "sim/model/path.h"
 #include "sim/model/state.h"
 
@@ -73,6 +74,8 @@ class BondLoads {
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
   Blasts<D> blasts_;
+  Forces<D> forces_;
+  std::vector<BodyMotion<D>> motions_;
   std::vector<Wrench<D>> steady_, blows_;  // on each part about its centre: forces, and impulses of the step
   std::vector<double> loads_;
 };

@@ -42,7 +42,7 @@ void mark(int n, const double* __restrict x, const double* __restrict rims, cons
 
 template <int D>
 Handout<D>::Handout(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), paths_(paths), tips_(model.bodies) {
+    : model_(model), paths_(paths), forces_(model), tips_(model.bodies) {
   springs_.resize(model.bodies.size());
   for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
   const int most = tips_.most();
@@ -110,6 +110,10 @@ void Handout<D>::collide(State<D>& state, std::span<const int> suspects, double 
     // the change of energy by the displacement
     const double held = springs(state, body, t), moving = kinetic(model_, state, body);
     state.ledger.displacement -= b.mass * model_.gravity.dot(s.at.x - state.x[body]);
+    if (forces_.any() && forces_.push(body)) {
+      state.ledger.displacement += forces_.energy_of(state, body, s.at, t) -
+                                   forces_.energy_of(state, body, body_motion(state, body), t);
+    }
     state.x[body] = s.at.x, state.v[body] = s.at.v;
     if (b.turns()) state.spin[turning(state, body)] = s.at.w;
     state.ledger.displacement += springs(state, body, t) - held;
@@ -127,12 +131,12 @@ bool Handout<D>::particle_like(int body) const {
   return !b.turns() && round_radius(b.shape);
 }
 
-// the plain case, and the only one that happens often: a particle that no spring holds meets one wall. False,
-// and nothing done, where it is anything else
+// the plain case, and the only one that happens often: a particle that no spring or force acts on meets one
+// wall. False, and nothing done, where it is anything else
 template <int D>
 bool Handout<D>::bounce(State<D>& state, int body) const {
   const Body<D>& b = model_.bodies[body];
-  if (!particle_like(body) || !springs_[body].empty()) return false;
+  if (!particle_like(body) || !springs_[body].empty() || forces_.push(body)) return false;
   for (const Grip<D>& grip : state.grips) {
     if (grip.body == body) return false;
   }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/force/forces.h"
 #include "sim/math/lcp.h"
 #include "sim/model/path.h"
 #include "sim/model/stance.h"
@@ -62,6 +63,7 @@ class Handout {
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
   std::vector<double> bounding_radius_;  // how far each body reaches, m
+  Forces<D> forces_;
   SupportVertices<D> tips_;
   std::vector<std::vector<int>> springs_;  // of each body
   std::vector<std::int64_t> signs_;        // a block's: negative where a body is outside

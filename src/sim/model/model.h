@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/math/expression.h"
 #include "sim/math/rational.h"
 #include "sim/math/vec.h"
 #include "sim/shape/form.h"
@@ -41,11 +42,14 @@ struct Body {
   double elasticity = 1;                          // the handout's e, 0 <= e <= 1
   double friction = 0;                            // Coulomb's mu >= 0; of a pair, the root of the product
   double drag = 0;                                // c of f = -c v at the centre of mass, N s/m
-  double ground_drag = 0;  // the same along the ground while it stands there, beside mu; N s/m
-  int group = 0;           // for Model::ignore
-  bool fixed = false;      // held where it starts; as heavy as the room
-  bool linked = false;     // a link of a chain, which moves it
-  bool handout = false;    // meets walls by the handout's law, and no bodies, whatever `collision` says
+  double ground_drag = 0;     // the same along the ground while it stands there, beside mu; N s/m
+  double quadratic_drag = 0;  // c of f = -c |v| v, N s^2/m^2
+  double charge = 0;          // C
+  int copy = 0;               // its number among the copies of its kind
+  int group = 0;              // for Model::ignore
+  bool fixed = false;         // held where it starts; as heavy as the room
+  bool linked = false;        // a link of a chain, which moves it
+  bool handout = false;       // meets walls by the handout's law, and no bodies, whatever `collision` says
 
   bool turns() const { return inertia != AngularVec<D>::Zero(); }
 };
@@ -154,6 +158,46 @@ struct Explosion {
   Scheme scheme = Scheme::smooth;
 };
 
+/// What a force acts on, or comes from: a body, or the part of one that bonds hold; or a place.
+template <int D>
+struct Subject {
+  int body = -1;                        // -1: a place in the room
+  Vec<D> local = Vec<D>::Zero();        // in the body's frame from its centre; for the room, the place
+  double turn = 0;                      // in the plane: of the part against its body, rad
+  double mass = 1, charge = 0;          // kg, C
+  double drag = 0, quadratic_drag = 0;  // N s/m, N s^2/m^2
+  int copy = 0;
+};
+
+/// A force as formulas, made by sim/force/formula.h.
+struct ForceFormula {
+  Program force;   // its components, N
+  Program energy;  // its potential, J; of those that have one
+  bool potential = false;
+  bool timed = false;   // the time is in it
+  bool resting = true;  // it may act on what does not move
+  bool works = true;    // without a potential: whether it does work
+  bool feeds = true;    // and may give energy, not only take it
+};
+
+/// A force on each of its subjects, or between each two of them.
+template <int D>
+struct Force {
+  enum class On { each, among, between };  // between: the first and second, the third and fourth, ...
+  /// `inverse_square`: c w1 w2 d / (d^2 + s^2)^(3/2) on the second, w its mass or charge and d the way to it.
+  /// `buoyancy`: density g times what of each body lies below `level`.
+  enum class Law { formula, gravitation, coulomb, buoyancy };
+
+  std::string name;
+  On on = On::each;
+  Law law = Law::formula;
+  std::shared_ptr<const ForceFormula> formula;
+  std::vector<Subject<D>> subjects;
+  std::optional<Subject<D>> center;    // of `each`: where d is measured from; a body feels the opposite
+  double strength = 0, softening = 0;  // c, N m^2/kg^2 or N m^2/C^2; s, m
+  double level = 0, density = 0;       // m; kg/m^2, in space kg/m^3
+};
+
 template <int D>
 class Chain;
 
@@ -185,6 +229,7 @@ struct Model {
   std::vector<Mouse<D>> mice;
   std::vector<Joint<D>> joints;
   std::vector<Explosion<D>> explosions;
+  std::vector<Force<D>> forces;
   std::vector<Bond<D>> bonds;
   std::vector<Articulation<D>> chains;      // none where there are bonds
   std::vector<std::pair<int, int>> ignore;  // groups that do not touch each other

@@ -59,12 +59,15 @@ struct SceneInfo {
   std::vector<Spring> springs;
   std::vector<Mouse> mice;
   std::vector<Joint> joints;
+  bool forces = false;  // beside gravity, drag, springs and explosions
 };
 
 struct Energies {
   double kinetic = 0, gravity = 0, springs = 0;  // J; springs: those of the scene and of pressed mice
-  double displacement = 0, impacts = 0;          // the ledger of `handout`, J since t = 0
-  double potential() const { return gravity + springs; }
+  double fields = 0;                             // potentials of forces, J
+  double work = 0;                       // of forces without one and of drag, beside them, J since t = 0
+  double displacement = 0, impacts = 0;  // the ledger of `handout`, J since t = 0
+  double potential() const { return gravity + springs + fields; }
   double total() const { return kinetic + potential(); }
 };
 

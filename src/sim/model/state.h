@@ -102,6 +102,7 @@ struct State {
   std::vector<BodySpin<D>> body_spin;    // in space: one a body that turns
   std::vector<Blast<D>> blasts;          // one an explosion
   std::vector<ChainState> chain_states;  // one a chain of the model
+  std::vector<double> work;  // of a model with forces one number: what those without a potential did, J
 
   // bonded bodies (sim/step/bonded_bodies.h): all above is then about their parts, and this moves
   std::vector<char> intact;             // one a bond: whether it is whole

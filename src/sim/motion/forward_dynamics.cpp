@@ -1,4 +1,4 @@
-// Bodies under springs, handout §2.2, §3.2.
+// Bodies under springs and forces, handout §2.2, §3.2.
 //   dv/dt = g - (c/m) v - (c_g/m) v_g + sum f / m          v_g  along the ground, for what stands on it
 //   dw/dt = I^-1 (sum r x f - w x I w)          in the body's axes
 
@@ -23,7 +23,7 @@ constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stan
 
 template <int D>
 ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), paths_(paths), chains_(model), blasts_(model), tips_(model.bodies) {
+    : model_(model), paths_(paths), chains_(model), blasts_(model), forces_(model), tips_(model.bodies) {
   member_.assign(model.bodies.size(), -1);
   const std::size_t counts[] = {model.bodies.size(), model.springs.size(), model.chains.size()};
   for (int i = 0; i < 3; ++i) {
@@ -31,6 +31,7 @@ ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Pat
     std::iota(numbers_[i].begin(), numbers_[i].end(), 0);
   }
   ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty() || !model.chains.empty();
+  ever_ = ever_ || forces_.any();
   for (const Body<D>& body : model.bodies) ever_ = ever_ || body.ground_drag != 0;
 }
 
@@ -46,7 +47,7 @@ template <int D>
 void ForwardDynamics<D>::gather(const State<D>& state, bool everyone) {
   const Subset all{numbers_[0], numbers_[1], numbers_[2]};
   if (everyone || blasting(state)) return gather(state, all);
-  // bodies with a spring, those that the mouse holds, and those that the ground brakes
+  // bodies with a spring, those that the mouse holds, and those that the ground brakes or a force pushes
   for (const int body : all_) member_[body] = -1;
   const auto mark = [&](int body) {
     if (body >= 0 && !model_.bodies[body].fixed && !model_.bodies[body].linked) member_[body] = 0;
@@ -54,7 +55,9 @@ void ForwardDynamics<D>::gather(const State<D>& state, bool everyone) {
   for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
   for (const Grip<D>& grip : state.grips) mark(grip.body);
   for (int body = 0; body < int(member_.size()); ++body) {
-    if (model_.bodies[body].ground_drag != 0 && (state.frozen.empty() || !state.frozen[body])) mark(body);
+    const bool pushed = model_.bodies[body].ground_drag != 0 ||
+                        (forces_.push(body) && !(leaves_flying_ && forces_.flies(body)));
+    if (pushed && (state.frozen.empty() || !state.frozen[body])) mark(body);
   }
   gather_marked(state, all);
 }
@@ -127,6 +130,8 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
   }
   if (!drag) drag_.clear();
 
+  if (forces_.any()) forces_.gather(state, member_), pushes_.resize(all_.size());
+
   dragged_.clear();
   for (int i = 0; i < int(all_.size()); ++i) {
     if (model_.bodies[all_[i]].ground_drag != 0) dragged_.push_back(i);
@@ -154,6 +159,7 @@ void ForwardDynamics<D>::load(const State<D>& state) {
   }
   chains_.load(state, std::span<double>(v_).subspan(std::size_t(chain_start())));
   std::fill(d_.begin(), d_.end(), 0.0);
+  forces_.refer(state);
 
   // explosions
   acting_.clear(), held_.clear();
@@ -309,6 +315,11 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
       push(i, blasts_.push(model_.explosions[explosion], all_[i], stances_[i]), v_rate);
   }
   for (int i = 0; i < int(held_.size()); ++i) push(i, held_[i], v_rate);
+  if (forces_.any()) {
+    std::fill(pushes_.begin(), pushes_.end(), Wrench<D>{});
+    forces_.apply(t, stances_, pushes_);
+    for (int i = 0; i < int(pushes_.size()); ++i) push(i, pushes_[i], v_rate);
+  }
   for (const Braked& it : braked_) {
     const Vec<D>& speed = stances_[it.member].v;
     const Vec<D> rate = it.rate * (speed - it.normal * it.normal.dot(speed));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/force/explosion.h"
+#include "sim/force/forces.h"
 #include "sim/force/spring.h"
 #include "sim/model/path.h"
 #include "sim/model/stance.h"
@@ -18,23 +19,26 @@ struct Subset {
   std::span<const int> bodies, springs, chains;
 };
 
-/// The bodies on springs and hands and the links of chains, gathered into one system: first the centres, then
-/// the orientations of bodies that turn, then the joints of the chains. In space d and v of an orientation
-/// are in the body's frame, and v is relative to the base spin (sim/math/lie_step.h): a row J in the room's
-/// frame multiplies to_room(room_from_body, v'), and a torque adds from_room(room_from_body, torque) /
-/// inertia.
+/// The bodies that springs, hands and forces act on and the links of chains, gathered into one system: first
+/// the centres, then the orientations of bodies that turn, then the joints of the chains. In space d and v of
+/// an orientation are in the body's frame, and v is relative to the base spin (sim/math/lie_step.h): a row J
+/// in the room's frame multiplies to_room(room_from_body, v'), and a torque adds from_room(room_from_body,
+/// torque) / inertia.
 template <int D>
 class ForwardDynamics final : public System {
  public:
   /// `paths`: the way of each mouse. Both are kept by reference.
   ForwardDynamics(const Model<D>& model, const std::vector<Path<D>>& paths);
 
+  /// From here on gather() leaves out bodies that fly (Forces::flies), but where an explosion acts.
+  void leave_flying() { leaves_flying_ = true; }
+
   /// Whether anything of the model may ever tie a body.
   bool ever() const { return ever_; }
 
-  /// Collects the bodies that springs and mice hold in `state`; with `everyone` all that can move and are
-  /// awake, as while an explosion acts. Bodies with drag on the ground count too. To be called whenever a
-  /// grip changes, a body falls asleep or wakes, or an explosion begins or ends.
+  /// Collects the bodies that springs, mice and forces act on in `state`; with `everyone` all that can move
+  /// and are awake, as while an explosion acts. Bodies with drag on the ground count too. To be called
+  /// whenever a grip changes, a body falls asleep or wakes, or an explosion begins or ends.
   void gather(const State<D>& state, bool everyone = false);
   /// The same for a part of the model: all else stays out of it.
   void gather(const State<D>& state, const Subset& of);
@@ -108,8 +112,10 @@ class ForwardDynamics final : public System {
   std::vector<int> all_;         // bodies_ and the links
   std::vector<int> numbers_[3];  // of all bodies, springs, chains
   std::vector<Tie> ties_;        // springs in order, then mice in order
-  bool ever_ = false;
+  bool ever_ = false, leaves_flying_ = false;
   Blasts<D> blasts_;
+  Forces<D> forces_;
+  std::vector<Wrench<D>> pushes_;  // of forces_, one a member
   SupportVertices<D> tips_;
   std::vector<int> acting_;             // explosions that act
   std::vector<Wrench<D>> held_;         // by the paper's scheme, one a member; empty where nothing is

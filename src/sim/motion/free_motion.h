@@ -1,5 +1,6 @@
 #pragma once
 
+#include "sim/force/forces.h"
 #include "sim/motion/integrator.h"
 
 namespace obscura::sim {
@@ -21,6 +22,27 @@ class FreeTranslation final : public System {
 
  private:
   std::span<const double> gravity_, drag_;
+};
+
+/// The same under forces on each of them alone (Forces::flies), for `count` bodies from body `first` on at x.
+template <int D>
+class ForcedTranslation final : public System {
+ public:
+  ForcedTranslation(std::span<const double> gravity, std::span<const double> drag, Forces<D>& forces,
+                    int first, const double* x)
+      : flight_(gravity, drag), forces_(forces), first_(first), x_(x) {}
+
+  void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
+             std::span<double> v_rate) override {
+    flight_.rates(t, d, v, d_rate, v_rate);
+    forces_.accelerate(t, first_, int(v.size()) / D, x_, d.data(), v.data(), v_rate.data());
+  }
+
+ private:
+  FreeTranslation flight_;
+  Forces<D>& forces_;
+  int first_;
+  const double* x_;
 };
 
 /// Free turning, see sim/math/lie_step.h: in the plane the spin stays, in space it wobbles.

@@ -14,6 +14,7 @@
 
 #include "sim/constraint/material.h"
 #include "sim/force/explosion.h"
+#include "sim/force/forces.h"
 #include "sim/model/stance.h"
 #include "sim/shape/shape.h"
 
@@ -36,6 +37,8 @@ constexpr int kFewContacts = D == 2 ? Statics<D>::kMost : 32;
 template <int D>
 Sleep<D>::Sleep(const Model<D>& model, Forces forces, double deepest)
     : model_(model),
+      driven_(restless_by_forces(model, forces == Forces::exact)),
+      restless_at_start_(restless_by_forces(model, false)),
       exact_(forces == Forces::exact),
       deepest_(deepest),
       g_(std::sqrt(model.gravity.squaredNorm())),
@@ -159,6 +162,7 @@ void Sleep<D>::disturb(int body) {
 template <int D>
 void Sleep<D>::disturb_pulled(const State<D>& state) {
   for (const Grip<D>& grip : state.grips) disturb(grip.body);
+  for (const int body : driven_) disturb(body);
   if (exact_) return;
   for (const Spring<D>& spring : model_.springs) disturb(spring.a.body), disturb(spring.b.body);
 }
@@ -208,6 +212,7 @@ bool Sleep<D>::at_start(State<D>& state, std::span<Contact<D>> contacts) {
     if (!state.v[i].isZero(0) || (k >= 0 && !state.spin[k].isZero(0))) disturb(i);
   }
   disturb_pulled(state);
+  for (const int body : restless_at_start_) disturb(body);
   for (const Joint<D>& joint : model_.joints) disturb(joint.a.body), disturb(joint.b.body);
   list(state, contacts);
   bool fell = false;

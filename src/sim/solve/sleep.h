@@ -119,6 +119,8 @@ class Sleep {
   void freeze(State<D>& state, const Island& island) const;
 
   const Model<D>& model_;
+  const std::vector<int> driven_,
+      restless_at_start_;  // by forces: never at rest; not found at rest at the start
   const bool exact_;
   const double deepest_;
   std::int64_t every_ = 1;     // steps between two checks

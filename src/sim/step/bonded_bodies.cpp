@@ -178,6 +178,26 @@ void BondedBodies<D>::gather(const State<D>& state) {
     end.body = whole_.body[end.body];
   };
   for (Spring<D>& spring : made.springs) moved(spring.a), moved(spring.b);
+  for (Force<D>& force : made.forces) {
+    if (force.law == Force<D>::Law::buoyancy) {
+      force.subjects.clear();
+      for (int i = 0; i < int(made.bodies.size()); ++i) {
+        if (!made.bodies[i].fixed) force.subjects.push_back({.body = i, .mass = made.bodies[i].mass});
+      }
+      continue;
+    }
+    const auto move = [&](Subject<D>& subject) {
+      if (subject.body < 0) return;
+      const PartPose<D>& seat = state.part_poses[subject.body];
+      if (!whole_.alone[subject.body]) {
+        subject.local = seat.x;
+        if (D == 2) subject.turn = seat.turn[0];
+      }
+      subject.body = whole_.body[subject.body];
+    };
+    for (Subject<D>& subject : force.subjects) move(subject);
+    if (force.center) move(*force.center);
+  }
   whole_.kept.assign(model_.joints.size(), -1);
   for (std::size_t k = 0; k < model_.joints.size(); ++k) {
     Joint<D> joint = model_.joints[k];
@@ -327,6 +347,7 @@ void BondedBodies<D>::tell(State<D>& state) const {
     state.broken[whole_.joints[k]] = whole.broken[k];
     state.joint_forces[whole_.joints[k]] = whole.joint_forces[k];
   }
+  state.work = whole.work;
   state.blasts.resize(whole.blasts.size());
   for (std::size_t k = 0; k < whole.blasts.size(); ++k) state.blasts[k].on = whole.blasts[k].on;
 }
@@ -380,7 +401,7 @@ void BondedBodies<D>::split(State<D>& state) {
   gather(state);
 
   State<D> made;
-  made.step = before.step, made.ledger = before.ledger;
+  made.step = before.step, made.ledger = before.ledger, made.work = before.work;
   std::vector<int> same(parts_before.size(), -1);  // where bodies went that are what they were
   for (int body = 0; body < int(parts_.size()); ++body) {
     const int first = parts_[body][0], old = body_before[first], k = turning(before, old);

@@ -27,7 +27,7 @@ void ContactStep<D>::step(State<D>& state, double t, double h) {
     if (!exact_) break;
     touched_.emplace_back(contact.key.a, contact.key.b);
   }
-  energy_guard_.open(state);
+  energy_guard_.open(state, t);
   if (lone_bodies_) lone_bodies_->find(state, h);
 
   solver_->step(state, t, h);

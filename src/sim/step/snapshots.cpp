@@ -91,6 +91,7 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   cast.dimension = D;
   cast.scale = model.scale;
   cast.gravity = to_3d<D>(model.gravity);
+  cast.forces = !model.forces.empty();
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Wall<D>& wall : model.walls)
     cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal), wall.friction});

@@ -47,7 +47,12 @@ Stepper<D>::Stepper(const Model<D>& model)
       blasts_(model),
       divergence_(model, paths_),
       tied_(model, paths_),
+      work_(model),
+      forces_(model),
       springs_(!model.springs.empty() || !model.mice.empty()) {
+  // a potential that changes with the time gives energy
+  for (const Force<D>& force : model.forces)
+    springs_ = springs_ && !(force.formula && force.formula->potential && force.formula->timed);
   assert(std::is_partitioned(model.bodies.begin(), model.bodies.end(),
                              [](const auto& b) { return !b.turns(); }));
   for (const ScriptEvent& edge : edges_) {
@@ -68,6 +73,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       spin_limits_.back() = std::min(spin_limits_.back(), kFarthestTurn * value(model.rate));
   }
   if (!drag) drag_.clear();
+  tied_.leave_flying();
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     if (model.bodies[body].handout) by_handout_.push_back(body);
   }
@@ -97,6 +103,7 @@ void Stepper<D>::begin(State<D>& state) {
   if (pieces_) return pieces_->begin(state);
   state.grips.resize(model_.mice.size());
   state.blasts.resize(model_.explosions.size());
+  state.work.resize(model_.forces.empty() ? 0 : 1);
   if (D == 3) state.body_spin.resize(state.turn.size());
   if (contact_) {
     state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
@@ -132,6 +139,15 @@ std::optional<Trouble> Stepper<D>::partial_step(State<D>& state, double fraction
 
 template <int D>
 std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
+  try {
+    return advance_pieces(state, fraction);
+  } catch (const ForceNotFinite& found) {
+    return found.trouble;
+  }
+}
+
+template <int D>
+std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double fraction) {
   state.touches.clear();
   const double h = step_length(model_.rate);
   auto edge = std::upper_bound(edges_.begin(), edges_.end(), TimeStamp{state.step, 0},
@@ -141,9 +157,11 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
     const bool cut = edge != edges_.end() && edge->at.step == state.step && edge->at.fraction <= fraction;
     const double to = cut ? edge->at.fraction : fraction;
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
+    work_.open(state);
     if (contact_) {
       contact_->step(state, begun, (to - from) * h);
       if (!sound(state)) return divergence_.check_bounds(state, ended);
+      work_.close(state, begun, (to - from) * h);
       suspects_.clear();
       for (const int body : by_handout_) handout_.look(state, body, 1, suspects_);
       handout_.collide(state, suspects_, ended);
@@ -151,6 +169,7 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
       plan(state);
       suspects_.clear();
       if (!integrate(state, begun, (to - from) * h)) return divergence_.check_bounds(state, ended);
+      work_.close(state, begun, (to - from) * h);
       if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
       handout_.collide(state, suspects_, ended);
     }
@@ -253,8 +272,13 @@ bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
   const auto drag =
       drag_.empty() ? std::span<const double>() : std::span<const double>(drag_).subspan(D * block.first, n);
   std::fill(d.begin(), d.end(), 0.0);
-  FreeTranslation flight(gravity_, drag);
-  integrate_(flight, t, h, d, v, stages_);
+  if (forces_.any()) {
+    ForcedTranslation<D> flight(gravity_, drag, forces_, block.first, x);
+    integrate_(flight, t, h, d, v, stages_);
+  } else {
+    FreeTranslation flight(gravity_, drag);
+    integrate_(flight, t, h, d, v, stages_);
+  }
 
   const double limit = kFarthest * model_.scale;
   std::int64_t sound = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/energy/divergence_monitor.h"
+#include "sim/energy/work.h"
 #include "sim/force/explosion.h"
 #include "sim/handout/handout.h"
 #include "sim/model/script.h"
@@ -52,6 +53,7 @@ class Stepper {
   };
 
   std::optional<Trouble> advance(State<D>& state, double fraction);
+  std::optional<Trouble> advance_pieces(State<D>& state, double fraction);
   void touch_script(State<D>& state, TimeStamp at);
   void plan(const State<D>& state);
   bool integrate(State<D>& state, double t, double h);
@@ -72,6 +74,8 @@ class Stepper {
   std::unique_ptr<BondedBodies<D>> pieces_;  // of a model with bonds: all is done there
   DivergenceMonitor<D> divergence_;
   ForwardDynamics<D> tied_;
+  WorkBooks<D> work_;
+  Forces<D> forces_;          // on bodies that fly
   std::vector<int> gripped_;  // by each mouse, as the plan knows
   bool planned_ = false, blasting_ = false;
 

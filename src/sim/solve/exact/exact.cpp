@@ -64,6 +64,7 @@ typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& mode
   };
   number(limits.bodies, model.bodies.size()), number(limits.joints, model.joints.size());
   number(limits.springs, model.springs.size()), number(limits.chains, model.chains.size());
+  limits.tied_by_forces = tied_by_forces(model);
   return limits;
 }
 

@@ -96,6 +96,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<double> half_thickness;   // of each body, m; 0 of a point
     std::vector<Couple> couples;          // bodies that may touch others, or walls
     std::vector<int> bodies, joints, springs, chains;  // the numbers of all
+    std::vector<std::vector<int>> tied_by_forces;      // bodies that forces between them tie together
     std::vector<int> fixed;                            // of Serves::lone: fixed bodies
   };
   static Limits make_limits(const Model<D>& model, Serves whom);

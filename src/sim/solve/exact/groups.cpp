@@ -67,6 +67,9 @@ void ExactSolver<D>::join_near_bodies(const State<D>& state) {
     step_.near.join(a, b);
   };
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body);
+  for (const std::vector<int>& together : limits_.tied_by_forces) {
+    for (const int body : together) link(body, together[0]);
+  }
   for (const Articulation<D>& chain : model_.chains) {
     for (const int body : chain.bodies) link(body, chain.bodies[0]);
   }

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "sim/energy/energy.h"
+#include "sim/force/forces.h"
 
 namespace obscura::sim {
 
@@ -41,6 +42,9 @@ LoneBodies<D>::LoneBodies(const Model<D>& model, const std::vector<Path<D>>& pat
   }
   for (const Spring<D>& spring : model.springs) tie(spring.a.body), tie(spring.b.body);
   for (const Joint<D>& joint : model.joints) tie(joint.a.body), tie(joint.b.body);
+  for (const std::vector<int>& together : tied_by_forces(model)) {
+    for (const int body : together) tie(body);
+  }
 }
 
 // whether it reaches a wall or a fixed body in the step, faster than what rests

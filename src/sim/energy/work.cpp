@@ -1,0 +1,70 @@
+// Work of forces along the path of a step, by Gauss's rule of two points:
+//   W = h/2 (P(s1) + P(s2)),   s = 1/2 -+ 1/(2 sqrt 3),   P = sum f . v
+// of the cubic through places and velocities at both ends. Its velocity errs by h^3 at either point, with
+// opposite signs.
+
+#include "sim/energy/work.h"
+
+#include <algorithm>
+
+#include "sim/math/lie_step.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kGauss = 0.21132486540518713;  // 1/2 - 1/(2 sqrt 3)
+
+}  // namespace
+
+template <int D>
+WorkBooks<D>::WorkBooks(const Model<D>& model) : model_(model), forces_(model) {
+  if (!forces_.any()) return;
+  for (const Body<D>& body : model.bodies) drag_ = drag_ || body.drag != 0;
+  any_ = drag_;
+  for (const Force<D>& force : model.forces)
+    any_ = any_ || (force.formula && !force.formula->potential && force.formula->works);
+}
+
+template <int D>
+void WorkBooks<D>::open(const State<D>& state) {
+  if (!any_) return;
+  x_ = state.x, v_ = state.v, turn_ = state.turn, spin_ = state.spin;
+  if (gathered_) return;
+  forces_.gather(state);
+  gathered_ = true;
+}
+
+template <int D>
+void WorkBooks<D>::close(State<D>& state, double t, double h) {
+  if (!any_ || !(h > 0)) return;
+  const int n = int(state.x.size()), still = n - int(state.turn.size());
+  motions_.resize(std::size_t(n));
+  forces_.refer(state);
+  double sum = 0;
+  for (const double s : {kGauss, 1 - kGauss}) {
+    const double r = 1 - s;
+    for (int i = 0; i < n; ++i) {
+      BodyMotion<D>& at = motions_[std::size_t(i)];
+      const Vec<D>&x0 = x_[i], &x1 = state.x[i], &v0 = v_[i], &v1 = state.v[i];
+      at.x = r * r * (1 + 2 * s) * x0 + s * s * (3 - 2 * s) * x1 + h * s * r * (r * v0 - s * v1);
+      at.v = 6 * s * r / h * (x1 - x0) + r * (1 - 3 * s) * v0 + s * (3 * s - 2) * v1;
+      if (i < still) continue;
+      const int k = i - still;
+      at.room_from_body = rotation<D>(between<D>(turn_[k], spin_[k], state.turn[k], state.spin[k], h, s));
+      at.w = r * spin_[k] + s * state.spin[k];
+    }
+    double power = forces_.power(t + s * h, motions_);
+    for (int i = 0; drag_ && i < n; ++i) {
+      const Body<D>& body = model_.bodies[std::size_t(i)];
+      if (body.drag != 0 && !body.fixed) power -= body.drag * motions_[std::size_t(i)].v.squaredNorm();
+    }
+    sum += 0.5 * h * power;
+  }
+  state.work[0] += sum;
+}
+
+template class WorkBooks<2>;
+template class WorkBooks<3>;
+
+}  // namespace obscura::sim

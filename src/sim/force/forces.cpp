@@ -1,0 +1,700 @@
+// Forces on bodies, and between them.
+//   formula       f = its components, or -grad V; between two f2 = -f1
+//   gravitation   f2 = -G m1 m2 d / (d^2 + s^2)^(3/2)      V = -G m1 m2 / sqrt(d^2 + s^2)
+//   coulomb       f2 =  k q1 q2 d / (d^2 + s^2)^(3/2)      V =  k q1 q2 / sqrt(d^2 + s^2)
+//   buoyancy      f  =  rho g A up, at the centroid c of A   V = rho g A (level - c_y)
+// A is what of the body lies below the level; V is the work against the pressure of the fluid.
+
+#include "sim/force/forces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "sim/force/formula.h"
+#include "sim/math/elementary.h"
+#include "sim/math/limits.h"
+#include "sim/shape/displaced.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr int kLanes = Program::kLanes;
+constexpr double kFinite = 1e300;
+constexpr double kTwoPi = 6.283185307179586;
+
+std::string brief_number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
+template <int D>
+bool offset(const Subject<D>& subject) {
+  return !subject.local.isZero(0);
+}
+
+template <int D>
+bool formula_of(const Force<D>& force) {
+  return force.law == Force<D>::Law::formula;
+}
+
+}  // namespace
+
+template <int D>
+Forces<D>::Forces(const Model<D>& model)
+    : model_(model), pushed_(model.bodies.size(), 0), flies_(model.bodies.size(), 0) {
+  const auto mark = [&](const Subject<D>& subject) {
+    if (subject.body >= 0 && !model.bodies[std::size_t(subject.body)].fixed)
+      pushed_[std::size_t(subject.body)] = 1;
+  };
+  for (const Force<D>& force : model.forces) {
+    for (const Subject<D>& subject : force.subjects) mark(subject);
+    if (force.center) mark(*force.center);
+    Active& it = active_.emplace_back();
+    it.force = &force;
+    if (!force.formula) continue;
+    it.evaluations.emplace_back(force.formula->force);
+    if (force.formula->potential) it.evaluations.emplace_back(force.formula->energy);
+    reads_angle_ =
+        reads_angle_ || (force.on == Force<D>::On::each && force.formula->force.reads(each_slot::angle));
+  }
+  lanes_.resize(std::size_t(kLanes) * 16);
+  find_flying();
+}
+
+// which bodies fly, and the forces on them by body
+template <int D>
+void Forces<D>::find_flying() {
+  const auto alone = [](const Force<D>& force) {
+    return force.on == Force<D>::On::each && formula_of(force) &&
+           !(force.center && force.center->body >= 0) && !force.formula->force.reads(each_slot::angle) &&
+           !force.formula->force.reads(each_slot::spin);
+  };
+  flies_ = pushed_;
+  for (const Force<D>& force : model_.forces) {
+    for (const Subject<D>& subject : force.subjects) {
+      if (!alone(force) || offset(subject)) flies_[std::size_t(subject.body)] = 0;
+    }
+    if (force.center && force.center->body >= 0) flies_[std::size_t(force.center->body)] = 0;
+  }
+  for (std::size_t i = 0; i < flies_.size(); ++i) {
+    if (model_.bodies[i].linked || model_.bodies[i].ground_drag != 0) flies_[i] = 0;
+  }
+  for (const Spring<D>& spring : model_.springs) {
+    for (const int body : {spring.a.body, spring.b.body})
+      if (body >= 0) flies_[std::size_t(body)] = 0;
+  }
+  for (const Force<D>& force : model_.forces) {
+    if (!alone(force)) continue;
+    std::vector<const Subject<D>*> all;
+    for (const Subject<D>& subject : force.subjects) {
+      if (flies_[std::size_t(subject.body)]) all.push_back(&subject);
+    }
+    if (all.empty()) continue;
+    std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->body < b->body; });
+    Flying& it = flying_.emplace_back(Flying{&force, {}, {}, Evaluation(force.formula->force)});
+    it.fixed.resize(16);
+    for (const Subject<D>* subject : all) {
+      it.bodies.push_back(subject->body);
+      it.fixed[each_slot::mass].push_back(subject->mass),
+          it.fixed[each_slot::charge].push_back(subject->charge);
+      it.fixed[each_slot::copy].push_back(subject->copy), it.fixed[each_slot::drag].push_back(subject->drag);
+      it.fixed[each_slot::quadratic_drag].push_back(subject->quadratic_drag);
+    }
+  }
+}
+
+template <int D>
+void Forces<D>::accelerate(double t, int first, int count, const double* x, const double* d, const double* v,
+                           double* rates) {
+  for (Flying& it : flying_) {
+    const auto begin = std::lower_bound(it.bodies.begin(), it.bodies.end(), first);
+    const auto end = std::lower_bound(begin, it.bodies.end(), first + count);
+    if (begin == end) continue;
+    const Force<D>& force = *it.force;
+    const Program& program = force.formula->force;
+    std::array<double, std::size_t(each_slot::end)> uniform{};
+    uniform[each_slot::time] = t;
+    if (force.center) {
+      for (int k = 0; k < D; ++k) uniform[std::size_t(each_slot::center + k)] = force.center->local[k];
+    }
+    it.evaluation.begin(uniform);
+    std::array<const double*, std::size_t(each_slot::time)> inputs{};
+    for (int at = int(begin - it.bodies.begin()), last = int(end - it.bodies.begin()); at < last;
+         at += kLanes) {
+      const int n = std::min(kLanes, last - at);
+      const int* const bodies = it.bodies.data() + at;
+      for (const int slot : {int(each_slot::mass), int(each_slot::charge), int(each_slot::copy),
+                             int(each_slot::drag), int(each_slot::quadratic_drag)})
+        inputs[std::size_t(slot)] = it.fixed[std::size_t(slot)].data() + at;
+      for (int axis = 0; axis < D; ++axis) {
+        if (program.reads(each_slot::x + axis)) {
+          double* const row = lanes_.data() + std::size_t(each_slot::x + axis) * kLanes;
+          for (int k = 0; k < n; ++k) {
+            const int i = D * (bodies[k] - first) + axis;
+            row[k] = x[i] + d[i];
+          }
+          inputs[std::size_t(each_slot::x + axis)] = row;
+        }
+        if (program.reads(each_slot::vx + axis)) {
+          double* const row = lanes_.data() + std::size_t(each_slot::vx + axis) * kLanes;
+          for (int k = 0; k < n; ++k) row[k] = v[D * (bodies[k] - first) + axis];
+          inputs[std::size_t(each_slot::vx + axis)] = row;
+        }
+      }
+      it.evaluation.run(n, inputs);
+      std::int64_t finite = 0;
+      for (int axis = 0; axis < D; ++axis) {
+        const double* const f = it.evaluation.output(axis);
+        finite |= within(f, n, kFinite);
+        for (int k = 0; k < n; ++k)
+          rates[D * (bodies[k] - first) + axis] += f[k] / model_.bodies[std::size_t(bodies[k])].mass;
+      }
+      if (finite >= 0) continue;
+      for (int k = 0; k < n; ++k) {
+        Vec<D> f, place;
+        for (int axis = 0; axis < D; ++axis) {
+          const int i = D * (bodies[k] - first) + axis;
+          f[axis] = it.evaluation.output(axis)[k], place[axis] = x[i] + d[i];
+        }
+        if (within(f.data(), D, kFinite) < 0) refuse(force, bodies[k], t, f, place);
+      }
+    }
+  }
+}
+
+template <int D>
+int Forces<D>::member_of(const State<D>& state, const Subject<D>& subject, std::span<const int> member) {
+  if (subject.body >= 0 && member[std::size_t(subject.body)] >= 0) return member[std::size_t(subject.body)];
+  BodyMotion<D> at;
+  at.x = subject.local;
+  if (subject.body >= 0) {
+    at = body_motion(state, subject.body);
+    at.v.setZero(), at.w.setZero();
+  }
+  still_.push_back(at);
+  return -int(still_.size());
+}
+
+template <int D>
+void Forces<D>::gather(const State<D>& state) {
+  std::vector<int> member(model_.bodies.size());
+  for (int i = 0; i < int(member.size()); ++i)
+    member[std::size_t(i)] = model_.bodies[std::size_t(i)].fixed ? -1 : i;
+  gather(state, member);
+}
+
+template <int D>
+void Forces<D>::gather(const State<D>& state, std::span<const int> member) {
+  using On = typename Force<D>::On;
+  refer(state);
+  // what stands still has not moved where the same bodies do
+  if (!gathered_.empty() && std::equal(member.begin(), member.end(), gathered_.begin(), gathered_.end()))
+    return;
+  gathered_.assign(member.begin(), member.end());
+  still_.clear();
+  std::size_t most = 0;
+  for (Active& it : active_) {
+    const Force<D>& force = *it.force;
+    it.subjects.clear(), it.members.clear(), it.fixed.resize(16);
+    for (std::vector<double>& slot : it.fixed) slot.clear();
+    const auto moves = [&](int k) {
+      const int body = force.subjects[std::size_t(k)].body;
+      return body >= 0 && member[std::size_t(body)] >= 0;
+    };
+    const int n = int(force.subjects.size());
+    bool any = false;
+    for (int k = 0; k < n; ++k) any = any || moves(k);
+    if (force.center && force.center->body >= 0) any = any || member[std::size_t(force.center->body)] >= 0;
+    for (int k = 0; any && k < n; ++k) {
+      if (force.on == On::each && !moves(k) && !(force.center && force.center->body >= 0)) continue;
+      if (force.on == On::between && !moves(k) && !moves(k ^ 1)) continue;
+      it.subjects.push_back(k);
+      it.members.push_back(member_of(state, force.subjects[std::size_t(k)], member));
+    }
+    if (it.subjects.empty()) continue;
+    if (force.center) it.center = member_of(state, *force.center, member);
+    most = std::max(most, it.subjects.size());
+
+    // what stays the same
+    const auto keep = [&](int slot, auto&& value, int first = 0, int step = 1) {
+      for (std::size_t k = std::size_t(first); k < it.subjects.size(); k += std::size_t(step))
+        it.fixed[std::size_t(slot)].push_back(value(force.subjects[std::size_t(it.subjects[k])]));
+    };
+    const auto mass = [](const Subject<D>& s) { return s.mass; };
+    const auto charge = [](const Subject<D>& s) { return s.charge; };
+    if (force.on == On::each) {
+      using namespace each_slot;
+      keep(each_slot::mass, mass), keep(each_slot::charge, charge);
+      keep(copy, [](const Subject<D>& s) { return double(s.copy); });
+      keep(drag, [](const Subject<D>& s) { return s.drag; });
+      keep(quadratic_drag, [](const Subject<D>& s) { return s.quadratic_drag; });
+    } else {
+      using namespace pair_slot;
+      const int step = force.on == On::between ? 2 : 1;
+      keep(mass1, mass, 0, step), keep(charge1, charge, 0, step);
+      keep(mass2, mass, step - 1, step), keep(charge2, charge, step - 1, step);
+    }
+  }
+  places_.resize(most * 2 * D), pairs_.resize(most * D);
+}
+
+template <int D>
+void Forces<D>::refer(const State<D>& state) {
+  if (D == 3 || !reads_angle_) return;
+  angles_.resize(state.x.size());
+  for (int i = 0; i < int(state.x.size()); ++i) {
+    const int k = turning(state, i);
+    angles_[std::size_t(i)] = k < 0 ? 0 : state.turn[std::size_t(k)][0];
+  }
+}
+
+// of a body that has turned by less than half a turn since refer()
+template <int D>
+double Forces<D>::angle(const Subject<D>& subject, const BodyMotion<D>& at) const {
+  if constexpr (D == 3) {
+    return 0;
+  } else {
+    const double before = angles_.empty() ? 0 : angles_[std::size_t(subject.body)];
+    const double now = elementary::atan2(at.room_from_body(1, 0), at.room_from_body(0, 0));
+    return now + kTwoPi * std::floor((before - now) / kTwoPi + 0.5) + subject.turn;
+  }
+}
+
+template <int D>
+BodyMotion<D> Forces<D>::point(const Subject<D>& subject, int member,
+                               const std::vector<BodyMotion<D>>& motions) const {
+  const BodyMotion<D>& body = motion(member, motions);
+  if (subject.body < 0 || !offset(subject)) return body;
+  BodyMotion<D> at = body;
+  const Vec<D> arm = body.arm(subject.local);
+  at.x += arm, at.v = body.velocity(arm);
+  return at;
+}
+
+template <int D>
+void Forces<D>::refuse(const Force<D>& of, int body, double t, const Vec<D>& force,
+                       const Vec<D>& place) const {
+  const std::string& name = model_.bodies[std::size_t(std::max(0, body))].name;
+  Trouble trouble;
+  trouble.time = t;
+  trouble.body = name.empty() ? "body " + std::to_string(body) : name;
+  trouble.quantity = "force";
+  trouble.what = force.array().isNaN().any() ? "is not a number" : "is infinite";
+  trouble.likely = of.name + " at ";
+  for (int k = 0; k < D; ++k)
+    trouble.likely += (k > 0 ? ", " : "") + std::string(1, "xyz"[k]) + " = " + brief_number(place[k]);
+  throw ForceNotFinite(std::move(trouble));
+}
+
+// --- on each body
+
+template <int D>
+template <class Found>
+void Forces<D>::each_force(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies,
+                           Found&& found) {
+  using namespace each_slot;
+  const Force<D>& force = *it.force;
+  Evaluation& evaluation = it.evaluations[energies];
+  const Program& program = energies ? force.formula->energy : force.formula->force;
+  std::array<double, std::size_t(each_slot::end)> uniform{};
+  uniform[each_slot::time] = t;
+  if (force.center) {
+    const BodyMotion<D> at = point(*force.center, it.center, motions);
+    for (int k = 0; k < D; ++k)
+      uniform[std::size_t(center + k)] = at.x[k], uniform[std::size_t(center_velocity + k)] = at.v[k];
+  }
+  evaluation.begin(uniform);
+  const int n = int(it.subjects.size());
+  bool reads[each_slot::time];
+  for (int slot = 0; slot < each_slot::time; ++slot) reads[slot] = program.reads(slot);
+  std::array<const double*, std::size_t(each_slot::time)> inputs{};
+  Vec<D> opposite = Vec<D>::Zero();
+  for (int first = 0; first < n; first += kLanes) {
+    const int count = std::min(kLanes, n - first);
+    for (const int slot : {int(mass), int(charge), int(copy), int(drag), int(quadratic_drag)})
+      inputs[std::size_t(slot)] = it.fixed[std::size_t(slot)].data() + first;
+    const auto fill = [&](int slot, auto&& value) {
+      if (!reads[slot]) return;
+      double* const row = lanes_.data() + std::size_t(slot) * kLanes;
+      inputs[std::size_t(slot)] = row;
+      for (int k = 0; k < count; ++k) {
+        const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(first + k)])];
+        row[k] = value(subject, motion(it.members[std::size_t(first + k)], motions));
+      }
+    };
+    for (int axis = 0; axis < D; ++axis) {
+      fill(x + axis, [&](const Subject<D>& subject, const BodyMotion<D>& at) {
+        return offset(subject) ? Vec<D>(at.x + at.arm(subject.local))[axis] : at.x[axis];
+      });
+      fill(vx + axis, [&](const Subject<D>& subject, const BodyMotion<D>& at) {
+        return offset(subject) ? at.velocity(at.arm(subject.local))[axis] : at.v[axis];
+      });
+    }
+    fill(each_slot::angle,
+         [&](const Subject<D>& subject, const BodyMotion<D>& at) { return angle(subject, at); });
+    fill(spin, [&](const Subject<D>&, const BodyMotion<D>& at) { return at.w[0]; });
+    evaluation.run(count, inputs);
+
+    const double* out[D];
+    for (int axis = 0; axis < (energies ? 1 : D); ++axis) out[axis] = evaluation.output(axis);
+    if (energies) {
+      for (int k = 0; k < count; ++k) found(first + k, Vec<D>(Vec<D>::Zero()), out[0][k]);
+      continue;
+    }
+    std::int64_t finite = 0;
+    for (int axis = 0; axis < D; ++axis) finite |= within(out[axis], count, kFinite);
+    for (int k = 0; k < count; ++k) {
+      Vec<D> f;
+      for (int axis = 0; axis < D; ++axis) f[axis] = out[axis][k];
+      if (finite < 0 && within(f.data(), D, kFinite) < 0) {
+        const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(first + k)])];
+        refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(first + k)], motions).x);
+      }
+      found(first + k, f, 0);
+      opposite -= f;
+    }
+  }
+  if (force.center && force.center->body >= 0 && !energies) found(-1, opposite, 0);
+}
+
+// --- between two
+
+template <int D>
+template <class Found>
+void Forces<D>::each_pair(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies,
+                          Found&& found) {
+  using namespace pair_slot;
+  const Force<D>& force = *it.force;
+  Evaluation& evaluation = it.evaluations[energies];
+  std::array<double, std::size_t(pair_slot::end)> uniform{};
+  uniform[pair_slot::time] = t;
+  evaluation.begin(uniform);
+  const int n = int(it.subjects.size());
+  // places and velocities side by side: D rows of each
+  for (int k = 0; k < n; ++k) {
+    const BodyMotion<D> at =
+        point(force.subjects[std::size_t(it.subjects[std::size_t(k)])], it.members[std::size_t(k)], motions);
+    for (int axis = 0; axis < D; ++axis) {
+      places_[std::size_t(axis * n + k)] = at.x[axis];
+      places_[std::size_t((D + axis) * n + k)] = at.v[axis];
+    }
+  }
+  std::array<const double*, std::size_t(pair_slot::time)> inputs{};
+  const auto row = [&](int slot) { return lanes_.data() + std::size_t(slot) * kLanes; };
+  for (const int slot : {int(dx), int(dvx)}) {
+    for (int axis = 0; axis < D; ++axis) inputs[std::size_t(slot + axis)] = row(slot + axis);
+  }
+  const auto give = [&](int count, auto&& first, auto&& second) {
+    evaluation.run(count, inputs);
+    const double* out[D];
+    for (int axis = 0; axis < (energies ? 1 : D); ++axis) out[axis] = evaluation.output(axis);
+    for (int k = 0; k < count; ++k) {
+      if (energies) {
+        found(first(k), Vec<D>(Vec<D>::Zero()), 0.5 * out[0][k]),
+            found(second(k), Vec<D>(Vec<D>::Zero()), 0.5 * out[0][k]);
+        continue;
+      }
+      Vec<D> f;
+      for (int axis = 0; axis < D; ++axis) f[axis] = out[axis][k];
+      if (within(f.data(), D, kFinite) < 0) {
+        const int which = second(k);
+        const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(which)])];
+        refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(which)], motions).x);
+      }
+      found(first(k), Vec<D>(-f), 0), found(second(k), f, 0);
+    }
+  };
+  if (force.on == Force<D>::On::between) {
+    for (int from = 0; from < n; from += 2 * kLanes) {
+      const int count = std::min(kLanes, (n - from) / 2);
+      for (int axis = 0; axis < 2 * D; ++axis) {
+        const int slot = axis < D ? dx + axis : dvx + axis - D;
+        for (int k = 0; k < count; ++k)
+          row(slot)[k] = places_[std::size_t(axis * n + from + 2 * k + 1)] -
+                         places_[std::size_t(axis * n + from + 2 * k)];
+      }
+      for (const int slot : {int(mass1), int(mass2), int(charge1), int(charge2)})
+        inputs[std::size_t(slot)] = it.fixed[std::size_t(slot)].data() + from / 2;
+      give(
+          count, [&](int k) { return from + 2 * k; }, [&](int k) { return from + 2 * k + 1; });
+    }
+    return;
+  }
+  for (int i = 0; i + 1 < n; ++i) {
+    for (const int slot : {int(mass1), int(charge1)}) {
+      std::fill_n(row(slot), kLanes, it.fixed[std::size_t(slot)][std::size_t(i)]);
+      inputs[std::size_t(slot)] = row(slot);
+    }
+    for (int from = i + 1; from < n; from += kLanes) {
+      const int count = std::min(kLanes, n - from);
+      for (int axis = 0; axis < 2 * D; ++axis) {
+        const int slot = axis < D ? dx + axis : dvx + axis - D;
+        const double* const all = places_.data() + std::size_t(axis * n);
+        for (int k = 0; k < count; ++k) row(slot)[k] = all[from + k] - all[i];
+      }
+      for (const int slot : {int(mass2), int(charge2)})
+        inputs[std::size_t(slot)] = it.fixed[std::size_t(slot)].data() + from;
+      give(
+          count, [&](int) { return i; }, [&](int k) { return from + k; });
+    }
+  }
+}
+
+// --- gravitation and Coulomb's force among all
+
+template <int D>
+template <class Found>
+void Forces<D>::attract(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies,
+                        Found&& found) {
+  const Force<D>& force = *it.force;
+  const bool masses = force.law == Force<D>::Law::gravitation;
+  const int n = int(it.subjects.size());
+  const double c = masses ? -force.strength : force.strength, s2 = force.softening * force.softening;
+  const double* const w = it.fixed[std::size_t(masses ? pair_slot::mass2 : pair_slot::charge2)].data();
+  for (int k = 0; k < n; ++k) {
+    const BodyMotion<D> at =
+        point(force.subjects[std::size_t(it.subjects[std::size_t(k)])], it.members[std::size_t(k)], motions);
+    for (int axis = 0; axis < D; ++axis)
+      places_[std::size_t(axis * n + k)] = at.x[axis], pairs_[std::size_t(axis * n + k)] = 0;
+  }
+  if (energies) {
+    for (int i = 0; i < n; ++i) {
+      for (int j = i + 1; j < n; ++j) {
+        double r2 = s2;
+        for (int axis = 0; axis < D; ++axis) {
+          const double d = places_[std::size_t(axis * n + j)] - places_[std::size_t(axis * n + i)];
+          r2 += d * d;
+        }
+        const double half = 0.5 * c * w[i] * w[j] / std::sqrt(r2);
+        found(i, Vec<D>(Vec<D>::Zero()), half), found(j, Vec<D>(Vec<D>::Zero()), half);
+      }
+    }
+    return;
+  }
+  const double* at[D];
+  double* sums[D];
+  for (int axis = 0; axis < D; ++axis)
+    at[axis] = places_.data() + std::size_t(axis * n), sums[axis] = pairs_.data() + std::size_t(axis * n);
+  for (int i = 0; i < n; ++i) {
+    double here[D], own[D][4] = {};
+    for (int axis = 0; axis < D; ++axis) here[axis] = at[axis][i];
+    const double strength = c * w[i];
+    // four sums in turn, so that four pairs go side by side
+    int j = i + 1;
+    for (; j + 4 <= n; j += 4) {
+      double d[D][4], k[4];
+      for (int lane = 0; lane < 4; ++lane) {
+        double r2 = s2;
+        for (int axis = 0; axis < D; ++axis) {
+          d[axis][lane] = at[axis][j + lane] - here[axis];
+          r2 += d[axis][lane] * d[axis][lane];
+        }
+        k[lane] = strength * w[j + lane] / (r2 * std::sqrt(r2));
+      }
+      for (int axis = 0; axis < D; ++axis) {
+        for (int lane = 0; lane < 4; ++lane) {
+          const double f = k[lane] * d[axis][lane];
+          sums[axis][j + lane] += f;
+          own[axis][lane] -= f;
+        }
+      }
+    }
+    for (int lane = 0; j < n; ++j, ++lane) {
+      double d[D], r2 = s2;
+      for (int axis = 0; axis < D; ++axis) d[axis] = at[axis][j] - here[axis], r2 += d[axis] * d[axis];
+      const double k = strength * w[j] / (r2 * std::sqrt(r2));
+      for (int axis = 0; axis < D; ++axis) {
+        const double f = k * d[axis];
+        sums[axis][j] += f;
+        own[axis][lane] -= f;
+      }
+    }
+    Vec<D> f;
+    for (int axis = 0; axis < D; ++axis)
+      f[axis] = sums[axis][i] + ((own[axis][0] + own[axis][1]) + (own[axis][2] + own[axis][3]));
+    if (within(f.data(), D, kFinite) < 0) {
+      const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(i)])];
+      refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(i)], motions).x);
+    }
+    found(i, f, 0);
+  }
+}
+
+// --- a fluid
+
+template <int D>
+template <class Found>
+void Forces<D>::float_up(Active& it, const std::vector<BodyMotion<D>>& motions, bool energies,
+                         Found&& found) {
+  const Force<D>& force = *it.force;
+  const double weight = force.density * std::sqrt(model_.gravity.squaredNorm());
+  for (int k = 0; k < int(it.subjects.size()); ++k) {
+    const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(k)])];
+    const BodyMotion<D>& at = motion(it.members[std::size_t(k)], motions);
+    const Displaced<D> wet = displaced(model_.bodies[std::size_t(subject.body)].shape, at, force.level);
+    if (energies)
+      found(k, Vec<D>(Vec<D>::Zero()), weight * wet.content * (force.level - wet.center[1]), wet.center);
+    else
+      found(k, Vec<D>(Vec<D>::Unit(1) * (weight * wet.content)), 0, wet.center);
+  }
+}
+
+// found(k, f, e): the subject at place k of the list has the force f, or the energy e; -1: the centre
+template <int D>
+template <class Found>
+void Forces<D>::all(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies,
+                    Found&& found) {
+  if (it.subjects.empty()) return;
+  switch (it.force->law) {
+    case Force<D>::Law::formula:
+      return it.force->on == Force<D>::On::each ? each_force(it, t, motions, energies, found)
+                                                : each_pair(it, t, motions, energies, found);
+    case Force<D>::Law::gravitation:
+    case Force<D>::Law::coulomb:
+      return attract(it, t, motions, energies, found);
+    case Force<D>::Law::buoyancy:
+      return float_up(it, motions, energies, found);
+  }
+}
+
+template <int D>
+void Forces<D>::apply(double t, const std::vector<BodyMotion<D>>& motions, std::vector<Wrench<D>>& wrenches) {
+  for (Active& it : active_) {
+    const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& at = {}) {
+      const int member = k < 0 ? it.center : it.members[std::size_t(k)];
+      if (member < 0) return;
+      Wrench<D>& wrench = wrenches[std::size_t(member)];
+      wrench.f += f;
+      const Subject<D>& subject =
+          k < 0 ? *it.force->center : it.force->subjects[std::size_t(it.subjects[std::size_t(k)])];
+      if (at)
+        wrench.n += moment<D>(Vec<D>(*at - motions[std::size_t(member)].x), f);
+      else if (offset(subject))
+        wrench.n += moment<D>(motions[std::size_t(member)].arm(subject.local), f);
+    };
+    all(it, t, motions, false, found);
+  }
+}
+
+template <int D>
+double Forces<D>::energy(double t, const std::vector<BodyMotion<D>>& motions, std::vector<double>* each) {
+  double sum = 0;
+  for (Active& it : active_) {
+    if (formula_of(*it.force) && !it.force->formula->potential) continue;
+    const auto found = [&](int k, const Vec<D>&, double e, const std::optional<Vec<D>>& = {}) {
+      sum += e;
+      const int member = k < 0 ? it.center : it.members[std::size_t(k)];
+      if (each && member >= 0) (*each)[std::size_t(member)] += e;
+    };
+    all(it, t, motions, true, found);
+  }
+  return sum;
+}
+
+template <int D>
+double Forces<D>::energy_of(const State<D>& state, int body, const BodyMotion<D>& at, double t) {
+  using namespace each_slot;
+  double sum = 0;
+  for (Active& it : active_) {
+    const Force<D>& force = *it.force;
+    if (force.on != Force<D>::On::each || (formula_of(force) && !force.formula->potential)) continue;
+    for (const Subject<D>& subject : force.subjects) {
+      if (subject.body != body) continue;
+      if (!formula_of(force)) {
+        const Displaced<D> wet = displaced(model_.bodies[std::size_t(body)].shape, at, force.level);
+        sum += force.density * std::sqrt(model_.gravity.squaredNorm()) * wet.content *
+               (force.level - wet.center[1]);
+        continue;
+      }
+      std::array<double, std::size_t(each_slot::end)> uniform{};
+      uniform[each_slot::time] = t;
+      if (force.center) {
+        const Vec<D> middle =
+            force.center->body < 0 ? force.center->local : state.x[std::size_t(force.center->body)];
+        for (int k = 0; k < D; ++k) uniform[std::size_t(center + k)] = middle[k];
+      }
+      const Vec<D> place = at.x + at.arm(subject.local);
+      std::array<double, std::size_t(each_slot::time)> values{};
+      for (int k = 0; k < D; ++k) values[std::size_t(x + k)] = place[k];
+      values[mass] = subject.mass, values[charge] = subject.charge, values[copy] = subject.copy;
+      std::array<const double*, std::size_t(each_slot::time)> inputs;
+      for (std::size_t k = 0; k < inputs.size(); ++k) inputs[k] = &values[k];
+      it.evaluations[1].begin(uniform);
+      it.evaluations[1].run(1, inputs);
+      sum += it.evaluations[1].output(0)[0];
+    }
+  }
+  return sum;
+}
+
+template <int D>
+double Forces<D>::power(double t, const std::vector<BodyMotion<D>>& motions) {
+  double sum = 0;
+  for (Active& it : active_) {
+    if (!formula_of(*it.force) || it.force->formula->potential || !it.force->formula->works) continue;
+    const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& = {}) {
+      const Subject<D>& subject =
+          k < 0 ? *it.force->center : it.force->subjects[std::size_t(it.subjects[std::size_t(k)])];
+      const int member = k < 0 ? it.center : it.members[std::size_t(k)];
+      if (member >= 0) sum += f.dot(point(subject, member, motions).v);
+    };
+    all(it, t, motions, false, found);
+  }
+  return sum;
+}
+
+template <int D>
+void stand(const State<D>& state, std::vector<BodyMotion<D>>& motions) {
+  motions.resize(state.x.size());
+  for (int i = 0; i < int(state.x.size()); ++i) motions[std::size_t(i)] = body_motion(state, i);
+}
+
+template <int D>
+std::vector<std::vector<int>> tied_by_forces(const Model<D>& model) {
+  std::vector<std::vector<int>> all;
+  for (const Force<D>& force : model.forces) {
+    const bool centered = force.center && force.center->body >= 0;
+    if (force.on == Force<D>::On::each && !centered) continue;
+    if (force.on == Force<D>::On::between) {
+      for (std::size_t k = 0; k + 1 < force.subjects.size(); k += 2)
+        all.push_back({force.subjects[k].body, force.subjects[k + 1].body});
+      continue;
+    }
+    std::vector<int>& together = all.emplace_back();
+    if (centered) together.push_back(force.center->body);
+    for (const Subject<D>& subject : force.subjects) together.push_back(subject.body);
+  }
+  return all;
+}
+
+template <int D>
+std::vector<int> restless_by_forces(const Model<D>& model, bool known) {
+  std::vector<int> all;
+  for (const Force<D>& force : model.forces) {
+    const bool alone = force.on == Force<D>::On::each && !(force.center && force.center->body >= 0);
+    const bool timed = force.formula && force.formula->timed,
+               resting = !force.formula || force.formula->resting;
+    if (alone && !timed && (known || !resting)) continue;
+    for (const Subject<D>& subject : force.subjects) all.push_back(subject.body);
+    if (force.center && force.center->body >= 0) all.push_back(force.center->body);
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  std::erase_if(all, [&](int body) { return model.bodies[std::size_t(body)].fixed; });
+  return all;
+}
+
+template class Forces<2>;
+template class Forces<3>;
+template void stand<2>(const State<2>&, std::vector<BodyMotion<2>>&);
+template void stand<3>(const State<3>&, std::vector<BodyMotion<3>>&);
+template std::vector<std::vector<int>> tied_by_forces<2>(const Model<2>&);
+template std::vector<std::vector<int>> tied_by_forces<3>(const Model<3>&);
+template std::vector<int> restless_by_forces<2>(const Model<2>&, bool);
+template std::vector<int> restless_by_forces<3>(const Model<3>&, bool);
+
+}  // namespace obscura::sim

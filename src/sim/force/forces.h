@@ -1,0 +1,126 @@
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "sim/math/spatial.h"
+#include "sim/model/stance.h"
+#include "sim/model/trouble.h"
+
+namespace obscura::sim {
+
+/// A force that came to no finite number: thrown from within a step, and told by the stepper that it ends.
+struct ForceNotFinite : std::runtime_error {
+  explicit ForceNotFinite(Trouble it) : std::runtime_error(it.what), trouble(std::move(it)) {}
+  Trouble trouble;
+};
+
+/// The forces of a model (sim/model/model.h) on bodies as they stand at an instant: formulas block by block,
+/// pairs by two loops. Their order and their sums are the same on every machine. Once gathered it allocates
+/// nothing.
+template <int D>
+class Forces {
+ public:
+  /// Kept by reference.
+  explicit Forces(const Model<D>& model);
+
+  bool any() const { return !model_.forces.empty(); }
+  /// Whether any force may ever push body `body`.
+  bool push(int body) const { return pushed_[std::size_t(body)] != 0; }
+
+  /// Whether all forces on a body act on it alone and ask for its place and velocity only: then accelerate()
+  /// serves it.
+  bool flies(int body) const { return flies_[std::size_t(body)] != 0; }
+  /// Adds to `rates` the accelerations at time t of `count` bodies from body `first` on, of those that fly: a
+  /// number an axis, one body after another. They are displaced by d from x.
+  void accelerate(double t, int first, int count, const double* x, const double* d, const double* v,
+                  double* rates);
+
+  /// Takes in how bodies are numbered from here on: `member` is the place of each in the motions of apply(),
+  /// below zero where it stands still as it does in `state`.
+  void gather(const State<D>& state, std::span<const int> member);
+  /// The same, where each body is its own number.
+  void gather(const State<D>& state);
+
+  /// Bodies have the angles of this state, or turn by less than half a turn from there.
+  void refer(const State<D>& state);
+
+  /// Adds the force and torque on each member at time t, room's frame, torque about its centre.
+  void apply(double t, const std::vector<BodyMotion<D>>& motions, std::vector<Wrench<D>>& wrenches);
+
+  /// The potentials of all, J; added to `each`, one a member, if it is given: that between two half by half.
+  double energy(double t, const std::vector<BodyMotion<D>>& motions, std::vector<double>* each = nullptr);
+
+  /// Of those on each body alone, what body `body` has where it stands so, others as in `state`, J.
+  double energy_of(const State<D>& state, int body, const BodyMotion<D>& at, double t);
+
+  /// The power of those without a potential, and of drag, W.
+  double power(double t, const std::vector<BodyMotion<D>>& motions);
+
+ private:
+  // a force, and which of its subjects move
+  struct Active {
+    const Force<D>* force;
+    std::vector<int> subjects, members;      // numbers in the force's list; below zero: still_[-1 - member]
+    std::vector<std::vector<double>> fixed;  // numbers that stay, by slot
+    int center = 0;                          // its member
+    std::vector<Evaluation> evaluations;     // of the force; of the energy, if it has one
+  };
+
+  const BodyMotion<D>& motion(int member, const std::vector<BodyMotion<D>>& motions) const {
+    return member < 0 ? still_[std::size_t(-1 - member)] : motions[std::size_t(member)];
+  }
+  int member_of(const State<D>& state, const Subject<D>& subject, std::span<const int> member);
+  BodyMotion<D> point(const Subject<D>& subject, int member, const std::vector<BodyMotion<D>>& motions) const;
+  double angle(const Subject<D>& subject, const BodyMotion<D>& at) const;
+  template <class Found>
+  void each_force(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies,
+                  Found&& found);
+  template <class Found>
+  void each_pair(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies,
+                 Found&& found);
+  template <class Found>
+  void attract(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
+  template <class Found>
+  void float_up(Active& it, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
+  template <class Found>
+  void all(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
+  [[noreturn]] void refuse(const Force<D>& of, int body, double t, const Vec<D>& force,
+                           const Vec<D>& place) const;
+  void find_flying();
+
+  // a force on bodies that fly, by body
+  struct Flying {
+    const Force<D>* force;
+    std::vector<int> bodies;  // ascending
+    std::vector<std::vector<double>> fixed;
+    Evaluation evaluation;
+  };
+
+  const Model<D>& model_;
+  std::vector<char> pushed_, flies_;
+  std::vector<Flying> flying_;
+  std::vector<Active> active_;
+  std::vector<BodyMotion<D>> still_;
+  std::vector<int> gathered_;  // member, as last gathered
+  std::vector<double> lanes_;  // rows of Program::kLanes
+  std::vector<double> places_, pairs_;
+  std::vector<double> angles_;  // of each body in the plane, where a force asks for it
+  bool reads_angle_ = false;
+};
+
+/// How all bodies of a state stand.
+template <int D>
+void stand(const State<D>& state, std::vector<BodyMotion<D>>& motions);
+
+/// Which bodies each force ties together: those of pairs, and all with a body at the centre of theirs.
+template <int D>
+std::vector<std::vector<int>> tied_by_forces(const Model<D>& model);
+
+/// Bodies that must not be put to rest: a force acts on them that changes with the time or with other bodies,
+/// or, where the solver does not know of forces at all, any that acts on what does not move.
+template <int D>
+std::vector<int> restless_by_forces(const Model<D>& model, bool known);
+
+}  // namespace obscura::sim
