@@ -271,9 +271,9 @@ TEST(Marks, TheKindsOfForcesAddUpToTheAcceleration) {
   }
 }
 
-using Film = Program;
+using MarkedFilm = Program;
 
-const char* const kMarked = R"(duration = 1
+const char* const kMarkedFilm = R"(duration = 1
 [room]
 size = [4, 2.25]
 [[ball]]
@@ -309,8 +309,8 @@ text = "Last"
 lasting = 0.2
 )";
 
-TEST_F(Film, WithMarksIsTheSameByShardsAndResumedAndInStills) {
-  scene(kMarked);
+TEST_F(MarkedFilm, WithMarksIsTheSameByShardsAndResumedAndInStills) {
+  scene(kMarkedFilm);
   ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o whole.mp4").exit, 0);
   ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o parts.mp4 --shard 1/2").exit, 0);
   ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o parts.mp4 --shard 2/2").exit, 0);
@@ -331,7 +331,7 @@ TEST_F(Film, WithMarksIsTheSameByShardsAndResumedAndInStills) {
 }
 
 TEST(Freeze, StandsStillForExactlySoManyFrames) {
-  const scene::Scene scene = scene::parse(kMarked, "marked.toml");
+  const scene::Scene scene = scene::parse(kMarkedFilm, "marked.toml");
   const Shots shots = Shots::film(scene.duration, {20, 1}, scene.film.speed);
   ASSERT_EQ(shots.size(), 38);
   int still = 0, first = 0, last = 0;
@@ -350,7 +350,7 @@ TEST(Freeze, StandsStillForExactlySoManyFrames) {
 }
 
 TEST(Freeze, WordsComeAndGoMeanwhile) {
-  Filmed film(scene::parse(kMarked, "marked.toml", {"film.fps=20"}));
+  Filmed film(scene::parse(kMarkedFilm, "marked.toml", {"film.fps=20"}));
   std::string shown;
   for (std::int64_t frame = 0; frame < film.shots.size(); ++frame) {
     const sim::Snapshot now = film.now(frame);
@@ -364,8 +364,8 @@ TEST(Freeze, WordsComeAndGoMeanwhile) {
   EXPECT_EQ(shown, "..............#####...................");
 }
 
-TEST_F(Film, MarksThatCannotBeAreErrorsWithTheirPlace) {
-  scene(std::string(kMarked) + R"([[film.vector]]
+TEST_F(MarkedFilm, MarksThatCannotBeAreErrorsWithTheirPlace) {
+  scene(std::string(kMarkedFilm) + R"([[film.vector]]
 quantity = "velocity"
 label = "v"
 [[film.vector]]

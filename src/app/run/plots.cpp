@@ -173,8 +173,8 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
 
 namespace {
 
-constexpr double kSample = 1.0 / 12;      // s of the film: how often labels look where they stand
-constexpr double kMostBytes = 128 << 20;  // of instants kept for labels
+constexpr double kSample = 1.0 / 12;        // s of the film: how often labels look where they stand
+constexpr double kMostSampled = 128 << 20;  // of instants kept for labels
 
 double bytes(const sim::Snapshot& now) {
   return double(now.bodies.size() * sizeof(sim::Snapshot::Body) +
@@ -260,7 +260,7 @@ Ahead ahead(const scene::Scene& scene) {
     kept += bytes(now);
     found.samples.push_back({std::move(now), film});
     // of a large scene fewer
-    if (kept > kMostBytes) {
+    if (kept > kMostSampled) {
       for (std::size_t k = 1; 2 * k < found.samples.size(); ++k)
         found.samples[k] = std::move(found.samples[2 * k]);
       found.samples.resize((found.samples.size() + 1) / 2);

@@ -16,7 +16,7 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kType = 24 / 8.5;               // page units a point at the weight 1, as of charts
+constexpr double kFilmType = 24 / 8.5;           // page units a point at the weight 1, as of charts
 constexpr double kChange = 14;                   // points: of a change of place, as against a second of cost
 constexpr double kWay = 0.12;                    // of each unit of its way
 constexpr double kSpeed = 1.7;                   // page units a frame that a label moves by itself
@@ -202,7 +202,7 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
                          double fps)
     : marks_(marks), cast_(artist.scene_info()), colours_(artist.colours()), scales_(given) {
   const double weight = artist.weight();
-  lettering_ = {.point = kType * weight, .arrow = weight, .weight = weight};
+  lettering_ = {.point = kFilmType * weight, .arrow = weight, .weight = weight};
   ghosts_ = std::move(ahead.ghosts);
   if (ahead.samples.empty()) {
     plans_.resize(std::size_t(artist.panels()));

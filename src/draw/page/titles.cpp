@@ -11,8 +11,8 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kTitle = 62, kText = 32, kCaption = 32, kBadge = 23;  // em, page units at the weight 1
-constexpr double kLead = 1.35;                                         // of a line
+constexpr double kCardTitle = 62, kText = 32, kCaption = 32, kBadge = 23;  // em, page units at the weight 1
+constexpr double kLead = 1.35;                                             // of a line
 constexpr double kFoot = 30;    // from the page's edge to a caption's plate
 constexpr double kInset = 14;   // of a plate around its words
 constexpr double kPlate = 215;  // alpha
@@ -63,16 +63,16 @@ void draw_card(const Card& card, double strength, const Rect& page, double weigh
   const Point low(page.x, page.y), high(page.width, page.height);
   list.add({low, {high.x(), low.y()}, high, {low.x(), high.y()}}, faded(colours.ground));
   const double width = 0.8 * page.width;
-  const auto title = wrapped(card.title, Face::bold, kTitle * weight, width),
+  const auto title = wrapped(card.title, Face::bold, kCardTitle * weight, width),
              text = wrapped(card.text, Face::regular, kText * weight, width);
   const double gap = card.title.empty() || card.text.empty() ? 0 : 0.9 * kText * weight;
-  const double height = (card.title.empty() ? 0 : kLead * kTitle * weight * double(title.size())) + gap +
+  const double height = (card.title.empty() ? 0 : kLead * kCardTitle * weight * double(title.size())) + gap +
                         (card.text.empty() ? 0 : kLead * kText * weight * double(text.size()));
   double baseline = (page.height - height) / 2;
   if (!card.title.empty()) {
-    baseline += kTitle * weight;
-    centered(title, Face::bold, kTitle * weight, page.width / 2, baseline, faded(colours.ink), list);
-    baseline -= kTitle * weight - gap;
+    baseline += kCardTitle * weight;
+    centered(title, Face::bold, kCardTitle * weight, page.width / 2, baseline, faded(colours.ink), list);
+    baseline -= kCardTitle * weight - gap;
   }
   if (!card.text.empty()) {
     baseline += kText * weight;
