@@ -60,6 +60,8 @@ class Values : private Reporter {
         return rational(node, key);
       case Form::times:
         return times(node, key);
+      case Form::cue:
+        return cue(node, key);
       case Form::vector:
         return key.varies && node.is_table() ? varied(node, key) : vector(node, key);
       case Form::spin:
@@ -172,6 +174,20 @@ class Values : private Reporter {
   }
 
   // every number of a list
+  bool cue(const Node& node, const Key& key) {
+    if (!node.is_table())
+      return node.is_number() || node.is_text() ? rational(node, key) : mistyped(node, key);
+    bool good = each(node.table(), [&](const Entry& entry) {
+      if (entry.key != "time" && entry.key != "after")
+        return unknown(entry, fmt::format("'{}'", key.last()), did_you_mean(entry.key, {"time", "after"}));
+      return rational(entry.node,
+                      {.path = entry.key, .form = Form::rational, .unit = "s", .range = {0, 1e6}});
+    });
+    if (!node.find("time"))
+      good = wrong(node, fmt::format("'{}' needs 'time', seconds of the run", key.last()));
+    return good;
+  }
+
   bool components(const Node& node, const Key& key) {
     return each(node.list(),
                 [&](const Node& x) { return x.is_number() ? number(x, key) : mistyped(x, key, "numbers"); });

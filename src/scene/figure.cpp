@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <utility>
 
+#include "draw/page/measure.h"
 #include "draw/picture/color.h"
+#include "draw/picture/formula.h"
 #include "scene/fields.h"
 #include "scene/links.h"
 
@@ -14,33 +15,29 @@ namespace obscura::scene {
 namespace {
 
 draw::Quantity quantity(const std::string& word) {
-  using enum draw::Quantity;
-  constexpr std::array<std::pair<const char*, draw::Quantity>, 10> words{{{"position", position},
-                                                                          {"velocity", velocity},
-                                                                          {"weight", weight},
-                                                                          {"spring", spring},
-                                                                          {"contact", contact},
-                                                                          {"impulse", impulse},
-                                                                          {"blast", blast},
-                                                                          {"normal", normal},
-                                                                          {"spin", spin},
-                                                                          {"torque", torque}}};
-  for (const auto& [known, value] : words)
-    if (word == known) return value;
-  return position;
+  const draw::Measure* found = draw::measure(word);
+  return found && found->arrow ? *found->arrow : draw::Quantity::position;
 }
 
 template <int D>
 class Reader {
  public:
-  Reader(const Seating<D>& roster, const sim::World<D>& world, Diagnostics& complaints)
-      : roster_(roster), world_(world), complaints_(complaints) {}
+  Reader(const Seating<D>& roster, const sim::World<D>& world, Diagnostics& complaints,
+         const draw::Pace& speed = {})
+      : roster_(roster), world_(world), complaints_(complaints), speed_(speed) {}
 
   int body(const Fields& fields, const char* key) const {
     const Node* name = fields.given(key);
     if (!name) return -1;
     const std::vector<int> all = roster_.bodies(name->text(), name->place, complaints_);
     return all.empty() ? -1 : all.front();
+  }
+  std::vector<int> bodies(const Fields& fields, const char* key) const {
+    std::vector<int> all;
+    const Node* names = fields.given(key);
+    for (const Node& each : names ? names->list() : Node::List{})
+      for (const int body : roster_.bodies(each.text(), each.place, complaints_)) all.push_back(body);
+    return all;
   }
   std::optional<draw::Site> site(const Fields& fields, const char* key) const {
     const Node* node = fields.given(key);
@@ -68,21 +65,129 @@ class Reader {
       complaints_.add(wanted->place, "'quantity': expected one at least, such as [\"energy\"]");
     return found;
   }
+  // from when to when a mark is shown
+  draw::Interval shown(const Fields& fields) const {
+    draw::Interval interval{cue(fields, "start"), cue(fields, "end")};
+    const auto &start = interval.start, &end = interval.end;
+    if (start && end && (end->after && start->after ? end->film <= start->film : end->time < start->time))
+      complaints_.add(fields.place("end"), "'end' comes before 'start': it would never be shown");
+    return interval;
+  }
+  // what a label says, and whether the value in it can be shown
+  std::string label(const Fields& fields, const char* key, bool valued = true) const {
+    const std::string& text = fields.text(key);
+    const auto slot = draw::value_slot(text);
+    if (const auto typed = text.find("{:"); typed != text.npos && !slot)
+      complaints_.add(fields.place(key),
+                      fmt::format("'{}': expected {{}} or {{:.2}}, the number of decimals, got \"{}\"", key,
+                                  text.substr(typed, text.find('}', typed) - typed + 1)));
+    if (slot && slot->decimals && !valued)
+      complaints_.add(fields.place(key), fmt::format("'{}' has no value to show: {{:.{}}} stands for one",
+                                                     key, *slot->decimals));
+    return text;
+  }
   static std::optional<draw::Color> color(const Fields& fields) {
     const Node* node = fields.given("color");
     return node && node->is_text() ? draw::color(node->text()) : std::nullopt;
   }
 
  private:
+  std::optional<draw::Cue> cue(const Fields& fields, const char* key) const {
+    const Node* node = fields.given(key);
+    if (!node) return {};
+    if (!node->is_table()) return draw::Cue{sim::value(exact(*node))};
+    draw::Cue cue{sim::value(exact(*node->find("time")))};
+    if (const Node* after = node->find("after"))
+      cue.after = true,
+      cue.film = sim::value(speed_.film(exact(*node->find("time")))) + sim::value(exact(*after));
+    return cue;
+  }
+
   const Seating<D>& roster_;
   const sim::World<D>& world_;
   Diagnostics& complaints_;
+  draw::Pace speed_;
 };
 
 const Node::List& tables(const Fields& fields, const char* key) {
   static const Node::List none;
   const Node* node = fields.given(key);
   return node ? node->list() : none;
+}
+
+// The marks of [figure] or [film].
+template <int D>
+draw::Marks read_marks(const Fields& fields, const std::string& owner, const Reader<D>& read,
+                       Diagnostics& complaints) {
+  draw::Marks marks;
+  marks.axes = fields.flag("axes");
+  for (const Node& node : tables(fields, "point")) {
+    const Fields its(node, owner + ".point");
+    if (const auto at = read.site(its, "at"))
+      marks.points.push_back(
+          {*at, read.label(its, "label", false), its.flag("dot"), read.color(its), read.shown(its)});
+  }
+  for (const Node& node : tables(fields, "vector")) {
+    const Fields its(node, owner + ".vector");
+    draw::Marks::Vector vector{
+        quantity(its.text("quantity")), read.body(its, "of"), read.site(its, "at"), read.site(its, "to"),
+        read.label(its, "label"),       read.color(its),      read.shown(its)};
+    const bool position = vector.quantity == draw::Quantity::position;
+    if (position ? !vector.to && vector.body < 0 : vector.body < 0)
+      complaints.add(node.place, position ? "a position needs 'to', a place, or 'of', a body"
+                                          : "this vector needs 'of', the body that has it");
+    marks.vectors.push_back(vector);
+  }
+  for (const Node& node : tables(fields, "angle")) {
+    const Fields its(node, owner + ".angle");
+    marks.angles.push_back({read.body(its, "of"), read.site(its, "at"), read.site(its, "from"),
+                            read.site(its, "to"), read.label(its, "label"), read.shown(its)});
+    if (!its.given("of") && (!its.given("at") || !its.given("from") || !its.given("to")))
+      complaints.add(node.place, "an angle needs 'of', a body, or 'at', 'from' and 'to', three places");
+    if (D == 3 && its.given("of"))
+      complaints.add(its.place("of"), "in space a body has no one angle: 'at', 'from' and 'to' say which");
+  }
+  for (const Node& node : tables(fields, "cone")) {
+    const Fields its(node, owner + ".cone");
+    marks.cones.push_back({read.body(its, "of"), read.label(its, "label"), read.shown(its)});
+  }
+  for (const Node& node : tables(fields, "length")) {
+    const Fields its(node, owner + ".length");
+    const Node* between = its.given("between");
+    if (!between) continue;
+    const auto from = read.site(between->list()[0]), to = read.site(between->list()[1]);
+    if (from && to)
+      marks.lengths.push_back({*from, *to, read.label(its, "label"), its.number("offset"), read.shown(its)});
+  }
+  for (const Node& node : tables(fields, "label")) {
+    const Fields its(node, owner + ".label");
+    const auto at = read.site(its, "at");
+    if (!at || !its.given("text")) continue;
+    draw::Marks::Label label{*at, read.label(its, "text", its.given("quantity")), "", read.body(its, "of"),
+                             read.shown(its)};
+    if (its.given("quantity")) label.quantity = its.text("quantity");
+    if (const draw::Measure* shown = draw::measure(label.quantity); shown && shown->of_body && label.body < 0)
+      complaints.add(its.place("quantity"),
+                     fmt::format("a label of '{}' needs 'of', the body that has it", label.quantity));
+    marks.labels.push_back(label);
+  }
+  for (const Node& node : tables(fields, "path")) {
+    const Fields its(node, owner + ".path");
+    const auto at = read.site(its, "at");
+    if (!at) continue;
+    if (at->body < 0) complaints.add(its.place("at"), "a place of the room has no path: expected a body");
+    const Node* lasting = its.given("lasting");
+    marks.paths.push_back(
+        {*at, lasting ? lasting->number() : 0, its.flag("front"), read.color(its), read.shown(its)});
+  }
+  for (const Node& node : tables(fields, "ghost")) {
+    const Fields its(node, owner + ".ghost");
+    if (!its.given("time")) continue;
+    draw::Marks::Ghost ghost{its.rational("time"), read.bodies(its, "of"), read.shown(its)};
+    if (!ghost.shown.start) ghost.shown.start = draw::Cue{sim::value(ghost.time)};
+    marks.ghosts.push_back(ghost);
+  }
+  return marks;
 }
 
 // the instants, the size and the extent of the picture
@@ -111,68 +216,13 @@ void read_frame(const Fields& fields, const Reader<D>& read, Diagnostics& compla
   if (const Node* columns = fields.given("columns")) figure.columns = int(columns->number());
   figure.room = fields.flag("room");
   figure.scale_bar = fields.flag("scale_bar");
-  figure.axes = fields.flag("axes");
+  static_cast<draw::Marks&>(figure) = read_marks<D>(fields, "figure", read, complaints);
   figure.formula = fields.text("formula");
   figure.vary = fields.text("vary");
   if (const auto equals = figure.vary.find('=');
       fields.given("vary") && (equals == 0 || equals == std::string::npos))
     complaints.add(fields.place("vary"),
                    "'vary': expected a path and its values, as in \"crate.elasticity=0,0.5,1\"");
-}
-
-template <int D>
-void read_vectors(const Fields& fields, const Reader<D>& read, Diagnostics& complaints,
-                  draw::Figure& figure) {
-  for (const Node& node : tables(fields, "vector")) {
-    const Fields its(node, "figure.vector");
-    draw::Figure::Vector vector{quantity(its.text("quantity")), read.body(its, "of"), read.site(its, "at"),
-                                read.site(its, "to"),           its.text("label"),    read.color(its)};
-    const bool position = vector.quantity == draw::Quantity::position;
-    if (position ? !vector.to && vector.body < 0 : vector.body < 0)
-      complaints.add(node.place, position ? "a position needs 'to', a place, or 'of', a body"
-                                          : "this vector needs 'of', the body that has it");
-    figure.vectors.push_back(vector);
-  }
-}
-
-template <int D>
-void read_angles(const Fields& fields, const Reader<D>& read, Diagnostics& complaints, draw::Figure& figure) {
-  for (const Node& node : tables(fields, "angle")) {
-    const Fields its(node, "figure.angle");
-    draw::Figure::Angle angle{read.body(its, "of"), read.site(its, "at"), read.site(its, "from"),
-                              read.site(its, "to"), its.text("label")};
-    if (!its.given("of") && (!its.given("at") || !its.given("from") || !its.given("to")))
-      complaints.add(node.place, "an angle needs 'of', a body, or 'at', 'from' and 'to', three places");
-    if (D == 3 && its.given("of"))
-      complaints.add(its.place("of"), "in space a body has no one angle: 'at', 'from' and 'to' say which");
-    figure.angles.push_back(angle);
-  }
-}
-
-// points, cones, lengths and labels
-template <int D>
-void read_marks(const Fields& fields, const Reader<D>& read, draw::Figure& figure) {
-  for (const Node& node : tables(fields, "point")) {
-    const Fields its(node, "figure.point");
-    if (const auto at = read.site(its, "at"))
-      figure.points.push_back({*at, its.text("label"), its.flag("dot"), read.color(its)});
-  }
-  for (const Node& node : tables(fields, "cone")) {
-    const Fields its(node, "figure.cone");
-    figure.cones.push_back({read.body(its, "of"), its.text("label")});
-  }
-  for (const Node& node : tables(fields, "length")) {
-    const Fields its(node, "figure.length");
-    const Node* between = its.given("between");
-    if (!between) continue;
-    const auto from = read.site(between->list()[0]), to = read.site(between->list()[1]);
-    if (from && to) figure.lengths.push_back({*from, *to, its.text("label"), its.number("offset")});
-  }
-  for (const Node& node : tables(fields, "label")) {
-    const Fields its(node, "figure.label");
-    const auto at = read.site(its, "at");
-    if (at && its.given("text")) figure.labels.push_back({*at, its.text("text")});
-  }
 }
 
 template <int D>
@@ -212,14 +262,24 @@ draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<
   const Fields fields = Fields::of(top, "figure");
   const Reader<D> read(roster, world, complaints);
   read_frame(fields, read, complaints, figure);
-  read_marks(fields, read, figure);
-  read_vectors(fields, read, complaints, figure);
-  read_angles(fields, read, complaints, figure);
+  static_cast<draw::Marks&>(figure) = read_marks<D>(fields, "figure", read, complaints);
   for (const Node& node : tables(fields, "plot"))
     figure.plots.push_back(plot_of(top, node, read, complaints));
   if (!figure.room && figure.plots.empty())
     complaints.add(fields.place("room"), "a figure without its picture needs a plot: [[figure.plot]]");
   return figure;
+}
+
+template <int D>
+std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+                                    const draw::Pace& speed, Diagnostics& complaints) {
+  const Reader<D> read(roster, world, complaints, speed);
+  std::vector<draw::Caption> all;
+  for (const Node& node : tables(Fields::of(top, "film"), "caption")) {
+    const Fields its(node, "film.caption");
+    if (its.given("text")) all.push_back({its.text("text"), read.shown(its)});
+  }
+  return all;
 }
 
 template <int D>
@@ -245,8 +305,34 @@ std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const
   return all;
 }
 
+template <int D>
+draw::Marks film_marks(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+                       const draw::Pace& speed, Diagnostics& complaints) {
+  const Fields fields = Fields::of(top, "film");
+  draw::Marks marks = read_marks<D>(fields, "film", Reader<D>(roster, world, complaints, speed), complaints);
+  if (!fields.flag("figure")) return marks;
+  // what the figure says comes first; it has been checked
+  Diagnostics known("", {});
+  draw::Marks own =
+      read_marks<D>(Fields::of(top, "figure"), "figure", Reader<D>(roster, world, known, speed), known);
+  own.axes = own.axes || marks.axes;
+  const auto join = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  join(own.points, marks.points), join(own.vectors, marks.vectors), join(own.angles, marks.angles);
+  join(own.lengths, marks.lengths), join(own.cones, marks.cones), join(own.labels, marks.labels);
+  join(own.paths, marks.paths), join(own.ghosts, marks.ghosts);
+  return own;
+}
+
 template draw::Figure figure<2>(const Node&, const Seating<2>&, const sim::World<2>&, Diagnostics&);
 template draw::Figure figure<3>(const Node&, const Seating<3>&, const sim::World<3>&, Diagnostics&);
+template draw::Marks film_marks<2>(const Node&, const Seating<2>&, const sim::World<2>&, const draw::Pace&,
+                                   Diagnostics&);
+template draw::Marks film_marks<3>(const Node&, const Seating<3>&, const sim::World<3>&, const draw::Pace&,
+                                   Diagnostics&);
+template std::vector<draw::Caption> captions<2>(const Node&, const Seating<2>&, const sim::World<2>&,
+                                                const draw::Pace&, Diagnostics&);
+template std::vector<draw::Caption> captions<3>(const Node&, const Seating<3>&, const sim::World<3>&,
+                                                const draw::Pace&, Diagnostics&);
 template std::vector<draw::Chart> charts<2>(const Node&, const Seating<2>&, const sim::World<2>&,
                                             Diagnostics&);
 template std::vector<draw::Chart> charts<3>(const Node&, const Seating<3>&, const sim::World<3>&,

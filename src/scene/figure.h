@@ -2,6 +2,8 @@
 
 #include "draw/page/chart.h"
 #include "draw/page/figure.h"
+#include "draw/page/titles.h"
+#include "draw/picture/pace.h"
 #include "scene/complaints.h"
 #include "scene/document.h"
 #include "scene/roster.h"
@@ -13,6 +15,16 @@ namespace obscura::scene {
 template <int D>
 draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                     Diagnostics& complaints);
+
+/// The marks of [film], and those of [figure] where `film.figure` asks for them; `speed`: of the film.
+template <int D>
+draw::Marks film_marks(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+                       const draw::Pace& speed, Diagnostics& complaints);
+
+/// The scene's [[film.caption]]s.
+template <int D>
+std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+                                    const draw::Pace& speed, Diagnostics& complaints);
 
 /// The scene's [[film.plot]]s.
 template <int D>

@@ -358,7 +358,52 @@ place    = "right"
 size     = 40                                                    # percent of the picture's width
 ```
 
-To find the range of the axes the scene is simulated once before the film, so simulating takes twice as long.
+To find the range of the axes the scene is simulated once before the film, so simulating takes twice as long. Marks need this run too.
+
+A film names, measures and points as a figure does: `[[film.vector]]`, `point`, `length`, `angle`, `label`, `cone`, `path` and `ghost` have the
+keys of `[[figure.vector]]` and so on; `film.figure = true` shows in the film what `[figure]` has. Values are live, in digits of equal width.
+`start` and `end` say when a mark is shown:
+
+```toml
+[film]
+speed = [{ time = 1, freeze = 2 }]                               # stands still for two seconds, clock and all
+badge = true                                                     # shows how fast it goes, where that is not as it happens
+
+[[film.vector]]
+quantity = "friction"
+of       = "block"
+label    = "f = {:.2} N"                                         # two decimals; {}: three digits, with the unit
+
+[[film.label]]
+at       = [0.5, 3]
+text     = "E_{kin} = {:.1} J"
+quantity = "kinetic"
+
+[[film.label]]
+at    = "block"
+text  = "here it begins to slide"
+start = 1                                                        # s of the run
+end   = { time = 1, after = 1.5 }                                # and seconds of the film: while it stands still
+
+[[film.path]]
+at = { body = "wheel", local = [0.3, 0] }                        # the path of a point, at any length
+
+[[film.caption]]
+text  = "Friction is at its limit."
+start = 1
+
+[[film.card]]
+title = "Part two"
+time  = 4
+```
+
+A label keeps clear of bodies, walls, arrows and other labels. It goes to another place only where it would be in the way for long, and slowly: at most
+two pixels a frame at 1080p. Where it stands when follows from the whole run, so a still, a shard and a resumed film have the same frames.
+
+Quantities are the same everywhere: in plots, as arrows, in labels and after `--measure` (`block.friction@2`, `block.friction.x@2`). A body's
+`normal_force`, `friction`, `spring_force` and `joint_force` have one arrow for each thing that it touches or that holds it; the number in a plot is the length of
+their sum. `net_force` is the sum of all forces, `acceleration` that over the mass. Forces are those at the end of a step, impacts apart: at the start, before
+the first step, nothing is known of contacts and joints.
 
 `shutter` adds motion blur: a frame is the mean, in linear light, of the pictures from its instant on while the shutter is open. 360 degrees
 is the whole time of a frame, 180 half of it.
@@ -519,6 +564,8 @@ std::string type(const Key& key) {
       return "a place, or a point of a body";
     case Form::times:
       return "number, or a list of them";
+    case Form::cue:
+      return "number, or { time, after }";
     case Form::trails:
       return "number, or table of them";
     case Form::states:
@@ -572,6 +619,14 @@ bool section(const Key& key) {
 
 void rows_under(std::string& page, const std::string& owner, const std::string& section) {
   for (const Key* each : keys_of(owner)) {
+    // the marks of a film are those of a figure
+    if (owner == "film" && each->form == Form::tables && each->path != "film.plot" &&
+        key("figure." + std::string(each->last()))) {
+      Key same = *each;
+      same.doc += fmt::format(" Keys as in `[[figure.{}]]`.", each->last());
+      page += row(same, section);
+      continue;
+    }
     page += row(*each, section);
     if (each->form == Form::table || each->form == Form::tables || each->form == Form::walls ||
         each->form == Form::speeds)

@@ -42,6 +42,7 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
   look.subtitle = words.text("subtitle");
   look.theme = fields.text("theme") == "screen" ? draw::Theme::screen : draw::Theme::paper;
   look.velocity_scale = fields.number("velocity_scale");
+  look.velocity_scale_given = fields.given("velocity_scale") != nullptr;
   if (const Node* scale = fields.given("force_scale")) look.force_scale = scale->number();
   look.caption = fields.flag("caption");
   look.clock = fields.flag("clock");
@@ -60,7 +61,14 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
   look.ground = fields.flag("ground");
   if (const Node* tile = fields.given("tile")) look.tile = tile->number();
 
-  // trails by name, for a body or for all its copies
+  if (const Node* emphasis = fields.given("emphasis")) {
+    for (draw::BodyLook& body : look.bodies) body.quiet = true;
+    for (const Node& each : emphasis->list())
+      for (const int body : roster.bodies(each.text(), each.place, complaints))
+        if (std::size_t(body) < look.bodies.size()) look.bodies[std::size_t(body)].quiet = false;
+  }
+
+  // trails by name: of a body, or of all its copies
   const Node& trails = fields.node("trails");
   if (!trails.is_table()) return;
   for (const Entry& entry : trails.table()) {
@@ -157,20 +165,67 @@ std::vector<draw::Camera> cameras(const Node& top, const NameTable& roster, Diag
 
 namespace {
 
-draw::Pace speed(const Node& node, Diagnostics& complaints) {
-  if (!node.is_list()) return draw::Pace(exact(node));
+// How fast the run goes by, where it stands still, and the cards that are shown meanwhile.
+draw::Pace speed(const Node& node, const Fields& film, sim::Rational duration, std::vector<draw::Card>& cards,
+                 Diagnostics& complaints) {
   std::vector<draw::PaceKey> keys;
-  for (const Node& each : node.list()) {
+  struct Stop {
+    draw::Freeze freeze;
+    std::optional<draw::Card> card;
+  };
+  std::vector<Stop> stops;
+  std::optional<sim::Rational> before;
+  for (const Node& each : node.is_list() ? node.list() : Node::List{}) {
     const Fields its(each, "film.speed");
     if (!its.given("time")) continue;
-    const draw::PaceKey key{its.rational("time"), its.rational("speed"), ease(its.text("ease"))};
-    if (!keys.empty() && key.time <= keys.back().time)
+    const sim::Rational time = its.rational("time");
+    if (before && time <= *before)
       complaints.add(its.place("time"),
-                     fmt::format("times must increase from key to key, got {:g} after {:g}",
-                                 sim::value(key.time), sim::value(keys.back().time)));
-    keys.push_back(key);
+                     fmt::format("times must increase from key to key, got {:g} after {:g}", sim::value(time),
+                                 sim::value(*before)));
+    before = time;
+    if (its.given("freeze")) {
+      stops.push_back({{time, its.rational("freeze")}, {}});
+      if (duration < time)
+        complaints.add(its.place("time"),
+                       fmt::format("the film cannot stand still at {:g} s: it ends at {:g} s",
+                                   sim::value(time), sim::value(duration)));
+    }
+    // what stands still goes on as fast as before, unless it says otherwise
+    if (!its.given("freeze") || its.given("speed"))
+      keys.push_back({time, its.rational("speed"), ease(its.text("ease"))});
   }
-  return complaints.none() ? draw::Pace(keys) : draw::Pace();
+  const Node* all = film.given("card");
+  for (const Node& each : all ? all->list() : Node::List{}) {
+    const Fields its(each, "film.card");
+    const sim::Rational time = its.rational("time"), lasting = its.rational("lasting");
+    draw::Card card{its.text("title"), its.text("text")};
+    card.fade = std::min(its.number("fade"), sim::value(lasting) / 2);
+    card.first = time.num == 0, card.last = time == duration;
+    if (card.title.empty() && card.text.empty())
+      complaints.add(each.place, "a card needs 'title' or 'text': words to show");
+    if (duration < time)
+      complaints.add(its.place("time"),
+                     fmt::format("a card at {:g} s is never shown: the scene ends at {:g} s",
+                                 sim::value(time), sim::value(duration)));
+    stops.push_back({{time, lasting}, card});
+  }
+  if (!complaints.none()) return {};
+  draw::Pace pace = node.is_list() ? draw::Pace(keys) : draw::Pace(exact(node));
+  // cards of the start come before what stands still there, others after it
+  std::stable_sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) {
+    if (!(a.freeze.time == b.freeze.time)) return a.freeze.time < b.freeze.time;
+    const bool first = a.freeze.time.num == 0;
+    return first ? a.card.has_value() && !b.card.has_value() : !a.card.has_value() && b.card.has_value();
+  });
+  for (Stop& stop : stops) {
+    const sim::Rational begin = pace.film(stop.freeze.time) + pace.frozen_at(stop.freeze.time);
+    pace.freeze({stop.freeze.time, stop.freeze.seconds});
+    if (!stop.card) continue;
+    stop.card->begin = sim::value(begin), stop.card->end = sim::value(begin + stop.freeze.seconds);
+    cards.push_back(*stop.card);
+  }
+  return pace;
 }
 
 }  // namespace
@@ -182,7 +237,9 @@ Film film(const Node& top, Diagnostics& complaints) {
   film.width = int(size.x()), film.height = int(size.y());
   film.fps = fields.rational("fps");
   film.shutter = fields.number("shutter");
-  film.speed = speed(fields.node("speed"), complaints);
+  film.speed = speed(fields.node("speed"), fields, Fields(top, "").rational("duration"), film.titles.cards,
+                     complaints);
+  film.titles.badge = fields.flag("badge");
   if (const Node* crf = fields.given("crf")) film.crf = crf->number();
   film.preset = fields.text("preset");
   film.codec = fields.text("codec");

@@ -165,6 +165,8 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   look(top, roster, scene.look, complaints);
   scene.cameras = cameras<D>(top, roster, complaints);
   scene.figure = figure<D>(top, roster, world, complaints);
+  scene.film.marks = film_marks<D>(top, roster, world, scene.film.speed, complaints);
+  scene.film.titles.captions = captions<D>(top, roster, world, scene.film.speed, complaints);
   scene.film.charts = charts<D>(top, roster, world, complaints);
 
   // overlaps may follow from other errors: report them only if there are none

@@ -29,6 +29,8 @@ struct Film {
   std::optional<double> crf;
   std::string preset, codec;
   std::vector<draw::Chart> charts;  // beside the picture, in step with it
+  draw::Marks marks;                // over it
+  draw::Titles titles;              // cards, captions, badge
 };
 
 /// The moments of a scene that are drawn and compared with references.

@@ -132,6 +132,13 @@ Json value(const Key& key) {
       const Json time = any_of({number, {{"type", "string"}}});
       return any_of({time, list_of(time, 1, 0)});
     }
+    case Form::cue:
+      return any_of({number,
+                     {{"type", "string"}, {"pattern", "^[0-9.]+(/[0-9.]+)?$"}},
+                     {{"type", "object"},
+                      {"properties", {{"time", number}, {"after", number}}},
+                      {"required", {"time"}},
+                      {"additionalProperties", false}}});
     case Form::place:
     case Form::ends: {
       const Json point = {{"type", "object"},

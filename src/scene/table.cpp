@@ -32,6 +32,19 @@ std::vector<Key> built() {
   std::vector<Key> all;
   const std::vector<Key> rows = scene::rows();
   for (std::size_t i = 0; i < rows.size();) {
+    if (rows[i].path.starts_with("mark.")) {
+      ++i;
+      continue;
+    }
+    if (const std::size_t dot = rows[i].path.find(".marks"); dot != std::string::npos) {
+      for (Key mark : rows) {
+        if (!mark.path.starts_with("mark.")) continue;
+        mark.path.replace(0, 4, rows[i].path.substr(0, dot));
+        all.push_back(std::move(mark));
+      }
+      ++i;
+      continue;
+    }
     if (!of_bodies(rows[i])) {
       all.push_back(rows[i++]);
       continue;
@@ -211,6 +224,8 @@ std::string expected(const Key& key, int dimension) {
       return fmt::format("a body's name, {{ body = \"name\", local = {0} }} or a place {0}", place);
     case Form::times:
       return "a number" + of + ", or a list of them";
+    case Form::cue:
+      return "a number of seconds, or { time = seconds of the run, after = seconds of the film }";
     case Form::trails:
       return "a number of seconds, or a table of them by body";
     case Form::states:

@@ -44,6 +44,7 @@ enum class Form {
   speeds,       // a speed, or keys of it
   place,        // one end of a spring: a body, a point of one, a place
   times,        // an exact time, or a list of them
+  cue,          // seconds of the run, or { time, after }
   trails,       // seconds, or a table of them by body
   states,       // true, false, or the file of another program's run
   bodies,       // references to bodies, or one
@@ -86,7 +87,8 @@ struct Key {
 
 /// The rows of the language as they are written; those of any.* stand for every kind of body, those of
 /// rigid.* for the kinds that turn, those of handout.* for those that the handout's collisions know, and
-/// `own` for the keys of the form of each kind (scene/body_kinds.h).
+/// `own` for the keys of the form of each kind (scene/body_kinds.h); those of mark.* are the marks of figures
+/// and films, which stand where figure.marks and film.marks do.
 std::vector<Key> rows();
 
 /// The language: every key, in the order of the page.

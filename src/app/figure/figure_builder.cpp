@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include "app/run/simulation.h"
 #include "app/run/variation.h"
 #include "draw/compose/annotate.h"
+#include "draw/compose/annotations.h"
 #include "draw/compose/depict.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
@@ -27,6 +29,7 @@ constexpr std::array<const char*, 5> kTold{"blue", "vermilion", "green", "purple
                                            "orange"};  // lines of runs
 constexpr std::int64_t kMostPanels = 100;
 constexpr int kMostExposures = 2000;
+constexpr double kPathError = 0.2;                    // page units
 constexpr double kFormula = 10;                       // pt, em
 constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
 
@@ -43,6 +46,11 @@ sim::Rational impact(const scene::Scene& scene) {
   }
   throw UsageError(fmt::format("{}: {} strikes nothing within the duration", scene.file,
                                run->scene_info().bodies[std::size_t(body)].name));
+}
+
+bool traced(const draw::Marks& marks, int body) {
+  return std::any_of(marks.paths.begin(), marks.paths.end(),
+                     [&](const auto& path) { return path.at.body == body; });
 }
 
 draw::Text words(const std::string& text, draw::Face face, double size, const draw::Point& at,
@@ -104,16 +112,28 @@ void FigureBuilder::take(const scene::Scene& scene, const std::vector<sim::Ratio
   run->heed(interrupted);
   std::vector<int> trailed;
   for (std::size_t i = 0; i < scene.look.bodies.size(); ++i)
-    if (scene.look.bodies[i].trail > 0) trailed.push_back(int(i));
+    if (scene.look.bodies[i].trail > 0 || traced(scene.figure, int(i))) trailed.push_back(int(i));
   run->track(trailed);
 
   const auto at = [&](sim::Rational t) { return moment(*run, t, scene); };
   std::vector<sim::Snapshot> before;
   std::vector<std::shared_ptr<const sim::Track>> ways;
   sim::Rational next;
+  std::vector<std::pair<sim::Rational, std::size_t>> ghosts;  // those to come
+  for (std::size_t i = 0; i < scene.figure.ghosts.size(); ++i)
+    ghosts.emplace_back(scene.figure.ghosts[i].time, i);
+  std::stable_sort(ghosts.begin(), ghosts.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::optional<sim::Snapshot>> then(ghosts.size());
+  std::size_t ghost = 0;
+  const auto haunt = [&](sim::Rational until) {
+    for (; ghost < ghosts.size() && ghosts[ghost].first <= until; ++ghost)
+      then[ghosts[ghost].second] = at(ghosts[ghost].first);
+  };
   for (const sim::Rational& time : times) {
-    for (; every_ && next < time; next = next + *every_) before.push_back(at(next));
-    Panel panel{scene, run->scene_info(), at(time), before, {}, said};
+    for (; every_ && next < time; next = next + *every_) haunt(next), before.push_back(at(next));
+    haunt(time);
+    Panel panel{scene, run->scene_info(), at(time), before, then, {}, said};
     ways.push_back(std::make_shared<const sim::Track>(run->take_track()));
     panel.ways = ways;
     if (times.size() > 1)
@@ -273,8 +293,19 @@ draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell
     const double age = double(k) / double(panel.before.size());
     depictor.ghosts(panel.before[k], kFaintest + (kStrongest - kFaintest) * age, list);
   }
-  list.add(picture.moving, 1, {0, 0});
   const draw::View view = depictor.view(panel.now.time);
+  const double film = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < panel.ghosts.size(); ++i) {
+    const draw::Marks::Ghost& ghost = panel.scene.figure.ghosts[i];
+    if (panel.ghosts[i] && ghost.shown.has(panel.now.time, film))
+      depictor.ghosts(*panel.ghosts[i], draw::kGhost, list, ghost.bodies);
+  }
+  const auto paths = draw::path_lines(panel.scene.figure,
+                                      draw::paths_of(panel.scene.figure, panel.ways, kPathError / view.scale),
+                                      panel.now, film);
+  depictor.draw_lines(view, paths, false, list);
+  list.add(picture.moving, 1, {0, 0});
+  depictor.draw_lines(view, paths, true, list);
   draw::annotate(panel.scene.figure, scales, panel.cast, colours, draw::Projection(view), panel.now, list);
   if (panel.scene.figure.axes) draw::draw_rulers(depictor.layout(), view, colours, list);
   height = depictor.layout().height;
@@ -286,7 +317,12 @@ draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell
                                    const draw::Scales& scales, double width, double& height, Lit& lit) const {
   const Panel& panel = *cell.panel;
   const draw::Palette colours = draw::palette(panel.scene.look.theme);
-  lit.picture = depictor.depict(panel.now, panel.ways);
+  const double at_target = depictor.scale(panel.now);
+  lit.picture =
+      depictor.depict(panel.now, panel.ways,
+                      draw::path_lines(panel.scene.figure,
+                                       draw::paths_of(panel.scene.figure, panel.ways, kPathError / at_target),
+                                       panel.now, std::numeric_limits<double>::quiet_NaN()));
   const double scale = width * draw::kPoint / (1080 * lit.picture.aspect);
   const draw::Point corner(0, panels_.size() * panel.scene.cameras.size() > 1 ? kLetter * draw::kPoint : 0);
   lit.where = {corner.x(), corner.y(), 1080 * lit.picture.aspect * scale, 1080 * scale};

@@ -55,6 +55,7 @@ class FigureBuilder {
     sim::SceneInfo cast;
     sim::Snapshot now;
     std::vector<sim::Snapshot> before;                    // exposures, oldest first
+    std::vector<std::optional<sim::Snapshot>> ghosts;     // one a ghost of the figure; none: of later
     std::vector<std::shared_ptr<const sim::Track>> ways;  // of trails
     std::string words;                                    // what sets it apart from the others
   };

@@ -206,8 +206,9 @@ Needs needs(const scene::Scene& scene, const Shots& shots, const Output& output,
   const sim::Rational rate = std::visit([](const auto& world) { return world.model.rate; }, scene.world);
   const double steps = sim::value(end) * sim::value(rate);
   const Measured run = measure(scene, std::int64_t(std::min(steps, 1e15)), patience);
-  // charts are of the whole run, which is made once more for them
-  const double charts = scene.film.charts.empty() ? 0 : sim::value(scene.duration) * sim::value(rate);
+  // charts and marks are of the whole run, which is made once more for them
+  const bool ahead = !scene.film.charts.empty() || !scene.film.marks.empty();
+  const double charts = !ahead ? 0 : sim::value(scene.duration) * sim::value(rate);
   all.simulate = run.step * (steps + charts);
 
   const double moments = scene.film.shutter > 0 ? 8 : 1;

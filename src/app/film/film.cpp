@@ -62,9 +62,9 @@ class Filming {
   void clear_leftovers() const;
   SimulationOptions simulating();
   int prepare(Simulation& simulation);
-  std::function<DrawnSegment(FilmSegment)> hire(const draw::Charts& charts);
+  std::function<DrawnSegment(FilmSegment)> hire(const Ahead& ahead);
   DrawnSegment print(FilmSegment take, FrameRenderer& darkroom);
-  void shoot(Simulation& simulation, const draw::Charts& charts, Progress& progress);
+  void shoot(Simulation& simulation, const Ahead& ahead, Progress& progress);
   int finish(Progress& progress, const Simulation& simulation, std::int64_t wanted);
   std::string cut_part() const {
     return (fs::path(store_->folder()) / ("cut." + media::part_ending(output_.path))).string();
@@ -194,8 +194,8 @@ SimulationOptions Filming::simulating() {
 }
 
 // a worker: a context of its own, and for each take a closed piece of film
-std::function<Filming::DrawnSegment(FilmSegment)> Filming::hire(const draw::Charts& charts) {
-  auto darkroom = std::make_shared<FrameRenderer>(scene_, charts, options_.context);
+std::function<Filming::DrawnSegment(FilmSegment)> Filming::hire(const Ahead& ahead) {
+  auto darkroom = std::make_shared<FrameRenderer>(scene_, ahead, options_.context);
   if (const auto before = store_ ? store_->drawn() : std::nullopt) {
     Origin here = journal_.origin;
     here.gl_version = darkroom->renderer().version(), here.gl_renderer = darkroom->renderer().device();
@@ -252,7 +252,7 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
 }
 
 // simulates, draws and writes what is wanted
-void Filming::shoot(Simulation& simulation, const draw::Charts& charts, Progress& progress) {
+void Filming::shoot(Simulation& simulation, const Ahead& ahead, Progress& progress) {
   const int cores = std::max(1, int(std::thread::hardware_concurrency()));
   const int workers =
       int(std::min<std::int64_t>(options_.workers > 0 ? options_.workers : cores, last_ - first_));
@@ -263,7 +263,7 @@ void Filming::shoot(Simulation& simulation, const draw::Charts& charts, Progress
   Conduct<FilmSegment, DrawnSegment> parts;
   parts.produce = [&] { return simulation.next(); };
   parts.wait = [&] { progress.at(drawn_); };
-  parts.hire = [&] { return hire(charts); };
+  parts.hire = [&] { return hire(ahead); };
   parts.consume = [&](DrawnSegment print) {
     for (const media::Image& image : print.images) {
       if (open_ && !pipe->write(image)) open_ = false;
@@ -326,15 +326,15 @@ int Filming::run() {
     say(stdout, "{}: is whole already\n", output_.path);
     return kDone;
   }
-  const draw::Charts charts = app::charts(scene_);
-  Simulation simulation(scene_, shots_, depictor(scene_, charts), simulating());
+  const Ahead ahead = app::ahead(scene_);
+  Simulation simulation(scene_, shots_, depictor(scene_, ahead), simulating());
   if (options_.prepare) return prepare(simulation);
   std::int64_t wanted = 0;
   for (std::int64_t take = first_; take < last_; ++take) wanted += frames_of(take);
   Progress progress(options_.progress, output_.path == "-" ? "standard output" : output_.path, wanted,
                     1 / sim::value(scene_.film.fps));
   try {
-    shoot(simulation, charts, progress);
+    shoot(simulation, ahead, progress);
   } catch (const media::Error& error) {
     // finished parts stay for another try
     if (!store_ || done_ + found_ == 0) throw;

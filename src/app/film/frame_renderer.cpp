@@ -13,14 +13,17 @@ gl::Renderer opened(const scene::Film& film, const gl::ContextOptions& context) 
 
 }  // namespace
 
-FrameRenderer::FrameRenderer(const scene::Scene& scene, const draw::Charts& charts,
-                             const gl::ContextOptions& context)
-    : renderer_(opened(scene.film, context)), artist_(depictor(scene, charts)) {}
+FrameRenderer::FrameRenderer(const scene::Scene& scene, const Ahead& ahead, const gl::ContextOptions& context)
+    : renderer_(opened(scene.film, context)),
+      artist_(depictor(scene, ahead)),
+      fps_(scene.film.fps),
+      speed_(scene.film.speed) {}
 
 const media::Image& FrameRenderer::print(const FilmSegment& take, std::size_t frame, bool transparent) {
   const sim::Snapshot& instant = take.moments[frame];
+  const double film = film_time(take.shots[frame], fps_, speed_);
   const auto draw = [&](const sim::Snapshot& moment) -> const media::Image& {
-    draw::Picture picture = artist_.depict(moment, take.ways, instant);
+    draw::Picture picture = artist_.depict(moment, take.ways, {instant, film, speed_.speed(film)});
     picture.transparent = transparent;
     return renderer_.draw(picture);
   };

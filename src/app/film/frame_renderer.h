@@ -4,7 +4,6 @@
 
 #include "app/run/simulation.h"
 #include "draw/compose/depict.h"
-#include "draw/page/chart.h"
 #include "gl/renderer.h"
 #include "media/exposure.h"
 #include "media/image.h"
@@ -16,7 +15,7 @@ namespace obscura::app {
 /// is open, the mean of several. Used from one thread at a time; several work in parallel.
 class FrameRenderer {
  public:
-  FrameRenderer(const scene::Scene& scene, const draw::Charts& charts, const gl::ContextOptions& context);
+  FrameRenderer(const scene::Scene& scene, const Ahead& ahead, const gl::ContextOptions& context);
 
   /// The picture of a frame of a take, good until the next one. `transparent`: with the ground left out.
   const media::Image& print(const FilmSegment& take, std::size_t frame, bool transparent);
@@ -27,6 +26,8 @@ class FrameRenderer {
   gl::Renderer renderer_;
   draw::Illustrator artist_;
   media::Exposure exposure_;
+  sim::Rational fps_;
+  draw::Pace speed_;
 };
 
 }  // namespace obscura::app

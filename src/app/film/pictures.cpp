@@ -8,9 +8,9 @@
 namespace obscura::app {
 
 std::vector<Pictured> pictures(const scene::Scene& scene, const Shots& shots, const PictureOptions& options) {
-  const draw::Charts charts = app::charts(scene);
-  Simulation simulation(scene, shots, depictor(scene, charts), {.frames = 1, .hash_each = true});
-  FrameRenderer darkroom(scene, charts, options.context);
+  const Ahead ahead = app::ahead(scene);
+  Simulation simulation(scene, shots, depictor(scene, ahead), {.frames = 1, .hash_each = true});
+  FrameRenderer darkroom(scene, ahead, options.context);
   std::vector<Pictured> all;
   while (const auto take = simulation.next()) {
     Pictured one;

@@ -12,6 +12,7 @@
 #include "app/run/columns.h"
 #include "app/run/origin.h"
 #include "draw/page/measure.h"
+#include "draw/page/readings.h"
 #include "scene/complaints.h"
 #include "sim/step/run.h"
 
@@ -28,9 +29,7 @@ constexpr std::array<std::pair<std::string_view, Over>, 6> kOver{{{"end", Over::
                                                                   {"argmax", Over::argmax},
                                                                   {"argmin", Over::argmin}}};
 constexpr std::string_view kHash = "hash";
-// quantities of a body that plots have and no column has
-constexpr std::array<std::string_view, 3> kPlotted{"speed", "length", "push"};
-
+constexpr std::size_t kFew = 200;  // bodies whose quantities are all offered where a name is not known
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
@@ -72,19 +71,34 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
   for (const Column& column : all)
     if (column.name == asked.path) return column.read;
 
-  // a plot's quantity of a body
+  // a quantity that plots show: of a body, or of all the room
   std::vector<std::string> more{std::string(kHash)};
+  for (const std::string& name : draw::plotted()) {
+    const draw::Measure* measure = draw::measure(name);
+    if (measure->of_body) continue;
+    more.push_back(name);
+    if (name == asked.path)
+      return [measure, cast](const sim::Snapshot& now) { return measure->at(cast, now, -1); };
+  }
   for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
     const int body = int(i);
     const bool sprung = std::any_of(cast.springs.begin(), cast.springs.end(),
                                     [&](const auto& spring) { return spring.a == body || spring.b == body; });
-    for (const std::string_view name : kPlotted) {
-      if (name != "speed" && !sprung) continue;
-      more.push_back(cast.bodies[i].name + "." + std::string(name));
+    const std::string& whose = cast.bodies[i].name;
+    if (!asked.path.starts_with(whose + ".") && cast.bodies.size() > kFew) continue;
+    for (const std::string& name : draw::plotted()) {
+      const draw::Measure* measure = draw::measure(name);
+      if (!measure->of_body || (!sprung && (name == "length" || name == "push"))) continue;
+      more.push_back(whose + "." + name);
       if (more.back() == asked.path)
-        return [measure = draw::measure(name), body](const sim::Snapshot& now) {
-          return measure->at(now, body);
-        };
+        return [measure, cast, body](const sim::Snapshot& now) { return measure->at(cast, now, body); };
+      // the components of what arrows show
+      if (!measure->arrow) continue;
+      for (int k = 0; k < cast.dimension; ++k)
+        if (fmt::format("{}.{}.{}", whose, name, "xyz"[k]) == asked.path)
+          return [quantity = *measure->arrow, cast, body, k](const sim::Snapshot& now) {
+            return draw::sum(quantity, body, cast, now)[k];
+          };
     }
   }
   std::vector<std::string_view> names(more.begin(), more.end());

@@ -10,7 +10,9 @@
 #include "app/console/interrupt.h"
 #include "app/run/simulation.h"
 #include "app/run/variation.h"
+#include "draw/compose/annotations.h"
 #include "draw/page/measure.h"
+#include "draw/plane/stage.h"
 #include "scene/table.h"
 #include "sim/step/run.h"
 
@@ -22,11 +24,12 @@ constexpr std::int64_t kPoints = 480;   // of a line
 constexpr std::int64_t kPixels = 1920;  // of a line in a film
 
 // the values of a run at one more instant
-void add(const sim::Snapshot& now, const draw::Measured& measured, draw::Plot& plot) {
+void add(const sim::SceneInfo& cast, const sim::Snapshot& now, const draw::Measured& measured,
+         draw::Plot& plot) {
   plot.times.push_back(now.time);
   const std::vector<const draw::Measure*> measures = measured.measures();
   for (std::size_t k = 0; k < measures.size(); ++k)
-    plot.lines[k].values.push_back(measures[k]->at(now, measured.body));
+    plot.lines[k].values.push_back(measures[k]->at(cast, now, measured.body));
 }
 
 // the instants of a run from which a chart is made: ends of steps, which cost nothing extra; for another
@@ -69,7 +72,7 @@ std::vector<double> ends(const scene::Scene& scene, const draw::Figure::Plot& wa
   run->heed(interrupted);
   const sim::Snapshot now = moment(*run, wanted.to, scene);
   std::vector<double> found;
-  for (const draw::Measure* each : all) found.push_back(each->at(now, wanted.body));
+  for (const draw::Measure* each : all) found.push_back(each->at(run->scene_info(), now, wanted.body));
   return found;
 }
 
@@ -153,8 +156,8 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
     for (std::int64_t i = 0; i <= kPoints; ++i) {
       const sim::Rational t = i < kPoints ? wanted.from + sim::rational(i) * stride : wanted.to;
       const sim::Snapshot now = moment(*run, t, scene);
-      add(now, wanted, plot);
-      if (against) way.push_back(against->at(now, wanted.body));
+      add(run->scene_info(), now, wanted, plot);
+      if (against) way.push_back(against->at(run->scene_info(), now, wanted.body));
     }
     if (against) {
       plot.name = axis(against->label, against->unit);
@@ -168,9 +171,35 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
   return all;
 }
 
-draw::Charts charts(const scene::Scene& scene) {
+namespace {
+
+constexpr double kSample = 1.0 / 12;        // s of the film: how often labels look where they stand
+constexpr double kMostSampled = 128 << 20;  // of instants kept for labels
+
+double bytes(const sim::Snapshot& now) {
+  return double(now.bodies.size() * sizeof(sim::Snapshot::Body) +
+                now.springs.size() * sizeof(sim::Snapshot::Spring) +
+                now.joints.size() * sizeof(sim::Snapshot::Joint) +
+                now.contacts.size() * sizeof(sim::Snapshot::Contact));
+}
+
+// the scales that a scene sets, or that its bodies' own arrows have
+draw::Scales given_scales(const scene::Scene& scene, const sim::SceneInfo& cast) {
+  draw::Scales scales;
+  bool velocity = scene.look.velocity_scale_given, force = scene.look.force_scale > 0;
+  for (const draw::BodyLook& body : scene.look.bodies)
+    velocity = velocity || body.velocity, force = force || body.contact;
+  if (velocity) scales.velocity = scene.look.velocity_scale;
+  if (force) scales.force = scene.look.force_scale > 0 ? scene.look.force_scale : draw::newton(cast);
+  return scales;
+}
+
+}  // namespace
+
+Ahead ahead(const scene::Scene& scene) {
   const std::vector<draw::Chart>& wanted = scene.film.charts;
-  if (wanted.empty()) return {};
+  const draw::Marks& marks = scene.film.marks;
+  if (wanted.empty() && marks.empty()) return {};
   draw::Palette colours = draw::palette(scene.look.theme);
   if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
   std::vector<draw::Plot> plots;
@@ -178,15 +207,77 @@ draw::Charts charts(const scene::Scene& scene) {
 
   const auto run = scene.run();
   run->heed(interrupted);
-  for (const sim::Rational t : beats(scene, run->rate())) {
-    const auto found = run->at(t);
-    if (std::holds_alternative<sim::Stopped>(found)) throw Interrupted();
-    if (std::holds_alternative<sim::Trouble>(found)) break;
-    for (std::size_t i = 0; i < wanted.size(); ++i) add(std::get<sim::Snapshot>(found), wanted[i], plots[i]);
+  std::vector<int> traced;
+  for (const draw::Marks::Path& path : marks.paths) traced.push_back(path.at.body);
+  std::sort(traced.begin(), traced.end());
+  traced.erase(std::unique(traced.begin(), traced.end()), traced.end());
+  run->track(traced);
+  const std::vector<sim::Rational> times = beats(scene, run->rate());
+
+  // the instants of ghosts among the others, and those at which the film stands still; of another program's
+  // run the nearest row
+  constexpr int kAxis = -1, kStill = -2;
+  std::vector<std::pair<sim::Rational, int>> instants;
+  for (const sim::Rational t : times) instants.emplace_back(t, kAxis);
+  const auto more = [&](sim::Rational t, int what) {
+    const auto next = std::lower_bound(times.begin(), times.end(), t);
+    if (scene.trajectory) t = next == times.end() ? times.back() : *next;
+    instants.emplace_back(t, what);
+  };
+  for (std::size_t i = 0; i < marks.ghosts.size(); ++i) more(marks.ghosts[i].time, int(i));
+  for (const draw::Pace::Frozen& each : scene.film.speed.frozen()) more(each.world, kStill);
+  std::stable_sort(instants.begin(), instants.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+
+  draw::RunAhead found;
+  found.ghosts.resize(marks.ghosts.size());
+  double next = 0, stride = kSample, kept = 0;
+  bool any = false;
+  for (const auto& [t, ghost] : instants) {
+    auto outcome = run->at(t);
+    if (std::holds_alternative<sim::Stopped>(outcome)) throw Interrupted();
+    if (std::holds_alternative<sim::Trouble>(outcome)) break;
+    auto& now = std::get<sim::Snapshot>(outcome);
+    if (ghost >= 0) {
+      found.ghosts[std::size_t(ghost)] = std::move(now);
+      continue;
+    }
+    if (ghost == kStill) {
+      // labels may come and go meanwhile
+      if (marks.empty()) continue;
+      for (const draw::Pace::Frozen& each : scene.film.speed.frozen()) {
+        if (!(each.world == t)) continue;
+        for (const double part : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9})
+          found.samples.push_back({now, sim::value(each.film) + part * sim::value(each.seconds)});
+      }
+      next = found.samples.back().film;
+      continue;
+    }
+    any = true;
+    for (std::size_t i = 0; i < wanted.size(); ++i) add(run->scene_info(), now, wanted[i], plots[i]);
+    const double film = sim::value(scene.film.speed.film(t));
+    if (marks.empty() || film < next - 1e-9) continue;
+    kept += bytes(now);
+    found.samples.push_back({std::move(now), film});
+    // of a large scene fewer
+    if (kept > kMostSampled) {
+      for (std::size_t k = 1; 2 * k < found.samples.size(); ++k)
+        found.samples[k] = std::move(found.samples[2 * k]);
+      found.samples.resize((found.samples.size() + 1) / 2);
+      stride *= 2, kept /= 2;
+    }
+    next = found.samples.back().film + stride;
   }
-  if (plots[0].times.empty()) return {};
+  if (!traced.empty()) found.track = std::make_shared<const sim::Track>(run->take_track());
+  Ahead all;
   const double aspect = double(scene.film.width) / scene.film.height;
-  return {wanted, plots, colours, aspect, sim::value(scene.duration)};
+  if (any && !wanted.empty())
+    all.charts = {wanted, plots, colours, aspect, sim::value(scene.duration), run->scene_info()};
+  if (!marks.empty())
+    all.annotations = std::make_shared<const draw::Annotations>(marks, depictor(scene, all), std::move(found),
+                                                                given_scales(scene, run->scene_info()),
+                                                                sim::value(scene.film.fps));
+  return all;
 }
 
 }  // namespace obscura::app

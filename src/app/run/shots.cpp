@@ -40,10 +40,18 @@ sim::Rational instant(std::string_view text, const std::string& list) {
 
 }  // namespace
 
+double film_time(const Shot& shot, sim::Rational fps, const draw::Pace& speed) {
+  const sim::Rational film = sim::rational(shot.frame) / fps;
+  return sim::value(speed.world(film) == shot.time ? film : speed.film(shot.time));
+}
+
 Shots Shots::film(sim::Rational duration, sim::Rational fps, const draw::Pace& speed) {
   Shots shots;
   shots.fps_ = fps, shots.speed_ = speed;
   shots.size_ = shots.first_at(duration);
+  // what stands still at the end belongs to the film
+  if (const sim::Rational last = speed.frozen_at(duration); last.num > 0)
+    shots.size_ = sim::ceil((speed.film(duration) + last) * fps);
   if (shots.size_ > 0) shots.ranges_ = {{0, shots.size_ - 1}};
   return shots;
 }

@@ -20,6 +20,10 @@ struct Shot {
   sim::Rational time;  // s of the run
 };
 
+/// When the film shows a shot, s of the film: by its number, or where that is not of its instant, as a
+/// still's may be, when its instant is first shown.
+double film_time(const Shot& shot, sim::Rational fps, const draw::Pace& speed);
+
 /// Which frames of a film are wanted, without listing them: frame n is at exactly n / fps of the film, and
 /// shows the instant of the run that `speed` brings there.
 class Shots {

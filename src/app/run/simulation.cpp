@@ -32,10 +32,13 @@ double last_time(const sim::Track& track) {
 
 }  // namespace
 
-draw::Illustrator depictor(const scene::Scene& scene, const draw::Charts& charts) {
+draw::Illustrator depictor(const scene::Scene& scene, const Ahead& ahead) {
   const auto run = scene.run();
   const double aspect = double(scene.film.width) / scene.film.height;
-  return {run->scene_info(), scene.look, scene.cameras, scene.extent, aspect, charts};
+  draw::Illustrator artist(run->scene_info(), scene.look, scene.cameras, scene.extent, aspect, ahead.charts);
+  artist.annotate(ahead.annotations);
+  artist.entitle(scene.film.titles);
+  return artist;
 }
 
 sim::Snapshot moment(sim::Run& run, sim::Rational t, const scene::Scene& scene) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/run/shots.h"
+#include "draw/compose/annotations.h"
 #include "draw/compose/depict.h"
 #include "scene/scene.h"
 #include "sim/step/run.h"
@@ -29,8 +30,14 @@ struct FilmSegment {
   Ways ways;                        // what trails are drawn from
 };
 
-/// The illustrator of the scene's instants, at the film's size, with these charts beside them.
-draw::Illustrator depictor(const scene::Scene& scene, const draw::Charts& charts);
+/// What a film knows of its run before it begins: the axes of its charts, and all that its marks need.
+struct Ahead {
+  draw::Charts charts{};
+  std::shared_ptr<const draw::Annotations> annotations{};
+};
+
+/// The illustrator of the scene's instants, at the film's size, with what is known of the run.
+draw::Illustrator depictor(const scene::Scene& scene, const Ahead& ahead);
 
 /// A run at an instant. Throws TroubleError where it cannot go on, Interrupted where a signal asks for an
 /// end.

@@ -9,8 +9,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "draw/compose/readings.h"
+#include "draw/page/measure.h"
 #include "draw/page/placing.h"
+#include "draw/page/readings.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
 #include "draw/plane/stage.h"
@@ -18,14 +19,18 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kType = 10 * kPoint;                 // em
-constexpr double kArrow = 1.1 * kPoint / kArrowLine;  // weight at which a shaft is 1.1 pt
-constexpr double kThin = 0.5 * kPoint;                // of angles and lengths
-constexpr double kDotRadius = 1.7 * kPoint, kGap = 2.2 * kPoint;
-constexpr double kNormal = 9 * 72 / 25.4 * kPoint;  // a unit normal: 9 mm
-constexpr double kAngle = 13 * kPoint;              // radius of an arc
-constexpr double kAxes = 0.36;                      // of the picture's shorter side: axes in space
-constexpr double kMillimetre = 72 / 25.4 * kPoint;
+// points
+constexpr double kType = 10;   // em
+constexpr double kThin = 0.5;  // of angles and lengths
+constexpr double kDotRadius = 1.7, kGap = 2.2;
+constexpr double kMillimetre = 72 / 25.4;
+constexpr double kNormal = 9 * 72 / 25.4;  // a unit normal: 9 mm
+constexpr double kAngle = 13;              // radius of an arc
+
+constexpr double kAxes = 0.36;        // of the picture's shorter side: axes in space
+constexpr double kFull = 0.5;         // of an arrow's growth: from here on its words are as strong as others
+constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
+constexpr double kCovered = 60;       // points: the cost of words over a body
 
 using sim::Vec3;
 
@@ -33,58 +38,80 @@ using sim::Vec3;
 class Notes {
  public:
   Notes(const sim::SceneInfo& cast, const Palette& colours, const Projection& projection,
-        const sim::Snapshot& now, List& list)
+        const sim::Snapshot& now, const Annotating& how, List& list)
       : cast_(cast),
         colours_(colours),
         view_(projection),
         now_(now),
+        how_(how),
         list_(list),
-        placing_(projection.window()) {
-    avoid_bodies();
+        placing_(projection.window()),
+        point_(how.lettering.point),
+        arrow_(how.lettering.arrow),
+        type_(kType * point_),
+        thin_(kThin * point_),
+        dot_radius_(kDotRadius * point_),
+        gap_(kGap * point_),
+        millimetre_(kMillimetre * point_),
+        normal_(kNormal * point_),
+        angle_(kAngle * point_) {
+    // of a film the places are known
+    if (how_.plan && !how_.survey) return;
+    how_.survey ? avoid_areas() : avoid_bodies();
     if (!view_.view()) return;
     for (const HalfPlane& wall : half_planes(cast, *view_.view())) {
       const Point along(-wall.normal.y(), wall.normal.x());
       placing_.avoid(wall.point - 1e4 * along, wall.point + 1e4 * along, 3);
       // nor in the hatching
-      for (double deep = 2; deep < kBand * kPrint; deep += 4)
+      for (double deep = 2; deep < kBand * how_.lettering.weight; deep += 4)
         placing_.avoid(wall.point - deep * wall.normal - 1e4 * along,
                        wall.point - deep * wall.normal + 1e4 * along, 1);
     }
   }
 
-  void vector(const Figure::Vector& vector, Scales scales);
-  void angle(const Figure::Angle& angle);
-  void length(const Figure::Length& length);
-  void point(const Figure::Point& point);
-  void label(const Figure::Label& label);
-  void cone(const Figure::Cone& cone, const Scales& scales);
+  void vector(int index, const Marks::Vector& vector, Scales scales);
+  void angle(int index, const Marks::Angle& angle);
+  void length(int index, const Marks::Length& length);
+  void point(int index, const Marks::Point& point);
+  void label(int index, const Marks::Label& label);
+  void cone(int index, const Marks::Cone& cone, const Scales& scales);
   void axes();
   void finish();
 
  private:
   struct Word {
+    WordKey key;
     Formula set;
     std::vector<Placing::Candidate> places;
     Point anchor;
   };
+  bool film() const { return how_.plan != nullptr || how_.survey != nullptr; }
   static Point size(const Formula& f) { return {f.width, f.ascent + f.descent}; }
   void avoid_bodies();
-  void arrow(const Point& tail, const Point& tip, const Formula& label, Color ink);
+  void avoid_areas();
+  void avoid_springs();
+  Formula set(const WordKey& key, const std::string& text, double value, std::string_view unit, Color ink);
+  Placing::Candidate planned(const Word& word, double& leader) const;
+  void plate(const Point& center, const Point& size, std::uint8_t strength);
+  bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink);
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
   void dashes(const Point& a, const Point& b);
-  void turn(const Figure::Vector& vector, const Reading& reading, const Formula& label, Color ink);
+  void turn(const WordKey& key, const Marks::Vector& vector, const Reading& reading, const Formula& label,
+            Color ink);
   template <class At>
   void arc(const At& at, double radius, double from, double to, double width, Color color);
-  void word(Formula set, std::vector<Placing::Candidate> places, const Point& anchor) {
-    if (!set.empty()) words_.push_back({std::move(set), std::move(places), anchor});
+  void word(const WordKey& key, Formula set, std::vector<Placing::Candidate> places, const Point& anchor) {
+    if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor});
   }
 
   const sim::SceneInfo& cast_;
   const Palette& colours_;
   const Projection& view_;
   const sim::Snapshot& now_;
+  const Annotating& how_;
   List& list_;
   Placing placing_;
+  double point_, arrow_, type_, thin_, dot_radius_, gap_, millimetre_, normal_, angle_;  // page units
   std::vector<Word> words_;
   std::vector<std::pair<Point, Color>> dots_;
 };
@@ -102,7 +129,7 @@ void Notes::avoid_bodies() {
     for (const Vec3& corner : corners) outline.push_back(view_.page(place({int(i), corner}, now_)));
     if (outline.empty()) {
       const double scale = view_.scale_at(it.position);
-      const double radius = body.radius > 0 ? scale * body.radius : kDot * kPrint;
+      const double radius = body.radius > 0 ? scale * body.radius : kDot * how_.lettering.weight;
       for (int k = 0; k < 12; ++k)
         outline.push_back(view_.page(it.position) + radius * Point(std::cos(k * std::numbers::pi / 6),
                                                                    -std::sin(k * std::numbers::pi / 6)));
@@ -110,20 +137,28 @@ void Notes::avoid_bodies() {
     for (std::size_t k = 0; k < outline.size(); ++k)
       placing_.avoid(outline[k], outline[(k + 1) % outline.size()], 2);
   }
+  avoid_springs();
+}
+
+void Notes::avoid_springs() {
   for (const sim::Snapshot::Spring& spring : now_.springs) {
     const Point a = view_.page(spring.a), b = view_.page(spring.b), u = (b - a).normalized();
     for (const double side : {-3.0, 0.0, 3.0})
-      placing_.avoid(a + side * kPoint * Point(-u.y(), u.x()), b + side * kPoint * Point(-u.y(), u.x()), 1);
+      placing_.avoid(a + side * point_ * Point(-u.y(), u.x()), b + side * point_ * Point(-u.y(), u.x()), 1);
   }
 }
 
-void Notes::arrow(const Point& tail, const Point& tip, const Formula& label, Color ink) {
+bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink) {
   std::vector<Arrow> arrows;
-  offer(tail, tip, view_.window(), kArrow, arrows);
-  if (arrows.empty()) return;
-  draw_arrows(arrows, kArrow, colours_.room, ink, list_);
-  placing_.avoid(tail, tip, 4);
-  word(label, Placing::along(tail, tip, 1.7 * kGap, size(label), kPoint), (tail + tip) / 2);
+  offer(tail, tip, view_.window(), arrow_, arrows);
+  if (arrows.empty()) return false;
+  draw_arrows(arrows, arrow_, colours_.room, ink, list_);
+  const Point end = film() ? arrows[0].tip : tip;
+  placing_.avoid(tail, end, 4);
+  // words come and go with a small arrow
+  if (film()) fade(label, (arrows[0].grow - 0.2) / (kFull - 0.2));
+  word(key, label, Placing::along(tail, end, 1.7 * gap_, size(label), point_, film()), (tail + end) / 2);
+  return true;
 }
 
 void Notes::stroke(const std::vector<Point>& line, double width, Color color, double weight) {
@@ -134,11 +169,11 @@ void Notes::stroke(const std::vector<Point>& line, double width, Color color, do
 }
 
 void Notes::dashes(const Point& a, const Point& b) {
-  const double length = (b - a).norm(), dash = 2.4 * kPoint, gap = 1.8 * kPoint;
+  const double length = (b - a).norm(), dash = 2.4 * point_, gap = 1.8 * point_;
   if (!(length > 0)) return;
   const Point u = (b - a) / length;
   for (double s = 0; s < length; s += dash + gap)
-    stroke({a + s * u, a + std::min(s + dash, length) * u}, kThin, colours_.ink, 1);
+    stroke({a + s * u, a + std::min(s + dash, length) * u}, thin_, colours_.ink, 1);
 }
 
 // An arc with a tip through `at` of an angle, rad, of about `radius` on the page.
@@ -147,43 +182,44 @@ void Notes::arc(const At& at, double radius, double from, double to, double widt
   std::vector<Point> line;
   const int n = std::max(6, int(std::abs(to - from) / 0.06));
   // the shaft ends within its head
-  double head = std::copysign(std::min(20 * kArrow / radius, 0.7 * std::abs(to - from)), to - from);
+  double head = std::copysign(std::min(20 * arrow_ / radius, 0.7 * std::abs(to - from)), to - from);
   // longer where the arc is seen aslant
-  while ((at(to) - at(to - head)).norm() < 16 * kArrow && std::abs(head) < 0.4 * std::abs(to - from))
+  while ((at(to) - at(to - head)).norm() < 16 * arrow_ && std::abs(head) < 0.4 * std::abs(to - from))
     head *= 1.2;
   for (int i = 0; i <= n; ++i) line.push_back(at(from + (to - 0.8 * head - from) * i / n));
   stroke(line, width, color, 3);
   // the head points along the chord to its tip
   const Point end = at(to), back = at(to - head);
-  const double grow = std::min(1.0, (end - back).norm() / (20 * kArrow));
+  const double grow = std::min(1.0, (end - back).norm() / (20 * arrow_));
   if (!(grow > 0)) return;
-  std::vector<Arrow> arrows{{Point(end - (end - back).normalized() * 18 * kArrow * grow), end, grow}};
-  draw_arrows(arrows, kArrow, colours_.room, color, list_);
+  std::vector<Arrow> arrows{{Point(end - (end - back).normalized() * 18 * arrow_ * grow), end, grow}};
+  draw_arrows(arrows, arrow_, colours_.room, color, list_);
   placing_.avoid(back, end, 4);
 }
 
 // An arc with the way that it turns: in the plane over the body's middle; in space around it, about the axis,
 // which is dashed, and open away from the eye; its tip is before the body.
-void Notes::turn(const Figure::Vector& vector, const Reading& reading, const Formula& label, Color ink) {
+void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading& reading,
+                 const Formula& label, Color ink) {
   if (!(std::abs(reading.signed_value) > 1e-9)) return;
   const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(vector.body)];
   const Point center = view_.page(reading.tail);
-  const double scale = view_.scale_at(reading.tail), wide = 1.1 * kPoint;
+  const double scale = view_.scale_at(reading.tail), wide = 1.1 * point_;
   std::vector<Placing::Candidate> places;
   const auto around = [&](const auto& at, std::initializer_list<double> angles) {
     for (const double a : angles) {
       const Point out = at(a) - center, n = out.norm() > 0 ? Point(out.normalized()) : Point(1, 0);
       for (const double off : {1.0, 3.0, 7.0})
-        places.push_back({at(a) + n * kGap * off +
+        places.push_back({at(a) + n * gap_ * off +
                               Point(n.x() * label.width / 2, n.y() * (label.ascent + label.descent) / 2),
-                          off * kPoint, false});
+                          off * point_, false});
     }
   };
   if (view_.view()) {
     const double reach = body.radius > 0        ? 1.6 * body.radius
                          : body.half.norm() > 0 ? 0.62 * body.half.head<2>().minCoeff()
                                                 : 0;
-    const double radius = std::clamp(scale * reach, 9 * kPoint, 24 * kPoint);
+    const double radius = std::clamp(scale * reach, 9 * point_, 24 * point_);
     const auto at = [&](double a) { return Point(center + radius * Point(std::cos(a), -std::sin(a))); };
     const double low = 25 * std::numbers::pi / 180, high = 165 * std::numbers::pi / 180;
     const bool left = reading.signed_value > 0;
@@ -191,7 +227,7 @@ void Notes::turn(const Figure::Vector& vector, const Reading& reading, const For
     around(at, {low, 0.8, 1.2, high, 1.6, 2.1});
   } else {
     const double reach = body.radius > 0 ? 1.4 * body.radius : 1.05 * body.half.norm();
-    const double radius = std::clamp(scale * reach, 12 * kPoint, 40 * kPoint), world = radius / scale;
+    const double radius = std::clamp(scale * reach, 12 * point_, 40 * point_), world = radius / scale;
     const Vec3 axis = reading.value.normalized();
     Vec3 near = view_.sight(reading.tail);
     near -= axis.dot(near) * axis;
@@ -205,44 +241,46 @@ void Notes::turn(const Figure::Vector& vector, const Reading& reading, const For
     arc(at, radius, back, ahead, wide, ink);
     around(at, {ahead, 0.5 * ahead, 0.0, 0.3 * back, 0.6 * back, back});
   }
-  word(label, places, center);
+  word(key, label, places, center);
 }
 
-void Notes::vector(const Figure::Vector& vector, Scales scales) {
+void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
   const Color ink = color_of(vector, colours_);
   for (const Reading& reading : readings(vector, cast_, now_)) {
+    if (!view_.before(reading.tail)) continue;
+    const WordKey key{WordKey::vector, index, reading.part};
     const std::string label = as_vector(vector.label);
-    const auto set = [&](double value) {
-      return formula(with_value(label, value, unit(vector.quantity)), kType, ink);
-    };
+    const auto set = [&](double value) { return this->set(key, label, value, unit(vector.quantity), ink); };
     if (vector.quantity == Quantity::spin || vector.quantity == Quantity::torque) {
-      turn(vector, reading, set(reading.signed_value), ink);
+      turn(key, vector, reading, set(reading.signed_value), ink);
       continue;
     }
     const Formula label_set = set(reading.value.norm());
     if (vector.quantity == Quantity::normal && view_.view()) {
       const Point tail = view_.page(reading.tail);
-      arrow(tail, tail + kNormal * Point(reading.value.x(), -reading.value.y()).normalized(), label_set, ink);
+      arrow(key, tail, tail + normal_ * Point(reading.value.x(), -reading.value.y()).normalized(), label_set,
+            ink);
     } else {
       const double* scale = scale_of(vector.quantity, scales);
-      const double length = vector.quantity == Quantity::normal ? kNormal / view_.scale_at(reading.tail)
+      const double length = vector.quantity == Quantity::normal ? normal_ / view_.scale_at(reading.tail)
                             : scale                             ? *scale
                                                                 : 1.0;
-      arrow(view_.page(reading.tail), view_.page(reading.tail + length * reading.value), label_set, ink);
+      const Vec3 tip = reading.tail + length * reading.value;
+      if (view_.before(tip)) arrow(key, view_.page(reading.tail), view_.page(tip), label_set, ink);
     }
   }
 }
 
-void Notes::angle(const Figure::Angle& angle) {
+void Notes::angle(int index, const Marks::Angle& angle) {
   Vec3 center = Vec3::Zero(), from = Vec3::UnitX(), to = Vec3::UnitX();
-  double wide = kAngle;
+  double wide = angle_;
   if (angle.body >= 0) {
     const sim::Snapshot::Body& body = now_.bodies[std::size_t(angle.body)];
     center = body.position;
     to = body.orientation * Vec3::UnitX();
-    const double reach = 22 * kPoint / view_.scale_at(center);
+    const double reach = 22 * point_ / view_.scale_at(center);
     dashes(view_.page(center), view_.page(center + reach * from));
-    stroke({view_.page(center), view_.page(center + reach * to)}, kThin, colours_.ink, 2);
+    stroke({view_.page(center), view_.page(center + reach * to)}, thin_, colours_.ink, 2);
   } else {
     if (!angle.at || !angle.from || !angle.to) return;
     center = place(*angle.at, now_);
@@ -250,9 +288,9 @@ void Notes::angle(const Figure::Angle& angle) {
     if (!(from.norm() > 0 && to.norm() > 0)) return;
     // in space two directions may look close: farther out
     const double shorter = std::min(from.norm(), to.norm()) * view_.scale_at(center);
-    if (!view_.view()) wide = std::clamp(0.4 * shorter, kAngle, 2.5 * kAngle);
+    if (!view_.view()) wide = std::clamp(0.4 * shorter, angle_, 2.5 * angle_);
     from.normalize(), to.normalize();
-    dashes(view_.page(center), view_.page(center + (wide + 7 * kPoint) / view_.scale_at(center) * from));
+    dashes(view_.page(center), view_.page(center + (wide + 7 * point_) / view_.scale_at(center) * from));
   }
   // an arc of the great circle through both
   const double whole = std::atan2(from.cross(to).norm(), from.dot(to));
@@ -266,26 +304,27 @@ void Notes::angle(const Figure::Angle& angle) {
   std::vector<Point> line;
   const int n = std::max(6, int(whole / 0.06));
   for (int i = 0; i <= n; ++i) line.push_back(at(whole * i / n, radius));
-  stroke(line, kThin, colours_.ink, 3);
+  stroke(line, thin_, colours_.ink, 3);
 
   const double degrees = whole * 180 / std::numbers::pi;
-  const Formula f = formula(with_value(angle.label, degrees, "°"), kType, colours_.ink);
+  const WordKey key{WordKey::angle, index};
+  const Formula f = set(key, angle.label, degrees, "°", colours_.ink);
   const Point hub = view_.page(center), rim = at(whole / 2, radius), out = rim - hub;
   const Point m = out.norm() > 0 ? Point(out.normalized()) : Point(1, 0);
   std::vector<Placing::Candidate> places;
   for (const double off : {1.0, 2.0, 4.0, -3.2})
-    places.push_back({rim + off * kGap * m +
+    places.push_back({rim + off * gap_ * m +
                           (off > 0 ? 1 : -1) * Point(m.x() * f.width / 2, m.y() * (f.ascent + f.descent) / 2),
-                      std::abs(off) * kPoint, false});
-  for (const Placing::Candidate& more : Placing::around(rim, kGap, size(f), kPoint)) {
+                      std::abs(off) * point_, false});
+  for (const Placing::Candidate& more : Placing::around(rim, gap_, size(f), point_)) {
     places.push_back(more);
-    places.back().cost += 12 * kPoint;
+    places.back().cost += 12 * point_;
   }
-  word(f, places, rim);
+  word(key, f, places, rim);
 }
 
 // Friction holds while the force lies within arctan mu of the normal.
-void Notes::cone(const Figure::Cone& cone, const Scales& scales) {
+void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
   for (std::size_t i = 0; i < now_.contacts.size();) {
     const sim::Snapshot::Contact& first = now_.contacts[i];
     Vec3 force = Vec3::Zero(), point = Vec3::Zero();
@@ -301,32 +340,32 @@ void Notes::cone(const Figure::Cone& cone, const Scales& scales) {
     // a little longer than the arrow of the force
     const double mu = sim::friction(cast_, first), half = std::atan(mu);
     const double arrow = scales.force * force.norm();
-    const double long_side = arrow > 0 ? 1.2 * arrow : 15 * kMillimetre / view_.scale_at(point);
+    const double long_side = arrow > 0 ? 1.2 * arrow : 15 * millimetre_ / view_.scale_at(point);
     const Vec3 n = first.body == cone.body ? first.normal : Vec3(-first.normal), along(-n.y(), n.x(), 0);
     const auto edge = [&](double a) { return Vec3(std::cos(a) * n + std::sin(a) * along); };
     const auto tip = [&](double a, double r) { return view_.page(point + r * edge(a)); };
     std::vector<Point> sector{view_.page(point)}, arc;
-    const double radius = std::max(kAngle, 0.55 * long_side * view_.scale_at(point)) / view_.scale_at(point);
+    const double radius = std::max(angle_, 0.55 * long_side * view_.scale_at(point)) / view_.scale_at(point);
     for (int k = -8; k <= 8; ++k) sector.push_back(tip(half * k / 8, long_side));
     for (int k = 0; k <= 8; ++k) arc.push_back(tip(half * k / 8, radius));
     Color tint = colours_.force, rim_ink = mix(colours_.force, colours_.ink, 0.12);
     tint.a = 36;
     list_.add(sector, tint);
     for (const double side : {-1.0, 1.0})
-      stroke({view_.page(point), tip(side * half, long_side)}, kThin, rim_ink, 2);
+      stroke({view_.page(point), tip(side * half, long_side)}, thin_, rim_ink, 2);
     dashes(view_.page(point), tip(0, long_side));
-    stroke(arc, kThin, colours_.ink, 2);
-    const Formula f =
-        formula(with_value(cone.label, half * 180 / std::numbers::pi, "°"), kType, colours_.ink);
+    stroke(arc, thin_, colours_.ink, 2);
+    const WordKey key{WordKey::cone, index, first.other >= 0 ? first.other : -1 - first.wall};
+    const Formula f = set(key, cone.label, half * 180 / std::numbers::pi, "°", colours_.ink);
     const Point rim = tip(half / 2, radius);
     std::vector<Placing::Candidate> places =
-        Placing::along(view_.page(point), tip(half, long_side), kGap, size(f), kPoint);
-    for (Placing::Candidate& each : places) each.cost += 2 * kPoint;
+        Placing::along(view_.page(point), tip(half, long_side), gap_, size(f), point_, film());
+    for (Placing::Candidate& each : places) each.cost += 2 * point_;
     const Point out = (rim - view_.page(point)).normalized();
     places.insert(
         places.begin(),
-        {rim + kGap * out + Point(out.x() * f.width / 2, out.y() * (f.ascent + f.descent) / 2), 0, false});
-    word(f, places, rim);
+        {rim + gap_ * out + Point(out.x() * f.width / 2, out.y() * (f.ascent + f.descent) / 2), 0, false});
+    word(key, f, places, rim);
   }
 }
 
@@ -336,76 +375,209 @@ void Notes::axes() {
   const double length = kAxes * std::min(window.width, window.height) / view_.scale_at(Vec3::Zero());
   const std::pair<Vec3, const char*> all[] = {
       {Vec3::UnitX(), "x"}, {Vec3::UnitY(), "y"}, {Vec3::UnitZ(), "z"}};
-  for (const auto& [axis, name] : all)
-    arrow(view_.page(Vec3::Zero()), view_.page(length * axis), formula(name, kType, colours_.ink),
-          colours_.ink);
+  int index = 0;
+  for (const auto& [axis, name] : all) {
+    // the plane's two
+    if (view_.view() && index == 2) break;
+    arrow({WordKey::axis, index++}, view_.page(Vec3::Zero()), view_.page(length * axis),
+          formula(name, type_, colours_.ink), colours_.ink);
+  }
 }
 
-void Notes::length(const Figure::Length& length) {
+void Notes::length(int index, const Marks::Length& length) {
+  if (!view_.before(place(length.from, now_)) || !view_.before(place(length.to, now_))) return;
   const Point a = view_.page(place(length.from, now_)), b = view_.page(place(length.to, now_));
   const Point u = (b - a).normalized(), v(u.y(), -u.x());
-  const Point off = length.offset * kMillimetre * v;
+  const Point off = length.offset * millimetre_ * v;
   const Point from = a + off, to = b + off;
   // lines from what is measured to the measure
   if (std::abs(length.offset) > 0.5) {
     const double side = length.offset > 0 ? 1 : -1;
     for (const auto& [start, end] : {std::pair(a, from), std::pair(b, to)})
-      stroke({start + side * 1.5 * kPoint * v, end + side * 1.5 * kPoint * v}, 0.35 * kPoint, colours_.ink,
+      stroke({start + side * 1.5 * point_ * v, end + side * 1.5 * point_ * v}, 0.35 * point_, colours_.ink,
              1);
   }
-  stroke({from, to}, kThin, colours_.ink, 2);
-  const double head = std::min(4.5 * kPoint, 0.4 * (to - from).norm()), half = 0.3 * head;
+  stroke({from, to}, thin_, colours_.ink, 2);
+  const double head = std::min(4.5 * point_, 0.4 * (to - from).norm()), half = 0.3 * head;
   for (const auto& [tip, way] : {std::pair(from, u), std::pair(to, Point(-u))})
     list_.add({tip, tip + head * way + half * v, tip + 0.75 * head * way, tip + head * way - half * v},
               colours_.ink);
   const double metres = (place(length.to, now_) - place(length.from, now_)).norm();
-  const Formula f = formula(with_value(length.label, metres, "m"), kType, colours_.ink);
+  const WordKey key{WordKey::length, index};
+  const Formula f = set(key, length.label, metres, "m", colours_.ink);
   const Point middle = (from + to) / 2;
   std::vector<Placing::Candidate> places;
   for (const double s : {1.0, -1.0})
     for (const double part : {0.5, 0.35, 0.65})
       places.push_back({from + part * (to - from) +
-                            s * (kGap * v + Point(v.x() * f.width / 2, v.y() * (f.ascent + f.descent) / 2)),
-                        (part == 0.5 ? 0 : 3) * kPoint + (s > 0 ? 0 : kPoint), false});
-  word(f, places, middle);
+                            s * (gap_ * v + Point(v.x() * f.width / 2, v.y() * (f.ascent + f.descent) / 2)),
+                        (part == 0.5 ? 0 : 3) * point_ + (s > 0 ? 0 : point_), false});
+  word(key, f, places, middle);
 }
 
-void Notes::point(const Figure::Point& point) {
+void Notes::point(int index, const Marks::Point& point) {
+  if (!view_.before(place(point.at, now_))) return;
   const Point at = view_.page(place(point.at, now_));
   const Color ink = point.color.value_or(colours_.ink);
   if (point.dot) dots_.emplace_back(at, ink);
-  const Formula f = formula(point.label, kType, ink);
-  placing_.avoid(at - Point(kDotRadius, 0), at + Point(kDotRadius, 0), 8);
-  word(f, Placing::around(at, kDotRadius + kGap, size(f), kPoint), at);
+  const Formula f = formula(point.label, type_, ink);
+  placing_.avoid(at - Point(dot_radius_, 0), at + Point(dot_radius_, 0), 8);
+  word({WordKey::point, index}, f, Placing::around(at, dot_radius_ + gap_, size(f), point_), at);
 }
 
-void Notes::label(const Figure::Label& label) {
+void Notes::label(int index, const Marks::Label& label) {
+  if (!view_.before(place(label.at, now_))) return;
   const Point at = view_.page(place(label.at, now_));
-  const Formula f = formula(label.text, kType, colours_.ink);
+  const WordKey key{WordKey::label, index};
+  const Measure* measure = draw::measure(label.quantity);
+  const Formula f = measure && measure->read ? set(key, label.text, measure->at(cast_, now_, label.body),
+                                                   measure->unit, colours_.ink)
+                                             : formula(label.text, type_, colours_.ink);
   std::vector<Placing::Candidate> places{{at, 0, false}};
-  if (label.at.body >= 0) places = Placing::around(at, kGap, size(f), kPoint);
-  word(f, places, at);
+  // in a film beside the body, not on it
+  double gap = gap_;
+  if (film() && label.at.body >= 0) {
+    const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(label.at.body)];
+    const double reach = body.radius > 0 ? body.radius : body.half.norm();
+    gap += std::max(0.0, view_.scale_at(place(label.at, now_)) * (reach - label.at.local.norm()));
+  }
+  if (label.at.body >= 0) places = Placing::around(at, gap, size(f), point_);
+  word(key, f, places, at);
+}
+
+// what a label says, with its value; in a film in digits of equal width, as many at every instant
+Formula Notes::set(const WordKey& key, const std::string& text, double value, std::string_view unit,
+                   Color ink) {
+  if (how_.ranges) {
+    ValueRange& range = (*how_.ranges)[key];
+    range.low = std::min(range.low, value), range.high = std::max(range.high, value);
+  }
+  if (!how_.plan) return formula(with_value(text, value, unit), type_, ink);
+  const auto known = how_.plan->ranges.find(key);
+  ValueRange range = known == how_.plan->ranges.end() ? ValueRange{value, value} : known->second;
+  range.low = std::min(range.low, value), range.high = std::max(range.high, value);
+  return live(text, value, range.low, range.high, unit, type_, ink);
+}
+
+// where the plan has a word now; on its way from one place to another between both
+Placing::Candidate Notes::planned(const Word& word, double& leader) const {
+  const auto found = how_.plan->courses.find(word.key);
+  const int n = int(word.places.size());
+  const auto at = [&](int i) { return word.places[std::size_t(std::clamp(i, 0, n - 1))]; };
+  if (found == how_.plan->courses.end()) return at(0);
+  const LabelPlan::Course& course = found->second;
+  Placing::Candidate now = at(course.first);
+  double led = now.leader ? 1 : 0;
+  for (const LabelPlan::Move& move : course.moves) {
+    if (how_.film <= move.begin) break;
+    const double u = how_.film >= move.end ? 1 : (how_.film - move.begin) / (move.end - move.begin);
+    const double s = u * u * (3 - 2 * u);
+    const Placing::Candidate next = at(move.to);
+    now.center += s * (next.center - now.center);
+    led += s * ((next.leader ? 1 : 0) - led);
+  }
+  now.leader = led > 0, leader = led;
+  return now;
+}
+
+// Words stand out against what they cover.
+void Notes::plate(const Point& center, const Point& size, std::uint8_t strength) {
+  Color color = colours_.room;
+  color.a = std::uint8_t(kPlate * strength / 255);
+  const Point half = size / 2 + Point(1.2, 0.8) * point_;
+  list_.add({center - half, center + Point(half.x(), -half.y()), center + half,
+             center + Point(-half.x(), half.y())},
+            color);
+}
+
+// the outlines of bodies, and what lies within
+void Notes::avoid_areas() {
+  const auto area = [&](const std::vector<Point>& outline) {
+    for (std::size_t k = 0; k < outline.size(); ++k)
+      placing_.avoid(outline[k], outline[(k + 1) % outline.size()], 2);
+    placing_.avoid(outline, kCovered * point_);
+  };
+  const auto round = [&](const Vec3& center, double radius) {
+    if (!view_.before(center)) return;
+    const double r = radius > 0 ? view_.scale_at(center) * radius : kDot * how_.lettering.weight;
+    std::vector<Point> outline;
+    for (int k = 0; k < 12; ++k)
+      outline.push_back(view_.page(center) +
+                        r * Point(std::cos(k * std::numbers::pi / 6), -std::sin(k * std::numbers::pi / 6)));
+    area(outline);
+  };
+  const auto form = [&](const sim::DrawnForm& it, const sim::Snapshot::Body& body) {
+    std::vector<Vec3> corners = it.vertices;
+    if (it.kind == sim::ShapeKind::box)
+      for (int k = 0; k < 8; ++k)
+        corners.push_back(it.half.cwiseProduct(Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)));
+    const auto world = [&](const Vec3& local) {
+      return Vec3(body.position + body.orientation * (it.center + it.turn * local));
+    };
+    std::vector<Point> all;
+    if (it.kind == sim::ShapeKind::capsule) {
+      for (int k = 0; k < 24; ++k) {
+        const Vec3 end = world(Vec3(0, k < 12 ? it.half.y() : -it.half.y(), 0));
+        if (!view_.before(end)) return;
+        const double a = k * std::numbers::pi / 6;
+        all.push_back(view_.page(end) + view_.scale_at(end) * it.radius * Point(std::cos(a), std::sin(a)));
+      }
+      return area(convex_hull(all));
+    }
+    if (corners.empty()) return round(world(Vec3::Zero()), it.radius);
+    for (const Vec3& corner : corners) {
+      if (!view_.before(world(corner))) return;
+      all.push_back(view_.page(world(corner)));
+    }
+    area(convex_hull(all));
+  };
+  for (std::size_t i = 0; i < cast_.bodies.size(); ++i) {
+    const sim::SceneInfo::Body& body = cast_.bodies[i];
+    for (const sim::DrawnForm& part : body.parts) form(part, now_.bodies[i]);
+    if (!body.parts.empty()) continue;
+    sim::DrawnForm whole;
+    whole.kind = body.kind, whole.radius = body.radius, whole.half = body.half,
+    whole.vertices = body.vertices;
+    form(whole, now_.bodies[i]);
+  }
+  avoid_springs();
+  for (std::size_t i = 0; i < cast_.joints.size(); ++i) {
+    const sim::Snapshot::Joint& joint = now_.joints[i];
+    if (!joint.broken && view_.before(joint.a) && view_.before(joint.b))
+      placing_.avoid(view_.page(joint.a), view_.page(joint.b), 2);
+  }
 }
 
 void Notes::finish() {
   for (const auto& [at, ink] : dots_) {
-    list_.add(Disc{at, kDotRadius + 0.6 * kPoint, 0, colours_.room, colours_.room});
-    list_.add(Disc{at, kDotRadius, 0, ink, ink});
+    list_.add(Disc{at, dot_radius_ + 0.6 * point_, 0, colours_.room, colours_.room});
+    list_.add(Disc{at, dot_radius_, 0, ink, ink});
   }
   for (Word& word : words_) {
     const Point size = Notes::size(word.set);
-    const Placing::Candidate best = placing_.place(size, word.places);
+    if (how_.survey) {
+      Offered offered{word.key, size, word.anchor, std::move(word.places)};
+      if (!how_.ranges)
+        for (Placing::Candidate& each : offered.places) each.cost = placing_.cost(size, each);
+      how_.survey->push_back(std::move(offered));
+      continue;
+    }
+    double leader = 1;
+    const Placing::Candidate best = how_.plan ? planned(word, leader) : placing_.place(size, word.places);
     if (best.leader) {
       const Point way = word.anchor - best.center;
       // from the words' edge to just before what they name
       const double out = std::min(size.x() / 2 / std::max(std::abs(way.normalized().x()), 1e-9),
                                   size.y() / 2 / std::max(std::abs(way.normalized().y()), 1e-9));
       const Point u = way.normalized();
-      const Point from = best.center + (out + 1.2 * kPoint) * u,
-                  to = word.anchor - (kDotRadius + 1.5 * kPoint) * u;
-      if ((to - from).dot(u) > 2 * kPoint)
-        list_.add({{from, 0.4 * kPoint, word.set.color}, {to, 0.4 * kPoint, word.set.color}}, Cap::butt);
+      const Point from = best.center + (out + 1.2 * point_) * u,
+                  to = word.anchor - (dot_radius_ + 1.5 * point_) * u;
+      Color line = word.set.color;
+      line.a = std::uint8_t(std::lround(line.a * leader));
+      if ((to - from).dot(u) > 2 * point_)
+        list_.add({{from, 0.4 * point_, line}, {to, 0.4 * point_, line}}, Cap::butt);
     }
+    if (film()) plate(best.center, size, word.set.color.a);
     add(word.set, {best.center.x() - size.x() / 2, best.center.y() - size.y() / 2 + word.set.ascent}, list_);
   }
 }
@@ -426,18 +598,24 @@ double Projection::scale_at(const Vec3& place) const {
   return view_ ? view_->scale : scale_ * lens_.scale_at(place);
 }
 
+bool Projection::before(const Vec3& place) const { return view_ || lens_.depth(place) > 1e-2; }
+
 Vec3 Projection::sight(const Vec3& place) const { return view_ ? Vec3(Vec3::UnitZ()) : lens_.sight(place); }
 
-void annotate(const Figure& figure, const Scales& scales, const sim::SceneInfo& cast, const Palette& colours,
-              const Projection& projection, const sim::Snapshot& now, List& list) {
-  Notes notes(cast, colours, projection, now, list);
-  if (figure.axes && !projection.view()) notes.axes();
-  for (const Figure::Cone& cone : figure.cones) notes.cone(cone, scales);
-  for (const Figure::Length& length : figure.lengths) notes.length(length);
-  for (const Figure::Angle& angle : figure.angles) notes.angle(angle);
-  for (const Figure::Vector& vector : figure.vectors) notes.vector(vector, scales);
-  for (const Figure::Point& point : figure.points) notes.point(point);
-  for (const Figure::Label& label : figure.labels) notes.label(label);
+void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& cast, const Palette& colours,
+              const Projection& projection, const sim::Snapshot& now, List& list, const Annotating& how) {
+  Notes notes(cast, colours, projection, now, how, list);
+  const auto each = [&](const auto& all, auto draw) {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (all[i].shown.has(now.time, how.film)) draw(int(i), all[i]);
+  };
+  if (marks.axes && (!projection.view() || how.plan || how.survey)) notes.axes();
+  each(marks.cones, [&](int i, const Marks::Cone& cone) { notes.cone(i, cone, scales); });
+  each(marks.lengths, [&](int i, const Marks::Length& length) { notes.length(i, length); });
+  each(marks.angles, [&](int i, const Marks::Angle& angle) { notes.angle(i, angle); });
+  each(marks.vectors, [&](int i, const Marks::Vector& vector) { notes.vector(i, vector, scales); });
+  each(marks.points, [&](int i, const Marks::Point& point) { notes.point(i, point); });
+  each(marks.labels, [&](int i, const Marks::Label& label) { notes.label(i, label); });
   notes.finish();
 }
 

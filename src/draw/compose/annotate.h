@@ -1,17 +1,23 @@
 #pragma once
 
+#include <compare>
+#include <limits>
+#include <map>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "draw/compose/depict.h"
 #include "draw/page/figure.h"
 #include "draw/page/layout.h"
+#include "draw/page/placing.h"
+#include "draw/page/readings.h"
+#include "draw/page/sheet.h"
 #include "draw/picture/theme.h"
 
 namespace obscura::draw {
 
-/// The mapping from places of the world to a sheet (`kPoint` units a point): a view in the plane, a lens in
-/// space.
+/// Where places of the world lie on a page: of the plane by a view, of space by a lens.
 class Projection {
  public:
   explicit Projection(const View& view) : view_(view), window_(view.window) {}
@@ -23,6 +29,8 @@ class Projection {
   double scale_at(const sim::Vec3& place) const;
   /// The way from there to the eye, unit.
   sim::Vec3 sight(const sim::Vec3& place) const;
+  /// Whether it lies before the eye.
+  bool before(const sim::Vec3& place) const;
   const Rect& window() const { return window_; }
   /// The plane's; none of space.
   const View* view() const { return view_ ? &*view_ : nullptr; }
@@ -35,22 +43,67 @@ class Projection {
   Rect window_;
 };
 
-/// How long arrows are, one scale a kind for all panels of a figure: m a unit. 0: none is drawn.
-struct Scales {
-  double velocity = 0;  // m/s
-  double force = 0;     // N
-  double impulse = 0;   // N s
-};
-
 /// The scales at which the longest arrow of each kind is a good part of a window of `scale` page units a
 /// metre.
-Scales scales(const Figure& figure, const sim::SceneInfo& cast, std::span<const sim::Snapshot> moments,
+Scales scales(const Marks& marks, const sim::SceneInfo& cast, std::span<const sim::Snapshot> moments,
               const Rect& window, double scale);
 
-/// Draws what a figure says of an instant: arrows, angles, lengths, points, and their words where there is
-/// room for them.
-void annotate(const Figure& figure, const Scales& scales, const sim::SceneInfo& cast, const Palette& colours,
-              const Projection& projection, const sim::Snapshot& now, List& list);
+/// How large marks are on their page: of a sheet for print, unless said otherwise.
+struct Lettering {
+  double point = kPoint;                     // page units a point of type and thin lines
+  double arrow = 1.1 * kPoint / kArrowLine;  // weight of arrows: a shaft of 1.1 pt
+  double weight = 0.9 / kOutline * kPoint;   // of the bodies' outlines
+};
+
+/// Which words: of which list of marks, of which mark, of which of its arrows.
+struct WordKey {
+  enum Kind { axis, cone, length, angle, vector, point, label } kind = label;
+  int index = 0, part = 0;
+  auto operator<=>(const WordKey&) const = default;
+};
+
+/// The values that a label shows over a run.
+struct ValueRange {
+  double low = 1e300, high = -1e300;
+};
+
+/// Words that could stand at any of `places`, as in a survey of a film: the index of a place means the same
+/// at every instant, and its cost is that of this instant.
+struct Offered {
+  WordKey key;
+  Point size;
+  Point anchor;
+  std::vector<Placing::Candidate> places;
+};
+
+/// What a film knows of its labels before it draws one.
+struct LabelPlan {
+  /// From one time of the film to another the words go over to another place.
+  struct Move {
+    double begin = 0, end = 0;  // s of the film
+    int to = 0;
+  };
+  struct Course {
+    int first = 0;
+    std::vector<Move> moves;
+  };
+  std::map<WordKey, ValueRange> ranges;
+  std::map<WordKey, Course> courses;
+};
+
+/// How marks are drawn at one instant.
+struct Annotating {
+  Lettering lettering{};
+  double film = std::numeric_limits<double>::quiet_NaN();  // s of the film; not a number: of none
+  const LabelPlan* plan = nullptr;         // of a film; none: words find their places in this one picture
+  std::vector<Offered>* survey = nullptr;  // of a film: collects words instead of drawing them
+  std::map<WordKey, ValueRange>* ranges = nullptr;  // collects their values
+};
+
+/// Draws what marks say of an instant: arrows, angles, lengths, points, and their words where there is room
+/// for them.
+void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& cast, const Palette& colours,
+              const Projection& projection, const sim::Snapshot& now, List& list, const Annotating& how = {});
 
 /// Rulers in metres along the lower and the left edge of a sheet's window, and how much room they take there.
 void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list);

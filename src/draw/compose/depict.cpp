@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "draw/compose/annotations.h"
 #include "draw/compose/travel.h"
 #include "draw/page/sheet.h"
 #include "draw/plane/stage.h"
@@ -14,6 +15,7 @@
 namespace obscura::draw {
 namespace {
 
+constexpr double kPathLine = 3.6;    // the line of a path, page units at the weight 1
 constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
 
 bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::ShapeKind::point; }
@@ -97,7 +99,9 @@ Stage::Stage(const sim::SceneInfo& info, const Look& looks_, const Camera& camer
     const sim::SceneInfo::Body& body = cast.bodies[i];
     const BodyLook own = looks(i);
     const bool quiet = body.fixed || knot(i);
-    paints.push_back(paint(own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++), look.theme));
+    const Color color = own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++);
+    paints.push_back(paint(own.quiet ? neutral(look.theme) : color, look.theme));
+    if (own.quiet) hush(paints.back(), colours);
     dots.push_back(is_point(body) ? std::max(tied[i] ? std::min(dot, 0.2 * mesh) : dot, 1.6 * layout.weight)
                                   : 0);
     switch (body.kind) {
@@ -179,12 +183,37 @@ CameraProjection Illustrator::lens(const sim::Snapshot& now, int panel) const {
 
 Picture Illustrator::depict(const sim::Snapshot& now,
                             std::span<const std::shared_ptr<const sim::Track>> ways) const {
-  return depict(now, ways, now);
+  return depict(now, ways, {now, now.time, 1});
 }
 
 Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
-                            const sim::Snapshot& frame) const {
-  if (space_) return depict_space(*space_, now, ways, frame);
+                            std::span<const WorldLine> lines) const {
+  if (space_) return depict_space(*space_, now, ways, now, lines);
+  Picture picture = depict(now, ways);
+  const View view = plan_->view(now);
+  draw_lines(view, lines, false, picture.moving);
+  draw_lines(view, lines, true, picture.moving);
+  return picture;
+}
+
+Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
+                            const FrameInstant& at) const {
+  const sim::Snapshot& frame = at.now;
+  const double film = at.film;
+  std::vector<WorldLine> lines;
+  if (annotations_) lines = annotations_->lines(frame, film);
+  if (space_) {
+    Picture picture = depict_space(*space_, now, ways, frame, lines);
+    for (int panel = 0; annotations_ && panel < panels(); ++panel) {
+      const Projection seen = projection(panel, frame);
+      picture.moving.clip(seen.window());
+      annotations_->draw(panel, seen, frame, film, picture.moving);
+      picture.moving.unclip();
+    }
+    draw_titles(titles_, space_->layout, space_->layout.aspect, space_->colours, frame.time, film, at.speed,
+                picture.moving);
+    return picture;
+  }
   const Stage& stage = plan_->stage;
   const View view = plan_->view(now);
   Picture picture;
@@ -195,6 +224,11 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   List& list = picture.moving;
   if (stage.layout.clipped) list.clip(view.window);
   draw_trails(stage, view, now, ways, list);
+  if (annotations_) {
+    draw_lines(view, lines, false, list);
+    for (const auto& [then, ghost] : annotations_->ghosts(frame, film))
+      ghosts(*then, kGhost, list, ghost->bodies, view);
+  }
   draw_ways(stage, view, now, list);
   draw_rails(stage, view, now, list);
   draw_springs(stage, view, now, false, list);
@@ -207,6 +241,10 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   draw_contacts(stage, view, now, list);
   draw_velocities(stage, view, now, list);
   draw_labels(stage, view, now, list);
+  if (annotations_) {
+    draw_lines(view, lines, true, list);
+    annotations_->draw(0, projection(0, frame), frame, film, list);
+  }
   draw_hands(stage, view, now, list);
   list.unclip();
   if (stage.layout.caption && stage.look.clock) {
@@ -215,6 +253,7 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
     list.add(clock);
   }
   stage.charts.draw_lines(frame, list);
+  draw_titles(titles_, stage.layout, stage.layout.aspect, stage.colours, frame.time, film, at.speed, list);
   return picture;
 }
 
@@ -224,7 +263,45 @@ double Illustrator::travel(const sim::Snapshot& now, double seconds) const {
   return draw::travel(plan_->stage, plan_->view(now), plan_->view(then), now, then);
 }
 
-void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list) const {
+const sim::SceneInfo& Illustrator::scene_info() const { return space_ ? space_->cast : plan_->stage.cast; }
+
+const Palette& Illustrator::colours() const { return space_ ? space_->colours : plan_->stage.colours; }
+
+double Illustrator::weight() const { return space_ ? space_->layout.weight : plan_->stage.layout.weight; }
+
+int Illustrator::panels() const { return space_ ? int(space_->panels.size()) : 1; }
+
+Projection Illustrator::projection(int panel, const sim::Snapshot& now) const {
+  return space_ ? Projection(lens(now, panel), 1, {0, 0}) : Projection(plan_->view(now));
+}
+
+double Illustrator::scale(const sim::Snapshot& now) const {
+  return space_ ? lens(now).scale : plan_->view(now).scale;
+}
+
+void Illustrator::draw_lines(const View& view, std::span<const WorldLine> lines, bool front,
+                             List& list) const {
+  const Stage& stage = plan_->stage;
+  for (const WorldLine& line : lines) {
+    if (line.front != front || line.nodes.size() < 2) continue;
+    const Color strong = line.color       ? *line.color
+                         : line.body >= 0 ? stage.paints[std::size_t(line.body)].outline
+                                          : stage.colours.ink;
+    std::vector<Node> nodes;
+    for (const WorldLine::Node& node : line.nodes)
+      nodes.push_back({view.page(node.at), kPathLine * stage.layout.weight * (0.4 + 0.6 * node.strength),
+                       mix(stage.colours.room, strong, node.strength)});
+    list.add(nodes, Cap::round, stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten);
+  }
+}
+
+void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list,
+                         const std::vector<int>& only) const {
+  ghosts(then, strength, list, only, view_at(plan_->stage.camera, plan_->stage.layout, then.time));
+}
+
+void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list, const std::vector<int>& only,
+                         const View& view) const {
   Stage faded = plan_->stage;
   faded.look.axes = false;
   for (Paint& paint : faded.paints) {
@@ -232,16 +309,18 @@ void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list)
       *color = mix(faded.colours.room, *color, strength);
   }
   // a held body does not move
-  const auto still = [&](int body) { return faded.cast.bodies[std::size_t(body)].fixed; };
+  const auto still = [&](int body) {
+    return faded.cast.bodies[std::size_t(body)].fixed ||
+           (!only.empty() && std::find(only.begin(), only.end(), body) == only.end());
+  };
   std::erase_if(faded.boxes, still);
   std::erase_if(faded.polygons, still);
   std::erase_if(faded.rounds, still);
-  const View view = view_at(faded.camera, faded.layout, then.time);
   if (faded.layout.clipped) list.clip(view.window);
   draw_boxes(faded, view, then, list);
   draw_polygons(faded, view, then, list);
   draw_rounds(faded, view, then, list);
-  list.unclip();
+  if (faded.layout.clipped) list.unclip();
 }
 
 double Illustrator::longest_trail() const {

@@ -3,8 +3,11 @@
 #include <deque>
 #include <memory>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "draw/page/chart.h"
+#include "draw/page/titles.h"
 #include "draw/picture/lens.h"
 #include "draw/picture/list.h"
 #include "draw/picture/look.h"
@@ -13,9 +16,21 @@
 
 namespace obscura::draw {
 
-struct Layout;
+class Annotations;
+class Projection;
 struct SpaceStage;
 struct Sheet;
+struct WorldLine;
+
+/// How strong the earlier instant of a mark is.
+inline constexpr double kGhost = 0.4;
+
+/// A frame of a film: its instant, when it is shown (s of the film), and how fast the run goes by then.
+struct FrameInstant {
+  const sim::Snapshot& now;
+  double film = 0;
+  double speed = 1;
+};
 
 /// Draws instants of one run. Holds what does not change: the look's colours, the room's walls as polygons,
 /// the still list.
@@ -44,18 +59,38 @@ class Illustrator {
   /// first.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways) const;
 
-  /// The same, with the clock and the charts of another instant: that of the frame in which `now` is a
-  /// moment.
+  /// The same, with the clock, the charts, the marks and the titles of the frame that `now` is a moment of.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
-                 const sim::Snapshot& frame) const;
+                 const FrameInstant& frame) const;
+
+  /// The picture of one instant with lines through the world.
+  Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
+                 std::span<const WorldLine> lines) const;
+
+  /// From now on every picture has these marks and titles.
+  void annotate(std::shared_ptr<const Annotations> annotations) { annotations_ = std::move(annotations); }
+  void entitle(const Titles& titles) { titles_ = titles; }
+
+  /// What marks need to know: the run's cast, the theme's colours, the weight of lines, how many panels there
+  /// are and how the world lies in one of them, and page units a metre.
+  const sim::SceneInfo& scene_info() const;
+  const Palette& colours() const;
+  double weight() const;
+  int panels() const;
+  Projection projection(int panel, const sim::Snapshot& now) const;
+  double scale(const sim::Snapshot& now) const;
 
   /// How far anything that is seen moves on the page in the next `seconds` if it goes straight on, page
   /// units.
   double travel(const sim::Snapshot& now, double seconds) const;
 
   /// In the plane: the bodies alone as they were at another instant, `strength` (0 to 1) of the way from the
-  /// ground to their own colours.
-  void ghosts(const sim::Snapshot& then, double strength, List& list) const;
+  /// ground to their own colours; `only` these, where there are any.
+  void ghosts(const sim::Snapshot& then, double strength, List& list,
+              const std::vector<int>& only = {}) const;
+
+  /// In the plane: lines through the world as it lies on the page.
+  void draw_lines(const View& view, std::span<const WorldLine> lines, bool front, List& list) const;
 
   /// In the plane: how the page is laid out.
   const Layout& layout() const;
@@ -68,7 +103,12 @@ class Illustrator {
 
  private:
   struct Plan;
+  void ghosts(const sim::Snapshot& then, double strength, List& list, const std::vector<int>& only,
+              const View& view) const;
+
   Look look_;
+  std::shared_ptr<const Annotations> annotations_;
+  Titles titles_;
   // one of them
   std::shared_ptr<const Plan> plan_;
   std::shared_ptr<const SpaceStage> space_;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "draw/compose/annotate.h"
-#include "draw/compose/readings.h"
+#include "draw/page/readings.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
 #include "draw/plane/stage.h"
@@ -28,11 +28,11 @@ double round_below(double x) {
   return power;
 }
 
-Scales scales(const Figure& figure, const sim::SceneInfo& cast, std::span<const sim::Snapshot> moments,
+Scales scales(const Marks& marks, const sim::SceneInfo& cast, std::span<const sim::Snapshot> moments,
               const Rect& window, double scale) {
   Scales longest;
   for (const sim::Snapshot& now : moments) {
-    for (const Figure::Vector& vector : figure.vectors) {
+    for (const Marks::Vector& vector : marks.vectors) {
       double* most = scale_of(vector.quantity, longest);
       if (!most) continue;
       for (const Reading& each : readings(vector, cast, now)) *most = std::max(*most, each.value.norm());
@@ -40,7 +40,8 @@ Scales scales(const Figure& figure, const sim::SceneInfo& cast, std::span<const 
   }
   const double room = kLongest * std::min(window.width, window.height) / scale;
   const auto of = [&](double most) { return most > 1e-9 ? room / most : 0; };
-  return {of(longest.velocity), of(longest.force), of(longest.impulse)};
+  return {of(longest.velocity), of(longest.force), of(longest.impulse), of(longest.momentum),
+          of(longest.acceleration)};
 }
 
 bool has_legend(const Figure& figure) {
@@ -76,8 +77,9 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     Quantity quantity;
   };
   for (const Each& kind :
-       {Each{scales.impulse, "N s", Quantity::impulse}, Each{scales.force, "N", Quantity::contact},
-        Each{scales.velocity, "m/s", Quantity::velocity}}) {
+       {Each{scales.acceleration, "m/s²", Quantity::acceleration},
+        Each{scales.momentum, "kg m/s", Quantity::momentum}, Each{scales.impulse, "N s", Quantity::impulse},
+        Each{scales.force, "N", Quantity::contact}, Each{scales.velocity, "m/s", Quantity::velocity}}) {
     if (!(kind.scale > 0)) continue;
     const double value = round_below(32 * kPoint / (kind.scale * scale));
     const double length = value * kind.scale * scale;
@@ -88,7 +90,7 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     std::vector<Arrow> arrows;
     offer({x - length, middle}, {x, middle}, {left, middle - length, right - left, 2 * length}, kLegendArrow,
           arrows);
-    Figure::Vector of;
+    Marks::Vector of;
     of.quantity = kind.quantity;
     draw_arrows(arrows, kLegendArrow, colours.ground, color_of(of, colours), list);
     x -= length + 10 * kPoint;

@@ -18,8 +18,8 @@ constexpr double kAround = 0.8;  // around a dot, points
 }  // namespace
 
 Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
-               double aspect, double seconds)
-    : colours_(colours) {
+               double aspect, double seconds, const sim::SceneInfo& cast)
+    : colours_(colours), cast_(cast) {
   const double width = 1080 * aspect, weight = std::min(1.0, std::sqrt(width / 1440));
   const double margin = kMargin * weight, inset = std::max(margin, 0.045 * width);
   double column = 0;
@@ -72,7 +72,7 @@ void Charts::draw_lines(const sim::Snapshot& now, List& list) const {
     if (within) {
       past.times.push_back(now.time);
       for (std::size_t i = 0; i < measures.size(); ++i)
-        past.lines[i].values.push_back(measures[i]->at(now, panel.chart.body));
+        past.lines[i].values.push_back(measures[i]->at(cast_, now, panel.chart.body));
     }
     obscura::draw::draw_lines(past, panel.area, list);
     if (!within) continue;

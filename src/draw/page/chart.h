@@ -23,7 +23,7 @@ class Charts {
   Charts() = default;
   /// `plots`: one for each chart, from a run of `seconds`, which the axes span. `aspect`: of the page.
   Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
-         double aspect, double seconds);
+         double aspect, double seconds, const sim::SceneInfo& cast);
 
   bool empty() const { return panels_.empty(); }
   /// How much of the page they take, page units.
@@ -43,6 +43,7 @@ class Charts {
   };
   std::vector<Panel> panels_;
   Palette colours_;
+  sim::SceneInfo cast_;
   double right_ = 0, below_ = 0;
 };
 

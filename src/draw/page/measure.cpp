@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "draw/page/readings.h"
+
 namespace obscura::draw {
 namespace {
 
@@ -23,30 +25,93 @@ const sim::Snapshot::Spring& spring(Now now, int body) {
   return none;
 }
 
-constexpr std::array<Measure, 16> kMeasures{{
-    {"energy", "total", "J", "", false, [](Now now, int) { return now.energies.total(); }},
-    {"kinetic", "kinetic", "J", "vermilion", false, [](Now now, int) { return now.energies.kinetic; }},
-    {"potential", "potential", "J", "blue", false, [](Now now, int) { return now.energies.potential(); }},
-    {"gravity", "gravity", "J", "blue", false, [](Now now, int) { return now.energies.gravity; }},
-    {"springs", "springs", "J", "green", false, [](Now now, int) { return now.energies.springs; }},
-    {"fields", "fields", "J", "purple", false, [](Now now, int) { return now.energies.fields; }},
-    {"work", "work", "J", "orange", false, [](Now now, int) { return now.energies.work; }},
-    {"x", "x", "m", "blue", true, [](Now now, int body) { return of(now, body).position.x(); }},
-    {"height", "height", "m", "blue", true, [](Now now, int body) { return of(now, body).position.y(); }},
-    {"speed", "speed", "m/s", "green", true, [](Now now, int body) { return of(now, body).velocity.norm(); }},
-    {"vx", "v_x", "m/s", "blue", true, [](Now now, int body) { return of(now, body).velocity.x(); }},
-    {"vy", "v_y", "m/s", "vermilion", true, [](Now now, int body) { return of(now, body).velocity.y(); }},
-    {"angle", "\\theta", "°", "purple", true,
-     [](Now now, int body) { return kDegrees * of(now, body).angle; }},
-    {"spin", "\\omega", "rad/s", "purple", true, [](Now now, int body) { return of(now, body).spin.z(); }},
-    {"length", "l", "m", "blue", true,
-     [](Now now, int body) { return (spring(now, body).b - spring(now, body).a).norm(); }},
-    {"push", "f", "N", "vermilion", true, [](Now now, int body) { return spring(now, body).push; }},
-}};
+using Cast = const sim::SceneInfo&;
+
+/// How long the sum of a body's arrows is.
+template <Quantity quantity>
+double length(Cast cast, Now now, int body) {
+  return sum(quantity, body, cast, now).norm();
+}
+
+/// A number, of all the room or of a body.
+constexpr Measure number(std::string_view name, const char* label, const char* unit, std::string_view color,
+                         bool of_body, double (*read)(Cast, Now, int)) {
+  return {name, label, unit, color, of_body, read, {}};
+}
+
+/// What arrows show; its number is how long their sum is, where that says something.
+constexpr Measure vector(std::string_view name, const char* label, const char* unit, std::string_view color,
+                         Quantity quantity, double (*read)(Cast, Now, int)) {
+  return {name, label, unit, color, true, read, quantity};
+}
+
+constexpr std::array kMeasures{
+    number("energy", "total", "J", "", false, [](Cast, Now now, int) { return now.energies.total(); }),
+    number("kinetic", "kinetic", "J", "vermilion", false,
+           [](Cast, Now now, int) { return now.energies.kinetic; }),
+    number("potential", "potential", "J", "blue", false,
+           [](Cast, Now now, int) { return now.energies.potential(); }),
+    number("gravity", "gravity", "J", "blue", false, [](Cast, Now now, int) { return now.energies.gravity; }),
+    number("springs", "springs", "J", "green", false,
+           [](Cast, Now now, int) { return now.energies.springs; }),
+    number("fields", "fields", "J", "purple", false, [](Cast, Now now, int) { return now.energies.fields; }),
+    number("work", "work", "J", "orange", false, [](Cast, Now now, int) { return now.energies.work; }),
+    number("x", "x", "m", "blue", true, [](Cast, Now now, int body) { return of(now, body).position.x(); }),
+    number("height", "height", "m", "blue", true,
+           [](Cast, Now now, int body) { return of(now, body).position.y(); }),
+    number("speed", "speed", "m/s", "green", true,
+           [](Cast, Now now, int body) { return of(now, body).velocity.norm(); }),
+    number("vx", "v_x", "m/s", "blue", true,
+           [](Cast, Now now, int body) { return of(now, body).velocity.x(); }),
+    number("vy", "v_y", "m/s", "vermilion", true,
+           [](Cast, Now now, int body) { return of(now, body).velocity.y(); }),
+    number("angle", "\\theta", "°", "purple", true,
+           [](Cast, Now now, int body) { return kDegrees * of(now, body).angle; }),
+    vector("spin", "\\omega", "rad/s", "purple", Quantity::spin,
+           [](Cast, Now now, int body) { return of(now, body).spin.z(); }),
+    number("length", "l", "m", "blue", true,
+           [](Cast, Now now, int body) { return (spring(now, body).b - spring(now, body).a).norm(); }),
+    number("push", "f", "N", "vermilion", true,
+           [](Cast, Now now, int body) { return spring(now, body).push; }),
+    vector("acceleration", "a", "m/s²", "purple", Quantity::acceleration, length<Quantity::acceleration>),
+    vector("momentum", "p", "kg m/s", "green", Quantity::momentum, length<Quantity::momentum>),
+    vector("weight", "weight", "N", "blue", Quantity::weight, length<Quantity::weight>),
+    vector("normal_force", "normal", "N", "orange", Quantity::normal_force, length<Quantity::normal_force>),
+    vector("friction", "friction", "N", "vermilion", Quantity::friction, length<Quantity::friction>),
+    vector("net_force", "net", "N", "purple", Quantity::net_force, length<Quantity::net_force>),
+    vector("spring_force", "spring", "N", "green", Quantity::spring_force, length<Quantity::spring_force>),
+    vector("joint_force", "joint", "N", "sky", Quantity::joint_force, length<Quantity::joint_force>),
+    vector("drag", "drag", "N", "orange", Quantity::drag, length<Quantity::drag>),
+    vector("contact", "contact", "N", "vermilion", Quantity::contact, length<Quantity::contact>),
+    vector("blast", "blast", "N", "vermilion", Quantity::blast, length<Quantity::blast>),
+    vector("torque", "\\tau", "N m", "purple", Quantity::torque,
+           [](Cast cast, Now now, int body) {
+             const sim::Vec3 all = sum(Quantity::torque, body, cast, now);
+             return cast.dimension == 2 ? all.z() : all.norm();
+           }),
+    vector("position", "r", "m", "blue", Quantity::position, nullptr),
+    vector("velocity", "v", "m/s", "green", Quantity::velocity, nullptr),
+    vector("spring", "spring", "N", "green", Quantity::spring, nullptr),
+    vector("impulse", "J", "N s", "vermilion", Quantity::impulse, nullptr),
+    vector("normal", "n", "", "", Quantity::normal, nullptr),
+};
+
+std::vector<std::string> names(bool (*wanted)(const Measure&)) {
+  std::vector<std::string> all;
+  for (const Measure& each : kMeasures)
+    if (wanted(each)) all.emplace_back(each.name);
+  return all;
+}
 
 }  // namespace
 
-double Measure::at(const sim::Snapshot& now, int body) const { return read(now, body); }
+std::vector<std::string> plotted() {
+  return names([](const Measure& each) { return each.read != nullptr; });
+}
+
+std::vector<std::string> arrows() {
+  return names([](const Measure& each) { return each.arrow.has_value(); });
+}
 
 const Measure* measure(std::string_view name) {
   const auto found = std::find_if(kMeasures.begin(), kMeasures.end(),

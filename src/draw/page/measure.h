@@ -1,28 +1,37 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "draw/page/marks.h"
 #include "draw/page/plot.h"
 #include "sim/model/snapshot.h"
 
 namespace obscura::draw {
 
-/// A quantity of an instant that plots show over time.
+/// A quantity of an instant: one table serves plots, arrows, values in labels and --measure.
 struct Measure {
   std::string_view name;     // as a scene calls it
   const char *label, *unit;  // what its line is called, as mathematics; of its values
   std::string_view color;    // of the palette; empty: ink
   bool of_body;              // else of all the room
-  double (*read)(const sim::Snapshot& now, int body);
+  double (*read)(const sim::SceneInfo& cast, const sim::Snapshot& now, int body);  // null: arrows alone
+  std::optional<Quantity> arrow{};  // none: a number, which no arrow shows
 
   /// Its value; `body` is the one that has it.
-  double at(const sim::Snapshot& now, int body) const;
+  double at(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) const {
+    return read(cast, now, body);
+  }
 };
 
 /// The measure of a name; none where there is no such.
 const Measure* measure(std::string_view name);
+
+/// The names of those that plots show, of those that arrows show, in the order of the table.
+std::vector<std::string> plotted();
+std::vector<std::string> arrows();
 
 /// Which quantities a plot shows.
 struct Measured {

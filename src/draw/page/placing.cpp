@@ -38,6 +38,17 @@ double shared(const Rect& a, const Rect& b) {
   return w > 0 && h > 0 ? w * h : 0;
 }
 
+/// Whether a convex polygon has a point, whichever way its corners go.
+bool inside(const std::vector<Point>& outline, const Point& p) {
+  bool left = false, right = false;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Point &a = outline[k], &b = outline[(k + 1) % outline.size()];
+    const double side = (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+    left = left || side > 0, right = right || side < 0;
+  }
+  return !(left && right);
+}
+
 /// From a point to the middle of a label of `size` that just clears it in direction n.
 Point clear(const Point& n, double gap, const Point& size) {
   return n * gap + Point(n.x() * size.x() / 2, n.y() * size.y() / 2);
@@ -47,9 +58,31 @@ Point clear(const Point& n, double gap, const Point& size) {
 
 void Placing::avoid(const Point& a, const Point& b, double weight) { lines_.push_back({a, b, weight}); }
 
-double Placing::cost(const Rect& rect) const {
+void Placing::avoid(const std::vector<Point>& area, double cost) {
+  if (area.size() < 3) return;
+  Point low = area[0], high = area[0];
+  for (const Point& p : area) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  areas_.push_back({area, {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()}, cost});
+}
+
+double Placing::lines(const Rect& rect) const {
   double sum = 0;
   for (const Line& line : lines_) sum += line.weight * within(line.a, line.b, rect);
+  // of an area as much as covers places spread over the rectangle
+  constexpr int kAcross = 5, kDown = 3;
+  for (const Area& area : areas_) {
+    if (shared(rect, area.around) <= 0) continue;
+    int covered = 0;
+    for (int i = 0; i < kAcross * kDown; ++i)
+      covered += inside(area.outline, {rect.x + rect.width * (i % kAcross) / (kAcross - 1),
+                                       rect.y + rect.height * int(i / kAcross) / (kDown - 1)});
+    sum += area.cost * covered / (kAcross * kDown);
+  }
+  return sum;
+}
+
+double Placing::cost(const Rect& rect) const {
+  double sum = lines(rect);
   for (const Rect& other : taken_) {
     if (const double area = shared(rect, other); area > 0) sum += 200 + area;
   }
@@ -58,17 +91,21 @@ double Placing::cost(const Rect& rect) const {
   return outside ? sum + 1e6 : sum;
 }
 
-Placing::Candidate Placing::place(const Point& size, const std::vector<Candidate>& candidates) {
-  const auto rect = [&](const Candidate& c, double margin) {
-    return Rect{c.center.x() - size.x() / 2 - margin, c.center.y() - size.y() / 2 - margin,
-                size.x() + 2 * margin, size.y() + 2 * margin};
-  };
+Rect Placing::rect_of(const Point& size, const Candidate& c) {
   const double margin = 0.12 * size.y();
+  return {c.center.x() - size.x() / 2 - margin, c.center.y() - size.y() / 2 - margin, size.x() + 2 * margin,
+          size.y() + 2 * margin};
+}
+
+double Placing::cost(const Point& size, const Candidate& candidate) const {
+  return candidate.cost + cost(rect_of(size, candidate));
+}
+
+Placing::Candidate Placing::place(const Point& size, const std::vector<Candidate>& candidates) {
   const auto best =
-      std::min_element(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
-        return a.cost + cost(rect(a, margin)) < b.cost + cost(rect(b, margin));
-      });
-  taken_.push_back(rect(*best, margin));
+      std::min_element(candidates.begin(), candidates.end(),
+                       [&](const Candidate& a, const Candidate& b) { return cost(size, a) < cost(size, b); });
+  taken_.push_back(rect_of(size, *best));
   return *best;
 }
 
@@ -92,7 +129,7 @@ std::vector<Placing::Candidate> Placing::around(const Point& at, double gap, con
 }
 
 std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& tip, double gap,
-                                               const Point& size, double unit) {
+                                               const Point& size, double unit, bool fixed) {
   const Point u = (tip - tail).normalized(), v(-u.y(), u.x());
   std::vector<Candidate> all;
   double ring = 0;
@@ -101,7 +138,8 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
     for (const double part : {0.85, 0.7, 0.55, 1.0, 0.4, 0.25}) {
       const Point at = tail + part * (tip - tail);
       // to the right of an arrow that points up
-      for (const double side : {u.y() < 0 ? 1.0 : -1.0, u.y() < 0 ? -1.0 : 1.0}) {
+      const double first = fixed || u.y() < 0 ? 1 : -1;
+      for (const double side : {first, -first}) {
         all.push_back({at + clear(side * v, gap + off * unit, size), ring + order, off > 6});
         order += 0.3 * unit;
       }

@@ -16,6 +16,8 @@ class Placing {
   /// Lines that labels should not cover; a heavier line is avoided more.
   void avoid(const Point& a, const Point& b, double weight);
   void avoid(const Rect& rect) { taken_.push_back(rect); }
+  /// A convex area that labels should not cover, and what it costs to lie wholly in it.
+  void avoid(const std::vector<Point>& area, double cost);
 
   /// A place for a label, and how good: candidates are tried from the first on.
   struct Candidate {
@@ -25,21 +27,32 @@ class Placing {
   };
   /// The centre of a label of `size` that lies best; it is taken from then on.
   Candidate place(const Point& size, const std::vector<Candidate>& candidates);
+  /// The whole cost of a candidate, by what is to be avoided; labels that have a place already do not count.
+  double cost(const Point& size, const Candidate& candidate) const;
 
   /// Places around a point, and farther off with a leader; beside an arrow.
   static std::vector<Candidate> around(const Point& at, double gap, const Point& size, double unit);
+  /// `fixed`: first those to the right of its way, however it turns; else first those at its upper side.
   static std::vector<Candidate> along(const Point& tail, const Point& tip, double gap, const Point& size,
-                                      double unit);
+                                      double unit, bool fixed = false);
 
  private:
+  static Rect rect_of(const Point& size, const Candidate& candidate);
   double cost(const Rect& rect) const;
+  double lines(const Rect& rect) const;
 
+  struct Area {
+    std::vector<Point> outline;
+    Rect around;
+    double cost;
+  };
   struct Line {
     Point a, b;
     double weight;
   };
   Rect page_;
   std::vector<Line> lines_;
+  std::vector<Area> areas_;
   std::vector<Rect> taken_;
 };
 

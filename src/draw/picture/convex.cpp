@@ -50,4 +50,25 @@ HalfPlane moved(const HalfPlane& half, double distance) {
   return {half.point + distance * half.normal, half.normal};
 }
 
+// Andrew's monotone chain: below from left to right, then above and back
+std::vector<Point> convex_hull(std::vector<Point> points) {
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  std::vector<Point> hull;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = hull.size();
+    for (const Point& p : points) {
+      const auto turns = [&](const Point& a, const Point& b) {
+        return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x()) > 0;
+      };
+      while (hull.size() >= first + 2 && !turns(hull[hull.size() - 2], hull.back())) hull.pop_back();
+      hull.push_back(p);
+    }
+    if (!hull.empty()) hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
 }  // namespace obscura::draw

@@ -32,6 +32,9 @@ Convex border(const Rect& rect);
 /// The part of `shape` in `half`; the new edge belongs to `side`.
 Convex cut(const Convex& shape, const HalfPlane& half, int side = -1);
 
+/// The smallest convex polygon around points, its corners in order.
+std::vector<Point> convex_hull(std::vector<Point> points);
+
 /// Moved inwards by `distance` (negative: outwards).
 HalfPlane moved(const HalfPlane& half, double distance);
 

@@ -54,7 +54,7 @@ bool deep(std::string_view c) {
 
 class Setter {
  public:
-  Setter(std::string_view text, double size, Color color) : text_(text) {
+  Setter(std::string_view text, double size, Color color, double pad) : text_(text), pad_(pad) {
     out_.size = size;
     out_.color = color;
   }
@@ -72,7 +72,8 @@ class Setter {
     const double em = scale * out_.size;
     const double up = rise * out_.size;
     const bool joins = !out_.spans.empty() && out_.spans.back().face == face &&
-                       out_.spans.back().size == em && out_.spans.back().rise == up;
+                       out_.spans.back().size == em && out_.spans.back().rise == up &&
+                       out_.spans.back().tabular == number_;
     if (joins) {
       out_.spans.back().text += c;
     } else {
@@ -85,7 +86,8 @@ class Setter {
                             .size = em,
                             .color = out_.color,
                             .rise = up,
-                            .lead = leans ? 0.07 * out_.size : 0});
+                            .lead = (leans ? 0.07 * out_.size : 0) + (number_ ? pad_ : 0),
+                            .tabular = number_});
     }
     if (c == " ") return;
     out_.ascent = std::max(out_.ascent, up + em * (low(c) ? 0.47 : 0.7));
@@ -125,7 +127,9 @@ class Setter {
   void run(std::string_view text, double scale, double rise) {
     for (std::size_t i = 0; i < text.size();) {
       const char c = text[i];
-      if (c == '*') {
+      if (c == kNumber || c == kNumberEnd) {
+        number_ = c == kNumber, ++i;
+      } else if (c == '*') {
         bold_ = !bold_, ++i;
       } else if (c == '_' || c == '^') {
         ++i;
@@ -186,12 +190,15 @@ class Setter {
 
   std::string_view text_;
   Formula out_;
-  bool bold_ = false;
+  double pad_ = 0;
+  bool bold_ = false, number_ = false;
 };
 
 }  // namespace
 
-Formula formula(std::string_view text, double size, Color color) { return Setter(text, size, color).set(); }
+Formula formula(std::string_view text, double size, Color color, double pad) {
+  return Setter(text, size, color, pad).set();
+}
 
 void add(const Formula& f, const Point& at, List& list) {
   if (f.empty()) return;
@@ -228,12 +235,74 @@ std::string as_vector(const std::string& text) {
   return vector;
 }
 
+std::optional<ValueSlot> value_slot(std::string_view text) {
+  for (std::size_t at = text.find('{'); at != text.npos; at = text.find('{', at + 1)) {
+    const std::string_view rest = text.substr(at);
+    if (rest.starts_with("{}")) return ValueSlot{at, at + 2, {}};
+    if (rest.size() >= 5 && rest.starts_with("{:.") && rest[3] >= '0' && rest[3] <= '9' && rest[4] == '}')
+      return ValueSlot{at, at + 5, rest[3] - '0'};
+  }
+  return {};
+}
+
+namespace {
+
+// what stands after a value of a given form, its unit upright
+std::string after(std::string rest, std::string_view unit) {
+  if (unit.empty()) return rest;
+  std::string typed(unit);
+  if (const auto square = typed.find("²"); square != typed.npos) typed.replace(square, 2, "^2");
+  const std::size_t gap = rest.find_first_not_of(' ');
+  if (gap == rest.npos) return rest;
+  for (const std::string& word : {std::string(unit), typed}) {
+    if (rest.compare(gap, word.size(), word) != 0) continue;
+    const std::size_t end = gap + word.size();
+    if (end < rest.size() && latin(rest[end])) continue;
+    return fmt::format("\"{}{}\"{}", rest.substr(0, gap), unit, rest.substr(end));
+  }
+  return rest;
+}
+
+// no minus before a zero
+std::string number(double value, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.find_first_not_of("-0.") == text.npos && text[0] == '-') text.erase(0, 1);
+  return text;
+}
+
+}  // namespace
+
 std::string with_value(const std::string& text, double value, std::string_view unit) {
-  const auto at = text.find("{}");
-  if (at == text.npos) return text;
+  const auto slot = value_slot(text);
+  if (!slot) return text;
+  const std::string before = text.substr(0, slot->begin), rest = text.substr(slot->end);
+  if (slot->decimals) return before + number(value, *slot->decimals) + after(rest, unit);
   const double shown = std::abs(value) < 1e-9 ? 0 : value;
-  return text.substr(0, at) + fmt::format("{:.3g}", shown) +
-         (unit.empty() ? "" : fmt::format("\" {}\"", unit)) + text.substr(at + 2);
+  return before + fmt::format("{:.3g}", shown) + (unit.empty() ? "" : fmt::format("\" {}\"", unit)) + rest;
+}
+
+Formula live(const std::string& text, double value, double low, double high, std::string_view unit,
+             double size, Color color) {
+  const auto slot = value_slot(text);
+  if (!slot) return formula(text, size, color);
+  const double most = std::max(std::abs(low), std::abs(high));
+  const int digits =
+      slot->decimals.value_or(most > 1e-9 ? std::clamp(2 - int(std::floor(std::log10(most))), 0, 6) : 2);
+  const auto width = [&](double x) {
+    return formula(kNumber + number(x, digits) + kNumberEnd, size, color).width;
+  };
+  const std::string shown = number(value, digits);
+  const double own = width(value), widest = std::max({own, width(low), width(high)});
+  std::string rest = text.substr(slot->end);
+  rest = slot->decimals ? after(rest, unit) : (unit.empty() ? "" : fmt::format("\" {}\"", unit)) + rest;
+  return formula(text.substr(0, slot->begin) + kNumber + shown + kNumberEnd + rest, size, color,
+                 widest - own);
+}
+
+void fade(Formula& formula, double strength) {
+  const double s = std::clamp(strength, 0.0, 1.0);
+  formula.color.a = std::uint8_t(std::lround(formula.color.a * s));
+  for (Span& span : formula.spans) span.color.a = formula.color.a;
 }
 
 }  // namespace obscura::draw

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,8 +27,10 @@ struct Formula {
   bool empty() const { return spans.empty(); }
 };
 
-/// Sets `text` at an em of `size` page units. A name that is not known stays as it was written.
-Formula formula(std::string_view text, double size, Color color);
+/// Sets `text` at an em of `size` page units. A name that is not known stays as it was written. What stands
+/// between kNumber and kNumberEnd is a number in digits of equal width, with `pad` page units before it.
+Formula formula(std::string_view text, double size, Color color, double pad = 0);
+inline constexpr char kNumber = '\x01', kNumberEnd = '\x02';
 
 /// Puts it down with its baseline's left end at `at`.
 void add(const Formula& formula, const Point& at, List& list);
@@ -35,7 +38,24 @@ void add(const Formula& formula, const Point& at, List& list);
 /// `text` with its first letter a vector, unless it says itself what is one.
 std::string as_vector(const std::string& text);
 
-/// "{}" in `text` replaced by a number of three digits with its unit.
+/// Where a value goes in a label: "{}", of three digits and with its unit, or "{:.2}", of as many digits
+/// after the point.
+struct ValueSlot {
+  std::size_t begin = 0, end = 0;  // of the text
+  std::optional<int> decimals;
+};
+/// None: the label shows no value.
+std::optional<ValueSlot> value_slot(std::string_view text);
+
+/// `text` with its slot replaced by a value. What follows "{:.2}" and is the unit is set upright.
 std::string with_value(const std::string& text, double value, std::string_view unit);
+
+/// The same for a value that goes from `low` to `high` while the label stays where it is: "{}" has as many
+/// digits after the point as give the largest three digits, and room is left for the longest.
+Formula live(const std::string& text, double value, double low, double high, std::string_view unit,
+             double size, Color color);
+
+/// All of it as much lighter as `strength` (0 to 1) says.
+void fade(Formula& formula, double strength);
 
 }  // namespace obscura::draw

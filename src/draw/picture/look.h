@@ -19,6 +19,7 @@ struct BodyLook {
   bool velocity = false;       // draw its velocity as an arrow
   bool contact = false;        // draw the forces where it touches as arrows
   std::string label = {};      // words beside it
+  bool quiet = false;          // grey, for others are to be looked at
 };
 
 /// The scene's looks of the picture.
@@ -28,9 +29,10 @@ struct Look {
   bool clock = true;    // the time at the right of the caption
   bool caption = true;  // the caption strip at all
   bool hatching = true;
-  bool axes = true;              // the frame of each box
-  bool pointer = true;           // mouse, its spring and its path
-  double velocity_scale = 0.1;   // s: arrow length in metres a metre per second
+  bool axes = true;                   // the frame of each box
+  bool pointer = true;                // mouse, its spring and its path
+  double velocity_scale = 0.1;        // s: arrow length in metres a metre per second
+  bool velocity_scale_given = false;  // by the scene
   double force_scale = 0;        // m/N: arrow length in metres a newton; 0: chosen by the bodies' weights
   std::vector<BodyLook> bodies;  // as in the Cast
   // in space

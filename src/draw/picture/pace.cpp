@@ -75,7 +75,7 @@ Pace::Pace(const std::vector<PaceKey>& keys) {
   stretches_.push_back({{}, {}, keys[0].speed, keys[0].speed, CameraKey::Ease::hold});
   for (std::size_t i = 0; i < keys.size(); ++i) {
     // the key's time in the film: there the interval before it ends
-    const Rational begins = film(keys[i].time);
+    const Rational begins = moving_film(keys[i].time);
     const bool last = i + 1 == keys.size();
     Stretch next{begins, keys[i].time, keys[i].speed, keys[i].speed, CameraKey::Ease::hold};
     if (!last && keys[i + 1].ease != CameraKey::Ease::hold && !(keys[i + 1].speed == keys[i].speed)) {
@@ -88,8 +88,51 @@ Pace::Pace(const std::vector<PaceKey>& keys) {
   }
 }
 
+void Pace::freeze(const Freeze& freeze) {
+  // after what stands still at this instant already
+  frozen_.push_back({film(freeze.time) + frozen_at(freeze.time), freeze.time, freeze.seconds});
+}
+
 sim::Rational Pace::world(sim::Rational film) const {
-  if (plain()) return film;
+  Rational stood{0, 1};
+  for (const Frozen& each : frozen_) {
+    if (film < each.film) break;
+    if (film < each.film + each.seconds) return each.world;
+    stood = stood + each.seconds;
+  }
+  return moving_world(film - stood);
+}
+
+sim::Rational Pace::film(sim::Rational world) const {
+  Rational at = moving_film(world);
+  for (const Frozen& each : frozen_)
+    if (each.world < world) at = at + each.seconds;
+  return at;
+}
+
+double Pace::speed(double film) const {
+  constexpr double kClose = 1e-4;  // s: a hundred of the steps to which times are rounded
+  for (const Frozen& each : frozen_)
+    if (film >= sim::value(each.film) && film < sim::value(each.film + each.seconds)) return 0;
+  if (stretches_.empty()) return 1;
+  double stood = 0;
+  for (const Frozen& each : frozen_)
+    if (film >= sim::value(each.film)) stood += sim::value(each.seconds);
+  const double at = std::fmax(film - stood, kClose);
+  return (sim::value(moving_world(rounded(at + kClose))) - sim::value(moving_world(rounded(at - kClose)))) /
+         (2 * kClose);
+}
+
+sim::Rational Pace::frozen_at(sim::Rational world) const {
+  Rational seconds{0, 1};
+  for (const Frozen& each : frozen_)
+    if (each.world == world) seconds = seconds + each.seconds;
+  return seconds;
+}
+
+// of what moves: without the times that the film stands still
+sim::Rational Pace::moving_world(sim::Rational film) const {
+  if (stretches_.empty()) return film;
   std::size_t i = stretches_.size() - 1;
   while (i > 0 && film < stretches_[i].film) --i;
   const Stretch& s = stretches_[i];
@@ -98,8 +141,8 @@ sim::Rational Pace::world(sim::Rational film) const {
   return rounded(sim::value(s.world) + s.length * s.gone(std::fmin(u, 1)));
 }
 
-sim::Rational Pace::film(sim::Rational world) const {
-  if (plain()) return world;
+sim::Rational Pace::moving_film(sim::Rational world) const {
+  if (stretches_.empty()) return world;
   std::size_t i = stretches_.size() - 1;
   while (i > 0 && world < stretches_[i].world) --i;
   const Stretch& s = stretches_[i];

@@ -14,6 +14,12 @@ struct PaceKey {
   CameraKey::Ease ease = CameraKey::Ease::in_out;  // how it comes here from the key before
 };
 
+/// Where the film stands still.
+struct Freeze {
+  sim::Rational time;     // s of the run
+  sim::Rational seconds;  // of the film, above 0
+};
+
 /// Which instant of a run each instant of its film shows: slow motion, and what is quicker than life. Times
 /// are exact where their denominator is a million at most, and else the nearest microsecond.
 class Pace {
@@ -24,12 +30,25 @@ class Pace {
   /// Before the first key its speed, after the last key that one's. Requires times that increase.
   explicit Pace(const std::vector<PaceKey>& keys);
 
+  /// The film stands still there as well. Requires times that increase, from one call to the next too.
+  void freeze(const Freeze& freeze);
+
   /// Whether film and run are one in time.
-  bool plain() const { return stretches_.empty(); }
+  bool plain() const { return stretches_.empty() && frozen_.empty(); }
   /// The instant of the run that the film shows at `film` (s, >= 0). Never goes back.
   sim::Rational world(sim::Rational film) const;
-  /// When the film shows an instant of the run.
+  /// When the film shows an instant of the run first.
   sim::Rational film(sim::Rational world) const;
+  /// How fast the run goes by there: seconds of it in a second of the film; 0 where it stands still.
+  double speed(double film) const;
+  /// How long the film stands still at an instant of the run, s.
+  sim::Rational frozen_at(sim::Rational world) const;
+
+  /// Where it stands still: from when on (s of the film), at which instant of the run, how long.
+  struct Frozen {
+    sim::Rational film, world, seconds;
+  };
+  const std::vector<Frozen>& frozen() const { return frozen_; }
 
  private:
   /// From one key on, up to the next.
@@ -41,7 +60,11 @@ class Pace {
     bool even() const { return from == to; }
     double gone(double u) const;
   };
-  std::vector<Stretch> stretches_;  // by time; none: plain
+  sim::Rational moving_world(sim::Rational film) const;
+  sim::Rational moving_film(sim::Rational world) const;
+
+  std::vector<Stretch> stretches_;  // by time; none: as fast as it happens
+  std::vector<Frozen> frozen_;      // by time
 };
 
 }  // namespace obscura::draw

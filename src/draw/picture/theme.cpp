@@ -46,6 +46,11 @@ Paint paint(Color own, Theme theme) {
   return {own, mix(own, kWhite, 0.25), mix(own, kBlack, 0.6), mix(palette(theme).room, own, 0.72)};
 }
 
+void hush(Paint& paint, const Palette& colours) {
+  for (Color* color : {&paint.fill, &paint.outline, &paint.axis, &paint.trail})
+    *color = mix(*color, colours.room, kHushed);
+}
+
 Color turn(int index) {
   static const std::array<Color, 6> order{*color("sky"),    *color("orange"), *color("green"),
                                           *color("purple"), *color("blue"),   *color("yellow")};

@@ -39,6 +39,10 @@ Palette palette(Theme theme);
 /// Fill, outline, axes and trail of a body of this colour.
 Paint paint(Color color, Theme theme);
 
+/// Makes a grey body recede further: others are to be looked at. How far towards the room's colour.
+void hush(Paint& paint, const Palette& colours);
+inline constexpr double kHushed = 0.35;
+
 /// The colours that bodies without one take in turn. Vermilion is left to forces.
 Color turn(int index);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -47,6 +48,11 @@ using Ways = std::span<const std::shared_ptr<const sim::Track>>;
 
 /// The way of a body since `from` (s), up to now.
 std::vector<sim::Track::Point> way_of(int body, double from, const sim::Snapshot& now, Ways ways);
+
+/// The points of a way between two of its points that its curve needs to be no farther than `least` (m) from
+/// the line through them, in order.
+void bends(const std::vector<sim::Track::Point>& way, std::size_t a, std::size_t b, double least,
+           const std::function<void(std::size_t)>& add);
 
 /// Which bodies are knots of a net: particles with three springs or more, and those with two that hang on
 /// one.

@@ -1,10 +1,13 @@
-// A trail of duration T: a body's way from t - T to t; at age a its width is W (0.25 + 0.75 s) and its
-// strength s^1.3, with s = 1 - a / T. Its nodes are chosen on the physics clock, the first point of each
-// T/240 and every cusp, so that they do not wander from frame to frame. Drawn by minimum or maximum, so that
-// overlaps of its pieces do not show.
+// A trail of duration T: a body's way from t - T to t, at age a as wide as W (0.25 + 0.75 s) and as strong as
+// s^1.3, s = 1 - a / T. Its nodes are chosen on the physics clock, the first point of each T/240 and every
+// cusp, so that they do not wander from frame to frame; where a long trail bends between two of them, points
+// between are added until it is as round as the motion. Drawn by minimum or maximum: where pieces overlap
+// nothing shows.
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "draw/plane/stage.h"
 
@@ -14,10 +17,29 @@ namespace {
 constexpr int kTrailPieces = 240;
 constexpr double kCusp = 0.9;   // cosine of a turn that breaks the line
 constexpr double kClose = 0.5;  // page units: nearer points are one
+constexpr double kLong = 10;    // s: of shorter trails the fixed times are near enough to each other
+constexpr double kBent = 0.4;   // page units: farther from the line through its neighbours a point is needed
 
 using Way = std::vector<sim::Track::Point>;
 
 }  // namespace
+
+void bends(const std::vector<sim::Track::Point>& way, std::size_t a, std::size_t b, double least,
+           const std::function<void(std::size_t)>& add) {
+  const sim::Vec3 from = way[a].place, along = way[b].place - from;
+  const double length = along.squaredNorm();
+  double worst = least;
+  std::size_t at = a;
+  for (std::size_t k = a + 1; k < b; ++k) {
+    const sim::Vec3 d = way[k].place - from;
+    const double s = length > 0 ? std::clamp(d.dot(along) / length, 0.0, 1.0) : 0;
+    if (const double far = (d - s * along).norm(); far > worst) worst = far, at = k;
+  }
+  if (at == a) return;
+  bends(way, a, at, least, add);
+  add(at);
+  bends(way, at, b, least, add);
+}
 
 Way way_of(int body, double from, const sim::Snapshot& now, Ways ways) {
   Way way;
@@ -44,6 +66,7 @@ Way way_of(int body, double from, const sim::Snapshot& now, Ways ways) {
 void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now, Ways ways, List& list) {
   const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
   std::vector<Node> line;
+  std::vector<std::pair<std::size_t, bool>> chosen;  // of a way, and whether it turns sharply there
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < now.bodies.size(); ++i) {
     const double lasting = stage.look.bodies[i].trail;
     if (!(lasting > 0)) continue;
@@ -59,7 +82,8 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
                   mix(stage.colours.room, strong, std::pow(s, 1.3))};
     };
 
-    line.clear();
+    // the points of fixed times, then those that the curve needs
+    chosen.clear();
     std::int64_t piece = 0;
     for (std::size_t k = 0; k < way.size(); ++k) {
       const auto here = std::int64_t(std::floor(way[k].time * kTrailPieces / lasting));
@@ -69,9 +93,17 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
                     out = (way[k + 1].place - way[k].place).head<2>();
         cusp = in.dot(out) < kCusp * in.norm() * out.norm();
       }
-      const bool last = k + 1 == way.size();
-      if (k > 0 && !last && !cusp && here == piece) continue;
+      if (k > 0 && k + 1 < way.size() && !cusp && here == piece) continue;
       piece = here;
+      if (!chosen.empty() && lasting > kLong)
+        bends(way, chosen.back().first, k, kBent / view.scale,
+              [&](std::size_t between) { chosen.emplace_back(between, false); });
+      chosen.emplace_back(k, cusp);
+    }
+
+    line.clear();
+    for (const auto& [k, cusp] : chosen) {
+      const bool last = k + 1 == way.size();
       Node next = node(way[k]);
       if (!line.empty() && (next.at - line.back().at).norm() < kClose) {
         if (last && line.size() > 1) line.back() = next;

@@ -13,6 +13,8 @@ using sim::Vec3;
 
 constexpr int kTrailPieces = 120;  // of a trail
 constexpr double kCusp = 0.9;      // cosine of a turn that is kept
+constexpr double kBent = 0.8;      // page units: see draw/plane/trails.cpp
+constexpr double kPathLine = 3.6;  // page units at the weight 1
 constexpr double kStep = 14, kWayDot = 2.1;
 
 }  // namespace
@@ -38,6 +40,7 @@ void trace_trails(SpaceFrame& s, Ways ways) {
     // points at fixed times, cusps and the last
     std::vector<sim::Track::Point> chosen;
     std::int64_t piece = 0;
+    std::size_t before = 0;
     for (std::size_t k = 0; k < way.size(); ++k) {
       const auto here = std::int64_t(std::floor(way[k].time * kTrailPieces / lasting));
       bool cusp = false;
@@ -47,6 +50,11 @@ void trace_trails(SpaceFrame& s, Ways ways) {
       }
       if (k > 0 && k + 1 < way.size() && !cusp && here == piece) continue;
       piece = here;
+      // where a long trail bends between two of them it needs more
+      if (k > 0)
+        bends(way, before, k, kBent / s.lens.scale,
+              [&](std::size_t between) { chosen.push_back(way[between]); });
+      before = k;
       chosen.push_back(way[k]);
     }
 
@@ -67,6 +75,50 @@ void trace_trails(SpaceFrame& s, Ways ways) {
                    db = s.lens.depth(b);
       const auto at = [&](double t) {
         return node(p + t * (q - p), from_age + t * (to_age - from_age), da + t * (db - da));
+      };
+      for (const auto& [from, to] : parts) {
+        if (from > 0) flush();
+        if (line.empty()) line.push_back(at(from));
+        line.push_back(at(to));
+        if (to < 1) flush();
+      }
+    }
+    flush();
+  }
+}
+
+void trace_paths(SpaceFrame& s, std::span<const WorldLine> paths, bool front) {
+  const SpaceStage& stage = s.stage;
+  const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
+  HiddenLines::Parts parts;
+  for (const WorldLine& path : paths) {
+    if (path.front != front) continue;
+    const Color strong = path.color       ? *path.color
+                         : path.body >= 0 ? paint(stage.own[std::size_t(path.body)], stage.look.theme).outline
+                                          : stage.colours.ink;
+    std::vector<Node> line;
+    const auto flush = [&] {
+      if (line.size() > 1) s.list.add(line, Cap::round, blend);
+      line.clear();
+    };
+    for (std::size_t k = 0; k + 1 < path.nodes.size(); ++k) {
+      const WorldLine::Node &a = path.nodes[k], &b = path.nodes[k + 1];
+      if (s.lens.depth(a.at) < 1e-2 || s.lens.depth(b.at) < 1e-2) {
+        flush();
+        continue;
+      }
+      if (front)
+        parts = {{0, 1}};
+      else
+        s.sight.seen(a.at, b.at, -1, -1, parts);
+      if (parts.empty()) flush();
+      const Point p = s.lens.page(a.at), q = s.lens.page(b.at);
+      const auto at = [&](double t) {
+        const double depth = s.lens.depth(a.at) + t * (s.lens.depth(b.at) - s.lens.depth(a.at));
+        const double strength = a.strength + t * (b.strength - a.strength);
+        const double width = kPathLine * stage.layout.weight * std::clamp(1 / depth, 0.3, 1.6);
+        return Node{p + t * (q - p), width * (0.4 + 0.6 * strength),
+                    mix(stage.colours.room, strong, strength)};
       };
       for (const auto& [from, to] : parts) {
         if (from > 0) flush();

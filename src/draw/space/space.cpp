@@ -157,7 +157,8 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
   for (int i = 0; i < int(cast.bodies.size()); ++i) {
     const sim::SceneInfo::Body& body = cast.bodies[i];
     const bool quiet = body.fixed || knot(i);
-    own.push_back(looks(i).color ? *looks(i).color : quiet ? neutral(look.theme) : turn(taken++));
+    const Color color = looks(i).color ? *looks(i).color : quiet ? neutral(look.theme) : turn(taken++);
+    own.push_back(looks(i).quiet ? mix(neutral(look.theme), colours.room, kHushed) : color);
     dots.push_back(body.kind == sim::ShapeKind::point ? dot : 0);
     add_pieces(i, body, Eigen::Matrix3d::Identity(), Vec3::Zero(), pieces);
     for (const sim::SceneInfo::Part& part : body.parts)
@@ -209,8 +210,8 @@ CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now) {
   return lens_at(panel.camera, panel.aim, panel.window, now.time, followed);
 }
 
-Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways,
-                     const sim::Snapshot& frame) {
+Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways, const sim::Snapshot& frame,
+                     std::span<const WorldLine> paths) {
   Picture picture;
   picture.aspect = stage.layout.aspect;
   picture.ground = stage.colours.ground;
@@ -253,9 +254,11 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     scenery.sight.finish();
     add_shadows(scenery);
     trace_trails(scenery, ways);
+    trace_paths(scenery, paths, false);
     trace_edges(scenery);
     draw_room_front(stage, lens, picture.moving);
     draw_space_arrows(scenery);
+    trace_paths(scenery, paths, true);
     draw_space_labels(scenery);
     draw_space_hands(scenery);
     picture.moving.unclip();

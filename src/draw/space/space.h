@@ -2,9 +2,11 @@
 
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "draw/picture/solids.h"
+#include "draw/picture/world_line.h"
 #include "draw/plane/stage.h"
 #include "draw/space/camera.h"
 #include "draw/space/light.h"
@@ -66,9 +68,9 @@ struct SpaceStage {
 /// How a panel sees space at an instant.
 CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now);
 
-/// `frame`: the instant whose clock and charts are shown.
-Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways,
-                     const sim::Snapshot& frame);
+/// `frame`: of which the clock and the charts are. `paths`: lines among the bodies.
+Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways, const sim::Snapshot& frame,
+                     std::span<const WorldLine> paths = {});
 
 /// A stroke, and how near it is: the farther is drawn first.
 struct Trace {
@@ -132,6 +134,7 @@ void add_links(SpaceFrame& scenery);
 /// The edges of bodies that are seen.
 void trace_edges(SpaceFrame& scenery);
 void trace_trails(SpaceFrame& scenery, Ways ways);
+void trace_paths(SpaceFrame& scenery, std::span<const WorldLine> paths, bool front);
 /// The shadows on the ground and on each other.
 void add_shadows(SpaceFrame& scenery);
 /// The lines that were traced, the farthest first, and arrows over them.

@@ -80,17 +80,20 @@ struct Snapshot {
     double angle = 0;           // plane: rad, not wrapped
     bool at_rest = false;       // frozen: steps leave it alone
     Vec3 blast = Vec3::Zero();  // what explosions push it with, N
+    Vec3 drag = Vec3::Zero();   // of the room's drag, and of the ground's, N
   };
   struct Spring {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
     int holds_a = -1, holds_b = -1;           // bodies; -1: the room
     double push = 0;                          // of its stiffness, N; negative: it pulls
+    Vec3 force = Vec3::Zero();                // on its a, with its damping, N
   };
   struct Mouse {
     bool pressed = false;
     Vec3 pointer = Vec3::Zero();
-    int body = -1;             // what it holds
-    Vec3 held = Vec3::Zero();  // the point of the body it holds
+    int body = -1;              // what it holds
+    Vec3 held = Vec3::Zero();   // the point of the body it holds
+    Vec3 force = Vec3::Zero();  // on that, N
   };
   struct Joint {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
@@ -129,6 +132,7 @@ struct Track {
   struct Point {
     double time = 0;
     Vec3 place = Vec3::Zero();
+    Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   };
   std::vector<int> bodies;
   std::vector<std::vector<Point>> points;  // one list a body of `bodies`, times increasing

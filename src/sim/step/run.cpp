@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "sim/model/stance.h"
 #include "sim/step/archive.h"
 #include "sim/step/snapshots.h"
 
@@ -92,7 +93,10 @@ class RunOf final : public Run {
     const double t = time({state_.step, 0}, model_.rate);
     for (std::size_t i = 0; i < track_.bodies.size(); ++i) {
       const int body = track_.bodies[i];
-      if (all || touched_[body]) track_.points[i].push_back({t, to_3d<D>(state_.x[body])});
+      if (!all && !touched_[body]) continue;
+      Track::Point point{t, to_3d<D>(state_.x[body])};
+      if (const int k = turning(state_, body); k >= 0) point.orientation = quaternion<D>(state_.turn[k]);
+      track_.points[i].push_back(point);
     }
     struck(false);
   }

@@ -1,11 +1,16 @@
 #include "sim/step/snapshots.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "sim/constraint/material.h"
 #include "sim/energy/energy.h"
 #include "sim/force/explosion.h"
+#include "sim/force/spring.h"
+#include "sim/model/stance.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::sim {
 
@@ -13,6 +18,8 @@ namespace {
 
 constexpr double kPathRate = 60;  // places a second of a mouse's way
 constexpr int kPathMost = 600;
+
+constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stands on it
 
 // in the plane (0, 0, w)
 template <int D>
@@ -77,6 +84,41 @@ void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
   }
 }
 
+// what drags on each body: all of its motion, and along the ground where it stands on it
+template <int D>
+void drag(const Model<D>& model, const State<D>& state, Snapshot& now) {
+  std::optional<SupportVertices<D>> vertices;
+  // as far as it falls between two impacts of the handout's rest, as in sim/motion/forward_dynamics.cpp
+  const double h = 1 / value(model.rate), g = std::sqrt(model.gravity.squaredNorm());
+  const double near = kOnGround * model.scale + g * h * h;
+  for (int i = 0; i < int(model.bodies.size()); ++i) {
+    const Body<D>& body = model.bodies[i];
+    if (body.fixed || (body.drag == 0 && body.ground_drag == 0)) continue;
+    Vec<D> force = -body.drag * state.v[i];
+    for (const Wall<D>& wall : body.ground_drag != 0 ? model.walls : std::vector<Wall<D>>()) {
+      // ground is what gravity presses on
+      if (g > 0 && !(wall.normal.dot(model.gravity) < 0)) continue;
+      if (!vertices) vertices.emplace(model.bodies);
+      const BodyMotion<D> at = body_motion(state, i);
+      double least = 1e300;
+      for (const SupportVertex<D>& vertex : (*vertices)[i])
+        least = std::min(least, (at.x + at.arm(vertex.at) - wall.point).dot(wall.normal) - vertex.radius);
+      if (least > near) continue;
+      force -= body.ground_drag * (state.v[i] - wall.normal * wall.normal.dot(state.v[i]));
+      break;
+    }
+    now.bodies[std::size_t(i)].drag = to_3d<D>(force);
+  }
+}
+
+// how a point of a body, or a place of the room, moves
+template <int D>
+Vec<D> velocity(const State<D>& state, const End<D>& end) {
+  if (end.body < 0) return Vec<D>::Zero();
+  const BodyMotion<D> at = body_motion(state, end.body);
+  return at.velocity(at.arm(end.local));
+}
+
 }  // namespace
 
 double friction(const SceneInfo& cast, const Snapshot::Contact& contact) {
@@ -131,10 +173,12 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
     }
   }
   if (blasting(state)) blow(model, state, now);
+  drag(model, state, now);
   for (const Spring<D>& s : model.springs) {
     const Vec<D> a = place(state, s.a), b = place(state, s.b);
-    now.springs.push_back(
-        {to_3d<D>(a), to_3d<D>(b), s.a.body, s.b.body, -s.stiffness * ((b - a).norm() - s.rest_length)});
+    now.springs.push_back({to_3d<D>(a), to_3d<D>(b), s.a.body, s.b.body,
+                           -s.stiffness * ((b - a).norm() - s.rest_length),
+                           to_3d<D>(pull<D>(law(s), a, velocity(state, s.a), b, velocity(state, s.b)))});
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint<D>& j = model.joints[i];
@@ -150,7 +194,12 @@ Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>
     mouse.held = mouse.pointer;
     if (const Grip<D>& grip = state.grips[i]; grip.body >= 0) {
       mouse.body = grip.body;
-      mouse.held = to_3d<D>(place(state, End<D>{grip.body, grip.local}));
+      const End<D> held{grip.body, grip.local};
+      const auto hand = stepper.paths()[i].at(t);
+      const Vec<D> point = place(state, held);
+      mouse.held = to_3d<D>(point);
+      mouse.force =
+          to_3d<D>(pull<D>(law(model.mice[i]), point, velocity(state, held), hand.place, hand.velocity));
     }
     now.mice.push_back(mouse);
   }

@@ -1,0 +1,273 @@
+// The places of a film's labels. At each sample of the run every place i of a label costs c_i: what it covers
+// there, and how far it is from what is usual. The course i(t) is the one of least
+//   sum c_i dt + a for each change + b for each unit of its way
+// which dynamic programming finds (Viterbi). Labels are planned one after another; the earlier ones are in
+// the way of the later ones. On its way from one place to another a label takes as long as its speed says.
+
+#include "draw/compose/annotations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "draw/compose/depict.h"
+
+namespace obscura::draw {
+namespace {
+
+constexpr double kFilmType = 24 / 8.5;           // page units a point at the weight 1, as of charts
+constexpr double kChange = 14;                   // points: of a change of place, as against a second of cost
+constexpr double kWay = 0.12;                    // of each unit of its way
+constexpr double kSpeed = 1.7;                   // page units a frame that a label moves by itself
+constexpr double kQuickest = 0.3, kSlowest = 4;  // s: a change
+constexpr double kPathError = 0.2;               // page units
+constexpr double kFaintest = 0.22;               // of a path's oldest end
+constexpr double kShared = 40;                   // points: of lying on another label
+
+double overlap(const Offered& a, int i, const Offered& b, int j) {
+  const Point d = (a.places[std::size_t(i)].center - b.places[std::size_t(j)].center).cwiseAbs();
+  const Point room = 0.56 * (a.size + b.size) - d;
+  if (!(room.x() > 0 && room.y() > 0)) return 0;
+  const Point least = a.size.cwiseMin(b.size);
+  return std::min(room.x() / least.x(), 1.0) * std::min(room.y() / least.y(), 1.0);
+}
+
+// the place of a course at a sample, without the way between
+int place_at(const LabelPlan::Course& course, double film) {
+  int at = course.first;
+  for (const LabelPlan::Move& move : course.moves)
+    if (film >= (move.begin + move.end) / 2) at = move.to;
+  return at;
+}
+
+// points of a curve that are needed for it to be no farther than `tolerance` from the line through them, by
+// Douglas and Peucker
+std::vector<sim::Track::Point> thinned(const std::vector<sim::Track::Point>& all, double tolerance) {
+  if (all.size() < 3) return all;
+  std::vector<char> kept(all.size(), 0);
+  kept.front() = kept.back() = 1;
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, all.size() - 1}};
+  while (!open.empty()) {
+    const auto [a, b] = open.back();
+    open.pop_back();
+    const sim::Vec3 from = all[a].place, way = all[b].place - from;
+    const double length = way.squaredNorm();
+    double worst = tolerance;
+    std::size_t at = 0;
+    for (std::size_t k = a + 1; k < b; ++k) {
+      const sim::Vec3 d = all[k].place - from;
+      const double s = length > 0 ? std::clamp(d.dot(way) / length, 0.0, 1.0) : 0;
+      const double far = (d - s * way).norm();
+      if (far > worst) worst = far, at = k;
+    }
+    if (at == 0) continue;
+    kept[at] = 1;
+    open.push_back({a, at}), open.push_back({at, b});
+  }
+  std::vector<sim::Track::Point> needed;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (kept[k]) needed.push_back(all[k]);
+  return needed;
+}
+
+}  // namespace
+
+std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offered>>& samples,
+                                             const std::vector<double>& films, double point, double speed) {
+  // the samples that have each label, in the order in which words are set
+  std::vector<WordKey> order;
+  std::map<WordKey, std::vector<std::pair<std::size_t, const Offered*>>> seen;
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    for (const Offered& each : samples[k]) {
+      auto& at = seen[each.key];
+      if (at.empty()) order.push_back(each.key);
+      at.emplace_back(k, &each);
+    }
+  std::map<WordKey, LabelPlan::Course> planned;
+  std::vector<std::vector<std::pair<const Offered*, int>>> taken(samples.size());
+  for (const WordKey& key : order) {
+    const auto& at = seen[key];
+    const std::size_t n = at.front().second->places.size();
+    std::vector<double> best(n, 0), now(n);
+    std::vector<std::vector<int>> from(at.size(), std::vector<int>(n, 0));
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const auto& [sample, offered] = at[k];
+      const double dt = sample + 1 < films.size() ? films[sample + 1] - films[sample] : 0.1;
+      // while it is not shown a label changes its place at no cost
+      const bool gap = k == 0 || at[k - 1].first + 1 < sample;
+      const auto cheapest = std::size_t(std::min_element(best.begin(), best.end()) - best.begin());
+      for (std::size_t i = 0; i < n; ++i) {
+        std::size_t before = i;
+        if (k > 0) {
+          double least = best[i];
+          if (gap) {
+            before = cheapest, least = best[cheapest];
+          } else {
+            const double way = (offered->places[i].center - offered->places[cheapest].center).norm();
+            const double change = best[cheapest] + kChange * point + kWay * way;
+            if (change < least) before = cheapest, least = change;
+          }
+          now[i] = least;
+        } else {
+          now[i] = 0;
+        }
+        from[k][i] = int(before);
+        double cost = offered->places[i].cost;
+        for (const auto& [other, j] : taken[sample])
+          if (const double both = overlap(*offered, int(i), *other, j); both > 0)
+            cost += kShared * point * (1 + both);
+        now[i] += std::clamp(dt, 0.02, 1.0) * cost;
+      }
+      best = now;
+    }
+    std::vector<int> place(at.size());
+    place.back() = int(std::min_element(best.begin(), best.end()) - best.begin());
+    for (std::size_t k = at.size() - 1; k > 0; --k) place[k - 1] = from[k][std::size_t(place[k])];
+
+    LabelPlan::Course course{place[0], {}};
+    double free = -1e300;  // when the last way ends
+    for (std::size_t k = 1; k < at.size(); ++k) {
+      if (place[k] == place[k - 1]) continue;
+      const double here = films[at[k].first], before = films[at[k - 1].first];
+      LabelPlan::Move move{(here + before) / 2, (here + before) / 2, place[k]};
+      if (at[k - 1].first + 1 == at[k].first) {
+        // in the middle of its way when it would jump
+        const auto center = [&](int i) { return at[k].second->places[std::size_t(i)].center; };
+        const double way = (center(place[k]) - center(place[k - 1])).norm();
+        const double lasting = std::clamp(1.5 * way / speed, kQuickest, kSlowest);
+        move.begin = std::max(move.begin - lasting / 2, free), move.end = move.begin + lasting;
+      } else if (free > move.begin) {
+        course.moves.back().end = course.moves.back().begin = std::min(course.moves.back().begin, before);
+      }
+      free = move.end;
+      course.moves.push_back(move);
+    }
+    for (const auto& [sample, offered] : at)
+      taken[sample].emplace_back(offered, place_at(course, films[sample]));
+    planned.emplace(key, std::move(course));
+  }
+  return planned;
+}
+
+std::vector<std::vector<sim::Track::Point>> paths_of(
+    const Marks& marks, std::span<const std::shared_ptr<const sim::Track>> tracks, double tolerance) {
+  std::vector<std::vector<sim::Track::Point>> all;
+  for (const Marks::Path& path : marks.paths) {
+    std::vector<sim::Track::Point> way;
+    for (const auto& track : tracks) {
+      const auto at = std::find(track->bodies.begin(), track->bodies.end(), path.at.body);
+      if (at == track->bodies.end()) continue;
+      for (sim::Track::Point point : track->points[std::size_t(at - track->bodies.begin())]) {
+        point.place += point.orientation * path.at.local;
+        if (way.empty() || point.time > way.back().time) way.push_back(point);
+      }
+    }
+    all.push_back(thinned(way, tolerance));
+  }
+  return all;
+}
+
+std::vector<WorldLine> path_lines(const Marks& marks,
+                                  const std::vector<std::vector<sim::Track::Point>>& paths,
+                                  const sim::Snapshot& now, double film) {
+  std::vector<WorldLine> lines;
+  for (std::size_t i = 0; i < marks.paths.size(); ++i) {
+    const Marks::Path& path = marks.paths[i];
+    // its start is where it begins, its end when it goes
+    const double start = path.shown.start ? path.shown.start->time : 0;
+    if (now.time < start || !Interval{{}, path.shown.end}.has(now.time, film)) continue;
+    const double from = path.lasting > 0 ? std::max(now.time - path.lasting, start) : start;
+    WorldLine line{{}, path.at.body, path.color, path.front};
+    const auto add = [&](double time, const sim::Vec3& at) {
+      const double age = path.lasting > 0 ? (now.time - time) / path.lasting : 0;
+      line.nodes.push_back({at, kFaintest + (1 - kFaintest) * std::clamp(1 - age, 0.0, 1.0)});
+    };
+    const std::vector<sim::Track::Point>& way = paths[i];
+    auto first = std::lower_bound(way.begin(), way.end(), from,
+                                  [](const sim::Track::Point& p, double t) { return p.time < t; });
+    if (first != way.begin() && first != way.end() && first->time > from) {
+      const auto before = first - 1;
+      const double part = (from - before->time) / (first->time - before->time);
+      add(from, before->place + part * (first->place - before->place));
+    }
+    for (; first != way.end() && first->time < now.time; ++first) add(first->time, first->place);
+    add(now.time, place(path.at, now));
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead ahead, const Scales& given,
+                         double fps)
+    : marks_(marks), cast_(artist.scene_info()), colours_(artist.colours()), scales_(given) {
+  const double weight = artist.weight();
+  lettering_ = {.point = kFilmType * weight, .arrow = weight, .weight = weight};
+  ghosts_ = std::move(ahead.ghosts);
+  if (ahead.samples.empty()) {
+    plans_.resize(std::size_t(artist.panels()));
+    paths_.resize(marks_.paths.size());
+    return;
+  }
+
+  // one scale for each kind of arrow
+  std::vector<sim::Snapshot> moments;
+  for (RunAhead::Sample& sample : ahead.samples) moments.push_back(std::move(sample.now));
+  const Projection first = artist.projection(0, moments.front());
+  const double scale = artist.scale(moments.front());
+  const Scales chosen = draw::scales(marks_, cast_, moments, first.window(), scale);
+  for (const auto member :
+       {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
+    if (scales_.*member == 0) scales_.*member = chosen.*member;
+
+  if (ahead.track) {
+    const std::shared_ptr<const sim::Track> tracks[] = {ahead.track};
+    paths_ = paths_of(marks_, tracks, kPathError / scale);
+  }
+  paths_.resize(marks_.paths.size());
+
+  // first what values there are, then where their labels may stand
+  for (int panel = 0; panel < artist.panels(); ++panel) {
+    LabelPlan plan;
+    std::vector<std::vector<Offered>> offered(moments.size());
+    std::vector<double> films;
+    for (const RunAhead::Sample& sample : ahead.samples) films.push_back(sample.film);
+    for (std::size_t k = 0; k < moments.size(); ++k) {
+      List unused;
+      Annotating how{
+          .lettering = lettering_, .film = films[k], .survey = &offered[k], .ranges = &plan.ranges};
+      annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
+               how);
+    }
+    const LabelPlan ranges{plan.ranges, {}};
+    for (std::size_t k = 0; k < moments.size(); ++k) {
+      List unused;
+      offered[k].clear();
+      Annotating how{.lettering = lettering_, .film = films[k], .plan = &ranges, .survey = &offered[k]};
+      annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
+               how);
+    }
+    plan.courses = courses(offered, films, lettering_.point, kSpeed * fps);
+    plans_.push_back(std::move(plan));
+  }
+}
+
+std::vector<WorldLine> Annotations::lines(const sim::Snapshot& now, double film) const {
+  return path_lines(marks_, paths_, now, film);
+}
+
+std::vector<std::pair<const sim::Snapshot*, const Marks::Ghost*>> Annotations::ghosts(
+    const sim::Snapshot& now, double film) const {
+  std::vector<std::pair<const sim::Snapshot*, const Marks::Ghost*>> all;
+  for (std::size_t i = 0; i < ghosts_.size() && i < marks_.ghosts.size(); ++i)
+    if (marks_.ghosts[i].shown.has(now.time, film)) all.emplace_back(&ghosts_[i], &marks_.ghosts[i]);
+  return all;
+}
+
+void Annotations::draw(int panel, const Projection& projection, const sim::Snapshot& now, double film,
+                       List& list) const {
+  annotate(marks_, scales_, cast_, colours_, projection, now, list,
+           {.lettering = lettering_, .film = film, .plan = &plans_[std::size_t(panel)]});
+}
+
+}  // namespace obscura::draw

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "draw/compose/annotate.h"
+#include "draw/page/marks.h"
+#include "draw/picture/world_line.h"
+
+namespace obscura::draw {
+
+class Illustrator;
+
+/// What is known of a run before its film: what marks need to be the same in every frame, whichever machine
+/// draws it.
+struct RunAhead {
+  /// An instant of the run, and when the film shows it first (s of the film).
+  struct Sample {
+    sim::Snapshot now;
+    double film = 0;
+  };
+  std::vector<Sample> samples;              // in the order of time
+  std::vector<sim::Snapshot> ghosts;        // one a ghost of the marks
+  std::shared_ptr<const sim::Track> track;  // of the bodies with paths
+};
+
+/// The marks of a film. Arrows have one scale, values one number of digits and each label a place that it
+/// leaves only slowly, all found from the run ahead: so a frame is the same in a still, a shard and the whole
+/// film. docs/design.md, "Marks".
+class Annotations {
+ public:
+  /// `given`: scales that the scene sets; those that are 0 are chosen by the run. `fps`: of the film.
+  Annotations(const Marks& marks, const Illustrator& artist, RunAhead ahead, const Scales& given, double fps);
+
+  /// What lies in the world: the paths of points up to an instant.
+  std::vector<WorldLine> lines(const sim::Snapshot& now, double film) const;
+  /// The earlier instants that are shown now, with their marks.
+  std::vector<std::pair<const sim::Snapshot*, const Marks::Ghost*>> ghosts(const sim::Snapshot& now,
+                                                                           double film) const;
+  /// Arrows and words over a panel's picture.
+  void draw(int panel, const Projection& projection, const sim::Snapshot& now, double film, List& list) const;
+
+  const Scales& scales() const { return scales_; }
+  const LabelPlan& plan(int panel) const { return plans_[std::size_t(panel)]; }
+
+ private:
+  Marks marks_;
+  sim::SceneInfo cast_;
+  Palette colours_;
+  Lettering lettering_;
+  Scales scales_;
+  std::vector<LabelPlan> plans_;  // one a panel
+  std::vector<sim::Snapshot> ghosts_;
+  std::vector<std::vector<sim::Track::Point>> paths_;  // one a path of the marks, of its point
+};
+
+/// The points of the paths of marks since the run's start, as many as their curves need: none is farther from
+/// the line through them than `tolerance` (m).
+std::vector<std::vector<sim::Track::Point>> paths_of(
+    const Marks& marks, std::span<const std::shared_ptr<const sim::Track>> tracks, double tolerance);
+
+/// Those paths up to an instant.
+std::vector<WorldLine> path_lines(const Marks& marks,
+                                  const std::vector<std::vector<sim::Track::Point>>& paths,
+                                  const sim::Snapshot& now, double film);
+
+/// Where the labels of a film stand when: for each sample what it offers. A label goes to another place only
+/// where that pays, and not faster than `speed` (page units a second of the film).
+std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offered>>& samples,
+                                             const std::vector<double>& films, double point, double speed);
+
+}  // namespace obscura::draw

@@ -1,0 +1,249 @@
+#include "draw/page/readings.h"
+
+#include <cmath>
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+/// A reading of a rotation about a body's centre.
+Reading turning(const sim::SceneInfo& cast, const Vec3& middle, const Vec3& value) {
+  return {middle, value, cast.dimension == 2 ? value.z() : value.norm()};
+}
+
+/// The velocity of a point of a body.
+Vec3 velocity_at(const sim::Snapshot& now, int body, const Vec3& point) {
+  const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
+  const Vec3 r = point - it.position;
+  return it.velocity + it.spin.cross(r);
+}
+
+/// What a contact gives, as a quantity has it: all of the force, its part along the normal, what is left.
+Vec3 given(const sim::Snapshot::Contact& contact, Quantity what) {
+  const Vec3 normal = contact.force.dot(contact.normal) * contact.normal;
+  switch (what) {
+    case Quantity::contact:
+      return contact.force;
+    case Quantity::normal_force:
+      return normal;
+    case Quantity::friction:
+      return contact.force - normal;
+    default:
+      return contact.impulse;
+  }
+}
+
+/// All that pushes on a body where it touches: one for each that it touches, at the middle of its contacts.
+std::vector<Reading> touches(const sim::Snapshot& now, int body, Quantity what) {
+  std::vector<Reading> found;
+  const bool forces = what != Quantity::impulse && what != Quantity::normal;
+  for (std::size_t i = 0; i < now.contacts.size();) {
+    const sim::Snapshot::Contact& first = now.contacts[i];
+    Vec3 sum = Vec3::Zero(), point = Vec3::Zero();
+    double weight = 0;
+    for (; i < now.contacts.size(); ++i) {
+      const sim::Snapshot::Contact& each = now.contacts[i];
+      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
+      const Vec3& push = forces ? each.force : each.impulse;
+      const double w = std::max(push.dot(each.normal), what == Quantity::normal ? 1e-12 : 0.0);
+      sum += given(each, what), point += w * each.point, weight += w;
+    }
+    if ((first.body != body && first.other != body) || !(weight > 0)) continue;
+    const double side = first.body == body ? 1 : -1;
+    const int part = first.body != body ? first.body : first.other >= 0 ? first.other : -1 - first.wall;
+    found.push_back(
+        {point / weight, side * (what == Quantity::normal ? first.normal : sum), side * sum.norm(), part});
+  }
+  return found;
+}
+
+/// The pull of each spring on a body, at the point that it holds: of its stiffness alone, or with its
+/// damping.
+std::vector<Reading> pulls(const sim::SceneInfo& cast, const sim::Snapshot& now, int body, bool damping) {
+  std::vector<Reading> found;
+  for (std::size_t i = 0; i < cast.springs.size(); ++i) {
+    const sim::SceneInfo::Spring& spring = cast.springs[i];
+    if (spring.a != body && spring.b != body) continue;
+    const bool at_a = spring.a == body;
+    const Vec3 here = at_a ? now.springs[i].a : now.springs[i].b,
+               there = at_a ? now.springs[i].b : now.springs[i].a;
+    const Vec3 way = there - here;
+    if (!(way.norm() > 0)) continue;
+    const Vec3 stretch = spring.stiffness * (way.norm() - spring.rest_length) * way.normalized();
+    found.push_back({here, damping ? Vec3((at_a ? 1 : -1) * now.springs[i].force) : stretch, 0, int(i)});
+  }
+  return found;
+}
+
+/// What each joint gives a body, at the point that it holds.
+std::vector<Reading> held(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
+  std::vector<Reading> found;
+  for (std::size_t i = 0; i < cast.joints.size(); ++i) {
+    const sim::SceneInfo::Joint& joint = cast.joints[i];
+    if ((joint.a != body && joint.b != body) || now.joints[i].broken) continue;
+    const bool at_a = joint.a == body;
+    found.push_back(
+        {at_a ? now.joints[i].a : now.joints[i].b, (at_a ? 1 : -1) * now.joints[i].force, 0, int(i)});
+  }
+  return found;
+}
+
+Vec3 total(const std::vector<Reading>& all) {
+  Vec3 sum = Vec3::Zero();
+  for (const Reading& each : all) sum += each.value;
+  return sum;
+}
+
+/// The sum of all forces on a body; of a fixed one none, for what holds it is not known.
+Vec3 net_force(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
+  const sim::SceneInfo::Body& its = cast.bodies[std::size_t(body)];
+  if (its.fixed) return Vec3::Zero();
+  const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
+  Vec3 sum = its.mass * cast.gravity + it.drag + it.blast;
+  sum += total(touches(now, body, Quantity::contact)) + total(pulls(cast, now, body, true)) +
+         total(held(cast, now, body));
+  for (const sim::Snapshot::Mouse& mouse : now.mice)
+    if (mouse.body == body) sum += mouse.force;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo& cast,
+                              const sim::Snapshot& now) {
+  if (vector.quantity == Quantity::position) {
+    const Vec3 tail = vector.at ? place(*vector.at, now) : Vec3(Vec3::Zero());
+    const Vec3 tip = vector.to         ? place(*vector.to, now)
+                     : vector.body < 0 ? tail
+                                       : now.bodies[std::size_t(vector.body)].position;
+    return {{tail, tip - tail}};
+  }
+  if (vector.body < 0) return {};
+  const sim::Snapshot::Body& body = now.bodies[std::size_t(vector.body)];
+  const sim::SceneInfo::Body& its = cast.bodies[std::size_t(vector.body)];
+  const Vec3 at = vector.at ? place(*vector.at, now) : body.position;
+  switch (vector.quantity) {
+    case Quantity::velocity:
+      return {{at, velocity_at(now, vector.body, at)}};
+    case Quantity::acceleration:
+      return {{at, net_force(cast, now, vector.body) / its.mass}};
+    case Quantity::momentum:
+      return {{at, its.mass * body.velocity}};
+    case Quantity::weight:
+      return {{at, its.mass * cast.gravity}};
+    case Quantity::net_force:
+      return {{at, net_force(cast, now, vector.body)}};
+    case Quantity::drag:
+      return {{at, body.drag}};
+    case Quantity::spring:
+    case Quantity::spring_force:
+      return pulls(cast, now, vector.body, vector.quantity == Quantity::spring_force);
+    case Quantity::joint_force:
+      return held(cast, now, vector.body);
+    case Quantity::contact:
+    case Quantity::normal_force:
+    case Quantity::friction:
+    case Quantity::impulse:
+    case Quantity::normal:
+      return touches(now, vector.body, vector.quantity);
+    case Quantity::blast:
+      return {{at, body.blast}};
+    case Quantity::spin:
+      return {turning(cast, body.position, body.spin)};
+    case Quantity::torque: {
+      Vec3 torque = Vec3::Zero();
+      for (const auto& all :
+           {pulls(cast, now, vector.body, false), touches(now, vector.body, Quantity::contact)})
+        for (const Reading& each : all) torque += (each.tail - body.position).cross(each.value);
+      return {turning(cast, body.position, torque)};
+    }
+    case Quantity::position:
+      break;
+  }
+  return {};
+}
+
+Vec3 sum(Quantity quantity, int body, const sim::SceneInfo& cast, const sim::Snapshot& now) {
+  Marks::Vector vector;
+  vector.quantity = quantity, vector.body = body;
+  return body < 0 ? Vec3(Vec3::Zero()) : total(readings(vector, cast, now));
+}
+
+std::string_view unit(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::position:
+      return "m";
+    case Quantity::velocity:
+      return "m/s";
+    case Quantity::acceleration:
+      return "m/s²";
+    case Quantity::momentum:
+      return "kg m/s";
+    case Quantity::impulse:
+      return "N s";
+    case Quantity::normal:
+      return "";
+    case Quantity::spin:
+      return "rad/s";
+    case Quantity::torque:
+      return "N m";
+    default:
+      return "N";
+  }
+}
+
+double* scale_of(Quantity quantity, Scales& scales) {
+  switch (quantity) {
+    case Quantity::position:
+    case Quantity::normal:
+    case Quantity::spin:
+    case Quantity::torque:
+      return nullptr;
+    case Quantity::velocity:
+      return &scales.velocity;
+    case Quantity::acceleration:
+      return &scales.acceleration;
+    case Quantity::momentum:
+      return &scales.momentum;
+    case Quantity::impulse:
+      return &scales.impulse;
+    default:
+      return &scales.force;
+  }
+}
+
+Color color_of(const Marks::Vector& vector, const Palette& colours) {
+  if (vector.color) return *vector.color;
+  switch (vector.quantity) {
+    case Quantity::position:
+      return mix(*color("blue"), colours.ink, 0.3);
+    case Quantity::velocity:
+    case Quantity::momentum:
+      return mix(colours.velocity, colours.ink, 0.25);
+    case Quantity::acceleration:
+      return mix(*color("purple"), colours.ink, 0.3);
+    case Quantity::normal:
+    case Quantity::spin:
+    case Quantity::torque:
+      return colours.ink;
+    default:
+      return mix(colours.force, colours.ink, 0.12);
+  }
+}
+
+bool Interval::has(double time, double film) const {
+  constexpr double kSame = 1e-9;
+  const auto past = [&](const Cue& cue) {
+    return cue.after && !std::isnan(film) ? film >= cue.film - kSame : time >= cue.time - kSame;
+  };
+  return (!start || past(*start)) && (!end || !past(*end));
+}
+
+Vec3 place(const Site& site, const sim::Snapshot& now) {
+  if (site.body < 0) return site.local;
+  const sim::Snapshot::Body& body = now.bodies[std::size_t(site.body)];
+  return body.position + body.orientation * site.local;
+}
+
+}  // namespace obscura::draw

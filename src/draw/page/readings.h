@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "draw/page/marks.h"
+#include "draw/picture/theme.h"
+
+namespace obscura::draw {
+
+/// The value of an arrow, before it is scaled.
+struct Reading {
+  sim::Vec3 tail, value;
+  double signed_value = 0;  // of what turns: in the plane counter-clockwise, in space how much about `value`
+  int part = 0;  // which of the body's: the joint, the spring, what it touches (a wall as -1 - wall)
+};
+
+/// The arrows that a vector stands for at an instant: one a spring, one a joint, one a thing touched.
+std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo& cast,
+                              const sim::Snapshot& now);
+
+/// The value of a quantity of a body at an instant: the sum of its arrows.
+sim::Vec3 sum(Quantity quantity, int body, const sim::SceneInfo& cast, const sim::Snapshot& now);
+
+std::string_view unit(Quantity quantity);
+
+/// How long arrows are, one scale a kind for a whole page: m a unit. 0: none is drawn.
+struct Scales {
+  double velocity = 0;      // m/s
+  double force = 0;         // N
+  double impulse = 0;       // N s
+  double momentum = 0;      // kg m/s
+  double acceleration = 0;  // m/s^2
+};
+
+/// The scale of its kind; null: it has none.
+double* scale_of(Quantity quantity, Scales& scales);
+
+Color color_of(const Marks::Vector& vector, const Palette& colours);
+
+}  // namespace obscura::draw

@@ -1,0 +1,486 @@
+// What a film says about its run: arrows end where the quantity says, numbers are the run's, words stay clear
+// of what is there and do not jump, and a frame is the same whoever draws it.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/run/measures.h"
+#include "app/run/plots.h"
+#include "app/run/simulation.h"
+#include "draw/compose/annotations.h"
+#include "draw/page/measure.h"
+#include "draw/page/readings.h"
+#include "program.h"
+#include "where.h"
+
+namespace obscura::app {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kScenes = OBSCURA_SOURCE_DIR "/scenes/";
+
+/// A film's frames as lists of things, at their times.
+struct Filmed {
+  scene::Scene scene;
+  Ahead ahead;
+  draw::Illustrator artist;
+  std::unique_ptr<sim::Run> run;
+  Shots shots;
+
+  explicit Filmed(const std::string& file, const std::vector<std::string>& sets = {})
+      : Filmed(scene::read(file, sets)) {}
+  explicit Filmed(scene::Scene read)
+      : scene(std::move(read)),
+        ahead(app::ahead(scene)),
+        artist(depictor(scene, ahead)),
+        run(scene.run()),
+        shots(Shots::film(scene.duration, scene.film.fps, scene.film.speed)) {}
+
+  double film(std::int64_t frame) const { return double(frame) / sim::value(scene.film.fps); }
+  sim::Snapshot now(std::int64_t frame) { return moment(*run, shots[frame].time, scene); }
+  draw::List marks(const sim::Snapshot& now, std::int64_t frame) const {
+    draw::List list;
+    ahead.annotations->draw(0, artist.projection(0, now), now, film(frame), list);
+    return list;
+  }
+};
+
+/// Everything a line of type says.
+std::string said(const draw::Text& text) {
+  std::string all;
+  for (const draw::Span& span : text.spans) all += span.text;
+  return all;
+}
+
+/// The tips of the arrows of a list: the first corner of each head in ink.
+std::vector<draw::Point> tips(const draw::List& list, draw::Color color) {
+  std::vector<draw::Point> all;
+  for (const draw::Polygon& polygon : list.polygons)
+    if (polygon.fill == color && polygon.end - polygon.begin == 4)
+      all.push_back(list.points[std::size_t(polygon.begin)]);
+  return all;
+}
+
+/// One arrow of every quantity on the bodies of shipped scenes: at ten frames its tip is where tail, value
+/// and scale say. A pixel of a film at 1080p is a unit.
+TEST(Marks, AnArrowsTipLiesWhereTheQuantitySays) {
+  const std::array<std::pair<const char*, const char*>, 10> films{{{"slope", "block"},
+                                                                   {"swing", "bob"},
+                                                                   {"bounce", ""},
+                                                                   {"spring", ""},
+                                                                   {"pendulum", "bob"},
+                                                                   {"drag", ""},
+                                                                   {"chain", ""},
+                                                                   {"energy", "ball"},
+                                                                   {"top", ""},
+                                                                   {"cradle", ""}}};
+  int arrows = 0;
+  for (const auto& [name, named] : films) {
+    scene::Scene scene = scene::read(kScenes + name + ".toml");
+    scene.film.marks = {};
+    scene.film.speed = {};
+    scene.film.titles = {};
+    scene.film.charts.clear();
+    scene.duration = std::min(scene.duration, sim::Rational{3, 1}, [](auto a, auto b) { return a < b; });
+    const auto run = scene.run();
+    int body = -1;
+    for (std::size_t i = 0; i < run->scene_info().bodies.size(); ++i) {
+      const auto& each = run->scene_info().bodies[i];
+      if (!each.fixed && (body < 0 || each.name == named)) body = int(i);
+    }
+    ASSERT_GE(body, 0) << name;
+    const draw::Color ink{1, 2, 3};
+    for (const std::string& word : draw::arrows()) {
+      const draw::Quantity quantity = *draw::measure(word)->arrow;
+      draw::Scales any;
+      if (!draw::scale_of(quantity, any)) continue;
+      draw::Marks::Vector vector;
+      vector.quantity = quantity, vector.body = body, vector.color = ink;
+      scene.film.marks.vectors = {vector};
+      Filmed film(scene);
+      for (int k = 1; k <= 4; ++k) {
+        const std::int64_t frame = k * film.shots.size() / 5;
+        const sim::Snapshot now = film.now(frame);
+        const draw::Projection page = film.artist.projection(0, now);
+        const std::vector<draw::Point> found = tips(film.marks(now, frame), ink);
+        draw::Scales scales = film.ahead.annotations->scales();
+        const double scale = *draw::scale_of(quantity, scales);
+        std::size_t shown = 0;
+        for (const draw::Reading& each : draw::readings(vector, film.artist.scene_info(), now)) {
+          const draw::Point tail = page.page(each.tail), tip = page.page(each.tail + scale * each.value);
+          const draw::Rect& window = page.window();
+          const auto inside = [&](const draw::Point& p) {
+            return p.x() > window.x + 9 && p.y() > window.y + 9 && p.x() < window.x + window.width - 9 &&
+                   p.y() < window.y + window.height - 9;
+          };
+          if ((tip - tail).norm() < 12 || !inside(tail) || !inside(tip)) continue;
+          ++shown, ++arrows;
+          double nearest = 1e300;
+          for (const draw::Point& p : found) nearest = std::min(nearest, (p - tip).norm());
+          EXPECT_LT(nearest, 0.5) << name << " " << word << " at " << now.time;
+        }
+        EXPECT_LE(shown, found.size()) << name << " " << word;
+      }
+    }
+  }
+  EXPECT_GT(arrows, 150) << "too few were looked at";
+}
+
+/// Numbers in labels are those of `states`, rounded as the label says.
+TEST(Marks, PrintedNumbersAreTheRuns) {
+  for (const auto& [file, word, body, path] :
+       {std::tuple("slope", "normal_force", "block", "block.normal_force"),
+        std::tuple("slope", "friction", "block", "block.friction"),
+        std::tuple("slope", "net_force", "block", "block.net_force"),
+        std::tuple("slope", "weight", "block", "block.weight"),
+        std::tuple("swing", "joint_force", "bob", "bob.joint_force"),
+        std::tuple("swing", "momentum", "bob", "bob.momentum"),
+        std::tuple("pendulum", "spring_force", "bob", "bob.spring_force"),
+        std::tuple("pendulum", "acceleration", "bob", "bob.acceleration"),
+        std::tuple("swing", "kinetic", "bob", "energy.kinetic"),
+        std::tuple("energy", "height", "ball", "ball.position.y")}) {
+    scene::Scene scene = scene::read(kScenes + file + ".toml");
+    scene.film.marks = {};
+    scene.film.charts.clear();
+    scene.duration = std::min(scene.duration, sim::Rational{3, 1}, [](auto a, auto b) { return a < b; });
+    const auto run = scene.run();
+    int index = -1;
+    for (std::size_t i = 0; i < run->scene_info().bodies.size(); ++i)
+      if (run->scene_info().bodies[i].name == body) index = int(i);
+    ASSERT_GE(index, 0) << file;
+    scene.film.marks.labels = {{{-1, {1, 1, 0}}, "Q = {:.3}", word, index}};
+    Filmed film(scene);
+    for (int k = 1; k <= 6; ++k) {
+      const std::int64_t frame = k * film.shots.size() / 7;
+      const sim::Snapshot now = film.now(frame);
+      const draw::List list = film.marks(now, frame);
+      ASSERT_EQ(list.texts.size(), 1u);
+      std::string shown = said(list.texts[0]);
+      shown = shown.substr(shown.find("=") + 1);
+      if (const auto minus = shown.find("−"); minus != shown.npos) shown.replace(minus, 3, "-");
+      const auto asked = questions(std::string(path) + "@" + sim::text(film.shots[frame].time));
+      const double value = std::stod(answers(scene, asked).values[0]);
+      EXPECT_NEAR(std::stod(shown), value, 0.0005 + 1e-9) << file << " " << word << " at " << now.time;
+    }
+  }
+}
+
+/// The words of a film, frame by frame: how far each goes by itself.
+void walk(const std::string& name, const std::vector<std::string>& sets = {}) {
+  Filmed film(kScenes + name + ".toml", sets);
+  const double most = 2;
+  std::map<std::string, std::pair<draw::Point, std::vector<draw::Point>>> before;
+  int looked = 0;
+  for (std::int64_t frame = 0; frame < film.shots.size(); ++frame) {
+    const sim::Snapshot now = film.now(frame);
+    const draw::Projection page = film.artist.projection(0, now);
+    const draw::List list = film.marks(now, frame);
+    // what words can belong to: bodies, ends of arrows
+    std::vector<draw::Point> anchors;
+    for (const sim::Snapshot::Body& body : now.bodies) anchors.push_back(page.page(body.position));
+    for (const draw::Marks::Vector& vector : film.scene.film.marks.vectors) {
+      draw::Scales scales = film.ahead.annotations->scales();
+      const double* scale = draw::scale_of(vector.quantity, scales);
+      for (const draw::Reading& each : draw::readings(vector, film.artist.scene_info(), now)) {
+        anchors.push_back(page.page(each.tail));
+        anchors.push_back(page.page(each.tail + (scale ? *scale : 1) * each.value));
+      }
+    }
+    for (const draw::Text& text : list.texts) {
+      const std::string letters = said(text).substr(0, 3);
+      const auto then = before.find(letters);
+      if (then == before.end() || then->second.second.size() != anchors.size()) continue;
+      double moved = 0;
+      for (std::size_t k = 0; k < anchors.size(); ++k)
+        moved = std::max(moved, (anchors[k] - then->second.second[k]).norm());
+      // the end of an arrow turns the words at its side as well
+      const double way = (text.at - then->second.first).norm();
+      ++looked;
+      EXPECT_LT(way, most + 1.6 * moved) << name << ": \"" << said(text) << "\" at frame " << frame;
+    }
+    before.clear();
+    for (const draw::Text& text : list.texts) before[said(text).substr(0, 3)] = {text.at, anchors};
+  }
+  EXPECT_GT(looked, 50) << name;
+}
+
+TEST(Marks, WordsDoNotJump) {
+  walk("slope");
+  walk("swing");
+  walk("slope", {"film.fps=30"});
+}
+
+/// Words of one page do not cover each other.
+TEST(Marks, WordsKeepClearOfEachOther) {
+  for (const char* name : {"slope", "swing"}) {
+    Filmed film(kScenes + name + ".toml");
+    for (std::int64_t frame = 0; frame < film.shots.size(); frame += 5) {
+      const sim::Snapshot now = film.now(frame);
+      const draw::List list = film.marks(now, frame);
+      std::vector<draw::Rect> all;
+      for (const draw::Text& text : list.texts) {
+        double width = 0, size = 0;
+        for (const draw::Span& span : text.spans) {
+          width += span.lead + draw::width_of(span.text, span.face, span.size, span.tabular);
+          size = std::max(size, span.size);
+        }
+        all.push_back({text.at.x(), text.at.y() - 0.7 * size, width, 0.9 * size});
+      }
+      for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k) {
+          const double w =
+              std::min(all[i].x + all[i].width, all[k].x + all[k].width) - std::max(all[i].x, all[k].x);
+          const double h =
+              std::min(all[i].y + all[i].height, all[k].y + all[k].height) - std::max(all[i].y, all[k].y);
+          EXPECT_FALSE(w > 1 && h > 1) << name << ": \"" << said(list.texts[i]) << "\" and \""
+                                       << said(list.texts[k]) << "\" at frame " << frame;
+        }
+    }
+  }
+}
+
+/// The forces by their kinds add up, and to what the motion shows: the change of velocity over a step.
+TEST(Marks, TheKindsOfForcesAddUpToTheAcceleration) {
+  for (const char* name : {"slope", "swing", "pendulum", "drag_particle", "spring"}) {
+    const scene::Scene scene = scene::read(kScenes + name + ".toml");
+    const auto run = scene.run();
+    const sim::SceneInfo& cast = run->scene_info();
+    const sim::Rational h = sim::Rational{1, 1} / run->rate();
+    for (const std::int64_t step : {200, 331}) {
+      const sim::Snapshot before = moment(*run, h * sim::rational(step - 1), scene);
+      const sim::Snapshot now = moment(*run, h * sim::rational(step), scene);
+      const sim::Snapshot after = moment(*run, h * sim::rational(step + 1), scene);
+      for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
+        if (cast.bodies[i].fixed) continue;
+        const sim::Vec3 a = (after.bodies[i].velocity - before.bodies[i].velocity) / (2 * sim::value(h));
+        const sim::Vec3 found = draw::sum(draw::Quantity::acceleration, int(i), cast, now);
+        EXPECT_LT((found - a).norm(), 0.02 * (1 + a.norm())) << name << ", " << cast.bodies[i].name;
+        const auto of = [&](draw::Quantity q) { return draw::sum(q, int(i), cast, now); };
+        EXPECT_LT(
+            (of(draw::Quantity::normal_force) + of(draw::Quantity::friction) - of(draw::Quantity::contact))
+                .norm(),
+            1e-12 * (1 + of(draw::Quantity::contact).norm()));
+      }
+    }
+  }
+}
+
+using MarkedFilm = Program;
+
+const char* const kMarkedFilm = R"(duration = 1
+[room]
+size = [4, 2.25]
+[[ball]]
+name = "ball"
+radius = 0.1
+position = [0.5, 1]
+velocity = [2, 2]
+[film]
+speed = [{ time = 0.5, freeze = 0.5 }]
+badge = true
+[[film.vector]]
+quantity = "velocity"
+of = "ball"
+label = "v = {:.2} m/s"
+[[film.label]]
+at = "ball"
+text = "it stands"
+start = 0.5
+end = { time = 0.5, after = 0.25 }
+[[film.path]]
+at = { body = "ball", local = [0.1, 0] }
+[[film.ghost]]
+time = 0.25
+[[film.caption]]
+text = "A ball flies."
+end = 0.5
+[[film.card]]
+title = "First"
+lasting = 0.2
+[[film.card]]
+time = 1
+text = "Last"
+lasting = 0.2
+)";
+
+TEST_F(MarkedFilm, WithMarksIsTheSameByShardsAndResumedAndInStills) {
+  scene(kMarkedFilm);
+  ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o whole.mp4").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o parts.mp4 --shard 1/2").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o parts.mp4 --shard 2/2").exit, 0);
+  ASSERT_EQ(obscura("join parts.mp4").exit, 0);
+  EXPECT_EQ(contents(path("whole.mp4")), contents(path("parts.mp4")));
+  const Outcome compared = obscura("compare whole.mp4 parts.mp4");
+  EXPECT_EQ(compared.exit, 0) << compared.out;
+  // 0.2 s of a card, 0.5 s, 0.5 s still, 0.5 s, 0.2 s of a card
+  ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o frames/{frame}.png").exit, 0);
+  int frames = 0;
+  for (const auto& each : std::filesystem::directory_iterator(path("frames")))
+    frames += each.is_regular_file();
+  EXPECT_EQ(frames, 38);
+  // still a frame of the film
+  ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 --at 0.75 -o still.png").exit, 0);
+  const Outcome still = obscura("compare still.png frames/29.png");
+  EXPECT_EQ(still.exit, 0) << still.out;
+}
+
+TEST(Freeze, StandsStillForExactlySoManyFrames) {
+  const scene::Scene scene = scene::parse(kMarkedFilm, "marked.toml");
+  const Shots shots = Shots::film(scene.duration, {20, 1}, scene.film.speed);
+  ASSERT_EQ(shots.size(), 38);
+  int still = 0, first = 0, last = 0;
+  for (std::int64_t i = 0; i < shots.size(); ++i) {
+    still += shots[i].time == sim::Rational{1, 2};
+    first += shots[i].time == sim::Rational{0, 1};
+    last += shots[i].time == sim::Rational{1, 1};
+    if (i > 0) {
+      EXPECT_LE(shots[i - 1].time, shots[i].time);
+    }
+  }
+  // the card's four, and the run's own first one
+  EXPECT_EQ(first, 5);
+  EXPECT_EQ(still, 11);
+  EXPECT_EQ(last, 4);
+}
+
+TEST(Freeze, WordsComeAndGoMeanwhile) {
+  Filmed film(scene::parse(kMarkedFilm, "marked.toml", {"film.fps=20"}));
+  std::string shown;
+  for (std::int64_t frame = 0; frame < film.shots.size(); ++frame) {
+    const sim::Snapshot now = film.now(frame);
+    const draw::List list = film.marks(now, frame);
+    const bool there = std::any_of(list.texts.begin(), list.texts.end(), [](const draw::Text& text) {
+      return said(text).find("stands") != std::string::npos;
+    });
+    shown += there ? '#' : '.';
+  }
+  // 0.2 s of a card and 0.5 s before; then 0.25 s of 0.5 s that it stands still
+  EXPECT_EQ(shown, "..............#####...................");
+}
+
+TEST_F(MarkedFilm, MarksThatCannotBeAreErrorsWithTheirPlace) {
+  scene(std::string(kMarkedFilm) + R"([[film.vector]]
+quantity = "velocity"
+label = "v"
+[[film.vector]]
+quantity = "normal_force"
+of = "bal"
+[[film.label]]
+at = [1, 1]
+text = "F = {:2.1f} N"
+quantity = "kinetic"
+[[film.path]]
+at = [1, 1]
+[[film.label]]
+at = [1, 1]
+text = "late"
+start = 2
+end = 1
+)");
+  const Outcome run = obscura("check scene.toml");
+  EXPECT_EQ(run.exit, 3);
+  EXPECT_THAT(run.err, HasSubstr("scene.toml:35:1: this vector needs 'of', the body that has it"));
+  EXPECT_THAT(run.err, HasSubstr("did you mean 'ball'?"));
+  EXPECT_THAT(run.err, HasSubstr("'text': expected {} or {:.2}, the number of decimals, got \"{:2.1f}\""));
+  EXPECT_THAT(run.err, HasSubstr("a place of the room has no path: expected a body"));
+  EXPECT_THAT(run.err, HasSubstr("'end' comes before 'start': it would never be shown"));
+}
+
+/// A path of a wheel's rim after twenty turns is as round as at first: every vertex of it on the circle, and
+/// none so far from the next that the line between them is half a pixel off.
+TEST(Path, IsRoundAfterTwentySeconds) {
+  const char* const text = R"(duration = 21
+[room]
+size = [4, 2.25]
+gravity = [0, 0]
+[[ball]]
+name = "wheel"
+radius = 0.5
+position = [2, 1]
+spin = 360
+[[film.path]]
+at = { body = "wheel", local = [0.4, 0] }
+)";
+  Filmed film(scene::parse(text, "wheel.toml"));
+  const sim::Snapshot now = moment(*film.run, {20, 1}, film.scene);
+  const auto lines = film.ahead.annotations->lines(now, 20);
+  ASSERT_EQ(lines.size(), 1u);
+  const draw::Projection page = film.artist.projection(0, now);
+  double off = 0;
+  for (std::size_t k = 0; k + 1 < lines[0].nodes.size(); ++k) {
+    const sim::Vec3 half = (lines[0].nodes[k].at + lines[0].nodes[k + 1].at) / 2;
+    off = std::max(off, std::abs((half - sim::Vec3(2, 1, 0)).norm() - 0.4) * page.scale_at(half));
+  }
+  EXPECT_LT(off, 0.5);
+  EXPECT_GT(lines[0].nodes.size(), 20u * 20u);
+}
+
+TEST(Trail, IsRoundAfterTwentySeconds) {
+  const char* const text = R"(duration = 21
+[room]
+size = [4, 2.25]
+gravity = [0, 0]
+[[particle]]
+name = "bob"
+position = [2.5, 1]
+velocity = [0, 3.141592653589793]
+trail = 20
+[[joint]]
+type = "rod"
+between = [[2, 1], "bob"]
+)";
+  const scene::Scene scene = scene::parse(text, "circle.toml");
+  const draw::Illustrator artist = depictor(scene, {});
+  const auto run = scene.run();
+  run->track(artist.trailed());
+  const sim::Snapshot now = moment(*run, {20, 1}, scene);
+  const auto track = std::make_shared<const sim::Track>(run->take_track());
+  const std::shared_ptr<const sim::Track> ways[] = {track};
+  const draw::Picture picture = artist.depict(now, ways);
+  const draw::View view = artist.view(20);
+  const draw::Point center = view.page({2, 1, 0});
+  const draw::Stroke& trail = picture.moving.strokes.at(0);
+  double off = 0;
+  for (int k = trail.begin; k + 1 < trail.end; ++k) {
+    const draw::Point half =
+        (picture.moving.nodes[std::size_t(k)].at + picture.moving.nodes[std::size_t(k) + 1].at) / 2;
+    off = std::max(off, std::abs((half - center).norm() - 0.5 * view.scale));
+  }
+  EXPECT_LT(off, 0.5);
+}
+
+TEST(Emphasis, LeavesTheRestGrey) {
+  const auto grey = [](const scene::Scene& scene, int body) {
+    const draw::Illustrator artist = depictor(scene, {});
+    const auto run = scene.run();
+    const draw::Picture picture = artist.depict(moment(*run, {0, 1}, scene), {});
+    const draw::Color c = picture.moving.discs.at(std::size_t(body)).fill;
+    return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}) < 25;
+  };
+  const char* const text = R"([room]
+size = [4, 2.25]
+[[ball]]
+name = "a"
+radius = 0.2
+position = [1, 1]
+[[ball]]
+name = "b"
+radius = 0.2
+position = [2, 1]
+color = "orange"
+)";
+  const scene::Scene plain = scene::parse(text, "a.toml"),
+                     taught = scene::parse(text, "a.toml", {"look.emphasis=[\"b\"]"});
+  EXPECT_FALSE(grey(plain, 0));
+  EXPECT_TRUE(grey(taught, 0));
+  EXPECT_FALSE(grey(taught, 1));
+}
+
+}  // namespace
+}  // namespace obscura::app
