@@ -68,7 +68,7 @@ double EnergyGuard<D>::kinetic(const State<D>& state, int body) const {
 // the potentials of forces on each body
 template <int D>
 void EnergyGuard<D>::add_fields(const State<D>& state, std::vector<double>& to) {
-  if (!forces_.any()) return;
+  if (!forces_.potentials()) return;
   stand(state, motions_);
   forces_.energy(t_, motions_, &to);
 }
@@ -76,7 +76,7 @@ void EnergyGuard<D>::add_fields(const State<D>& state, std::vector<double>& to) 
 template <int D>
 void EnergyGuard<D>::open(const State<D>& state, double t) {
   t_ = t;
-  if (forces_.any()) forces_.gather(state);
+  if (forces_.potentials()) forces_.gather(state);
   const int n = int(weights_.size());
   x_ = state.x, moved_.resize(n), before_.resize(n), now_.resize(n), booked_.assign(n, 0);
   for (int i = 0; i < n; ++i) {

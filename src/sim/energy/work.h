@@ -27,6 +27,7 @@ class WorkBooks {
   std::vector<Orientation<D>> turn_;
   std::vector<AngularVec<D>> spin_;
   std::vector<BodyMotion<D>> motions_;
+  std::vector<double> flat_;  // places, no displacement, velocities and accelerations, side by side
 };
 
 }  // namespace obscura::sim

@@ -74,6 +74,8 @@ void Forces<D>::find_flying() {
            !force.formula->force.reads(each_slot::spin);
   };
   flies_ = pushed_;
+  for (const Force<D>& force : model_.forces)
+    potentials_ = potentials_ || !formula_of(force) || force.formula->potential;
   for (const Force<D>& force : model_.forces) {
     for (const Subject<D>& subject : force.subjects) {
       if (!alone(force) || offset(subject)) flies_[std::size_t(subject.body)] = 0;
@@ -95,8 +97,11 @@ void Forces<D>::find_flying() {
     }
     if (all.empty()) continue;
     std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->body < b->body; });
-    Flying& it = flying_.emplace_back(Flying{&force, {}, {}, Evaluation(force.formula->force)});
+    Flying& it = flying_.emplace_back(Flying{&force, {}, {}, Evaluation(force.formula->force), {}, false});
     it.fixed.resize(16);
+    for (int slot = 0; slot < each_slot::time; ++slot)
+      it.reads[std::size_t(slot)] = force.formula->force.reads(slot);
+    it.booked = !force.formula->potential && force.formula->works;
     for (const Subject<D>* subject : all) {
       it.bodies.push_back(subject->body);
       it.fixed[each_slot::mass].push_back(subject->mass),
@@ -105,21 +110,38 @@ void Forces<D>::find_flying() {
       it.fixed[each_slot::quadratic_drag].push_back(subject->quadratic_drag);
     }
   }
+  all_fly_ = any();
+  bool drag = false;
+  for (std::size_t i = 0; i < flies_.size(); ++i) {
+    const Body<D>& body = model_.bodies[i];
+    all_fly_ = all_fly_ && !body.turns() && !body.linked && (body.fixed || !pushed_[i] || flies_[i]);
+    drag = drag || body.drag != 0;
+  }
+  if (!drag) return;
+  for (const Body<D>& body : model_.bodies) drags_.push_back(body.fixed ? 0 : body.drag);
 }
 
 template <int D>
-void Forces<D>::accelerate(double t, int first, int count, const double* x, const double* d, const double* v,
-                           double* rates) {
+double Forces<D>::accelerate(double t, int first, int count, const double* x, const double* d,
+                             const double* v, double* rates) {
+  using namespace each_slot;
+  double power = 0;
+  if (!drags_.empty()) {
+    for (int i = 0; i < count; ++i) {
+      double v2 = 0;
+      for (int axis = 0; axis < D; ++axis) v2 += v[D * i + axis] * v[D * i + axis];
+      power -= drags_[std::size_t(first + i)] * v2;
+    }
+  }
   for (Flying& it : flying_) {
     const auto begin = std::lower_bound(it.bodies.begin(), it.bodies.end(), first);
     const auto end = std::lower_bound(begin, it.bodies.end(), first + count);
     if (begin == end) continue;
     const Force<D>& force = *it.force;
-    const Program& program = force.formula->force;
     std::array<double, std::size_t(each_slot::end)> uniform{};
     uniform[each_slot::time] = t;
     if (force.center) {
-      for (int k = 0; k < D; ++k) uniform[std::size_t(each_slot::center + k)] = force.center->local[k];
+      for (int k = 0; k < D; ++k) uniform[std::size_t(center + k)] = force.center->local[k];
     }
     it.evaluation.begin(uniform);
     std::array<const double*, std::size_t(each_slot::time)> inputs{};
@@ -127,32 +149,43 @@ void Forces<D>::accelerate(double t, int first, int count, const double* x, cons
          at += kLanes) {
       const int n = std::min(kLanes, last - at);
       const int* const bodies = it.bodies.data() + at;
-      for (const int slot : {int(each_slot::mass), int(each_slot::charge), int(each_slot::copy),
-                             int(each_slot::drag), int(each_slot::quadratic_drag)})
+      // side by side they are read and written without looking
+      const bool dense = bodies[n - 1] - bodies[0] == n - 1;
+      const int from = D * (bodies[0] - first);
+      const auto each_lane = [&](auto&& act) {
+        if (dense) {
+          for (int k = 0; k < n; ++k) act(k, from + D * k);
+        } else {
+          for (int k = 0; k < n; ++k) act(k, D * (bodies[k] - first));
+        }
+      };
+      for (const int slot : {int(mass), int(charge), int(copy), int(drag), int(quadratic_drag)})
         inputs[std::size_t(slot)] = it.fixed[std::size_t(slot)].data() + at;
       for (int axis = 0; axis < D; ++axis) {
-        if (program.reads(each_slot::x + axis)) {
-          double* const row = lanes_.data() + std::size_t(each_slot::x + axis) * kLanes;
-          for (int k = 0; k < n; ++k) {
-            const int i = D * (bodies[k] - first) + axis;
-            row[k] = x[i] + d[i];
-          }
-          inputs[std::size_t(each_slot::x + axis)] = row;
-        }
-        if (program.reads(each_slot::vx + axis)) {
-          double* const row = lanes_.data() + std::size_t(each_slot::vx + axis) * kLanes;
-          for (int k = 0; k < n; ++k) row[k] = v[D * (bodies[k] - first) + axis];
-          inputs[std::size_t(each_slot::vx + axis)] = row;
-        }
+        double* const place = lanes_.data() + std::size_t(each_slot::x + axis) * kLanes;
+        double* const speed = lanes_.data() + std::size_t(vx + axis) * kLanes;
+        if (it.reads[std::size_t(each_slot::x + axis)])
+          each_lane([&](int k, int i) { place[k] = x[i + axis] + d[i + axis]; });
+        if (it.reads[std::size_t(vx + axis)] || it.booked)
+          each_lane([&](int k, int i) { speed[k] = v[i + axis]; });
+        inputs[std::size_t(each_slot::x + axis)] = place, inputs[std::size_t(vx + axis)] = speed;
       }
       it.evaluation.run(n, inputs);
+      const double* const masses = inputs[mass];
       std::int64_t finite = 0;
+      double given[4] = {};
       for (int axis = 0; axis < D; ++axis) {
         const double* const f = it.evaluation.output(axis);
         finite |= within(f, n, kFinite);
-        for (int k = 0; k < n; ++k)
-          rates[D * (bodies[k] - first) + axis] += f[k] / model_.bodies[std::size_t(bodies[k])].mass;
+        each_lane([&](int k, int i) { rates[i + axis] += f[k] / masses[k]; });
+        if (!it.booked) continue;
+        const double* const speed = inputs[std::size_t(vx + axis)];
+        for (int k = 0; k + 4 <= n; k += 4) {
+          for (int lane = 0; lane < 4; ++lane) given[lane] += f[k + lane] * speed[k + lane];
+        }
+        for (int k = n & ~3; k < n; ++k) given[0] += f[k] * speed[k];
       }
+      power += (given[0] + given[1]) + (given[2] + given[3]);
       if (finite >= 0) continue;
       for (int k = 0; k < n; ++k) {
         Vec<D> f, place;
@@ -164,6 +197,7 @@ void Forces<D>::accelerate(double t, int first, int count, const double* x, cons
       }
     }
   }
+  return power;
 }
 
 template <int D>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -33,9 +34,13 @@ class Forces {
   /// serves it.
   bool flies(int body) const { return flies_[std::size_t(body)] != 0; }
   /// Adds to `rates` the accelerations at time t of `count` bodies from body `first` on, of those that fly: a
-  /// number an axis, one body after another. They are displaced by d from x.
-  void accelerate(double t, int first, int count, const double* x, const double* d, const double* v,
-                  double* rates);
+  /// number an axis, one body after another. They are displaced by d from x. Answers the power of what is
+  /// booked, drag with it, W.
+  double accelerate(double t, int first, int count, const double* x, const double* d, const double* v,
+                    double* rates);
+  /// Whether any force has a potential; whether all that moves flies.
+  bool potentials() const { return potentials_; }
+  bool all_fly() const { return all_fly_; }
 
   /// Takes in how bodies are numbered from here on: `member` is the place of each in the motions of apply(),
   /// below zero where it stands still as it does in `state`.
@@ -96,11 +101,15 @@ class Forces {
     std::vector<int> bodies;  // ascending
     std::vector<std::vector<double>> fixed;
     Evaluation evaluation;
+    std::array<bool, 16> reads{};
+    bool booked = false;  // its work is
   };
 
   const Model<D>& model_;
   std::vector<char> pushed_, flies_;
   std::vector<Flying> flying_;
+  std::vector<double> drags_;  // N s/m, one a body; empty where there is none
+  bool potentials_ = false, all_fly_ = false;
   std::vector<Active> active_;
   std::vector<BodyMotion<D>> still_;
   std::vector<int> gathered_;  // member, as last gathered

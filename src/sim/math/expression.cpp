@@ -427,11 +427,12 @@ namespace {
 
 // one operation for n bodies: `to` is none of the others
 template <class F>
-void each(int n, double* __restrict to, const double* a, F&& f) {
+[[gnu::always_inline]] inline void each(int n, double* __restrict to, const double* a, F&& f) {
   for (int i = 0; i < n; ++i) to[i] = f(a[i]);
 }
 template <class F>
-void each(int n, double* __restrict to, const double* a, const double* b, F&& f) {
+[[gnu::always_inline]] inline void each(int n, double* __restrict to, const double* a, const double* b,
+                                        F&& f) {
   for (int i = 0; i < n; ++i) to[i] = f(a[i], b[i]);
 }
 

@@ -31,8 +31,9 @@ ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Pat
     std::iota(numbers_[i].begin(), numbers_[i].end(), 0);
   }
   ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty() || !model.chains.empty();
-  ever_ = ever_ || forces_.any();
   for (const Body<D>& body : model.bodies) ever_ = ever_ || body.ground_drag != 0;
+  only_forces_ = !ever_;
+  ever_ = ever_ || forces_.any();
 }
 
 template <int D>
@@ -47,6 +48,16 @@ template <int D>
 void ForwardDynamics<D>::gather(const State<D>& state, bool everyone) {
   const Subset all{numbers_[0], numbers_[1], numbers_[2]};
   if (everyone || blasting(state)) return gather(state, all);
+  // the same as last time?
+  if (only_forces_ && forces_.any() && !bodies_.empty()) {
+    bool same = true;
+    for (int body = 0; same && body < int(member_.size()); ++body) {
+      const bool asleep = model_.bodies[body].fixed || (!state.frozen.empty() && state.frozen[body]);
+      const bool takes = forces_.push(body) && !asleep && !(leaves_flying_ && forces_.flies(body));
+      same = takes == (member_[body] >= 0);
+    }
+    if (same) return;
+  }
   // bodies with a spring, those that the mouse holds, and those that the ground brakes or a force pushes
   for (const int body : all_) member_[body] = -1;
   const auto mark = [&](int body) {
@@ -138,6 +149,8 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
   }
   braked_.reserve(dragged_.size());
 
+  flying_ = turning_ == 0 && ties_.empty() && dragged_.empty() && chains_.size() == 0 && forces_.all_fly();
+
   const std::size_t n = std::size_t(chain_start() + chains_.size());
   x_.resize(bodies_.size()), stances_.assign(all_.size(), {}), turn_.resize(turning_), base_.resize(turning_);
   d_.resize(n), v_.resize(n), d_rate_.resize(n), v_rate_.resize(n);
@@ -216,8 +229,30 @@ template <int D>
 void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
                               System* with) {
   if (all_.empty()) return;
+  if (flying_ && !with && !blasting(state)) return fly(integrate, state, t, h, stages);
   const int n = pieces(state, h);
   for (int i = 0; i < n; ++i) piece(integrate, state, t + i * (h / n), h / n, stages, with ? *with : *this);
+}
+
+// bodies that nothing but forces on each alone acts on, in blocks that stay in the nearest cache
+template <int D>
+void ForwardDynamics<D>::fly(Integrate* integrate, State<D>& state, double t, double h, Stages& stages) {
+  constexpr int kBlock = 128;
+  const int n = int(bodies_.size());
+  for (int first = 0, count; first < n; first += count) {
+    count = 1;
+    while (count < kBlock && first + count < n && bodies_[first + count] == bodies_[first] + count) ++count;
+    const std::size_t size = std::size_t(D) * std::size_t(count);
+    const std::span<double> d(d_.data(), size), v(state.v[bodies_[first]].data(), size);
+    std::fill(d.begin(), d.end(), 0.0);
+    double* const x = state.x[bodies_[first]].data();
+    const std::span<const double> gravity(gravity_), drag(drag_);
+    ForcedTranslation<D> flight(gravity.subspan(std::size_t(D * first), size),
+                                drag.empty() ? drag : drag.subspan(std::size_t(D * first), size), forces_,
+                                bodies_[first], x);
+    integrate(flight, t, h, d, v, stages);
+    for (std::size_t i = 0; i < size; ++i) x[i] += d[i];
+  }
 }
 
 template <int D>

@@ -99,6 +99,7 @@ class ForwardDynamics final : public System {
   void gather_marked(const State<D>& state, const Subset& of);
   void load(const State<D>& state);
   int pieces(const State<D>& state, double h) const;
+  void fly(Integrate* integrate, State<D>& state, double t, double h, Stages& stages);
   void piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System& rates);
   Moving moving(const Hold& hold, double t) const;
   void push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate);
@@ -113,6 +114,7 @@ class ForwardDynamics final : public System {
   std::vector<int> numbers_[3];  // of all bodies, springs, chains
   std::vector<Tie> ties_;        // springs in order, then mice in order
   bool ever_ = false, leaves_flying_ = false;
+  bool only_forces_ = false, flying_ = false;  // nothing else of the model ties; all that is gathered flies
   Blasts<D> blasts_;
   Forces<D> forces_;
   std::vector<Wrench<D>> pushes_;  // of forces_, one a member

@@ -35,14 +35,24 @@ class ForcedTranslation final : public System {
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override {
     flight_.rates(t, d, v, d_rate, v_rate);
-    forces_.accelerate(t, first_, int(v.size()) / D, x_, d.data(), v.data(), v_rate.data());
+    const double power =
+        forces_.accelerate(t, first_, int(v.size()) / D, x_, d.data(), v.data(), v_rate.data());
+    if (stage_ < 4) powers_[stage_++] = power;
+  }
+
+  /// What the forces that are booked did in a step of h (s) by this scheme, J: its own quadrature.
+  double work(Integrator integrator, double h) const {
+    const double* const p = powers_;
+    if (integrator == Integrator::rk4) return h * (p[0] + 2 * (p[1] + p[2]) + p[3]) / 6;
+    return h * p[integrator == Integrator::midpoint ? 1 : 0];
   }
 
  private:
   FreeTranslation flight_;
   Forces<D>& forces_;
-  int first_;
+  int first_, stage_ = 0;
   const double* x_;
+  double powers_[4] = {};
 };
 
 /// Free turning, see sim/math/lie_step.h: in the plane the spin stays, in space it wobbles.

@@ -157,7 +157,9 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double fracti
     const bool cut = edge != edges_.end() && edge->at.step == state.step && edge->at.fraction <= fraction;
     const double to = cut ? edge->at.fraction : fraction;
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
-    work_.open(state);
+    if (!contact_) plan(state);
+    books_by_stage_ = !contact_ && tied_.size() == 0;
+    if (!books_by_stage_) work_.open(state);
     if (contact_) {
       contact_->step(state, begun, (to - from) * h);
       if (!sound(state)) return divergence_.check_bounds(state, ended);
@@ -166,10 +168,9 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double fracti
       for (const int body : by_handout_) handout_.look(state, body, 1, suspects_);
       handout_.collide(state, suspects_, ended);
     } else {
-      plan(state);
       suspects_.clear();
       if (!integrate(state, begun, (to - from) * h)) return divergence_.check_bounds(state, ended);
-      work_.close(state, begun, (to - from) * h);
+      if (!books_by_stage_) work_.close(state, begun, (to - from) * h);
       if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
       handout_.collide(state, suspects_, ended);
     }
@@ -275,6 +276,7 @@ bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
   if (forces_.any()) {
     ForcedTranslation<D> flight(gravity_, drag, forces_, block.first, x);
     integrate_(flight, t, h, d, v, stages_);
+    if (books_by_stage_) state.work[0] += flight.work(model_.integrator, h);
   } else {
     FreeTranslation flight(gravity_, drag);
     integrate_(flight, t, h, d, v, stages_);

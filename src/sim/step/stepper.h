@@ -77,7 +77,7 @@ class Stepper {
   WorkBooks<D> work_;
   Forces<D> forces_;          // on bodies that fly
   std::vector<int> gripped_;  // by each mouse, as the plan knows
-  bool planned_ = false, blasting_ = false;
+  bool planned_ = false, blasting_ = false, books_by_stage_ = false;
 
   std::vector<Block> flying_, spinning_;  // centres, and turns
   std::vector<double> gravity_;           // a block of it
