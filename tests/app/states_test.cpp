@@ -136,7 +136,7 @@ TEST_F(States, TroubleExitsWithSixAfterWhatWasGood) {
 }
 
 TEST_F(States, AForceThatIsNoNumberExitsWithSixAndSaysWhere) {
-  scene(R"(
+  scene(R"scene(
 [room]
 gravity = [0, 0]
 [[particle]]
@@ -145,7 +145,7 @@ position = [1, 1]
 velocity = [-1, 0]
 [[force]]
 components = ["sqrt(x - 0.5)", 0]
-)");
+)scene");
   const Outcome run = obscura("states scene.toml --at 5");
   EXPECT_EQ(run.exit, 6);
   EXPECT_NE(run.err.find("ball"), std::string::npos) << run.err;

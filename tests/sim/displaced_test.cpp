@@ -19,19 +19,19 @@ BodyMotion<D> standing(const Vec<D>& x, const Orientation<D>& turn) {
 }
 
 template <int D>
-struct Case {
+struct Floating {
   const char* name;
   Shape<D> shape;
 };
 
-std::vector<Case<2>> plane() {
+std::vector<Floating<2>> plane() {
   return {{"ball", Ball<2>{0.7, {0.1, 0.2}}},
           {"box", Box<2>{{0.5, 0.3}}},
           {"polygon", Polygon{{{-0.5, -0.4}, {0.6, -0.3}, {0.4, 0.5}, {-0.2, 0.6}}}},
           {"compound", Compound<2>{{Ball<2>{0.3, {0.9, 0}}, Box<2>{{0.5, 0.1}}}}}};
 }
 
-std::vector<Case<3>> space() {
+std::vector<Floating<3>> space() {
   Hull wedge;
   wedge.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 0.8, 0}, {0, 0, 1.2}};
   wedge.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -44,7 +44,7 @@ std::vector<Case<3>> space() {
 
 // the pressure's work: d(rho g A (level - c_y))/dy = -rho g A, and its turning moment likewise
 template <int D>
-void derives(const Case<D>& one, const Vec<D>& x, const Orientation<D>& turn, double level) {
+void derives(const Floating<D>& one, const Vec<D>& x, const Orientation<D>& turn, double level) {
   const auto held = [&](const Vec<D>& at, const Orientation<D>& turned) {
     const Displaced<D> wet = displaced(one.shape, standing<D>(at, turned), level);
     return wet.content * (level - wet.center[1]);
@@ -63,7 +63,7 @@ void derives(const Case<D>& one, const Vec<D>& x, const Orientation<D>& turn, do
 }
 
 TEST(Displaced, AboveNothingAndBelowAll) {
-  for (const Case<2>& one : plane()) {
+  for (const Floating<2>& one : plane()) {
     const MassProperties<2> whole = mass_properties(one.shape);
     const BodyMotion<2> at = standing<2>({3, 5}, Orientation<2>(0.8));
     EXPECT_EQ(displaced(one.shape, at, 1).content, 0) << one.name;
@@ -71,7 +71,7 @@ TEST(Displaced, AboveNothingAndBelowAll) {
     EXPECT_NEAR(wet.content, whole.content, 1e-14) << one.name;
     EXPECT_NEAR((wet.center - (at.x + at.arm(whole.center))).norm(), 0, 1e-14) << one.name;
   }
-  for (const Case<3>& one : space()) {
+  for (const Floating<3>& one : space()) {
     const MassProperties<3> whole = mass_properties(one.shape);
     const BodyMotion<3> at = standing<3>({3, 5, 1}, exponential(Vec3(0.8, 0.3, -1)));
     EXPECT_EQ(displaced(one.shape, at, 1).content, 0) << one.name;
@@ -85,8 +85,8 @@ TEST(Displaced, AboveNothingAndBelowAll) {
 TEST(Displaced, IsTheSlopeOfTheWorkAgainstThePressure) {
   for (const double level : {-0.3, 0.05, 0.2, 0.41}) {
     for (const double angle : {0.1, 0.9, 2.2}) {
-      for (const Case<2>& one : plane()) derives<2>(one, {0.3, 0.1}, Orientation<2>(angle), level);
-      for (const Case<3>& one : space())
+      for (const Floating<2>& one : plane()) derives<2>(one, {0.3, 0.1}, Orientation<2>(angle), level);
+      for (const Floating<3>& one : space())
         derives<3>(one, {0.3, 0.1, 0.2}, exponential(angle * Vec3(0.6, 0.64, 0.48)), level);
     }
   }
