@@ -216,7 +216,6 @@ void read_frame(const Fields& fields, const Reader<D>& read, Diagnostics& compla
   if (const Node* columns = fields.given("columns")) figure.columns = int(columns->number());
   figure.room = fields.flag("room");
   figure.scale_bar = fields.flag("scale_bar");
-  static_cast<draw::Marks&>(figure) = read_marks<D>(fields, "figure", read, complaints);
   figure.formula = fields.text("formula");
   figure.vary = fields.text("vary");
   if (const auto equals = figure.vary.find('=');

@@ -61,7 +61,7 @@ std::vector<Key> rows() {
       {.path = "seed", .form = integer, .fallback = "0", .range = kNotNegative,
        .doc = "Seed of all random numbers. The same seed gives the same scene everywhere.", .example = "4"},
 
-      {.path = "constants", .form = numbers,
+      {.path = "constants", .form = numbers, .absent = "none",
        .doc = "Numbers with names of their own, for every expression and for `--set constants.G=2`: numbers, or expressions of those above them.",
        .example = "G = 1"},
 

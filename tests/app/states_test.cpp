@@ -149,7 +149,7 @@ components = ["sqrt(x - 0.5)", 0]
   const Outcome run = obscura("states scene.toml --at 5");
   EXPECT_EQ(run.exit, 6);
   EXPECT_NE(run.err.find("ball"), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("force is not a number"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("the force of ball is not a number"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("force[0] at x = 0.49"), std::string::npos) << run.err;
 }
 

@@ -52,7 +52,8 @@ TEST(Diagnostics, TablesNobodyKnowsAreToldWhichThereAre) {
   refused(
       "[[sphere]]",
       "a.toml:1:3: unknown key 'sphere'; there are [[particle]], [[ball]], [[box]], [[polygon]], [[body]], "
-      "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[explosion]], [[mouse]]");
+      "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[explosion]], [[force]], [[attractor]], "
+      "[[mouse]]");
 }
 
 TEST(Diagnostics, AKeyInTheWrongTableIsSentHome) {
@@ -415,11 +416,12 @@ TEST(Diagnostics, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
           "a.toml:1:1: a plot of 'height' needs 'of', the body that has it");
   refused("[[film.plot]]\nquantity = []\n[[ball]]",
           "a.toml:2:12: 'quantity': expected one at least, such as [\"energy\"]");
-  refused("[[film.plot]]\nquantity = [\"warmth\"]\n[[ball]]",
-          "a.toml:2:13: 'quantity': expected one of energy, kinetic, potential, gravity, springs, "
-          "x, height, speed, vx, vy, angle, spin, length, push, acceleration, momentum, weight, "
-          "normal_force, friction, net_force, spring_force, joint_force, drag, contact, blast, torque, "
-          "got 'warmth'");
+  refused(
+      "[[film.plot]]\nquantity = [\"warmth\"]\n[[ball]]",
+      "a.toml:2:13: 'quantity': expected one of energy, kinetic, potential, gravity, springs, fields, work, "
+      "x, height, speed, vx, vy, angle, spin, length, push, acceleration, momentum, weight, "
+      "normal_force, friction, net_force, spring_force, joint_force, drag, contact, blast, torque, "
+      "got 'warmth'");
   refused(
       "[[film.plot]]\nquantity = [\"energy\"]\nsize = 50\n[[film.plot]]\nquantity = [\"energy\"]\n[[ball]]",
       "a.toml:4:1: the plots take 80 percent of the picture: 75 is the most");

@@ -30,10 +30,13 @@ std::vector<char> tied(const sim::Model<D>& model) {
   };
   for (const auto& spring : model.springs) tie(spring.a.body), tie(spring.b.body);
   for (const auto& joint : model.joints) tie(joint.a.body), tie(joint.b.body);
+  for (const auto& force : model.forces) {
+    for (const auto& subject : force.subjects) tie(subject.body);
+  }
   for (int i = 0; i < int(all.size()); ++i) {
     const auto& body = model.bodies[i];
     if (!sim::round_radius(body.shape) || body.fixed || body.handout || body.linked || body.drag != 0 ||
-        body.ground_drag != 0)
+        body.quadratic_drag != 0 || body.ground_drag != 0)
       tie(i);
   }
   return all;
