@@ -212,7 +212,7 @@ void ExactSolver<D>::apply_impulses(State<D>& state, const Row<D>& row, double p
 
 // takes the last modes and forces of contacts as the first guess; for impulses the forces times `h`
 template <int D>
-void ExactSolver<D>::warm_start(double h) {
+void ExactSolver<D>::warm_start_rows(double h) {
   warm_.setZero(Eigen::Index(rows_.size()));
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact) continue;
@@ -243,7 +243,7 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, rate) + rows_[i].velocity_product;
-  warm_start(1);
+  warm_start_rows(1);
   const bool found = solve();
   // hold contacts that separate, but that the change of the forces alone would close
   for (const Constraint& constraint : constraints_) {
@@ -318,7 +318,7 @@ void ExactSolver<D>::pay_for_lift(State<D>& state) {
 // puts what is held back to where it belongs: places first, then velocities. `impacts_follow`: contacts that
 // approach as in an impact keep their velocities, for the impact to come
 template <int D>
-void ExactSolver<D>::project(State<D>& state, bool impacts_follow) {
+void ExactSolver<D>::project_state(State<D>& state, bool impacts_follow) {
   using Kind = typename Constraint::Kind;
   const auto again = [&] {
     update_poses(state);

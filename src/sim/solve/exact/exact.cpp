@@ -234,11 +234,11 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   // `event` counts all cuts of the group, whoever they are of
   for (int spent = 0; done < h; spent = exact ? spent + 1 : cuts_so_far()) {
     find_contacts(state, limits_.touching_gap);
-    if (wake(state)) {
+    if (wake_reached(state)) {
       collect_bodies(state);
       find_contacts(state, limits_.touching_gap);
     }
-    resolve_impacts(state);
+    resolve_contact_impacts(state);
     bool cut = true;
     double length = 0;
     bool held_again = false;  // what let go is to be held: the same instant once more
@@ -250,7 +250,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     if (chosen && spent < most_cuts && tiny <= kStuck) {
       if (progress_.released) release_contact();
       record_forces();
-      if (coming_apart()) project(state);
+      if (coming_apart()) project_state(state);
       // on the at_friction_limit nothing slips: as an equality it is a stick
       interval_.modes = modes_;
       for (ConeMode<D>& mode : interval_.modes) {
@@ -260,7 +260,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       const std::size_t forced = progress_.forced.size();
       length = advance_to_event(state, t + done, h - done, cut);
       held_again = progress_.forced.size() > forced && !progress_.forced_again;
-      if (length > 0) project(state);
+      if (length > 0) project_state(state);
       if (cut) count_cut(progress_.cut_by.a, progress_.cut_by.b);
     }
     if (length == 0 && !held_again) {
@@ -286,11 +286,11 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   }
   progress_.rest_speed = slowest;
   find_contacts(state, limits_.touching_gap);
-  if (wake(state)) {
+  if (wake_reached(state)) {
     collect_bodies(state);
     find_contacts(state, limits_.touching_gap);
   }
-  resolve_impacts(state);
+  resolve_contact_impacts(state);
   // the forces that joints are shown with and break by are those of the end
   if (!active_.joints.empty() && solve_modes(state, t + h)) record_forces();
   // contacts that were pushed apart have another gap now than when their force was found
@@ -463,7 +463,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   scratch_.chain_change.assign(rate.begin() + free_.chain_start(), rate.end());
   for (double& change : scratch_.chain_change) change *= h;
   chains.jump(state, scratch_.chain_change, false);
-  warm_start(fastest < kCreep * limits_.unit_speed ? h : 0);
+  warm_start_rows(fastest < kCreep * limits_.unit_speed ? h : 0);
   solve();
   apply_impulses(state, false);
   for (const int body : members) {
@@ -493,7 +493,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
       modes_[constraint.block].kind =
           constraint.off < -limits_.touching_gap ? ModeKind::free : ModeKind::at_lower;
   }
-  project(state, true);
+  project_state(state, true);
 }
 
 template class ExactSolver<2>;

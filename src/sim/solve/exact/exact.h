@@ -211,13 +211,13 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void build_blocks(bool impulses);
   bool solve_modes(State<D>& state, double t);
   bool jammed() const;
-  void warm_start(double h);
+  void warm_start_rows(double h);
   bool active(const Constraint& constraint) const;
   double row_velocity(int row) const;
   double row_acceleration(int row, std::span<const double> rate) const;
   void add_accelerations(int row, double f, std::span<double> rate) const;
   void apply_impulses(State<D>& state, const Row<D>& row, double p, bool places) const;
-  void project(State<D>& state, bool impacts_follow = false);
+  void project_state(State<D>& state, bool impacts_follow = false);
   void pay_for_lift(State<D>& state);
 
   // chain_responses.cpp
@@ -243,13 +243,13 @@ class ExactSolver final : public ContactSolver<D>, private System {
   // impacts.cpp
   double closing_speed() const;
   bool coming_apart() const;
-  void resolve_impacts(State<D>& state);
+  void resolve_contact_impacts(State<D>& state);
   void keep_fastest_pair();
   void solve_impacts(State<D>& state, double bounce);
   void record_impulse(const ContactKey& key, const Constraint& constraint, const Vec<D>& impulse);
 
   // sleep.cpp
-  bool wake(State<D>& state);
+  bool wake_reached(State<D>& state);
   void put_to_sleep(State<D>& state, double t, double h);
   void find_accelerations(State<D>& state, double t);
 

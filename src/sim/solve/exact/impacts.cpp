@@ -53,7 +53,7 @@ bool ExactSolver<D>::coming_apart() const {
 
 // impacts of this instant
 template <int D>
-void ExactSolver<D>::resolve_impacts(State<D>& state) {
+void ExactSolver<D>::resolve_contact_impacts(State<D>& state) {
   double before = 0;
   for (int round = 0; round < kRounds; ++round) {
     update_poses(state);
@@ -146,9 +146,9 @@ void ExactSolver<D>::record_impulse(const ContactKey& key, const Constraint& con
 
 template double ExactSolver<2>::closing_speed() const;
 template bool ExactSolver<2>::coming_apart() const;
-template void ExactSolver<2>::resolve_impacts(State<2>&);
+template void ExactSolver<2>::resolve_contact_impacts(State<2>&);
 template double ExactSolver<3>::closing_speed() const;
 template bool ExactSolver<3>::coming_apart() const;
-template void ExactSolver<3>::resolve_impacts(State<3>&);
+template void ExactSolver<3>::resolve_contact_impacts(State<3>&);
 
 }  // namespace obscura::sim

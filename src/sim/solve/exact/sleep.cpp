@@ -14,7 +14,7 @@ namespace obscura::sim {
 
 // wakes what something awake touches or holds. True where it did
 template <int D>
-bool ExactSolver<D>::wake(State<D>& state) {
+bool ExactSolver<D>::wake_reached(State<D>& state) {
   const auto& bodies = active_.subset.bodies;
   if (std::none_of(bodies.begin(), bodies.end(), [&](int body) { return state.frozen[body] != 0; }))
     return false;
@@ -77,9 +77,9 @@ void ExactSolver<D>::find_accelerations(State<D>& state, double t) {
   }
 }
 
-template bool ExactSolver<2>::wake(State<2>&);
+template bool ExactSolver<2>::wake_reached(State<2>&);
 template void ExactSolver<2>::put_to_sleep(State<2>&, double, double);
-template bool ExactSolver<3>::wake(State<3>&);
+template bool ExactSolver<3>::wake_reached(State<3>&);
 template void ExactSolver<3>::put_to_sleep(State<3>&, double, double);
 
 }  // namespace obscura::sim

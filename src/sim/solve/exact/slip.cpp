@@ -58,7 +58,7 @@ void ExactSolver<D>::aim_slow_slips(State<D>& state, double t, double h) {
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i)
     b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
-  warm_start(h);
+  warm_start_rows(h);
   const double enough = std::exchange(cone_.enough, kEnough);
   const int patience = std::exchange(cone_.patience, kSlipPatience);
   if (!solve()) solve_roughly(kSlipIterations);
