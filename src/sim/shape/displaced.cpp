@@ -97,7 +97,7 @@ Wet<2> polygon(int n, const Corner& corner, const Vec<2>& origin) {
 // a face of a polyhedron, by tetrahedra from there
 template <class Corner>
 void add_face(int n, const Corner& corner, const Vec<3>& origin, Wet<3>& wet) {
-  Vec<3> first, last;
+  Vec<3> first = Vec<3>::Zero(), last = first;
   int count = 0;
   clip<3>(n, corner, origin[1], [&](const Vec<3>& x) {
     if (count == 0) first = x;
