@@ -273,8 +273,9 @@ template <int D>
 std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                                     const draw::Pace& speed, Diagnostics& complaints) {
   const Reader<D> read(roster, world, complaints, speed);
+  const Fields fields = Fields::of(top, "film");
   std::vector<draw::Caption> all;
-  for (const Node& node : tables(Fields::of(top, "film"), "caption")) {
+  for (const Node& node : tables(fields, "caption")) {
     const Fields its(node, "film.caption");
     if (its.given("text")) all.push_back({its.text("text"), read.shown(its)});
   }
