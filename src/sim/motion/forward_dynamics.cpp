@@ -45,9 +45,9 @@ typename ForwardDynamics<D>::Hold ForwardDynamics<D>::hold(const State<D>& state
 }
 
 template <int D>
-void ForwardDynamics<D>::gather(const State<D>& state, bool everyone) {
+void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake) {
   const Subset all{numbers_[0], numbers_[1], numbers_[2]};
-  if (everyone || blasting(state)) return gather(state, all);
+  if (all_awake || blasting(state)) return gather(state, all);
   // the same as last time?
   if (only_forces_ && forces_.any() && !bodies_.empty()) {
     bool same = true;

@@ -41,6 +41,7 @@ void ContactStep<D>::take_energy_back(State<D>& state) {
   // bodies that overlap are pushed apart, and the work of that is booked
   if (const Vec<D>* ways = solver_->corrections()) {
     for (int i = 0; i < int(model_.bodies.size()); ++i) {
+      if (lone_bodies_ && lone_bodies_->moved(i)) continue;
       const double work = -model_.bodies[i].mass * model_.gravity.dot(ways[i]);
       energy_guard_.book(i, work);
       state.ledger.displacement += work;

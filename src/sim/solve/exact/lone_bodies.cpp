@@ -29,7 +29,7 @@ LoneBodies<D>::LoneBodies(const Model<D>& model, const std::vector<Path<D>>& pat
       direct_(model, paths, ExactSolver<D>::Serves::lone),
       g_(std::sqrt(model.gravity.squaredNorm())) {
   const int n = int(model.bodies.size());
-  free_.assign(n, 1), still_.resize(n), ways_.resize(n), bounds_.resize(n);
+  free_.assign(n, 1), still_.resize(n), moved_.assign(n, 0), ways_.resize(n), bounds_.resize(n);
   const auto tie = [&](int body) {
     if (body >= 0) free_[body] = 0;
   };
@@ -130,6 +130,7 @@ void LoneBodies<D>::find(const State<D>& state, double h) {
 
 template <int D>
 void LoneBodies<D>::step(State<D>& state, double t, double h) {
+  std::fill(moved_.begin(), moved_.end(), 0);
   if (began_.empty()) return;
   // another that was struck on its way may have come farther than it could
   std::fill(still_.begin(), still_.end(), 0);
@@ -141,6 +142,7 @@ void LoneBodies<D>::step(State<D>& state, double t, double h) {
   for (const Began& it : began_) {
     const int body = it.body;
     if (still_[body]) continue;
+    moved_[body] = 1;
     state.x[body] = it.x, state.v[body] = it.v;
     if (const int k = turning(state, body); k >= 0) {
       state.turn[k] = it.turn, state.spin[k] = it.spin;

@@ -23,6 +23,9 @@ class LoneBodies {
   /// Moves them, in the state that the other solver has stepped; not those that met others there after all.
   void step(State<D>& state, double t, double h);
 
+  /// Whether the last step() moved a body: what the other solver did with it then counts for nothing.
+  bool moved(int body) const { return moved_[body] != 0; }
+
  private:
   struct Began {
     int body;
@@ -40,6 +43,7 @@ class LoneBodies {
   double g_ = 0;                                // m/s^2
   std::vector<char> free_;                      // one a body: nothing ever ties it
   std::vector<char> still_;                     // one a body: it is not to be moved
+  std::vector<char> moved_;                     // one a body
   std::vector<char> points_;                    // one a body
   std::vector<int> fixed_;                      // bodies
   std::vector<double> bounding_radius_, ways_;  // one a body: bounding radius, how far it gets in the step, m
