@@ -54,12 +54,6 @@ class Impacts {
   const Motion& after(int body) const { return now_[body]; }
 
  private:
-  static constexpr double kInTime =
-      1e-9;  // of the step: the next step of Newton's method would be by its square
-
-  static constexpr double kTogether =
-      1e-6;  // of the larger bounding radius: no wider open, a touch meets with the other
-
   struct Struck {
     ContactKey key;
     Vec<2> impulse;  // on a, N s

@@ -68,11 +68,28 @@ class SpaceIterative final : public ContactSolver<D> {
     BodyMotion<D> stance;
     Orientation<D> turn = no_rotation<D>();
   };
+  // where it is at the two times that were asked for last, and where the step ends
+  struct Course {
+    Flown then[2], end;
+    double asked[2] = {-1, -1};  // s
+    int last = 0;
+    bool ends = false;
+  };
   // a gap then
   struct Instant {
     BodyMotion<D> a, b;
     EvaluatedContact<D> now;
     double speed = 0;  // m/s
+  };
+  // From `when` on, until one of its bodies is struck, a gap is at least  gap - speed (t - when).
+  struct Reach {
+    double gap = -1e300, when = 0, speed = 0;  // m, s from the start of the step, m/s
+
+    double least(double t) const { return gap - speed * (t - when); }
+  };
+  // how fast a body is at most in the step, since its last impact or, `ever`, since the step began
+  struct Fastest {
+    double spin = 0, ever = 0, gain = 0;  // rad/s, m/s, m/s: what the step adds without contacts
   };
   // an impact that is due; no longer so once one of its bodies had another
   struct Due {
@@ -90,10 +107,14 @@ class SpaceIterative final : public ContactSolver<D> {
   void add(const ContactCandidate<D>& gap, const Material& pair);
   bool update_sleep(State<D>& state, double h);
   void build_joint_rows(const State<D>& state);
-  Flown flown(int body, double t, double h) const;
+  const Flown& flown(int body, double t, double h) const;
   Flown fly(int body, double t, double h) const;
   Instant instant(int touch, double t, double h) const;
-  double closing_time(int touch, double h) const;
+  double closing_time(int touch, double h);
+  void limit_speed(int body, double h);
+  double approach_limit(int touch, double h) const;
+  double bend_limit(int touch, const Instant& at, double h) const;
+  bool stays_apart(int touch, double apart, double h);
   int rounds(int touch) const {
     return rounds_[touches_[touch].a] + rounds_[touches_[touch].b] + touches_[touch].renewals;
   }
@@ -191,8 +212,9 @@ class SpaceIterative final : public ContactSolver<D> {
   bool struck_ = false;                             // whether any body had an impact in this step
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
   std::vector<Flown> flown_;                        // after it, or as the step began
-  mutable std::vector<Flown> landed_;               // where the step ends, of those marked
-  mutable std::vector<char> ended_;
+  mutable std::vector<Course> courses_;
+  std::vector<Fastest> fastest_;
+  std::vector<Reach> reach_;  // of each touch
   std::vector<Due> due_;
   std::vector<double> strikes_;             // bodies: s, when what the iterations change begins to move them
   std::vector<int> rounds_;                 // impacts of each body

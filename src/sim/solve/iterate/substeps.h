@@ -49,6 +49,10 @@ inline constexpr double kNearly = 0.1;
 /// Of the room: how wide a point counts.
 inline constexpr double kPointWidth = 1e-3;
 
+/// Of a substep: how exactly in time an impact is found; the next correction would be by its square. Of a
+/// bounding radius: no wider open, a gap takes part in an impact.
+inline constexpr double kInTime = 1e-9, kTogether = 1e-6;
+
 /// Into how many substeps to divide a step of h s, where pairs close by at most `rate` widths a second.
 inline int substeps_for(double rate, double h) {
   return std::max(1, int(std::ceil(h * std::clamp(rate / kCloser, kFewestSubsteps, kMostSubsteps) - 1e-9)));

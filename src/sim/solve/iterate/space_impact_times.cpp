@@ -1,0 +1,307 @@
+// When gaps close with an impact in a step, and how they stand then. Until its first impact a body flies as
+// it would without contacts, after one with the velocity it got:
+//   x(t) = x + v t + a t^2 / 2,  and turns as a free body
+// Most gaps do not close; two limits say so without a search. A gap changes no faster than its bodies' matter
+// moves there, and its second derivative is bounded by what accelerates and turns them:
+//   g(t) >= g - s t        g(t) >= g + g' t - b t^2 / 2
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/math/lie_step.h"
+#include "sim/solve/iterate/space.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr int kNewtonSteps = 8;       // for the time of an impact
+constexpr double kLatest = 1.5;       // steps: so late a gap may close that its tangent would close in one
+constexpr double kFarthestPoint = 3;  // bounding radii of both: how far from a body features of a pair touch
+constexpr double kLeastPart = 1e-3;   // of what a root is in: how far from its ends it is looked for
+constexpr int kRenewals = 4;          // of a gap's features in a step
+
+}  // namespace
+
+// where a body is at a time of the step, after its last impact if it had one
+template <int D>
+const typename SpaceIterative<D>::Flown& SpaceIterative<D>::flown(int body, double t, double h) const {
+  if (body >= int(model_.bodies.size()) || inactive_[body]) return flown_[body];
+  if (t == std::max(0.0, when_[body])) return flown_[body];
+  // of many gaps of a body one asks what another has asked; most do not close, and ask where the step ends
+  Course& course = courses_[body];
+  if (t == h) {
+    if (!course.ends) course.end = fly(body, h, h), course.ends = true;
+    return course.end;
+  }
+  if (course.asked[course.last] != t) course.last = 1 - course.last;
+  if (course.asked[course.last] != t)
+    course.then[course.last] = fly(body, t, h), course.asked[course.last] = t;
+  return course.then[course.last];
+}
+
+template <int D>
+typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, double h) const {
+  Flown at = flown_[body];
+  const double time = t - std::max(0.0, when_[body]);
+  const Body<D>& it = model_.bodies[body];
+  const Vec<D> gain = (time / h) * (v_free_[body] - stances_[body].v);
+  at.stance.x += time * (at.stance.v + 0.5 * gain), at.stance.v += gain;
+  const int k = body - (int(model_.bodies.size()) - int(turn_.size()));
+  if (k < 0 || !it.turns() || at.stance.w.isZero(0)) return at;
+  if (!wobbles<D>(it.inertia)) {
+    at.turn = turned<D>(at.turn, AngularVec<D>(time * at.stance.w));
+    at.stance.room_from_body = rotation<D>(at.turn);
+    return at;
+  }
+  // Runge and Kutta, as the body sees itself (sim/math/lie_step.h)
+  const int pieces = pieces_of_turn<D>(at.stance.w, time);
+  const double piece = time / pieces;
+  const AngularVec<D> momentum = inertia_times<D>(it.inertia, at.stance.room_from_body, at.stance.w);
+  for (int i = 0; i < pieces; ++i) {
+    const AngularVec<D> w0 = from_room<D>(at.stance.room_from_body, at.stance.w);
+    AngularVec<D> d[4], w[4], step = AngularVec<D>::Zero(), spin = w0;
+    for (int s = 0; s < 4; ++s) {
+      d[s] = displacement_rate<D>(step, spin), w[s] = gyroscopic_acceleration<D>(it.inertia, spin);
+      const double by = s < 2 ? 0.5 * piece : piece;
+      step = by * d[s], spin = w0 + by * w[s];
+    }
+    const AngularVec<D> by = piece / 6 * (d[0] + 2 * d[1] + 2 * d[2] + d[3]);
+    at.turn = displaced<D>(at.turn, by);
+    at.stance.room_from_body = rotation<D>(at.turn);
+    at.stance.w = inverse_inertia_times<D>(it.inertia, at.stance.room_from_body, momentum);
+  }
+  return at;
+}
+
+// a gap at a time: how wide, and how fast it changes
+template <int D>
+typename SpaceIterative<D>::Instant SpaceIterative<D>::instant(int i, double t, double h) const {
+  Instant at;
+  const ContactConstraint& touch = touches_[i];
+  at.a = flown(touch.a, t, h).stance, at.b = flown(touch.b, t, h).stance;
+  at.now = evaluate(features_[i], at.a, at.b);
+  at.speed = at.now.normal.dot(at.a.velocity(at.now.point - at.a.x) - at.b.velocity(at.now.point - at.b.x));
+  return at;
+}
+
+// how fast a body may become until its next impact
+template <int D>
+void SpaceIterative<D>::limit_speed(int body, double h) {
+  Fastest& it = fastest_[body];
+  const BodyMotion<D>& at = flown_[body].stance;
+  // what wobbles gains at most a third of its spin while it turns by a quarter of a radian
+  it.spin = 4.0 / 3 * std::sqrt(at.w.squaredNorm());
+  if (it.spin * h > kFarTurn) it.spin = 1e300;
+  it.ever = std::max(it.ever, std::sqrt(at.v.squaredNorm()) + it.gain);
+}
+
+// How fast a gap may close at most until one of its bodies is struck, m/s: as fast as their matter there.
+template <int D>
+double SpaceIterative<D>::approach_limit(int i, double h) const {
+  const ContactConstraint& touch = touches_[i];
+  const Fastest &a = fastest_[touch.a], &b = fastest_[touch.b];
+  const double size =
+      bounding_radius_[touch.a] + (touch.b < int(inactive_.size()) ? bounding_radius_[touch.b] : 0);
+  if (!(h * (a.ever + b.ever) <= size)) return 1e300;
+  const Vec<D> passes = flown_[touch.a].stance.v - flown_[touch.b].stance.v;
+  return std::sqrt(passes.squaredNorm()) + a.gain + b.gain + kFarthestPoint * size * (a.spin + b.spin);
+}
+
+// By how much its second derivative may be below zero, m/s^2: by what accelerates and turns the bodies and
+// the normal.
+template <int D>
+double SpaceIterative<D>::bend_limit(int i, const Instant& at, double h) const {
+  const ContactConstraint& touch = touches_[i];
+  const Fastest &a = fastest_[touch.a], &b = fastest_[touch.b];
+  const bool wall = touch.b == int(inactive_.size());
+  const double size = bounding_radius_[touch.a] + (wall ? 0 : bounding_radius_[touch.b]);
+  const auto gain = [&](int body) -> Vec<D> {
+    if (fastest_[body].gain == 0) return Vec<D>::Zero();
+    return v_free_[body] - stances_[body].v;
+  };
+  const double falls = std::sqrt((gain(touch.a) - gain(touch.b)).squaredNorm());
+  const double far = kFarthestPoint * size, spins = a.spin + b.spin;
+  const double passes = std::sqrt((at.a.v - at.b.v).squaredNorm()) + falls + far * spins;
+  const double matter = 2 * far * (a.spin * a.spin + b.spin * b.spin);
+  if constexpr (D == 3) {
+    const ContactCandidate<D>& gap = features_[i];
+    if (gap.kind == ContactCandidate<D>::Kind::edges) {
+      // the less they cross, the faster their normal turns
+      const double sine = std::sqrt(at.a.arm(gap.edge_a).cross(at.b.arm(gap.edge_b)).squaredNorm());
+      if (!(h * spins < 0.25 * sine)) return 1e300;
+      const double turns = 2 * spins / sine;
+      return falls / h + matter + 2 * turns * passes + 14 * far * turns * turns;
+    }
+  }
+  return falls / h + matter + 2 * spins * passes;
+}
+
+// whether a gap surely stays wider than `apart` until the step ends or one of its bodies is struck
+template <int D>
+bool SpaceIterative<D>::stays_apart(int i, double apart, double h) {
+  const ContactConstraint& touch = touches_[i];
+  Reach& reach = reach_[i];
+  if (reach.least(h) > apart) return true;
+  const double from = std::max({0.0, when_[touch.a], when_[touch.b]}), left = h - from;
+  const Instant at = instant(i, from, h);
+  reach.gap = at.now.value, reach.when = from;
+  return reach.least(h) > apart ||
+         (reach.gap > apart && reach.gap + left * (at.speed - 0.5 * left * bend_limit(i, at, h)) > apart);
+}
+
+// When a gap closes with an impact; never: 1e300. Newton's method along its course; where the body turns so
+// far that this misleads, by halving.
+template <int D>
+double SpaceIterative<D>::closing_time(int i, double h) {
+  const ContactConstraint& touch = touches_[i];
+  if (stays_apart(i, kInTime * bounding_radius_[touch.a], h)) return 1e300;
+  const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
+  Instant at = instant(i, from, h);
+  const bool nears = at.speed < -restitution_threshold_;
+  const double gap = at.now.value;
+  if (gap <= 0) return nears ? from : 1e300;
+  double when = nears ? from - gap / at.speed : 1e300, low = from, high = -1;
+  for (int n = 0; n < kNewtonSteps && when <= from + kLatest * h; ++n) {
+    at = instant(i, when, h);
+    if (at.now.value > 0 && !(at.speed < 0)) {
+      // it has come nearest before: was it closed then?
+      for (double parted = when; parted - low > kInTime * h && high < 0;) {
+        const double mid = 0.5 * (low + parted);
+        const Instant then = instant(i, mid, h);
+        if (then.now.value <= 0)
+          high = mid;
+        else
+          (then.speed < 0 ? low : parted) = mid;
+      }
+      if (high < 0) return 1e300;
+      break;
+    }
+    if (!(at.speed < -restitution_threshold_)) break;
+    const double next = when - at.now.value / at.speed;
+    if (std::abs(next - when) <= kInTime * h) return when <= h ? when : 1e300;
+    when = std::clamp(next, from, from + kLatest * h);
+  }
+  if (high < 0) {
+    if (from >= h || instant(i, h, h).now.value > 0) return 1e300;
+    high = h;
+  }
+  while (high - low > kInTime * h) {
+    when = 0.5 * (low + high);
+    (instant(i, when, h).now.value > 0 ? low : high) = when;
+  }
+  return instant(i, low, h).speed < -restitution_threshold_ ? low : 1e300;
+}
+
+// the gaps of a pair at a time, by the features that are nearest then, into gaps_; how wide the least of them
+template <int D>
+double SpaceIterative<D>::find_features(int a, int b, double t, double h) {
+  const BodyMotion<D> at_a = flown(a, t, h).stance, at_b = flown(b, t, h).stance;
+  gaps_.clear();
+  sim::collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps_);
+  double least = 1e300;
+  for (ContactCandidate<D>& gap : gaps_) {
+    gap.value = evaluate(gap, at_a, at_b).value;
+    least = std::min(least, gap.value);
+  }
+  return least;
+}
+
+// whether other features of a pair may come nearer while they turn
+template <int D>
+bool SpaceIterative<D>::features_change(const ContactConstraint& touch) const {
+  const auto is_round = [&](int body) { return bool(round_radius(model_.bodies[body].shape)); };
+  return touch.b < int(model_.bodies.size()) && touch.renewals < kRenewals &&
+         !(is_round(touch.a) && is_round(touch.b));
+}
+
+// Gives the gaps of a pair, from `first` on, those features by which it meets between `low` and `high`, when
+// some gap is closed or, where none is, those that are nearest then; they are due anew.
+template <int D>
+void SpaceIterative<D>::renew_features(int first, double low, double high, double h) {
+  const int a = touches_[first].a, b = touches_[first].b;
+  double closed = find_features(a, b, high, h), open = closed < 0 ? find_features(a, b, low, h) : 0;
+  if (closed < 0 && open > 0) {
+    // false position; what stays on its side twice counts half
+    for (int side = 0; high - low > kInTime * h;) {
+      const double part = std::clamp(open / (open - closed), kLeastPart, 1 - kLeastPart);
+      const double mid = low + part * (high - low), least = find_features(a, b, mid, h);
+      if (least > 0) {
+        low = mid, open = least;
+        if (side > 0) closed *= 0.5;
+        side = 1;
+      } else {
+        high = mid, closed = least;
+        if (side < 0) open *= 0.5;
+        side = -1;
+      }
+    }
+    find_features(a, b, low, h);
+  }
+  if (gaps_.empty()) return;
+  std::stable_sort(gaps_.begin(), gaps_.end(),
+                   [](const auto& p, const auto& q) { return p.value < q.value; });
+  for (int i = first; i < int(touches_.size()) && touches_[i].a == a && touches_[i].b == b; ++i) {
+    features_[i] = gaps_[std::min(i - first, int(gaps_.size()) - 1)];
+    ++touches_[i].renewals;
+    reach_[i].gap = -1e300;
+    const double when = closing_time(i, h);
+    touches_[i].passes = when == 1e300;
+    if (when < 1e300) push_due(i, when);
+  }
+}
+
+// Whether a pair meets by the features that are nearest then. Where others are, or have met before, its gaps
+// are due by those.
+template <int D>
+bool SpaceIterative<D>::has_nearest_features(const Due& due, double h) {
+  const ContactConstraint& touch = touches_[due.touch];
+  if (!features_change(touch)) return true;
+  const double least = find_features(touch.a, touch.b, due.when, h);
+  const auto feature = features_[due.touch].key.feature;
+  const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
+  const bool found = std::any_of(gaps_.begin(), gaps_.end(),
+                                 [&](const ContactCandidate<D>& gap) { return gap.key.feature == feature; });
+  // what lies in each other from the first has not met before
+  if (found &&
+      (least >= -kTogether * bounding_radius_[touch.a] || find_features(touch.a, touch.b, from, h) <= 0))
+    return true;
+  int first = due.touch;
+  while (first > 0 && touches_[first - 1].a == touch.a && touches_[first - 1].b == touch.b) --first;
+  renew_features(first, from, due.when, h);
+  return false;
+}
+
+// Pairs that come to lie in each other, deeper than the features of the step's start say, none of which
+// closes.
+template <int D>
+void SpaceIterative<D>::find_turned_pairs(double h) {
+  for (int first = 0, end = 0; first < int(touches_.size()); first = end) {
+    const ContactConstraint& touch = touches_[first];
+    bool due = false;
+    double least = 1e300;
+    for (end = first; end < int(touches_.size()) && touches_[end].a == touch.a && touches_[end].b == touch.b;
+         ++end)
+      due = due || !touches_[end].passes;
+    if (due || !features_change(touch)) continue;
+    for (int i = first; i < end; ++i) least = std::min(least, instant(i, h, h).now.value);
+    const auto turned = [&](int body) {
+      return 2 * h * bounding_radius_[body] * std::sqrt(stances_[body].w.squaredNorm());
+    };
+    const double turns = turned(touch.a) + turned(touch.b);
+    if (least > turns || least - turns > -kTogether * bounding_radius_[touch.a]) continue;
+    if (find_features(touch.a, touch.b, h, h) < std::min(0.0, least) - kTogether * bounding_radius_[touch.a])
+      renew_features(first, 0, h, h);
+  }
+}
+
+template const typename SpaceIterative<3>::Flown& SpaceIterative<3>::flown(int, double, double) const;
+template typename SpaceIterative<3>::Instant SpaceIterative<3>::instant(int, double, double) const;
+template void SpaceIterative<3>::limit_speed(int, double);
+template double SpaceIterative<3>::approach_limit(int, double) const;
+template double SpaceIterative<3>::closing_time(int, double);
+template void SpaceIterative<3>::find_turned_pairs(double);
+template bool SpaceIterative<3>::has_nearest_features(const Due&, double);
+
+}  // namespace obscura::sim
