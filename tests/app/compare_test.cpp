@@ -185,7 +185,8 @@ TEST_F(Compare, WhoeverDrawsCanBeToldWithWhat) {
   // EGL without a library of its own cannot be had: whoever takes it says so
   const std::string without =
       "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null __EGL_VENDOR_LIBRARY_DIRS=/nonexistent " OBSCURA_BINARY " ";
-  still("a.png", "--backend osmesa");
+  const Outcome osmesa = obscura("render scene.toml --at 0.5 --size 160x90 -o a.png --backend osmesa");
+  OBSCURA_NEEDS(osmesa.exit == 0, "libosmesa6");
   scene(text_ + "[golden]\nat = [0.5]\nsize = [160, 90]\n");
   for (const char* command :
        {"verify a.png", "golden scene.toml --update", "figure scene.toml -o f.png --dpi 50",

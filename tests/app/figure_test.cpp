@@ -368,6 +368,17 @@ std::string without_fonts(std::string svg) {
   return svg;
 }
 
+// names of the fonts that an SVG is set in
+std::set<std::string> families(const std::string& svg) {
+  const std::string key = "font-family=\"";
+  std::set<std::string> names;
+  for (auto at = svg.find(key); at != svg.npos; at = svg.find(key, at + 1)) {
+    const auto from = at + key.size();
+    names.insert(svg.substr(from, svg.find('"', from) - from));
+  }
+  return names;
+}
+
 // script/figures makes them anew
 TEST_F(Figure, NoFigureOfTheHandoutIsStale) {
   namespace fs = std::filesystem;
@@ -377,6 +388,8 @@ TEST_F(Figure, NoFigureOfTheHandoutIsStale) {
     if (entry.path().extension() != ".toml") continue;
     const fs::path drawn = fs::path(OBSCURA_SOURCE_DIR) / "docs/handout" / entry.path().stem().concat(".svg");
     ASSERT_EQ(obscura("figure '" + entry.path().string() + "' -o a.svg").exit, 0) << entry.path();
+    if (families(contents(path("a.svg"))) != families(contents(drawn.string())))
+      GTEST_SKIP() << "this system has other fonts than those of docs/handout";
     EXPECT_TRUE(without_fonts(contents(path("a.svg"))) == without_fonts(contents(drawn.string())))
         << drawn << " is not what its scene draws today; script/figures makes it anew";
     EXPECT_THAT(page, HasSubstr("](" + drawn.filename().string() + ")"));
