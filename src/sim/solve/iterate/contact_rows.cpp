@@ -10,6 +10,7 @@
 #include "sim/solve/iterate/contact_rows.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "sim/math/lanes.h"
@@ -78,6 +79,13 @@ struct Two {
   }
   OBSCURA_INLINE void back(const ContactBatch& g, int lane, Motion* v) const {
     scatter(&v->x, g.a + lane, a), scatter(&v->x, g.b + lane, b);
+  }
+  // only where `moves`; elsewhere as before
+  OBSCURA_INLINE void keep(const Mask<V>& moves, const Two& before) {
+    a.x = pick<V>(moves, a.x, before.a.x), a.y = pick<V>(moves, a.y, before.a.y),
+    a.z = pick<V>(moves, a.z, before.a.z);
+    b.x = pick<V>(moves, b.x, before.b.x), b.y = pick<V>(moves, b.y, before.b.y),
+    b.z = pick<V>(moves, b.z, before.b.z);
   }
   OBSCURA_INLINE V along(const V& dx, const V& dy, const V& ra, const V& rb) const {
     return dx * (a.x - b.x) + dy * (a.y - b.y) + (ra * a.z - rb * b.z);
@@ -266,13 +274,30 @@ OBSCURA_INLINE double closing_rate_all(const ContactBatch* batches, int count, c
   return largest<V>(most);
 }
 
-template <class V, bool kLast, bool kKeep>
-OBSCURA_INLINE double sweep_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
-                                const StepConstants& pace, Contact<2>* contacts) {
+// the lanes of a group whose bodies are stirred, a bit each
+inline unsigned char stirred_lanes(const ContactBatch& g, const unsigned char* bodies) {
+  unsigned lanes = 0;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const unsigned flags = unsigned(bodies[g.a[lane]]) | bodies[g.b[lane]];
+    lanes |= unsigned((flags & (Stirred::kNow | Stirred::kNever)) == Stirred::kNow) << lane;
+  }
+  return static_cast<unsigned char>(lanes);
+}
+
+// all pairs; or, where kSome, those of bodies that are stirred, and then how many these are
+template <class V, bool kLast, bool kKeep, bool kSome = false>
+OBSCURA_INLINE int sweep_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
+                             const StepConstants& pace, Contact<2>* contacts, Stirred* stirred = nullptr) {
   const V per_h = V{} + 1 / pace.h, none{};
-  [[maybe_unused]] V worst{};
+  [[maybe_unused]] int pairs = 0;
   for (ContactBatch* g = batches; g < batches + count; ++g) {
     if (!g->used) continue;
+    [[maybe_unused]] unsigned char lanes = 0;
+    if constexpr (kSome) {
+      lanes = stirred_lanes(*g, stirred->bodies.data());
+      if (lanes == 0) continue;
+      pairs += std::popcount(lanes);
+    }
     [[maybe_unused]] Rows kept;
     if constexpr (kKeep) {
       // contacts are far apart in memory: ask for those of a later group
@@ -292,6 +317,8 @@ OBSCURA_INLINE double sweep_all(ContactBatch* batches, int count, const Pose* po
       const V mu = load<V>(g->mu + lane);
       V l0 = load<V>(g->p[0] + lane), t0 = load<V>(g->q[0] + lane);
       V l1 = load<V>(g->p[1] + lane), t1 = load<V>(g->q[1] + lane);
+      [[maybe_unused]] const Two<V> begun = two;
+      [[maybe_unused]] const V begun_l0 = l0, begun_t0 = t0, begun_l1 = l1, begun_t1 = t1;
       rub<V>(two, r0, mu * l0, t0);
       rub<V>(two, r1, mu * l1, t1);
       const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
@@ -303,14 +330,26 @@ OBSCURA_INLINE double sweep_all(ContactBatch* batches, int count, const Pose* po
         target0 = pick<V>(mask<V>(g->struck[0], lane), load<V>(least.n[0] + lane), open0);
         target1 = pick<V>(mask<V>(g->struck[1], lane), load<V>(least.n[1] + lane), open1);
       }
-      if constexpr (!kLast) {
+      if constexpr (kSome) {
         const V left0 = target0 - two.along(r0.nx, r0.ny, r0.na, r0.nb),
                 left1 = target1 - two.along(r1.nx, r1.ny, r1.na, r1.nb);
         const V wrong0 = pick<V>(l0 > none, magnitude<V>(left0), left0),
                 wrong1 = pick<V>(l1 > none, magnitude<V>(left1), left1);
-        worst = larger<V>(worst, larger<V>(wrong0, wrong1) * load<V>(g->per_width + lane));
+        const V wrong = larger<V>(wrong0, wrong1) * load<V>(g->per_width + lane);
+        for (int k = 0; k < Of<V>::lanes; ++k) {
+          if (!(lanes >> (lane + k) & 1) || !(wrong[k] > stirred->settled)) continue;
+          stirred->bodies[g->a[lane + k]] |= Stirred::kNext,
+              stirred->bodies[g->b[lane + k]] |= Stirred::kNext;
+        }
       }
       press<V>(two, r0, r1, target0, target1, l0, l1);
+      if constexpr (kSome) {
+        // the other lanes stay: what a pair does must not hang on which lanes are beside its own
+        const Mask<V> moves = mask<V>(lanes, lane);
+        two.keep(moves, begun);
+        l0 = pick<V>(moves, l0, begun_l0), t0 = pick<V>(moves, t0, begun_t0);
+        l1 = pick<V>(moves, l1, begun_l1), t1 = pick<V>(moves, t1, begun_t1);
+      }
       two.back(*g, lane, v);
       if constexpr (!kLast) {
         store<V>(g->p[0] + lane, l0), store<V>(g->q[0] + lane, t0);
@@ -335,7 +374,8 @@ OBSCURA_INLINE double sweep_all(ContactBatch* batches, int count, const Pose* po
     }
     if constexpr (kKeep) keep(*g, kept, contacts);
   }
-  return largest<V>(worst);
+  if constexpr (kSome) return pairs;
+  return 0;
 }
 
 template <class V>
@@ -376,8 +416,12 @@ OBSCURA_WIDE double closing_rate_wide(const ContactBatch* s, int n, const Pose* 
                                       double h) {
   return closing_rate_all<V4>(s, n, at, v, h);
 }
-OBSCURA_WIDE double sweep_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  return sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
+OBSCURA_WIDE void sweep_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
+  sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
+}
+OBSCURA_WIDE int sweep_some_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
+                                 Stirred& stirred) {
+  return sweep_all<V4, false, false, true>(s, n, at, v, pace, nullptr, &stirred);
 }
 OBSCURA_WIDE void finish_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
                               Contact<2>* contacts) {
@@ -454,8 +498,19 @@ bool start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
 double closing_rate(const ContactBatch* s, int n, const Pose* at, const Motion* v, double h) {
   return kWide ? closing_rate_wide(s, n, at, v, h) : closing_rate_all<V2>(s, n, at, v, h);
 }
-double iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  return kWide ? sweep_wide(s, n, at, v, pace) : sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
+void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
+  if (kWide) return sweep_wide(s, n, at, v, pace);
+  sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
+}
+int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace, Stirred& stirred) {
+  const int pairs = kWide ? sweep_some_wide(s, n, at, v, pace, stirred)
+                          : sweep_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &stirred);
+  // walls are never stirred
+  stirred.bodies.back() = 0;
+  for (unsigned char& body : stirred.bodies) {
+    body = static_cast<unsigned char>((body & Stirred::kNever) | (body & Stirred::kNext ? Stirred::kNow : 0));
+  }
+  return pairs;
 }
 void finish(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
             Contact<2>* contacts) {

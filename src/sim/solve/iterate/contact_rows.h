@@ -105,9 +105,19 @@ bool start(ContactBatch* batches, int count, const Pose* poses, const Motion* ol
 /// polygons a part of how fast they pass counts too, as others of their corners may come near.
 double closing_rate(const ContactBatch* batches, int count, const Pose* poses, const Motion* v, double h);
 
-/// One iteration: every pair once, in order. Returns by how much the fastest was to be slowed down, in widths
-/// of the narrower body, 1/s: what the iterations before had left.
-double iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
+/// One iteration: every pair once, in order.
+void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
+/// Bodies whose pairs are to be iterated on: those of a pair that was to be slowed down by more than
+/// `settled` widths a second. Those that never are, as joints hold them, have `never`.
+struct Stirred {
+  static constexpr unsigned char kNow = 1, kNext = 2, kNever = 4;
+  double settled = 0;                 // 1/s
+  std::vector<unsigned char> bodies;  // flags; one more for walls
+};
+
+/// One iteration of the pairs of such bodies alone; says whose are next. Returns how many pairs that were.
+int iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
+            Stirred& stirred);
 /// The last one of a substep: forces into the lanes and, where there are some, into the contacts.
 void finish(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             Contact<2>* contacts);

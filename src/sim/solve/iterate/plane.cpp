@@ -32,9 +32,12 @@ constexpr int kJointSweeps = 16;     // where there are joints: those are solved
 constexpr int kStrainSweeps = 64;    // where they press something far into another
 constexpr double kStrained = 0.02;   // of its thickness: how far that is
 constexpr int kPairSweeps = 2000;    // pairs times iterations where there are more; at least one iteration
-constexpr int kMoreSweeps = 5;       // times as many while pairs have not settled
-constexpr int kUnsettledSweeps = 8;  // and at least so many
-constexpr int kFirstSweeps = 100;    // of the first step, which knows no forces
+constexpr int kSettlingPairs =
+    20000;  // times iterations, of pairs that have not settled then; or, of many, as if
+constexpr int kSettlingSweeps = 8;     // so many were of all
+constexpr int kProjections = 5;        // times as many iterations for positions, and
+constexpr int kFewestProjections = 8;  // at least so many
+constexpr int kFirstSweeps = 100;      // of the first step, which knows no forces
 
 }  // namespace
 
@@ -71,6 +74,7 @@ template <int D>
 bool PlaneIterative<D>::collide(StepPart<D> step) {
   State<D>& state = step.state;
   const int n = int(model_.bodies.size());
+  outran_ = corrected_ = false;
   if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
   if (!joints_.empty()) joints_.prepare(state);
@@ -109,10 +113,9 @@ void PlaneIterative<D>::wake(StepPart<D> step) {
     if (sleep_.at_start(step.state, step.state.contacts)) clear_sleeping(step.state);
   }
   impacts_.begin();
-  outran_ = corrected_ = false;
-  const double rate =
+  closing_rate_ =
       plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), v_.data(), step.h);
-  substeps_ = substeps_for(rate, step.h);
+  substeps_ = substeps_for(closing_rate_, step.h);
 }
 
 template <int D>
@@ -195,7 +198,7 @@ template <int D>
 void PlaneIterative<D>::move_free(StepPart<D> step) {
   renew_pairs(step);
   if (step.substep == 0) integrate_unconstrained(step.state, step.t, substeps_ * step.h);
-  share_free_motion(step.h);
+  share_free_motion(step);
 }
 
 // The wide kernel that finds what closes applies the forces of the last step as well.
@@ -219,22 +222,14 @@ int PlaneIterative<D>::fewest_iterations() const {
 }
 
 template <int D>
-int PlaneIterative<D>::most_iterations() const {
-  return std::max(kUnsettledSweeps, kMoreSweeps * fewest_iterations());
-}
-
-template <int D>
 void PlaneIterative<D>::warm_start(StepPart<D> step) {
-  iterations_ = fewest_iterations(), most_iterations_ = most_iterations();
-  if (step.state.step == 0 && first(step)) iterations_ = kFirstSweeps;
-  most_iterations_ = std::max(iterations_, most_iterations_);
+  iterations_ = step.state.step == 0 && first(step) ? kFirstSweeps : fewest_iterations();
   if (joints_.empty()) return;
   copy_to_joints();
   joints_.begin(step.h);
   copy_from_joints();
   const int most = strained(step.state) ? kStrainSweeps : kJointSweeps;
   iterations_ = batches_.empty() && joints_.plain() ? 1 : std::clamp(most / 4 * iterations_, 4, most);
-  most_iterations_ = iterations_;
 }
 
 // forces stay in the lanes until the last substep
@@ -242,15 +237,29 @@ template <int D>
 void PlaneIterative<D>::iterate(StepPart<D> step) {
   const int count = int(batches_.size());
   const bool last = step.substep + 1 == substeps_;
-  double left = 2 * kSettled;
-  for (int i = 1; i < iterations_ || (i < most_iterations_ && left > kSettled); ++i) {
+  for (int i = 1; i < iterations_; ++i) {
     solve_joint_velocities();
-    left = plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_);
+    plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_);
   }
+  settle_pairs();
   solve_joint_velocities();
   plane::finish(batches_.data(), count, poses_.data(), v_.data(), constants_,
                 last ? step.state.contacts.data() : nullptr);
   impacts_.note(pairs_.all(), step.state.contacts, batches_);
+}
+
+// More iterations of those pairs that are not settled and of those beside them: where a column is struck from
+// below, the blow is to pass through all of it in this substep.
+template <int D>
+void PlaneIterative<D>::settle_pairs() {
+  const int count = int(batches_.size());
+  stirred_.settled = settled_rate(closing_rate_);
+  stirred_.bodies.assign(turns_.size() + 1, plane::Stirred::kNow);
+  stirred_.bodies.back() = 0;
+  for (const int body : joints_.bodies()) stirred_.bodies[body] = plane::Stirred::kNever;
+  for (int left = std::max(kSettlingPairs, kSettlingSweeps * awake_pairs_), pairs = 1; left > 0 && pairs > 0;
+       left -= pairs)
+    pairs = plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_, stirred_);
 }
 
 template <int D>
@@ -381,10 +390,17 @@ void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
   }
 }
 
-// the part of it that a substep of h has
+// The part of it that a substep has. What the position gains beside the mean velocity (`bend`) comes of an
+// acceleration that changes within the step; schemes of second order and more see it as linear in time, so
+// that all of it is in the velocities, and contacts know of it. Of n substeps the k-th (from 0) then has
+//   gain / n - 12 bend / (n h) ((k + 1/2) / n - 1/2)      and is bent by bend / n^3           h of the whole
+//   step
 template <int D>
-void PlaneIterative<D>::share_free_motion(double h) {
-  const double part = 1 / double(substeps_), half = 0.5 * h;
+void PlaneIterative<D>::share_free_motion(StepPart<D> step) {
+  const bool smooth = model_.integrator == Integrator::rk4 || model_.integrator == Integrator::midpoint;
+  const double h = step.h, part = 1 / double(substeps_), half = 0.5 * h;
+  const double late = smooth ? -12 * part / h * part * ((step.substep + 0.5) * part - 0.5) : 0;
+  const double bends = smooth ? part * part * part : part;
   for (std::size_t i = 0; i < turns_.size(); ++i) {
     Motion &v = v_[i], &dv = dv_[i];
     const Motion &gain = gain_[i], &bend = bend_[i];
@@ -393,9 +409,9 @@ void PlaneIterative<D>::share_free_motion(double h) {
       continue;
     }
     old_[i] = v;
-    dv = {part * gain.x, part * gain.y, part * gain.w, 0};
-    dx_[i] = {h * v.x + (half * dv.x + part * bend.x), h * v.y + (half * dv.y + part * bend.y),
-              h * v.w + (half * dv.w + part * bend.w), 0};
+    dv = {part * gain.x + late * bend.x, part * gain.y + late * bend.y, part * gain.w + late * bend.w, 0};
+    dx_[i] = {h * v.x + (half * dv.x + bends * bend.x), h * v.y + (half * dv.y + bends * bend.y),
+              h * v.w + (half * dv.w + bends * bend.w), 0};
     v.x += dv.x, v.y += dv.y, v.w += dv.w;
   }
 }
@@ -455,7 +471,7 @@ template <int D>
 void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
   std::fill(projections_.begin(), projections_.end(), plane::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
-  int iterations = most_iterations();
+  int iterations = std::max(kFewestProjections, kProjections * fewest_iterations());
   if (!joints_.empty() && strained(state)) iterations = kStrainSweeps;
   for (int i = 0; i < iterations; ++i) {
     // joints go along

@@ -62,9 +62,9 @@ class PlaneIterative final : public ContactSolver<D> {
   void write_lane(const plane::Pair& pair, const State<D>& state);
   void first_guess(State<D>& state);
   int fewest_iterations() const;
-  int most_iterations() const;
+  void settle_pairs();
   void integrate_unconstrained(State<D>& state, double t, double h);
-  void share_free_motion(double h);
+  void share_free_motion(StepPart<D> step);
   void copy_to_joints();
   void copy_from_joints();
   void solve_joint_velocities();
@@ -77,6 +77,7 @@ class PlaneIterative final : public ContactSolver<D> {
                bool walls) const;
   Motion mean_way(int body, double h) const;
   Motion course(int body, double h);
+  bool sinks(int body, const Motion& way, double h) const;
   bool fast(int body, const Motion& way) const;
 
   const Model<D>& model_;
@@ -92,6 +93,7 @@ class PlaneIterative final : public ContactSolver<D> {
   double span_ = 0;         // and s
   AllowedOverlap allowed_overlap_;
   int substeps_ = 1;                  // of this step
+  double closing_rate_ = 0;           // as it began, in widths, 1/s
   bool outran_ = false;               // someone came farther than pairs foresaw
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   bool drag_ = false;
@@ -121,12 +123,13 @@ class PlaneIterative final : public ContactSolver<D> {
   std::vector<plane::ContactBatch> batches_;
   std::vector<plane::Projection> projections_;
   plane::Found slow_, fast_;
-  plane::StepConstants constants_;            // of the substep
-  bool deep_ = false;                         // whether something is too deep in another
-  int iterations_ = 0, most_iterations_ = 0;  // of this substep; the latter while pairs have not settled
-  std::vector<int> slots_, next_slots_;       // which pair sits where
-  std::vector<int> moved_;                    // pairs that take another lane
-  std::int64_t next_step_ = -1;               // of the state that this has left
+  plane::StepConstants constants_;  // of the substep
+  plane::Stirred stirred_;
+  bool deep_ = false;                    // whether something is too deep in another
+  int iterations_ = 0;                   // of this substep, of all pairs
+  std::vector<int> slots_, next_slots_;  // which pair sits where
+  std::vector<int> moved_;               // pairs that take another lane
+  std::int64_t next_step_ = -1;          // of the state that this has left
   long version_ = -1;
   int awake_pairs_ = 0;
   double calmest_ = 0;  // m/s: if no point of a body is faster than half of it, all features stay

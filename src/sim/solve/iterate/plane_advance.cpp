@@ -71,6 +71,11 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
       back.x *= part, back.y *= part, back.w *= part;
     }
     d = {there.x + back.x, there.y + back.y, there.w + back.w, 0};
+    // what holds it since then has held it from then on
+    if (sinks(i, d, h)) {
+      const double left = h - impacts_.last(i);
+      d = {there.x + left * v.x, there.y + left * v.y, there.w + left * v.w, 0};
+    }
   } else if (closing_[i]) {
     d = {h * v.x, h * v.y, h * v.w, 0};
   } else {
@@ -92,6 +97,30 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
     v_[i] = o, v_[i].im = im;
   }
   return {part * way.x, part * way.y, part * way.w, 0};
+}
+
+// whether a body comes to lie in what presses against it, if it goes this way
+template <int D>
+bool PlaneIterative<D>::sinks(int body, const Motion& way, double h) const {
+  for (const int i : impacts_.around(body)) {
+    const Pair& pair = pairs_.all()[i];
+    const int other = body == pair.a ? pair.b : pair.a, none = int(turns_.size());
+    const plane::ContactBatch& g = batches_[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    Motion its{};
+    if (other >= 0 && v_[other].im > 0)
+      its =
+          closing_[other] ? Motion{h * v_[other].x, h * v_[other].y, h * v_[other].w, 0} : mean_way(other, h);
+    const double let = allowed_overlap_(g.far[lane], 1 / g.per_width[lane]);
+    for (int k = 0; k < pair.touches; ++k) {
+      if (!(g.p[k][lane] > 0)) continue;
+      const plane::TouchRow at = plane::row(g, lane, k, begun_[pair.a], begun_[pair.b < 0 ? none : pair.b]);
+      const double moves =
+          body == pair.a ? plane::normal_speed(at, way, its) : plane::normal_speed(at, its, way);
+      if (std::min(at.gap, 0.0) + moves < -let) return true;
+    }
+  }
+  return false;
 }
 
 // whether it may pass through something in the step

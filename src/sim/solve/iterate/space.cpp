@@ -5,9 +5,9 @@
 //   4. forces of the last step, then iterations from gap to gap, over and over:
 //        v_n' >= -g / h,  of what closes fast  v_n' >= -e v_n         p_n >= 0
 //        p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
-//      a step along the velocity and not by the inverse block: cut back, that would brake a sliding box with
-//      less than mu g
-//      and, exactly, of joints together  J v' = 0
+//      the second after the first: were both found from one velocity, iterations of rough contacts would
+//      diverge a step along the velocity and not by the inverse block: cut back, that would brake a sliding
+//      box with less than mu g and, exactly, of joints together  J v' = 0
 //   5. positions: by the mean of old and new velocity; by the new one where a slow touch closed
 //   6. out of each other, a part of the way; joints back onto their places (sim/solve/iterate/joint_solver.h)
 //   7. rest: what is quiet and found in static equilibrium freezes
@@ -30,9 +30,11 @@ constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
 constexpr double kSpare = 0.02;          // of their bounding radius: what two may come nearer by being struck
 constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds
-constexpr int kMoreIterations = 5;       // times as many while pairs have not settled
-constexpr int kTempering = 5;            // rounds
-constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
+constexpr int kSettlingTouches =
+    50000;  // times iterations, of touches that have not settled then; or, of many, as if
+constexpr int kSettlingSweeps = 8;      // so many were of all
+constexpr int kTempering = 5;           // rounds
+constexpr double kRoundingGain = 1e-9;  // of its kinetic energy: what an island may win by rounding
 
 }  // namespace
 
@@ -72,7 +74,8 @@ bool SpaceIterative<D>::collide(StepPart<D> step) {
 template <int D>
 void SpaceIterative<D>::wake(StepPart<D> step) {
   if (update_sleep(step.state, step.h)) prepare(step.state), find(step.h);
-  substeps_ = substeps_for(closing_rate(step.h), step.h);
+  closing_rate_ = closing_rate(step.h);
+  substeps_ = substeps_for(closing_rate_, step.h);
   impulses_.clear(), corrected_ = false;
 }
 
@@ -126,7 +129,6 @@ void SpaceIterative<D>::warm_start(StepPart<D> step) {
   warm_start_contacts(step.state, step.h);
   iterations_ =
       std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
-  most_iterations_ = kMoreIterations * iterations_;
   if (step.state.step == 0 && step.substep == 0) iterations_ = kFirstIterations;
   if (joints_.empty()) return;
   // what hangs together is struck together
@@ -139,17 +141,17 @@ void SpaceIterative<D>::warm_start(StepPart<D> step) {
   }
   copy_to_joints();
   joints_.begin(step.h);
-  if (touches_.empty() && joints_.plain()) iterations_ = most_iterations_ = 1;
+  if (touches_.empty() && joints_.plain()) iterations_ = 1;
 }
 
 template <int D>
 void SpaceIterative<D>::iterate(StepPart<D> step) {
   for (int round = 0; round < kTempering; ++round) {
-    double left = 2 * kSettled;
-    for (int i = 0; i < iterations_ || (i < most_iterations_ && left > kSettled); ++i) {
+    for (int i = 0; i < iterations_; ++i) {
       solve_joint_velocities();
-      left = iterate_contacts(all_, i % 2 != 0);
+      iterate_contacts(all_, i % 2 != 0);
     }
+    settle_contacts();
     place_bodies(step.state, step.h);
     if (!temper(step.state)) break;
   }
@@ -267,9 +269,10 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
   };
   touch.normal = answer(touch.n, touch.n);
   const Vec<D> t = perpendicular<D>(touch.n);
-  touch.across = answer(t, t);
+  touch.across = answer(t, t), touch.askew = answer(touch.n, t) * t;
   if constexpr (D == 3) {
     const Vec<D> u = touch.n.cross(t);
+    touch.askew += answer(touch.n, u) * u;
     const double p = touch.across, q = answer(u, u), r = answer(t, u), half = 0.5 * (p - q);
     touch.across = 0.5 * (p + q) + std::sqrt(half * half + r * r);
   }
@@ -345,30 +348,65 @@ void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
   }
 }
 
+// One contact. Returns by how much it was to be slowed down, in widths of the narrower body, 1/s.
 template <int D>
-double SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool back) {
-  const int count = int(order.size());
-  double worst = 0;
-  for (int i = 0; i < count; ++i) {
-    ContactConstraint& touch = touches_[order[back ? count - 1 - i : i]];
-    const Vec<D> u = slip(touch);
-    const double along = touch.n.dot(u);
-    const double wrong = touch.least - along;
-    worst = std::max(worst, (touch.normal_impulse > 0 ? std::fabs(wrong) : wrong) * touch.per_width);
-    const double normal_impulse = std::max(0.0, touch.normal_impulse + wrong / touch.normal);
-    Vec<D> impulse = (normal_impulse - touch.normal_impulse) * touch.n;
-    touch.normal_impulse = normal_impulse;
-    const double most = touch.mu * normal_impulse;
-    if (most > 0 || !touch.tangent_impulse.isZero(0)) {
-      const Vec<D> wanted = touch.tangent_impulse - (u - along * touch.n) / touch.across;
-      const double size = std::sqrt(wanted.squaredNorm());
-      const Vec<D> tangent_impulse = size > most ? Vec<D>(wanted * (most / size)) : wanted;
-      impulse += tangent_impulse - touch.tangent_impulse;
-      touch.tangent_impulse = tangent_impulse;
-    }
-    if (!impulse.isZero(0)) push(touch, impulse);
+double SpaceIterative<D>::iterate(ContactConstraint& touch) {
+  const Vec<D> u = slip(touch);
+  const double along = touch.n.dot(u);
+  const double wrong = touch.least - along;
+  const double normal_impulse = std::max(0.0, touch.normal_impulse + wrong / touch.normal);
+  const double left = touch.normal_impulse > 0 ? std::fabs(wrong) : wrong;
+  const double pushed = normal_impulse - touch.normal_impulse;
+  Vec<D> impulse = pushed * touch.n;
+  touch.normal_impulse = normal_impulse;
+  const double most = touch.mu * normal_impulse;
+  if (most > 0 || !touch.tangent_impulse.isZero(0)) {
+    const Vec<D> across = u - along * touch.n + pushed * touch.askew;
+    const Vec<D> wanted = touch.tangent_impulse - across / touch.across;
+    const double size = std::sqrt(wanted.squaredNorm());
+    const Vec<D> tangent_impulse = size > most ? Vec<D>(wanted * (most / size)) : wanted;
+    impulse += tangent_impulse - touch.tangent_impulse;
+    touch.tangent_impulse = tangent_impulse;
   }
-  return worst;
+  if (!impulse.isZero(0)) push(touch, impulse);
+  return left * touch.per_width;
+}
+
+template <int D>
+void SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool back) {
+  const int count = int(order.size());
+  for (int i = 0; i < count; ++i) iterate(touches_[order[back ? count - 1 - i : i]]);
+}
+
+// More iterations of those contacts that are not settled and of those beside them: where a column is struck
+// from below, the blow is to pass through all of it in this substep. Bodies on joints are left out.
+template <int D>
+void SpaceIterative<D>::settle_contacts() {
+  const int count = int(touches_.size());
+  const double settled = settled_rate(closing_rate_);
+  stirred_.assign(moving_.size(), 1), stirred_.back() = 0;
+  std::vector<char>& tied = stirred_next_;
+  tied.assign(moving_.size(), 0);
+  for (const int body : joints_.bodies()) tied[body] = 1;
+  some_.clear();
+  for (int i = 0; i < count; ++i) {
+    if (!tied[touches_[i].a] && !tied[touches_[i].b]) some_.push_back(i);
+  }
+  const int all = int(some_.size());
+  bool any = all > 0, back = false;
+  for (int left = std::max(kSettlingTouches, kSettlingRounds * all); left > 0 && any; back = !back) {
+    any = false;
+    stirred_next_.assign(moving_.size(), 0);
+    for (int i = 0; i < all; ++i) {
+      ContactConstraint& touch = touches_[some_[back ? all - 1 - i : i]];
+      if (!stirred_[touch.a] && !stirred_[touch.b]) continue;
+      --left;
+      if (!(iterate(touch) > settled)) continue;
+      stirred_next_[touch.a] = stirred_next_[touch.b] = 1, any = true;
+    }
+    stirred_next_.back() = 0;
+    stirred_.swap(stirred_next_);
+  }
 }
 
 // velocities to the joints, of all that they have or of those marked, and back

@@ -51,6 +51,7 @@ class SpaceIterative final : public ContactSolver<D> {
     double gap = 0, mu = 0, bounce = 0;
     double per_width = 0;                     // 1/m: of the narrower body
     double normal = 0, across = 0;            // what a push answers, 1/kg; across: at most
+    Vec<D> askew = Vec<D>::Zero();            // how a push along n moves it across, 1/kg
     double least = 0;                         // of the normal speed after the step, m/s
     double normal_impulse = 0;                // impulse along n, N s
     Vec<D> tangent_impulse = Vec<D>::Zero();  // and across it
@@ -144,7 +145,9 @@ class SpaceIterative final : public ContactSolver<D> {
     }
   }
   void warm_start_contacts(const State<D>& state, double h);
-  double iterate_contacts(const std::vector<int>& order, bool back);
+  double iterate(ContactConstraint& touch);
+  void iterate_contacts(const std::vector<int>& order, bool back);
+  void settle_contacts();
   double closing_rate(double h) const;
   void keep_impulses(const State<D>& state);
   void add_impulses(State<D>& state) const;
@@ -187,6 +190,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<char> round_;
   AllowedOverlap allowed_overlap_;
   int substeps_ = 1;                  // of this step
+  double closing_rate_ = 0;           // as it began, in widths, 1/s
   std::vector<Contact<D>> impulses_;  // of the substeps before
 
   std::vector<BodyMotion<D>> stances_;
@@ -194,7 +198,8 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<Bounds<D>> bounds_;
   std::vector<char> inactive_, points_;
   std::vector<ContactCandidate<D>> gaps_;
-  int iterations_ = 0, most_iterations_ = 0;       // of this substep; the latter while pairs have not settled
+  int iterations_ = 0;                             // of this substep, of all touches
+  std::vector<char> stirred_, stirred_next_;       // bodies whose touches have not settled
   std::vector<ContactConstraint> touches_;         // ascending by key
   std::vector<ContactCandidate<D>> features_;      // theirs
   std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows

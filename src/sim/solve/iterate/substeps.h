@@ -39,15 +39,22 @@ AllowedOverlap allowed_overlap(const Model<D>& model) {
 }
 
 /// By how much two bodies may come nearer in a substep, of the narrower one's width; how many substeps a
-/// second there are at least and at most; and how fast a pair may still close where iterations end, in widths
-/// of the narrower body, 1/s.
-inline constexpr double kCloser = 0.025, kFewestSubsteps = 240, kMostSubsteps = 4800, kSettled = 0.1;
+/// second there are at least and at most.
+inline constexpr double kCloser = 0.025, kFewestSubsteps = 240, kMostSubsteps = 4800;
 /// Of the speed of bodies with corners against each other: as others of their corners may come near.
 inline constexpr double kPassing = 0.25;
 /// Of a width: how near is nearly touching.
 inline constexpr double kNearly = 0.1;
 /// Of the room: how wide a point counts.
 inline constexpr double kPointWidth = 1e-3;
+
+/// How fast a pair may still close where iterations end, in widths of the narrower body, 1/s, where pairs
+/// close by at most `rate` widths a second before. What is left would sink, be lifted again, and never come
+/// to rest.
+inline double settled_rate(double rate) {
+  constexpr double kStill = 1e-5, kShare = 5e-3;
+  return std::max(kStill, kShare * rate);
+}
 
 /// Of a substep: how exactly in time an impact is found; the next correction would be by its square. Of a
 /// bounding radius: no wider open, a gap takes part in an impact.
