@@ -32,7 +32,7 @@ constexpr double kSpare = 0.02;          // of their bounding radius: what two m
 constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds
 constexpr int kSettlingTouches =
     50000;  // times iterations, of touches that have not settled then; or, of many, as if
-constexpr int kSettlingSweeps = 8;      // so many were of all
+constexpr int kSettlingRounds = 8;      // so many were of all
 constexpr int kTempering = 5;           // rounds
 constexpr double kRoundingGain = 1e-9;  // of its kinetic energy: what an island may win by rounding
 
