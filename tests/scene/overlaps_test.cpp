@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -196,6 +197,43 @@ copies   = {{ count = [{}, 6], offset = {}, jitter = 0.004 }}
 INSTANTIATE_TEST_SUITE_P(Overlaps, Towers,
                          testing::Combine(testing::Bool(), testing::Values(1, 3, 10),
                                           testing::Values(60, 240, 600)));
+
+// Boxes that fall askew onto the floor and each other, corners on corners too, and their mirror images.
+std::string tumbling(bool mirrored, int rate, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto number = [&](double most) { return most * (double(random() >> 5) / double(1u << 26) - 1); };
+  const double side = mirrored ? -1 : 1;
+  std::string text =
+      fmt::format("[room]\nsize = [4, 3]\n[physics]\nsolver = \"iterative\"\nrate = {}\n", rate);
+  for (int i = 0; i < 5; ++i) {
+    const double x = number(1.2), angle = number(40), vx = number(1), vy = number(1), spin = number(200);
+    text += fmt::format(
+        "[[box]]\nsize = [0.3, 0.2]\nposition = [{}, {}]\nangle = {}\nvelocity = [{}, {}]\nspin = {}\n",
+        2 + side * x, 0.4 + 0.35 * i, side * angle, side * vx, vy, side * spin);
+  }
+  return text;
+}
+
+TEST(Mirrored, RunsStayMirrorImages) {
+  for (const int rate : {60, 600}) {
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      std::vector<sim::Vec<2>> ends[2];
+      for (const bool mirrored : {false, true}) {
+        const Scene scene = parse(tumbling(mirrored, rate, seed), "mirror.toml", {});
+        const sim::World<2>& world = scene.plane();
+        sim::Stepper<2> stepper(world.model);
+        sim::State<2> state = world.state;
+        stepper.begin(state);
+        for (int i = 0; i < rate * 6 / 10; ++i) ASSERT_FALSE(stepper.step(state));
+        ends[mirrored] = state.x;
+      }
+      for (std::size_t i = 0; i < ends[0].size(); ++i) {
+        EXPECT_NEAR(ends[0][i][0] + ends[1][i][0], 4, 1e-6) << rate << " " << seed;
+        EXPECT_NEAR(ends[0][i][1], ends[1][i][1], 1e-6) << rate << " " << seed;
+      }
+    }
+  }
+}
 
 class Shipped : public testing::TestWithParam<std::tuple<std::string, int>> {};
 

@@ -113,8 +113,8 @@ bool PlaneIterative<D>::sinks(int body, const Motion& way, double h) const {
           closing_[other] ? Motion{h * v_[other].x, h * v_[other].y, h * v_[other].w, 0} : mean_way(other, h);
     const double let = allowed_overlap_(g.far[lane], 1 / g.per_width[lane]);
     for (int k = 0; k < pair.touches; ++k) {
-      if (!(g.p[k][lane] > 0)) continue;
       const plane::TouchRow at = plane::row(g, lane, k, begun_[pair.a], begun_[pair.b < 0 ? none : pair.b]);
+      if (g.p[k][lane] * at.nx + g.q[k][lane] * at.ny <= 0) continue;
       const double moves =
           body == pair.a ? plane::normal_speed(at, way, its) : plane::normal_speed(at, its, way);
       if (std::min(at.gap, 0.0) + moves < -let) return true;

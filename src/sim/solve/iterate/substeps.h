@@ -52,7 +52,7 @@ inline constexpr double kPointWidth = 1e-3;
 /// close by at most `rate` widths a second before. What is left would sink, be lifted again, and never come
 /// to rest.
 inline double settled_rate(double rate) {
-  constexpr double kStill = 1e-5, kShare = 5e-3;
+  constexpr double kStill = 1e-7, kShare = 5e-3;
   return std::max(kStill, kShare * rate);
 }
 
