@@ -37,7 +37,7 @@ SceneInfo::Body shown(const Body<D>& body) {
   SceneInfo::Body it;
   it.name = body.name;
   it.mass = body.mass, it.friction = body.friction;
-  it.fixed = body.fixed, it.turns = body.turns();
+  it.fixed = body.fixed && !body.driven, it.turns = body.turns();
   std::vector<DrawnForm> forms = of_form(body.shape, [](const auto& form) { return form.drawn(); });
   if (forms.size() > 1 || form<Compound<D>>(body.shape)) {
     it.kind = ShapeKind::compound;
@@ -155,8 +155,9 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
 }
 
 template <int D>
-Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, TimeStamp at,
+Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>& stepper, TimeStamp at,
                   double t) {
+  const Model<D>& model = scene.drives.empty() ? scene : stepper.model(state);
   Snapshot now;
   now.time = t;
   now.step = state.step;
