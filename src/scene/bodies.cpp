@@ -75,8 +75,10 @@ sim::AngularVec<D> given_inertia(const Node& node, Diagnostics& complaints) {
 
 // adds the i-th of n to the world
 template <int D>
-void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, const Solid<D>& solid,
+void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, const Solid<D>& formed,
          const std::string& name, int i, int n, const Start<D>& start, int copy, bool copied) {
+  const Node* center = kind.turns ? fields.given("center_of_mass") : nullptr;
+  const Solid<D> solid = center ? with_center<D>(formed, vector<D>(*center)) : formed;
   sim::Body<D> body;
   body.name = name;
   body.elasticity = number(fields.node("elasticity"), i, n);

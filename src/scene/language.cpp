@@ -164,6 +164,8 @@ std::vector<Key> rows() {
        .varies = true, .doc = "Its mass, instead of `density`.", .example = "0.5"},
       {.path = "rigid.inertia", .form = spin, .unit = "kg m^2", .absent = "that of its form",
        .doc = "Its moment of inertia about its centre of mass; in space three, about its principal axes, which those of a box, ball or capsule are.", .example = "0.2"},
+      {.path = "rigid.center_of_mass", .form = vector, .unit = "m", .absent = "its centroid",
+       .doc = "Its centre of mass, in its own frame, as of a body with a weight inside; the form stays where it is.", .example = "[0, -0.1]"},
       {.path = "any.elasticity", .form = number, .fallback = "0.8", .range = kUnit, .varies = true,
        .doc = "Coefficient of restitution e: 0: no bounce, 1: it bounces at full speed.", .example = "0.9"},
       {.path = "any.friction", .form = number, .fallback = "0.5", .range = kNotNegative, .varies = true,

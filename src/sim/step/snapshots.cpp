@@ -37,7 +37,7 @@ SceneInfo::Body shown(const Body<D>& body) {
   SceneInfo::Body it;
   it.name = body.name;
   it.mass = body.mass, it.friction = body.friction;
-  it.fixed = body.fixed && !body.driven, it.turns = body.turns();
+  it.fixed = body.fixed, it.turns = body.turns();
   std::vector<DrawnForm> forms = of_form(body.shape, [](const auto& form) { return form.drawn(); });
   if (forms.size() > 1 || form<Compound<D>>(body.shape)) {
     it.kind = ShapeKind::compound;
@@ -135,6 +135,7 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   cast.gravity = to_3d<D>(model.gravity);
   cast.forces = !model.forces.empty();
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
+  for (const Drive<D>& drive : model.drives) cast.bodies[std::size_t(drive.body)].fixed = false;
   for (const Wall<D>& wall : model.walls)
     cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal), wall.friction});
   for (const Spring<D>& s : model.springs)
