@@ -192,7 +192,7 @@ std::optional<Copies<D>> copies(const Fields& fields, const std::string& kind, i
     }
     sides = std::vector<int>{n};
   } else if (given && !table.given("count")) {
-    complaints.add(given->place, fmt::format("{}.copies needs 'count' or 'at': how many, or where", kind));
+    complaints.add(given->place, "'copies' needs 'count' or 'at': how many, or where");
     return {};
   }
   all.asked = given != nullptr;
