@@ -11,6 +11,7 @@
 #include "scene/check.h"
 #include "scene/copies.h"
 #include "scene/fields.h"
+#include "scene/motions.h"
 #include "scene/path.h"
 #include "scene/solid.h"
 #include "sim/model/stance.h"
@@ -33,6 +34,7 @@ struct BuilderContext {
   sim::World<D>& world;
   std::vector<draw::BodyLook>& looks;
   Seating<D>& roster;
+  Constants& constants;
   Diagnostics& complaints;
   bool rotation = true;                    // the scene's
   double ground_drag = 0;                  // the room's
@@ -56,10 +58,27 @@ bool rotates(const BuilderContext<D>& making, const Fields& fields, const BodyKi
   return own ? std::get<bool>(own->value) : making.rotation;
 }
 
+// moments of inertia that a table gives: one number in the plane, three in space
+sim::AngularVec<2> moments(const Node& node, sim::AngularVec<2>*) {
+  return sim::AngularVec<2>(node.number());
+}
+sim::AngularVec<3> moments(const Node& node, sim::AngularVec<3>*) { return vector<3>(node); }
+template <int D>
+sim::AngularVec<D> given_inertia(const Node& node, Diagnostics& complaints) {
+  const sim::AngularVec<D> I = moments(node, static_cast<sim::AngularVec<D>*>(nullptr));
+  if (!(I.minCoeff() > 0))
+    complaints.add(node.place, "'inertia' must be positive");
+  else if (D == 3 && 2 * I.maxCoeff() > I.sum() * (1 + 1e-9))
+    complaints.add(node.place, "'inertia': no body has a moment that is more than the sum of the other two");
+  return I;
+}
+
 // adds the i-th of n to the world
 template <int D>
-void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, const Solid<D>& solid,
-         const std::string& name, int i, int n, const Start<D>& start) {
+void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, const Solid<D>& formed,
+         const std::string& name, int i, int n, const Start<D>& start, int copy, bool copied) {
+  const Node* center = kind.turns ? fields.given("center_of_mass") : nullptr;
+  const Solid<D> solid = center ? with_center<D>(formed, vector<D>(*center)) : formed;
   sim::Body<D> body;
   body.name = name;
   body.elasticity = number(fields.node("elasticity"), i, n);
@@ -85,6 +104,8 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
     const Node* mass = fields.given("mass");
     body.mass = mass ? number(*mass, i, n) : number(fields.node("density"), i, n) * solid.bulk.content;
     body.inertia = body.mass * (solid.bulk.second / solid.bulk.content);
+    if (const Node* given = fields.given("inertia"))
+      body.inertia = given_inertia<D>(*given, making.complaints);
     if (!(body.inertia.allFinite() && body.inertia.minCoeff() > 0))
       making.complaints.add(fields.place(kind.measure),
                             fmt::format("the {}'s moment of inertia is too {} to compute with", kind.name,
@@ -104,21 +125,30 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
   state.x.push_back(seat.center.isZero(0) ? start.position
                                           : sim::Vec<D>(start.position + turned<D>(seat.center, start.turn)));
   state.v.push_back(start.fixed ? sim::Vec<D>(sim::Vec<D>::Zero()) : start.velocity);
+  body.copy = copy;
   making.world.model.bodies.push_back(std::move(body));
   making.roster.seats.push_back(seat);
+  motion<D>(fields, std::string(kind.name), copy, copied, seat, making.constants, making.world,
+            making.complaints);
 
+  const bool still = start.fixed && !fields.given("release");
   draw::BodyLook look;
   if (const Node* color = fields.given("color")) {
-    look.color = draw::color(color->is_list() ? color->list()[std::size_t(i) % color->list().size()].text()
-                                              : color->text());
-  } else if (!start.fixed && !making.knots) {
+    if (color->is_table()) {
+      look.color = draw::mix(*draw::color(color->find("from")->text()),
+                             *draw::color(color->find("to")->text()), n > 1 ? double(i) / (n - 1) : 0);
+    } else {
+      look.color = draw::color(color->is_list() ? color->list()[std::size_t(i) % color->list().size()].text()
+                                                : color->text());
+    }
+  } else if (!still && !making.knots) {
     look.color = draw::color(kPalette[std::size_t(making.declared) % std::size(kPalette)]);
   }
   const Node* trail = fields.given("trail");
-  look.trail = trail ? trail->number() : start.fixed ? 0 : making.trail;
+  look.trail = trail ? trail->number() : still ? 0 : making.trail;
   const Node* arrows = fields.given("arrows");
-  look.velocity = arrows ? has(*arrows, "velocity") : making.velocity && !start.fixed;
-  look.contact = arrows ? has(*arrows, "contact") : making.contact && !start.fixed;
+  look.velocity = arrows ? has(*arrows, "velocity") : making.velocity && !still;
+  look.contact = arrows ? has(*arrows, "contact") : making.contact && !still;
   if (fields.given("label")) look.label = fields.text("label");
   making.looks.push_back(look);
 }
@@ -253,8 +283,7 @@ void add_changed(BuilderContext<D>& making, const Fields& fields, const BodyKind
   if (own_fields.given("spin")) start.spin = spin<D>(own_fields.node("spin", D), 0, 1);
   if (turn_set) start.turn = turn<D>(own_fields);
   add(making, own_fields, its, solid_of<D>(its, own_fields, 0, 1, complaints),
-      fmt::format("{}[{}]", group.name, i), 0, 1, start);
-  making.world.model.bodies.back().copy = i;
+      fmt::format("{}[{}]", group.name, i), 0, 1, start, i, true);
 }
 
 // adds all copies of a table; `sets`: those of --set for one copy of it
@@ -267,8 +296,11 @@ void add_copies(BuilderContext<D>& making, const Fields& fields, const BodyKind&
   const Solid<D> one_for_all = solid_of<D>(its, fields, 0, group.count, making.complaints);
   for (int i = 0; i < group.count; ++i) {
     Start<D> start;
-    start.position =
-        at ? vector<D>(*at, i, group.count) : Vec((making.room.bounds->low + making.room.bounds->high) / 2);
+    const std::optional<Vec> begins = path_start<D>(fields);
+    start.position = at                       ? vector<D>(*at, i, group.count)
+                     : begins                 ? *begins
+                     : !copies.places.empty() ? copies.places[std::size_t(i)]
+                                              : Vec((making.room.bounds->low + making.room.bounds->high) / 2);
     start.velocity = vector<D>(fields.node("velocity", D), i, group.count);
     if (its.turns) start.spin = spin<D>(fields.node("spin", D), i, group.count);
     if (its.turns) start.turn = copies.orientation(fields, i);
@@ -285,8 +317,7 @@ void add_copies(BuilderContext<D>& making, const Fields& fields, const BodyKind&
     const std::string name = copies.asked ? fmt::format("{}[{}]", group.name, i) : group.name;
     add(making, fields, its,
         its.varies ? solid_of<D>(its, fields, i, group.count, making.complaints) : one_for_all, name, i,
-        group.count, start);
-    making.world.model.bodies.back().copy = i;
+        group.count, start, i, copies.asked);
   }
 }
 
@@ -316,7 +347,7 @@ void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& i
   group.count = copies->count();
   const std::vector<bool> held = fixed_copies(fields, group.count, copied, complaints);
 
-  if (!fields.given("position") && !making.room.bounds) {
+  if (!fields.given("position") && !making.room.bounds && copies->places.empty() && !path_start<D>(fields)) {
     complaints.add(fields.place(), fmt::format("[[{}]] needs 'position': an open room has no middle", kind));
     return;
   }
@@ -342,10 +373,10 @@ void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& i
 
 template <int D>
 Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, const std::vector<CopySet>& sets,
-                  const Dimension& told, sim::World<D>& world, std::vector<draw::BodyLook>& looks,
-                  Diagnostics& complaints) {
+                  const Dimension& told, Constants& constants, sim::World<D>& world,
+                  std::vector<draw::BodyLook>& looks, Diagnostics& complaints) {
   Seating<D> roster;
-  BuilderContext<D> making{top, room, seed, told, world, looks, roster, complaints};
+  BuilderContext<D> making{top, room, seed, told, world, looks, roster, constants, complaints};
   making.drag = Fields::of(top, "room").number("drag");
   making.quadratic_drag = Fields::of(top, "room").number("quadratic_drag");
   making.ground_drag = Fields::of(top, "room").number("ground_drag");
@@ -368,9 +399,9 @@ Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, cons
   return roster;
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                           \
-  template Seating<D> bodies<D>(const Node&, const Room<D>&, std::uint64_t, const std::vector<CopySet>&, \
-                                const Dimension&, sim::World<D>&, std::vector<draw::BodyLook>&,          \
+#define OBSCURA_INSTANTIATE(D)                                                                              \
+  template Seating<D> bodies<D>(const Node&, const Room<D>&, std::uint64_t, const std::vector<CopySet>&,    \
+                                const Dimension&, Constants&, sim::World<D>&, std::vector<draw::BodyLook>&, \
                                 Diagnostics&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

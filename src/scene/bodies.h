@@ -7,6 +7,7 @@
 #include "scene/complaints.h"
 #include "scene/dimension.h"
 #include "scene/document.h"
+#include "scene/expressions.h"
 #include "scene/overrides.h"
 #include "scene/room.h"
 #include "scene/roster.h"
@@ -18,7 +19,7 @@ namespace obscura::scene {
 /// room.
 template <int D>
 Seating<D> bodies(const Node& top, const Room<D>& room, std::uint64_t seed, const std::vector<CopySet>& sets,
-                  const Dimension& told, sim::World<D>& world, std::vector<draw::BodyLook>& looks,
-                  Diagnostics& complaints);
+                  const Dimension& told, Constants& constants, sim::World<D>& world,
+                  std::vector<draw::BodyLook>& looks, Diagnostics& complaints);
 
 }  // namespace obscura::scene

@@ -20,6 +20,7 @@ namespace {
 template <int D>
 std::string unfit(const sim::Body<D>& body) {
   if (body.linked) return "is a link of another chain";
+  if (body.driven) return "is moved by its 'motion'; join a link to it by a [[joint]], and leave it out";
   if (body.fixed) return "is fixed; join a link to the room by a [[joint]], and leave this one out";
   if (body.handout) return "collides by the handout's law, which has no links";
   if (body.turns()) return "";

@@ -17,8 +17,10 @@ namespace {
 constexpr std::int64_t kFinest = 1'000'000;  // of exact times: sums and differences of them fit 64 bits
 constexpr double kLargest = 1e100;           // beyond it squares overflow
 
-constexpr const char* kColors[] = {"orange", "sky",    "green", "blue",  "vermilion",
-                                   "purple", "yellow", "grey",  "black", "white"};
+constexpr const char* kColors[] = {"orange",    "sky",   "green",   "blue",   "vermilion", "purple",
+                                   "yellow",    "grey",  "black",   "white",  "red",       "brown",
+                                   "pink",      "cyan",  "magenta", "violet", "navy",      "teal",
+                                   "turquoise", "olive", "lime",    "gold",   "silver",    "gray"};
 
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
@@ -207,7 +209,7 @@ class Values : private Reporter {
 
   // a number in the plane, a vector in space
   bool spin(const Node& node, const Key& key) {
-    if (dimension() == 2) return node.is_number() ? number(node, key) : varied(node, key);
+    if (dimension() == 2) return node.is_number() || !key.varies ? number(node, key) : varied(node, key);
     if (node.is_number())
       return wrong(node, fmt::format("'{}' is one number, as in the plane, and {}: expected {}", key.last(),
                                      because(), expected(key)));
@@ -421,6 +423,16 @@ class Values : private Reporter {
   }
 
   bool color(const Node& node, const Key& key) {
+    if (node.is_table() && key.varies) {
+      const bool good = each(node.table(), [&](const Entry& entry) {
+        if (entry.key == "from" || entry.key == "to") return one_color(entry.node, key);
+        return unknown(entry, fmt::format("'{}'", key.last()),
+                       ": expected { from, to } over copies, or " + expected(key));
+      });
+      if (!good) return false;
+      return (node.find("from") && node.find("to")) ||
+             wrong(node, fmt::format("'{}': expected {{ from, to }}, two colours", key.last()));
+    }
     if (!node.is_list()) return one_color(node, key);
     if (node.list().empty()) return wrong(node, fmt::format("'{}': expected a colour at least", key.last()));
     return each(node.list(), [&](const Node& it) { return one_color(it, key); });

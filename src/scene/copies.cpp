@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "draw/picture/color.h"
 #include "scene/random.h"
 #include "scene/roster.h"
 #include "sim/math/exponential.h"
@@ -81,6 +82,8 @@ void refuse_odd_lists(const Fields& fields, const std::string& kind, bool copied
   }
 }
 
+std::string hex(draw::Color c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
+
 Node leaf(Place place, double x) { return {place, x}; }
 
 // a vector as it would have been typed
@@ -145,6 +148,7 @@ sim::Orientation<D> Copies<D>::orientation(const Fields& fields, int i) const {
 
 template <int D>
 void Copies<D>::move(Start<D>& start, int i, std::uint64_t seed, std::uint64_t stream) const {
+  if (!places.empty()) start.position = places[std::size_t(i)];
   int along = i;
   for (std::size_t k = 0; k < sides.size(); ++k) {
     start.position += steps[k] * (along % sides[k]);
@@ -166,9 +170,31 @@ std::optional<Copies<D>> copies(const Fields& fields, const std::string& kind, i
   const Node* given = fields.given("copies");
   const Node none{{}, Node::Table{}};
   const Fields table(given ? *given : none, kind + ".copies");
-  const auto sides = grid(table, so_far, complaints);
+  auto sides = grid(table, so_far, complaints);
   if (!sides) return {};
   Copies<D> all;
+  if (const Node* at = table.given("at")) {
+    for (const Node& place : at->list()) {
+      if (place.is_list()) all.places.push_back(vector<D>(place));
+    }
+    const int n = int(all.places.size());
+    std::string wrong;
+    if (n == 0)
+      wrong = "'at': expected a list of places, such as [[1, 2], [3, 2]]";
+    else if (table.given("count") && (sides->size() != 1 || sides->front() != n))
+      wrong = fmt::format("'at' has {} place{}; leave 'count' out", n, n == 1 ? "" : "s");
+    else if (table.given("offset") || fields.given("position"))
+      wrong = fmt::format("'at' says where each copy is; leave '{}' out",
+                          table.given("offset") ? "offset" : "position");
+    if (!wrong.empty()) {
+      complaints.add(at->place, wrong);
+      return {};
+    }
+    sides = std::vector<int>{n};
+  } else if (given && !table.given("count")) {
+    complaints.add(given->place, "'copies' needs 'count' or 'at': how many, or where");
+    return {};
+  }
   all.asked = given != nullptr;
   all.sides = *sides;
   all.steps = offsets<D>(table, sides->size(), complaints);
@@ -199,6 +225,10 @@ Node single(const Fields& fields, const std::string& kind, int i, int n, const S
     if (!node || !key->varies || node->is_number()) continue;
     if (key->form == Form::number) put(std::string(key->last()), leaf(node->place, number(*node, i, n)));
     if (key->form == Form::spin) put("spin", typed_spin(*node, start.spin, i, n));
+    if (key->form == Form::color && node->is_table())
+      put("color", {node->place,
+                    hex(draw::mix(*draw::color(node->find("from")->text()),
+                                  *draw::color(node->find("to")->text()), n > 1 ? double(i) / (n - 1) : 0))});
     if (key->form == Form::color && node->is_list())
       put("color", node->list()[std::size_t(i) % node->list().size()]);
   }

@@ -29,7 +29,8 @@ struct Copies {
   double turn = 0;                         // of each from the one before, deg
   sim::Vec<D> axis = sim::Vec<D>::Zero();  // of that, unit; of the plane there is but one way
   std::optional<sim::Vec<D>> around{};
-  double jitter = 0;  // m
+  double jitter = 0;                  // m
+  std::vector<sim::Vec<D>> places{};  // of each, if the table gives them
 
   int count() const;
   /// The orientation of the i-th copy, for a body whose table is `fields`.

@@ -20,47 +20,21 @@ namespace {
 
 constexpr double kMostPairs = 20'000'000;
 
-// an expression as it was typed; a number stands for itself
-std::string typed(const Node& node) {
-  return node.is_text() ? node.text() : fmt::format("{:.17g}", node.number());
-}
-
-// where a column of an expression is in the file, if that is known
-Place column_of(const Node& node, int column) {
-  Place place = node.place;
-  if (node.inside > 0) place.column += node.inside + column - 1;
-  return place;
-}
-
-void complain(const Node& node, std::string_view key, const sim::ExpressionFault& fault,
-              const std::vector<std::string>& names, Diagnostics& complaints) {
-  std::vector<std::string_view> words;
-  for (const std::string& name : names) {
-    const auto all = sim::expression_functions();
-    const bool function = std::find(all.begin(), all.end(), name) != all.end();
-    if (function == fault.function) words.push_back(name);
-  }
-  // a name that is called may be meant as a number, and the other way round
-  std::string hint = fault.word.empty() ? "" : did_you_mean(fault.word, words);
-  if (hint.empty() && !fault.word.empty())
-    hint = did_you_mean(fault.word, std::vector<std::string_view>(names.begin(), names.end()));
-  complaints.add(column_of(node, fault.column),
-                 fmt::format("'{}', column {}: {}{}", key, fault.column, fault.message, hint));
-}
-
 // the forces of one scene on their way into its world
 template <int D>
 class ForceBuilder {
  public:
-  ForceBuilder(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints)
-      : top_(top), roster_(roster), world_(world), complaints_(complaints) {}
+  ForceBuilder(const Node& top, Constants& constants, const Seating<D>& roster, sim::World<D>& world,
+               Diagnostics& complaints)
+      : top_(top), constants_(constants), roster_(roster), world_(world), complaints_(complaints) {
+    for (const sim::Drive<D>& drive : world.model.drives)
+      if (drive.release) released_.insert(drive.body);
+  }
 
   void build() {
-    constants();
     each("force", [&](const Fields& fields, const std::string& name) { of_expressions(fields, name); });
     each("attractor", [&](const Fields& fields, const std::string& name) { attractor(fields, name); });
     room();
-    refuse_unused();
   }
 
  private:
@@ -74,66 +48,6 @@ class ForceBuilder {
     for (std::size_t k = 0; all && k < all->list().size(); ++k) {
       const Fields fields(all->list()[k], kind);
       build(fields, fields.given("name") ? fields.text("name") : fmt::format("{}[{}]", kind, k));
-    }
-  }
-
-  // [constants]: numbers, or expressions of those before
-  void constants() {
-    const Node* all = top_.find("constants");
-    if (!all) return;
-    const std::vector<std::string> taken = sim::expression_names();
-    for (const Entry& entry : all->table()) {
-      if (std::find(taken.begin(), taken.end(), entry.key) != taken.end()) {
-        complaints_.add(entry.place,
-                        fmt::format("'{}' is a word of expressions; choose another name", entry.key));
-        continue;
-      }
-      sim::ExpressionGraph graph;
-      std::vector<sim::Symbol> symbols;
-      std::vector<std::string> names;
-      for (const auto& [name, value] : constants_)
-        symbols.push_back({name, graph.number(value)}), names.push_back(name);
-      for (const std::string& name : taken)
-        symbols.push_back({name, -1, "changes in the run, and a constant does not"});
-      const std::string text = typed(entry.node);
-      texts_.push_back(text);
-      const auto node = sim::parse_expression(text, symbols, graph);
-      if (const auto* fault = std::get_if<sim::ExpressionFault>(&node)) {
-        for (const std::string_view name : sim::expression_functions()) names.emplace_back(name);
-        complain(entry.node, entry.key, *fault, names, complaints_);
-        continue;
-      }
-      const double value = graph[std::get<int>(node)].value;
-      if (!std::isfinite(value)) {
-        complaints_.add(entry.node.place, fmt::format("'{}' is no finite number", entry.key));
-        continue;
-      }
-      constants_.emplace_back(entry.key, value);
-    }
-  }
-
-  // a constant that --set adds and nothing reads was meant to be another
-  void refuse_unused() {
-    const Node* all = top_.find("constants");
-    if (!all) return;
-    std::vector<std::string_view> names;
-    for (const Entry& entry : all->table())
-      if (entry.place.set == 0) names.push_back(entry.key);
-    const auto letter = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-    };
-    for (const Entry& entry : all->table()) {
-      if (entry.place.set == 0) continue;
-      bool used = false;
-      for (const std::string& text : texts_) {
-        for (std::size_t at = 0; (at = text.find(entry.key, at)) != std::string::npos; ++at) {
-          const std::size_t end = at + entry.key.size();
-          used = used || ((at == 0 || !letter(text[at - 1])) && (end == text.size() || !letter(text[end])));
-        }
-      }
-      if (!used)
-        complaints_.add(entry.place, fmt::format("no expression reads the constant {}{}", quoted(entry.key),
-                                                 did_you_mean(entry.key, names)));
     }
   }
 
@@ -207,7 +121,8 @@ class ForceBuilder {
   void give(Force force) {
     if (force.on == On::each)
       std::erase_if(force.subjects, [&](const Subject& it) {
-        return world_.model.bodies[std::size_t(it.body)].fixed && !(force.center && force.center->body >= 0);
+        return world_.model.bodies[std::size_t(it.body)].fixed && !released_.count(it.body) &&
+               !(force.center && force.center->body >= 0);
       });
     if (!force.subjects.empty()) world_.model.forces.push_back(std::move(force));
   }
@@ -252,14 +167,14 @@ class ForceBuilder {
 
     sim::ForceText text;
     text.pair = pair, text.centered = force.center.has_value();
-    if (potential) text.potential = typed(*potential), texts_.push_back(text.potential);
+    if (potential) text.potential = typed(*potential), constants_.read_by(text.potential);
     for (int k = 0; components && k < D; ++k)
       text.components.push_back(typed(components->list()[std::size_t(k)])),
-          texts_.push_back(text.components.back());
-    const auto made = sim::force_formula<D>(text, constants_);
+          constants_.read_by(text.components.back());
+    const auto made = sim::force_formula<D>(text, constants_.numbers());
     if (const auto* fault = std::get_if<sim::ForceFault>(&made)) {
       std::vector<std::string> names = sim::force_names<D>(pair);
-      for (const auto& [constant, value] : constants_) names.push_back(constant);
+      for (const auto& [constant, value] : constants_.numbers()) names.push_back(constant);
       complain(fault->component < 0 ? *potential : components->list()[std::size_t(fault->component)],
                potential ? "potential" : "components", fault->fault, names, complaints_);
       return;
@@ -426,21 +341,22 @@ class ForceBuilder {
   }
 
   const Node& top_;
+  Constants& constants_;
   const Seating<D>& roster_;
   sim::World<D>& world_;
   Diagnostics& complaints_;
-  sim::NamedNumbers constants_;
-  std::vector<std::string> texts_;  // all expressions of the scene
+  std::set<int> released_;  // bodies that are fixed until they are let go
 };
 
 }  // namespace
 
 template <int D>
-void forces(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints) {
-  ForceBuilder<D>(top, roster, world, complaints).build();
+void forces(const Node& top, Constants& constants, const Seating<D>& roster, sim::World<D>& world,
+            Diagnostics& complaints) {
+  ForceBuilder<D>(top, constants, roster, world, complaints).build();
 }
 
-template void forces<2>(const Node&, const Seating<2>&, sim::World<2>&, Diagnostics&);
-template void forces<3>(const Node&, const Seating<3>&, sim::World<3>&, Diagnostics&);
+template void forces<2>(const Node&, Constants&, const Seating<2>&, sim::World<2>&, Diagnostics&);
+template void forces<3>(const Node&, Constants&, const Seating<3>&, sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

@@ -296,6 +296,34 @@ among     = ["atom[*]"]
 potential = "4*((0.3/r)^12 - (0.3/r)^6)"
 ```
 
+## Motion
+
+A body can be moved as functions of time say. It then has infinite mass: nothing stops it, and what touches it or hangs on it by joints and
+springs feels its velocity and acceleration in every stage of the integrator. What it gives is booked as work. A body that is fixed or
+moved can be let go; a fixed or moving body can carry a belt. Contacts with such bodies need the direct solver.
+
+```toml
+[[box]]
+name     = "table"
+position = [4, 1]
+size     = [2, 0.2]
+motion   = { x = "0.3*sin(2*pi*t)", angle = "10*sin(t)" }        # metres from its position; degrees
+release  = 2.5                                                   # from then on it is free, with its velocity
+
+[[particle]]
+name   = "hand"
+motion = { path = [[0, 1, 3], [1, 2, 3], [2, 2, 4]] }            # time, x, y: smooth, at rest at both ends
+
+[[box]]
+name          = "belt"
+position      = [4, 2]
+size          = [3, 0.2]
+fixed         = true
+surface_speed = 0.5                                              # its upper side goes to +x
+```
+
+A motion should be smooth: where its velocity jumps, what touches it is struck.
+
 ## Expressions
 
 Expressions are in metres, kilograms, seconds and radians (`sin(30*deg)`); axes are the room's. An expression is a string, or a number.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -89,6 +90,29 @@ void ignore(const Node& top, const NameTable& roster, sim::Model<D>& model, Diag
   }
 }
 
+// prescribed motion and belts are the direct solver's
+template <int D>
+void refuse_iterative_motion(const Node& top, const sim::Model<D>& model, Diagnostics& complaints) {
+  if (model.solver != sim::Solver::iterative || model.collision != sim::Collision::contact) return;
+  const auto carries = [](const sim::Body<D>& body) { return body.carries(); };
+  if (std::none_of(model.bodies.begin(), model.bodies.end(), carries)) return;
+  complaints.add(
+      Fields::of(top, "physics").place("solver"),
+      "the iterative solver does not know 'motion' and 'surface_speed' yet; leave 'solver' out: the "
+      "direct one does");
+}
+
+// bonded bodies move as their bonds say
+template <int D>
+void refuse_moved_bonds(const Node& top, const sim::Model<D>& model, Diagnostics& complaints) {
+  if (model.bonds.empty()) return;
+  const auto carries = [](const sim::Body<D>& body) { return body.carries(); };
+  if (model.drives.empty() && std::none_of(model.bodies.begin(), model.bodies.end(), carries)) return;
+  complaints.add(top.find("bond")->list().front().place,
+                 "a scene has [[bond]]s or bodies with 'motion', 'release' or 'surface_speed', not both yet; "
+                 "a [[joint]] of type \"weld\" with 'breaks' holds two bodies together");
+}
+
 // springs, nets, joints and mice share the bodies' names, for --set speaks of them all
 void refuse_taken_names(const Node& top, const NameTable& roster, Diagnostics& complaints) {
   std::map<std::string, Place> taken;
@@ -141,16 +165,20 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   model.gravity = Fields::of(top, "room").vector<D>("gravity");
   const Room<D> walls = room<D>(top, complaints);
   model.walls = walls.walls;
+  Constants constants(top, complaints);
   const Seating<D> roster =
-      bodies<D>(top, walls, scene.seed, copy_sets, told, world, scene.look.bodies, complaints);
+      bodies<D>(top, walls, scene.seed, copy_sets, told, constants, world, scene.look.bodies, complaints);
   for (const Seat<D>& seat : roster.seats) scene.axes.push_back(sim::quaternion<D>(seat.axes));
   springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, world, complaints);
   chains(top, roster, world, complaints);
   explosions(top, model, complaints);
-  forces(top, roster, world, complaints);
+  forces(top, constants, roster, world, complaints);
+  constants.refuse_unused();
   bonds(top, roster, world, complaints);
+  refuse_moved_bonds(top, model, complaints);
+  refuse_iterative_motion(top, model, complaints);
   ignore(top, roster, model, complaints);
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
   refuse_crowd(top, model, complaints);

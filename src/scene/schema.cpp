@@ -98,7 +98,8 @@ Json value(const Key& key) {
     case Form::choices:
       return list_of(words(key.choices), 0, 0);
     case Form::color:
-      return any_of({string, list_of(string, 1, 0)});
+      return key.varies ? any_of({string, list_of(string, 1, 0), between(string)})
+                        : any_of({string, list_of(string, 1, 0)});
     case Form::vector:
       return key.varies
                  ? any_of({vector(key.range, key.dimension), between(vector(key.range, key.dimension))})

@@ -168,6 +168,23 @@ sim::Shape<D> held(const sim::Shape<D>& shape, const sim::Orientation<D>& turn) 
   return it;
 }
 
+template <int D>
+Solid<D> with_center(const Solid<D>& solid, const sim::Vec<D>& center) {
+  const sim::Vec<D> way = sim::rotation<D>(solid.bulk.axes).transpose() * (solid.bulk.center - center);
+  sim::Compound<D> parts;
+  if (const auto* several = sim::form<sim::Compound<D>>(solid.shape)) {
+    for (const sim::Shape<D>& part : several->parts)
+      parts.parts.push_back(moved<D>(part, sim::no_rotation<D>(), way));
+  } else {
+    parts.parts.push_back(moved<D>(solid.shape, sim::no_rotation<D>(), way));
+  }
+  Solid<D> it = solid;
+  it.shape = std::move(parts), it.bulk.center = center;
+  return it;
+}
+
+template Solid<2> with_center<2>(const Solid<2>&, const sim::Vec<2>&);
+template Solid<3> with_center<3>(const Solid<3>&, const sim::Vec<3>&);
 template sim::Shape<2> held<2>(const sim::Shape<2>&, const sim::Orientation<2>&);
 template sim::Shape<3> held<3>(const sim::Shape<3>&, const sim::Orientation<3>&);
 }  // namespace obscura::scene

@@ -35,6 +35,11 @@ sim::Capsule capsule(const Fields& fields, double length, double radius, Diagnos
 template <int D>
 sim::Shape<D> compound(const Node& shapes, Diagnostics& complaints);
 
+/// The same body with another centre of mass, in the frame that was typed; its second moment about it is what
+/// it was about the centroid.
+template <int D>
+Solid<D> with_center(const Solid<D>& solid, const sim::Vec<D>& center);
+
 /// The form of a body that is turned so from now on, and cannot turn otherwise.
 template <int D>
 sim::Shape<D> held(const sim::Shape<D>& shape, const sim::Orientation<D>& turn);

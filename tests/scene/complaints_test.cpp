@@ -142,7 +142,8 @@ TEST(Diagnostics, WordsComeFromTheirList) {
   refused("[[particle]]\ncolor = \"bleu\"", "a.toml:2:9: 'color': 'bleu' is no colour; did you mean 'blue'?");
   refused("[[particle]]\ncolor = \"#12\"",
           "a.toml:2:9: 'color': '#12' is no colour; expected \"#rrggbb\" or one of orange, sky, green, blue, "
-          "vermilion, purple, yellow, grey, black, white");
+          "vermilion, purple, yellow, grey, black, white, red, brown, pink, cyan, magenta, violet, navy, teal, "
+          "turquoise, olive, lime, gold, silver, gray");
   refused(
       "[look]\narrows = [\"force\"]",
       "a.toml:2:11: 'arrows': 'force' is not in this version of obscura yet, which has velocity, contact");
@@ -433,7 +434,7 @@ TEST(Diagnostics, CopiesAreCountedAndBounded) {
           "a.toml:2:20: 'count': 4000000 bodies in all are more than 1000000, the most a scene may have");
   refused("[[particle]]\ncopies = { count = 0 }", "a.toml:2:20: 'count' must be at least 1, got 0");
   refused("[[particle]]\ncopies = { offset = [1, 0] }",
-          "a.toml:2:10: 'copies' needs 'count': a whole number, or two [columns, rows]");
+          "a.toml:2:10: 'copies' needs 'count' or 'at': how many, or where");
   refused("[[particle]]\ncopies = { count = [3, 2], offset = [0.1, 0] }",
           "a.toml:2:37: 'offset': a grid needs one for each direction, such as [[0.3, 0], [0, 0.3]]");
   refused("[[particle]]\ncopies = { count = 3, offset = [[0.1, 0], [0, 1]] }",

@@ -22,6 +22,24 @@ constexpr std::array<std::pair<std::string_view, Color>, 10> kPalette{{
     {"white", {0xFF, 0xFF, 0xFF}},
 }};
 
+// other names that people type, in the palette's tone: most are not told apart without colour vision
+constexpr std::array<std::pair<std::string_view, Color>, 14> kOthers{{
+    {"red", {0xD6, 0x27, 0x28}},
+    {"gray", {0x80, 0x85, 0x8C}},
+    {"brown", {0x8C, 0x56, 0x4B}},
+    {"pink", {0xE3, 0x77, 0xC2}},
+    {"cyan", {0x17, 0xBE, 0xCF}},
+    {"magenta", {0xC2, 0x2E, 0xA0}},
+    {"violet", {0x7F, 0x5F, 0xC7}},
+    {"navy", {0x1F, 0x3A, 0x6E}},
+    {"teal", {0x12, 0x80, 0x80}},
+    {"turquoise", {0x40, 0xC4, 0xB8}},
+    {"olive", {0x8A, 0x8A, 0x1C}},
+    {"lime", {0x8C, 0xC6, 0x2E}},
+    {"gold", {0xD9, 0xA4, 0x06}},
+    {"silver", {0xB8, 0xBC, 0xC2}},
+}};
+
 int digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -40,6 +58,9 @@ Color mix(Color a, Color b, double t) {
 
 std::optional<Color> color(std::string_view name) {
   for (const auto& [known, value] : kPalette) {
+    if (name == known) return value;
+  }
+  for (const auto& [known, value] : kOthers) {
     if (name == known) return value;
   }
   if (name.empty() || name[0] != '#' || (name.size() != 4 && name.size() != 7)) return std::nullopt;

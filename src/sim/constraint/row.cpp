@@ -133,7 +133,7 @@ Row<D> along(const Vec<D>& s, const Vec<D>& s_rate, const Vec<D>& point, const V
 
 template <int D>
 double speed(const Row<D>& row, const std::vector<BodyMotion<D>>& bodies) {
-  double sum = 0;
+  double sum = row.drift;
   if (row.a >= 0) sum += row.along.dot(bodies[row.a].v) + row.angular_a.dot(bodies[row.a].w);
   if (row.b >= 0) sum -= row.along.dot(bodies[row.b].v) + row.angular_b.dot(bodies[row.b].w);
   return sum;
@@ -163,11 +163,41 @@ EvaluatedContact<D> rows(const ContactCandidate<D>& gap, const BodyMotion<D>& a,
   return at;
 }
 
+template <int D>
+Vec<D> belt_velocity(const Body<D>& body, const Rotation<D>& room_from_body, const Vec<D>& outward) {
+  if constexpr (D == 2) {
+    return body.belt[0] * Vec<D>(outward[1], -outward[0]);
+  } else {
+    const Vec<D> u = room_from_body * body.belt;
+    return u - outward * outward.dot(u);
+  }
+}
+
+// The direction of a belt goes with its face: what turns it by itself, where a round body rolls over a round
+// one, is left out of J' v.
+template <int D>
+void add_belts(const Model<D>& model, const ContactKey& key, const std::vector<BodyMotion<D>>& bodies,
+               Row<D>* out) {
+  Vec<D> u = Vec<D>::Zero();
+  const Vec<D>& n = out[0].along;
+  const auto add = [&](int body, double sign) {
+    if (body < 0 || model.bodies[std::size_t(body)].belt.isZero(0)) return;
+    u += sign * belt_velocity<D>(model.bodies[std::size_t(body)], bodies[std::size_t(body)].room_from_body,
+                                 Vec<D>(-sign * n));
+  };
+  add(key.a, 1), add(key.b, -1);
+  for (int i = 1; i < D; ++i) out[i].drift = out[i].along.dot(u);
+}
+
 template struct Row<2>;
 template double speed<2>(const Row<2>&, const std::vector<BodyMotion<2>>&);
 template EvaluatedContact<2> width<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
 template EvaluatedContact<2> rows<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&,
                                      Row<2>*);
+template Vec<2> belt_velocity<2>(const Body<2>&, const Rotation<2>&, const Vec<2>&);
+template Vec<3> belt_velocity<3>(const Body<3>&, const Rotation<3>&, const Vec<3>&);
+template void add_belts<2>(const Model<2>&, const ContactKey&, const std::vector<BodyMotion<2>>&, Row<2>*);
+template void add_belts<3>(const Model<3>&, const ContactKey&, const std::vector<BodyMotion<3>>&, Row<3>*);
 template struct Row<3>;
 template double speed<3>(const Row<3>&, const std::vector<BodyMotion<3>>&);
 template EvaluatedContact<3> width<3>(const ContactCandidate<3>&, const BodyMotion<3>&, const BodyMotion<3>&);

@@ -20,9 +20,10 @@ struct Row {
   AngularVec<D> angular_a = AngularVec<D>::Zero();  // arm x along, m; of a row of turning the axis
   AngularVec<D> angular_b = AngularVec<D>::Zero();
   double velocity_product = 0;  // m/s^2 or rad/s^2
+  double drift = 0;             // m/s: what a belt on either side adds to J v
 
   /// The row of the opposite direction.
-  void reverse() { along *= -1, angular_a *= -1, angular_b *= -1, velocity_product *= -1; }
+  void reverse() { along *= -1, angular_a *= -1, angular_b *= -1, velocity_product *= -1, drift *= -1; }
 };
 
 /// The i-th of D-1 unit vectors across n, which with it are a right-handed frame.
@@ -47,5 +48,15 @@ EvaluatedContact<D> width(const ContactCandidate<D>& gap, const BodyMotion<D>& a
 template <int D>
 EvaluatedContact<D> rows(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b,
                          Row<D>* out);
+
+/// Velocity of the surface of a body against its matter where `outward` is the normal out of it, room's
+/// frame, m/s: in the plane a belt runs around it clockwise, in space along a direction of its own.
+template <int D>
+Vec<D> belt_velocity(const Body<D>& body, const Rotation<D>& room_from_body, const Vec<D>& outward);
+
+/// Adds the belts of both sides to the tangents' rows of a contact.
+template <int D>
+void add_belts(const Model<D>& model, const ContactKey& key, const std::vector<BodyMotion<D>>& bodies,
+               Row<D>* out);
 
 }  // namespace obscura::sim

@@ -104,13 +104,16 @@ bool EnergyGuard<D>::risen(const State<D>& state) {
   }
   if (!(sum > kRounding * (motion + size_))) return false;
   islands_.reset(n);
-  touched_.assign(n, 0), rooted_.assign(n, 0), granted_.assign(n, 0), parts_.assign(n, 0);
+  touched_.assign(n, 0), carried_.assign(n, 0), rooted_.assign(n, 0), granted_.assign(n, 0),
+      parts_.assign(n, 0);
   return true;
 }
 
 template <int D>
 void EnergyGuard<D>::touch(int a, int b) {
   const bool stays = b < 0 || weights_[b].mass == 0;
+  carried_[a] |= char(b >= 0 && model_.bodies[std::size_t(b)].carries());
+  if (b >= 0) carried_[b] |= char(model_.bodies[std::size_t(a)].carries());
   if (weights_[a].mass == 0) {
     if (!stays) touched_[b] = rooted_[b] = 1;
     return;
@@ -133,6 +136,10 @@ void EnergyGuard<D>::gather(const State<D>& state) {
   const auto link = [&](int a, int b, bool fast) {
     for (const int body : {a, b}) {
       if (counts(body)) (exact && fast ? jointed_ : tied_)[body] = 1;
+    }
+    if (a >= 0 && b >= 0) {
+      carried_[a] |= char(model_.bodies[std::size_t(b)].driven);
+      carried_[b] |= char(model_.bodies[std::size_t(a)].driven);
     }
     if (counts(a) && counts(b)) {
       islands_.join(a, b);
@@ -171,7 +178,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     Bound& group = bound_[groups_.root(i)];
     group.lift -= m * model_.gravity.dot(state.x[i] - x_[i]), group.mass += m;
     group.held = group.held || bound_[i].held;
-    it.touched = it.touched || touched_[i], it.driven = it.driven || blasting || driven_[i];
+    it.touched = it.touched || touched_[i], it.driven = it.driven || blasting || driven_[i] || carried_[i];
     it.tied = it.tied || tied_[i], it.jointed = it.jointed || jointed_[i];
     it.rooted = it.rooted || rooted_[i] || (frozen && state.frozen[i]);
   }

@@ -82,6 +82,7 @@ class EnergyGuard {
   std::vector<double> springs_before_, springs_now_;   // J
   Islands islands_, groups_;
   std::vector<char> touched_, rooted_, tied_, jointed_;
+  std::vector<char> carried_;            // one a body: something that is moved, or a belt, works on it
   std::vector<double> granted_, parts_;  // one a body
   std::vector<Island> sums_;             // at the lowest of their bodies
   std::vector<Bound> bound_;             // likewise

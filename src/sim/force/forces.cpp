@@ -45,7 +45,7 @@ bool formula_of(const Force<D>& force) {
 
 template <int D>
 Forces<D>::Forces(const Model<D>& model)
-    : model_(model), pushed_(model.bodies.size(), 0), flies_(model.bodies.size(), 0) {
+    : model_(model), pushed_(model.bodies.size(), 0), flies_(model.bodies.size(), 0), drives_(model) {
   const auto mark = [&](const Subject<D>& subject) {
     if (subject.body >= 0 && !model.bodies[std::size_t(subject.body)].fixed)
       pushed_[std::size_t(subject.body)] = 1;
@@ -208,6 +208,8 @@ int Forces<D>::member_of(const State<D>& state, const Subject<D>& subject, std::
   if (subject.body >= 0) {
     at = body_motion(state, subject.body);
     at.v.setZero(), at.w.setZero();
+    if (const int drive = drives_.number(subject.body); drive >= 0)
+      driven_.emplace_back(int(still_.size()), drive);
   }
   still_.push_back(at);
   return -int(still_.size());
@@ -229,7 +231,7 @@ void Forces<D>::gather(const State<D>& state, std::span<const int> member) {
   if (!gathered_.empty() && std::equal(member.begin(), member.end(), gathered_.begin(), gathered_.end()))
     return;
   gathered_.assign(member.begin(), member.end());
-  still_.clear();
+  still_.clear(), driven_.clear();
   std::size_t most = 0;
   for (Active& it : active_) {
     const Force<D>& force = *it.force;
@@ -321,7 +323,7 @@ void Forces<D>::refuse(const Force<D>& of, int body, double t, const Vec<D>& for
   trouble.likely = of.name + " at ";
   for (int k = 0; k < D; ++k)
     trouble.likely += (k > 0 ? ", " : "") + std::string(1, "xyz"[k]) + " = " + brief_number(place[k]);
-  throw ForceNotFinite(std::move(trouble));
+  throw NotFinite(std::move(trouble));
 }
 
 // --- on each body
@@ -597,14 +599,20 @@ void Forces<D>::all(Active& it, double t, const std::vector<BodyMotion<D>>& moti
 
 template <int D>
 void Forces<D>::apply(double t, const std::vector<BodyMotion<D>>& motions, std::vector<Wrench<D>>& wrenches) {
+  move_driven(t);
+  driven_power_ = 0;
   for (Active& it : active_) {
+    const bool potential = !formula_of(*it.force) || it.force->formula->potential;
     const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& at = {}) {
       const int member = k < 0 ? it.center : it.members[std::size_t(k)];
-      if (member < 0) return;
-      Wrench<D>& wrench = wrenches[std::size_t(member)];
-      wrench.f += f;
       const Subject<D>& subject =
           k < 0 ? *it.force->center : it.force->subjects[std::size_t(it.subjects[std::size_t(k)])];
+      if (member < 0) {
+        if (potential && !driven_.empty()) driven_power_ -= f.dot(point(subject, member, motions).v);
+        return;
+      }
+      Wrench<D>& wrench = wrenches[std::size_t(member)];
+      wrench.f += f;
       if (at)
         wrench.n += moment<D>(Vec<D>(*at - motions[std::size_t(member)].x), f);
       else if (offset(subject))
@@ -616,6 +624,7 @@ void Forces<D>::apply(double t, const std::vector<BodyMotion<D>>& motions, std::
 
 template <int D>
 double Forces<D>::energy(double t, const std::vector<BodyMotion<D>>& motions, std::vector<double>* each) {
+  move_driven(t);
   double sum = 0;
   for (Active& it : active_) {
     if (formula_of(*it.force) && !it.force->formula->potential) continue;
@@ -667,6 +676,7 @@ double Forces<D>::energy_of(const State<D>& state, int body, const BodyMotion<D>
 
 template <int D>
 double Forces<D>::power(double t, const std::vector<BodyMotion<D>>& motions) {
+  move_driven(t);
   double sum = 0;
   for (Active& it : active_) {
     if (!formula_of(*it.force) || it.force->formula->potential || !it.force->formula->works) continue;

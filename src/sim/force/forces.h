@@ -2,20 +2,14 @@
 
 #include <array>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "sim/math/spatial.h"
+#include "sim/model/drives.h"
 #include "sim/model/stance.h"
 #include "sim/model/trouble.h"
 
 namespace obscura::sim {
-
-/// A force that came to no finite number: thrown from within a step, and told by the stepper that it ends.
-struct ForceNotFinite : std::runtime_error {
-  explicit ForceNotFinite(Trouble it) : std::runtime_error(it.what), trouble(std::move(it)) {}
-  Trouble trouble;
-};
 
 /// The forces of a model (sim/model/model.h) on bodies as they stand at an instant: formulas block by block,
 /// pairs by two loops. Their order and their sums are the same on every machine. Once gathered it allocates
@@ -54,6 +48,10 @@ class Forces {
   /// Adds the force and torque on each member at time t, room's frame, torque about its centre.
   void apply(double t, const std::vector<BodyMotion<D>>& motions, std::vector<Wrench<D>>& wrenches);
 
+  /// What bodies that are moved gave through potentials in the last apply(), W: the opposite of the power of
+  /// the forces on them.
+  double driven_power() const { return driven_power_; }
+
   /// The potentials of all, J; added to `each`, one a member, if it is given: that between two half by half.
   double energy(double t, const std::vector<BodyMotion<D>>& motions, std::vector<double>* each = nullptr);
 
@@ -75,6 +73,9 @@ class Forces {
 
   const BodyMotion<D>& motion(int member, const std::vector<BodyMotion<D>>& motions) const {
     return member < 0 ? still_[std::size_t(-1 - member)] : motions[std::size_t(member)];
+  }
+  void move_driven(double t) {
+    for (const auto& [place, drive] : driven_) still_[std::size_t(place)] = drives_.at(drive, t).at;
   }
   int member_of(const State<D>& state, const Subject<D>& subject, std::span<const int> member);
   BodyMotion<D> point(const Subject<D>& subject, int member, const std::vector<BodyMotion<D>>& motions) const;
@@ -112,6 +113,9 @@ class Forces {
   bool potentials_ = false, all_fly_ = false;
   std::vector<Active> active_;
   std::vector<BodyMotion<D>> still_;
+  Drives<D> drives_;
+  std::vector<std::pair<int, int>> driven_;  // of still_ those that are moved: place there, number of drives_
+  double driven_power_ = 0;
   std::vector<int> gathered_;  // member, as last gathered
   std::vector<double> lanes_;  // rows of Program::kLanes
   std::vector<double> places_, pairs_;

@@ -78,6 +78,7 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     for (const double x : posture.v) w.number(x);
   }
   for (const double work : state.work) w.number(work);
+  for (const char released : state.released) w.integer(released);
   for (const char intact : state.intact) w.integer(intact);
   for (const PartPose<D>& pose : state.part_poses) {
     w.template numbers<D>(pose.x);

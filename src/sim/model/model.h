@@ -50,7 +50,12 @@ struct Body {
   bool fixed = false;         // held where it starts; as heavy as the room
   bool linked = false;        // a link of a chain, which moves it
   bool handout = false;       // meets walls by the handout's law, and no bodies, whatever `collision` says
+  bool driven = false;        // fixed, but moved by a Drive
+  AngularVec<D> belt =
+      AngularVec<D>::Zero();  // m/s of its surface: in the plane around it, clockwise; in space in its frame
 
+  /// Whether what touches it may be set in motion by it, though it is fixed.
+  bool carries() const { return driven || belt != AngularVec<D>::Zero(); }
   bool turns() const { return inertia != AngularVec<D>::Zero(); }
 };
 
@@ -131,6 +136,22 @@ template <int D>
 struct Knot {
   Rational time;  // s
   Vec<D> place;
+};
+
+/// A body that is fixed until it is let go, or moved as functions of time say: it has a prescribed velocity
+/// and acceleration, and infinite mass. See sim/model/drives.h.
+template <int D>
+struct Drive {
+  int body = -1;
+  std::shared_ptr<const Program> formula;        // of the time: its outputs as drive_formula() has them
+  std::vector<Knot<D>> path;                     // its ways, instead of a formula's; beside its angle
+  Vec<D> start = Vec<D>::Zero();                 // its centre where the formula is zero
+  Vec<D> pivot = Vec<D>::Zero();                 // from there to the place that the formula moves, m
+  Orientation<D> turn = Orientation<D>::Zero();  // where the angle is zero
+  AngularVec<D> axis = AngularVec<D>::Ones();    // what the angle turns about; in space a unit vector
+  std::optional<Rational> release;               // s: when it is let go
+
+  bool moves() const { return formula || !path.empty(); }
 };
 
 /// A spring from a moving pointer to the closest particle or box vertex, taken once, when pressed. Handout
@@ -230,9 +251,17 @@ struct Model {
   std::vector<Joint<D>> joints;
   std::vector<Explosion<D>> explosions;
   std::vector<Force<D>> forces;
+  std::vector<Drive<D>> drives;  // of bodies in ascending order
   std::vector<Bond<D>> bonds;
   std::vector<Articulation<D>> chains;      // none where there are bonds
   std::vector<std::pair<int, int>> ignore;  // groups that do not touch each other
+
+  /// Whether the books have a place for work: of forces, and of bodies that are moved.
+  bool books_work() const {
+    bool any = !forces.empty() || !drives.empty();
+    for (const Body<D>& body : bodies) any = any || body.carries();
+    return any;
+  }
 
   int particles() const {  // bodies that do not turn
     int n = 0;

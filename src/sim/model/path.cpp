@@ -11,7 +11,7 @@
 namespace obscura::sim {
 
 template <int D>
-Path<D>::Path(const std::vector<Knot<D>>& knots) {
+Path<D>::Path(const std::vector<Knot<D>>& knots, bool from_rest) {
   assert(knots.size() >= 2);
   for (const Knot<D>& knot : knots) {
     times_.push_back(value(knot.time));
@@ -21,12 +21,16 @@ Path<D>::Path(const std::vector<Knot<D>>& knots) {
   const auto span = [&](std::size_t i) { return times_[i + 1] - times_[i]; };
   const auto secant = [&](std::size_t i) { return Vec<D>((places_[i + 1] - places_[i]) / span(i)); };
   slopes_.assign(n, secant(0));
-  if (n == 2) return;
+  if (n == 2) {
+    if (from_rest) slopes_.assign(n, Vec<D>::Zero());
+    return;
+  }
   for (std::size_t i = 1; i + 1 < n; ++i) {
     slopes_[i] = (span(i) * secant(i - 1) + span(i - 1) * secant(i)) / (span(i - 1) + span(i));
   }
   slopes_[0] = 2 * secant(0) - slopes_[1];
   slopes_[n - 1] = 2 * secant(n - 2) - slopes_[n - 2];
+  if (from_rest) slopes_.front().setZero(), slopes_.back().setZero();
 }
 
 template <int D>
@@ -42,7 +46,8 @@ typename Path<D>::Motion Path<D>::at(double t) const {
   const Vec<D> rise = (places_[i + 1] - places_[i]) / h;
   const Vec<D> a = slopes_[i] + slopes_[i + 1] - 2 * rise;
   const Vec<D> b = rise - slopes_[i] - a;
-  return {places_[i] + h * u * (slopes_[i] + u * (b + u * a)), slopes_[i] + u * (2 * b + 3 * u * a)};
+  return {places_[i] + h * u * (slopes_[i] + u * (b + u * a)), slopes_[i] + u * (2 * b + 3 * u * a),
+          (2 * b + 6 * u * a) / h};
 }
 
 template class Path<2>;

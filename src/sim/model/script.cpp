@@ -55,6 +55,13 @@ std::vector<ScriptEvent> edges(const Model<D>& model) {
     } while (held && at < end);
     all.push_back({snapped(time_stamp(end, model.rate)), i, ScriptEvent::Kind::calm});
   }
+  for (int i = 0; i < int(model.drives.size()); ++i) {
+    const Drive<D>& it = model.drives[std::size_t(i)];
+    for (const Knot<D>& knot : it.path)
+      all.push_back({snapped(time_stamp(knot.time, model.rate)), i, ScriptEvent::Kind::bend});
+    if (it.release)
+      all.push_back({snapped(time_stamp(*it.release, model.rate)), i, ScriptEvent::Kind::let_go});
+  }
   std::stable_sort(all.begin(), all.end(),
                    [](const ScriptEvent& a, const ScriptEvent& b) { return a.at < b.at; });
   for (std::size_t i = 1; i < all.size(); ++i) {

@@ -31,9 +31,10 @@ inline double step_length(Rational rate) { return double(rate.den) / double(rate
 
 /// An instant at which the script changes what happens: a step is cut there.
 struct ScriptEvent {
-  enum class Kind { press, knot, release, blast, calm };  // blast: it begins, or its next interval
+  /// blast: it begins, or its next interval; bend: a knot of a body's path; let_go: of a body
+  enum class Kind { press, knot, release, blast, calm, bend, let_go };
   TimeStamp at;
-  int mouse = 0;  // or explosion
+  int mouse = 0;  // or explosion, or drive
   Kind kind = Kind::knot;
 };
 

@@ -102,7 +102,9 @@ struct State {
   std::vector<BodySpin<D>> body_spin;    // in space: one a body that turns
   std::vector<Blast<D>> blasts;          // one an explosion
   std::vector<ChainState> chain_states;  // one a chain of the model
-  std::vector<double> work;  // of a model with forces one number: what those without a potential did, J
+  std::vector<double> work;    // of a model that books it one number: what forces without a potential and
+                               // bodies that are moved did, J
+  std::vector<char> released;  // one a drive: whether its body has been let go
 
   // bonded bodies (sim/step/bonded_bodies.h): all above is then about their parts, and this moves
   std::vector<char> intact;             // one a bond: whether it is whole

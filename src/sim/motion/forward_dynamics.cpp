@@ -23,7 +23,13 @@ constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stan
 
 template <int D>
 ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), paths_(paths), chains_(model), blasts_(model), forces_(model), tips_(model.bodies) {
+    : model_(model),
+      paths_(paths),
+      drives_(model),
+      chains_(model),
+      blasts_(model),
+      forces_(model),
+      tips_(model.bodies) {
   member_.assign(model.bodies.size(), -1);
   const std::size_t counts[] = {model.bodies.size(), model.springs.size(), model.chains.size()};
   for (int i = 0; i < 3; ++i) {
@@ -31,17 +37,22 @@ ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Pat
     std::iota(numbers_[i].begin(), numbers_[i].end(), 0);
   }
   ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty() || !model.chains.empty();
-  for (const Body<D>& body : model.bodies) ever_ = ever_ || body.ground_drag != 0;
+  for (const Body<D>& body : model.bodies) {
+    ever_ = ever_ || body.ground_drag != 0;
+    books_ = books_ || body.carries();
+  }
+  driven_.resize(std::size_t(drives_.size()));
   only_forces_ = !ever_;
   ever_ = ever_ || forces_.any();
 }
 
 template <int D>
 typename ForwardDynamics<D>::Hold ForwardDynamics<D>::hold(const State<D>& state, const End<D>& end) const {
-  if (end.body < 0) return {-1, -1, end.local};
-  if (member_[end.body] >= 0) return {member_[end.body], -1, end.local};
+  if (end.body < 0) return {-1, -1, -1, end.local};
+  if (member_[end.body] >= 0) return {member_[end.body], -1, -1, end.local};
+  if (const int drive = drives_.number(end.body); drive >= 0) return {-1, -1, drive, end.local};
   const BodyMotion<D> at = body_motion(state, end.body);  // what does not move: its point stays
-  return {-1, -1, at.x + at.arm(end.local)};
+  return {-1, -1, -1, at.x + at.arm(end.local)};
 }
 
 template <int D>
@@ -112,7 +123,7 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
     const Grip<D>& grip = state.grips[mouse];
     if (grip.body < 0 || member_[grip.body] < 0) continue;
     ties_.push_back(
-        {hold(state, {grip.body, grip.local}), {-1, mouse, Vec<D>::Zero()}, law(model_.mice[mouse])});
+        {hold(state, {grip.body, grip.local}), {-1, mouse, -1, Vec<D>::Zero()}, law(model_.mice[mouse])});
   }
 
   // bodies with a limit on the turn of one step: tumbling ones, those held off their centre, and links
@@ -149,9 +160,10 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
   }
   braked_.reserve(dragged_.size());
 
-  flying_ = turning_ == 0 && ties_.empty() && dragged_.empty() && chains_.size() == 0 && forces_.all_fly();
+  flying_ = turning_ == 0 && ties_.empty() && dragged_.empty() && chains_.size() == 0 && forces_.all_fly() &&
+            !books_;
 
-  const std::size_t n = std::size_t(chain_start() + chains_.size());
+  const std::size_t n = std::size_t(chain_start() + chains_.size() + int(books_));
   x_.resize(bodies_.size()), stances_.assign(all_.size(), {}), turn_.resize(turning_), base_.resize(turning_);
   d_.resize(n), v_.resize(n), d_rate_.resize(n), v_rate_.resize(n);
 }
@@ -170,7 +182,8 @@ void ForwardDynamics<D>::load(const State<D>& state) {
     take_spin(state, k, model_.integrator == Integrator::semi_implicit, base_[i],
               v_.data() + D * n + kAngular<D> * i);
   }
-  chains_.load(state, std::span<double>(v_).subspan(std::size_t(chain_start())));
+  chains_.load(state, std::span<double>(v_).subspan(std::size_t(chain_start()), std::size_t(chains_.size())));
+  if (books_) v_.back() = 0;
   std::fill(d_.begin(), d_.end(), 0.0);
   forces_.refer(state);
 
@@ -228,6 +241,7 @@ int ForwardDynamics<D>::pieces(const State<D>& state, double h) const {
 template <int D>
 void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
                               System* with) {
+  work_ = 0;
   if (all_.empty()) return;
   if (flying_ && !with && !blasting(state)) return fly(integrate, state, t, h, stages);
   const int n = pieces(state, h);
@@ -270,9 +284,10 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
     const int k = turning(state, bodies_[still + i]), at = D * n + kAngular<D> * i;
     give_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
   }
-  const std::size_t chains = std::size_t(chain_start());
-  chains_.give(std::span<const double>(d_).subspan(chains), std::span<const double>(v_).subspan(chains),
-               state);
+  const std::size_t chains = std::size_t(chain_start()), joints = std::size_t(chains_.size());
+  chains_.give(std::span<const double>(d_).subspan(chains, joints),
+               std::span<const double>(v_).subspan(chains, joints), state);
+  if (books_) work_ += v_.back();
 }
 
 template <int D>
@@ -281,8 +296,8 @@ typename ForwardDynamics<D>::Moving ForwardDynamics<D>::moving(const Hold& hold,
     const auto hand = paths_[hold.mouse].at(t);
     return {Vec<D>::Zero(), hand.place, hand.velocity};
   }
-  if (hold.member < 0) return {Vec<D>::Zero(), hold.at, Vec<D>::Zero()};
-  const BodyMotion<D>& at = stances_[hold.member];
+  if (hold.member < 0 && hold.drive < 0) return {Vec<D>::Zero(), hold.at, Vec<D>::Zero()};
+  const BodyMotion<D>& at = hold.drive < 0 ? stances_[hold.member] : driven_[std::size_t(hold.drive)].at;
   const Vec<D> arm = at.arm(hold.at);
   return {arm, at.x + arm, at.velocity(arm)};
 }
@@ -331,19 +346,23 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     Eigen::Map<AngularVec<D>>(v_rate.data() + at) =
         gyroscopic_acceleration<D>(model_.bodies[bodies_[still + i]].inertia, w);
   }
-  const std::size_t chains = std::size_t(chain_start());
+  const std::size_t chains = std::size_t(chain_start()), joints = std::size_t(chains_.size());
   const int links = int(chains_.links().size());
-  if (links > 0) chains_.stand(d.subspan(chains), v.subspan(chains)), chains_.clear_forces();
+  if (links > 0) chains_.stand(d.subspan(chains, joints), v.subspan(chains, joints)), chains_.clear_forces();
   for (int k = 0; k < links; ++k) {
     stances_[n + k] = chains_.body_motion(k);
     chains_.pull(k, {AngularVec<D>::Zero(), -model_.bodies[all_[n + k]].drag * stances_[n + k].v});
   }
 
+  for (int i = 0; i < drives_.size(); ++i) driven_[std::size_t(i)] = drives_.at(i, t);
+  double power = 0;  // of bodies that are moved
   for (const Tie& tie : ties_) {
     const Moving a = moving(tie.a, t), b = moving(tie.b, t);
     const Vec<D> force = pull<D>(tie.law, a.place, a.velocity, b.place, b.velocity);
     push(tie.a, a.arm, force, v_rate);
     push(tie.b, b.arm, -force, v_rate);
+    if (tie.a.drive >= 0) power -= force.dot(a.velocity);
+    if (tie.b.drive >= 0) power += force.dot(b.velocity);
   }
   for (const int explosion : acting_) {
     for (int i = 0; i < int(all_.size()); ++i)
@@ -353,6 +372,7 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
   if (forces_.any()) {
     std::fill(pushes_.begin(), pushes_.end(), Wrench<D>{});
     forces_.apply(t, stances_, pushes_);
+    power += forces_.driven_power();
     for (int i = 0; i < int(pushes_.size()); ++i) push(i, pushes_[i], v_rate);
   }
   for (const Braked& it : braked_) {
@@ -364,7 +384,9 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
       push(it.member, {AngularVec<D>::Zero(), -model_.bodies[all_[it.member]].mass * rate}, v_rate);
   }
   if (links > 0)
-    chains_.rates(d.subspan(chains), v.subspan(chains), d_rate.subspan(chains), v_rate.subspan(chains));
+    chains_.rates(d.subspan(chains, joints), v.subspan(chains, joints), d_rate.subspan(chains, joints),
+                  v_rate.subspan(chains, joints));
+  if (books_) d_rate.back() = 0, v_rate.back() = power;
 }
 
 template class ForwardDynamics<2>;

@@ -6,6 +6,7 @@
 #include "sim/force/explosion.h"
 #include "sim/force/forces.h"
 #include "sim/force/spring.h"
+#include "sim/model/drives.h"
 #include "sim/model/path.h"
 #include "sim/model/stance.h"
 #include "sim/motion/integrator.h"
@@ -61,7 +62,15 @@ class ForwardDynamics final : public System {
   /// chains().
   const std::vector<BodyMotion<D>>& stances() const { return stances_; }
 
-  /// How many numbers d and v have: D of each body, then the spins of those that turn, then the chains'.
+  /// The bodies that are moved, at the time that rates() saw last; in the order of Drives.
+  const std::vector<DrivenMotion<D>>& driven() const { return driven_; }
+  /// What those, and whatever else is booked at work(), did in the last step(), J.
+  double work() const { return work_; }
+  /// Where v' has the power of that, W; negative: nowhere.
+  int work_place() const { return books_ ? chain_start() + chains_.size() : -1; }
+
+  /// How many numbers d and v have: D of each body, then the spins of those that turn, then the chains', then
+  /// the work of bodies that are moved.
   int size() const { return int(v_.size()); }
   int chain_start() const { return D * int(bodies_.size()) + kAngular<D> * turning_; }
   /// The index at which the spin of the body at `place` in bodies() starts; negative: it does not turn.
@@ -79,6 +88,7 @@ class ForwardDynamics final : public System {
   struct Hold {
     int member = -1;             // place in bodies_, and from there on in links(); -1: not a tied body
     int mouse = -1;              // the mouse that holds it; -1: none
+    int drive = -1;              // the body of that is moved; -1: none
     Vec<D> at = Vec<D>::Zero();  // in the body's frame; else a place in the room
   };
   struct Tie {
@@ -107,6 +117,10 @@ class ForwardDynamics final : public System {
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
+  Drives<D> drives_;
+  std::vector<DrivenMotion<D>> driven_;
+  bool books_ = false;  // some bodies are moved, or move what touches them
+  double work_ = 0;
   Articulated<D> chains_;
   std::vector<int> bodies_;      // ascending: those that turn come last
   std::vector<int> member_;      // a body's place in bodies_, a link's after them, or -1

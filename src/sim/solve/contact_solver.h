@@ -44,6 +44,9 @@ class ContactSolver {
     sleep(whole);
   }
 
+  /// The next step begins with a state that another solver left.
+  virtual void begin_anew() {}
+
   /// Finds what may touch within the step. False: all bodies sleep, and the step is done.
   virtual bool collide(StepPart<D> step) = 0;
   /// Wakes bodies that are touched or pulled; in the first step puts to sleep those that start at rest.

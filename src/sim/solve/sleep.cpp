@@ -54,6 +54,7 @@ Sleep<D>::Sleep(const Model<D>& model, Forces forces, double deepest)
   for (const Body<D>& body : model.bodies) {
     bounding_radius_.push_back(bounding_radius(body.shape));
     half_thickness_.push_back(half_thickness(body.shape));
+    if (body.carries()) carriers_.push_back(int(&body - model.bodies.data()));
   }
 }
 
@@ -163,6 +164,17 @@ template <int D>
 void Sleep<D>::disturb_pulled(const State<D>& state) {
   for (const Grip<D>& grip : state.grips) disturb(grip.body);
   for (const int body : driven_) disturb(body);
+  for (const int body : near_carriers_) disturb(body);
+  for (const int carrier : carriers_) {
+    for (const Spring<D>& spring : model_.springs) {
+      if (spring.a.body == carrier) disturb(spring.b.body);
+      if (spring.b.body == carrier) disturb(spring.a.body);
+    }
+    for (const Joint<D>& joint : model_.joints) {
+      if (joint.a.body == carrier) disturb(joint.b.body);
+      if (joint.b.body == carrier) disturb(joint.a.body);
+    }
+  }
   if (exact_) return;
   for (const Spring<D>& spring : model_.springs) disturb(spring.a.body), disturb(spring.b.body);
 }

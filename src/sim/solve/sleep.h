@@ -71,6 +71,26 @@ class Sleep {
   /// Wakes these bodies, each with its island, and begins to count anew how long they are quiet.
   void wake(State<D>& state, std::span<const int> bodies);
 
+  /// Wakes islands that bodies which are moved, and belts, may reach: nothing sleeps near them. `travel` is
+  /// how far such a body gets in the step, m.
+  template <class Travel>
+  void wake_near_driven(State<D>& state, Travel&& travel) {
+    if (carriers_.empty()) return;
+    near_carriers_.clear();
+    for (const int carrier : carriers_) {
+      const double reach = 2 * travel(carrier) + kCarrierMargin * bounding_radius_[carrier];
+      for (int i = 0; i < int(model_.bodies.size()); ++i) {
+        if (model_.bodies[i].fixed) continue;
+        const double far = bounding_radius_[carrier] + (1 + kCarrierMargin) * bounding_radius_[i] + reach;
+        if ((state.x[i] - state.x[carrier]).squaredNorm() <= far * far) near_carriers_.push_back(i);
+      }
+    }
+    woken_.clear();
+    for (const int i : near_carriers_)
+      if (state.frozen[i]) woken_.push_back(i);
+    if (!woken_.empty()) wake(state, std::vector<int>(woken_));
+  }
+
   /// Sets at rest what begins without speed and in equilibrium: islands without joints, springs and hands, of
   /// Statics::kMost contacts at most. Their contacts take the forces of it. True where any fell asleep.
   bool at_start(State<D>& state, std::span<Contact<D>> contacts);
@@ -118,7 +138,10 @@ class Sleep {
   Mobile mobile(const State<D>& state, const Island& island);
   void freeze(State<D>& state, const Island& island) const;
 
+  static constexpr double kCarrierMargin = 0.05;  // of a bounding radius
+
   const Model<D>& model_;
+  std::vector<int> carriers_, near_carriers_;  // bodies that are moved, and belts; what is near them
   const std::vector<int> driven_,
       restless_at_start_;  // by forces: never at rest; not found at rest at the start
   const bool exact_;

@@ -51,7 +51,7 @@ void fields(Visit& visit, State<D>& it) {
       visit(it.chain_states);
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
       visit(it.quiet);
-  visit(it.broken), visit(it.joint_forces), visit(it.work);
+  visit(it.broken), visit(it.joint_forces), visit(it.work), visit(it.released);
 }
 
 template <class T>
@@ -159,7 +159,8 @@ bool fits(const State<D>& state, const Model<D>& model) {
               state.v.size() == bodies && state.turn.size() == turning && state.spin.size() == turning &&
               finite(state) && sized(state.body_spin, turning) && state.grips.size() == model.mice.size() &&
               state.blasts.size() == model.explosions.size() &&
-              state.work.size() == std::size_t(!model.forces.empty()) &&
+              state.work.size() == std::size_t(model.books_work()) &&
+              state.released.size() == model.drives.size() &&
               state.chain_states.size() == model.chains.size() && state.intact.size() == model.bonds.size() &&
               state.bonded.size() == std::size_t(!model.bonds.empty()) &&
               state.part_poses.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&

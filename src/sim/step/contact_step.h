@@ -22,6 +22,9 @@ class ContactStep {
   /// Moves `state` from t to t + h (s): bodies, contacts, joints, and which bodies sleep.
   void step(State<D>& state, double t, double h);
 
+  /// The next step knows nothing of the one before: bodies have been let go.
+  void begin_anew() { solver_->begin_anew(); }
+
  private:
   void take_energy_back(State<D>& state);
 

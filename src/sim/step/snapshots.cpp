@@ -135,6 +135,7 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   cast.gravity = to_3d<D>(model.gravity);
   cast.forces = !model.forces.empty();
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
+  for (const Drive<D>& drive : model.drives) cast.bodies[std::size_t(drive.body)].fixed = false;
   for (const Wall<D>& wall : model.walls)
     cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal), wall.friction});
   for (const Spring<D>& s : model.springs)
@@ -155,8 +156,9 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
 }
 
 template <int D>
-Snapshot snapshot(const Model<D>& model, const State<D>& state, const Stepper<D>& stepper, TimeStamp at,
+Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>& stepper, TimeStamp at,
                   double t) {
+  const Model<D>& model = scene.drives.empty() ? scene : stepper.model(state);
   Snapshot now;
   now.time = t;
   now.step = state.step;

@@ -19,6 +19,7 @@
 #include "sim/step/archive.h"
 #include "sim/step/bonded_bodies.h"
 #include "sim/step/contact_step.h"
+#include "sim/step/releases.h"
 
 namespace obscura::sim {
 
@@ -45,12 +46,14 @@ Stepper<D>::Stepper(const Model<D>& model)
       integrate_(sim::integrate(model.integrator)),
       handout_(model, paths_),
       blasts_(model),
+      drives_(model),
       divergence_(model, paths_),
       tied_(model, paths_),
       work_(model),
       forces_(model),
       springs_(!model.springs.empty() || !model.mice.empty()) {
-  // a potential that changes with the time gives energy
+  // so do bodies that are moved, and a potential that changes with the time
+  for (const Body<D>& body : model.bodies) springs_ = springs_ && !body.carries();
   for (const Force<D>& force : model.forces)
     springs_ = springs_ && !(force.formula && force.formula->potential && force.formula->timed);
   assert(std::is_partitioned(model.bodies.begin(), model.bodies.end(),
@@ -83,6 +86,11 @@ Stepper<D>::Stepper(const Model<D>& model)
   d_.resize(std::max(D, kAngular<D>) * kBlock), w_.resize(kAngular<D> * kBlock), base_.resize(kBlock);
   assert(model.bonds.empty() || model.chains.empty());
   if (!model.bonds.empty()) pieces_ = std::make_unique<BondedBodies<D>>(model, paths_);
+  const auto let_go = [](const Drive<D>& drive) { return drive.release.has_value(); };
+  if (std::any_of(model.drives.begin(), model.drives.end(), let_go)) {
+    lets_go_ = std::make_unique<Releases<D>>(model);
+    return;
+  }
   if (model.collision != Collision::handout && !pieces_)
     contact_ = std::make_unique<ContactStep<D>>(model, paths_);
   suspects_.reserve(model.bodies.size());
@@ -100,10 +108,17 @@ void Stepper<D>::begin(State<D>& state) {
     state.v[body].setZero();
     if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
   }
+  if (lets_go_) return lets_go_->begin(state);
+  try {
+    drives_.put(state, time({state.step, 0}, model_.rate));
+  } catch (const NotFinite&) {
+    // the first step tells of it
+  }
+  state.released.resize(model_.drives.size());
   if (pieces_) return pieces_->begin(state);
   state.grips.resize(model_.mice.size());
   state.blasts.resize(model_.explosions.size());
-  state.work.resize(model_.forces.empty() ? 0 : 1);
+  state.work.resize(model_.books_work() ? 1 : 0);
   if (D == 3) state.body_spin.resize(state.turn.size());
   if (contact_) {
     state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
@@ -122,10 +137,28 @@ bool Stepper<D>::fits(const State<D>& state) {
 }
 
 template <int D>
+const Model<D>& Stepper<D>::model(const State<D>& state) const {
+  return lets_go_ ? lets_go_->model(state) : model_;
+}
+
+// after bodies have been let go: this stepper knows nothing of the steps before
+template <int D>
+void Stepper<D>::begin_anew(State<D>& state, double t) {
+  if (contact_) contact_->begin_anew();
+  divergence_.start(state, t);
+}
+
+template <int D>
 std::optional<Trouble> Stepper<D>::step(State<D>& state) {
   if (pieces_) return pieces_->step(state);
-  auto trouble = advance(state, 1);
+  if (lets_go_) return lets_go_->step(state);
+  auto trouble = advance(state, 0, 1);
   if (trouble) return trouble;
+  return check_energy(state);
+}
+
+template <int D>
+std::optional<Trouble> Stepper<D>::check_energy(const State<D>& state) {
   if (springs_ && state.step % watch_every_ == 0 && !blasting(state))
     return divergence_.check_energy(state, time({state.step, 0}, model_.rate));
   return {};
@@ -134,25 +167,25 @@ std::optional<Trouble> Stepper<D>::step(State<D>& state) {
 template <int D>
 std::optional<Trouble> Stepper<D>::partial_step(State<D>& state, double fraction) {
   if (pieces_) return pieces_->partial_step(state, fraction);
-  return advance(state, fraction);
+  if (lets_go_) return lets_go_->partial_step(state, fraction);
+  return advance(state, 0, fraction);
 }
 
 template <int D>
-std::optional<Trouble> Stepper<D>::advance(State<D>& state, double fraction) {
+std::optional<Trouble> Stepper<D>::advance(State<D>& state, double from, double fraction) {
   try {
-    return advance_pieces(state, fraction);
-  } catch (const ForceNotFinite& found) {
+    return advance_pieces(state, from, fraction);
+  } catch (const NotFinite& found) {
     return found.trouble;
   }
 }
 
 template <int D>
-std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double fraction) {
-  state.touches.clear();
+std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, double fraction) {
+  if (from == 0) state.touches.clear();
   const double h = step_length(model_.rate);
-  auto edge = std::upper_bound(edges_.begin(), edges_.end(), TimeStamp{state.step, 0},
+  auto edge = std::upper_bound(edges_.begin(), edges_.end(), TimeStamp{state.step, from},
                                [](TimeStamp at, const ScriptEvent& e) { return at < e.at; });
-  double from = 0;
   while (from < fraction) {
     const bool cut = edge != edges_.end() && edge->at.step == state.step && edge->at.fraction <= fraction;
     const double to = cut ? edge->at.fraction : fraction;
@@ -162,6 +195,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double fracti
     if (!books_by_stage_) work_.open(state);
     if (contact_) {
       contact_->step(state, begun, (to - from) * h);
+      drives_.put(state, ended);
       if (!sound(state)) return divergence_.check_bounds(state, ended);
       work_.close(state, begun, (to - from) * h);
       suspects_.clear();
@@ -169,7 +203,9 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double fracti
       handout_.collide(state, suspects_, ended);
     } else {
       suspects_.clear();
-      if (!integrate(state, begun, (to - from) * h)) return divergence_.check_bounds(state, ended);
+      const bool sound = integrate(state, begun, (to - from) * h);
+      drives_.put(state, ended);
+      if (!sound) return divergence_.check_bounds(state, ended);
       if (!books_by_stage_) work_.close(state, begun, (to - from) * h);
       if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
       handout_.collide(state, suspects_, ended);
@@ -198,7 +234,7 @@ void Stepper<D>::touch_script(State<D>& state, TimeStamp at) {
       blasts_.end(state, edge->mouse);
       divergence_.start(state, time(at, model_.rate));
     }
-    if (edge->kind == ScriptEvent::Kind::blast || edge->kind == ScriptEvent::Kind::calm) continue;
+    if (edge->kind != ScriptEvent::Kind::press && edge->kind != ScriptEvent::Kind::release) continue;
     Grip<D>& grip = state.grips[edge->mouse];
     if (edge->kind == ScriptEvent::Kind::press)
       grip = closest(model_, state, model_.mice[edge->mouse].path.front().place);
@@ -336,6 +372,7 @@ void Stepper<D>::spin(State<D>& state, int k, int pieces, double t, double h) {
 template <int D>
 bool Stepper<D>::tied(State<D>& state, double t, double h) {
   tied_.step(integrate_, state, t, h, stages_);
+  if (!state.work.empty()) state.work[0] += tied_.work();
   const double limit = kFarthest * model_.scale;
   std::int64_t sound = 0;
   const auto look = [&](int body) {

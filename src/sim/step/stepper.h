@@ -19,6 +19,8 @@ template <int D>
 class BondedBodies;
 template <int D>
 class ContactStep;
+template <int D>
+class Releases;
 
 /// Steps states of one model. Its members belong to the present step and are never saved; a step after the
 /// first allocates nothing. Keeps the model by reference.
@@ -41,19 +43,26 @@ class Stepper {
   /// then thrown away.
   std::optional<Trouble> partial_step(State<D>& state, double fraction);
 
+  /// The model as it is for this state: bodies that have been let go are free in it.
+  const Model<D>& model(const State<D>& state) const;
+
   const std::vector<Path<D>>& paths() const { return paths_; }
 
   /// Whether mouse `mouse` is pressed at `at`.
   bool pressed(int mouse, TimeStamp at) const;
 
  private:
+  friend class Releases<D>;
+
   // bodies that nothing ties, side by side
   struct Block {
     int first, count;
   };
 
-  std::optional<Trouble> advance(State<D>& state, double fraction);
-  std::optional<Trouble> advance_pieces(State<D>& state, double fraction);
+  std::optional<Trouble> advance(State<D>& state, double from, double fraction);
+  std::optional<Trouble> advance_pieces(State<D>& state, double from, double fraction);
+  std::optional<Trouble> check_energy(const State<D>& state);
+  void begin_anew(State<D>& state, double t);
   void touch_script(State<D>& state, TimeStamp at);
   void plan(const State<D>& state);
   bool integrate(State<D>& state, double t, double h);
@@ -72,6 +81,8 @@ class Stepper {
   Blasts<D> blasts_;
   std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
   std::unique_ptr<BondedBodies<D>> pieces_;  // of a model with bonds: all is done there
+  std::unique_ptr<Releases<D>> lets_go_;     // of one that lets bodies go: likewise
+  Drives<D> drives_;
   DivergenceMonitor<D> divergence_;
   ForwardDynamics<D> tied_;
   WorkBooks<D> work_;

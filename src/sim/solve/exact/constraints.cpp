@@ -26,14 +26,43 @@ void ExactSolver<D>::update_poses(const State<D>& state) {
   free_.chains().stand(state);
 }
 
+// bodies that are moved, at time t
+template <int D>
+void ExactSolver<D>::pose_driven(double t) {
+  for (int i = 0; i < drives_.size(); ++i) {
+    driven_[std::size_t(i)] = drives_.at(i, t);
+    poses_[std::size_t(drives_.body(i))] = driven_[std::size_t(i)].at;
+  }
+}
+
+// how a body stands now: one that is moved as pose_driven() saw it last
+template <int D>
+BodyMotion<D> ExactSolver<D>::end_pose(const State<D>& state, int body) const {
+  const int drive = drives_.number(body);
+  return drive < 0 ? body_motion(state, body) : driven_[std::size_t(drive)].at;
+}
+
+template <int D>
+AngularVec<D> ExactSolver<D>::rounds_of(const State<D>& state, int body) const {
+  const int k = body < 0 ? -1 : turning(state, body);
+  if (k < 0) return AngularVec<D>::Zero();
+  const int drive = drives_.number(body);
+  return rounds<D>(drive < 0 ? state.turn[k] : driven_[std::size_t(drive)].turn);
+}
+
 template <int D>
 AngularVec<D> ExactSolver<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
-  AngularVec<D> turn = AngularVec<D>::Zero();
-  if (const int k = joint.a.body < 0 ? -1 : turning(state, joint.a.body); k >= 0)
-    turn += rounds<D>(state.turn[k]);
-  if (const int k = joint.b.body < 0 ? -1 : turning(state, joint.b.body); k >= 0)
-    turn -= rounds<D>(state.turn[k]);
-  return turn;
+  return rounds_of(state, joint.a.body) - rounds_of(state, joint.b.body);
+}
+
+// what bodies that are moved, and belts, give by a unit of force along a row, W; of impulse, J
+template <int D>
+double ExactSolver<D>::given(int number) const {
+  const Row<D>& row = rows_[number];
+  double sum = row.drift;
+  if (drives_.number(row.a) >= 0) sum += row.along.dot(poses_[row.a].v) + row.angular_a.dot(poses_[row.a].w);
+  if (drives_.number(row.b) >= 0) sum -= row.along.dot(poses_[row.b].v) + row.angular_b.dot(poses_[row.b].w);
+  return -sum;
 }
 
 // the rows of what is held, at the stances at hand
@@ -46,6 +75,7 @@ void ExactSolver<D>::build_jacobian(Constraint& constraint, const AngularVec<D>&
   if (constraint.kind == Constraint::Kind::contact) {
     const ContactCandidate<D>& gap = candidates_[constraint.of];
     const EvaluatedContact<D> now = sim::rows(gap, at(gap.key.a), at(gap.key.b), out);
+    if (belts_) add_belts(model_, gap.key, poses_, out);
     constraint.off = now.value, constraint.point = now.point, constraint.normal = now.normal;
     constraint.rows = D;
   } else {
@@ -162,6 +192,10 @@ double ExactSolver<D>::row_acceleration(int number, std::span<const double> rate
   const Row<D>& row = rows_[number];
   double sum = 0;
   const auto side = [&](int body, const AngularVec<D>& turn, double sign) {
+    if (const int drive = drives_.number(body); drive >= 0) {
+      const DrivenMotion<D>& its = driven_[std::size_t(drive)];
+      sum += sign * (row.along.dot(its.a) + turn.dot(its.alpha));
+    }
     const int place = response_.free(body) ? free_.place(body) : -1;
     if (place < 0) return;
     sum += sign * row.along.dot(Eigen::Map<const Vec<D>>(rate.data() + D * place));
@@ -235,7 +269,7 @@ void ExactSolver<D>::warm_start_rows(double h) {
 // the forces of this instant, and what each contact does. False where there are none.
 template <int D>
 bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
-  update_poses(state);
+  update_poses(state), pose_driven(t);
   collect_constraints(state, false);
   build_blocks(false);
   if (constraints_.empty()) return true;

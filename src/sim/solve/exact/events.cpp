@@ -72,7 +72,8 @@ double ExactSolver<D>::gap_of(const ContactKey& key, double otherwise) {
 
 // the pose of a body a part of the way from interval_.begun to `state`
 template <int D>
-BodyMotion<D> ExactSolver<D>::pose_at(const State<D>& state, int body, double h, double part) const {
+BodyMotion<D> ExactSolver<D>::pose_at(const State<D>& state, int body, double h, double part) {
+  if (const int drive = drives_.number(body); drive >= 0) return drives_.at(drive, interval_.t + part * h).at;
   const double s = part, r = 1 - s;
   const double p0 = r * r * (1 + 2 * s), p1 = s * s * (3 - 2 * s), m0 = h * s * r * r, m1 = -h * s * s * r;
   BodyMotion<D> at;
@@ -88,6 +89,13 @@ BodyMotion<D> ExactSolver<D>::pose_at(const State<D>& state, int body, double h,
 // how far a body went at most, m
 template <int D>
 double ExactSolver<D>::travel(const State<D>& state, int body, double h) const {
+  if (const int drive = drives_.number(body); drive >= 0) {
+    const BodyMotion<D>&from = interval_.driven[std::size_t(drive)].at, &to = driven_[std::size_t(drive)].at;
+    const double fast = std::sqrt(std::max(from.v.squaredNorm(), to.v.squaredNorm()));
+    const double turns = std::sqrt(std::max(from.w.squaredNorm(), to.w.squaredNorm()));
+    return std::max(std::sqrt((to.x - from.x).squaredNorm()), h * fast) +
+           limits_.bounding_radius[body] * std::min(2.0, h * turns);
+  }
   if (!response_.moves(body)) return 0;
   double sum = std::sqrt((state.x[body] - interval_.begun.x[body]).squaredNorm());
   sum = std::max(sum,
@@ -129,8 +137,8 @@ double ExactSolver<D>::closing_time(const State<D>& state, double h, Couple coup
   };
   // the least gap at a part of the way
   const auto least = [&](double part) {
-    if (response_.moves(a)) poses_[a] = pose_at(state, a, h, part);
-    if (response_.moves(b)) poses_[b] = pose_at(state, b, h, part);
+    if (shifts(a)) poses_[a] = pose_at(state, a, h, part);
+    if (shifts(b)) poses_[b] = pose_at(state, b, h, part);
     double value = 1e300;
     near_contacts(poses_, couple, ways + limits_.touching_gap, [&](const ContactCandidate<D>& gap) {
       if (!is_held(gap.key)) value = std::min(value, gap.value);
@@ -269,7 +277,7 @@ double ExactSolver<D>::release_time(const Constraint*& which) {
 template <int D>
 double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which) {
   // contacts that slide, by their rows at the end
-  update_poses(state);
+  update_poses(state), pose_driven(interval_.t + h);
   rows_.clear();
   for (Constraint& constraint : constraints_) {
     build_jacobian(constraint, constraint.kind == Constraint::Kind::contact
@@ -284,8 +292,8 @@ double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& whic
   for (const Couple& couple : active_.couples) {
     if (!may_close(state, h, couple)) continue;
     if (const double part = closing_time(state, h, couple); part < first) first = part, which = couple;
-    poses_[couple.a] = body_motion(state, couple.a);
-    if (couple.b >= 0) poses_[couple.b] = body_motion(state, couple.b);
+    poses_[couple.a] = end_pose(state, couple.a);
+    if (couple.b >= 0) poses_[couple.b] = end_pose(state, couple.b);
   }
   return first;
 }
@@ -293,10 +301,12 @@ double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& whic
 // the turn between the sides of a joint a part of the way
 template <int D>
 AngularVec<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint<D>& joint, double h,
-                                              double part) const {
+                                              double part) {
   const auto at = [&](int body) -> AngularVec<D> {
     const int k = body < 0 ? -1 : turning(state, body);
     if (k < 0) return AngularVec<D>::Zero();
+    if (const int drive = drives_.number(body); drive >= 0)
+      return rounds<D>(drives_.at(drive, interval_.t + part * h).turn);
     return rounds<D>(sim::between<D>(interval_.begun.turn[k], interval_.begun.spin[k], state.turn[k],
                                      state.spin[k], h, part));
   };
@@ -317,7 +327,7 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
     const std::size_t rows = rows_.size();
     const auto left = [&](double part) {
       for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
-        if (response_.moves(body)) poses_[body] = pose_at(state, body, h, part);
+        if (shifts(body)) poses_[body] = pose_at(state, body, h, part);
       }
       build_jacobian(constraint, turn_between_at(state, model_.joints[joint], h, part));
       rows_.resize(rows);
@@ -343,7 +353,7 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
     }
     if (first < before) which = {model_.joints[joint].a.body, model_.joints[joint].b.body};
     for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
-      if (response_.moves(body)) poses_[body] = body_motion(state, body);
+      if (shifts(body)) poses_[body] = end_pose(state, body);
     }
   };
   for (const int i : active_.joints) {
@@ -361,6 +371,7 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
 template <int D>
 double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, bool& cut) {
   save(state, interval_.begun);
+  interval_.t = t, interval_.driven = driven_;
   interval_.velocities.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) interval_.velocities[i] = row_velocity(i);
   double length = h;
@@ -371,7 +382,7 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
     // a force may grow without bound within an interval
     if (!all_finite(state)) {
       restore(interval_.begun, state);
-      update_poses(state);
+      update_poses(state), pose_driven(t);
       cut = true;
       return 0;
     }
@@ -392,7 +403,7 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
     }
     progress_.cut_by = meets;
     restore(interval_.begun, state);
-    update_poses(state);
+    update_poses(state), pose_driven(t);
     if (part * length < 1e-14 * h) return 0;
     length *= part;
   }
@@ -404,8 +415,11 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
 template <int D>
 void ExactSolver<D>::integrate(State<D>& state, double t, double h) {
   const int pieces = limits_.row_joints == 0 || limits_.row_joints > kFewJoints ? 1 : kFiner;
-  for (int i = 0; i < pieces; ++i)
+  interval_.given = 0;
+  for (int i = 0; i < pieces; ++i) {
     free_.step(integrate_, state, t + i * (h / pieces), h / pieces, stages_, this);
+    interval_.given += free_.work();
+  }
 }
 
 template double ExactSolver<2>::advance_to_event(State<2>&, double, double, bool&);

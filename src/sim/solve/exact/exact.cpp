@@ -56,7 +56,7 @@ typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& mode
     list_couples<D>(model, [&](int a, int b) { limits.couples.push_back({a, b}); });
   } else {
     for (int a = 0; a < int(model.bodies.size()); ++a)
-      if (model.bodies[a].fixed) limits.fixed.push_back(a);
+      if (model.bodies[a].fixed && !model.bodies[a].driven) limits.fixed.push_back(a);
   }
   const auto number = [](std::vector<int>& list, std::size_t size) {
     list.resize(size);
@@ -72,6 +72,7 @@ template <int D>
 ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
     : model_(model),
       may_touch_(model),
+      drives_(model),
       limits_(make_limits(model, whom)),
       integrate_(sim::integrate(model.integrator)),
       free_(model, paths),
@@ -81,6 +82,8 @@ ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& p
   progress_.rest_speed = limits_.rest_speed;
   step_.travel_bound.resize(model.bodies.size());
   step_.groups.reserve(model.bodies.size());
+  driven_.resize(std::size_t(drives_.size()));
+  for (const Body<D>& body : model.bodies) belts_ = belts_ || !body.belt.isZero(0);
 }
 
 template <int D>
@@ -140,6 +143,7 @@ void ExactSolver<D>::collect_bodies(State<D>& state) {
     response_.set(body, !model_.bodies[body].fixed && !state.frozen[body]);
     fastest = std::max(fastest, state.v[body].squaredNorm());
   }
+  for (const DrivenMotion<D>& it : driven_) fastest = std::max(fastest, it.at.v.squaredNorm());
   still_speed_ = 1e-11 * std::max(limits_.unit_speed, std::sqrt(fastest));
   free_.gather(state, active_.subset);
   stages_.reserve(std::size_t(free_.size()));
@@ -155,12 +159,14 @@ bool ExactSolver<D>::collide(StepPart<D> step) {
   cone_.thorough = model_.collision == Collision::event || state.step % kThorough == 0;
 
   activate_all();
+  pose_driven(step.t);
+  wake_near_driven(state, step.t, step.h);
   collect_bodies(state);
   save(state, step_.begun);
   step_.frozen = state.frozen, step_.quiet = state.quiet;
   bound_travel(state, step.t, step.h);
   step_.near.reset(int(n)), step_.old_root.assign(n, -1), step_.travelled.assign(n, 0.0),
-      step_.cuts.assign(n, 0);
+      step_.cuts.assign(n, 0), step_.given.assign(n, 0.0);
   return true;
 }
 
@@ -187,13 +193,17 @@ void ExactSolver<D>::advance(StepPart<D> step) {
         };
         std::erase_if(step_.contacts, of_group), std::erase_if(step_.impulses, of_group);
       }
-      for (const int body : group.subset.bodies) step_.old_root[body] = group.root, step_.cuts[body] = 0;
+      for (const int body : group.subset.bodies)
+        step_.old_root[body] = group.root, step_.cuts[body] = 0, step_.given[body] = 0;
       step_group(state, step.t, step.h);
+      step_.given[group.root] = progress_.given;
       step_.contacts.insert(step_.contacts.end(), outcome_.contacts.begin(), outcome_.contacts.end());
       step_.impulses.insert(step_.impulses.end(), outcome_.impulses.begin(), outcome_.impulses.end());
     }
     if (!any) break;
   }
+  if (state.work.empty()) return;
+  for (const double given : step_.given) state.work[0] += given;
 }
 
 template <int D>
@@ -220,6 +230,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   collect_bodies(state);
   outcome_.contacts.clear(), outcome_.impulses.clear();
   progress_.known = &state.contacts;
+  progress_.given = 0;
   double done = 0;
   int tiny = 0;  // cuts in a row that led nowhere
   progress_.forced.clear(), progress_.forced_again = false;
@@ -233,6 +244,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   int grown = 0;  // cuts at which rest has grown
   // `event` counts all cuts of the group, whoever they are of
   for (int spent = 0; done < h; spent = exact ? spent + 1 : cuts_so_far()) {
+    pose_driven(t + done);
     find_contacts(state, limits_.touching_gap);
     if (wake_reached(state)) {
       collect_bodies(state);
@@ -260,7 +272,8 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       const std::size_t forced = progress_.forced.size();
       length = advance_to_event(state, t + done, h - done, cut);
       held_again = progress_.forced.size() > forced && !progress_.forced_again;
-      if (length > 0) project_state(state);
+      pose_driven(t + done + length);
+      if (length > 0) project_state(state), progress_.given += interval_.given;
       if (cut) count_cut(progress_.cut_by.a, progress_.cut_by.b);
     }
     if (length == 0 && !held_again) {
@@ -285,6 +298,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     }
   }
   progress_.rest_speed = slowest;
+  pose_driven(t + h);
   find_contacts(state, limits_.touching_gap);
   if (wake_reached(state)) {
     collect_bodies(state);
@@ -352,6 +366,10 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   for (std::size_t i = 0; i < members.size(); ++i) poses_[members[i]] = free_.stances()[i];
   const auto& links = free_.chains().links();
   for (std::size_t i = 0; i < links.size(); ++i) poses_[links[i]] = free_.stances()[members.size() + i];
+  for (int i = 0; i < drives_.size(); ++i) {
+    driven_[std::size_t(i)] = free_.driven()[std::size_t(i)];
+    poses_[std::size_t(drives_.body(i))] = driven_[std::size_t(i)].at;
+  }
   rows_.clear();
   for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
   chain_response_.build(rows_, response_, free_.chains());
@@ -362,6 +380,9 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   if (D > 2) turn_slip_directions();
   solve_held();
   for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], v_rate);
+  if (const int work = free_.work_place(); work >= 0) {
+    for (int i = 0; i < int(rows_.size()); ++i) v_rate[std::size_t(work)] += f_[i] * given(i);
+  }
 }
 
 // contacts and joints and their forces as they were chosen last; joints of what is frozen keep theirs
@@ -437,6 +458,7 @@ void ExactSolver<D>::write_contacts(State<D>& state) {
 // end
 template <int D>
 void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
+  pose_driven(t);
   find_contacts(state, limits_.touching_gap);
   update_poses(state);
   collect_constraints(state, true);
@@ -460,12 +482,14 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
           h * to_room<D>(poses_[body].room_from_body, Eigen::Map<const AngularVec<D>>(rate.data() + at));
   }
   Articulated<D>& chains = free_.chains();
-  scratch_.chain_change.assign(rate.begin() + free_.chain_start(), rate.end());
+  scratch_.chain_change.assign(rate.begin() + free_.chain_start(),
+                               rate.begin() + free_.chain_start() + chains.size());
   for (double& change : scratch_.chain_change) change *= h;
   chains.jump(state, scratch_.chain_change, false);
   warm_start_rows(fastest < kCreep * limits_.unit_speed ? h : 0);
   solve();
   apply_impulses(state, false);
+  for (int i = 0; i < int(rows_.size()); ++i) progress_.given += f_[i] * given(i);
   for (const int body : members) {
     state.x[body] += 0.5 * h * (interval_.begun.v[body] + state.v[body]);
     if (const int k = turning(state, body); k >= 0)
@@ -477,6 +501,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   record_forces();
 
   // push apart bodies that overlap now and did not before
+  pose_driven(t + h);
   find_contacts(state, limits_.touching_gap);
   collect_constraints(state, true);
   build_blocks(true);

@@ -116,12 +116,14 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<int> lone_body;                  // of Serves::lone
     std::vector<double> travel_bound;            // m: how far from where the step began each body may get
     std::vector<double> travelled;               // m: how far each has got
+    std::vector<double> given;                   // J: by bodies that are moved, at the root of each group
     std::vector<int> cuts;                       // one a body: cuts of this step that it took part in
     std::vector<Contact<D>> contacts, impulses;  // of the groups that are done
   };
 
   // progress in the step of the present group
   struct Progress {
+    double given = 0;                         // by bodies that are moved, J
     double rest_speed = 0;                    // m/s: that of limits_, or more after many cuts
     bool rough = false;                       // forces by Gauss-Seidel from here on
     double work = 0;                          // rows^3 solved
@@ -138,11 +140,14 @@ class ExactSolver final : public ContactSolver<D>, private System {
 
   // the present interval, from one event to the next
   struct Interval {
-    Motion begun;                    // where it began
-    Eigen::VectorXd velocities;      // J v there
-    Eigen::VectorXd forces;          // f there
-    std::vector<ConeMode<D>> modes;  // as its stages keep them
-    double slight = 0;               // N: less presses nothing
+    Motion begun;                         // where it began
+    double t = 0;                         // s, when
+    double given = 0;                     // by bodies that are moved within it, J
+    std::vector<DrivenMotion<D>> driven;  // those when it began
+    Eigen::VectorXd velocities;           // J v there
+    Eigen::VectorXd forces;               // f there
+    std::vector<ConeMode<D>> modes;       // as its stages keep them
+    double slight = 0;                    // N: less presses nothing
   };
 
   // outcome, of the group at hand, then of the step
@@ -205,6 +210,11 @@ class ExactSolver final : public ContactSolver<D>, private System {
 
   // constraints.cpp
   void update_poses(const State<D>& state);
+  void pose_driven(double t);
+  bool shifts(int body) const { return response_.moves(body) || drives_.number(body) >= 0; }
+  BodyMotion<D> end_pose(const State<D>& state, int body) const;
+  AngularVec<D> rounds_of(const State<D>& state, int body) const;
+  double given(int row) const;
   AngularVec<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
   void collect_constraints(const State<D>& state, bool all);
   void build_jacobian(Constraint& constraint, const AngularVec<D>& turn);
@@ -250,6 +260,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
 
   // sleep.cpp
   bool wake_reached(State<D>& state);
+  void wake_near_driven(State<D>& state, double t, double h);
   void put_to_sleep(State<D>& state, double t, double h);
   void find_accelerations(State<D>& state, double t);
 
@@ -264,17 +275,18 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double release_time(const Constraint*& which);
   double travel(const State<D>& state, int body, double h) const;
   bool may_close(const State<D>& state, double h, Couple couple) const;
-  AngularVec<D> turn_between_at(const State<D>& state, const Joint<D>& joint, double h, double part) const;
+  AngularVec<D> turn_between_at(const State<D>& state, const Joint<D>& joint, double h, double part);
   void find_contacts(const State<D>& state, double margin);
   double gap_of(const ContactKey& key, double otherwise);
   template <class Found>
   void near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
-  BodyMotion<D> pose_at(const State<D>& state, int body, double h, double part) const;
+  BodyMotion<D> pose_at(const State<D>& state, int body, double h, double part);
 
   Material material(const ContactKey& key) const { return sim::material(model_, key.a, key.b); }
 
   const Model<D>& model_;
   const MayTouch<D> may_touch_;
+  Drives<D> drives_;
   const Limits limits_;
   Integrate* integrate_;
   ForwardDynamics<D> free_;
@@ -291,8 +303,10 @@ class ExactSolver final : public ContactSolver<D>, private System {
   Scratch scratch_;
 
   // the present instant
-  double still_speed_ = 0;            // m/s: slower is not at all, at the speeds at hand
-  std::vector<BodyMotion<D>> poses_;  // one a body
+  bool belts_ = false;                   // some bodies have one
+  double still_speed_ = 0;               // m/s: slower is not at all, at the speeds at hand
+  std::vector<BodyMotion<D>> poses_;     // one a body
+  std::vector<DrivenMotion<D>> driven_;  // those of bodies that are moved, in the order of drives_
   std::vector<ContactCandidate<D>> candidates_;
   std::vector<Constraint> constraints_;
   std::vector<Row<D>> rows_;

@@ -52,8 +52,10 @@ void ExactSolver<D>::bound_travel(const State<D>& state, double t, double h) {
     const double v = std::sqrt(2 * kinetic(model_, state, body) / model_.bodies[body].mass);
     step_.travel_bound[body] = kSpare * h * v + h * h * a;
   }
+  for (int i = 0; i < drives_.size(); ++i)
+    step_.travel_bound[std::size_t(drives_.body(i))] = kSpare * drives_.travel(i, t, h);
   // fixed bodies too
-  update_poses(state);
+  update_poses(state), pose_driven(t);
 }
 
 // step_.near: which bodies may meet, or are tied together
@@ -137,7 +139,7 @@ void ExactSolver<D>::find_reached() {
       meets = (step_.begun.x[body] - wall.point).dot(wall.normal) <= far;
     } else {
       const int other = a_fixed ? a : b;
-      const double all = far + limits_.bounding_radius[other];
+      const double all = far + limits_.bounding_radius[other] + step_.travel_bound[other];
       meets = (step_.begun.x[body] - poses_[other].x).squaredNorm() <= all * all;
     }
     if (meets) kind = kBusy;

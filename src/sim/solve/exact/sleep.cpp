@@ -27,6 +27,15 @@ bool ExactSolver<D>::wake_reached(State<D>& state) {
   return sleep_.wake(state, scratch_.near, 0, 0);
 }
 
+// wakes what bodies that are moved, and belts, may touch within the step
+template <int D>
+void ExactSolver<D>::wake_near_driven(State<D>& state, double t, double h) {
+  sleep_.wake_near_driven(state, [&](int body) {
+    const int i = drives_.number(body);
+    return i < 0 ? 0 : drives_.travel(i, t, h);
+  });
+}
+
 // after a step of h to time t
 template <int D>
 void ExactSolver<D>::put_to_sleep(State<D>& state, double t, double h) {
@@ -68,7 +77,8 @@ void ExactSolver<D>::find_accelerations(State<D>& state, double t) {
            std::sqrt(Eigen::Map<const AngularVec<D>>(scratch_.rate.data() + at).squaredNorm());
   }
   const auto& links = free_.chains().links();
-  free_.chains().motions(std::span<const double>(scratch_.rate).subspan(std::size_t(free_.chain_start())),
+  free_.chains().motions(std::span<const double>(scratch_.rate)
+                             .subspan(std::size_t(free_.chain_start()), std::size_t(free_.chains().size())),
                          scratch_.motions);
   for (std::size_t k = 0; k < links.size(); ++k) {
     const Twist<D>& rate = scratch_.motions[k];
@@ -77,6 +87,8 @@ void ExactSolver<D>::find_accelerations(State<D>& state, double t) {
   }
 }
 
+template void ExactSolver<2>::wake_near_driven(State<2>&, double, double);
+template void ExactSolver<3>::wake_near_driven(State<3>&, double, double);
 template bool ExactSolver<2>::wake_reached(State<2>&);
 template void ExactSolver<2>::put_to_sleep(State<2>&, double, double);
 template bool ExactSolver<3>::wake_reached(State<3>&);

@@ -80,7 +80,8 @@ bool PlaneIterative<D>::collide(StepPart<D> step) {
   if (!joints_.empty()) joints_.prepare(state);
   if (state.step == 0) joints_.project_initial_velocities(state);
 
-  const bool due = state.step % every_ == 0;
+  const bool due = state.step % every_ == 0 || anew_;
+  anew_ = false;
 
   // bodies that springs and mice hold
   if (dynamics_.ever()) {

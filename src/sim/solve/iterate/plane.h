@@ -27,6 +27,7 @@ class PlaneIterative final : public ContactSolver<D> {
   /// Both are kept by reference.
   explicit PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
+  void begin_anew() override { anew_ = true; }
   bool collide(StepPart<D> step) override;
   void wake(StepPart<D> step) override;
   int substeps() const override { return substeps_; }
@@ -94,6 +95,7 @@ class PlaneIterative final : public ContactSolver<D> {
   AllowedOverlap allowed_overlap_;
   int substeps_ = 1;                  // of this step
   double closing_rate_ = 0;           // as it began, in widths, 1/s
+  bool anew_ = false;                 // pairs are to be looked for, whatever the step
   bool outran_ = false;               // someone came farther than pairs foresaw
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   bool drag_ = false;

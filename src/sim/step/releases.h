@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sim/model/script.h"
+#include "sim/model/state.h"
+#include "sim/model/trouble.h"
+
+namespace obscura::sim {
+
+template <int D>
+class Stepper;
+
+/// Steps a model that lets bodies go: between two releases it is a model in which those that have been let go
+/// are free and all others fixed or moved, with a stepper of its own. What is made for it follows from the
+/// state.
+template <int D>
+class Releases {
+ public:
+  /// Kept by reference.
+  explicit Releases(const Model<D>& model);
+  ~Releases();
+
+  void begin(State<D>& state);
+  std::optional<Trouble> step(State<D>& state);
+  std::optional<Trouble> partial_step(State<D>& state, double fraction);
+
+  /// The model of a state.
+  const Model<D>& model(const State<D>& state);
+
+ private:
+  std::optional<Trouble> advance(State<D>& state, double fraction);
+  bool let_go(State<D>& state, TimeStamp at);
+  void make(const State<D>& state);
+
+  const Model<D>& model_;
+  std::vector<ScriptEvent> edges_;  // of releases
+  Model<D> now_;
+  std::vector<char> made_;  // State::released of now_
+  std::unique_ptr<Stepper<D>> stepper_;
+};
+
+}  // namespace obscura::sim
