@@ -277,7 +277,16 @@ std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, c
   std::vector<draw::Caption> all;
   for (const Node& node : tables(fields, "caption")) {
     const Fields its(node, "film.caption");
-    if (its.given("text")) all.push_back({its.text("text"), read.shown(its)});
+    if (!its.given("text")) continue;
+    draw::Caption caption{its.text("text"), read.shown(its)};
+    const auto film = [&](const draw::Cue& cue) {
+      if (cue.after) return cue.film;
+      const auto exact = sim::from_double(cue.time);
+      return exact ? sim::value(speed.film(*exact)) : cue.time;
+    };
+    if (caption.shown.start) caption.begin = film(*caption.shown.start);
+    if (caption.shown.end) caption.end = film(*caption.shown.end);
+    all.push_back(std::move(caption));
   }
   return all;
 }

@@ -240,6 +240,9 @@ Film film(const Node& top, Diagnostics& complaints) {
   film.speed = speed(fields.node("speed"), fields, Fields(top, "").rational("duration"), film.titles.cards,
                      complaints);
   film.titles.badge = fields.flag("badge");
+  const sim::Rational duration = Fields(top, "").rational("duration");
+  film.titles.fade = fields.number("fade");
+  film.titles.length = sim::value(film.speed.film(duration) + film.speed.frozen_at(duration));
   if (const Node* crf = fields.given("crf")) film.crf = crf->number();
   film.preset = fields.text("preset");
   film.codec = fields.text("codec");

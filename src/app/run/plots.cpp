@@ -272,7 +272,13 @@ Ahead ahead(const scene::Scene& scene) {
   Ahead all;
   const double aspect = double(scene.film.width) / scene.film.height;
   if (any && !wanted.empty())
-    all.charts = {wanted, plots, colours, aspect, sim::value(scene.duration), run->scene_info()};
+    all.charts = {wanted,
+                  plots,
+                  colours,
+                  aspect,
+                  sim::value(scene.duration),
+                  run->scene_info(),
+                  draw::laid_out(scene.film.titles, aspect).foot};
   if (!marks.empty())
     all.annotations = std::make_shared<const draw::Annotations>(marks, depictor(scene, all), std::move(found),
                                                                 given_scales(scene, run->scene_info()),

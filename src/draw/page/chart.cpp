@@ -18,8 +18,8 @@ constexpr double kAround = 0.8;  // around a dot, points
 }  // namespace
 
 Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
-               double aspect, double seconds, const sim::SceneInfo& cast)
-    : colours_(colours), cast_(cast) {
+               double aspect, double seconds, const sim::SceneInfo& cast, double foot)
+    : colours_(colours), cast_(cast), foot_(foot) {
   const double width = 1080 * aspect, weight = std::min(1.0, std::sqrt(width / 1440));
   const double margin = kMargin * weight, inset = std::max(margin, 0.045 * width);
   double column = 0;
@@ -28,8 +28,8 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
     if (chart.place == Chart::Place::right) right_ = std::max(right_, chart.share * width), ++column;
   }
   const double gap = margin / 2;
-  double low = 1080 - below_, beside = inset;
-  const double each = column > 0 ? (1080 - below_ - inset - margin) / column : 0;
+  double low = 1080 - below(), beside = inset;
+  const double each = column > 0 ? (1080 - below() - inset - margin) / column : 0;
   for (std::size_t i = 0; i < charts.size(); ++i) {
     Rect rect;
     if (charts[i].place == Chart::Place::below) {

@@ -119,6 +119,8 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
 
 }  // namespace
 
+double page_weight(double aspect) { return std::min(1.0, std::sqrt(1080 * aspect / 1440)); }
+
 double width_of(const std::string& words, Face face, double size, bool tabular) {
   if (words.empty()) return 0;
   return shape({{0, 0}, Align::left, {{.text = words, .face = face, .size = size, .tabular = tabular}}})
@@ -182,7 +184,7 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   Layout layout;
   layout.width = 1080 * aspect;
   layout.aspect = layout.width / 1080;
-  layout.weight = std::min(1.0, std::sqrt(layout.width / 1440));
+  layout.weight = page_weight(aspect);
   layout.width -= right, layout.height -= below;
   const double w = layout.weight;
   const Fitted world = fitted_world(cast, extent);

@@ -43,6 +43,9 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
 /// Writes the caption over a page without a room on it, and says how high its strip is.
 double lay_caption(Layout& layout, const Look& look);
 
+/// The weight of lines and type on a page of this aspect.
+double page_weight(double aspect);
+
 /// How wide words are set, page units; `tabular`: with figures of equal width.
 double width_of(const std::string& words, Face face, double size, bool tabular = false);
 

@@ -123,7 +123,7 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
       light(draw::light(looks_.light)) {
   layout.width = 1080 * aspect;
   layout.aspect = layout.width / 1080;
-  layout.weight = std::min(1.0, std::sqrt(layout.width / 1440));
+  layout.weight = page_weight(aspect);
   layout.width -= charts.right(), layout.height -= charts.below();
   const double w = layout.weight;
   // the ground has no edge: one colour for the page and the room
