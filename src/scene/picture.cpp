@@ -48,6 +48,8 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
   look.clock = fields.flag("clock");
   look.hatching = fields.flag("hatching");
   look.axes = fields.flag("axes");
+  look.type_scale = fields.number("type_scale");
+  look.decimal = fields.text("decimal");
   look.pointer = fields.flag("pointer");
   const std::string& springs = fields.text("springs");
   look.springs = springs == "coils"   ? draw::Look::Springs::coils

@@ -58,6 +58,9 @@ std::vector<HalfPlane> half_planes(const sim::SceneInfo& cast, const View& view)
 /// Nothing within `reach` of p lies in the rectangle.
 bool outside(const Rect& rect, const Point& p, double reach);
 
+/// As many lines as words need to be no wider than `width`.
+std::vector<std::string> wrapped(const std::string& words, Face face, double size, double width);
+
 /// As much of `words` as fits `width`, with an ellipsis where something is left out.
 std::string fitted(const std::string& words, Face face, double size, double width);
 

@@ -17,24 +17,6 @@ constexpr double kFoot = 26;            // from the page's edge to the captions
 constexpr double kCaptionFade = 0.2;    // s: captions come and go
 constexpr double kCaptionWidth = 0.86;  // of the page
 
-/// As many lines as words need to be no wider than `width`.
-std::vector<std::string> wrapped(const std::string& words, Face face, double size, double width) {
-  std::vector<std::string> lines{""};
-  std::size_t at = 0;
-  while (at < words.size()) {
-    const std::size_t end = std::min(words.find_first_of(" \n", at), words.size());
-    const std::string word = words.substr(at, end - at);
-    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
-    if (!lines.back().empty() && width_of(longer, face, size) > width)
-      lines.push_back(word);
-    else
-      lines.back() = longer;
-    if (end < words.size() && words[end] == '\n') lines.emplace_back();
-    at = end + 1;
-  }
-  return lines;
-}
-
 /// The same number of lines, as even as can be.
 std::vector<std::string> balanced(const std::string& words, Face face, double size, double width) {
   const std::size_t count = wrapped(words, face, size, width).size();
@@ -155,10 +137,11 @@ void draw_badge(double speed, const Rect& page, const Layout& layout, const Pale
 
 }  // namespace
 
-Titles laid_out(const Titles& titles, double aspect) {
+Titles laid_out(const Titles& titles, double aspect, double type_scale) {
   Titles all = titles;
+  all.type_scale = type_scale;
   all.foot = 0;
-  const double size = kCaption * page_weight(aspect);
+  const double size = kCaption * page_weight(aspect) * type_scale;
   for (Caption& caption : all.captions)
     caption.lines = balanced(caption.text, Face::medium, size, kCaptionWidth * 1080 * aspect);
   // the most lines at one instant: one at which a caption begins
@@ -175,12 +158,12 @@ void draw_titles(const Titles& titles, const Layout& layout, double aspect, cons
                  double time, double film, double speed, List& list) {
   if (titles.empty()) return;
   const Rect page{0, 0, 1080 * aspect, 1080};
-  const double weight = layout.weight;
+  const double weight = layout.weight, type = weight * titles.type_scale;
   if (titles.badge && std::abs(speed - 1) > 0.005) draw_badge(speed, page, layout, colours, list);
-  draw_captions(titles, page, weight, time, film, colours.ink, list);
+  draw_captions(titles, page, type, time, film, colours.ink, list);
   for (const Card& card : titles.cards)
     if (const double strength = opacity(card, film); strength > 0)
-      draw_card(card, strength, page, weight, colours, list);
+      draw_card(card, strength, page, type, colours, list);
   if (const double cover = covered(titles, film); cover > 0) {
     Color color = colours.ground;
     color.a = std::uint8_t(std::lround(255 * cover));

@@ -34,13 +34,14 @@ struct Titles {
   double fade = 0;     // s: from the page's colour at the film's start, and to it at its end
   double length = 0;   // s of the film
   double foot = 0;     // of a page: what the captions take of its height, page units
+  double type_scale = 1;
 
   bool empty() const { return cards.empty() && captions.empty() && !badge && !(fade > 0); }
 };
 
 /// The same for a page: captions in lines, and the strip at the page's foot that holds all that are shown at
 /// one instant. Nothing else is drawn there.
-Titles laid_out(const Titles& titles, double aspect);
+Titles laid_out(const Titles& titles, double aspect, double type_scale = 1);
 
 /// Draws them over a page. `time`: of the run, s; `film`: of the film; `speed`: of the run against the film.
 void draw_titles(const Titles& titles, const Layout& layout, double aspect, const Palette& colours,
