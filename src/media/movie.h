@@ -11,6 +11,18 @@
 
 namespace obscura::media {
 
+/// Words of a movie's text track, s from its start.
+struct TextCue {
+  double begin = 0, end = 0;
+  std::string text;
+};
+
+/// A chapter of a movie reaches to the next, or to the movie's end.
+struct Chapter {
+  double begin = 0, end = 0;  // s
+  std::string title;
+};
+
 /// Settings of a movie file. The container follows from the path's ending: mp4 mkv mov webm gif.
 struct MovieSpec {
   int width = 0, height = 0;
@@ -19,6 +31,8 @@ struct MovieSpec {
   std::optional<double> crf{};  // none: 18 for H.264 and HEVC, 24 for VP9
   std::string preset{};  // x264's or x265's; empty: quick settings that reach `medium`'s likeness (codec.cpp)
   Tags tags{};           // "Title" is the movie's title too
+  std::vector<TextCue> captions{};  // one after another; a GIF has none
+  std::vector<Chapter> chapters{};  // the same
 };
 
 /// Throws media::Error where this file could not be made here: no such container, codec, preset; odd sizes

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <new>
@@ -116,6 +117,72 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
     av_dict_set(&format_->metadata, "comment", fitting_comment(spec.tags, kind).c_str(), 0);
 }
 
+// the words in the form of the container: plain UTF-8, in mp4 and mov with their length before it
+void Muxer::add_text_track(const std::string& muxer) {
+  text_ = avformat_new_stream(format_.get(), nullptr);
+  if (!text_) throw std::bad_alloc();
+  AVCodecParameters& codec = *text_->codecpar;
+  codec.codec_type = AVMEDIA_TYPE_SUBTITLE;
+  text_->time_base = {1, 1000};
+  codec.codec_id = muxer == "webm"       ? AV_CODEC_ID_WEBVTT
+                   : muxer == "matroska" ? AV_CODEC_ID_SUBRIP
+                                         : AV_CODEC_ID_MOV_TEXT;
+  if (codec.codec_id != AV_CODEC_ID_MOV_TEXT) return;
+  // 3GPP TS 26.245, TextSampleEntry: centred at the foot, one style, one font
+  const std::vector<std::uint8_t> entry = {0,   0,   0,   0,                // display flags
+                                           1,   255,                        // horizontally, vertically
+                                           0,   0,   0,   0,                // the background's colour
+                                           0,   0,   0,   0,   0, 0, 0, 0,  // the box
+                                           0,   0,   0,   0,                // the style's characters
+                                           0,   1,   0,   18,               // its font, face and size
+                                           255, 255, 255, 255,              // its colour
+                                           0,   0,   0,   18,               // the table of fonts
+                                           'f', 't', 'a', 'b', 0, 1, 0, 1, 5, 'S', 'e', 'r', 'i', 'f'};
+  codec.width = spec_.width, codec.height = spec_.height;
+  codec.extradata = static_cast<std::uint8_t*>(av_mallocz(entry.size() + AV_INPUT_BUFFER_PADDING_SIZE));
+  if (!codec.extradata) throw std::bad_alloc();
+  std::copy(entry.begin(), entry.end(), codec.extradata);
+  codec.extradata_size = int(entry.size());
+}
+
+void Muxer::add_chapters() {
+  if (spec_.chapters.empty()) return;
+  format_->chapters = static_cast<AVChapter**>(av_calloc(spec_.chapters.size(), sizeof(AVChapter*)));
+  if (!format_->chapters) throw std::bad_alloc();
+  for (const Chapter& each : spec_.chapters) {
+    auto* chapter = static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter)));
+    if (!chapter) throw std::bad_alloc();
+    format_->chapters[format_->nb_chapters++] = chapter;
+    chapter->id = format_->nb_chapters;
+    chapter->time_base = {1, 1000};
+    chapter->start = std::llround(1000 * each.begin), chapter->end = std::llround(1000 * each.end);
+    av_dict_set(&chapter->metadata, "title", each.title.c_str(), 0);
+  }
+}
+
+// the captions that begin at a time (s) or before
+void Muxer::write_captions(double until) {
+  while (text_ && said_ < spec_.captions.size() && spec_.captions[said_].begin <= until) {
+    const TextCue& cue = spec_.captions[said_++];
+    const bool counted = text_->codecpar->codec_id == AV_CODEC_ID_MOV_TEXT;
+    const std::size_t length = std::min<std::size_t>(cue.text.size(), 65535);
+    if (av_new_packet(packet_.get(), int(length + (counted ? 2 : 0))) < 0) throw std::bad_alloc();
+    std::uint8_t* to = packet_->data;
+    if (counted) *to++ = std::uint8_t(length >> 8), *to++ = std::uint8_t(length & 255);
+    std::memcpy(to, cue.text.data(), length);
+    const auto ticks = [&](double t) {
+      return av_rescale_q(std::llround(1000 * t), {1, 1000}, text_->time_base);
+    };
+    packet_->stream_index = text_->index;
+    packet_->flags = AV_PKT_FLAG_KEY;
+    packet_->pts = packet_->dts = ticks(cue.begin);
+    packet_->duration = ticks(cue.end) - packet_->pts;
+    const int code = av_write_frame(format_.get(), packet_.get());
+    av_packet_unref(packet_.get());
+    require(code, "write");
+  }
+}
+
 // the header, with the codec's own as the first segment has it: an encoder's, or that of a file it lay in
 void Muxer::begin(const std::vector<std::uint8_t>& extradata) {
   AVCodecParameters& codec = *stream_->codecpar;
@@ -127,6 +194,8 @@ void Muxer::begin(const std::vector<std::uint8_t>& extradata) {
     std::copy(extradata.begin(), extradata.end(), codec.extradata);
     codec.extradata_size = int(extradata.size());
   }
+  if (!spec_.captions.empty()) add_text_track(format_->oformat->name);
+  add_chapters();
   AVDictionary* options = nullptr;
   const std::string muxer = format_->oformat->name;
   if (muxer == "mp4" || muxer == "mov") av_dict_set(&options, "movflags", "+faststart", 0);
@@ -167,6 +236,7 @@ void Muxer::add(const Segment& segment) {
     packet_->dts = av_rescale_q(dts, frame, stream_->time_base);
     packet_->duration =
         av_rescale_q(one.pts + frames_ + one.duration, frame, stream_->time_base) - packet_->pts;
+    write_captions(double(one.pts + frames_) * double(frame.num) / frame.den);
     const int code = av_write_frame(format_.get(), packet_.get());
     av_packet_unref(packet_.get());
     require(code, "write");

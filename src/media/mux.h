@@ -29,6 +29,9 @@ class Muxer {
     void operator()(AVFormatContext* format) const;
   };
   void begin(const std::vector<std::uint8_t>& extradata);
+  void add_text_track(const std::string& muxer);
+  void add_chapters();
+  void write_captions(double until);
   static int on_write(void* self, const std::uint8_t* bytes, int size);
   static std::int64_t on_seek(void* self, std::int64_t offset, int whence);
   /// Throws where libav or the disk refused.
@@ -39,7 +42,8 @@ class Muxer {
   File file_;
   int failure_ = 0;  // errno of the first write that failed
   std::unique_ptr<AVFormatContext, Close> format_;
-  AVStream* stream_ = nullptr;
+  AVStream *stream_ = nullptr, *text_ = nullptr;
+  std::size_t said_ = 0;  // captions written
   Packet packet_;
   bool begun_ = false;  // its header is written
   std::int64_t frames_ = 0, last_dts_;

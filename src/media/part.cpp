@@ -45,8 +45,10 @@ Tags tags_of(const AVFormatContext& format) {
 // every packet as it lies in the file: nothing is decoded
 Part packets_of(const std::string& path) {
   const Input format = open(path);
-  if (format->nb_streams != 1) throw Error(path + ": no part of a movie");
-  const AVStream& stream = *format->streams[0];
+  // a whole movie may have a text track and chapters as well
+  const int found = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (found < 0) throw Error(path + ": no part of a movie");
+  const AVStream& stream = *format->streams[found];
   const AVRational frame = av_inv_q(stream.avg_frame_rate);
   if (frame.num <= 0) throw Error(path + ": no part of a movie");
 
@@ -58,11 +60,12 @@ Part packets_of(const std::string& path) {
   const Packet packet = make_packet();
   int code;
   while ((code = av_read_frame(format.get(), packet.get())) >= 0) {
-    segment.packets.push_back({{packet->data, packet->data + packet->size},
-                               av_rescale_q(packet->pts, stream.time_base, frame),
-                               av_rescale_q(packet->dts, stream.time_base, frame),
-                               1,
-                               (packet->flags & AV_PKT_FLAG_KEY) != 0});
+    if (packet->stream_index == found)
+      segment.packets.push_back({{packet->data, packet->data + packet->size},
+                                 av_rescale_q(packet->pts, stream.time_base, frame),
+                                 av_rescale_q(packet->dts, stream.time_base, frame),
+                                 1,
+                                 (packet->flags & AV_PKT_FLAG_KEY) != 0});
     av_packet_unref(packet.get());
   }
   if (code != AVERROR_EOF) require(code, path);

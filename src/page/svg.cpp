@@ -114,9 +114,10 @@ class Svg final : public Pen {
     std::string out = fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
-        "width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\">\n",
+        "role=\"img\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\">\n",
         number(width_ * 25.4 / 72), number(height_ * 25.4 / 72), number(width_), number(height_));
     if (!sheet_.title.empty()) out += fmt::format("<title>{}</title>\n", escaped(sheet_.title));
+    if (!sheet_.text.empty()) out += fmt::format("<desc>{}</desc>\n", escaped(sheet_.text));
     std::string faces;
     for (std::size_t i = 0; i < used_.size(); ++i) {
       if (used_[i].empty()) continue;

@@ -55,7 +55,26 @@ class Reader {
     draw::Measured found;
     const Node* wanted = fields.given("quantity");
     for (const Node& each : wanted ? wanted->list() : Node::List{}) found.quantities.push_back(each.text());
-    found.body = body(fields, "of");
+    if (const Node* of = fields.given("of")) {
+      const Node::List one{*of};
+      for (const Node& each : of->is_list() ? of->list() : one)
+        for (const int body : roster_.bodies(each.text(), each.place, complaints_))
+          found.bodies.push_back(body);
+    }
+    if (const Node* against = fields.given("against")) found.against = against->text();
+    if (const draw::Measure* other = draw::measure(found.against);
+        other && other->of_body && !fields.given("of"))
+      complaints_.add(fields.place("against"),
+                      fmt::format("a plot against '{}' needs 'of', the body that has it", found.against));
+    const std::vector<const draw::Measure*> measures = found.measures();
+    for (const draw::Measure* each : measures)
+      if (std::string_view(each->unit) != measures[0]->unit) {
+        complaints_.add(
+            wanted->place,
+            fmt::format("'{}' is in {} and '{}' in {}: an axis has one unit, give each a plot of its own",
+                        measures[0]->name, measures[0]->unit, each->name, each->unit));
+        break;
+      }
     if (!fields.given("of"))
       for (const draw::Measure* each : found.measures())
         if (each->of_body)
@@ -73,9 +92,16 @@ class Reader {
       complaints_.add(fields.place("end"), "'end' comes before 'start': it would never be shown");
     return interval;
   }
+  // a command that is not known, and where
+  void mathematics(const Fields& fields, const char* key) const {
+    if (!fields.given(key)) return;
+    if (const auto wrong = draw::mistake(fields.text(key)))
+      complaints_.add(fields.place(key), fmt::format("'{}', column {}: {}", key, wrong->column, wrong->what));
+  }
   // what a label says, and whether the value in it can be shown
   std::string label(const Fields& fields, const char* key, bool valued = true) const {
     const std::string& text = fields.text(key);
+    mathematics(fields, key);
     const auto slot = draw::value_slot(text);
     if (const auto typed = text.find("{:"); typed != text.npos && !slot)
       complaints_.add(fields.place(key),
@@ -217,6 +243,7 @@ void read_frame(const Fields& fields, const Reader<D>& read, Diagnostics& compla
   figure.room = fields.flag("room");
   figure.scale_bar = fields.flag("scale_bar");
   figure.formula = fields.text("formula");
+  read.mathematics(fields, "formula");
   figure.vary = fields.text("vary");
   if (const auto equals = figure.vary.find('=');
       fields.given("vary") && (equals == 0 || equals == std::string::npos))
@@ -233,7 +260,6 @@ draw::Figure::Plot plot_of(const Node& top, const Node& node, const Reader<D>& r
   plot.from = its.rational("from");
   plot.to = its.given("to") ? its.rational("to") : Fields(top, "").rational("duration");
   plot.height = its.number("height");
-  if (const Node* against = its.given("against")) plot.against = against->text();
   plot.over = its.text("over");
   plot.reference = its.text("reference");
   plot.log = its.text("scale") == "log";
@@ -245,9 +271,6 @@ draw::Figure::Plot plot_of(const Node& top, const Node& node, const Reader<D>& r
     complaints.add(its.place("against"), "a plot is 'against' a quantity or 'over' a key, not both");
   if (its.given("reference") && !its.given("over"))
     complaints.add(its.place("reference"), "'reference' is for a plot 'over' a key");
-  if (const draw::Measure* other = draw::measure(plot.against); other && other->of_body && plot.body < 0)
-    complaints.add(its.place("against"),
-                   fmt::format("a plot against '{}' needs 'of', the body that has it", plot.against));
   if (!(plot.from < plot.to)) complaints.add(its.place("from"), "a plot needs 'from' before 'to'");
   return plot;
 }
@@ -277,7 +300,16 @@ std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, c
   std::vector<draw::Caption> all;
   for (const Node& node : tables(fields, "caption")) {
     const Fields its(node, "film.caption");
-    if (its.given("text")) all.push_back({its.text("text"), read.shown(its)});
+    if (!its.given("text")) continue;
+    draw::Caption caption{its.text("text"), read.shown(its)};
+    const auto film = [&](const draw::Cue& cue) {
+      if (cue.after) return cue.film;
+      const auto exact = sim::from_double(cue.time);
+      return exact ? sim::value(speed.film(*exact)) : cue.time;
+    };
+    if (caption.shown.start) caption.begin = film(*caption.shown.start);
+    if (caption.shown.end) caption.end = film(*caption.shown.end);
+    all.push_back(std::move(caption));
   }
   return all;
 }

@@ -373,7 +373,8 @@ All other times are times of the run: those of cameras, mice and `[golden]`, the
 is a fraction of whole numbers up to a million, otherwise to the nearest microsecond.
 
 A `[[film.plot]]` below the picture, or at its right, plots quantities over time in step with the film: the axes span the whole run, and
-each line ends at the current instant with a dot. The quantities are those of `[[figure.plot]]`.
+each line ends at the current instant with a dot. The quantities are those of `[[figure.plot]]`. An axis has one unit. `of`
+may be several bodies: each has a line in its colour and in dashes of its own. Names go with the heads of their lines.
 
 ```toml
 [[film.plot]]
@@ -424,6 +425,9 @@ start = 1
 title = "Part two"
 time  = 4
 ```
+
+Captions have a strip below the picture; in a movie they are a text track as well, and `film.vtt` lies beside `film.mp4`. Cards are its chapters. `film.fade` lets the film
+come from the page's colour and go to it. `look.type_scale` makes all type larger, `look.decimal = ","` sets the decimal mark.
 
 A label keeps clear of bodies, walls, arrows and other labels. It goes to another place only where it would be in the way for long, and slowly: at most
 two pixels a frame at 1080p. Where it stands when follows from the whole run, so a still, a shard and a resumed film have the same frames.
@@ -495,7 +499,9 @@ scale     = "log"
 
 Labels are set as mathematics: letters are italic; digits and words of three or more letters are upright. `_` and `^` make sub- and
 superscripts (`v_center`, `a_{ij}`, `x^2`), `'` a prime, `*r*` a vector, `"in quotes"` plain words. There are `\omega` and the other Greek
-letters, `\Delta`, `\times`, `\cdot`, `\perp`, `\dot{q}`, `\bar{v}`, `\vec{r}`. In TOML write a backslash twice, or use single quotes.
+letters, `\Delta`, `\times`, `\cdot`, `\perp`, `\le`, `\to`; `\dot{q}`, `\ddot{q}`, `\bar{v}`, `\vec{r}`, `\hat{n}`, `\tilde{x}`; `\frac{1}{2}`, `\sqrt{2gh}`, `\sqrt[3]{V}`, `\sum_{i=1}^n`,
+`\int_a^b`, `\text{at rest}`, `\mathbf{v}` and functions such as `\sin`. Between dollars it is as in LaTeX: `'energy $\frac{1}{2} m v^2$'`. An unknown command is an error with its column. In
+TOML write a backslash twice, or use single quotes.
 
 )page";
 

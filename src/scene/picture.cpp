@@ -48,6 +48,8 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
   look.clock = fields.flag("clock");
   look.hatching = fields.flag("hatching");
   look.axes = fields.flag("axes");
+  look.type_scale = fields.number("type_scale");
+  look.decimal = fields.text("decimal");
   look.pointer = fields.flag("pointer");
   const std::string& springs = fields.text("springs");
   look.springs = springs == "coils"   ? draw::Look::Springs::coils
@@ -240,6 +242,9 @@ Film film(const Node& top, Diagnostics& complaints) {
   film.speed = speed(fields.node("speed"), fields, Fields(top, "").rational("duration"), film.titles.cards,
                      complaints);
   film.titles.badge = fields.flag("badge");
+  const sim::Rational duration = Fields(top, "").rational("duration");
+  film.titles.fade = fields.number("fade");
+  film.titles.length = sim::value(film.speed.film(duration) + film.speed.frozen_at(duration));
   if (const Node* crf = fields.given("crf")) film.crf = crf->number();
   film.preset = fields.text("preset");
   film.codec = fields.text("codec");

@@ -330,6 +330,93 @@ TEST_F(MarkedFilm, WithMarksIsTheSameByShardsAndResumedAndInStills) {
   EXPECT_EQ(still.exit, 0) << still.out;
 }
 
+/// The captions of a film lie beside it and in it, to the frame, with its cards as chapters.
+TEST_F(MarkedFilm, HasItsCaptionsAsText) {
+  scene(std::string(kMarkedFilm) + "[[film.caption]]\ntext = \"a < b & c\"\nstart = 0.25\n");
+  ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o whole.mp4").exit, 0);
+  const std::string words = contents(path("whole.vtt"));
+  EXPECT_EQ(words, R"(WEBVTT
+
+00:00:00.200 --> 00:00:00.450
+A ball flies.
+
+00:00:00.450 --> 00:00:00.700
+A ball flies.
+a &lt; b &amp; c
+
+00:00:00.700 --> 00:00:01.700
+a &lt; b &amp; c
+)");
+  for (int shard = 1; shard <= 2; ++shard)
+    ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o parts.mp4 --shard " +
+                      std::to_string(shard) + "/2")
+                  .exit,
+              0);
+  ASSERT_EQ(obscura("join parts.mp4").exit, 0);
+  EXPECT_EQ(contents(path("parts.vtt")), words);
+  const std::string movie = contents(path("whole.mp4"));
+  EXPECT_EQ(contents(path("parts.mp4")), movie);
+  EXPECT_THAT(movie, HasSubstr("tx3g"));
+  EXPECT_THAT(movie, HasSubstr("A ball flies.\na < b & c"));
+  // a chapter a card
+  EXPECT_THAT(movie, HasSubstr("chpl"));
+  EXPECT_THAT(movie, HasSubstr("First"));
+  // it is whole, and a film like others
+  EXPECT_THAT(obscura("render scene.toml --size 320x180 --fps 20 -o whole.mp4 --resume").out,
+              HasSubstr("is whole already"));
+  const Outcome verified = obscura("verify whole.mp4");
+  EXPECT_EQ(verified.exit, 0) << verified.out << verified.err;
+  for (const char* other : {"whole.mkv", "whole.mov"})
+    EXPECT_EQ(obscura(std::string("render scene.toml --size 320x180 --fps 20 -o ") + other).exit, 0) << other;
+  EXPECT_THAT(contents(path("whole.mkv")), HasSubstr("S_TEXT/UTF8"));
+  // without captions there is no such file
+  scene("duration = 0.1\n[room]\nsize = [4, 2.25]\n");
+  ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o mute.mp4").exit, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("mute.vtt")));
+}
+
+/// Captions have a strip of the page for themselves: the picture, and the plots below it, end above.
+TEST(Captions, StandBelowThePicture) {
+  const std::string plot = "[[film.plot]]\nquantity = [\"height\"]\nof = \"ball\"\n";
+  for (const std::string& more : {std::string(), plot}) {
+    Filmed film(scene::parse(kMarkedFilm + more, "marked.toml", {"film.fps=20"}));
+    const sim::Snapshot now = film.now(8);
+    const draw::Picture picture = film.artist.depict(now, {}, {now, film.film(8), 1});
+    double words = 0, lowest = 0;
+    for (const draw::Text& text : picture.moving.texts)
+      (said(text) == "A ball flies." ? words : lowest) = std::max(lowest, text.at.y());
+    for (const draw::Text& text : picture.still->texts) lowest = std::max(lowest, text.at.y());
+    for (const draw::Node& node : picture.still->nodes) lowest = std::max(lowest, node.at.y());
+    EXPECT_GT(words, 1000);
+    EXPECT_LT(lowest, words - 20) << more;
+    // and stay until the captions are gone
+    const draw::Projection early = film.artist.projection(0, now),
+                           late = film.artist.projection(0, film.now(30));
+    EXPECT_EQ(early.page({0, 0, 0}), late.page({0, 0, 0}));
+  }
+}
+
+TEST(Fade, ComesFromThePageAndGoesToIt) {
+  Filmed film(scene::parse(kMarkedFilm, "marked.toml", {"film.fps=20", "film.fade=0.4"}));
+  std::vector<int> cover;
+  for (std::int64_t frame = 0; frame < film.shots.size(); ++frame) {
+    const sim::Snapshot now = film.now(frame);
+    const draw::Picture picture = film.artist.depict(now, {}, {now, film.film(frame), 1});
+    // it lies over all else: the last polygon
+    const draw::Polygon& last = picture.moving.polygons.back();
+    const bool page = picture.moving.points[std::size_t(last.begin)] == draw::Point(0, 0);
+    cover.push_back(page && last.fill ==
+                                draw::Color{picture.ground.r, picture.ground.g, picture.ground.b, last.fill.a}
+                        ? last.fill.a
+                        : 0);
+  }
+  ASSERT_EQ(cover.size(), 38u);
+  EXPECT_EQ(cover[0], 255);
+  EXPECT_EQ(cover[20], 0);
+  EXPECT_GT(cover[37], 200);
+  for (int i = 1; i < 8; ++i) EXPECT_LE(cover[std::size_t(i)], cover[std::size_t(i) - 1]);
+}
+
 TEST(Freeze, StandsStillForExactlySoManyFrames) {
   const scene::Scene scene = scene::parse(kMarkedFilm, "marked.toml");
   const Shots shots = Shots::film(scene.duration, {20, 1}, scene.film.speed);

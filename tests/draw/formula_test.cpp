@@ -1,5 +1,7 @@
 #include "draw/picture/formula.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -45,6 +47,78 @@ TEST(Formula, AnAccentLiesOverItsLetter) {
   ASSERT_EQ(it.overs.size(), 1u);
   EXPECT_GT(it.overs[0].from, x.width);
   EXPECT_LE(it.overs[0].to, it.width + 4);  // an italic leans over its own width a little
+}
+
+/// From the lowest to the highest of all that is set, by the parts' own boxes.
+std::pair<double, double> extent_of(const Formula& it) {
+  double low = -it.descent, high = it.ascent;
+  for (std::size_t i = 0; i < it.parts.size(); ++i) {
+    const auto [below, above] = extent_of(it.parts[i]);
+    low = std::min(low, below - it.places[i].y()), high = std::max(high, above - it.places[i].y());
+  }
+  return {low, high};
+}
+
+TEST(Formula, AFractionsBarLiesBetweenItsParts) {
+  const Formula it = formula("x \\frac{a+b}{2} y", 100, {});
+  ASSERT_EQ(it.parts.size(), 2u);
+  ASSERT_EQ(it.lines.size(), 1u);
+  const double bar = it.lines[0].points[0].y();
+  // the numerator ends above it, the denominator begins below
+  EXPECT_LT(it.places[0].y() + it.parts[0].descent, bar);
+  EXPECT_GT(it.places[1].y() - it.parts[1].ascent, bar);
+  // both are over the middle of the bar
+  const double middle = (it.lines[0].points[0].x() + it.lines[0].points[1].x()) / 2;
+  for (int k = 0; k < 2; ++k)
+    EXPECT_NEAR(it.places[std::size_t(k)].x() + it.parts[std::size_t(k)].width / 2, middle, 1);
+  // and what follows comes after them
+  EXPECT_GT(it.width, it.lines[0].points[1].x() + formula("y", 100, {}).width);
+  const auto [low, high] = extent_of(it);
+  EXPECT_NEAR(low, -it.descent, 1e-9);
+  EXPECT_NEAR(high, it.ascent, 1e-9);
+  // alone too, and within each other
+  EXPECT_GT(formula("\\frac{1}{2}", 100, {}).width, 30);
+  EXPECT_GT(formula("\\frac{1}{1+\\frac{1}{2}}", 100, {}).descent, it.descent);
+}
+
+TEST(Formula, ARootCoversWhatIsUnderIt) {
+  const Formula it = formula("\\sqrt{2gh}", 100, {}), under = formula("2gh", 100, {});
+  ASSERT_EQ(it.lines.size(), 1u);
+  ASSERT_EQ(it.parts.size(), 1u);
+  const auto& sign = it.lines[0].points;
+  EXPECT_GT(sign.back().x(), it.places[0].x() + under.width);
+  EXPECT_LT(sign.back().y(), it.places[0].y() - under.ascent);
+  EXPECT_GE(it.width, sign.back().x());
+  EXPECT_GE(it.ascent, -sign.back().y());
+}
+
+TEST(Formula, LimitsStandBelowAndAboveASumAndBesideAnIntegral) {
+  const Formula sum = formula("\\sum_{i=1}^n i", 100, {});
+  ASSERT_EQ(sum.parts.size(), 3u);
+  EXPECT_GT(sum.places[1].y(), 20);
+  EXPECT_LT(sum.places[2].y(), -60);
+  EXPECT_GT(sum.descent, 40);
+  EXPECT_TRUE(formula("\\int_a^b f", 100, {}).parts.empty());
+}
+
+TEST(Formula, BetweenDollarsItIsAsInLatex) {
+  using enum Face;
+  // spaces mean nothing, letters are letters, words outside are words
+  const std::vector<std::pair<std::string, Face>> expected{{"energy ", math}, {"mgh", math_italic}};
+  EXPECT_EQ(set("energy $m g h$"), expected);
+  EXPECT_GT(formula("$a=b$", 100, {}).width, formula("a=b", 100, {}).width + 40);
+  EXPECT_EQ(set("$\\text{at rest}$")[0].first, "at rest");
+  EXPECT_EQ(set("$\\sin\\theta$")[0].second, math);
+}
+
+TEST(Formula, AnUnknownCommandIsToldWithItsColumn) {
+  EXPECT_FALSE(mistake("\\frac{\\omega^2}{\\sqrt[3]{2}} \\hat n \\, \\text{a}"));
+  EXPECT_FALSE(mistake("\"a \\b\""));
+  const auto found = mistake("v = \\omgea r");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->column, 5u);
+  EXPECT_EQ(found->what, "unknown command '\\omgea'; did you mean '\\omega'?");
+  EXPECT_TRUE(mistake("a $b"));
 }
 
 TEST(Formula, WhatIsNotClosedOrNotKnownStaysReadable) {

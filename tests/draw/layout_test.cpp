@@ -129,6 +129,33 @@ TEST(Layout, WithoutCaptionTheRoomTakesTheStrip) {
   EXPECT_GT(made.depictor().view(0).scale, 1.03 * with) << "nothing to say is no caption";
 }
 
+TEST(Layout, LongTitlesGoOnInAnotherLine) {
+  Made made = room(4, 3);
+  made.look.title =
+      "A very long title about everything that happens in this room while a ball falls into it, "
+      "and bounces, and rolls away until it has come to rest";
+  made.look.subtitle =
+      "which takes longer than one would think if nothing but its elasticity were known, and "
+      "friction did not matter, as it does here";
+  const double plain = room(4, 3).depictor().view(0).scale;
+  std::string title, subtitle;
+  double before = 0, ground = 0;
+  for (const Text& text : texts(made.picture(1.4))) {
+    const Span& span = text.spans[0];
+    if (span.face != Face::bold && span.text.rfind("t =", 0) == 0) continue;
+    (span.face == Face::bold ? title : subtitle) +=
+        (before > 0 && !title.empty() && !subtitle.empty() ? " " : "") + span.text + " ";
+    EXPECT_GT(text.at.y(), before);
+    before = text.at.y();
+    EXPECT_EQ(span.text.find("…"), std::string::npos) << span.text;
+  }
+  (void)ground;
+  EXPECT_NE(title.find("come to rest"), std::string::npos) << title;
+  EXPECT_NE(subtitle.find("as it does here"), std::string::npos) << subtitle;
+  // and the room makes way
+  EXPECT_LT(made.depictor().view(0).scale, plain);
+}
+
 TEST(Layout, EllipsisKeepsWholeCharacters) {
   const std::string words = "Größe und Übermaß älterer Öfen";
   for (double width = 0; width < 500; width += 3) {

@@ -412,6 +412,18 @@ TEST(Diagnostics, SpeedsOfAFilmArePositiveAndTheirKeysIncrease) {
           "a.toml:2:22: unknown key 'spead' in each of 'speed'; did you mean 'speed'?");
 }
 
+TEST(Diagnostics, UnknownMathematicsIsAnErrorWithItsColumn) {
+  refused("[[film.label]]\nat = [1, 1]\ntext = 'a = \\omgea^2 r'",
+          "a.toml:3:8: 'text', column 5: unknown command '\\omgea'; did you mean '\\omega'?");
+  refused("[figure]\nformula = '$v = 3'",
+          "a.toml:2:11: 'formula', column 1: '$' without another that ends the mathematics");
+}
+
+TEST(Diagnostics, AnAxisHasOneUnit) {
+  refused("[[film.plot]]\nquantity = [\"x\", \"speed\"]\nof = \"a\"\n[[ball]]\nname = \"a\"",
+          "a.toml:2:12: 'x' is in m and 'speed' in m/s: an axis has one unit, give each a plot of its own");
+}
+
 TEST(Diagnostics, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
   refused("[[film.plot]]\nquantity = [\"height\"]\n[[ball]]",
           "a.toml:1:1: a plot of 'height' needs 'of', the body that has it");

@@ -148,10 +148,11 @@ int run(const FigureFlags& flags) {
         pixels(made.picture, made.lit, size_at(made.picture, width, flags.dpi), flags.context);
     media::Tags tags{{"Software", "obscura " OBSCURA_VERSION}};
     if (!album.title().empty()) tags["Title"] = album.title();
+    tags["Description"] = album.text();
     media::write_png(out, image, {.per_metre = flags.dpi / 0.0254, .tags = tags});
     size += fmt::format(", {} x {} px at {:g} dpi", image.width, image.height, flags.dpi);
   } else {
-    const page::Sheet sheet{width, album.title()};
+    const page::Sheet sheet{width, album.title(), album.text()};
     std::optional<page::Raster> raster;
     media::Image under;
     if (!made.lit.empty()) {

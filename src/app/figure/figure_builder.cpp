@@ -9,6 +9,7 @@
 
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/run/description.h"
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "app/run/variation.h"
@@ -17,6 +18,7 @@
 #include "draw/compose/depict.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
+#include "draw/picture/type.h"
 #include "sim/step/run.h"
 
 namespace obscura::app {
@@ -25,8 +27,8 @@ namespace {
 
 constexpr double kColumn = 84 * 72 / 25.4;   // pt
 constexpr double kGutter = 8, kLetter = 13;  // pt: between panels; above one, for its letter
-constexpr std::array<const char*, 5> kTold{"blue", "vermilion", "green", "purple",
-                                           "orange"};  // lines of runs
+// lines of runs: ink, and colours that mean nothing else
+constexpr std::array<const char*, 5> kTold{"", "orange", "purple", "sky", "grey"};
 constexpr std::int64_t kMostPanels = 100;
 constexpr int kMostExposures = 2000;
 constexpr double kPathError = 0.2;                    // page units
@@ -58,6 +60,21 @@ draw::Text words(const std::string& text, draw::Face face, double size, const dr
   return {at,
           align,
           {{.text = text, .face = face, .size = size * draw::kPoint, .color = color, .tabular = true}}};
+}
+
+// "t = 0.351 "s"", as mathematics: to the millisecond
+std::string clock_words(double time) {
+  std::string number = fmt::format("{:.3f}", std::abs(time) < 5e-4 ? 0.0 : time);
+  while (number.back() == '0') number.pop_back();
+  if (number.back() == '.') number.pop_back();
+  return "t = " + number + " \"s\"";
+}
+
+// how large marks are
+draw::Annotating lettered(const draw::Look& look) {
+  draw::Annotating how;
+  how.lettering.point *= look.type_scale;
+  return how;
 }
 
 }  // namespace
@@ -136,8 +153,7 @@ void FigureBuilder::take(const scene::Scene& scene, const std::vector<sim::Ratio
     Panel panel{scene, run->scene_info(), at(time), before, then, {}, said};
     ways.push_back(std::make_shared<const sim::Track>(run->take_track()));
     panel.ways = ways;
-    if (times.size() > 1)
-      panel.words += (said.empty() ? "" : ", ") + fmt::format("t = {:g} s", sim::value(time));
+    if (times.size() > 1) panel.words += (said.empty() ? "" : ", ") + clock_words(sim::value(time));
     panels_.push_back(std::move(panel));
   }
 }
@@ -207,7 +223,18 @@ Page FigureBuilder::page() const {
       const double baseline = 9 * draw::kPoint;
       list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9,
                      {2 * draw::kPoint, baseline}, colours.ink));
-      list.add(words(cells[i].words, draw::Face::regular, 8.5, {18 * draw::kPoint, baseline}, colours.ink));
+      // what is varied in words, the time as mathematics
+      double x = 18 * draw::kPoint;
+      const auto clock = cells[i].words.rfind("t = ");
+      const std::string plain = cells[i].words.substr(0, clock);
+      if (!plain.empty()) {
+        list.add(words(plain, draw::Face::regular, 8.5, {x, baseline}, colours.ink));
+        x += draw::width_of(plain, draw::Face::regular, 8.5 * draw::kPoint, true);
+        if (plain.back() == ' ') x += 0.25 * 8.5 * draw::kPoint;
+      }
+      if (clock != std::string::npos)
+        draw::add(draw::formula(cells[i].words.substr(clock), 8.5 * draw::kPoint, colours.ink), {x, baseline},
+                  list);
     }
     all.add(list, 1, corner);
     row_height = std::max(row_height, height);
@@ -227,12 +254,15 @@ Page FigureBuilder::page() const {
   }
   // plots below each other, as wide as the figure
   const std::vector<draw::Plot> plots = this->plots();
+  std::vector<draw::Rect> rects;
   for (std::size_t i = 0; i < plots.size(); ++i) {
     if (top > 0) top += 4 * draw::kPoint;
     const double height = figure.plots[i].height * 72 / 25.4 * draw::kPoint;
-    draw::draw_plot(plots[i], colours, {2 * draw::kPoint, top, (width_ - 4) * draw::kPoint, height}, all);
+    rects.push_back({2 * draw::kPoint, top, (width_ - 4) * draw::kPoint, height});
     top += height;
   }
+  draw::draw_plots(plots, colours, rects, panels_.front().scene.look.type_scale, all);
+  draw::set_decimal_mark(all, panels_.front().scene.look.decimal);
   const double unit = 1080 / top;
   page.picture.aspect = width_ * draw::kPoint / top;
   page.picture.ground = colours.ground;
@@ -240,6 +270,17 @@ Page FigureBuilder::page() const {
   for (Lit& lit : page.lit)
     lit.where = {unit * lit.where.x, unit * lit.where.y, unit * lit.where.width, unit * lit.where.height};
   return page;
+}
+
+std::string FigureBuilder::text() const {
+  std::string all;
+  for (std::size_t i = 0; i < panels_.size(); ++i) {
+    const Panel& panel = panels_[i];
+    if (i > 0) all += " ";
+    if (panels_.size() > 1) all += fmt::format("({}) ", char('a' + i % 26));
+    all += i == 0 ? picture_text(panel.scene, panel.cast, panel.now) : instant_text(panel.cast, panel.now);
+  }
+  return all;
 }
 
 // the lines of several runs in one plot, each labelled with its value
@@ -257,11 +298,14 @@ std::vector<draw::Plot> FigureBuilder::plots() const {
       for (draw::Series line : own[i].lines) {
         const std::string what = own[i].lines.size() > 1 ? line.label + " " : "";
         line.label = what + "\"" + variants_[v].name + "\"";
-        line.color = draw::mix(*draw::color(kTold[all[i].lines.size() % kTold.size()]), ink, 0.2);
+        const auto told = draw::color(kTold[all[i].lines.size() % kTold.size()]);
+        line.color = told ? draw::mix(*told, ink, 0.2) : ink;
+        line.weight = 1;
         all[i].lines.push_back(std::move(line));
       }
     }
   }
+  for (draw::Plot& plot : all) draw::tell_apart(plot);
   return all;
 }
 
@@ -306,7 +350,8 @@ draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell
   depictor.draw_lines(view, paths, false, list);
   list.add(picture.moving, 1, {0, 0});
   depictor.draw_lines(view, paths, true, list);
-  draw::annotate(panel.scene.figure, scales, panel.cast, colours, draw::Projection(view), panel.now, list);
+  draw::annotate(panel.scene.figure, scales, panel.cast, colours, draw::Projection(view), panel.now, list,
+                 lettered(panel.scene.look));
   if (panel.scene.figure.axes) draw::draw_rulers(depictor.layout(), view, colours, list);
   height = depictor.layout().height;
   return list;
@@ -318,11 +363,22 @@ draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell
   const Panel& panel = *cell.panel;
   const draw::Palette colours = draw::palette(panel.scene.look.theme);
   const double at_target = depictor.scale(panel.now);
-  lit.picture =
-      depictor.depict(panel.now, panel.ways,
-                      draw::path_lines(panel.scene.figure,
-                                       draw::paths_of(panel.scene.figure, panel.ways, kPathError / at_target),
-                                       panel.now, std::numeric_limits<double>::quiet_NaN()));
+  const double film = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<int> all;
+  std::vector<draw::SpaceGhost> ghosts;
+  for (std::size_t k = 0; k < panel.before.size(); ++k) {
+    const double age = double(k) / double(panel.before.size());
+    ghosts.push_back({&panel.before[k], &all, kFaintest + (kStrongest - kFaintest) * age});
+  }
+  for (std::size_t i = 0; i < panel.ghosts.size(); ++i) {
+    const draw::Marks::Ghost& ghost = panel.scene.figure.ghosts[i];
+    if (panel.ghosts[i] && ghost.shown.has(panel.now.time, film))
+      ghosts.push_back({&*panel.ghosts[i], &ghost.bodies, draw::kGhost});
+  }
+  const auto paths = draw::path_lines(panel.scene.figure,
+                                      draw::paths_of(panel.scene.figure, panel.ways, kPathError / at_target),
+                                      panel.now, film);
+  lit.picture = depictor.depict(panel.now, panel.ways, paths, ghosts);
   const double scale = width * draw::kPoint / (1080 * lit.picture.aspect);
   const draw::Point corner(0, panels_.size() * panel.scene.cameras.size() > 1 ? kLetter * draw::kPoint : 0);
   lit.where = {corner.x(), corner.y(), 1080 * lit.picture.aspect * scale, 1080 * scale};
@@ -331,7 +387,8 @@ draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell
   list.add(lit.picture.moving, scale, corner);
   lit.picture.moving = {};
   draw::annotate(panel.scene.figure, scales, panel.cast, colours,
-                 draw::Projection(depictor.lens(panel.now), scale, corner), panel.now, list);
+                 draw::Projection(depictor.lens(panel.now), scale, corner), panel.now, list,
+                 lettered(panel.scene.look));
   return list;
 }
 

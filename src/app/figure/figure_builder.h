@@ -47,6 +47,8 @@ class FigureBuilder {
 
   Page page() const;
   double width() const { return width_; }  // pt
+  /// What it shows, in sentences.
+  std::string text() const;
   std::string title() const { return panels_.front().scene.look.title; }
 
  private:

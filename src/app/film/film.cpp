@@ -19,6 +19,7 @@
 #include "app/film/ordered_pipeline.h"
 #include "app/film/store.h"
 #include "app/run/checkpoint.h"
+#include "app/run/description.h"
 #include "app/run/origin.h"
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
@@ -230,8 +231,10 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
       Origin of_frame = origin;
       of_frame.shot = take.shots[i], of_frame.state = take.states[i], of_frame.frames = 0;
       of_frame.states = checksums(take.states[i], take.moments[i]);
+      media::Tags tags = of_frame.tags(scene_.look.title);
+      tags["Description"] = picture_text(scene_, darkroom.scene_info(), take.moments[i]);
       media::write_png(output_.file(take.shots[i].frame), image,
-                       {.alpha = options_.transparent, .tags = of_frame.tags(scene_.look.title)});
+                       {.alpha = options_.transparent, .tags = tags});
     }
     ++print.frames;
     ++drawn_;

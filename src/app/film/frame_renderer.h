@@ -21,6 +21,7 @@ class FrameRenderer {
   const media::Image& print(const FilmSegment& take, std::size_t frame, bool transparent);
 
   const gl::Renderer& renderer() const { return renderer_; }
+  const sim::SceneInfo& scene_info() const { return artist_.scene_info(); }
 
  private:
   gl::Renderer renderer_;

@@ -15,7 +15,9 @@
 #include "app/console/scripts.h"
 #include "app/film/film.h"
 #include "app/film/output.h"
+#include "app/film/subtitles.h"
 #include "media/error.h"
+#include "media/file.h"
 #include "media/part.h"
 
 namespace obscura::app {
@@ -57,6 +59,9 @@ std::int64_t join(Store& store, const std::string& movie, const Joining& joining
   if (joining.cut) parts.push_back(*joining.cut);
 
   std::optional<media::MovieWriter> writer;
+  std::optional<scene::Scene> scene;
+  std::optional<Shots> shots;
+  Subtitles said;
   std::optional<Origin> first;
   media::MovieSpec spec;
   const auto add = [&](const std::string& path) {
@@ -75,6 +80,15 @@ std::int64_t join(Store& store, const std::string& movie, const Joining& joining
       // QuickTime leaves out what is too long: rather the checksums than all of the origin
       if (std::filesystem::path(movie).extension() == ".mov" && spec.tags.at("obscura").size() > kMostOfMov)
         first->states.reset(), spec.tags = tags();
+      // behind a gap captions would come too early
+      try {
+        if (!gaps) scene = scene_of(*first), shots = shots_of(*first, *scene);
+      } catch (const scene::Error&) {
+        // parts of another version: joined without
+      }
+      if (scene) said = subtitles(*scene, *shots, first->frames);
+      spec.captions = said.captions;
+      if (!joining.instead) spec.chapters = said.chapters;
       writer.emplace(movie, spec);
     }
     if (const std::string why = discord(*first, origin); !why.empty())
@@ -85,6 +99,12 @@ std::int64_t join(Store& store, const std::string& movie, const Joining& joining
   if (!writer) throw media::Error(store.folder() + ": no part is whole yet");
   const std::int64_t frames = writer->frames();
   writer->close(joining.instead);
+  if (said.captions.empty()) return frames;
+  // beside the movie, for players that take them so
+  const std::string text = webvtt(subtitles(*scene, *shots, frames).captions);
+  media::File file(captions_of(joining.instead.value_or(movie)));
+  file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  file.place(true);
   return frames;
 }
 

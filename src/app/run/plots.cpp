@@ -25,11 +25,12 @@ constexpr std::int64_t kPixels = 1920;  // of a line in a film
 
 // the values of a run at one more instant
 void add(const sim::SceneInfo& cast, const sim::Snapshot& now, const draw::Measured& measured,
-         draw::Plot& plot) {
+         const std::vector<draw::Measured::Line>& lines, draw::Plot& plot) {
   plot.times.push_back(now.time);
-  const std::vector<const draw::Measure*> measures = measured.measures();
-  for (std::size_t k = 0; k < measures.size(); ++k)
-    plot.lines[k].values.push_back(measures[k]->at(cast, now, measured.body));
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    plot.lines[k].values.push_back(lines[k].at(cast, now));
+    if (const auto along = measured.along(lines[k])) plot.lines[k].along.push_back(along->at(cast, now));
+  }
 }
 
 // the instants of a run from which a chart is made: ends of steps, which cost nothing extra; for another
@@ -50,13 +51,6 @@ std::vector<sim::Rational> beats(const scene::Scene& scene, sim::Rational rate) 
   return times;
 }
 
-// a name over its unit, as mathematics
-std::string axis(const std::string& name, const std::string& unit) {
-  if (unit.empty()) return name;
-  if (unit.starts_with("1/")) return name + " / \"" + unit.substr(2) + "\"^{-1}";
-  return name + " / \"" + (unit == "°" ? "deg" : unit) + "\"";
-}
-
 // the same scene with more set
 scene::Scene with(const scene::Scene& scene, const std::vector<std::string>& more) {
   if (scene.file == "-") throw UsageError("a plot over a key reads its scene more than once: name a file");
@@ -66,13 +60,12 @@ scene::Scene with(const scene::Scene& scene, const std::vector<std::string>& mor
 }
 
 // the values of what is plotted at the end of a run
-std::vector<double> ends(const scene::Scene& scene, const draw::Figure::Plot& wanted,
-                         const std::vector<const draw::Measure*>& all) {
+std::vector<double> ends(const scene::Scene& scene, const draw::Figure::Plot& wanted) {
   const auto run = scene.run();
   run->heed(interrupted);
   const sim::Snapshot now = moment(*run, wanted.to, scene);
   std::vector<double> found;
-  for (const draw::Measure* each : all) found.push_back(each->at(run->scene_info(), now, wanted.body));
+  for (const draw::Measured::Line& each : wanted.lines()) found.push_back(each.at(run->scene_info(), now));
   return found;
 }
 
@@ -88,9 +81,8 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 // a point for each value of a key: the end of its run, or how far that is from another's
-void plot_over(const scene::Scene& scene, const draw::Figure::Plot& wanted,
-               const std::vector<const draw::Measure*>& all, draw::Plot& plot) {
-  std::vector<double> truth(all.size(), 0);
+void plot_over(const scene::Scene& scene, const draw::Figure::Plot& wanted, draw::Plot& plot) {
+  std::vector<double> truth(plot.lines.size(), 0);
   if (!wanted.reference.empty()) {
     std::vector<std::string> sets;
     std::string_view rest = wanted.reference;
@@ -101,18 +93,20 @@ void plot_over(const scene::Scene& scene, const draw::Figure::Plot& wanted,
       sets.emplace_back(set);
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
-    truth = ends(with(scene, sets), wanted, all);
+    truth = ends(with(scene, sets), wanted);
   }
   const Variation over(wanted.over);
   for (const std::string& value : over.values) {
-    const std::vector<double> found = ends(with(scene, {over.path + "=" + value}), wanted, all);
-    for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::vector<double> found = ends(with(scene, {over.path + "=" + value}), wanted);
+    for (std::size_t k = 0; k < plot.lines.size(); ++k) {
       plot.lines[k].along.push_back(over.number(value));
       plot.lines[k].values.push_back(wanted.reference.empty() ? found[k] : std::abs(found[k] - truth[k]));
     }
   }
   const scene::Key* key = scene::key(over.path);
-  plot.name = axis("\"" + over.name() + "\"", key ? key->unit : "");
+  plot.name = draw::over_unit("\"" + over.name() + "\"", key ? key->unit : "");
+  if (const auto measures = wanted.measures(); !wanted.reference.empty() && !measures.empty())
+    plot.title = draw::over_unit(std::string("\"error of\" ") + measures[0]->label, measures[0]->unit);
   plot.dotted = true;
   if (!wanted.log) return;
   for (draw::Series& line : plot.lines) {
@@ -138,34 +132,31 @@ void point_out(const std::vector<double>& marks, draw::Plot& plot) {
 
 std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<double>& marks) {
   const draw::Palette colours = draw::palette(scene.look.theme);
+  const draw::Illustrator artist = depictor(scene, {});
+  const auto line_color = [&](int body) { return artist.line_color(body); };
   std::vector<draw::Plot> all;
   for (const draw::Figure::Plot& wanted : scene.figure.plots) {
-    draw::Plot plot = draw::empty_plot(wanted, colours);
+    draw::Plot plot = draw::empty_plot(wanted, colours, artist.scene_info(), line_color);
     plot.log = wanted.log;
     if (!wanted.over.empty()) {
-      plot_over(scene, wanted, wanted.measures(), plot);
+      plot_over(scene, wanted, plot);
       all.push_back(std::move(plot));
       continue;
     }
 
-    const draw::Measure* against = draw::measure(wanted.against);
-    std::vector<double> way;
+    const std::vector<draw::Measured::Line> lines = wanted.lines();
     const auto run = scene.run();
     run->heed(interrupted);
     const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
     for (std::int64_t i = 0; i <= kPoints; ++i) {
       const sim::Rational t = i < kPoints ? wanted.from + sim::rational(i) * stride : wanted.to;
       const sim::Snapshot now = moment(*run, t, scene);
-      add(run->scene_info(), now, wanted, plot);
-      if (against) way.push_back(against->at(run->scene_info(), now, wanted.body));
+      add(run->scene_info(), now, wanted, lines, plot);
     }
-    if (against) {
-      plot.name = axis(against->label, against->unit);
-      for (draw::Series& line : plot.lines) line.along = way;
-      point_out(marks, plot);
-    } else {
+    if (wanted.against.empty())
       plot.marks = marks;
-    }
+    else
+      point_out(marks, plot);
     all.push_back(std::move(plot));
   }
   return all;
@@ -202,10 +193,17 @@ Ahead ahead(const scene::Scene& scene) {
   if (wanted.empty() && marks.empty()) return {};
   draw::Palette colours = draw::palette(scene.look.theme);
   if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
-  std::vector<draw::Plot> plots;
-  for (const draw::Chart& each : wanted) plots.push_back(draw::empty_plot(each, colours));
-
   const auto run = scene.run();
+  std::vector<draw::Plot> plots;
+  std::vector<std::vector<draw::Measured::Line>> lines;
+  if (!wanted.empty()) {
+    const draw::Illustrator artist = depictor(scene, {});
+    for (const draw::Chart& each : wanted) {
+      plots.push_back(draw::empty_plot(each, colours, artist.scene_info(),
+                                       [&](int body) { return artist.line_color(body); }));
+      lines.push_back(each.lines());
+    }
+  }
   run->heed(interrupted);
   std::vector<int> traced;
   for (const draw::Marks::Path& path : marks.paths) traced.push_back(path.at.body);
@@ -254,7 +252,8 @@ Ahead ahead(const scene::Scene& scene) {
       continue;
     }
     any = true;
-    for (std::size_t i = 0; i < wanted.size(); ++i) add(run->scene_info(), now, wanted[i], plots[i]);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      add(run->scene_info(), now, wanted[i], lines[i], plots[i]);
     const double film = sim::value(scene.film.speed.film(t));
     if (marks.empty() || film < next - 1e-9) continue;
     kept += bytes(now);
@@ -272,7 +271,14 @@ Ahead ahead(const scene::Scene& scene) {
   Ahead all;
   const double aspect = double(scene.film.width) / scene.film.height;
   if (any && !wanted.empty())
-    all.charts = {wanted, plots, colours, aspect, sim::value(scene.duration), run->scene_info()};
+    all.charts = {wanted,
+                  plots,
+                  colours,
+                  aspect,
+                  sim::value(scene.duration),
+                  run->scene_info(),
+                  draw::laid_out(scene.film.titles, aspect, scene.look.type_scale).foot,
+                  scene.look.type_scale};
   if (!marks.empty())
     all.annotations = std::make_shared<const draw::Annotations>(marks, depictor(scene, all), std::move(found),
                                                                 given_scales(scene, run->scene_info()),

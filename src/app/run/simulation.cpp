@@ -35,9 +35,11 @@ double last_time(const sim::Track& track) {
 draw::Illustrator depictor(const scene::Scene& scene, const Ahead& ahead) {
   const auto run = scene.run();
   const double aspect = double(scene.film.width) / scene.film.height;
-  draw::Illustrator artist(run->scene_info(), scene.look, scene.cameras, scene.extent, aspect, ahead.charts);
+  const draw::Titles titles = draw::laid_out(scene.film.titles, aspect, scene.look.type_scale);
+  draw::Illustrator artist(run->scene_info(), scene.look, scene.cameras, scene.extent, aspect,
+                           ahead.charts.empty() ? draw::Charts(titles.foot) : ahead.charts);
   artist.annotate(ahead.annotations);
-  artist.entitle(scene.film.titles);
+  artist.entitle(titles);
   return artist;
 }
 

@@ -348,8 +348,10 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
     const double radius = std::max(angle_, 0.55 * long_side * view_.scale_at(point)) / view_.scale_at(point);
     for (int k = -8; k <= 8; ++k) sector.push_back(tip(half * k / 8, long_side));
     for (int k = 0; k <= 8; ++k) arc.push_back(tip(half * k / 8, radius));
-    Color tint = colours_.force, rim_ink = mix(colours_.force, colours_.ink, 0.12);
-    tint.a = 36;
+    // grey, for the force within it has its own colour
+    Color tint = colours_.quiet;
+    const Color rim_ink = colours_.quiet;
+    tint.a = 40;
     list_.add(sector, tint);
     for (const double side : {-1.0, 1.0})
       stroke({view_.page(point), tip(side * half, long_side)}, thin_, rim_ink, 2);

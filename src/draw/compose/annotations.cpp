@@ -202,7 +202,7 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
                          double fps)
     : marks_(marks), cast_(artist.scene_info()), colours_(artist.colours()), scales_(given) {
   const double weight = artist.weight();
-  lettering_ = {.point = kFilmType * weight, .arrow = weight, .weight = weight};
+  lettering_ = {.point = kFilmType * weight * artist.type_scale(), .arrow = weight, .weight = weight};
   ghosts_ = std::move(ahead.ghosts);
   if (ahead.samples.empty()) {
     plans_.resize(std::size_t(artist.panels()));

@@ -8,6 +8,7 @@
 #include "draw/compose/annotations.h"
 #include "draw/compose/travel.h"
 #include "draw/page/sheet.h"
+#include "draw/picture/type.h"
 #include "draw/plane/stage.h"
 #include "draw/space/camera.h"
 #include "draw/space/space.h"
@@ -146,6 +147,7 @@ struct Illustrator::Plan {
     if (!still || seen.origin != view.origin || seen.scale != view.scale) {
       auto list = std::make_shared<List>();
       draw_still(stage, view, *list);
+      set_decimal_mark(*list, stage.look.decimal);
       still = std::move(list);
       seen = view;
     }
@@ -187,8 +189,8 @@ Picture Illustrator::depict(const sim::Snapshot& now,
 }
 
 Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
-                            std::span<const WorldLine> lines) const {
-  if (space_) return depict_space(*space_, now, ways, now, lines);
+                            std::span<const WorldLine> lines, std::span<const SpaceGhost> ghosts) const {
+  if (space_) return depict_space(*space_, now, ways, now, lines, ghosts);
   Picture picture = depict(now, ways);
   const View view = plan_->view(now);
   draw_lines(view, lines, false, picture.moving);
@@ -203,7 +205,11 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   std::vector<WorldLine> lines;
   if (annotations_) lines = annotations_->lines(frame, film);
   if (space_) {
-    Picture picture = depict_space(*space_, now, ways, frame, lines);
+    std::vector<SpaceGhost> earlier;
+    if (annotations_)
+      for (const auto& [then, ghost] : annotations_->ghosts(frame, film))
+        earlier.push_back({then, &ghost->bodies, kGhost});
+    Picture picture = depict_space(*space_, now, ways, frame, lines, earlier);
     for (int panel = 0; annotations_ && panel < panels(); ++panel) {
       const Projection seen = projection(panel, frame);
       picture.moving.clip(seen.window());
@@ -212,6 +218,7 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
     }
     draw_titles(titles_, space_->layout, space_->layout.aspect, space_->colours, frame.time, film, at.speed,
                 picture.moving);
+    set_decimal_mark(picture.moving, look_.decimal);
     return picture;
   }
   const Stage& stage = plan_->stage;
@@ -254,6 +261,7 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   }
   stage.charts.draw_lines(frame, list);
   draw_titles(titles_, stage.layout, stage.layout.aspect, stage.colours, frame.time, film, at.speed, list);
+  set_decimal_mark(list, stage.look.decimal);
   return picture;
 }
 
@@ -266,6 +274,13 @@ double Illustrator::travel(const sim::Snapshot& now, double seconds) const {
 const sim::SceneInfo& Illustrator::scene_info() const { return space_ ? space_->cast : plan_->stage.cast; }
 
 const Palette& Illustrator::colours() const { return space_ ? space_->colours : plan_->stage.colours; }
+
+double Illustrator::type_scale() const { return look_.type_scale; }
+
+Color Illustrator::line_color(int body) const {
+  return space_ ? paint(space_->own[std::size_t(body)], look_.theme).outline
+                : plan_->stage.paints[std::size_t(body)].outline;
+}
 
 double Illustrator::weight() const { return space_ ? space_->layout.weight : plan_->stage.layout.weight; }
 

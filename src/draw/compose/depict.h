@@ -21,6 +21,7 @@ class Projection;
 struct SpaceStage;
 struct Sheet;
 struct WorldLine;
+struct SpaceGhost;
 
 /// How strong the earlier instant of a mark is.
 inline constexpr double kGhost = 0.4;
@@ -63,9 +64,9 @@ class Illustrator {
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
                  const FrameInstant& frame) const;
 
-  /// The picture of one instant with lines through the world.
+  /// The picture of one instant with lines through the world; in space with earlier instants as well.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
-                 std::span<const WorldLine> lines) const;
+                 std::span<const WorldLine> lines, std::span<const SpaceGhost> ghosts = {}) const;
 
   /// From now on every picture has these marks and titles.
   void annotate(std::shared_ptr<const Annotations> annotations) { annotations_ = std::move(annotations); }
@@ -76,6 +77,10 @@ class Illustrator {
   const sim::SceneInfo& scene_info() const;
   const Palette& colours() const;
   double weight() const;
+  /// How much larger type is.
+  double type_scale() const;
+  /// The colour of a body's lines.
+  Color line_color(int body) const;
   int panels() const;
   Projection projection(int panel, const sim::Snapshot& now) const;
   double scale(const sim::Snapshot& now) const;

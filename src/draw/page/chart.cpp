@@ -10,16 +10,17 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kMargin = 36;  // page units at the weight 1, as of the caption
-constexpr double kType =
-    24 / 8.5;  // page units a point of a plot for print: type as large as a caption's smallest
-constexpr double kHead = 2.7;    // points
-constexpr double kAround = 0.8;  // around a dot, points
+// page units a point of a plot for print: digits 24 high, to be read from the back row
+constexpr double kType = 33 / 8.5;
+constexpr double kHead = 2.7;     // points
+constexpr double kAround = 0.8;   // around a dot, points
+constexpr double kSettle = 0.02;  // of the run, at each side: how long names take to change places
 
 }  // namespace
 
 Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
-               double aspect, double seconds, const sim::SceneInfo& cast)
-    : colours_(colours), cast_(cast) {
+               double aspect, double seconds, const sim::SceneInfo& cast, double foot, double type_scale)
+    : colours_(colours), cast_(cast), foot_(foot) {
   const double width = 1080 * aspect, weight = std::min(1.0, std::sqrt(width / 1440));
   const double margin = kMargin * weight, inset = std::max(margin, 0.045 * width);
   double column = 0;
@@ -28,8 +29,8 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
     if (chart.place == Chart::Place::right) right_ = std::max(right_, chart.share * width), ++column;
   }
   const double gap = margin / 2;
-  double low = 1080 - below_, beside = inset;
-  const double each = column > 0 ? (1080 - below_ - inset - margin) / column : 0;
+  double low = 1080 - below(), beside = inset;
+  const double each = column > 0 ? (1080 - below() - inset - margin) / column : 0;
   for (std::size_t i = 0; i < charts.size(); ++i) {
     Rect rect;
     if (charts[i].place == Chart::Place::below) {
@@ -39,24 +40,55 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
       rect = {width - right_ + gap, beside, right_ - gap - inset, each - gap};
       beside += each;
     }
-    panels_.push_back({charts[i], plots[i], plot_area(plots[i], rect, kType * weight)});
-    panels_.back().area.last = seconds;
+    panels_.push_back({charts[i], plots[i], plot_area(plots[i], rect, kType * weight * type_scale), {}});
+    if (charts[i].against.empty()) panels_.back().area.last = seconds;
   }
   // those above each other show one time at one place
-  for (Panel& a : panels_) {
-    for (const Panel& b : panels_) {
-      if (a.chart.place != b.chart.place) continue;
-      a.area.left = std::max(a.area.left, b.area.left);
-      a.area.right = std::min(a.area.right, b.area.right);
-    }
+  for (const Chart::Place place : {Chart::Place::below, Chart::Place::right}) {
+    std::vector<PlotArea*> areas;
+    for (Panel& panel : panels_)
+      if (panel.chart.place == place && panel.chart.against.empty()) areas.push_back(&panel.area);
+    share_margins(areas);
   }
+  for (Panel& panel : panels_) place_names(panel);
+}
+
+// Names stand beside the heads of their lines, as far from each other as they are high. Where lines cross the
+// names would jump past each other: they are where they would be on the average of some instants around.
+void Charts::place_names(Panel& panel) const {
+  const PlotArea& area = panel.area;
+  const std::vector<Series>& lines = panel.plot.lines;
+  const std::size_t n = panel.plot.times.size();
+  std::vector<std::vector<double>> sums(lines.size(), std::vector<double>(n + 1, 0));
+  for (std::size_t k = 0; k < n; ++k) {
+    std::vector<double> heads;
+    for (const Series& line : lines)
+      heads.push_back(area.at(area.first, k < line.values.size() ? line.values[k] : area.low).y());
+    const std::vector<double> names =
+        spread(heads, kNamesApart * area.point, area.top, area.bottom - 3 * area.point);
+    for (std::size_t i = 0; i < lines.size(); ++i) sums[i][k + 1] = sums[i][k] + names[i] - heads[i];
+  }
+  const auto reach = std::size_t(kSettle * double(n));
+  panel.offsets.assign(lines.size(), std::vector<double>(n, 0));
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t low = k < reach ? 0 : k - reach, high = std::min(n, k + reach + 1);
+      panel.offsets[i][k] = (sums[i][high] - sums[i][low]) / double(high - low);
+    }
+}
+
+double Charts::Panel::offset(std::size_t line, double time) const {
+  const std::vector<double>& times = plot.times;
+  const std::vector<double>& all = offsets[line];
+  const auto next = std::size_t(std::lower_bound(times.begin(), times.end(), time) - times.begin());
+  if (all.empty()) return 0;
+  if (next == 0 || next >= all.size()) return next == 0 ? all.front() : all.back();
+  const double u = (time - times[next - 1]) / (times[next] - times[next - 1]);
+  return all[next - 1] + u * (all[next] - all[next - 1]);
 }
 
 void Charts::draw_still(List& list) const {
-  for (const Panel& panel : panels_) {
-    draw_axes(panel.plot, panel.area, colours_, list);
-    draw_names(panel.plot, panel.area, list);
-  }
+  for (const Panel& panel : panels_) draw_axes(panel.plot, panel.area, colours_, list);
 }
 
 void Charts::draw_lines(const sim::Snapshot& now, List& list) const {
@@ -66,20 +98,30 @@ void Charts::draw_lines(const sim::Snapshot& now, List& list) const {
     const auto& times = panel.plot.times;
     const auto end = std::lower_bound(times.begin(), times.end(), now.time);
     past.times.assign(times.begin(), end);
-    for (Series& line : past.lines) line.values.resize(past.times.size());
-    const bool within = now.time <= panel.area.last;
-    const std::vector<const Measure*> measures = panel.chart.measures();
+    for (Series& line : past.lines) {
+      line.values.resize(past.times.size());
+      if (!line.along.empty()) line.along.resize(past.times.size());
+    }
+    const bool over_time = panel.chart.against.empty(), within = !over_time || now.time <= panel.area.last;
+    const std::vector<Measured::Line> lines = panel.chart.lines();
     if (within) {
       past.times.push_back(now.time);
-      for (std::size_t i = 0; i < measures.size(); ++i)
-        past.lines[i].values.push_back(measures[i]->at(cast_, now, panel.chart.body));
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        past.lines[i].values.push_back(lines[i].at(cast_, now));
+        if (const auto along = panel.chart.along(lines[i]))
+          past.lines[i].along.push_back(along->at(cast_, now));
+      }
     }
     obscura::draw::draw_lines(past, panel.area, list);
-    if (!within) continue;
-    for (const Series& line : past.lines) {
-      const Point at = panel.area.at(now.time, line.values.back());
+    for (std::size_t i = 0; i < past.lines.size(); ++i) {
+      const Series& line = past.lines[i];
+      if (line.values.empty()) continue;
+      const double along = line.along.empty() ? past.times.back() : line.along.back();
+      const Point at = panel.area.at(along, line.values.back());
       const double unit = panel.area.point;
-      list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
+      if (within) list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
+      draw_name(panel.plot, i, panel.area,
+                at + Point((kHead + 2.2) * unit, over_time ? panel.offset(i, now.time) : 0), list);
     }
   }
 }

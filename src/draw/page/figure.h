@@ -16,7 +16,6 @@ struct Figure : Marks {
   struct Plot : Measured {
     sim::Rational from, to;  // s
     double height = 36;      // mm
-    std::string against;     // a quantity, instead of time
     std::string over;        // "physics.rate=10,20,40": the end of a run for each, instead of time
     std::string reference;   // "physics.rate=6400; physics.integrator=rk4": plotted is how far the end is
                              // from that run's

@@ -16,7 +16,9 @@ namespace {
 constexpr double kTitle = 34, kSubtitle = 26.5, kClock = 28.5;   // em
 constexpr double kStrip = 76, kSecondLine = 36, kBaseline = 50;  // heights
 constexpr double kPageMargin = 36, kTitleGap = 18, kClockGap = 44;
-constexpr double kSmallestType = 0.82;  // before the caption takes another line
+constexpr double kSmallestType = 0.82;                 // before the caption takes another line
+constexpr double kTitleLine = 42, kSubtitleLine = 34;  // of words in several lines
+constexpr std::size_t kMostRows = 3;
 
 }  // namespace
 
@@ -64,9 +66,29 @@ struct Setting {
   double size = 1;
   int lines = 1;
   double span = 0;  // width they take
+  std::vector<std::string> title{}, subtitle{};
+
+  /// How high they are, in units of weight.
+  double height(double type) const {
+    const auto more = [](const auto& rows) { return double(rows.empty() ? 0 : rows.size() - 1); };
+    return type *
+           (kStrip + (lines - 1) * kSecondLine + more(title) * kTitleLine + more(subtitle) * kSubtitleLine);
+  }
 };
 
+/// In so many lines at most; what does not go in is left out.
+std::vector<std::string> rows_of(const std::string& words, Face face, double size, double width) {
+  if (words.empty()) return {};
+  std::vector<std::string> rows = wrapped(words, face, size, width);
+  for (std::size_t i = kMostRows; i < rows.size(); ++i) rows[kMostRows - 1] += " " + rows[i];
+  rows.resize(std::min(rows.size(), kMostRows));
+  for (std::string& row : rows) row = fitted(row, face, size, width);
+  std::erase(rows, "");
+  return rows;
+}
+
 Setting set_words(const Look& look, double weight, double room, double page) {
+  weight *= look.type_scale;
   const double title = width_of(look.title, Face::bold, kTitle * weight);
   const double subtitle = width_of(look.subtitle, Face::medium, kSubtitle * weight);
   const double clock = look.clock ? width_of(clock_text(88.88), Face::medium, kClock * weight, true) : 0;
@@ -76,21 +98,26 @@ Setting set_words(const Look& look, double weight, double room, double page) {
       subtitle > 0 ? top + subtitle + weight * kTitleGap + (title > 0 || clock == 0 ? 0 : gap) : top;
 
   // one line within the room's width; else the subtitle under the title; a narrow room's caption reaches
-  // beyond it
-  if (all * kSmallestType <= room) return {std::min(1.0, room / all), 1, room};
+  // beyond it; words that are too long for the page go on in another line
+  if (all * kSmallestType <= room)
+    return {std::min(1.0, room / all), 1, room, rows_of(look.title, Face::bold, kTitle * weight, 1e9), {}};
   const int lines = subtitle > 0 && top > 0 ? 2 : 1;
   const double longest = lines == 2 ? std::max(top, subtitle) : all;
   const double span = std::min(page, std::max(room, longest));
-  return {std::clamp(span / longest, kSmallestType, 1.0), lines, span};
+  Setting found{std::clamp(span / longest, kSmallestType, 1.0), lines, span, {}, {}};
+  if (longest * kSmallestType > span) found.size = 1;
+  const double unit = weight * found.size;
+  const double beside = clock > 0 ? clock * found.size + kClockGap * unit : 0;
+  found.title = rows_of(look.title, Face::bold, kTitle * unit, span - beside);
+  if (lines == 2) found.subtitle = rows_of(look.subtitle, Face::medium, kSubtitle * unit, span);
+  return found;
 }
 
 void write_caption(Layout& layout, const Look& look, const Palette& colours, const Setting& setting,
                    double left, double right, double top) {
-  const double unit = layout.weight * setting.size;
-  const double baseline = top + layout.weight * kBaseline;
-  const double below = baseline + layout.weight * kSecondLine;
+  const double type = layout.weight * look.type_scale, unit = type * setting.size;
+  double baseline = top + type * kBaseline;
   const double span = right - left;
-
   double clock = 0;
   if (look.clock) {
     clock = width_of(clock_text(88.88), Face::medium, kClock * unit, true) + kClockGap * unit;
@@ -99,25 +126,40 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
         Align::right,
         {{.text = "", .face = Face::medium, .size = kClock * unit, .color = colours.ink, .tabular = true}}};
   }
+  const auto write = [&](const std::string& words, Face face, double size, Color color, double x) {
+    if (!words.empty())
+      layout.words.push_back(
+          {{x, baseline}, Align::left, {{.text = words, .face = face, .size = size, .color = color}}});
+  };
 
-  const std::string title = fitted(look.title, Face::bold, kTitle * unit, span - clock);
-  if (!title.empty()) {
-    layout.words.push_back(
-        {{left, baseline},
-         Align::left,
-         {{.text = title, .face = Face::bold, .size = kTitle * unit, .color = colours.ink}}});
+  if (setting.lines == 1) {
+    const std::string title = fitted(look.title, Face::bold, kTitle * unit, span - clock);
+    // alone it may take several lines
+    for (std::size_t i = 0; i < std::max<std::size_t>(setting.title.size(), 1); ++i) {
+      if (i > 0) baseline += type * kTitleLine;
+      write(setting.title.size() > 1 ? setting.title[i] : title, Face::bold, kTitle * unit, colours.ink,
+            left);
+    }
+    if (look.subtitle.empty()) return;
+    const double taken = title.empty() ? 0 : width_of(title, Face::bold, kTitle * unit) + kTitleGap * unit;
+    write(fitted(look.subtitle, Face::medium, kSubtitle * unit, span - clock - taken), Face::medium,
+          kSubtitle * unit, colours.quiet, left + taken);
+    return;
   }
-  if (look.subtitle.empty()) return;
-  const Span quiet{
-      .text = look.subtitle, .face = Face::medium, .size = kSubtitle * unit, .color = colours.quiet};
-  const bool beside = setting.lines == 1;
-  const double taken = title.empty() ? 0 : width_of(title, Face::bold, kTitle * unit) + kTitleGap * unit;
-  Text line{beside ? Point{left + taken, baseline} : Point{left, below}, Align::left, {quiet}};
-  line.spans[0].text = fitted(look.subtitle, Face::medium, quiet.size, beside ? span - clock - taken : span);
-  if (!line.spans[0].text.empty()) layout.words.push_back(line);
+  for (std::size_t i = 0; i < setting.title.size(); ++i) {
+    if (i > 0) baseline += type * kTitleLine;
+    write(setting.title[i], Face::bold, kTitle * unit, colours.ink, left);
+  }
+  baseline += type * kSecondLine;
+  for (std::size_t i = 0; i < setting.subtitle.size(); ++i) {
+    if (i > 0) baseline += type * kSubtitleLine;
+    write(setting.subtitle[i], Face::medium, kSubtitle * unit, colours.quiet, left);
+  }
 }
 
 }  // namespace
+
+double page_weight(double aspect) { return std::min(1.0, std::sqrt(1080 * aspect / 1440)); }
 
 double width_of(const std::string& words, Face face, double size, bool tabular) {
   if (words.empty()) return 0;
@@ -166,6 +208,23 @@ std::string fitted(const std::string& words, Face face, double size, double widt
   return low == 0 ? std::string() : with_ellipsis(low);
 }
 
+std::vector<std::string> wrapped(const std::string& words, Face face, double size, double width) {
+  std::vector<std::string> lines{""};
+  std::size_t at = 0;
+  while (at < words.size()) {
+    const std::size_t end = std::min(words.find_first_of(" \n", at), words.size());
+    const std::string word = words.substr(at, end - at);
+    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
+    if (!lines.back().empty() && width_of(longer, face, size) > width)
+      lines.push_back(word);
+    else
+      lines.back() = longer;
+    if (end < words.size() && words[end] == '\n') lines.emplace_back();
+    at = end + 1;
+  }
+  return lines;
+}
+
 double lay_caption(Layout& layout, const Look& look) {
   const double w = layout.weight;
   layout.caption = look.caption && (look.clock || !look.title.empty() || !look.subtitle.empty());
@@ -174,7 +233,7 @@ double lay_caption(Layout& layout, const Look& look) {
   const Setting setting = set_words(look, w, page, page);
   write_caption(layout, look, palette(look.theme), setting, (layout.width - page) / 2,
                 (layout.width + page) / 2, 0);
-  return w * (kStrip + (setting.lines - 1) * kSecondLine);
+  return w * setting.height(look.type_scale);
 }
 
 Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camera, const Extent& extent,
@@ -182,7 +241,7 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   Layout layout;
   layout.width = 1080 * aspect;
   layout.aspect = layout.width / 1080;
-  layout.weight = std::min(1.0, std::sqrt(layout.width / 1440));
+  layout.weight = page_weight(aspect);
   layout.width -= right, layout.height -= below;
   const double w = layout.weight;
   const Fitted world = fitted_world(cast, extent);
@@ -206,12 +265,17 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   const double page = layout.width - 2 * std::max(w * kPageMargin, 0.045 * layout.width);
   if (layout.caption) {
     auto room = [&] { return world.closed ? scale(strip) * size.x() + 2 * w * kWallLine : page; };
-    strip = w * kStrip;
+    strip = w * look.type_scale * kStrip;
     setting = set_words(look, w, room(), page);
-    if (setting.lines == 2) {
-      strip += w * kSecondLine;
+    for (int k = 0; k < 3 && setting.height(look.type_scale) * w > strip; ++k) {
+      const int lines = setting.lines;
+      strip = w * setting.height(look.type_scale);
       setting = set_words(look, w, room(), page);
+      // a lower room is narrower: what took two lines does so still
+      if (lines != 2 || setting.lines == 2) continue;
       setting.lines = 2;
+      setting.subtitle =
+          rows_of(look.subtitle, Face::medium, kSubtitle * w * look.type_scale * setting.size, setting.span);
     }
   }
   layout.scale = scale(strip);

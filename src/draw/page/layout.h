@@ -43,6 +43,9 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
 /// Writes the caption over a page without a room on it, and says how high its strip is.
 double lay_caption(Layout& layout, const Look& look);
 
+/// The weight of lines and type on a page of this aspect.
+double page_weight(double aspect);
+
 /// How wide words are set, page units; `tabular`: with figures of equal width.
 double width_of(const std::string& words, Face face, double size, bool tabular = false);
 
@@ -54,6 +57,9 @@ std::vector<HalfPlane> half_planes(const sim::SceneInfo& cast, const View& view)
 
 /// Nothing within `reach` of p lies in the rectangle.
 bool outside(const Rect& rect, const Point& p, double reach);
+
+/// As many lines as words need to be no wider than `width`.
+std::vector<std::string> wrapped(const std::string& words, Face face, double size, double width);
 
 /// As much of `words` as fits `width`, with an ellipsis where something is left out.
 std::string fitted(const std::string& words, Face face, double size, double width);

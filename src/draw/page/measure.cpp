@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "draw/page/readings.h"
 
@@ -47,15 +48,15 @@ constexpr Measure vector(std::string_view name, const char* label, const char* u
 
 constexpr std::array kMeasures{
     number("energy", "total", "J", "", false, [](Cast, Now now, int) { return now.energies.total(); }),
-    number("kinetic", "kinetic", "J", "vermilion", false,
+    number("kinetic", "kinetic", "J", "orange", false,
            [](Cast, Now now, int) { return now.energies.kinetic; }),
-    number("potential", "potential", "J", "blue", false,
+    number("potential", "potential", "J", "purple", false,
            [](Cast, Now now, int) { return now.energies.potential(); }),
-    number("gravity", "gravity", "J", "blue", false, [](Cast, Now now, int) { return now.energies.gravity; }),
-    number("springs", "springs", "J", "green", false,
-           [](Cast, Now now, int) { return now.energies.springs; }),
-    number("fields", "fields", "J", "purple", false, [](Cast, Now now, int) { return now.energies.fields; }),
-    number("work", "work", "J", "orange", false, [](Cast, Now now, int) { return now.energies.work; }),
+    number("gravity", "gravity", "J", "purple", false,
+           [](Cast, Now now, int) { return now.energies.gravity; }),
+    number("springs", "springs", "J", "sky", false, [](Cast, Now now, int) { return now.energies.springs; }),
+    number("fields", "fields", "J", "grey", false, [](Cast, Now now, int) { return now.energies.fields; }),
+    number("work", "work", "J", "grey", false, [](Cast, Now now, int) { return now.energies.work; }),
     number("x", "x", "m", "blue", true, [](Cast, Now now, int body) { return of(now, body).position.x(); }),
     number("height", "height", "m", "blue", true,
            [](Cast, Now now, int body) { return of(now, body).position.y(); }),
@@ -63,11 +64,11 @@ constexpr std::array kMeasures{
            [](Cast, Now now, int body) { return of(now, body).velocity.norm(); }),
     number("vx", "v_x", "m/s", "blue", true,
            [](Cast, Now now, int body) { return of(now, body).velocity.x(); }),
-    number("vy", "v_y", "m/s", "vermilion", true,
+    number("vy", "v_y", "m/s", "green", true,
            [](Cast, Now now, int body) { return of(now, body).velocity.y(); }),
-    number("angle", "\\theta", "°", "purple", true,
+    number("angle", "\\theta", "°", "", true,
            [](Cast, Now now, int body) { return kDegrees * of(now, body).angle; }),
-    vector("spin", "\\omega", "rad/s", "purple", Quantity::spin,
+    vector("spin", "\\omega", "rad/s", "", Quantity::spin,
            [](Cast, Now now, int body) { return of(now, body).spin.z(); }),
     number("length", "l", "m", "blue", true,
            [](Cast, Now now, int body) { return (spring(now, body).b - spring(now, body).a).norm(); }),
@@ -75,16 +76,18 @@ constexpr std::array kMeasures{
            [](Cast, Now now, int body) { return spring(now, body).push; }),
     vector("acceleration", "a", "m/s²", "purple", Quantity::acceleration, length<Quantity::acceleration>),
     vector("momentum", "p", "kg m/s", "green", Quantity::momentum, length<Quantity::momentum>),
-    vector("weight", "weight", "N", "blue", Quantity::weight, length<Quantity::weight>),
-    vector("normal_force", "normal", "N", "orange", Quantity::normal_force, length<Quantity::normal_force>),
+    vector("weight", "weight", "N", "vermilion", Quantity::weight, length<Quantity::weight>),
+    vector("normal_force", "normal", "N", "vermilion", Quantity::normal_force,
+           length<Quantity::normal_force>),
     vector("friction", "friction", "N", "vermilion", Quantity::friction, length<Quantity::friction>),
-    vector("net_force", "net", "N", "purple", Quantity::net_force, length<Quantity::net_force>),
-    vector("spring_force", "spring", "N", "green", Quantity::spring_force, length<Quantity::spring_force>),
-    vector("joint_force", "joint", "N", "sky", Quantity::joint_force, length<Quantity::joint_force>),
-    vector("drag", "drag", "N", "orange", Quantity::drag, length<Quantity::drag>),
+    vector("net_force", "net", "N", "vermilion", Quantity::net_force, length<Quantity::net_force>),
+    vector("spring_force", "spring", "N", "vermilion", Quantity::spring_force,
+           length<Quantity::spring_force>),
+    vector("joint_force", "joint", "N", "vermilion", Quantity::joint_force, length<Quantity::joint_force>),
+    vector("drag", "drag", "N", "vermilion", Quantity::drag, length<Quantity::drag>),
     vector("contact", "contact", "N", "vermilion", Quantity::contact, length<Quantity::contact>),
     vector("blast", "blast", "N", "vermilion", Quantity::blast, length<Quantity::blast>),
-    vector("torque", "\\tau", "N m", "purple", Quantity::torque,
+    vector("torque", "\\tau", "N m", "", Quantity::torque,
            [](Cast cast, Now now, int body) {
              const sim::Vec3 all = sum(Quantity::torque, body, cast, now);
              return cast.dimension == 2 ? all.z() : all.norm();
@@ -126,13 +129,60 @@ std::vector<const Measure*> Measured::measures() const {
   return all;
 }
 
-Plot empty_plot(const Measured& measured, const Palette& colours) {
-  Plot plot;
-  for (const Measure* each : measured.measures()) {
-    const auto own = color(each->color);
-    plot.unit = plot.lines.empty() || plot.unit == each->unit ? each->unit : "";
-    plot.lines.push_back({each->label, {}, own ? mix(*own, colours.ink, 0.2) : colours.ink});
+namespace {
+
+/// What several quantities of one unit are called together.
+std::string symbol(std::string_view unit) {
+  static constexpr std::pair<std::string_view, const char*> kSymbols[] = {
+      {"J", "E"},           {"N", "F"},    {"m/s", "v"},    {"m", "\"position\""}, {"°", "\\theta"},
+      {"rad/s", "\\omega"}, {"m/s²", "a"}, {"kg m/s", "p"}, {"N m", "\\tau"}};
+  for (const auto& [of, name] : kSymbols)
+    if (of == unit) return name;
+  return "";
+}
+
+}  // namespace
+
+std::vector<Measured::Line> Measured::lines() const {
+  std::vector<Line> all;
+  for (const Measure* each : measures()) {
+    if (!each->of_body || bodies.empty()) all.push_back({each, bodies.empty() ? -1 : bodies.front()});
+    for (const int body : each->of_body ? bodies : std::vector<int>()) all.push_back({each, body});
   }
+  return all;
+}
+
+std::optional<Measured::Line> Measured::along(const Line& line) const {
+  const Measure* other = measure(against);
+  if (!other) return {};
+  return Line{other, line.body};
+}
+
+Plot empty_plot(const Measured& measured, const Palette& colours, const sim::SceneInfo& cast,
+                const std::function<Color(int body)>& line_color) {
+  Plot plot;
+  const std::vector<const Measure*> measures = measured.measures();
+  const bool several = measured.bodies.size() > 1;
+  for (const Measured::Line& line : measured.lines()) {
+    const auto own = color(line.measure->color);
+    Series series{line.measure->label, {}, own ? mix(*own, colours.ink, 0.2) : colours.ink};
+    if (several && line.measure->of_body) {
+      const std::string name = "\"" + cast.bodies[std::size_t(line.body)].name + "\"";
+      series.label = measures.size() > 1 ? series.label + " " + name : name;
+      series.color = line_color(line.body);
+    }
+    // the sum of the others
+    if (line.measure->name == "energy" && measures.size() > 1) series.weight = 1.5;
+    plot.lines.push_back(std::move(series));
+  }
+  tell_apart(plot);
+  if (!measures.empty()) {
+    const std::string all = symbol(measures[0]->unit);
+    plot.title = over_unit(
+        (measures.size() == 1 && measures[0]->name != "energy") || all.empty() ? measures[0]->label : all,
+        measures[0]->unit);
+  }
+  if (const Measure* other = measure(measured.against)) plot.name = over_unit(other->label, other->unit);
   return plot;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,12 +37,27 @@ std::vector<std::string> arrows();
 /// Which quantities a plot shows.
 struct Measured {
   std::vector<std::string> quantities;
-  int body = -1;  // the body measured; -1: the whole room
+  std::vector<int> bodies;  // those measured; none: the whole room
+  std::string against;      // a quantity, instead of time
 
+  /// A line of the plot.
+  struct Line {
+    const Measure* measure = nullptr;
+    int body = -1;
+    double at(const sim::SceneInfo& cast, const sim::Snapshot& now) const {
+      return measure->at(cast, now, body);
+    }
+  };
   std::vector<const Measure*> measures() const;
+  std::vector<Line> lines() const;
+  /// What a line goes along, if not time.
+  std::optional<Line> along(const Line& line) const;
 };
 
-/// A plot of them before anything is measured: lines with names and colours, and the unit that all share.
-Plot empty_plot(const Measured& measured, const Palette& colours);
+/// A plot of them before anything is measured: lines with names, colours and dashes, and titles of its axes.
+/// Of one body a quantity has its arrows' colour, or one that means nothing else; several bodies have theirs,
+/// which `line_color` tells.
+Plot empty_plot(const Measured& measured, const Palette& colours, const sim::SceneInfo& cast,
+                const std::function<Color(int body)>& line_color);
 
 }  // namespace obscura::draw

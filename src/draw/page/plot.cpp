@@ -1,5 +1,6 @@
 // A plot. Only the two axes it needs, ticks at 1, 2 or 5 times a power of ten, and words at the ends of the
-// lines instead of a key. Words at ends that lie close together are pushed apart.
+// lines instead of a key. Words at ends that lie close together are pushed apart. Lines differ in their
+// dashes and markers, so that they can be told apart in grey.
 
 #include "draw/page/plot.h"
 
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "draw/page/sheet.h"
@@ -16,8 +18,15 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kTypeSize = 8.5, kTick = 2.5, kLine = 1.0, kAxis = 0.6;  // points
-constexpr double kApart = 10;                                             // of words at the ends
 constexpr double kDotRadius = 1.6;
+constexpr double kAbove = 17, kBelow = 13;  // points: room for the title, for the numbers
+constexpr double kHeadroom = 0.05;          // of the range of the values: room above and below it
+constexpr double kFromZero = 0.4;   // of the largest value: what changes by less is shown without zero
+constexpr double kConstant = 1e-3;  // and what changes by less than this with it
+
+// dashes and gaps along a line, points; one after another
+const std::vector<std::vector<double>> kDashes = {{},       {5, 2.2},  {1.2, 1.8}, {6, 1.8, 1.2, 1.8},
+                                                  {9, 2.5}, {2.6, 1.4}};
 constexpr int kMostDecades = 7;  // with a number each
 
 std::string number(double x) { return fmt::format("{:g}", std::abs(x) < 1e-12 ? 0.0 : x); }
@@ -73,6 +82,67 @@ struct Range {
   void take(double x) { low = std::min(low, x), high = std::max(high, x); }
 };
 
+/// A line of nodes in dashes that begin at its first.
+void add_dashed(const std::vector<Node>& nodes, const std::vector<double>& dashes, double point, List& list) {
+  if (dashes.empty()) {
+    list.add(nodes, Cap::round);
+    return;
+  }
+  std::size_t which = 0;
+  double left = dashes[0] * point;
+  std::vector<Node> dash{nodes.front()};
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    Point from = nodes[i].at;
+    const Point to = nodes[i + 1].at;
+    for (double way = (to - from).norm(); way > left; way = (to - from).norm()) {
+      from += left / way * (to - from);
+      Node node = nodes[i];
+      node.at = from;
+      if (which % 2 == 0) {
+        dash.push_back(node);
+        list.add(dash, Cap::butt);
+      }
+      dash = {node};
+      which = (which + 1) % dashes.size();
+      left = dashes[which] * point;
+    }
+    left -= (to - from).norm();
+    if (which % 2 == 0) dash.push_back(nodes[i + 1]);
+  }
+  if (which % 2 == 0 && dash.size() > 1) list.add(dash, Cap::butt);
+}
+
+/// What marks a value of a line of dots.
+void add_marker(int style, const Point& at, double radius, Color color, List& list) {
+  const auto corners = [&](int count, double first, double size) {
+    std::vector<Point> all;
+    for (int k = 0; k < count; ++k) {
+      const double a = first + 2 * std::numbers::pi * k / count;
+      all.push_back(at + size * radius * Point(std::cos(a), -std::sin(a)));
+    }
+    list.add(all, color);
+  };
+  switch (style % 4) {
+    case 0:
+      list.add(Disc{at, radius, 0, color, color});
+      break;
+    case 1:
+      corners(4, std::numbers::pi / 4, 1.3);
+      break;
+    case 2:
+      corners(3, std::numbers::pi / 2, 1.5);
+      break;
+    default:
+      corners(4, 0, 1.5);
+      break;
+  }
+}
+
+/// Whether its lines need names.
+bool named(const Plot& plot) {
+  return plot.lines.size() > 1 || plot.title.empty() || !plot.lines.front().note.empty();
+}
+
 /// The end of a line: its point farthest to the right.
 Point end_of(const Plot& plot, const PlotArea& area, const Series& line) {
   const std::vector<double>& way = along(plot, line);
@@ -105,11 +175,64 @@ std::vector<double> ticks(double low, double high, int count) {
   return found;
 }
 
+std::string over_unit(const std::string& name, const std::string& unit) {
+  if (unit.empty()) return name;
+  const auto upright = [](const std::string& words) { return "\"" + words + "\""; };
+  if (unit == "°") return name + " / " + upright("deg");
+  const auto slash = unit.find('/');
+  if (slash == unit.npos) return name + " / " + upright(unit);
+  std::string over = unit.substr(0, slash), under = unit.substr(slash + 1), power = "-1";
+  if (under.ends_with("²")) under.resize(under.size() - std::string_view("²").size()), power = "-2";
+  if (over == "1") over.clear();
+  return name + " / " + upright((over.empty() ? "" : over + " ") + under) + "^{" + power + "}";
+}
+
+void tell_apart(Plot& plot) {
+  for (std::size_t i = 0; i < plot.lines.size(); ++i) plot.lines[i].style = int(i);
+}
+
+std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high) {
+  // x_i + i apart must not decrease: averages of those that would (pool adjacent violators)
+  const std::size_t n = wanted.size();
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return wanted[a] < wanted[b]; });
+  struct Pool {
+    double sum = 0;
+    std::size_t count = 0;
+    double mean() const { return sum / double(count); }
+  };
+  std::vector<Pool> pools;
+  for (std::size_t i = 0; i < n; ++i) {
+    pools.push_back({wanted[order[i]] - double(i) * apart, 1});
+    while (pools.size() > 1 && pools[pools.size() - 2].mean() > pools.back().mean()) {
+      const Pool last = pools.back();
+      pools.pop_back();
+      pools.back().sum += last.sum, pools.back().count += last.count;
+    }
+  }
+  std::vector<double> found(n);
+  std::size_t i = 0;
+  for (const Pool& pool : pools)
+    for (std::size_t k = 0; k < pool.count; ++k, ++i) found[order[i]] = pool.mean() + double(i) * apart;
+  // within the ends
+  for (std::size_t k = n; k-- > 0;)
+    found[order[k]] = std::min(found[order[k]], high - double(n - 1 - k) * apart);
+  for (std::size_t k = 0; k < n; ++k) found[order[k]] = std::max(found[order[k]], low + double(k) * apart);
+  return found;
+}
+
+void share_margins(std::span<PlotArea*> areas) {
+  double left = -1e300, right = 1e300;
+  for (const PlotArea* area : areas) left = std::max(left, area->left), right = std::min(right, area->right);
+  for (PlotArea* area : areas) area->left = left, area->right = right;
+}
+
 PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
   PlotArea area;
   area.point = point, area.log = plot.log;
   Range across, up;
-  if (!plot.log) up.take(0);
   for (const Series& each : plot.lines) {
     const std::vector<double>& way = along(plot, each);
     for (std::size_t i = 0; i < way.size() && i < each.values.size(); ++i)
@@ -126,33 +249,32 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
                  last = std::max(first + 1, std::ceil(std::log10(up.high) - 1e-9));
     area.low = std::pow(10, first), area.high = std::pow(10, last);
   } else {
-    // the values' axis ends at a tick
-    const double low = up.low, high = up.high > up.low ? up.high : up.low + 1;
-    std::vector<double>& marks = area.ticks = ticks(low, high, int(rect.height / (16 * point)));
-    const double step = marks.size() > 1 ? marks[1] - marks[0] : 1;
-    while (marks.back() < high - 1e-9 * step) marks.push_back(marks.back() + step);
-    while (marks.front() > low + 1e-9 * step) marks.insert(marks.begin(), marks.front() - step);
-    area.low = marks.front(), area.high = marks.back();
+    const double most = std::max(std::abs(up.low), std::abs(up.high)), range = up.high - up.low;
+    if (range > kFromZero * most || range < kConstant * most || !(most > 0)) up.take(0);
+    if (!(up.high > up.low)) up.take(up.low + 1);
+    // a little room around what is there; none below zero if nothing is
+    const double room = kHeadroom * (up.high - up.low);
+    area.low = up.low == 0 ? 0 : up.low - room, area.high = up.high == 0 ? 0 : up.high + room;
+    area.ticks = ticks(area.low, area.high, std::max(2, int(rect.height / (18 * point))));
   }
 
   // room for the numbers at the left, the names at the right
-  double numbers = 0, names = plot.name == Plot{}.name ? 0 : formula(plot.name, kTypeSize * point, {}).width;
+  double numbers = 0, names = 0;
   for (const std::string& each : upward(area).numbers)
     numbers = std::max(numbers, formula(each, kTypeSize * point, {}).width);
-  for (const Series& each : plot.lines)
-    names = std::max(names, formula(each.label + each.note, kTypeSize * point, each.color).width);
+  if (named(plot))
+    for (const Series& each : plot.lines)
+      names =
+          std::max(names, formula(each.label + each.note, kTypeSize * point, each.color).width + 5 * point);
+  // what it is over, right of the last number, which stands out by half of itself
+  names = std::max(names, formula(plot.name, kTypeSize * point, {}).width + 12 * point);
   area.left = rect.x + numbers + kTick * point + 3 * point;
-  area.right = rect.x + rect.width - names - 5 * point;
-  area.top = rect.y + 14 * point, area.bottom = rect.y + rect.height - 13 * point;
+  area.right = rect.x + rect.width - names;
+  area.top = rect.y + kAbove * point, area.bottom = rect.y + rect.height - kBelow * point;
 
-  // names from the lowest end up, each a line above the last
-  std::vector<std::size_t> order(plot.lines.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto end = [&](std::size_t i) { return end_of(plot, area, plot.lines[i]).y(); };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return end(a) > end(b); });
-  area.names.resize(order.size());
-  double above = area.bottom + kApart * point;
-  for (const std::size_t i : order) above = area.names[i] = std::min(end(i), above - kApart * point);
+  std::vector<double> ends;
+  for (const Series& each : plot.lines) ends.push_back(end_of(plot, area, each).y());
+  area.names = spread(ends, kNamesApart * point, area.top, area.bottom - 3 * point);
   return area;
 }
 
@@ -184,19 +306,23 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
   const Ticks across = area.log
                            ? decades(area.first, area.last)
                            : numbered(ticks(area.first, area.last, int((right - left) / (34 * area.point))));
+  double reached = right;
   for (std::size_t i = 0; i < across.marks.size(); ++i) {
     const Point p{area.at(across.marks[i], area.low).x(), bottom};
     line(p, p + Point(0, tick), axis, colours.ink);
     write(across.numbers[i], p + Point(0, tick + 7.5 * area.point), 0.5, colours.ink);
+    reached = std::max(reached, p.x() + formula(across.numbers[i], type, colours.ink).width / 2);
   }
   for (const double mark : across.between) {
     const Point p{area.at(mark, area.low).x(), bottom};
     line(p, p + Point(0, 0.6 * tick), 0.6 * axis, colours.ink);
   }
-  write(plot.name, {right + 4 * area.point, bottom + tick + 7.5 * area.point}, 0, colours.ink);
-  if (!plot.unit.empty())
-    write(plot.unit == "°" ? "\"deg\"" : "\"" + plot.unit + "\"",
-          {left, area.top - (plot.log || !plot.dots.empty() ? 8 : 5) * area.point}, 0.5, colours.ink);
+  write(plot.name, {reached + 5 * area.point, bottom + tick + 7.5 * area.point}, 0, colours.ink);
+  // from where the widest number begins
+  double numbers = 0;
+  for (const std::string& each : up.numbers) numbers = std::max(numbers, formula(each, type, {}).width);
+  write(plot.title, {left - tick - 1.5 * area.point - numbers, area.top - (kAbove - 7) * area.point}, 0,
+        colours.ink);
   for (const double mark : plot.marks)
     if (mark >= area.first && mark <= area.last)
       line(area.at(mark, area.low), area.at(mark, area.high), 0.3 * area.point, colours.hatch);
@@ -208,10 +334,11 @@ void draw_lines(const Plot& plot, const PlotArea& area, List& list) {
     std::vector<Node> nodes;
     for (std::size_t i = 0; i < way.size() && i < each.values.size(); ++i)
       if (area.has(way[i], each.values[i]))
-        nodes.push_back({area.at(way[i], each.values[i]), kLine * area.point, each.color});
-    if (!nodes.empty()) list.add(nodes, Cap::round);
+        nodes.push_back({area.at(way[i], each.values[i]), kLine * each.weight * area.point, each.color});
+    if (nodes.empty()) continue;
+    add_dashed(nodes, kDashes[std::size_t(each.style) % kDashes.size()], area.point, list);
     for (const Node& node : nodes)
-      if (plot.dotted) list.add(Disc{node.at, kDotRadius * area.point, 0, each.color, each.color});
+      if (plot.dotted) add_marker(each.style, node.at, kDotRadius * area.point, each.color, list);
   }
 }
 
@@ -228,26 +355,40 @@ void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, L
   }
 }
 
+void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at, List& list) {
+  if (!named(plot)) return;
+  const Series& its = plot.lines[line];
+  add(formula(its.label + its.note, kTypeSize * area.point, its.color),
+      at + Point(0, 0.24 * kTypeSize * area.point), list);
+}
+
 void draw_names(const Plot& plot, const PlotArea& area, List& list) {
   // the lowest first
   std::vector<std::size_t> order(plot.lines.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return area.names[a] > area.names[b]; });
-  for (const std::size_t i : order) {
-    const Formula name =
-        formula(plot.lines[i].label + plot.lines[i].note, kTypeSize * area.point, plot.lines[i].color);
-    add(name, {area.right + 4 * area.point, area.names[i] + 0.24 * kTypeSize * area.point}, list);
-  }
+  for (const std::size_t i : order)
+    draw_name(plot, i, area, {area.right + 4 * area.point, area.names[i]}, list);
 }
 
-void draw_plot(const Plot& plot, const Palette& colours, const Rect& rect, List& list) {
-  if (plot.lines.empty() || along(plot, plot.lines.front()).size() < 2) return;
-  const PlotArea area = plot_area(plot, rect, kPoint);
-  draw_axes(plot, area, colours, list);
-  draw_lines(plot, area, list);
-  draw_dots(plot, area, colours, list);
-  draw_names(plot, area, list);
+void draw_plots(const std::vector<Plot>& plots, const Palette& colours, const std::vector<Rect>& rects,
+                double type_scale, List& list) {
+  std::vector<const Plot*> shown;
+  std::vector<PlotArea> areas;
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    if (plots[i].lines.empty() || along(plots[i], plots[i].lines.front()).size() < 2) continue;
+    shown.push_back(&plots[i]), areas.push_back(plot_area(plots[i], rects[i], type_scale * kPoint));
+  }
+  std::vector<PlotArea*> all;
+  for (PlotArea& area : areas) all.push_back(&area);
+  share_margins(all);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    draw_axes(*shown[i], areas[i], colours, list);
+    draw_lines(*shown[i], areas[i], list);
+    draw_dots(*shown[i], areas[i], colours, list);
+    draw_names(*shown[i], areas[i], list);
+  }
 }
 
 }  // namespace obscura::draw

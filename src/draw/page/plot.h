@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct Series {
   Color color{};
   std::vector<double> along{};  // empty: at the plot's times
   std::string note{};           // after its label
+  int style = 0;                // which dashes, and which marker: lines are told apart without their colours
+  double weight = 1;            // of the line
 };
 
 /// Values over time or another quantity, with axes, ticks at round numbers and each line's name at its end.
@@ -23,7 +26,7 @@ struct Plot {
     double along = 0, value = 0;
     std::string label;  // as mathematics
   };
-  std::string unit;           // of the values
+  std::string title;          // of the values' axis, as mathematics: a quantity over its unit
   std::vector<double> times;  // s, increasing
   std::vector<Series> lines;
   std::vector<double> marks;       // times that the panels show
@@ -47,8 +50,22 @@ struct PlotArea {
   bool has(double along, double value) const { return !log || (along > 0 && value > 0); }
 };
 
-/// Axes for all of a plot's values in a rectangle of the page. Requires two times and a line at least.
+/// Axes for all of a plot's values in a rectangle of the page. Requires two times and a line at least. They
+/// begin at zero, unless what is plotted is far from it next to how much it changes.
 PlotArea plot_area(const Plot& plot, const Rect& rect, double point);
+
+/// Gives plots under each other the same left and right ends.
+void share_margins(std::span<PlotArea*> areas);
+
+/// A name over its unit, as mathematics: "v / m s^{-1}".
+std::string over_unit(const std::string& name, const std::string& unit);
+
+/// Gives lines styles by their order in the plot.
+void tell_apart(Plot& plot);
+
+/// As near as they can be to where they are wanted, `apart` from each other, from `low` to `high`; the order
+/// stays.
+std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high);
 
 /// Axes, ticks, units and marks.
 void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
@@ -56,11 +73,16 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
 void draw_lines(const Plot& plot, const PlotArea& area, List& list);
 /// The dots with names.
 void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
-/// The names of the lines, beside their ends.
+/// The names of the lines, beside their ends. A line that is alone is named by its axis.
 void draw_names(const Plot& plot, const PlotArea& area, List& list);
+/// One of them, with its left end's middle at `at`.
+void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at, List& list);
+inline constexpr double kNamesApart = 10;  // points
 
-/// Puts a plot down in a rectangle of a sheet (kPoint units a point): all of the above.
-void draw_plot(const Plot& plot, const Palette& colours, const Rect& rect, List& list);
+/// Puts plots down in rectangles of a sheet under each other (kPoint units a point), with type so much
+/// larger: all of the above.
+void draw_plots(const std::vector<Plot>& plots, const Palette& colours, const std::vector<Rect>& rects,
+                double type_scale, List& list);
 
 /// Round numbers in [low, high], about `count` of them.
 std::vector<double> ticks(double low, double high, int count);

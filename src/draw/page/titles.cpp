@@ -1,5 +1,5 @@
-// Cards cover the page; a caption is a line or two on a plate at its foot; the badge is a small frame at the
-// right end of the caption strip's second line.
+// Cards cover the page; captions stand in a strip at its foot that is left free for them, the first line
+// always at one height; the badge is a small frame before the clock.
 
 #include "draw/page/titles.h"
 
@@ -13,26 +13,19 @@ namespace {
 
 constexpr double kCardTitle = 62, kText = 32, kCaption = 32, kBadge = 23;  // em, page units at the weight 1
 constexpr double kLead = 1.35;                                             // of a line
-constexpr double kFoot = 30;    // from the page's edge to a caption's plate
-constexpr double kInset = 14;   // of a plate around its words
-constexpr double kPlate = 215;  // alpha
+constexpr double kFoot = 26;            // from the page's edge to the captions
+constexpr double kCaptionFade = 0.2;    // s: captions come and go
+constexpr double kCaptionWidth = 0.86;  // of the page
 
-/// As many lines as words need to be no wider than `width`.
-std::vector<std::string> wrapped(const std::string& words, Face face, double size, double width) {
-  std::vector<std::string> lines{""};
-  std::size_t at = 0;
-  while (at < words.size()) {
-    const std::size_t end = std::min(words.find_first_of(" \n", at), words.size());
-    const std::string word = words.substr(at, end - at);
-    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
-    if (!lines.back().empty() && width_of(longer, face, size) > width)
-      lines.push_back(word);
-    else
-      lines.back() = longer;
-    if (end < words.size() && words[end] == '\n') lines.emplace_back();
-    at = end + 1;
+/// The same number of lines, as even as can be.
+std::vector<std::string> balanced(const std::string& words, Face face, double size, double width) {
+  const std::size_t count = wrapped(words, face, size, width).size();
+  double low = width / 4, high = width;
+  while (high - low > 0.25 * size) {
+    const double middle = (low + high) / 2;
+    (wrapped(words, face, size, middle).size() > count ? low : high) = middle;
   }
-  return lines;
+  return wrapped(words, face, size, high);
 }
 
 void centered(const std::vector<std::string>& lines, Face face, double size, double x, double& baseline,
@@ -80,19 +73,33 @@ void draw_card(const Card& card, double strength, const Rect& page, double weigh
   }
 }
 
-void draw_caption(const std::vector<std::string>& lines, const Rect& page, double weight,
-                  const Palette& colours, List& list) {
-  const double size = kCaption * weight, inset = kInset * weight;
-  double width = 0;
-  for (const std::string& line : lines) width = std::max(width, width_of(line, Face::medium, size));
-  const double height = kLead * size * double(lines.size());
-  const double bottom = page.height - kFoot * weight, top = bottom - height - inset;
-  const double left = (page.width - width) / 2 - 1.4 * inset, right = page.width - left;
-  Color plate = colours.room;
-  plate.a = std::uint8_t(kPlate);
-  list.add({{left, top}, {right, top}, {right, bottom}, {left, bottom}}, plate);
-  double baseline = top + inset / 2 + 0.98 * size;
-  centered(lines, Face::medium, size, page.width / 2, baseline, colours.ink, list);
+// how strong a caption is: it comes within its interval and goes within it, what stands from the first frame
+// on is there at once
+double opacity(const Caption& caption, double film) {
+  const double fade = std::min(kCaptionFade, (caption.end - caption.begin) / 2);
+  double strength = 1;
+  if (!(fade > 0)) return strength;
+  if (caption.begin > 0) strength = std::min(strength, (film - caption.begin) / fade);
+  return std::clamp(std::min(strength, (caption.end - film) / fade), 0.0, 1.0);
+}
+
+void draw_captions(const Titles& titles, const Rect& page, double weight, double time, double film, Color ink,
+                   List& list) {
+  const double size = kCaption * weight;
+  double baseline = page.height - titles.foot + 0.98 * size;
+  for (const Caption& caption : titles.captions) {
+    if (!caption.shown.has(time, film)) continue;
+    Color color = ink;
+    color.a = std::uint8_t(std::lround(color.a * opacity(caption, film)));
+    centered(caption.lines, Face::medium, size, page.width / 2, baseline, color, list);
+  }
+}
+
+// from the page's colour and to it
+double covered(const Titles& titles, double film) {
+  if (!(titles.fade > 0)) return 0;
+  const double u = std::clamp(std::min(film, titles.length - film) / titles.fade, 0.0, 1.0);
+  return 1 - u * u * (3 - 2 * u);
 }
 
 void draw_badge(double speed, const Rect& page, const Layout& layout, const Palette& colours, List& list) {
@@ -130,21 +137,38 @@ void draw_badge(double speed, const Rect& page, const Layout& layout, const Pale
 
 }  // namespace
 
+Titles laid_out(const Titles& titles, double aspect, double type_scale) {
+  Titles all = titles;
+  all.type_scale = type_scale;
+  all.foot = 0;
+  const double size = kCaption * page_weight(aspect) * type_scale;
+  for (Caption& caption : all.captions)
+    caption.lines = balanced(caption.text, Face::medium, size, kCaptionWidth * 1080 * aspect);
+  // the most lines at one instant: one at which a caption begins
+  for (const Caption& at : all.captions) {
+    std::size_t lines = 0;
+    for (const Caption& each : all.captions)
+      if (each.begin <= at.begin && at.begin < each.end) lines += each.lines.size();
+    all.foot = std::max(all.foot, kLead * size * double(lines) + kFoot * page_weight(aspect));
+  }
+  return all;
+}
+
 void draw_titles(const Titles& titles, const Layout& layout, double aspect, const Palette& colours,
                  double time, double film, double speed, List& list) {
   if (titles.empty()) return;
   const Rect page{0, 0, 1080 * aspect, 1080};
-  const double weight = layout.weight;
+  const double weight = layout.weight, type = weight * titles.type_scale;
   if (titles.badge && std::abs(speed - 1) > 0.005) draw_badge(speed, page, layout, colours, list);
-  std::vector<std::string> lines;
-  for (const Caption& caption : titles.captions)
-    if (caption.shown.has(time, film))
-      for (std::string& line : wrapped(caption.text, Face::medium, kCaption * weight, 0.86 * page.width))
-        lines.push_back(std::move(line));
-  if (!lines.empty()) draw_caption(lines, page, weight, colours, list);
+  draw_captions(titles, page, type, time, film, colours.ink, list);
   for (const Card& card : titles.cards)
     if (const double strength = opacity(card, film); strength > 0)
-      draw_card(card, strength, page, weight, colours, list);
+      draw_card(card, strength, page, type, colours, list);
+  if (const double cover = covered(titles, film); cover > 0) {
+    Color color = colours.ground;
+    color.a = std::uint8_t(std::lround(255 * cover));
+    list.add({{0, 0}, {page.width, 0}, {page.width, page.height}, {0, page.height}}, color);
+  }
 }
 
 }  // namespace obscura::draw

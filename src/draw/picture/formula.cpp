@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "draw/picture/type.h"
@@ -14,16 +15,54 @@ namespace {
 
 constexpr double kScript = 0.7, kSub = -0.2, kSuper = 0.36;  // size and rise of scripts, em
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 46> kNames{{
-    {"alpha", "α"},  {"beta", "β"},     {"gamma", "γ"}, {"delta", "δ"},   {"epsilon", "ε"}, {"zeta", "ζ"},
-    {"eta", "η"},    {"theta", "θ"},    {"kappa", "κ"}, {"lambda", "λ"},  {"mu", "μ"},      {"nu", "ν"},
-    {"xi", "ξ"},     {"pi", "π"},       {"rho", "ρ"},   {"sigma", "σ"},   {"tau", "τ"},     {"phi", "φ"},
-    {"chi", "χ"},    {"psi", "ψ"},      {"omega", "ω"}, {"Gamma", "Γ"},   {"Delta", "Δ"},   {"Theta", "Θ"},
-    {"Lambda", "Λ"}, {"Pi", "Π"},       {"Sigma", "Σ"}, {"Phi", "Φ"},     {"Psi", "Ψ"},     {"Omega", "Ω"},
-    {"perp", "⊥"},   {"times", "×"},    {"cdot", "·"},  {"pm", "±"},      {"le", "≤"},      {"ge", "≥"},
-    {"approx", "≈"}, {"infty", "∞"},    {"to", "→"},    {"circ", "°"},    {"deg", "°"},     {"sqrt", "√"},
-    {"prime", "′"},  {"parallel", "∥"}, {"int", "∫"},   {"partial", "∂"},
-}};
+constexpr double kFraction = 0.78;  // size of what a fraction is made of
+constexpr double kAxis = 0.25;      // height of its bar, em
+constexpr double kBar = 0.05, kAroundBar = 0.13;
+constexpr double kBig = 1.45;  // size of a sum's sign
+
+struct Name {
+  std::string_view word, symbol;
+};
+constexpr Name kNames[] = {
+    {"alpha", "α"},      {"beta", "β"},       {"gamma", "γ"},     {"delta", "δ"},      {"epsilon", "ε"},
+    {"varepsilon", "ε"}, {"zeta", "ζ"},       {"eta", "η"},       {"theta", "θ"},      {"vartheta", "ϑ"},
+    {"iota", "ι"},       {"kappa", "κ"},      {"lambda", "λ"},    {"mu", "μ"},         {"nu", "ν"},
+    {"xi", "ξ"},         {"pi", "π"},         {"rho", "ρ"},       {"sigma", "σ"},      {"tau", "τ"},
+    {"upsilon", "υ"},    {"phi", "φ"},        {"varphi", "φ"},    {"chi", "χ"},        {"psi", "ψ"},
+    {"omega", "ω"},      {"Gamma", "Γ"},      {"Delta", "Δ"},     {"Theta", "Θ"},      {"Lambda", "Λ"},
+    {"Xi", "Ξ"},         {"Pi", "Π"},         {"Sigma", "Σ"},     {"Phi", "Φ"},        {"Psi", "Ψ"},
+    {"Omega", "Ω"},      {"perp", "⊥"},       {"times", "×"},     {"cdot", "·"},       {"pm", "±"},
+    {"mp", "∓"},         {"div", "÷"},        {"le", "≤"},        {"leq", "≤"},        {"ge", "≥"},
+    {"geq", "≥"},        {"ne", "≠"},         {"neq", "≠"},       {"ll", "≪"},         {"gg", "≫"},
+    {"approx", "≈"},     {"sim", "∼"},        {"propto", "∝"},    {"equiv", "≡"},      {"infty", "∞"},
+    {"to", "→"},         {"rightarrow", "→"}, {"leftarrow", "←"}, {"Rightarrow", "⇒"}, {"circ", "°"},
+    {"deg", "°"},        {"degree", "°"},     {"prime", "′"},     {"parallel", "∥"},   {"partial", "∂"},
+    {"nabla", "∇"},      {"hbar", "ħ"},       {"ell", "ℓ"},       {"dots", "…"},       {"ldots", "…"},
+    {"cdots", "⋯"},      {"in", "∈"},         {"langle", "⟨"},    {"rangle", "⟩"},     {"quad", "  "},
+};
+/// Signs that are larger than letters; a sum's limits stand below and above it, an integral's beside it.
+constexpr Name kLarge[] = {{"sum", "∑"}, {"prod", "∏"}, {"int", "∫"}, {"oint", "∮"}};
+constexpr std::string_view kFunctions[] = {"sin",    "cos",  "tan",  "cot",  "arcsin", "arccos",
+                                           "arctan", "sinh", "cosh", "tanh", "log",    "ln",
+                                           "exp",    "min",  "max",  "lim",  "det",    "sgn"};
+constexpr std::string_view kAccents[] = {"bar", "vec", "dot", "ddot", "hat", "tilde"};
+constexpr std::string_view kForms[] = {"frac",       "sqrt", "text",   "mathrm", "mathbf",
+                                       "boldsymbol", "bm",   "mathit", "left",   "right"};
+
+const Name* entry(std::span<const Name> names, std::string_view word) {
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](const Name& each) { return each.word == word; });
+  return found == names.end() ? nullptr : &*found;
+}
+
+bool among(std::span<const std::string_view> words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool known(std::string_view word) {
+  return entry(kNames, word) || entry(kLarge, word) || among(kFunctions, word) || among(kAccents, word) ||
+         among(kForms, word);
+}
 
 bool latin(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
@@ -52,6 +91,37 @@ bool deep(std::string_view c) {
          std::find(std::begin(greek), std::end(greek), c) != std::end(greek);
 }
 
+// how many letters two words differ by, swaps counted once
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t k = 0; k <= b.size(); ++k) {
+      if (i == 0 || k == 0) {
+        d[i][k] = i + k;
+        continue;
+      }
+      d[i][k] = std::min({d[i - 1][k] + 1, d[i][k - 1] + 1, d[i - 1][k - 1] + (a[i - 1] != b[k - 1])});
+      if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1])
+        d[i][k] = std::min(d[i][k], d[i - 2][k - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+// the known command that is most like a word
+std::string nearest(std::string_view word) {
+  std::string best;
+  std::size_t least = 3;
+  const auto offer = [&](std::string_view name) {
+    if (const std::size_t d = distance(word, name); d < least && d < name.size()) least = d, best = name;
+  };
+  for (const Name& each : kNames) offer(each.word);
+  for (const Name& each : kLarge) offer(each.word);
+  for (const auto each : kFunctions) offer(each);
+  for (const auto each : kAccents) offer(each);
+  for (const auto each : kForms) offer(each);
+  return best;
+}
+
 class Setter {
  public:
   Setter(std::string_view text, double size, Color color, double pad) : text_(text), pad_(pad) {
@@ -60,18 +130,113 @@ class Setter {
   }
 
   Formula set() {
-    run(text_, 1, 0);
-    if (!out_.spans.empty()) out_.width = width();
+    if (text_.find('$') == text_.npos) {
+      run(text_, 1, 0);
+    } else {
+      // words, and mathematics between dollars
+      for (std::size_t i = 0; i <= text_.size();) {
+        const std::size_t end = std::min(text_.find('$', i), text_.size());
+        if (latex_)
+          run(text_.substr(i, end - i), 1, 0);
+        else
+          put(text_.substr(i, end - i), Face::math, 1, 0);
+        latex_ = !latex_, i = end + 1;
+      }
+    }
+    if (!out_.empty()) out_.width = width();
     return std::move(out_);
   }
 
  private:
-  double width() const { return shape({{0, 0}, Align::left, out_.spans}).width; }
+  double width() const {
+    return pending_ + (out_.spans.empty() ? 0 : shape({{0, 0}, Align::left, out_.spans}).width);
+  }
+
+  // set alone, to be placed as a whole
+  Formula inner(std::string_view text, double scale) const {
+    Setter setter(text, scale * out_.size, out_.color, 0);
+    setter.bold_ = bold_, setter.latex_ = latex_;
+    setter.run(text, 1, 0);
+    if (!setter.out_.empty()) setter.out_.width = setter.width();
+    return std::move(setter.out_);
+  }
+  // with its baseline's left end there, y down; room for it has been left
+  void place(Formula part, const Point& at) {
+    out_.ascent = std::max(out_.ascent, part.ascent - at.y());
+    out_.descent = std::max(out_.descent, part.descent + at.y());
+    out_.parts.push_back(std::move(part)), out_.places.push_back(at);
+  }
+
+  void fraction(std::string_view above, std::string_view below, double scale, double rise) {
+    const double em = scale * out_.size, up = (rise + scale * kAxis) * out_.size;
+    Formula over = inner(above, kFraction * scale), under = inner(below, kFraction * scale);
+    const double from = width() + 0.08 * em, wide = std::max(over.width, under.width) + 0.12 * em;
+    const double gap = kAroundBar * em;
+    place(over, {from + (wide - over.width) / 2, -up - gap - over.descent});
+    place(under, {from + (wide - under.width) / 2, -up + gap + under.ascent});
+    out_.lines.push_back({{{from, -up}, {from + wide, -up}}, kBar * em});
+    pending_ += wide + 0.16 * em;
+  }
+
+  void root(std::string_view index, std::string_view text, double scale, double rise) {
+    const double em = scale * out_.size, line = kBar * em;
+    Formula what = inner(text, scale), which = inner(index, 0.55 * scale);
+    const double base = rise * out_.size, top = base + std::max(what.ascent, 0.62 * em) + 0.14 * em,
+                 foot = base - std::max(what.descent, 0.05 * em);
+    const double from = width() + std::max(0.06 * em, which.width - 0.22 * em), sign = 0.5 * em;
+    const double half = base + 0.36 * (top - base);
+    out_.lines.push_back({{{from, -half + 0.08 * em},
+                           {from + 0.13 * em, -half},
+                           {from + 0.3 * em, -foot},
+                           {from + sign, -top},
+                           {from + sign + what.width + 0.08 * em, -top}},
+                          line});
+    if (!which.empty()) place(std::move(which), {from - std::min(0.06 * em, 0.0), -half - 0.16 * em});
+    const double wide = what.width;
+    place(std::move(what), {from + sign + 0.03 * em, -base});
+    out_.ascent = std::max(out_.ascent, top + line);
+    pending_ = from + sign + wide + 0.14 * em - (width() - pending_);
+  }
+
+  // a sum's sign with its limits
+  void large(std::string_view symbol, bool beside, std::string_view text, std::size_t& i, double scale,
+             double rise) {
+    const double em = scale * out_.size;
+    if (beside) {
+      put(symbol, Face::math, kBig * scale, rise - 0.16 * scale);
+      return;
+    }
+    Formula below, above;
+    for (int k = 0; k < 2 && i < text.size() && (text[i] == '_' || text[i] == '^'); ++k) {
+      const bool under = text[i++] == '_';
+      (under ? below : above) = inner(argument(text, i), kScript * scale);
+    }
+    Setter setter(symbol, kBig * em, out_.color, 0);
+    setter.put(symbol, Face::math, 1, 0);
+    Formula sign = std::move(setter.out_);
+    sign.width = setter.width_of(sign);
+    sign.ascent = 0.72 * kBig * em, sign.descent = 0.2 * kBig * em;
+    const double from = width() + 0.06 * em, wide = std::max({sign.width, below.width, above.width});
+    const double base = (rise - 0.16 * scale) * out_.size;
+    const double high = base + sign.ascent, low = base - sign.descent;
+    place(std::move(sign), {from + (wide - sign.width) / 2, -base});
+    if (!below.empty()) {
+      const Point at(from + (wide - below.width) / 2, -low + 0.1 * em + below.ascent);
+      place(std::move(below), at);
+    }
+    if (!above.empty()) {
+      const Point at(from + (wide - above.width) / 2, -high - 0.08 * em - above.descent);
+      place(std::move(above), at);
+    }
+    pending_ += wide + 0.18 * em;
+  }
+  static double width_of(const Formula& f) { return shape({{0, 0}, Align::left, f.spans}).width; }
 
   void put(std::string_view c, Face face, double scale, double rise) {
+    if (c.empty()) return;
     const double em = scale * out_.size;
     const double up = rise * out_.size;
-    const bool joins = !out_.spans.empty() && out_.spans.back().face == face &&
+    const bool joins = !(pending_ > 0) && !out_.spans.empty() && out_.spans.back().face == face &&
                        out_.spans.back().size == em && out_.spans.back().rise == up &&
                        out_.spans.back().tabular == number_;
     if (joins) {
@@ -86,8 +251,9 @@ class Setter {
                             .size = em,
                             .color = out_.color,
                             .rise = up,
-                            .lead = (leans ? 0.07 * out_.size : 0) + (number_ ? pad_ : 0),
+                            .lead = pending_ + (leans ? 0.07 * out_.size : 0) + (number_ ? pad_ : 0),
                             .tabular = number_});
+      pending_ = 0;
     }
     if (c == " ") return;
     out_.ascent = std::max(out_.ascent, up + em * (low(c) ? 0.47 : 0.7));
@@ -95,6 +261,23 @@ class Setter {
   }
 
   void letter(std::string_view c, double scale, double rise) {
+    if (latex_) {
+      if (c == " ") return;
+      static constexpr std::string_view kRelations[] = {"=", "<", ">", "≤", "≥", "≠", "≈", "∼",
+                                                        "∝", "≡", "→", "←", "⇒", "≪", "≫", "∈"};
+      static constexpr std::string_view kBinary[] = {"+", "-", "±", "∓", "×", "·", "÷"};
+      const bool relation = among(kRelations, c), binary = among(kBinary, c) && operand_;
+      const double room = (relation ? 0.26 : binary ? 0.2 : 0) * scale * out_.size;
+      if (scale == 1) pending_ += room;
+      put(c == "-" ? std::string_view("−") : c,
+          !italic(c) ? Face::math
+          : bold_    ? Face::math_bold_italic
+                     : Face::math_italic,
+          scale, rise);
+      if (scale == 1) pending_ += room;
+      operand_ = !relation && !among(kBinary, c) && c != "(" && c != "[" && c != ",";
+      return;
+    }
     const Face face = !italic(c) ? Face::math : bold_ ? Face::math_bold_italic : Face::math_italic;
     put(c == "-" ? std::string_view("−") : c, face, scale, rise);
   }
@@ -115,6 +298,8 @@ class Setter {
     if (i < text.size() && text[i] == '\\') {
       ++i;
       while (i < text.size() && latin(text[i])) ++i;
+    } else if (i < text.size() && latin(text[i]) && latex_) {
+      ++i;
     } else if (i < text.size() && latin(text[i])) {
       // "v_center": a word is one
       while (i < text.size() && latin(text[i])) ++i;
@@ -122,6 +307,16 @@ class Setter {
       i += length_of(text[i]);
     }
     return text.substr(from, i - from);
+  }
+
+  // where the brace at i is closed
+  static std::size_t closing(std::string_view text, std::size_t i) {
+    std::size_t depth = 0;
+    for (; i < text.size(); ++i) {
+      if (text[i] == '{') ++depth;
+      if (text[i] == '}' && --depth == 0) return i;
+    }
+    return text.npos;
   }
 
   void run(std::string_view text, double scale, double rise) {
@@ -144,6 +339,10 @@ class Setter {
         i = std::min(end + 1, text.size());
       } else if (c == '\\') {
         name(text, ++i, scale, rise);
+      } else if (c == '{' && closing(text, i) != text.npos) {
+        run(argument(text, i), scale, rise);
+      } else if (latin(c) && latex_) {
+        letter(text.substr(i++, 1), scale, rise);
       } else if (latin(c)) {
         std::size_t end = i;
         while (end < text.size() && latin(text[end])) ++end;
@@ -165,25 +364,80 @@ class Setter {
     const std::size_t from = i;
     while (i < text.size() && latin(text[i])) ++i;
     const std::string_view word = text.substr(from, i - from);
-    const bool accent = word == "bar" || word == "vec" || word == "dot" || word == "ddot";
-    if (accent) {
+    if (word.empty() && i < text.size()) {
+      // "\,": a space; "\{": the sign itself
+      const char c = text[i++];
+      const double space = c == ',' ? 0.17 : c == ':' ? 0.22 : c == ';' ? 0.28 : c == ' ' ? 0.25 : 0;
+      if (space > 0)
+        pending_ += space * scale * out_.size;
+      else if (c != '!')
+        put(text.substr(i - 1, 1), Face::math, scale, rise);
+      return;
+    }
+    // a name ends with its space, as in LaTeX, where that is not seen anyway
+    const auto skip = [&] {
+      while (i < text.size() && text[i] == ' ') ++i;
+    };
+    operand_ = true;
+    if (among(kAccents, word)) {
+      skip();
       const double before = width();
       const std::string_view inner = argument(text, i);
       run(inner, scale, rise);
       const double em = scale * out_.size;
       const double top = rise * out_.size + em * (inner.size() == 1 && low(inner) ? 0.56 : 0.78);
+      using enum Formula::Over::Kind;
+      static constexpr Formula::Over::Kind kinds[] = {bar, arrow, dot, dots, hat, tilde};
+      const auto which = std::find(std::begin(kAccents), std::end(kAccents), word) - std::begin(kAccents);
       // over the middle of a letter that leans
-      out_.overs.push_back({word == "bar"   ? Formula::Over::bar
-                            : word == "vec" ? Formula::Over::arrow
-                            : word == "dot" ? Formula::Over::dot
-                                            : Formula::Over::dots,
-                            before + 0.06 * em, width() + 0.03 * em, top});
-      out_.ascent = std::max(out_.ascent, top + 0.08 * em);
+      out_.overs.push_back({kinds[which], before + 0.06 * em, width() + 0.03 * em, top});
+      out_.ascent = std::max(out_.ascent, top + (which >= 4 ? 0.18 : 0.08) * em);
       return;
     }
-    for (const auto& [known, symbol] : kNames) {
-      if (known == word) return letter(symbol, scale, rise);
+    if (word == "frac") {
+      skip();
+      const std::string_view above = argument(text, i);
+      skip();
+      return fraction(above, argument(text, i), scale, rise);
     }
+    if (word == "sqrt") {
+      skip();
+      std::string_view index;
+      if (i < text.size() && text[i] == '[')
+        if (const std::size_t end = text.find(']', i); end != text.npos)
+          index = text.substr(i + 1, end - i - 1), i = end + 1;
+      return root(index, argument(text, i), scale, rise);
+    }
+    if (word == "text" || word == "mathrm") {
+      skip();
+      return put(argument(text, i), Face::math, scale, rise);
+    }
+    if (word == "mathbf" || word == "boldsymbol" || word == "bm") {
+      skip();
+      const bool before = std::exchange(bold_, true);
+      run(argument(text, i), scale, rise);
+      bold_ = before;
+      return;
+    }
+    if (word == "mathit") {
+      skip();
+      return put(argument(text, i), Face::math_italic, scale, rise);
+    }
+    // brackets keep their size
+    if (word == "left" || word == "right") {
+      if (i < text.size() && text[i] == '.') ++i;
+      return;
+    }
+    if (const Name* sign = entry(kLarge, word))
+      return large(sign->symbol, word.ends_with("int"), text, i, scale, rise);
+    if (among(kFunctions, word)) {
+      const double room = latex_ ? 0.17 * scale * out_.size : 0;
+      if (room > 0 && !out_.empty()) pending_ += room;
+      put(word, Face::math, scale, rise);
+      pending_ += room;
+      return;
+    }
+    if (const Name* symbol = entry(kNames, word)) return letter(symbol->symbol, scale, rise);
     put("\\", Face::math, scale, rise);
     put(word, Face::math, scale, rise);
   }
@@ -191,7 +445,10 @@ class Setter {
   std::string_view text_;
   Formula out_;
   double pad_ = 0;
+  double pending_ = 0;  // page units before what comes next
   bool bold_ = false, number_ = false;
+  bool latex_ = false;    // between dollars
+  bool operand_ = false;  // stands before what comes next: a sign is between two
 };
 
 }  // namespace
@@ -202,7 +459,13 @@ Formula formula(std::string_view text, double size, Color color, double pad) {
 
 void add(const Formula& f, const Point& at, List& list) {
   if (f.empty()) return;
-  list.add(Text{at, Align::left, f.spans});
+  if (!f.spans.empty()) list.add(Text{at, Align::left, f.spans});
+  for (std::size_t i = 0; i < f.parts.size(); ++i) add(f.parts[i], at + f.places[i], list);
+  for (const Formula::Line& each : f.lines) {
+    std::vector<Node> nodes;
+    for (const Point& p : each.points) nodes.push_back({at + p, each.width, f.color});
+    list.add(nodes, Cap::butt);
+  }
   const double line = 0.055 * f.size;
   for (const Formula::Over& over : f.overs) {
     const Point a = at + Point(over.from, -over.rise), b = at + Point(over.to, -over.rise), m = (a + b) / 2;
@@ -217,6 +480,23 @@ void add(const Formula& f, const Point& at, List& list) {
         list.add({b, b + Point(-1.5 * h, -h), b + Point(-h, 0), b + Point(-1.5 * h, h)}, f.color);
         break;
       }
+      case Formula::Over::hat: {
+        const double h = 0.14 * f.size;
+        list.add({{m - Point(1.1 * h, 0), line, f.color},
+                  {m - Point(0, h), line, f.color},
+                  {m + Point(1.1 * h, 0), line, f.color}},
+                 Cap::butt);
+        break;
+      }
+      case Formula::Over::tilde: {
+        const double h = 0.06 * f.size;
+        std::vector<Node> wave;
+        for (int k = 0; k <= 12; ++k)
+          wave.push_back({m + Point(0.18 * f.size * (k / 6.0 - 1), -h - h * std::sin(k * 0.5235987755982988)),
+                          line, f.color});
+        list.add(wave, Cap::round);
+        break;
+      }
       case Formula::Over::dot:
         list.add(Disc{m, r, 0, f.color, f.color});
         break;
@@ -226,6 +506,30 @@ void add(const Formula& f, const Point& at, List& list) {
         break;
     }
   }
+}
+
+std::optional<FormulaMistake> mistake(std::string_view text) {
+  bool quoted = false;
+  int dollars = 0;
+  std::size_t opened = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (text[i] == '$') ++dollars, opened = i;
+    if (text[i] != '\\') continue;
+    const std::size_t from = ++i;
+    while (i < text.size() && latin(text[i])) ++i;
+    const std::string_view word = text.substr(from, i - from);
+    if (word.empty()) continue;
+    --i;
+    if (known(word)) continue;
+    FormulaMistake found{from, fmt::format("unknown command '\\{}'", word)};
+    if (const std::string near = nearest(word); !near.empty())
+      found.what += fmt::format("; did you mean '\\{}'?", near);
+    return found;
+  }
+  if (dollars % 2 != 0) return FormulaMistake{opened + 1, "'$' without another that ends the mathematics"};
+  return {};
 }
 
 std::string as_vector(const std::string& text) {
@@ -303,6 +607,7 @@ void fade(Formula& formula, double strength) {
   const double s = std::clamp(strength, 0.0, 1.0);
   formula.color.a = std::uint8_t(std::lround(formula.color.a * s));
   for (Span& span : formula.spans) span.color.a = formula.color.a;
+  for (Formula& part : formula.parts) fade(part, strength);
 }
 
 }  // namespace obscura::draw

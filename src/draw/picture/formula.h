@@ -12,20 +12,38 @@ namespace obscura::draw {
 /// A line of mathematics, set: letters are italic, what stands between asterisks is a vector in bold italic,
 /// digits, operators and words of three letters or more are upright.
 ///   v_center'   a_{ij}   x^2   *J* = J*n*   \omega   \dot{q}   \bar{v}   \vec{r}   *r* \perp *n*   "wall"
+///   \frac{1}{2}   \sqrt{2gh}   \sum_{i=1}^n   \int_a^b   \hat{n}   \text{at rest}   \sin
+/// Between dollars it is as in LaTeX: spaces mean nothing, operators have theirs; what stands outside of them
+/// is upright.
 struct Formula {
   struct Over {
-    enum Kind { bar, arrow, dot, dots } kind = bar;
+    enum Kind { bar, arrow, dot, dots, hat, tilde } kind = bar;
     double from = 0, to = 0;  // along the line
     double rise = 0;          // above the baseline
   };
+  /// A fraction's bar, a root's sign.
+  struct Line {
+    std::vector<Point> points;  // from the line's start, y down
+    double width = 0;
+  };
   std::vector<Span> spans;
   std::vector<Over> overs;
+  std::vector<Line> lines;
+  std::vector<Formula> parts;  // numerators, radicands, limits,
+  std::vector<Point> places;   // each with its baseline's left end there, y down
   double size = 0;
   double width = 0, ascent = 0, descent = 0;  // page units
   Color color{};
 
-  bool empty() const { return spans.empty(); }
+  bool empty() const { return spans.empty() && parts.empty(); }
 };
+
+/// What a formula says wrongly: the first of it.
+struct FormulaMistake {
+  std::size_t column = 1;  // from 1
+  std::string what;        // "unknown command '\\omgea'; did you mean '\\omega'?"
+};
+std::optional<FormulaMistake> mistake(std::string_view text);
 
 /// Sets `text` at an em of `size` page units. A name that is not known stays as it was written. What stands
 /// between kNumber and kNumberEnd is a number in digits of equal width, with `pad` page units before it.

@@ -34,7 +34,7 @@ Palette palette(Theme theme) {
           .hatch = {0x5A, 0x67, 0x74},
           // lighter, to be seen on a green body
           .velocity = mix(green, kWhite, 0.4),
-          .force = mix(*color("vermilion"), kWhite, 0.25)};
+          .force = *color("vermilion")};
 }
 
 Paint paint(Color own, Theme theme) {

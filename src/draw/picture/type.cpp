@@ -224,4 +224,16 @@ Line shape(const Text& text) {
   return line;
 }
 
+void set_decimal_mark(List& list, const std::string& mark) {
+  if (mark == ".") return;
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (Text& text : list.texts)
+    for (Span& span : text.spans) {
+      if (!span.tabular && span.face != Face::math) continue;
+      std::string& words = span.text;
+      for (std::size_t i = 1; i + 1 < words.size(); ++i)
+        if (words[i] == '.' && digit(words[i - 1]) && digit(words[i + 1])) words.replace(i, 1, mark);
+    }
+}
+
 }  // namespace obscura::draw

@@ -32,6 +32,9 @@ struct Line {
 /// missing.
 Line shape(const Text& text);
 
+/// Sets the decimal mark of all numbers in mathematics and of figures of equal width.
+void set_decimal_mark(List& list, const std::string& mark);
+
 /// The file of a face: Inter, or the family in $OBSCURA_FONT, for words, STIX for mathematics. Looked for in
 /// $OBSCURA_FONTS and the system's font folders. Throws draw::Error naming the package.
 const std::string& font_file(Face face);

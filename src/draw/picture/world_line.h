@@ -5,6 +5,7 @@
 
 #include "draw/picture/color.h"
 #include "sim/math/vec.h"
+#include "sim/model/snapshot.h"
 
 namespace obscura::draw {
 
@@ -18,6 +19,13 @@ struct WorldLine {
   int body = -1;  // whose colour it has, unless it has its own
   std::optional<Color> color{};
   bool front = false;
+};
+
+/// Bodies as they were at another instant, in space: outlines where nothing hides them.
+struct SpaceGhost {
+  const sim::Snapshot* then = nullptr;
+  const std::vector<int>* bodies = nullptr;  // those drawn; none: all that move
+  double strength = 1;                       // from the room's colour to their own
 };
 
 }  // namespace obscura::draw

@@ -264,44 +264,62 @@ void trace(SpaceFrame& s, const std::vector<Vec3>& way, bool closed, int own, in
   }
 }
 
+namespace {
+
+// the outline and the creases of one piece of a body, `number` among those that hide; -1: it hides nothing
+void trace_piece(SpaceFrame& s, const Piece& piece, const sim::Snapshot::Body& body, const Polyhedron& flat,
+                 int number, Color color) {
+  if (piece.form == Piece::Form::polyhedron) {
+    if (!in_window(s.lens, body.position, piece.reach)) return;
+    std::vector<char> front;
+    for (const Polyhedron::Face& face : flat.faces) {
+      const Vec3& place = flat.vertices[face.loop[0]];
+      front.push_back(face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) > 0);
+    }
+    const double width = line_width(s, body.position, piece.least);
+    for (const Polyhedron::Edge& e : flat.edges) {
+      const bool left = front[e.left], right = e.right >= 0 && front[e.right];
+      if (!left && !right) continue;
+      if (left && right && flat.faces[e.left].normal.dot(flat.faces[e.right].normal) > kCrease) continue;
+      trace(s, {flat.vertices[e.a], flat.vertices[e.b]}, false, number, -1, width, color);
+    }
+    return;
+  }
+  const Vec3 a = placed(body, piece.a), b = placed(body, piece.b);
+  const double radius = s.stage.dots[piece.body] > 0 ? s.stage.dots[piece.body] / s.lens.scale : piece.radius;
+  if (!in_window(s.lens, a, radius) && !in_window(s.lens, b, radius)) return;
+  if (s.lens.depth(a) < 1e-3 || s.lens.depth(b) < 1e-3) return;
+  const double page = radius * s.lens.scale_at(a);
+  if (page < 2.2) return;
+  const double width = line_width(s, a, radius);
+  // the line lies inside the rim
+  if (piece.form == Piece::Form::ball)
+    trace(s, contour(s.lens, a, radius * (1 - 0.25 * width / page), roundness(page)), true, number, -1, width,
+          color);
+  else
+    trace(s, outline(s.lens, a, b, radius), true, number, -1, width, color);
+}
+
+}  // namespace
+
 void trace_edges(SpaceFrame& s) {
   const auto& pieces = s.stage.pieces;
-  std::vector<char> front;
-  for (int i = 0; i < int(pieces.size()); ++i) {
-    const Piece& piece = pieces[i];
-    const sim::Snapshot::Body& body = s.now.bodies[piece.body];
-    const Color color = edge(s.stage.own[piece.body], s.stage.look.theme);
-    if (piece.form == Piece::Form::polyhedron) {
-      const Polyhedron& flat = s.placed[i];
-      if (!in_window(s.lens, body.position, piece.reach)) continue;
-      front.clear();
-      for (const Polyhedron::Face& face : flat.faces) {
-        const Vec3& place = flat.vertices[face.loop[0]];
-        front.push_back(face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) > 0);
-      }
-      const double width = line_width(s, body.position, piece.least);
-      for (const Polyhedron::Edge& e : flat.edges) {
-        const bool left = front[e.left], right = e.right >= 0 && front[e.right];
-        if (!left && !right) continue;
-        if (left && right && flat.faces[e.left].normal.dot(flat.faces[e.right].normal) > kCrease) continue;
-        trace(s, {flat.vertices[e.a], flat.vertices[e.b]}, false, i, -1, width, color);
-      }
-      continue;
-    }
-    const Vec3 a = placed(body, piece.a), b = placed(body, piece.b);
-    const double radius =
-        s.stage.dots[piece.body] > 0 ? s.stage.dots[piece.body] / s.lens.scale : piece.radius;
-    if (!in_window(s.lens, a, radius) && !in_window(s.lens, b, radius)) continue;
-    if (s.lens.depth(a) < 1e-3 || s.lens.depth(b) < 1e-3) continue;
-    const double page = radius * s.lens.scale_at(a);
-    if (page < 2.2) continue;
-    const double width = line_width(s, a, radius);
-    // the line lies inside the rim
-    if (piece.form == Piece::Form::ball)
-      trace(s, contour(s.lens, a, radius * (1 - 0.25 * width / page), roundness(page)), true, i, -1, width,
-            color);
-    else
-      trace(s, outline(s.lens, a, b, radius), true, i, -1, width, color);
+  for (int i = 0; i < int(pieces.size()); ++i)
+    trace_piece(s, pieces[i], s.now.bodies[pieces[i].body], s.placed[i], i,
+                edge(s.stage.own[pieces[i].body], s.stage.look.theme));
+}
+
+void trace_ghost(SpaceFrame& s, const SpaceGhost& ghost) {
+  const std::vector<int>& only = *ghost.bodies;
+  for (const Piece& piece : s.stage.pieces) {
+    if (s.stage.cast.bodies[std::size_t(piece.body)].fixed) continue;
+    if (!only.empty() && std::find(only.begin(), only.end(), piece.body) == only.end()) continue;
+    const sim::Snapshot::Body& body = ghost.then->bodies[std::size_t(piece.body)];
+    Polyhedron flat;
+    if (piece.form == Piece::Form::polyhedron)
+      flat = piece.flat.placed(body.orientation.toRotationMatrix(), body.position);
+    const Color own = paint(s.stage.own[piece.body], s.stage.look.theme).outline;
+    trace_piece(s, piece, body, flat, -1, mix(s.stage.colours.room, own, ghost.strength));
   }
 }
 

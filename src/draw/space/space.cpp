@@ -1,4 +1,5 @@
 #include "draw/space/space.h"
+#include "draw/picture/type.h"
 
 #include <algorithm>
 #include <array>
@@ -123,7 +124,7 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
       light(draw::light(looks_.light)) {
   layout.width = 1080 * aspect;
   layout.aspect = layout.width / 1080;
-  layout.weight = std::min(1.0, std::sqrt(layout.width / 1440));
+  layout.weight = page_weight(aspect);
   layout.width -= charts.right(), layout.height -= charts.below();
   const double w = layout.weight;
   // the ground has no edge: one colour for the page and the room
@@ -211,7 +212,7 @@ CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now) {
 }
 
 Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways, const sim::Snapshot& frame,
-                     std::span<const WorldLine> paths) {
+                     std::span<const WorldLine> paths, std::span<const SpaceGhost> ghosts) {
   Picture picture;
   picture.aspect = stage.layout.aspect;
   picture.ground = stage.colours.ground;
@@ -223,6 +224,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
         !std::equal(lenses.begin(), lenses.end(), stage.seen.begin(), stage.seen.end(), same)) {
       auto list = std::make_shared<List>();
       draw_space_still(stage, lenses, *list);
+      set_decimal_mark(*list, stage.look.decimal);
       stage.still = std::move(list);
       stage.seen = lenses;
     }
@@ -255,6 +257,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     add_shadows(scenery);
     trace_trails(scenery, ways);
     trace_paths(scenery, paths, false);
+    for (const SpaceGhost& ghost : ghosts) trace_ghost(scenery, ghost);
     trace_edges(scenery);
     draw_room_front(stage, lens, picture.moving);
     draw_space_arrows(scenery);

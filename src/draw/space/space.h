@@ -70,7 +70,7 @@ CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now);
 
 /// `frame`: of which the clock and the charts are. `paths`: lines among the bodies.
 Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways, const sim::Snapshot& frame,
-                     std::span<const WorldLine> paths = {});
+                     std::span<const WorldLine> paths = {}, std::span<const SpaceGhost> ghosts = {});
 
 /// A stroke, and how near it is: the farther is drawn first.
 struct Trace {
@@ -133,6 +133,7 @@ void add_bodies(SpaceFrame& scenery);
 void add_links(SpaceFrame& scenery);
 /// The edges of bodies that are seen.
 void trace_edges(SpaceFrame& scenery);
+void trace_ghost(SpaceFrame& scenery, const SpaceGhost& ghost);
 void trace_trails(SpaceFrame& scenery, Ways ways);
 void trace_paths(SpaceFrame& scenery, std::span<const WorldLine> paths, bool front);
 /// The shadows on the ground and on each other.

@@ -1,0 +1,418 @@
+// Sentences about a run. All numbers are the run's own: the state is read at
+// every step, an impact is a contact that is new, or gets an impulse, while the
+// two come together faster than what gravity gives in no time.
+
+#include "app/run/description.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/run/trouble.h"
+#include "scene/complaints.h"
+
+namespace obscura::app {
+
+namespace {
+
+constexpr std::int64_t kMostSteps = 100'000;  // read; of longer runs every second, third, ...
+constexpr std::size_t kToldSingly = 6;        // bodies, impacts: told one by one
+constexpr double kSoft = 0.02;                // of sqrt(g L): slower is no impact
+constexpr double kSame = 1e-3;                // of the energy: it has not changed
+
+// three digits that count
+std::string numeral(double x) {
+  if (!(std::abs(x) > 1e-9)) return "0";
+  const int decimals = std::clamp(2 - int(std::floor(std::log10(std::abs(x)))), 0, 9);
+  std::string text = fmt::format("{:.{}f}", x, decimals);
+  if (decimals == 0) return text;
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+std::string time(double t) { return numeral(std::round(1000 * t) / 1000) + " s"; }
+
+std::string whereabouts(const sim::Vec3& p, int dimension) {
+  // a millimetre is enough
+  const auto at = [](double x) { return numeral(std::round(1000 * x) / 1000); };
+  return dimension == 2 ? fmt::format("({}, {}) m", at(p.x()), at(p.y()))
+                        : fmt::format("({}, {}, {}) m", at(p.x()), at(p.y()), at(p.z()));
+}
+
+// "the ball", "brick[3]"
+std::string called(const sim::SceneInfo& cast, int body) {
+  std::string name = scene::one_line(cast.bodies[std::size_t(body)].name);
+  if (name.find('[') != name.npos) return name;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return "the " + name;
+}
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = char(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string wall(const sim::SceneInfo& cast, int index) {
+  const sim::Vec3 n = cast.walls[std::size_t(index)].normal.normalized();
+  if (n.y() > 0.999) return "the floor";
+  if (n.y() < -0.999) return "the ceiling";
+  if (n.x() > 0.999) return "the left wall";
+  if (n.x() < -0.999) return "the right wall";
+  return n.y() > 0.05 ? "the slope" : "a wall";
+}
+
+// "at 3 m/s to the right and up"
+std::string motion(const sim::Vec3& v, int dimension) {
+  const double speed = v.norm();
+  std::vector<std::string> way;
+  if (dimension == 2 && std::abs(v.x()) > 0.3 * speed)
+    way.emplace_back(v.x() > 0 ? "to the right" : "to the left");
+  if (std::abs(v.y()) > 0.3 * speed) way.emplace_back(v.y() > 0 ? "up" : "down");
+  return fmt::format("at {} m/s{}{}", numeral(speed), way.empty() ? "" : " ", fmt::join(way, " and "));
+}
+
+std::string count(std::size_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+const char* kind(const sim::SceneInfo& cast, const sim::SceneInfo::Body& body, bool many) {
+  switch (body.kind) {
+    case sim::ShapeKind::point:
+      return many ? "particles" : "particle";
+    case sim::ShapeKind::ball:
+      return cast.dimension == 2 ? (many ? "discs" : "disc") : many ? "balls" : "ball";
+    case sim::ShapeKind::box:
+      return many ? "boxes" : "box";
+    case sim::ShapeKind::capsule:
+      return many ? "capsules" : "capsule";
+    default:
+      return many ? "bodies" : "body";
+  }
+}
+
+std::vector<int> moving(const sim::SceneInfo& cast) {
+  std::vector<int> all;
+  for (std::size_t i = 0; i < cast.bodies.size(); ++i)
+    if (!cast.bodies[i].fixed) all.push_back(int(i));
+  return all;
+}
+
+// "a ball, 3 boxes and 2 springs"
+std::string who(const sim::SceneInfo& cast) {
+  std::vector<std::string> all;
+  std::map<int, std::pair<std::size_t, const sim::SceneInfo::Body*>> kinds;
+  std::vector<int> order;
+  std::size_t fixed = 0;
+  for (const sim::SceneInfo::Body& body : cast.bodies) {
+    if (body.fixed && ++fixed) continue;
+    auto& [n, first] = kinds[int(body.kind)];
+    if (n++ == 0) first = &body, order.push_back(int(body.kind));
+  }
+  for (const int each : order) {
+    const auto& [n, first] = kinds[each];
+    all.push_back(n == 1 ? fmt::format("one {}", kind(cast, *first, false))
+                         : fmt::format("{} {}", n, kind(cast, *first, true)));
+  }
+  if (fixed > 0) all.push_back(count(fixed, "fixed body", "fixed bodies"));
+  if (!cast.springs.empty()) all.push_back(count(cast.springs.size(), "spring", "springs"));
+  if (!cast.joints.empty()) all.push_back(count(cast.joints.size(), "joint", "joints"));
+  if (all.empty()) return "nothing";
+  const std::string last = all.back();
+  all.pop_back();
+  return all.empty() ? last : fmt::format("{} and {}", fmt::join(all, ", "), last);
+}
+
+struct Impact {
+  double time = 0, speed = 0;  // s, m/s: along the normal, before
+  int body = -1, other = -1, wall = -1;
+};
+
+/// Reads a run instant by instant.
+class Account {
+ public:
+  Account(const scene::Scene& scene, const sim::SceneInfo& cast)
+      : scene_(scene), cast_(cast), bodies_(cast.bodies.size()), rest_(cast.bodies.size()) {
+    const double g = cast.gravity.norm();
+    soft_ = kSoft * std::sqrt((g > 0 ? g : 9.81) * std::max(cast.scale, 1e-9));
+  }
+  void read(const sim::Snapshot& now);
+  std::vector<std::string> sentences() const;
+
+ private:
+  struct Extremes {
+    double fastest = 0, when_fastest = 0, highest = -1e300, when_highest = 0;
+  };
+  using Pair = std::tuple<int, int, int>;
+  std::vector<std::string> beginning() const;
+  std::vector<std::string> events() const;
+  std::vector<std::string> extremes() const;
+  std::vector<std::string> ending() const;
+  std::string other(const Impact& each) const {
+    return each.other >= 0 ? called(cast_, each.other) : wall(cast_, each.wall);
+  }
+
+  const scene::Scene& scene_;
+  const sim::SceneInfo& cast_;
+  double soft_ = 0;
+  std::optional<sim::Snapshot> first_, last_;
+  std::vector<Impact> impacts_;
+  std::vector<Extremes> bodies_;
+  std::vector<std::optional<double>> rest_;     // since when
+  std::vector<std::pair<double, int>> broken_;  // joints
+  std::set<Pair> touching_;
+};
+
+void Account::read(const sim::Snapshot& now) {
+  std::set<Pair> touching;
+  std::map<Pair, Impact> met;
+  for (const sim::Snapshot::Contact& each : now.contacts) {
+    const Pair pair{each.body, each.other, each.wall};
+    touching.insert(pair);
+    if (!last_) continue;
+    // how fast they came together, by the velocities before
+    const auto at = [&](int body) -> sim::Vec3 {
+      if (body < 0) return sim::Vec3::Zero();
+      const sim::Snapshot::Body& it = last_->bodies[std::size_t(body)];
+      return it.velocity + it.spin.cross(each.point - it.position);
+    };
+    const double speed = (at(each.other) - at(each.body)).dot(each.normal);
+    const bool struck = each.impulse.dot(each.normal) > 0 || !touching_.contains(pair);
+    if (!struck || !(speed > soft_)) continue;
+    Impact& impact = met[pair];
+    if (speed > impact.speed) impact = {now.time, speed, each.body, each.other, each.wall};
+  }
+  for (const auto& [pair, impact] : met)
+    if (!touching_.contains(pair) || impact.speed > 4 * soft_) impacts_.push_back(impact);
+  touching_ = std::move(touching);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const sim::Snapshot::Body& it = now.bodies[i];
+    Extremes& its = bodies_[i];
+    if (it.velocity.norm() > 1.001 * its.fastest)
+      its.fastest = it.velocity.norm(), its.when_fastest = now.time;
+    if (it.position.y() > its.highest) its.highest = it.position.y(), its.when_highest = now.time;
+    if (!it.at_rest)
+      rest_[i].reset();
+    else if (!rest_[i])
+      rest_[i] = now.time;
+  }
+  for (std::size_t i = 0; last_ && i < now.joints.size(); ++i)
+    if (now.joints[i].broken && !last_->joints[i].broken) broken_.emplace_back(now.time, int(i));
+  if (!first_) first_ = now;
+  last_ = now;
+}
+
+std::vector<std::string> Account::beginning() const {
+  std::vector<std::string> all;
+  if (!scene_.look.title.empty())
+    all.push_back(scene_.look.title +
+                  (scene_.look.subtitle.empty() ? "." : ": " + scene_.look.subtitle + "."));
+  const double g = cast_.gravity.norm();
+  all.push_back(
+      fmt::format("In {} there {} {}{}.", cast_.dimension == 2 ? "the plane" : "space",
+                  moving(cast_).size() == 1 ? "is" : "are", who(cast_),
+                  g > 0 ? fmt::format("; gravity is {} m/s²", numeral(g)) : "; there is no gravity"));
+  const std::vector<int> bodies = moving(cast_);
+  if (bodies.size() > kToldSingly) {
+    std::size_t resting = 0;
+    for (const int body : bodies) resting += !(first_->bodies[std::size_t(body)].velocity.norm() > 1e-9);
+    if (resting == bodies.size()) all.emplace_back("All start without velocity.");
+    return all;
+  }
+  for (const int body : bodies) {
+    const sim::Snapshot::Body& it = first_->bodies[std::size_t(body)];
+    all.push_back(capital(fmt::format(
+        "{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_.dimension),
+        it.velocity.norm() > 1e-9 ? motion(it.velocity, cast_.dimension) : std::string("at rest"))));
+  }
+  return all;
+}
+
+std::vector<std::string> Account::events() const {
+  std::vector<std::pair<double, std::string>> told;
+  if (impacts_.size() <= kToldSingly) {
+    for (const Impact& each : impacts_)
+      told.emplace_back(each.time, fmt::format("At {} {} hits {} at {} m/s.", time(each.time),
+                                               called(cast_, each.body), other(each), numeral(each.speed)));
+  } else {
+    std::map<Pair, std::vector<const Impact*>> pairs;
+    for (const Impact& each : impacts_) pairs[{each.body, each.other, each.wall}].push_back(&each);
+    if (pairs.size() <= kToldSingly) {
+      for (const auto& [pair, all] : pairs) {
+        const Impact& first = *all.front();
+        const std::string whom = capital(called(cast_, first.body));
+        if (all.size() == 1)
+          told.emplace_back(first.time, fmt::format("{} hits {} at {}, at {} m/s.", whom, other(first),
+                                                    time(first.time), numeral(first.speed)));
+        else
+          told.emplace_back(
+              first.time, fmt::format("{} hits {} {} times: first at {}, at "
+                                      "{} m/s, last at {}, at {} m/s.",
+                                      whom, other(first), all.size(), time(first.time), numeral(first.speed),
+                                      time(all.back()->time), numeral(all.back()->speed)));
+      }
+    } else {
+      const auto hardest =
+          std::max_element(impacts_.begin(), impacts_.end(),
+                           [](const Impact& a, const Impact& b) { return a.speed < b.speed; });
+      const Impact& first = impacts_.front();
+      told.emplace_back(
+          first.time, fmt::format("There are {} impacts: the first at {}, when {} hits {}, "
+                                  "and the hardest at {}, when {} "
+                                  "hits {} at {} m/s.",
+                                  impacts_.size(), time(first.time), called(cast_, first.body), other(first),
+                                  time(hardest->time), called(cast_, hardest->body), other(*hardest),
+                                  numeral(hardest->speed)));
+    }
+  }
+  for (std::size_t i = 0; i < broken_.size() && i < kToldSingly; ++i)
+    told.emplace_back(broken_[i].first,
+                      fmt::format("At {} joint {} breaks.", time(broken_[i].first),
+                                  scene::one_line(cast_.joints[std::size_t(broken_[i].second)].name)));
+  if (broken_.size() > kToldSingly) told.emplace_back(1e300, fmt::format("{} joints break.", broken_.size()));
+  for (const draw::Caption& caption : scene_.film.titles.captions)
+    told.emplace_back(
+        caption.shown.start ? caption.shown.start->time : 0,
+        fmt::format("The film says at {}: \"{}\"", time(caption.shown.start ? caption.shown.start->time : 0),
+                    scene::one_line(caption.text)));
+  std::stable_sort(told.begin(), told.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> all;
+  for (auto& [when, sentence] : told) all.push_back(std::move(sentence));
+  return all;
+}
+
+std::vector<std::string> Account::extremes() const {
+  std::vector<std::string> all;
+  const std::vector<int> bodies = moving(cast_);
+  if (bodies.size() > kToldSingly) return all;
+  for (const int body : bodies) {
+    const Extremes& its = bodies_[std::size_t(body)];
+    const sim::Snapshot::Body& start = first_->bodies[std::size_t(body)];
+    const bool faster = its.fastest > 1.05 * start.velocity.norm() && its.fastest > soft_;
+    const bool higher = its.highest > start.position.y() + 0.01 * cast_.scale;
+    if (faster && higher)
+      all.push_back(capital(fmt::format("{} is fastest at {}, with {} m/s, and highest at {}, at y = {} m.",
+                                        called(cast_, body), time(its.when_fastest), numeral(its.fastest),
+                                        time(its.when_highest), numeral(its.highest))));
+    else if (faster)
+      all.push_back(capital(fmt::format("{} is fastest at {}, with {} m/s.", called(cast_, body),
+                                        time(its.when_fastest), numeral(its.fastest))));
+    else if (higher)
+      all.push_back(capital(fmt::format("{} is highest at {}, at y = {} m.", called(cast_, body),
+                                        time(its.when_highest), numeral(its.highest))));
+  }
+  return all;
+}
+
+std::vector<std::string> Account::ending() const {
+  std::vector<std::string> all;
+  const std::vector<int> bodies = moving(cast_);
+  std::size_t resting = 0;
+  for (const int body : bodies) resting += rest_[std::size_t(body)].has_value();
+  if (bodies.size() > kToldSingly) {
+    all.push_back(fmt::format("At the end, at {}, {} of {} bodies are at rest.", time(last_->time),
+                              resting == bodies.size() ? "all" : numeral(double(resting)), bodies.size()));
+  } else {
+    for (const int body : bodies) {
+      const sim::Snapshot::Body& it = last_->bodies[std::size_t(body)];
+      const auto& since = rest_[std::size_t(body)];
+      if (since && *since > 0)
+        all.push_back(capital(fmt::format("{} comes to rest at {}, at {}.", called(cast_, body), time(*since),
+                                          whereabouts(it.position, cast_.dimension))));
+      else if (since)
+        all.push_back(capital(fmt::format("{} stays at rest.", called(cast_, body))));
+      else
+        all.push_back(fmt::format("At the end, at {}, {} is at {} and moves {}.", time(last_->time),
+                                  called(cast_, body), whereabouts(it.position, cast_.dimension),
+                                  motion(it.velocity, cast_.dimension)));
+    }
+  }
+  const double before = first_->energies.total(), after = last_->energies.total();
+  double most = std::max(std::abs(before), std::abs(after));
+  for (const sim::Snapshot* each : {&*first_, &*last_})
+    most = std::max({most, each->energies.kinetic, std::abs(each->energies.potential())});
+  if (!(most > 0)) return all;
+  if (std::abs(after - before) <= kSame * most)
+    all.push_back(fmt::format("The energy stays {} J.", numeral(before)));
+  else
+    all.push_back(fmt::format("The energy goes from {} J to {} J.", numeral(before), numeral(after)));
+  return all;
+}
+
+std::vector<std::string> Account::sentences() const {
+  std::vector<std::string> all;
+  if (!first_) return all;
+  for (const auto& part : {beginning(), events(), extremes(), ending()})
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> description(const scene::Scene& scene) {
+  const auto run = scene.run();
+  run->heed(interrupted);
+  Account account(scene, run->scene_info());
+  std::optional<sim::Trouble> trouble;
+  const auto read = [&](sim::Rational t) {
+    auto outcome = run->at(t);
+    if (std::holds_alternative<sim::Stopped>(outcome)) throw Interrupted();
+    if (const auto* found = std::get_if<sim::Trouble>(&outcome)) {
+      trouble = *found;
+      return false;
+    }
+    account.read(std::get<sim::Snapshot>(outcome));
+    return true;
+  };
+  if (scene.trajectory) {
+    for (const double t : scene.trajectory->times)
+      if (const auto exact = sim::from_double(t); exact && !read(*exact)) break;
+  } else {
+    const std::int64_t steps = sim::floor(scene.duration * run->rate()), stride = steps / kMostSteps + 1;
+    sim::Rational last{0, 1};
+    for (std::int64_t k = 0; k <= steps && !trouble; k += stride) read(last = sim::rational(k) / run->rate());
+    if (!trouble && last < scene.duration) read(scene.duration);
+  }
+  std::vector<std::string> all = account.sentences();
+  if (trouble)
+    all.push_back(fmt::format("At {} the run ends: the {} of {} {}.", time(trouble->time), trouble->quantity,
+                              scene::one_line(trouble->body), trouble->what));
+  return all;
+}
+
+std::string picture_text(const scene::Scene& scene, const sim::SceneInfo& cast, const sim::Snapshot& now) {
+  if (scene.look.title.empty()) return instant_text(cast, now);
+  return scene.look.title + (scene.look.subtitle.empty() ? ". " : ": " + scene.look.subtitle + ". ") +
+         instant_text(cast, now);
+}
+
+std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
+  std::string all;
+  const auto add = [&](const std::string& sentence) { all += (all.empty() ? "" : " ") + sentence; };
+  const std::vector<int> bodies = moving(cast);
+  add(fmt::format("{} at {}.", capital(who(cast)), time(now.time)));
+  if (bodies.size() > kToldSingly) {
+    std::size_t resting = 0;
+    for (const int body : bodies) resting += now.bodies[std::size_t(body)].at_rest;
+    if (resting > 0) add(fmt::format("{} of {} bodies are at rest.", resting, bodies.size()));
+    return all;
+  }
+  for (const int body : bodies) {
+    const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
+    add(capital(fmt::format("{} is at {} and {}.", called(cast, body),
+                            whereabouts(it.position, cast.dimension),
+                            it.velocity.norm() > 1e-9 ? "moves " + motion(it.velocity, cast.dimension)
+                                                      : std::string("does not move"))));
+  }
+  return all;
+}
+
+}  // namespace obscura::app

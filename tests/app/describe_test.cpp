@@ -1,0 +1,79 @@
+// obscura describe: sentences whose numbers are the run's, and the text that a picture carries for those who
+// do not see it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "media/png.h"
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+using Describe = Program;
+
+// falls 1 m from rest: 0.4515 s, 4.429 m/s
+const char* const kFall = R"(title = "A fall"
+duration = 2
+[room]
+size = [4, 3]
+gravity = [0, -9.81]
+[[ball]]
+name = "big_ball"
+radius = 0.25
+position = [2, 1.25]
+elasticity = 0
+[[film.caption]]
+text = "It hits."
+start = 0.5
+)";
+
+TEST_F(Describe, SaysWhatHitsWhatWhenAndHowFast) {
+  scene(kFall);
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("A fall.\n"));
+  EXPECT_THAT(run.out, HasSubstr("In the plane there is one disc; gravity is 9.81 m/s²."));
+  EXPECT_THAT(run.out, HasSubstr("starts at (2, 1.25) m, at rest."));
+  EXPECT_THAT(run.out, testing::ContainsRegex("At 0\\.45[0-9]* s .* hits the floor at 4\\.4[0-9]* m/s\\."));
+  EXPECT_THAT(run.out, HasSubstr("The film says at 0.5 s: \"It hits.\""));
+  EXPECT_THAT(run.out, testing::ContainsRegex("comes to rest at 0\\.[0-9]* s, at \\(2, 0\\.25\\) m"));
+  // m g h of a disc of 1 kg falls by 9.81 J
+  EXPECT_THAT(run.out, HasSubstr("The energy goes from "));
+  // once, and not at every step that it lies there
+  EXPECT_EQ(run.out.find("hits the floor"), run.out.rfind("hits the floor"));
+}
+
+TEST_F(Describe, TellsOfManyTogether) {
+  scene(
+      "duration = 1\n[room]\nsize = [4, 3]\n[[ball]]\nname = \"drop\"\nradius = 0.05\nposition = [0.2, 1]\n"
+      "copies = { count = 30, offset = [0.12, 0.01] }\n");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("30 discs"));
+  EXPECT_THAT(run.out, HasSubstr("impacts: the first at "));
+  EXPECT_LT(std::count(run.out.begin(), run.out.end(), '\n'), 12);
+}
+
+TEST_F(Describe, PicturesSayWhatTheyShow) {
+  scene(kFall);
+  ASSERT_EQ(obscura("render scene.toml --at 0 --size 320x180 -o a.png").exit, 0);
+  const auto tags = media::read_png(path("a.png")).tags;
+  ASSERT_TRUE(tags.contains("Description"));
+  EXPECT_EQ(tags.at("Description"),
+            "A fall. One disc at 0 s. The big ball is at (2, 1.25) m and does not move.");
+  ASSERT_EQ(obscura("figure scene.toml --at 0,0.3 -o a.svg").exit, 0);
+  const std::string svg = contents(path("a.svg"));
+  EXPECT_THAT(svg, HasSubstr("role=\"img\""));
+  EXPECT_THAT(svg, HasSubstr("<desc>(a) A fall. One disc at 0 s."));
+  EXPECT_THAT(svg, HasSubstr("(b) One disc at 0.3 s."));
+  if (obscura("figure scene.toml --at 0 -o a.pdf").exit == 0) {
+    EXPECT_THAT(contents(path("a.pdf")), HasSubstr("/Subject"));
+  }
+}
+
+}  // namespace
+}  // namespace obscura::app

@@ -1,0 +1,171 @@
+// Plots: ranges that use their room, axes that say quantity over unit, lines
+// that are told apart without their colours, words that keep off each other.
+
+#include "draw/page/plot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "draw/page/layout.h"
+#include "draw/page/measure.h"
+#include "draw/picture/formula.h"
+
+namespace obscura::draw {
+namespace {
+
+Plot plot_of(const std::vector<double>& values) {
+  Plot plot;
+  plot.title = over_unit("E", "J");
+  for (std::size_t i = 0; i < values.size(); ++i) plot.times.push_back(double(i));
+  plot.lines.push_back({"a", values});
+  return plot;
+}
+
+std::string said(const Text& text) {
+  std::string all;
+  for (const Span& span : text.spans) all += span.text;
+  return all;
+}
+
+/// From where to where a line of type reaches.
+std::pair<double, double> width_from(const Text& text) {
+  double width = 0;
+  for (const Span& span : text.spans)
+    width += span.lead + width_of(span.text, span.face, span.size, span.tabular);
+  return {text.at.x(), text.at.x() + width};
+}
+
+constexpr Rect kRect{0, 0, 1000, 300};
+
+TEST(Plot, ItsAxisBeginsAtZeroWhereThatCostsLittleRoom) {
+  const PlotArea high = plot_area(plot_of({2.2, 2.9, 2.4}), kRect, 2);
+  EXPECT_GT(high.low, 2.1);
+  EXPECT_LT(high.high, 3);
+  const PlotArea wide = plot_area(plot_of({1, 10, 4}), kRect, 2);
+  EXPECT_EQ(wide.low, 0);
+  EXPECT_LT(wide.high, 10.6);
+  const PlotArea below = plot_area(plot_of({-4, 0, -1}), kRect, 2);
+  EXPECT_EQ(below.high, 0);
+  // a constant is no noise
+  const PlotArea same = plot_area(plot_of({5, 5 + 1e-9, 5 - 1e-9}), kRect, 2);
+  EXPECT_EQ(same.low, 0);
+  for (const PlotArea& area : {high, wide, below, same}) {
+    EXPECT_GE(area.ticks.size(), 2u);
+    for (const double tick : area.ticks) {
+      EXPECT_GE(tick, area.low - 1e-12);
+      EXPECT_LE(tick, area.high + 1e-12);
+    }
+  }
+}
+
+TEST(Plot, AnAxisSaysQuantityOverUnit) {
+  EXPECT_EQ(over_unit("E", "J"), "E / \"J\"");
+  EXPECT_EQ(over_unit("v", "m/s"), "v / \"m s\"^{-1}");
+  EXPECT_EQ(over_unit("a", "m/s²"), "a / \"m s\"^{-2}");
+  EXPECT_EQ(over_unit("rate", "1/s"), "rate / \"s\"^{-1}");
+  EXPECT_EQ(over_unit("\\theta", "°"), "\\theta / \"deg\"");
+  EXPECT_EQ(over_unit("n", ""), "n");
+}
+
+TEST(Plot, WordsOfTheAxesKeepOffEachOther) {
+  for (const double last : {1.0, 2.0, 9.7, 100.0}) {
+    Plot plot = plot_of({0, 1e-3, 123});
+    plot.times = {0, last / 2, last};
+    const PlotArea area = plot_area(plot, kRect, 2);
+    List list;
+    draw_axes(plot, area, palette(Theme::paper), list);
+    for (std::size_t i = 0; i < list.texts.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k) {
+        const Text &a = list.texts[i], &b = list.texts[k];
+        if (std::abs(a.at.y() - b.at.y()) > 0.8 * 8.5 * 2) continue;
+        const auto [a0, a1] = width_from(a);
+        const auto [b0, b1] = width_from(b);
+        EXPECT_TRUE(a1 < b0 || b1 < a0) << said(a) << " and " << said(b);
+      }
+    for (const Text& text : list.texts) EXPECT_LE(width_from(text).second, kRect.width) << said(text);
+  }
+}
+
+/// How a line is drawn but for its colour: its dashes' lengths, and how wide it
+/// is.
+std::vector<double> look_of(int style) {
+  Plot plot = plot_of({0, 0, 0});
+  plot.lines.resize(7, plot.lines[0]);
+  tell_apart(plot);
+  plot.lines = {plot.lines[std::size_t(style)]};
+  List list;
+  draw_lines(plot, plot_area(plot, kRect, 2), list);
+  std::vector<double> lengths;
+  for (std::size_t k = 0; k < std::min<std::size_t>(list.strokes.size(), 4); ++k) {
+    const Node &a = list.nodes[std::size_t(list.strokes[k].begin)],
+               &b = list.nodes[std::size_t(list.strokes[k].end) - 1];
+    lengths.push_back(std::round((b.at - a.at).norm())), lengths.push_back(std::round(a.at.x()));
+  }
+  return lengths;
+}
+
+TEST(Plot, LinesAreToldApartWithoutTheirColours) {
+  for (int a = 0; a < 6; ++a)
+    for (int b = 0; b < a; ++b) EXPECT_NE(look_of(a), look_of(b)) << a << " and " << b;
+}
+
+/// Dashes do not crawl while a line grows: the first ones stay.
+TEST(Plot, DashesStayWhereTheyAreWhileALineGrows) {
+  Plot plot = plot_of({0, 3, 1, 5, 2, 2});
+  plot.lines[0].style = 1;
+  const PlotArea area = plot_area(plot, kRect, 2);
+  List whole, half;
+  draw_lines(plot, area, whole);
+  plot.times.resize(4), plot.lines[0].values.resize(4);
+  draw_lines(plot, area, half);
+  ASSERT_GT(half.strokes.size(), 5u);
+  for (std::size_t k = 0; k + 1 < half.strokes.size(); ++k)
+    EXPECT_EQ(whole.nodes[std::size_t(whole.strokes[k].end) - 1].at,
+              half.nodes[std::size_t(half.strokes[k].end) - 1].at);
+}
+
+TEST(Plot, NamesAreSpreadInTheirOrderAndWithinTheirEnds) {
+  const std::vector<double> found = spread({50, 52, 51, 10, 98}, 10, 0, 100);
+  std::vector<double> sorted = found;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i) EXPECT_GE(sorted[i] - sorted[i - 1], 10 - 1e-9);
+  EXPECT_LT(found[0], found[2]);
+  EXPECT_LT(found[2], found[1]);
+  EXPECT_EQ(found[3], 10);
+  EXPECT_EQ(found[4], 98);
+  EXPECT_NEAR(found[2], 51, 1e-9);
+  for (const double each : spread({99, 100, 100}, 10, 0, 100)) EXPECT_LE(each, 100);
+}
+
+TEST(Plot, SeveralBodiesHaveLinesOfTheirOwn) {
+  sim::SceneInfo cast;
+  cast.bodies.resize(2);
+  cast.bodies[0].name = "a", cast.bodies[1].name = "b";
+  Measured both;
+  both.quantities = {"height"}, both.bodies = {0, 1};
+  const Palette colours = palette(Theme::paper);
+  const Color own[] = {{10, 20, 30}, {40, 50, 60}};
+  const Plot plot = empty_plot(both, colours, cast, [&](int body) { return own[body]; });
+  ASSERT_EQ(plot.lines.size(), 2u);
+  EXPECT_EQ(plot.title, "height / \"m\"");
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(plot.lines[i].color, own[i]);
+    EXPECT_EQ(plot.lines[i].label, "\"" + cast.bodies[i].name + "\"");
+  }
+  EXPECT_NE(plot.lines[0].style, plot.lines[1].style);
+  // energies are of all: a line each, in colours that mean no force, position
+  // or velocity
+  Measured energies;
+  energies.quantities = {"energy", "kinetic", "potential", "springs"};
+  const Plot second = empty_plot(energies, colours, cast, [&](int body) { return own[body]; });
+  ASSERT_EQ(second.lines.size(), 4u);
+  EXPECT_EQ(second.title, "E / \"J\"");
+  for (const char* taken : {"vermilion", "blue", "green"})
+    for (const Series& line : second.lines)
+      EXPECT_FALSE(line.color == mix(*color(taken), colours.ink, 0.2)) << line.label << " " << taken;
+}
+
+}  // namespace
+}  // namespace obscura::draw
