@@ -191,7 +191,7 @@ std::optional<Copies<D>> copies(const Fields& fields, const std::string& kind, i
       return {};
     }
     sides = std::vector<int>{n};
-  } else if (given && !table.given("count")) {
+  } else if (given && !table.given("count") && complaints.none()) {
     complaints.add(given->place, "'copies' needs 'count' or 'at': how many, or where");
     return {};
   }

@@ -21,7 +21,7 @@ using sim::Vec3;
 using testing::HasSubstr;
 
 constexpr double kRound = 2 * std::numbers::pi;
-constexpr double kG = 9.81;
+constexpr double kFall = 9.81;
 
 // the run of a text
 struct Driven {
@@ -43,7 +43,7 @@ struct Driven {
 };
 
 // to a microsecond, as at() has it
-double rounded(double t) { return std::round(t * 1e6) / 1e6; }
+double to_a_microsecond(double t) { return std::round(t * 1e6) / 1e6; }
 
 // what is wrong with a text; empty: nothing
 std::string said_of(const std::string& text, const std::vector<std::string>& sets = {}) {
@@ -97,7 +97,7 @@ TEST(Motion, OfAPathGoesThroughItsPlacesAndRestsAtItsEnds) {
 // flies.
 TEST(Motion, APlatformThatFallsFasterThanGIsLeft) {
   const double A = 0.2, w = 10;
-  const double t0 = std::asin(kG / (A * w * w)) / w;
+  const double t0 = std::asin(kFall / (A * w * w)) / w;
   for (const std::string& mode : kBothModes) {
     Driven scene(
         open_plane("[physics]\ncollision = \"" + mode + "\"") +
@@ -105,13 +105,13 @@ TEST(Motion, APlatformThatFallsFasterThanGIsLeft) {
         "motion = { y = \"0.2*sin(10*t)\" }\n"
         "[[ball]]\nname = \"ball\"\nradius = 0.1\nposition = [0, 0.1]\nvelocity = [0, 2]\nelasticity = 0\n");
     const std::size_t ball = scene.run->scene_info().bodies[0].name == "ball" ? 0 : 1;
-    const double begun = owned(scene.at(0)), early = rounded(0.9 * t0);
+    const double begun = owned(scene.at(0)), early = to_a_microsecond(0.9 * t0);
     const sim::Snapshot before = scene.at(early);
     EXPECT_NEAR(before.bodies[ball].position.y(), 0.1 + A * std::sin(w * early), 1e-9) << mode;
     EXPECT_NEAR(owned(before), begun, 1e-7) << mode;
-    const double t = rounded(t0 + 0.15);
+    const double t = to_a_microsecond(t0 + 0.15);
     const double flies =
-        0.1 + A * std::sin(w * t0) + A * w * std::cos(w * t0) * (t - t0) - 0.5 * kG * (t - t0) * (t - t0);
+        0.1 + A * std::sin(w * t0) + A * w * std::cos(w * t0) * (t - t0) - 0.5 * kFall * (t - t0) * (t - t0);
     EXPECT_NEAR(scene.at(t).bodies[ball].position.y(), flies, mode == "event" ? 1e-6 : 2e-4) << mode;
     EXPECT_TRUE(scene.at(t).contacts.empty()) << mode;
     // what it gave is what the ball has
@@ -123,7 +123,7 @@ TEST(Motion, APlatformThatFallsFasterThanGIsLeft) {
 // up to (a/l)^2 / 2 of that (Mathieu's equation; here 0.2 % of the speed).
 TEST(Motion, KapitzasPendulumStandsFromItsThresholdOn) {
   const auto tip = [](double of_threshold, double until) {
-    const double a = 0.1, speed = of_threshold * std::sqrt(2 * kG * 1.0);
+    const double a = 0.1, speed = of_threshold * std::sqrt(2 * kFall * 1.0);
     Driven scene(open_plane("[physics]\nrate = 600") +
                  fmt::format("[[particle]]\nname = \"pivot\"\nposition = [0, 0]\nradius = 0.02\n"
                              "motion = {{ y = \"{}*cos({}*t) - {}\" }}\n"
@@ -247,7 +247,7 @@ TEST(Motion, ARacketGivesItsVelocity) {
 // A block at rest on a belt of speed u slips for u / (mu g), then goes along; the belt has given m u^2, half
 // of which is heat.
 TEST(Belt, ABlockSticksWhenItHasItsSpeedAndTheBeltGivesTwiceItsEnergy) {
-  const double u = 1.5, mu = 0.3, sticks = u / (mu * kG);
+  const double u = 1.5, mu = 0.3, sticks = u / (mu * kFall);
   for (const std::string& mode : kBothModes) {
     Driven scene(
         open_plane("[physics]\ncollision = \"" + mode + "\"") +
@@ -255,12 +255,12 @@ TEST(Belt, ABlockSticksWhenItHasItsSpeedAndTheBeltGivesTwiceItsEnergy) {
         "surface_speed = 1.5\nfriction = 0.3\nelasticity = 0\n"
         "[[box]]\nname = \"block\"\nsize = [0.4, 0.2]\nposition = [-3, 0.1]\nmass = 2\nfriction = 0.3\n"
         "elasticity = 0\n");
-    const double before = rounded(0.6 * sticks);
+    const double before = to_a_microsecond(0.6 * sticks);
     sim::Snapshot now = scene.at(before);
-    EXPECT_NEAR(now.bodies[1].velocity.x(), mu * kG * before, 1e-6) << mode;
-    EXPECT_NEAR(now.energies.work, mu * 2 * kG * u * before, 1e-5) << mode;
+    EXPECT_NEAR(now.bodies[1].velocity.x(), mu * kFall * before, 1e-6) << mode;
+    EXPECT_NEAR(now.energies.work, mu * 2 * kFall * u * before, 1e-5) << mode;
     EXPECT_TRUE(now.contacts[0].sliding) << mode;
-    const double later = rounded(sticks + 0.5);
+    const double later = to_a_microsecond(sticks + 0.5);
     now = scene.at(later);
     EXPECT_NEAR(now.bodies[1].velocity.x(), u, 1e-6) << mode;
     EXPECT_NEAR(now.bodies[1].position.x(), -3 + 0.5 * u * sticks + u * (later - sticks),
@@ -294,7 +294,7 @@ TEST(Release, LetsGoWithTheVelocityAndBooksTheEnergy) {
     const sim::Snapshot now = scene.at(1);
     const double s = 1 - 0.5003;
     EXPECT_NEAR(now.bodies[0].position.x(), -2 + 1.5, 1e-12) << mode;
-    EXPECT_NEAR(now.bodies[0].position.y(), 2 - 0.5 * kG * s * s, 1e-11) << mode;
+    EXPECT_NEAR(now.bodies[0].position.y(), 2 - 0.5 * kFall * s * s, 1e-11) << mode;
     EXPECT_NEAR(owned(now), 0, 1e-10) << mode;
     EXPECT_GT(now.energies.work, 1) << mode;
   }
@@ -308,8 +308,8 @@ TEST(Release, OfAGateWakesWhatLeansOnIt) {
                  "[[box]]\nname = \"load\"\nsize = [0.3, 0.3]\nposition = [4, 2.2]\nelasticity = 0\n");
     EXPECT_NEAR(scene.at(1.9).bodies[1].position.y(), 2.2, 1e-4) << solver;
     const sim::Snapshot now = scene.at(2.3);
-    EXPECT_NEAR(now.bodies[0].position.y(), 2 - 0.5 * kG * 0.09, 2e-3) << solver;
-    EXPECT_NEAR(now.bodies[1].position.y(), 2.2 - 0.5 * kG * 0.09, 2e-3) << solver;
+    EXPECT_NEAR(now.bodies[0].position.y(), 2 - 0.5 * kFall * 0.09, 2e-3) << solver;
+    EXPECT_NEAR(now.bodies[1].position.y(), 2.2 - 0.5 * kFall * 0.09, 2e-3) << solver;
     // and lies on the floor in the end
     EXPECT_NEAR(scene.at(6).bodies[0].position.y(), 0.05, 5e-3) << solver;
   }

@@ -9,6 +9,8 @@
 namespace obscura::draw {
 namespace {
 
+constexpr double kAboveAxis = 4.5;  // points: how high above the axis the middle of a name is at least
+
 constexpr double kMargin = 36;  // page units at the weight 1, as of the caption
 // page units a point of a plot for print: digits 24 high, to be read from the back row
 constexpr double kType = 33 / 8.5;
@@ -120,8 +122,10 @@ void Charts::draw_lines(const sim::Snapshot& now, List& list) const {
       const Point at = panel.area.at(along, line.values.back());
       const double unit = panel.area.point;
       if (within) list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
+      // an average may lead below the axis
+      const double high = at.y() + (over_time ? panel.offset(i, now.time) : 0);
       draw_name(panel.plot, i, panel.area,
-                at + Point((kHead + 2.2) * unit, over_time ? panel.offset(i, now.time) : 0), list);
+                {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)}, list);
     }
   }
 }
