@@ -318,8 +318,7 @@ label = "F = {}"
 )");
   ASSERT_EQ(obscura("figure scene.toml -o a.svg --dpi 60").exit, 0);
   const std::string svg = contents(path("a.svg"));
-  for (const char* words :
-       {"(a)", "(d)", "side, t = 0.1 s", "slant, t = 0 s", "= 2 "})  // S / r^2 = 18 / 9
+  for (const char* words : {"(a)", "(d)", "side, t = 0.1 s", "slant, t = 0 s", "= 2 "})  // S / r^2 = 18 / 9
     EXPECT_THAT(written(svg), HasSubstr(words));
   ASSERT_EQ(obscura("figure scene.toml -o a.png --dpi 60 --width 120mm").exit, 0);
   EXPECT_EQ(media::read_png(path("a.png")).image.width, 284);  // 283.5

@@ -140,10 +140,11 @@ TEST(Diagnostics, WordsComeFromTheirList) {
   refused("[physics]\nintegrator = \"verlet\"",
           "a.toml:2:14: 'integrator': expected one of rk4, midpoint, euler, semi-implicit, got 'verlet'");
   refused("[[particle]]\ncolor = \"bleu\"", "a.toml:2:9: 'color': 'bleu' is no colour; did you mean 'blue'?");
-  refused("[[particle]]\ncolor = \"#12\"",
-          "a.toml:2:9: 'color': '#12' is no colour; expected \"#rrggbb\" or one of orange, sky, green, blue, "
-          "vermilion, purple, yellow, grey, black, white, red, brown, pink, cyan, magenta, violet, navy, teal, "
-          "turquoise, olive, lime, gold, silver, gray");
+  refused(
+      "[[particle]]\ncolor = \"#12\"",
+      "a.toml:2:9: 'color': '#12' is no colour; expected \"#rrggbb\" or one of orange, sky, green, blue, "
+      "vermilion, purple, yellow, grey, black, white, red, brown, pink, cyan, magenta, violet, navy, teal, "
+      "turquoise, olive, lime, gold, silver, gray");
   refused(
       "[look]\narrows = [\"force\"]",
       "a.toml:2:11: 'arrows': 'force' is not in this version of obscura yet, which has velocity, contact");
