@@ -30,11 +30,17 @@ constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
 constexpr double kSpare = 0.02;          // of their bounding radius: what two may come nearer by being struck
 constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds
-constexpr int kSettlingTouches =
-    50000;  // times iterations, of touches that have not settled then; or, of many, as if
-constexpr int kSettlingRounds = 8;      // so many were of all
-constexpr int kTempering = 5;           // rounds
-constexpr double kRoundingGain = 1e-9;  // of its kinetic energy: what an island may win by rounding
+constexpr int kSettlingTouches = 50000;  // times iterations, of touches that have not settled then
+constexpr int kFewTouches = 500;         // of more, less in proportion, but as if
+constexpr int kSettlingRounds = 3;       // so many were of all
+constexpr int kTempering = 5;            // rounds
+constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
+
+int settling_budget(int touches) {
+  return touches <= kFewTouches
+             ? kSettlingTouches
+             : std::max(kSettlingTouches / touches * kFewTouches, kSettlingRounds * touches);
+}
 
 }  // namespace
 
@@ -394,7 +400,7 @@ void SpaceIterative<D>::settle_contacts() {
   }
   const int all = int(some_.size());
   bool any = all > 0, back = false;
-  for (int left = std::max(kSettlingTouches, kSettlingRounds * all); left > 0 && any; back = !back) {
+  for (int left = settling_budget(all); left > 0 && any; back = !back) {
     any = false;
     stirred_next_.assign(moving_.size(), 0);
     for (int i = 0; i < all; ++i) {
