@@ -12,6 +12,7 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "scene/text_run.h"
 #include "sim/step/run.h"
 
 namespace obscura::scene {
@@ -35,27 +36,6 @@ std::string open_space(const std::string& more = "") {
          "0, 0]\n" +
          more + "\n";
 }
-
-struct Filmed {
-  std::unique_ptr<sim::Run> run;
-
-  explicit Filmed(const std::string& text, const Sets& sets = {}) : run(parse(text, "a.toml", sets).run()) {}
-
-  // the instant at t, to a microsecond
-  sim::Snapshot at(double t) const {
-    auto outcome = run->at(*sim::parse_rational(fmt::format("{:.6f}", t)));
-    if (const auto* trouble = std::get_if<sim::Trouble>(&outcome)) {
-      ADD_FAILURE() << trouble->body << " " << trouble->quantity << " " << trouble->what << " "
-                    << trouble->likely;
-      return {};
-    }
-    return std::get<sim::Snapshot>(outcome);
-  }
-  Vec3 place(double t, std::size_t body = 0) const { return at(t).bodies[body].position; }
-};
-
-// to a microsecond, as at() has it
-double rounded(double t) { return std::round(t * 1e6) / 1e6; }
 
 const std::vector<Sets> kModes = {{"physics.collision=handout"},
                                   {"physics.collision=event"},
@@ -82,11 +62,11 @@ Vec3 kepler(double t) {
 }
 
 TEST(Forces, KeplersEllipseHasFourthOrderInEveryMode) {
-  const double t = rounded(kCircle);
+  const double t = to_a_microsecond(kCircle);
   for (const Sets& mode : kModes) {
     for (const std::string& law : {kText, kAttractor}) {
       const auto off = [&](const char* rate) {
-        return (Filmed(open_room() + kPlanet + law, with(mode, {rate})).place(t) - kepler(t)).norm();
+        return (TextRun(open_room() + kPlanet + law, with(mode, {rate})).place(t) - kepler(t)).norm();
       };
       const double coarse = off("physics.rate=300"), fine = off("physics.rate=600");
       EXPECT_LT(fine, 1e-8) << mode[0];
@@ -96,7 +76,7 @@ TEST(Forces, KeplersEllipseHasFourthOrderInEveryMode) {
 }
 
 TEST(Forces, AHundredTurnsOfKeplersEllipseKeepEnergyAndAreas) {
-  const Filmed planet(open_room() + kPlanet + kText, {"physics.rate=800", "physics.collision=handout"});
+  const TextRun planet(open_room() + kPlanet + kText, {"physics.rate=800", "physics.collision=handout"});
   const double energy = planet.at(0).energies.total();
   EXPECT_NEAR(energy, -0.5, 1e-15);
   for (int turn = 10; turn <= 100; turn += 10) {
@@ -109,7 +89,7 @@ TEST(Forces, AHundredTurnsOfKeplersEllipseKeepEnergyAndAreas) {
 // equal areas in equal times: sectors between instants a sixteenth of a turn apart, by many triangles and the
 // arcs' own curvature left out alike (Simpson's weights of half as many)
 TEST(Forces, EqualAreasInEqualTimes) {
-  const Filmed planet(open_room() + kPlanet + kAttractor, {"physics.collision=handout"});
+  const TextRun planet(open_room() + kPlanet + kAttractor, {"physics.collision=handout"});
   const auto sector = [&](double from, double to, int n) {
     double sum = 0;
     Vec3 a = planet.place(from);
@@ -127,9 +107,9 @@ TEST(Forces, EqualAreasInEqualTimes) {
 TEST(Forces, AnEllipseOfSpaceIsThatOfThePlane) {
   const std::string planet = "[[particle]]\nposition = [0, 0.4, 0]\nvelocity = [0, 0, 2]\n";
   const std::string law = "[[force]]\npotential = \"-m/r\"\ncenter = [0, 0, 0]\n";
-  const double t = rounded(5);
+  const double t = to_a_microsecond(5);
   for (const Sets& mode : kModes) {
-    const Vec3 got = Filmed(open_space() + planet + law, mode).place(t), want = kepler(t);
+    const Vec3 got = TextRun(open_space() + planet + law, mode).place(t), want = kepler(t);
     EXPECT_LT((got - Vec3(0, want.x(), want.y())).norm(), 1e-8) << mode[0];
   }
 }
@@ -147,7 +127,7 @@ TEST(Forces, TwoBodiesTurnAboutTheirCentreOfMass) {
       "[[force]]\nof = \"a\"\npotential = \"-3*m/r\"\ncenter = \"b\"\n",
       "[[attractor]]\nof = \"a\"\nstrength = 3\ncenter = \"b\"\n"};
   for (const Sets& mode : kModes) {
-    const auto check = [&](const Filmed& pair, const std::string& law) {
+    const auto check = [&](const TextRun& pair, const std::string& law) {
       const double t = 3.2;
       const sim::Snapshot now = pair.at(t);
       EXPECT_LT((now.bodies[0].position - 0.75 * Vec3(std::cos(2 * t), std::sin(2 * t), 0)).norm(), 1e-8)
@@ -155,8 +135,8 @@ TEST(Forces, TwoBodiesTurnAboutTheirCentreOfMass) {
           << law;
       EXPECT_LT(now.momentum.norm(), 1e-13) << mode[0] << "\n" << law;
     };
-    for (const std::string& law : laws) check(Filmed(open_room() + two + law, mode), law);
-    check(Filmed(open_room("gravitation = 1") + two, mode), "gravitation");
+    for (const std::string& law : laws) check(TextRun(open_room() + two + law, mode), law);
+    check(TextRun(open_room("gravitation = 1") + two, mode), "gravitation");
   }
 }
 
@@ -166,7 +146,7 @@ TEST(Forces, ThreeBodiesDanceTheFigureEight) {
       "[[particle]]\nposition = [-0.97000436, 0.24308753]\nvelocity = [0.466203685, 0.43236573]\n"
       "[[particle]]\nposition = [0, 0]\nvelocity = [-0.93240737, -0.86473146]\n";
   for (const Sets& mode : kModes) {
-    const Filmed dance(open_room("gravitation = 1") + three, mode);
+    const TextRun dance(open_room("gravitation = 1") + three, mode);
     // after a third of the period of 6.32591398 each is where another was
     const sim::Snapshot start = dance.at(0), third = dance.at(6.32591398 / 3), whole = dance.at(6.32591398);
     const std::size_t next = third.bodies[0].position.norm() < 0.5 ? 2 : 1;
@@ -187,11 +167,11 @@ TEST(Forces, CoulombScatteringHasRutherfordsAngle) {
         "[[particle]]\nname = \"shot\"\ncharge = {}\nposition = [-500, 1]\nvelocity = [1.2, 0]\n",
         charge);
     for (const bool preset : {true, false}) {
-      const Filmed shot(preset ? open_room("coulomb = 0.5") + ions
-                               : open_room() + ions +
-                                     "[[force]]\namong = [\"target\", \"shot\"]\npotential = "
-                                     "\"k*charge1*charge2/r\"\n[constants]\nk = 0.5\n",
-                        {"physics.rate=200", "physics.collision=handout"});
+      const TextRun shot(preset ? open_room("coulomb = 0.5") + ions
+                                : open_room() + ions +
+                                      "[[force]]\namong = [\"target\", \"shot\"]\npotential = "
+                                      "\"k*charge1*charge2/r\"\n[constants]\nk = 0.5\n",
+                         {"physics.rate=200", "physics.collision=handout"});
       const sim::Snapshot before = shot.at(0);
       const double energy = before.energies.total(), v = std::sqrt(2 * energy), b = 1.2 * 1 / v;
       const double angle = 2 * std::atan(charge / (v * v * b));
@@ -207,7 +187,7 @@ TEST(Forces, ManyIonsKeepMomentumAndEnergy) {
   const std::string ions =
       "[[particle]]\nname = \"ion\"\ncopies = { count = [6, 7], offset = [[0.5, 0.02], [0.03, 0.5]] }\n"
       "position = [-1.5, -1.5]\ncharge = { from = 0.5, to = 1.5 }\n";
-  const Filmed preset(open_room("coulomb = 0.1\nsoftening = 0.2") + ions),
+  const TextRun preset(open_room("coulomb = 0.1\nsoftening = 0.2") + ions),
       text(open_room() + ions +
            "[[force]]\namong = \"ion[*]\"\npotential = \"0.1*charge1*charge2/sqrt(r^2 + 0.04)\"\n");
   const double energy = preset.at(0).energies.total();
@@ -225,15 +205,15 @@ TEST(Forces, AChargeTurnsInAMagneticFieldAndDriftsInCrossedFields) {
   for (const Sets& mode : kModes) {
     // towards the viewer is positive: a positive charge turns clockwise; omega = q B/m = 2, R = m v/(q B) =
     // 0.5
-    const Filmed turns(open_room("magnetic = 2") +
-                           "[[particle]]\nmass = 0.5\ncharge = 0.5\nposition = [0, 0]\nvelocity = [0, 1]\n",
-                       mode);
+    const TextRun turns(open_room("magnetic = 2") +
+                            "[[particle]]\nmass = 0.5\ncharge = 0.5\nposition = [0, 0]\nvelocity = [0, 1]\n",
+                        mode);
     const double t = 31.4;
     EXPECT_LT((turns.place(t) - Vec3(0.5 - 0.5 * std::cos(2 * t), 0.5 * std::sin(2 * t), 0)).norm(), 1e-9)
         << mode[0];
     EXPECT_NEAR(turns.at(t).bodies[0].velocity.norm(), 1, 1e-10);
     // drift E x B / B^2 = (0, -3) x 2 z / 4 = (-1.5, 0), and a cycloid from rest
-    const Filmed drifts(
+    const TextRun drifts(
         open_room("magnetic = 2\nelectric = [0, -3]") + "[[particle]]\ncharge = 1\nposition = [0, 0]\n",
         mode);
     const double s = 11.7;
@@ -246,8 +226,8 @@ TEST(Forces, AChargeTurnsInAMagneticFieldAndDriftsInCrossedFields) {
     EXPECT_EQ(e.work, 0);
   }
   // along and across B in space: a screw
-  const Filmed screw(open_space("magnetic = [0, 2, 0]\nelectric = [0, 1, 0]") +
-                     "[[particle]]\ncharge = 1\nposition = [0, 0, 0]\nvelocity = [1, 0.5, 0]\n");
+  const TextRun screw(open_space("magnetic = [0, 2, 0]\nelectric = [0, 1, 0]") +
+                      "[[particle]]\ncharge = 1\nposition = [0, 0, 0]\nvelocity = [1, 0.5, 0]\n");
   const double t = 7.3;
   EXPECT_LT(
       (screw.place(t) - Vec3(std::sin(2 * t) / 2, 0.5 * t + t * t / 2, (1 - std::cos(2 * t)) / 2)).norm(),
@@ -258,7 +238,7 @@ TEST(Forces, QuadraticDragAndWindHaveTheirClosedForms) {
   const double g = 9.81, m = 2, c = 0.3, vt = std::sqrt(m * g / c);
   for (const Sets& mode : kModes) {
     const std::string head = "duration = 100\n[room]\nsize = [400, 400]\nwalls = \"none\"\n";
-    const Filmed falls(head + "[[particle]]\nmass = 2\nquadratic_drag = 0.3\nposition = [0, 300]\n", mode);
+    const TextRun falls(head + "[[particle]]\nmass = 2\nquadratic_drag = 0.3\nposition = [0, 300]\n", mode);
     const double t = 1.7;
     const sim::Snapshot now = falls.at(t);
     EXPECT_NEAR(now.bodies[0].velocity.y(), -vt * std::tanh(g * t / vt), 1e-9) << mode[0];
@@ -268,17 +248,17 @@ TEST(Forces, QuadraticDragAndWindHaveTheirClosedForms) {
     EXPECT_NEAR(now.energies.total() - now.energies.work, m * g * 300, 1e-8) << mode[0];
     EXPECT_NEAR(falls.at(30).bodies[0].velocity.norm(), vt, 1e-9) << mode[0];
 
-    const Filmed slides(
+    const TextRun slides(
         open_room("quadratic_drag = 0.5") + "[[particle]]\nposition = [0, 0]\nvelocity = [3, 4]\n", mode);
     EXPECT_LT((slides.at(t).bodies[0].velocity - Vec3(3, 4, 0) / (1 + 0.5 * 5 * t)).norm(), 1e-9) << mode[0];
     // in the wind the same, seen from the air
-    const Filmed blown(open_room("quadratic_drag = 0.5\nwind = [1, -2]") +
-                           "[[particle]]\nposition = [0, 0]\nvelocity = [4, 2]\n",
-                       mode);
+    const TextRun blown(open_room("quadratic_drag = 0.5\nwind = [1, -2]") +
+                            "[[particle]]\nposition = [0, 0]\nvelocity = [4, 2]\n",
+                        mode);
     EXPECT_LT((blown.at(t).bodies[0].velocity - Vec3(1, -2, 0) - Vec3(3, 4, 0) / (1 + 0.5 * 5 * t)).norm(),
               1e-9)
         << mode[0];
-    const Filmed linear(open_room("drag = 0.4\nwind = [1, -2]") + "[[particle]]\nposition = [0, 0]\n", mode);
+    const TextRun linear(open_room("drag = 0.4\nwind = [1, -2]") + "[[particle]]\nposition = [0, 0]\n", mode);
     EXPECT_LT((linear.at(t).bodies[0].velocity - (1 - std::exp(-0.4 * t)) * Vec3(1, -2, 0)).norm(), 1e-9)
         << mode[0];
   }
@@ -288,12 +268,12 @@ TEST(Forces, QuadraticDragAndWindHaveTheirClosedForms) {
 TEST(Forces, AFloatingBoxBobs) {
   const double omega = std::sqrt(9.81 / (0.5 * 0.4)), t = 2.3;
   for (const Sets& mode : kModes) {
-    const Filmed plane(
+    const TextRun plane(
         "duration = 10\n[room]\nwalls = \"none\"\nfluid = { level = 2, density = 1 }\n"
         "[[box]]\nsize = [1, 0.4]\ndensity = 0.5\nposition = [4, 2.05]\n",
         mode);
     EXPECT_NEAR(plane.place(t).y(), 2 + 0.05 * std::cos(omega * t), 1e-9) << mode[0];
-    const Filmed space(
+    const TextRun space(
         "duration = 10\n[room]\nsize = [12, 4.5, 8]\nwalls = \"none\"\nfluid = { level = 2, density = 1000 "
         "}\n"
         "[[box]]\nsize = [1, 0.4, 0.6]\ndensity = 500\nposition = [4, 2.05, 0]\n",
@@ -306,7 +286,7 @@ TEST(Forces, WhatFloatsAndTurnsKeepsItsEnergy) {
   for (const char* body :
        {"[[box]]\nsize = [1, 0.4]\nangle = 40\n", "[[ball]]\nradius = 0.4\n",
         "[[body]]\nshapes = [{ size = [1, 0.1] }, { radius = 0.3, position = [0.5, 0] }]\nangle = 70\n"}) {
-    const Filmed floats(
+    const TextRun floats(
         std::string("duration = 10\n[room]\nwalls = \"none\"\nfluid = { level = 2, density = 1 }\n") + body +
         "density = 0.4\nposition = [4, 2.3]\nvelocity = [0, -1]\n");
     const double energy = floats.at(0).energies.total();
@@ -316,12 +296,12 @@ TEST(Forces, WhatFloatsAndTurnsKeepsItsEnergy) {
 
 TEST(Forces, APotentialAndItsComponentsAgree) {
   const std::string ball = "[[particle]]\nposition = [0.3, 0.1]\nvelocity = [0.2, -0.4]\nmass = 1.5\n";
-  const Filmed potential(
+  const TextRun potential(
       open_room() + ball +
       "[[force]]\npotential = \"0.5*k*(x^2 + 2*y^2) + x*sin(y) + exp(-x*y)\"\n[constants]\nk = 4\n");
-  const Filmed components(open_room() + ball +
-                          "[[force]]\ncomponents = [\"-k*x - sin(y) + y*exp(-x*y)\", \"-2*k*y - x*cos(y) + "
-                          "x*exp(-x*y)\"]\n[constants]\nk = 4\n");
+  const TextRun components(open_room() + ball +
+                           "[[force]]\ncomponents = [\"-k*x - sin(y) + y*exp(-x*y)\", \"-2*k*y - x*cos(y) + "
+                           "x*exp(-x*y)\"]\n[constants]\nk = 4\n");
   for (const double t : {0.5, 2.0, 10.0})
     EXPECT_LT((potential.place(t) - components.place(t)).norm(), 1e-12) << t;
   const sim::Energies p = potential.at(10).energies, c = components.at(10).energies;
@@ -329,17 +309,17 @@ TEST(Forces, APotentialAndItsComponentsAgree) {
   // what the components did is what the potential gave
   EXPECT_NEAR(
       potential.at(10).energies.fields -
-          Filmed(open_room() + ball + "[[force]]\npotential = \"2*(x^2 + 2*y^2) + x*sin(y) + exp(-x*y)\"\n")
+          TextRun(open_room() + ball + "[[force]]\npotential = \"2*(x^2 + 2*y^2) + x*sin(y) + exp(-x*y)\"\n")
               .at(0)
               .energies.fields,
       -c.work, 1e-9);
 }
 
 TEST(Forces, HenonHeilesKeepsItsEnergy) {
-  const Filmed chaos(open_room() +
-                         "[[particle]]\nposition = [0, 0.1]\nvelocity = [0.49, 0.1]\n[[force]]\npotential = "
-                         "\"(x^2 + y^2)/2 + x^2*y - y^3/3\"\n",
-                     {"physics.rate=200", "physics.collision=handout"});
+  const TextRun chaos(open_room() +
+                          "[[particle]]\nposition = [0, 0.1]\nvelocity = [0.49, 0.1]\n[[force]]\npotential = "
+                          "\"(x^2 + y^2)/2 + x^2*y - y^3/3\"\n",
+                      {"physics.rate=200", "physics.collision=handout"});
   const double energy = chaos.at(0).energies.total();
   EXPECT_NEAR(chaos.at(300).energies.total(), energy, 1e-9);
 }
@@ -364,8 +344,8 @@ TEST(Forces, AUniformForceIsGravity) {
     for (const Sets& mode :
          {Sets{"physics.collision=event"}, Sets{"physics.solver=direct"}, Sets{"physics.solver=iterative"}}) {
       const std::string scene = common + (chained ? chain : "");
-      const Filmed heavy(scene, with(mode, {"room.gravity=[1.5,-9.81]"}));
-      const Filmed pushed(scene + field, mode), driven(scene + parts, mode);
+      const TextRun heavy(scene, with(mode, {"room.gravity=[1.5,-9.81]"}));
+      const TextRun pushed(scene + field, mode), driven(scene + parts, mode);
       for (const double t : {0.1, 0.3, 0.5}) {
         const sim::Snapshot a = heavy.at(t), b = pushed.at(t), c = driven.at(t);
         for (std::size_t i = 0; i < a.bodies.size(); ++i) {
@@ -388,7 +368,7 @@ TEST(Forces, BondedBodiesFeelWhatTheirPartsFeel) {
       "[[ball]]\nname = \"b\"\nradius = 0.1\nmass = 1\ncharge = -1\nposition = [-0.2, 0]\n"
       "[[box]]\nname = \"rod\"\nsize = [0.2, 0.1]\nmass = 1e-6\nposition = [0, 0]\n"
       "[[bond]]\nof = [\"a\", \"b\", \"rod\"]\n";
-  const Filmed turns(scene);
+  const TextRun turns(scene);
   // I = 2 (m r^2/2 + m 0.04), I theta'' = 0.4 cos(theta)
   const double inertia = 2 * (0.005 + 0.04);
   double theta = 0, omega = 0;
@@ -411,7 +391,7 @@ TEST(Forces, WhatAForcePressesRests) {
       "[0.4, 0.4]\nposition = [2, 0.6]\n";
   for (const Sets& mode :
        {Sets{"physics.collision=event"}, Sets{"physics.solver=direct"}, Sets{"physics.solver=iterative"}}) {
-    const Filmed stack(scene, mode);
+    const TextRun stack(scene, mode);
     const sim::Snapshot now = stack.at(4);
     EXPECT_NEAR(now.bodies[0].position.y(), 0.2, 1e-4) << mode[0];
     EXPECT_NEAR(now.bodies[1].position.y(), 0.6, 2e-4) << mode[0];
@@ -422,10 +402,10 @@ TEST(Forces, WhatAForcePressesRests) {
 TEST(Forces, WorkIsBookedWhereThereIsNoPotential) {
   // the linear drag of a scene with forces too
   for (const Sets& mode : kModes) {
-    const Filmed driven(open_room("drag = 0.2") +
-                            "[[particle]]\nposition = [0, 0]\n[[force]]\ncomponents = [\"2*sin(3*t) - vy\", "
-                            "\"vx - 0.1*vy*speed\"]\n",
-                        mode);
+    const TextRun driven(open_room("drag = 0.2") +
+                             "[[particle]]\nposition = [0, 0]\n[[force]]\ncomponents = [\"2*sin(3*t) - vy\", "
+                             "\"vx - 0.1*vy*speed\"]\n",
+                         mode);
     const sim::Energies e = driven.at(5).energies;
     EXPECT_GT(std::fabs(e.work), 0.1) << mode[0];
     EXPECT_NEAR(e.total(), e.work, 1e-9) << mode[0];
@@ -434,11 +414,11 @@ TEST(Forces, WorkIsBookedWhereThereIsNoPotential) {
 
 TEST(Forces, TheFormulasKnowTheirVariables) {
   const auto velocity = [](const std::string& of, const std::string& by, double t) {
-    return Filmed(open_room() +
-                  "[[box]]\nname = \"a\"\nsize = [0.2, 0.1]\nmass = 1\nspin = 114.59155902616465\nangle = "
-                  "400\ncharge = 3\nposition = [1, 2]\n"
-                  "copies = { count = 3, offset = [5, 0] }\n[[force]]\nof = \"" +
-                  of + "\"\ncomponents = [\"" + by + "\", \"0\"]\n")
+    return TextRun(open_room() +
+                   "[[box]]\nname = \"a\"\nsize = [0.2, 0.1]\nmass = 1\nspin = 114.59155902616465\nangle = "
+                   "400\ncharge = 3\nposition = [1, 2]\n"
+                   "copies = { count = 3, offset = [5, 0] }\n[[force]]\nof = \"" +
+                   of + "\"\ncomponents = [\"" + by + "\", \"0\"]\n")
         .at(t)
         .bodies[2]
         .velocity.x();
@@ -505,9 +485,9 @@ TEST(Forces, ConstantsAreSetFromOutside) {
   const std::string scene = open_room() +
                             "[[particle]]\nposition = [0, 0]\nmass = 2\n[[force]]\nname = "
                             "\"push\"\ncomponents = [\"a*b\", 0]\n[constants]\na = 3\nb = \"2*a\"\n";
-  EXPECT_NEAR(Filmed(scene).at(1).bodies[0].velocity.x(), 9, 1e-12);
-  EXPECT_NEAR(Filmed(scene, {"constants.a=1"}).at(1).bodies[0].velocity.x(), 1, 1e-12);
-  EXPECT_NEAR(Filmed(scene, {"push.components=[\"4\", \"2\"]"}).at(1).bodies[0].velocity.x(), 2, 1e-12);
+  EXPECT_NEAR(TextRun(scene).at(1).bodies[0].velocity.x(), 9, 1e-12);
+  EXPECT_NEAR(TextRun(scene, {"constants.a=1"}).at(1).bodies[0].velocity.x(), 1, 1e-12);
+  EXPECT_NEAR(TextRun(scene, {"push.components=[\"4\", \"2\"]"}).at(1).bodies[0].velocity.x(), 2, 1e-12);
   EXPECT_THAT(first_complaint(scene, {"constants.aa=1"}), HasSubstr("no expression reads the constant 'aa'"));
   EXPECT_THAT(first_complaint(scene, {"push.components=[\"q\", \"2\"]"}),
               StartsWith("--set push.components"));
@@ -515,7 +495,7 @@ TEST(Forces, ConstantsAreSetFromOutside) {
 
 TEST(Forces, AForceThatIsNotFiniteEndsTheRunWithBodyAndTime) {
   for (const Sets& mode : kModes) {
-    const Filmed falls(
+    const TextRun falls(
         open_room() +
             "[[particle]]\nname = \"ball\"\nposition = [1, 0]\nvelocity = [-1, 0]\n[[force]]\nname = "
             "\"wall\"\ncomponents = [\"0*sqrt(x) + sqrt(x - 0.5) - 1\", \"0\"]\n",

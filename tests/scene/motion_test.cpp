@@ -12,6 +12,7 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "scene/text_run.h"
 #include "sim/step/run.h"
 
 namespace obscura::scene {
@@ -22,28 +23,6 @@ using testing::HasSubstr;
 
 constexpr double kRound = 2 * std::numbers::pi;
 constexpr double kFall = 9.81;
-
-// the run of a text
-struct Driven {
-  std::unique_ptr<sim::Run> run;
-
-  explicit Driven(const std::string& text, const std::vector<std::string>& sets = {})
-      : run(parse(text, "a.toml", sets).run()) {}
-
-  // the instant at t, to a microsecond
-  sim::Snapshot at(double t) const {
-    auto outcome = run->at(*sim::parse_rational(fmt::format("{:.6f}", t)));
-    if (const auto* trouble = std::get_if<sim::Trouble>(&outcome)) {
-      ADD_FAILURE() << trouble->body << " " << trouble->quantity << " " << trouble->what << " "
-                    << trouble->likely;
-      return {};
-    }
-    return std::get<sim::Snapshot>(outcome);
-  }
-};
-
-// to a microsecond, as at() has it
-double to_a_microsecond(double t) { return std::round(t * 1e6) / 1e6; }
 
 // what is wrong with a text; empty: nothing
 std::string said_of(const std::string& text, const std::vector<std::string>& sets = {}) {
@@ -67,9 +46,9 @@ std::string open_plane(const std::string& more = "") {
 // --- motion
 
 TEST(Motion, IsThatOfItsExpressionsWithExactVelocity) {
-  Driven scene(open_plane() +
-               "[[box]]\nname = \"table\"\nsize = [1, 0.2]\nposition = [1, 0.5]\n"
-               "motion = { x = \"0.3*sin(2*pi*t)\", y = \"0.1*t^2\", angle = \"90*t\" }\n");
+  TextRun scene(open_plane() +
+                "[[box]]\nname = \"table\"\nsize = [1, 0.2]\nposition = [1, 0.5]\n"
+                "motion = { x = \"0.3*sin(2*pi*t)\", y = \"0.1*t^2\", angle = \"90*t\" }\n");
   for (const double t : {0.0, 0.37, 1.25}) {
     const sim::Snapshot now = scene.at(t);
     EXPECT_NEAR(now.bodies[0].position.x(), 1 + 0.3 * std::sin(kRound * t), 1e-14);
@@ -82,9 +61,9 @@ TEST(Motion, IsThatOfItsExpressionsWithExactVelocity) {
 }
 
 TEST(Motion, OfAPathGoesThroughItsPlacesAndRestsAtItsEnds) {
-  Driven scene(open_plane() +
-               "[[box]]\nname = \"table\"\nsize = [1, 0.2]\n"
-               "motion = { path = [[0.5, 0, 1], [1, 2, 1], [2, 2, 3]] }\n");
+  TextRun scene(open_plane() +
+                "[[box]]\nname = \"table\"\nsize = [1, 0.2]\n"
+                "motion = { path = [[0.5, 0, 1], [1, 2, 1], [2, 2, 3]] }\n");
   EXPECT_EQ(scene.at(0.25).bodies[0].position, Vec3(0, 1, 0));
   EXPECT_EQ(scene.at(0.5).bodies[0].velocity, Vec3(0, 0, 0));
   EXPECT_NEAR((scene.at(1).bodies[0].position - Vec3(2, 1, 0)).norm(), 0, 1e-14);
@@ -99,7 +78,7 @@ TEST(Motion, APlatformThatFallsFasterThanGIsLeft) {
   const double A = 0.2, w = 10;
   const double t0 = std::asin(kFall / (A * w * w)) / w;
   for (const std::string& mode : kBothModes) {
-    Driven scene(
+    TextRun scene(
         open_plane("[physics]\ncollision = \"" + mode + "\"") +
         "[[box]]\nname = \"platform\"\nsize = [2, 0.2]\nposition = [0, -0.1]\nelasticity = 0\n"
         "motion = { y = \"0.2*sin(10*t)\" }\n"
@@ -124,12 +103,12 @@ TEST(Motion, APlatformThatFallsFasterThanGIsLeft) {
 TEST(Motion, KapitzasPendulumStandsFromItsThresholdOn) {
   const auto tip = [](double of_threshold, double until) {
     const double a = 0.1, speed = of_threshold * std::sqrt(2 * kFall * 1.0);
-    Driven scene(open_plane("[physics]\nrate = 600") +
-                 fmt::format("[[particle]]\nname = \"pivot\"\nposition = [0, 0]\nradius = 0.02\n"
-                             "motion = {{ y = \"{}*cos({}*t) - {}\" }}\n"
-                             "[[particle]]\nname = \"bob\"\nposition = [0.03, 1]\nradius = 0.05\n"
-                             "[[joint]]\ntype = \"rod\"\nbetween = [\"pivot\", \"bob\"]\n",
-                             a, speed / a, a));
+    TextRun scene(open_plane("[physics]\nrate = 600") +
+                  fmt::format("[[particle]]\nname = \"pivot\"\nposition = [0, 0]\nradius = 0.02\n"
+                              "motion = {{ y = \"{}*cos({}*t) - {}\" }}\n"
+                              "[[particle]]\nname = \"bob\"\nposition = [0.03, 1]\nradius = 0.05\n"
+                              "[[joint]]\ntype = \"rod\"\nbetween = [\"pivot\", \"bob\"]\n",
+                              a, speed / a, a));
     double least = 2;
     for (double t = 0.5; t <= until; t += 0.5) {
       const sim::Snapshot now = scene.at(t);
@@ -147,7 +126,7 @@ TEST(Motion, ABallOnATurntableGoesAroundAtTwoSeventhsOfItsRate) {
   // w = y x (v - Omega x r) / R; y x ((0,0,v0) - omega (0,0,-r0)...) with r = (r0, 0, 0)
   const double slip = v0 + omega * r0;  // of (v - Omega x r) along z: Omega x r = (0, 0, -omega r0)
   const double spin = slip / radius * 180 / std::numbers::pi;  // about x: y x z = x
-  Driven scene(fmt::format(
+  TextRun scene(fmt::format(
       "duration = 1000\n[room]\nsize = [8, 8, 8]\ncorner = [-4, -4, -4]\nwalls = \"none\"\n"
       "[[box]]\nname = \"table\"\nsize = [6, 0.2, 6]\nposition = [0, -0.1, 0]\nelasticity = 0\nfriction = 2\n"
       "motion = {{ angle = \"180*t\" }}\n"
@@ -171,13 +150,13 @@ TEST(Motion, KeepsTheOrderOfTheScheme) {
   const double k = 30, w2 = k, W = 3, A = 0.2;
   const double p = A * w2 / (w2 - W * W);  // x = p sin W t - p W / w sin w t
   const auto off = [&](const std::string& scheme, int rate, const std::string& mode) {
-    Driven scene(open_plane(fmt::format("gravity = [0, 0]\n[physics]\nrate = {}\nintegrator = \"{}\"\n"
-                                        "collision = \"{}\"",
-                                        rate, scheme, mode)) +
-                 "[[particle]]\nname = \"hand\"\nradius = 0.02\nposition = [0, 1]\n"
-                 "motion = { x = \"0.2*sin(3*t)\" }\n"
-                 "[[particle]]\nname = \"weight\"\nposition = [1, 1]\nmass = 1\n"
-                 "[[spring]]\nbetween = [\"hand\", \"weight\"]\nstiffness = 30\nrest_length = 1\n");
+    TextRun scene(open_plane(fmt::format("gravity = [0, 0]\n[physics]\nrate = {}\nintegrator = \"{}\"\n"
+                                         "collision = \"{}\"",
+                                         rate, scheme, mode)) +
+                  "[[particle]]\nname = \"hand\"\nradius = 0.02\nposition = [0, 1]\n"
+                  "motion = { x = \"0.2*sin(3*t)\" }\n"
+                  "[[particle]]\nname = \"weight\"\nposition = [1, 1]\nmass = 1\n"
+                  "[[spring]]\nbetween = [\"hand\", \"weight\"]\nstiffness = 30\nrest_length = 1\n");
     const double t = 1, w = std::sqrt(w2);
     return std::fabs(scene.at(t).bodies[1].position.x() - 1 -
                      (p * std::sin(W * t) - p * W / w * std::sin(w * t)));
@@ -192,11 +171,11 @@ TEST(Motion, KeepsTheOrderOfTheScheme) {
 // A pendulum on a rod from a pivot that is moved: the rod's row has the pivot's acceleration in every stage.
 TEST(Motion, OfAJointsEndKeepsTheOrderOfTheScheme) {
   const auto place = [&](int rate) {
-    Driven scene(open_plane(fmt::format("[physics]\nrate = {}\ncollision = \"event\"", rate)) +
-                 "[[particle]]\nname = \"pivot\"\nradius = 0.02\nposition = [0, 1]\n"
-                 "motion = { x = \"0.3*sin(4*t)\", y = \"0.1*cos(5*t)\" }\n"
-                 "[[particle]]\nname = \"bob\"\nradius = 0.05\nposition = [0.8, 1.1]\nvelocity = [1.2, 0]\n"
-                 "[[joint]]\ntype = \"rod\"\nbetween = [\"pivot\", \"bob\"]\n");
+    TextRun scene(open_plane(fmt::format("[physics]\nrate = {}\ncollision = \"event\"", rate)) +
+                  "[[particle]]\nname = \"pivot\"\nradius = 0.02\nposition = [0, 1]\n"
+                  "motion = { x = \"0.3*sin(4*t)\", y = \"0.1*cos(5*t)\" }\n"
+                  "[[particle]]\nname = \"bob\"\nradius = 0.05\nposition = [0.8, 1.1]\nvelocity = [1.2, 0]\n"
+                  "[[joint]]\ntype = \"rod\"\nbetween = [\"pivot\", \"bob\"]\n");
     return scene.at(1).bodies[1].position;
   };
   const Vec3 right = place(400);
@@ -207,22 +186,22 @@ TEST(Motion, OfAJointsEndKeepsTheOrderOfTheScheme) {
 
 TEST(Motion, GivesWorkThatIsInTheBooks) {
   for (const char* mode : {"contact", "event", "handout"}) {
-    Driven scene(open_plane(fmt::format("[physics]\nrate = 1200\ncollision = \"{}\"", mode)) +
-                 "[[particle]]\nname = \"hand\"\nradius = 0.02\nposition = [0, 1]\n"
-                 "motion = { x = \"0.5*sin(3*t)\", y = \"0.2*t\" }\n"
-                 "[[particle]]\nname = \"weight\"\nposition = [1, 1]\n"
-                 "[[spring]]\nbetween = [\"hand\", \"weight\"]\nstiffness = 30\n");
+    TextRun scene(open_plane(fmt::format("[physics]\nrate = 1200\ncollision = \"{}\"", mode)) +
+                  "[[particle]]\nname = \"hand\"\nradius = 0.02\nposition = [0, 1]\n"
+                  "motion = { x = \"0.5*sin(3*t)\", y = \"0.2*t\" }\n"
+                  "[[particle]]\nname = \"weight\"\nposition = [1, 1]\n"
+                  "[[spring]]\nbetween = [\"hand\", \"weight\"]\nstiffness = 30\n");
     const double begun = owned(scene.at(0));
     const sim::Snapshot now = scene.at(2);
     EXPECT_GT(std::fabs(now.energies.work), 0.1) << mode;
     EXPECT_NEAR(owned(now), begun, 1e-7) << mode;
   }
   // through a joint
-  Driven scene(open_plane("[physics]\nrate = 1200") +
-               "[[particle]]\nname = \"pivot\"\nradius = 0.02\nposition = [0, 1]\n"
-               "motion = { x = \"0.3*(1 - cos(4*t))\", y = \"0.1*t^2\" }\n"
-               "[[particle]]\nname = \"bob\"\nradius = 0.05\nposition = [0.8, 1]\n"
-               "[[joint]]\ntype = \"rod\"\nbetween = [\"pivot\", \"bob\"]\n");
+  TextRun scene(open_plane("[physics]\nrate = 1200") +
+                "[[particle]]\nname = \"pivot\"\nradius = 0.02\nposition = [0, 1]\n"
+                "motion = { x = \"0.3*(1 - cos(4*t))\", y = \"0.1*t^2\" }\n"
+                "[[particle]]\nname = \"bob\"\nradius = 0.05\nposition = [0.8, 1]\n"
+                "[[joint]]\ntype = \"rod\"\nbetween = [\"pivot\", \"bob\"]\n");
   const double begun = owned(scene.at(0));
   EXPECT_NEAR(owned(scene.at(2)), begun, 1e-7);
 }
@@ -230,10 +209,10 @@ TEST(Motion, GivesWorkThatIsInTheBooks) {
 // A wall that comes with u meets a ball at rest with elasticity e: it leaves with (1 + e) u.
 TEST(Motion, ARacketGivesItsVelocity) {
   for (const std::string& mode : kBothModes) {
-    Driven scene(open_plane("gravity = [0, 0]\n[physics]\ncollision = \"" + mode + "\"") +
-                 "[[box]]\nname = \"racket\"\nsize = [0.2, 1]\nposition = [-1, 0]\nelasticity = 0.5\n"
-                 "motion = { x = \"2*t\" }\n"
-                 "[[ball]]\nname = \"ball\"\nradius = 0.1\nposition = [0, 0]\nelasticity = 0.5\nmass = 2\n");
+    TextRun scene(open_plane("gravity = [0, 0]\n[physics]\ncollision = \"" + mode + "\"") +
+                  "[[box]]\nname = \"racket\"\nsize = [0.2, 1]\nposition = [-1, 0]\nelasticity = 0.5\n"
+                  "motion = { x = \"2*t\" }\n"
+                  "[[ball]]\nname = \"ball\"\nradius = 0.1\nposition = [0, 0]\nelasticity = 0.5\nmass = 2\n");
     const std::size_t ball = scene.run->scene_info().bodies[0].name == "ball" ? 0 : 1;
     const sim::Snapshot now = scene.at(0.8);
     EXPECT_NEAR(now.bodies[ball].velocity.x(), 3, 1e-9) << mode;
@@ -249,7 +228,7 @@ TEST(Motion, ARacketGivesItsVelocity) {
 TEST(Belt, ABlockSticksWhenItHasItsSpeedAndTheBeltGivesTwiceItsEnergy) {
   const double u = 1.5, mu = 0.3, sticks = u / (mu * kFall);
   for (const std::string& mode : kBothModes) {
-    Driven scene(
+    TextRun scene(
         open_plane("[physics]\ncollision = \"" + mode + "\"") +
         "[[box]]\nname = \"belt\"\nsize = [8, 0.2]\nposition = [0, -0.1]\nfixed = true\n"
         "surface_speed = 1.5\nfriction = 0.3\nelasticity = 0\n"
@@ -272,7 +251,7 @@ TEST(Belt, ABlockSticksWhenItHasItsSpeedAndTheBeltGivesTwiceItsEnergy) {
 }
 
 TEST(Belt, InSpaceGoesAlongItsVector) {
-  Driven scene(
+  TextRun scene(
       "duration = 1000\n[room]\nsize = [8, 8, 8]\ncorner = [-4, -4, -4]\nwalls = \"none\"\n"
       "[[box]]\nname = \"belt\"\nsize = [6, 0.2, 6]\nposition = [0, -0.1, 0]\nfixed = true\n"
       "surface_speed = [0.3, 0, -0.4]\nfriction = 0.4\nelasticity = 0\n"
@@ -287,9 +266,9 @@ TEST(Belt, InSpaceGoesAlongItsVector) {
 
 TEST(Release, LetsGoWithTheVelocityAndBooksTheEnergy) {
   for (const char* mode : {"contact", "event", "handout"}) {
-    Driven scene(open_plane(fmt::format("[physics]\ncollision = \"{}\"", mode)) +
-                 "[[particle]]\nname = \"ball\"\nradius = 0.1\nposition = [-2, 0]\n"
-                 "motion = { x = \"1.5*t\", y = \"2*t\" }\nrelease = 0.5003\n");
+    TextRun scene(open_plane(fmt::format("[physics]\ncollision = \"{}\"", mode)) +
+                  "[[particle]]\nname = \"ball\"\nradius = 0.1\nposition = [-2, 0]\n"
+                  "motion = { x = \"1.5*t\", y = \"2*t\" }\nrelease = 0.5003\n");
     EXPECT_NEAR(scene.at(0.4).energies.total(), 0, 1e-14) << mode;
     const sim::Snapshot now = scene.at(1);
     const double s = 1 - 0.5003;
@@ -302,10 +281,10 @@ TEST(Release, LetsGoWithTheVelocityAndBooksTheEnergy) {
 
 TEST(Release, OfAGateWakesWhatLeansOnIt) {
   for (const char* solver : {"direct", "iterative"}) {
-    Driven scene(fmt::format("duration = 9\n[room]\nsize = [8, 4.5]\n[physics]\nsolver = \"{}\"\n", solver) +
-                 "[[box]]\nname = \"shelf\"\nsize = [1, 0.1]\nposition = [4, 2]\nfixed = true\nrelease = "
-                 "2\nelasticity = 0\n"
-                 "[[box]]\nname = \"load\"\nsize = [0.3, 0.3]\nposition = [4, 2.2]\nelasticity = 0\n");
+    TextRun scene(fmt::format("duration = 9\n[room]\nsize = [8, 4.5]\n[physics]\nsolver = \"{}\"\n", solver) +
+                  "[[box]]\nname = \"shelf\"\nsize = [1, 0.1]\nposition = [4, 2]\nfixed = true\nrelease = "
+                  "2\nelasticity = 0\n"
+                  "[[box]]\nname = \"load\"\nsize = [0.3, 0.3]\nposition = [4, 2.2]\nelasticity = 0\n");
     EXPECT_NEAR(scene.at(1.9).bodies[1].position.y(), 2.2, 1e-4) << solver;
     const sim::Snapshot now = scene.at(2.3);
     EXPECT_NEAR(now.bodies[0].position.y(), 2 - 0.5 * kFall * 0.09, 2e-3) << solver;

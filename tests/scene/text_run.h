@@ -1,0 +1,40 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene/scene.h"
+#include "sim/step/run.h"
+
+namespace obscura::scene {
+
+/// The run of a scene that a test has as a text.
+struct TextRun {
+  std::unique_ptr<sim::Run> run;
+
+  explicit TextRun(const std::string& text, const std::vector<std::string>& sets = {})
+      : run(parse(text, "a.toml", sets).run()) {}
+
+  /// The instant at t, s, to a microsecond. A trouble fails the test, and the instant is empty.
+  sim::Snapshot at(double t) const {
+    auto outcome = run->at(*sim::parse_rational(fmt::format("{:.6f}", t)));
+    if (const auto* trouble = std::get_if<sim::Trouble>(&outcome)) {
+      ADD_FAILURE() << trouble->body << " " << trouble->quantity << " " << trouble->what << " "
+                    << trouble->likely;
+      return {};
+    }
+    return std::get<sim::Snapshot>(outcome);
+  }
+  sim::Vec3 place(double t, std::size_t body = 0) const { return at(t).bodies[body].position; }
+};
+
+/// A time as at() has it.
+inline double to_a_microsecond(double t) { return std::round(t * 1e6) / 1e6; }
+
+}  // namespace obscura::scene
