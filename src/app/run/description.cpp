@@ -107,7 +107,7 @@ std::vector<int> moving(const sim::SceneInfo& cast) {
 }
 
 // "a ball, 3 boxes and 2 springs"
-std::string who(const sim::SceneInfo& cast) {
+std::string listed(const sim::SceneInfo& cast) {
   std::vector<std::string> all;
   std::map<int, std::pair<std::size_t, const sim::SceneInfo::Body*>> kinds;
   std::vector<int> order;
@@ -218,7 +218,7 @@ std::vector<std::string> Account::beginning() const {
   const double g = cast_.gravity.norm();
   all.push_back(
       fmt::format("In {} there {} {}{}.", cast_.dimension == 2 ? "the plane" : "space",
-                  moving(cast_).size() == 1 ? "is" : "are", who(cast_),
+                  moving(cast_).size() == 1 ? "is" : "are", listed(cast_),
                   g > 0 ? fmt::format("; gravity is {} m/s²", numeral(g)) : "; there is no gravity"));
   const std::vector<int> bodies = moving(cast_);
   if (bodies.size() > kToldSingly) {
@@ -248,16 +248,16 @@ std::vector<std::string> Account::events() const {
     if (pairs.size() <= kToldSingly) {
       for (const auto& [pair, all] : pairs) {
         const Impact& first = *all.front();
-        const std::string whom = capital(called(cast_, first.body));
+        const std::string subject = capital(called(cast_, first.body));
         if (all.size() == 1)
-          told.emplace_back(first.time, fmt::format("{} hits {} at {}, at {} m/s.", whom, other(first),
+          told.emplace_back(first.time, fmt::format("{} hits {} at {}, at {} m/s.", subject, other(first),
                                                     time(first.time), numeral(first.speed)));
         else
-          told.emplace_back(
-              first.time, fmt::format("{} hits {} {} times: first at {}, at "
-                                      "{} m/s, last at {}, at {} m/s.",
-                                      whom, other(first), all.size(), time(first.time), numeral(first.speed),
-                                      time(all.back()->time), numeral(all.back()->speed)));
+          told.emplace_back(first.time, fmt::format("{} hits {} {} times: first at {}, at "
+                                                    "{} m/s, last at {}, at {} m/s.",
+                                                    subject, other(first), all.size(), time(first.time),
+                                                    numeral(first.speed), time(all.back()->time),
+                                                    numeral(all.back()->speed)));
       }
     } else {
       const auto hardest =
@@ -398,7 +398,7 @@ std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
   std::string all;
   const auto add = [&](const std::string& sentence) { all += (all.empty() ? "" : " ") + sentence; };
   const std::vector<int> bodies = moving(cast);
-  add(fmt::format("{} at {}.", capital(who(cast)), time(now.time)));
+  add(fmt::format("{} at {}.", capital(listed(cast)), time(now.time)));
   if (bodies.size() > kToldSingly) {
     std::size_t resting = 0;
     for (const int body : bodies) resting += now.bodies[std::size_t(body)].at_rest;

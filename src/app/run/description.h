@@ -8,7 +8,7 @@
 
 namespace obscura::app {
 
-/// What happens in a run of a scene, in sentences: who is there, what hits what when, what comes to rest,
+/// What happens in a run of a scene, in sentences: what is there, what hits what when, what comes to rest,
 /// what becomes of the energy, what the film says. Runs the scene once. Throws Interrupted.
 std::vector<std::string> description(const scene::Scene& scene);
 
