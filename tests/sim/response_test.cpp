@@ -106,7 +106,6 @@ TEST(Response, OfASideAndOfPointsIsThatOfTheRow) {
     const double K = response.coupling(p, q, three.at);
 
     PointBody<3> a(three.model.bodies[0], three.at[0]), b(three.model.bodies[1], three.at[1]);
-    EXPECT_NEAR(coupling<3>(s, t, a, arm_a, b, arm_b), K, 1e-13);
     const double before = speed(p, three.at);
     apply<3>(t, a, arm_a, b, arm_b);
     std::vector<BodyMotion<3>> after = three.at;

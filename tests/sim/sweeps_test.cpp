@@ -116,6 +116,7 @@ TEST(SpaceIterative, ARunCutInTwoIsTheRunInOne) {
   EXPECT_EQ(words(stepped(half, 163)), words(whole));
 }
 
+// less the booked work of pushing overlaps apart
 TEST(SpaceIterative, EnergyOfAHeapOnlyFalls) {
   const World<3> world = heap(20, 2, 0.4);
   State<3> state = world.state;
@@ -125,7 +126,7 @@ TEST(SpaceIterative, EnergyOfAHeapOnlyFalls) {
   const double whole = before;
   for (int i = 0; i < 900; ++i) {
     ASSERT_FALSE(stepper.step(state));
-    const double now = energy(world, state);
+    const double now = energy(world, state) - state.ledger.displacement;
     EXPECT_LT(now, before + 1e-12 * whole) << i;
     before = now;
   }

@@ -147,7 +147,21 @@ struct Seen {
   Flat at;
   double height;
 };
-using Loop = Few<Seen, 16>;
+struct Loop : Few<Seen, 16> {
+  struct Side {
+    Flat way;
+    double length;
+  };
+  Few<Side, 16> sides;  // from each corner to the next, the last to the first
+
+  int next(int i) const { return i + 1 < size() ? i + 1 : 0; }
+  void close() {
+    for (int i = 0; i < size(); ++i) {
+      const Flat way = (*this)[next(i)].at - (*this)[i].at;
+      sides.push_back({way, std::sqrt(way.squaredNorm())});
+    }
+  }
+};
 
 double cross(const Flat& p, const Flat& q) { return p[0] * q[1] - p[1] * q[0]; }
 
@@ -155,8 +169,7 @@ double cross(const Flat& p, const Flat& q) { return p[0] * q[1] - p[1] * q[0]; }
 bool within(const Loop& loop, const Flat& p, double slack) {
   if (loop.size() < 3) return false;
   for (int i = 0; i < loop.size(); ++i) {
-    const Flat from = loop[i].at, side = loop[i + 1 < loop.size() ? i + 1 : 0].at - from;
-    if (cross(side, p - from) < -slack * std::sqrt(side.squaredNorm())) return false;
+    if (cross(loop.sides[i].way, p - loop[i].at) < -slack * loop.sides[i].length) return false;
   }
   return true;
 }
@@ -212,6 +225,7 @@ class Shared {
     } else {
       its_.push_back(seen(other, 0)), its_.push_back(seen(other, 1));
     }
+    own_.close(), its_.close();
     const double size =
         std::min(base.bounding_radius(),
                  other.bounding_radius() > 0 ? other.bounding_radius() : base.bounding_radius());
@@ -285,20 +299,22 @@ class Shared {
 
   void crossings() {
     const int sides = its_.size() > 2 ? its_.size() : 1;
+    const auto across = [&](double from, double to) {
+      return std::min(from, to) < -aligned_ && std::max(from, to) > aligned_;
+    };
     for (int i = 0; i < own_.size(); ++i) {
-      const Seen &p0 = own_[i], &p1 = own_[i + 1 < own_.size() ? i + 1 : 0];
-      const Flat p = p1.at - p0.at;
-      const double p_length = std::sqrt(p.squaredNorm());
+      const Seen &p0 = own_[i], &p1 = own_[own_.next(i)];
+      const auto& [p, p_length] = own_.sides[i];
       for (int k = 0; k < sides; ++k) {
-        const Seen &q0 = its_[k], &q1 = its_[k + 1 < its_.size() ? k + 1 : 0];
-        const Flat q = q1.at - q0.at;
-        const double q_length = std::sqrt(q.squaredNorm());
+        const Seen &q0 = its_[k], &q1 = its_[its_.next(k)];
+        const auto& [q, q_length] = its_.sides[k];
         if (q_length <= aligned_) continue;
-        const double d0 = cross(p, q0.at - p0.at) / p_length, d1 = cross(p, q1.at - p0.at) / p_length;
-        const double e0 = cross(q, p0.at - q0.at) / q_length, e1 = cross(q, p1.at - q0.at) / q_length;
-        const auto across = [&](double from, double to) {
-          return std::min(from, to) < -aligned_ && std::max(from, to) > aligned_;
-        };
+        // most lie on one side
+        double d0 = cross(p, q0.at - p0.at), d1 = cross(p, q1.at - p0.at);
+        if ((d0 < 0) == (d1 < 0)) continue;
+        double e0 = cross(q, p0.at - q0.at), e1 = cross(q, p1.at - q0.at);
+        if ((e0 < 0) == (e1 < 0)) continue;
+        d0 /= p_length, d1 /= p_length, e0 /= q_length, e1 /= q_length;
         if (!across(d0, d1) || !across(e0, e1)) continue;
         const double on_q = d0 / (d0 - d1);
         const Flat at = q0.at + on_q * q;

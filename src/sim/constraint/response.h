@@ -187,14 +187,4 @@ void apply(const Vec<D>& impulse, PointBody<D>& a, const Vec<D>& arm_a, PointBod
   b.v -= b.inverse_mass * impulse, b.w -= b.inverse_inertia * moment<D>(arm_b, impulse);
 }
 
-/// K along s of such an impulse along t, 1/kg.
-template <int D>
-double coupling(const Vec<D>& s, const Vec<D>& t, const PointBody<D>& a, const Vec<D>& arm_a,
-                const PointBody<D>& b, const Vec<D>& arm_b) {
-  const AngularVec<D> as = moment<D>(arm_a, s), at = moment<D>(arm_a, t);
-  const AngularVec<D> bs = moment<D>(arm_b, s), bt = moment<D>(arm_b, t);
-  return (a.inverse_mass + b.inverse_mass) * s.dot(t) + as.dot(a.inverse_inertia * at) +
-         bs.dot(b.inverse_inertia * bt);
-}
-
 }  // namespace obscura::sim

@@ -270,16 +270,23 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
   touch.per_width = 1 / (b == none ? width_[a] : std::min(width_[a], width_[b]));
 
   // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
-  const auto answer = [&](const Vec<D>& s, const Vec<D>& t) {
-    return coupling(s, t, moving_[a], touch.arm_a, moving_[b], touch.arm_b);
+  Vec<D> ways[D];
+  ways[0] = touch.n, ways[1] = perpendicular<D>(touch.n);
+  if constexpr (D == 3) ways[2] = ways[0].cross(ways[1]);
+  AngularVec<D> moments[2][D], spins[2][D];
+  for (int i = 0; i < D; ++i) {
+    moments[0][i] = moment<D>(touch.arm_a, ways[i]), moments[1][i] = moment<D>(touch.arm_b, ways[i]);
+    spins[0][i] = moving_[a].inverse_inertia * moments[0][i];
+    spins[1][i] = moving_[b].inverse_inertia * moments[1][i];
+  }
+  const auto answer = [&](int i, int j) {
+    return (moving_[a].inverse_mass + moving_[b].inverse_mass) * ways[i].dot(ways[j]) +
+           moments[0][i].dot(spins[0][j]) + moments[1][i].dot(spins[1][j]);
   };
-  touch.normal = answer(touch.n, touch.n);
-  const Vec<D> t = perpendicular<D>(touch.n);
-  touch.across = answer(t, t), touch.askew = answer(touch.n, t) * t;
+  touch.normal = answer(0, 0), touch.across = answer(1, 1);
+  for (int i = 1; i < D; ++i) touch.askew += answer(0, i) * ways[i];
   if constexpr (D == 3) {
-    const Vec<D> u = touch.n.cross(t);
-    touch.askew += answer(touch.n, u) * u;
-    const double p = touch.across, q = answer(u, u), r = answer(t, u), half = 0.5 * (p - q);
+    const double p = touch.across, q = answer(2, 2), r = answer(1, 2), half = 0.5 * (p - q);
     touch.across = 0.5 * (p + q) + std::sqrt(half * half + r * r);
   }
   touches_.push_back(touch), features_.push_back(gap);
@@ -391,12 +398,12 @@ void SpaceIterative<D>::settle_contacts() {
   const int count = int(touches_.size());
   const double settled = settled_rate(closing_rate_);
   stirred_.assign(moving_.size(), 1), stirred_.back() = 0;
-  std::vector<char>& tied = stirred_next_;
-  tied.assign(moving_.size(), 0);
-  for (const int body : joints_.bodies()) tied[body] = 1;
+
+  jointed_.assign(moving_.size(), 0);
+  for (const int body : joints_.bodies()) jointed_[body] = 1;
   some_.clear();
   for (int i = 0; i < count; ++i) {
-    if (!tied[touches_[i].a] && !tied[touches_[i].b]) some_.push_back(i);
+    if (!jointed_[touches_[i].a] && !jointed_[touches_[i].b]) some_.push_back(i);
   }
   const int all = int(some_.size());
   bool any = all > 0, back = false;

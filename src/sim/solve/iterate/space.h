@@ -200,6 +200,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<ContactCandidate<D>> gaps_;
   int iterations_ = 0;                             // of this substep, of all touches
   std::vector<char> stirred_, stirred_next_;       // bodies whose touches have not settled
+  std::vector<char> jointed_;                      // bodies of joints
   std::vector<ContactConstraint> touches_;         // ascending by key
   std::vector<ContactCandidate<D>> features_;      // theirs
   std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows

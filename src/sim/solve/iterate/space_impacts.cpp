@@ -18,6 +18,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr int kMost = 8;               // gaps of one impact
+constexpr int kSweeps = 30;            // over the rows, for the modes that are tried first
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
 constexpr int kShares = 24;            // halvings for the share of e that does so
 constexpr double kLockedPush = 1e-9;   // of what a push moves without joints
@@ -126,6 +127,7 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
       }
     }
     modes_.assign(count, {}), p_.setZero();
+    cone_.sweep(K_, b_, blocks_, modes_, p_, kSweeps);
     if (!cone_.solve(K_, b_, blocks_, modes_, p_).found) return std::numeric_limits<double>::infinity();
     return rise();
   };
