@@ -300,7 +300,7 @@ potential = "4*((0.3/r)^12 - (0.3/r)^6)"
 
 A body can be moved as functions of time say. It then has infinite mass: nothing stops it, and what touches it or hangs on it by joints and
 springs feels its velocity and acceleration in every stage of the integrator. What it gives is booked as work. A body that is fixed or
-moved can be let go; a fixed or moving body can carry a belt. Contacts with such bodies need the direct solver.
+moved can be let go; a fixed or moving body can carry a belt.
 
 ```toml
 [[box]]

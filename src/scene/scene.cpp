@@ -90,18 +90,6 @@ void ignore(const Node& top, const NameTable& roster, sim::Model<D>& model, Diag
   }
 }
 
-// prescribed motion and belts are the direct solver's
-template <int D>
-void refuse_iterative_motion(const Node& top, const sim::Model<D>& model, Diagnostics& complaints) {
-  if (model.solver != sim::Solver::iterative || model.collision != sim::Collision::contact) return;
-  const auto carries = [](const sim::Body<D>& body) { return body.carries(); };
-  if (std::none_of(model.bodies.begin(), model.bodies.end(), carries)) return;
-  complaints.add(
-      Fields::of(top, "physics").place("solver"),
-      "the iterative solver does not know 'motion' and 'surface_speed' yet; leave 'solver' out: the "
-      "direct one does");
-}
-
 // bonded bodies move as their bonds say
 template <int D>
 void refuse_moved_bonds(const Node& top, const sim::Model<D>& model, Diagnostics& complaints) {
@@ -178,7 +166,6 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   constants.refuse_unused();
   bonds(top, roster, world, complaints);
   refuse_moved_bonds(top, model, complaints);
-  refuse_iterative_motion(top, model, complaints);
   ignore(top, roster, model, complaints);
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
   refuse_crowd(top, model, complaints);

@@ -72,10 +72,10 @@ class Sleep {
   void wake(State<D>& state, std::span<const int> bodies);
 
   /// Wakes islands that bodies which are moved, and belts, may reach: nothing sleeps near them. `travel` is
-  /// how far such a body gets in the step, m.
+  /// how far such a body gets in the step, m. True where any woke.
   template <class Travel>
-  void wake_near_driven(State<D>& state, Travel&& travel) {
-    if (carriers_.empty()) return;
+  bool wake_near_driven(State<D>& state, Travel&& travel) {
+    if (carriers_.empty()) return false;
     near_carriers_.clear();
     for (const int carrier : carriers_) {
       const double reach = 2 * travel(carrier) + kCarrierMargin * bounding_radius_[carrier];
@@ -88,7 +88,9 @@ class Sleep {
     woken_.clear();
     for (const int i : near_carriers_)
       if (state.frozen[i]) woken_.push_back(i);
-    if (!woken_.empty()) wake(state, std::vector<int>(woken_));
+    if (woken_.empty()) return false;
+    wake(state, std::vector<int>(woken_));
+    return true;
   }
 
   /// Sets at rest what begins without speed and in equilibrium: islands without joints, springs and hands, of

@@ -28,7 +28,7 @@ void ContactStep<D>::step(State<D>& state, double t, double h) {
     touched_.emplace_back(contact.key.a, contact.key.b);
   }
   energy_guard_.open(state, t);
-  if (lone_bodies_) lone_bodies_->find(state, h);
+  if (lone_bodies_) lone_bodies_->find(state, t, h);
 
   solver_->step(state, t, h);
   if (lone_bodies_) lone_bodies_->step(state, t, h);

@@ -82,8 +82,6 @@ template <int D>
 Solver solver(const Model<D>& model) {
   if (model.collision == Collision::event) return Solver::direct;
   if (!model.chains.empty()) return Solver::direct;  // links are sides of its rows alone
-  for (const Body<D>& body : model.bodies)
-    if (body.carries()) return Solver::direct;  // which alone knows of prescribed motion and belts
   if (model.solver != Solver::automatic) return model.solver;
   return body_counts(model).template few<D>() ? Solver::direct : Solver::iterative;
 }

@@ -1,7 +1,7 @@
 // A body has an impact in a step of h if it reaches a wall, or a fixed body, faster than it falls in one
 // step:
 //   gap + h u - 2 g h^2 < 0,   u < -g h         u  speed of its nearest point along the normal, at least
-// It is alone if no other body can reach it:
+// It is alone if no other body can reach it, nor one that is moved or a belt:
 //   |x_i - x_j| > r_i + r_j + s_i + s_j       s = 1.1 h sqrt(2 K / m) + g h^2, r  bounding radius
 
 #include "sim/solve/exact/lone_bodies.h"
@@ -27,6 +27,7 @@ template <int D>
 LoneBodies<D>::LoneBodies(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model),
       direct_(model, paths, ExactSolver<D>::Serves::lone),
+      drives_(model),
       g_(std::sqrt(model.gravity.squaredNorm())) {
   const int n = int(model.bodies.size());
   free_.assign(n, 1), still_.resize(n), moved_.assign(n, 0), ways_.resize(n), bounds_.resize(n);
@@ -38,6 +39,7 @@ LoneBodies<D>::LoneBodies(const Model<D>& model, const std::vector<Path<D>>& pat
     bounding_radius_.push_back(bounding_radius(body.shape));
     points_.push_back(is_point(body.shape));
     if (body.fixed) fixed_.push_back(i);
+    carries_.push_back(body.carries());
     if (body.fixed || body.handout || body.linked) tie(i);
   }
   for (const Spring<D>& spring : model.springs) tie(spring.a.body), tie(spring.b.body);
@@ -83,7 +85,7 @@ void LoneBodies<D>::leave_out_near(const State<D>& state) {
   if (candidates_.size() * std::size_t(n) <= kFew) {
     std::erase_if(candidates_, [&](int a) {
       for (int b = 0; b < n; ++b) {
-        if (a != b && !model_.bodies[b].fixed && !apart(a, b)) return true;
+        if (a != b && meets(b) && !apart(a, b)) return true;
       }
       return false;
     });
@@ -96,13 +98,13 @@ void LoneBodies<D>::leave_out_near(const State<D>& state) {
     bounds_[i] = {state.x[i] - far, state.x[i] + far};
   }
   for (const auto& [a, b] : broad_.find(bounds_, still_, {}, points_)) {
-    if (!model_.bodies[a].fixed && !model_.bodies[b].fixed && !apart(a, b)) still_[a] = still_[b] = 1;
+    if (meets(a) && meets(b) && !apart(a, b)) still_[a] = still_[b] = 1;
   }
   std::erase_if(candidates_, [&](int i) { return still_[i] != 0; });
 }
 
 template <int D>
-void LoneBodies<D>::find(const State<D>& state, double h) {
+void LoneBodies<D>::find(const State<D>& state, double t, double h) {
   candidates_.clear(), began_.clear();
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
@@ -117,6 +119,7 @@ void LoneBodies<D>::find(const State<D>& state, double h) {
         still ? 0
               : kSpareWay * h * std::sqrt(2 * kinetic(model_, state, i) / model_.bodies[i].mass) + g_ * h * h;
   }
+  for (int i = 0; i < drives_.size(); ++i) ways_[drives_.body(i)] = kSpareWay * drives_.travel(i, t, h);
   leave_out_near(state);
   for (const int i : candidates_) {
     Began it{i, state.x[i], state.v[i], no_rotation<D>(), AngularVec<D>::Zero(), {}};

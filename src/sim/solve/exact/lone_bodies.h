@@ -8,9 +8,9 @@
 
 namespace obscura::sim {
 
-/// Bodies that meet nothing but walls and fixed bodies in a step, faster than what rests, are moved through
-/// it by the exact solver, whichever solver serves all others: each impact at its own time, however many
-/// there are.
+/// Bodies that meet nothing but walls and fixed bodies without a belt in a step, faster than what rests, are
+/// moved through it by the exact solver, whichever solver serves all others: each impact at its own time,
+/// however many there are.
 template <int D>
 class LoneBodies {
  public:
@@ -18,7 +18,7 @@ class LoneBodies {
   LoneBodies(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// Finds them in a state before its step from t to t + h (s), and remembers how they stand.
-  void find(const State<D>& state, double h);
+  void find(const State<D>& state, double t, double h);
 
   /// Moves them, in the state that the other solver has stepped; not those that met others there after all.
   void step(State<D>& state, double t, double h);
@@ -37,14 +37,18 @@ class LoneBodies {
 
   bool strikes(const State<D>& state, int body, double h) const;
   void leave_out_near(const State<D>& state);
+  // whether a body is one that what is alone must not meet
+  bool meets(int body) const { return !model_.bodies[body].fixed || carries_[body]; }
 
   const Model<D>& model_;
   ExactSolver<D> direct_;
+  Drives<D> drives_;
   double g_ = 0;                                // m/s^2
   std::vector<char> free_;                      // one a body: nothing ever ties it
   std::vector<char> still_;                     // one a body: it is not to be moved
   std::vector<char> moved_;                     // one a body
   std::vector<char> points_;                    // one a body
+  std::vector<char> carries_;                   // one a body: it is moved, or a belt
   std::vector<int> fixed_;                      // bodies
   std::vector<double> bounding_radius_, ways_;  // one a body: bounding radius, how far it gets in the step, m
   std::vector<int> candidates_;

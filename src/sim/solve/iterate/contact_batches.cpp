@@ -217,6 +217,9 @@ void PlaneIterative<D>::fill_lane(int i, const State<D>& state) {
   pair.impact_speed = float(-0.999 * g.impact_speed[lane]);
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.per_width[lane] = 1 / std::max(2 * thin, kPointWidth * model_.scale);
+  const double belt = belt_of(pair.a) + belt_of(pair.b);
+  g.belt[lane] = belt;
+  g.belts = static_cast<unsigned char>(belt != 0 ? g.belts | bit : g.belts & ~bit);
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
   // in terms of bodies' own bounding radii
   double least = cores_.bounding_radius[pair.a];

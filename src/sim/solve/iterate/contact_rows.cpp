@@ -131,11 +131,15 @@ OBSCURA_INLINE void press(Two<V>& two, const WideRow<V>& r0, const WideRow<V>& r
   l0 = next0, l1 = next1;
 }
 
+// `belt`: what belts add to the speed across, of four pairs; null: nothing
 template <class V>
-OBSCURA_INLINE void rub(Two<V>& two, const WideRow<V>& r, const V& most, V& lt) {
+OBSCURA_INLINE void rub(Two<V>& two, const WideRow<V>& r, const V& most, V& lt,
+                        const double* belt = nullptr) {
   const V tx = -r.ny, ty = r.nx;
   const V kt = (two.a.w + two.b.w) + (two.iia * (r.ta * r.ta) + two.iib * (r.tb * r.tb));
-  const V wanted = lt - two.along(tx, ty, r.ta, r.tb) / (kt + kTiny);
+  V slips = two.along(tx, ty, r.ta, r.tb);
+  if (belt) slips += load<V>(belt);
+  const V wanted = lt - slips / (kt + kTiny);
   const V next = larger<V>(smaller<V>(wanted, most), -most);
   two.push(tx, ty, r.ta, r.tb, next - lt);
   lt = next;
@@ -319,8 +323,9 @@ OBSCURA_INLINE int sweep_all(ContactBatch* batches, int count, const Pose* poses
       V l1 = load<V>(g->p[1] + lane), t1 = load<V>(g->q[1] + lane);
       [[maybe_unused]] const Two<V> begun = two;
       [[maybe_unused]] const V begun_l0 = l0, begun_t0 = t0, begun_l1 = l1, begun_t1 = t1;
-      rub<V>(two, r0, mu * l0, t0);
-      rub<V>(two, r1, mu * l1, t1);
+      const double* belt = g->belts ? g->belt + lane : nullptr;
+      rub<V>(two, r0, mu * l0, t0, belt);
+      rub<V>(two, r1, mu * l1, t1, belt);
       const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
       const V open0 = pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none));
       const V open1 = pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none));
@@ -444,7 +449,8 @@ void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k) {
   to.mu[k] = from.mu[i], to.iia[k] = from.iia[i], to.iib[k] = from.iib[i];
   to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.impact_speed[k] = from.impact_speed[i],
   to.radius[k] = from.radius[i];
-  to.sight[k] = from.sight[i], to.per_width[k] = from.per_width[i];
+  to.sight[k] = from.sight[i], to.per_width[k] = from.per_width[i], to.belt[k] = from.belt[i];
+  to.belts = static_cast<unsigned char>((to.belts & ~(1 << k)) | (from.belts >> i & 1) << k);
   for (int side = 0; side < 2; ++side) {
     to.cx[side][k] = from.cx[side][i], to.cy[side][k] = from.cy[side][i];
     to.fx[side][k] = from.fx[side][i], to.fy[side][k] = from.fy[side][i], to.d[side][k] = from.d[side][i];

@@ -31,6 +31,7 @@ struct alignas(64) ContactBatch {
   unsigned char struck[2];          // of a pair that met an impact in this step
   unsigned char boxes;              // both are boxes
   unsigned char used;               // a bit a lane: it is in use
+  unsigned char belts;              // a body of the pair has a belt
   unsigned short words[2][kLanes];  // of the features
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
   double calm[kLanes], far[kLanes];  // m/s up to which features stay; the larger bounding radius of both, m
@@ -38,6 +39,7 @@ struct alignas(64) ContactBatch {
   double sight[kLanes];              // m: touches farther off are none
   double per_width[kLanes];          // 1/m: of the narrower of both
   double radius[kLanes];             // of both together, m
+  double belt[kLanes];               // m/s: what belts of both add to v_t
   double cx[2][kLanes], cy[2][kLanes];
   double fx[2][kLanes], fy[2][kLanes];
   double d[2][kLanes];                // of two corners: b's radius
@@ -45,7 +47,7 @@ struct alignas(64) ContactBatch {
 };
 
 /// The rows of four pairs.
-///   v_n = n . (v_a - v_b) + r_a x n w_a - r_b x n w_b      v_t likewise, t = (-n_y, n_x)
+///   v_n = n . (v_a - v_b) + r_a x n w_a - r_b x n w_b      v_t likewise, t = (-n_y, n_x), and belts in it
 struct alignas(64) Rows {
   double nx[2][kLanes], ny[2][kLanes], x[2][kLanes], y[2][kLanes], gap[2][kLanes];
   double na[2][kLanes], nb[2][kLanes], ta[2][kLanes], tb[2][kLanes];  // r_a x n, ..., m
@@ -90,6 +92,10 @@ TouchRow row(const ContactBatch& batches, int lane, int k, const Pose& a, const 
 /// Normal speed of a touch, m/s: a against b.
 inline double normal_speed(const TouchRow& r, const Motion& a, const Motion& b) {
   return r.nx * (a.x - b.x) + r.ny * (a.y - b.y) + (r.na * a.w - r.nb * b.w);
+}
+/// Its speed across the normal, along (-n_y, n_x), without belts.
+inline double tangent_speed(const TouchRow& r, const Motion& a, const Motion& b) {
+  return r.nx * (a.y - b.y) - r.ny * (a.x - b.x) + (r.ta * a.w - r.tb * b.w);
 }
 inline double normal_speed(const Rows& r, int k, int lane, const Motion& a, const Motion& b) {
   return r.nx[k][lane] * (a.x - b.x) + r.ny[k][lane] * (a.y - b.y) +

@@ -45,7 +45,9 @@ JointSolver<D>::JointSolver(const Model<D>& model) : model_(model), response_(mo
     }
   }
   for (int i = 0; i < int(n); ++i) {
-    if (member_[i]) bodies_.push_back(i);
+    if (!member_[i]) continue;
+    bodies_.push_back(i);
+    driven_ = driven_ || model.bodies[std::size_t(i)].driven;
   }
 }
 
@@ -158,6 +160,8 @@ void JointSolver<D>::compute_rows() {
     const Joint<D>& joint = model_.joints[held_[k]];
     rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), &rows_[factors_.first(k)], off);
   }
+  gives_.assign(driven_ ? rows_.size() : 0, 0);
+  for (std::size_t r = 0; r < gives_.size(); ++r) gives_[r] = given(rows_[r]);
   constexpr int kMost = kMostHeld<D>;
   const auto fill = [&](auto& block, int i, int j) {
     for (int r = 0; r < factors_.size(i); ++r) {
@@ -169,6 +173,26 @@ void JointSolver<D>::compute_rows() {
   for (int k = 0; k < int(held_.size()); ++k) fill(factors_.diagonal(k), k, k);
   for (int e = 0; e < int(pairs_.size()); ++e) fill(factors_.entry(e), pairs_[e].first, pairs_[e].second);
   factors_.factorise();
+}
+
+// minus the part of the row's speed that bodies have which are moved
+template <int D>
+double JointSolver<D>::given(const Row<D>& row) const {
+  double sum = 0;
+  const auto side = [&](int body, const AngularVec<D>& turn, double sign) {
+    if (body >= 0 && model_.bodies[std::size_t(body)].driven)
+      sum -= sign * (row.along.dot(at_[body].v) + turn.dot(at_[body].w));
+  };
+  side(row.a, row.angular_a, 1), side(row.b, row.angular_b, -1);
+  return sum;
+}
+
+template <int D>
+double JointSolver<D>::given(const JointResponse& response) const {
+  double sum = 0;
+  for (int s = 0; driven_ && s < 2; ++s)
+    each_row(response.components[s], [&](int k, int r) { sum += response.answer[s][k] * gives_[r]; });
+  return sum;
 }
 
 // how far a limit or a rope is from its end at the present poses; false of what has none
@@ -223,6 +247,7 @@ void JointSolver<D>::collect_bounded(double h) {
       if (load == motor) b.target = joint.motor->speed;
     }
 
+    b.gave = driven_ ? given(b.row) : 0;
     compute_response(b);
     b.give = give(b);
     active_ += b.give > 0;
@@ -455,7 +480,7 @@ void JointSolver<D>::project_positions(double h) {
     worst = position_error();
   }
   for (double& s : shifts_) s /= h;
-  old_rows_ = rows_;
+  old_rows_ = rows_, gave_ = gives_;
   if (worst <= enough && near()) return;
   at_.swap(begun_at_), turn_.swap(begun_turn_);
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
@@ -487,6 +512,7 @@ void JointSolver<D>::damped_newton() {
 
 template <int D>
 void JointSolver<D>::finish(double h) {
+  work_ = 0;
   if (bodies_.empty()) return;
   project_positions(h);
   // a taut rope turns its bodies' motion as an equality does: s / h of Rattle's
@@ -505,10 +531,25 @@ void JointSolver<D>::finish(double h) {
   }
   if (update_bounded()) {
     iterate();
-    return;
+  } else {
+    solve_positions();
+    for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
   }
-  solve_positions();
-  for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
+  book();
+}
+
+// half of each impulse where the step began, half where it ends
+template <int D>
+void JointSolver<D>::book() {
+  work_ = 0;
+  if (!driven_) return;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    work_ += 0.5 * totals_[r] * (gave_[r] + gives_[r]);
+  }
+  for (std::size_t k = 0; k < active_; ++k) {
+    const Bounded& b = bounded_[k];
+    work_ += 0.5 * b.impulse * (b.gave + given(b.row));
+  }
 }
 
 // Motors where bodies now stand, with what they have left to give; what else has bounds has done its

@@ -85,8 +85,13 @@ class JointSolver {
     }
   }
 
+  /// What bodies that are moved give by a unit of impulse along a row, and by what joints answer to it, J.
+  double given(const JointResponse& response) const;
+
   /// After a step: places back onto the joints, velocities along them where bodies now stand.
   void finish(double h);
+  /// What bodies that are moved have given through joints in the step that was finished last, J.
+  double given() const { return work_; }
 
   /// act(row, how much faster it could make it within the step, beside what it bears) for each row of a
   /// component that bears something: without end of what joints keep and of limits and ropes that are pulled
@@ -123,12 +128,14 @@ class JointSolver {
     double impulse = 0;
     bool taut = false;  // a rope that is at its length when the step begins
     double put = 0;     // kg m: what put its bodies back where the step had left the rope too long
+    double gave = 0;    // what bodies that are moved gave by a unit of impulse as the step began
     int first = 0;      // of its row in yields_
   };
 
   void plan();
   AngularVec<D> turn_between(const Joint<D>& joint) const;
   const BodyMotion<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
+  double given(const Row<D>& row) const;
   void push(const Row<D>& row, double impulse);
   template <class Act>
   void each_push(const Row<D>& row, double impulse, Act&& act) const {
@@ -159,6 +166,7 @@ class JointSolver {
   bool near() const;
   void project_positions(double h);
   void damped_newton();
+  void book();
 
   const Model<D>& model_;
   BodyMotion<D> room_;
@@ -179,6 +187,9 @@ class JointSolver {
   std::vector<int> some_parts_;
   Blocks<kMostHeld<D>> factors_;  // of K = J M^-1 J'
   std::vector<Row<D>> rows_, old_rows_;
+  bool driven_ = false;               // some bodies are moved
+  std::vector<double> gives_, gave_;  // what those give by a unit along each row, now and then
+  double work_ = 0;
   std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
   std::vector<Bounded> bounded_;  // the first `active_`
   std::size_t active_ = 0;

@@ -28,7 +28,9 @@ NearPairs::NearPairs(const Model<2>& model, const CoreShapes& cores)
   for (std::size_t i = 0; i < n; ++i) {
     movers_[i].bounding_radius = cores.bounding_radius[i];
     movers_[i].half_thickness = std::max(cores.half_thickness[i], 1e-3 * model.scale);
-    fixed_.push_back(model.bodies[i].fixed), handout_.push_back(model.bodies[i].handout);
+    const Body<2>& body = model.bodies[i];
+    fixed_.push_back(body.fixed && !body.driven), handout_.push_back(body.handout);
+    if (body.driven) farther_.resize(n);
     elasticity_ = std::max(elasticity_, model.bodies[i].elasticity);
   }
   for (const Wall<2>& wall : model.walls) elasticity_ = std::max(elasticity_, wall.elasticity.value_or(0));
@@ -53,6 +55,11 @@ void NearPairs::compute_margins(const State<2>& state, const std::vector<Pose>& 
     const bool rests = fixed_[body] || state.frozen[body];
     still_[body] = rests || (patience > 0 && patience * span * m.speed < calm_);
     m.margin = rests ? 0 : span * (m.speed + falls) + spare(body, m.speed, span);
+  }
+  if (farther_.empty()) return;
+  for (int body = 0; body < n; ++body) {
+    if (!model_.bodies[body].driven) continue;
+    still_[body] = 0, movers_[body].margin += farther_[body];
   }
 }
 

@@ -50,6 +50,9 @@ class NearPairs {
   /// What of this is for speed (m/s) that it may gain meanwhile, by impacts.
   double spare(int body, double speed, double span) const;
 
+  /// How far a body that is moved gets in the next span from where its velocity takes it, m.
+  void foresee(int body, double farther) { farther_[body] = farther; }
+
   /// Whether both are one box about their centre.
   bool boxes(int a, int b) const { return halves_[a].wide > 0 && halves_[b].wide > 0; }
   void find_outdated(const std::vector<ContactBatch>& batches, const std::vector<Motion>& v,
@@ -79,6 +82,7 @@ class NearPairs {
   std::vector<Mover> movers_;
   std::vector<Bounds<2>> bounds_;      // of cores
   std::vector<char> fixed_, handout_;  // bodies: what of the model is asked for often
+  std::vector<double> farther_;        // bodies that are moved: see foresee(); empty where there are none
   std::vector<char> still_;            // bodies
   std::vector<char> still_cores_, points_;
   std::vector<char> exposed_;  // bodies that may be struck within the span

@@ -63,6 +63,8 @@ class Pairs {
 
   /// How far a body may come by speed (m/s) that it may gain within `span` s, by impacts.
   double spare(int body, double speed, double span) const { return near_.spare(body, speed, span); }
+  /// How far a body that is moved gets in the next span from where its velocity takes it, m.
+  void foresee(int body, double farther) { near_.foresee(body, farther); }
 
  private:
   void inherit(const Pair& pair, const std::vector<Pose>& poses, const Contact<2>* old, int count,

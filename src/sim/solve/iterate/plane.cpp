@@ -51,7 +51,9 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
              4 * allowed_overlap(model).share + 2 * AllowedOverlap::kLeast),
       equilibrium_(model, cores_),
       dynamics_(model, paths),
-      joints_(model) {
+      joints_(model),
+      drives_(model),
+      driven_(std::size_t(drives_.size())) {
   const int n = int(model.bodies.size());
   const double h = 1 / value(model.rate);
   every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairUpdates));
@@ -68,6 +70,9 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
     fixed_.push_back(body.fixed);
     light_.push_back({1 / body.mass, body.turns() ? 1 / body.inertia[0] : 0});
   }
+  if (std::none_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.carries(); }))
+    return;
+  for (const Body<D>& body : model.bodies) carries_.push_back(body.carries());
 }
 
 template <int D>
@@ -88,7 +93,7 @@ bool PlaneIterative<D>::collide(StepPart<D> step) {
     dynamics_.gather(state);
     for (int i = 0; i < n; ++i) movers_[i] = dynamics_.has(i);
   }
-  bool held = false, asleep = true;
+  bool held = wake_near_driven(step), asleep = true;
   for (int i = 0; i < n; ++i) {
     held = held || (movers_[i] && state.frozen[i]);
     asleep = asleep && (state.frozen[i] | fixed_[i]);
@@ -99,6 +104,7 @@ bool PlaneIterative<D>::collide(StepPart<D> step) {
   }
   const bool known = gather(state);
   if (!known) pairs_.adopt(state);
+  if (due || held) foresee_driven(step.t);
   if (due || held) {
     update_pairs(state, known);
   } else if (!known) {
@@ -124,7 +130,10 @@ void PlaneIterative<D>::report(StepPart<D> step) {
   impacts_.keep(step.state.contacts);
   // the next step looks anyway, unless this was a fraction of one
   const bool whole = step.h * value(model_.rate) > 1 - 1e-9;
-  if (outran_ && !(whole && (step.state.step + 1) % every_ == 0)) update_pairs(step.state, true);
+  if (outran_ && !(whole && (step.state.step + 1) % every_ == 0)) {
+    foresee_driven(step.t + step.h);
+    update_pairs(step.state, true);
+  }
 }
 
 template <int D>
@@ -176,6 +185,7 @@ void PlaneIterative<D>::renew_pairs(StepPart<D> step) {
   State<D>& state = step.state;
   if (outran_) {
     for (const Pair& pair : pairs_.all()) report_pair(pair, state);
+    foresee_driven(step.t);
     update_pairs(state, true);
     outran_ = false;
   }
@@ -200,20 +210,29 @@ void PlaneIterative<D>::move_free(StepPart<D> step) {
   renew_pairs(step);
   if (step.substep == 0) integrate_unconstrained(step.state, step.t, substeps_ * step.h);
   share_free_motion(step);
+  move_driven(step);
 }
 
 // The wide kernel that finds what closes applies the forces of the last step as well.
 template <int D>
 void PlaneIterative<D>::resolve_impacts(StepPart<D> step) {
-  constants_ = {step.h, 0.05 * restitution_threshold_, step.h * std::sqrt(model_.gravity.squaredNorm()),
-                allowed_overlap_};
+  constants_ = {step.h, 0.05 * restitution_threshold_,
+                step.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap_};
   deep_ = plane::start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), v_.data(),
                        constants_, slow_, fast_);
   if (!joints_.empty()) {
     copy_to_joints();
+    // bodies that are moved as the substep begins
+    for (int i = 0; i < drives_.size(); ++i) {
+      const int body = drives_.body(i);
+      if (!joints_.has(body)) continue;
+      const Motion& u = old_[body];
+      joints_.body_motion(body).v = {u.x, u.y}, joints_.body_motion(body).w[0] = u.w;
+    }
     joints_.compute_rows();
   }
   impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, constants_, joints_);
+  if (!step.state.work.empty()) step.state.work[0] += impacts_.given();
   constants_.least = impacts_.least();
 }
 
@@ -246,6 +265,7 @@ void PlaneIterative<D>::iterate(StepPart<D> step) {
   solve_joint_velocities();
   plane::finish(batches_.data(), count, poses_.data(), v_.data(), constants_,
                 last ? step.state.contacts.data() : nullptr);
+  if (!carries_.empty()) book_contacts(step);
   impacts_.note(pairs_.all(), step.state.contacts, batches_);
 }
 
@@ -337,15 +357,16 @@ bool PlaneIterative<D>::gather(const State<D>& state) {
   for (int i = 0; i < n; ++i) {
     const double x = state.x[i][0], y = state.x[i][1], vx = state.v[i][0], vy = state.v[i][1];
     const bool same = (poses_[i].x == x) & (poses_[i].y == y) & (v_[i].x == vx) & (v_[i].y == vy);
-    known = known && same;
+    known = known && (same || drives_.number(i) >= 0);
     poses_[i].x = x, poses_[i].y = y, v_[i].x = vx, v_[i].y = vy;
   }
   for (int i = still; i < n; ++i) {
     const double turn = state.turn[i - still][0], w = state.spin[i - still][0];
-    known = known && v_[i].w == w;
+    const bool moved = drives_.number(i) >= 0;  // as its time says, to rounding
+    known = known && (v_[i].w == w || moved);
     v_[i].w = w;
     if (turn == turns_[i]) continue;
-    known = false;
+    known = known && moved;
     const SinCos sc = sin_cos(turn);
     poses_[i].c = sc.cos, poses_[i].s = sc.sin, turns_[i] = turn;
   }
@@ -372,8 +393,9 @@ void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
   // springs and hands
   if (!dynamics_.ever()) return;
   const std::vector<int>& bodies = dynamics_.bodies();
-  stages_.reserve(bodies.size() * (D + kAngular<D>));
+  stages_.reserve(std::size_t(dynamics_.size()));
   dynamics_.step(integrate(model_.integrator), state, t, h, stages_);
+  if (!state.work.empty()) state.work[0] += dynamics_.work();
   for (const int i : bodies) {
     const Motion& v = v_[i];
     if (v.im > 0) {
@@ -417,6 +439,92 @@ void PlaneIterative<D>::share_free_motion(StepPart<D> step) {
   }
 }
 
+// --- bodies that are moved, and belts
+
+// wakes what they may reach before the next pair search; true where anything woke
+template <int D>
+bool PlaneIterative<D>::wake_near_driven(StepPart<D> step) {
+  if (carries_.empty()) return false;
+  return sleep_.wake_near_driven(step.state, [&](int body) {
+    const int i = drives_.number(body);
+    return i < 0 ? 0 : drives_.travel(i, step.t, std::max(step.h, span_));
+  });
+}
+
+// tells the pair search how far they get from where their velocities at t take them
+template <int D>
+void PlaneIterative<D>::foresee_driven(double t) {
+  for (int i = 0; i < drives_.size(); ++i) {
+    const int body = drives_.body(i);
+    const DrivenMotion<D> now = drives_.at(i, t), then = drives_.at(i, t + span_);
+    const double speed = std::sqrt(now.at.v.squaredNorm()),
+                 turns = std::fabs(then.turn[0] - now.turn[0]) - span_ * std::fabs(now.at.w[0]);
+    const double farther = std::max(0.0, drives_.travel(i, t, span_) - span_ * speed) +
+                           std::max(0.0, turns) * cores_.bounding_radius[body];
+    pairs_.foresee(body, farther);
+  }
+}
+
+// their way in the substep, as their motion has it
+template <int D>
+void PlaneIterative<D>::move_driven(StepPart<D> step) {
+  driven_gain_ = 0;
+  for (int i = 0; i < drives_.size(); ++i) {
+    const int body = drives_.body(i);
+    const DrivenMotion<D> from = drives_.at(i, step.t);
+    const DrivenMotion<D>& to = driven_[i] = drives_.at(i, step.t + step.h);
+    const Motion o{from.at.v[0], from.at.v[1], from.at.w[0], 0}, v{to.at.v[0], to.at.v[1], to.at.w[0], 0};
+    old_[body] = o, v_[body] = v;
+    dv_[body] = {v.x - o.x, v.y - o.y, v.w - o.w, 0};
+    dx_[body] = {to.at.x[0] - poses_[body].x, to.at.x[1] - poses_[body].y, to.turn[0] - turns_[body], 0};
+    const Motion& gain = dv_[body];
+    driven_gain_ = std::max(driven_gain_, std::fabs(gain.x) + std::fabs(gain.y) +
+                                              std::fabs(gain.w) * cores_.bounding_radius[body]);
+  }
+}
+
+template <int D>
+void PlaneIterative<D>::place_driven(State<D>& state) {
+  const int still = int(turns_.size() - state.turn.size());
+  for (int i = 0; i < drives_.size(); ++i) {
+    const int body = drives_.body(i);
+    const DrivenMotion<D>& to = driven_[i];
+    state.x[body] = to.at.x, state.v[body] = to.at.v;
+    poses_[body].x = to.at.x[0], poses_[body].y = to.at.x[1];
+    if (body < still) continue;
+    state.turn[body - still] = to.turn, state.spin[body - still] = to.at.w, turns_[body] = to.turn[0];
+  }
+}
+
+// The work that they do by the contacts of a substep, J: each force times the way that the surface of what
+// carries goes.
+template <int D>
+void PlaneIterative<D>::book_contacts(StepPart<D> step) const {
+  if (step.state.work.empty()) return;
+  const auto mean = [&](int body) {
+    Motion m{};
+    if (drives_.number(body) < 0) return m;
+    const Motion &o = old_[body], &v = v_[body];
+    m.x = 0.5 * (o.x + v.x), m.y = 0.5 * (o.y + v.y), m.w = 0.5 * (o.w + v.w);
+    return m;
+  };
+  double sum = 0;
+  for (const Pair& pair : pairs_.all()) {
+    if (pair.slot < 0 || pair.b < 0 || !(carries_[pair.a] | carries_[pair.b])) continue;
+    const ContactBatch& g = batches_[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    const Motion a = mean(pair.a), b = mean(pair.b);
+    for (int k = 0; k < pair.touches; ++k) {
+      const double fx = g.p[k][lane], fy = g.q[k][lane];
+      if (fx == 0 && fy == 0) continue;
+      const plane::TouchRow r = plane::row(g, lane, k, poses_[pair.a], poses_[pair.b]);
+      const double n = fx * r.nx + fy * r.ny, t = fy * r.nx - fx * r.ny;
+      sum -= n * plane::normal_speed(r, a, b) + t * (plane::tangent_speed(r, a, b) + g.belt[lane]);
+    }
+  }
+  step.state.work[0] += step.h * sum;
+}
+
 // bodies of joints to the joints, and their velocities back
 template <int D>
 void PlaneIterative<D>::copy_to_joints() {
@@ -450,6 +558,7 @@ template <int D>
 void PlaneIterative<D>::project_joints(State<D>& state, double h) {
   copy_to_joints();
   joints_.finish(h);
+  if (!state.work.empty()) state.work[0] += joints_.given();
   joints_.keep(state, h);
   joints_.break_joints(state);
   copy_from_joints();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/collide/core_shapes.h"
+#include "sim/model/drives.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/iterate/contact_rows.h"
@@ -66,6 +67,12 @@ class PlaneIterative final : public ContactSolver<D> {
   void settle_pairs();
   void integrate_unconstrained(State<D>& state, double t, double h);
   void share_free_motion(StepPart<D> step);
+  void move_driven(StepPart<D> step);
+  void place_driven(State<D>& state);
+  bool wake_near_driven(StepPart<D> step);
+  void foresee_driven(double t);
+  double belt_of(int body) const { return body < 0 ? 0 : model_.bodies[std::size_t(body)].belt[0]; }
+  void book_contacts(StepPart<D> step) const;
   void copy_to_joints();
   void copy_from_joints();
   void solve_joint_velocities();
@@ -89,6 +96,10 @@ class PlaneIterative final : public ContactSolver<D> {
   plane::Equilibrium equilibrium_;
   ForwardDynamics<D> dynamics_;
   JointSolver<D> joints_;
+  Drives<D> drives_;
+  std::vector<DrivenMotion<D>> driven_;  // of those: where the substep ends
+  std::vector<char> carries_;            // bodies: what moves, and belts; empty where there are none
+  double driven_gain_ = 0;               // m/s: what the substep adds to a point of theirs, at most
   Stages stages_;
   std::int64_t every_ = 1;  // steps between two pair searches for pairs
   double span_ = 0;         // and s

@@ -42,6 +42,7 @@ void PlaneIterative<D>::place_bodies(State<D>& state, double h, bool apply_push_
     }
     sleep_.time(state, i, v.x * v.x + v.y * v.y, v.w * v.w, h);
   }
+  place_driven(state);
   plane::turn_all(turns_.data() + still, poses_.data() + still, n - still);
 }
 
@@ -111,6 +112,7 @@ bool PlaneIterative<D>::sinks(int body, const Motion& way, double h) const {
     if (other >= 0 && v_[other].im > 0)
       its =
           closing_[other] ? Motion{h * v_[other].x, h * v_[other].y, h * v_[other].w, 0} : mean_way(other, h);
+    if (drives_.number(other) >= 0) its = dx_[other];
     const double let = allowed_overlap_(g.far[lane], 1 / g.per_width[lane]);
     for (int k = 0; k < pair.touches; ++k) {
       const plane::TouchRow at = plane::row(g, lane, k, begun_[pair.a], begun_[pair.b < 0 ? none : pair.b]);

@@ -29,7 +29,7 @@ void Impacts::move(int body, double when, const std::vector<Pose>& poses, const 
                    const StepConstants& pace, Pose& pose, Motion& v) const {
   const bool there = when_[body] == when;
   pose = there ? pose_[body] : poses[body], v = now_[body];
-  if (v.im == 0 || there) return;
+  if (there) return;
   const Motion& gain = dv[body];
   const double time = when - std::max(0.0, when_[body]), share = time / pace.h, half = 0.5 * share;
   double x = time * (v.x + half * gain.x), y = time * (v.y + half * gain.y), w = time * (v.w + half * gain.w);

@@ -157,13 +157,14 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
           closes[k] && joints.response_between(responses_[0][k], responses_[0][k]) > kLocked * (ima + imb);
   }
 
+  const Motion va = motion_at(a, impact.when, step), vb = motion_at(b, impact.when, step);
   PairImpact system;
   system.mu = pair.material.friction;
   for (int r = 0; r < 4; ++r) {
     if (!closes[r / 2]) continue;
     system.closed[r / 2] = true;
     const Push& p = pushes[r % 2][r / 2];
-    system.v[r] = speed(p, a, b);
+    system.v[r] = speed(p, va, vb) + (r % 2 != 0 && g.belts ? g.belt[lane] : 0);
     if (r % 2 == 0) system.e[r / 2] = system.v[r] < g.impact_speed[lane] ? pair.material.elasticity : 0;
     for (int c = 0; c <= r; ++c) {
       if (!closes[c / 2]) continue;
@@ -195,6 +196,10 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
     const double n = impulses[2 * k], t = impulses[2 * k + 1];
     impact.n[k] += n, impact.t[k] += t;
     push(0, k, n), push(1, k, t);
+    // what does not move by impulses gives as fast as it goes
+    const Motion none{}, &ua = ima > 0 ? none : va, &ub = imb > 0 ? none : vb;
+    carried_ -= n * speed(pushes[0][k], ua, ub) + t * (speed(pushes[1][k], ua, ub) + g.belt[lane]);
+    if (tied) carried_ += n * joints.given(responses_[0][k]) + t * joints.given(responses_[1][k]);
   }
 }
 
@@ -216,12 +221,15 @@ void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<Co
     const char met = waiting_[i];
     double v[2];
     bool any = met != 0;
+    const double last = std::max({0.0, when_[pair.a], when_[b]});
+    const Step step{pairs, poses, dv, pace};
+    const Motion va = motion_at(pair.a, last, step), vb = motion_at(b, last, step);
     for (int k = 0; k < pair.touches; ++k) {
-      v[k] = normal_speed(r, k, lane, now_[pair.a], now_[b]);
+      v[k] = normal_speed(r, k, lane, va, vb);
       any = any || (v[k] < 0 && r.gap[k][lane] + pace.h * v[k] < 0);
     }
     if (!any) return;
-    const PlacedPair at = placed_at(pair, std::max({0.0, when_[pair.a], when_[b]}), g, poses, dv, pace);
+    const PlacedPair at = placed_at(pair, last, g, poses, dv, pace);
     const double left = pace.h - at.when;
     for (int k = 0; k < pair.touches; ++k) {
       const double gap = at.rows[k].gap, vn = normal_speed(at.rows[k], at.a, at.b);
@@ -251,7 +259,7 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
     if (impact.pair < int(impacts_of_.size())) impacts_of_[impact.pair] = 0;
   }
   bodies_.clear(), impacts_.clear(), due_.clear(), predicted_.clear(), passing_.clear();
-  rows_.clear(), groups_.clear(), queue_.clear();
+  rows_.clear(), groups_.clear(), queue_.clear(), carried_ = 0;
   if (found.empty()) return;
   std::copy(old.begin(), old.end(), now_.begin());
   known_.assign(batches.size(), -1);

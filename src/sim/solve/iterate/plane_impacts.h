@@ -30,6 +30,9 @@ class Impacts {
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
            std::vector<Motion>& v, const StepConstants& pace, JointSolver<2>& joints);
 
+  /// What bodies that are moved, and belts, gave by the impacts of the last run, J.
+  double given() const { return carried_; }
+
   /// By group: the least normal speeds (m/s) that iterations leave the lanes that are struck.
   const Least* least() const { return least_.data(); }
 
@@ -126,9 +129,17 @@ class Impacts {
   bool reach_component(const Pair& pair, double when, const Step& step, const JointSolver<2>& joints);
   void compute_responses(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2],
                          JointSolver<2>& joints);
-  double speed(const Push& push, int a, int b) const {
-    return push.x * (now_[a].x - now_[b].x) + push.y * (now_[a].y - now_[b].y) +
-           (push.a * now_[a].w - push.b * now_[b].w);
+  static double speed(const Push& push, const Motion& a, const Motion& b) {
+    return push.x * (a.x - b.x) + push.y * (a.y - b.y) + (push.a * a.w - push.b * b.w);
+  }
+  // how a body moves at an impact of its, or one that no impact moves at that time
+  Motion motion_at(int body, double when, const Step& step) const {
+    Motion v = now_[body];
+    if (v.im > 0) return v;
+    const double share = when / step.pace.h;
+    const Motion& gain = step.dv[body];
+    v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
+    return v;
   }
   void leave_to_iterations(const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
                            const std::vector<Pose>& poses, const std::vector<Motion>& dv,
@@ -146,6 +157,7 @@ class Impacts {
   std::vector<Motion> now_;                 // velocities after it, or as the step begins
   std::vector<Motion> given_;               // what their impacts gave to them
   std::vector<int> rounds_;                 // impacts of each body
+  double carried_ = 0;                      // J
 
   std::vector<int> queue_;  // pairs to be looked at, as one of their bodies just had an impact
   std::vector<Due> due_;

@@ -52,7 +52,8 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
       joints_(model),
       sleep_(model, Sleep<D>::Forces::iterated, kDeepest),
       response_(model),
-      energy_guard_(model) {
+      energy_guard_(model),
+      drives_(model) {
   const double h = 1 / value(model.rate);
   g_ = std::sqrt(model.gravity.squaredNorm());
   restitution_threshold_ = 2 * h / substeps_for(0, h) * g_ + 1e-9 * model.scale;
@@ -63,6 +64,10 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
     bounding_radius_.push_back(bounding_radius(body.shape));
     points_.push_back(is_point(body.shape));
   }
+  if (std::none_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.carries(); }))
+    return;
+  for (const Body<D>& body : model.bodies) carries_.push_back(body.carries());
+  farther_.resize(carries_.size());
 }
 
 template <int D>
@@ -72,14 +77,14 @@ bool SpaceIterative<D>::collide(StepPart<D> step) {
   state.frozen.resize(n), state.quiet.resize(n);
   joints_.prepare(state);
   if (state.step == 0) joints_.project_initial_velocities(state);
-  prepare(state);
+  prepare(state, step.t, step.h);
   find(step.h);
   return true;
 }
 
 template <int D>
 void SpaceIterative<D>::wake(StepPart<D> step) {
-  if (update_sleep(step.state, step.h)) prepare(step.state), find(step.h);
+  if (update_sleep(step.state, step.t, step.h)) prepare(step.state, step.t, step.h), find(step.h);
   closing_rate_ = closing_rate(step.h);
   substeps_ = substeps_for(closing_rate_, step.h);
   impulses_.clear(), corrected_ = false;
@@ -161,6 +166,7 @@ void SpaceIterative<D>::iterate(StepPart<D> step) {
     place_bodies(step.state, step.h);
     if (!temper(step.state)) break;
   }
+  book_contacts(step.state);
 }
 
 template <int D>
@@ -183,7 +189,7 @@ void SpaceIterative<D>::sleep(StepPart<D> step) {
 
 // poses, velocities and inverse inertias
 template <int D>
-void SpaceIterative<D>::prepare(const State<D>& state) {
+void SpaceIterative<D>::prepare(const State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   stances_.resize(n), moving_.assign(n + 1, {}), inactive_.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -192,6 +198,14 @@ void SpaceIterative<D>::prepare(const State<D>& state) {
     inactive_[i] = body.fixed || state.frozen[i];
     response_.set(i, !inactive_[i]);
     if (!inactive_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
+  }
+  for (int i = 0; i < drives_.size(); ++i) {
+    const int body = drives_.body(i);
+    moving_[body].v = stances_[body].v, moving_[body].w = stances_[body].w;
+    const DrivenMotion<D> then = drives_.at(i, t + h);
+    const AngularVec<D> gain = then.at.w - stances_[body].w;
+    farther_[body] = std::max(0.0, drives_.travel(i, t, h) - h * std::sqrt(stances_[body].v.squaredNorm())) +
+                     h * bounding_radius_[body] * std::sqrt(gain.squaredNorm());
   }
 }
 
@@ -205,6 +219,7 @@ double SpaceIterative<D>::swiftness(int body) const {
 // how far a body may come in a step, m
 template <int D>
 double SpaceIterative<D>::margin(int body, double h) const {
+  if (drives_.number(body) >= 0) return h * swiftness(body) + farther_[body] + 1e-3 * bounding_radius_[body];
   return inactive_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
 }
 
@@ -215,8 +230,9 @@ double SpaceIterative<D>::pair_margin(int a, int b, double h) const {
   const double passes = std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
                         bounding_radius_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
                         bounding_radius_[b] * std::sqrt(moving_[b].w.squaredNorm());
+  const double farther = carries_.empty() ? 0 : farther_[a] + farther_[b];
   return std::min(margin(a, h) + margin(b, h),
-                  h * (passes + 2 * g_ * h) + kSpare * (bounding_radius_[a] + bounding_radius_[b]));
+                  h * (passes + 2 * g_ * h) + farther + kSpare * (bounding_radius_[a] + bounding_radius_[b]));
 }
 
 template <int D>
@@ -289,7 +305,67 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
     const double p = touch.across, q = answer(2, 2), r = answer(1, 2), half = 0.5 * (p - q);
     touch.across = 0.5 * (p + q) + std::sqrt(half * half + r * r);
   }
+  if (carries(a) || carries(b)) touch.belt = belt(touch);
   touches_.push_back(touch), features_.push_back(gap);
+}
+
+// --- bodies that are moved, and belts
+
+// what belts add to the speed of a's surface against b's
+template <int D>
+Vec<D> SpaceIterative<D>::belt(const ContactConstraint& touch) const {
+  Vec<D> u = Vec<D>::Zero();
+  const auto add = [&](int body, double sign) {
+    if (!carries(body) || model_.bodies[body].belt.isZero(0)) return;
+    u += sign * belt_velocity<D>(model_.bodies[body], stances_[body].room_from_body, Vec<D>(-sign * touch.n));
+  };
+  add(touch.a, 1), add(touch.b, -1);
+  return u;
+}
+
+// where they are and how they move at the end of the step, into the state and among those that others touch
+template <int D>
+void SpaceIterative<D>::move_driven(State<D>& state, double t, double h) {
+  for (int i = 0; i < drives_.size(); ++i) {
+    const int body = drives_.body(i);
+    const DrivenMotion<D> to = drives_.at(i, t + h);
+    state.x[body] = to.at.x, state.v[body] = moving_[body].v = to.at.v;
+    if (const int k = turning(state, body); k >= 0)
+      state.turn[k] = to.turn, state.spin[k] = moving_[body].w = to.at.w;
+  }
+}
+
+// what they give, J, by an impulse on a, and back on b, at arms from their centres
+template <int D>
+double SpaceIterative<D>::given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a,
+                                const Vec<D>& arm_a, const BodyMotion<D>& b, int body_b,
+                                const Vec<D>& arm_b) const {
+  double sum = 0;
+  if (drives_.number(body_a) >= 0) sum -= impulse.dot(a.velocity(arm_a));
+  if (body_b < int(model_.bodies.size()) && drives_.number(body_b) >= 0)
+    sum += impulse.dot(b.velocity(arm_b));
+  return sum;
+}
+
+// their work by the contacts of a substep, by the mean of their velocities
+template <int D>
+void SpaceIterative<D>::book_contacts(State<D>& state) const {
+  if (carries_.empty() || state.work.empty()) return;
+  const auto mean = [&](int body) {
+    BodyMotion<D> at;
+    if (body == int(model_.bodies.size())) return at;
+    at.v = 0.5 * (stances_[body].v + moving_[body].v), at.w = 0.5 * (stances_[body].w + moving_[body].w);
+    return at;
+  };
+  double sum = 0;
+  for (const ContactConstraint& touch : touches_) {
+    if (!carries(touch.a) && !carries(touch.b)) continue;
+    const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
+    if (impulse.isZero(0)) continue;
+    sum += given(impulse, mean(touch.a), touch.a, touch.arm_a, mean(touch.b), touch.b, touch.arm_b) -
+           impulse.dot(touch.belt);
+  }
+  state.work[0] += sum;
 }
 
 // rows of the joints where the step begins
@@ -309,7 +385,7 @@ void SpaceIterative<D>::move_free(StepPart<D> step) {
   State<D>& state = step.state;
   if (substeps_ > 1) {
     if (step.substep > 0 && !joints_.empty()) joints_.prepare(state);
-    prepare(state), find(step.h);
+    prepare(state, step.t, step.h), find(step.h);
   }
   if (!joints_.empty()) build_joint_rows(state);
   const int n = int(model_.bodies.size());
@@ -317,6 +393,8 @@ void SpaceIterative<D>::move_free(StepPart<D> step) {
   dynamics_.gather(state, true);
   stages_.reserve(std::size_t(dynamics_.size()));
   dynamics_.step(integrate(model_.integrator), state, step.t, step.h, stages_);
+  if (!state.work.empty()) state.work[0] += dynamics_.work();
+  move_driven(state, step.t, step.h);
   v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
   energy_guard_.open(state);
   for (int i = 0; i < n; ++i) {
@@ -488,6 +566,10 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
       returned_[island(touch)] += touch.normal_impulse * touch.least;
   }
   bool any = false;
+  // what is moved may give energy
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.normal_impulse > 0 && (carries(touch.a) || carries(touch.b))) gained_[island(touch)] = 0;
+  }
   for (ContactConstraint& touch : touches_) {
     if (!(touch.bounces && touch.least > 0 && touch.normal_impulse > 0)) continue;
     const int of = island(touch);
@@ -577,7 +659,7 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
   if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
   corrected_ = true;
   kept_ = moving_;
-  for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();
+  for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();  // and belts do not push
   const int rounds = std::clamp(kPartRounds / int(some_.size()), 4, 16);
   for (int round = 0; round < rounds; ++round) {
     for (const int i : some_) {
@@ -607,6 +689,7 @@ void SpaceIterative<D>::project_joints(State<D>& state, double h) {
     if (const int k = turning(state, i); k >= 0) joints_.turn(i) = state.turn[k];
   }
   joints_.finish(h);
+  if (!state.work.empty()) state.work[0] += joints_.given();
   joints_.keep(state, h);
   joints_.break_joints(state);
   copy_from_joints();

@@ -11,6 +11,7 @@
 #include "sim/constraint/response.h"
 #include "sim/energy/energy_guard.h"
 #include "sim/math/islands.h"
+#include "sim/model/drives.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/solve/cone/cone.h"
 #include "sim/solve/contact_solver.h"
@@ -56,6 +57,7 @@ class SpaceIterative final : public ContactSolver<D> {
     double normal_impulse = 0;                // impulse along n, N s
     Vec<D> tangent_impulse = Vec<D>::Zero();  // and across it
     Vec<D> impact_impulse = Vec<D>::Zero();   // impulse of impacts within the step, N s
+    Vec<D> belt = Vec<D>::Zero();             // what belts add to the slip of a against b, m/s
     int renewals = 0;                         // of its features, since the step began
     bool after = false;                       // of a body that had one
     bool passes = false;                      // however it looks, it does not close with an impact
@@ -103,10 +105,10 @@ class SpaceIterative final : public ContactSolver<D> {
     }
   };
 
-  void prepare(const State<D>& state);
+  void prepare(const State<D>& state, double t, double h);
   void find(double h);
   void add(const ContactCandidate<D>& gap, const Material& pair);
-  bool update_sleep(State<D>& state, double h);
+  bool update_sleep(State<D>& state, double t, double h);
   void build_joint_rows(const State<D>& state);
   const Flown& flown(int body, double t, double h) const;
   Flown fly(int body, double t, double h) const;
@@ -132,7 +134,7 @@ class SpaceIterative final : public ContactSolver<D> {
   bool has_nearest_features(const Due& due, double h);
   bool gather_impact(int touch, double t, double h);
   bool build_impact_rows(double t, double h);
-  bool solve_impact(double t, double h);
+  bool solve_impact(double t, double h, std::vector<double>& work);
   // act(body) for what moves of a side of a touch, and for all that hangs together with it on joints
   template <class Act>
   void each_tied(int body, Act&& act) const {
@@ -158,8 +160,19 @@ class SpaceIterative final : public ContactSolver<D> {
   // how fast a's matter moves against b's
   Vec<D> slip(const ContactConstraint& touch) const {
     const PointBody<D>&a = moving_[touch.a], &b = moving_[touch.b];
-    return a.v + cross_velocity<D>(a.w, touch.arm_a) - b.v - cross_velocity<D>(b.w, touch.arm_b);
+    const Vec<D> slips =
+        a.v + cross_velocity<D>(a.w, touch.arm_a) - b.v - cross_velocity<D>(b.w, touch.arm_b);
+    return carries_.empty() ? slips : Vec<D>(slips + touch.belt);
   }
+  // of bodies that are moved, and belts
+  bool carries(int body) const {
+    return !carries_.empty() && body < int(model_.bodies.size()) && carries_[std::size_t(body)];
+  }
+  Vec<D> belt(const ContactConstraint& touch) const;
+  void move_driven(State<D>& state, double t, double h);
+  double given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a, const Vec<D>& arm_a,
+               const BodyMotion<D>& b, int body_b, const Vec<D>& arm_b) const;
+  void book_contacts(State<D>& state) const;
   bool temper(const State<D>& state);
   void copy_to_joints(const std::vector<char>* of = nullptr);
   void copy_from_joints(const std::vector<char>* of = nullptr);
@@ -184,6 +197,9 @@ class SpaceIterative final : public ContactSolver<D> {
   Response<D> response_;
   std::vector<Contact<D>> near_;
   EnergyGuard<D> energy_guard_;
+  Drives<D> drives_;
+  std::vector<char> carries_;    // bodies that are moved, and belts; empty where there are none
+  std::vector<double> farther_;  // likewise: how far they get from where their velocity takes them, m
   Stages stages_;
   double g_ = 0, restitution_threshold_ = 0;
   std::vector<double> bounding_radius_, width_;  // of bodies, m

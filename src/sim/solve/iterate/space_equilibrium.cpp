@@ -37,11 +37,15 @@ Contact<D> SpaceIterative<D>::contact(const ContactConstraint& touch, double h) 
 
 // whether bodies have fallen asleep or woken before the step
 template <int D>
-bool SpaceIterative<D>::update_sleep(State<D>& state, double h) {
-  if (state.step > 0 && !sleep_.any(state)) return false;
+bool SpaceIterative<D>::update_sleep(State<D>& state, double t, double h) {
+  const bool carried = sleep_.wake_near_driven(state, [&](int body) {
+    const int i = drives_.number(body);
+    return i < 0 ? 0 : drives_.travel(i, t, h);
+  });
+  if (state.step > 0 && !sleep_.any(state)) return carried;
   near_.clear();
   for (const ContactConstraint& touch : touches_) near_.push_back(contact(touch, h));
-  const bool woke = sleep_.wake(state, near_, h, h);
+  const bool woke = sleep_.wake(state, near_, h, h) || carried;
   if (woke || state.step > 0 || !sleep_.at_start(state, near_)) return woke;
   state.contacts = near_;
   return true;
@@ -120,7 +124,7 @@ void SpaceIterative<D>::put_to_sleep(State<D>& state, double h) {
 }
 
 template Contact<3> SpaceIterative<3>::contact(const ContactConstraint&, double) const;
-template bool SpaceIterative<3>::update_sleep(State<3>&, double);
+template bool SpaceIterative<3>::update_sleep(State<3>&, double, double);
 template void SpaceIterative<3>::put_to_sleep(State<3>&, double);
 
 }  // namespace obscura::sim

@@ -27,7 +27,7 @@ constexpr int kRenewals = 4;          // of a gap's features in a step
 // where a body is at a time of the step, after its last impact if it had one
 template <int D>
 const typename SpaceIterative<D>::Flown& SpaceIterative<D>::flown(int body, double t, double h) const {
-  if (body >= int(model_.bodies.size()) || inactive_[body]) return flown_[body];
+  if (body >= int(model_.bodies.size()) || (inactive_[body] && drives_.number(body) < 0)) return flown_[body];
   if (t == std::max(0.0, when_[body])) return flown_[body];
   // of many gaps of a body one asks what another has asked; most do not close, and ask where the step ends
   Course& course = courses_[body];
@@ -49,7 +49,13 @@ typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, dou
   const Vec<D> gain = (time / h) * (v_free_[body] - stances_[body].v);
   at.stance.x += time * (at.stance.v + 0.5 * gain), at.stance.v += gain;
   const int k = body - (int(model_.bodies.size()) - int(turn_.size()));
-  if (k < 0 || !it.turns() || at.stance.w.isZero(0)) return at;
+  if (k < 0 || !it.turns() || (at.stance.w.isZero(0) && drives_.number(body) < 0)) return at;
+  if (drives_.number(body) >= 0) {
+    const AngularVec<D> more = (time / h) * (w_free_[k] - stances_[body].w);
+    at.turn = turned<D>(at.turn, AngularVec<D>(time * (at.stance.w + 0.5 * more)));
+    at.stance.room_from_body = rotation<D>(at.turn), at.stance.w += more;
+    return at;
+  }
   if (!wobbles<D>(it.inertia)) {
     at.turn = turned<D>(at.turn, AngularVec<D>(time * at.stance.w));
     at.stance.room_from_body = rotation<D>(at.turn);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "sim/solve/cone/one_contact.h"
 #include "sim/solve/iterate/space.h"
@@ -71,6 +72,7 @@ bool SpaceIterative<D>::build_impact_rows(double t, double h) {
       impact_responses_[D * k + i] = response_.of(row, at.a, at.b);
       speeds_[D * k + i] =
           row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
+      if (i > 0 && !touch.belt.isZero(0)) speeds_[D * k + i] += row.along.dot(touch.belt);
     }
     if (joints_.empty()) continue;
     for (const auto& [body, it] : {std::pair(touch.a, &at.a), std::pair(touch.b, &at.b)}) {
@@ -102,7 +104,7 @@ bool SpaceIterative<D>::build_impact_rows(double t, double h) {
 
 // all that meets at a time, at once; false where no impulses were found
 template <int D>
-bool SpaceIterative<D>::solve_impact(double t, double h) {
+bool SpaceIterative<D>::solve_impact(double t, double h, std::vector<double>& work) {
   if (!build_impact_rows(t, h)) return false;
   const int count = int(meets_.size()), rows = D * count;
   const Eigen::VectorXd& v = speeds_;
@@ -153,6 +155,21 @@ bool SpaceIterative<D>::solve_impact(double t, double h) {
       });
     }
   }
+  if (!carries_.empty() && !work.empty()) {
+    for (int i = 0; i < rows; ++i) {
+      const ContactConstraint& touch = touches_[meets_[i / D]];
+      const Row<D>& row = impact_rows_[i];
+      double gives = i % D != 0 ? -row.along.dot(touch.belt) : 0;
+      for (const auto& [body, turn, sign] :
+           {std::tuple(row.a, row.angular_a, 1.0), std::tuple(row.b, row.angular_b, -1.0)}) {
+        if (body < 0 || drives_.number(body) < 0) continue;
+        const BodyMotion<D>& at = flown(body, t, h).stance;
+        gives -= sign * (row.along.dot(at.v) + turn.dot(at.w));
+      }
+      if (impact_tied_) gives += joints_.given(tied_responses_[i]);
+      work[0] += p_[i] * gives;
+    }
+  }
   for (int i = 0; i < rows; ++i) {
     touches_[meets_[i / D]].impact_impulse += p_[i] * impact_rows_[i].along;
     if (impact_tied_) {
@@ -198,7 +215,7 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
   }
   fastest_.assign(n + 1, {});
   for (int i = 0; i < n; ++i) {
-    if (inactive_[i]) continue;
+    if (inactive_[i] && drives_.number(i) < 0) continue;
     fastest_[i].gain = std::sqrt((v_free_[i] - stances_[i].v).squaredNorm());
     limit_speed(i, h);
   }
@@ -244,7 +261,7 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
     due_.pop_back();
     if (due.rounds != rounds(due.touch)) continue;
     if (!has_nearest_features(due, h)) continue;
-    if (!gather_impact(due.touch, due.when, h) || !solve_impact(due.when, h)) continue;
+    if (!gather_impact(due.touch, due.when, h) || !solve_impact(due.when, h, state.work)) continue;
     struck_ = true;
     changed_.clear();
     for (const int i : meets_) {
