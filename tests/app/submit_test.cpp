@@ -141,24 +141,30 @@ TEST_F(Submit, WritesNoCommandsThatANameBringsAlong) {
   }
 }
 
-// SIGTERM goes to all of a job, and may come late: to what asks Slurm whether the job is to queue again
-TEST_F(Submit, AScriptThatIsToldToStopTwiceQueuesAgain) {
+// SIGTERM goes to all of a job, and may come late: to what asks Slurm whether the job is to queue again.
+// While one is on its way Slurm has another word for a job that runs.
+class ToldToStop : public Submit, public testing::WithParamInterface<const char*> {};
+
+TEST_P(ToldToStop, AScriptQueuesAgainUnlessItsJobWasCancelled) {
+  const std::string state = GetParam();
   Errand errand;
   errand.made = "room.mp4", errand.folder = ".", errand.where = path("");
   errand.prepare = "sh -c 'trap \"exit 130\" TERM; touch ready; while :; do sleep 0.02; done'";
   std::ofstream(path("job.sh")) << prepare_script(errand);
-  std::ofstream(path("scontrol"))
-      << "#!/bin/sh\n"
-         "if [ $1 = requeue ]; then touch requeued; exit 1; fi\n"
-         "touch shown; while [ ! -e go ]; do sleep 0.02; done; echo ' JobState=RUNNING '\n";
+  std::ofstream(path("scontrol")) << "#!/bin/sh\n"
+                                     "if [ $1 = requeue ]; then touch requeued; exit 1; fi\n"
+                                     "touch shown; while [ ! -e go ]; do sleep 0.02; done; echo ' JobState=" +
+                                         state + " '\n";
   const Outcome run = shell(
       "chmod +x scontrol; PATH=$PWD:$PATH setsid sh job.sh & job=$!; "
       "until [ -e ready ]; do sleep 0.02; done; kill -TERM -$job; "
       "until [ -e shown ]; do sleep 0.02; done; kill -TERM -$job; touch go; wait $job; echo code $?");
   EXPECT_THAT(run.out, testing::AnyOf(testing::HasSubstr("code 130"), testing::HasSubstr("code 143")))
       << run.err;
-  EXPECT_TRUE(std::filesystem::exists(path("requeued")));
+  EXPECT_EQ(std::filesystem::exists(path("requeued")), state != "COMPLETING");
 }
+
+INSTANTIATE_TEST_SUITE_P(Submit, ToldToStop, testing::Values("RUNNING", "SIGNALING", "COMPLETING"));
 
 class Slurm : public WithSlurm {};
 
