@@ -52,8 +52,8 @@ class Cone {
                    std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes,
                    Eigen::Ref<Eigen::VectorXd> f);
 
-  /// Roughly such forces, from those in `f`: `sweeps` times over the rows, at a cost that is known
-  /// beforehand. `modes` (out) are as the sweeps left them.
+  /// Roughly such forces, from those in `f`: at most `sweeps` times over the rows, until nothing changes.
+  /// `modes` (out) are as the sweeps left them.
   void sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
              std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes,
              Eigen::Ref<Eigen::VectorXd> f, int sweeps);

@@ -1,12 +1,20 @@
 // Rough forces by projected Gauss-Seidel (Moreau 1999; Jean 1999: nonsmooth contact dynamics).
 //   f_n <- max(0, f_n - w_n / K_nn),   f_t <- f_t - w_t / K_tt, back onto |f_t| <= mu f_n
-// one block after another, there and back, each with what those before it have left.
+// one block after another, there and back, each with what those before it have left. Once nothing changes
+// any more, the forces of blocks that are mirror images of each other are so too, whatever their order.
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/solve/cone/cone.h"
 
 namespace obscura::sim {
+
+namespace {
+
+constexpr double kStill = 1e-15;  // of the largest b: a change that is none
+
+}  // namespace
 
 template <int D>
 void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
@@ -28,9 +36,11 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
     }
     starts_.push_back(int(places_.size()));
   }
+  double change = 0;  // in a sweep, of a response
   const auto set = [&](int at, double value) {
     const double by = value - f[at];
     if (by == 0) return;
+    change = std::max(change, std::abs(by * K(at, at)));
     f[at] = value;
     for (int k = starts_[at]; k < starts_[at + 1]; ++k) w_[places_[k]] += by * entries_[k];
   };
@@ -55,8 +65,11 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
     }
     for (int k = 1; k < D; ++k) set(n + k, drag[k - 1]);
   };
+  const double fastest = b.size() > 0 ? b.cwiseAbs().maxCoeff() : 0;
   for (int s = 0; s < sweeps; ++s) {
+    change = 0;
     for (std::size_t i = 0; i < blocks.size(); ++i) visit(s % 2 == 0 ? i : blocks.size() - 1 - i);
+    if (change <= kStill * fastest) break;
   }
 
   for (std::size_t i = 0; i < blocks.size(); ++i) {

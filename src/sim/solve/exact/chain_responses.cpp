@@ -17,6 +17,7 @@ double ExactSolver<D>::self_coupling(int row) const {
 template <int D>
 void ExactSolver<D>::apply_impulses(State<D>& state, bool places) {
   const bool chains = free_.chains().size() > 0;
+  if (places) scratch_.turns.assign(model_.bodies.size(), AngularVec<D>::Zero());
   if (chains) scratch_.chain_change.assign(std::size_t(free_.chains().size()), 0.0);
   for (int i = 0; i < int(rows_.size()); ++i) {
     if (f_[i] == 0) continue;
@@ -24,6 +25,12 @@ void ExactSolver<D>::apply_impulses(State<D>& state, bool places) {
     if (!chain_response_.moves(i)) continue;
     const auto U = chain_response_.response(i);
     for (std::size_t k = 0; k < U.size(); ++k) scratch_.chain_change[k] += f_[i] * U[k];
+  }
+  // turns one after another would depend on their order
+  for (const int body : active_.subset.bodies) {
+    if (!places || scratch_.turns[body].isZero(0)) continue;
+    const int k = turning(state, body);
+    state.turn[k] = turned<D>(state.turn[k], scratch_.turns[body]);
   }
   if (!chains) return;
   free_.chains().jump(state, scratch_.chain_change, places);

@@ -227,18 +227,15 @@ void ExactSolver<D>::add_accelerations(int number, double f, std::span<double> r
   for (std::size_t i = 0; i < U.size(); ++i) rate[std::size_t(free_.chain_start()) + i] += f * U[i];
 }
 
-// M^-1 J' p onto the velocities of the free bodies of a state, or onto their places
+// M^-1 J' p onto the velocities of the free bodies of a state, or onto their places and scratch_.turns
 template <int D>
-void ExactSolver<D>::apply_impulses(State<D>& state, const Row<D>& row, double p, bool places) const {
+void ExactSolver<D>::apply_impulses(State<D>& state, const Row<D>& row, double p, bool places) {
   const auto side = [&](int body, const Vec<D>& dv, const AngularVec<D>& spin, double impulse) {
     (places ? state.x : state.v)[body] += dv;
     const int k = turning(state, body);
     if (k < 0) return;
     const AngularVec<D> by = impulse * spin;
-    if (places)
-      state.turn[k] = turned<D>(state.turn[k], by);
-    else
-      state.spin[k] += by;
+    (places ? scratch_.turns[body] : state.spin[k]) += by;
   };
   if (p == 0) return;
   each_response(row, response_.of(row, poses_), p, side);

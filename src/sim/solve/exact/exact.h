@@ -175,6 +175,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<double> accelerations;  // one a body, m/s^2
     std::vector<int> unheld;            // bodies of joints that broke
     std::vector<Vec<D>> placed;         // x before positions are projected
+    std::vector<AngularVec<D>> turns;   // of bodies, by all rows together, rad
   };
 
   // exact.cpp
@@ -226,7 +227,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double row_velocity(int row) const;
   double row_acceleration(int row, std::span<const double> rate) const;
   void add_accelerations(int row, double f, std::span<double> rate) const;
-  void apply_impulses(State<D>& state, const Row<D>& row, double p, bool places) const;
+  void apply_impulses(State<D>& state, const Row<D>& row, double p, bool places);
   void project_state(State<D>& state, bool impacts_follow = false);
   void pay_for_lift(State<D>& state);
 
@@ -244,7 +245,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void find_islands();
   void build_K();
   bool solve();
-  void solve_roughly(int sweeps);
+  void solve_roughly();
   void solve_held();
   void solve_least_norm();
   template <class Solve>

@@ -8,7 +8,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kRoughIterations = 40;   // of a rough solve
+constexpr int kFewestRoughSweeps = 40, kMostRoughSweeps = 4000;  // of a rough solve: as many as
+constexpr double kRoughSize = 4e5;                               // elements of K can be visited in
 constexpr double kThoroughSize = 5e8;  // of the size of all systems that a thorough one solves
 
 }  // namespace
@@ -61,7 +62,7 @@ void ExactSolver<D>::build_K() {
 template <int D>
 bool ExactSolver<D>::solve() {
   if (progress_.rough) {
-    solve_roughly(kRoughIterations);
+    solve_roughly();
     return true;
   }
   bool found = true;
@@ -81,9 +82,12 @@ bool ExactSolver<D>::solve() {
 
 // the same, roughly
 template <int D>
-void ExactSolver<D>::solve_roughly(int sweeps) {
+void ExactSolver<D>::solve_roughly() {
   each_island(modes_, [&](std::vector<ConeMode<D>>& modes) {
-    cone_.sweep(scratch_.K, scratch_.island_b, scratch_.island_blocks, modes, scratch_.island_f, sweeps);
+    const double rows = double(scratch_.rows.size()),
+                 sweeps =
+                     std::clamp<double>(kRoughSize / (rows * rows), kFewestRoughSweeps, kMostRoughSweeps);
+    cone_.sweep(scratch_.K, scratch_.island_b, scratch_.island_blocks, modes, scratch_.island_f, int(sweeps));
   });
 }
 
@@ -149,12 +153,12 @@ void ExactSolver<D>::solve_least_norm() {
 
 template void ExactSolver<2>::find_islands();
 template bool ExactSolver<2>::solve();
-template void ExactSolver<2>::solve_roughly(int);
+template void ExactSolver<2>::solve_roughly();
 template void ExactSolver<2>::solve_held();
 template void ExactSolver<2>::solve_least_norm();
 template void ExactSolver<3>::find_islands();
 template bool ExactSolver<3>::solve();
-template void ExactSolver<3>::solve_roughly(int);
+template void ExactSolver<3>::solve_roughly();
 template void ExactSolver<3>::solve_held();
 template void ExactSolver<3>::solve_least_norm();
 

@@ -22,7 +22,6 @@ constexpr double kSlowSlip =
 // four vertices, the directions take a thousand iterations.
 constexpr double kEnough = 1e-7;
 constexpr int kSlipPatience = 300;
-constexpr int kSlipIterations = 200;  // where it finds none
 
 }  // namespace
 
@@ -61,7 +60,7 @@ void ExactSolver<D>::aim_slow_slips(State<D>& state, double t, double h) {
   warm_start_rows(h);
   const double enough = std::exchange(cone_.enough, kEnough);
   const int patience = std::exchange(cone_.patience, kSlipPatience);
-  if (!solve()) solve_roughly(kSlipIterations);
+  if (!solve()) solve_roughly();
   cone_.enough = enough, cone_.patience = patience;
   for (Constraint& constraint : constraints_) {
     if (!constraint.slow) continue;
