@@ -29,10 +29,14 @@ constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
 constexpr double kSpare = 0.02;          // of their bounding radius: what two may come nearer by being struck
-constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds
+constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds at least,
+constexpr int kMostParts = 10000;        // and so many, until changes are
+constexpr double kParted = 1e-12;        // of what is wanted
 constexpr int kSettlingTouches = 50000;  // times iterations, of touches that have not settled then
 constexpr int kFewTouches = 500;         // of more, less in proportion, but as if
 constexpr int kSettlingRounds = 3;       // so many were of all
+constexpr int kFewExactly = 60;          // touches
+constexpr double kExactly = 1e-12;       // of how fast pairs closed as the step began
 constexpr int kTempering = 5;            // rounds
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
 
@@ -439,9 +443,10 @@ void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
   }
 }
 
-// One contact. Returns by how much it was to be slowed down, in widths of the narrower body, 1/s.
+// One contact. Returns by how much it was to be slowed down, in widths of the narrower body, 1/s; likewise
+// how far off its friction was.
 template <int D>
-double SpaceIterative<D>::iterate(ContactConstraint& touch) {
+typename SpaceIterative<D>::Unsettled SpaceIterative<D>::iterate(ContactConstraint& touch) {
   const Vec<D> u = slip(touch);
   const double along = touch.n.dot(u);
   const double wrong = touch.least - along;
@@ -449,6 +454,7 @@ double SpaceIterative<D>::iterate(ContactConstraint& touch) {
   const double left = touch.normal_impulse > 0 ? std::fabs(wrong) : wrong;
   const double pushed = normal_impulse - touch.normal_impulse;
   Vec<D> impulse = pushed * touch.n;
+  double rubs = 0;
   touch.normal_impulse = normal_impulse;
   const double most = touch.mu * normal_impulse;
   if (most > 0 || !touch.tangent_impulse.isZero(0)) {
@@ -456,11 +462,13 @@ double SpaceIterative<D>::iterate(ContactConstraint& touch) {
     const Vec<D> wanted = touch.tangent_impulse - across / touch.across;
     const double size = std::sqrt(wanted.squaredNorm());
     const Vec<D> tangent_impulse = size > most ? Vec<D>(wanted * (most / size)) : wanted;
-    impulse += tangent_impulse - touch.tangent_impulse;
+    const Vec<D> change = tangent_impulse - touch.tangent_impulse;
+    impulse += change;
+    rubs = touch.across * std::sqrt(change.squaredNorm());
     touch.tangent_impulse = tangent_impulse;
   }
   if (!impulse.isZero(0)) push(touch, impulse);
-  return left * touch.per_width;
+  return {left * touch.per_width, rubs * touch.per_width};
 }
 
 template <int D>
@@ -470,11 +478,14 @@ void SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool bac
 }
 
 // More iterations of those contacts that are not settled and of those beside them: where a column is struck
-// from below, the blow is to pass through all of it in this substep. Bodies on joints are left out.
+// from below, the blow is to pass through all of it in this substep. Few go on until hardly anything changes:
+// then the order in which they are visited does not matter, and mirror images stay so. Bodies on joints are
+// left out.
 template <int D>
 void SpaceIterative<D>::settle_contacts() {
   const int count = int(touches_.size());
-  const double settled = settled_rate(closing_rate_);
+  const bool few = count <= kFewExactly;
+  const double settled = few ? kExactly * closing_rate_ : settled_rate(closing_rate_);
   stirred_.assign(moving_.size(), 1), stirred_.back() = 0;
 
   jointed_.assign(moving_.size(), 0);
@@ -492,7 +503,8 @@ void SpaceIterative<D>::settle_contacts() {
       ContactConstraint& touch = touches_[some_[back ? all - 1 - i : i]];
       if (!stirred_[touch.a] && !stirred_[touch.b]) continue;
       --left;
-      if (!(iterate(touch) > settled)) continue;
+      const Unsettled left_over = iterate(touch);
+      if (!(left_over.closes > settled || (few && left_over.rubs > settled))) continue;
       stirred_next_[touch.a] = stirred_next_[touch.b] = 1, any = true;
     }
     stirred_next_.back() = 0;
@@ -658,15 +670,22 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
   if (some_.empty()) return;
   if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
   corrected_ = true;
-  kept_ = moving_;
+  kept_ = moving_, parted_.assign(some_.size(), 0);
   for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();  // and belts do not push
-  const int rounds = std::clamp(kPartRounds / int(some_.size()), 4, 16);
-  for (int round = 0; round < rounds; ++round) {
-    for (const int i : some_) {
-      const ContactConstraint& touch = touches_[i];
+  const int fewest = std::clamp(kPartRounds / int(some_.size()), 4, 16),
+            rounds = std::max(fewest, kMostParts / int(some_.size()));
+  // few until nothing changes: then the order in which they are visited does not matter
+  double most = 0, change = 1;
+  for (int round = 0; round < rounds && (round < fewest || change > kParted * most); ++round) {
+    change = 0;
+    for (int k = 0; k < int(some_.size()); ++k) {
+      const ContactConstraint& touch = touches_[some_[k]];
       const double wanted = share * (-touch.gap - allowed(touch));
-      const double left = wanted - touch.n.dot(slip(touch));
-      if (left > 0) push(touch, left / touch.normal * touch.n);
+      // what another has pushed apart too is taken back
+      const double left = std::max(wanted - touch.n.dot(slip(touch)), -touch.normal * parted_[k]);
+      parted_[k] += left / touch.normal;
+      push(touch, left / touch.normal * touch.n);
+      most = std::max(most, wanted), change = std::max(change, std::fabs(left));
     }
     if (joints_.empty()) continue;
     copy_to_joints();

@@ -66,6 +66,11 @@ class SpaceIterative final : public ContactSolver<D> {
     double closes = 0;                        // when it bounces, s from the start of the step
   };
 
+  // what an iteration has changed of a contact, in widths of the narrower body, 1/s
+  struct Unsettled {
+    double closes, rubs;
+  };
+
   // a body at a time within the step
   struct Flown {
     BodyMotion<D> stance;
@@ -147,7 +152,7 @@ class SpaceIterative final : public ContactSolver<D> {
     }
   }
   void warm_start_contacts(const State<D>& state, double h);
-  double iterate(ContactConstraint& touch);
+  Unsettled iterate(ContactConstraint& touch);
   void iterate_contacts(const std::vector<int>& order, bool back);
   void settle_contacts();
   double closing_rate(double h) const;
@@ -228,6 +233,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<int> components_;                   // and of their joints
   Islands islands_;
   std::vector<PointBody<D>> kept_;
+  std::vector<double> parted_;       // impulses that push touches apart, of unit time, kg m
   std::vector<Vec<D>> corrections_;  // how far this step has pushed each body out of others, m
   bool corrected_ = false;
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
