@@ -295,6 +295,10 @@ class Values : private Reporter {
     if (low > high)
       return wrong(node,
                    fmt::format("'{}': the lowest comes first, got {} before {}", key.last(), low, high));
+    // of an axis: it starts nowhere
+    if (key.last() == "range")
+      return low < high ||
+             wrong(node, fmt::format("'{}': expected two values, the lower one first", key.last()));
     return (low <= 0 && high >= 0) ||
            wrong(node, fmt::format("'{}' exclude where it starts: expected 0 between {} and {}", key.last(),
                                    low, high));

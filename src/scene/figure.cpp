@@ -62,6 +62,8 @@ class Reader {
           found.bodies.push_back(body);
     }
     if (const Node* against = fields.given("against")) found.against = against->text();
+    if (const Node* range = fields.given("range"))
+      found.range = {range->list()[0].number(), range->list()[1].number()};
     if (const draw::Measure* other = draw::measure(found.against);
         other && other->of_body && !fields.given("of"))
       complaints_.add(fields.place("against"),

@@ -387,6 +387,27 @@ place    = "right"
 size     = 40                                                    # percent of the picture's width
 ```
 
+`range` sets the ends of the values' axis; a line that leaves it is cut off, and its name waits there.
+
+`vary` films several runs together, for each value of a key as `obscura sweep` takes them. They have one clock, one camera and one scale, and
+each plot has a line of each run:
+
+```toml
+[physics]
+diverge = "show"                                                 # a run that blows up is shown, not an error
+
+[film]
+vary       = "physics.integrator=euler,rk4"
+vary_names = "Euler; Runge-Kutta"
+# vary_place = "over"                                            # over each other, each run in a colour
+```
+
+The runs are in panels beside each other, at most sixteen; in the plane they may also be over each other, where marks are those of the first
+run. If one body moves, it has the colour of its run, as the names and lines have. Stills, shards, `--resume`, `verify` and goldens work as for
+one run; the state that a frame's origin holds is that of all runs. With `diverge = "show"` a run goes on while its numbers are finite. The
+picture says that it diverges as soon as its energy cannot be explained any more. From the last finite state on it stands still, with the
+time at which it came there.
+
 To find the range of the axes the scene is simulated once before the film, so simulating takes twice as long. Marks need this run too.
 
 A film names, measures and points as a figure does: `[[film.vector]]`, `point`, `length`, `angle`, `label`, `cone`, `path` and `ghost` have the

@@ -230,6 +230,28 @@ draw::Pace speed(const Node& node, const Fields& film, sim::Rational duration, s
   return pace;
 }
 
+// the words between semicolons
+std::vector<std::string> parts(const std::string& text) {
+  std::vector<std::string> all;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find(';', from), text.size());
+    const std::size_t first = text.find_first_not_of(' ', from), last = text.find_last_not_of(' ', end - 1);
+    all.push_back(first < end ? text.substr(first, last + 1 - first) : "");
+    from = end + 1;
+  }
+  return all;
+}
+
+// film.vary: the runs that are filmed together
+void vary(const Fields& fields, Film& film, Diagnostics& complaints) {
+  film.vary = parts(fields.text("vary")), film.vary_names = parts(fields.text("vary_names"));
+  film.over = fields.text("vary_place") == "over";
+  for (const std::string& each : film.vary)
+    if (const auto equals = each.find('='); equals == 0 || equals == each.npos || equals + 1 == each.size())
+      return complaints.add(fields.place("vary"),
+                            "'vary': expected a path and its values, as in \"crate.elasticity=0,0.5,1\"");
+}
+
 }  // namespace
 
 Film film(const Node& top, Diagnostics& complaints) {
@@ -241,6 +263,7 @@ Film film(const Node& top, Diagnostics& complaints) {
   film.shutter = fields.number("shutter");
   film.speed = speed(fields.node("speed"), fields, Fields(top, "").rational("duration"), film.titles.cards,
                      complaints);
+  vary(fields, film, complaints);
   film.titles.badge = fields.flag("badge");
   const sim::Rational duration = Fields(top, "").rational("duration");
   film.titles.fade = fields.number("fade");

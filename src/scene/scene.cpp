@@ -210,7 +210,11 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   scene.duration = words.rational("duration");
   scene.seed = std::uint64_t(std::get<std::int64_t>(words.node("seed").value));
 
+  scene.show_divergence = Fields::of(top, "physics").text("diverge") == "show";
   scene.film = film(top, complaints);
+  if (told.n == 3 && scene.film.over)
+    complaints.add(Fields::of(top, "film").place("vary_place"),
+                   "runs in space are shown beside each other: leave 'vary_place' out");
   scene.golden = golden(top, scene.duration, complaints);
   if (told.n == 2)
     scene.world = built<2>(top, copy_sets, told, scene, complaints);
@@ -224,6 +228,12 @@ std::unique_ptr<sim::Run> Scene::run(std::span<const std::uint64_t> saved) const
   return std::visit(
       [&](const auto& it) { return trajectory ? sim::playback(it, trajectory) : sim::run(it, saved); },
       world);
+}
+
+std::unique_ptr<sim::Run> Scene::shown_run(std::span<const std::uint64_t> saved) const {
+  auto found = run(saved);
+  if (found && show_divergence) found->show_divergence();
+  return found;
 }
 
 std::vector<sim::Trouble> Scene::stability_warnings() const {

@@ -31,6 +31,10 @@ struct Film {
   std::vector<draw::Chart> charts;  // beside the picture, in step with it
   draw::Marks marks;                // over it
   draw::Titles titles;              // cards, captions, badge
+  std::vector<std::string>
+      vary;  // "physics.integrator=euler,rk4": the runs that are filmed together; none: one
+  std::vector<std::string> vary_names;  // what they are called; none: by their values
+  bool over = false;                    // in the plane: over each other
 };
 
 /// The moments of a scene that are drawn and compared with references.
@@ -65,11 +69,14 @@ struct Scene {
   Golden golden;
   std::shared_ptr<const sim::Trajectory> trajectory;  // another program's run, shown instead of the scene's
   std::string trajectory_file;                        // its name
+  bool show_divergence = false;                       // physics.diverge
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
   /// A run of it from its start, or from a state that was saved of one; null if that is no state of this
   /// scene. The troubles that are known beforehand. See sim/step/run.h.
   std::unique_ptr<sim::Run> run(std::span<const std::uint64_t> saved = {}) const;
+  /// The same for a picture: where the scene says so, it goes on when it diverges.
+  std::unique_ptr<sim::Run> shown_run(std::span<const std::uint64_t> saved = {}) const;
   std::vector<sim::Trouble> stability_warnings() const;
 
   /// The world of a scene in the plane, of one in space.

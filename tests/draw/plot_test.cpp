@@ -60,6 +60,34 @@ TEST(Plot, ItsAxisBeginsAtZeroWhereThatCostsLittleRoom) {
   }
 }
 
+/// With a range the axis has its ends, a line is cut off there, and is named where it leaves.
+TEST(Plot, ARangeCutsLinesOffAndNamesThemWhereTheyLeave) {
+  Plot plot = plot_of({2, 3, 4, 40, 50});
+  plot.lines[0].label = "\"away\"";
+  plot.lines.push_back({"\"here\"", {2, 2, 2, 2, 2}});
+  plot.range = {0, 5};
+  const PlotArea area = plot_area(plot, kRect, 2);
+  EXPECT_EQ(area.low, 0);
+  EXPECT_EQ(area.high, 5);
+  List list;
+  draw_lines(plot, area, list);
+  ASSERT_FALSE(list.batches.empty());
+  for (const Batch& batch : list.batches) {
+    ASSERT_GE(batch.clip, 0);
+    const Rect& clip = list.clips[std::size_t(batch.clip)];
+    EXPECT_NEAR(clip.y, area.top, 2);
+    EXPECT_NEAR(clip.y + clip.height, area.bottom, 2);
+  }
+  List names;
+  draw_names(plot, area, names);
+  for (const Text& text : names.texts) {
+    if (said(text) == "here") EXPECT_GT(text.at.x(), area.right);
+    // beside its last value in the range
+    if (said(text) == "away") EXPECT_NEAR(text.at.x(), area.at(2, 4).x() + 4 * area.point, 1);
+  }
+  EXPECT_EQ(names.texts.size(), 2u);
+}
+
 TEST(Plot, AnAxisSaysQuantityOverUnit) {
   EXPECT_EQ(over_unit("E", "J"), "E / \"J\"");
   EXPECT_EQ(over_unit("v", "m/s"), "v / \"m s\"^{-1}");

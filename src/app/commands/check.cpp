@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/compare/format.h"
@@ -19,6 +20,7 @@
 #include "app/console/waiting.h"
 #include "app/film/estimate.h"
 #include "app/film/film.h"
+#include "app/run/compared.h"
 #include "app/run/shots.h"
 #include "media/error.h"
 #include "scene/body_kinds.h"
@@ -115,17 +117,21 @@ struct Plan {
   Needs film;
   int cores = 1;
   std::vector<std::string> warnings;
+  std::vector<std::string> runs;  // that the film shows together
 };
 
 Plan plan(const scene::Scene& scene) {
   const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
   doing("measuring the first steps of " + scene.file);
-  Plan it{shots, needs(scene, shots, {Output::Form::movie, scene.name + ".mp4"}, kPatience), 1, {}};
+  // all runs of a film have to be scenes
+  const std::vector<Ahead::Run> runs = compared(scene);
+  Plan it{shots, needs(scene, shots, {Output::Form::movie, scene.name + ".mp4"}, kPatience), 1, {}, {}};
   it.cores = std::max(1, int(std::thread::hardware_concurrency()));
   if (it.film.memory(1) > memory_limit())
     it.warnings.push_back(
         fmt::format("that is more memory than the {} it may have", bytes_text(memory_limit())));
   for (const sim::Trouble& ahead : scene.stability_warnings()) it.warnings.push_back(ahead.likely);
+  for (const Ahead::Run& run : runs) it.runs.push_back(run.look.name);
   try {
     media::check(scene.name + ".mp4", movie_spec(scene));
   } catch (const media::Error& error) {
@@ -153,6 +159,7 @@ std::string text(const scene::Scene& scene, const sim::Model<D>& model, const Pl
   row("contact", contact(model));
   row("film", fmt::format("{} frames at {} fps, {}x{}", plan.shots.size(), sim::text(scene.film.fps),
                           scene.film.width, scene.film.height));
+  if (!plan.runs.empty()) row("runs", fmt::format("{}: {}", plan.runs.size(), fmt::join(plan.runs, "; ")));
   row("disk", fmt::format("about {} as a movie", bytes_text(plan.film.disk)));
   row("memory", fmt::format("about {} with {}", bytes_text(plan.film.memory(plan.cores)),
                             count(std::size_t(plan.cores), "worker", "workers")));

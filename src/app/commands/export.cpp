@@ -157,7 +157,7 @@ int run(const ExportFlags& flags) {
   if (!out.ends_with(".glb"))
     throw UsageError(fmt::format("-o {}: expected a name that ends with .glb", out));
 
-  const auto motion = scene.run();
+  const auto motion = scene.shown_run();
   motion->heed(interrupted);
   const std::int64_t frames = sim::ceil(scene.duration * fps);
   // a place and a turn of each node at each instant, in lists that grow, and then as a file

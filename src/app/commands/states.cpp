@@ -15,6 +15,7 @@
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
 #include "app/console/options.h"
+#include "app/console/say.h"
 #include "app/console/waiting.h"
 #include "app/run/checkpoint.h"
 #include "app/run/columns.h"
@@ -188,6 +189,7 @@ int states(const StatesFlags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
   auto times = times_of(flags, scene);
   const auto run = flags.from_checkpoint ? run_from(*flags.from_checkpoint, scene) : scene.run();
+  if (scene.show_divergence) run->show_divergence();
   std::erase_if(times, [&](sim::Rational t) { return !flags.at && t < run->now(); });
   if (!times.empty() && times.front() < run->now())
     throw UsageError(fmt::format("{}: is of t = {:g} s, after {:g} s", *flags.from_checkpoint,
@@ -223,6 +225,10 @@ int states(const StatesFlags& flags) {
     }
     if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
     auto& now = std::get<sim::Snapshot>(outcome);
+    if (const auto divergence = run->divergence(); divergence && divergence->ended) {
+      say(stderr, "{}: {}; its states end there\n", scene.file, text(divergence->trouble));
+      break;
+    }
     const std::string state = state_hash(run->words());
     if (as_json) {
       // turned as it was typed, not as its principal axes lie

@@ -37,7 +37,7 @@ constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
 
 // the end of the first step in which the figure's body is struck
 sim::Rational impact(const scene::Scene& scene) {
-  const auto run = scene.run();
+  const auto run = scene.shown_run();
   run->heed(interrupted);
   const int body = scene.figure.impact;
   for (std::int64_t step = 1; sim::rational(step) / run->rate() <= scene.duration; ++step) {
@@ -125,7 +125,7 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
 
 void FigureBuilder::take(const scene::Scene& scene, const std::vector<sim::Rational>& times,
                          const std::string& said) {
-  const auto run = scene.run();
+  const auto run = scene.shown_run();
   run->heed(interrupted);
   std::vector<int> trailed;
   for (std::size_t i = 0; i < scene.look.bodies.size(); ++i)

@@ -26,6 +26,7 @@
 #include "app/console/interrupt.h"
 #include "app/console/memory.h"
 #include "app/film/film.h"
+#include "app/run/compared.h"
 #include "media/error.h"
 #include "sim/shape/shape.h"
 
@@ -209,7 +210,8 @@ Needs needs(const scene::Scene& scene, const Shots& shots, const Output& output,
   // charts and marks are of the whole run, which is made once more for them
   const bool ahead = !scene.film.charts.empty() || !scene.film.marks.empty();
   const double charts = !ahead ? 0 : sim::value(scene.duration) * sim::value(rate);
-  all.simulate = run.step * (steps + charts);
+  const double runs = double(runs_of(scene));
+  all.simulate = runs * run.step * (steps + charts);
 
   const double moments = scene.film.shutter > 0 ? 8 : 1;
   all.begin = 0.3 * slowness();
@@ -218,13 +220,13 @@ Needs needs(const scene::Scene& scene, const Shots& shots, const Output& output,
 
   // in memory: a take for each worker and two more, the pictures of each worker, the ways that trails need
   const double of_take =
-      double(std::min<std::int64_t>(take_frames(output.form, movie_spec(scene)), all.frames)) *
+      double(std::min<std::int64_t>(take_frames(output.form, movie_spec(scene)), all.frames)) * runs *
       (run.moment + (scene.film.shutter > 0 ? kOpen : 0));
   double trails = 0;
   for (const draw::BodyLook& look : scene.look.bodies)
     trails += std::min(look.trail, sim::value(end)) * kTrackRate * kTrackPoint;
   const double world = std::visit([](const auto& it) { return size_of(it); }, scene.world);
-  all.fixed = kProgram + world + trails + 2 * of_take;
+  all.fixed = kProgram + runs * (world + trails) + 2 * of_take;
   all.worker = kWorker + kPixel * pixels + of_take;
   return all;
 }

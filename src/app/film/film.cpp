@@ -63,12 +63,16 @@ class Filming {
   void clear_leftovers() const;
   SimulationOptions simulating();
   int prepare(Simulation& simulation);
-  std::function<DrawnSegment(FilmSegment)> hire(const Ahead& ahead);
+  std::function<DrawnSegment(FilmSegment)> hire();
   DrawnSegment print(FilmSegment take, FrameRenderer& darkroom);
-  void shoot(Simulation& simulation, const Ahead& ahead, Progress& progress);
+  void shoot(Simulation& simulation, Progress& progress);
   int finish(Progress& progress, const Simulation& simulation, std::int64_t wanted);
   std::string cut_part() const {
     return (fs::path(store_->folder()) / ("cut." + media::part_ending(output_.path))).string();
+  }
+
+  const scene::Scene& scene_of_run(std::size_t number) const {
+    return ahead_.runs ? (*ahead_.runs)[number].scene : scene_;
   }
 
   const scene::Scene& scene_;
@@ -77,6 +81,7 @@ class Filming {
   const FilmOptions& options_;
   media::MovieSpec spec_;
   Journal journal_;
+  Ahead ahead_;
   std::int64_t first_ = 0, last_ = 0;  // takes that are wanted: [first_, last_)
   std::optional<Store> store_;
   std::optional<std::int64_t> cut_;    // the take that an interrupt cut short
@@ -108,6 +113,9 @@ Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& ou
     origin.encoder = spec_.codec = media::codec_name(output.path, spec_);
     origin.preset = spec_.preset, origin.crf = spec_.crf;
   }
+
+  if (!scene.film.vary.empty() && (options.from_checkpoint || options.checkpoint_every.num > 0))
+    throw UsageError("--checkpoint-every and --from-checkpoint are of one run; film.vary films several");
 
   // report obstacles to the files before simulating
   if (output.form == Output::Form::pipe) return;
@@ -168,7 +176,8 @@ SimulationOptions Filming::simulating() {
   how.first = first_, how.last = last_;
   how.skip = [this](std::int64_t take) { return whole(take); };
   const bool asked = options_.from_checkpoint.has_value();
-  how.nearer = [this, asked](std::int64_t since, std::int64_t until) -> std::unique_ptr<sim::Run> {
+  how.nearer = [this, asked](std::size_t number, std::int64_t since,
+                             std::int64_t until) -> std::unique_ptr<sim::Run> {
     if (asked && since == 0) {
       auto run = run_from(*options_.from_checkpoint, scene_);
       if (sim::floor(run->now() * run->rate()) <= until) return run;
@@ -176,13 +185,14 @@ SimulationOptions Filming::simulating() {
                                    *options_.from_checkpoint, sim::value(run->now()),
                                    until < 0 ? " and its trails" : ""));
     }
-    return store_ ? store_->run_between(scene_, since, until) : nullptr;
+    return store_ ? store_->run_between(scene_of_run(number), since, until, number) : nullptr;
   };
   if (store_) {
     // once a second of film
     const std::int64_t each = std::max<std::int64_t>(1, media::segment_frames(spec_) / journal_.take_frames);
-    how.begin_take = [this, each, n = std::int64_t(0)](const sim::Run& run) mutable {
-      if (n++ % each == 0) store_->keep(scene_, run);
+    how.begin_take = [this, each, n = std::int64_t(0)](const std::vector<const sim::Run*>& runs) mutable {
+      if (n++ % each != 0) return;
+      for (std::size_t i = 0; i < runs.size(); ++i) store_->keep(scene_of_run(i), *runs[i], i);
     };
   }
   how.every = options_.checkpoint_every;
@@ -195,8 +205,8 @@ SimulationOptions Filming::simulating() {
 }
 
 // a worker: a context of its own, and for each take a closed piece of film
-std::function<Filming::DrawnSegment(FilmSegment)> Filming::hire(const Ahead& ahead) {
-  auto darkroom = std::make_shared<FrameRenderer>(scene_, ahead, options_.context);
+std::function<Filming::DrawnSegment(FilmSegment)> Filming::hire() {
+  auto darkroom = std::make_shared<FrameRenderer>(scene_, ahead_, options_.context);
   if (const auto before = store_ ? store_->drawn() : std::nullopt) {
     Origin here = journal_.origin;
     here.gl_version = darkroom->renderer().version(), here.gl_renderer = darkroom->renderer().device();
@@ -212,8 +222,7 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
   Origin origin = journal_.origin;
   origin.gl_version = darkroom.renderer().version(), origin.gl_renderer = darkroom.renderer().device();
   origin.shot = take.shots[0], origin.state = take.states[0];
-  const std::size_t bodies = take.moments[0].bodies.size();
-  Checksums states(shots_.size(), bodies);
+  Checksums states(shots_.size(), take.all_bodies(0).bodies.size());
   std::optional<media::SegmentEncoder> encoder;
   if (movie()) encoder.emplace(output_.path, spec_);
   for (std::size_t i = 0; i < take.shots.size(); ++i) {
@@ -224,13 +233,13 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
     const media::Image& image = darkroom.print(take, i, pictures() && options_.transparent);
     if (encoder) {
       encoder->add(image);
-      states.add(take.number * journal_.take_frames + std::int64_t(i), take.states[i], take.moments[i]);
+      states.add(take.number * journal_.take_frames + std::int64_t(i), take.states[i], take.all_bodies(i));
     }
     if (output_.form == Output::Form::pipe) print.images.push_back(image);
     if (pictures()) {
       Origin of_frame = origin;
       of_frame.shot = take.shots[i], of_frame.state = take.states[i], of_frame.frames = 0;
-      of_frame.states = checksums(take.states[i], take.moments[i]);
+      of_frame.states = checksums(take.states[i], take.all_bodies(i));
       media::Tags tags = of_frame.tags(scene_.look.title);
       tags["Description"] = picture_text(scene_, darkroom.scene_info(), take.moments[i]);
       media::write_png(output_.file(take.shots[i].frame), image,
@@ -255,7 +264,7 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
 }
 
 // simulates, draws and writes what is wanted
-void Filming::shoot(Simulation& simulation, const Ahead& ahead, Progress& progress) {
+void Filming::shoot(Simulation& simulation, Progress& progress) {
   const int cores = std::max(1, int(std::thread::hardware_concurrency()));
   const int workers =
       int(std::min<std::int64_t>(options_.workers > 0 ? options_.workers : cores, last_ - first_));
@@ -266,7 +275,7 @@ void Filming::shoot(Simulation& simulation, const Ahead& ahead, Progress& progre
   Conduct<FilmSegment, DrawnSegment> parts;
   parts.produce = [&] { return simulation.next(); };
   parts.wait = [&] { progress.at(drawn_); };
-  parts.hire = [&] { return hire(ahead); };
+  parts.hire = [&] { return hire(); };
   parts.consume = [&](DrawnSegment print) {
     for (const media::Image& image : print.images) {
       if (open_ && !pipe->write(image)) open_ = false;
@@ -275,7 +284,8 @@ void Filming::shoot(Simulation& simulation, const Ahead& ahead, Progress& progre
     if (store_) store_->worked();
     if (movie() && !print.whole) cut_ = print.number;
     if (store_ && !options_.shard)
-      store_->forget_before(simulation.step_before(shots_[print.number * journal_.take_frames].time));
+      for (std::size_t i = 0; i < simulation.runs(); ++i)
+        store_->forget_before(simulation.step_before(shots_[print.number * journal_.take_frames].time, i), i);
     return print.whole && open_;
   };
   conduct(parts, workers);
@@ -298,23 +308,27 @@ bool Filming::already_whole() const {
 
 // nothing is drawn: the states that shards begin with
 int Filming::prepare(Simulation& simulation) {
-  auto run = scene_.run();
-  run->heed(interrupted);
-  const auto here = [&] { return sim::floor(run->now() * run->rate()); };
   const int n = *options_.prepare;
   Progress progress(options_.progress, store_->folder(), shots_.size(), 1 / sim::value(scene_.film.fps));
-  for (int i = 2; i <= n; ++i) {
-    const std::int64_t first = Store::share(journal_.takes, i, n).first * journal_.take_frames;
-    if (first >= shots_.size()) break;
-    const std::int64_t step = simulation.step_before(shots_[first].time);
-    if (step <= here() || store_->kept(step)) continue;
-    if (auto nearer = store_->run_between(scene_, here(), step)) {
-      run = std::move(nearer);
-      run->heed(interrupted);
+  for (std::size_t number = 0; number < simulation.runs(); ++number) {
+    const scene::Scene& scene = scene_of_run(number);
+    auto run = scene.shown_run();
+    run->heed(interrupted);
+    const auto here = [&] { return sim::floor(run->now() * run->rate()); };
+    for (int i = 2; i <= n; ++i) {
+      const std::int64_t first = Store::share(journal_.takes, i, n).first * journal_.take_frames;
+      if (first >= shots_.size()) break;
+      const std::int64_t step = simulation.step_before(shots_[first].time, number);
+      if (step <= here() || store_->kept(step, number)) continue;
+      if (auto nearer = store_->run_between(scene, here(), step, number)) {
+        run = std::move(nearer);
+        if (scene.show_divergence) run->show_divergence();
+        run->heed(interrupted);
+      }
+      moment(*run, sim::rational(step) / run->rate(), scene);
+      store_->keep(scene, *run, number);
+      if (number == 0) progress.at(first);
     }
-    moment(*run, sim::rational(step) / run->rate(), scene_);
-    store_->keep(scene_, *run);
-    progress.at(first);
   }
   progress.finish(
       shots_.size(),
@@ -329,15 +343,15 @@ int Filming::run() {
     say(stdout, "{}: is whole already\n", output_.path);
     return kDone;
   }
-  const Ahead ahead = app::ahead(scene_);
-  Simulation simulation(scene_, shots_, depictor(scene_, ahead), simulating());
+  ahead_ = app::ahead(scene_);
+  Simulation simulation(scene_, shots_, ahead_, simulating());
   if (options_.prepare) return prepare(simulation);
   std::int64_t wanted = 0;
   for (std::int64_t take = first_; take < last_; ++take) wanted += frames_of(take);
   Progress progress(options_.progress, output_.path == "-" ? "standard output" : output_.path, wanted,
                     1 / sim::value(scene_.film.fps));
   try {
-    shoot(simulation, ahead, progress);
+    shoot(simulation, progress);
   } catch (const media::Error& error) {
     // finished parts stay for another try
     if (!store_ || done_ + found_ == 0) throw;

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <vector>
 
 #include "app/run/simulation.h"
+#include "draw/compose/comparison.h"
 #include "draw/compose/depict.h"
 #include "gl/renderer.h"
 #include "media/exposure.h"
@@ -21,11 +24,15 @@ class FrameRenderer {
   const media::Image& print(const FilmSegment& take, std::size_t frame, bool transparent);
 
   const gl::Renderer& renderer() const { return renderer_; }
-  const sim::SceneInfo& scene_info() const { return artist_.scene_info(); }
+  const sim::SceneInfo& scene_info() const { return artists_.front().scene_info(); }
 
  private:
+  draw::Picture picture(const FilmSegment& take, std::size_t frame, double film, std::size_t exposure) const;
+
   gl::Renderer renderer_;
-  draw::Illustrator artist_;
+  std::vector<draw::Illustrator> artists_;      // one a run
+  std::vector<draw::ComparedRun> names_;        // of several
+  std::optional<draw::Comparison> comparison_;  // of several in panels
   media::Exposure exposure_;
   sim::Rational fps_;
   draw::Pace speed_;

@@ -9,7 +9,7 @@ namespace obscura::app {
 
 std::vector<Pictured> pictures(const scene::Scene& scene, const Shots& shots, const PictureOptions& options) {
   const Ahead ahead = app::ahead(scene);
-  Simulation simulation(scene, shots, depictor(scene, ahead), {.frames = 1, .hash_each = true});
+  Simulation simulation(scene, shots, ahead, {.frames = 1, .hash_each = true});
   FrameRenderer darkroom(scene, ahead, options.context);
   std::vector<Pictured> all;
   while (const auto take = simulation.next()) {
@@ -19,7 +19,7 @@ std::vector<Pictured> pictures(const scene::Scene& scene, const Shots& shots, co
     one.origin.gl_version = darkroom.renderer().version();
     one.origin.gl_renderer = darkroom.renderer().device();
     one.origin.shot = take->shots[0], one.origin.state = take->states[0];
-    one.origin.states = checksums(take->states[0], take->moments[0]);
+    one.origin.states = checksums(take->states[0], take->all_bodies(0));
     one.image = darkroom.print(*take, 0, options.transparent);
     // a file without alpha reads as opaque
     if (!options.transparent)

@@ -83,6 +83,16 @@ std::optional<std::int64_t> number_in(const std::string& name, std::string_view 
 constexpr const char* kTake = "take-";
 constexpr const char* kStep = "step-";
 constexpr const char* kCheckpoint = ".checkpoint";
+constexpr const char* kRun = "-run-";  // of a film of several runs: which, from the second on
+
+std::string checkpoint_name(std::int64_t step, std::size_t run) {
+  return fmt::format("{}{:012}{}{}", kStep, step, run > 0 ? fmt::format("{}{}", kRun, run) : "", kCheckpoint);
+}
+
+std::size_t run_in(const std::string& name) {
+  const auto at = name.find(kRun);
+  return at == name.npos ? 0 : std::size_t(number_in(name.substr(at), kRun).value_or(0));
+}
 
 std::string named(std::int64_t take, const std::string& hash, const std::string& ending) {
   return fmt::format("{}{:06}-{}{}", kTake, take, hash.substr(0, 16), ending);
@@ -94,8 +104,9 @@ struct Store::Impl {
   std::string folder;
   Journal journal;
   int lock = -1;
-  std::mutex mutex;                                        // of parts, and of spent
-  std::map<std::int64_t, std::string> parts, checkpoints;  // names, by take and by step
+  std::mutex mutex;                                                        // of parts, and of spent
+  std::map<std::int64_t, std::string> parts;                               // names, by take
+  std::map<std::size_t, std::map<std::int64_t, std::string>> checkpoints;  // by run and by step
   std::optional<Spent> spent;
   std::string note;
 
@@ -126,7 +137,7 @@ struct Store::Impl {
       const std::string name = entry.path().filename().string();
       if (const auto take = number_in(name, kTake)) parts[*take] = name;
       if (const auto step = number_in(name, kStep); step && name.ends_with(kCheckpoint))
-        checkpoints[*step] = name;
+        checkpoints[run_in(name)][*step] = name;
     }
   }
 
@@ -220,7 +231,8 @@ struct Store::Impl {
     if (damaged) note = fmt::format("{}: was damaged, and is written anew", at("journal.json"));
     // prepared states do not say which film they belong to
     std::error_code ignored;
-    for (const auto& [step, name] : checkpoints) fs::remove(at(name), ignored);
+    for (const auto& [run, all] : checkpoints)
+      for (const auto& [step, name] : all) fs::remove(at(name), ignored);
     checkpoints.clear(), there.reset();
   }
 };
@@ -325,19 +337,22 @@ std::optional<Origin> Store::drawn() const {
   return {};
 }
 
-bool Store::kept(std::int64_t step) const { return impl_->checkpoints.contains(step); }
-
-void Store::keep(const scene::Scene& scene, const sim::Run& run) {
-  const std::int64_t step = sim::floor(run.now() * run.rate());
-  if (step == 0 || kept(step)) return;
-  const std::string name = fmt::format("{}{:012}{}", kStep, step, kCheckpoint);
-  // one that a power cut damages is known by its hash, and one before it is as good
-  write_checkpoint(impl_->at(name), scene, run, false);
-  impl_->checkpoints[step] = name;
+bool Store::kept(std::int64_t step, std::size_t number) const {
+  const auto its = impl_->checkpoints.find(number);
+  return its != impl_->checkpoints.end() && its->second.contains(step);
 }
 
-void Store::forget_before(std::int64_t step) {
-  auto& all = impl_->checkpoints;
+void Store::keep(const scene::Scene& scene, const sim::Run& run, std::size_t number) {
+  const std::int64_t step = sim::floor(run.now() * run.rate());
+  if (step == 0 || kept(step, number)) return;
+  const std::string name = checkpoint_name(step, number);
+  // one that a power cut damages is known by its hash, and one before it is as good
+  write_checkpoint(impl_->at(name), scene, run, false);
+  impl_->checkpoints[number][step] = name;
+}
+
+void Store::forget_before(std::int64_t step, std::size_t number) {
+  auto& all = impl_->checkpoints[number];
   while (all.size() > 1 && std::next(all.begin())->first <= step) {
     std::error_code ignored;
     fs::remove(impl_->at(all.begin()->second), ignored);
@@ -346,8 +361,10 @@ void Store::forget_before(std::int64_t step) {
 }
 
 std::unique_ptr<sim::Run> Store::run_between(const scene::Scene& scene, std::int64_t since,
-                                             std::int64_t until) const {
-  const auto& all = impl_->checkpoints;
+                                             std::int64_t until, std::size_t number) const {
+  const auto its = impl_->checkpoints.find(number);
+  if (its == impl_->checkpoints.end()) return {};
+  const auto& all = its->second;
   for (auto it = all.upper_bound(until); it != all.begin() && std::prev(it)->first > since; --it) {
     try {
       return run_from(impl_->at(std::prev(it)->second), scene);

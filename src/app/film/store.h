@@ -62,14 +62,15 @@ class Store {
   std::optional<Origin> drawn() const;
 
   /// Keeps the state at which a run stands, for run_between; not its start, which the scene is enough for.
-  void keep(const scene::Scene& scene, const sim::Run& run);
-  bool kept(std::int64_t step) const;
+  /// Of a film of several runs each has its own.
+  void keep(const scene::Scene& scene, const sim::Run& run, std::size_t number = 0);
+  bool kept(std::int64_t step, std::size_t number = 0) const;
   /// Removes checkpoints that are not needed to go on at this step or later.
-  void forget_before(std::int64_t step);
+  void forget_before(std::int64_t step, std::size_t number = 0);
   /// A run that goes on from the latest checkpoint of the steps (since, until]; none where there is none that
   /// is whole and of this scene.
-  std::unique_ptr<sim::Run> run_between(const scene::Scene& scene, std::int64_t since,
-                                        std::int64_t until) const;
+  std::unique_ptr<sim::Run> run_between(const scene::Scene& scene, std::int64_t since, std::int64_t until,
+                                        std::size_t number = 0) const;
 
   /// Some of the work is done: puts down how long it took so far.
   void worked();

@@ -16,6 +16,7 @@
 
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/run/compared.h"
 #include "app/run/trouble.h"
 #include "scene/complaints.h"
 
@@ -358,7 +359,18 @@ std::vector<std::string> Account::sentences() const {
 }  // namespace
 
 std::vector<std::string> description(const scene::Scene& scene) {
-  const auto run = scene.run();
+  if (std::vector<Ahead::Run> runs = compared(scene); !runs.empty()) {
+    std::vector<std::string> all;
+    if (!scene.look.title.empty()) all.push_back(scene.look.title + ".");
+    all.push_back(fmt::format("The film shows {} runs {} each other.", runs.size(),
+                              scene.film.over ? "over" : "beside"));
+    for (Ahead::Run& run : runs) {
+      run.scene.look.title = run.look.name, run.scene.look.subtitle = "";
+      for (std::string& sentence : description(run.scene)) all.push_back(std::move(sentence));
+    }
+    return all;
+  }
+  const auto run = scene.shown_run();
   run->heed(interrupted);
   Account account(scene, run->scene_info());
   std::optional<sim::Trouble> trouble;
@@ -370,7 +382,9 @@ std::vector<std::string> description(const scene::Scene& scene) {
       return false;
     }
     account.read(std::get<sim::Snapshot>(outcome));
-    return true;
+    if (const auto divergence = run->divergence(); divergence && divergence->ended)
+      trouble = divergence->trouble;
+    return !trouble.has_value();
   };
   if (scene.trajectory) {
     for (const double t : scene.trajectory->times)

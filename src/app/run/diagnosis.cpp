@@ -6,6 +6,7 @@
 
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/run/compared.h"
 #include "app/run/trouble.h"
 #include "scene/difference.h"
 #include "scene/error.h"
@@ -204,13 +205,18 @@ std::string first_difference(const Origin& a, const Origin& b) {
                         frame(*apart->first));
   if (!apart->bodies_known) return text;
   if (apart->bodies.empty()) return text + ": every body has the same position and motion";
-  const auto run = scene.run();
+  std::vector<std::string> all;
+  for (const Ahead::Run& run : compared(scene))
+    for (const sim::SceneInfo::Body& body : run.scene.run()->scene_info().bodies)
+      all.push_back(fmt::format("{} ({})", body.name, run.look.name));
+  if (all.empty())
+    for (const sim::SceneInfo::Body& body : scene.run()->scene_info().bodies) all.push_back(body.name);
   std::string names;
   std::size_t told = 0;
   for (const std::size_t body : apart->bodies) {
-    if (body >= run->scene_info().bodies.size()) return text;
+    if (body >= all.size()) return text;
     if (told == kMostBodiesTold) break;
-    names += (told++ ? ", " : "") + run->scene_info().bodies[body].name;
+    names += (told++ ? ", " : "") + all[body];
   }
   if (apart->bodies.size() > told) names += fmt::format(" and {} more", apart->bodies.size() - told);
   if (apart->bodies_at != *apart->first) text += fmt::format("; at {}", frame(apart->bodies_at));
@@ -220,21 +226,34 @@ std::string first_difference(const Origin& a, const Origin& b) {
 std::optional<Origin> simulated(const Origin& origin) {
   const scene::Scene scene = scene_of(origin);
   const Shots shots = shots_of(origin, scene);
-  const auto run = scene.run();
-  run->heed(interrupted);
+  // those of all runs that the film shows
+  std::vector<std::unique_ptr<sim::Run>> runs;
+  std::size_t bodies = 0;
+  for (const scene::Scene& each : filmed(scene)) {
+    runs.push_back(each.shown_run());
+    runs.back()->heed(interrupted);
+    bodies += runs.back()->scene_info().bodies.size();
+  }
   // as many frames as a film that was cut short has; only the first state if the origin has no others
   const std::int64_t count = origin.states ? std::min(origin.states->frames(), shots.size()) : 1;
   Origin again = origin;
   again.states.reset();
-  Checksums states(shots.size(), run->scene_info().bodies.size());
+  Checksums states(shots.size(), bodies);
   for (std::int64_t i = 0; i < count; ++i) {
-    const auto found = run->at(i == 0 ? origin.shot->time : shots[i].time);
-    const auto* moment = std::get_if<sim::Snapshot>(&found);
-    if (!moment && i == 0) return {};
-    if (!moment) break;
-    const std::string state = state_hash(run->words());
+    sim::Snapshot all;
+    std::vector<std::string> hashes;
+    for (const auto& run : runs) {
+      const auto found = run->at(i == 0 ? origin.shot->time : shots[i].time);
+      const auto* moment = std::get_if<sim::Snapshot>(&found);
+      if (!moment) break;
+      all.bodies.insert(all.bodies.end(), moment->bodies.begin(), moment->bodies.end());
+      hashes.push_back(state_hash(run->words()));
+    }
+    if (hashes.size() < runs.size() && i == 0) return {};
+    if (hashes.size() < runs.size()) break;
+    const std::string state = hash_of_states(hashes);
     if (i == 0) again.state = state;
-    states.add(i, state, *moment);
+    states.add(i, state, all);
   }
   states.close();
   if (origin.states) again.states = states;

@@ -8,6 +8,7 @@
 
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/run/compared.h"
 #include "app/run/simulation.h"
 #include "app/run/variation.h"
 #include "draw/compose/annotations.h"
@@ -61,7 +62,7 @@ scene::Scene with(const scene::Scene& scene, const std::vector<std::string>& mor
 
 // the values of what is plotted at the end of a run
 std::vector<double> ends(const scene::Scene& scene, const draw::Figure::Plot& wanted) {
-  const auto run = scene.run();
+  const auto run = scene.shown_run();
   run->heed(interrupted);
   const sim::Snapshot now = moment(*run, wanted.to, scene);
   std::vector<double> found;
@@ -145,7 +146,7 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
     }
 
     const std::vector<draw::Measured::Line> lines = wanted.lines();
-    const auto run = scene.run();
+    const auto run = scene.shown_run();
     run->heed(interrupted);
     const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
     for (std::int64_t i = 0; i <= kPoints; ++i) {
@@ -185,22 +186,26 @@ draw::Scales given_scales(const scene::Scene& scene, const sim::SceneInfo& cast)
   return scales;
 }
 
-}  // namespace
-
-Ahead ahead(const scene::Scene& scene) {
-  const std::vector<draw::Chart>& wanted = scene.film.charts;
-  const draw::Marks& marks = scene.film.marks;
-  if (wanted.empty() && marks.empty()) return {};
-  draw::Palette colours = draw::palette(scene.look.theme);
-  if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
-  const auto run = scene.run();
+// What a run shows from its start to its end: the lines of the film's charts, and what its marks need.
+struct Watched {
   std::vector<draw::Plot> plots;
+  draw::RunAhead marks;
+  sim::SceneInfo cast;
+  bool any = false;  // an instant
+};
+
+Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
+              const std::vector<sim::Rational>& times, const draw::Palette& colours) {
+  const draw::Marks& marks = scene.film.marks;
+  const auto run = scene.shown_run();
+  Watched watched;
+  watched.cast = run->scene_info();
   std::vector<std::vector<draw::Measured::Line>> lines;
   if (!wanted.empty()) {
     const draw::Illustrator artist = depictor(scene, {});
     for (const draw::Chart& each : wanted) {
-      plots.push_back(draw::empty_plot(each, colours, artist.scene_info(),
-                                       [&](int body) { return artist.line_color(body); }));
+      watched.plots.push_back(draw::empty_plot(each, colours, artist.scene_info(),
+                                               [&](int body) { return artist.line_color(body); }));
       lines.push_back(each.lines());
     }
   }
@@ -210,7 +215,6 @@ Ahead ahead(const scene::Scene& scene) {
   std::sort(traced.begin(), traced.end());
   traced.erase(std::unique(traced.begin(), traced.end()), traced.end());
   run->track(traced);
-  const std::vector<sim::Rational> times = beats(scene, run->rate());
 
   // the instants of ghosts among the others, and those at which the film stands still; of another program's
   // run the nearest row
@@ -227,10 +231,10 @@ Ahead ahead(const scene::Scene& scene) {
   std::stable_sort(instants.begin(), instants.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
 
-  draw::RunAhead found;
+  draw::RunAhead& found = watched.marks;
   found.ghosts.resize(marks.ghosts.size());
   double next = 0, stride = kSample, kept = 0;
-  bool any = false;
+  bool diverges = false;
   for (const auto& [t, ghost] : instants) {
     auto outcome = run->at(t);
     if (std::holds_alternative<sim::Stopped>(outcome)) throw Interrupted();
@@ -240,6 +244,9 @@ Ahead ahead(const scene::Scene& scene) {
       found.ghosts[std::size_t(ghost)] = std::move(now);
       continue;
     }
+    // axes and arrows are made for what a run does before it diverges
+    diverges = diverges || run->divergence();
+    if (diverges) continue;
     if (ghost == kStill) {
       // labels may come and go meanwhile
       if (marks.empty()) continue;
@@ -251,9 +258,9 @@ Ahead ahead(const scene::Scene& scene) {
       next = found.samples.back().film;
       continue;
     }
-    any = true;
+    watched.any = true;
     for (std::size_t i = 0; i < wanted.size(); ++i)
-      add(run->scene_info(), now, wanted[i], lines[i], plots[i]);
+      add(watched.cast, now, wanted[i], lines[i], watched.plots[i]);
     const double film = sim::value(scene.film.speed.film(t));
     if (marks.empty() || film < next - 1e-9) continue;
     kept += bytes(now);
@@ -268,21 +275,94 @@ Ahead ahead(const scene::Scene& scene) {
     next = found.samples.back().film + stride;
   }
   if (!traced.empty()) found.track = std::make_shared<const sim::Track>(run->take_track());
+  return watched;
+}
+
+// the lines of several runs in one plot, named and coloured by their runs
+void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watched) {
+  std::vector<draw::Plot>& all = watched.front().plots;
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    const std::size_t own = all[p].lines.size();
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      draw::Plot& plot = watched[i].plots[p];
+      for (std::size_t k = 0; k < own; ++k) {
+        draw::Series& line = plot.lines[k];
+        const std::string name = "\"" + runs[i].look.name + "\"";
+        line.label = own == 1 ? name : line.label + "\", \"" + name;
+        line.color = runs[i].look.color;
+        if (i > 0) all[p].lines.push_back(line);
+      }
+      if (plot.times.size() > all[p].times.size()) all[p].times = plot.times;
+    }
+    draw::tell_apart(all[p]);
+  }
+}
+
+std::shared_ptr<const draw::Annotations> annotations(const scene::Scene& scene, const Ahead& page,
+                                                     draw::RunAhead found, const draw::Scales& given) {
+  return std::make_shared<const draw::Annotations>(scene.film.marks, depictor(scene, page), std::move(found),
+                                                   given, sim::value(scene.film.fps));
+}
+
+// the marks of several runs, with one scale for each kind of arrow: that of the longest
+void annotate(const Ahead& page, const std::vector<Watched>& watched, std::vector<Ahead::Run>& runs) {
+  constexpr double draw::Scales::*kAll[] = {&draw::Scales::velocity, &draw::Scales::force,
+                                            &draw::Scales::impulse, &draw::Scales::momentum,
+                                            &draw::Scales::acceleration};
+  draw::Scales common;
+  for (const bool last : {false, true}) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (runs[i].scene.film.marks.empty()) continue;
+      const draw::Scales given = last ? common : given_scales(runs[i].scene, watched[i].cast);
+      runs[i].annotations = annotations(runs[i].scene, page, watched[i].marks, given);
+      if (last) continue;
+      for (const auto member : kAll) {
+        const double own = runs[i].annotations->scales().*member;
+        if (own > 0 && (common.*member == 0 || own < common.*member)) common.*member = own;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Ahead ahead(const scene::Scene& scene) {
+  const std::vector<draw::Chart>& wanted = scene.film.charts;
+  std::vector<Ahead::Run> runs = compared(scene);
+  if (runs.empty() && wanted.empty() && scene.film.marks.empty()) return {};
+  draw::Palette colours = draw::palette(scene.look.theme);
+  if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
+  const sim::Rational rate = std::visit([](const auto& world) { return world.model.rate; }, scene.world);
+  const std::vector<sim::Rational> times = beats(scene, rate);
+  std::vector<Watched> watched;
+  const bool needed = !wanted.empty() || !scene.film.marks.empty();
+  if (runs.empty()) watched.push_back(watch(scene, wanted, times, colours));
+  for (const Ahead::Run& run : runs)
+    if (needed) watched.push_back(watch(run.scene, wanted, times, colours));
+  if (!runs.empty() && needed) join_plots(runs, watched);
+
   Ahead all;
   const double aspect = double(scene.film.width) / scene.film.height;
-  if (any && !wanted.empty())
+  if (!wanted.empty() && std::any_of(watched.begin(), watched.end(), [](const auto& w) { return w.any; })) {
+    std::vector<sim::SceneInfo> casts;
+    for (const Watched& each : watched) casts.push_back(each.cast);
     all.charts = {wanted,
-                  plots,
+                  watched.front().plots,
                   colours,
                   aspect,
                   sim::value(scene.duration),
-                  run->scene_info(),
+                  casts,
                   draw::laid_out(scene.film.titles, aspect, scene.look.type_scale).foot,
                   scene.look.type_scale};
-  if (!marks.empty())
-    all.annotations = std::make_shared<const draw::Annotations>(marks, depictor(scene, all), std::move(found),
-                                                                given_scales(scene, run->scene_info()),
-                                                                sim::value(scene.film.fps));
+  }
+  if (!runs.empty()) {
+    if (!scene.film.marks.empty())
+      annotate({.charts = scene.film.over ? all.charts : draw::Charts()}, watched, runs);
+    all.runs = std::make_shared<const std::vector<Ahead::Run>>(std::move(runs));
+  } else if (!scene.film.marks.empty()) {
+    const draw::Scales given = given_scales(scene, watched.front().cast);
+    all.annotations = annotations(scene, all, std::move(watched.front().marks), given);
+  }
   return all;
 }
 

@@ -95,8 +95,8 @@ class Runs {
  public:
   Runs(const std::vector<Tile>& tiles, const Shots& shots, int frames, int workers) : workers_(workers) {
     for (const Tile& tile : tiles)
-      runs_.push_back(std::make_unique<Simulation>(tile.scene, shots, depictor(tile.scene, {}),
-                                                   SimulationOptions{.frames = frames}));
+      runs_.push_back(
+          std::make_unique<Simulation>(tile.scene, shots, Ahead{}, SimulationOptions{.frames = frames}));
     last_.resize(tiles.size());
   }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "draw/compose/annotations.h"
+#include "draw/compose/comparison.h"
 #include "draw/compose/travel.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/type.h"
@@ -20,6 +21,22 @@ constexpr double kPathLine = 3.6;    // the line of a path, page units at the we
 constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
 
 bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::ShapeKind::point; }
+
+// bodies, what ties them, their own arrows and names
+void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  draw_ways(stage, view, now, list);
+  draw_rails(stage, view, now, list);
+  draw_springs(stage, view, now, false, list);
+  draw_boxes(stage, view, now, list);
+  draw_polygons(stage, view, now, list);
+  draw_springs(stage, view, now, true, list);
+  draw_rods(stage, view, now, list);
+  draw_rounds(stage, view, now, list);
+  draw_pins(stage, view, now, list);
+  draw_contacts(stage, view, now, list);
+  draw_velocities(stage, view, now, list);
+  draw_labels(stage, view, now, list);
+}
 
 }  // namespace
 
@@ -210,12 +227,15 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
       for (const auto& [then, ghost] : annotations_->ghosts(frame, film))
         earlier.push_back({then, &ghost->bodies, kGhost});
     Picture picture = depict_space(*space_, now, ways, frame, lines, earlier);
+    space_->charts.draw_lines({{&frame, at.fate}}, picture.moving);
     for (int panel = 0; annotations_ && panel < panels(); ++panel) {
       const Projection seen = projection(panel, frame);
       picture.moving.clip(seen.window());
       annotations_->draw(panel, seen, frame, film, picture.moving);
       picture.moving.unclip();
     }
+    draw_fate({&frame, at.fate}, space_->layout.window, space_->layout.weight, space_->colours,
+              picture.moving);
     draw_titles(titles_, space_->layout, space_->layout.aspect, space_->colours, frame.time, film, at.speed,
                 picture.moving);
     set_decimal_mark(picture.moving, look_.decimal);
@@ -236,33 +256,40 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
     for (const auto& [then, ghost] : annotations_->ghosts(frame, film))
       ghosts(*then, kGhost, list, ghost->bodies, view);
   }
-  draw_ways(stage, view, now, list);
-  draw_rails(stage, view, now, list);
-  draw_springs(stage, view, now, false, list);
-  draw_boxes(stage, view, now, list);
-  draw_polygons(stage, view, now, list);
-  draw_springs(stage, view, now, true, list);
-  draw_rods(stage, view, now, list);
-  draw_rounds(stage, view, now, list);
-  draw_pins(stage, view, now, list);
-  draw_contacts(stage, view, now, list);
-  draw_velocities(stage, view, now, list);
-  draw_labels(stage, view, now, list);
+  draw_forms(stage, view, now, list);
+  for (std::size_t i = 1; at.over && i < at.over->runs.size(); ++i) {
+    const RunsOver::Run& run = at.over->runs[i];
+    run.artist->draw_bodies(view, *run.now, run.ways, list);
+  }
   if (annotations_) {
     draw_lines(view, lines, true, list);
     annotations_->draw(0, projection(0, frame), frame, film, list);
   }
   draw_hands(stage, view, now, list);
   list.unclip();
+  std::vector<RunInstant> nows{{&frame, at.fate}};
+  if (at.over) {
+    nows.clear();
+    for (const RunsOver::Run& run : at.over->runs) nows.push_back({run.frame, run.fate});
+    draw_run_names(*at.over->names, nows, view.window, stage.layout.weight, stage.colours, list);
+  } else {
+    draw_fate(nows.front(), view.window, stage.layout.weight, stage.colours, list);
+  }
   if (stage.layout.caption && stage.look.clock) {
     Text clock = stage.layout.clock;
-    clock.spans[0].text = clock_text(frame.time);
+    clock.spans[0].text = clock_text(at.over ? at.over->time : frame.time);
     list.add(clock);
   }
-  stage.charts.draw_lines(frame, list);
+  stage.charts.draw_lines(nows, list);
   draw_titles(titles_, stage.layout, stage.layout.aspect, stage.colours, frame.time, film, at.speed, list);
   set_decimal_mark(list, stage.look.decimal);
   return picture;
+}
+
+void Illustrator::draw_bodies(const View& view, const sim::Snapshot& now,
+                              std::span<const std::shared_ptr<const sim::Track>> ways, List& list) const {
+  draw_trails(plan_->stage, view, now, ways, list);
+  draw_forms(plan_->stage, view, now, list);
 }
 
 double Illustrator::travel(const sim::Snapshot& now, double seconds) const {

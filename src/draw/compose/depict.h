@@ -22,6 +22,8 @@ struct SpaceStage;
 struct Sheet;
 struct WorldLine;
 struct SpaceGhost;
+struct ComparedRun;
+struct RunsOver;
 
 /// How strong the earlier instant of a mark is.
 inline constexpr double kGhost = 0.4;
@@ -31,6 +33,8 @@ struct FrameInstant {
   const sim::Snapshot& now;
   double film = 0;
   double speed = 1;
+  Fate fate = Fate::well;
+  const RunsOver* over = nullptr;  // in the plane: several runs over each other
 };
 
 /// Draws instants of one run. Holds what does not change: the look's colours, the room's walls as polygons,
@@ -67,6 +71,10 @@ class Illustrator {
   /// The picture of one instant with lines through the world; in space with earlier instants as well.
   Picture depict(const sim::Snapshot& now, std::span<const std::shared_ptr<const sim::Track>> ways,
                  std::span<const WorldLine> lines, std::span<const SpaceGhost> ghosts = {}) const;
+
+  /// In the plane: the bodies of a run alone, with their trails and springs.
+  void draw_bodies(const View& view, const sim::Snapshot& now,
+                   std::span<const std::shared_ptr<const sim::Track>> ways, List& list) const;
 
   /// From now on every picture has these marks and titles.
   void annotate(std::shared_ptr<const Annotations> annotations) { annotations_ = std::move(annotations); }
@@ -117,6 +125,19 @@ class Illustrator {
   // one of them
   std::shared_ptr<const Plan> plan_;
   std::shared_ptr<const SpaceStage> space_;
+};
+
+/// Several runs over each other on one page of the plane, the first of them that of the picture itself.
+struct RunsOver {
+  struct Run {
+    const Illustrator* artist = nullptr;  // of the same page
+    const sim::Snapshot *now = nullptr, *frame = nullptr;
+    std::span<const std::shared_ptr<const sim::Track>> ways{};
+    Fate fate = Fate::well;
+  };
+  const std::vector<ComparedRun>* names = nullptr;
+  std::vector<Run> runs;  // all of them
+  double time = 0;        // of the clock
 };
 
 }  // namespace obscura::draw

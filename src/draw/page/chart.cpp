@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace obscura::draw {
 namespace {
@@ -21,15 +22,14 @@ constexpr double kSettle = 0.02;  // of the run, at each side: how long names ta
 }  // namespace
 
 Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
-               double aspect, double seconds, const sim::SceneInfo& cast, double foot, double type_scale)
-    : colours_(colours), cast_(cast), foot_(foot) {
+               double aspect, double seconds, const std::vector<sim::SceneInfo>& casts, double foot,
+               double type_scale)
+    : colours_(colours), casts_(casts), foot_(foot) {
   const double width = 1080 * aspect, weight = std::min(1.0, std::sqrt(width / 1440));
   const double margin = kMargin * weight, inset = std::max(margin, 0.045 * width);
   double column = 0;
-  for (const Chart& chart : charts) {
-    if (chart.place == Chart::Place::below) below_ += chart.share * 1080;
-    if (chart.place == Chart::Place::right) right_ = std::max(right_, chart.share * width), ++column;
-  }
+  for (const Chart& chart : charts) column += chart.place == Chart::Place::right;
+  std::tie(right_, below_) = room(charts, aspect);
   const double gap = margin / 2;
   double low = 1080 - below(), beside = inset;
   const double each = column > 0 ? (1080 - below() - inset - margin) / column : 0;
@@ -55,6 +55,15 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
   for (Panel& panel : panels_) place_names(panel);
 }
 
+std::pair<double, double> Charts::room(const std::vector<Chart>& charts, double aspect) {
+  double right = 0, below = 0;
+  for (const Chart& chart : charts) {
+    if (chart.place == Chart::Place::below) below += chart.share * 1080;
+    if (chart.place == Chart::Place::right) right = std::max(right, chart.share * 1080 * aspect);
+  }
+  return {right, below};
+}
+
 // Names stand beside the heads of their lines, as far from each other as they are high. Where lines cross the
 // names would jump past each other: they are where they would be on the average of some instants around.
 void Charts::place_names(Panel& panel) const {
@@ -64,8 +73,11 @@ void Charts::place_names(Panel& panel) const {
   std::vector<std::vector<double>> sums(lines.size(), std::vector<double>(n + 1, 0));
   for (std::size_t k = 0; k < n; ++k) {
     std::vector<double> heads;
-    for (const Series& line : lines)
-      heads.push_back(area.at(area.first, k < line.values.size() ? line.values[k] : area.low).y());
+    for (const Series& line : lines) {
+      // a run that diverges ends before the others
+      const std::vector<double>& all = line.values;
+      heads.push_back(area.at(area.first, all.empty() ? area.low : all[std::min(k, all.size() - 1)]).y());
+    }
     const std::vector<double> names =
         spread(heads, kNamesApart * area.point, area.top, area.bottom - 3 * area.point);
     for (std::size_t i = 0; i < lines.size(); ++i) sums[i][k + 1] = sums[i][k] + names[i] - heads[i];
@@ -93,37 +105,46 @@ void Charts::draw_still(List& list) const {
   for (const Panel& panel : panels_) draw_axes(panel.plot, panel.area, colours_, list);
 }
 
-void Charts::draw_lines(const sim::Snapshot& now, List& list) const {
+void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
   for (const Panel& panel : panels_) {
-    Plot past;
-    past.lines = panel.plot.lines;
     const auto& times = panel.plot.times;
-    const auto end = std::lower_bound(times.begin(), times.end(), now.time);
-    past.times.assign(times.begin(), end);
-    for (Series& line : past.lines) {
-      line.values.resize(past.times.size());
-      if (!line.along.empty()) line.along.resize(past.times.size());
-    }
-    const bool over_time = panel.chart.against.empty(), within = !over_time || now.time <= panel.area.last;
+    const bool over_time = panel.chart.against.empty();
     const std::vector<Measured::Line> lines = panel.chart.lines();
-    if (within) {
-      past.times.push_back(now.time);
-      for (std::size_t i = 0; i < lines.size(); ++i) {
-        past.lines[i].values.push_back(lines[i].at(cast_, now));
-        if (const auto along = panel.chart.along(lines[i]))
-          past.lines[i].along.push_back(along->at(cast_, now));
+    Plot past;
+    past.range = panel.plot.range;
+    past.lines.reserve(panel.plot.lines.size());
+    std::vector<char> within;
+    for (std::size_t i = 0; i < panel.plot.lines.size(); ++i) {
+      const sim::Snapshot& now = *nows[i / lines.size()].now;
+      const sim::SceneInfo& cast = casts_[i / lines.size()];
+      const Series& all = panel.plot.lines[i];
+      const auto gone = std::size_t(std::lower_bound(times.begin(), times.end(), now.time) - times.begin());
+      const auto n = std::ptrdiff_t(std::min(gone, all.values.size()));
+      Series line{all.label, {all.values.begin(), all.values.begin() + n}, all.color, {}, all.note, all.style,
+                  all.weight};
+      const std::vector<double>& way = all.along.empty() ? times : all.along;
+      line.along.assign(way.begin(), way.begin() + n);
+      within.push_back((!over_time || now.time <= panel.area.last) &&
+                       nows[i / lines.size()].fate == Fate::well);
+      if (within.back()) {
+        const Measured::Line& its = lines[i % lines.size()];
+        line.values.push_back(its.at(cast, now));
+        const auto along = panel.chart.along(its);
+        line.along.push_back(along ? along->at(cast, now) : now.time);
       }
+      past.lines.push_back(std::move(line));
     }
     obscura::draw::draw_lines(past, panel.area, list);
     for (std::size_t i = 0; i < past.lines.size(); ++i) {
       const Series& line = past.lines[i];
       if (line.values.empty()) continue;
-      const double along = line.along.empty() ? past.times.back() : line.along.back();
-      const Point at = panel.area.at(along, line.values.back());
+      const Point at = panel.area.at(line.along.back(), line.values.back());
       const double unit = panel.area.point;
-      if (within) list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
+      if (within[i] && (!panel.plot.range || panel.area.spans(line.values.back())))
+        list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
       // an average may lead below the axis
-      const double high = at.y() + (over_time ? panel.offset(i, now.time) : 0);
+      const double head = std::max(at.y(), panel.area.top);
+      const double high = head + (over_time ? panel.offset(i, line.along.back()) : 0);
       draw_name(panel.plot, i, panel.area,
                 {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)}, list);
     }

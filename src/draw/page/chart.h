@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "draw/page/measure.h"
@@ -16,6 +17,15 @@ struct Chart : Measured {
   double share = 0.3;  // of the picture's height, or width
 };
 
+/// Whether a run is all right at an instant; `ended`: this is its last finite state.
+enum class Fate { well, diverges, ended };
+
+/// An instant of one of several runs.
+struct RunInstant {
+  const sim::Snapshot* now = nullptr;
+  Fate fate = Fate::well;
+};
+
 /// The charts of a run on the page of its film: axes of the whole run, and on them what has happened up to
 /// now.
 class Charts {
@@ -24,9 +34,13 @@ class Charts {
   /// None, and so much of the page's foot is left free.
   explicit Charts(double foot) : foot_(foot) {}
   /// `plots`: one for each chart, from a run of `seconds`, which the axes span. `aspect`: of the page,
-  /// at whose foot `foot` is left free.
+  /// at whose foot `foot` is left free. Of several runs, one of each of `casts`, a plot has first the lines
+  /// of the first, then those of the second.
   Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots, const Palette& colours,
-         double aspect, double seconds, const sim::SceneInfo& cast, double foot, double type_scale);
+         double aspect, double seconds, const std::vector<sim::SceneInfo>& casts, double foot,
+         double type_scale);
+  /// What charts take of the right and of the foot of a page, page units.
+  static std::pair<double, double> room(const std::vector<Chart>& charts, double aspect);
 
   bool empty() const { return panels_.empty(); }
   /// How much of the page they take, page units.
@@ -36,7 +50,11 @@ class Charts {
   /// Axes and ticks: the things that do not move.
   void draw_still(List& list) const;
   /// The lines up to `now`, where they are now, and their names there.
-  void draw_lines(const sim::Snapshot& now, List& list) const;
+  void draw_lines(const sim::Snapshot& now, List& list) const {
+    draw_lines(std::vector{RunInstant{&now}}, list);
+  }
+  /// The same of several runs.
+  void draw_lines(const std::vector<RunInstant>& nows, List& list) const;
 
  private:
   struct Panel {
@@ -50,7 +68,7 @@ class Charts {
   void place_names(Panel& panel) const;
   std::vector<Panel> panels_;
   Palette colours_;
-  sim::SceneInfo cast_;
+  std::vector<sim::SceneInfo> casts_;
   double right_ = 0, below_ = 0, foot_ = 0;
 };
 

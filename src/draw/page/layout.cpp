@@ -241,7 +241,7 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   Layout layout;
   layout.width = 1080 * aspect;
   layout.aspect = layout.width / 1080;
-  layout.weight = page_weight(aspect);
+  layout.weight = page_weight(aspect) * look.weight;
   layout.width -= right, layout.height -= below;
   const double w = layout.weight;
   const Fitted world = fitted_world(cast, extent);

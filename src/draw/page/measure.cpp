@@ -182,6 +182,7 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
         (measures.size() == 1 && measures[0]->name != "energy") || all.empty() ? measures[0]->label : all,
         measures[0]->unit);
   }
+  plot.range = measured.range;
   if (const Measure* other = measure(measured.against)) plot.name = over_unit(other->label, other->unit);
   return plot;
 }

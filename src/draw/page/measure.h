@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "draw/page/marks.h"
@@ -37,8 +38,9 @@ std::vector<std::string> arrows();
 /// Which quantities a plot shows.
 struct Measured {
   std::vector<std::string> quantities;
-  std::vector<int> bodies;  // those measured; none: the whole room
-  std::string against;      // a quantity, instead of time
+  std::vector<int> bodies;                           // those measured; none: the whole room
+  std::string against;                               // a quantity, instead of time
+  std::optional<std::pair<double, double>> range{};  // of the values' axis; none: all there are
 
   /// A line of the plot.
   struct Line {

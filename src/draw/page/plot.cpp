@@ -27,6 +27,7 @@ constexpr double kConstant = 1e-3;  // and what changes by less than this with i
 // dashes and gaps along a line, points; one after another
 const std::vector<std::vector<double>> kDashes = {{},       {5, 2.2},  {1.2, 1.8}, {6, 1.8, 1.2, 1.8},
                                                   {9, 2.5}, {2.6, 1.4}};
+constexpr double kLeft = 0.05;  // of the width: a line that ends so far from the right is named where it ends
 constexpr int kMostDecades = 7;  // with a number each
 
 std::string number(double x) { return fmt::format("{:g}", std::abs(x) < 1e-12 ? 0.0 : x); }
@@ -143,15 +144,20 @@ bool named(const Plot& plot) {
   return plot.lines.size() > 1 || plot.title.empty() || !plot.lines.front().note.empty();
 }
 
-/// The end of a line: its point farthest to the right.
+/// The end of a line: its point farthest to the right, of those within the range that is given.
 Point end_of(const Plot& plot, const PlotArea& area, const Series& line) {
   const std::vector<double>& way = along(plot, line);
   Point end(area.left - 1, area.bottom);
-  for (std::size_t i = 0; i < way.size() && i < line.values.size(); ++i)
-    if (const Point p = area.has(way[i], line.values[i]) ? area.at(way[i], line.values[i]) : end;
-        p.x() >= end.x())
-      end = p;
+  for (std::size_t i = 0; i < way.size() && i < line.values.size(); ++i) {
+    if (!area.has(way[i], line.values[i]) || (plot.range && !area.spans(line.values[i]))) continue;
+    if (const Point p = area.at(way[i], line.values[i]); p.x() >= end.x()) end = p;
+  }
   return end;
+}
+
+/// Whether it ends far from the right side, where its name would be looked for in vain.
+bool leaves(const Plot& plot, const PlotArea& area, const Point& end) {
+  return plot.range && end.x() < area.right - kLeft * (area.right - area.left);
 }
 
 }  // namespace
@@ -243,7 +249,10 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
   area.first = across.low, area.last = across.high;
   if (!(area.last > area.first)) area.last = plot.log ? 10 * area.first : area.first + 1;
 
-  if (plot.log) {
+  if (plot.range && (!plot.log || plot.range->first > 0)) {
+    area.low = plot.range->first, area.high = plot.range->second;
+    area.ticks = ticks(area.low, area.high, std::max(2, int(rect.height / (18 * point))));
+  } else if (plot.log) {
     // by whole decades
     const double first = std::floor(std::log10(up.low) + 1e-9),
                  last = std::max(first + 1, std::ceil(std::log10(up.high) - 1e-9));
@@ -272,9 +281,15 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
   area.right = rect.x + rect.width - names;
   area.top = rect.y + kAbove * point, area.bottom = rect.y + rect.height - kBelow * point;
 
+  // the names at the right end; those of lines that leave the range stand where they do
   std::vector<double> ends;
-  for (const Series& each : plot.lines) ends.push_back(end_of(plot, area, each).y());
-  area.names = spread(ends, kNamesApart * point, area.top, area.bottom - 3 * point);
+  std::vector<std::size_t> there;
+  area.names.assign(plot.lines.size(), area.top + kNamesApart / 2 * point);
+  for (std::size_t i = 0; i < plot.lines.size(); ++i)
+    if (const Point end = end_of(plot, area, plot.lines[i]); !leaves(plot, area, end))
+      ends.push_back(end.y()), there.push_back(i);
+  const std::vector<double> heights = spread(ends, kNamesApart * point, area.top, area.bottom - 3 * point);
+  for (std::size_t i = 0; i < there.size(); ++i) area.names[there[i]] = heights[i];
   return area;
 }
 
@@ -329,6 +344,11 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
 }
 
 void draw_lines(const Plot& plot, const PlotArea& area, List& list) {
+  // a line that leaves the range is cut off there
+  const double half = kLine * area.point;
+  if (plot.range)
+    list.clip({area.left - half, area.top - half, area.right - area.left + 2 * half + kDotRadius * area.point,
+               area.bottom - area.top + 2 * half});
   for (const Series& each : plot.lines) {
     const std::vector<double>& way = along(plot, each);
     std::vector<Node> nodes;
@@ -340,6 +360,7 @@ void draw_lines(const Plot& plot, const PlotArea& area, List& list) {
     for (const Node& node : nodes)
       if (plot.dotted) add_marker(each.style, node.at, kDotRadius * area.point, each.color, list);
   }
+  if (plot.range) list.unclip();
 }
 
 void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, List& list) {
@@ -368,8 +389,11 @@ void draw_names(const Plot& plot, const PlotArea& area, List& list) {
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return area.names[a] > area.names[b]; });
-  for (const std::size_t i : order)
-    draw_name(plot, i, area, {area.right + 4 * area.point, area.names[i]}, list);
+  for (const std::size_t i : order) {
+    const Point end = end_of(plot, area, plot.lines[i]);
+    const double x = leaves(plot, area, end) ? end.x() : area.right;
+    draw_name(plot, i, area, {x + 4 * area.point, area.names[i]}, list);
+  }
 }
 
 void draw_plots(const std::vector<Plot>& plots, const Palette& colours, const std::vector<Rect>& rects,

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "draw/picture/list.h"
@@ -34,6 +36,7 @@ struct Plot {
   bool log = false;                // both axes; of what is not positive nothing is drawn
   bool dotted = false;             // a dot at each value
   std::vector<Dot> dots;
+  std::optional<std::pair<double, double>> range{};  // of the values' axis; none: all there are
 };
 
 /// The mapping from a plot's values to the page.
@@ -48,6 +51,8 @@ struct PlotArea {
   Point at(double along, double value) const;
   /// Whether it has a place there.
   bool has(double along, double value) const { return !log || (along > 0 && value > 0); }
+  /// Whether a value lies between the ends of its axis.
+  bool spans(double value) const { return value >= low && value <= high; }
 };
 
 /// Axes for all of a plot's values in a rectangle of the page. Requires two times and a line at least. They

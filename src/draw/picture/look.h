@@ -40,7 +40,8 @@ struct Look {
   bool ground = true;              // the grid, and shadows on it
   double tile = 0;                 // m from one line of the grid to the next; 0: chosen by the camera
   double type_scale = 1;           // of all type but formulas above a figure
-  std::string decimal = ".";       // what stands in numbers on the picture
+  double weight = 1;          // of lines and type, beside that of the page: a small panel has heavier ones
+  std::string decimal = ".";  // what stands in numbers on the picture
   enum class Springs { automatic, coils, lines } springs = Springs::automatic;
 };
 

@@ -124,7 +124,7 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
       light(draw::light(looks_.light)) {
   layout.width = 1080 * aspect;
   layout.aspect = layout.width / 1080;
-  layout.weight = page_weight(aspect);
+  layout.weight = page_weight(aspect) * look.weight;
   layout.width -= charts.right(), layout.height -= charts.below();
   const double w = layout.weight;
   // the ground has no edge: one colour for the page and the room
@@ -272,7 +272,6 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     clock.spans[0].text = clock_text(frame.time);
     picture.moving.add(clock);
   }
-  stage.charts.draw_lines(frame, picture.moving);
   return picture;
 }
 

@@ -67,6 +67,8 @@ class PlaybackOf final : public Run {
   }
 
   // it may begin anywhere: there is nothing to save
+  void show_divergence() override {}
+  std::optional<Divergence> divergence() const override { return {}; }
   std::vector<std::uint64_t> saved() const override { return {}; }
   Rational now() const override { return {0, 1}; }
 

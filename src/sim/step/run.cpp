@@ -34,21 +34,34 @@ class RunOf final : public Run {
 
   void heed(std::function<bool()> stop) override { stop_ = std::move(stop); }
 
+  void show_divergence() override { shown_ = true; }
+  std::optional<Divergence> divergence() const override { return divergence_; }
+
   std::variant<Snapshot, Trouble, Stopped> at(Rational t) override {
-    if (trouble_) return *trouble_;
     const TimeStamp to = time_stamp(t, model_.rate);
-    assert(to.step >= state_.step);
-    while (state_.step < to.step) {
+    assert(trouble_ || to.step >= state_.step);
+    while (!trouble_ && state_.step < to.step) {
       if (stop_ && stop_()) return Stopped{};
+      if (shown_) last_ = state_;
       trouble_ = stepper_.step(state_);
-      if (trouble_) return *trouble_;
-      keep_ways();
+      // what comes after a whole step is too much energy, in finite numbers
+      if (shown_ && trouble_ && state_.step > last_.step) trouble_.reset();
+      if (trouble_ && shown_) state_ = last_;
+      if (!trouble_) keep_ways();
     }
+    divergence_.reset();
+    if (trouble_) return shown_ ? last_finite(*trouble_) : Answer(*trouble_);
+    if (shown_)
+      if (const auto much = stepper_.diverges(state_)) divergence_ = Divergence{*much, false};
     between_ = to.fraction > 0;
     if (!between_) return snapshot(model_, state_, stepper_, to, value(t));
     copy_ = state_;
-    trouble_ = stepper_.partial_step(copy_, to.fraction);
-    if (trouble_) return *trouble_;
+    if (auto trouble = stepper_.partial_step(copy_, to.fraction)) {
+      // the step as a whole decides whether the run ends here
+      if (shown_) return last_finite(*trouble);
+      trouble_ = trouble;
+      return *trouble_;
+    }
     return snapshot(model_, copy_, stepper_, to, value(t));
   }
 
@@ -74,6 +87,14 @@ class RunOf final : public Run {
   }
 
  private:
+  using Answer = std::variant<Snapshot, Trouble, Stopped>;
+
+  Snapshot last_finite(const Trouble& trouble) {
+    between_ = false;
+    divergence_ = Divergence{trouble, true};
+    return snapshot(model_, state_, stepper_, {state_.step, 0}, time({state_.step, 0}, model_.rate));
+  }
+
   // a point of every way that this step belongs to: all at equal steps, and bodies that have just had an
   // impact
   void keep_ways() {
@@ -102,12 +123,14 @@ class RunOf final : public Run {
   }
 
   Model<D> model_;
-  State<D> state_, copy_;
+  State<D> state_, copy_, last_;  // last_: before the step, where divergence is shown
   Stepper<D> stepper_;
   bool sound_ = true;
   SceneInfo cast_;
   std::optional<Trouble> trouble_;
+  std::optional<Divergence> divergence_;  // at the last snapshot
   std::function<bool()> stop_;
+  bool shown_ = false;    // a run that diverges
   bool between_ = false;  // the last instant lay between two steps: copy_ shows it
   Track track_;
   std::vector<char> touched_;  // all false between two calls

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -16,6 +17,12 @@ namespace obscura::sim {
 /// A run that was asked to stop on its way to an instant. It stands between two steps and may be asked to go
 /// on.
 struct Stopped {};
+
+/// A run that diverges and is shown all the same.
+struct Divergence {
+  Trouble trouble;
+  bool ended = false;  // the state shown is its last finite one, also at all later instants
+};
 
 /// The one loop: steps a world along its own clock and hands out instants. A frame between two steps is a
 /// partial step on a copy; the trajectory never notices.
@@ -32,6 +39,12 @@ class Run {
 
   /// From now on, `stop` is asked before every step whether to stop there.
   virtual void heed(std::function<bool()> stop) = 0;
+
+  /// From now on, a run that diverges is shown: it goes on for as long as its state is finite, and every
+  /// later instant is that of the last finite step.
+  virtual void show_divergence() = 0;
+  /// Of such a run at the last snapshot; none: all is well.
+  virtual std::optional<Divergence> divergence() const = 0;
 
   /// The state at the last whole step, for run() to go on from (sim/step/archive.h), and its time (s). Empty
   /// for a run that may begin anywhere.

@@ -159,9 +159,21 @@ std::optional<Trouble> Stepper<D>::step(State<D>& state) {
 
 template <int D>
 std::optional<Trouble> Stepper<D>::check_energy(const State<D>& state) {
-  if (springs_ && state.step % watch_every_ == 0 && !blasting(state))
+  if (state.step % watch_every_ == 0 && may_gain(state))
     return divergence_.check_energy(state, time({state.step, 0}, model_.rate));
   return {};
+}
+
+// whether energy from nowhere would be the scheme's fault
+template <int D>
+bool Stepper<D>::may_gain(const State<D>& state) const {
+  return springs_ && !blasting(state);
+}
+
+template <int D>
+std::optional<Trouble> Stepper<D>::diverges(const State<D>& state) const {
+  if (pieces_ || lets_go_ || !may_gain(state)) return {};
+  return divergence_.check_energy(state, time({state.step, 0}, model_.rate));
 }
 
 template <int D>

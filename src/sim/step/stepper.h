@@ -43,6 +43,9 @@ class Stepper {
   /// then thrown away.
   std::optional<Trouble> partial_step(State<D>& state, double fraction);
 
+  /// Whether a state holds far more energy than could have come from anywhere.
+  std::optional<Trouble> diverges(const State<D>& state) const;
+
   /// The model as it is for this state: bodies that have been let go are free in it.
   const Model<D>& model(const State<D>& state) const;
 
@@ -62,6 +65,7 @@ class Stepper {
   std::optional<Trouble> advance(State<D>& state, double from, double fraction);
   std::optional<Trouble> advance_pieces(State<D>& state, double from, double fraction);
   std::optional<Trouble> check_energy(const State<D>& state);
+  bool may_gain(const State<D>& state) const;
   void begin_anew(State<D>& state, double t);
   void touch_script(State<D>& state, TimeStamp at);
   void plan(const State<D>& state);

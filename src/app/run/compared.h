@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "app/run/simulation.h"
+#include "scene/scene.h"
+
+namespace obscura::app {
+
+/// The runs of a film that varies keys (film.vary), each with its scene as its panel shows it: one clock, one
+/// camera, one scale. None where the film is of one run. Throws UsageError and scene::Error.
+std::vector<Ahead::Run> compared(const scene::Scene& scene);
+
+/// The scenes of the runs that a film shows: those of `compared`, or the scene itself.
+std::vector<scene::Scene> filmed(const scene::Scene& scene);
+
+/// How many runs a film shows.
+std::int64_t runs_of(const scene::Scene& scene);
+
+}  // namespace obscura::app
