@@ -245,6 +245,72 @@ TEST(Marks, WordsKeepClearOfEachOther) {
   }
 }
 
+/// Where a line from a to b enters a rectangle, if it does.
+bool crosses(const draw::Rect& rect, const draw::Point& a, const draw::Point& b) {
+  double from = 0, to = 1;
+  const auto cut = [&](double start, double way, double low, double high) {
+    if (std::abs(way) < 1e-12) {
+      if (start < low || start > high) to = -1;
+      return;
+    }
+    const double s = (low - start) / way, t = (high - start) / way;
+    from = std::max(from, std::min(s, t)), to = std::min(to, std::max(s, t));
+  };
+  cut(a.x(), b.x() - a.x(), rect.x, rect.x + rect.width);
+  cut(a.y(), b.y() - a.y(), rect.y, rect.y + rect.height);
+  return from < to;
+}
+
+/// Words cover no body's outline and no arrow. Letters' own boxes, a pixel in.
+TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
+  for (const char* name : {"slope", "swing"}) {
+    Filmed film(kScenes + name + ".toml");
+    int looked = 0;
+    for (std::int64_t frame = 0; frame < film.shots.size(); frame += 5) {
+      const sim::Snapshot now = film.now(frame);
+      const draw::Projection page = film.artist.projection(0, now);
+      const draw::List list = film.marks(now, frame);
+      std::vector<std::pair<draw::Point, draw::Point>> lines;
+      const sim::SceneInfo& cast = film.artist.scene_info();
+      for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
+        std::vector<draw::Point> outline;
+        for (int k = 0; k < 24; ++k) {
+          const sim::SceneInfo::Body& body = cast.bodies[i];
+          const double turn = k * 0.26179938779914941;
+          sim::Vec3 local = body.radius * sim::Vec3(std::cos(turn), std::sin(turn), 0);
+          if (body.kind == sim::ShapeKind::box)
+            local =
+                body.half.cwiseProduct(sim::Vec3(k / 6 == 0 || k / 6 == 3 ? 1 : -1, k / 6 < 2 ? 1 : -1, 0));
+          outline.push_back(page.page(draw::place({int(i), local}, now)));
+        }
+        for (std::size_t k = 0; k < outline.size(); ++k)
+          lines.emplace_back(outline[k], outline[(k + 1) % outline.size()]);
+      }
+      draw::Scales scales = film.ahead.annotations->scales();
+      for (const draw::Marks::Vector& vector : film.scene.film.marks.vectors) {
+        if (!vector.shown.has(now.time, film.film(frame))) continue;
+        const double* scale = draw::scale_of(vector.quantity, scales);
+        for (const draw::Reading& each : draw::readings(vector, cast, now))
+          lines.emplace_back(page.page(each.tail), page.page(each.tail + (scale ? *scale : 1) * each.value));
+      }
+      for (const draw::Text& text : list.texts) {
+        // words of an arrow that has all but gone have too
+        if (text.spans[0].color.a < 100) continue;
+        double width = 0, size = 0;
+        for (const draw::Span& span : text.spans) {
+          width += span.lead + draw::width_of(span.text, span.face, span.size, span.tabular);
+          size = std::max(size, span.size);
+        }
+        const draw::Rect rect{text.at.x() + 1, text.at.y() - 0.62 * size, width - 2, 0.6 * size};
+        ++looked;
+        for (const auto& [a, b] : lines)
+          EXPECT_FALSE(crosses(rect, a, b)) << name << ": \"" << said(text) << "\" at frame " << frame;
+      }
+    }
+    EXPECT_GT(looked, 50) << name;
+  }
+}
+
 /// The forces by their kinds add up, and to what the motion shows: the change of velocity over a step.
 TEST(Marks, TheKindsOfForcesAddUpToTheAcceleration) {
   for (const char* name : {"slope", "swing", "pendulum", "drag_particle", "spring"}) {

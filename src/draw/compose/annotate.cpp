@@ -84,6 +84,7 @@ class Notes {
     Formula set;
     std::vector<Placing::Candidate> places;
     Point anchor;
+    std::optional<std::pair<Point, Point>> arrow;
   };
   bool film() const { return how_.plan != nullptr || how_.survey != nullptr; }
   static Point size(const Formula& f) { return {f.width, f.ascent + f.descent}; }
@@ -93,6 +94,8 @@ class Notes {
   Formula set(const WordKey& key, const std::string& text, double value, std::string_view unit, Color ink);
   Placing::Candidate planned(const Word& word, double& leader) const;
   void plate(const Point& center, const Point& size, std::uint8_t strength);
+  void lead(const Word& word, const Point& center, double strength);
+  void offer_places();
   bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink);
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
   void dashes(const Point& a, const Point& b);
@@ -100,8 +103,9 @@ class Notes {
             Color ink);
   template <class At>
   void arc(const At& at, double radius, double from, double to, double width, Color color);
-  void word(const WordKey& key, Formula set, std::vector<Placing::Candidate> places, const Point& anchor) {
-    if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor});
+  void word(const WordKey& key, Formula set, std::vector<Placing::Candidate> places, const Point& anchor,
+            std::optional<std::pair<Point, Point>> arrow = {}) {
+    if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor, arrow});
   }
 
   const sim::SceneInfo& cast_;
@@ -152,12 +156,16 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   std::vector<Arrow> arrows;
   offer(tail, tip, view_.window(), arrow_, arrows);
   if (arrows.empty()) return false;
-  draw_arrows(arrows, arrow_, colours_.room, ink, list_);
+  if (film())
+    draw_filled_arrow(arrows[0], arrow_, colours_.room, ink, list_);
+  else
+    draw_arrows(arrows, arrow_, colours_.room, ink, list_);
   const Point end = film() ? arrows[0].tip : tip;
   placing_.avoid(tail, end, 4);
   // words come and go with a small arrow
   if (film()) fade(label, (arrows[0].grow - 0.2) / (kFull - 0.2));
-  word(key, label, Placing::along(tail, end, 1.7 * gap_, size(label), point_, film()), (tail + end) / 2);
+  word(key, label, Placing::along(tail, end, 1.7 * gap_, size(label), point_, film()), (tail + end) / 2,
+       std::pair(tail, end));
   return true;
 }
 
@@ -555,33 +563,48 @@ void Notes::finish() {
     list_.add(Disc{at, dot_radius_ + 0.6 * point_, 0, colours_.room, colours_.room});
     list_.add(Disc{at, dot_radius_, 0, ink, ink});
   }
+  if (how_.survey) return offer_places();
+  const auto write = [&](const Word& word, const Point& center) {
+    const Point half = size(word.set) / 2;
+    add(word.set, {center.x() - half.x(), center.y() - half.y() + word.set.ascent}, list_);
+  };
+  std::vector<Point> centers;
   for (Word& word : words_) {
-    const Point size = Notes::size(word.set);
-    if (how_.survey) {
-      Offered offered{word.key, size, word.anchor, std::move(word.places)};
-      if (!how_.ranges)
-        for (Placing::Candidate& each : offered.places) each.cost = placing_.cost(size, each);
-      how_.survey->push_back(std::move(offered));
-      continue;
-    }
     double leader = 1;
-    const Placing::Candidate best = how_.plan ? planned(word, leader) : placing_.place(size, word.places);
-    if (best.leader) {
-      const Point way = word.anchor - best.center;
-      // from the words' edge to just before what they name
-      const double out = std::min(size.x() / 2 / std::max(std::abs(way.normalized().x()), 1e-9),
-                                  size.y() / 2 / std::max(std::abs(way.normalized().y()), 1e-9));
-      const Point u = way.normalized();
-      const Point from = best.center + (out + 1.2 * point_) * u,
-                  to = word.anchor - (dot_radius_ + 1.5 * point_) * u;
-      Color line = word.set.color;
-      line.a = std::uint8_t(std::lround(line.a * leader));
-      if ((to - from).dot(u) > 2 * point_)
-        list_.add({{from, 0.4 * point_, line}, {to, 0.4 * point_, line}}, Cap::butt);
-    }
-    if (film()) plate(best.center, size, word.set.color.a);
-    add(word.set, {best.center.x() - size.x() / 2, best.center.y() - size.y() / 2 + word.set.ascent}, list_);
+    const Placing::Candidate best =
+        how_.plan ? planned(word, leader) : placing_.place(size(word.set), word.places);
+    if (best.leader) lead(word, best.center, leader);
+    centers.push_back(best.center);
+    if (!film()) write(word, best.center);
   }
+  if (!film()) return;
+  // one kind after another is drawn in few batches
+  for (std::size_t i = 0; i < words_.size(); ++i)
+    plate(centers[i], size(words_[i].set), words_[i].set.color.a);
+  for (std::size_t i = 0; i < words_.size(); ++i) write(words_[i], centers[i]);
+}
+
+// the places where words could stand, each with its cost
+void Notes::offer_places() {
+  for (Word& word : words_) {
+    Offered offered{word.key, size(word.set), word.anchor, std::move(word.places), word.arrow};
+    if (!how_.ranges)
+      for (Placing::Candidate& each : offered.places) each.cost = placing_.cost(offered.size, each);
+    how_.survey->push_back(std::move(offered));
+  }
+}
+
+// a line from the words' edge to just before what they name
+void Notes::lead(const Word& word, const Point& center, double strength) {
+  const Point size = Notes::size(word.set), way = word.anchor - center;
+  const double out = std::min(size.x() / 2 / std::max(std::abs(way.normalized().x()), 1e-9),
+                              size.y() / 2 / std::max(std::abs(way.normalized().y()), 1e-9));
+  const Point u = way.normalized();
+  const Point from = center + (out + 1.2 * point_) * u, to = word.anchor - (dot_radius_ + 1.5 * point_) * u;
+  Color line = word.set.color;
+  line.a = std::uint8_t(std::lround(line.a * strength));
+  if ((to - from).dot(u) > 2 * point_)
+    list_.add({{from, 0.4 * point_, line}, {to, 0.4 * point_, line}}, Cap::butt);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "draw/compose/depict.h"
@@ -74,6 +75,7 @@ struct Offered {
   Point size;
   Point anchor;
   std::vector<Placing::Candidate> places;
+  std::optional<std::pair<Point, Point>> arrow{};  // from tail to tip: that it names, and does not pass over
 };
 
 /// What a film knows of its labels before it draws one.

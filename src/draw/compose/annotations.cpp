@@ -24,6 +24,7 @@ constexpr double kQuickest = 0.3, kSlowest = 4;  // s: a change
 constexpr double kPathError = 0.2;               // page units
 constexpr double kFaintest = 0.22;               // of a path's oldest end
 constexpr double kShared = 40;                   // points: of lying on another label
+constexpr double kOver = 8;                      // of each unit of its own arrow that it passes over
 
 double overlap(const Offered& a, int i, const Offered& b, int j) {
   const Point d = (a.places[std::size_t(i)].center - b.places[std::size_t(j)].center).cwiseAbs();
@@ -31,6 +32,31 @@ double overlap(const Offered& a, int i, const Offered& b, int j) {
   if (!(room.x() > 0 && room.y() > 0)) return 0;
   const Point least = a.size.cwiseMin(b.size);
   return std::min(room.x() / least.x(), 1.0) * std::min(room.y() / least.y(), 1.0);
+}
+
+// how much of a line lies under a label, page units
+double under(const Point& a, const Point& b, const Point& center, const Point& size) {
+  double from = 0, to = 1;
+  for (int i = 0; i < 2; ++i) {
+    const double way = b[i] - a[i], low = center[i] - size[i] / 2 - a[i], high = low + size[i];
+    if (std::abs(way) < 1e-9) {
+      if (low > 0 || high < 0) return 0;
+      continue;
+    }
+    from = std::max(from, std::min(low / way, high / way)),
+    to = std::min(to, std::max(low / way, high / way));
+  }
+  return from < to ? (to - from) * (b - a).norm() : 0;
+}
+
+// the cost of its way from place i to place j: a label goes around the head of its arrow, not over it
+double cost_of_way(const Offered& label, std::size_t i, std::size_t j) {
+  const Point &from = label.places[i].center, &to = label.places[j].center;
+  double cost = kWay * (to - from).norm();
+  if (!label.arrow) return cost;
+  for (const double part : {0.25, 0.5, 0.75})
+    cost += kOver / 3 * under(label.arrow->first, label.arrow->second, from + part * (to - from), label.size);
+  return cost;
 }
 
 // the place of a course at a sample, without the way between
@@ -104,9 +130,12 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
           if (gap) {
             before = cheapest, least = best[cheapest];
           } else {
-            const double way = (offered->places[i].center - offered->places[cheapest].center).norm();
-            const double change = best[cheapest] + kChange * point + kWay * way;
-            if (change < least) before = cheapest, least = change;
+            for (std::size_t j = 0; j < n; ++j) {
+              const double change = best[j] + kChange * point;
+              if (change >= least) continue;
+              if (const double all = change + cost_of_way(*offered, j, i); all < least)
+                before = j, least = all;
+            }
           }
           now[i] = least;
         } else {

@@ -133,7 +133,8 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
   const Point u = (tip - tail).normalized(), v(-u.y(), u.x());
   std::vector<Candidate> all;
   double ring = 0;
-  for (const double off : {0.0, 3.0, 8.0, 15.0}) {
+  for (const double off : {0.0, 3.0, 8.0, 15.0, 24.0}) {
+    if (!fixed && off > 20) break;
     double order = 0;
     for (const double part : {0.85, 0.7, 0.55, 1.0, 0.4, 0.25}) {
       const Point at = tail + part * (tip - tail);

@@ -55,6 +55,20 @@ void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Co
   for (const Arrow& a : arrows) list.add(head(a, weight, 0), color);
 }
 
+void draw_filled_arrow(const Arrow& arrow, double weight, Color room, Color color, List& list) {
+  const Point u = (arrow.tip - arrow.tail).normalized(), v(-u.y(), u.x());
+  const auto shaft = [&](double halo, Color ink) {
+    const Point side = (kArrowLine * weight * arrow.grow / 2 + halo) * v;
+    const Point end = arrow.tip - u * (kNotch - 1) * weight * arrow.grow;
+    list.add({arrow.tail + side, end + side, end - side, arrow.tail - side, arrow.tail}, ink);
+  };
+  const double halo = kHalo * weight * arrow.grow;
+  shaft(halo, room);
+  list.add(head(arrow, weight, halo), room);
+  shaft(0, color);
+  list.add(head(arrow, weight, 0), color);
+}
+
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   std::vector<Arrow> arrows;
   for (int i : stage.arrows) {

@@ -76,6 +76,12 @@ void offer(const Point& tail, Point tip, const Rect& window, double weight, std:
 /// Halos of all below all arrows.
 void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list);
 
+/// Pieces of ceiling over places of the room from which springs, rods and ropes hang.
+void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// One arrow, all of it filled areas: many of them are drawn in one go.
+void draw_filled_arrow(const Arrow& arrow, double weight, Color room, Color color, List& list);
+
 /// A force where two touch: all that one gives to the other, at their centre of pressure.
 struct Push {
   sim::Vec3 point, force;
