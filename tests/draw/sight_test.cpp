@@ -88,7 +88,7 @@ TEST(HiddenLines, AgreesWithRaysThroughRandomBoxes) {
 TEST(HiddenLines, ABallHidesADiscAndARodAStrip) {
   const CameraProjection lens = front();
   HiddenLines sight(lens);
-  sight.add_disc(contour(lens, {0, 0, 0}, 1, 64), {0, 0, 0}, 0);
+  sight.add_disc(contour(lens, {0, 0, 0}, 1, 64), {0, 0, 0}, 1, 0);
   sight.add_rod({3, -1, 0}, {3, 1, 0}, 0.1, 0.1, 1);
   sight.finish();
   EXPECT_FALSE(sight.seen({0.69, 0.69, -0.5}, -1));
@@ -96,6 +96,43 @@ TEST(HiddenLines, ABallHidesADiscAndARodAStrip) {
   EXPECT_TRUE(sight.seen({0.69, 0.69, 0.5}, -1));
   EXPECT_FALSE(sight.seen({3.05, 0, -1}, -1));
   EXPECT_TRUE(sight.seen({3.15, 0, -1}, -1));
+}
+
+/// What reaches into a round body is hidden from its surface on, not from its middle on.
+TEST(HiddenLines, ALineEndsWhereItEntersARoundBody) {
+  for (const auto projection : {Camera::Projection::orthographic, Camera::Projection::perspective}) {
+    const CameraProjection lens = front(projection);
+    HiddenLines sight(lens);
+    sight.add_disc(contour(lens, {0, 0, 0}, 1, 64), {0, 0, 0}, 1, 0);
+    sight.add_rod({3, -1, 0}, {3, 1, 0}, 0.3, 0.3, 1);
+    sight.finish();
+    // to the depth of the planes that stand for its front: 1 - cos 15 degrees of the radius, and little more
+    EXPECT_FALSE(sight.seen({0, 0, 0.9}, -1));
+    EXPECT_FALSE(sight.seen({0.3, -0.2, 0.8}, -1));
+    EXPECT_FALSE(sight.seen({0.7, 0.2, 0.5}, -1));
+    EXPECT_TRUE(sight.seen({0, 0, 1.02}, -1));
+    EXPECT_TRUE(sight.seen({0.5, 0.5, 0.75}, -1));
+    EXPECT_TRUE(sight.seen({0.75, -0.6, 0.32}, -1));
+    EXPECT_FALSE(sight.seen({3, 0, 0.25}, -1));
+    EXPECT_TRUE(sight.seen({3, 0, 0.32}, -1));
+  }
+}
+
+/// Boxes of one body that lie in each other show the outline of both together: an edge on the other's front
+/// is a seam. Of two bodies both edges are shown.
+TEST(HiddenLines, ABodyOfSeveralFormsHasNoSeams) {
+  const CameraProjection lens = front();
+  const Polyhedron bar = box({2, 0.2, 0.1}), post = box({0.2, 2, 0.1});
+  for (const bool one : {true, false}) {
+    HiddenLines sight(lens);
+    sight.add(bar, 0, one ? 7 : 1);
+    sight.add(post, 1, one ? 7 : 2);
+    sight.finish();
+    // the bar's upper front edge, across the post
+    HiddenLines::Parts parts;
+    sight.seen({-2, 0.2, 0.1}, {2, 0.2, 0.1}, 0, -1, parts);
+    EXPECT_EQ(parts.size(), one ? 2u : 1u);
+  }
 }
 
 TEST(HiddenLines, AWallCutsTheRoomFromSpace) {

@@ -82,6 +82,31 @@ TEST(Still, HatchingIsAt45DegreesFourteenApartAndAsWideAsItShould) {
   EXPECT_GT(whole, 300);
 }
 
+/// Whichever way walls lie, their hatching is at 45 degrees to each of them, as dense as along any other.
+TEST(Still, HatchingIsAt45DegreesToEachWall) {
+  for (const Made& made : {slanted(), wedge(), valley()}) {
+    const std::vector<HalfPlane> walls = half_planes(made.cast, made.depictor().view(0));
+    const Picture picture = made.picture();
+    int looked = 0;
+    for (const Polygon& polygon : picture.still->polygons) {
+      Point middle(0, 0), longest(0, 0);
+      for (int i = polygon.begin; i < polygon.end; ++i) {
+        const Point &p = picture.still->points[std::size_t(i)],
+                    &q = picture.still->points[std::size_t(i + 1 < polygon.end ? i + 1 : polygon.begin)];
+        middle += p / (polygon.end - polygon.begin);
+        if ((q - p).norm() > longest.norm()) longest = q - p;
+      }
+      if (longest.norm() < 12) continue;  // cut off at a corner
+      ++looked;
+      const auto deep = [&](const HalfPlane& wall) { return (middle - wall.point).dot(wall.normal); };
+      const auto nearest = std::min_element(walls.begin(), walls.end(),
+                                            [&](const auto& a, const auto& b) { return deep(a) < deep(b); });
+      EXPECT_NEAR(std::abs(longest.normalized().dot(nearest->normal)), std::sqrt(0.5), 1e-6);
+    }
+    EXPECT_GT(looked, 50);
+  }
+}
+
 TEST(Still, HatchingIsEverywhereAlongEveryWall) {
   for (const Made& made : {room(8, 4.5), slanted(), wedge(), ground(), valley()}) {
     const Picture picture = made.picture();

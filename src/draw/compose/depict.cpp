@@ -24,6 +24,7 @@ bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::Shape
 
 // bodies, what ties them, their own arrows and names
 void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  draw_brackets(stage, view, now, list);
   draw_ways(stage, view, now, list);
   draw_rails(stage, view, now, list);
   draw_springs(stage, view, now, false, list);

@@ -1,12 +1,22 @@
 #include "draw/picture/theme.h"
 
 #include <array>
+#include <cmath>
 
 namespace obscura::draw {
 
 namespace {
 
 constexpr Color kWhite{0xFF, 0xFF, 0xFF}, kBlack{0, 0, 0};
+constexpr double kFaint = 0.75;  // luminance: white is 1
+
+double luminance(Color c) {
+  const auto linear = [](std::uint8_t level) {
+    const double x = level / 255.0;
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
+}
 
 }  // namespace
 
@@ -40,7 +50,10 @@ Palette palette(Theme theme) {
 Paint paint(Color own, Theme theme) {
   if (theme == Theme::paper) {
     const Color dark = mix(own, kBlack, 0.3);
-    return {mix(own, kWhite, 0.62), dark, dark, mix(kWhite, own, 0.52)};
+    // a trail that would hardly be seen on white has the outline's colour
+    Color trail = mix(kWhite, own, 0.52);
+    if (luminance(trail) > kFaint) trail = mix(kWhite, dark, 0.52);
+    return {mix(own, kWhite, 0.62), dark, dark, trail};
   }
   // axes darker than the fill: lighter ones were too faint
   return {own, mix(own, kWhite, 0.25), mix(own, kBlack, 0.6), mix(palette(theme).room, own, 0.72)};

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kAppear = 0.4, kLeave = 0.4;  // s before the press and after the release
 constexpr double kStep = 14, kWayDot = 2.1;    // of the dotted path, page units
+constexpr double kWayLasts = 0.7;              // s: how long the path stays behind the hand
 constexpr double kPointerEdge = 2.4;           // the pointer's outline
 
 Color faded(Color c, double alpha) {
@@ -29,8 +30,8 @@ std::vector<Point> placed(const std::vector<Point>& form, const Point& at, doubl
   return points;
 }
 
-/// Dots at equal distances along the hand's way; the part behind the hand is stronger than the part before
-/// it. A way that comes back over itself is dotted once.
+/// Dots at equal distances along the way that the hand has just gone, fainter the older they are. A way that
+/// comes back over itself is dotted once.
 void dot_way(const sim::SceneInfo::Mouse& mouse, const Stage& stage, const View& view, double time,
              double alpha, List& list) {
   const double step = kStep * stage.layout.weight, radius = kWayDot * stage.layout.weight;
@@ -58,10 +59,11 @@ void dot_way(const sim::SceneInfo::Mouse& mouse, const Stage& stage, const View&
     for (; next <= gone + length && length > 0; next += step) {
       const double part = (next - gone) / length;
       const Point at = a + part * (b - a);
+      const double when = mouse.press + lasts * (double(i) + part) / double(n - 1);
+      const double strength = 1 - (time - when) / kWayLasts;
+      if (when > time || !(strength > 0)) continue;
       if (outside(view.window, at, step) || taken(at)) continue;
       dotted[{square(at.x()), square(at.y())}].push_back(at);
-      const double when = mouse.press + lasts * (double(i) + part) / double(n - 1);
-      const double strength = when <= time ? 1 : 0.5;
       const Color color = faded(stage.colours.way, alpha * strength);
       list.add(Disc{at, radius, 0, color, color});
     }

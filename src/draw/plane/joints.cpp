@@ -49,7 +49,59 @@ double room_for(const Stage& stage, const View& view, const sim::SceneInfo::Join
   return view.scale * least;
 }
 
+constexpr double kBracket = 24, kHatchHigh = 12;  // page units: half its width, how high its hatching is
+constexpr double kNearWall = 14;  // page units: what is made fast so near to a wall hangs from that
+
+/// A piece of ceiling over a place of the room from which something hangs; none near a wall. It goes where
+/// what it holds swings up to its height, for it does not hang then.
+void draw_bracket(const Stage& stage, const View& view, const std::vector<HalfPlane>& walls, const Point& at,
+                  const Point& other, std::vector<Point>& hatched, List& list) {
+  const double weight = stage.layout.weight;
+  const Point up = Point(-stage.cast.gravity.x(), stage.cast.gravity.y()).normalized(),
+              along(-up.y(), up.x());
+  const double hangs = -(other - at).normalized().dot(up);
+  const double strength = std::clamp(hangs / 0.5, 0.0, 1.0);
+  if (!(strength > 0) || outside(view.window, at, 2 * kBracket * weight)) return;
+  for (const HalfPlane& wall : walls)
+    if ((at - wall.point).dot(wall.normal) < kNearWall * weight) return;
+  Color color = stage.colours.wall, hatch = stage.colours.hatch;
+  color.a = hatch.a = std::uint8_t(std::lround(255 * strength));
+  const double half = kBracket * weight, high = kHatchHigh * weight;
+  // brackets beside each other have their hatching in common: its lines are at fixed places
+  const double step = kHatchStep * weight, own = (at - view.origin).dot(along);
+  const Point home = at - own * along;
+  for (double x = std::ceil((own - half) / step) * step; x + high <= own + half + 1e-9; x += step) {
+    const Point foot = home + x * along;
+    const auto drawn = [&](const Point& before) { return (before - foot).norm() < 1e-3; };
+    if (std::any_of(hatched.begin(), hatched.end(), drawn)) continue;
+    hatched.push_back(foot);
+    const double width = kHatchLine * weight;
+    list.add({{foot, width, hatch}, {home + (x + high) * along + high * up, width, hatch}}, Cap::butt);
+  }
+  const double line = kWallLine * weight;
+  list.add({{at - half * along, line, color}, {at + half * along, line, color}}, Cap::butt);
+}
+
 }  // namespace
+
+void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  if (!(stage.cast.gravity.head<2>().norm() > 0)) return;
+  const std::vector<HalfPlane> walls = half_planes(stage.cast, view);
+  std::vector<Point> hatched;
+  for (std::size_t i = 0; i < now.springs.size(); ++i) {
+    const sim::SceneInfo::Spring& spring = stage.cast.springs[i];
+    const Point a = view.page(now.springs[i].a), b = view.page(now.springs[i].b);
+    if (spring.a < 0 && spring.b >= 0) draw_bracket(stage, view, walls, a, b, hatched, list);
+    if (spring.b < 0 && spring.a >= 0) draw_bracket(stage, view, walls, b, a, hatched, list);
+  }
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
+    if (!spans(joint_look(joint.kind).plane) || now.joints[i].broken) continue;
+    const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
+    if (joint.a < 0 && joint.b >= 0) draw_bracket(stage, view, walls, a, b, hatched, list);
+    if (joint.b < 0 && joint.a >= 0) draw_bracket(stage, view, walls, b, a, hatched, list);
+  }
+}
 
 void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;

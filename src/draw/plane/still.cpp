@@ -3,7 +3,6 @@
 // outer border and, on either side of the room, by the wall where it meets it: all convex, all exact.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -21,20 +20,14 @@ Convex cut_all(const Rect& rect, const std::vector<HalfPlane>& walls, double dis
   return shape;
 }
 
-/// Along the hatching: at 45 degrees, unless a wall runs so too.
-Point hatch_direction(const std::vector<HalfPlane>& walls) {
-  constexpr std::array<double, 8> angles{45, 135, 60, 120, 30, 150, 90, 0};
-  Point best = {std::numbers::sqrt2 / 2, -std::numbers::sqrt2 / 2};
-  double widest = 0;
-  for (double angle : angles) {
-    const double a = angle * std::numbers::pi / 180;
-    const Point u(std::cos(a), -std::sin(a));
-    double least = 1;  // sine of the least angle with a wall
-    for (const HalfPlane& wall : walls) least = std::min(least, std::abs(u.dot(wall.normal)));
-    if (least > std::sin(20 * std::numbers::pi / 180)) return u;
-    if (least > widest) widest = least, best = u;
-  }
-  return best;
+/// Along a wall's hatching: at 45 degrees to it, of the two ways the one that rises more to the right.
+Point hatch_direction(const HalfPlane& wall) {
+  constexpr double kHalf = std::numbers::sqrt2 / 2;
+  const Point along(-wall.normal.y(), wall.normal.x()), rising(kHalf, -kHalf);
+  Point best = kHalf * (along + wall.normal);
+  const Point other = kHalf * (along - wall.normal);
+  if (std::abs(other.dot(rising)) > std::abs(best.dot(rising)) + 1e-9) best = other;
+  return best.dot(rising) < 0 ? Point(-best) : best;
 }
 
 /// The points at which the line p + s u enters and leaves a convex shape: the distances s, and the sides that
@@ -85,28 +78,60 @@ void hatch(const std::vector<HalfPlane>& walls, const View& view, const Rect& pa
   blunt(band, room, walls, depth);
 
   // lines at fixed distances from the world's origin, so that they do not swim
-  const Point u = hatch_direction(walls), v(-u.y(), u.x());
   const double step = kHatchStep * weight * std::numbers::sqrt2 / 2;
-  double low = 1e300, high = -1e300;
-  for (const Convex::Corner& c : band.corners) {
-    low = std::min(low, (c.at - view.origin).dot(v));
-    high = std::max(high, (c.at - view.origin).dot(v));
+  const auto lines = [&](const Convex& region, const Point& u, const auto& draw) {
+    const Point v(-u.y(), u.x());
+    double low = 1e300, high = -1e300;
+    for (const Convex::Corner& c : region.corners) {
+      low = std::min(low, (c.at - view.origin).dot(v));
+      high = std::max(high, (c.at - view.origin).dot(v));
+    }
+    const auto last = std::int64_t(std::floor(high / step));
+    for (auto k = std::int64_t(std::ceil(low / step)); k <= last; ++k) {
+      const Point p = view.origin + double(k) * step * v;
+      const Convex strip = cut(cut(region, {p - half * v, v}), {p + half * v, -v});
+      if (!strip.empty()) draw(strip, p);
+    }
+  };
+
+  // walls whose lines are parallel have them in common, across corners too
+  std::vector<int> sides;
+  for (const Convex::Corner& c : room.corners)
+    if (c.side >= 0) sides.push_back(c.side);
+  if (sides.empty()) return;
+  const Point first = hatch_direction(walls[std::size_t(sides.front())]);
+  const bool same = std::all_of(sides.begin(), sides.end(), [&](int side) {
+    return (hatch_direction(walls[std::size_t(side)]) - first).norm() < 1e-6;
+  });
+  if (same) {
+    lines(band, first, [&](const Convex& strip, const Point& p) {
+      const auto inside = chord(room, p, first);
+      if (!inside) return list.add(strip.outline(), color);
+      for (int side : {inside->in, inside->out}) {
+        if (side < 0) continue;
+        const HalfPlane wall = moved(walls[side], -kWallLine * weight / 2);
+        list.add(cut(strip, {wall.point, -wall.normal}).outline(), color);
+      }
+    });
+    return;
   }
-  const auto last = std::int64_t(std::floor(high / step));
-  for (auto k = std::int64_t(std::ceil(low / step)); k <= last; ++k) {
-    const Point p = view.origin + double(k) * step * v;
-    const Convex strip = cut(cut(band, {p - half * v, v}), {p + half * v, -v});
-    if (strip.empty()) continue;
-    const auto inside = chord(room, p, u);
-    if (!inside) {
-      list.add(strip.outline(), color);
-      continue;
-    }
-    for (int side : {inside->in, inside->out}) {
-      if (side < 0) continue;
-      const HalfPlane wall = moved(walls[side], -kWallLine * weight / 2);
-      list.add(cut(strip, {wall.point, -wall.normal}).outline(), color);
-    }
+  // each other wall has its own part of the band, up to the lines that halve the corners
+  const std::size_t n = room.corners.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const int side = room.corners[i].side;
+    if (side < 0) continue;
+    const HalfPlane wall = moved(walls[std::size_t(side)], -kWallLine * weight / 2);
+    Convex part = cut(band, {wall.point, -wall.normal});
+    const int before = room.corners[(i + n - 1) % n].side, after = room.corners[(i + 1) % n].side;
+    const auto up_to = [&](int other, const Point& corner) {
+      if (other < 0 || other == side) return;
+      const Point across = walls[std::size_t(other)].normal - walls[std::size_t(side)].normal;
+      if (across.norm() > 1e-9) part = cut(part, {corner, across.normalized()});
+    };
+    up_to(before, room.corners[i].at);
+    up_to(after, room.corners[(i + 1) % n].at);
+    lines(part, hatch_direction(walls[std::size_t(side)]),
+          [&](const Convex& strip, const Point&) { list.add(strip.outline(), color); });
   }
 }
 

@@ -162,7 +162,7 @@ void add_ball(SpaceFrame& s, const Vec3& center, double radius, Color color, int
   add_cap(s, center, radius, color);
   end(s);
   s.sight.add_disc(contour(s.lens, center, radius, std::min(roundness(radius * s.lens.scale_at(center)), 32)),
-                   center, number);
+                   center, radius, number);
 }
 
 void add_tube(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color color, int number) {
@@ -198,7 +198,7 @@ void add_bodies(SpaceFrame& s) {
         begin(s, middle, piece.reach, i);
         if (in_window(s.lens, middle, piece.reach)) {
           add_faces(s, s.placed[i], own);
-          s.sight.add(s.placed[i], i);
+          s.sight.add(s.placed[i], i, piece.body);
         }
         end(s);
         break;
@@ -216,7 +216,8 @@ void add_bodies(SpaceFrame& s) {
         const Vec3 a = placed(body, piece.a), b = placed(body, piece.b);
         if (s.lens.depth(a) < 1e-3 || s.lens.depth(b) < 1e-3) break;
         add_tube(s, {a, b}, piece.radius, own, i);
-        for (const Vec3& end : {a, b}) s.sight.add_disc(contour(s.lens, end, piece.radius, 24), end, i);
+        for (const Vec3& end : {a, b})
+          s.sight.add_disc(contour(s.lens, end, piece.radius, 24), end, piece.radius, i);
         break;
       }
     }

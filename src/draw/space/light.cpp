@@ -1,6 +1,8 @@
 // Light and shadow.
-//   lit     s = s0 + s1 (1 + n_y)/2 + s2 max(0, n . l)         n  normal, l  to the light
-//   shaded  s = s0 + s1 (1 + n_y)/2 + s3 max(0, n . l)         s3 < s2: round things stay round in the shadow
+//   lit     s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s2 max(0, n . l)     n  normal, l  to the light
+//   shaded  s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s3 max(0, n . l)     s3 < s2: round things stay round
+// f is level and across the light: two upright faces at a right angle that both look away from the light differ
+// by s4/2 at least, however they are turned.
 //   colour  from dark to bright along s, through the body's own
 // A shadow on the ground is drawn ray by ray: each casts the body's corners on the plane, their hull is dark
 // for that ray, and a place is as dark as the share of rays that do not reach it. So a shadow is sharp where
@@ -57,6 +59,8 @@ Light light(const Vec3& toward) {
   const Vec3 side =
       (std::abs(l.toward.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitX()).cross(l.toward).normalized();
   const Vec3 up = l.toward.cross(side);
+  l.across = side - side.y() * Vec3::UnitY();
+  l.across.normalize();
   for (int i = 0; i < kRays; ++i) {
     // a sunflower: even over the disc, without rows
     const double r = kSpread * std::sqrt((i + 0.5) / kRays), a = i * std::numbers::pi * (3 - std::sqrt(5.0));
@@ -76,8 +80,8 @@ Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
     const Color dark = mix(own, {0x08, 0x0C, 0x12}, 0.72), bright = mix(own, {255, 255, 255}, 0.14);
     return mix(dark, bright, s);
   };
-  const double base = 0.27 + 0.13 * sky;
-  return {tone(base + 0.60 * sun), tone(base + 0.12 * sun)};
+  const double base = 0.15 + 0.13 * sky + 0.26 * (1 + normal.dot(light.across)) / 2;
+  return {tone(base + 0.58 * sun), tone(base + 0.12 * sun)};
 }
 
 Color edge(Color own, Theme theme) {

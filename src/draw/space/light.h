@@ -15,6 +15,7 @@ namespace obscura::draw {
 /// A far, round light: the same direction everywhere, and rays that stand for its disc.
 struct Light {
   sim::Vec3 toward;                   // the light, unit
+  sim::Vec3 across;                   // a weak light from there tells faces apart that the other one misses
   std::array<sim::Vec3, kRays> rays;  // towards places of its disc, not unit
 };
 

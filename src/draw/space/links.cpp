@@ -17,6 +17,8 @@ using sim::Vec3;
 constexpr double kRise = 0.5;  // turns over which a coil leaves its axis
 constexpr int kNodes = 14;     // a turn
 constexpr int kSag = 20;       // pieces of a rope that sags
+constexpr double kEndOn = 7;   // amplitudes: a coil that looks shorter is narrower
+constexpr double kNarrow = 0.3;
 
 double smooth_end(double u) {
   u = std::clamp(u, 0.0, 1.0);
@@ -56,7 +58,10 @@ void add_coil(SpaceFrame& s, const Coil& form, const Vec3& a, const Vec3& b, int
     return;
   }
   const double wire = 0.6 * line_width(form, length * page, s.zoom) / page;
-  const double wide = amplitude(form, length * page, s.zoom) / page;
+  // seen from its end a wide coil would be a ball of wire
+  const double seen = (s.lens.page(b) - s.lens.page(a)).norm();
+  const double whole = amplitude(form, length * page, s.zoom);
+  const double wide = whole * std::clamp(seen / (kEndOn * whole), kNarrow, 1.0) / page;
   const std::vector<Vec3> way = helix(form, a, b, wire, wide);
   add_tube(s, way, wire, s.stage.colours.spring, number);
   if (length < 1e-9) return;

@@ -23,8 +23,11 @@ using sim::Vec3;
 constexpr double kInside = 0.4;  // page units that a line must lie inside an outline
 constexpr double kBehind = 0.5;  // and behind a face: bodies that touch do not hide each other's edges there
 constexpr double kCell = 48;     // page units
-constexpr double kSightNear = 1e-3;  // least depth over the target's
-constexpr double kShort = 0.25;      // page units: shorter parts are left out, shorter gaps closed
+constexpr double kRound = 6;     // page units: the front of a round thing of a larger radius is not flat
+constexpr double kFacet = std::numbers::pi / 6;  // from one plane of such a front to the next
+constexpr double kSeam = 2 * kBehind;            // so near to the front of its own thing a line is a seam
+constexpr double kSightNear = 1e-3;              // least depth over the target's
+constexpr double kShort = 0.25;  // page units: shorter parts are left out, shorter gaps closed
 
 Eigen::Vector4d plane(const CameraProjection& lens, const Vec3& normal, const Vec3& point) {
   const double r = normal.dot(lens.right), u = normal.dot(lens.up), b = normal.dot(lens.back);
@@ -53,10 +56,27 @@ void HiddenLines::close(Piece piece) {
   pieces_.push_back(piece);
 }
 
-void HiddenLines::add(const Polyhedron& body, int number) {
+// what lies behind this plane may be hidden
+void HiddenLines::add_front(const Vec3& normal, const Vec3& point) {
+  Eigen::Vector4d p = plane(lens_, normal, point);
+  // one that is turned away from the eye would hide what lies before it
+  if (p.z() < 1e-6) return;
+  p.w() -= kBehind;
+  planes_.push_back(p);
+}
+
+int HiddenLines::group_of(int number) const {
+  return number >= 0 && number < int(groups_.size()) ? groups_[std::size_t(number)] : -1;
+}
+
+void HiddenLines::add(const Polyhedron& body, int number, int group) {
+  if (group >= 0 && number >= 0) {
+    if (number >= int(groups_.size())) groups_.resize(std::size_t(number) + 1, -1);
+    groups_[std::size_t(number)] = group;
+  }
   std::vector<Vec3> at;
   at.reserve(body.vertices.size());
-  Piece piece{number, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
+  Piece piece{number, group, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
   Point middle = Point::Zero();
   for (const Vec3& v : body.vertices) {
     if (lens_.depth(v) < kSightNear) return;
@@ -85,9 +105,9 @@ void HiddenLines::add(const Polyhedron& body, int number) {
   close(piece);
 }
 
-void HiddenLines::add_disc(const std::vector<Vec3>& rim, const Vec3& center, int number) {
+void HiddenLines::add_disc(const std::vector<Vec3>& rim, const Vec3& center, double radius, int number) {
   if (lens_.depth(center) < kSightNear) return;
-  Piece piece{number, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
+  Piece piece{number, -1, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
   std::vector<Point> at;
   at.reserve(rim.size());
   for (const Vec3& v : rim) {
@@ -96,10 +116,24 @@ void HiddenLines::add_disc(const std::vector<Vec3>& rim, const Vec3& center, int
     piece.x0 = std::min(piece.x0, at.back().x()), piece.x1 = std::max(piece.x1, at.back().x());
     piece.y0 = std::min(piece.y0, at.back().y()), piece.y1 = std::max(piece.y1, at.back().y());
   }
-  // the region behind the contour's plane: nothing but the ball lies between it and the ball's front
-  planes_.push_back(plane(lens_, lens_.sight(center), rim[0]));
-  planes_.back().w() -= kBehind;
+  // The region behind its front: behind planes that lie in the ball, close to its surface. Of a small one the
+  // contour's plane is near enough.
+  const Vec3 sight = lens_.sight(center);
   const Point middle = lens_.page(center);
+  if (radius * lens_.scale_at(center) < kRound) {
+    add_front(sight, rim[0]);
+  } else {
+    const Vec3 side = (rim[0] - center).cross(sight).normalized(), up = sight.cross(side);
+    const double inner = radius * std::cos(kFacet / 2);
+    add_front(sight, center + inner * sight);
+    for (int ring = 1; ring < 3; ++ring)
+      for (int k = 0; k < 4 * ring + 2; ++k) {
+        const double polar = ring * kFacet, turn = 2 * std::numbers::pi * k / (4 * ring + 2);
+        const Vec3 n =
+            std::cos(polar) * sight + std::sin(polar) * (std::cos(turn) * side + std::sin(turn) * up);
+        add_front(n, center + inner * n);
+      }
+  }
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Point along = at[(i + 1) % at.size()] - at[i];
     const double length = along.norm();
@@ -118,7 +152,7 @@ void HiddenLines::add_rod(const Vec3& a, const Vec3& b, double radius_a, double 
   const Vec3 side = across / length;
   const std::array<Vec3, 4> quad{a - radius_a * side, a + radius_a * side, b + radius_b * side,
                                  b - radius_b * side};
-  Piece piece{number, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
+  Piece piece{number, -1, int(planes_.size()), 0, 1e300, 1e300, -1e300, -1e300};
   std::array<Point, 4> at;
   Point middle = Point::Zero();
   for (int i = 0; i < 4; ++i) {
@@ -130,8 +164,15 @@ void HiddenLines::add_rod(const Vec3& a, const Vec3& b, double radius_a, double 
   }
   Vec3 normal = side.cross(way).normalized();
   if (normal.dot(lens_.sight(a)) < 0) normal = -normal;
-  planes_.push_back(plane(lens_, normal, a));
-  planes_.back().w() -= kBehind;
+  if (radius_a != radius_b || radius_a * lens_.scale_at((a + b) / 2) < kRound) {
+    add_front(normal, a);
+  } else {
+    const double inner = radius_a * std::cos(kFacet / 2);
+    for (int k = -2; k <= 2; ++k) {
+      const Vec3 n = std::cos(k * kFacet) * normal + std::sin(k * kFacet) * side;
+      add_front(n, a + inner * n);
+    }
+  }
   for (int i = 0; i < 4; ++i) {
     const Point along = at[(i + 1) % 4] - at[i];
     const double l = along.norm();
@@ -167,6 +208,7 @@ void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts
   const Rect& w = lens_.window;
   const double x0 = std::min(a.x(), b.x()), x1 = std::max(a.x(), b.x());
   const double y0 = std::min(a.y(), b.y()), y1 = std::max(a.y(), b.y());
+  const int group = group_of(own);
   if (x1 < w.x || y1 < w.y || x0 > w.x + w.width || y0 > w.y + w.height) return;
 
   // the lines that each piece hides
@@ -182,7 +224,8 @@ void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts
     for (int i = piece.begin; i < piece.end; ++i) {
       const Eigen::Vector4d& p = planes_[i];
       // inside where height + t rise < 0
-      const double height = p.head<3>().dot(a) - p.w(), rise = p.head<3>().dot(way);
+      const bool seam = group >= 0 && piece.group == group && p.z() > 0;
+      const double height = p.head<3>().dot(a) - p.w() - (seam ? kSeam : 0), rise = p.head<3>().dot(way);
       if (height >= 0 && height + rise >= 0) return;
       if (height < 0 && height + rise < 0) continue;
       const double t = height / -rise;

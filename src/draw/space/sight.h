@@ -16,10 +16,11 @@ class HiddenLines {
   explicit HiddenLines(const CameraProjection& lens);
 
   /// A body hides what lies behind it. `body` is the number of this convex piece, for `seen`. Pieces that
-  /// reach behind the eye are left out.
-  void add(const Polyhedron& body, int number);
-  /// `rim`: the ball's contour (see `contour`).
-  void add_disc(const std::vector<sim::Vec3>& rim, const sim::Vec3& center, int number);
+  /// reach behind the eye are left out. Pieces of one `group` are one thing: where a line lies on the surface
+  /// of another of them it is a seam, and is hidden too. -1: of none.
+  void add(const Polyhedron& body, int number, int group = -1);
+  /// `rim`: the ball's contour (see `contour`); `radius`: its own.
+  void add_disc(const std::vector<sim::Vec3>& rim, const sim::Vec3& center, double radius, int number);
   /// A round rod from a to b, of these radii (m), without its ends.
   void add_rod(const sim::Vec3& a, const sim::Vec3& b, double radius_a, double radius_b, int number);
   /// To be called once, when all are added.
@@ -37,15 +38,18 @@ class HiddenLines {
   /// A region that hides: all places with n . (x, y, z) < d for all of its planes; outlines are planes along
   /// the third axis.
   struct Piece {
-    int number = 0;
+    int number = 0, group = -1;
     int begin = 0, end = 0;  // into planes_
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   };
   void close(Piece piece);
+  void add_front(const sim::Vec3& normal, const sim::Vec3& point);
+  int group_of(int number) const;
 
   CameraProjection lens_;
   std::vector<Eigen::Vector4d> planes_;
   std::vector<Piece> pieces_;
+  std::vector<int> groups_;  // by number; -1: none
   int columns_ = 1, rows_ = 1;
   std::vector<std::vector<int>> cells_;
   // scratch

@@ -1,0 +1,63 @@
+// Light in space: what looks away from it has tones too.
+
+#include "draw/space/light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "draw/picture/theme.h"
+
+namespace obscura::draw {
+namespace {
+
+double luminance(Color c) {
+  const auto linear = [](std::uint8_t level) {
+    const double x = level / 255.0;
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
+}
+
+double contrast(Color a, Color b) {
+  const double x = luminance(a) + 0.05, y = luminance(b) + 0.05;
+  return std::max(x, y) / std::min(x, y);
+}
+
+/// Two upright faces of a box that both look away from the light: 1.15:1 at least, 1.3:1 on the average, in
+/// the light and in the shadow, for the colours that bodies take in turn, on paper and on the screen.
+TEST(Light, FacesThatLookAwayFromItDiffer) {
+  const Light sun = light({-0.6, 1, 0.42});
+  double sum = 0;
+  int looked = 0;
+  for (const Theme theme : {Theme::paper, Theme::screen})
+    for (int color = 0; color < 6; ++color)
+      for (int k = 0; k < 72; ++k) {
+        const double a = k * std::numbers::pi / 36;
+        const sim::Vec3 n(std::cos(a), 0, std::sin(a)), m(-std::sin(a), 0, std::cos(a));
+        if (n.dot(sun.toward) > 0 || m.dot(sun.toward) > 0) continue;
+        const Shaded first = shade(turn(color), theme, sun, n), second = shade(turn(color), theme, sun, m);
+        EXPECT_GT(contrast(first.lit, second.lit), 1.15) << color;
+        EXPECT_GT(contrast(first.shaded, second.shaded), 1.15) << color;
+        sum += contrast(first.lit, second.lit), ++looked;
+      }
+  ASSERT_GT(looked, 100);
+  EXPECT_GT(sum / looked, 1.3);
+}
+
+/// What faces the light is brighter than anything else, and nothing is black.
+TEST(Light, TheSunIsStronger) {
+  const Light sun = light({-0.6, 1, 0.42});
+  const Color own = turn(1);
+  const double bright = luminance(shade(own, Theme::paper, sun, sun.toward).lit);
+  for (int k = 0; k < 24; ++k) {
+    const double a = k * std::numbers::pi / 12;
+    const Shaded side = shade(own, Theme::paper, sun, {std::cos(a), 0, std::sin(a)});
+    EXPECT_GT(bright, luminance(side.lit));
+    EXPECT_GT(luminance(side.shaded), 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace obscura::draw
