@@ -9,6 +9,7 @@
 
 #include "app/console/exit.h"
 #include "app/run/compared.h"
+#include "app/run/origin.h"
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "draw/compose/annotate.h"

@@ -81,9 +81,9 @@ TEST(Plot, ARangeCutsLinesOffAndNamesThemWhereTheyLeave) {
   List names;
   draw_names(plot, area, names);
   for (const Text& text : names.texts) {
-    if (said(text) == "here") EXPECT_GT(text.at.x(), area.right);
-    // beside its last value in the range
-    if (said(text) == "away") EXPECT_NEAR(text.at.x(), area.at(2, 4).x() + 4 * area.point, 1);
+    // at the right end, and beside its last value in the range
+    const double x = said(text) == "here" ? area.right : area.at(2, 4).x();
+    EXPECT_NEAR(text.at.x(), x + 4 * area.point, 1) << said(text);
   }
   EXPECT_EQ(names.texts.size(), 2u);
 }

@@ -106,7 +106,7 @@ TEST(HiddenLines, ALineEndsWhereItEntersARoundBody) {
     sight.add_disc(contour(lens, {0, 0, 0}, 1, 64), {0, 0, 0}, 1, 0);
     sight.add_rod({3, -1, 0}, {3, 1, 0}, 0.3, 0.3, 1);
     sight.finish();
-    // to the depth of the planes that stand for its front: 1 - cos 15 degrees of the radius, and little more
+    // to the depth of the planes that stand for its front: 1 - cos 22.5 degrees of the radius
     EXPECT_FALSE(sight.seen({0, 0, 0.9}, -1));
     EXPECT_FALSE(sight.seen({0.3, -0.2, 0.8}, -1));
     EXPECT_FALSE(sight.seen({0.7, 0.2, 0.5}, -1));

@@ -125,13 +125,33 @@ TEST(Ropes, SagByTheirLengthAndAreStraightWhereTaut) {
   const double scale = made.depictor().view(0).scale;
   const Picture picture = made.picture();
   const List& list = picture.moving;
-  ASSERT_EQ(list.strokes.size(), 2u);
-  EXPECT_NEAR(length(list, list.strokes[0]), 2 * scale, 1e-6);
-  EXPECT_GT(list.strokes[0].end - list.strokes[0].begin, 10);
-  EXPECT_EQ(list.strokes[1].end - list.strokes[1].begin, 2);
+  // before them the pieces of ceiling from which they hang
+  ASSERT_GT(list.strokes.size(), 2u);
+  const Stroke &slack = list.strokes[list.strokes.size() - 2], &taut = list.strokes.back();
+  EXPECT_NEAR(length(list, slack), 2 * scale, 1e-6);
+  EXPECT_GT(slack.end - slack.begin, 10);
+  EXPECT_EQ(taut.end - taut.begin, 2);
   // below the straight line: y runs down
-  const int middle = (list.strokes[0].begin + list.strokes[0].end) / 2;
+  const int middle = (slack.begin + slack.end) / 2;
   EXPECT_GT(list.nodes[middle].at.y(), made.depictor().view(0).page({3.5, 2.5, 0}).y() + 0.2 * scale);
+}
+
+/// What hangs in the open hangs from a piece of ceiling; not at a wall or at a body that is held fast, not
+/// without gravity, and not what stands on it.
+TEST(Brackets, AreOverWhatHangsFromNothing) {
+  const auto strokes = [](double y, double gravity, bool held, double anchor) {
+    Made made = room(8, 4.5);
+    made.cast.gravity = {0, gravity, 0};
+    const int ball = made.body(ShapeKind::ball, {3, y, 0}, 0.1);
+    if (held) made.cast.bodies[std::size_t(made.body(ShapeKind::box, {3, anchor, 0}, 0.3))].fixed = true;
+    joint(made, JointKind::rod, ball, -1, {3, y, 0}, {3, anchor, 0}, std::abs(y - anchor));
+    return made.picture().moving.strokes.size();
+  };
+  EXPECT_GT(strokes(2, -9.81, false, 3), 3u);
+  EXPECT_EQ(strokes(2, 0, false, 3), 1u);
+  EXPECT_EQ(strokes(2, -9.81, true, 3), 1u);
+  EXPECT_EQ(strokes(2, -9.81, false, 4.5), 1u);
+  EXPECT_EQ(strokes(4, -9.81, false, 3), 1u);
 }
 
 TEST(Joints, ThatBrokeAreGone) {

@@ -76,7 +76,8 @@ void Charts::place_names(Panel& panel) const {
     for (const Series& line : lines) {
       // a run that diverges ends before the others
       const std::vector<double>& all = line.values;
-      heads.push_back(area.at(area.first, all.empty() ? area.low : all[std::min(k, all.size() - 1)]).y());
+      const double value = all.empty() ? area.low : all[std::min(k, all.size() - 1)];
+      heads.push_back(area.at(area.first, std::clamp(value, area.low, area.high)).y());
     }
     const std::vector<double> names =
         spread(heads, kNamesApart * area.point, area.top, area.bottom - 3 * area.point);
@@ -138,13 +139,17 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
     for (std::size_t i = 0; i < past.lines.size(); ++i) {
       const Series& line = past.lines[i];
       if (line.values.empty()) continue;
-      const Point at = panel.area.at(line.along.back(), line.values.back());
+      // the name of a line that has left the range stays where it left
+      std::size_t last = line.values.size() - 1;
+      if (panel.plot.range)
+        while (last > 0 && !panel.area.spans(line.values[last])) --last;
+      const bool inside = last + 1 == line.values.size();
+      const Point at = panel.area.at(line.along[last], line.values[last]);
       const double unit = panel.area.point;
-      if (within[i] && (!panel.plot.range || panel.area.spans(line.values.back())))
+      if (within[i] && inside)
         list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
       // an average may lead below the axis
-      const double head = std::max(at.y(), panel.area.top);
-      const double high = head + (over_time ? panel.offset(i, line.along.back()) : 0);
+      const double high = at.y() + (over_time && inside ? panel.offset(i, line.along.back()) : 0);
       draw_name(panel.plot, i, panel.area,
                 {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)}, list);
     }

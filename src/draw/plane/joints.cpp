@@ -52,10 +52,29 @@ double room_for(const Stage& stage, const View& view, const sim::SceneInfo::Join
 constexpr double kBracket = 24, kHatchHigh = 12;  // page units: half its width, how high its hatching is
 constexpr double kNearWall = 14;  // page units: what is made fast so near to a wall hangs from that
 
+/// Whether a body that is held fast is at a place of the page, or as near as a bracket is wide.
+bool held_there(const Stage& stage, const View& view, const sim::Snapshot& now, const Point& at) {
+  for (std::size_t i = 0; i < stage.cast.bodies.size() && i < now.bodies.size(); ++i) {
+    const sim::SceneInfo::Body& body = stage.cast.bodies[i];
+    if (!body.fixed) continue;
+    const double s = std::sin(now.bodies[i].angle), c = std::cos(now.bodies[i].angle);
+    const Point d = at - view.page(now.bodies[i].position), own(c * d.x() - s * d.y(), s * d.x() + c * d.y());
+    Point half = view.scale * body.half.head<2>();
+    if (body.kind != sim::ShapeKind::box) {
+      double reach = body.radius;
+      for (const sim::Vec3& vertex : body.vertices) reach = std::max(reach, vertex.norm());
+      half = Point::Constant(view.scale * reach);
+    }
+    if ((own.cwiseAbs() - half).maxCoeff() < kNearWall * stage.layout.weight) return true;
+  }
+  return false;
+}
+
 /// A piece of ceiling over a place of the room from which something hangs; none near a wall. It goes where
 /// what it holds swings up to its height, for it does not hang then.
-void draw_bracket(const Stage& stage, const View& view, const std::vector<HalfPlane>& walls, const Point& at,
-                  const Point& other, std::vector<Point>& hatched, List& list) {
+void draw_bracket(const Stage& stage, const View& view, const sim::Snapshot& now,
+                  const std::vector<HalfPlane>& walls, const Point& at, const Point& other,
+                  std::vector<Point>& hatched, List& list) {
   const double weight = stage.layout.weight;
   const Point up = Point(-stage.cast.gravity.x(), stage.cast.gravity.y()).normalized(),
               along(-up.y(), up.x());
@@ -64,13 +83,14 @@ void draw_bracket(const Stage& stage, const View& view, const std::vector<HalfPl
   if (!(strength > 0) || outside(view.window, at, 2 * kBracket * weight)) return;
   for (const HalfPlane& wall : walls)
     if ((at - wall.point).dot(wall.normal) < kNearWall * weight) return;
+  if (held_there(stage, view, now, at)) return;
   Color color = stage.colours.wall, hatch = stage.colours.hatch;
   color.a = hatch.a = std::uint8_t(std::lround(255 * strength));
   const double half = kBracket * weight, high = kHatchHigh * weight;
   // brackets beside each other have their hatching in common: its lines are at fixed places
-  const double step = kHatchStep * weight, own = (at - view.origin).dot(along);
+  const double step = 0.7 * kHatchStep * weight, own = (at - view.origin).dot(along);
   const Point home = at - own * along;
-  for (double x = std::ceil((own - half) / step) * step; x + high <= own + half + 1e-9; x += step) {
+  for (double x = std::ceil((own - half) / step) * step; x + high / 2 <= own + half; x += step) {
     const Point foot = home + x * along;
     const auto drawn = [&](const Point& before) { return (before - foot).norm() < 1e-3; };
     if (std::any_of(hatched.begin(), hatched.end(), drawn)) continue;
@@ -91,15 +111,15 @@ void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& no
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = stage.cast.springs[i];
     const Point a = view.page(now.springs[i].a), b = view.page(now.springs[i].b);
-    if (spring.a < 0 && spring.b >= 0) draw_bracket(stage, view, walls, a, b, hatched, list);
-    if (spring.b < 0 && spring.a >= 0) draw_bracket(stage, view, walls, b, a, hatched, list);
+    if (spring.a < 0 && spring.b >= 0) draw_bracket(stage, view, now, walls, a, b, hatched, list);
+    if (spring.b < 0 && spring.a >= 0) draw_bracket(stage, view, now, walls, b, a, hatched, list);
   }
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     if (!spans(joint_look(joint.kind).plane) || now.joints[i].broken) continue;
     const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
-    if (joint.a < 0 && joint.b >= 0) draw_bracket(stage, view, walls, a, b, hatched, list);
-    if (joint.b < 0 && joint.a >= 0) draw_bracket(stage, view, walls, b, a, hatched, list);
+    if (joint.a < 0 && joint.b >= 0) draw_bracket(stage, view, now, walls, a, b, hatched, list);
+    if (joint.b < 0 && joint.a >= 0) draw_bracket(stage, view, now, walls, b, a, hatched, list);
   }
 }
 

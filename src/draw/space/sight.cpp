@@ -124,7 +124,7 @@ void HiddenLines::add_disc(const std::vector<Vec3>& rim, const Vec3& center, dou
     add_front(sight, rim[0]);
   } else {
     const Vec3 side = (rim[0] - center).cross(sight).normalized(), up = sight.cross(side);
-    const double inner = radius * std::cos(kFacet / 2);
+    const double inner = radius * std::cos(0.75 * kFacet);
     add_front(sight, center + inner * sight);
     for (int ring = 1; ring < 3; ++ring)
       for (int k = 0; k < 4 * ring + 2; ++k) {
