@@ -47,9 +47,9 @@ rest_length = 1
 constexpr const char* kVary =
     "[film]\nvary = \"physics.integrator=euler,rk4\"\nvary_names = \"Euler; RK4\"\n";
 constexpr const char* kEnergy = "[[film.plot]]\nquantity = [\"energy\"]\n";
-constexpr const char* kSmall = " --size 160x90 --fps 10 --progress none";
+constexpr const char* kSmallPanels = " --size 160x90 --fps 10 --progress none";
 
-std::string said(const draw::Text& text) {
+std::string words_of(const draw::Text& text) {
   std::string all;
   for (const draw::Span& span : text.spans) all += span.text;
   return all;
@@ -57,7 +57,7 @@ std::string said(const draw::Text& text) {
 
 int count(const draw::List& list, const std::string& words) {
   return int(std::count_if(list.texts.begin(), list.texts.end(),
-                           [&](const draw::Text& text) { return said(text) == words; }));
+                           [&](const draw::Text& text) { return words_of(text) == words; }));
 }
 
 TEST_F(Compared, EachRunIsWhatItIsAlone) {
@@ -153,7 +153,7 @@ TEST_F(Compared, OverEachOtherThePageIsThatOfOneRun) {
 
 TEST_F(Compared, ShardsAndResumedFilmsAreTheFilm) {
   scene(std::string(kSpring) + "[look]\ntrails = 0.5\n" + kVary + kEnergy);
-  const std::string film = std::string("render scene.toml") + kSmall;
+  const std::string film = std::string("render scene.toml") + kSmallPanels;
   ASSERT_EQ(obscura(film + " -o whole.mp4 -j 1").exit, 0);
   ASSERT_EQ(obscura(film + " -o s.mp4 --prepare 3").exit, 0);
   for (const char* shard : {"2/3", "1/3", "3/3"})

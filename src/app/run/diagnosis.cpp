@@ -206,11 +206,13 @@ std::string first_difference(const Origin& a, const Origin& b) {
   if (!apart->bodies_known) return text;
   if (apart->bodies.empty()) return text + ": every body has the same position and motion";
   std::vector<std::string> all;
-  for (const Ahead::Run& run : compared(scene))
-    for (const sim::SceneInfo::Body& body : run.scene.run()->scene_info().bodies)
-      all.push_back(fmt::format("{} ({})", body.name, run.look.name));
-  if (all.empty())
-    for (const sim::SceneInfo::Body& body : scene.run()->scene_info().bodies) all.push_back(body.name);
+  const auto list = [&](const scene::Scene& of, const std::string& variant) {
+    const auto run = of.run();
+    for (const sim::SceneInfo::Body& body : run->scene_info().bodies)
+      all.push_back(variant.empty() ? body.name : fmt::format("{} ({})", body.name, variant));
+  };
+  for (const Ahead::Run& run : compared(scene)) list(run.scene, run.look.name);
+  if (all.empty()) list(scene, "");
   std::string names;
   std::size_t told = 0;
   for (const std::size_t body : apart->bodies) {

@@ -16,7 +16,7 @@ namespace {
 constexpr double kName = 26, kNameStrip = 46, kNameRise = 13;  // page units at the weight 1
 constexpr double kPanelGap = 22, kPageEdge = 36, kBelowCaption = 8;
 constexpr double kWords = 24, kRow = 34, kPlateAround = 6;  // of words in a window's corner
-constexpr std::uint8_t kPlate = 200;
+constexpr std::uint8_t kNamePlate = 200;
 
 Layout page_layout(const Look& look, double aspect, double right, double below, double& top) {
   Layout layout;
@@ -66,7 +66,7 @@ void write_in_corner(const std::vector<Span>& spans, const Rect& window, double 
   const double left = text.at.x() - around, right = text.at.x() + width + around;
   const double high = text.at.y() - 0.74 * size - around, low = text.at.y() + 0.22 * size + around;
   Color plate = colours.room;
-  plate.a = kPlate;
+  plate.a = kNamePlate;
   list.add({{left, high}, {right, high}, {right, low}, {left, low}}, plate);
   list.add(text);
 }
