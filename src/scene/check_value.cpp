@@ -109,6 +109,13 @@ class Values : private Reporter {
         return color(node, key);
       case Form::ends:
         return ends(node, key);
+      case Form::places:
+        if (!node.is_list() || node.list().empty() || node.list().front().is_number())
+          return mistyped(node, key);
+        return each(node.list(), [&](const Node& it) { return end(it, key); });
+      case Form::couple:
+        if (!node.is_list() || node.list().size() != 2) return mistyped(node, key);
+        return each(node.list(), [&](const Node& it) { return it.is_text() || mistyped(it, key); });
       case Form::place:
         return end(node, key);
       case Form::table:

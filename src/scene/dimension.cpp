@@ -64,6 +64,7 @@ Told value(const Node& node, const Key& key) {
       if (Told told = first(node, key.path)) return told;
       return key.form == Form::offset ? list(node, key.path) : Told{};
     case Form::ends:
+    case Form::places:
       return ends(node, key.path);
     case Form::path:
       return first(node, "place after the time in path", 1);

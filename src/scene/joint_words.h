@@ -27,6 +27,11 @@ inline constexpr JointWord kJointWords[] = {
     {"slider", sim::JointKind::slider, sim::JointKind::slider, "the first slides along a line of the second"},
     {"rod", sim::JointKind::rod, sim::JointKind::rod, "the distance of two points is constant"},
     {"rope", sim::JointKind::rope, sim::JointKind::rope, "it has a maximum"},
+    {"pulley", sim::JointKind::pulley, sim::JointKind::pulley, "a rope over points and wheels"},
+    {"screw", sim::JointKind::screw, sim::JointKind::screw,
+     "in space: the first slides along an axis of the second and turns about it, by `pitch` a turn"},
+    {"gear", sim::JointKind::gear, sim::JointKind::gear,
+     "one joint's angle, or way, is a ratio times another's"},
 };
 
 static_assert(

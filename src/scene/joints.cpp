@@ -5,17 +5,23 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "scene/expressions.h"
 #include "scene/fields.h"
 #include "scene/joint_words.h"
 #include "scene/links.h"
+#include "scene/mechanisms.h"
 #include "sim/constraint/joints/joint.h"
 #include "sim/math/exponential.h"
 #include "sim/math/orientation.h"
+#include "sim/model/drives.h"
 
 namespace obscura::scene {
 
@@ -41,7 +47,8 @@ std::string kinds(const std::function<bool(const sim::JointEquations<D>&)>& its)
   std::vector<std::string> all;
   std::set<JointKind> known;
   for (const JointWord& each : kJointWords)
-    if (known.insert(each.kind(D)).second && its(sim::equations<D>(each.kind(D))))
+    if (known.insert(each.kind(D)).second && !sim::equations<D>(each.kind(D)).mechanism &&
+        (D == 3 || each.kind(D) != JointKind::screw) && its(sim::equations<D>(each.kind(D))))
       all.push_back(fmt::format("a {}", each.word));
   std::string last = all.back();
   all.pop_back();
@@ -99,8 +106,20 @@ void refuse_others(const Fields& fields, JointKind kind, Diagnostics& complaints
   only("at", [](const Its& its) { return !its.apart; });
   only("axis", [](const Its& its) { return its.axis; });
   only("length", [](const Its& its) { return its.apart; });
-  for (const char* key : {"limits", "motor", "friction"})
+  for (const char* key : {"limits", "motor", "friction", "spring"})
     only(key, [](const Its& its) { return its.coordinate != nullptr; });
+}
+
+// those of pulleys and gears in others
+void refuse_keys_of_mechanisms(const Fields& fields, JointKind kind, Diagnostics& complaints) {
+  const auto only = [&](const char* key, JointKind its, const char* name) {
+    if (kind != its && fields.given(key))
+      complaints.add(fields.place(key),
+                     fmt::format("'{}' is that of a {}; a {} has none", key, name, fields.text("type")));
+  };
+  only("over", JointKind::pulley, "pulley");
+  only("joints", JointKind::gear, "gear"), only("ratio", JointKind::gear, "gear");
+  only("pitch", JointKind::screw, "screw");
 }
 
 template <int D>
@@ -110,12 +129,13 @@ class Joining {
   using End = sim::End<D>;
 
   Joining(const Fields& fields, JointKind kind, const JointSide<D>& a, const JointSide<D>& b,
-          sim::World<D>& world, Diagnostics& complaints)
+          Constants& constants, sim::World<D>& world, Diagnostics& complaints)
       : fields_(fields),
         kind_(kind),
         its_(sim::equations<D>(kind)),
         a_(a),
         b_(b),
+        constants_(constants),
         world_(world),
         complaints_(complaints) {
     for (const sim::Wall<D>& wall : world.model.walls)
@@ -169,8 +189,15 @@ class Joining {
     const auto own = [&](double x) { return its_.angle ? radians(x) : x; };
     if (const Node* limits = fields_.given("limits"))
       it.lower = own(limits->list()[0].number()), it.upper = own(limits->list()[1].number());
-    if (const Node* motor = fields_.given("motor"); motor && motor->find("speed") && motor->find("most"))
-      it.motor = {own(motor->find("speed")->number()), motor->find("most")->number()};
+    if (const Node* given = fields_.given("motor"); given && !motor(*given, it)) return {};
+    if (const Node* given = fields_.given("spring"); given && !coil(*given, it)) return {};
+    if (kind_ == JointKind::screw) {
+      const Node* pitch = fields_.given("pitch");
+      if (!pitch || pitch->number() == 0)
+        return refuse(pitch ? pitch->place : fields_.place(),
+                      "a screw needs a 'pitch', how far it goes in one turn, m");
+      it.ratio = pitch->number() / (2 * std::numbers::pi);
+    }
     it.friction = fields_.number("friction");
     if (const Node* breaks = fields_.given("breaks")) it.breaks = breaks->number();
     it.touching = fields_.flag("touching");
@@ -181,6 +208,61 @@ class Joining {
   std::optional<sim::Joint<D>> refuse(Place place, std::string message) {
     complaints_.add(place, std::move(message));
     return {};
+  }
+
+  // a key that is that of angles, where the joint has none, or of ways
+  bool contrary(const Node& table, const char* angle, const char* way) {
+    const Node* wrong = table.find(its_.angle ? way : angle);
+    if (!wrong) return false;
+    complaints_.add(wrong->place, fmt::format("'{}' is that of a {}; a {} has '{}'", its_.angle ? way : angle,
+                                              its_.angle ? "slider" : "pin", fields_.text("type"),
+                                              its_.angle ? angle : way));
+    return true;
+  }
+
+  // a motor, whose aim is a number or an expression of the time
+  bool motor(const Node& table, sim::Joint<D>& it) {
+    if (contrary(table, "angle", "position")) return false;
+    const Node *speed = table.find("speed"), *follows = table.find(its_.angle ? "angle" : "position"),
+               *most = table.find("most");
+    if (!most) return false;
+    if (!speed == !follows) {
+      complaints_.add(table.place, fmt::format("a motor needs {} 'speed' or '{}'", speed ? "one of" : "",
+                                               its_.angle ? "angle" : "position"));
+      return false;
+    }
+    const Node& aim = speed ? *speed : *follows;
+    const double unit = its_.angle ? std::numbers::pi / 180 : 1;
+    it.motor = {0, most->number()};
+    if (speed && speed->is_number()) {
+      it.motor->speed = its_.angle ? radians(speed->number()) : speed->number();
+      return true;
+    }
+    sim::MotionText text;
+    text.angle = typed(aim), text.angle_unit = unit;
+    constants_.read_by(text.angle);
+    auto made = sim::drive_formula<2>(text, constants_.numbers());
+    if (const auto* fault = std::get_if<sim::MotionFault>(&made)) {
+      std::vector<std::string> names{"t"};
+      for (const auto& [name, value] : constants_.numbers()) names.push_back(name);
+      for (const std::string_view name : sim::expression_functions()) names.emplace_back(name);
+      for (const std::string_view name : sim::expression_numbers()) names.emplace_back(name);
+      complain(aim, speed ? "speed" : its_.angle ? "angle" : "position", fault->fault, names, complaints_);
+      return false;
+    }
+    it.motor->aim = std::make_shared<const sim::Program>(std::get<sim::Program>(std::move(made)));
+    it.motor->follows = follows != nullptr;
+    return true;
+  }
+
+  bool coil(const Node& table, sim::Joint<D>& it) {
+    if (contrary(table, "rest_angle", "rest_position")) return false;
+    const Node *stiffness = table.find("stiffness"), *damping = table.find("damping"),
+               *rest = table.find(its_.angle ? "rest_angle" : "rest_position");
+    if (!stiffness) return false;
+    it.coil = {stiffness->number(), damping ? damping->number() : 0,
+               rest ? its_.angle ? radians(rest->number()) : rest->number() : 0};
+    return true;
   }
 
   // The place of a pin or a hinge between two bodies matters: they turn about it. A weld or a slider is the
@@ -256,6 +338,7 @@ class Joining {
   JointKind kind_;
   const sim::JointEquations<D>& its_;
   const JointSide<D>&a_, &b_;
+  Constants& constants_;
   sim::World<D>& world_;
   Diagnostics& complaints_;
   double size_ = 0;
@@ -264,13 +347,31 @@ class Joining {
 }  // namespace
 
 template <int D>
-void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints) {
+void joints(const Node& top, const Seating<D>& roster, Constants& constants, sim::World<D>& world,
+            Diagnostics& complaints) {
   const Node* all = top.find("joint");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "joint");
     const Node* between = fields.given("between");
-    if (!between || !fields.given("type")) continue;
+    if (!fields.given("type")) continue;
     const JointKind kind = type<D>(fields.text("type"));
+    const std::string own = fields.given("name") ? fields.text("name") : fmt::format("joint[{}]", k);
+    refuse_keys_of_mechanisms(fields, kind, complaints);
+    if (kind == JointKind::gear) continue;  // later: it holds other joints
+    if (D == 2 && kind == JointKind::screw) {
+      complaints.add(fields.place("type"),
+                     "a screw is of space; in the plane a slider goes along a line, and a gear "
+                     "with a pin makes it turn");
+      continue;
+    }
+    if (kind == JointKind::pulley) {
+      pulley(fields, own, roster, world, complaints);
+      continue;
+    }
+    if (!between) {
+      complaints.add(fields.place(), fmt::format("a {} needs 'between', its two ends", fields.text("type")));
+      continue;
+    }
     refuse_others<D>(fields, kind, complaints);
     const JointSide<D> a = side(between->list()[0], roster, world, complaints);
     const JointSide<D> b = side(between->list()[1], roster, world, complaints);
@@ -289,8 +390,7 @@ void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Dia
                                  world.model.joints.size() + std::size_t(n), kMostJoints));
       continue;
     }
-    const std::string own = fields.given("name") ? fields.text("name") : fmt::format("joint[{}]", k);
-    Joining<D> joining(fields, kind, a, b, world, complaints);
+    Joining<D> joining(fields, kind, a, b, constants, world, complaints);
     for (int i = 0; i < n; ++i) {
       auto it = joining.joint(n == 1 ? own : fmt::format("{}[{}]", own, i), i);
       if (!it) break;
@@ -298,9 +398,14 @@ void joints(const Node& top, const Seating<D>& roster, sim::World<D>& world, Dia
       world.state.broken.push_back(0);
     }
   }
+  for (std::size_t k = 0; all && k < all->list().size(); ++k) {
+    const Fields fields(all->list()[k], "joint");
+    if (!fields.given("type") || type<D>(fields.text("type")) != JointKind::gear) continue;
+    gear(fields, fields.given("name") ? fields.text("name") : fmt::format("joint[{}]", k), world, complaints);
+  }
 }
 
-template void joints<2>(const Node&, const Seating<2>&, sim::World<2>&, Diagnostics&);
-template void joints<3>(const Node&, const Seating<3>&, sim::World<3>&, Diagnostics&);
+template void joints<2>(const Node&, const Seating<2>&, Constants&, sim::World<2>&, Diagnostics&);
+template void joints<3>(const Node&, const Seating<3>&, Constants&, sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

@@ -198,6 +198,47 @@ breaks  = 50
 
 Two bodies with a joint between them do not touch each other, unless the joint has `touching = true`.
 
+A pin, in space a hinge, and a slider may have a spring against their angle or way, and a motor that has a speed, or follows an angle or a
+position, which may be expressions of the time `t`. A motor gives at most its `most`; where that was not enough it comes back as fast as it can.
+In space a screw slides and turns at once.
+
+```toml
+[[joint]]                                                        # a torsion pendulum
+type    = "pin"
+between = ["bar", "room"]
+spring  = { stiffness = 4, damping = 0.1, rest_angle = 30 }      # N m/rad, N m s/rad, degrees
+
+[[joint]]
+type    = "slider"
+between = ["piston", "room"]
+motor   = { position = "0.2*sin(3*t)", most = 50 }
+```
+
+A pulley is a rope without mass, which runs from the first end `over` points of the room and of bodies to the second: it slides over them
+without friction, pulls alone, and several turns make a block and tackle. In the plane the name of a ball that turns is a wheel: the rope runs
+around it, on the side of the shorter way, without slipping, and the wheel's inertia counts; the tensions on both sides of it differ, and each
+piece of the rope is a joint of its own, `rope[0]`, `rope[1]`, ..., that reports its own. A gear makes the angle of a pin, in space of a hinge,
+a ratio times that of another: wheels with teeth outside have a negative ratio, that of their radii. With the way of a slider, in metres, it is a
+rack: its ratio is the pinion's radius. What it reports is the force of its teeth.
+
+```toml
+[[joint]]                                                        # Atwood's machine: the wheel is a ball on a pin
+name    = "rope"
+type    = "pulley"
+between = ["left", "right"]
+over    = ["wheel"]
+
+[[joint]]                                                        # a block and tackle of two turns
+type    = "pulley"
+between = [[3, 4], "counterweight"]
+over    = [{ body = "hook", at = "top" }, [3.1, 4], { body = "hook", at = "top" }, [3.2, 4]]
+
+[[joint]]                                                        # the axles are joints of type "pin"
+type    = "gear"
+joints  = ["small_axle", "large_axle"]
+ratio   = -3
+```
+
 ## Articulated bodies
 
 `[[chain]]` makes the joints of a figure, a crane or a pendulum hold exactly, by Featherstone's algorithm: they cannot drift, and the energy
@@ -613,6 +654,10 @@ std::string type(const Key& key) {
       return "[lowest, highest]";
     case Form::ends:
       return "two ends";
+    case Form::places:
+      return "places, or points of bodies";
+    case Form::couple:
+      return "two names";
     case Form::path:
       return "[[t, x, y], ...]";
     case Form::place:

@@ -25,6 +25,7 @@
 #include "scene/overrides.h"
 #include "scene/picture.h"
 #include "scene/room.h"
+#include "sim/constraint/joints/joint.h"
 #include "sim/math/trig.h"
 #include "sim/motion/stability.h"
 #include "sim/solve/contact_solver.h"
@@ -94,6 +95,14 @@ void ignore(const Node& top, const NameTable& roster, sim::Model<D>& model, Diag
 template <int D>
 void refuse_moved_bonds(const Node& top, const sim::Model<D>& model, Diagnostics& complaints) {
   if (model.bonds.empty()) return;
+  for (const sim::Joint<D>& joint : model.joints) {
+    if (!sim::equations<D>(joint.kind).mechanism) continue;
+    complaints.add(
+        top.find("bond")->list().front().place,
+        "a scene has [[bond]]s or pulleys and gears, not both yet; a [[joint]] of type \"weld\" with "
+        "'breaks' holds two bodies together");
+    return;
+  }
   const auto carries = [](const sim::Body<D>& body) { return body.carries(); };
   if (model.drives.empty() && std::none_of(model.bodies.begin(), model.bodies.end(), carries)) return;
   complaints.add(top.find("bond")->list().front().place,
@@ -159,7 +168,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   for (const Seat<D>& seat : roster.seats) scene.axes.push_back(sim::quaternion<D>(seat.axes));
   springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
-  joints(top, roster, world, complaints);
+  joints(top, roster, constants, world, complaints);
   chains(top, roster, world, complaints);
   explosions(top, model, complaints);
   forces(top, constants, roster, world, complaints);

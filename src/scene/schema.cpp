@@ -140,13 +140,17 @@ Json value(const Key& key) {
                       {"properties", {{"time", number}, {"after", number}}},
                       {"required", {"time"}},
                       {"additionalProperties", false}}});
+    case Form::couple:
+      return list_of(string, 2, 2);
     case Form::place:
+    case Form::places:
     case Form::ends: {
       const Json point = {{"type", "object"},
                           {"properties", {{"body", string}, {"local", vector()}, {"at", string}}},
                           {"required", {"body"}},
                           {"additionalProperties", false}};
       const Json end = any_of({string, vector(), point});
+      if (key.form == Form::places) return list_of(end, 1, 0);
       return key.form == Form::place ? end : list_of(end, 2, 2);
     }
     case Form::path:

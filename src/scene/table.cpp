@@ -206,6 +206,11 @@ std::string expected(const Key& key, int dimension) {
     case Form::ends:
       return fmt::format("two ends, each a body's name, {{ body = \"name\", local = {0} }} or a place {0}",
                          place);
+    case Form::places:
+      return fmt::format("a list of places, each {0}, a body's name or {{ body = \"name\", local = {0} }}",
+                         place);
+    case Form::couple:
+      return "two names";
     case Form::things:
       return "a list of names of bodies";
     case Form::thing:

@@ -36,6 +36,8 @@ enum class Form {
   pairs,        // [["a", "b"], ...], names
   limits,       // [lowest, highest]
   ends,         // the two ends of a spring
+  places,       // ends of springs, one at least
+  couple,       // two names
   thing,        // the name of a body
   things,       // references to bodies
   path,         // [[t, x, y], ...]

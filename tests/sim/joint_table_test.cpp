@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "sim/constraint/joints/joint.h"
@@ -18,7 +20,7 @@ void expect_equations(JointKind kind, int rows, bool coordinate) {
   const JointEquations<D>& its = equations<D>(kind);
   EXPECT_EQ(its.rows, rows) << int(kind);
   EXPECT_EQ(its.coordinate != nullptr, coordinate) << int(kind);
-  EXPECT_EQ(its.one_sided, kind == JointKind::rope) << int(kind);
+  EXPECT_EQ(its.one_sided, kind == JointKind::rope || kind == JointKind::pulley) << int(kind);
 }
 
 TEST(Joints, OfTheTableHaveTheirRowsAndFreeCoordinate) {
@@ -28,6 +30,9 @@ TEST(Joints, OfTheTableHaveTheirRowsAndFreeCoordinate) {
   expect_equations<2>(JointKind::rod, 1, false), expect_equations<3>(JointKind::rod, 1, false);
   expect_equations<2>(JointKind::rope, 1, false), expect_equations<3>(JointKind::rope, 1, false);
   expect_equations<2>(JointKind::hinge, 2, true), expect_equations<3>(JointKind::hinge, 5, true);
+  expect_equations<2>(JointKind::pulley, 1, false), expect_equations<3>(JointKind::pulley, 1, false);
+  expect_equations<2>(JointKind::gear, 1, false), expect_equations<3>(JointKind::gear, 1, false);
+  expect_equations<3>(JointKind::screw, 5, true);
 }
 
 // a body of the plane at an angle, moving
@@ -57,16 +62,36 @@ struct Written {
 };
 
 // what it holds, then its free coordinate
-Written written(const Joint<2>& joint, const Placed& a, const Placed& b) {
+Written written(const Joint<2>& joint, const std::array<Placed, 3>& placed) {
   Written all;
-  all.bodies = {a.motion(), b.motion()};
-  const AngularVec<2> turn(a.angle - b.angle);
+  for (const Placed& each : placed) all.bodies.push_back(each.motion());
+  const AngularVec<2> turn =
+      joint.turn_between([&](int body) { return AngularVec<2>(placed[std::size_t(body)].angle); });
   Row<2> J[kMostHeld<2> + 1];
   double C[kMostHeld<2> + 1];
-  int n = rows(joint, all.bodies[0], all.bodies[1], turn, J, C);
+  int n = rows(joint, all.bodies[0], all.bodies[1], turn, J, C, all.bodies);
   n += free_row(joint, all.bodies[0], all.bodies[1], turn, J[n], C[n]);
   all.rows.assign(J, J + n), all.C.assign(C, C + n);
   return all;
+}
+
+// gives a mechanism what else it holds: a rope over a third body and the room, on two wheels; a pin and a
+// slider
+void complete(Joint<2>& joint, Dice& dice) {
+  if (joint.kind == JointKind::pulley) {
+    joint.over = {{2, dice.vector<2>(1)}, {-1, Vec<2>(-7, 5)}};
+    joint.on_a = {0.4, dice.vector<2>(1).normalized()}, joint.on_b = {-0.3, dice.vector<2>(1).normalized()};
+    joint.turns = {{0, 0.4}, {1, 0.3}};
+  }
+  if (joint.kind == JointKind::gear) {
+    Joint<2> pin, slider;
+    pin.a = {0, dice.vector<2>(1)}, pin.b = {1, dice.vector<2>(1)};
+    slider.kind = JointKind::slider, slider.axis = dice.vector<2>(1).normalized();
+    slider.a = {2, dice.vector<2>(1)}, slider.b = {0, dice.vector<2>(1)};
+    joint.geared = std::make_shared<const std::array<Joint<2>, 2>>(std::array<Joint<2>, 2>{pin, slider});
+    joint.ratio = dice.between(-3, 3), joint.turns = {{0, 1}, {1, -1}};
+    joint.over = {slider.a, slider.b};
+  }
 }
 
 // d C / dt = J v and d (J v) / dt = J' v for bodies that nothing accelerates; differences are right to h^2 of
@@ -81,9 +106,14 @@ TEST(Joints, OfThePlaneChangeByTheirRows) {
       joint.kind = kind, joint.length = 1;
       joint.a = {0, dice.vector<2>(1)}, joint.b = {1, dice.vector<2>(1)};
       joint.axis = dice.vector<2>(1).normalized(), joint.turn[0] = dice.between(-2, 2);
-      const Placed a(dice), b(dice);
-      const Written now = written(joint, a, b), later = written(joint, a.after(h), b.after(h)),
-                    before = written(joint, a.after(-h), b.after(-h));
+      std::array<Placed, 3> at{Placed(dice), Placed(dice), Placed(dice)};
+      at[2].x += Vec<2>(6, 6);
+      complete(joint, dice);
+      const auto after = [&](double t) {
+        return std::array<Placed, 3>{at[0].after(t), at[1].after(t), at[2].after(t)};
+      };
+      const Written now = written(joint, at), later = written(joint, after(h)),
+                    before = written(joint, after(-h));
       ASSERT_EQ(now.rows.size(), std::size_t(equations<2>(kind).rows + has_free_row(joint)));
       for (std::size_t i = 0; i < now.rows.size(); ++i) {
         const double rate = speed(now.rows[i], now.bodies);

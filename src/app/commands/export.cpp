@@ -17,6 +17,7 @@
 #include "app/film/estimate.h"
 #include "app/run/trouble.h"
 #include "draw/picture/joint_look.h"
+#include "draw/picture/rope_way.h"
 #include "draw/picture/theme.h"
 #include "media/error.h"
 #include "media/file.h"
@@ -83,7 +84,7 @@ class Stage {
     };
     rods(cast.springs.size(), "spring", palette.spring);
     for (const sim::SceneInfo::Joint& joint : cast.joints)
-      if (far(joint)) rods(1, joint.name, palette.ink);
+      if (far(joint)) rods(std::max<std::size_t>(2, joint.places.size()) - 1, joint.name, palette.ink);
     for (const sim::SceneInfo::Wall& wall : cast.walls) {
       if (cast.dimension != 3 || wall.normal != Vec3::UnitY()) continue;
       Glb::Mesh mesh = floor(scene.extent.low, scene.extent.high);
@@ -103,9 +104,13 @@ class Stage {
       it.rotations.push_back(narrow(body.orientation, it.rotations));
     }
     for (const auto& spring : now.springs) stretch(glb.nodes[node++], spring.a, spring.b, true);
-    for (std::size_t i = 0; i < now.joints.size(); ++i)
-      if (far(cast_.joints[i]))
-        stretch(glb.nodes[node++], now.joints[i].a, now.joints[i].b, !now.joints[i].broken);
+    for (std::size_t i = 0; i < now.joints.size(); ++i) {
+      if (!far(cast_.joints[i])) continue;
+      const bool whole = !now.joints[i].broken;
+      if (cast_.joints[i].places.empty()) stretch(glb.nodes[node++], now.joints[i].a, now.joints[i].b, whole);
+      for (const draw::RopeLine& line : draw::rope_lines(cast_.joints[i], now))
+        stretch(glb.nodes[node++], line.from, line.to, whole);
+    }
   }
 
   void end() {

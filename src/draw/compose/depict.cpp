@@ -33,6 +33,8 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
   draw_springs(stage, view, now, true, list);
   draw_rods(stage, view, now, list);
   draw_rounds(stage, view, now, list);
+  draw_gears(stage, view, now, list);
+  draw_pulleys(stage, view, now, list);
   draw_pins(stage, view, now, list);
   draw_contacts(stage, view, now, list);
   draw_velocities(stage, view, now, list);

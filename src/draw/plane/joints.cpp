@@ -3,17 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 #include "draw/picture/joint_look.h"
+#include "draw/picture/rope_way.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::draw {
 namespace {
 
+using sim::Vec3;
+
 constexpr double kStop = 9;   // page units: half a rail's end
 constexpr int kPieces = 24;   // of a rope that sags
 constexpr double kFar = 1e4;  // page units: a rail without an end
+constexpr double kRound = 2 * std::numbers::pi;
+constexpr int kFewestTeeth = 12;      // of the smaller wheel of a gear
+constexpr double kToothHeight = 0.2;  // of the distance of two teeth: half of a tooth
 
 Point hanging(const Point& a, const Point& b, const Point& down, double sag, double u) {
   return a + u * (b - a) + 4 * sag * u * (1 - u) * down;
@@ -102,6 +111,48 @@ void draw_bracket(const Stage& stage, const View& view, const sim::Snapshot& now
   list.add({{at - half * along, line, color}, {at + half * along, line, color}}, Cap::butt);
 }
 
+/// A wheel with teeth, which is a body.
+struct Toothed {
+  sim::SceneInfo::Joint::Place center;
+  double radius = 0;  // of its pitch circle, m
+  double first = 0;   // the angle of a tooth, in its frame, rad
+  int count = 0;      // of its teeth
+};
+
+/// The toothed wheels of a scene, by the number of their bodies: all teeth as far from each other, and those
+/// of wheels that mesh between each other.
+std::map<int, Toothed> toothed_wheels(const sim::SceneInfo& cast, const sim::Snapshot& now) {
+  const auto is_gear = [&](std::size_t i) {
+    const sim::SceneInfo::Joint& joint = cast.joints[i];
+    return joint_look(joint.kind).plane == JointMark::teeth && !now.joints[i].broken &&
+           joint.places.size() == 4;
+  };
+  double least = 1e300;
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    if (!is_gear(i)) continue;
+    for (const double radius : {cast.joints[i].offset_a, cast.joints[i].offset_b})
+      if (radius > 0) least = std::min(least, radius);
+  }
+  std::map<int, Toothed> wheels;
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    if (!is_gear(i)) continue;
+    const sim::SceneInfo::Joint& joint = cast.joints[i];
+    double between = 0;  // where the second wheel has a tooth against the first's, in teeth
+    const auto add = [&](const sim::SceneInfo::Joint::Place& at, double radius, const Vec3& meets,
+                         bool second) {
+      if (!(radius > 0) || at.body < 0) return;
+      const int count = std::max(kFewestTeeth, int(std::lround(kFewestTeeth * radius / least)));
+      const double angle = std::atan2(meets.y(), meets.x());
+      const double first = angle + (second ? between + 0.5 : 0) * kRound / count;
+      const Toothed& wheel = wheels.try_emplace(at.body, Toothed{at, radius, first, count}).first->second;
+      if (!second) between = (angle - wheel.first) * wheel.count / kRound;
+    };
+    add(joint.places[0], joint.offset_a, joint.tooth_a, false);
+    add(joint.places[2], joint.offset_b, joint.tooth_b, true);
+  }
+  return wheels;
+}
+
 }  // namespace
 
 void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
@@ -120,6 +171,28 @@ void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& no
     const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
     if (joint.a < 0 && joint.b >= 0) draw_bracket(stage, view, now, walls, a, b, hatched, list);
     if (joint.b < 0 && joint.a >= 0) draw_bracket(stage, view, now, walls, b, a, hatched, list);
+  }
+}
+
+void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  std::vector<Node> nodes;
+  for (const auto& [body, wheel] : toothed_wheels(stage.cast, now)) {
+    const Vec3 center = place_of(now, wheel.center);
+    const double pitch = kRound / wheel.count, high = kToothHeight * pitch * wheel.radius;
+    const double first = wheel.first + now.bodies[std::size_t(body)].angle;
+    const Color color = stage.paints[std::size_t(body)].outline;
+    nodes.clear();
+    const auto add = [&](double teeth, double r) {
+      const double angle = first + teeth * pitch;
+      nodes.push_back({view.page(center + r * Vec3(std::cos(angle), std::sin(angle), 0)),
+                       kSpringLine * stage.layout.weight, color});
+    };
+    for (int k = 0; k < wheel.count; ++k) {
+      add(k - 0.32, wheel.radius - high), add(k - 0.15, wheel.radius + high);
+      add(k + 0.15, wheel.radius + high), add(k + 0.32, wheel.radius - high);
+    }
+    nodes.push_back(nodes.front());
+    list.add(nodes, Cap::round);
   }
 }
 
@@ -154,7 +227,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     const bool rope = joint_look(joint.kind).plane == JointMark::rope;
-    if (!spans(joint_look(joint.kind).plane) || now.joints[i].broken) continue;
+    if (!spans(joint_look(joint.kind).plane) || !joint.places.empty() || now.joints[i].broken) continue;
     const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
     const double width = (rope ? kRope : kRod) * weight, whole = joint.length * view.scale;
     nodes.clear();
@@ -170,11 +243,32 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
   // made fast to the room, or to a point of a body
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
-    if (!spans(joint_look(joint.kind).plane) || now.joints[i].broken) continue;
+    if (!spans(joint_look(joint.kind).plane) || !joint.places.empty() || now.joints[i].broken) continue;
     for (const auto& [body, at] :
          {std::pair(joint.a, now.joints[i].a), std::pair(joint.b, now.joints[i].b)}) {
       const double radius = (body < 0 ? kPin : kJoint) * weight;
       if (body < 0 || stage.solid(body)) list.add(Disc{view.page(at), radius, 0, color, color});
+    }
+  }
+}
+
+void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight;
+  const Color color = stage.colours.spring;
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
+    if (joint_look(joint.kind).plane != JointMark::pulley || now.joints[i].broken) continue;
+    nodes.clear();
+    for (const Vec3& at : rope_way(stage.cast, i, now))
+      nodes.push_back({view.page(at), kRope * weight, color});
+    list.add(nodes, Cap::round);
+    // made fast to the room or to a body, or led around a point of one
+    for (const sim::SceneInfo::Joint::Place& at : joint.places) {
+      const bool wheel = (&at == &joint.places.front() && joint.offset_a != 0) ||
+                         (&at == &joint.places.back() && joint.offset_b != 0);
+      if (wheel || (at.body >= 0 && !stage.solid(at.body))) continue;
+      list.add(Disc{view.page(place_of(now, at)), (at.body < 0 ? kPin : kJoint) * weight, 0, color, color});
     }
   }
 }

@@ -123,6 +123,8 @@ void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& no
 /// The rails of sliders, behind the bodies; rods and ropes, in front of boxes; pins, in front of all.
 void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 /// The dotted paths of the mice, and, in front of everything, their springs and pointers.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "draw/picture/joint_look.h"
+#include "draw/picture/rope_way.h"
 #include "draw/space/space.h"
 
 namespace obscura::draw {
@@ -119,7 +120,18 @@ void add_links(SpaceFrame& s) {
     if (at.broken) continue;
     switch (const JointMark mark = joint_look(joint.kind).space; mark) {
       case JointMark::none:
+      case JointMark::teeth:
         break;
+      case JointMark::pulley: {
+        std::vector<Vec3> way;
+        for (const sim::SceneInfo::Joint::Place& it : joint.places) way.push_back(place_of(s.now, it));
+        const double radius = 0.5 * kRope * weight * metre;
+        add_tube(s, way, radius, color, number);
+        for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
+        for (std::size_t k = 0; k < way.size(); ++k)
+          knob(joint.places[k].body, way[k], joint.places[k].body < 0 ? kPin : kJoint);
+        break;
+      }
       case JointMark::line:
       case JointMark::rope: {
         const bool rope = mark == JointMark::rope;

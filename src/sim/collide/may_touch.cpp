@@ -28,9 +28,15 @@ MayTouch<D>::MayTouch(const Model<D>& model) : jointed_(model.bodies.size()) {
   }
 
   for (const Joint<D>& joint : model.joints) {
-    if (joint.touching || joint.a.body < 0 || joint.b.body < 0) continue;
-    held_.push_back(std::minmax(joint.a.body, joint.b.body));
-    jointed_[joint.a.body] = jointed_[joint.b.body] = 1;
+    if (joint.touching || joint.kind == JointKind::pulley) continue;
+    const auto hold = [&](int a, int b) {
+      if (a < 0 || b < 0 || a == b) return;
+      held_.push_back(std::minmax(a, b));
+      jointed_[a] = jointed_[b] = 1;
+    };
+    hold(joint.a.body, joint.b.body);
+    // wheels that mesh overlap by their teeth
+    if (joint.kind == JointKind::gear) hold(joint.a.body, joint.over[0].body);
   }
   std::sort(held_.begin(), held_.end());
 }

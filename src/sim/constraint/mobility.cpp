@@ -64,14 +64,15 @@ Side<D> Mobility<D>::side(int body, const Vec<D>& along, const AngularVec<D>& tu
 template <int D>
 double Mobility<D>::moves(const Held& row) const {
   double sum = 0;
-  for (const Side<D>& side : row.sides) sum += side.column < 0 ? 0 : side.J.dot(bodies_[side.column].v);
+  each_side(row,
+            [&](const Side<D>& side) { sum += side.column < 0 ? 0 : side.J.dot(bodies_[side.column].v); });
   return sum;
 }
 
 template <int D>
 void Mobility<D>::keep(Held row) {
   double answer = 0;
-  for (const Side<D>& side : row.sides) answer += side.J.dot(side.response);
+  each_side(row, [&](const Side<D>& side) { answer += side.J.dot(side.response); });
   if (!(answer > 0)) return;
   row.give = 1 / answer;
   rows_.push_back(row);
@@ -104,6 +105,7 @@ void Mobility<D>::add_row(const Row<D>& row, double spare) {
   Held it;
   it.sides[0] = side(row.a, row.along, row.angular_a);
   it.sides[1] = side(row.b, Vec<D>(-row.along), AngularVec<D>(-row.angular_b));
+  for (const RowSide<D>& more : row.more) it.more.push_back(side(more.body, more.along, more.angular));
   if (std::fabs(moves(it)) <= kAtOnce * spare) keep(it);
 }
 
@@ -138,16 +140,16 @@ Mobile Mobility<D>::mobile() {
     // along the direction, as far as it helps
     for (Moving& it : bodies_) it.change.setZero();
     for (const Held& row : rows_) {
-      for (const Side<D>& side : row.sides) {
+      each_side(row, [&](const Side<D>& side) {
         if (side.column >= 0) bodies_[side.column].change += row.way * side.response;
-      }
+      });
     }
     double bends = 0;
     for (Held& row : rows_) {
       row.by = 0;
-      for (const Side<D>& side : row.sides) {
+      each_side(row, [&](const Side<D>& side) {
         if (side.column >= 0) row.by += side.J.dot(bodies_[side.column].change);
-      }
+      });
       bends += row.way * row.by;
     }
     if (!(bends > 0)) return Mobile::unknown;

@@ -70,6 +70,7 @@ class Mobility {
 
   struct Held {
     std::array<Side<D>, 2> sides;
+    std::vector<Side<D>> more;        // of a mechanism
     double give = 0;                  // 1 / (J M^-1 J')
     double off = 0, way = 0, by = 0;  // of conjugate gradients: J v; direction; J M^-1 J' direction
   };
@@ -82,6 +83,16 @@ class Mobility {
   Side<D> side(int body, const Vec<D>& along, const AngularVec<D>& turn) const;
   double moves(const Held& row) const;
   void keep(Held row);
+  template <class Act>
+  static void each_side(Held& row, Act&& act) {
+    for (Side<D>& side : row.sides) act(side);
+    for (Side<D>& side : row.more) act(side);
+  }
+  template <class Act>
+  static void each_side(const Held& row, Act&& act) {
+    for (const Side<D>& side : row.sides) act(side);
+    for (const Side<D>& side : row.more) act(side);
+  }
   double fastest() const;
 
   const Model<D>& model_;

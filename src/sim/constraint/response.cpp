@@ -14,7 +14,7 @@ void ChainResponse<D>::build(std::vector<Row<D>>& rows, const Response<D>& bodie
   if (size_ == 0) return;
   int found = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (bodies.linked(rows[i].a) || bodies.linked(rows[i].b)) number_[i] = found++;
+    if (side_that(rows[i], [&](int body) { return bodies.linked(body); }) >= 0) number_[i] = found++;
   }
   J_.assign(size_ * std::size_t(found), 0.0), U_.resize(size_ * std::size_t(found));
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -29,6 +29,7 @@ void ChainResponse<D>::build(std::vector<Row<D>>& rows, const Response<D>& bodie
     };
     side(row.a, {row.angular_a, row.along});
     side(row.b, {-row.angular_b, -row.along});
+    for (const RowSide<D>& more : row.more) side(more.body, {more.angular, more.along});
     chains.respond(J, std::span<double>(U_.data() + size_ * std::size_t(number_[i]), size_));
   }
 }

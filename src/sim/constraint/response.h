@@ -51,6 +51,12 @@ template <int D>
 struct RowResponse {
   double inverse_mass_a = 0, inverse_mass_b = 0;  // 1/kg
   AngularVec<D> angular_a = AngularVec<D>::Zero(), angular_b = AngularVec<D>::Zero();
+  // of each of Row::more
+  struct Another {
+    double inverse_mass = 0;
+    AngularVec<D> angular = AngularVec<D>::Zero();
+  };
+  std::vector<Another> more;
 };
 
 /// act(body, change of velocity, spin by a unit, impulse) for each free body of a row under an impulse p
@@ -61,6 +67,10 @@ void each_response(const Row<D>& row, const RowResponse<D>& response, double p, 
     act(row.a, Vec<D>(p * response.inverse_mass_a * row.along), response.angular_a, p);
   if (response.inverse_mass_b > 0)
     act(row.b, Vec<D>(-p * response.inverse_mass_b * row.along), response.angular_b, -p);
+  for (std::size_t i = 0; i < response.more.size(); ++i) {
+    const double m = response.more[i].inverse_mass;
+    if (m > 0) act(row.more[i].body, Vec<D>(p * m * row.more[i].along), response.more[i].angular, p);
+  }
 }
 
 /// K_ij = J_j M^-1 J_i' of two rows of free bodies, 1/kg.
@@ -73,6 +83,20 @@ double coupling(const Row<D>& i, const RowResponse<D>& response, const Row<D>& j
   if (mb > 0 && i.b == j.b) k += mb * i.along.dot(j.along) + wb.dot(j.angular_b);
   if (ma > 0 && i.a == j.b) k -= ma * i.along.dot(j.along) + wa.dot(j.angular_b);
   if (mb > 0 && i.b == j.a) k -= mb * i.along.dot(j.along) + wb.dot(j.angular_a);
+  if (i.more.empty() && j.more.empty()) return k;
+  // mechanisms: each side of one against each of the other
+  for (std::size_t s = 0; s < response.more.size(); ++s) {
+    const RowSide<D>& side = i.more[s];
+    const double m = response.more[s].inverse_mass;
+    if (!(m > 0)) continue;
+    each_side(j, [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
+      if (body == side.body) k += m * side.along.dot(along) + response.more[s].angular.dot(angular);
+    });
+  }
+  for (const RowSide<D>& side : j.more) {
+    if (ma > 0 && side.body == i.a) k += ma * i.along.dot(side.along) + wa.dot(side.angular);
+    if (mb > 0 && side.body == i.b) k -= mb * i.along.dot(side.along) + wb.dot(side.angular);
+  }
   return k;
 }
 
@@ -95,9 +119,17 @@ class Response {
   /// M^-1 J' of a row for the free ones of its bodies, at the poses in `bodies`.
   RowResponse<D> of(const Row<D>& row, const std::vector<BodyMotion<D>>& bodies) const {
     static const BodyMotion<D> room;
-    return of(row, row.a < 0 ? room : bodies[row.a], row.b < 0 ? room : bodies[row.b]);
+    RowResponse<D> out = of(row, row.a < 0 ? room : bodies[row.a], row.b < 0 ? room : bodies[row.b]);
+    for (const RowSide<D>& side : row.more) {
+      typename RowResponse<D>::Another& another = out.more.emplace_back();
+      if (!free(side.body)) continue;
+      another.inverse_mass = inverse_mass_[side.body];
+      another.angular =
+          angular_response<D>(model_.bodies[side.body], bodies[side.body].room_from_body, side.angular);
+    }
+    return out;
   }
-  /// The same at the poses of its two bodies.
+  /// The same at the poses of its two bodies, where it has no more.
   RowResponse<D> of(const Row<D>& row, const BodyMotion<D>& a, const BodyMotion<D>& b) const {
     RowResponse<D> out;
     if (free(row.a)) {
@@ -126,6 +158,18 @@ class Response {
       with(q.a, q.angular_a, 1), with(q.b, q.angular_b, -1);
     };
     side(p.a, p.angular_a, 1), side(p.b, p.angular_b, -1);
+    if (p.more.empty() && q.more.empty()) return sum;
+    // mechanisms: each side of one against each of the other
+    sum = 0;
+    each_side(p, [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
+      if (!free(body)) return;
+      const Body<D>& b = model_.bodies[body];
+      each_side(q, [&](int other, const Vec<D>& its, const AngularVec<D>& turn) {
+        if (other != body) return;
+        sum += inverse_mass_[body] * along.dot(its);
+        if (b.turns()) sum += angular.dot(angular_response<D>(b, bodies[body].room_from_body, turn));
+      });
+    });
     return sum;
   }
 

@@ -136,6 +136,8 @@ double speed(const Row<D>& row, const std::vector<BodyMotion<D>>& bodies) {
   double sum = row.drift;
   if (row.a >= 0) sum += row.along.dot(bodies[row.a].v) + row.angular_a.dot(bodies[row.a].w);
   if (row.b >= 0) sum -= row.along.dot(bodies[row.b].v) + row.angular_b.dot(bodies[row.b].w);
+  for (const RowSide<D>& side : row.more)
+    sum += side.along.dot(bodies[side.body].v) + side.angular.dot(bodies[side.body].w);
   return sum;
 }
 

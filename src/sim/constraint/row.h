@@ -12,6 +12,14 @@ namespace obscura::sim {
 // A contact has a row for its normal and one for each of D-1 tangents; a joint one for each motion that it
 // forbids.
 
+/// What a row has of a body beside its two sides: J v gets along . v + angular . w.
+template <int D>
+struct RowSide {
+  int body = -1;
+  Vec<D> along = Vec<D>::Zero();
+  AngularVec<D> angular = AngularVec<D>::Zero();
+};
+
 /// One row of J, at given stances.
 template <int D>
 struct Row {
@@ -21,10 +29,34 @@ struct Row {
   AngularVec<D> angular_b = AngularVec<D>::Zero();
   double velocity_product = 0;  // m/s^2 or rad/s^2
   double drift = 0;             // m/s: what a belt on either side adds to J v
+  // All sides of a mechanism, which may be those of many bodies; its a and b are the room, and `along` is how
+  // a unit of its force is shown.
+  std::vector<RowSide<D>> more;
 
   /// The row of the opposite direction.
-  void reverse() { along *= -1, angular_a *= -1, angular_b *= -1, velocity_product *= -1, drift *= -1; }
+  void reverse() {
+    along *= -1, angular_a *= -1, angular_b *= -1, velocity_product *= -1, drift *= -1;
+    for (RowSide<D>& side : more) side.along *= -1, side.angular *= -1;
+  }
 };
+
+/// act(body, along, angular) for each side of a row that is a body, with its sign.
+template <int D, class Act>
+void each_side(const Row<D>& row, Act&& act) {
+  if (row.a >= 0) act(row.a, row.along, row.angular_a);
+  if (row.b >= 0) act(row.b, Vec<D>(-row.along), AngularVec<D>(-row.angular_b));
+  for (const RowSide<D>& side : row.more) act(side.body, side.along, side.angular);
+}
+
+/// A body of a row of which its(body) is true; below zero: none.
+template <int D, class Its>
+int side_that(const Row<D>& row, Its&& its) {
+  if (its(row.a)) return row.a;
+  if (its(row.b)) return row.b;
+  for (const RowSide<D>& side : row.more)
+    if (its(side.body)) return side.body;
+  return -1;
+}
 
 /// The i-th of D-1 unit vectors across n, which with it are a right-handed frame.
 template <int D>

@@ -94,6 +94,9 @@ void DivergenceMonitor<D>::start(State<D>& state, double t) const {
     energy_budget += 0.5 * mouse.stiffness * way * way;
   }
   for (const Spring<D>& spring : model_.springs) energy_budget += 0.5 * spring.stiffness * little * little;
+  // a radian of a hinge
+  for (const Joint<D>& joint : model_.joints)
+    if (joint.coil) energy_budget += 0.5 * joint.coil->stiffness * std::max(1.0, little * little);
   const double g = std::sqrt(model_.gravity.squaredNorm());
   for (const Body<D>& body : model_.bodies) {
     if (!body.fixed) energy_budget += body.mass * (g * model_.scale + fastest * fastest);

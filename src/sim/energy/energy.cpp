@@ -1,7 +1,9 @@
 #include "sim/energy/energy.h"
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/force/forces.h"
 #include "sim/force/spring.h"
+#include "sim/math/lie_step.h"
 #include "sim/model/stance.h"
 
 namespace obscura::sim {
@@ -44,6 +46,23 @@ double spring_energy(const Model<D>& model, const State<D>& state, int spring) {
 }
 
 template <int D>
+double joint_spring_energy(const Model<D>& model, const State<D>& state, int joint) {
+  const Joint<D>& it = model.joints[std::size_t(joint)];
+  const bool broken = std::size_t(joint) < state.broken.size() && state.broken[std::size_t(joint)];
+  if (!it.coil || broken) return 0;
+  const auto motion = [&](int body) { return body < 0 ? BodyMotion<D>{} : body_motion(state, body); };
+  const auto angle = [&](int body) -> AngularVec<D> {
+    const int k = body < 0 ? -1 : turning(state, body);
+    return k < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : AngularVec<D>(rounds<D>(state.turn[k]));
+  };
+  Row<D> row;
+  double c = 0;
+  free_row(it, motion(it.a.body), motion(it.b.body), AngularVec<D>(angle(it.a.body) - angle(it.b.body)), row,
+           c);
+  return 0.5 * it.coil->stiffness * (c - it.coil->rest) * (c - it.coil->rest);
+}
+
+template <int D>
 double spring_energy(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths,
                      int mouse, double t) {
   const Grip<D>& grip = state.grips[mouse];
@@ -72,6 +91,8 @@ Energies energies(const Model<D>& model, const State<D>& state, const std::vecto
   }
   for (int spring = 0; spring < int(model.springs.size()); ++spring)
     sum.springs += spring_energy(model, state, spring);
+  for (int joint = 0; joint < int(model.joints.size()); ++joint)
+    if (model.joints[std::size_t(joint)].coil) sum.springs += joint_spring_energy(model, state, joint);
   for (int mouse = 0; mouse < int(model.mice.size()); ++mouse)
     sum.springs += spring_energy(model, state, paths, mouse, t);
   sum.fields = field_energy(model, state, t);
@@ -110,6 +131,8 @@ template double kinetic<2>(const Model<2>&, const State<2>&, int);
 template double kinetic<2>(const Model<2>&, const State<2>&);
 template double gravity_energy<2>(const Model<2>&, const State<2>&, int);
 template double spring_energy<2>(const Model<2>&, const State<2>&, int);
+template double joint_spring_energy<2>(const Model<2>&, const State<2>&, int);
+template double joint_spring_energy<3>(const Model<3>&, const State<3>&, int);
 template double spring_energy<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, int, double);
 template double field_energy<2>(const Model<2>&, const State<2>&, double, std::vector<double>*);
 template Energies energies<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, double);

@@ -30,6 +30,10 @@ double gravity_energy(const Model<D>& model, const State<D>& state, int body);
 template <int D>
 double spring_energy(const Model<D>& model, const State<D>& state, int spring);
 
+/// Energy in the spring of joint `joint`, J; none where it has none or is broken.
+template <int D>
+double joint_spring_energy(const Model<D>& model, const State<D>& state, int joint);
+
 /// Energy in the spring of mouse `mouse` at time t, J; none where it holds nothing.
 template <int D>
 double spring_energy(const Model<D>& model, const State<D>& state, const std::vector<Path<D>>& paths,

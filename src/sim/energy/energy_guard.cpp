@@ -53,7 +53,10 @@ EnergyGuard<D>::EnergyGuard(const Model<D>& model)
     size_ += weight.mass * g_ * model.scale;
   }
   sums_.reserve(weights_.size()), bound_.reserve(weights_.size());
-  springs_before_.resize(model.springs.size()), springs_now_.resize(model.springs.size());
+  for (std::size_t i = 0; i < model.joints.size(); ++i)
+    if (model.joints[i].coil) sprung_.push_back(int(i));
+  springs_before_.resize(model.springs.size() + sprung_.size());
+  springs_now_.resize(springs_before_.size());
 }
 
 template <int D>
@@ -73,6 +76,14 @@ void EnergyGuard<D>::add_fields(const State<D>& state, std::vector<double>& to) 
   forces_.energy(t_, motions_, &to);
 }
 
+// energy of a spring, or of that of a joint
+template <int D>
+double EnergyGuard<D>::in_spring(const State<D>& state, int i) const {
+  const int springs = int(model_.springs.size());
+  return i < springs ? spring_energy(model_, state, i)
+                     : joint_spring_energy(model_, state, sprung_[std::size_t(i - springs)]);
+}
+
 template <int D>
 void EnergyGuard<D>::open(const State<D>& state, double t) {
   t_ = t;
@@ -84,7 +95,7 @@ void EnergyGuard<D>::open(const State<D>& state, double t) {
     before_[i] = moved_[i] - weights_[i].mass * model_.gravity.dot(state.x[i]);
   }
   add_fields(state, before_);
-  for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = spring_energy(model_, state, i);
+  for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = in_spring(state, i);
 }
 
 template <int D>
@@ -99,7 +110,7 @@ bool EnergyGuard<D>::risen(const State<D>& state) {
   add_fields(state, now_);
   for (int i = 0; i < n; ++i) sum += gain(i);
   for (int i = 0; i < int(springs_now_.size()); ++i) {
-    springs_now_[i] = spring_energy(model_, state, i);
+    springs_now_[i] = in_spring(state, i);
     sum += springs_now_[i] - springs_before_[i], motion += springs_now_[i];
   }
   if (!(sum > kRounding * (motion + size_))) return false;
@@ -150,9 +161,14 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     }
   };
   for (const Spring<D>& spring : model_.springs) link(spring.a.body, spring.b.body, false);
+  for (const int i : sprung_)
+    link(model_.joints[std::size_t(i)].a.body, model_.joints[std::size_t(i)].b.body, false);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (i >= state.broken.size() || !state.broken[i]) link(joint.a.body, joint.b.body, true);
+    if (i < state.broken.size() && state.broken[i]) continue;
+    link(joint.a.body, joint.b.body, true);
+    if (!joint.over.empty())
+      joint.each_body([&](int a) { joint.each_body([&](int b) { link(a, b, true); }); });
   }
   for (const Articulation<D>& chain : model_.chains) {
     for (const int body : chain.bodies) link(body, chain.bodies[0], true), bound_[body].held = true;
@@ -190,6 +206,12 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     const Spring<D>& spring = model_.springs[i];
     const int body = counts(spring.a.body) ? spring.a.body : spring.b.body;
     if (counts(body)) island(body).gain += springs_now_[i] - springs_before_[i];
+  }
+  for (std::size_t i = 0; i < sprung_.size(); ++i) {
+    const Joint<D>& joint = model_.joints[std::size_t(sprung_[i])];
+    const std::size_t at = model_.springs.size() + i;
+    const int body = counts(joint.a.body) ? joint.a.body : joint.b.body;
+    if (counts(body)) island(body).gain += springs_now_[at] - springs_before_[at];
   }
   for (const Joint<D>& joint : model_.joints) {
     const int body = counts(joint.a.body) ? joint.a.body : joint.b.body;

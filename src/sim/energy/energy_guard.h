@@ -65,6 +65,7 @@ class EnergyGuard {
   };
 
   double kinetic(const State<D>& state, int body) const;
+  double in_spring(const State<D>& state, int i) const;
   void add_fields(const State<D>& state, std::vector<double>& to);
   void gather(const State<D>& state);
   void move_as_one(const State<D>& state);
@@ -79,7 +80,8 @@ class EnergyGuard {
   double size_ = 0;  // J: m g times the room's height
   std::vector<Vec<D>> x_;
   std::vector<double> moved_, before_, now_, booked_;  // one a body, J
-  std::vector<double> springs_before_, springs_now_;   // J
+  std::vector<int> sprung_;                            // joints with a spring
+  std::vector<double> springs_before_, springs_now_;   // J: of springs, then of those
   Islands islands_, groups_;
   std::vector<char> touched_, rooted_, tied_, jointed_;
   std::vector<char> carried_;            // one a body: something that is moved, or a belt, works on it

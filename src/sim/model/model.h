@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -85,9 +86,10 @@ struct Spring {
 };
 
 /// The kinds of joint, by the relative motions of two ends that they forbid. Numbers of rows: weld D +
-/// D(D-1)/2, pin D, slider and hinge one less than a weld, rod and rope one. In space a pin is a ball joint;
-/// in the plane a pin and a hinge are the same.
-enum class JointKind { pin, weld, slider, rod, rope, hinge, count };
+/// D(D-1)/2, pin D, slider, hinge and screw one less than a weld, rod and rope one. In space a pin is a ball
+/// joint; in the plane a pin and a hinge are the same. Mechanisms hold more than two bodies by one row: a
+/// pulley, a gear.
+enum class JointKind { pin, weld, slider, rod, rope, hinge, pulley, gear, screw, count };
 inline constexpr int kJointKinds = int(JointKind::count);
 
 /// Whether a table has one row for each kind of joint, in the order of JointKind.
@@ -97,12 +99,30 @@ constexpr bool in_order(const auto& table) {
   return std::size(table) == std::size_t(kJointKinds);
 }
 
+/// How the rope of a pulley runs onto a wheel or off it, without slipping. Of a gear: the pitch circle.
+template <int D>
+struct Winding {
+  double offset = 0;               // of the rope from the wheel's centre, m: its radius, negative where the
+                                   // rope runs around it clockwise; 0: it is tied to a point
+  Vec<D> start = Vec<D>::Unit(0);  // the rope's direction there at the start; where the teeth of a gear meet
+                                   // then, in the body's frame
+};
+
 /// A joint between two bodies, or a body and the room, as it stood at the start.
 template <int D>
 struct Joint {
   struct Motor {
     double speed = 0;  // rad/s of a hinge, m/s of a slider: of a against b
     double most = 0;   // N m or N
+    // Instead of `speed` a function of the time, the angle of a drive_formula<2>: the speed; or, where it
+    // follows, the coordinate itself, rad or m. See sim/constraint/joints/motors.h.
+    std::shared_ptr<const Program> aim = nullptr;
+    bool follows = false;
+  };
+  /// A spring along its free coordinate c: f = -k (c - rest) - d c', N m of a hinge, N of a slider.
+  struct Coil {
+    double stiffness = 0, damping = 0;  // N m/rad or N/m, N m s/rad or N s/m
+    double rest = 0;                    // rad or m
   };
 
   std::string name;
@@ -116,10 +136,42 @@ struct Joint {
   double length = 0;                     // rod: the distance; rope: the largest, m
   double lower = -1e300, upper = 1e300;  // of a hinge's angle (rad, in space within pi) or a slider's way (m)
   std::optional<Motor> motor;
+  std::optional<Coil> coil;
   double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider
   double breaks = 1e300;  // N: a larger force on the joint breaks it
   bool touching = false;  // whether the two bodies may touch each other
   bool linked = false;    // a chain holds it: of its own it has limits, a motor and friction
+
+  // a pulley: the points that its rope slides over, from a to b. A gear: the ends of its second joint
+  std::vector<End<D>> over;
+  Winding<D> on_a, on_b;  // a pulley in the plane: wheels about its ends, which its rope runs onto
+  int rope = -1;          // a pulley: its number; those of one rope have the same, and break together
+  double ratio = 1;       // a gear: of the first joint's coordinate, and the second's; a screw: m a radian
+  std::shared_ptr<const std::array<Joint, 2>> geared;  // and both
+  // what its `turn` is the sum of, as bodies and factors; empty: a less b
+  std::vector<std::pair<int, double>> turns;
+
+  /// act(body) for each body that it holds; below zero: the room.
+  template <class Act>
+  void each_body(Act&& act) const {
+    act(a.body), act(b.body);
+    for (const End<D>& end : over) act(end.body);
+  }
+  /// Whether its(body) is true of any.
+  template <class Its>
+  bool any_body(Its&& its) const {
+    bool any = false;
+    each_body([&](int body) { any = any || its(body); });
+    return any;
+  }
+  /// Its turn, of those of bodies: an angle with whole rounds; zero in space. Of a pulley in metres of rope.
+  template <class Rounds>
+  AngularVec<D> turn_between(Rounds&& rounds) const {
+    if (turns.empty()) return rounds(a.body) - rounds(b.body);
+    AngularVec<D> sum = AngularVec<D>::Zero();
+    for (const auto& [body, factor] : turns) sum += factor * rounds(body);
+    return sum;
+  }
 };
 
 /// Makes two bodies one as they stand at the start, until it is loaded beyond its strength: see

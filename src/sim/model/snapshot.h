@@ -44,6 +44,15 @@ struct SceneInfo {
     double length = 0;                     // of a rod or rope, m
     Vec3 axis = Vec3::UnitX();             // of a slider, in b's frame
     double lower = -1e300, upper = 1e300;  // of a slider's way, m
+    struct Place {
+      int body = -1;  // -1: the room
+      Vec3 local = Vec3::Zero();
+    };
+    std::vector<Place> places = {};  // of a pulley: all that its rope goes over, from a to b; of a gear: the
+                                     // ends of both joints
+    // of a pulley: the wheels at its ends, as sim::Winding has them; of a gear: its pitch circles
+    double offset_a = 0, offset_b = 0;
+    Vec3 tooth_a = Vec3::UnitX(), tooth_b = Vec3::UnitX();  // of a gear, in the bodies' frames
   };
   struct Mouse {
     double press = 0, release = 0;  // s

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/constraint/joints/joint.h"
+#include "sim/math/elementary.h"
 #include "sim/math/lie_step.h"
 #include "sim/model/own_spin.h"
 #include "sim/motion/free_motion.h"
@@ -37,6 +39,8 @@ ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Pat
     std::iota(numbers_[i].begin(), numbers_[i].end(), 0);
   }
   ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty() || !model.chains.empty();
+  for (std::size_t i = 0; i < model.joints.size(); ++i)
+    if (model.joints[i].coil) sprung_.push_back(int(i)), ever_ = true;
   for (const Body<D>& body : model.bodies) {
     ever_ = ever_ || body.ground_drag != 0;
     books_ = books_ || body.carries();
@@ -75,6 +79,8 @@ void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake) {
     if (body >= 0 && !model_.bodies[body].fixed && !model_.bodies[body].linked) member_[body] = 0;
   };
   for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
+  for (const int i : sprung_)
+    mark(model_.joints[std::size_t(i)].a.body), mark(model_.joints[std::size_t(i)].b.body);
   for (const Grip<D>& grip : state.grips) mark(grip.body);
   for (int body = 0; body < int(member_.size()); ++body) {
     const bool pushed = model_.bodies[body].ground_drag != 0 ||
@@ -126,6 +132,13 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
         {hold(state, {grip.body, grip.local}), {-1, mouse, -1, Vec<D>::Zero()}, law(model_.mice[mouse])});
   }
 
+  joint_ties_.clear();
+  for (const int i : sprung_) {
+    const Joint<D>& joint = model_.joints[std::size_t(i)];
+    JointTie tie{i, joint_side(state, joint.a.body), joint_side(state, joint.b.body)};
+    if (tie.a.member >= 0 || tie.b.member >= 0) joint_ties_.push_back(tie);
+  }
+
   // bodies with a limit on the turn of one step: tumbling ones, those held off their centre, and links
   wheels_.clear();
   for (int i = 0; i < int(all_.size()); ++i) {
@@ -160,8 +173,8 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
   }
   braked_.reserve(dragged_.size());
 
-  flying_ = turning_ == 0 && ties_.empty() && dragged_.empty() && chains_.size() == 0 && forces_.all_fly() &&
-            !books_;
+  flying_ = turning_ == 0 && ties_.empty() && joint_ties_.empty() && dragged_.empty() &&
+            chains_.size() == 0 && forces_.all_fly() && !books_;
 
   const std::size_t n = std::size_t(chain_start() + chains_.size() + int(books_));
   x_.resize(bodies_.size()), stances_.assign(all_.size(), {}), turn_.resize(turning_), base_.resize(turning_);
@@ -186,6 +199,18 @@ void ForwardDynamics<D>::load(const State<D>& state) {
   if (books_) v_.back() = 0;
   std::fill(d_.begin(), d_.end(), 0.0);
   forces_.refer(state);
+
+  // springs of joints that are whole
+  std::erase_if(joint_ties_, [&](const JointTie& tie) {
+    return std::size_t(tie.joint) < state.broken.size() && state.broken[std::size_t(tie.joint)] != 0;
+  });
+  for (JointTie& tie : joint_ties_) {
+    for (JointSide* side : {&tie.a, &tie.b}) {
+      const int k = side->body < 0 ? -1 : turning(state, side->body);
+      if (k < 0) continue;
+      side->begun = rotation<D>(state.turn[k]), side->rounds = sim::rounds<D>(state.turn[k]);
+    }
+  }
 
   // explosions
   acting_.clear(), held_.clear();
@@ -303,6 +328,54 @@ typename ForwardDynamics<D>::Moving ForwardDynamics<D>::moving(const Hold& hold,
 }
 
 template <int D>
+typename ForwardDynamics<D>::JointSide ForwardDynamics<D>::joint_side(const State<D>& state, int body) const {
+  JointSide side;
+  side.body = body;
+  if (body < 0) return side;
+  side.member = member_[std::size_t(body)];
+  if (side.member >= 0) return side;
+  side.drive = drives_.number(body);
+  side.still = body_motion(state, body);
+  if (side.drive < 0) side.still.v.setZero(), side.still.w.setZero();
+  return side;
+}
+
+template <int D>
+const BodyMotion<D>& ForwardDynamics<D>::motion_of(const JointSide& side) const {
+  if (side.member >= 0) return stances_[std::size_t(side.member)];
+  return side.drive >= 0 ? driven_[std::size_t(side.drive)].at : side.still;
+}
+
+// its angle in the plane, with whole rounds: a stage turns it by less than half a one
+template <int D>
+AngularVec<D> ForwardDynamics<D>::rounds_of(const JointSide& side) const {
+  if constexpr (D == 2) {
+    if (side.drive >= 0) return driven_[std::size_t(side.drive)].turn;
+    if (side.member < 0) return side.rounds;
+    const Rotation<2> turn = motion_of(side).room_from_body * side.begun.transpose();
+    return AngularVec<2>(side.rounds[0] + elementary::atan2(turn(1, 0), turn(0, 0)));
+  } else {
+    return AngularVec<D>::Zero();
+  }
+}
+
+// the spring of a joint, along its free coordinate; the power of what is moved, W
+template <int D>
+double ForwardDynamics<D>::push_joint(const JointTie& tie, std::span<double> v_rate) {
+  const Joint<D>& joint = model_.joints[std::size_t(tie.joint)];
+  const BodyMotion<D>&a = motion_of(tie.a), &b = motion_of(tie.b);
+  Row<D> row;
+  double c = 0;
+  free_row(joint, a, b, AngularVec<D>(rounds_of(tie.a) - rounds_of(tie.b)), row, c);
+  const double of_a = row.along.dot(a.v) + row.angular_a.dot(a.w),
+               of_b = row.along.dot(b.v) + row.angular_b.dot(b.w);
+  const double f = -joint.coil->stiffness * (c - joint.coil->rest) - joint.coil->damping * (of_a - of_b);
+  if (tie.a.member >= 0) push(tie.a.member, Wrench<D>{row.angular_a, row.along} * f, v_rate);
+  if (tie.b.member >= 0) push(tie.b.member, Wrench<D>{row.angular_b, row.along} * -f, v_rate);
+  return (tie.b.drive >= 0 ? f * of_b : 0) - (tie.a.drive >= 0 ? f * of_a : 0);
+}
+
+template <int D>
 void ForwardDynamics<D>::push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force,
                               std::span<double> v_rate) {
   if (hold.member >= 0) push(hold.member, {moment<D>(arm, force), force}, v_rate);
@@ -364,6 +437,7 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     if (tie.a.drive >= 0) power -= force.dot(a.velocity);
     if (tie.b.drive >= 0) power += force.dot(b.velocity);
   }
+  for (const JointTie& tie : joint_ties_) power += push_joint(tie, v_rate);
   for (const int explosion : acting_) {
     for (int i = 0; i < int(all_.size()); ++i)
       push(i, blasts_.push(model_.explosions[explosion], all_[i], stances_[i]), v_rate);

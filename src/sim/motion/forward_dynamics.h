@@ -95,6 +95,17 @@ class ForwardDynamics final : public System {
     Hold a, b;
     SpringLaw law;
   };
+  // a side of a joint with a spring: a tied body, one that is moved, or one that stands still
+  struct JointSide {
+    int member = -1, drive = -1, body = -1;
+    BodyMotion<D> still;
+    Rotation<D> begun = Rotation<D>::Identity();   // as the step began
+    AngularVec<D> rounds = AngularVec<D>::Zero();  // and its angle then, in the plane
+  };
+  struct JointTie {
+    int joint;
+    JointSide a, b;
+  };
   // a tied body that the ground brakes
   struct Braked {
     int member;
@@ -112,6 +123,10 @@ class ForwardDynamics final : public System {
   void fly(Integrate* integrate, State<D>& state, double t, double h, Stages& stages);
   void piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System& rates);
   Moving moving(const Hold& hold, double t) const;
+  JointSide joint_side(const State<D>& state, int body) const;
+  const BodyMotion<D>& motion_of(const JointSide& side) const;
+  AngularVec<D> rounds_of(const JointSide& side) const;
+  double push_joint(const JointTie& tie, std::span<double> v_rate);
   void push(const Hold& hold, const Vec<D>& arm, const Vec<D>& force, std::span<double> v_rate);
   void push(int member, const Wrench<D>& by, std::span<double> v_rate);
 
@@ -127,6 +142,8 @@ class ForwardDynamics final : public System {
   std::vector<int> all_;         // bodies_ and the links
   std::vector<int> numbers_[3];  // of all bodies, springs, chains
   std::vector<Tie> ties_;        // springs in order, then mice in order
+  std::vector<int> sprung_;      // joints with a spring
+  std::vector<JointTie> joint_ties_;
   bool ever_ = false, leaves_flying_ = false;
   bool only_forces_ = false, flying_ = false;  // nothing else of the model ties; all that is gathered flies
   Blasts<D> blasts_;

@@ -32,6 +32,14 @@ constexpr double kRounding = 1 + 1e-6;  // of a span of time
 template <int D>
 constexpr int kFewContacts = D == 2 ? Statics<D>::kMost : 32;
 
+// act(a, b) for each two bodies of a joint
+template <int D, class Act>
+void each_two(const Joint<D>& joint, Act&& act) {
+  act(joint.a.body, joint.b.body);
+  if (joint.over.empty()) return;
+  joint.each_body([&](int a) { joint.each_body([&](int b) { act(a, b); }); });
+}
+
 }  // namespace
 
 template <int D>
@@ -91,8 +99,10 @@ void Sleep<D>::join(const State<D>& state, std::span<const Contact<D>> contacts,
     }
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-    const int a = model_.joints[i].a.body, b = model_.joints[i].b.body;
-    if (!state.broken[i] && both(a, b)) roots_.join(a, b);
+    if (state.broken[i]) continue;
+    each_two(model_.joints[i], [&](int a, int b) {
+      if (both(a, b)) roots_.join(a, b);
+    });
   }
 }
 
@@ -133,7 +143,7 @@ bool Sleep<D>::wake(State<D>& state, std::span<const Contact<D>> near, double sp
   };
   for (const Spring<D>& spring : model_.springs) pull(spring.a.body, spring.b.body);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-    if (!state.broken[i]) pull(model_.joints[i].a.body, model_.joints[i].b.body);
+    if (!state.broken[i]) each_two(model_.joints[i], pull);
   }
   for (const Grip<D>& grip : state.grips) {
     if (grip.body >= 0 && state.frozen[grip.body]) woken_.push_back(grip.body);
@@ -171,12 +181,17 @@ void Sleep<D>::disturb_pulled(const State<D>& state) {
       if (spring.b.body == carrier) disturb(spring.a.body);
     }
     for (const Joint<D>& joint : model_.joints) {
-      if (joint.a.body == carrier) disturb(joint.b.body);
-      if (joint.b.body == carrier) disturb(joint.a.body);
+      if (joint.any_body([&](int body) { return body == carrier; }))
+        joint.each_body([&](int body) { disturb(body); });
     }
   }
+  // what a motor moves as time goes on does not rest
+  for (const Joint<D>& joint : model_.joints)
+    if (joint.motor && joint.motor->aim) disturb(joint.a.body), disturb(joint.b.body);
   if (exact_) return;
   for (const Spring<D>& spring : model_.springs) disturb(spring.a.body), disturb(spring.b.body);
+  for (const Joint<D>& joint : model_.joints)
+    if (joint.coil) disturb(joint.a.body), disturb(joint.b.body);
 }
 
 // makes candidates of the islands in which nothing is restless
@@ -225,7 +240,7 @@ bool Sleep<D>::at_start(State<D>& state, std::span<Contact<D>> contacts) {
   }
   disturb_pulled(state);
   for (const int body : restless_at_start_) disturb(body);
-  for (const Joint<D>& joint : model_.joints) disturb(joint.a.body), disturb(joint.b.body);
+  for (const Joint<D>& joint : model_.joints) joint.each_body([&](int body) { disturb(body); });
   list(state, contacts);
   bool fell = false;
   for (const Island& island : candidates_) {
@@ -256,13 +271,13 @@ std::span<typename Sleep<D>::Island> Sleep<D>::candidates(const State<D>& state)
 
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     if (state.broken[i]) continue;
-    for (const int body : {model_.joints[i].a.body, model_.joints[i].b.body}) {
-      if (!moves(state, body)) continue;
+    model_.joints[i].each_body([&](int body) {
+      if (!moves(state, body)) return;
       const auto at =
           std::lower_bound(candidates_.begin(), candidates_.end(), roots_.root(body),
                            [](const Island& island, int root) { return island.bodies[0] < root; });
       if (at != candidates_.end() && at->bodies[0] == roots_.root(body)) at->jointed = true;
-    }
+    });
   }
   // The solver's attempts leave other forces behind, to which joints must settle again; and exact forces of
   // all moving bodies take long.

@@ -57,9 +57,9 @@ void ContactStep<D>::take_energy_back(State<D>& state) {
   for (int i = 0; share > 0 && i < int(model_.bodies.size()); ++i) energy_guard_.excuse(i, share);
   for (const Joint<D>& joint : model_.joints) {
     if (exact_) break;
-    for (const int body : {joint.a.body, joint.b.body}) {
+    joint.each_body([&](int body) {
       if (body >= 0 && state.step > 0) energy_guard_.excuse(body, kSinks, kSwings);
-    }
+    });
   }
   state.ledger.displacement += energy_guard_.take_back(state, exact_);
 }

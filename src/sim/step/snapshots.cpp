@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/constraint/material.h"
 #include "sim/energy/energy.h"
 #include "sim/force/explosion.h"
@@ -140,8 +141,19 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
     cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal), wall.friction});
   for (const Spring<D>& s : model.springs)
     cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness});
-  for (const Joint<D>& j : model.joints)
+  for (const Joint<D>& j : model.joints) {
     cast.joints.push_back({j.name, j.kind, j.a.body, j.b.body, j.length, to_3d<D>(j.axis), j.lower, j.upper});
+    if (!equations<D>(j.kind).mechanism) continue;
+    SceneInfo::Joint& it = cast.joints.back();
+    const auto add = [&](const End<D>& end) { it.places.push_back({end.body, to_3d<D>(end.local)}); };
+    const bool gear = j.kind == JointKind::gear;
+    add(j.a);
+    if (gear) add(j.b);
+    for (const End<D>& end : j.over) add(end);
+    if (!gear) add(j.b);
+    it.offset_a = j.on_a.offset, it.offset_b = j.on_b.offset;
+    it.tooth_a = to_3d<D>(j.on_a.start), it.tooth_b = to_3d<D>(j.on_b.start);
+  }
   for (std::size_t i = 0; i < model.mice.size(); ++i) {
     const Path<D>& path = paths[i];
     SceneInfo::Mouse mouse{path.start(), path.end(), model.mice[i].rest_length, {}};

@@ -52,6 +52,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       work_(model),
       forces_(model),
       springs_(!model.springs.empty() || !model.mice.empty()) {
+  for (const Joint<D>& joint : model.joints) springs_ = springs_ || joint.coil.has_value();
   // so do bodies that are moved, and a potential that changes with the time
   for (const Body<D>& body : model.bodies) springs_ = springs_ && !body.carries();
   for (const Force<D>& force : model.forces)

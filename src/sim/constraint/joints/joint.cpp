@@ -4,10 +4,13 @@
 #include <array>
 #include <cstddef>
 
+#include "sim/constraint/joints/gear.h"
 #include "sim/constraint/joints/hinge.h"
 #include "sim/constraint/joints/pin.h"
+#include "sim/constraint/joints/pulley.h"
 #include "sim/constraint/joints/rod.h"
 #include "sim/constraint/joints/rope.h"
+#include "sim/constraint/joints/screw.h"
 #include "sim/constraint/joints/slider.h"
 #include "sim/constraint/joints/weld.h"
 
@@ -16,8 +19,8 @@ namespace obscura::sim {
 // in the order of JointKind
 template <int D>
 const JointEquations<D>& equations(JointKind kind) {
-  static constexpr auto kTable =
-      std::to_array<JointEquations<D>>({kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>});
+  static constexpr auto kTable = std::to_array<JointEquations<D>>(
+      {kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>, kPulley<D>, kGear<D>, kScrew<D>});
   static_assert(in_order(kTable) && std::ranges::all_of(kTable, [](const auto& its) {
                   return its.hold && its.rows <= kMostHeld<D>;
                 }));
@@ -26,10 +29,10 @@ const JointEquations<D>& equations(JointKind kind) {
 
 template <int D>
 int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
-         Row<D>* out, double* off) {
+         Row<D>* out, double* off, std::type_identity_t<std::span<const BodyMotion<D>>> all) {
   const JointEquations<D>& its = equations<D>(joint.kind);
-  its.hold({joint, a, b, turn}, out, off);
-  for (int i = 0; i < its.rows; ++i) out[i].a = joint.a.body, out[i].b = joint.b.body;
+  its.hold({joint, a, b, turn, all}, out, off);
+  for (int i = 0; i < its.rows && !its.mechanism; ++i) out[i].a = joint.a.body, out[i].b = joint.b.body;
   return its.rows;
 }
 
@@ -45,12 +48,12 @@ bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>
 
 template const JointEquations<2>& equations<2>(JointKind);
 template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
-                     Row<2>*, double*);
+                     Row<2>*, double*, std::span<const BodyMotion<2>>);
 template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
                           Row<2>&, double&);
 template const JointEquations<3>& equations<3>(JointKind);
 template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
-                     Row<3>*, double*);
+                     Row<3>*, double*, std::span<const BodyMotion<3>>);
 template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
                           Row<3>&, double&);
 

@@ -1,13 +1,17 @@
 #pragma once
 
-// Joints: the relative motions of two bodies that they forbid, C(q) = 0 row by row, and those that they leave
-// free. To add one: a file beside pin.h, a name in JointKind, and a row in each of three tables, without
-// which it does not compile: joint.cpp here, its word in scene/joint_words.h, its look in
-// draw/picture/joint_look.h. All solvers, limits, motors, dry friction, breaking, messages and the page of
-// keys work from these:
+// Joints: the relative motions of two bodies, of a mechanism of several, that they forbid, C(q) = 0 row by
+// row, and those that they leave free. To add one: a file beside pin.h, a name in JointKind, and a row in
+// each of three tables, without which it does not compile: joint.cpp here, its word in scene/joint_words.h,
+// its look in draw/picture/joint_look.h. All solvers, limits, motors, dry friction, breaking, messages and
+// the page of keys work from these:
 //   limit     lower <= c <= upper              a row along the free coordinate c, of one sign
 //   motor     c' = speed, |f| <= most          the same row, bounded both ways; friction: c' = 0, |f| <=
 //   friction breaks    |sum of f_i s_i| > breaks        s_i  linear part of row i: the force of its rows, N
+
+#include <span>
+#include <type_traits>
+#include <vector>
 
 #include "sim/constraint/row.h"
 
@@ -18,7 +22,14 @@ template <int D>
 struct JointPose {
   const Joint<D>& joint;
   const BodyMotion<D>&a, &b;
-  const AngularVec<D>& turn;  // of a against b, rad; in space the poses tell it
+  const AngularVec<D>& turn;                // of a against b, rad; in space the poses tell it
+  std::span<const BodyMotion<D>> all = {};  // of all bodies, by number: of a mechanism, which holds more
+
+  /// Any of its bodies; below zero: the room.
+  const BodyMotion<D>& side(int body) const {
+    static const BodyMotion<D> room;
+    return body < 0 ? room : all[std::size_t(body)];
+  }
 
   Vec<D> arm_a() const { return a.arm(joint.a.local); }
   Vec<D> arm_b() const { return b.arm(joint.b.local); }
@@ -33,6 +44,7 @@ struct JointEquations {
   bool apart = false;      // its ends are a length apart; else they start at one place
   bool axis = false;       // it has an axis, fixed in b
   bool turning = false;    // both of its bodies must be able to turn
+  bool mechanism = false;  // it may hold more than two bodies; its row has them in Row::more
   bool angle = false;      // its free coordinate is an angle (rad); else a distance (m)
   /// Writes J and C (m or rad), one a row.
   void (*hold)(const JointPose<D>& at, Row<D>* J, double* C) = nullptr;
@@ -50,10 +62,22 @@ template <int D>
 inline constexpr int kMostHeld = D + kAngular<D>;
 
 /// Writes the rows that a joint constrains and their errors C (m or rad). Returns their number. `turn`: the
-/// angle of a relative to b (rad), for joints that constrain it; in space the poses give it.
+/// angle of a relative to b (rad), for joints that constrain it; in space the poses give it. `all`: how all
+/// bodies stand and move, by number, of which mechanisms ask for more than a and b.
 template <int D>
 int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
-         Row<D>* out, double* off);
+         Row<D>* out, double* off, std::type_identity_t<std::span<const BodyMotion<D>>> all = {});
+
+/// Breaks what runs in one rope with a pulley that is broken.
+template <int D>
+void break_ropes(const Model<D>& model, std::vector<char>& broken) {
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const int rope = model.joints[i].rope;
+    if (rope < 0 || !broken[i]) continue;
+    for (std::size_t j = 0; j < model.joints.size(); ++j)
+      if (model.joints[j].rope == rope) broken[j] = 1;
+  }
+}
 
 /// Whether a joint holds C >= 0 only: a rope, with what it has left.
 template <int D>

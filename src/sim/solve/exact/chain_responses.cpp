@@ -48,6 +48,10 @@ void ExactSolver<D>::record_chain_forces() {
     if (response_.linked(row.a)) chains.pull(chains.link(row.a), Wrench<D>{row.angular_a, row.along} * f_[i]);
     if (response_.linked(row.b))
       chains.pull(chains.link(row.b), Wrench<D>{row.angular_b, row.along} * -f_[i]);
+    for (const RowSide<D>& side : row.more) {
+      if (response_.linked(side.body))
+        chains.pull(chains.link(side.body), Wrench<D>{side.angular, side.along} * f_[i]);
+    }
   }
   chains.joint_forces(outcome_.joint_forces);
 }

@@ -29,6 +29,7 @@ void ExactSolver<D>::update_poses(const State<D>& state) {
 // bodies that are moved, at time t
 template <int D>
 void ExactSolver<D>::pose_driven(double t) {
+  now_ = t;
   for (int i = 0; i < drives_.size(); ++i) {
     driven_[std::size_t(i)] = drives_.at(i, t);
     poses_[std::size_t(drives_.body(i))] = driven_[std::size_t(i)].at;
@@ -52,7 +53,7 @@ AngularVec<D> ExactSolver<D>::rounds_of(const State<D>& state, int body) const {
 
 template <int D>
 AngularVec<D> ExactSolver<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
-  return rounds_of(state, joint.a.body) - rounds_of(state, joint.b.body);
+  return joint.turn_between([&](int body) { return rounds_of(state, body); });
 }
 
 // what bodies that are moved, and belts, give by a unit of force along a row, W; of impulse, J
@@ -62,7 +63,19 @@ double ExactSolver<D>::given(int number) const {
   double sum = row.drift;
   if (drives_.number(row.a) >= 0) sum += row.along.dot(poses_[row.a].v) + row.angular_a.dot(poses_[row.a].w);
   if (drives_.number(row.b) >= 0) sum -= row.along.dot(poses_[row.b].v) + row.angular_b.dot(poses_[row.b].w);
+  for (const RowSide<D>& side : row.more) {
+    if (drives_.number(side.body) >= 0)
+      sum += side.along.dot(poses_[side.body].v) + side.angular.dot(poses_[side.body].w);
+  }
   return -sum;
+}
+
+template <int D>
+typename Motors<D>::Aim ExactSolver<D>::aim(const Constraint& constraint) {
+  if (constraint.kind != Constraint::Kind::motor) return {};
+  double speed = 0;
+  if (motors_.follows(constraint.of)) speed = row_velocity(constraint.first);
+  return motors_.at(constraint.of, now_, constraint.off, speed);
 }
 
 // the rows of what is held, at the stances at hand
@@ -82,12 +95,13 @@ void ExactSolver<D>::build_jacobian(Constraint& constraint, const AngularVec<D>&
     const Joint<D>& joint = model_.joints[constraint.of];
     const BodyMotion<D>&a = at(joint.a.body), &b = at(joint.b.body);
     if (constraint.kind == Constraint::Kind::joint || constraint.kind == Constraint::Kind::rope) {
-      constraint.rows = sim::rows(joint, a, b, turn, out, constraint.offs);
+      constraint.rows = sim::rows(joint, a, b, turn, out, constraint.offs, poses_);
       constraint.off = constraint.offs[0];
     } else {
       double way = 0;
       free_row(joint, a, b, turn, out[0], way);
       constraint.rows = 1;
+      if (constraint.kind == Constraint::Kind::motor) constraint.off = way;
       if (constraint.kind == Constraint::Kind::lower) constraint.off = way - joint.lower;
       if (constraint.kind == Constraint::Kind::upper) {
         constraint.off = joint.upper - way;
@@ -122,7 +136,7 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, bool all) {
   };
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (state.broken[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
+    if (state.broken[i] || !moves(joint)) continue;
     const AngularVec<D> turn = turn_between(state, joint);
     if (!joint.linked) add(one_sided(joint) ? Kind::rope : Kind::joint, i, turn, one_sided(joint));
     if (!has_free_row(joint)) continue;
@@ -170,7 +184,7 @@ void ExactSolver<D>::build_blocks(bool impulses) {
         const Joint<D>& joint = model_.joints[constraint.of];
         const double most = constraint.kind == Kind::motor ? joint.motor->most : joint.friction;
         const double slip =
-            row_velocity(constraint.first) - (constraint.kind == Kind::motor ? joint.motor->speed : 0);
+            row_velocity(constraint.first) - (constraint.kind == Kind::motor ? aim(constraint).speed : 0);
         block.law = Law::bounded, block.lower = -most, block.upper = most;
         if (impulses)
           block.lower = block.upper = 0;
@@ -191,19 +205,20 @@ template <int D>
 double ExactSolver<D>::row_acceleration(int number, std::span<const double> rate) const {
   const Row<D>& row = rows_[number];
   double sum = 0;
-  const auto side = [&](int body, const AngularVec<D>& turn, double sign) {
+  const auto side = [&](int body, const AngularVec<D>& turn, double sign, const Vec<D>& along) {
     if (const int drive = drives_.number(body); drive >= 0) {
       const DrivenMotion<D>& its = driven_[std::size_t(drive)];
-      sum += sign * (row.along.dot(its.a) + turn.dot(its.alpha));
+      sum += sign * (along.dot(its.a) + turn.dot(its.alpha));
     }
     const int place = response_.free(body) ? free_.place(body) : -1;
     if (place < 0) return;
-    sum += sign * row.along.dot(Eigen::Map<const Vec<D>>(rate.data() + D * place));
+    sum += sign * along.dot(Eigen::Map<const Vec<D>>(rate.data() + D * place));
     if (const int at = free_.spin_start(place); at >= 0)
       sum += sign * turn.dot(to_room<D>(poses_[body].room_from_body,
                                         Eigen::Map<const AngularVec<D>>(rate.data() + at)));
   };
-  side(row.a, row.angular_a, 1), side(row.b, row.angular_b, -1);
+  side(row.a, row.angular_a, 1, row.along), side(row.b, row.angular_b, -1, row.along);
+  for (const RowSide<D>& more : row.more) side(more.body, more.angular, 1, more.along);
   if (!chain_response_.moves(number)) return sum;
   const auto J = chain_response_.jacobian(number);
   for (std::size_t i = 0; i < J.size(); ++i) sum += J[i] * rate[std::size_t(free_.chain_start()) + i];
@@ -274,6 +289,7 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   b_.resize(Eigen::Index(rows_.size()));
   const auto rate = free_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, rate) + rows_[i].velocity_product;
+  for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
   warm_start_rows(1);
   const bool found = solve();
   // hold contacts that separate, but that the change of the forces alone would close
@@ -418,9 +434,9 @@ void ExactSolver<D>::project_state(State<D>& state, bool impacts_follow) {
     const int n = constraint.kind != Kind::contact ? constraint.rows : kind == ModeKind::slide ? 1 : D;
     for (int i = 0; i < n; ++i) {
       const int row = constraint.first + i;
-      const double aim = constraint.kind == Kind::motor ? model_.joints[constraint.of].motor->speed : 0;
+      const double aimed = aim(constraint).speed;
       scratch_.chosen.push_back(row);
-      b_[row] = aim - row_velocity(row);
+      b_[row] = aimed - row_velocity(row);
       worst = std::max(worst, std::abs(b_[row]));
     }
   }

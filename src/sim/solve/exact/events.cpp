@@ -207,7 +207,7 @@ double ExactSolver<D>::closing_time(const State<D>& state, double h, Couple coup
 
 // the part of the interval at which the first of what slides has stopped, by a straight line; and whose slide
 template <int D>
-double ExactSolver<D>::stopping_time(Couple& which) const {
+double ExactSolver<D>::stopping_time(Couple& which) {
   double first = kNever;
   for (const Constraint& constraint : constraints_) {
     double begun = 0, now = 0;
@@ -223,11 +223,11 @@ double ExactSolver<D>::stopping_time(Couple& which) const {
     } else if (constraint.kind == Constraint::Kind::motor || constraint.kind == Constraint::Kind::friction) {
       const ConeBlock<D>& block = blocks_[constraint.block];
       if (block.lower != block.upper) continue;
-      const double aim =
-          constraint.kind == Constraint::Kind::motor ? model_.joints[constraint.of].motor->speed : 0;
-      const double sign = interval_.velocities[constraint.first] > aim ? 1 : -1;
-      begun = sign * (interval_.velocities[constraint.first] - aim),
-      now = sign * (row_velocity(constraint.first) - aim);
+      const double ended = aim(constraint).speed;
+      const double started = interval_.aims[std::size_t(&constraint - constraints_.data())];
+      const double sign = interval_.velocities[constraint.first] > started ? 1 : -1;
+      begun = sign * (interval_.velocities[constraint.first] - started),
+      now = sign * (row_velocity(constraint.first) - ended);
     } else {
       continue;
     }
@@ -310,7 +310,7 @@ AngularVec<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint
     return rounds<D>(sim::between<D>(interval_.begun.turn[k], interval_.begun.spin[k], state.turn[k],
                                      state.spin[k], h, part));
   };
-  return at(joint.a.body) - at(joint.b.body);
+  return joint.turn_between(at);
 }
 
 // ropes that become tight and limits that are met
@@ -326,9 +326,9 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
     constraint.kind = kind, constraint.of = joint;
     const std::size_t rows = rows_.size();
     const auto left = [&](double part) {
-      for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
+      model_.joints[joint].each_body([&](int body) {
         if (shifts(body)) poses_[body] = pose_at(state, body, h, part);
-      }
+      });
       build_jacobian(constraint, turn_between_at(state, model_.joints[joint], h, part));
       rows_.resize(rows);
       return constraint.off;
@@ -352,13 +352,13 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
       }
     }
     if (first < before) which = {model_.joints[joint].a.body, model_.joints[joint].b.body};
-    for (const int body : {model_.joints[joint].a.body, model_.joints[joint].b.body}) {
+    model_.joints[joint].each_body([&](int body) {
       if (shifts(body)) poses_[body] = end_pose(state, body);
-    }
+    });
   };
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (state.broken[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
+    if (state.broken[i] || !moves(joint)) continue;
     if (one_sided(joint)) look(Kind::rope, i);
     if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) look(Kind::lower, i);
@@ -374,6 +374,8 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
   interval_.t = t, interval_.driven = driven_;
   interval_.velocities.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) interval_.velocities[i] = row_velocity(i);
+  interval_.aims.clear();
+  for (const Constraint& constraint : constraints_) interval_.aims.push_back(aim(constraint).speed);
   double length = h;
   cut = false, progress_.cut_by = {-1, -1};
   interval_.forces = f_;

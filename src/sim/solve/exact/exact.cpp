@@ -73,6 +73,7 @@ ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& p
     : model_(model),
       may_touch_(model),
       drives_(model),
+      motors_(model),
       limits_(make_limits(model, whom)),
       integrate_(sim::integrate(model.integrator)),
       free_(model, paths),
@@ -375,6 +376,8 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   chain_response_.build(rows_, response_, free_.chains());
   b_.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, v_rate) + rows_[i].velocity_product;
+  now_ = t;
+  for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
 
   // constraints that hold go on holding
   if (D > 2) turn_slip_directions();
@@ -391,7 +394,7 @@ void ExactSolver<D>::record_forces() {
   outcome_.contacts.clear(), progress_.known = &outcome_.contacts;
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (response_.moves(joint.a.body) || response_.moves(joint.b.body)) outcome_.joint_forces[i].setZero();
+    if (moves(joint)) outcome_.joint_forces[i].setZero();
   }
   record_chain_forces();
   for (const Constraint& constraint : constraints_) {
@@ -422,10 +425,11 @@ void ExactSolver<D>::break_joints(State<D>& state) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > joint.breaks)) continue;
     state.broken[i] = 1;
-    for (const int body : {joint.a.body, joint.b.body}) {
+    joint.each_body([&](int body) {
       if (body >= 0) scratch_.unheld.push_back(body);
-    }
+    });
   }
+  break_ropes(model_, state.broken);
   if (!scratch_.unheld.empty()) sleep_.wake(state, scratch_.unheld);
 }
 

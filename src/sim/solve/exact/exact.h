@@ -7,6 +7,7 @@
 
 #include "sim/collide/may_touch.h"
 #include "sim/constraint/joints/joint.h"
+#include "sim/constraint/joints/motors.h"
 #include "sim/constraint/material.h"
 #include "sim/constraint/response.h"
 #include "sim/math/islands.h"
@@ -145,6 +146,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     double given = 0;                     // by bodies that are moved within it, J
     std::vector<DrivenMotion<D>> driven;  // those when it began
     Eigen::VectorXd velocities;           // J v there
+    std::vector<double> aims;             // of motors there, one a constraint
     Eigen::VectorXd forces;               // f there
     std::vector<ConeMode<D>> modes;       // as its stages keep them
     double slight = 0;                    // N: less presses nothing
@@ -212,6 +214,16 @@ class ExactSolver final : public ContactSolver<D>, private System {
   // constraints.cpp
   void update_poses(const State<D>& state);
   void pose_driven(double t);
+  // what the motor of a constraint aims at, at the poses and the time at hand
+  typename Motors<D>::Aim aim(const Constraint& constraint);
+  // whether a joint holds anything that moves by forces
+  bool moves(const Joint<D>& joint) const {
+    return joint.any_body([&](int body) { return response_.moves(body); });
+  }
+  // a body of a row that moves by forces
+  int mover(const Row<D>& row) const {
+    return side_that(row, [&](int body) { return response_.moves(body); });
+  }
   bool shifts(int body) const { return response_.moves(body) || drives_.number(body) >= 0; }
   BodyMotion<D> end_pose(const State<D>& state, int body) const;
   AngularVec<D> rounds_of(const State<D>& state, int body) const;
@@ -271,7 +283,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double first_event(const State<D>& state, double h, Couple& first);
   double closing_time(const State<D>& state, double h, Couple couple);
   double tightening_time(const State<D>& state, double h, Couple& first);
-  double stopping_time(Couple& first) const;
+  double stopping_time(Couple& first);
   double force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const;
   double release_time(const Constraint*& which);
   double travel(const State<D>& state, int body, double h) const;
@@ -288,6 +300,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   const Model<D>& model_;
   const MayTouch<D> may_touch_;
   Drives<D> drives_;
+  Motors<D> motors_;
+  double now_ = 0;  // s: the time of poses_
   const Limits limits_;
   Integrate* integrate_;
   ForwardDynamics<D> free_;

@@ -76,7 +76,17 @@ void ExactSolver<D>::join_near_bodies(const State<D>& state) {
     for (const int body : chain.bodies) link(body, chain.bodies[0]);
   }
   for (int i = 0; i < int(model_.joints.size()); ++i) {
-    if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
+    if (state.broken[i]) continue;
+    const Joint<D>& joint = model_.joints[i];
+    link(joint.a.body, joint.b.body);
+    if (joint.over.empty()) continue;
+    // of many bodies: all that are free with the first of them
+    int free = -1;
+    joint.each_body([&](int body) {
+      if (body < 0 || model_.bodies[body].fixed) return;
+      if (free >= 0) link(free, body);
+      free = body;
+    });
   }
   for (const Couple& couple : limits_.couples) {
     const auto [a, b] = couple;
@@ -118,7 +128,7 @@ void ExactSolver<D>::classify_sets(const State<D>& state) {
   for (const Grip<D>& grip : state.grips) {
     if (grip.body >= 0 && !model_.bodies[grip.body].fixed) kind[step_.near.root(grip.body)] = kBusy;
   }
-  for (const Joint<D>& joint : model_.joints) busy(joint.a.body), busy(joint.b.body);
+  for (const Joint<D>& joint : model_.joints) joint.each_body(busy);
   find_reached();
 }
 
@@ -199,8 +209,12 @@ void ExactSolver<D>::list_members() {
       [](Group& group, auto list) { group.subset.chains = list; });
   lay(
       step_.group_joints, int(model_.joints.size()),
-      [&](int i) { return either(model_.joints[i].a.body, model_.joints[i].b.body); }, self,
-      [](Group& group, auto list) { group.joints = list; });
+      [&](int i) {
+        int group = -1;
+        model_.joints[i].each_body([&](int body) { group = group < 0 ? either(body, -1) : group; });
+        return group;
+      },
+      self, [](Group& group, auto list) { group.joints = list; });
   lay(
       step_.group_couples, int(limits_.couples.size()),
       [&](int i) {

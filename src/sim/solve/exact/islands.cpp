@@ -25,19 +25,22 @@ void ExactSolver<D>::find_islands() {
   for (const Constraint& constraint : constraints_) {
     const Row<D>& row = rows_[constraint.first];
     if (response_.moves(row.a) && response_.moves(row.b)) roots_.join(row.a, row.b);
+    const int first = mover(row);
+    for (const RowSide<D>& side : row.more)
+      if (response_.moves(side.body)) roots_.join(side.body, first);
   }
   for (const int body : active_.subset.bodies) island_of_[body] = -1;
   islands_ = 0;
   for (const Constraint& constraint : constraints_) {
     const Row<D>& row = rows_[constraint.first];
-    const int body = roots_.root(response_.moves(row.a) ? row.a : row.b);
+    const int body = roots_.root(mover(row));
     if (island_of_[body] < 0) island_of_[body] = islands_++;
     if (int(island_members_.size()) < islands_) island_members_.emplace_back();
   }
   for (int part = 0; part < islands_; ++part) island_members_[part].clear();
   for (int i = 0; i < int(constraints_.size()); ++i) {
     const Row<D>& row = rows_[constraints_[i].first];
-    island_members_[island_of_[roots_.root(response_.moves(row.a) ? row.a : row.b)]].push_back(i);
+    island_members_[island_of_[roots_.root(mover(row))]].push_back(i);
   }
 }
 

@@ -43,7 +43,7 @@ LoneBodies<D>::LoneBodies(const Model<D>& model, const std::vector<Path<D>>& pat
     if (body.fixed || body.handout || body.linked) tie(i);
   }
   for (const Spring<D>& spring : model.springs) tie(spring.a.body), tie(spring.b.body);
-  for (const Joint<D>& joint : model.joints) tie(joint.a.body), tie(joint.b.body);
+  for (const Joint<D>& joint : model.joints) joint.each_body(tie);
   for (const std::vector<int>& together : tied_by_forces(model)) {
     for (const int body : together) tie(body);
   }

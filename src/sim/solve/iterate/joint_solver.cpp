@@ -34,15 +34,15 @@ constexpr double kEndless = 1e300;
 }  // namespace
 
 template <int D>
-JointSolver<D>::JointSolver(const Model<D>& model) : model_(model), response_(model) {
+JointSolver<D>::JointSolver(const Model<D>& model) : model_(model), motors_(model), response_(model) {
   const std::size_t n = model.bodies.size();
   member_.assign(n, 0), component_of_body_.assign(n, -1);
   at_.resize(n), turn_.resize(n);
   for (Orientation<D>& turn : turn_) turn.setZero();
   for (const Joint<D>& joint : model.joints) {
-    for (const int body : {joint.a.body, joint.b.body}) {
+    joint.each_body([&](int body) {
       if (body >= 0) member_[body] = 1;
-    }
+    });
   }
   for (int i = 0; i < int(n); ++i) {
     if (!member_[i]) continue;
@@ -84,15 +84,14 @@ void JointSolver<D>::plan() {
   std::vector<std::vector<int>> of(model_.bodies.size());  // blocks of each body that moves
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || one_sided(joint) || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body)))
-      continue;
+    if (broken_[i] || one_sided(joint) || !moves(joint)) continue;
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
-    for (const int body : {joint.a.body, joint.b.body}) {
+    joint.each_body([&](int body) {
       if (response_.moves(body)) of[body].push_back(int(held_.size()));
-    }
+    });
     held_.push_back(i);
-    sizes.push_back(rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off));
+    sizes.push_back(rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_));
   }
   const auto meet = [&](const std::vector<int>& all, const std::vector<int>& others) {
     for (const int i : all) {
@@ -105,9 +104,12 @@ void JointSolver<D>::plan() {
   // what a rope ties together answers together
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || !one_sided(joint) || !response_.moves(joint.a.body) || !response_.moves(joint.b.body))
-      continue;
-    meet(of[joint.a.body], of[joint.b.body]), meet(of[joint.b.body], of[joint.a.body]);
+    if (broken_[i] || !one_sided(joint)) continue;
+    joint.each_body([&](int a) {
+      joint.each_body([&](int b) {
+        if (response_.moves(a) && response_.moves(b)) meet(of[a], of[b]);
+      });
+    });
   }
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
@@ -124,10 +126,9 @@ void JointSolver<D>::plan() {
 
 template <int D>
 AngularVec<D> JointSolver<D>::turn_between(const Joint<D>& joint) const {
-  AngularVec<D> turn = AngularVec<D>::Zero();
-  if (joint.a.body >= 0) turn += rounds<D>(turn_[joint.a.body]);
-  if (joint.b.body >= 0) turn -= rounds<D>(turn_[joint.b.body]);
-  return turn;
+  return joint.turn_between([&](int body) {
+    return body < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : AngularVec<D>(rounds<D>(turn_[body]));
+  });
 }
 
 // M^-1 r p onto velocities
@@ -158,7 +159,8 @@ void JointSolver<D>::compute_rows() {
   double off[kMostHeld<D>];
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
-    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), &rows_[factors_.first(k)], off);
+    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), &rows_[factors_.first(k)], off,
+         at_);
   }
   gives_.assign(driven_ ? rows_.size() : 0, 0);
   for (std::size_t r = 0; r < gives_.size(); ++r) gives_[r] = given(rows_[r]);
@@ -184,6 +186,10 @@ double JointSolver<D>::given(const Row<D>& row) const {
       sum -= sign * (row.along.dot(at_[body].v) + turn.dot(at_[body].w));
   };
   side(row.a, row.angular_a, 1), side(row.b, row.angular_b, -1);
+  for (const RowSide<D>& more : row.more) {
+    if (model_.bodies[std::size_t(more.body)].driven)
+      sum -= more.along.dot(at_[more.body].v) + more.angular.dot(at_[more.body].w);
+  }
   return sum;
 }
 
@@ -204,7 +210,7 @@ bool JointSolver<D>::left(const Bounded& bounded, double& off) const {
   const BodyMotion<D>&a = side(joint.a.body), &b = side(joint.b.body);
   if (one_sided(joint)) {
     double offs[kMostHeld<D>];
-    rows(joint, a, b, turn_between(joint), out, offs);
+    rows(joint, a, b, turn_between(joint), out, offs, at_);
     off = offs[0];
     return true;
   }
@@ -230,7 +236,7 @@ void JointSolver<D>::collect_bounded(double h) {
     double offs[kMostHeld<D>];
     const BodyMotion<D>&p = side(joint.a.body), &q = side(joint.b.body);
     if (one_sided(joint)) {
-      rows(joint, p, q, turn_between(joint), out, offs);
+      rows(joint, p, q, turn_between(joint), out, offs, at_);
     } else {
       free_row(joint, p, q, turn_between(joint), out[0], offs[0]);
     }
@@ -244,7 +250,8 @@ void JointSolver<D>::collect_bounded(double h) {
       b.taut = one_sided(joint) && off <= kPut * model_.scale;
     } else {
       b.most = h * (load == motor ? joint.motor->most : joint.friction), b.least = -b.most;
-      if (load == motor) b.target = joint.motor->speed;
+      if (load == motor)
+        b.target = motors_.at(i, ends_, offs[0] + h * speed(b.row, at_), speed(b.row, at_)).speed;
     }
 
     b.gave = driven_ ? given(b.row) : 0;
@@ -254,7 +261,7 @@ void JointSolver<D>::collect_bounded(double h) {
   };
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || (!response_.moves(joint.a.body) && !response_.moves(joint.b.body))) continue;
+    if (broken_[i] || !moves(joint)) continue;
     if (one_sided(joint)) add(i, upper);
     if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) add(i, lower);
@@ -271,6 +278,9 @@ void JointSolver<D>::compute_response(JointResponse& response) {
   components[0] = component(response.row.a), components[1] = component(response.row.b);
   if (components[0] < 0) std::swap(components[0], components[1]);
   if (components[1] == components[0]) components[1] = -1;
+  // all that a mechanism holds is of one component
+  for (const RowSide<D>& side : response.row.more)
+    components[0] = std::max(components[0], component(side.body));
   for (int s = 0; s < 2; ++s) {
     response.answer[s].clear(), response.affected[s].clear();
     if (components[s] < 0) continue;
@@ -374,7 +384,8 @@ void JointSolver<D>::project_initial_velocities(State<D>& state) {
 }
 
 template <int D>
-void JointSolver<D>::begin(double h) {
+void JointSolver<D>::begin(double h, double t) {
+  ends_ = t + h;
   collect_bounded(h);
   couple_bounded();
   std::fill(impulses_.begin(), impulses_.end(), 0.0), std::fill(totals_.begin(), totals_.end(), 0.0);
@@ -430,7 +441,7 @@ double JointSolver<D>::position_error() {
     const Joint<D>& joint = model_.joints[held_[k]];
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
-    const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off);
+    const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
     for (int i = 0; i < n; ++i) {
       rhs_[factors_.first(k) + i] = -off[i];
       worst = std::max(worst, std::fabs(off[i]));
@@ -568,10 +579,11 @@ bool JointSolver<D>::update_bounded() {
     if (b.load == motor) {
       double way = 0;
       free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), b.row, way);
+      b.target = motors_.at(b.joint, ends_, way, speed(b.row, at_)).speed;
     } else {
       Row<D> out[kMostHeld<D>];
       double offs[kMostHeld<D>];
-      rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, offs);
+      rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, offs, at_);
       b.row = out[0], b.target = 0, b.least = b.impulse;
     }
     compute_response(b);
@@ -585,9 +597,8 @@ template <int D>
 void JointSolver<D>::keep(State<D>& state, double h, const std::vector<char>* of) const {
   const auto wanted = [&](int i) {
     const Joint<D>& joint = model_.joints[i];
-    const bool moves = response_.moves(joint.a.body) || response_.moves(joint.b.body);
-    if (!of) return moves || broken_[i] != 0;
-    return moves && (*of)[response_.moves(joint.a.body) ? joint.a.body : joint.b.body] != 0;
+    if (!of) return moves(joint) || broken_[i] != 0;
+    return joint.any_body([&](int body) { return response_.moves(body) && (*of)[body] != 0; });
   };
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     if (!wanted(i)) continue;
@@ -613,6 +624,7 @@ bool JointSolver<D>::break_joints(State<D>& state) const {
       continue;
     state.broken[i] = 1, any = true;
   }
+  if (any) break_ropes(model_, state.broken);
   return any;
 }
 

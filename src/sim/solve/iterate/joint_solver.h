@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/constraint/joints/joint.h"
+#include "sim/constraint/joints/motors.h"
 #include "sim/constraint/response.h"
 #include "sim/math/block_factors.h"
 #include "sim/model/state.h"
@@ -46,8 +47,8 @@ class JointSolver {
 
   /// Rows where bodies stand now.
   void compute_rows();
-  /// A step of h (s) from there. All forces begin at zero.
-  void begin(double h);
+  /// A step of h (s) from there, and from time t. All forces begin at zero.
+  void begin(double h, double t = 0);
 
   /// Velocities under which no joint comes apart: of all, or of one component. What shares no body that moves
   /// is a component; component -1: of ropes between bodies that nothing else joins.
@@ -134,6 +135,10 @@ class JointSolver {
 
   void plan();
   AngularVec<D> turn_between(const Joint<D>& joint) const;
+  // whether a joint holds anything that moves by forces
+  bool moves(const Joint<D>& joint) const {
+    return joint.any_body([&](int body) { return response_.moves(body); });
+  }
   const BodyMotion<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
   double given(const Row<D>& row) const;
   void push(const Row<D>& row, double impulse);
@@ -169,6 +174,8 @@ class JointSolver {
   void book();
 
   const Model<D>& model_;
+  Motors<D> motors_;
+  double ends_ = 0;  // s: when the step ends
   BodyMotion<D> room_;
   std::vector<int> bodies_;
   std::vector<char> member_;

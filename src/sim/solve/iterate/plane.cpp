@@ -246,7 +246,7 @@ void PlaneIterative<D>::warm_start(StepPart<D> step) {
   iterations_ = step.state.step == 0 && first(step) ? kFirstSweeps : fewest_iterations();
   if (joints_.empty()) return;
   copy_to_joints();
-  joints_.begin(step.h);
+  joints_.begin(step.h, step.t);
   copy_from_joints();
   const int most = strained(step.state) ? kStrainSweeps : kJointSweeps;
   iterations_ = batches_.empty() && joints_.plain() ? 1 : std::clamp(most / 4 * iterations_, 4, most);

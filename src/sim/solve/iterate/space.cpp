@@ -155,7 +155,7 @@ void SpaceIterative<D>::warm_start(StepPart<D> step) {
     if (joints_.component(i) >= 0 && components_[joints_.component(i)]) closing_[i] = 1;
   }
   copy_to_joints();
-  joints_.begin(step.h);
+  joints_.begin(step.h, step.t);
   if (touches_.empty() && joints_.plain()) iterations_ = 1;
 }
 
@@ -558,7 +558,9 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
     if (touch.normal_impulse > 0) link(touch.a, touch.b);
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-    if (!state.broken[i]) link(model_.joints[i].a.body, model_.joints[i].b.body);
+    if (state.broken[i]) continue;
+    const Joint<D>& joint = model_.joints[i];
+    joint.each_body([&](int a) { joint.each_body([&](int b) { link(a, b); }); });
   }
   before_.assign(n, 0), gained_.assign(n, 0), returned_.assign(n, 0);
   for (int i = 0; i < n; ++i) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/model/snapshot.h"
+
+namespace obscura::draw {
+
+/// The place of a point of a body, or of the room, m.
+sim::Vec3 place_of(const sim::Snapshot& now, const sim::SceneInfo::Joint::Place& at);
+
+/// A straight piece of a pulley's rope, m.
+struct RopeLine {
+  sim::Vec3 from, to, along;  // the last a unit vector
+};
+
+/// The straight pieces of the rope of one joint, in the order of its places; tangent to the wheels at its
+/// ends.
+std::vector<RopeLine> rope_lines(const sim::SceneInfo::Joint& joint, const sim::Snapshot& now);
+
+/// All of the rope of joint `i`, m: how it lies on the wheel where it begins, from where the joint before it
+/// ends, then its straight pieces.
+std::vector<sim::Vec3> rope_way(const sim::SceneInfo& cast, std::size_t i, const sim::Snapshot& now);
+
+}  // namespace obscura::draw

@@ -1,0 +1,290 @@
+#include "scene/mechanisms.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "scene/joint_words.h"
+#include "scene/links.h"
+#include "sim/constraint/joints/gear.h"
+#include "sim/constraint/joints/pulley.h"
+#include "sim/math/orientation.h"
+#include "sim/model/stance.h"
+
+namespace obscura::scene {
+
+namespace {
+
+using sim::JointKind;
+
+constexpr int kMostRounds = 64;  // of the second wheel, after which whole rounds of both agree
+constexpr double kWhole = 1e-9;
+
+// keys that neither has
+void refuse_other_keys(const Fields& fields, Diagnostics& complaints) {
+  for (const char* key : {"at", "axis", "limits", "motor", "friction", "spring"})
+    if (fields.given(key))
+      complaints.add(fields.place(key), fmt::format("a {} has no '{}'", fields.text("type"), key));
+}
+
+template <int D>
+double given_breaks(const Fields& fields) {
+  const Node* breaks = fields.given("breaks");
+  return breaks ? breaks->number() : sim::Joint<D>{}.breaks;
+}
+
+// one place that a rope comes to, and whether it is a wheel there
+template <int D>
+struct Turn {
+  sim::End<D> end;
+  double radius = 0;  // of a wheel, m
+};
+
+// the one end that a node means; none, and a complaint, where it means several or none
+template <int D>
+std::optional<sim::End<D>> one_end(const Node& node, const Seating<D>& roster, const sim::World<D>& world,
+                                   Diagnostics& complaints) {
+  if (node.is_text() && node.text() == "room") {
+    complaints.add(node.place, fmt::format("where in the room? A pulley needs a place {}",
+                                           D == 2 ? "[x, y]" : "[x, y, z]"));
+    return {};
+  }
+  const auto all = ends(node, roster, world, complaints);
+  if (all.size() > 1)
+    complaints.add(node.place, fmt::format("these are {} bodies, and a rope has one end", all.size()));
+  if (all.size() != 1) return {};
+  return all.front();
+}
+
+// Where the rope turns at b on its way from a to c: to the left positive. Straight on counts as to the right.
+double side_of_turn(const sim::Vec<2>& a, const sim::Vec<2>& b, const sim::Vec<2>& c) {
+  const sim::Vec<2> u = b - a, v = c - b;
+  return u[0] * v[1] - u[1] * v[0] > 0 ? 1 : -1;
+}
+
+}  // namespace
+
+template <int D>
+void pulley(const Fields& fields, const std::string& name, const Seating<D>& roster, sim::World<D>& world,
+            Diagnostics& complaints) {
+  refuse_other_keys(fields, complaints);
+  const Node *between = fields.given("between"), *over = fields.given("over");
+  if (!between || !over) {
+    complaints.add(fields.place(), fmt::format("a pulley needs '{}', {}", between ? "over" : "between",
+                                               between ? "what its rope runs over" : "its two ends"));
+    return;
+  }
+  std::vector<Turn<D>> turns;
+  const auto add = [&](const Node& node, bool may_be_wheel) {
+    const auto end = one_end(node, roster, world, complaints);
+    if (!end) return false;
+    Turn<D> turn{*end};
+    if (may_be_wheel && node.is_text()) {
+      const sim::Body<D>& body = world.model.bodies[std::size_t(end->body)];
+      const auto radius = sim::round_radius(body.shape);
+      if (radius && !sim::is_point(body.shape) && body.turns()) {
+        if (D == 3) {
+          complaints.add(node.place,
+                         fmt::format("a rope turns wheels in the plane alone; to let it slide over "
+                                     "'{}' in space write {{ body = \"{}\", at = \"center\" }}",
+                                     body.name, body.name));
+          return false;
+        }
+        turn.radius = *radius;
+      }
+    }
+    turns.push_back(turn);
+    return true;
+  };
+  bool good = add(between->list()[0], false);
+  for (const Node& each : over->list()) good = good && add(each, true);
+  good = good && add(between->list()[1], false);
+  if (!good) return;
+  // the first end moves, if one does
+  if (turns.front().end.body < 0 && turns.back().end.body >= 0) std::reverse(turns.begin(), turns.end());
+  if (std::all_of(turns.begin(), turns.end(), [&](const Turn<D>& turn) {
+        return turn.end.body < 0 || world.model.bodies[std::size_t(turn.end.body)].fixed;
+      })) {
+    complaints.add(between->place, "nothing that this rope holds could move");
+    return;
+  }
+
+  const int n = int(turns.size());
+  std::vector<sim::Vec<D>> at;
+  for (const Turn<D>& turn : turns) at.push_back(start(world, turn.end));
+  std::vector<double> offsets(std::size_t(n), 0.0);
+  if constexpr (D == 2) {
+    for (int i = 1; i + 1 < n; ++i)
+      if (turns[std::size_t(i)].radius > 0)
+        offsets[std::size_t(i)] =
+            turns[std::size_t(i)].radius *
+            side_of_turn(at[std::size_t(i - 1)], at[std::size_t(i)], at[std::size_t(i + 1)]);
+  }
+  const auto is_wheel = [&](int i) { return turns[std::size_t(i)].radius > 0; };
+  const bool one_piece =
+      std::none_of(turns.begin(), turns.end(), [](const Turn<D>& t) { return t.radius > 0; });
+  int rope = 0;
+  for (const sim::Joint<D>& joint : world.model.joints) rope = std::max(rope, joint.rope + 1);
+
+  std::vector<sim::Joint<D>> pieces;
+  for (int first = 0; first + 1 < n;) {
+    int last = first + 1;
+    while (last + 1 < n && !is_wheel(last)) ++last;
+    sim::Joint<D> it;
+    it.kind = JointKind::pulley, it.rope = rope;
+    it.a = turns[std::size_t(first)].end, it.b = turns[std::size_t(last)].end;
+    it.breaks = given_breaks<D>(fields);
+    for (int i = first + 1; i < last; ++i) it.over.push_back(turns[std::size_t(i)].end);
+    it.on_a.offset = is_wheel(first) ? offsets[std::size_t(first)] : 0;
+    it.on_b.offset = is_wheel(last) ? offsets[std::size_t(last)] : 0;
+    it.length = 0;
+    for (int i = first; i < last; ++i) {
+      const double from = i == first ? it.on_a.offset : 0, to = i + 1 == last ? it.on_b.offset : 0;
+      const sim::RopePiece<D> piece =
+          sim::rope_piece<D>(at[std::size_t(i)], at[std::size_t(i + 1)], from - to);
+      if (!(piece.length > 0)) {
+        const auto word = [&](int k) {
+          const int body = turns[std::size_t(k)].end.body;
+          return body < 0 ? std::string("a place of the room")
+                          : "'" + world.model.bodies[std::size_t(body)].name + "'";
+        };
+        complaints.add(over->place, fmt::format("the rope cannot go straight from {} to {}: they are at one "
+                                                "place, or one is inside the other's wheel",
+                                                word(i), word(i + 1)));
+        return;
+      }
+      it.length += piece.length;
+      if (i == first) it.on_a.start = piece.direction;
+      if (i + 1 == last) it.on_b.start = piece.direction;
+    }
+    if constexpr (D == 2) {
+      if (it.on_a.offset != 0) it.turns.emplace_back(it.a.body, it.on_a.offset);
+      if (it.on_b.offset != 0) it.turns.emplace_back(it.b.body, -it.on_b.offset);
+      for (const auto& [body, factor] : it.turns) it.turn += factor * turn_of(world, body);
+    }
+    pieces.push_back(std::move(it));
+    first = last;
+  }
+  if (const Node* length = fields.given("length")) {
+    if (!one_piece) {
+      complaints.add(length->place, "a rope on wheels is as long as it is at the start; move an end");
+      return;
+    }
+    if (length->number() < pieces[0].length * (1 - kWhole)) {
+      complaints.add(length->place,
+                     fmt::format("'length' is {} m and the rope is {:.6g} m long at the start; move "
+                                 "an end",
+                                 length->number(), pieces[0].length));
+      return;
+    }
+    pieces[0].length = length->number();
+  }
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    pieces[k].name = pieces.size() == 1 ? name : fmt::format("{}[{}]", name, k);
+    world.model.joints.push_back(std::move(pieces[k]));
+    world.state.broken.push_back(0);
+  }
+}
+
+template <int D>
+void gear(const Fields& fields, const std::string& name, sim::World<D>& world, Diagnostics& complaints) {
+  refuse_other_keys(fields, complaints);
+  const Node *joints = fields.given("joints"), *ratio = fields.given("ratio");
+  if (const Node* between = fields.given("between")) {
+    complaints.add(between->place,
+                   "a gear holds two joints: give their names as 'joints', and leave out 'between'");
+    return;
+  }
+  if (!joints || !ratio) {
+    complaints.add(fields.place(), fmt::format("a gear needs '{}', {}", joints ? "ratio" : "joints",
+                                               joints ? "such as -3" : "the names of two joints"));
+    return;
+  }
+  std::array<sim::Joint<D>, 2> both;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::string& wanted = joints->list()[k].text();
+    const auto found = std::ranges::find(world.model.joints, wanted, &sim::Joint<D>::name);
+    if (found == world.model.joints.end()) {
+      std::vector<std::string_view> known;
+      for (const sim::Joint<D>& joint : world.model.joints) known.push_back(joint.name);
+      complaints.add(joints->list()[k].place,
+                     fmt::format("no joint is called '{}'{}", wanted, did_you_mean(wanted, known)));
+      return;
+    }
+    if (!sim::has_free_row(*found)) {
+      complaints.add(
+          joints->list()[k].place,
+          fmt::format("'{}' has no angle and no way that a gear could take: expected a {} or a slider",
+                      wanted, D == 2 ? "pin" : "hinge"));
+      return;
+    }
+    both[k] = *found;
+  }
+  if (joints->list()[0].text() == joints->list()[1].text()) {
+    complaints.add(joints->place, "a gear needs two joints, and these are one");
+    return;
+  }
+  if (ratio->number() == 0) {
+    complaints.add(ratio->place, "'ratio' is zero: the first joint could not move");
+    return;
+  }
+
+  sim::Joint<D> it;
+  it.name = name, it.kind = JointKind::gear, it.ratio = ratio->number();
+  it.breaks = given_breaks<D>(fields), it.touching = fields.flag("touching");
+  it.a = both[0].a, it.b = both[0].b, it.over = {both[1].a, both[1].b};
+  it.geared = std::make_shared<const std::array<sim::Joint<D>, 2>>(both);
+  const double n = it.ratio;
+  const bool slides[] = {both[0].kind == JointKind::slider, both[1].kind == JointKind::slider};
+  if constexpr (D == 2) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double factor = k == 0 ? 1 : -n;
+      if (slides[k]) continue;
+      if (both[k].a.body >= 0) it.turns.emplace_back(both[k].a.body, factor);
+      if (both[k].b.body >= 0) it.turns.emplace_back(both[k].b.body, -factor);
+      it.turn += factor * both[k].turn;
+    }
+    if (it.turns.empty()) it.turn = both[0].turn;
+  } else {
+    it.lower = 0;
+    const double round = 2 * std::numbers::pi;
+    if (slides[0] && slides[1]) it.length = -1;
+    if (slides[0] && !slides[1]) it.length = std::fabs(n) * round;
+    if (!slides[0] && slides[1]) it.length = round;
+    for (int q = 1; !slides[0] && !slides[1] && q <= kMostRounds && it.length == 0; ++q)
+      if (std::fabs(n * q - std::round(n * q)) < kWhole * q) it.length = round / q;
+  }
+
+  // pitch circles, and where their teeth meet at the start
+  const sim::Vec<D> p = start(world, both[0].a), q = start(world, both[1].a);
+  const double far = (q - p).norm();
+  const bool pins = !slides[0] && !slides[1];
+  if (pins && far > 0 && n != 1) {
+    it.on_a.offset = n < 0 ? far / (1 - n) : far / std::fabs(n - 1);
+    it.on_b.offset = std::fabs(n) * it.on_a.offset;
+    const sim::Vec<D> e = (n > 1 ? p - q : q - p) / far;
+    const auto seen = [&](int body, const sim::Vec<D>& direction) -> sim::Vec<D> {
+      if (body < 0) return direction;
+      return sim::rotation<D>(turn_of(world, body)).transpose() * direction;
+    };
+    it.on_a.start = seen(both[0].a.body, e);
+    it.on_b.start = seen(both[1].a.body, n < 0 ? sim::Vec<D>(-e) : e);
+  } else if (!pins && !(slides[0] && slides[1])) {
+    (slides[0] ? it.on_b : it.on_a).offset = slides[0] ? std::fabs(n) : 1 / std::fabs(n);
+  }
+  world.model.joints.push_back(std::move(it));
+  world.state.broken.push_back(0);
+}
+
+template void pulley<2>(const Fields&, const std::string&, const Seating<2>&, sim::World<2>&, Diagnostics&);
+template void pulley<3>(const Fields&, const std::string&, const Seating<3>&, sim::World<3>&, Diagnostics&);
+template void gear<2>(const Fields&, const std::string&, sim::World<2>&, Diagnostics&);
+template void gear<3>(const Fields&, const std::string&, sim::World<3>&, Diagnostics&);
+
+}  // namespace obscura::scene

@@ -1,0 +1,462 @@
+// Pulleys and gears against closed forms, in every mode and by every solver.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "scene/error.h"
+#include "scene/text_run.h"
+
+namespace obscura::scene {
+namespace {
+
+constexpr double kEarth = 9.81;
+
+// a mode and a solver, as [physics] has them
+struct Manner {
+  std::string name, keys;
+};
+const std::vector<Manner> kManners = {
+    {"contact", "[physics]\ncollision = \"contact\"\nsolver = \"direct\""},
+    {"event", "[physics]\ncollision = \"event\""},
+    {"iterative", "[physics]\ncollision = \"contact\"\nsolver = \"iterative\""},
+};
+
+std::string plane_without_walls(const Manner& manner, const std::string& room = "") {
+  return "duration = 1000\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = \"none\"\n" + room + "\n" +
+         manner.keys + "\n";
+}
+
+std::size_t body_called(const TextRun& scene, const std::string& name) {
+  const auto& all = scene.run->scene_info().bodies;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].name == name) return i;
+  ADD_FAILURE() << name;
+  return 0;
+}
+
+// what parse() says against a text; empty: nothing
+std::string refusal(const std::string& text) {
+  try {
+    parse(text, "a.toml", {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string kAtwood =
+    "[[ball]]\nname = \"wheel\"\nradius = 0.5\nmass = 3\nposition = [0, 4]\n"
+    "[[joint]]\ntype = \"pin\"\nbetween = [\"wheel\", \"room\"]\n"
+    "[[particle]]\nname = \"left\"\nmass = 1\nposition = [-0.5, 0]\nradius = 0.1\n"
+    "[[particle]]\nname = \"right\"\nmass = 2\nposition = [0.5, 1]\nradius = 0.1\n"
+    "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"left\", \"right\"]\nover = [\"wheel\"]\n";
+
+// Atwood's machine with a wheel: a = (m2 - m1) g / (m1 + m2 + I / R^2), tensions m1 (g + a) and m2 (g - a).
+TEST(Pulley, AtwoodsMachineAcceleratesAsItsMassesAndItsWheelSay) {
+  const double a = (2 - 1) * kEarth / (1 + 2 + 1.5);  // a disc: I / R^2 = M / 2
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner) + kAtwood);
+    const std::size_t left = body_called(scene, "left"), right = body_called(scene, "right"),
+                      wheel = body_called(scene, "wheel");
+    const double begun = scene.at(0).energies.total();
+    for (const double t : {0.3, 0.8}) {
+      const sim::Snapshot now = scene.at(t);
+      EXPECT_NEAR(now.bodies[right].velocity.y(), -a * t, 1e-9) << manner.name;
+      EXPECT_NEAR(now.bodies[left].velocity.y(), a * t, 1e-9) << manner.name;
+      EXPECT_NEAR(now.bodies[wheel].spin.z(), -a * t / 0.5, 1e-9) << manner.name;
+      EXPECT_NEAR(now.bodies[right].position.y(), 1 - 0.5 * a * t * t, 1e-9) << manner.name;
+      EXPECT_NEAR(now.bodies[right].position.x(), 0.5, 1e-9) << manner.name;
+      // pieces of the rope, first of the left
+      ASSERT_EQ(now.joints.size(), 3u);
+      EXPECT_NEAR((now.joints[1].force - sim::Vec3(0, 1 * (kEarth + a), 0)).norm(), 0, 1e-8) << manner.name;
+      EXPECT_NEAR(now.joints[2].force.norm(), 2 * (kEarth - a), 1e-8) << manner.name;
+      EXPECT_NEAR(now.energies.total(), begun, 1e-8) << manner.name;
+    }
+  }
+}
+
+// A load M on n pieces of rope that a counterweight m pulls: A = (n m - M) g / (M + n^2 m), one tension
+// throughout.
+TEST(Pulley, ABlockAndTackleLiftsByAsManyPieces) {
+  const double M = 7, m = 2;
+  const int n = 4;
+  const double A = (n * m - M) * kEarth / (M + n * n * m), tension = m * (kEarth - n * A);
+  for (const Manner& manner : kManners) {
+    TextRun scene(
+        plane_without_walls(manner) +
+        "[[box]]\nname = \"load\"\nsize = [1, 0.5]\nmass = 7\nposition = [0, 0]\n"
+        "[[particle]]\nname = \"weight\"\nmass = 2\nposition = [2, 3]\nradius = 0.1\n"
+        "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [[-0.3, 4], \"weight\"]\n"
+        "over = [{ body = \"load\", local = [-0.3, 0] }, { body = \"load\", local = [-0.1, 0] }, [-0.1, 4], "
+        "[0.1, 4], { body = \"load\", local = [0.1, 0] }, { body = \"load\", local = [0.3, 0] }, [0.3, 4], "
+        "[2, 4]]\n");
+    const std::size_t load = body_called(scene, "load"), weight = body_called(scene, "weight");
+    const sim::Snapshot now = scene.at(0.7);
+    EXPECT_NEAR(now.bodies[load].velocity.y(), A * 0.7, 1e-9) << manner.name;
+    EXPECT_NEAR(now.bodies[weight].velocity.y(), -n * A * 0.7, 1e-9) << manner.name;
+    EXPECT_NEAR(now.bodies[load].angle, 0, 1e-9) << manner.name;
+    EXPECT_NEAR(now.joints[0].force.norm(), tension, 1e-8) << manner.name;
+  }
+}
+
+// A weight swings on a rope that runs over a point to another, which rises and sinks with it: the rope keeps
+// its length, and energy stays. By iterations a rope is of first order in the step, as every rope is there.
+TEST(Pulley, ASwingingAtwoodMachineKeepsItsRopeAndItsEnergy) {
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner) +
+                  "[[particle]]\nname = \"bob\"\nmass = 1\nposition = [1.2, 0.5]\nradius = 0.1\n"
+                  "[[particle]]\nname = \"weight\"\nmass = 2\nposition = [-2, 0]\nradius = 0.1\n"
+                  "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"bob\", \"weight\"]\n"
+                  "over = [[0, 2], [-2, 2]]\n");
+    const std::size_t bob = body_called(scene, "bob"), weight = body_called(scene, "weight");
+    const auto length = [&](const sim::Snapshot& now) {
+      return (now.bodies[bob].position - sim::Vec3(0, 2, 0)).norm() + 2 +
+             (now.bodies[weight].position - sim::Vec3(-2, 2, 0)).norm();
+    };
+    const sim::Snapshot begun = scene.at(0);
+    for (const double t : {0.5, 1.0, 1.7}) {
+      const sim::Snapshot now = scene.at(t);
+      EXPECT_NEAR(length(now), length(begun), 1e-8) << manner.name << t;
+      EXPECT_NEAR(now.energies.total(), begun.energies.total(), manner.name == "iterative" ? 0.3 : 1e-6)
+          << manner.name << t;
+    }
+  }
+}
+
+// Where the wheel's own turn winds the rope up, its place is that of the angle: a bob that swings beneath a
+// wheel's rim wraps around it.
+TEST(Pulley, ARopeThatSwingsWindsOntoItsWheel) {
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner) +
+                  "[[ball]]\nname = \"wheel\"\nradius = 0.4\nmass = 2\nposition = [0, 3]\n"
+                  "[[joint]]\ntype = \"pin\"\nbetween = [\"wheel\", \"room\"]\n"
+                  "[[particle]]\nname = \"bob\"\nmass = 1\nposition = [-1.4, 1.5]\nradius = 0.1\n"
+                  "[[particle]]\nname = \"weight\"\nmass = 1.2\nposition = [0.4, 1]\nradius = 0.1\n"
+                  "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"bob\", \"weight\"]\n"
+                  "over = [\"wheel\"]\n");
+    const double begun = scene.at(0).energies.total();
+    for (const double t : {0.4, 0.9, 1.4})
+      EXPECT_NEAR(scene.at(t).energies.total(), begun, manner.name == "iterative" ? 0.04 : 1e-6)
+          << manner.name << t;
+  }
+}
+
+// It pulls alone: a weight thrown upwards lets it hang, and is caught when it is taut again.
+TEST(Pulley, PullsAndNeverPushes) {
+  for (const Manner& manner : kManners) {
+    TextRun scene(
+        plane_without_walls(manner) +
+        "[[particle]]\nname = \"left\"\nmass = 1\nposition = [-1, 0]\nradius = 0.1\nvelocity = [0, 3]\n"
+        "[[particle]]\nname = \"right\"\nmass = 1\nposition = [1, 0]\nradius = 0.1\n"
+        "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"left\", \"right\"]\n"
+        "over = [[-1, 4], [1, 4]]\n");
+    const std::size_t left = body_called(scene, "left"), right = body_called(scene, "right");
+    // both fall freely, the left 3 t higher
+    sim::Snapshot now = scene.at(0.2);
+    EXPECT_NEAR(now.bodies[left].position.y(), 3 * 0.2 - 0.5 * kEarth * 0.04, 1e-6) << manner.name;
+    EXPECT_NEAR(now.bodies[right].position.y(), -0.5 * kEarth * 0.04, 1e-6) << manner.name;
+    EXPECT_NEAR(now.joints[0].force.norm(), 0, 1e-9) << manner.name;
+    for (const double t : {0.5, 1.0, 1.5}) {
+      now = scene.at(t);
+      EXPECT_LT(8 - now.bodies[left].position.y() - now.bodies[right].position.y(), 8 + 2 + 1e-3)
+          << manner.name << t;
+    }
+  }
+}
+
+// A rope over a point that is lifted with an acceleration has the weight of g + a.
+TEST(Pulley, OverABodyThatIsMovedFeelsItsAcceleration) {
+  const double lift = 2;
+  const double a = (2 - 1) * (kEarth + lift) / 3;
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner) +
+                  "[[particle]]\nname = \"hook\"\nposition = [0, 4]\nradius = 0.1\nmotion = { y = \"t^2\" }\n"
+                  "[[particle]]\nname = \"left\"\nmass = 1\nposition = [0, 0]\nradius = 0.1\n"
+                  "[[particle]]\nname = \"right\"\nmass = 2\nposition = [0, 1]\nradius = 0.1\n"
+                  "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"left\", \"right\"]\nover = "
+                  "[\"hook\"]\n");
+    const std::size_t left = body_called(scene, "left"), right = body_called(scene, "right");
+    const double begun = scene.at(0).energies.total();
+    const sim::Snapshot now = scene.at(0.4);
+    EXPECT_NEAR(now.bodies[left].velocity.y(), (a + lift) * 0.4, 1e-6) << manner.name;
+    EXPECT_NEAR(now.bodies[right].velocity.y(), (-a + lift) * 0.4, 1e-6) << manner.name;
+    EXPECT_NEAR(now.energies.total() - now.energies.work, begun, manner.name == "iterative" ? 0.03 : 1e-5)
+        << manner.name;
+  }
+}
+
+TEST(Pulley, InSpaceRunsOverPoints) {
+  const double a = kEarth / 3;
+  for (const Manner& manner : kManners) {
+    TextRun scene(
+        "duration = 1000\n[room]\nsize = [20, 20, 20]\ncorner = [-10, -10, -10]\nwalls = \"none\"\n" +
+        manner.keys +
+        "\n[[particle]]\nname = \"left\"\nmass = 1\nposition = [-1, 0, 1]\nradius = 0.1\n"
+        "[[particle]]\nname = \"right\"\nmass = 2\nposition = [1, 0, -1]\nradius = 0.1\n"
+        "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"left\", \"right\"]\n"
+        "over = [[-1, 4, 1], [1, 4, -1]]\n");
+    const sim::Snapshot now = scene.at(0.7);
+    EXPECT_NEAR(now.bodies[body_called(scene, "left")].velocity.y(), a * 0.7, 1e-9) << manner.name;
+    EXPECT_NEAR(now.bodies[body_called(scene, "right")].velocity.y(), -a * 0.7, 1e-9) << manner.name;
+    EXPECT_NEAR(now.joints[0].force.norm(), kEarth + a, 1e-8) << manner.name;
+  }
+}
+
+// All pieces of a rope break together, and each side falls.
+TEST(Pulley, BreaksWhereItIsLoadedTooMuch) {
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner) + kAtwood + "breaks = 12.5\n");  // 12 and 15.3 N
+    const sim::Snapshot now = scene.at(0.5);
+    EXPECT_TRUE(now.joints[1].broken && now.joints[2].broken) << manner.name;
+    EXPECT_NEAR(now.bodies[body_called(scene, "left")].velocity.y(), -kEarth * 0.5, 0.05) << manner.name;
+    TextRun whole(plane_without_walls(manner) + kAtwood + "breaks = 16\n");
+    EXPECT_FALSE(whole.at(0.5).joints[2].broken) << manner.name;
+  }
+}
+
+TEST(Pulley, GoesOnToTheSameBitsFromACheckpoint) {
+  for (const Manner& manner : kManners) {
+    const Scene scene = parse(plane_without_walls(manner) + kAtwood, "a.toml");
+    const auto words_at = [&](sim::Run& run, const char* t) {
+      (void)run.at(*sim::parse_rational(t));
+      return run.words();
+    };
+    const auto whole = scene.run(), part = scene.run();
+    (void)words_at(*part, "0.31");
+    const auto resumed = scene.run(part->saved());
+    ASSERT_TRUE(resumed);
+    EXPECT_EQ(words_at(*resumed, "0.7"), words_at(*whole, "0.7")) << manner.name;
+  }
+}
+
+// --- gears
+
+const std::string kTwoWheels =
+    "[[ball]]\nname = \"small\"\nradius = 0.5\nmass = 1\nposition = [0, 0]\nspin = 0\n"
+    "[[ball]]\nname = \"large\"\nradius = 1.5\nmass = 4\nposition = [2, 0]\n"
+    "[[joint]]\nname = \"small_axle\"\ntype = \"pin\"\nbetween = [\"small\", \"room\"]\n"
+    "motor = { speed = 100000, most = 3 }\n"
+    "[[joint]]\nname = \"large_axle\"\ntype = \"pin\"\nbetween = [\"large\", \"room\"]\n"
+    "[[joint]]\nname = \"teeth\"\ntype = \"gear\"\njoints = [\"small_axle\", \"large_axle\"]\nratio = -3\n";
+
+// A motor of torque T turns the small wheel: alpha = T / (I1 + I2 / n^2); the teeth bear I2 alpha2 / r2.
+TEST(Gear, TwoWheelsTurnInTheirRatioUnderTheTorqueOfBoth) {
+  const double i1 = 0.5 * 1 * 0.25, i2 = 0.5 * 4 * 2.25, n = -3;
+  const double alpha = 3 / (i1 + i2 / (n * n));
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner) + kTwoWheels);
+    const std::size_t small = body_called(scene, "small"), large = body_called(scene, "large");
+    for (const double t : {0.4, 1.1}) {
+      const sim::Snapshot now = scene.at(t);
+      EXPECT_NEAR(now.bodies[small].spin.z(), alpha * t, 1e-9) << manner.name;
+      EXPECT_NEAR(now.bodies[small].spin.z(), n * now.bodies[large].spin.z(), 1e-12 * alpha) << manner.name;
+      EXPECT_NEAR(now.bodies[small].angle, n * now.bodies[large].angle, 1e-11 * (1 + alpha * t))
+          << manner.name;
+      const double tooth = i2 * (alpha / 3) / 1.5;
+      EXPECT_NEAR(now.joints[2].force.norm(), tooth, 1e-9) << manner.name;
+      EXPECT_NEAR(now.joints[2].force.x(), 0, 1e-9) << manner.name;
+    }
+  }
+}
+
+// A rack falls and turns its pinion: a = m g / (m + I / r^2).
+TEST(Gear, ARackTurnsItsPinion) {
+  const double a = 2 * kEarth / (2 + 0.5 * 3);
+  for (const Manner& manner : kManners) {
+    TextRun scene(
+        plane_without_walls(manner) +
+        "[[ball]]\nname = \"pinion\"\nradius = 0.4\nmass = 3\nposition = [0, 0]\n"
+        "[[box]]\nname = \"rack\"\nsize = [0.2, 3]\nmass = 2\nposition = [-0.5, 0]\n"
+        "[[joint]]\nname = \"axle\"\ntype = \"pin\"\nbetween = [\"pinion\", \"room\"]\n"
+        "[[joint]]\nname = \"guide\"\ntype = \"slider\"\nbetween = [\"rack\", \"room\"]\naxis = [0, 1]\n"
+        "[[joint]]\nname = \"teeth\"\ntype = \"gear\"\njoints = [\"guide\", \"axle\"]\nratio = -0.4\n");
+    const sim::Snapshot now = scene.at(0.6);
+    EXPECT_NEAR(now.bodies[body_called(scene, "rack")].velocity.y(), -a * 0.6, 1e-9) << manner.name;
+    EXPECT_NEAR(now.bodies[body_called(scene, "pinion")].spin.z(), a * 0.6 / 0.4, 1e-8) << manner.name;
+    EXPECT_NEAR((now.joints[2].force - sim::Vec3(0, 2 * (kEarth - a), 0)).norm(), 0, 1e-8) << manner.name;
+  }
+}
+
+TEST(Gear, InSpaceHoldsTwoHinges) {
+  for (const Manner& manner : kManners) {
+    TextRun scene(
+        "duration = 1000\n[room]\nsize = [20, 20, 20]\ncorner = [-10, -10, -10]\nwalls = \"none\"\n" +
+        manner.keys +
+        "\n[[ball]]\nname = \"small\"\nradius = 0.5\nmass = 1\nposition = [0, 0, 0]\n"
+        "[[ball]]\nname = \"large\"\nradius = 1\nmass = 4\nposition = [1.5, 0, 0]\n"
+        "[[joint]]\nname = \"small_axle\"\ntype = \"hinge\"\nbetween = [\"small\", \"room\"]\n"
+        "motor = { speed = 100000, most = 3 }\n"
+        "[[joint]]\nname = \"large_axle\"\ntype = \"hinge\"\nbetween = [\"large\", \"room\"]\n"
+        "[[joint]]\ntype = \"gear\"\njoints = [\"small_axle\", \"large_axle\"]\nratio = -2\n");
+    const double i1 = 0.4 * 0.25, i2 = 0.4 * 4, alpha = 3 / (i1 + i2 / 4);
+    const sim::Snapshot now = scene.at(0.9);
+    const double small = now.bodies[body_called(scene, "small")].spin.z(),
+                 large = now.bodies[body_called(scene, "large")].spin.z();
+    EXPECT_NEAR(small, alpha * 0.9, 1e-8) << manner.name;
+    EXPECT_NEAR(small, -2 * large, 1e-11 * alpha) << manner.name;
+    EXPECT_NEAR(now.joints[2].force.norm(), i2 * alpha / 2 / 1, 1e-8) << manner.name;
+  }
+}
+
+// A crank that is moved, a rod and a piston on a slider: x = r cos + sqrt(l^2 - r^2 sin^2).
+TEST(Gear, ADrivenSliderCrankIsWhereItsAngleSays) {
+  for (const Manner& manner : kManners) {
+    TextRun scene(
+        plane_without_walls(manner) +
+        "[[ball]]\nname = \"crank\"\nradius = 0.5\nposition = [0, 0]\nmotion = { angle = \"360*t\" }\n"
+        "[[box]]\nname = \"piston\"\nsize = [0.4, 0.3]\nmass = 1\nposition = [2, 0]\n"
+        "[[joint]]\ntype = \"slider\"\nbetween = [\"piston\", \"room\"]\n"
+        "[[joint]]\ntype = \"rod\"\nbetween = [{ body = \"crank\", local = [0.5, 0] }, \"piston\"]\n");
+    const std::size_t piston = body_called(scene, "piston");
+    for (const double t : {0.2, 0.65, 1.3}) {
+      const double w = 2 * std::numbers::pi * t;
+      EXPECT_NEAR(scene.place(t, piston).x(),
+                  0.5 * std::cos(w) + std::sqrt(2.25 - 0.25 * std::sin(w) * std::sin(w)), 1e-8)
+          << manner.name << t;
+    }
+  }
+}
+
+// --- springs in joints, and motors that follow
+
+// A torsion pendulum: theta = theta0 cos w t about the rest angle, w^2 = k / I.
+TEST(JointSpring, ATorsionPendulumSwingsAboutItsRestAngle) {
+  const double i = 2.0 / 12 * (1.2 * 1.2 + 0.1 * 0.1), k = 3, w = std::sqrt(k / i),
+               rest = 40 * std::numbers::pi / 180;
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner) +
+                  "[[box]]\nname = \"bar\"\nsize = [1.2, 0.1]\nmass = 2\nposition = [0, 0]\n"
+                  "[[joint]]\ntype = \"pin\"\nbetween = [\"bar\", \"room\"]\n"
+                  "spring = { stiffness = 3, rest_angle = 40 }\n");
+    EXPECT_NEAR(scene.at(0).energies.springs, 0.5 * k * rest * rest, 1e-12) << manner.name;
+    for (const double t : {0.4, 1.1, 2.3}) {
+      const sim::Snapshot now = scene.at(t);
+      EXPECT_NEAR(now.bodies[0].angle, rest * (1 - std::cos(w * t)), 1e-8) << manner.name << t;
+      EXPECT_NEAR(now.energies.total(), 0.5 * k * rest * rest, 1e-8) << manner.name << t;
+    }
+  }
+}
+
+// A weight on a slider with a damped spring: x'' = -k/m (x - rest) - c/m x'.
+TEST(JointSpring, ASliderSwingsAndIsDamped) {
+  const double m = 2, k = 18, c = 2, rest = 0.3, d = c / (2 * m), w = std::sqrt(k / m - d * d);
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner) +
+                  "[[box]]\nname = \"weight\"\nsize = [0.4, 0.4]\nmass = 2\nposition = [0, 0]\n"
+                  "[[joint]]\ntype = \"slider\"\nbetween = [\"weight\", \"room\"]\n"
+                  "spring = { stiffness = 18, damping = 2, rest_position = 0.3 }\n");
+    const double t = 0.9, e = std::exp(-d * t);
+    EXPECT_NEAR(scene.place(t, 0).x(), rest - rest * e * (std::cos(w * t) + d / w * std::sin(w * t)), 1e-7)
+        << manner.name;
+  }
+}
+
+// A motor that follows an angle is there; one that follows a speed has gone as far as its integral.
+TEST(JointMotor, FollowsAnAngleOrASpeedOfTime) {
+  for (const Manner& manner : kManners) {
+    TextRun angle(plane_without_walls(manner) +
+                  "[[box]]\nname = \"arm\"\nsize = [1.2, 0.1]\nmass = 2\nposition = [0, 0]\n"
+                  "[[joint]]\ntype = \"pin\"\nbetween = [\"arm\", \"room\"]\n"
+                  "motor = { angle = \"60*(1 - cos(2*t))\", most = 100 }\n");
+    const double bound = manner.name == "iterative" ? 2e-3 : 1e-6;
+    EXPECT_NEAR(angle.at(1.3).bodies[0].angle, std::numbers::pi / 3 * (1 - std::cos(2.6)), bound)
+        << manner.name;
+    TextRun speed(plane_without_walls(manner) +
+                  "[[box]]\nname = \"arm\"\nsize = [1.2, 0.1]\nmass = 2\nposition = [0, 0]\n"
+                  "[[joint]]\ntype = \"slider\"\nbetween = [\"arm\", \"room\"]\n"
+                  "motor = { speed = \"sin(3*t)\", most = 100 }\n");
+    EXPECT_NEAR(speed.at(1.3).bodies[0].velocity.x(), std::sin(3.9), manner.name == "iterative" ? 1e-6 : 1e-8)
+        << manner.name;
+    EXPECT_NEAR(speed.place(1.3, 0).x(), (1 - std::cos(3.9)) / 3, bound) << manner.name;
+  }
+}
+
+// A motor that is too weak falls behind, and its force is what it has.
+TEST(JointMotor, ThatIsTooWeakGivesAllItHas) {
+  for (const Manner& manner : kManners) {
+    TextRun scene(plane_without_walls(manner, "gravity = [0, 0]") +
+                  "[[box]]\nname = \"sled\"\nsize = [0.4, 0.4]\nmass = 2\nposition = [0, 0]\n"
+                  "[[joint]]\ntype = \"slider\"\nbetween = [\"sled\", \"room\"]\n"
+                  "motor = { speed = \"10*t\", most = 6 }\n");
+    EXPECT_NEAR(scene.at(0.8).bodies[0].velocity.x(), 3 * 0.8, 1e-6) << manner.name;
+  }
+}
+
+// A screw that falls turns: m g = (m + I (2 pi / pitch)^2) a.
+TEST(Screw, TurnsAsItGoes) {
+  const double pitch = 0.5, r = 2 * std::numbers::pi / pitch, i = 2.0 / 12 * (0.4 * 0.4 + 0.4 * 0.4);
+  const double a = 2 * kEarth / (2 + i * r * r);
+  for (const Manner& manner : kManners) {
+    TextRun scene(
+        "duration = 1000\n[room]\nsize = [20, 20, 20]\ncorner = [-10, -10, -10]\nwalls = \"none\"\n" +
+        manner.keys +
+        "\n[[box]]\nname = \"nut\"\nsize = [0.4, 0.3, 0.4]\nmass = 2\nposition = [0, 0, 0]\n"
+        "[[joint]]\ntype = \"screw\"\nbetween = [\"nut\", \"room\"]\naxis = [0, 1, 0]\npitch = 0.5\n");
+    for (const double t : {0.5, 1.7}) {
+      const sim::Snapshot now = scene.at(t);
+      EXPECT_NEAR(now.bodies[0].velocity.y(), -a * t, 1e-7) << manner.name << t;
+      EXPECT_NEAR(now.bodies[0].spin.y(), -a * t * r, 1e-6) << manner.name << t;
+      EXPECT_NEAR(now.bodies[0].position.y(), -0.5 * a * t * t, manner.name == "iterative" ? 1e-6 : 1e-8)
+          << manner.name << t;
+    }
+  }
+}
+
+// --- what is wrong is told
+
+TEST(JointMotor, FaultsAreTold) {
+  const std::string room =
+      "duration = 1\n[room]\nsize = [8, 8]\n[[box]]\nname = \"b\"\nsize = [1, 1]\nposition = [4, 4]\n"
+      "[[joint]]\nbetween = [\"b\", \"room\"]\n";
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal(room + "type = \"pin\"\nmotor = { speed = \"sinn(t)\", most = 1 }\n"),
+              HasSubstr("column 1"));
+  EXPECT_THAT(refusal(room + "type = \"pin\"\nmotor = { position = \"t\", most = 1 }\n"),
+              HasSubstr("'position' is that of a slider"));
+  EXPECT_THAT(refusal(room + "type = \"pin\"\nmotor = { most = 1 }\n"), HasSubstr("a motor needs"));
+  EXPECT_THAT(refusal(room + "type = \"slider\"\nspring = { stiffness = 1, rest_angle = 2 }\n"),
+              HasSubstr("'rest_angle' is that of a pin"));
+  EXPECT_THAT(refusal(room + "type = \"screw\"\n"), HasSubstr("a screw is of space"));
+}
+
+TEST(Pulley, FaultsAreTold) {
+  const std::string room =
+      "duration = 1\n[room]\nsize = [8, 8]\n[[particle]]\nname = \"p\"\nposition = [1, 1]\n"
+      "[[ball]]\nname = \"w\"\nradius = 0.5\nposition = [4, 4]\n";
+  using testing::HasSubstr;
+  const auto pulley = [&](const std::string& keys) { return room + "[[joint]]\ntype = \"pulley\"\n" + keys; };
+  EXPECT_THAT(refusal(pulley("between = [\"p\", [2, 2]]\n")), HasSubstr("needs 'over'"));
+  EXPECT_THAT(refusal(pulley("over = [[2, 2]]\n")), HasSubstr("needs 'between'"));
+  EXPECT_THAT(refusal(pulley("between = [[1, 2], [2, 2]]\nover = [[3, 3]]\n")), HasSubstr("could move"));
+  EXPECT_THAT(refusal(pulley("between = [\"p\", [4, 4.2]]\nover = [\"w\"]\n")),
+              HasSubstr("inside the other's wheel"));
+  EXPECT_THAT(refusal(pulley("between = [\"p\", [6, 1]]\nover = [\"w\"]\nlimits = [0, 1]\n")),
+              HasSubstr("a pulley has no 'limits'"));
+  EXPECT_THAT(refusal(room + "[[joint]]\ntype = \"rope\"\nbetween = [\"p\", [2, 2]]\nover = [[3, 3]]\n"),
+              HasSubstr("'over' is that of a pulley"));
+  EXPECT_EQ(refusal(pulley("between = [\"p\", [6, 1]]\nover = [\"w\"]\n")), "");
+}
+
+TEST(Gear, FaultsAreTold) {
+  const std::string room =
+      "duration = 1\n[room]\nsize = [8, 8]\n[[ball]]\nname = \"a\"\nradius = 0.5\nposition = [2, 4]\n"
+      "[[ball]]\nname = \"b\"\nradius = 0.5\nposition = [4, 4]\n"
+      "[[joint]]\nname = \"p\"\ntype = \"pin\"\nbetween = [\"a\", \"room\"]\n"
+      "[[joint]]\nname = \"q\"\ntype = \"rope\"\nbetween = [\"b\", [4, 6]]\n";
+  using testing::HasSubstr;
+  const auto gear = [&](const std::string& keys) { return room + "[[joint]]\ntype = \"gear\"\n" + keys; };
+  EXPECT_THAT(refusal(gear("joints = [\"p\", \"pp\"]\nratio = 2\n")), HasSubstr("no joint is called 'pp'"));
+  EXPECT_THAT(refusal(gear("joints = [\"p\", \"q\"]\nratio = 2\n")), HasSubstr("no angle and no way"));
+  EXPECT_THAT(refusal(gear("joints = [\"p\", \"p\"]\nratio = 2\n")), HasSubstr("these are one"));
+  EXPECT_THAT(refusal(gear("joints = [\"p\", \"p\"]\n")), HasSubstr("needs 'ratio'"));
+  EXPECT_THAT(refusal(gear("between = [\"a\", \"b\"]\n")), HasSubstr("leave out 'between'"));
+}
+
+}  // namespace
+}  // namespace obscura::scene
