@@ -29,6 +29,7 @@ constexpr double kAngle = 13;              // radius of an arc
 
 constexpr double kAxes = 0.36;        // of the picture's shorter side: axes in space
 constexpr double kFull = 0.5;         // of an arrow's growth: from here on its words are as strong as others
+constexpr double kOutOfBall = 0.35;   // of a ball's radius: how far beyond it an arrow's words are as strong
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
 constexpr double kCovered = 60;       // points: the cost of words over a body
 
@@ -118,6 +119,8 @@ class Notes {
   double point_, arrow_, type_, thin_, dot_radius_, gap_, millimetre_, normal_, angle_;  // page units
   std::vector<Word> words_;
   std::vector<std::pair<Point, Color>> dots_;
+  std::vector<Arrow> arrows_;
+  std::vector<Color> inks_;  // theirs
 };
 
 void Notes::avoid_bodies() {
@@ -156,8 +159,9 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   std::vector<Arrow> arrows;
   offer(tail, tip, view_.window(), arrow_, arrows);
   if (arrows.empty()) return false;
+  // those of a film are drawn together: few batches
   if (film())
-    draw_filled_arrow(arrows[0], arrow_, colours_.room, ink, list_);
+    arrows_.push_back(arrows[0]), inks_.push_back(ink);
   else
     draw_arrows(arrows, arrow_, colours_.room, ink, list_);
   const Point end = film() ? arrows[0].tip : tip;
@@ -263,7 +267,7 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
       turn(key, vector, reading, set(reading.signed_value), ink);
       continue;
     }
-    const Formula label_set = set(reading.value.norm());
+    Formula label_set = set(reading.value.norm());
     if (vector.quantity == Quantity::normal && view_.view()) {
       const Point tail = view_.page(reading.tail);
       arrow(key, tail, tail + normal_ * Point(reading.value.x(), -reading.value.y()).normalized(), label_set,
@@ -274,6 +278,11 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
                             : scale                             ? *scale
                                                                 : 1.0;
       const Vec3 tip = reading.tail + length * reading.value;
+      // words of an arrow within its ball would stand on the ball: they come and go with its tip
+      const double radius = vector.body >= 0 ? cast_.bodies[std::size_t(vector.body)].radius : 0;
+      if (film() && radius > 0 &&
+          (reading.tail - now_.bodies[std::size_t(vector.body)].position).norm() < 1e-9)
+        fade(label_set, ((tip - reading.tail).norm() / radius - 1) / kOutOfBall);
       if (view_.before(tip)) arrow(key, view_.page(reading.tail), view_.page(tip), label_set, ink);
     }
   }
@@ -559,6 +568,7 @@ void Notes::avoid_areas() {
 }
 
 void Notes::finish() {
+  draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
   for (const auto& [at, ink] : dots_) {
     list_.add(Disc{at, dot_radius_ + 0.6 * point_, 0, colours_.room, colours_.room});
     list_.add(Disc{at, dot_radius_, 0, ink, ink});

@@ -25,6 +25,7 @@ constexpr double kPathError = 0.2;               // page units
 constexpr double kFaintest = 0.22;               // of a path's oldest end
 constexpr double kShared = 40;                   // points: of lying on another label
 constexpr double kOver = 8;                      // of each unit of its own arrow that it passes over
+constexpr double kTouches = 120;                 // page units: of touching it on the way
 
 double overlap(const Offered& a, int i, const Offered& b, int j) {
   const Point d = (a.places[std::size_t(i)].center - b.places[std::size_t(j)].center).cwiseAbs();
@@ -54,8 +55,10 @@ double cost_of_way(const Offered& label, std::size_t i, std::size_t j) {
   const Point &from = label.places[i].center, &to = label.places[j].center;
   double cost = kWay * (to - from).norm();
   if (!label.arrow) return cost;
-  for (const double part : {0.25, 0.5, 0.75})
-    cost += kOver / 3 * under(label.arrow->first, label.arrow->second, from + part * (to - from), label.size);
+  for (const double part : {0.2, 0.4, 0.6, 0.8}) {
+    const double over = under(label.arrow->first, label.arrow->second, from + part * (to - from), label.size);
+    if (over > 0) cost += kTouches + kOver * over;
+  }
   return cost;
 }
 

@@ -43,7 +43,8 @@ void offer(const Point& tail, Point tip, const Rect& window, double weight, std:
 }
 
 // one kind after another: few batches
-void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list) {
+void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& inks, double weight, Color room,
+                 List& list) {
   auto shaft = [&](const Arrow& a, double halo, Color ink) {
     const Point u = (a.tip - a.tail).normalized();
     const double width = kArrowLine * weight * a.grow + 2 * halo;
@@ -51,22 +52,12 @@ void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Co
   };
   for (const Arrow& a : arrows) shaft(a, kHalo * weight * a.grow, room);
   for (const Arrow& a : arrows) list.add(head(a, weight, kHalo * weight * a.grow), room);
-  for (const Arrow& a : arrows) shaft(a, 0, color);
-  for (const Arrow& a : arrows) list.add(head(a, weight, 0), color);
+  for (std::size_t i = 0; i < arrows.size(); ++i) shaft(arrows[i], 0, inks[i]);
+  for (std::size_t i = 0; i < arrows.size(); ++i) list.add(head(arrows[i], weight, 0), inks[i]);
 }
 
-void draw_filled_arrow(const Arrow& arrow, double weight, Color room, Color color, List& list) {
-  const Point u = (arrow.tip - arrow.tail).normalized(), v(-u.y(), u.x());
-  const auto shaft = [&](double halo, Color ink) {
-    const Point side = (kArrowLine * weight * arrow.grow / 2 + halo) * v;
-    const Point end = arrow.tip - u * (kNotch - 1) * weight * arrow.grow;
-    list.add({arrow.tail + side, end + side, end - side, arrow.tail - side, arrow.tail}, ink);
-  };
-  const double halo = kHalo * weight * arrow.grow;
-  shaft(halo, room);
-  list.add(head(arrow, weight, halo), room);
-  shaft(0, color);
-  list.add(head(arrow, weight, 0), color);
+void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list) {
+  draw_arrows(arrows, std::vector<Color>(arrows.size(), color), weight, room, list);
 }
 
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {

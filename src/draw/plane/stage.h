@@ -79,8 +79,9 @@ void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Co
 /// Pieces of ceiling over places of the room from which springs, rods and ropes hang.
 void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
-/// One arrow, all of it filled areas: many of them are drawn in one go.
-void draw_filled_arrow(const Arrow& arrow, double weight, Color room, Color color, List& list);
+/// The same, each in its own colour.
+void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& inks, double weight, Color room,
+                 List& list);
 
 /// A force where two touch: all that one gives to the other, at their centre of pressure.
 struct Push {
