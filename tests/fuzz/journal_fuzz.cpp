@@ -99,6 +99,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     for (int k = 1; k <= journal.shards; ++k) app::Store::share(journal.takes, k, journal.shards);
   });
   // as --resume does, of another film
-  refused_or_done([&] { const app::Store store(film.output, film.journal, 0, film.journal.takes, app::Earlier::go_on); });
+  refused_or_done(
+      [&] { const app::Store store(film.output, film.journal, 0, film.journal.takes, app::Earlier::go_on); });
   return 0;
 }

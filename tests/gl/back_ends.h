@@ -19,6 +19,7 @@ inline bool opens(Backend backend) {
 }  // namespace obscura::gl
 
 /// Of a test that compares them.
-#define OBSCURA_NEEDS_BOTH_BACK_ENDS()                                                            \
-  OBSCURA_NEEDS(gl::opens(Backend::osmesa) && gl::opens(Backend::egl), "libosmesa6, libegl1 and " \
-                                                                       "libegl-mesa0")
+#define OBSCURA_NEEDS_BOTH_BACK_ENDS()                                 \
+  OBSCURA_NEEDS(gl::opens(Backend::osmesa) && gl::opens(Backend::egl), \
+                "libosmesa6, libegl1 and "                             \
+                "libegl-mesa0")

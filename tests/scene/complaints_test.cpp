@@ -211,7 +211,8 @@ TEST(Diagnostics, JointsSayWhereTheyAre) {
   refused(two + "type = \"pin\"\nbetween = [\"a\", \"room\"]\nlimits = [10, 20]",
           "a.toml:15:10: 'limits' exclude where it starts: expected 0 between 10 and 20");
   refused(two + "type = \"hook\"\nbetween = [\"a\", \"room\"]",
-          "a.toml:13:8: 'type': expected one of pin, hinge, ball, weld, slider, rod, rope, pulley, screw, gear, got 'hook'");
+          "a.toml:13:8: 'type': expected one of pin, hinge, ball, weld, slider, rod, rope, pulley, screw, "
+          "gear, got 'hook'");
 }
 
 TEST(Diagnostics, GroupsAreThoseOfBodies) {

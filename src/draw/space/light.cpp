@@ -1,8 +1,9 @@
 // Light and shadow.
 //   lit     s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s2 max(0, n . l)     n  normal, l  to the light
-//   shaded  s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s3 max(0, n . l)     s3 < s2: round things stay round
-// f is level and across the light: two upright faces at a right angle that both look away from the light differ
-// by s4/2 at least, however they are turned.
+//   shaded  s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s3 max(0, n . l)     s3 < s2: round things stay
+//   round
+// f is level and across the light: two upright faces at a right angle that both look away from the light
+// differ by s4/2 at least, however they are turned.
 //   colour  from dark to bright along s, through the body's own
 // A shadow on the ground is drawn ray by ray: each casts the body's corners on the plane, their hull is dark
 // for that ray, and a place is as dark as the share of rays that do not reach it. So a shadow is sharp where
