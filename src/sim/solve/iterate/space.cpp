@@ -36,7 +36,8 @@ constexpr int kSettlingTouches = 50000;  // times iterations, of touches that ha
 constexpr int kFewTouches = 500;         // of more, less in proportion, but as if
 constexpr int kSettlingRounds = 3;       // so many were of all
 constexpr int kFewExactly = 60;          // touches
-constexpr double kExactly = 1e-12;       // of how fast pairs closed as the step began
+constexpr double kExactly = 1e-12;       // of how fast pairs closed as the step began,
+constexpr int kExactTouches = 2000;      // within so many touches times iterations
 constexpr int kTempering = 5;            // rounds
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
 
@@ -478,14 +479,13 @@ void SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool bac
 }
 
 // More iterations of those contacts that are not settled and of those beside them: where a column is struck
-// from below, the blow is to pass through all of it in this substep. Few go on until hardly anything changes:
-// then the order in which they are visited does not matter, and mirror images stay so. Bodies on joints are
-// left out.
+// from below, the blow is to pass through all of it in this substep. Few go on until hardly anything changes,
+// for a while: then the order in which they are visited does not matter, and mirror images stay so. Bodies on
+// joints are left out.
 template <int D>
 void SpaceIterative<D>::settle_contacts() {
   const int count = int(touches_.size());
   const bool few = count <= kFewExactly;
-  const double settled = few ? kExactly * closing_rate_ : settled_rate(closing_rate_);
   stirred_.assign(moving_.size(), 1), stirred_.back() = 0;
 
   jointed_.assign(moving_.size(), 0);
@@ -496,15 +496,17 @@ void SpaceIterative<D>::settle_contacts() {
   }
   const int all = int(some_.size());
   bool any = all > 0, back = false;
-  for (int left = settling_budget(all); left > 0 && any; back = !back) {
+  for (int most = settling_budget(all), spent = 0; spent < most && any; back = !back) {
+    const bool exactly = few && spent < kExactTouches;
+    const double settled = exactly ? kExactly * closing_rate_ : settled_rate(closing_rate_);
     any = false;
     stirred_next_.assign(moving_.size(), 0);
     for (int i = 0; i < all; ++i) {
       ContactConstraint& touch = touches_[some_[back ? all - 1 - i : i]];
       if (!stirred_[touch.a] && !stirred_[touch.b]) continue;
-      --left;
+      ++spent;
       const Unsettled left_over = iterate(touch);
-      if (!(left_over.closes > settled || (few && left_over.rubs > settled))) continue;
+      if (!(left_over.closes > settled || (exactly && left_over.rubs > settled))) continue;
       stirred_next_[touch.a] = stirred_next_[touch.b] = 1, any = true;
     }
     stirred_next_.back() = 0;
