@@ -205,16 +205,18 @@ class ChainResponse {
 };
 
 /// A body under impulses at points: its velocity, and its response p / m and I^-1 (r x p) to an impulse p at
-/// an arm r from its centre. As it is made it does not move: a wall, a fixed or sleeping body.
+/// an arm r from its centre. As it is made it does not move: a wall, a fixed or sleeping body. In space it is
+/// laid out for vectors of four numbers: v and 1/m, w, and the inverse inertia (solve/iterate/space_batches).
 template <int D>
-struct PointBody {
+struct alignas(D == 3 ? 32 : 8) PointBody {
   Vec<D> v = Vec<D>::Zero();
+  double inverse_mass = 0;  // 1/kg
   AngularVec<D> w = AngularVec<D>::Zero();
-  double inverse_mass = 0;                                // 1/kg
+  double padding = 0;
   SpinTensor<D> inverse_inertia = SpinTensor<D>::Zero();  // 1/(kg m^2), room's frame
 
   PointBody() = default;
-  PointBody(const Body<D>& body, const BodyMotion<D>& at) : v(at.v), w(at.w), inverse_mass(1 / body.mass) {
+  PointBody(const Body<D>& body, const BodyMotion<D>& at) : v(at.v), inverse_mass(1 / body.mass), w(at.w) {
     if (!body.turns()) return;
     for (int axis = 0; axis < kAngular<D>; ++axis) {
       inverse_inertia.col(axis) =

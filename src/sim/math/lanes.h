@@ -8,7 +8,7 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // every function with vectors is inlined
 
-namespace obscura::sim::plane {
+namespace obscura::sim::lanes {
 
 typedef double V2 __attribute__((vector_size(16)));
 typedef double V4 __attribute__((vector_size(32)));
@@ -126,4 +126,4 @@ inline constexpr bool kWide = false;
 #define OBSCURA_WIDE
 #endif
 
-}  // namespace obscura::sim::plane
+}  // namespace obscura::sim::lanes

@@ -15,6 +15,8 @@
 
 namespace obscura::sim::plane {
 
+using namespace lanes;
+
 namespace {
 
 constexpr double kAlike = 1e-6;  // of the thinner: so little deeper is not another face

@@ -18,6 +18,8 @@
 
 namespace obscura::sim::plane {
 
+using namespace lanes;
+
 namespace {
 
 constexpr int kAhead = 4;         // groups

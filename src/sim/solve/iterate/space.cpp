@@ -162,12 +162,15 @@ void SpaceIterative<D>::warm_start(StepPart<D> step) {
 
 template <int D>
 void SpaceIterative<D>::iterate(StepPart<D> step) {
+  batches_.build(touches_, all_, moving_);
   for (int round = 0; round < kTempering; ++round) {
+    if (round > 0) batches_.load(touches_);
     for (int i = 0; i < iterations_; ++i) {
       solve_joint_velocities();
-      iterate_contacts(all_, i % 2 != 0);
+      batches_.iterate(moving_, i % 2 != 0);
     }
     settle_contacts();
+    batches_.store(touches_);
     place_bodies(step.state, step.h);
     if (!temper(step.state)) break;
   }
@@ -444,40 +447,6 @@ void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
   }
 }
 
-// One contact. Returns by how much it was to be slowed down, in widths of the narrower body, 1/s; likewise
-// how far off its friction was.
-template <int D>
-typename SpaceIterative<D>::Unsettled SpaceIterative<D>::iterate(ContactConstraint& touch) {
-  const Vec<D> u = slip(touch);
-  const double along = touch.n.dot(u);
-  const double wrong = touch.least - along;
-  const double normal_impulse = std::max(0.0, touch.normal_impulse + wrong / touch.normal);
-  const double left = touch.normal_impulse > 0 ? std::fabs(wrong) : wrong;
-  const double pushed = normal_impulse - touch.normal_impulse;
-  Vec<D> impulse = pushed * touch.n;
-  double rubs = 0;
-  touch.normal_impulse = normal_impulse;
-  const double most = touch.mu * normal_impulse;
-  if (most > 0 || !touch.tangent_impulse.isZero(0)) {
-    const Vec<D> across = u - along * touch.n + pushed * touch.askew;
-    const Vec<D> wanted = touch.tangent_impulse - across / touch.across;
-    const double size = std::sqrt(wanted.squaredNorm());
-    const Vec<D> tangent_impulse = size > most ? Vec<D>(wanted * (most / size)) : wanted;
-    const Vec<D> change = tangent_impulse - touch.tangent_impulse;
-    impulse += change;
-    rubs = touch.across * std::sqrt(change.squaredNorm());
-    touch.tangent_impulse = tangent_impulse;
-  }
-  if (!impulse.isZero(0)) push(touch, impulse);
-  return {left * touch.per_width, rubs * touch.per_width};
-}
-
-template <int D>
-void SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool back) {
-  const int count = int(order.size());
-  for (int i = 0; i < count; ++i) iterate(touches_[order[back ? count - 1 - i : i]]);
-}
-
 // More iterations of those contacts that are not settled and of those beside them: where a column is struck
 // from below, the blow is to pass through all of it in this substep. Few go on until hardly anything changes,
 // for a while: then the order in which they are visited does not matter, and mirror images stay so. Bodies on
@@ -485,32 +454,15 @@ void SpaceIterative<D>::iterate_contacts(const std::vector<int>& order, bool bac
 template <int D>
 void SpaceIterative<D>::settle_contacts() {
   const int count = int(touches_.size());
-  const bool few = count <= kFewExactly;
-  stirred_.assign(moving_.size(), 1), stirred_.back() = 0;
-
-  jointed_.assign(moving_.size(), 0);
-  for (const int body : joints_.bodies()) jointed_[body] = 1;
-  some_.clear();
-  for (int i = 0; i < count; ++i) {
-    if (!jointed_[touches_[i].a] && !jointed_[touches_[i].b]) some_.push_back(i);
-  }
-  const int all = int(some_.size());
-  bool any = all > 0, back = false;
-  for (int most = settling_budget(all), spent = 0; spent < most && any; back = !back) {
-    const bool exactly = few && spent < kExactTouches;
-    const double settled = exactly ? kExactly * closing_rate_ : settled_rate(closing_rate_);
-    any = false;
-    stirred_next_.assign(moving_.size(), 0);
-    for (int i = 0; i < all; ++i) {
-      ContactConstraint& touch = touches_[some_[back ? all - 1 - i : i]];
-      if (!stirred_[touch.a] && !stirred_[touch.b]) continue;
-      ++spent;
-      const Unsettled left_over = iterate(touch);
-      if (!(left_over.closes > settled || (exactly && left_over.rubs > settled))) continue;
-      stirred_next_[touch.a] = stirred_next_[touch.b] = 1, any = true;
-    }
-    stirred_next_.back() = 0;
-    stirred_.swap(stirred_next_);
+  active_.bodies.assign(moving_.size(), ActiveBodies::kNow);
+  active_.bodies.back() = 0;
+  for (const int body : joints_.bodies()) active_.bodies[body] = ActiveBodies::kNever;
+  const int most = settling_budget(count);
+  bool back = false;
+  for (int spent = 0, done = 1; spent < most && done > 0; spent += done, back = !back) {
+    active_.friction = count <= kFewExactly && spent < kExactTouches;
+    active_.settled = active_.friction ? kExactly * closing_rate_ : settled_rate(closing_rate_);
+    done = batches_.iterate(moving_, back, active_);
   }
 }
 

@@ -15,7 +15,9 @@
 #include "sim/motion/forward_dynamics.h"
 #include "sim/solve/cone/cone.h"
 #include "sim/solve/contact_solver.h"
+#include "sim/solve/iterate/contact_constraint.h"
 #include "sim/solve/iterate/joint_solver.h"
+#include "sim/solve/iterate/space_batches.h"
 #include "sim/solve/iterate/substeps.h"
 #include "sim/solve/sleep.h"
 
@@ -44,32 +46,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void sleep(StepPart<D> step) override;
 
  private:
-  // a gap that may close in the step
-  struct ContactConstraint {
-    ContactKey key;
-    int a = 0, b = 0;  // in moving_; walls and the room are its last
-    Vec<D> n, arm_a, arm_b, point;
-    double gap = 0, mu = 0, bounce = 0;
-    double per_width = 0;                     // 1/m: of the narrower body
-    double normal = 0, across = 0;            // what a push answers, 1/kg; across: at most
-    Vec<D> askew = Vec<D>::Zero();            // how a push along n moves it across, 1/kg
-    double least = 0;                         // of the normal speed after the step, m/s
-    double normal_impulse = 0;                // impulse along n, N s
-    Vec<D> tangent_impulse = Vec<D>::Zero();  // and across it
-    Vec<D> impact_impulse = Vec<D>::Zero();   // impulse of impacts within the step, N s
-    Vec<D> belt = Vec<D>::Zero();             // what belts add to the slip of a against b, m/s
-    int renewals = 0;                         // of its features, since the step began
-    bool after = false;                       // of a body that had one
-    bool passes = false;                      // however it looks, it does not close with an impact
-    bool bounces = false;                     // an impact that is left to the iterations
-    bool closing = false;                     // slowly
-    double closes = 0;                        // when it bounces, s from the start of the step
-  };
-
-  // what an iteration has changed of a contact, in widths of the narrower body, 1/s
-  struct Unsettled {
-    double closes, rubs;
-  };
+  using ContactConstraint = sim::ContactConstraint<D>;
 
   // a body at a time within the step
   struct Flown {
@@ -152,8 +129,6 @@ class SpaceIterative final : public ContactSolver<D> {
     }
   }
   void warm_start_contacts(const State<D>& state, double h);
-  Unsettled iterate(ContactConstraint& touch);
-  void iterate_contacts(const std::vector<int>& order, bool back);
   void settle_contacts();
   double closing_rate(double h) const;
   void keep_impulses(const State<D>& state);
@@ -219,10 +194,10 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<Bounds<D>> bounds_;
   std::vector<char> inactive_, points_;
   std::vector<ContactCandidate<D>> gaps_;
-  int iterations_ = 0;                             // of this substep, of all touches
-  std::vector<char> stirred_, stirred_next_;       // bodies whose touches have not settled
-  std::vector<char> jointed_;                      // bodies of joints
-  std::vector<ContactConstraint> touches_;         // ascending by key
+  int iterations_ = 0;                      // of this substep, of all touches
+  std::vector<ContactConstraint> touches_;  // ascending by key
+  SpaceBatches batches_;                    // of them, those that are iterated
+  ActiveBodies active_;
   std::vector<ContactCandidate<D>> features_;      // theirs
   std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows
   std::vector<int> all_, some_;

@@ -85,19 +85,21 @@ void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island
 template <int D>
 void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h) {
   const double near = Sleep<D>::kBalanced * g_ * h;
+  batches_.build(touches_, some_, moving_);
   for (int i = 1, found = 0; i < kRestSweeps && !found; ++i) {
     if (!components_.empty()) {
       copy_to_joints(&on_joints_);
       for (const int component : components_) joints_.iterate(component);
       copy_from_joints(&on_joints_);
     }
-    iterate_contacts(some_, i % 2 != 0);
+    batches_.iterate(moving_, i % 2 != 0);
     if (i % kBetweenChecks != 0) continue;
     found = std::all_of(islands.begin(), islands.end(), [&](const auto& island) {
       return std::all_of(island.bodies.begin(), island.bodies.end(),
                          [&](int body) { return swiftness(body) <= near; });
     });
   }
+  batches_.store(touches_);
   for (auto& island : islands) {
     double fastest = 0;
     for (const int body : island.bodies) fastest = std::max(fastest, swiftness(body));

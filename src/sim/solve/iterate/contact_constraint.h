@@ -1,0 +1,30 @@
+#pragma once
+
+#include "sim/model/contact.h"
+
+namespace obscura::sim {
+
+/// A contact point of a pair in space that may close within a substep, as the iterations see it.
+template <int D>
+struct ContactConstraint {
+  ContactKey key;
+  int a = 0, b = 0;  // bodies; walls and the room are the one after the last
+  Vec<D> n, arm_a, arm_b, point;
+  double gap = 0, mu = 0, bounce = 0;
+  double per_width = 0;                     // 1/m: of the narrower body
+  double normal = 0, across = 0;            // 1/kg: J M^-1 J' along n, and across it at most
+  Vec<D> askew = Vec<D>::Zero();            // 1/kg: velocity across n by an impulse along it
+  double least = 0;                         // m/s: of the normal speed after the substep
+  double normal_impulse = 0;                // N s, along n
+  Vec<D> tangent_impulse = Vec<D>::Zero();  // N s
+  Vec<D> impact_impulse = Vec<D>::Zero();   // N s, of impacts within the substep
+  Vec<D> belt = Vec<D>::Zero();             // m/s: what belts add to the slip of a against b
+  int renewals = 0;                         // of its features, since the substep began
+  bool after = false;                       // of a body that had an impact
+  bool passes = false;                      // however it looks, it does not close with an impact
+  bool bounces = false;                     // an impact that is left to the iterations
+  bool closing = false;                     // slowly
+  double closes = 0;                        // when it bounces, s from the start of the substep
+};
+
+}  // namespace obscura::sim

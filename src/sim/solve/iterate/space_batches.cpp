@@ -1,0 +1,305 @@
+// One iteration of projected Gauss and Seidel in space. Of each contact in turn,
+//   normal     l_n' = max(0, l_n + (least - n . u) / K_n)                       u  slip of a against b, m/s
+//   friction   l_t' = cut(l_t - (u - n n . u + askew (l_n' - l_n)) / K_t)       to |l_t'| <= mu l_n'
+// K_t is the larger eigenvalue of K across n: a step along the velocity, cut back, holds a sliding box with
+// exactly mu N, which one by the inverse block would not. Friction comes after the normal impulse: were both
+// found from one velocity, iterations of rough contacts would diverge.
+//
+// Written once in vectors of the compiler; two lanes are SSE2, four AVX2. No operation differs, so the bits
+// are the same.
+
+#include "sim/solve/iterate/space_batches.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "sim/math/lanes.h"
+
+namespace obscura::sim {
+
+namespace {
+
+using namespace lanes;
+
+constexpr int kMostColours = 64;  // and one more, of pairs that find none
+constexpr int kMostSorted = 8;    // contacts: pairs of more come first, as they come
+constexpr int kBodyFours = 5;     // numbers of a PointBody, in fours
+static_assert(sizeof(PointBody<3>) == 4 * kBodyFours * sizeof(double));
+
+template <class V>
+struct Wide3 {
+  V x, y, z;
+};
+template <class V>
+OBSCURA_INLINE Wide3<V> load3(const double (&from)[3][4], int lane) {
+  return {load<V>(from[0] + lane), load<V>(from[1] + lane), load<V>(from[2] + lane)};
+}
+template <class V>
+OBSCURA_INLINE void store3(double (&to)[3][4], int lane, const Wide3<V>& v) {
+  store<V>(to[0] + lane, v.x), store<V>(to[1] + lane, v.y), store<V>(to[2] + lane, v.z);
+}
+template <class V>
+OBSCURA_INLINE V inner(const Wide3<V>& p, const Wide3<V>& q) {
+  return p.x * q.x + p.y * q.y + p.z * q.z;
+}
+template <class V>
+OBSCURA_INLINE Wide3<V> outer(const Wide3<V>& p, const Wide3<V>& q) {
+  return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
+}
+
+// one body of each lane
+template <class V>
+struct WideBody {
+  Quad<V> v, w;                    // m/s and 1/kg; rad/s
+  V i00, i10, i20, i11, i21, i22;  // inverse inertia
+
+  OBSCURA_INLINE WideBody(const double* bodies, const int* at) {
+    Quad<V> first, second, third;
+    gather(bodies, at, v), gather(bodies + 4, at, w);
+    gather(bodies + 8, at, first), gather(bodies + 12, at, second), gather(bodies + 16, at, third);
+    i00 = first.x, i10 = first.y, i20 = first.z, i11 = second.x, i21 = second.y, i22 = third.x;
+  }
+  OBSCURA_INLINE void back(double* bodies, const int* at) const {
+    scatter(bodies, at, v), scatter(bodies + 4, at, w);
+  }
+  OBSCURA_INLINE void keep(const Mask<V>& moves, const WideBody& before) {
+    v.x = pick<V>(moves, v.x, before.v.x), v.y = pick<V>(moves, v.y, before.v.y),
+    v.z = pick<V>(moves, v.z, before.v.z);
+    w.x = pick<V>(moves, w.x, before.w.x), w.y = pick<V>(moves, w.y, before.w.y),
+    w.z = pick<V>(moves, w.z, before.w.z);
+  }
+  OBSCURA_INLINE Wide3<V> velocity(const Wide3<V>& arm) const {
+    const Wide3<V> turns = outer<V>({w.x, w.y, w.z}, arm);
+    return {v.x + turns.x, v.y + turns.y, v.z + turns.z};
+  }
+  OBSCURA_INLINE void push(const Wide3<V>& p, const Wide3<V>& arm) {
+    v.x += v.w * p.x, v.y += v.w * p.y, v.z += v.w * p.z;
+    const Wide3<V> m = outer<V>(arm, p);
+    w.x += i00 * m.x + i10 * m.y + i20 * m.z;
+    w.y += i10 * m.x + i11 * m.y + i21 * m.z;
+    w.z += i20 * m.x + i21 * m.y + i22 * m.z;
+  }
+};
+
+// kSome: of active bodies alone
+template <class V, bool kSome>
+OBSCURA_INLINE int iterate_all(std::vector<SpaceBatches::Batch>& batches,
+                               std::vector<SpaceBatches::Row>& rows,
+                               const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back,
+                               [[maybe_unused]] ActiveBodies* active) {
+  using Batch = SpaceBatches::Batch;
+  using Row = SpaceBatches::Row;
+  const V none{}, one = V{} + 1.0;
+  const int count = int(batches.size());
+  [[maybe_unused]] int done = 0;
+  for (int i = 0; i < count; ++i) {
+    const Batch& g = batches[std::size_t(back ? count - 1 - i : i)];
+    [[maybe_unused]] unsigned char on = 0;
+    if constexpr (kSome) {
+      for (int lane = 0; lane < SpaceBatches::kLanes; ++lane) {
+        const int flags = active->bodies[std::size_t(g.a[lane])] | active->bodies[std::size_t(g.b[lane])];
+        if ((flags & ActiveBodies::kNow) && !(flags & ActiveBodies::kNever))
+          on = static_cast<unsigned char>(on | 1 << lane);
+      }
+      on &= g.used;
+      if (!on) continue;
+    }
+    for (int lane = 0; lane < SpaceBatches::kLanes; lane += Of<V>::lanes) {
+      WideBody<V> a(bodies, g.at_a + lane), b(bodies, g.at_b + lane);
+      const WideBody<V> begun_a = a, begun_b = b;
+      const V mu = load<V>(g.mu + lane);
+      [[maybe_unused]] V most_wrong = none;
+      [[maybe_unused]] const Mask<V> moves = mask<V>(kSome ? on : g.used, lane);
+      for (int k = 0; k < g.count; ++k) {
+        Row& r = rows[std::size_t(g.first + (back ? g.count - 1 - k : k))];
+        const Wide3<V> n = load3<V>(r.n, lane), arm_a = load3<V>(r.arm_a, lane),
+                       arm_b = load3<V>(r.arm_b, lane), askew = load3<V>(r.askew, lane);
+        const Wide3<V> va = a.velocity(arm_a), vb = b.velocity(arm_b);
+        Wide3<V> u{va.x - vb.x, va.y - vb.y, va.z - vb.z};
+        if (!belts.empty()) {
+          const Wide3<V> belt = load3<V>(belts[std::size_t(&r - rows.data())].speed, lane);
+          u.x += belt.x, u.y += belt.y, u.z += belt.z;
+        }
+        const V along = inner<V>(n, u), wrong = load<V>(r.least + lane) - along;
+        const V l0 = load<V>(r.normal_impulse + lane);
+        const V l = larger<V>(l0 + wrong * load<V>(r.per_normal + lane), none);
+        const V pushed = l - l0, most = mu * l;
+        const Wide3<V> t0 = load3<V>(r.tangent_impulse, lane);
+        const V per = load<V>(r.per_across + lane);
+        const Wide3<V> wanted{t0.x - (u.x - along * n.x + pushed * askew.x) * per,
+                              t0.y - (u.y - along * n.y + pushed * askew.y) * per,
+                              t0.z - (u.z - along * n.z + pushed * askew.z) * per};
+        const V size = root(inner<V>(wanted, wanted));
+        const Mask<V> cut = size > most;
+        const V by = pick<V>(cut, most / pick<V>(cut, size, one), one);
+        const Wide3<V> t{wanted.x * by, wanted.y * by, wanted.z * by};
+        const Wide3<V> change{t.x - t0.x, t.y - t0.y, t.z - t0.z};
+        const Wide3<V> p{pushed * n.x + change.x, pushed * n.y + change.y, pushed * n.z + change.z};
+        a.push(p, arm_a), b.push({-p.x, -p.y, -p.z}, arm_b);
+        if constexpr (kSome) {
+          V left = pick<V>(l0 > none, magnitude<V>(wrong), wrong);
+          if (active->friction)
+            left = larger<V>(left, load<V>(r.across + lane) * root(inner<V>(change, change)));
+          most_wrong = larger<V>(most_wrong, left);
+          store<V>(r.normal_impulse + lane, pick<V>(moves, l, l0));
+          store3<V>(r.tangent_impulse, lane,
+                    {pick<V>(moves, t.x, t0.x), pick<V>(moves, t.y, t0.y), pick<V>(moves, t.z, t0.z)});
+        } else {
+          store<V>(r.normal_impulse + lane, l), store3<V>(r.tangent_impulse, lane, t);
+        }
+      }
+      if constexpr (kSome) {
+        // the other lanes stay: what a pair does must not hang on which lanes are beside its own
+        a.keep(moves, begun_a), b.keep(moves, begun_b);
+        most_wrong *= load<V>(g.per_width + lane);
+        for (int k = 0; k < Of<V>::lanes; ++k) {
+          if (!(on >> (lane + k) & 1)) continue;
+          done += g.count;
+          if (!(most_wrong[k] > active->settled)) continue;
+          active->bodies[std::size_t(g.a[lane + k])] |= ActiveBodies::kNext,
+              active->bodies[std::size_t(g.b[lane + k])] |= ActiveBodies::kNext;
+        }
+      }
+      a.back(bodies, g.at_a + lane), b.back(bodies, g.at_b + lane);
+    }
+  }
+  if constexpr (kSome) return done;
+  return 0;
+}
+
+OBSCURA_WIDE void iterate_wide(std::vector<SpaceBatches::Batch>& batches,
+                               std::vector<SpaceBatches::Row>& rows,
+                               const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back) {
+  iterate_all<V4, false>(batches, rows, belts, bodies, back, nullptr);
+}
+OBSCURA_WIDE int iterate_some_wide(std::vector<SpaceBatches::Batch>& batches,
+                                   std::vector<SpaceBatches::Row>& rows,
+                                   const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back,
+                                   ActiveBodies& active) {
+  return iterate_all<V4, true>(batches, rows, belts, bodies, back, &active);
+}
+
+}  // namespace
+
+// Pairs, and a colour for each: the first that neither body has.
+void SpaceBatches::find_pairs(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+                              std::span<const PointBody<3>> bodies) {
+  pairs_.clear(), colours_.assign(bodies.size(), 0);
+  for (int first = 0, end = 0; first < int(which.size()); first = end) {
+    const ContactConstraint<3>& contact = contacts[std::size_t(which[std::size_t(first)])];
+    const auto same = [&](int i) {
+      const ContactConstraint<3>& other = contacts[std::size_t(which[std::size_t(i)])];
+      return other.a == contact.a && other.b == contact.b;
+    };
+    for (end = first + 1; end < int(which.size()) && same(end);) ++end;
+    std::uint64_t &a = colours_[std::size_t(contact.a)], &b = colours_[std::size_t(contact.b)];
+    const int colour = std::countr_one(a | b);
+    pairs_.push_back({contact.a, contact.b, first, end - first, colour});
+    if (colour == kMostColours) continue;
+    const std::uint64_t bit = std::uint64_t(1) << colour;
+    if (bodies[std::size_t(contact.a)].inverse_mass > 0) a |= bit;
+    if (bodies[std::size_t(contact.b)].inverse_mass > 0) b |= bit;
+  }
+
+  // by colour, and in each by how many contacts they have, the most first
+  const auto place = [](const Pair& pair) {
+    return std::size_t(pair.colour * kMostSorted + kMostSorted - std::min(pair.count, kMostSorted));
+  };
+  begin_.assign(std::size_t((kMostColours + 1) * kMostSorted + 1), 0);
+  for (const Pair& pair : pairs_) ++begin_[place(pair) + 1];
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  sorted_.resize(pairs_.size());
+  for (const Pair& pair : pairs_) sorted_[std::size_t(begin_[place(pair)]++)] = pair;
+}
+
+void SpaceBatches::build(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+                         std::span<const PointBody<3>> bodies) {
+  find_pairs(contacts, which, bodies);
+  batches_.clear(), rows_.clear(), belts_.clear();
+  const bool belts = std::any_of(which.begin(), which.end(),
+                                 [&](int i) { return !contacts[std::size_t(i)].belt.isZero(0); });
+  const int none = int(bodies.size()) - 1;
+  int lane = kLanes, colour = -1;
+  for (const Pair& pair : sorted_) {
+    if (lane == kLanes || pair.colour != colour || colour == kMostColours) {
+      Batch& made = batches_.emplace_back();
+      std::fill_n(made.a, kLanes, none), std::fill_n(made.b, kLanes, none);
+      std::fill_n(made.at_a, kLanes, kBodyFours * none), std::fill_n(made.at_b, kLanes, kBodyFours * none);
+      std::fill_n(made.mu, kLanes, 0.0), std::fill_n(made.per_width, kLanes, 1.0);
+      made.first = int(rows_.size());
+      lane = 0, colour = pair.colour;
+    }
+    Batch& g = batches_.back();
+    for (; g.count < pair.count; ++g.count) {
+      Row& row = rows_.emplace_back(Row{});
+      std::fill_n(row.contact, kLanes, -1);
+      if (belts) belts_.emplace_back(Belt{});
+    }
+    add(pair, lane++, contacts, which);
+  }
+  load(contacts);
+}
+
+void SpaceBatches::add(const Pair& pair, int lane, std::span<const ContactConstraint<3>> contacts,
+                       std::span<const int> which) {
+  Batch& g = batches_.back();
+  g.used = static_cast<unsigned char>(g.used | 1 << lane);
+  g.a[lane] = pair.a, g.b[lane] = pair.b;
+  g.at_a[lane] = kBodyFours * pair.a, g.at_b[lane] = kBodyFours * pair.b;
+  for (int k = 0; k < pair.count; ++k) {
+    const int number = which[std::size_t(pair.first + k)];
+    const ContactConstraint<3>& from = contacts[std::size_t(number)];
+    Row& r = rows_[std::size_t(g.first + k)];
+    for (int i = 0; i < 3; ++i) {
+      r.n[i][lane] = from.n[i], r.arm_a[i][lane] = from.arm_a[i], r.arm_b[i][lane] = from.arm_b[i];
+      r.askew[i][lane] = from.askew[i];
+      if (!belts_.empty()) belts_[std::size_t(g.first + k)].speed[i][lane] = from.belt[i];
+    }
+    g.mu[lane] = from.mu, g.per_width[lane] = from.per_width;
+    r.per_normal[lane] = 1 / from.normal;
+    r.across[lane] = from.across, r.per_across[lane] = 1 / from.across;
+    r.contact[lane] = number;
+  }
+}
+
+void SpaceBatches::load(std::span<const ContactConstraint<3>> contacts) {
+  for (Row& r : rows_) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (r.contact[lane] < 0) continue;
+      const ContactConstraint<3>& from = contacts[std::size_t(r.contact[lane])];
+      r.least[lane] = from.least, r.normal_impulse[lane] = from.normal_impulse;
+      for (int i = 0; i < 3; ++i) r.tangent_impulse[i][lane] = from.tangent_impulse[i];
+    }
+  }
+}
+
+void SpaceBatches::store(std::span<ContactConstraint<3>> contacts) const {
+  for (const Row& r : rows_) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (r.contact[lane] < 0) continue;
+      ContactConstraint<3>& to = contacts[std::size_t(r.contact[lane])];
+      to.normal_impulse = r.normal_impulse[lane];
+      for (int i = 0; i < 3; ++i) to.tangent_impulse[i] = r.tangent_impulse[i][lane];
+    }
+  }
+}
+
+void SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back) {
+  double* const numbers = bodies.data()->v.data();
+  if (kWide) return iterate_wide(batches_, rows_, belts_, numbers, back);
+  iterate_all<V2, false>(batches_, rows_, belts_, numbers, back, nullptr);
+}
+
+int SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back, ActiveBodies& active) {
+  double* const numbers = bodies.data()->v.data();
+  const int done = kWide ? iterate_some_wide(batches_, rows_, belts_, numbers, back, active)
+                         : iterate_all<V2, true>(batches_, rows_, belts_, numbers, back, &active);
+  active.bodies.back() = 0;
+  for (unsigned char& body : active.bodies) {
+    const bool next = body & ActiveBodies::kNext;
+    body = static_cast<unsigned char>((body & ActiveBodies::kNever) | (next ? ActiveBodies::kNow : 0));
+  }
+  return done;
+}
+
+}  // namespace obscura::sim
