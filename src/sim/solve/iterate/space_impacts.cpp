@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kMost = 8;               // gaps of one impact
 constexpr int kSweeps = 30;            // over the rows, for the modes that are tried first
+constexpr int kPatience = 40;          // systems: what takes more is left to the iterations
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
 constexpr int kShares = 24;            // halvings for the share of e that does so
 constexpr double kLockedPush = 1e-9;   // of what a push moves without joints
@@ -116,6 +117,7 @@ bool SpaceIterative<D>::solve_impact(double t, double h, std::vector<double>& wo
     return sum > kImpactGain * size ? sum / size : 0;
   };
   // with e times `share`; how much more energy there is after it, of the largest part that an impulse moves
+  cone_.patience = kPatience;
   const auto gain = [&](double share) {
     b_ = v;
     for (int k = 0; k < count; ++k) {
@@ -134,6 +136,7 @@ bool SpaceIterative<D>::solve_impact(double t, double h, std::vector<double>& wo
     return rise();
   };
   double gained = gain(1), low = gained > 0 ? 0 : 1, high = 1;
+  if (!std::isfinite(gained)) return false;
   if (gained > 0) {
     // with friction half of it and half again, as by the other solvers; without, the largest share that keeps
     // it
