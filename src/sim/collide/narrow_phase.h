@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "sim/model/contact.h"
@@ -40,6 +41,7 @@ struct ContactCandidate {
   Vec<D> edge_b = Vec<D>::Zero();     // product leads from b to a. Else unused
   double radius_a = 0, radius_b = 0;  // m
   double value = 0;                   // g, m
+  bool of_poses = false;              // its features are not of its key alone
 };
 
 /// How far along their edges, from on_a and on_b, two edges come nearest to each other: where pa + s ea and
@@ -149,6 +151,11 @@ void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, c
 template <int D>
 void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, const Wall<D>& half_space,
              double margin, std::vector<ContactCandidate<D>>& out);
+
+/// The candidate of two shapes of space that a key from collide() names, to the bit, but for `value`. None where
+/// the key does not say all: edges that are nearly parallel touch at a place that depends on the poses.
+std::optional<ContactCandidate<3>> named_candidate(const ContactKey& key, const Shape<3>& shape_a,
+                                                   const Shape<3>& shape_b);
 
 /// Distance (m) between two shapes; if they overlap, minus the depth.
 template <int D>

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "sim/collide/narrow_phase.h"
 #include "sim/shape/polyhedron.h"
@@ -55,6 +56,9 @@ class Few {
   int size_ = 0;
 };
 
+// What a key counts: the kinds, and two more.
+constexpr unsigned kPlaceOnEdge = 6, kTurnedEdges = 7, kKeyKinds = 8;
+
 // two cores, part by part of two bodies
 struct Couple {
   int a, b;
@@ -65,12 +69,14 @@ struct Couple {
   double radii() const { return of_a.radius() + of_b.radius(); }
 
   // which: numbers of the corner, edge or face of a, and of b
+  ContactKey key(unsigned kind, int which_a, int which_b) const {
+    unsigned feature = (kind + kKeyKinds * unsigned(part_a)) * unsigned(parts_b) + unsigned(part_b);
+    feature = (feature * unsigned(digits_a) + unsigned(which_a)) * unsigned(digits_b) + unsigned(which_b);
+    return {a, b, int(feature & 0x7fffffffu)};
+  }
   ContactCandidate<3> named(Kind kind, int which_a, int which_b) const {
     ContactCandidate<3> made;
-    unsigned feature = unsigned(kind);
-    feature = (feature + 6u * unsigned(part_a)) * unsigned(parts_b) + unsigned(part_b);
-    feature = (feature * unsigned(digits_a) + unsigned(which_a)) * unsigned(digits_b) + unsigned(which_b);
-    made.key = {a, b, int(feature & 0x7fffffffu)};
+    made.key = key(unsigned(kind), which_a, which_b);
     made.kind = kind;
     made.radius_a = of_a.radius();
     made.radius_b = of_b.radius();
@@ -79,14 +85,14 @@ struct Couple {
   ContactCandidate<3> corner_of_a(int corner, int face, double core) const {
     ContactCandidate<3> made = named(Kind::corner_of_a, corner, face);
     made.on_a = of_a.own_corner(corner), made.on_b = of_b.own_corner(of_b.loop(face)[0]);
-    made.normal = of_b.own(of_b.normal(face));
+    made.normal = of_b.own_normal(face);
     made.value = core - radii();
     return made;
   }
   ContactCandidate<3> corner_of_b(int face, int corner, double core) const {
     ContactCandidate<3> made = named(Kind::corner_of_b, face, corner);
     made.on_a = of_a.own_corner(of_a.loop(face)[0]), made.on_b = of_b.own_corner(corner);
-    made.normal = of_a.own(of_a.normal(face));
+    made.normal = of_a.own_normal(face);
     made.value = core - radii();
     return made;
   }
@@ -99,26 +105,30 @@ struct Couple {
   ContactCandidate<3> corner_at_edge_b(int corner, int edge, double core) const {
     ContactCandidate<3> made = named(Kind::corner_at_edge_b, corner, edge);
     made.on_a = of_a.own_corner(corner), made.on_b = of_b.own_corner(of_b.edge(edge).from);
-    made.edge_b = of_b.own(of_b.along(edge));
+    made.edge_b = of_b.own_along(edge);
     made.value = core - radii();
     return made;
   }
   ContactCandidate<3> corner_at_edge_a(int edge, int corner, double core) const {
     ContactCandidate<3> made = named(Kind::corner_at_edge_a, edge, corner);
     made.on_a = of_a.own_corner(of_a.edge(edge).from), made.on_b = of_b.own_corner(corner);
-    made.edge_a = of_a.own(of_a.along(edge));
+    made.edge_a = of_a.own_along(edge);
+    made.value = core - radii();
+    return made;
+  }
+  // turned: against how they run, so that their cross product leads from b to a
+  ContactCandidate<3> edges(int edge_a, int edge_b, bool turned, double core) const {
+    ContactCandidate<3> made = named(Kind::edges, edge_a, edge_b);
+    if (turned) made.key = key(kTurnedEdges, edge_a, edge_b);
+    made.on_a = of_a.own_corner(of_a.edge(edge_a).from), made.on_b = of_b.own_corner(of_b.edge(edge_b).from);
+    made.edge_a = of_a.own_along(edge_a), made.edge_b = of_b.own_along(edge_b);
+    if (turned) made.edge_b = -made.edge_b;
     made.value = core - radii();
     return made;
   }
   // normal: about from b to a
   ContactCandidate<3> edges(int edge_a, int edge_b, const Vec<3>& normal, double core) const {
-    ContactCandidate<3> made = named(Kind::edges, edge_a, edge_b);
-    made.on_a = of_a.own_corner(of_a.edge(edge_a).from), made.on_b = of_b.own_corner(of_b.edge(edge_b).from);
-    const Vec<3> along_a = of_a.along(edge_a), along_b = of_b.along(edge_b);
-    made.edge_a = of_a.own(along_a), made.edge_b = of_b.own(along_b);
-    if (along_a.cross(along_b).dot(normal) < 0) made.edge_b = -made.edge_b;
-    made.value = core - radii();
-    return made;
+    return edges(edge_a, edge_b, of_a.along(edge_a).cross(of_b.along(edge_b)).dot(normal) < 0, core);
   }
 };
 
@@ -344,11 +354,9 @@ class Shared {
     const double height = q0.height + on_q * (q1.height - q0.height);
     const Vec<3> place = other.own_place(to + on_q * (other.corner(q1.corner) - to));
     ContactCandidate<3> gap = touching_.other_at_base(couple_, q0.corner, height);
-    gap.key = couple_
-                  .named(Kind::edges, touching_.base_is_b ? of_other : of_base,
-                         touching_.base_is_b ? of_base : of_other)
-                  .key;
-    (touching_.base_is_b ? gap.on_a : gap.on_b) = place;
+    gap.key = couple_.key(kPlaceOnEdge, touching_.base_is_b ? of_other : of_base,
+                          touching_.base_is_b ? of_base : of_other);
+    (touching_.base_is_b ? gap.on_a : gap.on_b) = place, gap.of_poses = true;
     add(at, gap, false);
   }
 
@@ -495,6 +503,11 @@ int digits(const Shape<3>& shape) {
   return most;
 }
 
+// whether keys of two shapes have room for all of their features
+bool keys_suffice(const Shape<3>& a, const Shape<3>& b) {
+  return double(kKeyKinds) * parts(a) * parts(b) * digits(a) * digits(b) <= double(0x7fffffff);
+}
+
 }  // namespace
 
 template <>
@@ -509,8 +522,39 @@ void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, c
       solid_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, margin, out);
     }
   }
+  if (out.size() > before && !keys_suffice(shape_a, shape_b)) {
+    for (std::size_t i = before; i < out.size(); ++i) out[i].of_poses = true;
+  }
   std::sort(out.begin() + std::ptrdiff_t(before), out.end(),
             [](const ContactCandidate<3>& p, const ContactCandidate<3>& q) { return p.key < q.key; });
+}
+
+std::optional<ContactCandidate<3>> named_candidate(const ContactKey& key, const Shape<3>& shape_a,
+                                                   const Shape<3>& shape_b) {
+  const int digits_a = digits(shape_a), digits_b = digits(shape_b), parts_b = parts(shape_b);
+  if (key.b < 0 || !keys_suffice(shape_a, shape_b)) return {};
+  int left = key.feature;
+  const auto digit = [&](int radix) {
+    const int value = left % radix;
+    left /= radix;
+    return value;
+  };
+  const int which_b = digit(digits_b), which_a = digit(digits_a), part_b = digit(parts_b);
+  const unsigned kind = unsigned(digit(int(kKeyKinds)));
+  if (kind == kPlaceOnEdge) return {};
+  const BodyMotion<3> own;
+  const Polyhedron of_a(part(shape_a, left), own, own.x), of_b(part(shape_b, part_b), own, own.x);
+  const Couple couple{key.a, key.b, of_a, of_b, left, part_b, parts_b, digits_a, digits_b};
+  if (kind == kTurnedEdges) return couple.edges(which_a, which_b, true, 0);
+  switch (Kind(kind)) {
+    case Kind::corner_of_a: return couple.corner_of_a(which_a, which_b, 0);
+    case Kind::corner_of_b: return couple.corner_of_b(which_a, which_b, 0);
+    case Kind::corners: return couple.corners(which_a, which_b, 0);
+    case Kind::edges: return couple.edges(which_a, which_b, false, 0);
+    case Kind::corner_at_edge_b: return couple.corner_at_edge_b(which_a, which_b, 0);
+    case Kind::corner_at_edge_a: return couple.corner_at_edge_a(which_a, which_b, 0);
+  }
+  return {};
 }
 
 template <>

@@ -153,6 +153,25 @@ Vec<3> Polyhedron::own_corner(int i) const {
   return core_.middle + place;
 }
 
+Vec<3> Polyhedron::own_normal(int face) const {
+  if (!is_box()) return loop_normal(core_, face);
+  const double sign = face & 1 ? 1 : -1;
+  if (core_.box->turn == no_rotation<3>()) return sign * Vec<3>::Unit(face >> 1);
+  return sign * rotation<3>(core_.box->turn).col(face >> 1);
+}
+
+Vec<3> Polyhedron::own_along(int edge) const {
+  if (is_box() || faces_ == 0) {
+    const Orientation<3>& turn = is_box() ? core_.box->turn : core_.capsule->turn;
+    const int axis = is_box() ? edge >> 2 : 1;
+    if (turn == no_rotation<3>()) return Vec<3>::Unit(axis);
+    return rotation<3>(turn).col(axis);
+  }
+  const Edge of = this->edge(edge);
+  const Vec<3> way = core_.corners[of.to] - core_.corners[of.from];
+  return way / std::sqrt(way.squaredNorm());
+}
+
 int Polyhedron::farthest(const Vec<3>& d) const {
   if (corners_ == 1) return 0;
   if (is_box()) {

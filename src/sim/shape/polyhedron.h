@@ -45,9 +45,10 @@ class Polyhedron {
   Vec<3> along(int edge) const;               // from its first corner to its second, unit
   int edge_between(int corner, int other) const;
 
-  /// The same in the frame of the body.
+  /// The same in the frame of the body, whatever its pose, to the bit.
   Vec<3> own_corner(int i) const;
-  Vec<3> own(const Vec<3>& direction) const { return turn_.transpose() * direction; }
+  Vec<3> own_normal(int face) const;
+  Vec<3> own_along(int edge) const;
   Vec<3> own_place(const Vec<3>& place) const { return turn_.transpose() * (place - x_); }
 
   /// A sphere that holds the core without its radius, around `middle`.

@@ -28,6 +28,8 @@ constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
+constexpr double kSearches = 60;         // a second, for the features of all pairs
+constexpr double kCalm = 0.01;           // of the narrower body: so far a pair moves with the same features
 constexpr double kSpare = 0.02;          // of their bounding radius: what two may come nearer by being struck
 constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds at least,
 constexpr int kMostParts = 10000;        // and so many, until changes are
@@ -61,6 +63,7 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
       drives_(model) {
   const double h = 1 / value(model.rate);
   g_ = std::sqrt(model.gravity.squaredNorm());
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kSearches));
   restitution_threshold_ = 2 * h / substeps_for(0, h) * g_ + 1e-9 * model.scale;
   allowed_overlap_ = allowed_overlap(model);
   for (const Body<D>& body : model.bodies) {
@@ -83,13 +86,13 @@ bool SpaceIterative<D>::collide(StepPart<D> step) {
   joints_.prepare(state);
   if (state.step == 0) joints_.project_initial_velocities(state);
   prepare(state, step.t, step.h);
-  find(step.h);
+  find(step);
   return true;
 }
 
 template <int D>
 void SpaceIterative<D>::wake(StepPart<D> step) {
-  if (update_sleep(step.state, step.t, step.h)) prepare(step.state, step.t, step.h), find(step.h);
+  if (update_sleep(step.state, step.t, step.h)) prepare(step.state, step.t, step.h), find(step);
   closing_rate_ = closing_rate(step.h);
   substeps_ = substeps_for(closing_rate_, step.h);
   impulses_.clear(), corrected_ = false;
@@ -231,22 +234,32 @@ double SpaceIterative<D>::margin(int body, double h) const {
   return inactive_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
 }
 
+// how fast points of one body pass those of another, at most
+template <int D>
+double SpaceIterative<D>::passing_speed(int a, int b) const {
+  return std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
+         bounding_radius_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
+         bounding_radius_[b] * std::sqrt(moving_[b].w.squaredNorm());
+}
+
 // How near features of a pair may come to touch in the step, m. Of two that fly side by side none comes
 // nearer, but for what strikes them meanwhile.
 template <int D>
 double SpaceIterative<D>::pair_margin(int a, int b, double h) const {
-  const double passes = std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
-                        bounding_radius_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
-                        bounding_radius_[b] * std::sqrt(moving_[b].w.squaredNorm());
   const double farther = carries_.empty() ? 0 : farther_[a] + farther_[b];
   return std::min(margin(a, h) + margin(b, h),
-                  h * (passes + 2 * g_ * h) + farther + kSpare * (bounding_radius_[a] + bounding_radius_[b]));
+                  h * (passing_speed(a, b) + 2 * g_ * h) + farther + kSpare * (bounding_radius_[a] + bounding_radius_[b]));
 }
 
+// All features are looked for sixty times a second. In between, a pair that hardly moves keeps those of its
+// contacts in the state.
 template <int D>
-void SpaceIterative<D>::find(double h) {
+void SpaceIterative<D>::find(StepPart<D> step) {
+  const double h = step.h;
+  const double elapsed = double(step.state.step % every_) / value(model_.rate) + step.substep * h;
   const int n = int(model_.bodies.size());
-  bounds_.resize(n), touches_.clear(), features_.clear();
+  bounds_.resize(n), touches_.clear();
+  known_.swap(features_), features_.clear();
   for (int i = 0; i < n; ++i) {
     bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
     const Vec<D> more = Vec<D>::Constant(margin(i, h));
@@ -257,6 +270,8 @@ void SpaceIterative<D>::find(double h) {
 
   // ascending: of a body first its walls, from the last
   auto pair = pairs.begin();
+  std::span<const Contact<D>> old = step.state.contacts;
+  std::size_t memo = 0;
   for (int a = 0; a < n; ++a) {
     const Body<D>& p = model_.bodies[a];
     for (int wall = int(model_.walls.size()); !inactive_[a] && !p.handout && wall-- > 0;) {
@@ -268,13 +283,42 @@ void SpaceIterative<D>::find(double h) {
     }
     for (; pair != pairs.end() && pair->first == a; ++pair) {
       const int b = pair->second;
-      const Body<D>& q = model_.bodies[b];
-      const double near = pair_margin(a, b, h);
       gaps_.clear();
-      sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], near, gaps_);
+      if (elapsed == 0 || !keep_features(a, b, elapsed, old, memo)) {
+        const Body<D>& q = model_.bodies[b];
+        sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], pair_margin(a, b, h), gaps_);
+      }
       for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, b));
     }
   }
+}
+
+// The features of a pair's contacts in the state, into gaps_; false where it has none, moves too fast, or a key
+// does not say all. `old`: contacts from this pair on; `memo`: where its keys would be among those known.
+template <int D>
+bool SpaceIterative<D>::keep_features(int a, int b, double elapsed, std::span<const Contact<D>>& old,
+                                      std::size_t& memo) {
+  const auto before = [&](const Contact<D>& c) { return c.key.a != a ? c.key.a < a : c.key.b < b; };
+  std::size_t begin = 0, end = 0;
+  while (begin < old.size() && before(old[begin])) ++begin;
+  for (end = begin; end < old.size() && old[end].key.a == a && old[end].key.b == b;) ++end;
+  const std::span<const Contact<D>> its = old.subspan(begin, end - begin);
+  old = old.subspan(begin);
+  if (its.empty() || passing_speed(a, b) * elapsed > kCalm * std::min(width_[a], width_[b])) return false;
+  for (const Contact<D>& contact : its) {
+    while (memo < known_.size() && known_[memo].key < contact.key) ++memo;
+    if (memo < known_.size() && known_[memo].key == contact.key && !known_[memo].of_poses) {
+      gaps_.push_back(known_[memo]);
+      continue;
+    }
+    const auto named = named_candidate(contact.key, model_.bodies[a].shape, model_.bodies[b].shape);
+    if (!named) {
+      gaps_.clear();
+      return false;
+    }
+    gaps_.push_back(*named);
+  }
+  return true;
 }
 
 template <int D>
@@ -393,7 +437,7 @@ void SpaceIterative<D>::move_free(StepPart<D> step) {
   State<D>& state = step.state;
   if (substeps_ > 1) {
     if (step.substep > 0 && !joints_.empty()) joints_.prepare(state);
-    prepare(state, step.t, step.h), find(step.h);
+    prepare(state, step.t, step.h), find(step);
   }
   if (!joints_.empty()) build_joint_rows(state);
   const int n = int(model_.bodies.size());

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -88,7 +90,8 @@ class SpaceIterative final : public ContactSolver<D> {
   };
 
   void prepare(const State<D>& state, double t, double h);
-  void find(double h);
+  void find(StepPart<D> step);
+  bool keep_features(int a, int b, double elapsed, std::span<const Contact<D>>& old, std::size_t& memo);
   void add(const ContactCandidate<D>& gap, const Material& pair);
   bool update_sleep(State<D>& state, double t, double h);
   void build_joint_rows(const State<D>& state);
@@ -108,6 +111,7 @@ class SpaceIterative final : public ContactSolver<D> {
     std::push_heap(due_.begin(), due_.end());
   }
   double margin(int body, double h) const;
+  double passing_speed(int a, int b) const;
   double pair_margin(int a, int b, double h) const;
   double find_features(int a, int b, double t, double h);
   bool features_change(const ContactConstraint& touch) const;
@@ -182,6 +186,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<double> farther_;  // likewise: how far they get from where their velocity takes them, m
   Stages stages_;
   double g_ = 0, restitution_threshold_ = 0;
+  std::int64_t every_ = 1;  // steps between two searches for features
   std::vector<double> bounding_radius_, width_;  // of bodies, m
   std::vector<char> round_;
   AllowedOverlap allowed_overlap_;
@@ -199,6 +204,7 @@ class SpaceIterative final : public ContactSolver<D> {
   SpaceBatches batches_;                    // of them, those that are iterated
   ActiveBodies active_;
   std::vector<ContactCandidate<D>> features_;      // theirs
+  std::vector<ContactCandidate<D>> known_;         // and before: of a key always the same
   std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows
   std::vector<int> all_, some_;
   std::vector<Vec<D>> x_, x_free_, v_free_;
