@@ -152,8 +152,8 @@ template <int D>
 void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, const Wall<D>& half_space,
              double margin, std::vector<ContactCandidate<D>>& out);
 
-/// The candidate of two shapes of space that a key from collide() names, to the bit, but for `value`. None where
-/// the key does not say all: edges that are nearly parallel touch at a place that depends on the poses.
+/// The candidate of two shapes of space that a key from collide() names, to the bit, but for `value`. None
+/// where the key does not say all: edges that are nearly parallel touch at a place that depends on the poses.
 std::optional<ContactCandidate<3>> named_candidate(const ContactKey& key, const Shape<3>& shape_a,
                                                    const Shape<3>& shape_b);
 

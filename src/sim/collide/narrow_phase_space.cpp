@@ -547,12 +547,18 @@ std::optional<ContactCandidate<3>> named_candidate(const ContactKey& key, const 
   const Couple couple{key.a, key.b, of_a, of_b, left, part_b, parts_b, digits_a, digits_b};
   if (kind == kTurnedEdges) return couple.edges(which_a, which_b, true, 0);
   switch (Kind(kind)) {
-    case Kind::corner_of_a: return couple.corner_of_a(which_a, which_b, 0);
-    case Kind::corner_of_b: return couple.corner_of_b(which_a, which_b, 0);
-    case Kind::corners: return couple.corners(which_a, which_b, 0);
-    case Kind::edges: return couple.edges(which_a, which_b, false, 0);
-    case Kind::corner_at_edge_b: return couple.corner_at_edge_b(which_a, which_b, 0);
-    case Kind::corner_at_edge_a: return couple.corner_at_edge_a(which_a, which_b, 0);
+    case Kind::corner_of_a:
+      return couple.corner_of_a(which_a, which_b, 0);
+    case Kind::corner_of_b:
+      return couple.corner_of_b(which_a, which_b, 0);
+    case Kind::corners:
+      return couple.corners(which_a, which_b, 0);
+    case Kind::edges:
+      return couple.edges(which_a, which_b, false, 0);
+    case Kind::corner_at_edge_b:
+      return couple.corner_at_edge_b(which_a, which_b, 0);
+    case Kind::corner_at_edge_a:
+      return couple.corner_at_edge_a(which_a, which_b, 0);
   }
   return {};
 }

@@ -25,6 +25,7 @@ namespace {
 constexpr double kChecks = 60;          // a second
 constexpr double kExact = 1e-10;        // of g: what exact forces may leave
 constexpr double kNear = 1e-3;          // of the thinner body: no wider a gap joins
+constexpr std::size_t kMany = 500;      // contacts: forces of more take long, too
 constexpr double kClosed = 1e-6;        // of it: no wider a gap bears what rests
 constexpr double kRounding = 1 + 1e-6;  // of a span of time
 
@@ -279,10 +280,10 @@ std::span<typename Sleep<D>::Island> Sleep<D>::candidates(const State<D>& state)
       if (at != candidates_.end() && at->bodies[0] == roots_.root(body)) at->jointed = true;
     });
   }
-  // The solver's attempts leave other forces behind, to which joints must settle again; and exact forces of
-  // all moving bodies take long.
+  // The solver's attempts leave other forces behind, to which joints must settle again; and exact forces, or
+  // those of many contacts, take long.
   std::erase_if(candidates_, [&](const Island& island) {
-    return (exact_ || island.jointed) && !due_at_waits(island.quiet);
+    return (exact_ || island.jointed || island.contacts.size() > kMany) && !due_at_waits(island.quiet);
   });
   return candidates_;
 }

@@ -30,10 +30,11 @@ constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
 constexpr double kSearches = 60;         // a second, for the features of all pairs
 constexpr double kCalm = 0.01;           // of the narrower body: so far a pair moves with the same features
-constexpr double kSpare = 0.02;          // of their bounding radius: what two may come nearer by being struck
-constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds at least,
-constexpr int kMostParts = 10000;        // and so many, until changes are
-constexpr double kParted = 1e-12;        // of what is wanted
+constexpr double kWider = 0.05;    // bounding radii: how far a body may come before pairs are sought anew
+constexpr double kSpare = 0.02;    // of their bounding radius: what two may come nearer by being struck
+constexpr int kPartRounds = 2000;  // gaps times rounds of pushing apart; 4 to 16 rounds at least,
+constexpr int kMostParts = 10000;  // and so many, until changes are
+constexpr double kParted = 1e-12;  // of what is wanted
 constexpr int kSettlingTouches = 50000;  // times iterations, of touches that have not settled then
 constexpr int kFewTouches = 500;         // of more, less in proportion, but as if
 constexpr int kSettlingRounds = 3;       // so many were of all
@@ -247,8 +248,8 @@ double SpaceIterative<D>::passing_speed(int a, int b) const {
 template <int D>
 double SpaceIterative<D>::pair_margin(int a, int b, double h) const {
   const double farther = carries_.empty() ? 0 : farther_[a] + farther_[b];
-  return std::min(margin(a, h) + margin(b, h),
-                  h * (passing_speed(a, b) + 2 * g_ * h) + farther + kSpare * (bounding_radius_[a] + bounding_radius_[b]));
+  return std::min(margin(a, h) + margin(b, h), h * (passing_speed(a, b) + 2 * g_ * h) + farther +
+                                                   kSpare * (bounding_radius_[a] + bounding_radius_[b]));
 }
 
 // All features are looked for sixty times a second. In between, a pair that hardly moves keeps those of its
@@ -265,11 +266,10 @@ void SpaceIterative<D>::find(StepPart<D> step) {
     const Vec<D> more = Vec<D>::Constant(margin(i, h));
     bounds_[i].lower -= more, bounds_[i].upper += more;
   }
-  const auto& pairs = broad_.find(
-      bounds_, inactive_, [&](int a, int b) { return may_touch_(a, b); }, points_);
+  find_near(h);
 
   // ascending: of a body first its walls, from the last
-  auto pair = pairs.begin();
+  auto pair = near_pairs_.begin();
   std::span<const Contact<D>> old = step.state.contacts;
   std::size_t memo = 0;
   for (int a = 0; a < n; ++a) {
@@ -281,8 +281,9 @@ void SpaceIterative<D>::find(StepPart<D> step) {
       sim::collide(a, p.shape, stances_[a], wall, w, margin(a, h), gaps_);
       for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, -1 - wall));
     }
-    for (; pair != pairs.end() && pair->first == a; ++pair) {
+    for (; pair != near_pairs_.end() && pair->first == a; ++pair) {
       const int b = pair->second;
+      if (!bounds_[a].meets(bounds_[b])) continue;
       gaps_.clear();
       if (elapsed == 0 || !keep_features(a, b, elapsed, old, memo)) {
         const Body<D>& q = model_.bodies[b];
@@ -293,8 +294,29 @@ void SpaceIterative<D>::find(StepPart<D> step) {
   }
 }
 
-// The features of a pair's contacts in the state, into gaps_; false where it has none, moves too fast, or a key
-// does not say all. `old`: contacts from this pair on; `memo`: where its keys would be among those known.
+// Pairs whose bounds may overlap: those of wider bounds, as long as no body leaves its own.
+template <int D>
+void SpaceIterative<D>::find_near(double h) {
+  const auto holds = [&](const Bounds<D>& wide, const Bounds<D>& bounds) {
+    return (wide.lower.array() <= bounds.lower.array()).all() &&
+           (wide.upper.array() >= bounds.upper.array()).all();
+  };
+  const std::size_t n = bounds_.size();
+  bool known = wide_.size() == n && inactive_ == inactive_then_;
+  for (std::size_t i = 0; known && i < n; ++i) known = holds(wide_[i], bounds_[i]);
+  if (known) return;
+  wide_ = bounds_, inactive_then_ = inactive_;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (inactive_[i] && drives_.number(int(i)) < 0) continue;
+    const Vec<D> more = Vec<D>::Constant(kWider * bounding_radius_[i] + 3 * margin(int(i), h));
+    wide_[i].lower -= more, wide_[i].upper += more;
+  }
+  near_pairs_ = broad_.find(
+      wide_, inactive_, [&](int a, int b) { return may_touch_(a, b); }, points_);
+}
+
+// The features of a pair's contacts in the state, into gaps_; false where it has none, moves too fast, or a
+// key does not say all. `old`: contacts from this pair on; `memo`: where its keys would be among those known.
 template <int D>
 bool SpaceIterative<D>::keep_features(int a, int b, double elapsed, std::span<const Contact<D>>& old,
                                       std::size_t& memo) {

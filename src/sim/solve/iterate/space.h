@@ -91,6 +91,7 @@ class SpaceIterative final : public ContactSolver<D> {
 
   void prepare(const State<D>& state, double t, double h);
   void find(StepPart<D> step);
+  void find_near(double h);
   bool keep_features(int a, int b, double elapsed, std::span<const Contact<D>>& old, std::size_t& memo);
   void add(const ContactCandidate<D>& gap, const Material& pair);
   bool update_sleep(State<D>& state, double t, double h);
@@ -186,7 +187,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<double> farther_;  // likewise: how far they get from where their velocity takes them, m
   Stages stages_;
   double g_ = 0, restitution_threshold_ = 0;
-  std::int64_t every_ = 1;  // steps between two searches for features
+  std::int64_t every_ = 1;                       // steps between two searches for features
   std::vector<double> bounding_radius_, width_;  // of bodies, m
   std::vector<char> round_;
   AllowedOverlap allowed_overlap_;
@@ -196,8 +197,9 @@ class SpaceIterative final : public ContactSolver<D> {
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<PointBody<D>> moving_;
-  std::vector<Bounds<D>> bounds_;
-  std::vector<char> inactive_, points_;
+  std::vector<Bounds<D>> bounds_, wide_;  // of bodies in a step; and those that near_pairs_ are of
+  std::vector<std::pair<int, int>> near_pairs_;
+  std::vector<char> inactive_, inactive_then_, points_;
   std::vector<ContactCandidate<D>> gaps_;
   int iterations_ = 0;                      // of this substep, of all touches
   std::vector<ContactConstraint> touches_;  // ascending by key
