@@ -12,6 +12,7 @@
 #include "allocations.h"
 #include "rooms.h"
 #include "sim/energy/energy.h"
+#include "sim/math/lanes.h"
 #include "sim/math/trig.h"
 #include "sim/solve/iterate/wide_sin_cos.h"
 #include "sim/step/stepper.h"
@@ -266,6 +267,23 @@ TEST(PlaneIterative, AHeapCutInTwoIsTheHeapInOne) {
     whole.box({0.5, 0.5}, {0.7 * (i % 20) + 0.1 * (i / 20 % 3), 0.6 + 0.7 * (i / 20)}, 0.4, 0.2, {0, 0},
               0.1 * (i % 7));
   expect_cut_is_whole(whole, {0.5, 1.25, 4.0});
+}
+
+TEST(PlaneIterative, TwoLanesGiveTheSameBitsAsFour) {
+  if (!lanes::four_lanes) GTEST_SKIP() << "this processor has no AVX2";
+  const auto run = [](bool four) {
+    lanes::four_lanes = four;
+    Room r;
+    r.floor();
+    for (int i = 0; i < 200; ++i) {
+      const Vec2 x{0.7 * (i % 20) + 0.1 * (i / 20 % 3), 0.6 + 0.7 * (i / 20)};
+      i % 3 ? r.box({0.5, 0.5}, x, 0.4, 0.2, {0, 0}, 0.1 * (i % 7)) : r.disc(0.25, x, 0.4, 0.2);
+    }
+    r.run(1);
+    lanes::four_lanes = true;
+    return words(r.state());
+  };
+  EXPECT_EQ(run(false), run(true));
 }
 
 // 400 boxes dropped come to rest and stay there to the bit, each at most a hundredth of its reach in another.

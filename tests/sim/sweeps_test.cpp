@@ -8,6 +8,7 @@
 #include <cmath>
 #include <thread>
 
+#include "sim/math/lanes.h"
 #include "sim/solids.h"
 #include "sim/space_rooms.h"
 #include "sim/units.h"
@@ -111,9 +112,21 @@ TEST(SpaceIterative, ASmallHeapLiesInItselfByAMillionthAtMost) {
 TEST(SpaceIterative, ARunCutInTwoIsTheRunInOne) {
   const World<3> world = heap(12, 2, 0.5);
   const State<3> whole = stepped(world, 300);
-  World<3> half = world;
-  half.state = stepped(world, 137);
-  EXPECT_EQ(words(stepped(half, 163)), words(whole));
+  for (const int at : {53, 137, 240, 291}) {
+    World<3> half = world;
+    half.state = stepped(world, at);
+    EXPECT_EQ(words(stepped(half, 300 - at)), words(whole)) << at;
+  }
+}
+
+TEST(SpaceIterative, TwoLanesGiveTheSameBitsAsFour) {
+  if (!lanes::four_lanes) GTEST_SKIP() << "this processor has no AVX2";
+  const World<3> world = heap(40, 3, 0.5);
+  const State<3> four = stepped(world, 400);
+  lanes::four_lanes = false;
+  const State<3> two = stepped(world, 400);
+  lanes::four_lanes = true;
+  EXPECT_EQ(words(two), words(four));
 }
 
 // less the booked work of pushing overlaps apart

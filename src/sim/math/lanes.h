@@ -119,10 +119,11 @@ OBSCURA_INLINE void scatter(double* m, const int* i, const Quad<V4>& in) {
 }
 
 #if defined(__x86_64__)
-inline const bool kWide = __builtin_cpu_supports("avx2") != 0;
+/// Whether the wide versions are used: where the processor has AVX2. Tests clear it, to compare the bits.
+inline bool four_lanes = __builtin_cpu_supports("avx2") != 0;
 #define OBSCURA_WIDE __attribute__((target("avx2")))
 #else
-inline constexpr bool kWide = false;
+inline bool four_lanes = false;
 #define OBSCURA_WIDE
 #endif
 

@@ -191,12 +191,12 @@ std::vector<Half> halves(const CoreShapes& cores) {
 void find_outdated(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
                    const Half* halves, double share, std::vector<Outdated>& boxes, Found& others) {
   boxes.clear(), others.clear();
-  kWide ? outdated_wide(batches, count, v, poses, halves, share, boxes, others)
-        : outdated_all<V2>(batches, count, v, poses, halves, share, boxes, others);
+  four_lanes ? outdated_wide(batches, count, v, poses, halves, share, boxes, others)
+             : outdated_all<V2>(batches, count, v, poses, halves, share, boxes, others);
 }
 
 void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves) {
-  kWide ? meet_wide(manifolds, count, poses, halves) : meet_all<V2>(manifolds, count, poses, halves);
+  four_lanes ? meet_wide(manifolds, count, poses, halves) : meet_all<V2>(manifolds, count, poses, halves);
 }
 
 }  // namespace obscura::sim::plane

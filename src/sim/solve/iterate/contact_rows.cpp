@@ -466,7 +466,7 @@ void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k) {
 }
 
 void expand(const ContactBatch& s, const Pose* at, Rows& out) {
-  kWide ? expand_wide(s, at, out) : expand_one<V2>(s, at, out);
+  four_lanes ? expand_wide(s, at, out) : expand_one<V2>(s, at, out);
 }
 
 TouchRow row(const ContactBatch& g, int lane, int k, const Pose& a, const Pose& b) {
@@ -500,19 +500,19 @@ TouchRow row(const ContactBatch& g, int lane, int k, const Pose& a, const Pose& 
 bool start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v, const StepConstants& pace,
            Found& closing, Found& blows) {
   closing.clear(), blows.clear();
-  return kWide ? start_wide(s, n, at, old, v, pace, closing, blows)
-               : start_all<V2>(s, n, at, old, v, pace, closing, blows);
+  return four_lanes ? start_wide(s, n, at, old, v, pace, closing, blows)
+                    : start_all<V2>(s, n, at, old, v, pace, closing, blows);
 }
 double closing_rate(const ContactBatch* s, int n, const Pose* at, const Motion* v, double h) {
-  return kWide ? closing_rate_wide(s, n, at, v, h) : closing_rate_all<V2>(s, n, at, v, h);
+  return four_lanes ? closing_rate_wide(s, n, at, v, h) : closing_rate_all<V2>(s, n, at, v, h);
 }
 void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  if (kWide) return sweep_wide(s, n, at, v, pace);
+  if (four_lanes) return sweep_wide(s, n, at, v, pace);
   sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
 }
 int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace, Stirred& stirred) {
-  const int pairs = kWide ? sweep_some_wide(s, n, at, v, pace, stirred)
-                          : sweep_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &stirred);
+  const int pairs = four_lanes ? sweep_some_wide(s, n, at, v, pace, stirred)
+                               : sweep_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &stirred);
   // walls are never stirred
   stirred.bodies.back() = 0;
   for (unsigned char& body : stirred.bodies) {
@@ -522,13 +522,13 @@ int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstan
 }
 void finish(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
             Contact<2>* contacts) {
-  if (kWide) return finish_wide(s, n, at, v, pace, contacts);
+  if (four_lanes) return finish_wide(s, n, at, v, pace, contacts);
   contacts ? sweep_all<V2, true, true>(s, n, at, v, pace, contacts)
            : sweep_all<V2, true, false>(s, n, at, v, pace, nullptr);
 }
 void project(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d, double share,
              AllowedOverlap allowed) {
-  kWide ? project_wide(s, p, n, at, d, share, allowed) : project_all<V2>(s, p, n, at, d, share, allowed);
+  four_lanes ? project_wide(s, p, n, at, d, share, allowed) : project_all<V2>(s, p, n, at, d, share, allowed);
 }
 
 }  // namespace obscura::sim::plane

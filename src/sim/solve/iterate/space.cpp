@@ -28,8 +28,8 @@ constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
-constexpr double kSearches = 60;         // a second, for the features of all pairs
-constexpr double kCalm = 0.01;           // of the narrower body: so far a pair moves with the same features
+constexpr double kFeatureSearches = 60;  // a second, for the features of all pairs
+constexpr double kSlow = 0.01;           // of the narrower body: so far a pair moves with the same features
 constexpr double kWider = 0.05;    // bounding radii: how far a body may come before pairs are sought anew
 constexpr double kSpare = 0.02;    // of their bounding radius: what two may come nearer by being struck
 constexpr int kPartRounds = 2000;  // gaps times rounds of pushing apart; 4 to 16 rounds at least,
@@ -64,7 +64,7 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
       drives_(model) {
   const double h = 1 / value(model.rate);
   g_ = std::sqrt(model.gravity.squaredNorm());
-  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kSearches));
+  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kFeatureSearches));
   restitution_threshold_ = 2 * h / substeps_for(0, h) * g_ + 1e-9 * model.scale;
   allowed_overlap_ = allowed_overlap(model);
   for (const Body<D>& body : model.bodies) {
@@ -326,7 +326,7 @@ bool SpaceIterative<D>::keep_features(int a, int b, double elapsed, std::span<co
   for (end = begin; end < old.size() && old[end].key.a == a && old[end].key.b == b;) ++end;
   const std::span<const Contact<D>> its = old.subspan(begin, end - begin);
   old = old.subspan(begin);
-  if (its.empty() || passing_speed(a, b) * elapsed > kCalm * std::min(width_[a], width_[b])) return false;
+  if (its.empty() || passing_speed(a, b) * elapsed > kSlow * std::min(width_[a], width_[b])) return false;
   for (const Contact<D>& contact : its) {
     while (memo < known_.size() && known_[memo].key < contact.key) ++memo;
     if (memo < known_.size() && known_[memo].key == contact.key && !known_[memo].of_poses) {

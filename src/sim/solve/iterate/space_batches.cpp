@@ -286,14 +286,14 @@ void SpaceBatches::store(std::span<ContactConstraint<3>> contacts) const {
 
 void SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back) {
   double* const numbers = bodies.data()->v.data();
-  if (kWide) return iterate_wide(batches_, rows_, belts_, numbers, back);
+  if (four_lanes) return iterate_wide(batches_, rows_, belts_, numbers, back);
   iterate_all<V2, false>(batches_, rows_, belts_, numbers, back, nullptr);
 }
 
 int SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back, ActiveBodies& active) {
   double* const numbers = bodies.data()->v.data();
-  const int done = kWide ? iterate_some_wide(batches_, rows_, belts_, numbers, back, active)
-                         : iterate_all<V2, true>(batches_, rows_, belts_, numbers, back, &active);
+  const int done = four_lanes ? iterate_some_wide(batches_, rows_, belts_, numbers, back, active)
+                              : iterate_all<V2, true>(batches_, rows_, belts_, numbers, back, &active);
   active.bodies.back() = 0;
   for (unsigned char& body : active.bodies) {
     const bool next = body & ActiveBodies::kNext;
