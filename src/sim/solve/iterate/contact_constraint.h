@@ -12,8 +12,6 @@ struct ContactConstraint {
   Vec<D> n, arm_a, arm_b, point;
   double gap = 0, mu = 0, bounce = 0;
   double per_width = 0;                     // 1/m: of the narrower body
-  double normal = 0, across = 0;            // 1/kg: J M^-1 J' along n, and across it at most
-  Vec<D> askew = Vec<D>::Zero();            // 1/kg: velocity across n by an impulse along it
   double least = 0;                         // m/s: of the normal speed after the substep
   double normal_impulse = 0;                // N s, along n
   Vec<D> tangent_impulse = Vec<D>::Zero();  // N s

@@ -238,9 +238,7 @@ double SpaceIterative<D>::margin(int body, double h) const {
 // how fast points of one body pass those of another, at most
 template <int D>
 double SpaceIterative<D>::passing_speed(int a, int b) const {
-  return std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) +
-         bounding_radius_[a] * std::sqrt(moving_[a].w.squaredNorm()) +
-         bounding_radius_[b] * std::sqrt(moving_[b].w.squaredNorm());
+  return std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) + swing_[a] + swing_[b];
 }
 
 // How near features of a pair may come to touch in the step, m. Of two that fly side by side none comes
@@ -248,8 +246,8 @@ double SpaceIterative<D>::passing_speed(int a, int b) const {
 template <int D>
 double SpaceIterative<D>::pair_margin(int a, int b, double h) const {
   const double farther = carries_.empty() ? 0 : farther_[a] + farther_[b];
-  return std::min(margin(a, h) + margin(b, h), h * (passing_speed(a, b) + 2 * g_ * h) + farther +
-                                                   kSpare * (bounding_radius_[a] + bounding_radius_[b]));
+  return std::min(margin_[a] + margin_[b], h * (passing_speed(a, b) + 2 * g_ * h) + farther +
+                                               kSpare * (bounding_radius_[a] + bounding_radius_[b]));
 }
 
 // All features are looked for sixty times a second. In between, a pair that hardly moves keeps those of its
@@ -259,14 +257,15 @@ void SpaceIterative<D>::find(StepPart<D> step) {
   const double h = step.h;
   const double elapsed = double(step.state.step % every_) / value(model_.rate) + step.substep * h;
   const int n = int(model_.bodies.size());
-  bounds_.resize(n), touches_.clear();
+  bounds_.resize(n), margin_.resize(n), swing_.resize(n), touches_.clear();
   known_.swap(features_), features_.clear();
   for (int i = 0; i < n; ++i) {
     bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
-    const Vec<D> more = Vec<D>::Constant(margin(i, h));
+    margin_[i] = margin(i, h), swing_[i] = bounding_radius_[i] * std::sqrt(moving_[i].w.squaredNorm());
+    const Vec<D> more = Vec<D>::Constant(margin_[i]);
     bounds_[i].lower -= more, bounds_[i].upper += more;
   }
-  find_near(h);
+  find_near();
 
   // ascending: of a body first its walls, from the last
   auto pair = near_pairs_.begin();
@@ -276,10 +275,11 @@ void SpaceIterative<D>::find(StepPart<D> step) {
     const Body<D>& p = model_.bodies[a];
     for (int wall = int(model_.walls.size()); !inactive_[a] && !p.handout && wall-- > 0;) {
       const Wall<D>& w = model_.walls[wall];
-      if ((stances_[a].x - w.point).dot(w.normal) > bounding_radius_[a] + margin(a, h)) continue;
+      if ((stances_[a].x - w.point).dot(w.normal) > bounding_radius_[a] + margin_[a]) continue;
       gaps_.clear();
-      sim::collide(a, p.shape, stances_[a], wall, w, margin(a, h), gaps_);
-      for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, -1 - wall));
+      sim::collide(a, p.shape, stances_[a], wall, w, margin_[a], gaps_);
+      const Material made = material(model_, a, -1 - wall);
+      for (const ContactCandidate<D>& gap : gaps_) add(gap, made);
     }
     for (; pair != near_pairs_.end() && pair->first == a; ++pair) {
       const int b = pair->second;
@@ -289,14 +289,16 @@ void SpaceIterative<D>::find(StepPart<D> step) {
         const Body<D>& q = model_.bodies[b];
         sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], pair_margin(a, b, h), gaps_);
       }
-      for (const ContactCandidate<D>& gap : gaps_) add(gap, material(model_, a, b));
+      if (gaps_.empty()) continue;
+      const Material made = material(model_, a, b);
+      for (const ContactCandidate<D>& gap : gaps_) add(gap, made);
     }
   }
 }
 
 // Pairs whose bounds may overlap: those of wider bounds, as long as no body leaves its own.
 template <int D>
-void SpaceIterative<D>::find_near(double h) {
+void SpaceIterative<D>::find_near() {
   const auto holds = [&](const Bounds<D>& wide, const Bounds<D>& bounds) {
     return (wide.lower.array() <= bounds.lower.array()).all() &&
            (wide.upper.array() >= bounds.upper.array()).all();
@@ -308,7 +310,7 @@ void SpaceIterative<D>::find_near(double h) {
   wide_ = bounds_, inactive_then_ = inactive_;
   for (std::size_t i = 0; i < n; ++i) {
     if (inactive_[i] && drives_.number(int(i)) < 0) continue;
-    const Vec<D> more = Vec<D>::Constant(kWider * bounding_radius_[i] + 3 * margin(int(i), h));
+    const Vec<D> more = Vec<D>::Constant(kWider * bounding_radius_[i] + 3 * margin_[i]);
     wide_[i].lower -= more, wide_[i].upper += more;
   }
   near_pairs_ = broad_.find(
@@ -359,26 +361,6 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
   touch.mu = pair.friction, touch.bounce = pair.elasticity;
   touch.per_width = 1 / (b == none ? width_[a] : std::min(width_[a], width_[b]));
 
-  // K = 1/m + (r x .)' I^-1 (r x .) of both, along n and across it
-  Vec<D> ways[D];
-  ways[0] = touch.n, ways[1] = perpendicular<D>(touch.n);
-  if constexpr (D == 3) ways[2] = ways[0].cross(ways[1]);
-  AngularVec<D> moments[2][D], spins[2][D];
-  for (int i = 0; i < D; ++i) {
-    moments[0][i] = moment<D>(touch.arm_a, ways[i]), moments[1][i] = moment<D>(touch.arm_b, ways[i]);
-    spins[0][i] = moving_[a].inverse_inertia * moments[0][i];
-    spins[1][i] = moving_[b].inverse_inertia * moments[1][i];
-  }
-  const auto answer = [&](int i, int j) {
-    return (moving_[a].inverse_mass + moving_[b].inverse_mass) * ways[i].dot(ways[j]) +
-           moments[0][i].dot(spins[0][j]) + moments[1][i].dot(spins[1][j]);
-  };
-  touch.normal = answer(0, 0), touch.across = answer(1, 1);
-  for (int i = 1; i < D; ++i) touch.askew += answer(0, i) * ways[i];
-  if constexpr (D == 3) {
-    const double p = touch.across, q = answer(2, 2), r = answer(1, 2), half = 0.5 * (p - q);
-    touch.across = 0.5 * (p + q) + std::sqrt(half * half + r * r);
-  }
   if (carries(a) || carries(b)) touch.belt = belt(touch);
   touches_.push_back(touch), features_.push_back(gap);
 }
@@ -674,6 +656,18 @@ void SpaceIterative<D>::advance(StepPart<D> step) {
   }
 }
 
+// J M^-1 J' of a contact's normal, 1/kg
+template <int D>
+double SpaceIterative<D>::normal_response(const ContactConstraint& touch) const {
+  double sum = 0;
+  for (const auto& [body, arm] : {std::pair(touch.a, &touch.arm_a), std::pair(touch.b, &touch.arm_b)}) {
+    const PointBody<D>& m = moving_[body];
+    const AngularVec<D> turns = moment<D>(*arm, touch.n);
+    sum += m.inverse_mass + turns.dot(m.inverse_inertia * turns);
+  }
+  return sum;
+}
+
 // positions out of each other, a part of the way, by the same rows
 template <int D>
 void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
@@ -692,7 +686,8 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
   if (some_.empty()) return;
   if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
   corrected_ = true;
-  kept_ = moving_, parted_.assign(some_.size(), 0);
+  kept_ = moving_, parted_.assign(some_.size(), 0), responses_.clear();
+  for (const int i : some_) responses_.push_back(normal_response(touches_[i]));
   for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();  // and belts do not push
   const int fewest = std::clamp(kPartRounds / int(some_.size()), 4, 16),
             rounds = std::max(fewest, kMostParts / int(some_.size()));
@@ -704,9 +699,9 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
       const ContactConstraint& touch = touches_[some_[k]];
       const double wanted = share * (-touch.gap - allowed(touch));
       // what another has pushed apart too is taken back
-      const double left = std::max(wanted - touch.n.dot(slip(touch)), -touch.normal * parted_[k]);
-      parted_[k] += left / touch.normal;
-      push(touch, left / touch.normal * touch.n);
+      const double left = std::max(wanted - touch.n.dot(slip(touch)), -responses_[k] * parted_[k]);
+      parted_[k] += left / responses_[k];
+      push(touch, left / responses_[k] * touch.n);
       most = std::max(most, wanted), change = std::max(change, std::fabs(left));
     }
     if (joints_.empty()) continue;

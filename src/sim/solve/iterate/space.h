@@ -91,7 +91,7 @@ class SpaceIterative final : public ContactSolver<D> {
 
   void prepare(const State<D>& state, double t, double h);
   void find(StepPart<D> step);
-  void find_near(double h);
+  void find_near();
   bool keep_features(int a, int b, double elapsed, std::span<const Contact<D>>& old, std::size_t& memo);
   void add(const ContactCandidate<D>& gap, const Material& pair);
   bool update_sleep(State<D>& state, double t, double h);
@@ -164,6 +164,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void solve_joint_velocities();
   void find_strikes(double h);
   void place_bodies(State<D>& state, double h);
+  double normal_response(const ContactConstraint& touch) const;
   void correct_overlaps(State<D>& state, double h);
   void project_joints(State<D>& state, double h);
   void report_contacts(State<D>& state, double h) const;
@@ -197,6 +198,8 @@ class SpaceIterative final : public ContactSolver<D> {
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<PointBody<D>> moving_;
+  std::vector<double> margin_,
+      swing_;  // bodies: m, see margin(); m/s, of its farthest point by its spin alone
   std::vector<Bounds<D>> bounds_, wide_;  // of bodies in a step; and those that near_pairs_ are of
   std::vector<std::pair<int, int>> near_pairs_;
   std::vector<char> inactive_, inactive_then_, points_;
@@ -216,6 +219,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<int> components_;                   // and of their joints
   Islands islands_;
   std::vector<PointBody<D>> kept_;
+  std::vector<double> responses_;    // of the touches that are pushed apart, 1/kg
   std::vector<double> parted_;       // impulses that push touches apart, of unit time, kg m
   std::vector<Vec<D>> corrections_;  // how far this step has pushed each body out of others, m
   bool corrected_ = false;
@@ -229,6 +233,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<Due> due_;
   std::vector<double> strikes_;             // bodies: s, when what the iterations change begins to move them
   std::vector<int> rounds_;                 // impacts of each body
+  std::vector<char> crowded_;               // bodies whose impacts are left to the iterations
   std::vector<int> around_, around_start_;  // touches of each body
   std::vector<int> meets_, changed_;        // touches of an impact, and of all that it moves
   Cone<D> cone_;

@@ -39,6 +39,10 @@ OBSCURA_INLINE void store3(double (&to)[3][4], int lane, const Wide3<V>& v) {
   store<V>(to[0] + lane, v.x), store<V>(to[1] + lane, v.y), store<V>(to[2] + lane, v.z);
 }
 template <class V>
+struct Symmetric {
+  V xx, xy, xz, yy, yz, zz;
+};
+template <class V>
 OBSCURA_INLINE V inner(const Wide3<V>& p, const Wide3<V>& q) {
   return p.x * q.x + p.y * q.y + p.z * q.z;
 }
@@ -80,6 +84,58 @@ struct WideBody {
     w.z += i20 * m.x + i21 * m.y + i22 * m.z;
   }
 };
+
+// K of one side, without its mass: - [r]x I^-1 [r]x, of which column k is r x (I^-1 (r x e_k)) taken back
+template <class V>
+OBSCURA_INLINE void add_turning(const WideBody<V>& body, const Wide3<V>& r, Symmetric<V>& k) {
+  // I^-1 [r]x, column by column: r x e_x = (0, z, -y), r x e_y = (-z, 0, x), r x e_z = (y, -x, 0)
+  const Wide3<V> x{body.i10 * r.z - body.i20 * r.y, body.i11 * r.z - body.i21 * r.y,
+                   body.i21 * r.z - body.i22 * r.y};
+  const Wide3<V> y{body.i20 * r.x - body.i00 * r.z, body.i21 * r.x - body.i10 * r.z,
+                   body.i22 * r.x - body.i20 * r.z};
+  const Wide3<V> z{body.i00 * r.y - body.i10 * r.x, body.i10 * r.y - body.i11 * r.x,
+                   body.i20 * r.y - body.i21 * r.x};
+  k.xx += r.z * x.y - r.y * x.z, k.xy += r.z * y.y - r.y * y.z, k.xz += r.z * z.y - r.y * z.z;
+  k.yy += r.x * y.z - r.z * y.x, k.yz += r.x * z.z - r.z * z.x, k.zz += r.y * z.x - r.x * z.y;
+}
+
+// What the contacts answer, J M^-1 J' = K: along n, across it at most, and across it by an impulse along n.
+//   askew = K n - n (n . K n)        of the block across n:  trace = tr K - n . K n,  determinant = n .
+//   adj(K) n
+template <class V>
+OBSCURA_INLINE void respond_all(const std::vector<SpaceBatches::Batch>& batches,
+                                std::vector<SpaceBatches::Row>& rows, const double* bodies) {
+  const V none{}, one = V{} + 1.0;
+  for (const SpaceBatches::Batch& g : batches) {
+    for (int lane = 0; lane < SpaceBatches::kLanes; lane += Of<V>::lanes) {
+      const WideBody<V> a(bodies, g.at_a + lane), b(bodies, g.at_b + lane);
+      const V masses = a.v.w + b.v.w;
+      for (int i = g.first; i < g.first + g.count; ++i) {
+        SpaceBatches::Row& r = rows[std::size_t(i)];
+        const Wide3<V> n = load3<V>(r.n, lane);
+        Symmetric<V> k{masses, none, none, masses, none, masses};
+        add_turning<V>(a, load3<V>(r.arm_a, lane), k), add_turning<V>(b, load3<V>(r.arm_b, lane), k);
+        const Wide3<V> kn{k.xx * n.x + k.xy * n.y + k.xz * n.z, k.xy * n.x + k.yy * n.y + k.yz * n.z,
+                          k.xz * n.x + k.yz * n.y + k.zz * n.z};
+        const V normal = inner<V>(n, kn);
+        const V xx = k.yy * k.zz - k.yz * k.yz, yy = k.xx * k.zz - k.xz * k.xz,
+                zz = k.xx * k.yy - k.xy * k.xy;
+        const V xy = k.xz * k.yz - k.xy * k.zz, xz = k.xy * k.yz - k.xz * k.yy,
+                yz = k.xy * k.xz - k.xx * k.yz;
+        const V determinant = n.x * (xx * n.x + xy * n.y + xz * n.z) +
+                              n.y * (xy * n.x + yy * n.y + yz * n.z) + n.z * (xz * n.x + yz * n.y + zz * n.z);
+        const V half = 0.5 * ((k.xx + k.yy + k.zz) - normal);
+        const V across = half + root(larger<V>(half * half - determinant, none));
+        // unused lanes have no normal
+        const Mask<V> used = normal > none;
+        store<V>(r.per_normal + lane, pick<V>(used, one / pick<V>(used, normal, one), none));
+        store<V>(r.across + lane, pick<V>(used, across, none));
+        store<V>(r.per_across + lane, pick<V>(used, one / pick<V>(used, across, one), none));
+        store3<V>(r.askew, lane, {kn.x - normal * n.x, kn.y - normal * n.y, kn.z - normal * n.z});
+      }
+    }
+  }
+}
 
 // kSome: of active bodies alone
 template <class V, bool kSome>
@@ -167,6 +223,10 @@ OBSCURA_INLINE int iterate_all(std::vector<SpaceBatches::Batch>& batches,
   return 0;
 }
 
+OBSCURA_WIDE void respond_wide(const std::vector<SpaceBatches::Batch>& batches,
+                               std::vector<SpaceBatches::Row>& rows, const double* bodies) {
+  respond_all<V4>(batches, rows, bodies);
+}
 OBSCURA_WIDE void iterate_wide(std::vector<SpaceBatches::Batch>& batches,
                                std::vector<SpaceBatches::Row>& rows,
                                const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back) {
@@ -237,6 +297,8 @@ void SpaceBatches::build(std::span<const ContactConstraint<3>> contacts, std::sp
     }
     add(pair, lane++, contacts, which);
   }
+  const double* const numbers = bodies.data()->v.data();
+  four_lanes ? respond_wide(batches_, rows_, numbers) : respond_all<V2>(batches_, rows_, numbers);
   load(contacts);
 }
 
@@ -252,12 +314,9 @@ void SpaceBatches::add(const Pair& pair, int lane, std::span<const ContactConstr
     Row& r = rows_[std::size_t(g.first + k)];
     for (int i = 0; i < 3; ++i) {
       r.n[i][lane] = from.n[i], r.arm_a[i][lane] = from.arm_a[i], r.arm_b[i][lane] = from.arm_b[i];
-      r.askew[i][lane] = from.askew[i];
       if (!belts_.empty()) belts_[std::size_t(g.first + k)].speed[i][lane] = from.belt[i];
     }
     g.mu[lane] = from.mu, g.per_width[lane] = from.per_width;
-    r.per_normal[lane] = 1 / from.normal;
-    r.across[lane] = from.across, r.per_across[lane] = 1 / from.across;
     r.contact[lane] = number;
   }
 }

@@ -43,7 +43,7 @@ class SpaceBatches {
   /// One contact point of four pairs.
   struct alignas(64) Row {
     double n[3][kLanes], arm_a[3][kLanes], arm_b[3][kLanes], askew[3][kLanes];
-    double normal[kLanes], per_normal[kLanes], across[kLanes], per_across[kLanes];
+    double per_normal[kLanes], across[kLanes], per_across[kLanes];
     double least[kLanes], normal_impulse[kLanes], tangent_impulse[3][kLanes];
     int contact[kLanes];  // -1: none
   };

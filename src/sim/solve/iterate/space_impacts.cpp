@@ -233,7 +233,7 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
       touches_[i].passes = true;
   }
   row_features_ = features_;
-  rounds_.assign(n + 1, 0);
+  rounds_.assign(n + 1, 0), crowded_.assign(n + 1, 0);
   std::make_heap(due_.begin(), due_.end());
   find_turned_pairs(h);
   if (due_.empty()) {
@@ -263,8 +263,15 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
     const Due due = due_.back();
     due_.pop_back();
     if (due.rounds != rounds(due.touch)) continue;
+    if (crowded_[touches_[due.touch].a] || crowded_[touches_[due.touch].b]) continue;
     if (!has_nearest_features(due, h)) continue;
-    if (!gather_impact(due.touch, due.when, h) || !solve_impact(due.when, h, state.work)) continue;
+    if (!gather_impact(due.touch, due.when, h)) {
+      // so many touch there that what meets them later is left to the iterations, too
+      for (const int i : meets_) crowded_[touches_[i].a] = crowded_[touches_[i].b] = 1;
+      crowded_.back() = 0;
+      continue;
+    }
+    if (!solve_impact(due.when, h, state.work)) continue;
     struck_ = true;
     changed_.clear();
     for (const int i : meets_) {
