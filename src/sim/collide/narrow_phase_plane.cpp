@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/collide/contact_key.h"
 #include "sim/shape/convex_polygon.h"
 
 namespace obscura::sim {
@@ -41,10 +42,8 @@ struct Couple {
   // which: numbers of the corner or face of a, and of b
   ContactCandidate<2> gap(Kind kind, int which_a, int which_b, double core) const {
     ContactCandidate<2> made;
-    unsigned feature = unsigned(kind);
-    feature = (feature + 3u * unsigned(part_a)) * unsigned(parts_b) + unsigned(part_b);
-    feature = (feature * unsigned(digits_a) + unsigned(which_a)) * unsigned(digits_b) + unsigned(which_b);
-    made.key = {a, b, int(feature & 0x7fffffffu)};
+    made.key = {a, b,
+                pack_features({int(kind), part_a, part_b, which_a, which_b}, parts_b, digits_a, digits_b)};
     made.kind = kind;
     made.on_a = of_a.corner(which_a);
     made.on_b = of_b.corner(which_b);
@@ -220,16 +219,6 @@ void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin,
   }
 }
 
-// more than the number of any corner of any part
-int digits(const Shape<2>& shape) {
-  int most = 1;
-  for (int i = 0; i < parts(shape); ++i) {
-    const Core<2> one = core(part(shape, i));
-    most = std::max(most, one.box ? 4 : int(one.corners.size()));
-  }
-  return most;
-}
-
 }  // namespace
 
 template <int D>
@@ -237,7 +226,7 @@ void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, c
              const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out) {
   static_assert(D == 2, "space comes with its own outlines");
   const Lie a_in_b = lie(at_a, at_b);
-  const int digits_a = digits(shape_a), digits_b = digits(shape_b);
+  const int digits_a = feature_digits(shape_a), digits_b = feature_digits(shape_b);
   for (int i = 0; i < parts(shape_a); ++i) {
     const ConvexPolygon of_a(part(shape_a, i));
     for (int k = 0; k < parts(shape_b); ++k) {
@@ -251,7 +240,7 @@ template <int D>
 void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, const Wall<D>& half_space,
              double margin, std::vector<ContactCandidate<D>>& out) {
   static_assert(D == 2, "space comes with its own outlines");
-  const int digits_a = digits(shape);
+  const int digits_a = feature_digits(shape);
   for (int i = 0; i < parts(shape); ++i) {
     const ConvexPolygon outline(part(shape, i));
     for (int k = 0; k < outline.corners(); ++k) {
@@ -259,7 +248,7 @@ void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, co
       const double value = half_space.normal.dot(p - half_space.point) - outline.radius();
       if (!(value < margin)) continue;
       ContactCandidate<D> made;
-      made.key = {a, -1 - wall, i * digits_a + k};
+      made.key = {a, -1 - wall, pack_features(i, k, digits_a)};
       made.kind = ContactCandidate<D>::Kind::corner_of_a;
       made.on_a = outline.corner(k);
       made.on_b = half_space.point;

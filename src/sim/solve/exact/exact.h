@@ -207,6 +207,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void activate(const Group& group);
   void activate_all();
   void resize_for(State<D>& state);
+  void write_lone_contacts(State<D>& state, int body);
   void measure_travel(const State<D>& state);
   void count_cut(int a, int b);
   int cuts_so_far() const;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/collide/contact_key.h"
 #include "sim/energy/energy.h"
 #include "sim/solve/exact/exact.h"
 
@@ -260,15 +261,50 @@ void ExactSolver<D>::step_alone(State<D>& state, int body, double t, double h) {
   cone_.thorough = model_.collision == Collision::event;
   save(state, step_.begun);
   step_group(state, t, h);
+  write_lone_contacts(state, body);
+}
+
+// The forces and impulses of a lone body's contacts, into those that `state` has: into the one of the same
+// features, else into the nearest one of the same pair, so that none is lost.
+template <int D>
+void ExactSolver<D>::write_lone_contacts(State<D>& state, int body) {
+  std::vector<Contact<D>>& found = outcome_.contacts;
+  for (const Contact<D>& struck : outcome_.impulses) {
+    const auto at = std::find_if(found.begin(), found.end(),
+                                 [&](const Contact<D>& contact) { return contact.key == struck.key; });
+    if (at != found.end()) {
+      at->impulse = struck.impulse;
+    } else {
+      found.push_back(struck);
+    }
+  }
+  // the plane's iterative solver has keys of its own; a feature below zero pads a pair
+  const auto exact_key = [&](const ContactKey& key) {
+    if constexpr (D == 2) return narrow_phase_key(model_, key);
+    return key;
+  };
   for (Contact<D>& contact : state.contacts) {
     if (contact.key.a != body && contact.key.b != body) continue;
-    contact.force.setZero(), contact.impulse.setZero();
-    for (const Contact<D>& now : outcome_.contacts) {
-      if (now.key == contact.key) contact = now;
+    contact.force.setZero(), contact.impulse.setZero(), contact.touching = ContactMode::open;
+    const ContactKey key = contact.key, exact = exact_key(key);
+    const auto at =
+        std::find_if(found.begin(), found.end(), [&](const Contact<D>& other) { return other.key == exact; });
+    if (at == found.end()) continue;
+    contact = *at, contact.key = key;
+    found.erase(at);
+  }
+  for (const Contact<D>& left : found) {
+    Contact<D>* nearest = nullptr;
+    double least = 1e300;
+    for (Contact<D>& contact : state.contacts) {
+      if (contact.key.a != left.key.a || contact.key.b != left.key.b || exact_key(contact.key).feature < 0)
+        continue;
+      const double distance = (contact.point - left.point).squaredNorm();
+      if (distance < least) least = distance, nearest = &contact;
     }
-    for (const Contact<D>& struck : outcome_.impulses) {
-      if (struck.key == contact.key) contact.impulse = struck.impulse;
-    }
+    if (!nearest) continue;
+    nearest->force += left.force, nearest->impulse += left.impulse;
+    if (nearest->touching == ContactMode::open) nearest->touching = left.touching;
   }
 }
 
