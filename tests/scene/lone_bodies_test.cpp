@@ -13,7 +13,7 @@ namespace {
 using sim::Snapshot;
 using sim::Vec3;
 
-constexpr double kG = 10, kMass = 2, kRate = 200;
+constexpr double kGravity = 10, kMass = 2, kRate = 200;
 
 // `rest` after a box 'lone' in a room where two other boxes lie on each other far away; `z`: of space
 std::string room(bool space, const std::string& rest) {
@@ -49,7 +49,7 @@ int expect_momentum_balance(const TextRun& run, double end, const std::string& w
   Vec3 v = run.at(0).bodies[0].velocity;
   for (int step = 1; step <= int(end * kRate); ++step) {
     const Snapshot now = run.at(step / kRate);
-    const Vec3 gain = now.bodies[0].velocity - v - Vec3(0, -kG / kRate, 0);
+    const Vec3 gain = now.bodies[0].velocity - v - Vec3(0, -kGravity / kRate, 0);
     v = now.bodies[0].velocity;
     const Vec3 p = contacts_of(now, 0).impulse;
     // both are exact but for rounding, some 1e-16 of 20 N s
@@ -84,9 +84,9 @@ TEST(LoneBodies, ImpulseOfABoxThatFallsFlatIsThatOfTheClosedForm) {
           room(space,
                box(space, "lone", "4, 3", "0.6, 0.4", keys) +
                    (table ? box(space, "table", "4, 0.5", "3, 1", "fixed = true\nelasticity = 0.5\n") : "")));
-      const int step = int(std::ceil(std::sqrt(2 * H / kG) * kRate));
+      const int step = int(std::ceil(std::sqrt(2 * H / kGravity) * kRate));
       const Vec3 p = contacts_of(run.at(step / kRate), 0).impulse;
-      EXPECT_NEAR(p[1], kMass * 1.5 * std::sqrt(2 * kG * H), 1e-6) << space << table;
+      EXPECT_NEAR(p[1], kMass * 1.5 * std::sqrt(2 * kGravity * H), 1e-6) << space << table;
       EXPECT_NEAR(p[0], 0, 1e-9) << space << table;
       EXPECT_NEAR(contacts_of(run.at((step + 1) / kRate), 0).impulse.norm(), 0, 0) << space << table;
     }
@@ -103,8 +103,8 @@ TEST(LoneBodies, ForceOfABoxThatSlidesOnAFixedBoxIsItsWeightAndFriction) {
       const TextRun run(room(space, first ? lone + table : table + lone));
       for (const double t : {0.1, 0.3, 0.5}) {
         const Vec3 f = contacts_of(run.at(t), first ? 0 : 1).force;
-        EXPECT_NEAR(f[0], -0.2 * kMass * kG, 1e-9) << space << first << t;
-        EXPECT_NEAR(f[1], kMass * kG, 1e-9) << space << first << t;
+        EXPECT_NEAR(f[0], -0.2 * kMass * kGravity, 1e-9) << space << first << t;
+        EXPECT_NEAR(f[1], kMass * kGravity, 1e-9) << space << first << t;
       }
     }
   }
@@ -116,7 +116,7 @@ TEST(LoneBodies, ForceOfABoxThatHasComeToRestIsItsWeight) {
     const Snapshot now = run.at(3);
     EXPECT_TRUE(now.bodies[0].at_rest) << space;
     // what rests accelerates by less than g / 1e6
-    EXPECT_NEAR(contacts_of(now, 0).force[1], kMass * kG, 1e-6 * kMass * kG) << space;
+    EXPECT_NEAR(contacts_of(now, 0).force[1], kMass * kGravity, 1e-6 * kMass * kGravity) << space;
   }
 }
 
