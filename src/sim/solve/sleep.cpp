@@ -31,7 +31,7 @@ constexpr double kRounding = 1 + 1e-6;  // of a span of time
 
 // contacts of an island whose forces are found exactly where the solver's own do not hold it
 template <int D>
-constexpr int kFewContacts = D == 2 ? Statics<D>::kMost : 32;
+constexpr int kFewContacts = D == 2 ? 100 : 250;
 
 // act(a, b) for each two bodies of a joint
 template <int D, class Act>

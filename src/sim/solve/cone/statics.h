@@ -18,7 +18,7 @@ template <int D>
 class Statics {
  public:
   /// Touches of an island, at most.
-  static constexpr int kMost = 100;
+  static constexpr int kMost = 250;
 
   explicit Statics(const Model<D>& model);
 

@@ -497,21 +497,33 @@ void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
 
 // More iterations of those contacts that are not settled and of those beside them: where a column is struck
 // from below, the blow is to pass through all of it in this substep. Few go on until hardly anything changes,
-// for a while: then the order in which they are visited does not matter, and mirror images stay so. Bodies on
-// joints are left out.
+// for a while: then the order in which they are visited does not matter, and mirror images stay so. Those of
+// few are accelerated (Silcowitz, Niebe and Erleben 2010): a column of n settles in about n iterations, not
+// in n^2. Bodies on joints are left out.
 template <int D>
 void SpaceIterative<D>::settle_contacts() {
-  const int count = int(touches_.size());
-  active_.bodies.assign(moving_.size(), ActiveBodies::kNow);
-  active_.bodies.back() = 0;
-  for (const int body : joints_.bodies()) active_.bodies[body] = ActiveBodies::kNever;
-  const int most = settling_budget(count);
+  const int count = int(touches_.size()), most = settling_budget(count);
+  const bool accelerates = count <= kFewTouches;
+  activate();
+  if (accelerates) batches_.begin_directions();
   bool back = false;
-  for (int spent = 0, done = 1; spent < most && done > 0; spent += done, back = !back) {
+  for (int spent = 0, done = 1; spent < most && done > 0; back = !back) {
     active_.friction = count <= kFewExactly && spent < kExactTouches;
     active_.settled = active_.friction ? kExactly * closing_rate_ : settled_rate(closing_rate_);
     done = batches_.iterate(moving_, back, active_);
+    spent += done;
+    if (!accelerates || !active_.any()) continue;
+    if (back) batches_.follow_directions(moving_);
+    activate();
   }
+}
+
+// all contacts but those of joints are to be iterated
+template <int D>
+void SpaceIterative<D>::activate() {
+  active_.bodies.assign(moving_.size(), ActiveBodies::kNow);
+  active_.bodies.back() = 0;
+  for (const int body : joints_.bodies()) active_.bodies[body] = ActiveBodies::kNever;
 }
 
 // velocities to the joints, of all that they have or of those marked, and back

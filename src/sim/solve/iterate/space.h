@@ -135,6 +135,7 @@ class SpaceIterative final : public ContactSolver<D> {
   }
   void warm_start_contacts(const State<D>& state, double h);
   void settle_contacts();
+  void activate();
   double closing_rate(double h) const;
   void keep_impulses(const State<D>& state);
   void add_impulses(State<D>& state) const;

@@ -21,9 +21,8 @@ namespace {
 
 using namespace lanes;
 
-constexpr int kMostColours = 64;  // and one more, of pairs that find none
-constexpr int kMostSorted = 8;    // contacts: pairs of more come first, as they come
-constexpr int kBodyFours = 5;     // numbers of a PointBody, in fours
+constexpr int kMostSorted = 8;  // contacts: pairs of more come first, as they come
+constexpr int kBodyFours = 5;   // numbers of a PointBody, in fours
 static_assert(sizeof(PointBody<3>) == 4 * kBodyFours * sizeof(double));
 
 template <class V>
@@ -223,6 +222,52 @@ OBSCURA_INLINE int iterate_all(std::vector<SpaceBatches::Batch>& batches,
   return 0;
 }
 
+// Impulses go on along the directions, `share` times as far; the next directions are that and what the
+// iterations changed. share 0: what these changed alone.
+template <class V>
+OBSCURA_INLINE void follow_all(const std::vector<SpaceBatches::Batch>& batches,
+                               std::vector<SpaceBatches::Row>& rows,
+                               std::vector<SpaceBatches::Impulses>& before,
+                               std::vector<SpaceBatches::Impulses>& directions, double* bodies,
+                               double share) {
+  const V none{}, one = V{} + 1.0, by = V{} + share;
+  for (const SpaceBatches::Batch& g : batches) {
+    for (int lane = 0; lane < SpaceBatches::kLanes; lane += Of<V>::lanes) {
+      WideBody<V> a(bodies, g.at_a + lane), b(bodies, g.at_b + lane);
+      const V mu = load<V>(g.mu + lane);
+      for (int i = g.first; i < g.first + g.count; ++i) {
+        SpaceBatches::Row& r = rows[std::size_t(i)];
+        SpaceBatches::Impulses &from = before[std::size_t(i)], &to = directions[std::size_t(i)];
+        const Wide3<V> n = load3<V>(r.n, lane), t0 = load3<V>(r.tangent_impulse, lane),
+                       tf = load3<V>(from.tangent, lane), td = load3<V>(to.tangent, lane);
+        const V l0 = load<V>(r.normal_impulse + lane), ld = by * load<V>(to.normal + lane);
+        const Wide3<V> t1{by * td.x, by * td.y, by * td.z};
+        store<V>(to.normal + lane, ld + (l0 - load<V>(from.normal + lane)));
+        store3<V>(to.tangent, lane, {t1.x + (t0.x - tf.x), t1.y + (t0.y - tf.y), t1.z + (t0.z - tf.z)});
+        const V l = larger<V>(l0 + ld, none), most = mu * l;
+        const Wide3<V> wanted{t0.x + t1.x, t0.y + t1.y, t0.z + t1.z};
+        const V size = root(inner<V>(wanted, wanted));
+        const Mask<V> cut = size > most;
+        const V part = pick<V>(cut, most / pick<V>(cut, size, one), one);
+        const Wide3<V> t{wanted.x * part, wanted.y * part, wanted.z * part};
+        const V pushed = l - l0;
+        const Wide3<V> p{pushed * n.x + (t.x - t0.x), pushed * n.y + (t.y - t0.y),
+                         pushed * n.z + (t.z - t0.z)};
+        a.push(p, load3<V>(r.arm_a, lane)), b.push({-p.x, -p.y, -p.z}, load3<V>(r.arm_b, lane));
+        store<V>(r.normal_impulse + lane, l), store3<V>(r.tangent_impulse, lane, t);
+        store<V>(from.normal + lane, l), store3<V>(from.tangent, lane, t);
+      }
+      a.back(bodies, g.at_a + lane), b.back(bodies, g.at_b + lane);
+    }
+  }
+}
+
+OBSCURA_WIDE void follow_wide(const std::vector<SpaceBatches::Batch>& batches,
+                              std::vector<SpaceBatches::Row>& rows,
+                              std::vector<SpaceBatches::Impulses>& before,
+                              std::vector<SpaceBatches::Impulses>& directions, double* bodies, double share) {
+  follow_all<V4>(batches, rows, before, directions, bodies, share);
+}
 OBSCURA_WIDE void respond_wide(const std::vector<SpaceBatches::Batch>& batches,
                                std::vector<SpaceBatches::Row>& rows, const double* bodies) {
   respond_all<V4>(batches, rows, bodies);
@@ -241,10 +286,12 @@ OBSCURA_WIDE int iterate_some_wide(std::vector<SpaceBatches::Batch>& batches,
 
 }  // namespace
 
-// Pairs, and a colour for each: the first that neither body has.
+// Pairs, and of each its level: one more than that of the last pair before it that has a body of its own
+// which moves. Level by level is the order in which they come, for all that it changes.
 void SpaceBatches::find_pairs(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
                               std::span<const PointBody<3>> bodies) {
-  pairs_.clear(), colours_.assign(bodies.size(), 0);
+  pairs_.clear(), levels_.assign(bodies.size(), 0);
+  int deepest = 0;
   for (int first = 0, end = 0; first < int(which.size()); first = end) {
     const ContactConstraint<3>& contact = contacts[std::size_t(which[std::size_t(first)])];
     const auto same = [&](int i) {
@@ -252,20 +299,19 @@ void SpaceBatches::find_pairs(std::span<const ContactConstraint<3>> contacts, st
       return other.a == contact.a && other.b == contact.b;
     };
     for (end = first + 1; end < int(which.size()) && same(end);) ++end;
-    std::uint64_t &a = colours_[std::size_t(contact.a)], &b = colours_[std::size_t(contact.b)];
-    const int colour = std::countr_one(a | b);
-    pairs_.push_back({contact.a, contact.b, first, end - first, colour});
-    if (colour == kMostColours) continue;
-    const std::uint64_t bit = std::uint64_t(1) << colour;
-    if (bodies[std::size_t(contact.a)].inverse_mass > 0) a |= bit;
-    if (bodies[std::size_t(contact.b)].inverse_mass > 0) b |= bit;
+    const auto a = std::size_t(contact.a), b = std::size_t(contact.b);
+    const int level = std::max(levels_[a], levels_[b]);
+    pairs_.push_back({contact.a, contact.b, first, end - first, level});
+    if (bodies[a].inverse_mass > 0) levels_[a] = level + 1;
+    if (bodies[b].inverse_mass > 0) levels_[b] = level + 1;
+    deepest = std::max(deepest, level);
   }
 
-  // by colour, and in each by how many contacts they have, the most first
+  // by level, and in each by how many contacts they have, the most first
   const auto place = [](const Pair& pair) {
-    return std::size_t(pair.colour * kMostSorted + kMostSorted - std::min(pair.count, kMostSorted));
+    return std::size_t(pair.level * kMostSorted + kMostSorted - std::min(pair.count, kMostSorted));
   };
-  begin_.assign(std::size_t((kMostColours + 1) * kMostSorted + 1), 0);
+  begin_.assign(std::size_t((deepest + 1) * kMostSorted + 1), 0);
   for (const Pair& pair : pairs_) ++begin_[place(pair) + 1];
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   sorted_.resize(pairs_.size());
@@ -279,15 +325,15 @@ void SpaceBatches::build(std::span<const ContactConstraint<3>> contacts, std::sp
   const bool belts = std::any_of(which.begin(), which.end(),
                                  [&](int i) { return !contacts[std::size_t(i)].belt.isZero(0); });
   const int none = int(bodies.size()) - 1;
-  int lane = kLanes, colour = -1;
+  int lane = kLanes, level = -1;
   for (const Pair& pair : sorted_) {
-    if (lane == kLanes || pair.colour != colour || colour == kMostColours) {
+    if (lane == kLanes || pair.level != level) {
       Batch& made = batches_.emplace_back();
       std::fill_n(made.a, kLanes, none), std::fill_n(made.b, kLanes, none);
       std::fill_n(made.at_a, kLanes, kBodyFours * none), std::fill_n(made.at_b, kLanes, kBodyFours * none);
       std::fill_n(made.mu, kLanes, 0.0), std::fill_n(made.per_width, kLanes, 1.0);
       made.first = int(rows_.size());
-      lane = 0, colour = pair.colour;
+      lane = 0, level = pair.level;
     }
     Batch& g = batches_.back();
     for (; g.count < pair.count; ++g.count) {
@@ -341,6 +387,36 @@ void SpaceBatches::store(std::span<ContactConstraint<3>> contacts) const {
       for (int i = 0; i < 3; ++i) to.tangent_impulse[i] = r.tangent_impulse[i][lane];
     }
   }
+}
+
+void SpaceBatches::begin_directions() {
+  before_.resize(rows_.size()), direction_.assign(rows_.size(), {}), change_ = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    std::copy_n(rows_[i].normal_impulse, kLanes, before_[i].normal);
+    for (int k = 0; k < 3; ++k) std::copy_n(rows_[i].tangent_impulse[k], kLanes, before_[i].tangent[k]);
+  }
+}
+
+void SpaceBatches::follow_directions(std::span<PointBody<3>> bodies) {
+  double change = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& r = rows_[i];
+    const Impulses& from = before_[i];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      double sum = r.normal_impulse[lane] - from.normal[lane];
+      sum *= sum;
+      for (int k = 0; k < 3; ++k) {
+        const double t = r.tangent_impulse[k][lane] - from.tangent[k][lane];
+        sum += t * t;
+      }
+      change += r.across[lane] * sum;
+    }
+  }
+  const double share = change_ > 0 && change <= change_ ? change / change_ : 0;
+  change_ = change;
+  double* const numbers = bodies.data()->v.data();
+  if (four_lanes) return follow_wide(batches_, rows_, before_, direction_, numbers, share);
+  follow_all<V2>(batches_, rows_, before_, direction_, numbers, share);
 }
 
 void SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -16,10 +16,14 @@ struct ActiveBodies {
   double settled = 0;                 // widths of the narrower body, 1/s
   bool friction = false;              // whether changes of friction count
   std::vector<unsigned char> bodies;  // flags; one more for walls, which never are
+
+  bool any() const {
+    return std::any_of(bodies.begin(), bodies.end(), [](unsigned char flags) { return flags & kNow; });
+  }
 };
 
-/// The contacts of space, four pairs side by side. Pairs of one colour share no body that moves, so that four
-/// at once, and one after another, give the same bits.
+/// The contacts of space, four pairs side by side that share no body which moves. They come to what one pair
+/// after another would, in the order of their keys: so a blow passes through a column in one iteration.
 class SpaceBatches {
  public:
   static constexpr int kLanes = 4;
@@ -40,12 +44,21 @@ class SpaceBatches {
   /// that were.
   int iterate(std::span<PointBody<3>> bodies, bool back, ActiveBodies& active);
 
+  /// Begins to accelerate iterations by conjugate directions: keeps the impulses.
+  void begin_directions();
+  /// After some iterations: goes on along the directions that they and those before took (Fletcher and
+  /// Reeves), back into the friction cones; begins anew where they come to more than those before.
+  void follow_directions(std::span<PointBody<3>> bodies);
+
   /// One contact point of four pairs.
   struct alignas(64) Row {
     double n[3][kLanes], arm_a[3][kLanes], arm_b[3][kLanes], askew[3][kLanes];
     double per_normal[kLanes], across[kLanes], per_across[kLanes];
     double least[kLanes], normal_impulse[kLanes], tangent_impulse[3][kLanes];
     int contact[kLanes];  // -1: none
+  };
+  struct alignas(32) Impulses {
+    double normal[kLanes], tangent[3][kLanes];
   };
   struct alignas(32) Belt {
     double speed[3][kLanes];
@@ -61,7 +74,7 @@ class SpaceBatches {
  private:
   // the contacts of a pair, `which` from first on
   struct Pair {
-    int a, b, first, count, colour;
+    int a, b, first, count, level;
   };
 
   void find_pairs(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
@@ -70,11 +83,13 @@ class SpaceBatches {
            std::span<const int> which);
 
   std::vector<Pair> pairs_, sorted_;
-  std::vector<int> begin_;              // of each colour and number of contacts, among the sorted
-  std::vector<std::uint64_t> colours_;  // used on each body
+  std::vector<int> begin_;   // of each level and number of contacts, among the sorted
+  std::vector<int> levels_;  // of each body: that of its next pair
   std::vector<Batch> batches_;
   std::vector<Row> rows_;
-  std::vector<Belt> belts_;  // of rows; empty where there are none
+  std::vector<Belt> belts_;                   // of rows; empty where there are none
+  std::vector<Impulses> before_, direction_;  // of rows
+  double change_ = 0;                         // by the iterations before, squared; 0: begins
 };
 
 }  // namespace obscura::sim

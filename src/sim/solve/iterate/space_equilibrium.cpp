@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kRestSweeps = 400;  // of all islands at a time
 constexpr int kBetweenChecks = 10;
+constexpr double kClosedGap = 1e-6;  // of the narrower body: so near it bears
 
 }  // namespace
 
@@ -70,7 +71,7 @@ void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island
     ContactConstraint& touch = touches_[i];
     if (!ripe_[touch.a] && !ripe_[touch.b]) continue;
     some_.push_back(i);
-    touch.least = std::min(-touch.gap / h, 0.0);
+    touch.least = touch.gap * touch.per_width < kClosedGap ? 0 : -touch.gap / h;
     push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
   }
   for (const int i : joints_.bodies()) {
@@ -86,13 +87,15 @@ template <int D>
 void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h) {
   const double near = Sleep<D>::kBalanced * g_ * h;
   batches_.build(touches_, some_, moving_);
+  batches_.begin_directions();
   for (int i = 1, found = 0; i < kRestSweeps && !found; ++i) {
     if (!components_.empty()) {
       copy_to_joints(&on_joints_);
       for (const int component : components_) joints_.iterate(component);
       copy_from_joints(&on_joints_);
     }
-    batches_.iterate(moving_, i % 2 != 0);
+    batches_.iterate(moving_, i % 2 == 0);
+    if (i % 2 == 0 && components_.empty()) batches_.follow_directions(moving_);
     if (i % kBetweenChecks != 0) continue;
     found = std::all_of(islands.begin(), islands.end(), [&](const auto& island) {
       return std::all_of(island.bodies.begin(), island.bodies.end(),
