@@ -16,11 +16,11 @@ namespace obscura::sim {
 template <int D>
 class BroadPhase {
  public:
-  /// All (a, b), a < b, sorted, whose bounds meet, not both still nor both points, and for which `wanted`
-  /// holds (empty: all). `points`: one a body, or empty: none is. Bounds with a NaN meet nothing. Nearly
-  /// linear for bodies of like size wherever they are, and for points and still bodies even where they all
-  /// lie at one place; bodies much taller or wider than most cost more. Allocates nothing once warm. Valid
-  /// until the next call.
+  /// All pairs (a, b), a < b, sorted, whose bounds overlap. Leaves out pairs of two still bodies, pairs of
+  /// two points, and pairs for which `wanted` is false (empty: wants all). `points`: one a body; empty: no
+  /// body is a point. Bounds with a NaN overlap nothing. Time is nearly linear in the number of bodies of
+  /// similar size, wherever they are, and of points and still bodies even if they all lie at one place;
+  /// bodies much taller or wider than most cost more. Allocates nothing once warm. Valid until the next call.
   const std::vector<std::pair<int, int>>& find(std::span<const Bounds<D>> bounds, std::span<const char> still,
                                                const std::function<bool(int, int)>& wanted = {},
                                                std::span<const char> points = {});

@@ -5,11 +5,11 @@
 #include "sim/model/model.h"
 #include "sim/model/state.h"
 
-// The iterative solver looks at every shape as convex cores in flat arrays: a polygon of corners and faces,
-// or one corner, rounded by a radius. Two cores touch at features,
+// Narrow phase of the plane's iterative solver. Every shape is a set of convex cores in flat arrays: a
+// polygon of corners and faces, or one corner, rounded by a radius. Two cores touch at features,
 //   g = n . (p - x) - d - r        a corner p at a face (n, d) of the other
 //   g = |p_a - p_b| - r_a - r_b    two corners
-// so that a contact is told by the numbers of its features and its gap needs nothing else than two poses.
+// so the numbers of two features identify a contact point, and its gap depends on nothing else but two poses.
 
 namespace obscura::sim::plane {
 
@@ -24,7 +24,7 @@ struct CoreShape {
   double radius = 0;           // m
   double half_thickness = 0;   // m
   double bounding_radius = 0;  // from the body's centre, m
-  double wide = 0, high = 0;   // of a box about the body's centre: half its sides, m; else 0
+  double wide = 0, high = 0;   // half sides of a box centred on the body, m; 0: not such a box
 };
 
 /// All cores of a model, those of a body side by side.
@@ -56,8 +56,8 @@ struct ContactPoint {
   double x = 0, y = 0, nx = 0, ny = 1, gap = 0;
 };
 
-/// The features nearest to each other: two where a corner of each end of two faces that lie on each other,
-/// else one and `none`. Returns a lower bound of the distance, m; from `margin` on features may be left out.
+/// The nearest features: two if two faces overlap, one at each end of the overlap; else one, and `none` in
+/// the second. Returns a lower bound of the distance, m. If that is `margin` or more, `out` may stay unset.
 double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
                      const Pose& at_b, Feature out[2], double margin = 1e300);
 ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,

@@ -7,8 +7,8 @@
 
 namespace obscura::sim {
 
-/// Which bodies may touch. Two do not where both are fixed or both are points, where one keeps the handout's
-/// law, where their groups ignore each other, and where a joint, be it broken or whole, does not let them.
+/// Collision filter. Two bodies do not touch if both are fixed, both are points, one follows the handout's
+/// law, their groups ignore each other, or a joint between them, broken or not, forbids it.
 template <int D>
 class MayTouch {
  public:
@@ -20,7 +20,7 @@ class MayTouch {
     return !joined(a, b);
   }
 
-  /// The same without joints: for bodies of equal kinds, fixedness and groups the answers are equal.
+  /// The same without joints. Depends on kind, fixed flag and group alone.
   bool but_for_joints(int a, int b) const {
     if ((kind_[a] & kind_[b]) != 0 || ((kind_[a] | kind_[b]) & kHandout) != 0) return false;
     return !ignored_[group_[a] * groups_ + group_[b]];

@@ -55,7 +55,7 @@ inline Crossing crossing(const Vec<3>& d, const Vec<3>& edge_a, const Vec<3>& ed
   return {s, db + s * c};
 }
 
-/// A unit vector across another, the same for the same.
+/// A unit vector perpendicular to another; a function of that alone.
 template <int D>
 Vec<D> perpendicular(const Vec<D>& n) {
   if constexpr (D == 2) {
@@ -137,8 +137,8 @@ EvaluatedContact<D> evaluate(const ContactCandidate<D>& gap, const BodyMotion<D>
 ///
 /// In the plane, the two for faces are the vertices that bound their overlap, be they a's or b's; if vertices
 /// of both are at one place (within 1e-6 of the face), a's is taken. Vertex at vertex only if no face is
-/// nearer: for balls, and for shapes apart. Parallel faces in line with each other's ends pass by, within
-/// 1e-6 of the face: a box slides over a row of boxes.
+/// nearer: for balls, and for shapes apart. Parallel faces that meet only end to end (within 1e-6 of the
+/// face) do not touch, so a box slides over a row of boxes without catching at the seams.
 ///
 /// In space, faces that lie on each other give all the vertices of their overlap: a's, b's, and the crossings
 /// of their edges, which are gaps between edges; at crossings under 3 degrees the place on the one edge is

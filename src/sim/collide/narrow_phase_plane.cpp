@@ -174,7 +174,8 @@ void face_at_face(const Couple& couple, const ReferenceFace& touching, double ma
                               : touching.base_at_other(couple, base_ends[end], partner, core[end]));
   };
 
-  // apart and askew, a corner that only seems to be over the partner seems nearer than all
+  // If the shapes are apart and the faces oblique, a corner beside the partner may seem to lie over it. Its
+  // gap is then less than the separation of the shapes: drop it.
   const double nearest = touching.value > 0 ? touching.value * (1 - kAligned) - aligned : -1e300;
   if (core[0] < nearest) return keep_end(1);
   if (core[1] < nearest) return keep_end(0);

@@ -2,11 +2,14 @@
 // the faces around the other's deepest vertex, the one most against it is its partner. Seen along the
 // touching face's normal n, their overlap is a convex region, and each of its vertices is one of three:
 //
-//        ________________             a corner of the other over the touching face    n . (p - p_face)
-//       |     1----------|---2        a corner of the touching face over its partner  n' . (p - p_partner)
-//       |     | shared   |            an edge of each, crossing                       e x e' . (p - p') / |e
-//       x e'|
-//       |_____3__________4
+//        ________________
+//       |     1----------|---2
+//       |     | shared   |   |
+//       |_____3__________4   |
+//
+//   a corner of the other over the touching face      n . (p - p_face)
+//   a corner of the touching face over its partner    n' . (p - p_partner)
+//   an edge of each, crossing                         e x e' . (p - p') / |e x e'|
 //
 // Heights are measured along n: none is lower than the deepest vertex, so no gap is deeper than the greatest
 // separation. If the least of these gaps is the greatest separation, they are the contact; for shapes apart
@@ -258,7 +261,8 @@ class Shared {
 
   // drops the gaps beyond `margin`
   void keep_near(double margin) {
-    // apart and askew, a corner that only seems to be over the partner seems nearer than all
+    // If the shapes are apart and the faces oblique, a corner beside the partner may seem to lie over it. Its
+    // gap is then less than the separation of the shapes: drop it.
     const double nearest = touching_.best > 0 ? touching_.best * (1 - kAligned) - aligned_ : -1e300;
     gaps_.erase(std::remove_if(gaps_.begin() + std::ptrdiff_t(begin_), gaps_.end(),
                                [&](const ContactCandidate<3>& gap) {

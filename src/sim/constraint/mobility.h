@@ -42,8 +42,8 @@ enum class Mobile { no, yes, unknown };
 
 /// The motion that contacts and joints leave free of the velocities v:
 ///   v_free = v - M^-1 J' l,   J v_free = 0
-/// J has the rows of joints, of the normals of contacts that press, and of their tangents if friction stops
-/// the slip at once in addition to its present load.
+/// J has the rows of joints, of the normals of pressing contacts, and of their tangents if the remaining
+/// friction (mu f_n less the present load) can stop the slip at once.
 template <int D>
 class Mobility {
  public:
@@ -53,14 +53,15 @@ class Mobility {
   /// Forgets all bodies and rows.
   void clear();
 
-  /// A body that moves, at its turn. Rows of other bodies than those added hold onto the room.
+  /// A body that moves, with its orientation. Bodies that were not added count as fixed.
   void add(int body, const Vec<D>& v, const AngularVec<D>& w, const Rotation<D>& room_from_body);
 
   /// After all bodies: a contact with its force. One that does not press holds nothing.
   void add_contact(const BearingContact<D>& touch);
 
-  /// A row of a joint. One with bounds holds where it moves by no more than `spare`, the acceleration (m/s^2
-  /// or rad/s^2) that it could give beside what it bears, stops at once.
+  /// A row of a joint. `spare`: the acceleration (m/s^2 or rad/s^2) that the row can still give, its bound
+  /// less its present load; infinite for an equality. A row with bounds counts as holding if `spare` can stop
+  /// its motion at once.
   void add_row(const Row<D>& row, double spare);
 
   Mobile mobile();

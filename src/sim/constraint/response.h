@@ -45,8 +45,8 @@ struct Side {
   }
 };
 
-/// M^-1 J' of a row for two free bodies, without its linear direction, which is the row's. Zero of a side
-/// that is not free.
+/// M^-1 J' of a row for two free bodies. The linear part is stored as 1/m alone: its direction is Row::along.
+/// Zero for a body that is not free.
 template <int D>
 struct RowResponse {
   double inverse_mass_a = 0, inverse_mass_b = 0;  // 1/kg
@@ -205,8 +205,9 @@ class ChainResponse {
 };
 
 /// A body under impulses at points: its velocity, and its response p / m and I^-1 (r x p) to an impulse p at
-/// an arm r from its centre. As it is made it does not move: a wall, a fixed or sleeping body. In space it is
-/// laid out for vectors of four numbers: v and 1/m, w, and the inverse inertia (solve/iterate/space_batches).
+/// an arm r from its centre. Default-constructed it is static: a wall, a fixed or sleeping body. In space it
+/// is laid out for vectors of four numbers: v and 1/m, w, and the inverse inertia
+/// (solve/iterate/space_batches).
 template <int D>
 struct alignas(D == 3 ? 32 : 8) PointBody {
   Vec<D> v = Vec<D>::Zero();

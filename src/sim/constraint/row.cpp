@@ -175,8 +175,8 @@ Vec<D> belt_velocity(const Body<D>& body, const Rotation<D>& room_from_body, con
   }
 }
 
-// The direction of a belt goes with its face: what turns it by itself, where a round body rolls over a round
-// one, is left out of J' v.
+// The direction of a belt turns with its face. Where a round body rolls over a round one the normal turns
+// besides; that part of J' v is left out.
 template <int D>
 void add_belts(const Model<D>& model, const ContactKey& key, const std::vector<BodyMotion<D>>& bodies,
                Row<D>* out) {

@@ -9,8 +9,8 @@
 
 namespace obscura::sim {
 
-/// Looks for what has gone wrong, and says why. Looking for numbers that ran away costs the step nothing
-/// (sim/math/limits.h); this is for naming them, and for energy out of nowhere.
+/// Finds the body that diverged and the likely cause, and energy that nothing could have supplied. The step
+/// itself detects overflow and NaN at no cost (sim/math/limits.h); this class names them.
 template <int D>
 class DivergenceMonitor {
  public:

@@ -17,7 +17,7 @@ class EnergyGuard {
   /// Kept by reference.
   explicit EnergyGuard(const Model<D>& model);
 
-  /// Notes what there is, of motion, height, springs and fields, before a step from t.
+  /// Records the energy before a step from t: kinetic, of height, of springs and of fields.
   void open(const State<D>& state, double t = 0);
   /// Records work (J) that was done on a body on purpose since then: it may stay.
   void book(int body, double work) { booked_[body] += work; }
@@ -29,14 +29,14 @@ class EnergyGuard {
 
   /// If it has risen: records that a and b (a body; a wall if negative) touched in the step.
   void touch(int a, int b);
-  /// If it has risen: allows the island of `body` a gain of `share` of the energy that the body could fall
-  /// for in the room, and of `part` of its kinetic energy before the step.
+  /// If it has risen: allows the island of `body` to gain share * m g * (height of the room) and part * (the
+  /// kinetic energy of the body before the step).
   void excuse(int body, double share, double part = 0) { granted_[body] = share, parts_[body] = part; }
   /// Removes from each island of touching bodies the energy that it gained, by scaling its velocities; for an
   /// island that touches nothing fixed, its velocities relative to each other, so that momentum and angular
-  /// momentum stay. If the motion has too little energy, bodies that rose are lowered, if `lower` says so; of
-  /// many they would be lowered into each other. Islands on which hands, motors or explosions do work are
-  /// left alone. `state` is that of risen(). Returns the energy (J) that is left of what bodies have risen.
+  /// momentum stay. If the motion has too little energy and `lower` is true, bodies that rose are lowered; in
+  /// a crowd they would be lowered into each other. Islands on which hands, motors or explosions do work are
+  /// left alone. `state` is that of risen(). Returns the energy (J) of the risen height that remains.
   double take_back(State<D>& state, bool lower);
 
  private:

@@ -6,8 +6,9 @@
 
 namespace obscura::sim {
 
-/// What forces without a potential, and drag, do to the bodies of a model with forces: booked in the state,
-/// J. Of fourth order in the step, as the path through the step is known: by the cubic between its ends.
+/// The work (J) of forces without a potential, and of drag, added to State::work. The path through a step is
+/// the cubic between its ends; the power along it is integrated by Gauss's rule of two points, so the error
+/// is of fourth order in the step.
 template <int D>
 class WorkBooks {
  public:

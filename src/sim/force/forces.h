@@ -36,10 +36,10 @@ class Forces {
   bool potentials() const { return potentials_; }
   bool all_fly() const { return all_fly_; }
 
-  /// Takes in how bodies are numbered from here on: `member` is the place of each in the motions of apply(),
-  /// below zero where it stands still as it does in `state`.
+  /// Sets the numbering of bodies: `member` is the index of each body in the `motions` of apply(); negative:
+  /// the body stands still where `state` has it.
   void gather(const State<D>& state, std::span<const int> member);
-  /// The same, where each body is its own number.
+  /// The same, where every body moves and `motions` lists them in the order of the model.
   void gather(const State<D>& state);
 
   /// Bodies have the angles of this state, or turn by less than half a turn from there.
@@ -48,14 +48,15 @@ class Forces {
   /// Adds the force and torque on each member at time t, room's frame, torque about its centre.
   void apply(double t, const std::vector<BodyMotion<D>>& motions, std::vector<Wrench<D>>& wrenches);
 
-  /// What bodies that are moved gave through potentials in the last apply(), W: the opposite of the power of
-  /// the forces on them.
+  /// The power (W) that kinematic bodies supplied against forces with a potential in the last apply().
   double driven_power() const { return driven_power_; }
 
-  /// The potentials of all, J; added to `each`, one a member, if it is given: that between two half by half.
+  /// The sum of all potentials, J. Adds each body's part to `each` (one a member) if it is given: half of the
+  /// potential between two bodies to each of them.
   double energy(double t, const std::vector<BodyMotion<D>>& motions, std::vector<double>* each = nullptr);
 
-  /// Of those on each body alone, what body `body` has where it stands so, others as in `state`, J.
+  /// The potential (J) that body `body` has with the pose `at`, of forces on single bodies. All other bodies
+  /// are as in `state`.
   double energy_of(const State<D>& state, int body, const BodyMotion<D>& at, double t);
 
   /// The power of those without a potential, and of drag, W.

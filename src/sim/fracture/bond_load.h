@@ -9,9 +9,9 @@
 
 namespace obscura::sim {
 
-/// The loads on bonds. A rigid body prescribes how each of its parts accelerates; the force that this needs
-/// beyond the outside forces comes through the part's bonds. If bonds form loops, the loads of least norm are
-/// taken, as equally stiff bonds would bear them.
+/// The loads on bonds. The rigid body prescribes the acceleration of each part. Mass times acceleration less
+/// the outside forces on the part is what its bonds must transmit. If bonds form loops, the loads of least
+/// norm are taken, as equally stiff bonds would bear them.
 template <int D>
 class BondLoads {
  public:

@@ -12,9 +12,9 @@
 
 namespace obscura::sim {
 
-/// Collisions with the walls as the handout has them, §2.5 and §3.5: after integrating, what is on the wrong
-/// side of a wall and moves the wrong way is put back on the wall and given an impulse; repeated until
-/// nothing is and does.
+/// Collisions with walls by the recipe of the course handout, §2.5 and §3.5: after integrating, a body that
+/// is beyond a wall and moves outwards is put back onto the wall and given an impulse; repeated until no body
+/// is beyond a wall and moves outwards.
 template <int D>
 class Handout {
  public:

@@ -4,7 +4,8 @@
 
 namespace obscura::sim {
 
-/// How a body stands and moves, and from it how its points do. A body that does not turn has no spin.
+/// Pose and velocity of a body, at its centre of mass: x, v (m, m/s), orientation, angular velocity w
+/// (rad/s). A body that does not turn has w = 0.
 template <int D>
 struct BodyMotion {
   Vec<D> x = Vec<D>::Zero(), v = Vec<D>::Zero();

@@ -16,10 +16,13 @@ class FullRank {
   /// A: n x n, any; overwritten. By elimination with complete pivoting; tolerance as above.
   void general(std::span<double> A, int n, double tolerance);
 
-  /// A = E B (E + T share)^T, for forces on n rows that lean on others: B: all x all, symmetric, positive
-  /// semidefinite; E its first n rows, T the others; T's row j adds `share[j]` times to E's row `to[j]`. Then
-  /// solve() gives the x in the span of A, which is the limit of (A + eps)^-1 r: the solution for slightly
-  /// soft rows. False, and nothing is factorised, if the limit does not exist; then call general().
+  /// For sliding contacts, whose friction is tied to their normal force by f_t = -mu f_n d: unsymmetric,
+  ///   A = E B (E + T share)^T
+  /// B: all x all, symmetric, positive semidefinite, of the n normal (and other free) rows first, then of the
+  /// friction rows. E selects the first n rows, T the others; friction row j has `share[j]` times the force
+  /// of row `to[j]`. Then solve() gives the x in the span of A, which is the limit of (A + eps)^-1 r: the
+  /// solution for slightly soft rows. False, and nothing is factorised, if the limit does not exist; then
+  /// call general().
   bool leaning(std::span<const double> B, int all, int n, std::span<const int> to,
                std::span<const double> share, double tolerance);
 

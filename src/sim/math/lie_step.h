@@ -4,8 +4,8 @@
 // the plane they are the room's own.
 //   turn = turn0 exp(d),   d' = dexp^-1(d, w),   w' = I^-1 (tau - w x I w)          sim/math/exponential.h
 // A step that turns far is cut in pieces: a Runge-Kutta step of 2.9 rad gives energy to what tumbles.
-// In space w is kept as base + v: v starts with what earlier steps could not add (OwnSpin), so that steps
-// add up as if rounded once.
+// In space w is kept as base + v. v starts with the rounding error of earlier steps (BodySpin::residual), so
+// that steps add up as if rounded once.
 
 #include <algorithm>
 #include <cmath>

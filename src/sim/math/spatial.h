@@ -5,7 +5,7 @@
 //   twist   (w, v)    spin, and velocity of the point of the link that is at the origin
 //   wrench  (n, f)    torque about the origin, and force
 //   seen from an origin at r:      w' = w,  v' = v + w x r
-//   felt at the origin, given at r: n = n' + r x f',  f = f'
+//   moved from r to the origin:     n = n' + r x f',  f = f'
 //   inertia of a link whose centre of mass is at c, w x c = K w:
 //     [ J  H ]   [ Jc + m K'K   m K' ]
 //     [ H' M ] = [ m K          m 1  ]
@@ -71,7 +71,7 @@ Twist<D> shifted(const Twist<D>& t, const Vec<D>& r) {
   return {t.w, t.v + cross_velocity<D>(t.w, r)};
 }
 
-/// The wrench given at `r` (m), as felt at the origin.
+/// A wrench about the point `r` (m), as a wrench about the origin.
 template <int D>
 Wrench<D> transformed_to_origin(const Wrench<D>& f, const Vec<D>& r) {
   return {f.n + moment<D>(r, f.f), f.f};
@@ -134,7 +134,7 @@ Wrench<D> operator*(const ArticulatedInertia<D>& i, const Twist<D>& t) {
   return out;
 }
 
-/// The inertia given at `r` (m), as felt at the origin.
+/// An inertia about the point `r` (m), as an inertia about the origin.
 template <int D>
 ArticulatedInertia<D> transformed_to_origin(const ArticulatedInertia<D>& i, const Vec<D>& r) {
   const Eigen::Matrix<double, D, kAngular<D>> k = lever<D>(r);

@@ -12,7 +12,7 @@
 
 namespace obscura::sim {
 
-/// How a body that is moved as its scene says stands and moves at an instant.
+/// Pose, velocity and acceleration of a kinematic body at an instant.
 template <int D>
 struct DrivenMotion {
   BodyMotion<D> at;
@@ -21,8 +21,8 @@ struct DrivenMotion {
   Orientation<D> turn = Orientation<D>::Zero();
 };
 
-/// The bodies of a model that are moved: their motions as functions of time alone, with exact velocities and
-/// accelerations. Bodies that are only to be let go stand still here, and are left out.
+/// The kinematic bodies of a model. Their motions are functions of time alone, with exact velocities and
+/// accelerations. A fixed body that is only released later has no motion, and is not among them.
 template <int D>
 class Drives {
  public:
@@ -32,13 +32,14 @@ class Drives {
   bool any() const { return !active_.empty(); }
   int size() const { return int(active_.size()); }
   int body(int i) const { return active_[std::size_t(i)].drive->body; }
-  /// The number of a body here; below zero: it is not moved.
+  /// The number of a body here; negative: it is not kinematic.
   int number(int body) const { return body < 0 || number_.empty() ? -1 : number_[std::size_t(body)]; }
 
   /// The i-th at time t, s. Throws NotFinite.
   DrivenMotion<D> at(int i, double t);
 
-  /// How far the centre of the i-th gets from where it is at t, until t + h, m: at least, as sampled.
+  /// The largest distance (m) of the i-th body's centre, between t and t + h, from its place at t. A maximum
+  /// of samples: the true one may be a little larger.
   double travel(int i, double t, double h);
 
   /// Places and velocities of all at time t into a state.

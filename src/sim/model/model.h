@@ -99,13 +99,13 @@ constexpr bool in_order(const auto& table) {
   return std::size(table) == std::size_t(kJointKinds);
 }
 
-/// How the rope of a pulley runs onto a wheel or off it, without slipping. Of a gear: the pitch circle.
+/// Where the rope of a pulley meets a wheel, without slipping. Of a gear: the pitch circle.
 template <int D>
 struct Winding {
-  double offset = 0;               // of the rope from the wheel's centre, m: its radius, negative where the
-                                   // rope runs around it clockwise; 0: it is tied to a point
-  Vec<D> start = Vec<D>::Unit(0);  // the rope's direction there at the start; where the teeth of a gear meet
-                                   // then, in the body's frame
+  // radius of the wheel, m; negative: the rope runs around it clockwise; 0: the rope is tied to a point
+  double offset = 0;
+  // pulley: the direction of the rope at the start; gear: where the teeth meet then, in the body's frame
+  Vec<D> start = Vec<D>::Unit(0);
 };
 
 /// A joint between two bodies, or a body and the room, as it stood at the start.
@@ -114,8 +114,8 @@ struct Joint {
   struct Motor {
     double speed = 0;  // rad/s of a hinge, m/s of a slider: of a against b
     double most = 0;   // N m or N
-    // Instead of `speed` a function of the time, the angle of a drive_formula<2>: the speed; or, where it
-    // follows, the coordinate itself, rad or m. See sim/constraint/joints/motors.h.
+    // Instead of `speed` a function of the time, the angle of a drive_formula<2>. It is the target of the
+    // speed or, if `follows`, of the coordinate itself, rad or m. See sim/constraint/joints/motors.h.
     std::shared_ptr<const Program> aim = nullptr;
     bool follows = false;
   };
@@ -148,7 +148,7 @@ struct Joint {
   int rope = -1;          // a pulley: its number; those of one rope have the same, and break together
   double ratio = 1;       // a gear: of the first joint's coordinate, and the second's; a screw: m a radian
   std::shared_ptr<const std::array<Joint, 2>> geared;  // and both
-  // what its `turn` is the sum of, as bodies and factors; empty: a less b
+  // the terms of its relative angle, as bodies and factors; empty: angle of a less angle of b
   std::vector<std::pair<int, double>> turns;
 
   /// act(body) for each body that it holds; below zero: the room.
@@ -164,7 +164,8 @@ struct Joint {
     each_body([&](int body) { any = any || its(body); });
     return any;
   }
-  /// Its turn, of those of bodies: an angle with whole rounds; zero in space. Of a pulley in metres of rope.
+  /// Its relative angle from the angles of bodies, rounds(body), whole rounds included; zero in space. Of a
+  /// pulley: metres of rope.
   template <class Rounds>
   AngularVec<D> turn_between(Rounds&& rounds) const {
     if (turns.empty()) return rounds(a.body) - rounds(b.body);

@@ -9,8 +9,8 @@ namespace obscura::sim {
 
 // A body's spin in the state, and as a step of an integrator takes and leaves it (math/lie_step.h).
 
-/// The spin of the body with turn k, ready for a step: base + v is what the body sees. `whole`: v is all of
-/// it, as a scheme needs that takes v itself for the rate of d (semi-implicit Euler).
+/// The spin of the k-th turning body in its own frame, split for a step into base + v. `whole`: base = 0 and
+/// v is all of it, for a scheme that takes v itself as the rate of d (semi-implicit Euler).
 template <int D>
 void take_spin(const State<D>& state, int k, bool whole, AngularVec<D>& base, double* v) {
   base.setZero();
@@ -31,7 +31,7 @@ void take_spin(const State<D>& state, int k, bool whole, AngularVec<D>& base, do
   }
 }
 
-/// Gives body k, whose turn was `from`, what a step has made of it.
+/// Writes back the orientation and spin of the k-th turning body after a step; its orientation was `from`.
 template <int D>
 void give_spin(State<D>& state, int k, const Orientation<D>& from, const double* d, const AngularVec<D>& base,
                const double* v) {

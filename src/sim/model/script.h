@@ -20,10 +20,10 @@ inline bool operator<(TimeStamp a, TimeStamp b) {
   return a.step != b.step ? a.step < b.step : a.fraction < b.fraction;
 }
 
-/// The beat of time t (s, >= 0), floor(t rate) exactly.
+/// The time stamp of t (s, >= 0): step = floor(t rate) exactly.
 TimeStamp time_stamp(Rational t, Rational rate);
 
-/// Time of a beat, s: step / rate is rounded once while it has less than 53 bits.
+/// The time (s) of a time stamp. step / rate is rounded once while it has less than 53 bits.
 double time(TimeStamp at, Rational rate);
 
 /// Length of a step, s.
@@ -38,8 +38,8 @@ struct ScriptEvent {
   Kind kind = Kind::knot;
 };
 
-/// All edges of the script in order. One that is within 1e-9 of a step of a step's boundary is that boundary;
-/// one within 1e-9 of the edge before it is at the same instant.
+/// All events of the script in order. An event within 1e-9 of a step from a step's boundary is moved onto the
+/// boundary; events within 1e-9 of a step of each other get the same instant.
 template <int D>
 std::vector<ScriptEvent> edges(const Model<D>& model);
 

@@ -122,7 +122,7 @@ struct Snapshot {
 
   double time = 0;           // s
   std::int64_t step = 0;     // whole steps done
-  std::vector<Body> bodies;  // as in the Cast
+  std::vector<Body> bodies;  // in the order of SceneInfo::bodies
   std::vector<Spring> springs;
   std::vector<Mouse> mice;
   std::vector<Joint> joints;

@@ -30,9 +30,9 @@ struct Touch {
 };
 
 /// The angular velocity of a body in space in its own frame, and the rounding error of its sum so far: near
-/// its middle axis a top doubles every error in a fraction of a second, that of rounding too. It is valid
-/// while the state's `spin` is the same in the room's frame, to the bit; code that changes that or the turn
-/// need not update it.
+/// its middle axis a top doubles every error in a fraction of a second, that of rounding too. A cache: it
+/// counts only while `w`, turned into the room's frame, is State::spin to the bit. Code that changes `spin`
+/// or `turn` need not update it.
 template <int D>
 struct BodySpin {
   AngularVec<D> w = AngularVec<D>::Zero();         // rad/s
@@ -106,7 +106,7 @@ struct State {
                                // bodies that are moved did, J
   std::vector<char> released;  // one a drive: whether its body has been let go
 
-  // bonded bodies (sim/step/bonded_bodies.h): all above is then about their parts, and this moves
+  // bonded bodies (sim/step/bonded_bodies.h): then all above describes the parts, and `bonded` is stepped
   std::vector<char> intact;             // one a bond: whether it is whole
   std::vector<PartPose<D>> part_poses;  // one a body
   std::vector<State> bonded = {};       // one: that of the bonded bodies

@@ -20,11 +20,15 @@ struct Subset {
   std::span<const int> bodies, springs, chains;
 };
 
-/// The bodies that springs, hands and forces act on and the links of chains, gathered into one system: first
-/// the centres, then the orientations of bodies that turn, then the joints of the chains. In space d and v of
-/// an orientation are in the body's frame, and v is relative to the base spin (sim/math/lie_step.h): a row J
-/// in the room's frame multiplies to_room(room_from_body, v'), and a torque adds from_room(room_from_body,
-/// torque) / inertia.
+/// The dynamics of all bodies that are coupled: those that springs, hands and forces act on, and the links of
+/// chains. One system; d and v hold, one after another,
+///   D numbers a body          displacement and velocity of its centre, room's frame
+///   1 or 3 a turning body     rotation and spin; in space both in the body's frame, the spin relative to the
+///                             base spin of sim/math/lie_step.h
+///   chains                    joint coordinates
+///   1, if any are kinematic   the work of kinematic bodies
+/// So in space a row J of the room's frame multiplies to_room(room_from_body, v'), and a torque of the room's
+/// frame adds from_room(room_from_body, torque) / inertia to v'.
 template <int D>
 class ForwardDynamics final : public System {
  public:
@@ -50,23 +54,24 @@ class ForwardDynamics final : public System {
   Articulated<D>& chains() { return chains_; }
   const Articulated<D>& chains() const { return chains_; }
 
-  /// Moves the tied bodies of `state` from t to t + h; under more forces than those of springs, `with` has
-  /// the rates.
+  /// Moves the coupled bodies of `state` from t to t + h. `with`: the system to integrate instead of this
+  /// one, one that adds forces to rates(), as ExactSolver adds those of contacts.
   void step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
             System* with = nullptr);
 
-  /// v' of the tied bodies as they are at time t, in the order of d and v. Allocates nothing once gathered.
+  /// v' of the coupled bodies as they are at time t, in the order of d and v. Allocates nothing once
+  /// gathered.
   std::span<const double> accelerations(const State<D>& state, double t);
 
-  /// How the tied bodies stand and move at the stage that rates() saw last: bodies(), then the links of
+  /// Pose and velocity of the coupled bodies at the stage that rates() saw last: bodies(), then the links of
   /// chains().
   const std::vector<BodyMotion<D>>& stances() const { return stances_; }
 
-  /// The bodies that are moved, at the time that rates() saw last; in the order of Drives.
+  /// The kinematic bodies at the time that rates() saw last, in the order of Drives.
   const std::vector<DrivenMotion<D>>& driven() const { return driven_; }
-  /// What those, and whatever else is booked at work(), did in the last step(), J.
+  /// The work (J) of kinematic bodies in the last step(), and what `with` added at work_place().
   double work() const { return work_; }
-  /// Where v' has the power of that, W; negative: nowhere.
+  /// The index in v' of the power of kinematic bodies, W; negative: there are none.
   int work_place() const { return books_ ? chain_start() + chains_.size() : -1; }
 
   /// How many numbers d and v have: D of each body, then the spins of those that turn, then the chains', then
@@ -84,18 +89,18 @@ class ForwardDynamics final : public System {
              std::span<double> v_rate) override;
 
  private:
-  // one end of a tie: a point of a tied body, a place that stays, or a hand
+  // one end of a tie: a point of a coupled body, a fixed place, a hand, or a point of a kinematic body
   struct Hold {
-    int member = -1;             // place in bodies_, and from there on in links(); -1: not a tied body
+    int member = -1;             // place in bodies_, and from there on in links(); -1: not coupled
     int mouse = -1;              // the mouse that holds it; -1: none
-    int drive = -1;              // the body of that is moved; -1: none
+    int drive = -1;              // the drive that moves its body; -1: none
     Vec<D> at = Vec<D>::Zero();  // in the body's frame; else a place in the room
   };
   struct Tie {
     Hold a, b;
     SpringLaw law;
   };
-  // a side of a joint with a spring: a tied body, one that is moved, or one that stands still
+  // a side of a joint with a spring: a coupled, kinematic or still body
   struct JointSide {
     int member = -1, drive = -1, body = -1;
     BodyMotion<D> still;
@@ -106,7 +111,7 @@ class ForwardDynamics final : public System {
     int joint;
     JointSide a, b;
   };
-  // a tied body that the ground brakes
+  // a coupled body that the ground brakes
   struct Braked {
     int member;
     double rate;    // c/m, 1/s
@@ -134,7 +139,7 @@ class ForwardDynamics final : public System {
   const std::vector<Path<D>>& paths_;
   Drives<D> drives_;
   std::vector<DrivenMotion<D>> driven_;
-  bool books_ = false;  // some bodies are moved, or move what touches them
+  bool books_ = false;  // some bodies are kinematic or have belts
   double work_ = 0;
   Articulated<D> chains_;
   std::vector<int> bodies_;      // ascending: those that turn come last

@@ -8,23 +8,23 @@
 
 namespace obscura::sim {
 
-/// Something that moves, as a system of first order in d, its displacement since the step began, and v, its
-/// velocity. Positions stay outside: a place is where the step began plus d, an orientation is turned by d.
+/// A system of ordinary differential equations of first order. Its unknowns are v, the velocity, and d, the
+/// displacement since the step began. Positions stay outside: x = x0 + d, an orientation is turned by d.
 class System {
  public:
   virtual ~System() = default;
 
-  /// d' and v' at time t (s). All four have one length; the answers overlap nothing.
+  /// d' and v' at time t (s), into d_rate and v_rate. All four have one length; none overlap.
   virtual void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
                      std::span<double> v_rate) = 0;
 };
 
-/// Room for the stages of a step, kept from step to step.
+/// Workspace of an integrator: a row of numbers for each stage. Kept from step to step.
 class Stages {
  public:
   static constexpr int kMost = 10;
 
-  /// Makes room for systems of n numbers. Allocates when n grows.
+  /// Sizes it for systems of n numbers. Allocates when n grows.
   void reserve(std::size_t n);
 
   /// Row i of n numbers, not cleared.

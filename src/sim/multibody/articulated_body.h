@@ -4,8 +4,8 @@
 
 namespace obscura::sim {
 
-/// Forces on a chain and what comes of them, link by link at the stance's origins and axes. Room for it is
-/// made once; nothing below allocates.
+/// Forces on a chain and the resulting accelerations, one a link, at the origins and axes of ChainKinematics.
+/// Allocated once; nothing below allocates.
 template <int D>
 struct ChainDynamics {
   ChainDynamics() = default;
@@ -15,13 +15,12 @@ struct ChainDynamics {
   std::vector<Wrench<D>> applied;  // on each link besides gravity, at its origin: wrench_at()
 
   // by factor(), from q
-  std::vector<ArticulatedInertia<D>> inertia;  // of a link with what hangs on it, its own freedoms taken away
+  std::vector<ArticulatedInertia<D>> inertia;  // of a link and all beyond it, as its parent feels it
   std::vector<Wrench<D>> U;                    // one a velocity
   std::vector<double> over_D;                  // 1/D, one a velocity
 
   // by accelerate()
-  std::vector<Wrench<D>>
-      resistance;  // p: what the links from here on need where this one does not accelerate
+  std::vector<Wrench<D>> resistance;   // p: articulated bias force, the wrench at zero acceleration
   std::vector<Twist<D>> acceleration;  // of the link at its origin
 
   // by respond()

@@ -25,12 +25,12 @@ void articulate(World<D>& world, std::vector<Link<D>> links, std::vector<int> bo
 template <int D>
 void articulate(World<D>& world, const std::vector<int>& bodies);
 
-/// Puts the bodies of `state` by its chain_states.
+/// Sets poses and velocities of the links' bodies in `state` from its chain_states.
 template <int D>
 void follow(const Model<D>& model, State<D>& state);
 
-/// The chains of a model as they stand at an instant, and as one system in the displacements and velocities
-/// of their joints. Links are told by their place in links().
+/// All chains of a model as one system in the displacements and velocities of their joints, with their
+/// kinematics at an instant. Links are numbered as in links().
 template <int D>
 class Articulated {
  public:
@@ -48,29 +48,30 @@ class Articulated {
   /// How many numbers d and v have.
   int size() const { return size_; }
 
-  /// Begins displacements at `state`, whose velocities go into v.
+  /// Starts displacements d = 0 at `state`, and copies its joint velocities into v.
   void load(const State<D>& state, std::span<double> v);
 
-  /// Stands and moves as displaced by d since load(), or as `state`; articulated inertias too.
+  /// Computes kinematics and articulated inertias: displaced by d since load(), or as in `state`.
   void stand(std::span<const double> d, std::span<const double> v);
   void stand(const State<D>& state);
 
-  /// How a link stands and moves.
+  /// Pose and velocity of a link.
   BodyMotion<D> body_motion(int link) const;
 
   /// Acceleration of a link at its centre where v' = 0.
   Twist<D> velocity_product(int link) const;
 
-  /// Motion of each link at its centre that v has, at this stance: J v of all links.
+  /// J v: the velocity of each link at its centre.
   void motions(std::span<const double> v, std::vector<Twist<D>>& out);
 
-  /// Adds to `row` what each velocity gives to the power of a wrench at the centre of a link: a row of J.
+  /// Adds J' w to `row`: the generalised force of a wrench w at the centre of a link.
   void add_row(int link, const Wrench<D>& wrench, std::span<double> row);
 
   /// M^-1 of a row. `change` may not be `row`.
   void respond(std::span<const double> row, std::span<double> change);
 
-  /// Forces besides gravity, at the centres of links, that rates() and joint_force() see: none, and more.
+  /// Forces besides gravity, at the centres of links, for rates() and joint_forces(): sets them to zero; adds
+  /// one.
   void clear_forces();
   void pull(int link, const Wrench<D>& wrench);
 
@@ -81,17 +82,17 @@ class Articulated {
   /// Writes into `forces` what each joint that a chain holds puts on its a (N), at this stance.
   void joint_forces(std::vector<Vec<D>>& forces);
 
-  /// Gives `state` where d and v since load() come to.
+  /// Writes the joint coordinates and velocities for d and v since load() into `state`.
   void give(std::span<const double> d, std::span<const double> v, State<D>& state);
 
-  /// Moves the velocities of `state` by `change`, or its places by that much.
+  /// Adds `change` to the joint velocities of `state`; if `places`, to its joint coordinates.
   void jump(State<D>& state, std::span<const double> change, bool places) const;
 
-  /// Moves the places of `state` by the mean of the velocities in `begun` and its own, through h (s), from
-  /// those in `begun`.
+  /// Sets the joint coordinates of `state` to those in `begun` plus h (s) times the mean of the velocities in
+  /// `begun` and in `state`.
   void advance(const std::vector<ChainState>& begun, double h, State<D>& state);
 
-  /// Puts the links' bodies of `state` by its chain_states; stands there.
+  /// Sets the links' bodies of `state` from its chain_states, and computes the kinematics there.
   void follow(State<D>& state);
 
  private:

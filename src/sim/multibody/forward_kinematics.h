@@ -20,7 +20,7 @@ struct ChainKinematics {
 
   // by move(), from v
   std::vector<Twist<D>> twist;  // of the link at its origin
-  std::vector<Twist<D>> bias;   // c: what the origin accelerates by beyond the parent's motion where v' = 0
+  std::vector<Twist<D>> bias;   // c: velocity-product acceleration of the link relative to its parent
   std::vector<Twist<D>> velocity_product;  // the acceleration of the link at its origin where v' = 0
 };
 

@@ -3,9 +3,8 @@
 //   ball     V = pi (r + c)^2 (2 r - c) / 3                  int (y - y0) dV = -pi/4 (r^2 - c^2)^2
 //   polygon  its part below, by triangles from a point of the level, where the cut itself has no area
 //   hull     the same, by tetrahedra
-//   capsule  discs across its axis, each cut by a chord, integrated along the axis: by Gauss's rule between
-//   the
-//            places where the integrand has a kink, to 1e-13
+//   capsule  discs across its axis, each cut by a chord, integrated along the axis:
+//            by Gauss's rule between the places where the integrand has a kink, to 1e-13
 
 #include "sim/shape/displaced.h"
 

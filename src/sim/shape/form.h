@@ -19,14 +19,14 @@ namespace obscura::sim {
 //
 //   spread                 content, centroid and second moment, for mass and inertia
 //   add_support_vertices   the points that may be the first to touch a plane
-//   half_thickness         what goes no farther than this in a step does not pass through it, m
+//   half_thickness         a point that moves less than this in a step cannot pass through it, m
 //   bounding_radius        the farthest it reaches from the origin of its frame, m
 //   bounds                 the smallest upright box in the room around it, m
-//   outside                how far outside it a point of its frame is, about; negative inside, m
+//   outside                approximate signed distance of a point in its frame; negative inside, m
 //   moved                  the same form in another frame
-//   side                   the place on it that a direction of -1, 0 and 1 along the axes names, if it has
-//                          one
-//   hold                   where a hand that takes it pulls hardest
+//   side                   the named place on it, `at = "top right"` in a scene: directions of -1, 0 and 1
+//                          along the axes; none if it has no such place
+//   hold                   the point that yields most to a pull, where the spring of a hand is stiffest
 //   core                   what collides: convex, and rounded by a radius
 //   drawn                  what is seen, in three dimensions; the plane lies at z = 0
 

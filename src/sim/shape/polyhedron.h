@@ -85,8 +85,8 @@ struct FaceAxis {
   int face = -1, corner = -1;
 };
 
-/// The face of `of` that `other` keeps the greatest separation from, the first of equals. Stops at the first
-/// beyond `enough`.
+/// Separating axes of the faces of `of`: the face with the greatest separation from `other`, the first of
+/// equals. Stops at the first beyond `enough`.
 FaceAxis greatest_separation(const Polyhedron& of, const Polyhedron& other, double enough);
 
 /// An edge of either, the unit normal of both from b to a, and how far a stays from b along it, m.
@@ -96,8 +96,8 @@ struct EdgeAxis {
   Vec<3> normal = Vec<3>::Zero();
 };
 
-/// The two edges along whose common normal two cores keep the greatest separation. Edges that are parallel
-/// within 1e-6 have none.
+/// Separating axes of pairs of edges: the pair along whose common normal the separation is greatest. Edges
+/// that are parallel within 1e-6 have no common normal.
 EdgeAxis greatest_edge_separation(const Polyhedron& a, const Polyhedron& b, double enough);
 
 /// The nearest points of two segments: their fractions along the segments, and their distance, m.

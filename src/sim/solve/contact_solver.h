@@ -52,7 +52,8 @@ class ContactSolver {
   /// Wakes bodies that are touched or pulled; in the first step puts to sleep those that start at rest.
   virtual void wake(StepPart<D>) {}
 
-  /// How far the last step has pushed each body out of others, m; null: none. The work of it is no contact's.
+  /// How far the last step has pushed each body out of overlaps, m; null: none. The energy guard does not
+  /// count the work of these pushes.
   virtual const Vec<D>* corrections() const { return nullptr; }
 
   /// Into how many substeps the following stages divide the step.
@@ -114,8 +115,9 @@ struct BodyCounts {
 template <int D>
 BodyCounts body_counts(const Model<D>& model);
 
-/// Which solver serves a model, by how many may touch: decided when it is built, not step by step. `event`
-/// and chains in reduced coordinates are the direct one's: for the other a scene leaves a chain its joints.
+/// The solver of a model, by how many bodies may touch: chosen when the model is built, not step by step.
+/// `event` and chains in reduced coordinates need the direct solver; for the iterative one the scene builds
+/// chains of joints instead.
 template <int D>
 Solver solver(const Model<D>& model);
 

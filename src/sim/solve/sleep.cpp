@@ -116,8 +116,8 @@ double Sleep<D>::reach(const State<D>& state, const Contact<D>& contact, int awa
   const Vec<D>& v = state.v[awake];
   AngularVec<D> w = AngularVec<D>::Zero();
   if (const int k = turning(state, awake); k >= 0) w = state.spin[k];
-  // A body that was quiet between two checks does not fall: two beside each other would wake each other in
-  // turns. It may come nearer all the same.
+  // A body that was quiet since the last check does not fall, so only its velocity counts here. With a bound
+  // by free fall two neighbours would wake each other in turns.
   if (state.quiet[awake] > interval_ && !joins(contact)) {
     const double along = contact.normal.dot(v + cross_velocity<D>(w, Vec<D>(contact.point - state.x[awake])));
     return span * std::max(0.0, awake == contact.key.a ? -along : along);

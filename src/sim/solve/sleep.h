@@ -14,9 +14,9 @@
 
 namespace obscura::sim {
 
-/// The stages `wake` and `sleep` of a step, for all solvers: decides which islands of bodies are put to sleep
-/// and which wake, by the rule of sim/constraint/mobility.h. A solver shows its contacts, as the state keeps
-/// them, and the forces under which a candidate would stay at rest.
+/// The stages `wake` and `sleep` of a step, for all solvers: decides which islands of bodies fall asleep and
+/// which wake, by the rule of sim/constraint/mobility.h. The solver supplies its contacts, as in
+/// State::contacts, and the forces under which a candidate would stay at rest.
 ///
 ///     at the start of a step     wake(), then at_start() in the first
 ///     at its end                 time() of each body that moves
@@ -71,8 +71,8 @@ class Sleep {
   /// Wakes these bodies, each with its island, and begins to count anew how long they are quiet.
   void wake(State<D>& state, std::span<const int> bodies);
 
-  /// Wakes islands that bodies which are moved, and belts, may reach: nothing sleeps near them. `travel` is
-  /// how far such a body gets in the step, m. True where any woke.
+  /// Wakes all islands near kinematic bodies and belts. travel(body): how far such a body gets in the step,
+  /// m. True if any woke.
   template <class Travel>
   bool wake_near_driven(State<D>& state, Travel&& travel) {
     if (carriers_.empty()) return false;
@@ -143,9 +143,9 @@ class Sleep {
   static constexpr double kCarrierMargin = 0.05;  // of a bounding radius
 
   const Model<D>& model_;
-  std::vector<int> carriers_, near_carriers_;  // bodies that are moved, and belts; what is near them
-  const std::vector<int> driven_,
-      restless_at_start_;  // by forces: never at rest; not found at rest at the start
+  std::vector<int> carriers_, near_carriers_;  // kinematic bodies and belts; bodies near them
+  const std::vector<int> driven_;              // bodies that forces push: they never rest
+  const std::vector<int> restless_at_start_;   // bodies that at_start() leaves out
   const bool exact_;
   const double deepest_;
   std::int64_t every_ = 1;     // steps between two checks

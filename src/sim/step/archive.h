@@ -17,8 +17,8 @@ std::vector<std::uint64_t> saved(const State<D>& state);
 template <int D>
 std::optional<State<D>> loaded(std::span<const std::uint64_t> words);
 
-/// Whether it can be a state of this model: it has as many of everything, and names none but those. (Of what
-/// bonds make of the parts Stepper knows.)
+/// Whether it can be a state of this model: all sizes agree, and all indices are within them. Does not check
+/// the state of bonded bodies; Stepper::fits does.
 template <int D>
 bool fits(const State<D>& state, const Model<D>& model);
 

@@ -13,14 +13,15 @@ namespace obscura::sim {
 template <int D>
 class Stepper;
 
-/// The bodies that bonds make of the parts of a model, each rigid: one of a kind with the bodies of any
-/// model, so that whatever moves those moves these.
+/// The rigid bodies that bonds make of the parts of a model. They form an ordinary Model, which any stepper
+/// steps.
 template <int D>
 struct Whole {
   Model<D> model;
-  std::vector<int> body;          // of each part, its body in `model`
-  std::vector<char> alone;        // each part: it is all of its body
-  std::vector<int> joints, kept;  // of each joint of `model`, that of the parts; and the other way, or -1
+  std::vector<int> body;    // one a part: its body in `model`
+  std::vector<char> alone;  // one a part: it is the only one of its body
+  std::vector<int> joints;  // one a joint of `model`: the joint of the parts
+  std::vector<int> kept;    // one a joint of the parts: the joint of `model`, or -1
 };
 
 /// Steps a model with bonds: moves the bodies that bonds make of the parts, copies their motion to the parts,
@@ -33,11 +34,11 @@ class BondedBodies {
   BondedBodies(const Model<D>& model, const std::vector<Path<D>>& paths);
   ~BondedBodies();
 
-  /// Readies a state: at the start bonds hold the parts as they stand. Velocities that are not those of one
-  /// rigid body become those of the same momentum and angular momentum.
+  /// Prepares a state. Bonds hold the parts in their poses at the start. If the velocities of bonded parts
+  /// are not those of one rigid body, they become those with the same momentum and angular momentum.
   void begin(State<D>& state);
 
-  /// Whether what moves in a state is what its bonds make of the parts.
+  /// Whether State::bonded agrees with the intact bonds of a state.
   bool fits(const State<D>& state);
 
   std::optional<Trouble> step(State<D>& state);

@@ -4,9 +4,10 @@ namespace obscura::sim {
 
 namespace {
 
+// gains that the energy guard allows an island
 constexpr double kAll = 1e300;
-constexpr double kSinks = 1e-6;   // of what it could fall for
-constexpr double kSwings = 1e-2;  // of its motion on joints: the error of a step of second order
+constexpr double kSinks = 1e-6;   // of m g times the height of the room
+constexpr double kSwings = 1e-2;  // of the kinetic energy of bodies on joints
 
 }  // namespace
 
@@ -35,10 +36,10 @@ void ContactStep<D>::step(State<D>& state, double t, double h) {
   take_energy_back(state);
 }
 
-// contact may only take
+// contacts may only take energy
 template <int D>
 void ContactStep<D>::take_energy_back(State<D>& state) {
-  // bodies that overlap are pushed apart, and the work of that is booked
+  // the work of pushing bodies out of overlaps is recorded and stays
   if (const Vec<D>* ways = solver_->corrections()) {
     for (int i = 0; i < int(model_.bodies.size()); ++i) {
       if (lone_bodies_ && lone_bodies_->moved(i)) continue;
@@ -47,12 +48,13 @@ void ContactStep<D>::take_energy_back(State<D>& state) {
       state.ledger.displacement += work;
     }
   }
-  // bodies that overlap at the start are to be lifted apart
+  // with overlap = "separate" bodies that overlap at the start may be lifted
   if (model_.overlap == Overlap::separate || !energy_guard_.risen(state)) return;
   for (const auto& [a, b] : touched_) energy_guard_.touch(a, b);
   for (const Contact<D>& contact : state.contacts) energy_guard_.touch(contact.key.a, contact.key.b);
-  // so is what overlaps by next to nothing; joints of second order give and take; and iterations end before
-  // all contacts have settled, and err both ways: a pile that topples slowly would be braked
+  // The first step may lift bodies out of tiny overlaps. In the plane iterations end before all contacts have
+  // settled; their error has both signs, and taking away its gains alone would brake a pile that topples
+  // slowly. Joints are of second order in the step, and their error has both signs too.
   const double share = state.step == 0 ? kAll : D == 2 && !exact_ ? kSinks : 0;
   for (int i = 0; share > 0 && i < int(model_.bodies.size()); ++i) energy_guard_.excuse(i, share);
   for (const Joint<D>& joint : model_.joints) {

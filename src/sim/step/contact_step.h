@@ -10,9 +10,8 @@
 
 namespace obscura::sim {
 
-/// One step of bodies in contact, whichever solver serves them: its stages, and after them energy. Bodies
-/// that meet nothing but walls are moved by the exact solver (sim/solve/exact/lone_bodies.h), and none of it
-/// leaves more energy than there was.
+/// One step of bodies in contact, with any solver: the solver's stages, then lone bodies by the exact solver
+/// (sim/solve/exact/lone_bodies.h), then the energy guard, which takes away energy that contacts have added.
 template <int D>
 class ContactStep {
  public:

@@ -35,7 +35,7 @@ void Releases<D>::make(const State<D>& state) {
     Body<D>& body = now_.bodies[std::size_t(now_.drives[i].body)];
     body.fixed = body.driven = false;
   }
-  // one solver serves all of the run: the one for all that will ever move
+  // the solver is the same for the whole run: that of the model with all bodies released
   if (now_.collision == Collision::contact && now_.solver == Solver::automatic) {
     Model<D> all = model_;
     for (const Drive<D>& drive : model_.drives)

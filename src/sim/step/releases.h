@@ -13,9 +13,8 @@ namespace obscura::sim {
 template <int D>
 class Stepper;
 
-/// Steps a model that lets bodies go: between two releases it is a model in which those that have been let go
-/// are free and all others fixed or moved, with a stepper of its own. What is made for it follows from the
-/// state.
+/// Steps a model of which fixed or kinematic bodies are released at given times. Between two releases this is
+/// a model in which released bodies are free, with a stepper of its own; both follow from State::released.
 template <int D>
 class Releases {
  public:

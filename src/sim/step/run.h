@@ -24,8 +24,9 @@ struct Divergence {
   bool ended = false;  // the state shown is its last finite one, also at all later instants
 };
 
-/// The one loop: steps a world along its own clock and hands out instants. A frame between two steps is a
-/// partial step on a copy; the trajectory never notices.
+/// A world that is stepped along its own clock and shown at given times. The interface that film and commands
+/// use; the loop over steps is in run.cpp. A frame between two steps is a partial step of a copy, so the
+/// trajectory does not depend on it.
 class Run {
  public:
   virtual ~Run() = default;

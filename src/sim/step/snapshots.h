@@ -5,7 +5,7 @@
 
 namespace obscura::sim {
 
-// The one place where the dimension is left behind.
+// Converts states of the plane and of space to the types of sim/model/snapshot.h, which both share.
 
 /// Names, shapes and masses of all that takes part in the run.
 template <int D>

@@ -22,8 +22,8 @@ class ContactStep;
 template <int D>
 class Releases;
 
-/// Steps states of one model. Its members belong to the present step and are never saved; a step after the
-/// first allocates nothing. Keeps the model by reference.
+/// Steps states of one model. All that a step depends on is in the model and the state; members are scratch
+/// and follow from these. A step after the first allocates nothing. Keeps the model by reference.
 template <int D>
 class Stepper {
  public:

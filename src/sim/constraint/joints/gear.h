@@ -76,7 +76,8 @@ void hold_ratio(const JointPose<D>& at, Row<D>* J, double* C) {
   if constexpr (D == 2) {
     C[0] = error + (at.turn - at.joint.turn)[0];
   } else {
-    // joint.length: the least difference that whole rounds of both make; zero: any; negative: sliders, none
+    // whole rounds of both joints change the error by multiples of joint.length; 0: by any amount, so C = 0;
+    // negative: two sliders, which have no rounds
     const double least = at.joint.length, off = error - at.joint.lower;
     C[0] = least > 0 ? off - least * std::round(off / least) : least < 0 ? off : 0;
   }

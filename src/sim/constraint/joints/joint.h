@@ -62,13 +62,13 @@ template <int D>
 inline constexpr int kMostHeld = D + kAngular<D>;
 
 /// Writes the rows that a joint constrains and their errors C (m or rad). Returns their number. `turn`: the
-/// angle of a relative to b (rad), for joints that constrain it; in space the poses give it. `all`: how all
-/// bodies stand and move, by number, of which mechanisms ask for more than a and b.
+/// angle of a relative to b (rad), for joints that constrain it; in space the poses give it. `all`: pose and
+/// velocity of every body, by number, for mechanisms that hold more bodies than a and b.
 template <int D>
 int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
          Row<D>* out, double* off, std::type_identity_t<std::span<const BodyMotion<D>>> all = {});
 
-/// Breaks what runs in one rope with a pulley that is broken.
+/// Where a pulley is broken, breaks all pulleys of the same rope.
 template <int D>
 void break_ropes(const Model<D>& model, std::vector<char>& broken) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {

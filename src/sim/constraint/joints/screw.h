@@ -2,9 +2,9 @@
 
 // Screw: a point of a stays on a line of b, and a turns about that line by an angle for each length that it
 // goes along it; in space.
-//   C    = [ t_i . (x_a + r_a - x_b - r_b);  n_a . t_i;  s - p phi ]       s, phi  way along and angle about
-//   the
-//                                     axis n, of a slider and a hinge; p  metres a radian; up to whole turns
+//   C    = [ t_i . (x_a + r_a - x_b - r_b);  n_a . t_i;  s - p phi ]
+//            s, phi  way along the axis n and angle about it, as of a slider and a hinge
+//            p       metres a radian; C is taken up to whole turns
 //   J    = [ rows of a slider across n; rows of a hinge across n; J_s - p J_phi ],  J' v likewise
 //   free: the way s; limits, motor and friction act on it. Breaks by |f|.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §4.4 (helical joint).

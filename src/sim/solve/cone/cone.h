@@ -20,28 +20,29 @@ struct ConeReport {
 
 /// Forces that obey joints, limits and Coulomb's cone, exactly: w = K f + b with one of the laws above a
 /// block. K: n x n, symmetric, positive semidefinite, J M^-1 J^T; b: n, what the rows would do without f
-/// (m/s^2, or m/s and then f are impulses). If rows are redundant, the solution with the modes found is that
-/// of least norm (each block weighed by its own response), or, if some contacts are on their cones, the limit
-/// of slightly soft ones: symmetric problems have symmetric solutions. Sets of modes are guessed by Newton's
-/// method on slightly soft contacts and then solved as equalities, after Baraff, "Fast contact force
-/// computation for nonpenetrating rigid bodies", 1994. Memory is kept from solve to solve; a solve of the
-/// same size allocates nothing.
+/// (m/s^2, or m/s and then f are impulses).
+/// Sets of modes are guessed by Newton's method on slightly soft contacts and then solved as equalities,
+/// after Baraff, "Fast contact force computation for nonpenetrating rigid bodies", 1994. Redundant rows leave
+/// f undetermined. Then f is the one of least norm, each block weighed by its own response; if some contacts
+/// are on their cones, it is the limit of f for contacts that get ever less soft. Either way symmetric
+/// problems have symmetric solutions. Memory is kept from solve to solve; a solve of the same size allocates
+/// nothing.
 template <int D>
 class Cone {
  public:
   /// The tolerance: violations relative to the largest term in their row.
   static constexpr double kTolerance = 1e-10;
 
-  /// Whether everything is tried before a solve is given up, however long it takes.
+  /// Whether a solve tries all strategies before it gives up, however long that takes.
   bool thorough = true;
 
-  /// The residual that is good enough once nothing better was met.
+  /// A residual above kTolerance that is accepted if no strategy finds a smaller one.
   double enough = kTolerance;
 
-  /// Systems solved after which it begins no other way to look.
+  /// After so many linear systems a solve starts no further strategy.
   int patience = std::numeric_limits<int>::max();
 
-  /// Answers w this small, in b's unit, are rounding: for rows whose every term is.
+  /// Responses w this small, in b's unit, count as zero: for rows all of whose terms are rounding errors.
   double negligible = 0;
 
   /// Finds modes and f (n). `modes` is the first guess: one a block, those of the last step, or default
@@ -52,15 +53,18 @@ class Cone {
                    std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes,
                    Eigen::Ref<Eigen::VectorXd> f);
 
-  /// Roughly such forces, from those in `f`: at most `sweeps` times over the rows, until nothing changes.
-  /// `modes` (out) are as the sweeps left them.
+  /// Approximate forces by projected Gauss-Seidel from those in `f`: at most `sweeps` sweeps over the rows,
+  /// fewer if nothing changes. `modes` (out) are those at the end.
   void sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
              std::span<const ConeBlock<D>> blocks, std::span<ConeMode<D>> modes,
              Eigen::Ref<Eigen::VectorXd> f, int sweeps);
 
-  /// f where the modes are known, as equalities; inequalities are not looked at: free and stick: w = 0; open:
-  /// f = 0; slide and brink: w_n = 0, f_t = -mu f_n `along` (the mode's, not the block's); at a bound: f is
-  /// the bound. The residual is that of the equalities; found is false where they contradict one another.
+  /// f where the modes are known. Each mode is a set of equalities; inequalities are ignored:
+  ///   free, stick                 w = 0
+  ///   open                        f = 0
+  ///   slide, at_friction_limit    w_n = 0, f_t = -mu f_n `along` (the mode's, not the block's)
+  ///   at a bound                  f is the bound
+  /// The residual is that of the equalities; found is false where they contradict one another.
   ConeReport solve_modes(const Eigen::Ref<const Eigen::MatrixXd>& K,
                          const Eigen::Ref<const Eigen::VectorXd>& b, std::span<const ConeBlock<D>> blocks,
                          std::span<const ConeMode<D>> modes, Eigen::Ref<Eigen::VectorXd> f);

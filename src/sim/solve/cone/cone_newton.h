@@ -11,9 +11,9 @@ namespace obscura::sim {
 /// A pivot this small beside the first is rounding.
 inline constexpr double kDependent = 1e-11;
 
-/// Guesses the modes of rows that are a little soft: f answers -w / softness as far as its law lets it. Rows
-/// are scaled so that the largest K_ii of each block is 1. Works in the space of independent motions, of
-/// which there are fewer than rows where rows are redundant.
+/// Guesses the modes by solving soft rows: f = -w / softness, projected onto its law. Rows are scaled so that
+/// the largest K_ii of each block is 1. Works in the space of independent motions, whose dimension is less
+/// than the number of rows if rows are redundant.
 template <int D>
 class ConeGuess {
  public:
@@ -22,9 +22,9 @@ class ConeGuess {
   void begin(std::span<const double> K, std::span<const double> b, std::span<const ConeBlock<D>> blocks,
              std::span<const int> first, std::span<const double> sigma);
 
-  /// Modes of the rows of this softness, one a block. False where Newton's method did not get there; the
-  /// modes are then those of the softness it came to; without `follow` it does not go there by degrees.
-  /// Starts from where the last call ended.
+  /// Modes of the rows of this softness, one a block. Starts from the solution of the last call. If Newton's
+  /// method fails, `follow` lets it approach the softness by continuation, in steps. False if that fails too:
+  /// the modes are then those of the last softness that was solved.
   bool guess(double softness, std::span<ConeMode<D>> modes, bool follow = true);
 
   /// Linear systems solved since begin().

@@ -2,8 +2,9 @@
 //   open    p = 0                                              where b_n >= 0
 //   stick   K p = -b                                           where p lies within the cone
 //   slide   p_t = -mu p_n d, w_n = 0, w_t along d              d a unit vector
-// In the last w_n = 0 gives p_n of d, and d is a root of the cross product of d and w_t. The root is looked
-// for from the direction against which friction would have to push to hold, and is halved in.
+// In the last case w_n = 0 gives p_n for each d, and d is a root of the cross product of d and w_t. The root
+// is bracketed in sectors, beginning at the slip that the sticking force would oppose, and found by
+// bisection.
 
 #include "sim/solve/cone/one_contact.h"
 

@@ -12,12 +12,12 @@
 
 namespace obscura::sim {
 
-/// Forces under which an island stays at rest, exactly: all its touches as one problem of cones. Sweeps take
-/// long to find those of an arch.
+/// Forces under which an island stays at rest, exactly: one cone complementarity problem of all its contacts.
+/// Iterations would take long to find those of an arch.
 template <int D>
 class Statics {
  public:
-  /// Touches of an island, at most.
+  /// The most contacts of an island.
   static constexpr int kMost = 250;
 
   explicit Statics(const Model<D>& model);

@@ -292,7 +292,7 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
   warm_start_rows(1);
   const bool found = solve();
-  // hold contacts that separate, but that the change of the forces alone would close
+  // hold contacts that separate now, but that the forces without them would close again at once
   for (const Constraint& constraint : constraints_) {
     if (progress_.forced.empty() || constraint.kind != Constraint::Kind::contact) continue;
     const ContactKey& key = candidates_[constraint.of].key;
@@ -306,9 +306,9 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   return found;
 }
 
-// Whether a slide presses what it rubs on out of all proportion to what there is to bear: near the angle at
-// which it locks forces grow without bound, and what holds them as equalities throws bodies away. An impact
-// ends that.
+// Whether a sliding contact jams (Painleve): its normal force is kJam times all loads together. Near the
+// angle at which it locks, forces grow without bound and would throw bodies away. The rest is left to an
+// impact.
 template <int D>
 bool ExactSolver<D>::jammed() const {
   double most = 0, load = 0;

@@ -22,8 +22,8 @@ constexpr double kFine = 0.25;      // of the thinner body: how far two may move
 constexpr int kMostLooks = 200000;  // of a couple in an interval
 constexpr double kSteepest = 2.5;  // of its way: how fast one goes in its interval, at most (Hermite's cubic)
 constexpr int kMostRoots = 100;
-constexpr double kStraight = 0.8;  // how far a straight line is right about when a force has gone, at least
-constexpr double kSlight = 1e-6;   // of the largest force: what may pull before it lets go
+constexpr double kStraight = 0.8;  // of an interval cut at a release: earlier releases in it are ignored
+constexpr double kSlight = 1e-6;   // of the largest force: a contact may pull so much before it is released
 
 }  // namespace
 
@@ -238,7 +238,8 @@ double ExactSolver<D>::stopping_time(Couple& which) {
   return first;
 }
 
-// how much force is left, of these, until a contact lets go; in event mode, until it slips
+// How far the forces f of a contact are from its release: the normal force. In event mode, of a sticking
+// contact, how far they are from slipping.
 template <int D>
 double ExactSolver<D>::force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const {
   const double pressed = f[constraint.first];
@@ -248,9 +249,9 @@ double ExactSolver<D>::force_reserve(const Constraint& constraint, const Eigen::
          std::sqrt(f.segment(constraint.first + 1, D - 1).squaredNorm());
 }
 
-// the fraction of the interval at which the first contact separates or slips, by linear interpolation of the
-// forces; slightly after its force leaves the law, so that it does. Later, a contact that pulls would hold
-// on, and friction would drive the slip
+// The fraction of the interval at which the first contact separates or slips, by linear interpolation of the
+// forces. Slightly after the force has left the law, so that the contact is then found open or slipping. Much
+// later would be wrong: until then it pulls, or friction drives the slip.
 template <int D>
 double ExactSolver<D>::release_time(const Constraint*& which) {
   double most = 0, first = kNever;

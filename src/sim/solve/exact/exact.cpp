@@ -264,7 +264,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       if (progress_.released) release_contact();
       record_forces();
       if (coming_apart()) project_state(state);
-      // on the at_friction_limit nothing slips: as an equality it is a stick
+      // at the friction limit nothing slips: as an equality it is sticking
       interval_.modes = modes_;
       for (ConeMode<D>& mode : interval_.modes) {
         if (mode.kind == ModeKind::at_friction_limit) mode.kind = ModeKind::stick;

@@ -51,12 +51,13 @@ class ExactSolver final : public ContactSolver<D>, private System {
     int of = 0;                 // candidate or joint
     int first = 0, rows = 0;    // in rows_
     int block = 0;              // in blocks_, its first
-    double off = 0;             // of a gap or limit: what is left, m or rad
-    double offs[kMostHeld<D>];  // of a joint: how far its rows are from where they belong
-    Vec<D> point = Vec<D>::Zero(), normal = Vec<D>::Zero();  // of a contact
-    Vec<D> slip =
-        Vec<D>::Zero();  // of a contact that slides, its way where the interval begins, room's frame
-    bool slow = false;   // its way is that for all of the interval
+    double off = 0;             // of a gap or limit: the distance left, m or rad
+    double offs[kMostHeld<D>];  // of a joint: the errors C of its rows
+    // of a contact
+    Vec<D> point = Vec<D>::Zero(), normal = Vec<D>::Zero();
+    // of a sliding contact: the direction of its slip at the start of the interval, room's frame
+    Vec<D> slip = Vec<D>::Zero();
+    bool slow = false;  // that direction is kept through the interval
   };
 
   // poses and velocities
@@ -68,18 +69,19 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<ChainState> chain_states;
   };
 
-  // two that may come through each other: a body and a body or wall
+  // a pair that may collide: a body and a body or wall
   struct Couple {
     int a, b;
   };
 
-  // a part of the room that nothing joins to the rest in this step; its members lie in the lists of step_
+  // bodies that are stepped together, as they can meet no others in this step; its members lie in the lists
+  // of step_
   struct Group {
     int root = 0;  // the lowest of its bodies, which tells it from others
     Subset subset;
     std::span<const int> joints;
     std::span<const Couple> couples;
-    bool lone = false;  // one body, that nothing but walls can meet
+    bool lone = false;  // one body, which only walls and fixed bodies can meet
   };
 
   // parameters: they follow from the model alone
@@ -130,11 +132,11 @@ class ExactSolver final : public ContactSolver<D>, private System {
     double work = 0;                          // rows^3 solved
     double searches = 0;                      // how often more than once an interval couples were looked at
     int openings = 0;                         // how many more contacts that let go may cut it
-    std::vector<ContactKey> unclear;          // contacts whose forces do not tell when they let go
-    std::vector<std::pair<int, int>> forced;  // couples that would come through each other at once
+    std::vector<ContactKey> unclear;          // contacts whose forces do not predict their release
+    std::vector<std::pair<int, int>> forced;  // pairs that open contacts would let penetrate at once: held
     bool forced_again = false;
     std::optional<ContactKey> released;              // what the last interval ended by
-    double reserve_at_release = 0;                   // N: what it had left where that interval began
+    double reserve_at_release = 0;                   // N: force_reserve() of that contact, at its start
     Couple cut_by{-1, -1};                           // what the last interval was cut by
     const std::vector<Contact<D>>* known = nullptr;  // sorted contacts to begin with
   };
@@ -149,7 +151,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<double> aims;             // of motors there, one a constraint
     Eigen::VectorXd forces;               // f there
     std::vector<ConeMode<D>> modes;       // as its stages keep them
-    double slight = 0;                    // N: less presses nothing
+    double slight = 0;                    // N: smaller normal forces count as none
   };
 
   // outcome, of the group at hand, then of the step
@@ -320,7 +322,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
 
   // the present instant
   bool belts_ = false;                   // some bodies have one
-  double still_speed_ = 0;               // m/s: slower is not at all, at the speeds at hand
+  double still_speed_ = 0;               // m/s: slower is rounding, at the speeds at hand
   std::vector<BodyMotion<D>> poses_;     // one a body
   std::vector<DrivenMotion<D>> driven_;  // those of bodies that are moved, in the order of drives_
   std::vector<ContactCandidate<D>> candidates_;

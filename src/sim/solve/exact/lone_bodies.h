@@ -8,22 +8,23 @@
 
 namespace obscura::sim {
 
-/// Bodies that meet nothing but walls and fixed bodies without a belt in a step, faster than what rests, are
-/// moved through it by the exact solver, whichever solver serves all others: each impact at its own time,
-/// however many there are.
+/// Bodies that in this step can meet only walls and fixed bodies without a belt, and strike them faster than
+/// resting bodies do. The exact solver moves them, whichever solver moves all others: each impact at its own
+/// time, however many there are.
 template <int D>
 class LoneBodies {
  public:
   /// Both are kept by reference.
   LoneBodies(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  /// Finds them in a state before its step from t to t + h (s), and remembers how they stand.
+  /// Finds them in a state before its step from t to t + h (s), and saves their poses and velocities.
   void find(const State<D>& state, double t, double h);
 
-  /// Moves them, in the state that the other solver has stepped; not those that met others there after all.
+  /// After the step of the other solver: puts them back to the start of the step and moves them. Leaves out
+  /// those that met others after all.
   void step(State<D>& state, double t, double h);
 
-  /// Whether the last step() moved a body: what the other solver did with it then counts for nothing.
+  /// Whether the last step() moved a body: its motion by the other solver is then discarded.
   bool moved(int body) const { return moved_[body] != 0; }
 
  private:
@@ -37,18 +38,18 @@ class LoneBodies {
 
   bool strikes(const State<D>& state, int body, double h) const;
   void leave_out_near(const State<D>& state);
-  // whether a body is one that what is alone must not meet
+  // whether a lone body must not meet this one
   bool meets(int body) const { return !model_.bodies[body].fixed || carries_[body]; }
 
   const Model<D>& model_;
   ExactSolver<D> direct_;
   Drives<D> drives_;
   double g_ = 0;                                // m/s^2
-  std::vector<char> free_;                      // one a body: nothing ever ties it
+  std::vector<char> free_;                      // one a body: no joint, spring or pair force acts on it
   std::vector<char> still_;                     // one a body: it is not to be moved
   std::vector<char> moved_;                     // one a body
   std::vector<char> points_;                    // one a body
-  std::vector<char> carries_;                   // one a body: it is moved, or a belt
+  std::vector<char> carries_;                   // one a body: it is kinematic or has a belt
   std::vector<int> fixed_;                      // bodies
   std::vector<double> bounding_radius_, ways_;  // one a body: bounding radius, how far it gets in the step, m
   std::vector<int> candidates_;

@@ -1,5 +1,5 @@
-// nearest() of two boxes, four pairs at once. Seen from the reference box, turned so that its face looks
-// along +n and its edge runs along +t,
+// find_features() (sim/collide/core_shapes.h) of two boxes, four pairs at once. Seen from the reference box,
+// turned so that its face looks along +n and its edge runs along +t,
 //
 //      b1 \      / b0        m, tau   normal of the incident face and the direction of its edge
 //          \____/            b0, b1 = c + g_m m +- g_tau tau

@@ -34,7 +34,7 @@ struct Outdated {
 void find_outdated(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
                    const Half* halves, double share, std::vector<Outdated>& boxes, Found& others);
 
-/// What nearest() finds for one pair, for all of them. Pairs of anything else get something.
+/// find_features() for pairs of boxes. For pairs of other shapes the result has no meaning.
 void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves);
 
 }  // namespace obscura::sim::plane

@@ -1,8 +1,8 @@
 // One iteration of projected Gauss and Seidel. Of each pair in turn,
 //   friction   lt' = clamp(lt - v_t / K_t, -mu ln, mu ln)
 //   normals    ln >= 0,  v_n + K (ln' - ln) - target >= 0,  one of both zero in each touch
-// the second by its cases: both press, one presses. Where rounding leaves no case, the one less violated. A
-// target is -g / h where the touch is open, else zero; of a pair that met an impact what that says.
+// the second by its cases: both press, one presses. If rounding leaves no case, the one less violated. The
+// target is -gap / h at an open contact point, else zero; after an impact it is that of Impacts::least().
 //
 // Written once in vectors of the compiler; two lanes are SSE2, four AVX2. No operation differs, so the bits
 // are the same.
@@ -351,7 +351,7 @@ OBSCURA_INLINE int sweep_all(ContactBatch* batches, int count, const Pose* poses
       }
       press<V>(two, r0, r1, target0, target1, l0, l1);
       if constexpr (kSome) {
-        // the other lanes stay: what a pair does must not hang on which lanes are beside its own
+        // the other lanes stay: the result of a pair must not depend on the lanes beside its own
         const Mask<V> moves = mask<V>(lanes, lane);
         two.keep(moves, begun);
         l0 = pick<V>(moves, l0, begun_l0), t0 = pick<V>(moves, t0, begun_t0);

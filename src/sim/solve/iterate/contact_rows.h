@@ -8,38 +8,40 @@
 
 namespace obscura::sim::plane {
 
-// Pairs that touch, four side by side. Lanes of one colour share no body that moves, so that four pairs at
-// once and one after another give the same bits. A lane keeps what the features are, not the rows: those are
-// made from the poses in every pass, for memory is slower than arithmetic.
+// Contact constraints of four pairs at once. The lanes of one colour share no moving body, so four pairs at
+// once give the same bits as one after another. A lane stores the features, not the rows: these are computed
+// from the poses in every pass, as memory is slower than arithmetic.
 
 inline constexpr int kLanes = 4;
-inline constexpr double kNowhere = 1e9;  // m: the gap of a touch that is none
+inline constexpr double kNowhere = 1e9;  // m: the gap of an unused contact point
 
 /// Velocity (m/s, rad/s) or displacement (m, rad) of a body, and 1/kg: zero for what does not move.
 struct alignas(32) Motion {
   double x = 0, y = 0, w = 0, im = 0;
 };
 
-/// A pair has up to two touches. Of each: a corner in its body's frame, and the other's face (or corner,
-/// where two corners touch) in its own; gap = n . (p - x) - d - radius.
+/// Four pairs. Each has up to two contact points (touches): a corner c in the frame of its body, and the face
+/// f, or the corner if two corners touch, of the other body in its frame; gap = n . (p - x) - d - radius.
 struct alignas(64) ContactBatch {
   int a[kLanes], b[kLanes];         // bodies; walls and empty lanes have the one after the last
-  int pair[kLanes], first[kLanes];  // and where its touches are among the contacts; -1: an unused lane
+  int pair[kLanes], first[kLanes];  // the pair, and its first contact; -1: an unused lane
   unsigned char touches[kLanes];
-  unsigned char of_b[2];            // a bit a lane: the corner is b's
+  // flags, a bit a lane
+  unsigned char of_b[2];            // the corner is b's
   unsigned char corners[2];         // two corners touch
-  unsigned char struck[2];          // of a pair that met an impact in this step
+  unsigned char struck[2];          // the pair has had an impact in this step
   unsigned char boxes;              // both are boxes
-  unsigned char used;               // a bit a lane: it is in use
+  unsigned char used;               // the lane is in use
   unsigned char belts;              // a body of the pair has a belt
-  unsigned short words[2][kLanes];  // of the features
+  unsigned short words[2][kLanes];  // Feature::word()
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
-  double calm[kLanes], far[kLanes];  // m/s up to which features stay; the larger bounding radius of both, m
-  double impact_speed[kLanes];       // -m/s: faster approaches are impacts
-  double sight[kLanes];              // m: touches farther off are none
-  double per_width[kLanes];          // 1/m: of the narrower of both
-  double radius[kLanes];             // of both together, m
-  double belt[kLanes];               // m/s: what belts of both add to v_t
+  double calm[kLanes];          // m/s: at slower relative speeds features do not change until the next search
+  double far[kLanes];           // m: the larger bounding radius of both
+  double impact_speed[kLanes];  // -m/s: faster approaches are impacts
+  double sight[kLanes];         // m: points with wider gaps are ignored
+  double per_width[kLanes];     // 1/m: one over the width of the narrower body
+  double radius[kLanes];        // sum of both radii, m
+  double belt[kLanes];          // m/s: what the belts of both add to v_t
   double cx[2][kLanes], cy[2][kLanes];
   double fx[2][kLanes], fy[2][kLanes];
   double d[2][kLanes];                // of two corners: b's radius
@@ -53,12 +55,12 @@ struct alignas(64) Rows {
   double na[2][kLanes], nb[2][kLanes], ta[2][kLanes], tb[2][kLanes];  // r_a x n, ..., m
 };
 
-/// What has projected positions along the rows of a group so far: along normals and tangents, kg m.
+/// Accumulated pseudo-impulses of project(), along normals and tangents, kg m.
 struct alignas(64) Projection {
   double push[2][kLanes], side[2][kLanes];
 };
 
-/// Which pairs a pass has found, as numbers of lanes: lane + kLanes * group.
+/// The lanes that a pass has found, as numbers: lane + kLanes * batch.
 using Found = std::vector<int>;
 
 /// Of a group: normal speeds that an iteration leaves, at least, m/s.
@@ -102,34 +104,35 @@ inline double normal_speed(const Rows& r, int k, int lane, const Motion& a, cons
          (r.na[k][lane] * a.w - r.nb[k][lane] * b.w);
 }
 
-/// Makes impulses of the forces and applies them to v. `old`: velocities at the start. Which close slowly in
-/// the step, and which with an impact. True where something is deeper than project() lets it.
+/// Warm start: turns the stored forces into impulses and applies them to v. `old`: velocities at the start of
+/// the substep. Appends the lanes that close slowly within it to `closing`, and those that close with an
+/// impact to `impacts`. True if some overlap is deeper than project() allows.
 bool start(ContactBatch* batches, int count, const Pose* poses, const Motion* old, Motion* v,
-           const StepConstants& pace, Found& closing, Found& blows);
+           const StepConstants& pace, Found& closing, Found& impacts);
 
-/// How fast pairs close that touch, or may within h s: the most, in widths of the narrower body, 1/s. Of
-/// polygons a part of how fast they pass counts too, as others of their corners may come near.
+/// The largest closing speed of pairs that touch or may within h s, in widths of the narrower body, 1/s. Of
+/// polygons a part of the relative speed counts too, as other corners of theirs may come near.
 double closing_rate(const ContactBatch* batches, int count, const Pose* poses, const Motion* v, double h);
 
 /// One iteration: every pair once, in order.
 void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
-/// Bodies whose pairs are to be iterated on: those of a pair that was to be slowed down by more than
-/// `settled` widths a second. Those that never are, as joints hold them, have `never`.
+/// Bodies whose pairs need more iterations: those of a pair whose last correction exceeded `settled` widths a
+/// second. Bodies on joints are excluded by kNever.
 struct Stirred {
   static constexpr unsigned char kNow = 1, kNext = 2, kNever = 4;
   double settled = 0;                 // 1/s
   std::vector<unsigned char> bodies;  // flags; one more for walls
 };
 
-/// One iteration of the pairs of such bodies alone; says whose are next. Returns how many pairs that were.
+/// One iteration of the pairs of such bodies alone. Sets the flags for the next; returns the number of pairs.
 int iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             Stirred& stirred);
-/// The last one of a substep: forces into the lanes and, where there are some, into the contacts.
+/// The last iteration of a substep: stores forces in the lanes and, unless null, in `contacts`.
 void finish(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             Contact<2>* contacts);
 
-/// One iteration over positions: `share` of what is deeper than is allowed is to go. Friction holds there
-/// too, or piles would slide apart by being mended.
+/// One iteration over positions, which takes away `share` of the overlap beyond the allowed one. Friction
+/// holds here too; without it the correction would let piles slide apart.
 void project(const ContactBatch* batches, Projection* projections, int count, const Pose* poses, Motion* d,
              double share, AllowedOverlap allowed);
 

@@ -3,9 +3,9 @@
 //   v*  = v + h a + M^-1 J l              l: J v* = 0, in iterations with the contacts
 //   x'  = x + h (v + v*) / 2 + M^-1 J s   s: g(x') = 0, Newton with the factors at hand
 //   v'  = v* + M^-1 (J (s / h - l / 2) + J' m)     m: J' v' = 0, and motors hold their speed there
-// in space with angular momenta for spins, so that what turns on in the step keeps its own;
-// which is of second order, and no joint drifts. A row with bounds beside them: a unit of its impulse is
-// answered by c = -K^-1 J M^-1 r of the joints, so that
+// in space with angular momenta for spins, so that a body that turns on in the step keeps its own. The scheme
+// is of second order, and no joint drifts. Beside them rows with bounds, r: a unit of impulse along r makes
+// the joints react by c = -K^-1 J M^-1 r, so that the effective mass is
 //   give = 1 / (r M^-1 r - r M^-1 J K^-1 J M^-1 r)
 
 #include "sim/solve/iterate/joint_solver.h"
@@ -498,8 +498,8 @@ void JointSolver<D>::project_positions(double h) {
   damped_newton();
 }
 
-// the same where the factors at hand lead astray, as on levers that turn far in a step: anew in each round,
-// and no farther than it helps. Velocities know nothing of it
+// Position projection by damped Newton iterations, with new rows and factors in each, where the simple one
+// with old factors fails, as on levers that turn far in a step. Velocities stay as they are.
 template <int D>
 void JointSolver<D>::damped_newton() {
   double worst = position_error();

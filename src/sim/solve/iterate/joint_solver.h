@@ -15,9 +15,9 @@
 
 namespace obscura::sim {
 
-/// Joints as the iterative solver holds them. What they keep as equalities is solved all at once, exactly, by
-/// a sparse factorisation: linear in the number of joints where they form trees. Ropes, limits, motors and
-/// dry friction are rows with bounds, one after another, each with what the joints answer to it.
+/// Joints of the iterative solvers. All equality rows are solved at once, exactly, by a sparse factorisation,
+/// in linear time if the joints form trees. Ropes, limits, motors and dry friction are rows with bounds,
+/// solved one after another, each with the reaction of the equality rows to it.
 template <int D>
 class JointSolver {
  public:
@@ -28,55 +28,57 @@ class JointSolver {
   /// Whether no row has bounds in this step: then one iteration is as good as many.
   bool plain() const { return active_ == 0; }
 
-  /// Bodies that joints have, ascending; how each stands and moves, by its number in the model, and its turn:
-  /// written by the caller before and read after each of what follows.
+  /// Bodies on joints, ascending. The caller writes pose, velocity and orientation of each, by its number in
+  /// the model, before it calls what follows, and reads them after.
   const std::vector<int>& bodies() const { return bodies_; }
   bool has(int body) const { return member_[body] != 0; }
   BodyMotion<D>& body_motion(int body) { return at_[body]; }
   Orientation<D>& turn(int body) { return turn_[body]; }
 
-  /// Makes room for the joints in a state that no step has seen yet.
+  /// Sizes the joints' fields of a state that has not been stepped.
   void prepare(State<D>& state) const;
 
-  /// Which joints hold in this state.
+  /// Collects the joints that are not broken and hold awake bodies.
   void gather(const State<D>& state);
 
-  /// Before the first step: velocities with which no joint comes apart, by the impulses of its joints. A step
-  /// goes half its way with the velocities it begins with.
+  /// Before the first step: projects the velocities onto J v = 0 by impulses of the joints. Needed because
+  /// half the displacement of a step comes from the velocities at its start.
   void project_initial_velocities(State<D>& state);
 
-  /// Rows where bodies stand now.
+  /// Computes the rows at the present poses.
   void compute_rows();
-  /// A step of h (s) from there, and from time t. All forces begin at zero.
+  /// Starts a step of h (s) from there, at time t. All forces begin at zero.
   void begin(double h, double t = 0);
 
-  /// Velocities under which no joint comes apart: of all, or of one component. What shares no body that moves
-  /// is a component; component -1: of ropes between bodies that nothing else joins.
+  /// One iteration: velocities with J v = 0 and rows within bounds; of all joints, or of one component.
+  /// Joints of different components share no moving body. Component -1: ropes between bodies without other
+  /// joints.
   void iterate();
   void iterate(int component);
-  /// The same once, of velocities that are none: places that are put right. Impulses stay as they are.
+  /// One iteration for position correction: the velocities of body_motion() are displacements. Leaves the
+  /// impulses as they are.
   void solve_positions();
   int components() const { return factors_.components(); }
-  /// The component that a body's joints are of, or -1.
+  /// The component of a body's joints, or -1.
   int component(int body) const { return component_of_body_[body]; }
   /// The components of the joints of these bodies, ascending, -1 among them. Valid until the next call.
   std::span<const int> components_of(std::span<const int> bodies);
   /// The bodies of a component, ascending.
   std::span<const int> members(int component) const { return members_[component]; }
 
-  /// A push of two bodies along a row, and what the joints answer to a unit of it. A body without joints may
-  /// be pushed too: its stance is the caller's to write, where that has a say.
+  /// A row between two bodies, and the reaction of the joints to a unit of impulse along it. A body without
+  /// joints may be one of the two; the caller writes its pose, where the row depends on it.
   struct JointResponse {
     Row<D> row;
     int components[2] = {-1, -1};   // of its bodies; the second, if it is another
     std::vector<double> answer[2];  // impulses of the rows of each, in the order of elimination
     std::vector<std::pair<int, double>> affected[2];  // which of them it moves by a unit, and how fast
   };
-  /// Fills in what is not the row, once rows are laid.
+  /// Computes the reaction to response.row. After compute_rows().
   void compute_response(JointResponse& response);
-  /// How fast the row of one moves by a unit of the other, joints answering, 1/kg.
+  /// The speed along the row of p by a unit of impulse along that of q, with the joints' reaction, 1/kg.
   double response_between(const JointResponse& p, const JointResponse& q) const;
-  /// act(body, change of its velocity, of its spin) for an impulse, and for what answers it.
+  /// act(body, change of its velocity, of its spin) for an impulse along the row and the joints' reactions.
   template <class Act>
   void each_push(const JointResponse& response, double impulse, Act&& act) const {
     each_push(response.row, impulse, act);
@@ -86,17 +88,17 @@ class JointSolver {
     }
   }
 
-  /// What bodies that are moved give by a unit of impulse along a row, and by what joints answer to it, J.
+  /// The work of kinematic bodies by a unit of impulse along a row and by the joints' reactions to it, J.
   double given(const JointResponse& response) const;
 
-  /// After a step: places back onto the joints, velocities along them where bodies now stand.
+  /// After a step: projects positions onto C = 0 and velocities onto J v = 0 at the new positions.
   void finish(double h);
-  /// What bodies that are moved have given through joints in the step that was finished last, J.
+  /// The work of kinematic bodies through joints in the step that was finished last, J.
   double given() const { return work_; }
 
-  /// act(row, how much faster it could make it within the step, beside what it bears) for each row of a
-  /// component that bears something: without end of what joints keep and of limits and ropes that are pulled
-  /// at.
+  /// act(row, spare) for each loaded row of a component. spare: the change of velocity that the row can still
+  /// give within the step, its bound less its present impulse; infinite for equality rows and for loaded
+  /// limits and ropes.
   template <class Act>
   void each_bearing(int component, Act&& act) const {
     each_row(component, [&](int, int r) { act(rows_[r], kWithoutEnd); });
@@ -110,27 +112,27 @@ class JointSolver {
     }
   }
 
-  /// Forces of the step into the state; only of joints of the bodies marked in `of`, where that is given.
+  /// Writes the forces of the step into the state; if `of` is given, only of joints of the bodies it marks.
   void keep(State<D>& state, double h, const std::vector<char>* of = nullptr) const;
 
-  /// Joints that are loaded beyond what they bear are no more from the next step on. True where one broke.
+  /// Breaks joints that are loaded beyond their strength, from the next step on. True if one broke.
   bool break_joints(State<D>& state) const;
 
  private:
   static constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
 
-  // what keeps within bounds
+  // a row with bounds
   enum Load { lower, upper, motor, friction };  // a rope is an upper
   struct Bounded : JointResponse {
     int joint = 0;
     Load load = lower;
     double least = 0, most = 0, target = 0;  // N s or N m s; m/s or rad/s
-    double give = 0;                         // what a unit of impulse changes, joints answering, inverted
+    double give = 0;                         // effective mass, with the joints' reaction
     double impulse = 0;
     bool taut = false;  // a rope that is at its length when the step begins
-    double put = 0;     // kg m: what put its bodies back where the step had left the rope too long
-    double gave = 0;    // what bodies that are moved gave by a unit of impulse as the step began
-    int first = 0;      // of its row in yields_
+    double put = 0;     // kg m: pseudo-impulse of the position projection, of a rope left too long
+    double gave = 0;    // work of kinematic bodies by a unit of impulse, at the start of the step
+    int first = 0;      // start of its row in yields_
   };
 
   void plan();
@@ -185,7 +187,7 @@ class JointSolver {
   std::vector<Orientation<D>> begun_turn_;
   Response<D> response_;
 
-  std::vector<char> broken_, frozen_;  // that the plan is of
+  std::vector<char> broken_, frozen_;  // of the state, when plan() ran
   bool planned_ = false;
   std::vector<int> held_;                   // joints with equalities: the blocks
   std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
@@ -194,15 +196,15 @@ class JointSolver {
   std::vector<int> some_parts_;
   Blocks<kMostHeld<D>> factors_;  // of K = J M^-1 J'
   std::vector<Row<D>> rows_, old_rows_;
-  bool driven_ = false;               // some bodies are moved
-  std::vector<double> gives_, gave_;  // what those give by a unit along each row, now and then
+  bool driven_ = false;               // some bodies are kinematic
+  std::vector<double> gives_, gave_;  // their work by a unit along each row: now, at the start of the step
   double work_ = 0;
   std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
-  std::vector<Bounded> bounded_;  // the first `active_`
+  std::vector<Bounded> bounded_;  // the first `active_` are in use
   std::size_t active_ = 0;
-  std::vector<int> by_component_,
-      component_first_;         // of them, those of component -1 first; where each component's begin
-  std::vector<double> yields_;  // of a component: what its rows with bounds do to each other
+  std::vector<int> by_component_;     // numbers of them by component, those of component -1 first
+  std::vector<int> component_first_;  // where each component begins there
+  std::vector<double> yields_;        // of a component: the coupling of its rows with bounds
   std::vector<double> speeds_, changes_;
 };
 

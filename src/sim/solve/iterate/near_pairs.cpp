@@ -92,10 +92,10 @@ void NearPairs::compute_bounds(const std::vector<Pose>& poses) {
   }
 }
 
-// Bodies may be struck within the span if they may reach another as both fly now, or a wall; then all that
-// these may be thrown against may be struck, and so on. Two that fly side by side and cannot be struck will
-// not touch. If one of two is struck, the other comes on: they near each other as fast as it flies, and
-// faster if the one bounces.
+// Marks bodies that may be struck within the span: those that may reach another body or a wall with their
+// present velocities, those that they may be thrown against, and so on. Drops pairs of which neither body may
+// be struck: two bodies that fly side by side do not touch. If one of two bodies is struck, they may approach
+// with the full speed of the other, and faster if the first bounces; the margin of a pair covers that.
 void NearPairs::mark_possible_impacts(double span) {
   const int n = int(movers_.size());
   groups_.reset(n);

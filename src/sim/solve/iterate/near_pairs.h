@@ -12,48 +12,48 @@
 
 namespace obscura::sim::plane {
 
-/// Which cores may touch within a span of time.
+/// Broad phase with margins: which cores may touch within a span of time.
 class NearPairs {
  public:
   NearPairs(const Model<2>& model, const CoreShapes& cores);
 
-  /// Two cores of different bodies, a < b, and how near each other they may touch, m. Of two boxes, where
-  /// they meet: lane + kLanes * group; else -1.
+  /// Two cores of different bodies, a < b, that may touch if their distance is at most `margin`, m.
   struct Candidate {
     int a, b;
-    int meeting;
+    int meeting;  // of two boxes: the lane of their manifold, lane + kLanes * group; else -1
     double margin;
   };
 
-  /// Looks for all that may touch within `span` s; not for those that rest nor for those that are calm: so
-  /// slow that they come nowhere in `patience` spans. False where no body needs a search.
+  /// Finds all pairs that may touch within `span` s. Leaves out pairs of bodies that rest or are calm: so
+  /// slow that they hardly move in `patience` spans. False if no body needs a search.
   bool find(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
   static constexpr int kCalmSearches = 16;
 
-  /// For how many spans those must be calm whom look `number` leaves out: every other look is for the fast
-  /// alone, of the rest every other for the less fast too, and so on; each kCalmLooks-th is for all.
+  /// The `patience` of search `number`, a ruler sequence: 2, 4, 2, 8, 2, 4, 2, 16, ... So every search
+  /// includes the fast bodies, every other one those half as fast too, and every kCalmSearches-th (0) all
+  /// bodies.
   static int patience(long long number) {
     number %= kCalmSearches;
     return number == 0 ? 0 : 2 * int(number & -number);
   }
 
-  /// What the last look has found, ascending.
+  /// The pairs of the last search, ascending.
   const std::vector<Candidate>& candidates() const { return candidates_; }
   const BoxManifold& manifold(const Candidate& c) const { return manifolds_[c.meeting / kLanes]; }
-  /// Whether a body was not looked for. Walls are not.
+  /// Whether the last search left a body out, as it does all walls.
   bool still(int body) const { return body < 0 || still_[body] != 0; }
-  /// Whether a body touches nothing here: the handout's law moves it.
+  /// Whether a body takes no part, as it collides by the handout's law.
   bool apart(int body) const { return handout_[body] != 0; }
-  /// How far a body may come within the span by itself, m.
+  /// How far a body may move within the span, m.
   double margin(int body) const { return movers_[body].margin; }
 
-  /// What of this is for speed (m/s) that it may gain meanwhile, by impacts.
+  /// The part of margin() that covers speed gained by impacts within the span (m), for a body of `speed` m/s.
   double spare(int body, double speed, double span) const;
 
-  /// How far a body that is moved gets in the next span from where its velocity takes it, m.
+  /// How far a kinematic body may be, in the next span, from where its present velocity takes it, m.
   void foresee(int body, double farther) { farther_[body] = farther; }
 
-  /// Whether both are one box about their centre.
+  /// Whether both are single boxes centred on their bodies.
   bool boxes(int a, int b) const { return halves_[a].wide > 0 && halves_[b].wide > 0; }
   void find_outdated(const std::vector<ContactBatch>& batches, const std::vector<Motion>& v,
                      const std::vector<Pose>& poses, double share, std::vector<Outdated>& boxes,
@@ -63,10 +63,11 @@ class NearPairs {
   }
 
  private:
-  // of a body, in one line of memory
+  // a body in one cache line
   struct alignas(64) Mover {
     double x = 0, y = 0, vx = 0, vy = 0;
-    double margin = 0, swing = 0, speed = 0;  // m; m/s of its farthest point, by its spin alone, and at most
+    double margin = 0;            // m
+    double swing = 0, speed = 0;  // m/s: what spin adds to a point, at most; the speed of the fastest point
     double bounding_radius = 0, half_thickness = 0;  // m
   };
   void compute_margins(const State<2>& state, const std::vector<Pose>& poses, double span, int patience);
@@ -81,16 +82,16 @@ class NearPairs {
   std::vector<Half> halves_;
   std::vector<Mover> movers_;
   std::vector<Bounds<2>> bounds_;      // of cores
-  std::vector<char> fixed_, handout_;  // bodies: what of the model is asked for often
-  std::vector<double> farther_;        // bodies that are moved: see foresee(); empty where there are none
+  std::vector<char> fixed_, handout_;  // one a body, copied from the model
+  std::vector<double> farther_;        // one a body: see foresee(); empty: no body is kinematic
   std::vector<char> still_;            // bodies
   std::vector<char> still_cores_, points_;
-  std::vector<char> exposed_;  // bodies that may be struck within the span
-  Islands groups_;             // of bodies that may be thrown against each other
+  std::vector<char> exposed_;  // one a body: it may be struck within the span
+  Islands groups_;             // bodies that may be thrown against each other
   std::vector<Candidate> candidates_;
   std::vector<BoxManifold> manifolds_;
-  double calm_ = 0;        // m: how far the calm may come
-  double elasticity_ = 0;  // the largest there is
+  double calm_ = 0;        // m: how far a calm body may move
+  double elasticity_ = 0;  // the largest of all bodies and walls
 };
 
 }  // namespace obscura::sim::plane

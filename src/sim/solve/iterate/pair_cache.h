@@ -11,13 +11,13 @@
 
 namespace obscura::sim::plane {
 
-/// Two cores, or a core and a wall, that may touch before pairs are looked for again. Its touches are entries
-/// `first` and the next of State::contacts.
+/// Two cores, or a core and a wall, that may touch before the next pair search. It has one or two contact
+/// points (touches): the entries of State::contacts from `first` on.
 struct Pair {
   int a = -1, b = -1;            // bodies; b = -1 - wall
   int core_a = -1, core_b = -1;  // -1: a wall
   int first = 0, touches = 1;
-  int words[2] = {0, 0};   // of the features of its touches, ascending
+  int words[2] = {0, 0};   // Feature::word() of its contact points, ascending
   int slot = -1;           // lane + kLanes * group; -1: asleep
   int colour = -1;         // of its lane
   bool alone = false;      // colours ran out: it has a batch of its own
@@ -26,25 +26,25 @@ struct Pair {
   Material material;
 };
 
-/// What touches, or will.
+/// The pairs of cores that touch or may soon, kept from step to step, with their features.
 class Pairs {
  public:
   explicit Pairs(const Model<2>& model, const CoreShapes& cores);
 
-  /// Finds the pairs nearer than their bodies can come within `span` s, and writes their touches into
-  /// state.contacts; forces of the same touches stay. A pair whose two sides rest, or are calm for `patience`
-  /// spans, stays as it is. False where nothing was changed.
+  /// Finds the pairs that may touch within `span` s, and writes their contact points into state.contacts.
+  /// Points of the same features keep their forces. A pair whose two bodies rest, or are calm for `patience`
+  /// spans, stays as it is. False if nothing changed.
   bool find(State<2>& state, const std::vector<Pose>& poses, double span, int patience);
 
-  /// Makes the pairs those of state.contacts, where they are not already.
+  /// Rebuilds the pairs from state.contacts, if they do not agree.
   void adopt(const State<2>& state);
 
-  /// Pairs whose features are others than their lanes say, `share` of the time between two pair searches
-  /// after the last. They are not changed yet.
+  /// Finds the pairs whose features differ from those in their lanes; changes nothing. `share`: the time
+  /// since the last pair search, as a part of the time between two.
   const std::vector<Outdated>& outdated(const std::vector<ContactBatch>& batches,
                                         const std::vector<Motion>& v, const std::vector<Pose>& poses,
                                         double share);
-  /// Changes the features of a pair to these. Forces move with their keys or, failing that, their places.
+  /// Gives a pair these features. Forces go to the point of the same features, else to the nearest.
   void renew(const Outdated& found, State<2>& state, const std::vector<Pose>& poses);
   bool boxes(const Pair& pair) const { return pair.b >= 0 && near_.boxes(pair.a, pair.b); }
 
@@ -56,14 +56,14 @@ class Pairs {
 
   ContactPoint place(const Pair& pair, const std::vector<Pose>& poses, Feature feature) const;
 
-  /// Words of the features nearest to each other where its bodies stand so, ascending.
+  /// Feature::word() of the nearest features at these poses, ascending.
   void features(const Pair& pair, const Pose& a, const Pose& b, int words[2]) const;
-  /// Features into the pair's lane of its lanes, or of others like them; forces are let be.
+  /// Writes the features into the pair's lane of a batch. Forces stay as they are.
   void put(const Pair& pair, const int words[2], ContactBatch& batches) const;
 
-  /// How far a body may come by speed (m/s) that it may gain within `span` s, by impacts.
+  /// How far a body of `speed` m/s may come by what it gains in impacts within `span` s, m.
   double spare(int body, double speed, double span) const { return near_.spare(body, speed, span); }
-  /// How far a body that is moved gets in the next span from where its velocity takes it, m.
+  /// How far a kinematic body may be, in the next span, from where its present velocity takes it, m.
   void foresee(int body, double farther) { near_.foresee(body, farther); }
 
  private:

@@ -26,18 +26,21 @@ using plane::Pair;
 
 namespace {
 
-constexpr double kPairUpdates = 60;  // a second: how often pairs are looked for
-constexpr int kMostSweeps = 40;      // of few pairs
-constexpr int kJointSweeps = 16;     // where there are joints: those are solved exactly in each
-constexpr int kStrainSweeps = 64;    // where they press something far into another
-constexpr double kStrained = 0.02;   // of its thickness: how far that is
-constexpr int kPairSweeps = 2000;    // pairs times iterations where there are more; at least one iteration
-constexpr int kSettlingPairs =
-    20000;  // times iterations, of pairs that have not settled then; or, of many, as if
-constexpr int kSettlingSweeps = 8;     // so many were of all
-constexpr int kProjections = 5;        // times as many iterations for positions, and
-constexpr int kFewestProjections = 8;  // at least so many
-constexpr int kFirstSweeps = 100;      // of the first step, which knows no forces
+constexpr double kPairUpdates = 60;  // pair searches a second
+
+// iterations of a substep
+constexpr int kPlaneIterations = 40;        // of few pairs
+constexpr int kPairIterations = 2000;       // of more: pairs times iterations, but at least one iteration
+constexpr int kJointIterations = 16;        // with joints, which are solved exactly in each
+constexpr int kStrainIterations = 64;       // if joints press a body far into another
+constexpr double kStrained = 0.02;          // how far that is, of its half thickness
+constexpr int kFirstPlaneIterations = 100;  // of the first step, which knows no forces
+constexpr int kSettlingPairs = 20000;       // more, of unsettled pairs: pairs times iterations, at least
+constexpr int kSettlingIterations = 8;      // or as many as so many iterations of all pairs
+
+// iterations of correct_overlaps()
+constexpr int kProjections = 5;  // for each of a substep
+constexpr int kFewestProjections = 8;
 
 }  // namespace
 
@@ -142,7 +145,7 @@ void PlaneIterative<D>::sleep(StepPart<D> step) {
   next_step_ = step.state.step + 1;
 }
 
-// where contacts are now: all, or those that no step has placed yet
+// computes points, normals and gaps at the present poses: of all contacts, or of those that have none yet
 template <int D>
 void PlaneIterative<D>::place_contacts(State<D>& state, bool all) const {
   for (const Pair& pair : pairs_.all()) {
@@ -173,13 +176,14 @@ void PlaneIterative<D>::clear_sleeping(const State<D>& state) {
   build_batches(state, true);
 }
 
-// how far a substep is between two pair searches, of the way
+// the time of a substep since the last pair search, as a part of the time between two
 template <int D>
 double PlaneIterative<D>::share(StepPart<D> step) const {
   return (double(step.state.step % every_) * substeps_ + step.substep) / double(every_ * substeps_);
 }
 
-// pairs whose features have changed since the last search, or all of them
+// Renews the pairs whose features have changed since the last search; all pairs, if a body has left its
+// margin.
 template <int D>
 void PlaneIterative<D>::renew_pairs(StepPart<D> step) {
   State<D>& state = step.state;
@@ -238,17 +242,17 @@ void PlaneIterative<D>::resolve_impacts(StepPart<D> step) {
 
 template <int D>
 int PlaneIterative<D>::fewest_iterations() const {
-  return std::clamp(kPairSweeps / std::max(1, awake_pairs_), 1, kMostSweeps);
+  return std::clamp(kPairIterations / std::max(1, awake_pairs_), 1, kPlaneIterations);
 }
 
 template <int D>
 void PlaneIterative<D>::warm_start(StepPart<D> step) {
-  iterations_ = step.state.step == 0 && first(step) ? kFirstSweeps : fewest_iterations();
+  iterations_ = step.state.step == 0 && first(step) ? kFirstPlaneIterations : fewest_iterations();
   if (joints_.empty()) return;
   copy_to_joints();
   joints_.begin(step.h, step.t);
   copy_from_joints();
-  const int most = strained(step.state) ? kStrainSweeps : kJointSweeps;
+  const int most = strained(step.state) ? kStrainIterations : kJointIterations;
   iterations_ = batches_.empty() && joints_.plain() ? 1 : std::clamp(most / 4 * iterations_, 4, most);
 }
 
@@ -269,8 +273,8 @@ void PlaneIterative<D>::iterate(StepPart<D> step) {
   impacts_.note(pairs_.all(), step.state.contacts, batches_);
 }
 
-// More iterations of those pairs that are not settled and of those beside them: where a column is struck from
-// below, the blow is to pass through all of it in this substep.
+// More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
+// the impact must pass through all of it in this substep.
 template <int D>
 void PlaneIterative<D>::settle_pairs() {
   const int count = int(batches_.size());
@@ -278,8 +282,8 @@ void PlaneIterative<D>::settle_pairs() {
   stirred_.bodies.assign(turns_.size() + 1, plane::Stirred::kNow);
   stirred_.bodies.back() = 0;
   for (const int body : joints_.bodies()) stirred_.bodies[body] = plane::Stirred::kNever;
-  for (int left = std::max(kSettlingPairs, kSettlingSweeps * awake_pairs_), pairs = 1; left > 0 && pairs > 0;
-       left -= pairs)
+  for (int left = std::max(kSettlingPairs, kSettlingIterations * awake_pairs_), pairs = 1;
+       left > 0 && pairs > 0; left -= pairs)
     pairs = plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_, stirred_);
 }
 
@@ -297,8 +301,8 @@ void PlaneIterative<D>::project(StepPart<D> step) {
   outran_ = outran(step.h, (1 - share(step)) * span_);
 }
 
-// Whether joints press something that is awake far into another: pushes by contacts alone, each with its own
-// body's mass, hardly move it then.
+// Whether joints press an awake body far into another. Few iterations of contacts, each with the mass of its
+// own body alone, would hardly move it out.
 template <int D>
 bool PlaneIterative<D>::strained(const State<D>& state) const {
   const auto far = [&](int body) { return kStrained * cores_.half_thickness[body]; };
@@ -326,7 +330,7 @@ void PlaneIterative<D>::report_pair(const Pair& pair, State<D>& state) const {
   }
 }
 
-// finds pairs, wakes what they touch, and assigns lanes
+// searches for pairs, wakes bodies that they reach, and assigns lanes
 template <int D>
 void PlaneIterative<D>::update_pairs(State<D>& state, bool known) {
   const int patience = state.contacts.empty() ? 0 : plane::NearPairs::patience(state.step / every_);
@@ -373,7 +377,8 @@ bool PlaneIterative<D>::gather(const State<D>& state) {
   return known;
 }
 
-// how each body would move in the step if nothing touched: by the integrator that the scene names
+// gain_ and bend_: how each body would move in the step without contacts and joints, by the scene's
+// integrator
 template <int D>
 void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, double h) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
@@ -413,11 +418,11 @@ void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
   }
 }
 
-// The part of it that a substep has. What the position gains beside the mean velocity (`bend`) comes of an
-// acceleration that changes within the step; schemes of second order and more see it as linear in time, so
-// that all of it is in the velocities, and contacts know of it. Of n substeps the k-th (from 0) then has
-//   gain / n - 12 bend / (n h) ((k + 1/2) / n - 1/2)      and is bent by bend / n^3           h of the whole
-//   step
+// dv_ and dx_: the part of gain_ and bend_ in a substep. `bend` comes of an acceleration that changes within
+// the step. Schemes of second order and more see the acceleration as linear in time, so that `bend` is in the
+// velocities of the substeps too, and contacts know of it. Of n substeps the k-th (from 0) has
+//   dv = gain / n - 12 bend / (n h) ((k + 1/2) / n - 1/2),   dx = h v / n + h dv / 2n + bend / n^3
+// with h of the whole step.
 template <int D>
 void PlaneIterative<D>::share_free_motion(StepPart<D> step) {
   const bool smooth = model_.integrator == Integrator::rk4 || model_.integrator == Integrator::midpoint;
@@ -439,9 +444,9 @@ void PlaneIterative<D>::share_free_motion(StepPart<D> step) {
   }
 }
 
-// --- bodies that are moved, and belts
+// --- kinematic bodies, and belts
 
-// wakes what they may reach before the next pair search; true where anything woke
+// wakes bodies that they may reach before the next pair search; true if any woke
 template <int D>
 bool PlaneIterative<D>::wake_near_driven(StepPart<D> step) {
   if (carries_.empty()) return false;
@@ -451,7 +456,7 @@ bool PlaneIterative<D>::wake_near_driven(StepPart<D> step) {
   });
 }
 
-// tells the pair search how far they get from where their velocities at t take them
+// tells the pair search how far they may be from where their velocities at t take them
 template <int D>
 void PlaneIterative<D>::foresee_driven(double t) {
   for (int i = 0; i < drives_.size(); ++i) {
@@ -465,7 +470,7 @@ void PlaneIterative<D>::foresee_driven(double t) {
   }
 }
 
-// their way in the substep, as their motion has it
+// their velocities and displacements in the substep, from their motion
 template <int D>
 void PlaneIterative<D>::move_driven(StepPart<D> step) {
   driven_gain_ = 0;
@@ -496,8 +501,7 @@ void PlaneIterative<D>::place_driven(State<D>& state) {
   }
 }
 
-// The work that they do by the contacts of a substep, J: each force times the way that the surface of what
-// carries goes.
+// Their work by the contacts of a substep, J: each force times the displacement of the carrying surface.
 template <int D>
 void PlaneIterative<D>::book_contacts(StepPart<D> step) const {
   if (step.state.work.empty()) return;
@@ -525,7 +529,7 @@ void PlaneIterative<D>::book_contacts(StepPart<D> step) const {
   step.state.work[0] += step.h * sum;
 }
 
-// bodies of joints to the joints, and their velocities back
+// poses and velocities of bodies on joints to the joint solver; velocities back
 template <int D>
 void PlaneIterative<D>::copy_to_joints() {
   for (const int i : joints_.bodies()) {
@@ -553,7 +557,7 @@ void PlaneIterative<D>::solve_joint_velocities() {
   copy_from_joints();
 }
 
-// what the step has pulled apart
+// projects the joints, and copies poses and velocities of their bodies back
 template <int D>
 void PlaneIterative<D>::project_joints(State<D>& state, double h) {
   copy_to_joints();
@@ -576,13 +580,13 @@ void PlaneIterative<D>::project_joints(State<D>& state, double h) {
   }
 }
 
-// positions out of each other, a part of the way
+// pushes bodies out of overlaps, by a part of each
 template <int D>
 void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
   std::fill(projections_.begin(), projections_.end(), plane::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
   int iterations = std::max(kFewestProjections, kProjections * fewest_iterations());
-  if (!joints_.empty() && strained(state)) iterations = kStrainSweeps;
+  if (!joints_.empty() && strained(state)) iterations = kStrainIterations;
   for (int i = 0; i < iterations; ++i) {
     // joints go along
     for (const int k : joints_.bodies())

@@ -17,11 +17,11 @@
 
 namespace obscura::sim {
 
-/// Contact for thousands of bodies: pairs are found a tenth as often as steps are taken, forces by a few warm
-/// iterations a step. What is carried from step to step is in the state: contacts, all pairs that may touch
-/// soon among them, hold forces and name their features. Scratch follows from these, so a run cut in two is
-/// the run in one; a state whose step and motion are to the bit those that the last step left is taken to be
-/// that state, contacts and all.
+/// The iterative solver of the plane, for thousands of bodies. Pairs are found 60 times a second, forces by a
+/// few warm-started iterations a step. All that is carried from step to step is in the state: its contacts,
+/// those of pairs that may touch soon among them, hold forces and feature numbers. Members are scratch and
+/// follow from the state, so a run cut in two is the run in one. Scratch is reused if step, poses and
+/// velocities of the state are bit for bit those that the last step left.
 template <int D>
 class PlaneIterative final : public ContactSolver<D> {
  public:
@@ -45,7 +45,9 @@ class PlaneIterative final : public ContactSolver<D> {
  private:
   using Motion = plane::Motion;
 
-  static constexpr double kSight = 0.5;  // of its thickness: what may pass within a step is swept instead
+  // Of the thickness of the thinner body: contacts with wider gaps are ignored in a substep. A body fast
+  // enough to cross such a gap is swept instead.
+  static constexpr double kSight = 0.5;
 
   bool gather(const State<D>& state);
   bool first(StepPart<D> step) const { return step.substep == 0 && step.state.step % every_ == 0; }
@@ -97,55 +99,56 @@ class PlaneIterative final : public ContactSolver<D> {
   ForwardDynamics<D> dynamics_;
   JointSolver<D> joints_;
   Drives<D> drives_;
-  std::vector<DrivenMotion<D>> driven_;  // of those: where the substep ends
-  std::vector<char> carries_;            // bodies: what moves, and belts; empty where there are none
-  double driven_gain_ = 0;               // m/s: what the substep adds to a point of theirs, at most
+  std::vector<DrivenMotion<D>> driven_;  // kinematic bodies at the end of the substep
+  std::vector<char> carries_;            // one a body: kinematic or with a belt; empty: there are none
+  double driven_gain_ = 0;               // m/s: the most that a substep adds to a point of a kinematic body
   Stages stages_;
-  std::int64_t every_ = 1;  // steps between two pair searches for pairs
-  double span_ = 0;         // and s
+  std::int64_t every_ = 1;  // steps between two pair searches
+  double span_ = 0;         // the same, s
   AllowedOverlap allowed_overlap_;
   int substeps_ = 1;                  // of this step
-  double closing_rate_ = 0;           // as it began, in widths, 1/s
-  bool anew_ = false;                 // pairs are to be looked for, whatever the step
-  bool outran_ = false;               // someone came farther than pairs foresaw
+  double closing_rate_ = 0;           // at the start of the step, in widths, 1/s
+  bool anew_ = false;                 // the next step searches for pairs, even if no search is due
+  bool outran_ = false;               // a body has left the margin of the last pair search
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   bool drag_ = false;
 
-  // of bodies; one more that never moves, for walls
-  std::vector<plane::Pose> poses_, begun_;  // now, and where the substep began
-  std::vector<double> turns_;               // that the poses are of, rad
-  std::vector<double> ii_;                  // 1/(kg m^2); 0 where asleep or fixed
-  std::vector<Motion> v_, old_;             // now, and when the step began
-  std::vector<Motion> gain_, bend_;  // of the whole step without contacts: of velocity, and of the way beside
-                                     // that by the mean velocity
-  std::vector<Motion> dv_, dx_;      // what the substep would do without contacts
-  std::vector<Motion> push_;         // by projection
-  std::vector<Vec<D>> corrections_;  // likewise, in this step
+  // One entry a body, and one more that never moves, for walls
+  std::vector<plane::Pose> poses_, begun_;  // now, and at the start of the substep
+  std::vector<double> turns_;               // the angles of poses_, rad
+  std::vector<double> ii_;                  // 1/(kg m^2); 0: asleep or fixed
+  std::vector<Motion> v_, old_;             // now, and at the start of the substep
+  // Of the whole step without contacts: the change of velocity, and of the displacement what exceeds h times
+  // the mean velocity
+  std::vector<Motion> gain_, bend_;
+  std::vector<Motion> dv_, dx_;      // of the substep without contacts: changes of velocity and of pose
+  std::vector<Motion> push_;         // displacements by correct_overlaps()
+  std::vector<Vec<D>> corrections_;  // of them, the centres'
   bool corrected_ = false;
-  std::vector<char> closing_;  // a slow touch closed in this step
-  std::vector<char> frozen_;   // that the lanes are of
+  std::vector<char> closing_;  // a contact of the body closed slowly in this substep
+  std::vector<char> frozen_;   // State::frozen when lanes were assigned
   std::vector<char> fixed_;
   struct Light {
     double im, ii;  // 1/kg, 1/(kg m^2)
   };
   std::vector<Light> light_;
-  std::vector<char> movers_;  // springs and hands hold them
+  std::vector<char> movers_;  // one a body: springs, hands or forces act on it
 
-  std::vector<std::uint64_t> colours_;     // used on each body
-  std::vector<int> count_, begin_, ends_;  // of each colour; where its lanes begin and end
+  std::vector<std::uint64_t> colours_;     // one a body: a bit for each colour in use
+  std::vector<int> count_, begin_, ends_;  // one a colour: its next free lane, its first lane and its end
   std::vector<plane::ContactBatch> batches_;
   std::vector<plane::Projection> projections_;
   plane::Found slow_, fast_;
   plane::StepConstants constants_;  // of the substep
   plane::Stirred stirred_;
-  bool deep_ = false;                    // whether something is too deep in another
-  int iterations_ = 0;                   // of this substep, of all pairs
-  std::vector<int> slots_, next_slots_;  // which pair sits where
-  std::vector<int> moved_;               // pairs that take another lane
-  std::int64_t next_step_ = -1;          // of the state that this has left
+  bool deep_ = false;                    // some overlap exceeds the allowed one
+  int iterations_ = 0;                   // of this substep, over all pairs
+  std::vector<int> slots_, next_slots_;  // the pair in each lane
+  std::vector<int> moved_;               // pairs that change lanes
+  std::int64_t next_step_ = -1;          // State::step of the state that the last step left
   long version_ = -1;
   int awake_pairs_ = 0;
-  double calmest_ = 0;  // m/s: if no point of a body is faster than half of it, all features stay
+  double calmest_ = 0;  // m/s: while all points are slower than half of it, no features change
 };
 
 }  // namespace obscura::sim

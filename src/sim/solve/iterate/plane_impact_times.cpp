@@ -167,9 +167,10 @@ double Impacts::first_closing(const Pair& pair, const ContactBatch& g, const Pla
   return first;
 }
 
-// Moves `at`, how a pair stands, to where it meets with an impact; false where it does not. By the features
-// of its lane or, where others are nearest by then, by those: then it goes as far as it surely does not meet,
-// again and again, until the features that are nearest there are so when they close.
+// Moves `at`, the placed pair, to the time of its impact; false if it has none. Takes the features of its
+// lane. If other features are nearest by then, conservative advancement: goes on by a time in which the pair
+// surely does not meet, takes the nearest features there, and again until these are still the nearest when
+// they close.
 bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& at,
                            const std::vector<Pose>& poses, const std::vector<Motion>& dv,
                            const StepConstants& pace) {

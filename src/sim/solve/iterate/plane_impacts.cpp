@@ -196,17 +196,18 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
     const double n = impulses[2 * k], t = impulses[2 * k + 1];
     impact.n[k] += n, impact.t[k] += t;
     push(0, k, n), push(1, k, t);
-    // what does not move by impulses gives as fast as it goes
+    // the work of a kinematic body: impulse times its speed
     const Motion none{}, &ua = ima > 0 ? none : va, &ub = imb > 0 ? none : vb;
     carried_ -= n * speed(pushes[0][k], ua, ub) + t * (speed(pushes[1][k], ua, ub) + g.belt[lane]);
     if (tied) carried_ += n * joints.given(responses_[0][k]) + t * joints.given(responses_[1][k]);
   }
 }
 
-// What is left to the iterations of the pairs of bodies that had impacts, in their rows, of the step's start:
-// that what touches does not come nearer, and that what is apart does not close in what is left of the step.
-// Where a pair met by other features than the rows have, these may part fast while those hardly do: to keep
-// up such a speed would take energy from nowhere.
+// Sets the targets of the iterations for the pairs of bodies that had impacts. Their rows are those at the
+// start of the substep. A pair that touches must not approach; a pair that is apart must not close in the
+// rest of the substep. If a pair struck by other features than its rows have, the rows may separate fast
+// while these features hardly do: to keep up such a speed would take energy from nowhere, so the target is at
+// most zero.
 void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
                                   const std::vector<Pose>& poses, const std::vector<Motion>& dv,
                                   const StepConstants& pace) {
@@ -238,7 +239,7 @@ void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<Co
       least = v[k] - vn;
       if (met == 2) least = std::min(least, 0.0);
       if (gap <= kTogether * g.far[lane]) continue;
-      // what comes near so fast passes: else it would have met
+      // an approach this fast would have been an impact if the pair could meet: it passes by
       const bool passes = vn < g.impact_speed[lane] || left <= kInTime * pace.h;
       least = passes ? -1e9 : least - gap / left;
     }

@@ -11,10 +11,10 @@
 
 namespace obscura::sim::plane {
 
-/// Impacts: touches that close within a step faster than the resting speed. Newton's law with Coulomb
-/// friction, normals and friction of a pair together, each pair at its own time and where its bodies stand
-/// then, in the order of time, until none approaches. Bodies on joints are struck as one with all that hangs
-/// on them.
+/// Impacts: contact points that close within a substep faster than the resting speed. Newton's law with
+/// Coulomb friction, normals and friction of a pair together; pairs in the order of time, each at its own
+/// time and at the poses of that time, until none approaches. A body on joints is struck together with all
+/// bodies of its component.
 class Impacts {
  public:
   /// `pairs` is kept by reference.
@@ -23,25 +23,25 @@ class Impacts {
   /// Builds, for each body, the list of its awake pairs.
   void list_pairs(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
 
-  /// Beginning with the lanes in `found`. `old`: velocities at the start; dv: what the step adds to them
-  /// without contacts; v gains what the impacts do. Marks lanes as struck, and says of those what is left to
-  /// the iterations: least().
+  /// Resolves the impacts of the lanes in `found` and all that follow from them. `old`: velocities at the
+  /// start; dv: what the substep adds to them without contacts. Adds the change by impacts to v, marks lanes
+  /// as struck, and sets least() for them.
   void run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
            std::vector<Motion>& v, const StepConstants& pace, JointSolver<2>& joints);
 
-  /// What bodies that are moved, and belts, gave by the impacts of the last run, J.
+  /// The work of kinematic bodies and belts by the impacts of the last run, J.
   double given() const { return carried_; }
 
-  /// By group: the least normal speeds (m/s) that iterations leave the lanes that are struck.
+  /// One a batch: the normal speeds (m/s) that the iterations must reach, at least, in lanes that are struck.
   const Least* least() const { return least_.data(); }
 
   /// Forgets the impulses of the step before.
   void begin() { struck_.clear(); }
-  /// Remembers the impulses of the last run, under the keys of the contacts.
+  /// Records the impulses of the last run, under the keys of the contacts.
   void note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
             const std::vector<ContactBatch>& batches);
-  /// What was remembered, into the contacts.
+  /// Writes all that was recorded into the contacts.
   void keep(std::vector<Contact<2>>& contacts) const;
 
   /// The awake pairs of a body.
@@ -49,8 +49,8 @@ class Impacts {
     return {around_.data() + around_start_[body], around_.data() + around_start_[body + 1]};
   }
 
-  /// Impacts of a body: when the first and the last of them are (s from the start of the step; -1: none), how
-  /// far it goes until the last, and its velocity after it.
+  /// Impacts of a body: the times of the first and the last (s from the start of the substep; -1: none), its
+  /// displacement until the last, and its velocity after that.
   double first(int body) const { return first_[body]; }
   double last(int body) const { return when_[body]; }
   const Motion& way(int body) const { return way_[body]; }

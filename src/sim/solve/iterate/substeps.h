@@ -6,20 +6,21 @@
 #include "sim/model/model.h"
 #include "sim/shape/shape.h"
 
-// How the solvers for many bodies push bodies out of each other, in both dimensions: by time, however many
-// steps it takes, and down to an overlap that is let be.
+// Constants and rules of the iterative solvers, the same in the plane and in space: how they push bodies out
+// of each other, how many substeps they take, and when iterations end. Bodies are pushed apart at a rate in
+// time, whatever the length of the step, and down to an allowed overlap.
 
 namespace obscura::sim {
 
-/// Of how much of an overlap is pushed apart in `time` s: half of it in a sixtieth of a second.
+/// The share of an overlap that is pushed apart in `time` s: half of it in a sixtieth of a second.
 inline double corrected_share(double time) {
   constexpr double kHalfLife = 1.0 / 60;
   return time / (time + kHalfLife);
 }
 
-/// The overlap of two bodies that is let be: next to nothing where there are few bodies. Of many, the few
-/// iterations would part some contacts that are corrected to zero; a contact that has parted bears nothing
-/// until it closes again, and the heap creeps.
+/// The overlap of two bodies that is not corrected: next to nothing among few bodies. Among many, the few
+/// iterations would open some of the contacts that are corrected to zero. An open contact bears nothing until
+/// it closes again, and the heap would creep.
 struct AllowedOverlap {
   static constexpr double kLeast = 5e-7;  // of the larger bounding radius
   double share = 0;                       // of the narrower width
@@ -38,29 +39,33 @@ AllowedOverlap allowed_overlap(const Model<D>& model) {
   return {kMost * crowded * crowded * crowded};
 }
 
-/// By how much two bodies may come nearer in a substep, of the narrower one's width; how many substeps a
-/// second there are at least and at most.
-inline constexpr double kCloser = 0.025, kFewestSubsteps = 240, kMostSubsteps = 4800;
-/// Of the speed of bodies with corners against each other: as others of their corners may come near.
+/// The most that two bodies may approach in a substep, in widths of the narrower one.
+inline constexpr double kCloser = 0.025;
+/// The fewest and the most substeps a second.
+inline constexpr double kFewestSubsteps = 240, kMostSubsteps = 4800;
+/// The part of the relative speed of bodies with corners that counts as closing speed: others of their
+/// corners may come near.
 inline constexpr double kPassing = 0.25;
-/// Of a width: how near is nearly touching.
+/// Gaps up to this, in widths of the narrower body, count as nearly touching.
 inline constexpr double kNearly = 0.1;
-/// Of the room: how wide a point counts.
+/// The width of a point, of the size of the room.
 inline constexpr double kPointWidth = 1e-3;
 
-/// How fast a pair may still close where iterations end, in widths of the narrower body, 1/s, where pairs
-/// close by at most `rate` widths a second before. What is left would sink, be lifted again, and never come
-/// to rest.
+/// The closing speed at which iterations end, in widths of the narrower body, 1/s. `rate`: the largest
+/// closing speed before. A larger remainder would let bodies sink and be lifted again, and they would never
+/// rest.
 inline double settled_rate(double rate) {
   constexpr double kStill = 1e-7, kShare = 5e-3;
   return std::max(kStill, kShare * rate);
 }
 
-/// Of a substep: how exactly in time an impact is found; the next correction would be by its square. Of a
-/// bounding radius: no wider open, a gap takes part in an impact.
-inline constexpr double kInTime = 1e-9, kTogether = 1e-6;
+/// Tolerance of the time of an impact, of a substep; Newton's next correction would be of the order of its
+/// square.
+inline constexpr double kInTime = 1e-9;
+/// Gaps up to this, of a bounding radius, take part in an impact of the same instant.
+inline constexpr double kTogether = 1e-6;
 
-/// Into how many substeps to divide a step of h s, where pairs close by at most `rate` widths a second.
+/// The number of substeps of a step of h s, for a largest closing speed of `rate` widths a second.
 inline int substeps_for(double rate, double h) {
   return std::max(1, int(std::ceil(h * std::clamp(rate / kCloser, kFewestSubsteps, kMostSubsteps) - 1e-9)));
 }

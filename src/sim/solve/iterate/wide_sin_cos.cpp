@@ -1,5 +1,7 @@
-// sin_cos four at a time, without branches: of k quarter turns
-//   k odd: sine and cosine change places;  sin < 0 where k & 2 or x < 0, not both;  cos < 0 where k + 1 & 2
+// sin_cos of four angles at once, without branches. The angle is reduced by k quarter turns; then
+//   k odd                           sine and cosine change places
+//   (k & 2 != 0) != (x < 0)         the sine changes sign
+//   (k + 1) & 2 != 0                the cosine changes sign
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // every function with vectors is inlined
 
