@@ -34,8 +34,8 @@ class ContactSolver {
     for (int i = 0; i < all; ++i) {
       const StepPart<D> part{state, t + i * (h / all), h / all, i};
       move_free(part);
-      resolve_impacts(part);
       warm_start(part);
+      resolve_impacts(part);
       iterate(part);
       advance(part);
       project(part);
@@ -58,16 +58,18 @@ class ContactSolver {
 
   /// Into how many substeps the following stages divide the step.
   virtual int substeps() const { return 1; }
+  // of each substep, whose h is part.h
   /// Moves all bodies without contacts and joints.
   virtual void move_free(StepPart<D>) {}
+  /// Applies the contact forces of the last step as first impulses. In space the impacts decide which
+  /// contacts these push, so there it is done at the start of iterate().
+  virtual void warm_start(StepPart<D>) {}
   /// Impacts within the substep, each at its time.
   virtual void resolve_impacts(StepPart<D>) {}
-  /// Begins with the forces of the last step.
-  virtual void warm_start(StepPart<D>) {}
   /// Impulses of contacts and joints, by iteration.
   virtual void iterate(StepPart<D>) {}
   /// Positions and velocities at the end of the substep.
-  virtual void advance(StepPart<D> step) = 0;
+  virtual void advance(StepPart<D> part) = 0;
   /// Positions back onto the constraints.
   virtual void project(StepPart<D>) {}
 

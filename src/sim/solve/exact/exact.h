@@ -23,6 +23,9 @@ namespace obscura::sim {
 /// in `contact` where it closes or stops, and a bounded number of times for each body. Bodies that cannot
 /// meet in a step are stepped apart, so that the cuts of one are none of the other's. For scenes of up to
 /// some hundred rows.
+/// Its events divide the step anew for each group of bodies, so it merges stages of ContactSolver: collide()
+/// only divides the bodies into groups, and advance() does all else from wake to project, from event to event
+/// (step_group() in exact.cpp is that list). report() and sleep() are as in all solvers.
 template <int D>
 class ExactSolver final : public ContactSolver<D>, private System {
  public:

@@ -178,18 +178,18 @@ void PlaneIterative<D>::clear_sleeping(const State<D>& state) {
 
 // the time of a substep since the last pair search, as a part of the time between two
 template <int D>
-double PlaneIterative<D>::share(StepPart<D> step) const {
-  return (double(step.state.step % every_) * substeps_ + step.substep) / double(every_ * substeps_);
+double PlaneIterative<D>::share(StepPart<D> part) const {
+  return (double(part.state.step % every_) * substeps_ + part.substep) / double(every_ * substeps_);
 }
 
 // Renews the pairs whose features have changed since the last search; all pairs, if a body has left its
 // margin.
 template <int D>
-void PlaneIterative<D>::renew_pairs(StepPart<D> step) {
-  State<D>& state = step.state;
+void PlaneIterative<D>::renew_pairs(StepPart<D> part) {
+  State<D>& state = part.state;
   if (outran_) {
     for (const Pair& pair : pairs_.all()) report_pair(pair, state);
-    foresee_driven(step.t);
+    foresee_driven(part.t);
     update_pairs(state, true);
     outran_ = false;
   }
@@ -199,7 +199,7 @@ void PlaneIterative<D>::renew_pairs(StepPart<D> step) {
     const Motion& m = v_[i];
     fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.bounding_radius[i]);
   }
-  const double gone = share(step);
+  const double gone = share(part);
   if (gone == 0 || 2 * gone * fastest <= calmest_) return;
   for (const plane::Outdated& old : pairs_.outdated(batches_, v_, poses_, gone)) {
     const Pair& pair = pairs_.all()[old.pair];
@@ -210,23 +210,27 @@ void PlaneIterative<D>::renew_pairs(StepPart<D> step) {
 }
 
 template <int D>
-void PlaneIterative<D>::move_free(StepPart<D> step) {
-  renew_pairs(step);
-  if (step.substep == 0) integrate_unconstrained(step.state, step.t, substeps_ * step.h);
-  share_free_motion(step);
-  move_driven(step);
+void PlaneIterative<D>::move_free(StepPart<D> part) {
+  renew_pairs(part);
+  if (part.substep == 0) integrate_unconstrained(part.state, part.t, substeps_ * part.h);
+  share_free_motion(part);
+  move_driven(part);
 }
 
-// The wide kernel that finds what closes applies the forces of the last step as well.
+// The wide kernel that applies the forces of the last step also finds the contact points that close.
 template <int D>
-void PlaneIterative<D>::resolve_impacts(StepPart<D> step) {
-  constants_ = {step.h, 0.05 * restitution_threshold_,
-                step.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap_};
+void PlaneIterative<D>::warm_start(StepPart<D> part) {
+  constants_ = {part.h, 0.05 * restitution_threshold_,
+                part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap_};
   deep_ = plane::start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), v_.data(),
                        constants_, slow_, fast_);
+}
+
+template <int D>
+void PlaneIterative<D>::resolve_impacts(StepPart<D> part) {
   if (!joints_.empty()) {
     copy_to_joints();
-    // bodies that are moved as the substep begins
+    // kinematic bodies as the substep begins
     for (int i = 0; i < drives_.size(); ++i) {
       const int body = drives_.body(i);
       if (!joints_.has(body)) continue;
@@ -236,7 +240,7 @@ void PlaneIterative<D>::resolve_impacts(StepPart<D> step) {
     joints_.compute_rows();
   }
   impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, constants_, joints_);
-  if (!step.state.work.empty()) step.state.work[0] += impacts_.given();
+  if (!part.state.work.empty()) part.state.work[0] += impacts_.given();
   constants_.least = impacts_.least();
 }
 
@@ -245,22 +249,24 @@ int PlaneIterative<D>::fewest_iterations() const {
   return std::clamp(kPairIterations / std::max(1, awake_pairs_), 1, kPlaneIterations);
 }
 
+// the joints, whose forces begin at zero, and the number of iterations
 template <int D>
-void PlaneIterative<D>::warm_start(StepPart<D> step) {
-  iterations_ = step.state.step == 0 && first(step) ? kFirstPlaneIterations : fewest_iterations();
+void PlaneIterative<D>::begin_joints(StepPart<D> part) {
+  iterations_ = part.state.step == 0 && first(part) ? kFirstPlaneIterations : fewest_iterations();
   if (joints_.empty()) return;
   copy_to_joints();
-  joints_.begin(step.h, step.t);
+  joints_.begin(part.h, part.t);
   copy_from_joints();
-  const int most = strained(step.state) ? kStrainIterations : kJointIterations;
+  const int most = strained(part.state) ? kStrainIterations : kJointIterations;
   iterations_ = batches_.empty() && joints_.plain() ? 1 : std::clamp(most / 4 * iterations_, 4, most);
 }
 
 // forces stay in the lanes until the last substep
 template <int D>
-void PlaneIterative<D>::iterate(StepPart<D> step) {
+void PlaneIterative<D>::iterate(StepPart<D> part) {
+  begin_joints(part);
   const int count = int(batches_.size());
-  const bool last = step.substep + 1 == substeps_;
+  const bool last = part.substep + 1 == substeps_;
   for (int i = 1; i < iterations_; ++i) {
     solve_joint_velocities();
     plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_);
@@ -268,9 +274,9 @@ void PlaneIterative<D>::iterate(StepPart<D> step) {
   settle_pairs();
   solve_joint_velocities();
   plane::finish(batches_.data(), count, poses_.data(), v_.data(), constants_,
-                last ? step.state.contacts.data() : nullptr);
-  if (!carries_.empty()) book_contacts(step);
-  impacts_.note(pairs_.all(), step.state.contacts, batches_);
+                last ? part.state.contacts.data() : nullptr);
+  if (!carries_.empty()) book_contacts(part);
+  impacts_.note(pairs_.all(), part.state.contacts, batches_);
 }
 
 // More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
@@ -288,17 +294,17 @@ void PlaneIterative<D>::settle_pairs() {
 }
 
 template <int D>
-void PlaneIterative<D>::advance(StepPart<D> step) {
-  const bool correct = first(step) && deep_;
-  if (correct) correct_overlaps(step.state);
+void PlaneIterative<D>::advance(StepPart<D> part) {
+  const bool correct = first(part) && deep_;
+  if (correct) correct_overlaps(part.state);
   corrected_ = corrected_ || correct;
-  place_bodies(step.state, step.h, correct);
+  place_bodies(part.state, part.h, correct);
 }
 
 template <int D>
-void PlaneIterative<D>::project(StepPart<D> step) {
-  if (!joints_.empty()) project_joints(step.state, step.h);
-  outran_ = outran(step.h, (1 - share(step)) * span_);
+void PlaneIterative<D>::project(StepPart<D> part) {
+  if (!joints_.empty()) project_joints(part.state, part.h);
+  outran_ = outran(part.h, (1 - share(part)) * span_);
 }
 
 // Whether joints press an awake body far into another. Few iterations of contacts, each with the mass of its
@@ -424,11 +430,11 @@ void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
 //   dv = gain / n - 12 bend / (n h) ((k + 1/2) / n - 1/2),   dx = h v / n + h dv / 2n + bend / n^3
 // with h of the whole step.
 template <int D>
-void PlaneIterative<D>::share_free_motion(StepPart<D> step) {
+void PlaneIterative<D>::share_free_motion(StepPart<D> part) {
   const bool smooth = model_.integrator == Integrator::rk4 || model_.integrator == Integrator::midpoint;
-  const double h = step.h, part = 1 / double(substeps_), half = 0.5 * h;
-  const double late = smooth ? -12 * part / h * part * ((step.substep + 0.5) * part - 0.5) : 0;
-  const double bends = smooth ? part * part * part : part;
+  const double h = part.h, fraction = 1 / double(substeps_), half = 0.5 * h;
+  const double late = smooth ? -12 * fraction / h * fraction * ((part.substep + 0.5) * fraction - 0.5) : 0;
+  const double bends = smooth ? fraction * fraction * fraction : fraction;
   for (std::size_t i = 0; i < turns_.size(); ++i) {
     Motion &v = v_[i], &dv = dv_[i];
     const Motion &gain = gain_[i], &bend = bend_[i];
@@ -437,7 +443,8 @@ void PlaneIterative<D>::share_free_motion(StepPart<D> step) {
       continue;
     }
     old_[i] = v;
-    dv = {part * gain.x + late * bend.x, part * gain.y + late * bend.y, part * gain.w + late * bend.w, 0};
+    dv = {fraction * gain.x + late * bend.x, fraction * gain.y + late * bend.y,
+          fraction * gain.w + late * bend.w, 0};
     dx_[i] = {h * v.x + (half * dv.x + bends * bend.x), h * v.y + (half * dv.y + bends * bend.y),
               h * v.w + (half * dv.w + bends * bend.w), 0};
     v.x += dv.x, v.y += dv.y, v.w += dv.w;
@@ -472,12 +479,12 @@ void PlaneIterative<D>::foresee_driven(double t) {
 
 // their velocities and displacements in the substep, from their motion
 template <int D>
-void PlaneIterative<D>::move_driven(StepPart<D> step) {
+void PlaneIterative<D>::move_driven(StepPart<D> part) {
   driven_gain_ = 0;
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
-    const DrivenMotion<D> from = drives_.at(i, step.t);
-    const DrivenMotion<D>& to = driven_[i] = drives_.at(i, step.t + step.h);
+    const DrivenMotion<D> from = drives_.at(i, part.t);
+    const DrivenMotion<D>& to = driven_[i] = drives_.at(i, part.t + part.h);
     const Motion o{from.at.v[0], from.at.v[1], from.at.w[0], 0}, v{to.at.v[0], to.at.v[1], to.at.w[0], 0};
     old_[body] = o, v_[body] = v;
     dv_[body] = {v.x - o.x, v.y - o.y, v.w - o.w, 0};
@@ -503,8 +510,8 @@ void PlaneIterative<D>::place_driven(State<D>& state) {
 
 // Their work by the contacts of a substep, J: each force times the displacement of the carrying surface.
 template <int D>
-void PlaneIterative<D>::book_contacts(StepPart<D> step) const {
-  if (step.state.work.empty()) return;
+void PlaneIterative<D>::book_contacts(StepPart<D> part) const {
+  if (part.state.work.empty()) return;
   const auto mean = [&](int body) {
     Motion m{};
     if (drives_.number(body) < 0) return m;
@@ -526,7 +533,7 @@ void PlaneIterative<D>::book_contacts(StepPart<D> step) const {
       sum -= n * plane::normal_speed(r, a, b) + t * (plane::tangent_speed(r, a, b) + g.belt[lane]);
     }
   }
-  step.state.work[0] += step.h * sum;
+  part.state.work[0] += part.h * sum;
 }
 
 // poses and velocities of bodies on joints to the joint solver; velocities back

@@ -33,12 +33,12 @@ class PlaneIterative final : public ContactSolver<D> {
   void wake(StepPart<D> step) override;
   int substeps() const override { return substeps_; }
   const Vec<D>* corrections() const override { return corrected_ ? corrections_.data() : nullptr; }
-  void move_free(StepPart<D> step) override;
-  void resolve_impacts(StepPart<D> step) override;
-  void warm_start(StepPart<D> step) override;
-  void iterate(StepPart<D> step) override;
-  void advance(StepPart<D> step) override;
-  void project(StepPart<D> step) override;
+  void move_free(StepPart<D> part) override;
+  void warm_start(StepPart<D> part) override;
+  void resolve_impacts(StepPart<D> part) override;
+  void iterate(StepPart<D> part) override;
+  void advance(StepPart<D> part) override;
+  void project(StepPart<D> part) override;
   void report(StepPart<D> step) override;
   void sleep(StepPart<D> step) override;
 
@@ -50,9 +50,9 @@ class PlaneIterative final : public ContactSolver<D> {
   static constexpr double kSight = 0.5;
 
   bool gather(const State<D>& state);
-  bool first(StepPart<D> step) const { return step.substep == 0 && step.state.step % every_ == 0; }
-  double share(StepPart<D> step) const;
-  void renew_pairs(StepPart<D> step);
+  bool first(StepPart<D> part) const { return part.substep == 0 && part.state.step % every_ == 0; }
+  double share(StepPart<D> part) const;
+  void renew_pairs(StepPart<D> part);
   bool strained(const State<D>& state) const;
   void report_pair(const plane::Pair& pair, State<D>& state) const;
   void build_batches(const State<D>& state, bool known);
@@ -66,15 +66,16 @@ class PlaneIterative final : public ContactSolver<D> {
   void write_lane(const plane::Pair& pair, const State<D>& state);
   void first_guess(State<D>& state);
   int fewest_iterations() const;
+  void begin_joints(StepPart<D> part);
   void settle_pairs();
   void integrate_unconstrained(State<D>& state, double t, double h);
-  void share_free_motion(StepPart<D> step);
-  void move_driven(StepPart<D> step);
+  void share_free_motion(StepPart<D> part);
+  void move_driven(StepPart<D> part);
   void place_driven(State<D>& state);
   bool wake_near_driven(StepPart<D> step);
   void foresee_driven(double t);
   double belt_of(int body) const { return body < 0 ? 0 : model_.bodies[std::size_t(body)].belt[0]; }
-  void book_contacts(StepPart<D> step) const;
+  void book_contacts(StepPart<D> part) const;
   void copy_to_joints();
   void copy_from_joints();
   void solve_joint_velocities();

@@ -145,7 +145,7 @@ void SpaceIterative<D>::add_impulses(State<D>& state) const {
 }
 
 template <int D>
-void SpaceIterative<D>::warm_start(StepPart<D> step) {
+void SpaceIterative<D>::start_rows(StepPart<D> step) {
   warm_start_contacts(step.state, step.h);
   iterations_ =
       std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
@@ -166,6 +166,7 @@ void SpaceIterative<D>::warm_start(StepPart<D> step) {
 
 template <int D>
 void SpaceIterative<D>::iterate(StepPart<D> step) {
+  start_rows(step);
   batches_.build(touches_, all_, moving_);
   for (int round = 0; round < kTempering; ++round) {
     if (round > 0) batches_.load(touches_);

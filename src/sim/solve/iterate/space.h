@@ -40,7 +40,6 @@ class SpaceIterative final : public ContactSolver<D> {
   const Vec<D>* corrections() const override { return corrected_ ? corrections_.data() : nullptr; }
   void move_free(StepPart<D> step) override;
   void resolve_impacts(StepPart<D> step) override;
-  void warm_start(StepPart<D> step) override;
   void iterate(StepPart<D> step) override;
   void advance(StepPart<D> step) override;
   void project(StepPart<D> step) override;
@@ -133,6 +132,8 @@ class SpaceIterative final : public ContactSolver<D> {
       for (const int member : joints_.members(component)) act(member);
     }
   }
+  // after the impacts, which decide the targets of the contacts
+  void start_rows(StepPart<D> step);
   void warm_start_contacts(const State<D>& state, double h);
   void settle_contacts();
   void activate();
