@@ -1,4 +1,4 @@
-#include "sim/shape/displaced.h"
+#include "sim/shape/submerged.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "sim/dice.h"
-#include "sim/shape/answers.h"
+#include "sim/shape/form_concept.h"
 #include "sim/shapes.h"
 #include "sim/solids.h"
 
@@ -50,14 +50,14 @@ struct WithoutCore : Ball<2> {
 };
 struct Complete : Ball<2> {};
 
-static_assert(AnswersAsConvexForm<Complete, 2>);
-static_assert(!AnswersAsForm<WithoutSpread, 2> && !AnswersAsForm<WithoutVertices, 2>);
-static_assert(!AnswersAsForm<WithoutThickness, 2> && !AnswersAsForm<WithoutReach, 2>);
-static_assert(!AnswersAsForm<WithoutBounds, 2> && !AnswersAsForm<WithoutOutside, 2>);
-static_assert(!AnswersAsForm<WithoutMoved, 2> && !AnswersAsForm<WithoutSide, 2>);
-static_assert(!AnswersAsForm<WithoutHold, 2> && !AnswersAsForm<WithoutDrawn, 2>);
-static_assert(AnswersAsForm<WithoutCore, 2> && !AnswersAsConvexForm<WithoutCore, 2>);
-static_assert(!AnswersAsConvexForm<Ball<3>, 2>, "of the other dimension");
+static_assert(ConvexFormInterface<Complete, 2>);
+static_assert(!FormInterface<WithoutSpread, 2> && !FormInterface<WithoutVertices, 2>);
+static_assert(!FormInterface<WithoutThickness, 2> && !FormInterface<WithoutReach, 2>);
+static_assert(!FormInterface<WithoutBounds, 2> && !FormInterface<WithoutOutside, 2>);
+static_assert(!FormInterface<WithoutMoved, 2> && !FormInterface<WithoutSide, 2>);
+static_assert(!FormInterface<WithoutHold, 2> && !FormInterface<WithoutDrawn, 2>);
+static_assert(FormInterface<WithoutCore, 2> && !ConvexFormInterface<WithoutCore, 2>);
+static_assert(!ConvexFormInterface<Ball<3>, 2>, "of the other dimension");
 
 // as one struct with the fields of all kinds it had 128 and 168 bytes
 static_assert(sizeof(Shape<2>) <= 64 && sizeof(Shape<3>) <= 96);

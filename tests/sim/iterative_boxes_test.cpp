@@ -1,6 +1,6 @@
 // Boxes that meet four at a time: against one pair after another.
 
-#include "sim/solve/iterate/box_pairs.h"
+#include "sim/solve/iterate/plane_box_pairs.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ TEST(IterativeBoxes, MeetAsOnePairAfterAnother) {
   }
   poses.emplace_back();
   const plane::CoreShapes cores(world.model);
-  const std::vector<plane::Half> halves = plane::halves(cores);
+  const std::vector<plane::HalfSides> halves = plane::halves(cores);
   int apart = 0, corners = 0;
   for (int i = 0; i < 1000; ++i) {
     plane::BoxManifold four{};

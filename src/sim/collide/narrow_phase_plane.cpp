@@ -59,8 +59,8 @@ struct Couple {
 // Two outlines of which the first owns the touching face, in its frame.
 struct ReferenceFace {
   const ConvexPolygon &base, &other;
-  const Lie& lies;  // of the other
-  bool base_is_b;   // else a
+  const RelativePose& lies;  // of the other
+  bool base_is_b;            // else a
   int face;
   double value;  // greatest separation
 
@@ -187,7 +187,7 @@ void face_at_face(const Couple& couple, const ReferenceFace& touching, double ma
   keep_end(1);
 }
 
-void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin,
+void outline_gaps(const Couple& couple, const RelativePose& a_in_b, double margin,
                   std::vector<ContactCandidate<2>>& out) {
   const ConvexPolygon &a = couple.of_a, &b = couple.of_b;
   const double far = margin + couple.radii();
@@ -199,7 +199,7 @@ void outline_gaps(const Couple& couple, const Lie& a_in_b, double margin,
     if (couple.radii() > 0) keep(couple.gap(Kind::corners, 0, 0, middles.norm()), margin, out);
     return;
   }
-  const Lie b_in_a = inverse(a_in_b);
+  const RelativePose b_in_a = inverse(a_in_b);
   Separation by_a{-1e300, -1}, by_b{-1e300, -1};
   if (b.faces()) by_b = greatest_separation(b, a, a_in_b, far);
   if (by_b.value >= far) return;
@@ -226,7 +226,7 @@ template <int D>
 void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, const Shape<D>& shape_b,
              const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out) {
   static_assert(D == 2, "space comes with its own outlines");
-  const Lie a_in_b = lie(at_a, at_b);
+  const RelativePose a_in_b = relative_pose(at_a, at_b);
   const int digits_a = feature_digits(shape_a), digits_b = feature_digits(shape_b);
   for (int i = 0; i < parts(shape_a); ++i) {
     const ConvexPolygon of_a(part(shape_a, i));
@@ -264,7 +264,7 @@ void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, co
 template <int D>
 double separation(const Shape<D>& a, const BodyMotion<D>& at_a, const Shape<D>& b,
                   const BodyMotion<D>& at_b) {
-  const Lie a_in_b = lie(at_a, at_b);
+  const RelativePose a_in_b = relative_pose(at_a, at_b);
   double least = 1e300;
   for (int i = 0; i < parts(a); ++i) {
     const ConvexPolygon of_a(part(a, i));

@@ -15,7 +15,7 @@
 #include "sim/force/formula.h"
 #include "sim/math/elementary.h"
 #include "sim/math/limits.h"
-#include "sim/shape/displaced.h"
+#include "sim/shape/submerged.h"
 
 namespace obscura::sim {
 

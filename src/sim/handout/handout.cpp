@@ -266,7 +266,7 @@ void Handout<D>::strike(Striker& s, const PointAtWall* rows, int n, int rank) {
     return angular_response<D>(body, s.at.room_from_body, turn);
   };
   Square A(n, n);
-  Rows b(n), p;
+  SmallVector b(n), p;
   for (int i = 0; i < n; ++i) {
     const Wall<D>& w = model_.walls[rows[i].wall];
     const AngularVec<D> response = respond(rows[i].turn);
@@ -295,7 +295,7 @@ void Handout<D>::strike(Striker& s, const PointAtWall* rows, int n, int rank) {
 template <int D>
 void Handout<D>::put_inside(Striker& s) const {
   int walls[kMostRows], n = 0;
-  Rows gaps(kMostRows);
+  SmallVector gaps(kMostRows);
   bool outside = false;
   for (const Hit& h : hits_) {
     const Wall<D>& w = model_.walls[h.wall];
@@ -313,7 +313,7 @@ void Handout<D>::put_inside(Striker& s) const {
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) A(i, j) = model_.walls[walls[i]].normal.dot(model_.walls[walls[j]].normal);
   }
-  Rows p;
+  SmallVector p;
   // walls that leave no place between them keep it where it is
   if (!solve_lcp(A, gaps.head(n), D, p)) return;
   for (int i = 0; i < n; ++i) s.at.x += p[i] * model_.walls[walls[i]].normal;

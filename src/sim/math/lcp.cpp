@@ -22,7 +22,7 @@ struct Active {
 };
 
 // A_SS p_S = -b_S by symmetric elimination; false where the rows of S depend on one another
-bool balance(const Square& A, const Rows& b, const Active& active, Rows& p) {
+bool balance(const Square& A, const SmallVector& b, const Active& active, SmallVector& p) {
   p.setZero();
   const int k = active.count;
   const int* r = active.rows;
@@ -63,7 +63,7 @@ bool balance(const Square& A, const Rows& b, const Active& active, Rows& p) {
 }
 
 // p >= 0 and w >= 0 to rounding; sets numbers that are negative by rounding to zero
-bool feasible(const Square& A, const Rows& b, double slack, Rows& p) {
+bool feasible(const Square& A, const SmallVector& b, double slack, SmallVector& p) {
   const double most = p.cwiseAbs().maxCoeff();
   for (int i = 0; i < p.size(); ++i) {
     if (p[i] < -slack * most) return false;
@@ -89,7 +89,7 @@ bool next(Active& active, int n) {
 }
 
 // spreads p over all rows that are active, with the least norm; leaves p where that would pull
-void spread(const Square& A, const Rows& b, Rows& p) {
+void spread(const Square& A, const SmallVector& b, SmallVector& p) {
   Active active;
   for (int i = 0; i < p.size(); ++i) {
     const double scale = A.row(i).cwiseAbs().dot(p) + std::fabs(b[i]);
@@ -98,7 +98,7 @@ void spread(const Square& A, const Rows& b, Rows& p) {
   const int k = active.count;
   if (k < 2) return;
   Square part(k, k);
-  Rows right(k);
+  SmallVector right(k);
   for (int i = 0; i < k; ++i) {
     for (int j = 0; j < k; ++j) part(i, j) = A(active.rows[i], active.rows[j]);
     right[i] = -b[active.rows[i]];
@@ -107,17 +107,17 @@ void spread(const Square& A, const Rows& b, Rows& p) {
   factors.setThreshold(kDependent);
   factors.compute(part);
   if (factors.rank() == k) return;
-  const Rows least = factors.solve(right);
-  Rows all = Rows::Zero(p.size());
+  const SmallVector least = factors.solve(right);
+  SmallVector all = SmallVector::Zero(p.size());
   for (int i = 0; i < k; ++i) all[active.rows[i]] = least[i];
   if (feasible(A, b, kSlack, all)) p = all;
 }
 
 }  // namespace
 
-bool solve_lcp(const Square& A, const Rows& b, int rank, Rows& p) {
+bool solve_lcp(const Square& A, const SmallVector& b, int rank, SmallVector& p) {
   const int n = int(b.size());
-  p = Rows::Zero(n);
+  p = SmallVector::Zero(n);
   if (n == 0) return true;
   for (double slack = kSlack; slack <= kLoosest; slack *= 1e3) {
     for (int size = std::min(n, rank); size >= 0; --size) {

@@ -11,7 +11,7 @@
 #include "sim/constraint/joints/joint.h"
 #include "sim/math/elementary.h"
 #include "sim/math/lie_step.h"
-#include "sim/model/own_spin.h"
+#include "sim/model/body_spin.h"
 #include "sim/motion/free_motion.h"
 #include "sim/motion/stability.h"
 
@@ -192,7 +192,7 @@ void ForwardDynamics<D>::load(const State<D>& state) {
   for (int i = 0; i < turning_; ++i) {
     const int k = turning(state, bodies_[still + i]);
     turn_[i] = state.turn[k];
-    take_spin(state, k, model_.integrator == Integrator::semi_implicit, base_[i],
+    load_spin(state, k, model_.integrator == Integrator::semi_implicit, base_[i],
               v_.data() + D * n + kAngular<D> * i);
   }
   chains_.load(state, std::span<double>(v_).subspan(std::size_t(chain_start()), std::size_t(chains_.size())));
@@ -307,7 +307,7 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
   }
   for (int i = 0; i < turning_; ++i) {
     const int k = turning(state, bodies_[still + i]), at = D * n + kAngular<D> * i;
-    give_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
+    store_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
   }
   const std::size_t chains = std::size_t(chain_start()), joints = std::size_t(chains_.size());
   chains_.give(std::span<const double>(d_).subspan(chains, joints),

@@ -31,7 +31,7 @@ Chain<D>::Chain(std::vector<Link<D>> links) : links_(std::move(links)) {
     q_start_.push_back(q_start_.back() + sim::positions<D>(link.joint.freedom));
     v_start_.push_back(v_start_.back() + sim::velocities<D>(link.joint.freedom));
 
-    Hung hung;
+    LinkInJointFrame hung;
     hung.link = link.joint.on_link.inverse();
     hung.on_parent = link.parent < 0 ? link.joint.on_parent : hung_[link.parent].link * link.joint.on_parent;
     hung.com = hung.link * link.com;

@@ -54,18 +54,18 @@ class Chain {
   void displacement_rate(std::span<const double> d, std::span<const double> v, std::span<double> out) const;
 
   /// A link as its joint sees it: frames and mass about the joint's own frame on the link.
-  struct Hung {
+  struct LinkInJointFrame {
     Pose<D> on_parent;  // joint's frame on the parent, seen from the parent's joint's frame
     Pose<D> link;       // the link's frame, seen from its joint's frame
     Vec<D> com;
     SpinTensor<D> inertia;
   };
-  const Hung& hung(int link) const { return hung_[link]; }
+  const LinkInJointFrame& hung(int link) const { return hung_[link]; }
 
  private:
   std::vector<Link<D>> links_;
   std::vector<int> q_start_ = {0}, v_start_ = {0};
-  std::vector<Hung> hung_;
+  std::vector<LinkInJointFrame> hung_;
 };
 
 }  // namespace obscura::sim

@@ -20,7 +20,7 @@ double distance(const ConvexPolygon& outline, int i, const Vec<2>& p) {
   return (p - from - s * along).norm();
 }
 
-double nearest(const ConvexPolygon& outline, const ConvexPolygon& other, const Lie& lies) {
+double nearest(const ConvexPolygon& outline, const ConvexPolygon& other, const RelativePose& lies) {
   double least = 1e300;
   for (int i = 0; i < outline.faces(); ++i) {
     for (int k = 0; k < other.corners(); ++k) {
@@ -31,7 +31,7 @@ double nearest(const ConvexPolygon& outline, const ConvexPolygon& other, const L
 }
 
 // the same as by corners, for the two axes of a box at once
-Separation of_boxes(const ConvexPolygon& of, const ConvexPolygon& other, const Lie& lies) {
+Separation of_boxes(const ConvexPolygon& of, const ConvexPolygon& other, const RelativePose& lies) {
   const Vec<2> away = lies * other.middle() - of.middle();
   const Vec<2> s = away.cwiseAbs() - of.half() - lies.turn.cwiseAbs() * other.half();
   const int upright = away[1] > 0 ? 2 : 0, across = away[0] < 0 ? 3 : 1;
@@ -93,17 +93,17 @@ int ConvexPolygon::facing(const Vec<2>& d) const {
   return best;
 }
 
-Lie lie(const BodyMotion<2>& a, const BodyMotion<2>& b) {
+RelativePose relative_pose(const BodyMotion<2>& a, const BodyMotion<2>& b) {
   const Rotation<2> b_from_room = b.room_from_body.transpose();
   return {b_from_room * (a.x - b.x), b_from_room * a.room_from_body};
 }
 
-Lie inverse(const Lie& of) {
+RelativePose inverse(const RelativePose& of) {
   const Rotation<2> back = of.turn.transpose();
   return {-(back * of.x), back};
 }
 
-Separation greatest_separation(const ConvexPolygon& of, const ConvexPolygon& other, const Lie& lies,
+Separation greatest_separation(const ConvexPolygon& of, const ConvexPolygon& other, const RelativePose& lies,
                                double enough) {
   if (of.is_box() && other.is_box()) return of_boxes(of, other, lies);
   Separation best{-1e300, 0};
@@ -118,9 +118,9 @@ Separation greatest_separation(const ConvexPolygon& of, const ConvexPolygon& oth
   return best;
 }
 
-double core_separation(const ConvexPolygon& a, const ConvexPolygon& b, const Lie& a_in_b) {
+double core_separation(const ConvexPolygon& a, const ConvexPolygon& b, const RelativePose& a_in_b) {
   if (a.faces() + b.faces() == 0) return (a_in_b * a.corner(0) - b.corner(0)).norm();
-  const Lie b_in_a = inverse(a_in_b);
+  const RelativePose b_in_a = inverse(a_in_b);
   double s = -1e300;
   if (b.faces()) s = std::max(s, greatest_separation(b, a, a_in_b, 1e300).value);
   if (a.faces()) s = std::max(s, greatest_separation(a, b, b_in_a, 1e300).value);

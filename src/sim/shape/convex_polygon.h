@@ -54,14 +54,14 @@ class ConvexPolygon {
 };
 
 /// How a lies in the frame of b.
-struct Lie {
+struct RelativePose {
   Vec<2> x = Vec<2>::Zero();
   Rotation<2> turn = Rotation<2>::Identity();
 
   Vec<2> operator*(const Vec<2>& local) const { return x + turn * local; }
 };
-Lie lie(const BodyMotion<2>& a, const BodyMotion<2>& b);
-Lie inverse(const Lie& of);
+RelativePose relative_pose(const BodyMotion<2>& a, const BodyMotion<2>& b);
+RelativePose inverse(const RelativePose& of);
 
 /// A face of one outline and how far the corners of the other stay from it, m.
 struct Separation {
@@ -71,11 +71,11 @@ struct Separation {
 
 /// The face of `of` that the other outline, lying so in its frame, keeps the greatest separation from, the
 /// first of equals. Stops at the first face beyond `enough`. Requires faces.
-Separation greatest_separation(const ConvexPolygon& of, const ConvexPolygon& other, const Lie& lies,
+Separation greatest_separation(const ConvexPolygon& of, const ConvexPolygon& other, const RelativePose& lies,
                                double enough);
 
 /// Distance (m) between two polygons without their radii, `a_in_b` the pose of a in b's frame; if they
 /// overlap, minus the depth.
-double core_separation(const ConvexPolygon& a, const ConvexPolygon& b, const Lie& a_in_b);
+double core_separation(const ConvexPolygon& a, const ConvexPolygon& b, const RelativePose& a_in_b);
 
 }  // namespace obscura::sim

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/shape/answers.h"
+#include "sim/shape/form_concept.h"
 
 namespace obscura::sim {
 

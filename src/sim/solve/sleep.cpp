@@ -83,7 +83,7 @@ bool Sleep<D>::joins(const Contact<D>& contact) const {
 // islands of the bodies that are alike
 template <int D>
 template <class Alike>
-void Sleep<D>::join(const State<D>& state, std::span<const Contact<D>> contacts, Alike&& alike) {
+void Sleep<D>::build_islands(const State<D>& state, std::span<const Contact<D>> contacts, Alike&& alike) {
   const int n = int(model_.bodies.size());
   roots_.reset(n), restless_.assign(n, 0);
   const auto both = [&](int a, int b) { return a >= 0 && b >= 0 && alike(a) && alike(b); };
@@ -156,7 +156,7 @@ bool Sleep<D>::wake(State<D>& state, std::span<const Contact<D>> near, double sp
 
 template <int D>
 void Sleep<D>::wake(State<D>& state, std::span<const int> bodies) {
-  join(state, state.contacts, [&](int body) { return state.frozen[body] != 0; });
+  build_islands(state, state.contacts, [&](int body) { return state.frozen[body] != 0; });
   for (const int body : bodies) disturb(body);
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (restless_[roots_.root(i)]) state.frozen[i] = 0, state.quiet[i] = 0;
@@ -197,7 +197,7 @@ void Sleep<D>::disturb_pulled(const State<D>& state) {
 
 // makes candidates of the islands in which nothing is restless
 template <int D>
-void Sleep<D>::list(const State<D>& state, std::span<const Contact<D>> contacts) {
+void Sleep<D>::list_candidates(const State<D>& state, std::span<const Contact<D>> contacts) {
   bodies_by_root_.clear(), contacts_by_root_.clear();
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (!moves(state, i)) continue;
@@ -234,7 +234,7 @@ template <int D>
 bool Sleep<D>::at_start(State<D>& state, std::span<Contact<D>> contacts) {
   candidates_.clear(), rows_.clear();
   if (blasting(state)) return false;
-  join(state, contacts, [&](int body) { return moves(state, body); });
+  build_islands(state, contacts, [&](int body) { return moves(state, body); });
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     const int k = turning(state, i);
     if (!state.v[i].isZero(0) || (k >= 0 && !state.spin[k].isZero(0))) disturb(i);
@@ -242,7 +242,7 @@ bool Sleep<D>::at_start(State<D>& state, std::span<Contact<D>> contacts) {
   disturb_pulled(state);
   for (const int body : restless_at_start_) disturb(body);
   for (const Joint<D>& joint : model_.joints) joint.each_body([&](int body) { disturb(body); });
-  list(state, contacts);
+  list_candidates(state, contacts);
   bool fell = false;
   for (const Island& island : candidates_) {
     if (!in_equilibrium(state, island, contacts, Statics<D>::kMost)) continue;
@@ -259,7 +259,7 @@ std::span<typename Sleep<D>::Island> Sleep<D>::candidates(const State<D>& state)
   for (int i = 0; i < n; ++i) waited = waited || (moves(state, i) && state.quiet[i] >= kWait);
   if (!waited || (!exact_ && blasting(state))) return candidates_;
 
-  join(state, state.contacts, [&](int body) { return moves(state, body); });
+  build_islands(state, state.contacts, [&](int body) { return moves(state, body); });
   for (int i = 0; i < n; ++i) {
     if (moves(state, i) && state.quiet[i] < kWait) disturb(i);
   }
@@ -268,7 +268,7 @@ std::span<typename Sleep<D>::Island> Sleep<D>::candidates(const State<D>& state)
     const int body = moves(state, contact.key.a) ? contact.key.a : contact.key.b;
     if (body >= 0 && contact.gap < -deepest_ * bounding_radius_[body]) disturb(body);
   }
-  list(state, state.contacts);
+  list_candidates(state, state.contacts);
 
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     if (state.broken[i]) continue;

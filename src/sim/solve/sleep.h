@@ -128,11 +128,11 @@ class Sleep {
   double thickness(const ContactKey& key) const;
   bool joins(const Contact<D>& contact) const;
   template <class Alike>
-  void join(const State<D>& state, std::span<const Contact<D>> contacts, Alike&& alike);
+  void build_islands(const State<D>& state, std::span<const Contact<D>> contacts, Alike&& alike);
   void disturb(int body);
   void disturb_pulled(const State<D>& state);
   double reach(const State<D>& state, const Contact<D>& contact, int awake, double span, double h) const;
-  void list(const State<D>& state, std::span<const Contact<D>> contacts);
+  void list_candidates(const State<D>& state, std::span<const Contact<D>> contacts);
   bool due_at_waits(double quiet) const;
   bool due_at_doubled_waits(double quiet) const;
   bool in_equilibrium(const State<D>& state, const Island& island, std::span<Contact<D>> contacts, int most);

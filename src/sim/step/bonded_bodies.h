@@ -16,7 +16,7 @@ class Stepper;
 /// The rigid bodies that bonds make of the parts of a model. They form an ordinary Model, which any stepper
 /// steps.
 template <int D>
-struct Whole {
+struct BondedModel {
   Model<D> model;
   std::vector<int> body;    // one a part: its body in `model`
   std::vector<char> alone;  // one a part: it is the only one of its body
@@ -52,7 +52,7 @@ class BondedBodies {
 
   const Model<D>& model_;
   BondLoads<D> loads_;
-  Whole<D> whole_;
+  BondedModel<D> whole_;
   std::vector<char> known_;              // which bonds `whole_` is made of
   std::vector<std::vector<int>> parts_;  // of each body of `whole_`
   std::unique_ptr<Stepper<D>> stepper_;  // of `whole_`

@@ -14,7 +14,7 @@
 
 #include "sim/force/mouse.h"
 #include "sim/math/limits.h"
-#include "sim/model/own_spin.h"
+#include "sim/model/body_spin.h"
 #include "sim/motion/free_motion.h"
 #include "sim/step/archive.h"
 #include "sim/step/bonded_bodies.h"
@@ -348,7 +348,7 @@ bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
   std::fill(d.begin(), d.end(), 0.0);
   const bool whole = model_.integrator == Integrator::semi_implicit;
   for (int i = 0; i < block.count; ++i)
-    take_spin(state, block.first + i, whole, base_[i], w.data() + kAngular<D> * i);
+    load_spin(state, block.first + i, whole, base_[i], w.data() + kAngular<D> * i);
   const std::span<const AngularVec<D>> moments(inertia_), base(base_);
   TorqueFreeRotation<D> spinning(moments.subspan(block.first, block.count), base.first(block.count));
   integrate_(spinning, t, h, d, w, stages_);
@@ -361,7 +361,7 @@ bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
     if (pieces > 1)
       spin(state, k, pieces, t, h);
     else
-      give_spin<D>(state, k, Orientation<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
+      store_spin<D>(state, k, Orientation<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
     sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
     sound |= within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
   }
@@ -374,11 +374,11 @@ void Stepper<D>::spin(State<D>& state, int k, int pieces, double t, double h) {
   AngularVec<D> base;
   std::array<double, kAngular<D>> d, w;
   for (int i = 0; i < pieces; ++i) {
-    take_spin(state, k, model_.integrator == Integrator::semi_implicit, base, w.data());
+    load_spin(state, k, model_.integrator == Integrator::semi_implicit, base, w.data());
     d.fill(0);
     TorqueFreeRotation<D> spinning(std::span(&inertia_[k], 1), std::span(&base, 1));
     integrate_(spinning, t + i * (h / pieces), h / pieces, d, w, stages_);
-    give_spin<D>(state, k, Orientation<D>(state.turn[k]), d.data(), base, w.data());
+    store_spin<D>(state, k, Orientation<D>(state.turn[k]), d.data(), base, w.data());
   }
 }
 

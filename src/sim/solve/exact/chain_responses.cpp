@@ -16,9 +16,9 @@ double ExactSolver<D>::self_coupling(int row) const {
 // M^-1 J' f_ onto the velocities of a state, or onto its places
 template <int D>
 void ExactSolver<D>::apply_impulses(State<D>& state, bool places) {
-  const bool chains = free_.chains().size() > 0;
+  const bool chains = dynamics_.chains().size() > 0;
   if (places) scratch_.turns.assign(model_.bodies.size(), AngularVec<D>::Zero());
-  if (chains) scratch_.chain_change.assign(std::size_t(free_.chains().size()), 0.0);
+  if (chains) scratch_.chain_change.assign(std::size_t(dynamics_.chains().size()), 0.0);
   for (int i = 0; i < int(rows_.size()); ++i) {
     if (f_[i] == 0) continue;
     apply_impulses(state, rows_[i], f_[i], places);
@@ -33,14 +33,14 @@ void ExactSolver<D>::apply_impulses(State<D>& state, bool places) {
     state.turn[k] = turned<D>(state.turn[k], scratch_.turns[body]);
   }
   if (!chains) return;
-  free_.chains().jump(state, scratch_.chain_change, places);
-  free_.chains().follow(state);
+  dynamics_.chains().jump(state, scratch_.chain_change, places);
+  dynamics_.chains().follow(state);
 }
 
 // the forces that the joints of chains bear at this instant, into outcome_.joint_forces; before those of rows
 template <int D>
 void ExactSolver<D>::record_chain_forces() {
-  Articulated<D>& chains = free_.chains();
+  Articulated<D>& chains = dynamics_.chains();
   if (chains.size() == 0) return;
   for (int i = 0; i < int(rows_.size()); ++i) {
     if (!chain_response_.moves(i) || f_[i] == 0) continue;

@@ -23,7 +23,7 @@ constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: 
 template <int D>
 void ExactSolver<D>::update_poses(const State<D>& state) {
   for (const int body : active_.subset.bodies) poses_[body] = body_motion(state, body);
-  free_.chains().stand(state);
+  dynamics_.chains().stand(state);
 }
 
 // bodies that are moved, at time t
@@ -146,7 +146,7 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, bool all) {
     if (joint.friction > 0) add(Kind::friction, i, turn, false);
   }
   for (int i = 0; i < int(candidates_.size()); ++i) add(Kind::contact, i, AngularVec<D>::Zero(), true);
-  chain_response_.build(rows_, response_, free_.chains());
+  chain_response_.build(rows_, response_, dynamics_.chains());
 }
 
 // builds the blocks of the constraints at the present poses; for impulses without motors and friction in
@@ -200,7 +200,7 @@ void ExactSolver<D>::build_blocks(bool impulses) {
   modes_.assign(blocks_.size(), {});
 }
 
-// J a: the acceleration of each row, from accelerations in the order of free_
+// J a: the acceleration of each row, from accelerations in the order of dynamics_
 template <int D>
 double ExactSolver<D>::row_acceleration(int number, std::span<const double> rate) const {
   const Row<D>& row = rows_[number];
@@ -210,10 +210,10 @@ double ExactSolver<D>::row_acceleration(int number, std::span<const double> rate
       const DrivenMotion<D>& its = driven_[std::size_t(drive)];
       sum += sign * (along.dot(its.a) + turn.dot(its.alpha));
     }
-    const int place = response_.free(body) ? free_.place(body) : -1;
+    const int place = response_.free(body) ? dynamics_.place(body) : -1;
     if (place < 0) return;
     sum += sign * along.dot(Eigen::Map<const Vec<D>>(rate.data() + D * place));
-    if (const int at = free_.spin_start(place); at >= 0)
+    if (const int at = dynamics_.spin_start(place); at >= 0)
       sum += sign * turn.dot(to_room<D>(poses_[body].room_from_body,
                                         Eigen::Map<const AngularVec<D>>(rate.data() + at)));
   };
@@ -221,25 +221,25 @@ double ExactSolver<D>::row_acceleration(int number, std::span<const double> rate
   for (const RowSide<D>& more : row.more) side(more.body, more.angular, 1, more.along);
   if (!chain_response_.moves(number)) return sum;
   const auto J = chain_response_.jacobian(number);
-  for (std::size_t i = 0; i < J.size(); ++i) sum += J[i] * rate[std::size_t(free_.chain_start()) + i];
+  for (std::size_t i = 0; i < J.size(); ++i) sum += J[i] * rate[std::size_t(dynamics_.chain_start()) + i];
   return sum;
 }
 
-// M^-1 J' f, onto accelerations in the order of free_
+// M^-1 J' f, onto accelerations in the order of dynamics_
 template <int D>
 void ExactSolver<D>::add_accelerations(int number, double f, std::span<double> rate) const {
   const auto side = [&](int body, const Vec<D>& dv, const AngularVec<D>& spin, double force) {
-    const int place = free_.place(body);
+    const int place = dynamics_.place(body);
     if (place < 0) return;
     Eigen::Map<Vec<D>>(rate.data() + D * place) += dv;
-    if (const int at = free_.spin_start(place); at >= 0)
+    if (const int at = dynamics_.spin_start(place); at >= 0)
       Eigen::Map<AngularVec<D>>(rate.data() + at) += force * from_room<D>(poses_[body].room_from_body, spin);
   };
   if (f == 0) return;
   each_response(rows_[number], response_.of(rows_[number], poses_), f, side);
   if (!chain_response_.moves(number)) return;
   const auto U = chain_response_.response(number);
-  for (std::size_t i = 0; i < U.size(); ++i) rate[std::size_t(free_.chain_start()) + i] += f * U[i];
+  for (std::size_t i = 0; i < U.size(); ++i) rate[std::size_t(dynamics_.chain_start()) + i] += f * U[i];
 }
 
 // M^-1 J' p onto the velocities of the free bodies of a state, or onto their places and scratch_.turns
@@ -287,7 +287,7 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   if (constraints_.empty()) return true;
   find_islands();
   b_.resize(Eigen::Index(rows_.size()));
-  const auto rate = free_.accelerations(state, t);
+  const auto rate = dynamics_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, rate) + rows_[i].velocity_product;
   for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
   warm_start_rows(1);
@@ -346,7 +346,7 @@ void ExactSolver<D>::pay_for_lift(State<D>& state) {
     return -model_.bodies[body].mass * model_.gravity.dot(state.x[body] - scratch_.placed[body]);
   };
   const auto left = [](double more, double has) { return std::sqrt(std::max(0.0, 1 - more / has)); };
-  for (const int body : free_.bodies()) {
+  for (const int body : dynamics_.bodies()) {
     const double more = lifted(body);
     const double has = more > 0 ? kinetic(model_, state, body) : 0;
     if (has <= 0) continue;
@@ -359,7 +359,7 @@ void ExactSolver<D>::pay_for_lift(State<D>& state) {
     if (more <= 0 || has <= 0) continue;
     for (double& v : state.chain_states[i].v) v *= left(more, has);
   }
-  if (!active_.subset.chains.empty()) free_.chains().follow(state);
+  if (!active_.subset.chains.empty()) dynamics_.chains().follow(state);
 }
 
 // puts what is held back to where it belongs: places first, then velocities. `impacts_follow`: contacts that
@@ -375,7 +375,7 @@ void ExactSolver<D>::project_state(State<D>& state, bool impacts_follow) {
                                      ? AngularVec<D>::Zero().eval()
                                      : turn_between(state, model_.joints[constraint.of]));
     }
-    chain_response_.build(rows_, response_, free_.chains());
+    chain_response_.build(rows_, response_, dynamics_.chains());
   };
   // how far they are off, at most; into b_ what would bring each row back
   const auto astray = [&] {

@@ -420,8 +420,8 @@ void ExactSolver<D>::integrate(State<D>& state, double t, double h) {
   const int pieces = limits_.row_joints == 0 || limits_.row_joints > kFewJoints ? 1 : kFiner;
   interval_.given = 0;
   for (int i = 0; i < pieces; ++i) {
-    free_.step(integrate_, state, t + i * (h / pieces), h / pieces, stages_, this);
-    interval_.given += free_.work();
+    dynamics_.step(integrate_, state, t + i * (h / pieces), h / pieces, stages_, this);
+    interval_.given += dynamics_.work();
   }
 }
 

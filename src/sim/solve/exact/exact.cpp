@@ -37,16 +37,16 @@ template <int D>
 typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& model, Serves whom) {
   Limits limits;
   const double g = std::sqrt(model.gravity.squaredNorm()), h = 1 / value(model.rate);
-  const bool exact = model.collision == Collision::event;
+  const bool event_mode = model.collision == Collision::event;
   limits.unit_speed = std::sqrt(g * model.scale);
   if (limits.unit_speed == 0) limits.unit_speed = model.scale;
-  limits.touching_gap = (exact ? 1e-12 : 1e-9) * model.scale;
-  limits.rest_speed = exact ? 1e-6 * limits.unit_speed : std::max(1e-6 * limits.unit_speed, 0.1 * g * h);
-  limits.most_cuts = exact ? 2000 + 100 * int(model.bodies.size()) : 12;
-  limits.most_openings = exact ? limits.most_cuts : 6;
-  limits.patience = exact ? 8 + int(model.bodies.size()) : 4;
-  limits.short_step = exact ? 1.0 / 64 : 1.0 / 4;
-  limits.budget = exact ? 1e300 : 1e7;
+  limits.touching_gap = (event_mode ? 1e-12 : 1e-9) * model.scale;
+  limits.rest_speed = event_mode ? 1e-6 * limits.unit_speed : std::max(1e-6 * limits.unit_speed, 0.1 * g * h);
+  limits.most_cuts = event_mode ? 2000 + 100 * int(model.bodies.size()) : 12;
+  limits.most_openings = event_mode ? limits.most_cuts : 6;
+  limits.patience = event_mode ? 8 + int(model.bodies.size()) : 4;
+  limits.short_step = event_mode ? 1.0 / 64 : 1.0 / 4;
+  limits.budget = event_mode ? 1e300 : 1e7;
   for (const Joint<D>& joint : model.joints) limits.row_joints += !joint.linked;
   for (const Body<D>& body : model.bodies) {
     limits.bounding_radius.push_back(sim::bounding_radius(body.shape));
@@ -76,7 +76,7 @@ ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& p
       motors_(model),
       limits_(make_limits(model, whom)),
       integrate_(sim::integrate(model.integrator)),
-      free_(model, paths),
+      dynamics_(model, paths),
       response_(model),
       sleep_(model, Sleep<D>::Forces::exact) {
   if (model.collision != Collision::event) cone_.enough = 1e-7;
@@ -146,8 +146,8 @@ void ExactSolver<D>::collect_bodies(State<D>& state) {
   }
   for (const DrivenMotion<D>& it : driven_) fastest = std::max(fastest, it.at.v.squaredNorm());
   still_speed_ = 1e-11 * std::max(limits_.unit_speed, std::sqrt(fastest));
-  free_.gather(state, active_.subset);
-  stages_.reserve(std::size_t(free_.size()));
+  dynamics_.gather(state, active_.subset);
+  stages_.reserve(std::size_t(dynamics_.size()));
 }
 
 template <int D>
@@ -237,14 +237,14 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   progress_.forced.clear(), progress_.forced_again = false;
   progress_.rough = false, progress_.work = 0, progress_.searches = 0;
   progress_.openings = limits_.most_openings, progress_.released.reset(), progress_.unclear.clear();
-  const bool exact = model_.collision == Collision::event;
-  const int most_cuts = exact ? limits_.most_cuts : active_.lone ? kMostLoneCuts : limits_.most_cuts;
+  const bool event_mode = model_.collision == Collision::event;
+  const int most_cuts = event_mode ? limits_.most_cuts : active_.lone ? kMostLoneCuts : limits_.most_cuts;
   const double slowest = progress_.rest_speed,
                fastest =
                    std::max(progress_.rest_speed, limits_.unit_speed * limits_.unit_speed / model_.scale * h);
   int grown = 0;  // cuts at which rest has grown
   // `event` counts all cuts of the group, whoever they are of
-  for (int spent = 0; done < h; spent = exact ? spent + 1 : cuts_so_far()) {
+  for (int spent = 0; done < h; spent = event_mode ? spent + 1 : cuts_so_far()) {
     pose_driven(t + done);
     find_contacts(state, limits_.touching_gap);
     if (wake_reached(state)) {
@@ -259,7 +259,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     if ((progress_.work > limits_.budget || progress_.searches > kManyLooks) && done > 0)
       progress_.rough = true;
     const bool chosen = !progress_.rough && solve_modes(state, t + done) && !jammed();
-    if (!chosen) progress_.rough = !exact;
+    if (!chosen) progress_.rough = !event_mode;
     if (chosen && spent < most_cuts && tiny <= kStuck) {
       if (progress_.released) release_contact();
       record_forces();
@@ -359,21 +359,21 @@ double ExactSolver<D>::time_unseen(const State<D>& state) const {
 template <int D>
 void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const double> v,
                            std::span<double> d_rate, std::span<double> v_rate) {
-  free_.rates(t, d, v, d_rate, v_rate);
+  dynamics_.rates(t, d, v, d_rate, v_rate);
   if (constraints_.empty()) return;
 
   // rows at the poses of this stage
-  const auto& members = free_.bodies();
-  for (std::size_t i = 0; i < members.size(); ++i) poses_[members[i]] = free_.stances()[i];
-  const auto& links = free_.chains().links();
-  for (std::size_t i = 0; i < links.size(); ++i) poses_[links[i]] = free_.stances()[members.size() + i];
+  const auto& members = dynamics_.bodies();
+  for (std::size_t i = 0; i < members.size(); ++i) poses_[members[i]] = dynamics_.stances()[i];
+  const auto& links = dynamics_.chains().links();
+  for (std::size_t i = 0; i < links.size(); ++i) poses_[links[i]] = dynamics_.stances()[members.size() + i];
   for (int i = 0; i < drives_.size(); ++i) {
-    driven_[std::size_t(i)] = free_.driven()[std::size_t(i)];
+    driven_[std::size_t(i)] = dynamics_.driven()[std::size_t(i)];
     poses_[std::size_t(drives_.body(i))] = driven_[std::size_t(i)].at;
   }
   rows_.clear();
   for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
-  chain_response_.build(rows_, response_, free_.chains());
+  chain_response_.build(rows_, response_, dynamics_.chains());
   b_.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, v_rate) + rows_[i].velocity_product;
   now_ = t;
@@ -383,7 +383,7 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   if (D > 2) turn_slip_directions();
   solve_held();
   for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], v_rate);
-  if (const int work = free_.work_place(); work >= 0) {
+  if (const int work = dynamics_.work_place(); work >= 0) {
     for (int i = 0; i < int(rows_.size()); ++i) v_rate[std::size_t(work)] += f_[i] * given(i);
   }
 }
@@ -470,24 +470,24 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   build_blocks(true);
   find_islands();
   b_.resize(Eigen::Index(rows_.size()));
-  const auto rate = free_.accelerations(state, t);
+  const auto rate = dynamics_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i)
     b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
   // Start from the forces of the step before only if nearly all is at rest: with them the iterations would go
   // on holding bodies that have begun to fall.
   double fastest = 0;
   for (int i = 0; i < int(rows_.size()); ++i) fastest = std::max(fastest, std::abs(row_velocity(i)));
-  const auto& members = free_.bodies();
+  const auto& members = dynamics_.bodies();
   for (std::size_t i = 0; i < members.size(); ++i) {
     const int body = members[i];
     state.v[body] += h * Eigen::Map<const Vec<D>>(rate.data() + D * i);
-    if (const int at = free_.spin_start(int(i)); at >= 0)
+    if (const int at = dynamics_.spin_start(int(i)); at >= 0)
       state.spin[turning(state, body)] +=
           h * to_room<D>(poses_[body].room_from_body, Eigen::Map<const AngularVec<D>>(rate.data() + at));
   }
-  Articulated<D>& chains = free_.chains();
-  scratch_.chain_change.assign(rate.begin() + free_.chain_start(),
-                               rate.begin() + free_.chain_start() + chains.size());
+  Articulated<D>& chains = dynamics_.chains();
+  scratch_.chain_change.assign(rate.begin() + dynamics_.chain_start(),
+                               rate.begin() + dynamics_.chain_start() + chains.size());
   for (double& change : scratch_.chain_change) change *= h;
   chains.jump(state, scratch_.chain_change, false);
   warm_start_rows(fastest < kCreep * limits_.unit_speed ? h : 0);

@@ -259,7 +259,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void aim_slow_slips(State<D>& state, double t, double h);
   void turn_slip_directions();
 
-  // islands.cpp
+  // exact_islands.cpp
   void find_islands();
   void build_K();
   bool solve();
@@ -277,7 +277,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void solve_impacts(State<D>& state, double bounce);
   void record_impulse(const ContactKey& key, const Constraint& constraint, const Vec<D>& impulse);
 
-  // sleep.cpp
+  // exact_sleep.cpp
   bool wake_reached(State<D>& state);
   void wake_near_driven(State<D>& state, double t, double h);
   void put_to_sleep(State<D>& state, double t, double h);
@@ -310,7 +310,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double now_ = 0;  // s: the time of poses_
   const Limits limits_;
   Integrate* integrate_;
-  ForwardDynamics<D> free_;
+  ForwardDynamics<D> dynamics_;
   Stages stages_;
   Cone<D> cone_;
   Response<D> response_;

@@ -42,13 +42,13 @@ void by_group(int groups, int count, const GroupOf& group_of, std::vector<int>& 
 // bounds how far each body may get in a step of h from t
 template <int D>
 void ExactSolver<D>::bound_travel(const State<D>& state, double t, double h) {
-  const auto rate = free_.accelerations(state, t);
+  const auto rate = dynamics_.accelerations(state, t);
   const double g = std::sqrt(model_.gravity.squaredNorm());
   for (int body = 0; body < int(step_.travel_bound.size()); ++body) {
     step_.travel_bound[body] = 0;
     if (!response_.moves(body)) continue;
     double a = g;
-    if (const int place = free_.place(body); !model_.bodies[body].linked && place >= 0)
+    if (const int place = dynamics_.place(body); !model_.bodies[body].linked && place >= 0)
       a = std::sqrt(Eigen::Map<const Vec<D>>(rate.data() + D * place).squaredNorm());
     const double v = std::sqrt(2 * kinetic(model_, state, body) / model_.bodies[body].mass);
     step_.travel_bound[body] = kSpare * h * v + h * h * a;

@@ -87,7 +87,7 @@ void ExactSolver<D>::keep_fastest_pair() {
   });
   rows_.clear();
   for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
-  chain_response_.build(rows_, response_, free_.chains());
+  chain_response_.build(rows_, response_, dynamics_.chains());
 }
 
 // Newton's law with Coulomb's friction for all constraints; `bounce` scales e. If energy would rise, e is

@@ -54,7 +54,7 @@ template <int D>
 void ExactSolver<D>::aim_slow_slips(State<D>& state, double t, double h) {
   scratch_.blocks = blocks_, scratch_.modes = modes_, scratch_.f = f_;
   build_blocks(true);
-  const auto rate = free_.accelerations(state, t);
+  const auto rate = dynamics_.accelerations(state, t);
   for (int i = 0; i < int(rows_.size()); ++i)
     b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
   warm_start_rows(h);

@@ -6,7 +6,7 @@
 // in space with angular momenta for spins, so that a body that turns on in the step keeps its own. The scheme
 // is of second order, and no joint drifts. Beside them rows with bounds, r: a unit of impulse along r makes
 // the joints react by c = -K^-1 J M^-1 r, so that the effective mass is
-//   give = 1 / (r M^-1 r - r M^-1 J K^-1 J M^-1 r)
+//   m = 1 / (r M^-1 r - r M^-1 J K^-1 J M^-1 r)
 
 #include "sim/solve/iterate/joint_solver.h"
 
@@ -162,8 +162,8 @@ void JointSolver<D>::compute_rows() {
     rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), &rows_[factors_.first(k)], off,
          at_);
   }
-  gives_.assign(driven_ ? rows_.size() : 0, 0);
-  for (std::size_t r = 0; r < gives_.size(); ++r) gives_[r] = given(rows_[r]);
+  drive_works_.assign(driven_ ? rows_.size() : 0, 0);
+  for (std::size_t r = 0; r < drive_works_.size(); ++r) drive_works_[r] = given(rows_[r]);
   constexpr int kMost = kMostHeld<D>;
   const auto fill = [&](auto& block, int i, int j) {
     for (int r = 0; r < factors_.size(i); ++r) {
@@ -197,7 +197,7 @@ template <int D>
 double JointSolver<D>::given(const JointResponse& response) const {
   double sum = 0;
   for (int s = 0; driven_ && s < 2; ++s)
-    each_row(response.components[s], [&](int k, int r) { sum += response.answer[s][k] * gives_[r]; });
+    each_row(response.components[s], [&](int k, int r) { sum += response.answer[s][k] * drive_works_[r]; });
   return sum;
 }
 
@@ -254,10 +254,10 @@ void JointSolver<D>::collect_bounded(double h) {
         b.target = motors_.at(i, ends_, offs[0] + h * speed(b.row, at_), speed(b.row, at_)).speed;
     }
 
-    b.gave = driven_ ? given(b.row) : 0;
+    b.begun_drive_work = driven_ ? given(b.row) : 0;
     compute_response(b);
-    b.give = give(b);
-    active_ += b.give > 0;
+    b.effective_mass = effective_mass(b);
+    active_ += b.effective_mass > 0;
   };
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
@@ -308,9 +308,9 @@ double JointSolver<D>::response_between(const JointResponse& p, const JointRespo
 
 // zero where joints leave it nothing to move
 template <int D>
-double JointSolver<D>::give(const Bounded& b) const {
-  const double own = response_.coupling(b.row, b.row, at_), gives = response_between(b, b);
-  return gives > kLocked * own ? 1 / gives : 0;
+double JointSolver<D>::effective_mass(const Bounded& b) const {
+  const double own = response_.coupling(b.row, b.row, at_), with_joints = response_between(b, b);
+  return with_joints > kLocked * own ? 1 / with_joints : 0;
 }
 
 // by components, and how they move each other
@@ -416,7 +416,7 @@ void JointSolver<D>::iterate(int component) {
   for (int round = 0; round < kBoundedRounds; ++round) {
     for (int i = begin; i < end; ++i) {
       Bounded& b = bounded_[by_component_[i]];
-      const double next = std::clamp(b.impulse - b.give * speeds_[i], b.least, b.most);
+      const double next = std::clamp(b.impulse - b.effective_mass * speeds_[i], b.least, b.most);
       const double change = next - b.impulse;
       if (change == 0) continue;
       b.impulse = next, changes_[i] += change;
@@ -468,7 +468,7 @@ void JointSolver<D>::project_positions(double h) {
     if (!left(bounded_[k], off) || off >= 0) continue;
     const double strayed = position_error();
     begun_at_ = at_, begun_turn_ = turn_;
-    const double put = -off * bounded_[k].give;
+    const double put = -off * bounded_[k].effective_mass;
     shift_bounded(bounded_[k], put);
     // what joints hardly let it do throws them far
     if (!near() || position_error() > strayed - off) {
@@ -491,7 +491,7 @@ void JointSolver<D>::project_positions(double h) {
     worst = position_error();
   }
   for (double& s : shifts_) s /= h;
-  old_rows_ = rows_, gave_ = gives_;
+  old_rows_ = rows_, begun_drive_works_ = drive_works_;
   if (worst <= enough && near()) return;
   at_.swap(begun_at_), turn_.swap(begun_turn_);
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
@@ -555,11 +555,11 @@ void JointSolver<D>::book() {
   work_ = 0;
   if (!driven_) return;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    work_ += 0.5 * totals_[r] * (gave_[r] + gives_[r]);
+    work_ += 0.5 * totals_[r] * (begun_drive_works_[r] + drive_works_[r]);
   }
   for (std::size_t k = 0; k < active_; ++k) {
     const Bounded& b = bounded_[k];
-    work_ += 0.5 * b.impulse * (b.gave + given(b.row));
+    work_ += 0.5 * b.impulse * (b.begun_drive_work + given(b.row));
   }
 }
 
@@ -587,7 +587,7 @@ bool JointSolver<D>::update_bounded() {
       b.row = out[0], b.target = 0, b.least = b.impulse;
     }
     compute_response(b);
-    b.give = give(b);
+    b.effective_mass = effective_mass(b);
   }
   if (any) couple_bounded();
   return any;

@@ -107,7 +107,7 @@ class JointSolver {
       if (b.load == lower || b.load == upper) {
         if (b.impulse > 0) act(b.row, kWithoutEnd);
       } else {
-        act(b.row, std::max(0.0, b.most - std::fabs(b.impulse)) / b.give);
+        act(b.row, std::max(0.0, b.most - std::fabs(b.impulse)) / b.effective_mass);
       }
     }
   }
@@ -127,12 +127,12 @@ class JointSolver {
     int joint = 0;
     Load load = lower;
     double least = 0, most = 0, target = 0;  // N s or N m s; m/s or rad/s
-    double give = 0;                         // effective mass, with the joints' reaction
+    double effective_mass = 0;               // effective mass, with the joints' reaction
     double impulse = 0;
-    bool taut = false;  // a rope that is at its length when the step begins
-    double put = 0;     // kg m: pseudo-impulse of the position projection, of a rope left too long
-    double gave = 0;    // work of kinematic bodies by a unit of impulse, at the start of the step
-    int first = 0;      // start of its row in yields_
+    bool taut = false;            // a rope that is at its length when the step begins
+    double put = 0;               // kg m: pseudo-impulse of the position projection, of a rope left too long
+    double begun_drive_work = 0;  // work of kinematic bodies by a unit of impulse, at the start of the step
+    int first = 0;                // start of its row in yields_
   };
 
   void plan();
@@ -163,7 +163,7 @@ class JointSolver {
     }
   }
   void collect_bounded(double h);
-  double give(const Bounded& bounded) const;
+  double effective_mass(const Bounded& bounded) const;
   bool update_bounded();
   void couple_bounded();
   void push_bounded(int component);
@@ -196,8 +196,9 @@ class JointSolver {
   std::vector<int> some_parts_;
   Blocks<kMostHeld<D>> factors_;  // of K = J M^-1 J'
   std::vector<Row<D>> rows_, old_rows_;
-  bool driven_ = false;               // some bodies are kinematic
-  std::vector<double> gives_, gave_;  // their work by a unit along each row: now, at the start of the step
+  bool driven_ = false;  // some bodies are kinematic
+  std::vector<double> drive_works_,
+      begun_drive_works_;  // their work by a unit along each row: now, at the start of the step
   double work_ = 0;
   std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
   std::vector<Bounded> bounded_;  // the first `active_` are in use

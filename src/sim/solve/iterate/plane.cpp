@@ -122,7 +122,7 @@ void PlaneIterative<D>::wake(StepPart<D> step) {
     place_contacts(step.state, true);
     if (sleep_.at_start(step.state, step.state.contacts)) clear_sleeping(step.state);
   }
-  impacts_.begin();
+  impacts_.clear();
   closing_rate_ =
       plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), v_.data(), step.h);
   substeps_ = substeps_for(closing_rate_, step.h);
@@ -130,7 +130,7 @@ void PlaneIterative<D>::wake(StepPart<D> step) {
 
 template <int D>
 void PlaneIterative<D>::report(StepPart<D> step) {
-  impacts_.keep(step.state.contacts);
+  impacts_.store_impulses(step.state.contacts);
   // the next step looks anyway, unless this was a fraction of one
   const bool whole = step.h * value(model_.rate) > 1 - 1e-9;
   if (outran_ && !(whole && (step.state.step + 1) % every_ == 0)) {
@@ -201,7 +201,7 @@ void PlaneIterative<D>::renew_pairs(StepPart<D> part) {
   }
   const double gone = share(part);
   if (gone == 0 || 2 * gone * fastest <= calmest_) return;
-  for (const plane::Outdated& old : pairs_.outdated(batches_, v_, poses_, gone)) {
+  for (const plane::ChangedPair& old : pairs_.outdated(batches_, v_, poses_, gone)) {
     const Pair& pair = pairs_.all()[old.pair];
     if (substeps_ > 1) report_pair(pair, state);
     pairs_.renew(old, state, poses_);
@@ -222,8 +222,8 @@ template <int D>
 void PlaneIterative<D>::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
                 part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap_};
-  deep_ = plane::start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), v_.data(),
-                       constants_, slow_, fast_);
+  deep_ = plane::warm_start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), v_.data(),
+                            constants_, slow_, fast_);
 }
 
 template <int D>
@@ -240,7 +240,7 @@ void PlaneIterative<D>::resolve_impacts(StepPart<D> part) {
     joints_.compute_rows();
   }
   impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, constants_, joints_);
-  if (!part.state.work.empty()) part.state.work[0] += impacts_.given();
+  if (!part.state.work.empty()) part.state.work[0] += impacts_.drive_work();
   constants_.least = impacts_.least();
 }
 
@@ -273,10 +273,10 @@ void PlaneIterative<D>::iterate(StepPart<D> part) {
   }
   settle_pairs();
   solve_joint_velocities();
-  plane::finish(batches_.data(), count, poses_.data(), v_.data(), constants_,
-                last ? part.state.contacts.data() : nullptr);
+  plane::iterate_last(batches_.data(), count, poses_.data(), v_.data(), constants_,
+                      last ? part.state.contacts.data() : nullptr);
   if (!carries_.empty()) book_contacts(part);
-  impacts_.note(pairs_.all(), part.state.contacts, batches_);
+  impacts_.record(pairs_.all(), part.state.contacts, batches_);
 }
 
 // More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
@@ -284,13 +284,13 @@ void PlaneIterative<D>::iterate(StepPart<D> part) {
 template <int D>
 void PlaneIterative<D>::settle_pairs() {
   const int count = int(batches_.size());
-  stirred_.settled = settled_rate(closing_rate_);
-  stirred_.bodies.assign(turns_.size() + 1, plane::Stirred::kNow);
-  stirred_.bodies.back() = 0;
-  for (const int body : joints_.bodies()) stirred_.bodies[body] = plane::Stirred::kNever;
+  active_bodies_.settled = settled_rate(closing_rate_);
+  active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
+  active_bodies_.bodies.back() = 0;
+  for (const int body : joints_.bodies()) active_bodies_.bodies[body] = plane::ActiveBodies::kNever;
   for (int left = std::max(kSettlingPairs, kSettlingIterations * awake_pairs_), pairs = 1;
        left > 0 && pairs > 0; left -= pairs)
-    pairs = plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_, stirred_);
+    pairs = plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_, active_bodies_);
 }
 
 template <int D>

@@ -7,11 +7,11 @@
 #include "sim/model/drives.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/solve/contact_solver.h"
-#include "sim/solve/iterate/contact_rows.h"
 #include "sim/solve/iterate/joint_solver.h"
-#include "sim/solve/iterate/pair_cache.h"
+#include "sim/solve/iterate/plane_contact_rows.h"
 #include "sim/solve/iterate/plane_equilibrium.h"
 #include "sim/solve/iterate/plane_impacts.h"
+#include "sim/solve/iterate/plane_pair_cache.h"
 #include "sim/solve/iterate/substeps.h"
 #include "sim/solve/sleep.h"
 
@@ -84,8 +84,8 @@ class PlaneIterative final : public ContactSolver<D> {
   void place_bodies(State<D>& state, double h, bool apply_push_out);
   void update_pairs(State<D>& state, bool known);
   bool outran(double h, double left) const;
-  double clear(int body, const plane::Pose& from, const Motion& way, double begun, double h,
-               bool walls) const;
+  double safe_fraction(int body, const plane::Pose& from, const Motion& way, double begun, double h,
+                       bool walls) const;
   Motion mean_way(int body, double h) const;
   Motion course(int body, double h);
   bool sinks(int body, const Motion& way, double h) const;
@@ -139,9 +139,9 @@ class PlaneIterative final : public ContactSolver<D> {
   std::vector<int> count_, begin_, ends_;  // one a colour: its next free lane, its first lane and its end
   std::vector<plane::ContactBatch> batches_;
   std::vector<plane::Projection> projections_;
-  plane::Found slow_, fast_;
+  plane::LaneList slow_, fast_;
   plane::StepConstants constants_;  // of the substep
-  plane::Stirred stirred_;
+  plane::ActiveBodies active_bodies_;
   bool deep_ = false;                    // some overlap exceeds the allowed one
   int iterations_ = 0;                   // of this substep, over all pairs
   std::vector<int> slots_, next_slots_;  // the pair in each lane

@@ -68,7 +68,7 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
     if (fast(i, back)) {
       plane::Pose from = poses_[i];
       from.x += there.x, from.y += there.y;
-      const double part = clear(i, from, back, impacts_.last(i), h, true);
+      const double part = safe_fraction(i, from, back, impacts_.last(i), h, true);
       back.x *= part, back.y *= part, back.w *= part;
     }
     d = {there.x + back.x, there.y + back.y, there.w + back.w, 0};
@@ -85,7 +85,7 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
   // continuous collision: a fast body stops at its first hit and collides in the next step
   const Motion way{h * o.x, h * o.y, h * o.w, 0};
   if (!fast(i, way)) return d;
-  const double part = clear(i, poses_[i], way, 0, h, false);
+  const double part = safe_fraction(i, poses_[i], way, 0, h, false);
   if (part >= 1) return d;
   // the impact it met is what was seen, within half of its thickness
   const double over = when - part * h;
@@ -135,8 +135,8 @@ bool PlaneIterative<D>::fast(int body, const Motion& way) const {
 // The part of its way from `begun` s of the substep on that a body may go before it meets another, which
 // flies on as it did, or a wall: by steps as long as the distance that is left.
 template <int D>
-double PlaneIterative<D>::clear(int body, const plane::Pose& from, const Motion& way, double begun, double h,
-                                bool walls) const {
+double PlaneIterative<D>::safe_fraction(int body, const plane::Pose& from, const Motion& way, double begun,
+                                        double h, bool walls) const {
   double part = 1;
   Feature features[2];
   for (const int i : impacts_.around(body)) {

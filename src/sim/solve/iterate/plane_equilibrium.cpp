@@ -114,7 +114,7 @@ double Equilibrium::iterate(const Sleep<2>::Island& island, State<2>& state, con
   };
   const double near = Sleep<2>::kBalanced * std::sqrt(model_.gravity.squaredNorm()) * h;
   const int most = std::clamp(kPairSweeps / std::max(1, int(pairs_.size())), kBetweenChecks, kMostSweeps);
-  start(batches_.data(), count, step.poses.data(), zero_.data(), v_.data(), constants, slow_, fast_);
+  warm_start(batches_.data(), count, step.poses.data(), zero_.data(), v_.data(), constants, slow_, fast_);
   double worst = 1e300;
   for (int i = 1; worst > near && i < most; ++i) {
     solve_joint_velocities();
@@ -128,7 +128,7 @@ double Equilibrium::iterate(const Sleep<2>::Island& island, State<2>& state, con
     }
   }
   solve_joint_velocities();
-  finish(batches_.data(), count, step.poses.data(), v_.data(), constants, state.contacts.data());
+  iterate_last(batches_.data(), count, step.poses.data(), v_.data(), constants, state.contacts.data());
   for (const ContactBatch& own : batches_) {
     for (int k = 0; k < kLanes; ++k) {
       if (own.pair[k] < 0) continue;

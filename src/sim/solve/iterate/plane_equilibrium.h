@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "sim/solve/iterate/contact_rows.h"
 #include "sim/solve/iterate/joint_solver.h"
-#include "sim/solve/iterate/pair_cache.h"
+#include "sim/solve/iterate/plane_contact_rows.h"
+#include "sim/solve/iterate/plane_pair_cache.h"
 #include "sim/solve/sleep.h"
 
 namespace obscura::sim::plane {
@@ -44,7 +44,7 @@ class Equilibrium {
   std::vector<int> components_;        // of its joints
   std::vector<ContactBatch> batches_;  // its pairs, by themselves
   std::vector<char> marked_;           // its bodies
-  Found slow_, fast_;
+  LaneList slow_, fast_;
 };
 
 }  // namespace obscura::sim::plane

@@ -1,5 +1,5 @@
 // An impact, handout §3.5, of both touches of a pair, normals and friction together
-// (sim/solve/iterate/pair_impact.h):
+// (sim/solve/iterate/plane_pair_impact.h):
 //   v_n' = -e v_n,  l >= 0,  |lt| <= mu l
 // at the time tau at which the first of them closes, and where the bodies stand then
 // (sim/solve/iterate/plane_impact_times.cpp); after it a body flies with the velocity it got. An elastic ball
@@ -12,7 +12,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "sim/solve/iterate/pair_impact.h"
+#include "sim/solve/iterate/plane_pair_impact.h"
 
 namespace obscura::sim::plane {
 
@@ -29,7 +29,7 @@ Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs)
   bounding_radius_.push_back(0);
   around_start_.resize(bodies + 2);
   first_.assign(bodies + 1, -1), when_.assign(bodies + 1, -1), rounds_.assign(bodies + 1, 0);
-  pose_.resize(bodies + 1), way_.resize(bodies + 1), now_.resize(bodies + 1), given_.resize(bodies + 1);
+  pose_.resize(bodies + 1), way_.resize(bodies + 1), now_.resize(bodies + 1), dv_impacts_.resize(bodies + 1);
 }
 
 void Impacts::list_pairs(const std::vector<Pair>& pairs, const std::vector<Motion>& v) {
@@ -71,7 +71,7 @@ void Impacts::reach(int body, double when, const Step& step) {
   move(body, when, step.poses, step.dv, step.pace, pose_[body], ignored);
   if (when_[body] < 0) {
     bodies_.push_back(body);
-    first_[body] = when, way_[body] = given_[body] = {};
+    first_[body] = when, way_[body] = dv_impacts_[body] = {};
   }
   const double time = when - std::max(0.0, when_[body]), share = time / step.pace.h, half = 0.5 * share;
   const Motion& gain = step.dv[body];
@@ -178,7 +178,7 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
   solve(system, impulses);
   const auto give = [&](int body, double x, double y, double w) {
     now_[body].x += x, now_[body].y += y, now_[body].w += w;
-    given_[body].x += x, given_[body].y += y, given_[body].w += w;
+    dv_impacts_[body].x += x, dv_impacts_[body].y += y, dv_impacts_[body].w += w;
   };
   const auto push = [&](int across, int k, double l) {
     if (tied) {
@@ -198,8 +198,8 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
     push(0, k, n), push(1, k, t);
     // the work of a kinematic body: impulse times its speed
     const Motion none{}, &ua = ima > 0 ? none : va, &ub = imb > 0 ? none : vb;
-    carried_ -= n * speed(pushes[0][k], ua, ub) + t * (speed(pushes[1][k], ua, ub) + g.belt[lane]);
-    if (tied) carried_ += n * joints.given(responses_[0][k]) + t * joints.given(responses_[1][k]);
+    drive_work_ -= n * speed(pushes[0][k], ua, ub) + t * (speed(pushes[1][k], ua, ub) + g.belt[lane]);
+    if (tied) drive_work_ += n * joints.given(responses_[0][k]) + t * joints.given(responses_[1][k]);
   }
 }
 
@@ -251,7 +251,7 @@ void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<Co
   for (const Impact& impact : impacts_) waiting_[impact.pair] = 0;
 }
 
-void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
+void Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
                   const std::vector<Pose>& poses, const std::vector<Motion>& old,
                   const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
                   JointSolver<2>& joints) {
@@ -260,7 +260,7 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
     if (impact.pair < int(impacts_of_.size())) impacts_of_[impact.pair] = 0;
   }
   bodies_.clear(), impacts_.clear(), due_.clear(), predicted_.clear(), passing_.clear();
-  rows_.clear(), groups_.clear(), queue_.clear(), carried_ = 0;
+  rows_.clear(), groups_.clear(), queue_.clear(), drive_work_ = 0;
   if (found.empty()) return;
   std::copy(old.begin(), old.end(), now_.begin());
   known_.assign(batches.size(), -1);
@@ -313,14 +313,14 @@ void Impacts::run(const Found& found, const std::vector<Pair>& pairs, std::vecto
   for (const int i : queue_) waiting_[i] = 0;
 
   for (const int body : bodies_) {
-    const Motion& given = given_[body];
+    const Motion& given = dv_impacts_[body];
     v[body].x += given.x, v[body].y += given.y, v[body].w += given.w;
   }
   leave_to_iterations(pairs, batches, poses, dv, pace);
 }
 
-void Impacts::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
-                   [[maybe_unused]] const std::vector<ContactBatch>& batches) {
+void Impacts::record(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
+                     [[maybe_unused]] const std::vector<ContactBatch>& batches) {
   for (const Impact& impact : impacts_) {
     const Pair& pair = pairs[impact.pair];
     assert(batches[pair.slot / kLanes].pair[pair.slot % kLanes] == impact.pair);
@@ -335,7 +335,7 @@ void Impacts::note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>
 }
 
 // Features may have changed since: then the touch of the same pair that is closest.
-void Impacts::keep(std::vector<Contact<2>>& contacts) const {
+void Impacts::store_impulses(std::vector<Contact<2>>& contacts) const {
   for (const Struck& struck : struck_) {
     const ContactKey& key = struck.key;
     const auto from = [&](const ContactKey& least) {

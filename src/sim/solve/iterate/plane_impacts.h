@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "sim/model/state.h"
-#include "sim/solve/iterate/contact_rows.h"
 #include "sim/solve/iterate/joint_solver.h"
-#include "sim/solve/iterate/pair_cache.h"
+#include "sim/solve/iterate/plane_contact_rows.h"
+#include "sim/solve/iterate/plane_pair_cache.h"
 
 namespace obscura::sim::plane {
 
@@ -26,23 +26,23 @@ class Impacts {
   /// Resolves the impacts of the lanes in `found` and all that follow from them. `old`: velocities at the
   /// start; dv: what the substep adds to them without contacts. Adds the change by impacts to v, marks lanes
   /// as struck, and sets least() for them.
-  void run(const Found& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
+  void run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
            const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
            std::vector<Motion>& v, const StepConstants& pace, JointSolver<2>& joints);
 
   /// The work of kinematic bodies and belts by the impacts of the last run, J.
-  double given() const { return carried_; }
+  double drive_work() const { return drive_work_; }
 
   /// One a batch: the normal speeds (m/s) that the iterations must reach, at least, in lanes that are struck.
-  const Least* least() const { return least_.data(); }
+  const TargetSpeeds* least() const { return least_.data(); }
 
   /// Forgets the impulses of the step before.
-  void begin() { struck_.clear(); }
+  void clear() { struck_.clear(); }
   /// Records the impulses of the last run, under the keys of the contacts.
-  void note(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
-            const std::vector<ContactBatch>& batches);
+  void record(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,
+              const std::vector<ContactBatch>& batches);
   /// Writes all that was recorded into the contacts.
-  void keep(std::vector<Contact<2>>& contacts) const;
+  void store_impulses(std::vector<Contact<2>>& contacts) const;
 
   /// The awake pairs of a body.
   std::span<const int> around(int body) const {
@@ -155,9 +155,9 @@ class Impacts {
   std::vector<Pose> pose_;                  // of those with impacts: at the last
   std::vector<Motion> way_;                 // of those with impacts: from the start of the step to the last
   std::vector<Motion> now_;                 // velocities after it, or as the step begins
-  std::vector<Motion> given_;               // what their impacts gave to them
+  std::vector<Motion> dv_impacts_;          // what their impacts gave to them
   std::vector<int> rounds_;                 // impacts of each body
-  double carried_ = 0;                      // J
+  double drive_work_ = 0;                   // J
 
   std::vector<int> queue_;  // pairs to be looked at, as one of their bodies just had an impact
   std::vector<Due> due_;
@@ -170,7 +170,7 @@ class Impacts {
   std::vector<int> known_;    // of groups: place in rows_, or -1
   std::vector<int> groups_;
   std::vector<Rows> rows_;
-  std::vector<Least> least_;                       // of groups
+  std::vector<TargetSpeeds> least_;                // of groups
   JointSolver<2>::JointResponse responses_[2][2];  // of normals, and of tangents
 };
 

@@ -12,7 +12,7 @@ namespace obscura::sim {
 /// The spin of the k-th turning body in its own frame, split for a step into base + v. `whole`: base = 0 and
 /// v is all of it, for a scheme that takes v itself as the rate of d (semi-implicit Euler).
 template <int D>
-void take_spin(const State<D>& state, int k, bool whole, AngularVec<D>& base, double* v) {
+void load_spin(const State<D>& state, int k, bool whole, AngularVec<D>& base, double* v) {
   base.setZero();
   if constexpr (D == 2) {
     std::copy_n(state.spin[k].data(), kAngular<D>, v);
@@ -33,8 +33,8 @@ void take_spin(const State<D>& state, int k, bool whole, AngularVec<D>& base, do
 
 /// Writes back the orientation and spin of the k-th turning body after a step; its orientation was `from`.
 template <int D>
-void give_spin(State<D>& state, int k, const Orientation<D>& from, const double* d, const AngularVec<D>& base,
-               const double* v) {
+void store_spin(State<D>& state, int k, const Orientation<D>& from, const double* d,
+                const AngularVec<D>& base, const double* v) {
   const Eigen::Map<const AngularVec<D>> by(d), more(v);
   state.turn[k] = displaced<D>(from, by);
   if constexpr (D == 2) {

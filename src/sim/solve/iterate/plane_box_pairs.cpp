@@ -7,7 +7,7 @@
 //
 // the touches are b0, or a0 where b0 lies beyond it, and b1, or a1.
 
-#include "sim/solve/iterate/box_pairs.h"
+#include "sim/solve/iterate/plane_box_pairs.h"
 
 #include <cmath>
 
@@ -27,7 +27,7 @@ struct Sides {
 };
 
 template <class V>
-OBSCURA_INLINE Sides<V> sides(const Half* halves, const int* i) {
+OBSCURA_INLINE Sides<V> sides(const HalfSides* halves, const int* i) {
   Sides<V> out;
   for (int k = 0; k < Of<V>::lanes; ++k) out.wide[k] = halves[i[k]].wide, out.high[k] = halves[i[k]].high;
   return out;
@@ -49,7 +49,7 @@ OBSCURA_INLINE void reference(const V& x, const V& y, const V& c, const V& s, co
 }
 
 template <class V>
-OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const Half* halves) {
+OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const HalfSides* halves) {
   using M = Mask<V>;
   Quad<V> a, b;
   gather(&poses->x, m.a + lane, a), gather(&poses->x, m.b + lane, b);
@@ -132,8 +132,8 @@ OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const
 
 template <class V>
 OBSCURA_INLINE void outdated_all(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
-                                 const Half* halves, double share, std::vector<Outdated>& boxes,
-                                 Found& others) {
+                                 const HalfSides* halves, double share, std::vector<ChangedPair>& boxes,
+                                 LaneList& others) {
   const V part = V{} + share;
   BoxManifold m;
   for (int i = 0; i < count; ++i) {
@@ -160,42 +160,42 @@ OBSCURA_INLINE void outdated_all(const ContactBatch* batches, int count, const M
   }
 }
 OBSCURA_WIDE void outdated_wide(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
-                                const Half* halves, double share, std::vector<Outdated>& boxes,
-                                Found& others) {
+                                const HalfSides* halves, double share, std::vector<ChangedPair>& boxes,
+                                LaneList& others) {
   outdated_all<V4>(batches, count, v, poses, halves, share, boxes, others);
 }
 
 template <class V>
-OBSCURA_INLINE void meet_all(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves) {
+OBSCURA_INLINE void meet_all(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves) {
   for (BoxManifold* m = manifolds; m < manifolds + count; ++m) {
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) meet_four<V>(*m, lane, poses, halves);
   }
 }
-OBSCURA_WIDE void meet_wide(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves) {
+OBSCURA_WIDE void meet_wide(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves) {
   meet_all<V4>(manifolds, count, poses, halves);
 }
 
 }  // namespace
 
-std::vector<Half> halves(const CoreShapes& cores) {
-  std::vector<Half> all;
+std::vector<HalfSides> halves(const CoreShapes& cores) {
+  std::vector<HalfSides> all;
   for (std::size_t body = 0; body + 1 < cores.begin.size(); ++body) {
     const CoreShape& core = cores.all[cores.begin[body]];
     const bool box = cores.begin[body + 1] == cores.begin[body] + 1 && core.wide > 0;
-    all.push_back(box ? Half{core.wide, core.high} : Half{});
+    all.push_back(box ? HalfSides{core.wide, core.high} : HalfSides{});
   }
   all.emplace_back();
   return all;
 }
 
 void find_outdated(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
-                   const Half* halves, double share, std::vector<Outdated>& boxes, Found& others) {
+                   const HalfSides* halves, double share, std::vector<ChangedPair>& boxes, LaneList& others) {
   boxes.clear(), others.clear();
   four_lanes ? outdated_wide(batches, count, v, poses, halves, share, boxes, others)
              : outdated_all<V2>(batches, count, v, poses, halves, share, boxes, others);
 }
 
-void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const Half* halves) {
+void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves) {
   four_lanes ? meet_wide(manifolds, count, poses, halves) : meet_all<V2>(manifolds, count, poses, halves);
 }
 

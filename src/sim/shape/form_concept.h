@@ -13,7 +13,7 @@ namespace obscura::sim {
 /// The functions that a form of D dimensions must have (sim/shape/form.h says what each is). shape.cpp
 /// asserts this for all Forms, so a form that lacks one fails to compile with the name of this concept.
 template <class F, int D>
-concept AnswersAsForm = requires(const F& it, const Vec<D>& x, const Rotation<D>& axes,
+concept FormInterface = requires(const F& it, const Vec<D>& x, const Rotation<D>& axes,
                                  const Orientation<D>& turn, const Placing<D>& placing,
                                  std::vector<SupportVertex<D>>& all) {
   { it.spread() } -> std::same_as<Spread<D>>;
@@ -30,7 +30,7 @@ concept AnswersAsForm = requires(const F& it, const Vec<D>& x, const Rotation<D>
 
 /// The same of what collides as it is: all but a compound, whose parts do.
 template <class F, int D>
-concept AnswersAsConvexForm = AnswersAsForm<F, D> && requires(const F& it) {
+concept ConvexFormInterface = FormInterface<F, D> && requires(const F& it) {
   { it.core() } -> std::same_as<Core<D>>;
 };
 
@@ -38,7 +38,7 @@ concept AnswersAsConvexForm = AnswersAsForm<F, D> && requires(const F& it) {
 template <int D>
 constexpr bool all_forms_answer() {
   return []<class... F>(std::variant<F...>*) {
-    return ((AnswersAsConvexForm<F, D> || (std::is_same_v<F, Compound<D>> && AnswersAsForm<F, D>)) && ...);
+    return ((ConvexFormInterface<F, D> || (std::is_same_v<F, Compound<D>> && FormInterface<F, D>)) && ...);
   }(static_cast<Forms<D>*>(nullptr));
 }
 

@@ -7,7 +7,7 @@
 // Written once in vectors of the compiler; two lanes are SSE2, four AVX2. No operation differs, so the bits
 // are the same.
 
-#include "sim/solve/iterate/contact_rows.h"
+#include "sim/solve/iterate/plane_contact_rows.h"
 
 #include <algorithm>
 #include <bit>
@@ -101,8 +101,8 @@ struct Two {
 
 // the normal impulses of a pair together
 template <class V>
-OBSCURA_INLINE void press(Two<V>& two, const WideRow<V>& r0, const WideRow<V>& r1, const V& target0,
-                          const V& target1, V& l0, V& l1) {
+OBSCURA_INLINE void solve_normals(Two<V>& two, const WideRow<V>& r0, const WideRow<V>& r1, const V& target0,
+                                  const V& target1, V& l0, V& l1) {
   const V none{};
   const V im = two.a.w + two.b.w;
   const V k11 = im + (two.iia * (r0.na * r0.na) + two.iib * (r0.nb * r0.nb));
@@ -135,8 +135,8 @@ OBSCURA_INLINE void press(Two<V>& two, const WideRow<V>& r0, const WideRow<V>& r
 
 // `belt`: what belts add to the speed across, of four pairs; null: nothing
 template <class V>
-OBSCURA_INLINE void rub(Two<V>& two, const WideRow<V>& r, const V& most, V& lt,
-                        const double* belt = nullptr) {
+OBSCURA_INLINE void solve_friction(Two<V>& two, const WideRow<V>& r, const V& most, V& lt,
+                                   const double* belt = nullptr) {
   const V tx = -r.ny, ty = r.nx;
   const V kt = (two.a.w + two.b.w) + (two.iia * (r.ta * r.ta) + two.iib * (r.tb * r.tb));
   V slips = two.along(tx, ty, r.ta, r.tb);
@@ -169,8 +169,9 @@ OBSCURA_INLINE V allowed_depth(const ContactBatch& g, int lane, const AllowedOve
 }
 
 template <class V>
-OBSCURA_INLINE bool start_all(ContactBatch* batches, int count, const Pose* poses, const Motion* old,
-                              Motion* v, const StepConstants& pace, Found& closing, Found& blows) {
+OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose* poses, const Motion* old,
+                                   Motion* v, const StepConstants& pace, LaneList& closing,
+                                   LaneList& impacts) {
   const V h = V{} + pace.h, creep = V{} - pace.min_closing_speed, gain = V{} + pace.gravity_dv, none{};
   const V bend = 0.5 * (h * h);
   Mask<V> deep{};
@@ -216,7 +217,7 @@ OBSCURA_INLINE bool start_all(ContactBatch* batches, int count, const Pose* pose
       if (!any(slow | fast)) continue;
       for (int k = 0; k < Of<V>::lanes; ++k) {
         if (fast[k]) {
-          blows.push_back(kLanes * i + lane + k);
+          impacts.push_back(kLanes * i + lane + k);
         } else if (slow[k]) {
           closing.push_back(kLanes * i + lane + k);
         }
@@ -226,7 +227,13 @@ OBSCURA_INLINE bool start_all(ContactBatch* batches, int count, const Pose* pose
   return any(deep);
 }
 
-OBSCURA_INLINE void keep(const ContactBatch& g, const Rows& rows, Contact<2>* contacts) {
+// impulses of an iteration along normals and tangents, N s
+struct Impulses {
+  alignas(32) double n[2][kLanes], t[2][kLanes];
+};
+
+OBSCURA_INLINE void store_contacts(const ContactBatch& g, const Rows& rows, const Impulses& impulses,
+                                   Contact<2>* contacts) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (g.pair[lane] < 0) continue;
     Contact<2>* c = contacts + g.first[lane];
@@ -236,7 +243,7 @@ OBSCURA_INLINE void keep(const ContactBatch& g, const Rows& rows, Contact<2>* co
       c->gap = rows.gap[k][lane];
       c->force[0] = g.p[k][lane], c->force[1] = g.q[k][lane];
       c->impulse[0] = c->impulse[1] = 0;
-      const double ln = rows.na[k][lane], lt = rows.ta[k][lane];
+      const double ln = impulses.n[k][lane], lt = impulses.t[k][lane];
       c->touching = ln <= 0                           ? ContactMode::open
                     : std::fabs(lt) < g.mu[lane] * ln ? ContactMode::stick
                                                       : ContactMode::slide;
@@ -280,31 +287,33 @@ OBSCURA_INLINE double closing_rate_all(const ContactBatch* batches, int count, c
   return largest<V>(most);
 }
 
-// the lanes of a group whose bodies are stirred, a bit each
-inline unsigned char stirred_lanes(const ContactBatch& g, const unsigned char* bodies) {
+// the lanes of a group whose bodies are active, a bit each
+inline unsigned char active_lanes(const ContactBatch& g, const unsigned char* bodies) {
   unsigned lanes = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
     const unsigned flags = unsigned(bodies[g.a[lane]]) | bodies[g.b[lane]];
-    lanes |= unsigned((flags & (Stirred::kNow | Stirred::kNever)) == Stirred::kNow) << lane;
+    lanes |= unsigned((flags & (ActiveBodies::kNow | ActiveBodies::kNever)) == ActiveBodies::kNow) << lane;
   }
   return static_cast<unsigned char>(lanes);
 }
 
-// all pairs; or, where kSome, those of bodies that are stirred, and then how many these are
+// all pairs; or, where kSome, those of bodies that are active, and then how many these are
 template <class V, bool kLast, bool kKeep, bool kSome = false>
-OBSCURA_INLINE int sweep_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
-                             const StepConstants& pace, Contact<2>* contacts, Stirred* stirred = nullptr) {
+OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
+                               const StepConstants& pace, Contact<2>* contacts,
+                               ActiveBodies* active = nullptr) {
   const V per_h = V{} + 1 / pace.h, none{};
   [[maybe_unused]] int pairs = 0;
   for (ContactBatch* g = batches; g < batches + count; ++g) {
     if (!g->used) continue;
     [[maybe_unused]] unsigned char lanes = 0;
     if constexpr (kSome) {
-      lanes = stirred_lanes(*g, stirred->bodies.data());
+      lanes = active_lanes(*g, active->bodies.data());
       if (lanes == 0) continue;
       pairs += std::popcount(lanes);
     }
     [[maybe_unused]] Rows kept;
+    [[maybe_unused]] Impulses impulses;
     if constexpr (kKeep) {
       // contacts are far apart in memory: ask for those of a later group
       if (g + kAhead < batches + count) {
@@ -326,14 +335,14 @@ OBSCURA_INLINE int sweep_all(ContactBatch* batches, int count, const Pose* poses
       [[maybe_unused]] const Two<V> begun = two;
       [[maybe_unused]] const V begun_l0 = l0, begun_t0 = t0, begun_l1 = l1, begun_t1 = t1;
       const double* belt = g->belts ? g->belt + lane : nullptr;
-      rub<V>(two, r0, mu * l0, t0, belt);
-      rub<V>(two, r1, mu * l1, t1, belt);
+      solve_friction<V>(two, r0, mu * l0, t0, belt);
+      solve_friction<V>(two, r1, mu * l1, t1, belt);
       const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
       const V open0 = pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none));
       const V open1 = pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none));
       V target0 = open0, target1 = open1;
       if (g->struck[0] | g->struck[1]) {
-        const Least& least = pace.least[g - batches];
+        const TargetSpeeds& least = pace.least[g - batches];
         target0 = pick<V>(mask<V>(g->struck[0], lane), load<V>(least.n[0] + lane), open0);
         target1 = pick<V>(mask<V>(g->struck[1], lane), load<V>(least.n[1] + lane), open1);
       }
@@ -344,12 +353,12 @@ OBSCURA_INLINE int sweep_all(ContactBatch* batches, int count, const Pose* poses
                 wrong1 = pick<V>(l1 > none, magnitude<V>(left1), left1);
         const V wrong = larger<V>(wrong0, wrong1) * load<V>(g->per_width + lane);
         for (int k = 0; k < Of<V>::lanes; ++k) {
-          if (!(lanes >> (lane + k) & 1) || !(wrong[k] > stirred->settled)) continue;
-          stirred->bodies[g->a[lane + k]] |= Stirred::kNext,
-              stirred->bodies[g->b[lane + k]] |= Stirred::kNext;
+          if (!(lanes >> (lane + k) & 1) || !(wrong[k] > active->settled)) continue;
+          active->bodies[g->a[lane + k]] |= ActiveBodies::kNext,
+              active->bodies[g->b[lane + k]] |= ActiveBodies::kNext;
         }
       }
-      press<V>(two, r0, r1, target0, target1, l0, l1);
+      solve_normals<V>(two, r0, r1, target0, target1, l0, l1);
       if constexpr (kSome) {
         // the other lanes stay: the result of a pair must not depend on the lanes beside its own
         const Mask<V> moves = mask<V>(lanes, lane);
@@ -375,11 +384,11 @@ OBSCURA_INLINE int sweep_all(ContactBatch* batches, int count, const Pose* poses
             store<V>(kept.gap[0] + lane, r0.gap);
         store<V>(kept.x[1] + lane, r1.x), store<V>(kept.y[1] + lane, r1.y),
             store<V>(kept.gap[1] + lane, r1.gap);
-        store<V>(kept.na[0] + lane, l0), store<V>(kept.ta[0] + lane, t0);
-        store<V>(kept.na[1] + lane, l1), store<V>(kept.ta[1] + lane, t1);
+        store<V>(impulses.n[0] + lane, l0), store<V>(impulses.t[0] + lane, t0);
+        store<V>(impulses.n[1] + lane, l1), store<V>(impulses.t[1] + lane, t1);
       }
     }
-    if constexpr (kKeep) keep(*g, kept, contacts);
+    if constexpr (kKeep) store_contacts(*g, kept, impulses, contacts);
   }
   if constexpr (kSome) return pairs;
   return 0;
@@ -400,11 +409,11 @@ OBSCURA_INLINE void project_all(const ContactBatch* batches, Projection* p, int 
       const V mu = load<V>(g->mu + lane), allowed = allowed_depth<V>(*g, lane, let);
       V l0 = load<V>(p->push[0] + lane), l1 = load<V>(p->push[1] + lane);
       V t0 = load<V>(p->side[0] + lane), t1 = load<V>(p->side[1] + lane);
-      rub<V>(two, r0, mu * l0, t0);
-      rub<V>(two, r1, mu * l1, t1);
+      solve_friction<V>(two, r0, mu * l0, t0);
+      solve_friction<V>(two, r1, mu * l1, t1);
       const V over0 = r0.gap + allowed, over1 = r1.gap + allowed;
-      press<V>(two, r0, r1, pick<V>(over0 < none, -part * over0, -over0),
-               pick<V>(over1 < none, -part * over1, -over1), l0, l1);
+      solve_normals<V>(two, r0, r1, pick<V>(over0 < none, -part * over0, -over0),
+                       pick<V>(over1 < none, -part * over1, -over1), l0, l1);
       store<V>(p->push[0] + lane, l0), store<V>(p->push[1] + lane, l1);
       store<V>(p->side[0] + lane, t0), store<V>(p->side[1] + lane, t1);
       two.back(*g, lane, d);
@@ -415,25 +424,25 @@ OBSCURA_INLINE void project_all(const ContactBatch* batches, Projection* p, int 
 OBSCURA_WIDE void expand_wide(const ContactBatch& s, const Pose* at, Rows& out) {
   expand_one<V4>(s, at, out);
 }
-OBSCURA_WIDE bool start_wide(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
-                             const StepConstants& pace, Found& closing, Found& blows) {
-  return start_all<V4>(s, n, at, old, v, pace, closing, blows);
+OBSCURA_WIDE bool warm_start_wide(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
+                                  const StepConstants& pace, LaneList& closing, LaneList& impacts) {
+  return warm_start_all<V4>(s, n, at, old, v, pace, closing, impacts);
 }
 OBSCURA_WIDE double closing_rate_wide(const ContactBatch* s, int n, const Pose* at, const Motion* v,
                                       double h) {
   return closing_rate_all<V4>(s, n, at, v, h);
 }
-OBSCURA_WIDE void sweep_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  sweep_all<V4, false, false>(s, n, at, v, pace, nullptr);
+OBSCURA_WIDE void iterate_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
+  iterate_all<V4, false, false>(s, n, at, v, pace, nullptr);
 }
-OBSCURA_WIDE int sweep_some_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
-                                 Stirred& stirred) {
-  return sweep_all<V4, false, false, true>(s, n, at, v, pace, nullptr, &stirred);
+OBSCURA_WIDE int iterate_some_wide(ContactBatch* s, int n, const Pose* at, Motion* v,
+                                   const StepConstants& pace, ActiveBodies& active) {
+  return iterate_all<V4, false, false, true>(s, n, at, v, pace, nullptr, &active);
 }
-OBSCURA_WIDE void finish_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
-                              Contact<2>* contacts) {
-  contacts ? sweep_all<V4, true, true>(s, n, at, v, pace, contacts)
-           : sweep_all<V4, true, false>(s, n, at, v, pace, nullptr);
+OBSCURA_WIDE void iterate_last_wide(ContactBatch* s, int n, const Pose* at, Motion* v,
+                                    const StepConstants& pace, Contact<2>* contacts) {
+  contacts ? iterate_all<V4, true, true>(s, n, at, v, pace, contacts)
+           : iterate_all<V4, true, false>(s, n, at, v, pace, nullptr);
 }
 OBSCURA_WIDE void project_wide(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d,
                                double share, AllowedOverlap let) {
@@ -497,34 +506,36 @@ TouchRow row(const ContactBatch& g, int lane, int k, const Pose& a, const Pose& 
   return r;
 }
 
-bool start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v, const StepConstants& pace,
-           Found& closing, Found& blows) {
-  closing.clear(), blows.clear();
-  return four_lanes ? start_wide(s, n, at, old, v, pace, closing, blows)
-                    : start_all<V2>(s, n, at, old, v, pace, closing, blows);
+bool warm_start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
+                const StepConstants& pace, LaneList& closing, LaneList& impacts) {
+  closing.clear(), impacts.clear();
+  return four_lanes ? warm_start_wide(s, n, at, old, v, pace, closing, impacts)
+                    : warm_start_all<V2>(s, n, at, old, v, pace, closing, impacts);
 }
 double closing_rate(const ContactBatch* s, int n, const Pose* at, const Motion* v, double h) {
   return four_lanes ? closing_rate_wide(s, n, at, v, h) : closing_rate_all<V2>(s, n, at, v, h);
 }
 void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  if (four_lanes) return sweep_wide(s, n, at, v, pace);
-  sweep_all<V2, false, false>(s, n, at, v, pace, nullptr);
+  if (four_lanes) return iterate_wide(s, n, at, v, pace);
+  iterate_all<V2, false, false>(s, n, at, v, pace, nullptr);
 }
-int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace, Stirred& stirred) {
-  const int pairs = four_lanes ? sweep_some_wide(s, n, at, v, pace, stirred)
-                               : sweep_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &stirred);
-  // walls are never stirred
-  stirred.bodies.back() = 0;
-  for (unsigned char& body : stirred.bodies) {
-    body = static_cast<unsigned char>((body & Stirred::kNever) | (body & Stirred::kNext ? Stirred::kNow : 0));
+int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
+            ActiveBodies& active) {
+  const int pairs = four_lanes ? iterate_some_wide(s, n, at, v, pace, active)
+                               : iterate_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &active);
+  // walls are never active
+  active.bodies.back() = 0;
+  for (unsigned char& body : active.bodies) {
+    body = static_cast<unsigned char>((body & ActiveBodies::kNever) |
+                                      (body & ActiveBodies::kNext ? ActiveBodies::kNow : 0));
   }
   return pairs;
 }
-void finish(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
-            Contact<2>* contacts) {
-  if (four_lanes) return finish_wide(s, n, at, v, pace, contacts);
-  contacts ? sweep_all<V2, true, true>(s, n, at, v, pace, contacts)
-           : sweep_all<V2, true, false>(s, n, at, v, pace, nullptr);
+void iterate_last(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
+                  Contact<2>* contacts) {
+  if (four_lanes) return iterate_last_wide(s, n, at, v, pace, contacts);
+  contacts ? iterate_all<V2, true, true>(s, n, at, v, pace, contacts)
+           : iterate_all<V2, true, false>(s, n, at, v, pace, nullptr);
 }
 void project(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d, double share,
              AllowedOverlap allowed) {

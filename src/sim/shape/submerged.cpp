@@ -6,7 +6,7 @@
 //   capsule  discs across its axis, each cut by a chord, integrated along the axis:
 //            by Gauss's rule between the places where the integrand has a kink, to 1e-13
 
-#include "sim/shape/displaced.h"
+#include "sim/shape/submerged.h"
 
 #include <algorithm>
 #include <array>

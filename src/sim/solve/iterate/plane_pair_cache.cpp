@@ -1,4 +1,4 @@
-#include "sim/solve/iterate/pair_cache.h"
+#include "sim/solve/iterate/plane_pair_cache.h"
 
 #include <algorithm>
 
@@ -227,14 +227,14 @@ void Pairs::put(const Pair& pair, const int words[2], ContactBatch& g) const {
   }
 }
 
-const std::vector<Outdated>& Pairs::outdated(const std::vector<ContactBatch>& batches,
-                                             const std::vector<Motion>& v, const std::vector<Pose>& poses,
-                                             double share) {
+const std::vector<ChangedPair>& Pairs::outdated(const std::vector<ContactBatch>& batches,
+                                                const std::vector<Motion>& v, const std::vector<Pose>& poses,
+                                                double share) {
   near_.find_outdated(batches, v, poses, share, outdated_, others_);
   for (const int seat : others_) {
     const int i = batches[seat / kLanes].pair[seat % kLanes];
     const Pair& pair = pairs_[i];
-    Outdated now{i, {0, 0}};
+    ChangedPair now{i, {0, 0}};
     features(pair, poses[pair.a], poses[pair.b < 0 ? pair.a : pair.b], now.words);
     if (now.words[0] != pair.words[0] || (pair.touches == 2 && now.words[1] != pair.words[1]))
       outdated_.push_back(now);
@@ -242,7 +242,7 @@ const std::vector<Outdated>& Pairs::outdated(const std::vector<ContactBatch>& ba
   return outdated_;
 }
 
-void Pairs::renew(const Outdated& found, State<2>& state, const std::vector<Pose>& poses) {
+void Pairs::renew(const ChangedPair& found, State<2>& state, const std::vector<Pose>& poses) {
   Pair& pair = pairs_[found.pair];
   Contact<2>* now = &state.contacts[pair.first];
   const Contact<2> old[2] = {now[0], now[pair.touches - 1]};

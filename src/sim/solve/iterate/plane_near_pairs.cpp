@@ -1,4 +1,4 @@
-#include "sim/solve/iterate/near_pairs.h"
+#include "sim/solve/iterate/plane_near_pairs.h"
 
 #include <algorithm>
 #include <cmath>

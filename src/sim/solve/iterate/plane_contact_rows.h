@@ -44,8 +44,10 @@ struct alignas(64) ContactBatch {
   double belt[kLanes];          // m/s: what the belts of both add to v_t
   double cx[2][kLanes], cy[2][kLanes];
   double fx[2][kLanes], fy[2][kLanes];
-  double d[2][kLanes];                // of two corners: b's radius
-  double p[2][kLanes], q[2][kLanes];  // force on a, N; within a step: normal and tangential impulse, N s
+  double d[2][kLanes];  // of two corners: b's radius
+  // between substeps the force on a along x and y, N; from warm_start() to iterate_last() the impulse along
+  // the normal and the tangent, N s
+  double p[2][kLanes], q[2][kLanes];
 };
 
 /// The rows of four pairs.
@@ -61,20 +63,20 @@ struct alignas(64) Projection {
 };
 
 /// The lanes that a pass has found, as numbers: lane + kLanes * batch.
-using Found = std::vector<int>;
+using LaneList = std::vector<int>;
 
 /// Of a group: normal speeds that an iteration leaves, at least, m/s.
-struct alignas(32) Least {
+struct alignas(32) TargetSpeeds {
   double n[2][kLanes];
 };
 
 /// Constants of a step.
 struct StepConstants {
-  double h = 0;                  // s
-  double min_closing_speed = 0;  // m/s: slower approaches are none
-  double gravity_dv = 0;         // m/s that gravity may add in the step
-  AllowedOverlap allowed;        // what is deeper is pushed apart
-  const Least* least = nullptr;  // by group, of lanes that are struck
+  double h = 0;                         // s
+  double min_closing_speed = 0;         // m/s: slower approaches are none
+  double gravity_dv = 0;                // m/s that gravity may add in the step
+  AllowedOverlap allowed;               // what is deeper is pushed apart
+  const TargetSpeeds* least = nullptr;  // by group, of lanes that are struck
 };
 
 /// One pair to another lane; the forces alone.
@@ -107,8 +109,8 @@ inline double normal_speed(const Rows& r, int k, int lane, const Motion& a, cons
 /// Warm start: turns the stored forces into impulses and applies them to v. `old`: velocities at the start of
 /// the substep. Appends the lanes that close slowly within it to `closing`, and those that close with an
 /// impact to `impacts`. True if some overlap is deeper than project() allows.
-bool start(ContactBatch* batches, int count, const Pose* poses, const Motion* old, Motion* v,
-           const StepConstants& pace, Found& closing, Found& impacts);
+bool warm_start(ContactBatch* batches, int count, const Pose* poses, const Motion* old, Motion* v,
+                const StepConstants& pace, LaneList& closing, LaneList& impacts);
 
 /// The largest closing speed of pairs that touch or may within h s, in widths of the narrower body, 1/s. Of
 /// polygons a part of the relative speed counts too, as other corners of theirs may come near.
@@ -118,7 +120,7 @@ double closing_rate(const ContactBatch* batches, int count, const Pose* poses, c
 void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
 /// Bodies whose pairs need more iterations: those of a pair whose last correction exceeded `settled` widths a
 /// second. Bodies on joints are excluded by kNever.
-struct Stirred {
+struct ActiveBodies {
   static constexpr unsigned char kNow = 1, kNext = 2, kNever = 4;
   double settled = 0;                 // 1/s
   std::vector<unsigned char> bodies;  // flags; one more for walls
@@ -126,10 +128,10 @@ struct Stirred {
 
 /// One iteration of the pairs of such bodies alone. Sets the flags for the next; returns the number of pairs.
 int iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
-            Stirred& stirred);
+            ActiveBodies& active);
 /// The last iteration of a substep: stores forces in the lanes and, unless null, in `contacts`.
-void finish(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
-            Contact<2>* contacts);
+void iterate_last(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
+                  Contact<2>* contacts);
 
 /// One iteration over positions, which takes away `share` of the overlap beyond the allowed one. Friction
 /// holds here too; without it the correction would let piles slide apart.

@@ -65,21 +65,22 @@ void ExactSolver<D>::find_accelerations(State<D>& state, double t) {
   find_contacts(state, limits_.touching_gap);
   scratch_.accelerations.assign(model_.bodies.size(), std::numeric_limits<double>::infinity());
   if (!solve_modes(state, t)) return;
-  const auto still = free_.accelerations(state, t);
+  const auto still = dynamics_.accelerations(state, t);
   scratch_.rate.assign(still.begin(), still.end());
   for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], scratch_.rate);
-  const auto& members = free_.bodies();
+  const auto& members = dynamics_.bodies();
   for (int k = 0; k < int(members.size()); ++k) {
     double& a = scratch_.accelerations[members[k]];
     a = std::sqrt(Eigen::Map<const Vec<D>>(scratch_.rate.data() + D * k).squaredNorm());
-    if (const int at = free_.spin_start(k); at >= 0)
+    if (const int at = dynamics_.spin_start(k); at >= 0)
       a += limits_.bounding_radius[members[k]] *
            std::sqrt(Eigen::Map<const AngularVec<D>>(scratch_.rate.data() + at).squaredNorm());
   }
-  const auto& links = free_.chains().links();
-  free_.chains().motions(std::span<const double>(scratch_.rate)
-                             .subspan(std::size_t(free_.chain_start()), std::size_t(free_.chains().size())),
-                         scratch_.motions);
+  const auto& links = dynamics_.chains().links();
+  dynamics_.chains().motions(
+      std::span<const double>(scratch_.rate)
+          .subspan(std::size_t(dynamics_.chain_start()), std::size_t(dynamics_.chains().size())),
+      scratch_.motions);
   for (std::size_t k = 0; k < links.size(); ++k) {
     const Twist<D>& rate = scratch_.motions[k];
     scratch_.accelerations[links[k]] =

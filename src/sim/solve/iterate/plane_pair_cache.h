@@ -6,8 +6,8 @@
 #include "sim/collide/core_shapes.h"
 #include "sim/constraint/material.h"
 #include "sim/model/state.h"
-#include "sim/solve/iterate/contact_rows.h"
-#include "sim/solve/iterate/near_pairs.h"
+#include "sim/solve/iterate/plane_contact_rows.h"
+#include "sim/solve/iterate/plane_near_pairs.h"
 
 namespace obscura::sim::plane {
 
@@ -41,11 +41,11 @@ class Pairs {
 
   /// Finds the pairs whose features differ from those in their lanes; changes nothing. `share`: the time
   /// since the last pair search, as a part of the time between two.
-  const std::vector<Outdated>& outdated(const std::vector<ContactBatch>& batches,
-                                        const std::vector<Motion>& v, const std::vector<Pose>& poses,
-                                        double share);
+  const std::vector<ChangedPair>& outdated(const std::vector<ContactBatch>& batches,
+                                           const std::vector<Motion>& v, const std::vector<Pose>& poses,
+                                           double share);
   /// Gives a pair these features. Forces go to the point of the same features, else to the nearest.
-  void renew(const Outdated& found, State<2>& state, const std::vector<Pose>& poses);
+  void renew(const ChangedPair& found, State<2>& state, const std::vector<Pose>& poses);
   bool boxes(const Pair& pair) const { return pair.b >= 0 && near_.boxes(pair.a, pair.b); }
 
   const std::vector<Pair>& all() const { return pairs_; }
@@ -83,8 +83,8 @@ class Pairs {
   std::vector<Contact<2>> contacts_;
   bool compounds_ = false;
 
-  std::vector<Outdated> outdated_;
-  Found others_;
+  std::vector<ChangedPair> outdated_;
+  LaneList others_;
 };
 
 }  // namespace obscura::sim::plane

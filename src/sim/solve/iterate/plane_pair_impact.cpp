@@ -6,7 +6,7 @@
 // friction; once they stay what they are, open, stick or slide, their equalities are solved together. Where
 // both stick, friction has no unique split, as under a box that lands flat: the second keeps what it has.
 
-#include "sim/solve/iterate/pair_impact.h"
+#include "sim/solve/iterate/plane_pair_impact.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "sim/collide/may_touch.h"
 #include "sim/math/islands.h"
 #include "sim/model/state.h"
-#include "sim/solve/iterate/box_pairs.h"
+#include "sim/solve/iterate/plane_box_pairs.h"
 
 namespace obscura::sim::plane {
 
@@ -56,8 +56,8 @@ class NearPairs {
   /// Whether both are single boxes centred on their bodies.
   bool boxes(int a, int b) const { return halves_[a].wide > 0 && halves_[b].wide > 0; }
   void find_outdated(const std::vector<ContactBatch>& batches, const std::vector<Motion>& v,
-                     const std::vector<Pose>& poses, double share, std::vector<Outdated>& boxes,
-                     Found& others) const {
+                     const std::vector<Pose>& poses, double share, std::vector<ChangedPair>& boxes,
+                     LaneList& others) const {
     plane::find_outdated(batches.data(), int(batches.size()), v.data(), poses.data(), halves_.data(), share,
                          boxes, others);
   }
@@ -79,7 +79,7 @@ class NearPairs {
   const CoreShapes& cores_;
   MayTouch<2> may_touch_;
   BroadPhase<2> broad_;
-  std::vector<Half> halves_;
+  std::vector<HalfSides> halves_;
   std::vector<Mover> movers_;
   std::vector<Bounds<2>> bounds_;      // of cores
   std::vector<char> fixed_, handout_;  // one a body, copied from the model
