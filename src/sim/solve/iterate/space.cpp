@@ -5,9 +5,7 @@
 //   4. forces of the last step, then iterations from gap to gap, over and over:
 //        v_n' >= -g / h,  of what closes fast  v_n' >= -e v_n         p_n >= 0
 //        p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
-//      the second after the first: were both found from one velocity, iterations of rough contacts would
-//      diverge a step along the velocity and not by the inverse block: cut back, that would brake a sliding
-//      box with less than mu g and, exactly, of joints together  J v' = 0
+//      (sim/solve/iterate/space_batches.cpp), between them joints exactly, J v' = 0
 //   5. positions: by the mean of old and new velocity; by the new one where a slow touch closed
 //   6. out of each other, a part of the way; joints back onto their places (sim/solve/iterate/joint_solver.h)
 //   7. rest: what is quiet and found in static equilibrium freezes
