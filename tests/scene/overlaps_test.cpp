@@ -160,6 +160,44 @@ INSTANTIATE_TEST_SUITE_P(Overlaps, Heap,
                                                           std::string("sticks")),
                                           testing::Values(60, 240, 600)));
 
+// Fifty blocks that fall onto each other by a millimetre come to rest within two seconds and stay as they
+// are.
+class TallTower : public testing::TestWithParam<std::tuple<bool, int>> {};
+
+TEST_P(TallTower, OfFiftyBlocksStandsForTenMinutes) {
+  const auto [space, rate] = GetParam();
+  const Scene scene =
+      parse(fmt::format(R"(
+[room]
+size = {}
+[physics]
+solver = "iterative"
+rate   = {}
+[[box]]
+size       = {}
+elasticity = 0
+position   = {}
+copies     = {{ count = 50, offset = {} }}
+)",
+                        space ? "[10, 30, 10]" : "[10, 30]", rate, space ? "[0.5, 0.5, 0.5]" : "[0.5, 0.5]",
+                        space ? "[0, 0.25, 0]" : "[5, 0.25]", space ? "[0, 0.501, 0]" : "[0, 0.501]"),
+            "tower.toml", {});
+  const auto stands = [&](const auto& world) {
+    sim::Stepper stepper(world.model);
+    auto state = world.state;
+    stepper.begin(state);
+    for (int i = 0; i < 2 * rate; ++i) ASSERT_FALSE(stepper.step(state));
+    EXPECT_EQ(std::count(state.frozen.begin(), state.frozen.end(), 1), 50);
+    EXPECT_NEAR(state.x.back()[1], 24.75, 0.002 * 24.75);
+    const auto before = state.x;
+    for (int i = 2 * rate; i < 600 * rate; ++i) ASSERT_FALSE(stepper.step(state));
+    EXPECT_EQ(state.x, before);
+  };
+  space ? stands(scene.space()) : stands(scene.plane());
+}
+
+INSTANTIATE_TEST_SUITE_P(Overlaps, TallTower, testing::Combine(testing::Bool(), testing::Values(60, 600)));
+
 // Blocks set down askew on each other by a centimetre rock on their corners, and come to rest: each blow of a
 // corner passes through its whole tower at once. Iterations that were cut short let towers sink and lifted
 // them again, for ever.
