@@ -716,6 +716,11 @@ class ExpressionParser {
 
   int named() {
     const std::size_t begun = at_;
+    if (const Symbol* quantity = dotted()) {
+      at_ += quantity->name.size();
+      if (quantity->node < 0) return fail(begun, "'" + quantity->name + "' " + quantity->refused);
+      return quantity->node;
+    }
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     const std::string_view name = text_.substr(begun, at_ - begun);
     const bool called = next_is('(');
@@ -736,10 +741,31 @@ class ExpressionParser {
     }
     if (name == "pi") return graph_.number(kPiOfText);
     if (name == "deg") return graph_.number(kPiOfText / 180);
+    if (symbol == symbols_.end() && at_ + 1 < text_.size() && (text_[at_] == '.' || text_[at_] == '[')) {
+      // as a quantity of a body is written
+      while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.' ||
+                                    text_[at_] == '[' || text_[at_] == ']'))
+        ++at_;
+      const std::string whole(text_.substr(begun, at_ - begun));
+      return fail(begun, "nothing is called '" + whole + "' here", whole);
+    }
     if (symbol == symbols_.end())
       return fail(begun, "nothing is called '" + std::string(name) + "' here", std::string(name));
     if (symbol->node < 0) return fail(begun, "'" + std::string(name) + "' " + symbol->refused);
     return symbol->node;
+  }
+
+  // the longest symbol with a dot that stands here: "ball[2].vx"
+  const Symbol* dotted() const {
+    const Symbol* found = nullptr;
+    const std::string_view rest = text_.substr(at_);
+    for (const Symbol& it : symbols_) {
+      const std::size_t n = it.name.size();
+      if (it.name.find('.') == std::string::npos || !rest.starts_with(it.name)) continue;
+      if (n < rest.size() && (is_letter(rest[n]) || is_digit(rest[n]))) continue;
+      if (!found || n > found->name.size()) found = &it;
+    }
+    return found;
   }
 
   int call(const Function& function, std::size_t begun) {

@@ -79,6 +79,18 @@ std::vector<std::uint64_t> words(const State<D>& state) {
   }
   for (const double work : state.work) w.number(work);
   for (const char released : state.released) w.integer(released);
+  if (!state.events.on.empty()) {
+    for (const char on : state.events.on) w.integer(on);
+    for (const char done : state.events.done) w.integer(done);
+    w.integer(std::int64_t(state.events.happenings.size()));
+    for (const Happening& it : state.events.happenings) {
+      w.integer(it.when), w.integer(it.which), w.integer(it.step);
+      w.number(it.fraction);
+    }
+    w.integer(std::int64_t(state.events.changes.size()));
+    for (const int change : state.events.changes) w.integer(change);
+    w.integer(state.events.stopped);
+  }
   for (const char intact : state.intact) w.integer(intact);
   for (const PartPose<D>& pose : state.part_poses) {
     w.template numbers<D>(pose.x);

@@ -203,6 +203,7 @@ struct Drive {
   Orientation<D> turn = Orientation<D>::Zero();  // where the angle is zero
   AngularVec<D> axis = AngularVec<D>::Ones();    // what the angle turns about; in space a unit vector
   std::optional<Rational> release;               // s: when it is let go
+  bool by_event = false;                         // or by an event
 
   bool moves() const { return formula || !path.empty(); }
 };
@@ -285,6 +286,64 @@ struct Articulation {
   std::vector<double> offsets;  // one a link, in the plane: its angle where all q are zero, rad
 };
 
+/// A change of the room that an event makes, for the rest of the run.
+template <int D>
+struct Change {
+  enum class Of { hold, motor, gravity, force };
+  Of of = Of::hold;
+  int index = -1;  // of the body that is held where it is, the joint, or the force
+  typename Joint<D>::Motor motor;
+  Vec<D> gravity = Vec<D>::Zero();
+  std::shared_ptr<const Force<D>> force;
+
+  /// Whether it takes the place of another.
+  bool replaces(const Change& other) const { return of == other.of && index == other.index; }
+};
+
+/// A quantity of a body, as the condition of an event reads it.
+struct Reading {
+  enum class Of { x, y, z, vx, vy, vz, speed, angle, spin };
+  int body = -1;
+  Of of = Of::x;
+};
+
+/// A condition, and what is done when it becomes true: see sim/step/events.h.
+template <int D>
+struct When {
+  enum class On { touches, leaves, crosses, value, time, breaks };
+  struct Action {
+    enum class Do { mark, let_go, part, change, stop };
+    Do what = Do::mark;
+    std::string mark;
+    std::vector<int> of;  // drives that are let go, joints that are parted, or changes of the model
+  };
+
+  std::string name;
+  On on = On::time;
+  std::vector<std::pair<int, int>> pairs;  // of touches and leaves: two bodies, the first below the second,
+                                           // or a body and a wall as -1 - wall
+  std::vector<int> those;                  // of crosses bodies, of breaks joints; a bond as -1 - bond
+  // of crosses: two ends of a segment; in space opposite corners of a rectangle along two axes of the room
+  Vec<D> from = Vec<D>::Zero(), to = Vec<D>::Zero();
+  // of value: whether it is true, and margins that change their sign where it may become so
+  std::shared_ptr<const Program> value;
+  std::vector<Reading> reads;  // its slots; after them the time
+  Rational time{0, 1};         // s
+  bool again = false;          // fires each time
+  std::vector<Action> actions;
+
+  /// For how many things its truth is known apart.
+  int things() const {
+    return on == On::touches || on == On::leaves ? int(pairs.size()) : those.empty() ? 1 : int(those.size());
+  }
+  /// Whether it only notes when it fires.
+  bool only_marks() const {
+    for (const Action& action : actions)
+      if (action.what != Action::Do::mark) return false;
+    return true;
+  }
+};
+
 /// All that is constant in a run. Order of the bodies: first those that do not turn, then those that do; a
 /// body's index here is its index everywhere.
 template <int D>
@@ -308,10 +367,13 @@ struct Model {
   std::vector<Bond<D>> bonds;
   std::vector<Articulation<D>> chains;      // none where there are bonds
   std::vector<std::pair<int, int>> ignore;  // groups that do not touch each other
+  std::vector<When<D>> whens;               // in the order of the file
+  std::vector<Change<D>> changes;           // that they make
+  bool changed = false;                     // whether events may change what this model is
 
   /// Whether the books have a place for work: of forces, and of bodies that are moved.
   bool books_work() const {
-    bool any = !forces.empty() || !drives.empty();
+    bool any = !forces.empty() || !drives.empty() || changed;
     for (const Body<D>& body : bodies) any = any || body.carries();
     return any;
   }

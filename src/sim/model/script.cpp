@@ -28,6 +28,8 @@ TimeStamp time_stamp(Rational t, Rational rate) {
   return {std::int64_t(whole), fraction};
 }
 
+TimeStamp snapped_stamp(Rational t, Rational rate) { return snapped(time_stamp(t, rate)); }
+
 double time(TimeStamp at, Rational rate) {
   return double(at.step) * double(rate.den) / double(rate.num) + at.fraction * step_length(rate);
 }

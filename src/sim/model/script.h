@@ -23,6 +23,9 @@ inline bool operator<(TimeStamp a, TimeStamp b) {
 /// The time stamp of t (s, >= 0): step = floor(t rate) exactly.
 TimeStamp time_stamp(Rational t, Rational rate);
 
+/// The same of an instant at which a step may be cut: within 1e-9 of a step of a step's boundary it is that.
+TimeStamp snapped_stamp(Rational t, Rational rate);
+
 /// The time (s) of a time stamp. step / rate is rounded once while it has less than 53 bits.
 double time(TimeStamp at, Rational rate);
 

@@ -85,6 +85,27 @@ struct ChainState {
   bool operator==(const ChainState&) const = default;
 };
 
+/// One firing of a condition of the model: of which of its things, and when.
+struct Happening {
+  int when = 0, which = 0;
+  std::int64_t step = 0;
+  double fraction = 0;  // of a step, below 1
+
+  bool operator==(const Happening&) const = default;
+};
+
+/// What the conditions of a model have seen and done so far.
+struct EventLog {
+  std::vector<char> on;    // of each condition, for each of its things: whether it is true; of `crosses` on
+                           // which side it is
+  std::vector<char> done;  // one a condition: whether it has fired
+  std::vector<Happening> happenings;
+  std::vector<int> changes;  // of the model that are in force, in the order in which they were made
+  char stopped = 0;          // nothing moves any more
+
+  bool operator==(const EventLog&) const = default;
+};
+
 /// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
 /// step / rate, plus `beyond` in the copy that a frame between two steps shows.
 template <int D>
@@ -105,6 +126,7 @@ struct State {
   std::vector<double> work;    // of a model that books it one number: what forces without a potential and
                                // bodies that are moved did, J
   std::vector<char> released;  // one a drive: whether its body has been let go
+  EventLog events;             // of a model with conditions
 
   // bonded bodies (sim/step/bonded_bodies.h): then all above describes the parts, and `bonded` is stepped
   std::vector<char> intact;             // one a bond: whether it is whole

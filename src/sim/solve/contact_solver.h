@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/model/course.h"
 #include "sim/model/path.h"
 #include "sim/model/state.h"
 
@@ -46,6 +47,9 @@ class ContactSolver {
 
   /// The next step begins with a state that another solver left.
   virtual void begin_anew() {}
+
+  /// From now on, notes how bodies go through a step, as far as it knows more than where they are at its end.
+  virtual void watch(Course<D>*) {}
 
   /// Finds what may touch within the step. False: all bodies sleep, and the step is done.
   virtual bool collide(StepPart<D> step) = 0;

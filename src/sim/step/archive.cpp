@@ -38,6 +38,14 @@ template <class Visit>
 void fields(Visit& visit, ChainState& it) {
   visit(it.q), visit(it.v);
 }
+template <class Visit>
+void fields(Visit& visit, Happening& it) {
+  visit(it.when), visit(it.which), visit(it.step), visit(it.fraction);
+}
+template <class Visit>
+void fields(Visit& visit, EventLog& it) {
+  visit(it.on), visit(it.done), visit(it.happenings), visit(it.changes), visit(it.stopped);
+}
 template <class Visit, int D>
 void fields(Visit& visit, Contact<D>& it) {
   visit(it.key.a), visit(it.key.b), visit(it.key.feature), visit(it.touching), visit(it.point);
@@ -52,6 +60,7 @@ void fields(Visit& visit, State<D>& it) {
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
       visit(it.quiet);
   visit(it.broken), visit(it.joint_forces), visit(it.work), visit(it.released);
+  visit(it.events);
 }
 
 template <class T>
@@ -166,6 +175,17 @@ bool fits(const State<D>& state, const Model<D>& model) {
               state.part_poses.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
               state.quiet.size() == state.frozen.size() && sized(state.broken, joints) &&
               state.joint_forces.size() == state.broken.size();
+  std::size_t things = 0;
+  for (const When<D>& when : model.whens) things += std::size_t(when.things());
+  const EventLog& events = state.events;
+  good = good && events.on.size() == things && events.done.size() == model.whens.size();
+  for (const Happening& it : events.happenings) {
+    good = good && it.when >= 0 && std::size_t(it.when) < model.whens.size() && it.which >= 0 &&
+           it.which < model.whens[std::size_t(it.when)].things() && it.step >= 0 && it.step <= state.step &&
+           it.fraction >= 0 && it.fraction < 1;
+  }
+  for (const int change : events.changes)
+    good = good && change >= 0 && std::size_t(change) < model.changes.size();
   for (const Grip<D>& grip : state.grips) good = good && (grip.body == -1 || body(grip.body));
   for (const Touch<D>& touch : state.touches) good = good && body(touch.body) && wall(touch.wall);
   for (const Blast<D>& blast : state.blasts)

@@ -24,6 +24,12 @@ class ContactStep {
   /// The next step knows nothing of the one before: bodies have been let go.
   void begin_anew() { solver_->begin_anew(); }
 
+  /// Notes how bodies go through a step, from now on.
+  void watch(Course<D>* course) {
+    solver_->watch(course);
+    if (lone_bodies_) lone_bodies_->watch(course);
+  }
+
  private:
   void take_energy_back(State<D>& state);
 

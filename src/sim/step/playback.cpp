@@ -74,6 +74,8 @@ class PlaybackOf final : public Run {
 
   std::vector<std::uint64_t> words() const override { return sim::words(state_); }
 
+  std::vector<RunEvent> events() const override { return {}; }
+
   void track(std::vector<int> bodies) override {
     track_.bodies = std::move(bodies);
     track_.points.assign(track_.bodies.size(), {});

@@ -43,6 +43,19 @@ void Releases<D>::make(const State<D>& state) {
     now_.solver = solver(all);
   }
   stepper_ = std::make_unique<Stepper<D>>(now_);
+  stepper_->watch(course_);
+}
+
+template <int D>
+void Releases<D>::begin_anew(State<D>& state, double t) {
+  make(state);
+  stepper_->begin_anew(state, t);
+}
+
+template <int D>
+void Releases<D>::watch(Course<D>* course) {
+  course_ = course;
+  if (stepper_) stepper_->watch(course_);
 }
 
 template <int D>
@@ -78,10 +91,9 @@ bool Releases<D>::let_go(State<D>& state, TimeStamp at) {
 }
 
 template <int D>
-std::optional<Trouble> Releases<D>::advance(State<D>& state, double fraction) {
+std::optional<Trouble> Releases<D>::advance(State<D>& state, double from, double fraction) {
   make(state);
   const std::int64_t step = state.step;
-  double from = 0;
   for (const ScriptEvent& edge : edges_) {
     const double to = edge.at.fraction;
     if (edge.at.step != step || to <= from || to > fraction) continue;
@@ -100,14 +112,8 @@ std::optional<Trouble> Releases<D>::advance(State<D>& state, double fraction) {
 }
 
 template <int D>
-std::optional<Trouble> Releases<D>::step(State<D>& state) {
-  if (auto trouble = advance(state, 1)) return trouble;
+std::optional<Trouble> Releases<D>::check_energy(const State<D>& state) {
   return stepper_->check_energy(state);
-}
-
-template <int D>
-std::optional<Trouble> Releases<D>::partial_step(State<D>& state, double fraction) {
-  return advance(state, fraction);
 }
 
 template class Releases<2>;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/model/course.h"
 #include "sim/model/script.h"
 #include "sim/model/state.h"
 #include "sim/model/trouble.h"
@@ -23,14 +24,18 @@ class Releases {
   ~Releases();
 
   void begin(State<D>& state);
-  std::optional<Trouble> step(State<D>& state);
-  std::optional<Trouble> partial_step(State<D>& state, double fraction);
+  /// Goes on within a step, from one fraction of it to another.
+  std::optional<Trouble> advance(State<D>& state, double from, double fraction);
+  /// After a whole step.
+  std::optional<Trouble> check_energy(const State<D>& state);
 
   /// The model of a state.
   const Model<D>& model(const State<D>& state);
 
+  void watch(Course<D>* course);
+  void begin_anew(State<D>& state, double t);
+
  private:
-  std::optional<Trouble> advance(State<D>& state, double fraction);
   bool let_go(State<D>& state, TimeStamp at);
   void make(const State<D>& state);
 
@@ -39,6 +44,7 @@ class Releases {
   Model<D> now_;
   std::vector<char> made_;  // State::released of now_
   std::unique_ptr<Stepper<D>> stepper_;
+  Course<D>* course_ = nullptr;
 };
 
 }  // namespace obscura::sim

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "sim/model/stance.h"
 #include "sim/step/archive.h"
@@ -73,6 +74,12 @@ class RunOf final : public Run {
 
   std::vector<std::uint64_t> words() const override { return sim::words(between_ ? copy_ : state_); }
 
+  std::vector<RunEvent> events() const override {
+    std::vector<RunEvent> all;
+    for (const Happening& it : state_.events.happenings) all.push_back(told(it));
+    return all;
+  }
+
   void track(std::vector<int> bodies) override {
     track_.bodies = std::move(bodies);
     track_.points.assign(track_.bodies.size(), {});
@@ -88,6 +95,45 @@ class RunOf final : public Run {
 
  private:
   using Answer = std::variant<Snapshot, Trouble, Stopped>;
+
+  RunEvent told(const Happening& it) const {
+    constexpr const char* kWords[] = {"touches", "leaves", "crosses", "value", "time", "breaks"};
+    const When<D>& when = model_.whens[std::size_t(it.when)];
+    RunEvent event;
+    event.time = instant_of({it.step, it.fraction});
+    event.when = it.when, event.name = when.name, event.what = kWords[int(when.on)];
+    const auto body = [&](int i) { return model_.bodies[std::size_t(i)].name; };
+    if (!when.pairs.empty()) {
+      const auto [a, b] = when.pairs[std::size_t(it.which)];
+      event.of = {body(a), b < 0 ? "wall[" + std::to_string(-1 - b) + "]" : body(b)};
+    } else if (when.on == When<D>::On::value) {
+      for (const Reading& read : when.reads)
+        if (std::find(event.of.begin(), event.of.end(), body(read.body)) == event.of.end())
+          event.of.push_back(body(read.body));
+    } else if (when.on == When<D>::On::crosses) {
+      event.of = {body(when.those[std::size_t(it.which)])};
+    } else if (when.on == When<D>::On::breaks) {
+      const int of = when.those[std::size_t(it.which)];
+      if (of >= 0)
+        event.of = {model_.joints[std::size_t(of)].name};
+      else
+        event.of = {body(model_.bonds[std::size_t(-1 - of)].a)};
+      if (of < 0 && model_.bonds[std::size_t(-1 - of)].b >= 0)
+        event.of.push_back(body(model_.bonds[std::size_t(-1 - of)].b));
+    }
+    for (const auto& action : when.actions) {
+      if (action.what == When<D>::Action::Do::mark) event.marks.push_back(action.mark);
+      event.stop = event.stop || action.what == When<D>::Action::Do::stop;
+    }
+    return event;
+  }
+
+  // a time at which a run stands there, or beyond by less than 1e-12 of a step
+  Rational instant_of(TimeStamp at) const {
+    constexpr std::int64_t kParts = std::int64_t(1) << 40;
+    const auto part = std::int64_t(std::ceil(at.fraction * double(kParts)));
+    return (rational(at.step) + rational(part, kParts)) / model_.rate;
+  }
 
   Snapshot last_finite(const Trouble& trouble) {
     between_ = false;

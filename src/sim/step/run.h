@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -22,6 +23,17 @@ struct Stopped {};
 struct Divergence {
   Trouble trouble;
   bool ended = false;  // the state shown is its last finite one, also at all later instants
+};
+
+/// A condition of the model that has fired.
+struct RunEvent {
+  Rational time;                   // s; not before it, by less than rounding
+  int when = 0;                    // which condition of the model
+  std::string name;                // its name
+  std::string what;                // "touches", "crosses", ...
+  std::vector<std::string> of;     // what it was true of: names of bodies, walls, joints
+  std::vector<std::string> marks;  // that it made
+  bool stop = false;               // it ended the run
 };
 
 /// A world that is stepped along its own clock and shown at given times. The interface that film and commands
@@ -51,6 +63,9 @@ class Run {
   /// for a run that may begin anywhere.
   virtual std::vector<std::uint64_t> saved() const = 0;
   virtual Rational now() const = 0;
+
+  /// What has fired up to the last whole step, in the order of time.
+  virtual std::vector<RunEvent> events() const = 0;
 
   /// The words of the state that the last snapshot shows (sim/model/state.h).
   virtual std::vector<std::uint64_t> words() const = 0;

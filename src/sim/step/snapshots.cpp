@@ -134,7 +134,7 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   cast.dimension = D;
   cast.scale = model.scale;
   cast.gravity = to_3d<D>(model.gravity);
-  cast.forces = !model.forces.empty();
+  cast.forces = !model.forces.empty() || model.changed;
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Drive<D>& drive : model.drives) cast.bodies[std::size_t(drive.body)].fixed = false;
   for (const Wall<D>& wall : model.walls)
@@ -170,7 +170,7 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
 template <int D>
 Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>& stepper, TimeStamp at,
                   double t) {
-  const Model<D>& model = scene.drives.empty() ? scene : stepper.model(state);
+  const Model<D>& model = scene.drives.empty() && scene.whens.empty() ? scene : stepper.model(state);
   Snapshot now;
   now.time = t;
   now.step = state.step;

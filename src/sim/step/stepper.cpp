@@ -19,6 +19,7 @@
 #include "sim/step/archive.h"
 #include "sim/step/bonded_bodies.h"
 #include "sim/step/contact_step.h"
+#include "sim/step/events.h"
 #include "sim/step/releases.h"
 
 namespace obscura::sim {
@@ -86,6 +87,10 @@ Stepper<D>::Stepper(const Model<D>& model)
   }
   d_.resize(std::max(D, kAngular<D>) * kBlock), w_.resize(kAngular<D> * kBlock), base_.resize(kBlock);
   assert(model.bonds.empty() || model.chains.empty());
+  if (!model.whens.empty()) {
+    events_ = std::make_unique<Events<D>>(model);
+    return;
+  }
   if (!model.bonds.empty()) pieces_ = std::make_unique<BondedBodies<D>>(model, paths_);
   const auto let_go = [](const Drive<D>& drive) { return drive.release.has_value(); };
   if (std::any_of(model.drives.begin(), model.drives.end(), let_go)) {
@@ -109,6 +114,7 @@ void Stepper<D>::begin(State<D>& state) {
     state.v[body].setZero();
     if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
   }
+  if (events_) return events_->begin(state);
   if (lets_go_) return lets_go_->begin(state);
   try {
     drives_.put(state, time({state.step, 0}, model_.rate));
@@ -134,28 +140,48 @@ void Stepper<D>::begin(State<D>& state) {
 
 template <int D>
 bool Stepper<D>::fits(const State<D>& state) {
-  return sim::fits(state, model_) && sound(state) && (!pieces_ || pieces_->fits(state));
+  return sim::fits(state, model_) && (events_ || sound(state)) && (!pieces_ || pieces_->fits(state)) &&
+         (!events_ || events_->fits(state));
 }
 
 template <int D>
 const Model<D>& Stepper<D>::model(const State<D>& state) const {
-  return lets_go_ ? lets_go_->model(state) : model_;
+  return events_ ? events_->model(state) : lets_go_ ? lets_go_->model(state) : model_;
 }
 
 // after bodies have been let go: this stepper knows nothing of the steps before
 template <int D>
 void Stepper<D>::begin_anew(State<D>& state, double t) {
+  if (lets_go_) return lets_go_->begin_anew(state, t);
   if (contact_) contact_->begin_anew();
   divergence_.start(state, t);
 }
 
 template <int D>
+void Stepper<D>::watch(Course<D>* course) {
+  if (lets_go_) lets_go_->watch(course);
+  if (contact_) contact_->watch(course);
+}
+
+template <int D>
 std::optional<Trouble> Stepper<D>::step(State<D>& state) {
-  if (pieces_) return pieces_->step(state);
-  if (lets_go_) return lets_go_->step(state);
-  auto trouble = advance(state, 0, 1);
-  if (trouble) return trouble;
-  return check_energy(state);
+  if (events_) return events_->step(state);
+  if (auto trouble = go(state, 0, 1)) return trouble;
+  return after_step(state);
+}
+
+// goes on within a step; with bonds only from its beginning
+template <int D>
+std::optional<Trouble> Stepper<D>::go(State<D>& state, double from, double to) {
+  if (pieces_) return to < 1 ? pieces_->partial_step(state, to) : pieces_->step(state);
+  if (lets_go_) return lets_go_->advance(state, from, to);
+  return advance(state, from, to);
+}
+
+template <int D>
+std::optional<Trouble> Stepper<D>::after_step(const State<D>& state) {
+  if (pieces_) return {};
+  return lets_go_ ? lets_go_->check_energy(state) : check_energy(state);
 }
 
 template <int D>
@@ -173,15 +199,13 @@ bool Stepper<D>::may_gain(const State<D>& state) const {
 
 template <int D>
 std::optional<Trouble> Stepper<D>::diverges(const State<D>& state) const {
-  if (pieces_ || lets_go_ || !may_gain(state)) return {};
+  if (pieces_ || lets_go_ || events_ || !may_gain(state)) return {};
   return divergence_.check_energy(state, time({state.step, 0}, model_.rate));
 }
 
 template <int D>
 std::optional<Trouble> Stepper<D>::partial_step(State<D>& state, double fraction) {
-  if (pieces_) return pieces_->partial_step(state, fraction);
-  if (lets_go_) return lets_go_->partial_step(state, fraction);
-  return advance(state, 0, fraction);
+  return events_ ? events_->partial_step(state, fraction) : go(state, 0, fraction);
 }
 
 template <int D>

@@ -20,6 +20,10 @@ class BondedBodies;
 template <int D>
 class ContactStep;
 template <int D>
+struct Course;
+template <int D>
+class Events;
+template <int D>
 class Releases;
 
 /// Steps states of one model. All that a step depends on is in the model and the state; members are scratch
@@ -54,7 +58,11 @@ class Stepper {
   /// Whether mouse `mouse` is pressed at `at`.
   bool pressed(int mouse, TimeStamp at) const;
 
+  /// From now on, notes how bodies go through a step; null: no more.
+  void watch(Course<D>* course);
+
  private:
+  friend class Events<D>;
   friend class Releases<D>;
 
   // bodies that nothing ties, side by side
@@ -62,6 +70,8 @@ class Stepper {
     int first, count;
   };
 
+  std::optional<Trouble> go(State<D>& state, double from, double to);
+  std::optional<Trouble> after_step(const State<D>& state);
   std::optional<Trouble> advance(State<D>& state, double from, double fraction);
   std::optional<Trouble> advance_pieces(State<D>& state, double from, double fraction);
   std::optional<Trouble> check_energy(const State<D>& state);
@@ -86,6 +96,7 @@ class Stepper {
   std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
   std::unique_ptr<BondedBodies<D>> pieces_;  // of a model with bonds: all is done there
   std::unique_ptr<Releases<D>> lets_go_;     // of one that lets bodies go: likewise
+  std::unique_ptr<Events<D>> events_;        // of one with conditions: likewise
   Drives<D> drives_;
   DivergenceMonitor<D> divergence_;
   ForwardDynamics<D> tied_;

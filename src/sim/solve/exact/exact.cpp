@@ -243,9 +243,12 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
                fastest =
                    std::max(progress_.rest_speed, limits_.unit_speed * limits_.unit_speed / model_.scale * h);
   int grown = 0;  // cuts at which rest has grown
+  for (const int body : active_.subset.bodies)
+    if (course_) course_->forget(body);
   // `event` counts all cuts of the group, whoever they are of
   for (int spent = 0; done < h; spent = event_mode ? spent + 1 : cuts_so_far()) {
     pose_driven(t + done);
+    stepped_ = done;
     find_contacts(state, limits_.touching_gap);
     if (wake_reached(state)) {
       collect_bodies(state);
@@ -273,6 +276,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       const std::size_t forced = progress_.forced.size();
       length = advance_to_event(state, t + done, h - done, cut);
       held_again = progress_.forced.size() > forced && !progress_.forced_again;
+      if (length > 0) note_contacts(done, done + length);
       pose_driven(t + done + length);
       if (length > 0) project_state(state), progress_.given += interval_.given;
       if (cut) count_cut(progress_.cut_by.a, progress_.cut_by.b);
@@ -287,6 +291,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       count_cut(-1, -1);
     }
     if (length > 0) {
+      note_motion(state, done, done + length);
       measure_travel(state);
       progress_.forced.clear(), progress_.forced_again = false;
       tiny = length < kTiny * h ? tiny + 1 : 0;
@@ -299,6 +304,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     }
   }
   progress_.rest_speed = slowest;
+  stepped_ = h;
   pose_driven(t + h);
   find_contacts(state, limits_.touching_gap);
   if (wake_reached(state)) {
@@ -417,6 +423,39 @@ void ExactSolver<D>::record_forces() {
   }
 }
 
+// what holds through an interval
+template <int D>
+void ExactSolver<D>::note_contacts(double begun, double ended) {
+  if (!course_) return;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact ||
+        interval_.modes[constraint.block].kind == ModeKind::open)
+      continue;
+    const ContactKey& key = candidates_[constraint.of].key;
+    if (!course_->watches(key.a) && !course_->watches(key.b)) continue;
+    // what lets go is held until its force is a little below zero: it left where that was zero
+    double left = ended;
+    const double before = interval_.forces[constraint.first], after = f_[constraint.first];
+    if (progress_.released == key && before > 0 && after < 0)
+      left = begun + (ended - begun) * before / (before - after);
+    course_->meetings.push_back({key.a, key.b, begun, left});
+  }
+}
+
+// an interval of the bodies at hand, from interval_.begun to `state`
+template <int D>
+void ExactSolver<D>::note_motion(const State<D>& state, double begun, double ended) {
+  if (!course_) return;
+  for (const int body : active_.subset.bodies) {
+    if (!course_->watches(body) || !response_.moves(body)) continue;
+    CoursePiece<D> piece{begun, ended, {}, instant(state, body)};
+    piece.from.x = interval_.begun.x[body], piece.from.v = interval_.begun.v[body];
+    if (const int k = turning(state, body); k >= 0)
+      piece.from.turn = interval_.begun.turn[k], piece.from.spin = interval_.begun.spin[k];
+    course_->pieces[std::size_t(body)].push_back(piece);
+  }
+}
+
 // removes joints that are loaded beyond their strength, from the next step on, and wakes the bodies they held
 template <int D>
 void ExactSolver<D>::break_joints(State<D>& state) {
@@ -501,6 +540,12 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
                                 AngularVec<D>(0.5 * h * (interval_.begun.spin[k] + state.spin[k])));
   }
   chains.advance(interval_.begun.chain_states, h, state);
+  for (const Constraint& constraint : constraints_) {
+    if (!course_ || constraint.kind != Constraint::Kind::contact || f_[constraint.first] == 0) continue;
+    const ContactKey& key = candidates_[constraint.of].key;
+    if (course_->watches(key.a) || course_->watches(key.b))
+      course_->meetings.push_back({key.a, key.b, stepped_, stepped_ + h});
+  }
   f_ /= h;
   record_forces();
 

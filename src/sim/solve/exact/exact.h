@@ -42,6 +42,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void report(StepPart<D> step) override;
   void sleep(StepPart<D> step) override;
 
+  void watch(Course<D>* course) override { course_ = course; }
+
   /// Moves one body that meets only walls and fixed bodies, and writes the forces of its contacts into those
   /// that `state` has already. Requires Serves::lone.
   void step_alone(State<D>& state, int body, double t, double h);
@@ -200,6 +202,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void record_forces();
   void release_contact();
   void break_joints(State<D>& state);
+  void note_contacts(double begun, double ended);
+  void note_motion(const State<D>& state, double begun, double ended);
 
   // groups.cpp
   void bound_travel(const State<D>& state, double t, double h);
@@ -315,6 +319,9 @@ class ExactSolver final : public ContactSolver<D>, private System {
   Cone<D> cone_;
   Response<D> response_;
   Sleep<D> sleep_;
+
+  Course<D>* course_ = nullptr;
+  double stepped_ = 0;  // s: how far the group at hand has come in its step
 
   Step step_;
   Group active_;  // that is stepped

@@ -136,6 +136,8 @@ void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {
 template <int D>
 void ExactSolver<D>::record_impulse(const ContactKey& key, const Constraint& constraint,
                                     const Vec<D>& impulse) {
+  if (course_ && (course_->watches(key.a) || course_->watches(key.b)))
+    course_->meetings.push_back({key.a, key.b, stepped_, stepped_});
   for (Contact<D>& known : outcome_.impulses) {
     if (known.key != key) continue;
     known.impulse += impulse;

@@ -27,6 +27,9 @@ class LoneBodies {
   /// Whether the last step() moved a body: its motion by the other solver is then discarded.
   bool moved(int body) const { return moved_[body] != 0; }
 
+  /// Notes how they go through a step, from now on.
+  void watch(Course<D>* course) { direct_.watch(course); }
+
  private:
   struct Began {
     int body;
