@@ -42,7 +42,9 @@ double apart(const sim::World<D>& world, int a, int b, double far) {
 }  // namespace
 
 template <int D>
-void bonds(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints) {
+std::vector<BondRange> bonds(const Node& top, const NameTable& roster, sim::World<D>& world,
+                             Diagnostics& complaints) {
+  std::vector<BondRange> ranges;
   const Node* all = top.find("bond");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "bond");
@@ -63,13 +65,17 @@ void bonds(const Node& top, const NameTable& roster, sim::World<D>& world, Diagn
         ++made;
       }
     }
+    const int end = int(world.model.bonds.size());
+    ranges.push_back(
+        {fields.given("name") ? fields.text("name") : fmt::format("bond[{}]", k), end - int(made), end});
     if (made == 0)
       complaints.add(of->place, fmt::format("no two of these {} bodies lie within {} m of each other",
                                             bodies.size(), within));
   }
+  return ranges;
 }
 
-template void bonds<2>(const Node&, const NameTable&, sim::World<2>&, Diagnostics&);
-template void bonds<3>(const Node&, const NameTable&, sim::World<3>&, Diagnostics&);
+template std::vector<BondRange> bonds<2>(const Node&, const NameTable&, sim::World<2>&, Diagnostics&);
+template std::vector<BondRange> bonds<3>(const Node&, const NameTable&, sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

@@ -98,6 +98,10 @@ class Values : private Reporter {
         return expressions(node, key);
       case Form::numbers:
         return numbers(node, key);
+      case Form::any:
+        return true;
+      case Form::moment:
+        return is_mark(node) || rational(node, key);
       case Form::pairs:
         return pairs(node, key);
       case Form::choice:
@@ -182,13 +186,20 @@ class Values : private Reporter {
     return each(node.list(), [&](const Node& time) { return rational(time, key); });
   }
 
+  // the name of a mark of the run; whether there is one is found later
+  static bool is_mark(const Node& node) {
+    return node.is_text() && !node.text().empty() && letter(node.text()[0]);
+  }
+
   // every number of a list
   bool cue(const Node& node, const Key& key) {
+    if (is_mark(node)) return true;
     if (!node.is_table())
       return node.is_number() || node.is_text() ? rational(node, key) : mistyped(node, key);
     bool good = each(node.table(), [&](const Entry& entry) {
       if (entry.key != "time" && entry.key != "after")
         return unknown(entry, fmt::format("'{}'", key.last()), did_you_mean(entry.key, {"time", "after"}));
+      if (entry.key == "time" && is_mark(entry.node)) return true;
       return rational(entry.node,
                       {.path = entry.key, .form = Form::rational, .unit = "s", .range = {0, 1e6}});
     });

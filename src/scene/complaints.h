@@ -19,6 +19,8 @@ class Diagnostics {
   void add(Place place, std::string message) { found_.emplace_back(place, std::move(message)); }
   bool none() const { return found_.empty(); }
   std::size_t count() const { return found_.size(); }
+  /// What was found first. Requires one.
+  const std::string& first() const { return found_.front().second; }
   /// Beyond so many, hints are left out.
   bool enough() const { return found_.size() > 1000; }
 

@@ -28,7 +28,7 @@ class ForceBuilder {
                Diagnostics& complaints)
       : top_(top), constants_(constants), roster_(roster), world_(world), complaints_(complaints) {
     for (const sim::Drive<D>& drive : world.model.drives)
-      if (drive.release) released_.insert(drive.body);
+      if (drive.release || drive.by_event) released_.insert(drive.body);
   }
 
   void build() {

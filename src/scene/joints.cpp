@@ -172,7 +172,13 @@ class Joining {
                         fmt::format("'{}' is a particle, which does not turn: a {} needs a [[ball]]",
                                     world_.model.bodies[std::size_t(end.body)].name, fields_.text("type")));
     }
-    if (body.fixed && (it.b.body < 0 || world_.model.bodies[std::size_t(it.b.body)].fixed))
+    const auto held = [&](int end) {
+      if (end < 0) return true;
+      for (const sim::Drive<D>& drive : world_.model.drives)
+        if (drive.body == end && (drive.release || drive.by_event)) return false;
+      return world_.model.bodies[std::size_t(end)].fixed;
+    };
+    if (held(it.a.body) && held(it.b.body))
       return refuse(place,
                     fmt::format("'{}' is fixed, and so is the other end: nothing could move", body.name));
 

@@ -365,6 +365,47 @@ surface_speed = 0.5                                              # its upper sid
 
 A motion should be smooth: where its velocity jumps, what touches it is struck.
 
+## Events
+
+A `[[when]]` has one condition, and does something when that becomes true:
+
+```toml
+[[when]]
+touches = ["ball", "pin[*]"]                                     # two bodies; or a wall: "floor", "left", "wall[*]"
+do      = [{ mark = "hit" }]                                     # gives the instant a name
+
+[[when]]
+crosses = { body = "ball", from = [2, 0], to = [2, 1] }          # its centre of mass, either way; in space a rectangle
+again   = true                                                   # each time; left out: the first time
+do      = [{ set = "flipper.motor.speed", to = 900 }]
+
+[[when]]
+value = "ball.y < 1"                                             # (ball.y < 1)*(ball.vy > 0): both
+do    = [{ release = "gate" }, { mark = "open" }]
+
+[[when]]
+breaks = "rope"
+do     = [{ stop = true }]                                       # everything stands still, and the film ends
+```
+
+`leaves` is the end of a touch, `time` an instant. A condition that is true at the start must become false before it fires. A
+value compares quantities of bodies: `ball.x`, `y`, `vx`, `vy`, `speed`, `angle`, `spin`, in space also `z` and `vz`, in metres, seconds
+and radians, the time `t` and constants.
+
+`release` lets go what is `fixed` or has a `motion`, with its velocity, or takes away a joint. `set` writes a key as `--set`
+does: those of motors, forces (`push.components`, `room.wind`), `room.gravity`, and `fixed` of a body; others stay as they are. What the
+hand that does so gives of energy is `energy.work`. Actions are done in their order; conditions that become true together are
+served in the order of the file.
+
+With `collision = "event"` a condition fires at its exact time, to a billionth of a second; in other modes at the end of the step in which it
+becomes true, also where it has become false again. A `time` is exact in all modes. A joint breaks at the end of a step. Marks alone
+change nothing of a run. The list of events is one for every frame rate, and for shards and runs that go on from a
+checkpoint: `obscura states SCENE --events`.
+
+A mark is a time: `--measure ball.velocity.y@hit` in sweeps (`hit[2]`: the second time), `figure.mark`, `start` and `end` of what a film or figure
+shows, `time` of `film.speed` (a freeze), of cards and ghosts. Such a film is run once before it is drawn; marks stand in it to the
+microsecond.
+
 ## Expressions
 
 Expressions are in metres, kilograms, seconds and radians (`sin(30*deg)`); axes are the room's. An expression is a string, or a number.
@@ -665,7 +706,7 @@ std::string type(const Key& key) {
     case Form::times:
       return "number, or a list of them";
     case Form::cue:
-      return "number, or { time, after }";
+      return "number, a mark, or { time, after }";
     case Form::trails:
       return "number, or table of them";
     case Form::states:
@@ -678,6 +719,10 @@ std::string type(const Key& key) {
       return "one expression a dimension";
     case Form::numbers:
       return "numbers with names";
+    case Form::any:
+      return "value";
+    case Form::moment:
+      return "number or fraction, or a mark";
   }
   return "";
 }

@@ -25,6 +25,7 @@
 #include "scene/overrides.h"
 #include "scene/picture.h"
 #include "scene/room.h"
+#include "scene/whens.h"
 #include "sim/constraint/joints/joint.h"
 #include "sim/math/trig.h"
 #include "sim/motion/stability.h"
@@ -115,7 +116,7 @@ void refuse_taken_names(const Node& top, const NameTable& roster, Diagnostics& c
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
   for (const char* kind :
-       {"spring", "net", "joint", "chain", "bond", "explosion", "force", "attractor", "mouse"}) {
+       {"spring", "net", "joint", "chain", "bond", "explosion", "force", "attractor", "mouse", "when"}) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i) {
       const Node* name = all->list()[i].find("name");
@@ -145,10 +146,33 @@ void refuse_crowd(const Node& top, const sim::Model<D>& model, Diagnostics& comp
                                : "leave 'solver' out: the iterative one is for thousands of bodies"));
 }
 
+template <int D>
+sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, const Dimension& told,
+                    Scene& scene, Diagnostics& complaints, bool events = true);
+
+// the model of the same scene with one more key set
+template <int D>
+std::optional<sim::Model<D>> rebuilt(const Node& top, const std::vector<CopySet>& copy_sets,
+                                     const Dimension& told, const std::string& set, Place place,
+                                     Diagnostics& complaints) {
+  if (!complaints.none()) return {};
+  Node other = top;
+  Diagnostics own = complaints;
+  std::vector<CopySet> sets = apply({set}, other, own);
+  sets.insert(sets.begin(), copy_sets.begin(), copy_sets.end());
+  check(other, told, own);
+  Scene unseen;
+  std::optional<sim::Model<D>> model;
+  if (own.none()) model = built<D>(other, sets, told, unseen, own, false).model;
+  if (own.none()) return model;
+  complaints.add(place, fmt::format("'set': {}", own.first()));
+  return {};
+}
+
 // builds the world, in the plane or in space, and its looks
 template <int D>
 sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, const Dimension& told,
-                    Scene& scene, Diagnostics& complaints) {
+                    Scene& scene, Diagnostics& complaints, bool events) {
   sim::World<D> world;
   sim::Model<D>& model = world.model;
   const Fields physics = Fields::of(top, "physics");
@@ -166,16 +190,23 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   const Seating<D> roster =
       bodies<D>(top, walls, scene.seed, copy_sets, told, constants, world, scene.look.bodies, complaints);
   for (const Seat<D>& seat : roster.seats) scene.axes.push_back(sim::quaternion<D>(seat.axes));
+  ready_to_let_go(top, roster, world, complaints);
   springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, constants, world, complaints);
   chains(top, roster, world, complaints);
   explosions(top, model, complaints);
   forces(top, constants, roster, world, complaints);
-  constants.refuse_unused();
-  bonds(top, roster, world, complaints);
+  const std::vector<BondRange> bonded = bonds(top, roster, world, complaints);
   refuse_moved_bonds(top, model, complaints);
   ignore(top, roster, model, complaints);
+  const Rebuild<D> rebuild = [&](const std::string& set, Place place, Diagnostics& wrong) {
+    return rebuilt<D>(top, copy_sets, told, set, place, wrong);
+  };
+  if (events) {
+    whens<D>(top, roster, bonded, constants, rebuild, world, complaints);
+    constants.refuse_unused();
+  }
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
   refuse_crowd(top, model, complaints);
   refuse_taken_names(top, roster, complaints);
@@ -201,7 +232,8 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
 
 }  // namespace
 
-Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets) {
+Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets,
+            const RunMarks* marks) {
   Diagnostics complaints(file, sets);
   Node top = document(text, file);
   if (top.table().empty())
@@ -211,6 +243,9 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   check(top, told, complaints);
 
   Scene scene;
+  MarksPut put = put_marks(top, marks, complaints);
+  scene.marks = std::move(put.used), scene.figure_waits = put.figure_waits;
+  scene.marked = marks != nullptr;
   scene.file = file;
   scene.name = file == "-" ? "scene" : std::filesystem::path(file).stem().string();
   scene.text = text;

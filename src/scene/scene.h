@@ -13,6 +13,7 @@
 #include "draw/page/figure.h"
 #include "draw/picture/look.h"
 #include "draw/picture/pace.h"
+#include "scene/run_marks.h"
 #include "sim/math/rational.h"
 #include "sim/model/state.h"
 #include "sim/step/playback.h"
@@ -70,6 +71,9 @@ struct Scene {
   std::shared_ptr<const sim::Trajectory> trajectory;  // another program's run, shown instead of the scene's
   std::string trajectory_file;                        // its name
   bool show_divergence = false;                       // physics.diverge
+  std::vector<std::string> marks;                     // of its run that film and figure name
+  bool marked = false;                                // their times, and that of a stop, are in place
+  bool figure_waits = false;                          // its figure is of a mark that the run does not come to
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
   /// A run of it from its start, or from a state that was saved of one; null if that is no state of this
@@ -89,7 +93,9 @@ struct Scene {
 /// place.
 Scene read(const std::string& file, const std::vector<std::string>& sets = {});
 
-/// The same from text; `file` names it in complaints.
-Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets = {});
+/// The same from text; `file` names it in complaints. With `marks`, what its run says: film and figure have
+/// their times in the place of names.
+Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets = {},
+            const RunMarks* marks = nullptr);
 
 }  // namespace obscura::scene

@@ -135,9 +135,9 @@ Json value(const Key& key) {
     }
     case Form::cue:
       return any_of({number,
-                     {{"type", "string"}, {"pattern", "^[0-9.]+(/[0-9.]+)?$"}},
+                     string,
                      {{"type", "object"},
-                      {"properties", {{"time", number}, {"after", number}}},
+                      {"properties", {{"time", any_of({number, string})}, {"after", number}}},
                       {"required", {"time"}},
                       {"additionalProperties", false}}});
     case Form::couple:
@@ -163,6 +163,10 @@ Json value(const Key& key) {
       return list_of(any_of({string, number}), 2, 3);
     case Form::numbers:
       return {{"type", "object"}, {"additionalProperties", any_of({number, string})}};
+    case Form::any:
+      return Json::object();
+    case Form::moment:
+      return any_of({number, string});
     case Form::trails:
       return any_of(
           {number, {{"type", "object"}, {"additionalProperties", {{"type", "number"}, {"minimum", 0}}}}});

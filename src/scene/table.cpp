@@ -230,7 +230,8 @@ std::string expected(const Key& key, int dimension) {
     case Form::times:
       return "a number" + of + ", or a list of them";
     case Form::cue:
-      return "a number of seconds, or { time = seconds of the run, after = seconds of the film }";
+      return "a number of seconds, the name of a mark, or { time = either of them, after = seconds of the "
+             "film }";
     case Form::trails:
       return "a number of seconds, or a table of them by body";
     case Form::states:
@@ -244,6 +245,10 @@ std::string expected(const Key& key, int dimension) {
                    : "two expressions such as [\"-2*x\", \"0\"]";
     case Form::numbers:
       return "a table of numbers with names";
+    case Form::any:
+      return "a value";
+    case Form::moment:
+      return "a number" + of + ", a fraction such as \"30000/1001\", or the name of a mark";
   }
   return "";
 }

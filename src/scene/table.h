@@ -53,6 +53,8 @@ enum class Form {
   expression,   // an expression, or a number
   expressions,  // one a dimension
   numbers,      // [constants]: any names
+  any,          // the value of another key
+  moment,       // an exact time, or the name of a mark
 };
 
 struct Range {

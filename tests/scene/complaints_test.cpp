@@ -53,7 +53,7 @@ TEST(Diagnostics, TablesNobodyKnowsAreToldWhichThereAre) {
       "[[sphere]]",
       "a.toml:1:3: unknown key 'sphere'; there are [[particle]], [[ball]], [[box]], [[polygon]], [[body]], "
       "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[explosion]], [[force]], [[attractor]], "
-      "[[mouse]]");
+      "[[when]], [[mouse]]");
 }
 
 TEST(Diagnostics, AKeyInTheWrongTableIsSentHome) {
@@ -407,7 +407,8 @@ TEST(Diagnostics, SpeedsOfAFilmArePositiveAndTheirKeysIncrease) {
           "a.toml:2:9: 'speed': expected a number or fraction, or a list of tables, got 'fast'");
   refused(
       "[film]\nspeed = [{ speed = 0.5 }]",
-      "a.toml:2:10: each of 'speed' needs 'time': a number of seconds, or a fraction such as \"30000/1001\"");
+      "a.toml:2:10: each of 'speed' needs 'time': a number of seconds, a fraction such as \"30000/1001\", or "
+      "the name of a mark");
   refused("[film]\nspeed = [{ time = 2 }, { time = 2, speed = 0.5 }]",
           "a.toml:2:33: times must increase from key to key, got 2 after 2");
   refused("[film]\nspeed = [{ time = 2, spead = 3 }]",
