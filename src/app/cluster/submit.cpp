@@ -25,6 +25,7 @@
 #include "app/film/film.h"
 #include "app/film/output.h"
 #include "app/run/origin.h"
+#include "app/run/run_marks.h"
 #include "app/run/shots.h"
 #include "app/study/sweep.h"
 #include "media/error.h"
@@ -265,7 +266,7 @@ Work work_of(const Flags& flags, int tasks) {
   for (const std::string& text : {flags.scene, flags.out.value_or(""), fs::current_path().string()})
     refuse_controls(text);
   for (const std::string& option : flags.options) refuse_controls(option);
-  const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  const scene::Scene scene = with_run_marks(scene::read(flags.scene, flags.sets));
   std::error_code none;
   const fs::path self = fs::read_symlink("/proc/self/exe", none);
   const std::vector<std::string> program{none ? "obscura" : self.string()};

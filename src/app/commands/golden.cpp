@@ -24,6 +24,7 @@
 #include "app/console/say.h"
 #include "app/console/waiting.h"
 #include "app/film/ordered_pipeline.h"
+#include "app/run/run_marks.h"
 #include "app/run/trouble.h"
 #include "gl/context.h"
 #include "media/error.h"
@@ -161,7 +162,7 @@ Outcome check(const std::string& file, const GoldenFlags& flags) {
   Outcome outcome;
   outcome.name = golden_name(file, flags.golden);
   try {
-    outcome.cases = check_golden(scene::read(file, flags.sets), flags.golden);
+    outcome.cases = check_golden(with_run_marks(scene::read(file, flags.sets)), flags.golden);
   } catch (const scene::Error& error) {
     outcome.cases = {failed(outcome.name, file, kScene, error.what())};
     outcome.cases[0].error = error;

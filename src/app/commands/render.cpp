@@ -15,6 +15,7 @@
 #include "app/film/film.h"
 #include "app/run/imported_run.h"
 #include "app/run/origin.h"
+#include "app/run/run_marks.h"
 #include "app/run/shard.h"
 #include "app/run/trouble.h"
 #include "sim/step/run.h"
@@ -179,6 +180,11 @@ void see_what_it_needs(const scene::Scene& scene, const Shots& shots, const Outp
 int render(RenderFlags flags) {
   flags.film.overwrite = !flags.no_overwrite;
   scene::Scene scene = scene::read(flags.scene, flags.sets);
+  if (!flags.states)
+    scene = with_run_marks(std::move(scene));
+  else if (!scene.marks.empty())
+    say(stderr, "{}: events are of its own run, and {} is another: what waits for marks is not shown\n",
+        scene.file, *flags.states);
   override_film(flags, scene);
   if (flags.out && !flags.fps) suit_gif(*flags.out, scene.film);
   if (flags.interpolate && !flags.states) throw UsageError("--interpolate is for --states");

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/console/command.h"
@@ -163,6 +164,7 @@ struct StatesFlags {
   std::string scene;
   std::optional<std::string> at, every, from_checkpoint, format, out;
   std::vector<std::string> sets;
+  bool events = false;
 };
 
 // as asked for, or by the ending of the file
@@ -185,6 +187,40 @@ std::vector<sim::Rational> times_of(const StatesFlags& flags, const scene::Scene
   return instants(fmt::format("0:{}:{}", sim::text(scene.duration), sim::text(every)));
 }
 
+// what has fired, as a list
+std::string events_text(const std::vector<sim::RunEvent>& events, bool as_json, const std::string& file) {
+  const auto list = [](const std::vector<std::string>& words) { return nlohmann::json(words).dump(); };
+  std::string text = as_json ? fmt::format("{{\"version\": \"{}\", \"scene\": {},\n \"events\": [",
+                                           OBSCURA_VERSION, quoted(file))
+                             : "time,event,condition,of,marks\n";
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const sim::RunEvent& it = events[i];
+    const double t = sim::value(it.time);
+    text +=
+        as_json
+            ? fmt::format(
+                  "{}\n  {{\"time\": {}, \"event\": {}, \"condition\": \"{}\", \"of\": {}, \"marks\": {}}}",
+                  i > 0 ? "," : "", number(t), quoted(it.name), it.what, list(it.of), list(it.marks))
+            : fmt::format("{},{},{},{},{}\n", number(t), it.name, it.what, fmt::join(it.of, " "),
+                          fmt::join(it.marks, " "));
+  }
+  return as_json ? text + "\n ]}\n" : text;
+}
+
+int list_events(const StatesFlags& flags, const scene::Scene& scene, sim::Run& run, sim::Rational to) {
+  Sink sink(flags.out);
+  doing("simulating", sim::value(run.now()), sim::value(to), "s");
+  const auto outcome = run.at(to);
+  if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
+  sink.put(events_text(run.events(), form(flags) == "json", scene.file));
+  if (const auto* trouble = std::get_if<sim::Trouble>(&outcome)) {
+    std::fflush(stdout);
+    throw TroubleError(scene.file, *trouble, "");
+  }
+  sink.finish();
+  return kDone;
+}
+
 int states(const StatesFlags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
   auto times = times_of(flags, scene);
@@ -195,6 +231,7 @@ int states(const StatesFlags& flags) {
     throw UsageError(fmt::format("{}: is of t = {:g} s, after {:g} s", *flags.from_checkpoint,
                                  sim::value(run->now()), sim::value(times.front())));
   run->heed(interrupted);
+  if (flags.events) return list_events(flags, scene, *run, flags.at ? times.back() : scene.duration);
   const bool as_json = form(flags) == "json";
   Sink sink(flags.out);
   const auto put = [&](const std::string& text) { sink.put(text); };
@@ -266,6 +303,8 @@ OBSCURA_COMMAND(60, states) {
   command
       .option("-o,--output", flags->out, "The output: a name that ends with .json or .csv [standard output]")
       .type("OUT");
+  command.flag("--events", flags->events,
+               "List what conditions ([[when]]) have fired, up to the last instant of --at or the duration");
   command.option("--format", flags->format, "json or csv [by OUT's ending, json]").one_of({"json", "csv"});
   add_sets(command, flags->sets);
   add_memory_limit(command);

@@ -11,6 +11,7 @@
 #include "app/console/interrupt.h"
 #include "app/run/description.h"
 #include "app/run/plots.h"
+#include "app/run/run_marks.h"
 #include "app/run/simulation.h"
 #include "app/run/variation.h"
 #include "draw/compose/annotate.h"
@@ -92,10 +93,12 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
   int wanted = 0;
   for (std::int64_t run = 0; run < variants.size; ++run) {
     const std::string said = variants.words(run);
-    scene::Scene scene = scene::read(file, variants.sets(run, sets));
+    scene::Scene scene = with_run_marks(scene::read(file, variants.sets(run, sets)));
     if (options.theme) scene.look.theme = *options.theme;
     const draw::Figure& figure = scene.figure;
     std::vector<sim::Rational> times = options.at.empty() ? figure.at : options.at;
+    if (options.at.empty() && scene.figure_waits)
+      throw UsageError(file + ": the run does not come to the mark of [figure]");
     if (figure.impact >= 0) {
       const sim::Rational struck = impact(scene);
       if (times.empty()) times = {{0, 1}};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -36,7 +37,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-bool over_run(Over over) { return over != Over::at && over != Over::end; }
+bool over_run(Over over) { return over != Over::at && over != Over::end && over != Over::mark; }
 
 Question question(std::string_view text) {
   Question asked;
@@ -56,9 +57,15 @@ Question question(std::string_view text) {
     names.push_back(name);
     if (name == when) asked.over = over;
   }
-  if (std::find(names.begin(), names.end(), when) == names.end())
-    throw UsageError(fmt::format("--measure {}: @{} is neither an instant (s) nor one of {}{}", text, when,
-                                 fmt::join(names, ", "), scene::did_you_mean(when, names)));
+  if (std::find(names.begin(), names.end(), when) == names.end()) {
+    // whether the scene makes it is seen when that is known
+    const auto mark = scene::parse_mark(std::string(when));
+    if (!mark || std::isalpha(static_cast<unsigned char>(mark->first.empty() ? '0' : mark->first[0])) == 0)
+      throw UsageError(
+          fmt::format("--measure {}: @{} is no instant (s), no mark such as hit[2], and none of {}", text,
+                      when, fmt::join(names, ", ")));
+    asked.over = Over::mark, asked.mark = mark->first, asked.time = mark->second;
+  }
   if (asked.path == kHash && over_run(asked.over))
     throw UsageError(fmt::format("--measure {}: a hash is of an instant, as in hash@end", text));
   return asked;
@@ -126,6 +133,32 @@ struct Tally {
   }
 };
 
+// refuses a mark that no event of the scene makes
+void check_mark(const Question& asked, const scene::Scene& scene) {
+  std::vector<std::string> made;
+  std::visit(
+      [&](const auto& world) {
+        for (const auto& when : world.model.whens)
+          for (const auto& action : when.actions)
+            if (!action.mark.empty()) made.push_back(action.mark);
+      },
+      scene.world);
+  if (std::find(made.begin(), made.end(), asked.mark) != made.end()) return;
+  std::vector<std::string_view> names(made.begin(), made.end());
+  for (const auto& [name, over] : kOver) names.push_back(name);
+  throw UsageError(fmt::format("--measure {}: no [[when]] of the scene makes a mark '{}'{}", asked.text,
+                               asked.mark, scene::did_you_mean(asked.mark, names)));
+}
+
+// when a run comes to a mark, if it does
+std::optional<sim::Rational> instant_of(const Question& asked, const std::vector<sim::RunEvent>& events) {
+  int times = 0;
+  for (const sim::RunEvent& event : events)
+    for (const std::string& mark : event.marks)
+      if (mark == asked.mark && ++times == asked.time) return event.time;
+  return {};
+}
+
 std::string text(double x) { return fmt::format("{}", x == 0 ? 0.0 : x); }
 
 }  // namespace
@@ -143,7 +176,10 @@ std::vector<Question> questions(const std::string& list) {
 void check(const std::vector<Question>& asked, const scene::Scene& scene) {
   const auto run = scene.run();
   const std::vector<Column> all = columns(run->scene_info(), scene.axes);
-  for (const Question& each : asked) (void)reader(each, run->scene_info(), all);
+  for (const Question& each : asked) {
+    (void)reader(each, run->scene_info(), all);
+    if (each.over == Over::mark) check_mark(each, scene);
+  }
 }
 
 Answers answers(const scene::Scene& scene, const std::vector<Question>& asked) {
@@ -153,11 +189,25 @@ Answers answers(const scene::Scene& scene, const std::vector<Question>& asked) {
   std::vector<std::function<double(const sim::Snapshot&)>> readers;
   for (const Question& each : asked) readers.push_back(reader(each, run->scene_info(), all));
 
+  Answers found;
+  found.values.resize(asked.size());
+  // when events mark an instant: by a run to the end, before this one
+  std::vector<sim::RunEvent> events;
+  if (std::any_of(asked.begin(), asked.end(), [](const Question& each) { return each.over == Over::mark; })) {
+    const auto before = scene.run();
+    before->heed(interrupted);
+    if (std::holds_alternative<sim::Stopped>(before->at(scene.duration))) throw Interrupted();
+    events = before->events();
+  }
+
   // the instants asked for, in the order of time
   std::vector<std::pair<sim::Rational, std::size_t>> instants;
   bool steps = false;
   for (std::size_t k = 0; k < asked.size(); ++k) {
-    if (over_run(asked[k].over))
+    if (asked[k].over == Over::mark) {
+      check_mark(asked[k], scene);
+      if (const auto t = instant_of(asked[k], events)) instants.emplace_back(*t, k);
+    } else if (over_run(asked[k].over))
       steps = true;
     else
       instants.emplace_back(asked[k].over == Over::end ? scene.duration : asked[k].at, k);
@@ -165,8 +215,6 @@ Answers answers(const scene::Scene& scene, const std::vector<Question>& asked) {
   std::stable_sort(instants.begin(), instants.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
 
-  Answers found;
-  found.values.resize(asked.size());
   std::vector<Tally> tallies(asked.size());
   const auto at = [&](sim::Rational t) -> std::optional<sim::Snapshot> {
     auto outcome = run->at(t);

@@ -9,6 +9,7 @@
 
 #include "app/console/exit.h"
 #include "app/run/imported_run.h"
+#include "app/run/run_marks.h"
 #include "scene/complaints.h"
 #include "scene/difference.h"
 #include "scene/error.h"
@@ -173,7 +174,7 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
 }
 
 scene::Scene scene_of(const Origin& origin) {
-  scene::Scene scene = scene::parse(origin.scene_text, origin.scene_file, origin.sets);
+  scene::Scene scene = with_run_marks(scene::parse(origin.scene_text, origin.scene_file, origin.sets));
   scene.film.width = origin.width, scene.film.height = origin.height;
   scene.film.fps = *sim::parse_rational(origin.fps);
   scene.film.preset = origin.preset, scene.film.crf = origin.crf, scene.film.codec = origin.encoder;

@@ -21,6 +21,7 @@
 #include "app/console/progress.h"
 #include "app/film/ordered_pipeline.h"
 #include "app/run/measures.h"
+#include "app/run/run_marks.h"
 #include "app/run/shard.h"
 #include "app/run/shots.h"
 #include "app/run/trouble.h"
@@ -154,8 +155,9 @@ int pictures(const SweepFlags& flags, bool still) {
   std::string text;
   for (std::int64_t run = 0; run < variations.size; ++run) {
     const std::vector<std::string> sets = variations.sets(run, flags.sets);
-    tiles.push_back({run == 0 ? scene::read(flags.scene, sets) : scene::parse(text, flags.scene, sets),
-                     variations.words(run)});
+    tiles.push_back(
+        {with_run_marks(run == 0 ? scene::read(flags.scene, sets) : scene::parse(text, flags.scene, sets)),
+         variations.words(run)});
     text = tiles.back().scene.text;
   }
   const MosaicOptions options{flags.workers, flags.progress, flags.context};
