@@ -151,6 +151,20 @@ TEST(Events, NothingIsMissedAtAThousandMetresASecond) {
   }
 }
 
+// Wherever in its step a band of 2 cm lies.
+TEST(Events, ABandIsSeenWhereverItLies) {
+  for (const char* mode : {"event", "contact", "handout"}) {
+    std::string text =
+        open_room(mode, false, "position = [0.5, 4]\nvelocity = [1000, 0]", "gravity = [0, 0]");
+    for (int k = 0; k < 100; ++k)
+      text += when(fmt::format("value = \"abs(ball.x - {}) < 0.01\"", 1 + 0.0417 * k));
+    const auto events = events_until(text, 0.02);
+    ASSERT_EQ(events.size(), 100u) << mode;
+    for (std::size_t k = 0; k < 100 && std::string(mode) == "event"; ++k)
+      EXPECT_NEAR(sim::value(events[k].time), (0.49 + 0.0417 * double(k)) / 1000, 1e-13) << k;
+  }
+}
+
 // Between two walls 1 m apart a ball at 1,000 m/s meets them more than once a step; each time counts.
 TEST(Events, EachOfManyTouchesInAStepCounts) {
   const auto scene = [](const char* mode) {

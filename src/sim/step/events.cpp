@@ -34,6 +34,7 @@ constexpr double kLettingGo = 1e-5;  // of a step
 constexpr int kMostTries = 60;       // partial steps of a search
 constexpr int kSamples = 16;         // of a smooth piece
 constexpr int kNarrowings = 60;
+constexpr double kBeside = 1e-3;  // of the way between two samples
 constexpr double kGolden = 0.3819660112501051;
 constexpr int kMostCuts = 1000;  // of a step
 constexpr std::size_t kMostHappenings = 100'000;
@@ -689,15 +690,19 @@ void Events<D>::find_values(const State<D>& state, int w, double from, double to
     more.clear();
     for (std::size_t m = 0; m < margins.size(); ++m) {
       const std::vector<double>& g = margins[m];
-      for (std::size_t i = 0; i + 1 < g.size(); ++i) {
-        // turned back before zero: how near it came between
-        if (i == 0 || !(g[i] != 0)) continue;
+      const std::size_t last = g.size() - 1;
+      for (std::size_t i = 0; i <= last; ++i) {
+        // turns back before zero: how near it comes between
+        if (!(g[i] != 0)) continue;
         const double sign = g[i] > 0 ? 1 : -1;
-        if (!(sign * g[i] <= sign * g[i - 1] && sign * g[i] <= sign * g[i + 1]) || sign * g[i - 1] < 0 ||
-            sign * g[i + 1] < 0)
-          continue;
-        double low = at[i - 1], high = at[i + 1], x = low + kGolden * (high - low),
-               y = high - kGolden * (high - low);
+        const double before = sign * g[i > 0 ? i - 1 : i], here = sign * g[i],
+                     after = sign * g[i < last ? i + 1 : i];
+        if (!(here <= before && here <= after)) continue;
+        double low = at[i > 0 ? i - 1 : i], high = at[i < last ? i + 1 : i];
+        // at an end only what goes towards zero from there
+        const double beside = i == 0 ? low + kBeside * (high - low) : high - kBeside * (high - low);
+        if ((i == 0 || i == last) && !(sign * margin_at(m, beside) < here)) continue;
+        double x = low + kGolden * (high - low), y = high - kGolden * (high - low);
         double gx = sign * margin_at(m, x), gy = sign * margin_at(m, y);
         for (int k = 0; k < kNarrowings && gx > 0 && gy > 0; ++k) {
           if (gx < gy)
