@@ -82,6 +82,8 @@ class Values : private Reporter {
         return limits(node, key);
       case Form::path:
         return path(node, key);
+      case Form::curve:
+        return curve(node, key);
       case Form::trails:
         return trails(node, key);
       case Form::name:
@@ -334,6 +336,30 @@ class Values : private Reporter {
         good = wrong(time, fmt::format("times must increase along the path, got {} after {}", described(time),
                                        described(*before)));
       before = &time;
+      return good;
+    });
+  }
+
+  // places, arcs { through, to } and splines { spline }
+  bool curve(const Node& node, const Key& key) {
+    if (!node.is_list()) return mistyped(node, key);
+    if (node.list().size() < 2) return instead(node, key, fmt::format("{}", node.list().size()));
+    const Key place{.path = key.path, .form = Form::vector, .unit = key.unit};
+    return each(node.list(), [&](const Node& it) {
+      if (it.is_list()) return vector(it, place);
+      if (!it.is_table()) return mistyped(it, key);
+      const bool spline = it.find("spline") != nullptr;
+      bool good = each(it.table(), [&](const Entry& entry) {
+        if (spline && entry.key == "spline") {
+          if (!entry.node.is_list() || entry.node.list().empty() || !entry.node.list().front().is_list())
+            return mistyped(entry.node, key, "a list of places");
+          return each(entry.node.list(), [&](const Node& v) { return vector(v, place); });
+        }
+        if (!spline && (entry.key == "through" || entry.key == "to")) return vector(entry.node, place);
+        return unknown(entry, "a piece of a track", did_you_mean(entry.key, {"through", "to", "spline"}));
+      });
+      if (!spline && !it.find("to"))
+        good = wrong(it, "a piece of a track is { through = place, to = place }, { to = place } or { spline = places }");
       return good;
     });
   }

@@ -66,6 +66,17 @@ Told value(const Node& node, const Key& key) {
     case Form::ends:
     case Form::places:
       return ends(node, key.path);
+    case Form::curve:
+      if (!node.is_list()) return {};
+      for (const Node& each : node.list()) {
+        for (const char* part : {"to", "through"})
+          if (const Node* it = each.find(part))
+            if (Told told = list(*it, key.path)) return told;
+        if (const Node* it = each.find("spline"))
+          if (Told told = first(*it, key.path)) return told;
+        if (Told told = list(each, key.path)) return told;
+      }
+      return {};
     case Form::path:
       return first(node, "place after the time in path", 1);
     default:

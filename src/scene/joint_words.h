@@ -37,7 +37,8 @@ inline constexpr JointWord kJointWords[] = {
 static_assert(
     [] {
       for (int i = 0; i < sim::kJointKinds; ++i)
-        if (std::ranges::none_of(kJointWords,
+        if (sim::JointKind(i) != sim::JointKind::wire &&  // that is a [[track]]'s
+            std::ranges::none_of(kJointWords,
                                  [&](const JointWord& each) { return each.space == sim::JointKind(i); }))
           return false;
       return true;

@@ -701,6 +701,8 @@ std::string type(const Key& key) {
       return "two names";
     case Form::path:
       return "[[t, x, y], ...]";
+    case Form::curve:
+      return "places, arcs, splines";
     case Form::place:
       return "a place, or a point of a body";
     case Form::times:

@@ -12,6 +12,7 @@
 #include "scene/meetings.h"
 #include "sim/collide/may_touch.h"
 #include "sim/collide/narrow_phase.h"
+#include "sim/collide/rails.h"
 #include "sim/model/stance.h"
 #include "sim/shape/shape.h"
 
@@ -39,6 +40,29 @@ struct Kind {
   auto operator<=>(const Kind&) const = default;
 };
 
+// how deep the balls of a shape are in a rail, m; zero: not, or wholly behind it
+template <int D>
+double depth_in_rail(const sim::Shape<D>& shape, const sim::BodyMotion<D>& at, const sim::Rail<D>& rail,
+                     const sim::BodyMotion<D>& rail_at) {
+  double most = 0;
+  std::vector<typename sim::Curve<D>::Foot> feet;
+  for (const sim::SupportVertex<D>& tip : sim::support_vertices(shape)) {
+    if (tip.radius == 0) continue;
+    const sim::Vec<D> p = rail_at.room_from_body.transpose() * (at.x + at.arm(tip.at) - rail_at.x);
+    feet.clear();
+    rail.curve->feet(p, tip.radius, feet);
+    for (const auto& foot : feet) {
+      const sim::Vec<D> e = p - foot.at.x;
+      if constexpr (D == 2) {
+        const double left = foot.at.tangent[0] * e[1] - foot.at.tangent[1] * e[0];
+        if (!(left >= 0 ? rail.left : rail.right)) continue;
+      }
+      most = std::max(most, tip.radius - e.norm());
+    }
+  }
+  return most;
+}
+
 std::string more_text(int more, bool counted) {
   if (more == 0) return "";
   if (more == 1 && counted) return ", and another pair does";
@@ -62,7 +86,7 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
   for (int i = 0; i < n; ++i) {
     const sim::Body<D>& body = model.bodies[std::size_t(i)];
     boxes.push_back(sim::bounds(body.shape, sim::body_motion(world.state, i)));
-    if (body.handout) continue;
+    if (body.handout || body.bare) continue;
     const Kind kind{sim::is_point(body.shape), body.fixed, body.group};
     const auto [known, fresh] = index.emplace(kind, int(kinds.size()));
     if (fresh) kinds.push_back(i);
@@ -95,6 +119,21 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
     }
     return overlapping < kMostCounted;
   });
+
+  // bodies in tracks
+  for (const sim::Rail<D>& rail : model.rails) {
+    const sim::BodyMotion<D> at = sim::body_motion(world.state, rail.body);
+    for (int i = 0; refuse && i < n; ++i) {
+      const sim::Body<D>& body = model.bodies[std::size_t(i)];
+      if (i == rail.body || body.fixed || !sim::touches_rails<D>(body.shape) || !may_touch(i, rail.body)) continue;
+      const double depth = depth_in_rail(body.shape, sim::body_motion(world.state, i), rail, at);
+      if (!(depth > kAllowed * 2 * sim::bounding_radius(body.shape))) continue;
+      complaints.add(roster.groups[std::size_t(group_of[std::size_t(i)])].at,
+                     fmt::format("'{}' overlaps the track '{}' by {:.3g} m at the start; move it away",
+                                 body.name, rail.name, depth));
+      break;
+    }
+  }
 
   for (std::size_t g = 0; g < found.size(); ++g) {
     const OverlapsFound& its = found[g];

@@ -323,6 +323,13 @@ draw::Extent extent(const Room<D>& room, const sim::World<D>& world) {
     points.push_back(world.state.x[i] + Vec::Constant(reach));
   }
   for (const sim::Wall<D>& wall : room.walls) points.push_back(wall.point);
+  const auto add_curve = [&](int body, const sim::Curve<D>& curve) {
+    const sim::BodyMotion<D> at = body < 0 ? sim::BodyMotion<D>{} : sim::body_motion(world.state, body);
+    for (const Vec& x : curve.places(0.001 * curve.length())) points.push_back(at.x + at.arm(x));
+  };
+  for (const sim::Rail<D>& rail : world.model.rails) add_curve(rail.body, *rail.curve);
+  for (const sim::Joint<D>& joint : world.model.joints)
+    if (joint.curve) add_curve(joint.b.body, *joint.curve);
   for (const sim::Spring<D>& spring : world.model.springs)
     for (const sim::End<D>& end : {spring.a, spring.b})
       if (end.body < 0) points.push_back(end.local);

@@ -25,6 +25,7 @@
 #include "scene/overrides.h"
 #include "scene/picture.h"
 #include "scene/room.h"
+#include "scene/tracks.h"
 #include "scene/whens.h"
 #include "sim/constraint/joints/joint.h"
 #include "sim/math/trig.h"
@@ -60,7 +61,7 @@ void refuse_beyond_handout(const Node& top, int dimension, Diagnostics& complain
   std::vector<std::string_view> kinds;
   for (const BodyKind& kind : body_kinds())
     if (dimension == 2 && kind.dimension != 3 && !kind.handout) kinds.push_back(kind.name);
-  kinds.push_back("joint"), kinds.push_back("chain");
+  kinds.push_back("joint"), kinds.push_back("chain"), kinds.push_back("track");
   for (const std::string_view kind : kinds) {
     const Node* all = top.find(kind);
     if (!all || all->list().empty()) continue;
@@ -116,13 +117,13 @@ void refuse_taken_names(const Node& top, const NameTable& roster, Diagnostics& c
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
   for (const char* kind :
-       {"spring", "net", "joint", "chain", "bond", "explosion", "force", "attractor", "mouse", "when"}) {
+       {"spring", "net", "joint", "chain", "bond", "explosion", "force", "attractor", "mouse", "when", "track"}) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i) {
       const Node* name = all->list()[i].find("name");
       if (!name) continue;
       const auto [before, fresh] = taken.emplace(name->text(), name->place);
-      if (!fresh)
+      if (!fresh && before->second != name->place)
         complaints.add(name->place, fmt::format("the name '{}' is taken at {}", name->text(),
                                                 complaints.text(before->second)));
     }
@@ -187,8 +188,9 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   const Room<D> walls = room<D>(top, complaints);
   model.walls = walls.walls;
   Constants constants(top, complaints);
-  const Seating<D> roster =
+  Seating<D> roster =
       bodies<D>(top, walls, scene.seed, copy_sets, told, constants, world, scene.look.bodies, complaints);
+  tracks(top, constants, roster, world, scene.look, complaints);
   for (const Seat<D>& seat : roster.seats) scene.axes.push_back(sim::quaternion<D>(seat.axes));
   ready_to_let_go(top, roster, world, complaints);
   springs(top, roster, world, complaints);
@@ -200,6 +202,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   const std::vector<BondRange> bonded = bonds(top, roster, world, complaints);
   refuse_moved_bonds(top, model, complaints);
   ignore(top, roster, model, complaints);
+  refuse_off_tracks(top, model, complaints);
   const Rebuild<D> rebuild = [&](const std::string& set, Place place, Diagnostics& wrong) {
     return rebuilt<D>(top, copy_sets, told, set, place, wrong);
   };

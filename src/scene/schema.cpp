@@ -155,6 +155,19 @@ Json value(const Key& key) {
     }
     case Form::path:
       return list_of(list_of({{"type", "number"}}, 3, 4), 2, 0);
+    case Form::curve: {
+      const Json spline = list_of(vector(), 1, 0);
+      return list_of(any_of({vector(),
+                             {{"type", "object"},
+                              {"properties", {{"through", vector()}, {"to", vector()}}},
+                              {"required", {"to"}},
+                              {"additionalProperties", false}},
+                             {{"type", "object"},
+                              {"properties", {{"spline", spline}}},
+                              {"required", {"spline"}},
+                              {"additionalProperties", false}}}),
+                     2, 0);
+    }
     case Form::bodies:
       return any_of({string, list_of(string, 1, 0)});
     case Form::expression:

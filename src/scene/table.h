@@ -41,6 +41,7 @@ enum class Form {
   thing,        // the name of a body
   things,       // references to bodies
   path,         // [[t, x, y], ...]
+  curve,        // places, arcs and splines
   walls,        // "ground", "none", or tables
   cameras,      // [camera], in space [[camera]] too
   speeds,       // a speed, or keys of it

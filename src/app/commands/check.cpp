@@ -1,6 +1,8 @@
 // obscura check: reads, validates and builds scenes without opening GL; says what a render would do.
 
+#include <algorithm>
 #include <memory>
+#include <set>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -69,8 +71,18 @@ template <int D>
 std::vector<std::size_t> numbers_of(const sim::Model<D>& model) {
   std::vector<std::size_t> numbers(scene::body_kinds().size());
   for (const sim::Body<D>& body : model.bodies)
-    ++numbers[std::size_t(&scene::kind_of(body) - scene::body_kinds().data())];
+    if (!body.bare) ++numbers[std::size_t(&scene::kind_of(body) - scene::body_kinds().data())];
   return numbers;
+}
+
+// tracks that are touched, and wires, which beads share
+template <int D>
+std::size_t tracks_of(const sim::Model<D>& model) {
+  std::set<const sim::Curve<D>*> all;
+  for (const sim::Rail<D>& rail : model.rails) all.insert(rail.curve.get());
+  for (const sim::Joint<D>& joint : model.joints)
+    if (joint.curve) all.insert(joint.curve.get());
+  return all.size();
 }
 
 template <int D>
@@ -91,7 +103,11 @@ std::string bodies(const sim::Model<D>& model) {
     text += (k > 0 ? ", " : "") + count(numbers[k], kind.called, kind.plural);
   }
   text += ", " + count(model.springs.size(), "spring", "springs");
-  if (!model.joints.empty()) text += ", " + count(model.joints.size(), "joint", "joints");
+  const auto joints = std::size_t(std::count_if(model.joints.begin(), model.joints.end(),
+                                                [](const auto& joint) { return !joint.curve; }));
+  if (joints > 0) text += ", " + count(joints, "joint", "joints");
+  if (const std::size_t tracks = tracks_of(model); tracks > 0)
+    text += ", " + count(tracks, "track", "tracks");
   const std::size_t links = links_of(model);
   if (links > 0)
     text += ", " + count(model.chains.size(), "chain", "chains") + " with " + count(links, "link", "links");
@@ -180,6 +196,7 @@ Json json(const scene::Scene& scene, const sim::Model<D>& model, const Plan& pla
           {"bodies", bodies},
           {"springs", model.springs.size()},
           {"joints", model.joints.size()},
+          {"tracks", tracks_of(model)},
           {"chains", model.chains.size()},
           {"links", links_of(model)},
           {"walls", model.walls.size()},

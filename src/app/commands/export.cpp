@@ -70,7 +70,11 @@ class Stage {
       const draw::Color color = own          ? *own
                                 : body.fixed ? draw::neutral(scene.look.theme)
                                              : draw::turn(next++);
-      Glb::Mesh mesh = surface(body, depth_);
+      // a track without a body of another form is one
+      const auto bare = std::find_if(cast.rails.begin(), cast.rails.end(), [&](const sim::SceneInfo::Rail& rail) {
+        return body.bare && rail.body == int(i);
+      });
+      Glb::Mesh mesh = bare == cast.rails.end() ? surface(body, depth_) : tube(bare->places, depth_ / 20);
       mesh.name = body.name, mesh.color = linear(color);
       add(body.name, std::move(mesh));
     }
@@ -85,6 +89,12 @@ class Stage {
     rods(cast.springs.size(), "spring", palette.spring);
     for (const sim::SceneInfo::Joint& joint : cast.joints)
       if (far(joint)) rods(std::max<std::size_t>(2, joint.places.size()) - 1, joint.name, palette.ink);
+    for (const sim::SceneInfo::Rail& rail : cast.rails) {
+      if (!on_node(rail)) continue;
+      Glb::Mesh mesh = tube(rail.places, depth_ / 20);
+      mesh.name = rail.name, mesh.color = linear(palette.ink);
+      add(rail.name, std::move(mesh));
+    }
     for (const sim::SceneInfo::Wall& wall : cast.walls) {
       if (cast.dimension != 3 || wall.normal != Vec3::UnitY()) continue;
       Glb::Mesh mesh = floor(scene.extent.low, scene.extent.high);
@@ -111,6 +121,15 @@ class Stage {
       for (const draw::RopeLine& line : draw::rope_lines(cast_.joints[i], now))
         stretch(glb.nodes[node++], line.from, line.to, whole);
     }
+    for (const sim::SceneInfo::Rail& rail : cast_.rails) {
+      if (!on_node(rail)) continue;
+      Glb::Node& it = glb.nodes[node++];
+      const bool room = rail.body < 0;
+      it.translations.push_back(narrow(room ? Vec3(Vec3::Zero()) : now.bodies[std::size_t(rail.body)].position));
+      it.rotations.push_back(narrow(room ? Eigen::Quaterniond::Identity()
+                                         : now.bodies[std::size_t(rail.body)].orientation,
+                                    it.rotations));
+    }
   }
 
   void end() {
@@ -120,6 +139,11 @@ class Stage {
   Glb glb;
 
  private:
+  // whether a track has a node of its own: one without another form has that of its body
+  bool on_node(const sim::SceneInfo::Rail& rail) const {
+    return rail.body < 0 || !cast_.bodies[std::size_t(rail.body)].bare;
+  }
+
   static bool far(const sim::SceneInfo::Joint& joint) {
     return draw::spans(draw::joint_look(joint.kind).space);
   }

@@ -11,6 +11,7 @@ using Mesh = media::Glb::Mesh;
 using sim::ShapeKind;
 using sim::Vec3;
 
+constexpr int kTube = 8;  // sides of a rod along places
 constexpr int kAround = 32;  // corners of what is round
 
 std::array<float, 3> narrowed(const Vec3& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
@@ -147,6 +148,33 @@ Mesh rod() {
   add_turned(mesh, {{0, -0.5, 0, -1}, {1, -0.5, 0, -1}});
   add_turned(mesh, {{1, -0.5, 1, 0}, {1, 0.5, 1, 0}});
   add_turned(mesh, {{1, 0.5, 0, 1}, {0, 0.5, 0, 1}});
+  return mesh;
+}
+
+Mesh tube(const std::vector<Vec3>& way, double radius) {
+  Mesh mesh;
+  if (way.size() < 2) return mesh;
+  // a frame that turns no more than the way does
+  Vec3 along = (way[1] - way[0]).normalized();
+  Vec3 across = along.unitOrthogonal();
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const Vec3 d = i + 1 < way.size() ? Vec3(way[i + 1] - way[i]) : Vec3(way[i] - way[i - 1]);
+    if (d.norm() > 0) along = d.normalized();
+    across = (across - along * along.dot(across)).normalized();
+    const Vec3 up = along.cross(across);
+    for (int k = 0; k <= kTube; ++k) {
+      const double a = 2 * std::numbers::pi * k / kTube;
+      const Vec3 out = std::cos(a) * across + std::sin(a) * up;
+      add_vertex(mesh, way[i] + radius * out, out);
+    }
+  }
+  constexpr std::uint32_t row = kTube + 1;
+  for (std::uint32_t i = 0; i + 1 < way.size(); ++i) {
+    for (std::uint32_t k = 0; k < kTube; ++k) {
+      const std::uint32_t a = i * row + k, b = a + 1, c = a + row, d = c + 1;
+      mesh.triangles.insert(mesh.triangles.end(), {a, b, d, a, d, c});
+    }
+  }
   return mesh;
 }
 

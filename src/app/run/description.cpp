@@ -114,7 +114,7 @@ std::string listed(const sim::SceneInfo& cast) {
   std::vector<int> order;
   std::size_t fixed = 0;
   for (const sim::SceneInfo::Body& body : cast.bodies) {
-    if (body.fixed && ++fixed) continue;
+    if (body.bare || (body.fixed && ++fixed)) continue;
     auto& [n, first] = kinds[int(body.kind)];
     if (n++ == 0) first = &body, order.push_back(int(body.kind));
   }
@@ -125,7 +125,11 @@ std::string listed(const sim::SceneInfo& cast) {
   }
   if (fixed > 0) all.push_back(count(fixed, "fixed body", "fixed bodies"));
   if (!cast.springs.empty()) all.push_back(count(cast.springs.size(), "spring", "springs"));
-  if (!cast.joints.empty()) all.push_back(count(cast.joints.size(), "joint", "joints"));
+  const auto joints = std::size_t(std::count_if(cast.joints.begin(), cast.joints.end(), [](const auto& joint) {
+    return joint.kind != sim::JointKind::wire;
+  }));
+  if (joints > 0) all.push_back(count(joints, "joint", "joints"));
+  if (!cast.rails.empty()) all.push_back(count(cast.rails.size(), "track", "tracks"));
   if (all.empty()) return "nothing";
   const std::string last = all.back();
   all.pop_back();

@@ -20,12 +20,13 @@ namespace {
 constexpr double kPathLine = 3.6;    // the line of a path, page units at the weight 1
 constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
 
-bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::ShapeKind::point; }
+bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::ShapeKind::point && !body.bare; }
 
 // bodies, what ties them, their own arrows and names
 void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   draw_brackets(stage, view, now, list);
   draw_ways(stage, view, now, list);
+  draw_tracks(stage, view, now, list);
   draw_rails(stage, view, now, list);
   draw_springs(stage, view, now, false, list);
   draw_boxes(stage, view, now, list);
@@ -137,7 +138,7 @@ Stage::Stage(const sim::SceneInfo& info, const Look& looks_, const Camera& camer
         break;
       case sim::ShapeKind::point:
       case sim::ShapeKind::ball:
-        rounds.push_back(i);
+        if (!body.bare) rounds.push_back(i);
         break;
     }
     seams.push_back(seams_of(body));

@@ -26,6 +26,7 @@ inline constexpr auto kJointLooks = std::to_array<JointLook>({
     {sim::JointKind::pulley, JointMark::pulley, JointMark::pulley},
     {sim::JointKind::gear, JointMark::teeth, JointMark::none},
     {sim::JointKind::screw, JointMark::none, JointMark::rail},
+    {sim::JointKind::wire, JointMark::none, JointMark::none},
 });
 static_assert(sim::in_order(kJointLooks), "each kind of joint has a look");
 

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "draw/page/chart.h"
@@ -120,6 +122,12 @@ void draw_labels(const Stage& stage, const View& view, const sim::Snapshot& now,
 /// The forces where bodies touch that have such arrows: one arrow for two that touch, at their centre of
 /// pressure, the force on the one that is pushed up.
 void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The tracks of a scene: lines, hatched on the side that is not touched.
+void draw_tracks(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
+/// The colour that the scene gives to a track.
+std::optional<Color> track_color(const Look& look, const std::string& name);
 
 /// The rails of sliders, behind the bodies; rods and ropes, in front of boxes; pins, in front of all.
 void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);

@@ -162,6 +162,13 @@ void add_links(SpaceFrame& s) {
         break;
     }
   }
+  for (const sim::SceneInfo::Rail& rail : cast.rails) {
+    std::vector<Vec3> way;
+    for (const Vec3& place : rail.places) way.push_back(place_of(s.now, {rail.body, place}));
+    const double radius = 0.5 * kRod * weight * metre;
+    add_tube(s, way, radius, track_color(s.stage.look, rail.name).value_or(color), number++);
+    for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
+  }
   for (std::size_t i = 0; i < s.now.mice.size() && s.stage.look.pointer; ++i, ++number) {
     const sim::Snapshot::Mouse& mouse = s.now.mice[i];
     if (!mouse.pressed || mouse.body < 0) continue;

@@ -152,7 +152,7 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
   const auto knot = [&](int body) { return body >= 0 && net[body]; };
   const auto points =
       std::count_if(cast.bodies.begin(), cast.bodies.end(),
-                    [](const sim::SceneInfo::Body& b) { return b.kind == sim::ShapeKind::point; });
+                    [](const sim::SceneInfo::Body& b) { return b.kind == sim::ShapeKind::point && !b.bare; });
   const double dot = kDot * w * std::min(1.0, std::cbrt(60.0 / double(std::max<std::ptrdiff_t>(points, 1))));
   int taken = 0;
   for (int i = 0; i < int(cast.bodies.size()); ++i) {
@@ -160,7 +160,8 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
     const bool quiet = body.fixed || knot(i);
     const Color color = looks(i).color ? *looks(i).color : quiet ? neutral(look.theme) : turn(taken++);
     own.push_back(looks(i).quiet ? mix(neutral(look.theme), colours.room, kHushed) : color);
-    dots.push_back(body.kind == sim::ShapeKind::point ? dot : 0);
+    dots.push_back(body.kind == sim::ShapeKind::point && !body.bare ? dot : 0);
+    if (body.bare) continue;
     add_pieces(i, body, Eigen::Matrix3d::Identity(), Vec3::Zero(), pieces);
     for (const sim::SceneInfo::Part& part : body.parts)
       add_pieces(i, part, part.turn.toRotationMatrix(), part.center, pieces);

@@ -10,6 +10,7 @@ MayTouch<D>::MayTouch(const Model<D>& model) : jointed_(model.bodies.size()) {
     const bool point = is_point(body.shape);
     kind_.push_back(char((body.fixed ? kFixed : 0) | (point ? kPoint : 0) | (body.handout ? kHandout : 0)));
   }
+  for (const Rail<D>& rail : model.rails) kind_[std::size_t(rail.body)] &= char(~kPoint);
 
   std::vector<int> names;
   for (const Body<D>& body : model.bodies) names.push_back(body.group);

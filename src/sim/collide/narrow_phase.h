@@ -5,6 +5,7 @@
 
 #include "sim/model/contact.h"
 #include "sim/model/stance.h"
+#include "sim/shape/curve.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim {
@@ -28,7 +29,9 @@ struct ContactCandidate {
     corners,           // at each other
     edges,             // crossing
     corner_at_edge_b,  // a's
-    corner_at_edge_a   // b's
+    corner_at_edge_a,  // b's
+    corner_at_rail_b,  // a's, see sim/collide/rails.h
+    corner_at_rail_a   // b's
   };
 
   ContactKey key;
@@ -42,6 +45,9 @@ struct ContactCandidate {
   double radius_a = 0, radius_b = 0;  // m
   double value = 0;                   // g, m
   bool of_poses = false;              // its features are not of its key alone
+  const Curve<D>* curve = nullptr;    // of a rail, in its body's frame
+  int piece = 0;                      // of the curve
+  double side = 0;                    // in the plane: 1 to the left of the rail, -1 to the right
 };
 
 /// How far along their edges, from on_a and on_b, two edges come nearest to each other: where pa + s ea and
@@ -75,6 +81,11 @@ struct EvaluatedContact {
   Vec<D> point = Vec<D>::Zero();    // world frame, midway between the two surfaces
   Vec<D> normal = Vec<D>::Unit(0);  // world frame, unit, from b to a
 };
+
+/// The same of a contact with a rail, see sim/collide/rails.h.
+template <int D>
+EvaluatedContact<D> evaluate_at_rail(const ContactCandidate<D>& gap, const BodyMotion<D>& a,
+                                     const BodyMotion<D>& b);
 
 /// The gap of a contact at given poses; for a wall, b stands at the origin. Its rate is the normal component
 /// of the velocity of a's material at `point` relative to b's, exactly: the normal turns with both bodies,
@@ -116,6 +127,9 @@ EvaluatedContact<D> evaluate(const ContactCandidate<D>& gap, const BodyMotion<D>
       }
       break;
     }
+    case ContactCandidate<D>::Kind::corner_at_rail_b:
+    case ContactCandidate<D>::Kind::corner_at_rail_a:
+      return evaluate_at_rail(gap, a, b);
     case ContactCandidate<D>::Kind::edges:
       if constexpr (D == 3) {
         const Vec<D> edge_a = a.arm(gap.edge_a), edge_b = b.arm(gap.edge_b);

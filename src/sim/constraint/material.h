@@ -33,6 +33,10 @@ inline Material mixed(const Material& a, const Material& b) {
   return {mixed(a.friction, b.friction), mixed(a.elasticity, b.elasticity)};
 }
 template <int D>
+Material mixed(const Material& body, const Rail<D>& rail) {
+  return {mixed(body.friction, rail.friction), mixed(body.elasticity, rail.elasticity)};
+}
+template <int D>
 Material mixed(const Material& body, const Wall<D>& wall) {
   return {mixed(body.friction, wall.friction), mixed(body.elasticity, wall.elasticity)};
 }

@@ -91,6 +91,7 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     for (const int change : state.events.changes) w.integer(change);
     w.integer(state.events.stopped);
   }
+  for (const int piece : state.on_piece) w.integer(piece);
   for (const char intact : state.intact) w.integer(intact);
   for (const PartPose<D>& pose : state.part_poses) {
     w.template numbers<D>(pose.x);

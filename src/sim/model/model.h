@@ -11,6 +11,7 @@
 #include "sim/math/expression.h"
 #include "sim/math/rational.h"
 #include "sim/math/vec.h"
+#include "sim/shape/curve.h"
 #include "sim/shape/form.h"
 
 namespace obscura::sim {
@@ -52,6 +53,7 @@ struct Body {
   bool linked = false;        // a link of a chain, which moves it
   bool handout = false;       // meets walls by the handout's law, and no bodies, whatever `collision` says
   bool driven = false;        // fixed, but moved by a Drive
+  bool bare = false;          // it has no form but the rails on it
   AngularVec<D> belt =
       AngularVec<D>::Zero();  // m/s of its surface: in the plane around it, clockwise; in space in its frame
 
@@ -67,6 +69,17 @@ struct Wall {
   Vec<D> normal = Vec<D>::Unit(1);   // unit, into the room
   std::optional<double> elasticity;  // none: the body's own holds
   std::optional<double> friction;    // none: the body's own holds
+};
+
+/// A smooth curve that is part of a body: others slide and roll on it.
+template <int D>
+struct Rail {
+  std::string name;
+  int body = -1;
+  std::shared_ptr<const Curve<D>> curve;  // in the body's frame
+  bool left = true, right = false;        // the sides that are touched, seen along it; in space all are
+  std::optional<double> elasticity;       // none: the other body's own holds
+  std::optional<double> friction;         // likewise
 };
 
 /// One end of a spring: a point of a body, or a place in the room.
@@ -86,10 +99,10 @@ struct Spring {
 };
 
 /// The kinds of joint, by the relative motions of two ends that they forbid. Numbers of rows: weld D +
-/// D(D-1)/2, pin D, slider, hinge and screw one less than a weld, rod and rope one. In space a pin is a ball
-/// joint; in the plane a pin and a hinge are the same. Mechanisms hold more than two bodies by one row: a
-/// pulley, a gear.
-enum class JointKind { pin, weld, slider, rod, rope, hinge, pulley, gear, screw, count };
+/// D(D-1)/2, pin D, slider, hinge and screw one less than a weld, wire D - 1, rod and rope one. In space a pin
+/// is a ball joint; in the plane a pin and a hinge are the same. Mechanisms hold more than two bodies by one
+/// row: a pulley, a gear.
+enum class JointKind { pin, weld, slider, rod, rope, hinge, pulley, gear, screw, wire, count };
 inline constexpr int kJointKinds = int(JointKind::count);
 
 /// Whether a table has one row for each kind of joint, in the order of JointKind.
@@ -137,7 +150,8 @@ struct Joint {
   double lower = -1e300, upper = 1e300;  // of a hinge's angle (rad, in space within pi) or a slider's way (m)
   std::optional<Motor> motor;
   std::optional<Coil> coil;
-  double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider
+  double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider; of a wire
+                          // Coulomb's mu
   double breaks = 1e300;  // N: a larger force on the joint breaks it
   bool touching = false;  // whether the two bodies may touch each other
   bool linked = false;    // a chain holds it: of its own it has limits, a motor and friction
@@ -148,6 +162,8 @@ struct Joint {
   int rope = -1;          // a pulley: its number; those of one rope have the same, and break together
   double ratio = 1;       // a gear: of the first joint's coordinate, and the second's; a screw: m a radian
   std::shared_ptr<const std::array<Joint, 2>> geared;  // and both
+  std::shared_ptr<const Curve<D>> curve;  // a wire: in b's frame; for the room, in the room
+  bool lets_go = false;                   // a wire: at its open ends, where others stop
   // the terms of its relative angle, as bodies and factors; empty: angle of a less angle of b
   std::vector<std::pair<int, double>> turns;
 
@@ -358,6 +374,7 @@ struct Model {
   double scale = 1;                          // the room's height, m: what "far" and "fast" are measured by
   std::vector<Body<D>> bodies;
   std::vector<Wall<D>> walls;
+  std::vector<Rail<D>> rails;
   std::vector<Spring<D>> springs;
   std::vector<Mouse<D>> mice;
   std::vector<Joint<D>> joints;

@@ -28,6 +28,16 @@ struct SceneInfo {
     std::vector<DrawnForm> parts;  // of a compound
     std::vector<std::vector<int>> faces = {};  // of a hull: loops of vertices, counter-clockwise from outside
     double friction = 0;                       // Coulomb's mu
+    bool bare = false;                         // it has no form but its rails
+  };
+  /// A curve on which others roll and slide, or which runs through them.
+  struct Rail {
+    std::string name;
+    int body = -1;             // -1: the room
+    std::vector<Vec3> places;  // along it, in the body's frame, m
+    bool closed = false;
+    bool left = false, right = false;  // the sides that are touched; neither: a wire
+    std::optional<double> friction{};  // none: the other body's own holds
   };
   struct Wall {
     Vec3 point, normal;
@@ -68,6 +78,7 @@ struct SceneInfo {
   std::vector<Spring> springs;
   std::vector<Mouse> mice;
   std::vector<Joint> joints;
+  std::vector<Rail> rails;
   bool forces = false;  // beside gravity, drag, springs and explosions
 };
 
@@ -118,6 +129,7 @@ struct Snapshot {
     Vec3 force = Vec3::Zero();                         // on `body`, N
     bool sliding = false;
     bool holds = false;  // false: an impact alone
+    int rail = -1;       // of `other`, or of `body`
   };
 
   double time = 0;           // s

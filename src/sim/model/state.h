@@ -127,6 +127,7 @@ struct State {
                                // bodies that are moved did, J
   std::vector<char> released;  // one a drive: whether its body has been let go
   EventLog events;             // of a model with conditions
+  std::vector<int> on_piece;   // of a model with wires one a joint: the piece of the wire that its a is on
 
   // bonded bodies (sim/step/bonded_bodies.h): then all above describes the parts, and `bonded` is stepped
   std::vector<char> intact;             // one a bond: whether it is whole

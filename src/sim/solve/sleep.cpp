@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/collide/rails.h"
 #include "sim/constraint/material.h"
 #include "sim/force/explosion.h"
 #include "sim/force/forces.h"
@@ -323,6 +324,8 @@ BearingContact<D> Sleep<D>::bearing(const State<D>& state, const Contact<D>& con
   const int a = contact.key.a, b = contact.key.b;
   BearingContact<D> touch{.normal = contact.normal, .force = contact.force};
   touch.friction = material(model_, a, b).friction;
+  if (const Rail<D>* rail = rail_of(model_, contact.key))
+    touch.friction = mixed(Material(model_.bodies[rail->body == a ? b : a]), *rail).friction;
   if (moves(state, a)) touch.a = a, touch.arm_a = contact.point - state.x[a];
   if (moves(state, b)) touch.b = b, touch.arm_b = contact.point - state.x[b];
   return touch;

@@ -60,7 +60,7 @@ void fields(Visit& visit, State<D>& it) {
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
       visit(it.quiet);
   visit(it.broken), visit(it.joint_forces), visit(it.work), visit(it.released);
-  visit(it.events);
+  visit(it.events), visit(it.on_piece);
 }
 
 template <class T>
@@ -174,6 +174,7 @@ bool fits(const State<D>& state, const Model<D>& model) {
               state.bonded.size() == std::size_t(!model.bonds.empty()) &&
               state.part_poses.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
               state.quiet.size() == state.frozen.size() && sized(state.broken, joints) &&
+              sized(state.on_piece, joints) &&
               state.joint_forces.size() == state.broken.size();
   std::size_t things = 0;
   for (const When<D>& when : model.whens) things += std::size_t(when.things());

@@ -3,6 +3,7 @@
 #include <array>
 #include <iterator>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/solve/exact/exact.h"
 #include "sim/solve/iterate/plane.h"
 #include "sim/solve/iterate/space.h"
@@ -72,7 +73,7 @@ template <int D>
 BodyCounts body_counts(const Model<D>& model) {
   BodyCounts all;
   for (const Body<D>& body : model.bodies) {
-    if (body.fixed) continue;
+    if (body.fixed || body.bare) continue;
     ++(body.linked ? all.links : is_point(body.shape) ? all.points : all.bodies);
   }
   return all;
@@ -82,6 +83,7 @@ template <int D>
 Solver solver(const Model<D>& model) {
   if (model.collision == Collision::event) return Solver::direct;
   if (!model.chains.empty()) return Solver::direct;  // links are sides of its rows alone
+  if (!model.rails.empty() || has_wires(model)) return Solver::direct;  // curves are its alone
   if (model.solver != Solver::automatic) return model.solver;
   return body_counts(model).template few<D>() ? Solver::direct : Solver::iterative;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "sim/collide/rails.h"
 #include "sim/constraint/joints/joint.h"
 #include "sim/constraint/material.h"
 #include "sim/energy/energy.h"
@@ -19,6 +20,8 @@ namespace {
 
 constexpr double kPathRate = 60;  // places a second of a mouse's way
 constexpr int kPathMost = 600;
+
+constexpr double kFineCurve = 1e-5;  // of a track: how far its line may be from it
 
 constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stands on it
 
@@ -38,7 +41,7 @@ SceneInfo::Body shown(const Body<D>& body) {
   SceneInfo::Body it;
   it.name = body.name;
   it.mass = body.mass, it.friction = body.friction;
-  it.fixed = body.fixed, it.turns = body.turns();
+  it.fixed = body.fixed, it.turns = body.turns(), it.bare = body.bare;
   std::vector<DrawnForm> forms = of_form(body.shape, [](const auto& form) { return form.drawn(); });
   if (forms.size() > 1 || form<Compound<D>>(body.shape)) {
     it.kind = ShapeKind::compound;
@@ -52,7 +55,7 @@ SceneInfo::Body shown(const Body<D>& body) {
 }
 
 template <int D>
-Snapshot::Contact shown(const Contact<D>& contact) {
+Snapshot::Contact shown(const Model<D>& model, const Contact<D>& contact) {
   Snapshot::Contact it;
   it.body = contact.key.a;
   if (contact.key.b < 0) {
@@ -65,6 +68,7 @@ Snapshot::Contact shown(const Contact<D>& contact) {
   it.gap = contact.gap;
   it.sliding = contact.touching == ContactMode::slide;
   it.holds = contact.touching != ContactMode::open;
+  if (const Rail<D>* rail = rail_of(model, contact.key)) it.rail = int(rail - model.rails.data());
   return it;
 }
 
@@ -123,6 +127,11 @@ Vec<D> velocity(const State<D>& state, const End<D>& end) {
 }  // namespace
 
 double friction(const SceneInfo& cast, const Snapshot::Contact& contact) {
+  if (contact.rail >= 0) {
+    const SceneInfo::Rail& rail = cast.rails[std::size_t(contact.rail)];
+    const int other = contact.body == rail.body ? contact.other : contact.body;
+    return mixed(cast.bodies[std::size_t(other)].friction, rail.friction);
+  }
   const double own = cast.bodies[std::size_t(contact.body)].friction;
   if (contact.other >= 0) return mixed(own, cast.bodies[std::size_t(contact.other)].friction);
   return mixed(own, cast.walls[std::size_t(contact.wall)].friction);
@@ -139,6 +148,23 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   for (const Drive<D>& drive : model.drives) cast.bodies[std::size_t(drive.body)].fixed = false;
   for (const Wall<D>& wall : model.walls)
     cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal), wall.friction});
+  // both ways are drawn as lines; beads of one wire share it
+  std::vector<const Curve<D>*> drawn;
+  const auto add_curve = [&](const std::string& name, int body, const Curve<D>& curve) -> SceneInfo::Rail* {
+    if (std::find(drawn.begin(), drawn.end(), &curve) != drawn.end()) return nullptr;
+    drawn.push_back(&curve);
+    SceneInfo::Rail& it = cast.rails.emplace_back();
+    it.name = name, it.body = body, it.closed = curve.closed();
+    for (const Vec<D>& x : curve.places(kFineCurve * curve.length())) it.places.push_back(to_3d<D>(x));
+    return &it;
+  };
+  for (const Rail<D>& rail : model.rails) {
+    SceneInfo::Rail* it = add_curve(rail.name, rail.body, *rail.curve);
+    if (it && D == 2) it->left = rail.left, it->right = rail.right;
+    if (it) it->friction = rail.friction;
+  }
+  for (const Joint<D>& joint : model.joints)
+    if (joint.curve) add_curve(joint.name, joint.b.body, *joint.curve);
   for (const Spring<D>& s : model.springs)
     cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness});
   for (const Joint<D>& j : model.joints) {
@@ -230,7 +256,7 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
   for (const Contact<D>& contact : state.contacts) {
     // some are carried along before they touch
     if (contact.touching != ContactMode::open || contact.impulse != Vec<D>::Zero())
-      now.contacts.push_back(shown(contact));
+      now.contacts.push_back(shown(model, contact));
   }
   now.energies = energies(model, state, stepper.paths(), t);
   now.momentum = to_3d<D>(momentum(model, state));

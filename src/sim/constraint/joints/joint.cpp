@@ -13,6 +13,7 @@
 #include "sim/constraint/joints/screw.h"
 #include "sim/constraint/joints/slider.h"
 #include "sim/constraint/joints/weld.h"
+#include "sim/constraint/joints/wire.h"
 
 namespace obscura::sim {
 
@@ -20,7 +21,8 @@ namespace obscura::sim {
 template <int D>
 const JointEquations<D>& equations(JointKind kind) {
   static constexpr auto kTable = std::to_array<JointEquations<D>>(
-      {kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>, kPulley<D>, kGear<D>, kScrew<D>});
+      {kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>, kPulley<D>, kGear<D>, kScrew<D>,
+       kWire<D>});
   static_assert(in_order(kTable) && std::ranges::all_of(kTable, [](const auto& its) {
                   return its.hold && its.rows <= kMostHeld<D>;
                 }));

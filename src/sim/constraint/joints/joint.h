@@ -9,6 +9,7 @@
 //   motor     c' = speed, |f| <= most          the same row, bounded both ways; friction: c' = 0, |f| <=
 //   friction breaks    |sum of f_i s_i| > breaks        s_i  linear part of row i: the force of its rows, N
 
+#include <algorithm>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -22,7 +23,8 @@ template <int D>
 struct JointPose {
   const Joint<D>& joint;
   const BodyMotion<D>&a, &b;
-  const AngularVec<D>& turn;                // of a against b, rad; in space the poses tell it
+  const AngularVec<D>& turn;                // of a against b, rad; in space the poses tell it. Of a wire see
+                                            // wire.h
   std::span<const BodyMotion<D>> all = {};  // of all bodies, by number: of a mechanism, which holds more
 
   /// Any of its bodies; below zero: the room.
@@ -60,6 +62,13 @@ const JointEquations<D>& equations(JointKind kind);
 /// The most rows that a joint holds.
 template <int D>
 inline constexpr int kMostHeld = D + kAngular<D>;
+
+/// Whether a model has wires.
+template <int D>
+bool has_wires(const Model<D>& model) {
+  return std::any_of(model.joints.begin(), model.joints.end(),
+                     [](const Joint<D>& joint) { return joint.kind == JointKind::wire; });
+}
 
 /// Writes the rows that a joint constrains and their errors C (m or rad). Returns their number. `turn`: the
 /// angle of a relative to b (rad), for joints that constrain it; in space the poses give it. `all`: pose and

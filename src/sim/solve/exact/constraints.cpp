@@ -15,6 +15,7 @@ namespace obscura::sim {
 
 namespace {
 
+constexpr int kMostRounds = 50;       // of friction on wires
 constexpr double kLeastPart = 1e-3;  // of the way back to where joints belong
 constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: a stack's floor bears it once
 
@@ -80,7 +81,7 @@ typename Motors<D>::Aim ExactSolver<D>::aim(const Constraint& constraint) {
 
 // the rows of what is held, at the stances at hand
 template <int D>
-void ExactSolver<D>::build_jacobian(Constraint& constraint, const AngularVec<D>& turn) {
+void ExactSolver<D>::build_jacobian(Constraint& constraint, const AngularVec<D>& between) {
   static const BodyMotion<D> room;
   constraint.first = int(rows_.size());
   const auto at = [&](int body) -> const BodyMotion<D>& { return body < 0 ? room : poses_[body]; };
@@ -94,6 +95,7 @@ void ExactSolver<D>::build_jacobian(Constraint& constraint, const AngularVec<D>&
   } else {
     const Joint<D>& joint = model_.joints[constraint.of];
     const BodyMotion<D>&a = at(joint.a.body), &b = at(joint.b.body);
+    const AngularVec<D> turn = joint.kind == JointKind::wire ? wire_pose(constraint.of) : between;
     if (constraint.kind == Constraint::Kind::joint || constraint.kind == Constraint::Kind::rope) {
       constraint.rows = sim::rows(joint, a, b, turn, out, constraint.offs, poses_);
       constraint.off = constraint.offs[0];
@@ -182,10 +184,13 @@ void ExactSolver<D>::build_blocks(bool impulses) {
       case Kind::motor:
       case Kind::friction: {
         const Joint<D>& joint = model_.joints[constraint.of];
-        const double most = constraint.kind == Kind::motor ? joint.motor->most : joint.friction;
+        const bool wire = constraint.kind == Kind::friction && joint.kind == JointKind::wire;
+        // that of a wire goes by its load, see rub_wires()
+        const double most = wire ? 0 : constraint.kind == Kind::motor ? joint.motor->most : joint.friction;
         const double slip =
             row_velocity(constraint.first) - (constraint.kind == Kind::motor ? aim(constraint).speed : 0);
         block.law = Law::bounded, block.lower = -most, block.upper = most;
+        constraint.rubs = !wire || impulses ? 0 : slip > still_speed_ ? 1 : slip < -still_speed_ ? -1 : 0;
         if (impulses)
           block.lower = block.upper = 0;
         else if (slip > still_speed_)
@@ -291,7 +296,8 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, rate) + rows_[i].velocity_product;
   for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
   warm_start_rows(1);
-  const bool found = solve();
+  bool found = solve();
+  for (int i = 0; i < kMostRounds && rub_wires(); ++i) found = solve();
   // hold contacts that separate now, but that the forces without them would close again at once
   for (const Constraint& constraint : constraints_) {
     if (progress_.forced.empty() || constraint.kind != Constraint::Kind::contact) continue;

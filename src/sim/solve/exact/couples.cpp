@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/collide/may_touch.h"
+#include "sim/collide/rails.h"
 
 namespace obscura::sim {
 
@@ -22,12 +23,21 @@ double couples(const Model<D>& model) {
 template <int D>
 void list_couples(const Model<D>& model, const std::function<void(int, int)>& found) {
   std::vector<int> all, moving, wide;
+  // what has rails is touched by points, and what is nothing but rails by what touches those alone
+  std::vector<char> rails(model.bodies.size(), 0);
+  for (const Rail<D>& rail : model.rails) rails[std::size_t(rail.body)] = 1;
+  const auto is_dot = [&](int body) {
+    return is_point(model.bodies[std::size_t(body)].shape) && !rails[std::size_t(body)];
+  };
+  const auto passes = [&](int rail, int other) {
+    return model.bodies[std::size_t(rail)].bare && !touches_rails(model.bodies[std::size_t(other)].shape);
+  };
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     const Body<D>& it = model.bodies[body];
     if (it.handout) continue;
     all.push_back(body);
     if (!it.fixed) moving.push_back(body);
-    if (!is_point(it.shape)) wide.push_back(body);
+    if (!is_dot(body)) wide.push_back(body);
   }
   const MayTouch<D> allowed(model);
   for (const int a : all) {
@@ -35,11 +45,12 @@ void list_couples(const Model<D>& model, const std::function<void(int, int)>& fo
     if (!p.fixed) {
       for (int wall = 0; wall < int(model.walls.size()); ++wall) found(a, -1 - wall);
     }
-    const bool point = is_point(p.shape);
+    const bool point = is_dot(a);
     const std::vector<int>& others = p.fixed ? moving : point ? wide : all;
     for (auto b = std::upper_bound(others.begin(), others.end(), a); b != others.end(); ++b) {
       const Body<D>& q = model.bodies[*b];
-      if ((p.fixed && q.fixed) || (point && is_point(q.shape))) continue;
+      if ((p.fixed && q.fixed) || (point && is_dot(*b))) continue;
+      if (passes(a, *b) || passes(*b, a)) continue;
       if (allowed(a, *b)) found(a, *b);
     }
   }

@@ -41,6 +41,7 @@ void ExactSolver<D>::near_contacts(const std::vector<BodyMotion<D>>& at, Couple 
   } else {
     const double far = limits_.bounding_radius[a] + limits_.bounding_radius[b] + margin;
     if ((at[a].x - at[b].x).squaredNorm() > far * far) return;
+    if (model_.bodies[a].bare || model_.bodies[b].bare) return;
     sim::collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin,
                  scratch_.candidates);
   }
@@ -55,7 +56,12 @@ void ExactSolver<D>::find_contacts(const State<D>& state, double margin) {
     if (!response_.moves(couple.a) && !response_.moves(couple.b)) continue;
     near_contacts(poses_, couple, margin,
                   [&](const ContactCandidate<D>& gap) { candidates_.push_back(gap); });
+    scratch_.on_rails.clear();
+    near_rails(poses_, couple, margin);
+    candidates_.insert(candidates_.end(), scratch_.on_rails.begin(), scratch_.on_rails.end());
   }
+  if (!limits_.rails.empty()) choose_rail_contacts();
+  if (limits_.wires) follow_wires(state);
   std::sort(candidates_.begin(), candidates_.end(),
             [](const ContactCandidate<D>& p, const ContactCandidate<D>& q) { return p.key < q.key; });
 }
@@ -67,6 +73,10 @@ double ExactSolver<D>::gap_of(const ContactKey& key, double otherwise) {
   near_contacts(poses_, {key.a, key.b}, model_.scale, [&](const ContactCandidate<D>& gap) {
     if (gap.key == key) value = gap.value;
   });
+  scratch_.on_rails.clear();
+  near_rails(poses_, {key.a, key.b}, model_.scale);
+  for (const ContactCandidate<D>& gap : scratch_.on_rails)
+    if (gap.key == key) value = gap.value;
   return value;
 }
 
@@ -177,13 +187,7 @@ double ExactSolver<D>::closing_time(const State<D>& state, double h, Couple coup
     low = low == 0 && i == 0 ? 0.5 * high : 0.25 * low;
     at_low = least(low);
   }
-  const auto force = [&] {
-    progress_.forced_again = progress_.forced_again ||
-                             std::find(progress_.forced.begin(), progress_.forced.end(), std::pair(a, b)) !=
-                                 progress_.forced.end();
-    progress_.forced.push_back({a, b});
-    return 0.0;
-  };
+  const auto force = [&] { return force_couple(couple); };
   if (at_low <= 0) return force();
   const bool touching = least(0) <= limits_.touching_gap;
 
@@ -203,6 +207,17 @@ double ExactSolver<D>::closing_time(const State<D>& state, double h, Couple coup
     }
   }
   return touching && high < kAtOnce ? force() : 0.5 * (low + high);
+}
+
+// two that come through each other at once: from here on they are held
+template <int D>
+double ExactSolver<D>::force_couple(Couple couple) {
+  const std::pair<int, int> pair(couple.a, couple.b);
+  progress_.forced_again =
+      progress_.forced_again ||
+      std::find(progress_.forced.begin(), progress_.forced.end(), pair) != progress_.forced.end();
+  progress_.forced.push_back(pair);
+  return 0;
 }
 
 // the part of the interval at which the first of what slides has stopped, by a straight line; and whose slide
@@ -276,7 +291,7 @@ double ExactSolver<D>::release_time(const Constraint*& which) {
 // the part of the interval from interval_.begun to `state` at which the first thing happens, and to whom;
 // kNever: nothing does
 template <int D>
-double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which) {
+double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which, bool& passes) {
   // contacts that slide, by their rows at the end
   update_poses(state), pose_driven(interval_.t + h);
   rows_.clear();
@@ -293,9 +308,15 @@ double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& whic
   for (const Couple& couple : active_.couples) {
     if (!may_close(state, h, couple)) continue;
     if (const double part = closing_time(state, h, couple); part < first) first = part, which = couple;
+    if (has_rails(couple.a) || has_rails(couple.b)) {
+      if (const double part = rail_closing_time(state, h, couple); part < first)
+        first = part, which = couple;
+    }
     poses_[couple.a] = end_pose(state, couple.a);
     if (couple.b >= 0) poses_[couple.b] = end_pose(state, couple.b);
   }
+  passes = false;
+  if (const double part = passing_time(state, h); part < first) first = part, passes = true, which = {-1, -1};
   return first;
 }
 
@@ -395,9 +416,11 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
     if (progress_.released && opens < kStraight)
       progress_.unclear.push_back(candidates_[which->of].key), opens = kNever;
     Couple meets{-1, -1};
-    const double part = std::min(opens, first_event(state, length, meets));
+    bool passes = false;
+    const double part = std::min(opens, first_event(state, length, meets, passes));
     if (part > 1) return length;
     cut = true;
+    progress_.passes = passes && part < opens;
     progress_.released.reset();
     if (part == opens) {
       progress_.released = candidates_[which->of].key,

@@ -28,6 +28,7 @@ constexpr int kStuck = 16;           // such cuts, one after another
 constexpr int kThorough = 32;        // steps: in each such one what is not found is looked for everywhere
 constexpr double kManyLooks = 3e5;   // at couples, before a step is
 constexpr int kMostRounds = 8;       // of stepping again what got farther than expected
+constexpr int kMostRubs = 50;        // rounds of friction on wires
 constexpr int kMostLoneCuts =
     50000;  // of a step, by a body that meets walls alone: a bounce takes microseconds
 
@@ -65,6 +66,14 @@ typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& mode
   number(limits.bodies, model.bodies.size()), number(limits.joints, model.joints.size());
   number(limits.springs, model.springs.size()), number(limits.chains, model.chains.size());
   limits.tied_by_forces = tied_by_forces(model);
+  limits.wires = has_wires(model);
+  if (!model.rails.empty()) limits.rails.resize(model.bodies.size());
+  for (int i = 0; i < int(model.rails.size()); ++i) {
+    const Rail<D>& rail = model.rails[std::size_t(i)];
+    limits.rails[std::size_t(rail.body)].push_back(i);
+    double& far = limits.bounding_radius[std::size_t(rail.body)];
+    far = std::max(far, rail.curve->reach());
+  }
   return limits;
 }
 
@@ -164,7 +173,7 @@ bool ExactSolver<D>::collide(StepPart<D> step) {
   wake_near_driven(state, step.t, step.h);
   collect_bodies(state);
   save(state, step_.begun);
-  step_.frozen = state.frozen, step_.quiet = state.quiet;
+  step_.frozen = state.frozen, step_.quiet = state.quiet, step_.on_piece = state.on_piece;
   bound_travel(state, step.t, step.h);
   step_.near.reset(int(n)), step_.old_root.assign(n, -1), step_.travelled.assign(n, 0.0),
       step_.cuts.assign(n, 0), step_.given.assign(n, 0.0);
@@ -216,6 +225,7 @@ void ExactSolver<D>::report(StepPart<D> step) {
   activate_all();
   collect_bodies(step.state);
   write_contacts(step.state);
+  step.state.on_piece = step_.on_piece;
 }
 
 template <int D>
@@ -232,6 +242,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   outcome_.contacts.clear(), outcome_.impulses.clear();
   progress_.known = &state.contacts;
   progress_.given = 0;
+  if (limits_.wires) on_piece_ = state.on_piece;
   double done = 0;
   int tiny = 0;  // cuts in a row that led nowhere
   progress_.forced.clear(), progress_.forced_again = false;
@@ -246,7 +257,8 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   for (const int body : active_.subset.bodies)
     if (course_) course_->forget(body);
   // `event` counts all cuts of the group, whoever they are of
-  for (int spent = 0; done < h; spent = event_mode ? spent + 1 : cuts_so_far()) {
+  for (int spent = 0; done < h; spent = event_mode ? spent + !progress_.passes : cuts_so_far()) {
+    progress_.passes = false;
     pose_driven(t + done);
     stepped_ = done;
     find_contacts(state, limits_.touching_gap);
@@ -279,7 +291,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       if (length > 0) note_contacts(done, done + length);
       pose_driven(t + done + length);
       if (length > 0) project_state(state), progress_.given += interval_.given;
-      if (cut) count_cut(progress_.cut_by.a, progress_.cut_by.b);
+      if (cut && !progress_.passes) count_cut(progress_.cut_by.a, progress_.cut_by.b);
     }
     if (length == 0 && !held_again) {
       // no way to go on but a short one at once
@@ -307,6 +319,8 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   stepped_ = h;
   pose_driven(t + h);
   find_contacts(state, limits_.touching_gap);
+  for (const int i : active_.joints)
+    if (limits_.wires) step_.on_piece[std::size_t(i)] = on_piece_[std::size_t(i)];
   if (wake_reached(state)) {
     collect_bodies(state);
     find_contacts(state, limits_.touching_gap);
@@ -388,6 +402,7 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   // constraints that hold go on holding
   if (D > 2) turn_slip_directions();
   solve_held();
+  for (int i = 0; i < kMostRubs && rub_wires(); ++i) solve_held();
   for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], v_rate);
   if (const int work = dynamics_.work_place(); work >= 0) {
     for (int i = 0; i < int(rows_.size()); ++i) v_rate[std::size_t(work)] += f_[i] * given(i);
@@ -460,6 +475,7 @@ void ExactSolver<D>::note_motion(const State<D>& state, double begun, double end
 template <int D>
 void ExactSolver<D>::break_joints(State<D>& state) {
   scratch_.unheld.clear();
+  let_go_of_wires(state);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > joint.breaks)) continue;

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "sim/collide/may_touch.h"
+#include "sim/collide/rails.h"
 #include "sim/constraint/joints/joint.h"
 #include "sim/constraint/joints/motors.h"
 #include "sim/constraint/material.h"
@@ -63,6 +65,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     // of a sliding contact: the direction of its slip at the start of the interval, room's frame
     Vec<D> slip = Vec<D>::Zero();
     bool slow = false;  // that direction is kept through the interval
+    double rubs = 0;     // of friction on a wire: the sign of the motion that it is against
   };
 
   // poses and velocities
@@ -106,6 +109,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<int> bodies, joints, springs, chains;  // the numbers of all
     std::vector<std::vector<int>> tied_by_forces;      // bodies that forces between them tie together
     std::vector<int> fixed;                            // of Serves::lone: fixed bodies
+    std::vector<std::vector<int>> rails;               // of each body, of a model that has some
+    bool wires = false;                                // some joints are
   };
   static Limits make_limits(const Model<D>& model, Serves whom);
 
@@ -127,6 +132,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<double> given;                   // J: by bodies that are moved, at the root of each group
     std::vector<int> cuts;                       // one a body: cuts of this step that it took part in
     std::vector<Contact<D>> contacts, impulses;  // of the groups that are done
+    std::vector<int> on_piece;                   // as State::on_piece
   };
 
   // progress in the step of the present group
@@ -143,6 +149,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::optional<ContactKey> released;              // what the last interval ended by
     double reserve_at_release = 0;                   // N: force_reserve() of that contact, at its start
     Couple cut_by{-1, -1};                           // what the last interval was cut by
+    bool passes = false;                             // it was cut where a curve goes on in another run
     const std::vector<Contact<D>>* known = nullptr;  // sorted contacts to begin with
   };
 
@@ -181,6 +188,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<ConeMode<D>> island_modes;
     Motion saved, put;
     std::vector<Contact<D>> near;
+    std::vector<ContactCandidate<D>> on_rails;
     std::vector<double> accelerations;  // one a body, m/s^2
     std::vector<int> unheld;            // bodies of joints that broke
     std::vector<Vec<D>> placed;         // x before positions are projected
@@ -290,7 +298,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   // events.cpp
   double advance_to_event(State<D>& state, double t, double h, bool& cut);
   void integrate(State<D>& state, double t, double h);
-  double first_event(const State<D>& state, double h, Couple& first);
+  double first_event(const State<D>& state, double h, Couple& first, bool& passes);
   double closing_time(const State<D>& state, double h, Couple couple);
   double tightening_time(const State<D>& state, double h, Couple& first);
   double stopping_time(Couple& first);
@@ -304,8 +312,27 @@ class ExactSolver final : public ContactSolver<D>, private System {
   template <class Found>
   void near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
   BodyMotion<D> pose_at(const State<D>& state, int body, double h, double part);
+  double force_couple(Couple couple);
 
-  Material material(const ContactKey& key) const { return sim::material(model_, key.a, key.b); }
+  // rails.cpp
+  bool has_rails(int body) const {
+    return body >= 0 && !limits_.rails.empty() && !limits_.rails[std::size_t(body)].empty();
+  }
+  void near_rails(const std::vector<BodyMotion<D>>& at, Couple couple, double margin);
+  void known_places(const ContactKey& key, std::vector<double>& along) const;
+  void choose_rail_contacts();
+  double rail_closing_time(const State<D>& state, double h, Couple couple);
+  double passing_time(const State<D>& state, double h);
+  AngularVec<D> wire_pose(int joint) const;
+  void follow_wires(const State<D>& state);
+  bool rub_wires();
+  void let_go_of_wires(State<D>& state);
+
+  Material material(const ContactKey& key) const {
+    if (const Rail<D>* rail = rail_of(model_, key))
+      return mixed(Material(model_.bodies[rail->body == key.a ? key.b : key.a]), *rail);
+    return sim::material(model_, key.a, key.b);
+  }
 
   const Model<D>& model_;
   const MayTouch<D> may_touch_;
@@ -336,6 +363,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   std::vector<BodyMotion<D>> poses_;     // one a body
   std::vector<DrivenMotion<D>> driven_;  // those of bodies that are moved, in the order of drives_
   std::vector<ContactCandidate<D>> candidates_;
+  std::vector<int> on_piece_;  // of the joints of the group at hand, as State::on_piece
   std::vector<Constraint> constraints_;
   std::vector<Row<D>> rows_;
   ChainResponse<D> chain_response_;  // of rows_
