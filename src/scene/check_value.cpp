@@ -356,10 +356,12 @@ class Values : private Reporter {
           return each(entry.node.list(), [&](const Node& v) { return vector(v, place); });
         }
         if (!spline && (entry.key == "through" || entry.key == "to")) return vector(entry.node, place);
-        return unknown(entry, "a piece of a track", did_you_mean(entry.key, {"through", "to", "spline"}));
+        return unknown(entry, "a piece of a track", ": expected through, to or spline");
       });
       if (!spline && !it.find("to"))
-        good = wrong(it, "a piece of a track is { through = place, to = place }, { to = place } or { spline = places }");
+        good = wrong(
+            it,
+            "a piece of a track is { through = place, to = place }, { to = place } or { spline = places }");
       return good;
     });
   }

@@ -406,6 +406,38 @@ A mark is a time: `--measure ball.velocity.y@hit` in sweeps (`hit[2]`: the secon
 shows, `time` of `film.speed` (a freeze), of cards and ghosts. Such a film is run once before it is drawn; marks stand in it to the
 microsecond.
 
+## Tracks
+
+A track is a smooth curve on which particles, balls and bodies made of balls slide and roll, without seams: straight pieces, arcs and
+splines, of which each goes on as the one before, or formulas of a parameter s.
+
+```toml
+[[track]]                                                        # a slope, a bend and the floor
+points = [[0, 2], [1, 1], { to = [2, 0.6] }, [4, 0.6]]           # { to }: an arc that goes on as the piece before
+
+[[track]]                                                        # a loop: of what crosses itself a body feels the part that it is on
+points = [[0, 2], [2, 0], [4, 0], { through = [5, 1], to = [4, 2] }, { through = [3, 1], to = [4, 0] }, [7, 0]]
+round  = 0.5                                                     # m: corners of straight pieces become arcs
+
+[[track]]
+points   = [[0, 3], { spline = [[1, 2], [2, 2.4], [3, 2]] }]
+side     = "both"                                                # rolled on from both sides; left out, from its left
+friction = 0
+
+[[track]]                                                        # a wire, and beads on it
+x      = "2*cos(s)"                                              # s in radians; also [constants]
+y      = "1.5 + sin(s)"
+from   = 0
+to     = "2*pi"
+thread = ["bead"]                                                # begins where the wire is nearest to its position
+```
+
+Seen along the track from its first place, `side` is where bodies roll; what comes from the other side passes. A ball may leave the
+track, where nothing presses, and land on it again. The ends of a track let go what rolls off; beads stop there, or leave with
+`ends = "free"`. With `on = "cart"` a track is part of a body and in that body's own frame: of a cart, of a hoop with a `motion`. In space, balls
+roll on a track as on a rail, from any side of it. Friction and elasticity are as a wall's. Tracks are for the direct solver, in `contact`
+and `event`; boxes and other bodies with corners do not touch them.
+
 ## Expressions
 
 Expressions are in metres, kilograms, seconds and radians (`sin(30*deg)`); axes are the room's. An expression is a string, or a number.

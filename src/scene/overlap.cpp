@@ -125,7 +125,8 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
     const sim::BodyMotion<D> at = sim::body_motion(world.state, rail.body);
     for (int i = 0; refuse && i < n; ++i) {
       const sim::Body<D>& body = model.bodies[std::size_t(i)];
-      if (i == rail.body || body.fixed || !sim::touches_rails<D>(body.shape) || !may_touch(i, rail.body)) continue;
+      if (i == rail.body || body.fixed || !sim::touches_rails<D>(body.shape) || !may_touch(i, rail.body))
+        continue;
       const double depth = depth_in_rail(body.shape, sim::body_motion(world.state, i), rail, at);
       if (!(depth > kAllowed * 2 * sim::bounding_radius(body.shape))) continue;
       complaints.add(roster.groups[std::size_t(group_of[std::size_t(i)])].at,

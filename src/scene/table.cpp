@@ -224,8 +224,8 @@ std::string expected(const Key& key, int dimension) {
     case Form::path:
       return fmt::format("points in time [[t, {}, ...], two at least", place.substr(1));
     case Form::curve:
-      return fmt::format("places and pieces of a track, such as [{0}, {{ through = {0}, to = {0} }}], two at least",
-                         place);
+      return fmt::format(
+          "places and pieces of a track, such as [{0}, {{ through = {0}, to = {0} }}], two at least", place);
     case Form::walls:
       return "\"ground\", \"none\", or a list of tables";
     case Form::place:

@@ -75,6 +75,7 @@ class TrackCurve {
       return {};
     }
     if (!points && !formula) {
+      if (!complaints_.none()) return {};  // what was wrong is gone
       refuse(fields_.place(), D == 2 ? "a track needs 'points', or 'x' and 'y' as expressions of s"
                                      : "a track needs 'points', or 'x', 'y' and 'z' as expressions of s");
       return {};
@@ -95,8 +96,9 @@ class TrackCurve {
   std::optional<double> bound(const char* key) {
     const Node* node = fields_.given(key);
     if (!node) {
-      refuse(fields_.place(), fmt::format("a track of formulas needs '{}', {} of s", key,
-                                          std::string_view(key) == "from" ? "the first value" : "the last value"));
+      refuse(fields_.place(),
+             fmt::format("a track of formulas needs '{}', {} of s", key,
+                         std::string_view(key) == "from" ? "the first value" : "the last value"));
       return {};
     }
     const std::string text = typed(*node);
@@ -128,7 +130,8 @@ class TrackCurve {
     for (int axis = 0; axis < D; ++axis) {
       const Node* way = fields_.given(kAxes[axis]);
       if (!way) {
-        refuse(fields_.place(), fmt::format("a track of formulas needs '{}' too, an expression of s", kAxes[axis]));
+        refuse(fields_.place(),
+               fmt::format("a track of formulas needs '{}' too, an expression of s", kAxes[axis]));
         return {};
       }
       texts.push_back(typed(*way));
@@ -169,9 +172,11 @@ class TrackCurve {
   std::optional<Pieces> of_points(const Node& points) {
     std::vector<Stop<D>> stops;
     std::size_t places = 0;
-    for (const Node& each : points.list()) stops.push_back(stop<D>(each)), places += stops.back().places.size();
+    for (const Node& each : points.list())
+      stops.push_back(stop<D>(each)), places += stops.back().places.size();
     if (places > kMostPlaces) {
-      refuse(points.place, fmt::format("{} places are more than {}, the most a track may have", places, kMostPlaces));
+      refuse(points.place,
+             fmt::format("{} places are more than {}, the most a track may have", places, kMostPlaces));
       return {};
     }
     if (stops[0].kind != Stop<D>::Kind::place) {
@@ -204,9 +209,10 @@ class TrackCurve {
       if (!add(path, stops, i)) return {};
     if (const auto kink = path.closing_kink()) {
       if (*kink > kStraightOn) {
-        refuse(stops.back().at, fmt::format("the track comes back to its beginning with a turn of {:.3g} degrees; "
-                                            "let it go on as it began, or end it elsewhere",
-                                            degrees(*kink)));
+        refuse(stops.back().at,
+               fmt::format("the track comes back to its beginning with a turn of {:.3g} degrees; "
+                           "let it go on as it began, or end it elsewhere",
+                           degrees(*kink)));
         return {};
       }
       closed_ = true;
@@ -251,10 +257,11 @@ class TrackCurve {
         break;
     }
     if (path.kink() <= kStraightOn) return true;
-    refuse(it.at, fmt::format("the track turns by {:.3g} degrees at {}: it must be smooth. Write round = 0.2 "
-                              "to round corners of straight pieces, or {{ to = {} }}, an arc that goes on as "
-                              "the piece before",
-                              degrees(path.kink()), shown(stops[i - 1].places.back()), shown(it.places.back())));
+    refuse(it.at,
+           fmt::format("the track turns by {:.3g} degrees at {}: it must be smooth. Write round = 0.2 "
+                       "to round corners of straight pieces, or {{ to = {} }}, an arc that goes on as "
+                       "the piece before",
+                       degrees(path.kink()), shown(stops[i - 1].places.back()), shown(it.places.back())));
     return false;
   }
 
@@ -267,7 +274,8 @@ class TrackCurve {
   // replaces corners of straight pieces by arcs of a radius
   bool rounded(std::vector<Stop<D>>& stops, double radius) {
     std::vector<Stop<D>> all;
-    const bool ring = stops.back().kind == Stop<D>::Kind::place && stops.back().places[0] == stops[0].places[0] &&
+    const bool ring = stops.back().kind == Stop<D>::Kind::place &&
+                      stops.back().places[0] == stops[0].places[0] &&
                       std::all_of(stops.begin(), stops.end(),
                                   [](const Stop<D>& it) { return it.kind == Stop<D>::Kind::place; });
     const std::size_t n = stops.size();
@@ -307,8 +315,8 @@ class TrackCurve {
         all.push_back(stops[i]);
         continue;
       }
-      const Vec before = i == 0 ? stops[n - 2].places[0] : stops[i - 1].places.back(), at = stops[i].places[0],
-                after = i + 1 == n ? stops[1].places[0] : stops[i + 1].places[0];
+      const Vec before = i == 0 ? stops[n - 2].places[0] : stops[i - 1].places.back(),
+                at = stops[i].places[0], after = i + 1 == n ? stops[1].places[0] : stops[i + 1].places[0];
       const Vec u = (at - before).normalized(), v = (after - at).normalized();
       const Vec in = at - cut[i] * u, out = at + cut[i] * v;
       if (ring && i == 0) {
@@ -364,7 +372,12 @@ class TrackBuilder {
  public:
   TrackBuilder(const Node& top, Constants& constants, Seating<D>& roster, sim::World<D>& world,
                draw::Look& look, Diagnostics& complaints)
-      : top_(top), constants_(constants), roster_(roster), world_(world), look_(look), complaints_(complaints) {}
+      : top_(top),
+        constants_(constants),
+        roster_(roster),
+        world_(world),
+        look_(look),
+        complaints_(complaints) {}
 
   void build() {
     const Node* all = top_.find("track");
@@ -396,7 +409,8 @@ class TrackBuilder {
       if (found.size() != 1) return;
       body = found[0];
       if (fields.given("group")) {
-        complaints_.add(fields.place("group"), fmt::format("a track on '{0}' is of the group of '{0}'", on->text()));
+        complaints_.add(fields.place("group"),
+                        fmt::format("a track on '{0}' is of the group of '{0}'", on->text()));
         return;
       }
       // from the frame that was typed to the body's
@@ -406,11 +420,13 @@ class TrackBuilder {
     }
     const bool touched = side || !thread;
     if (!touched && fields.given("elasticity")) {
-      complaints_.add(fields.place("elasticity"), "what is threaded does not bounce; give the track a 'side' too");
+      complaints_.add(fields.place("elasticity"),
+                      "what is threaded does not bounce; give the track a 'side' too");
       return;
     }
     if (!thread && fields.given("ends")) {
-      complaints_.add(fields.place("ends"), "'ends' is for beads, 'thread'; what rolls on a track leaves it there");
+      complaints_.add(fields.place("ends"),
+                      "'ends' is for beads, 'thread'; what rolls on a track leaves it there");
       return;
     }
     if (!touched) {
@@ -502,7 +518,8 @@ class TrackBuilder {
       joint.kind = sim::JointKind::wire;
       joint.a.body = bead, joint.b.body = on;
       joint.curve = curve;
-      joint.friction = fields.given("friction") ? sim::mixed(body.friction, fields.number("friction")) : body.friction;
+      joint.friction =
+          fields.given("friction") ? sim::mixed(body.friction, fields.number("friction")) : body.friction;
       joint.lets_go = fields.text("ends") == "free";
       if (!curve->closed() && !joint.lets_go) joint.lower = 0, joint.upper = curve->length();
       const sim::BodyMotion<D> carrier = on < 0 ? sim::BodyMotion<D>{} : sim::body_motion(state, on);
@@ -530,8 +547,8 @@ class TrackBuilder {
 }  // namespace
 
 template <int D>
-void tracks(const Node& top, Constants& constants, Seating<D>& roster, sim::World<D>& world,
-            draw::Look& look, Diagnostics& complaints) {
+void tracks(const Node& top, Constants& constants, Seating<D>& roster, sim::World<D>& world, draw::Look& look,
+            Diagnostics& complaints) {
   TrackBuilder<D>(top, constants, roster, world, look, complaints).build();
 }
 
@@ -542,8 +559,9 @@ void refuse_off_tracks(const Node& top, const sim::Model<D>& model, Diagnostics&
   const Place where = all->list().front().place;
   if (model.collision == sim::Collision::handout) return;  // refused as a kind
   if (!model.bonds.empty())
-    complaints.add(where, "a scene has [[bond]]s or tracks, not both yet; a [[joint]] of type \"weld\" with "
-                          "'breaks' holds two bodies together");
+    complaints.add(where,
+                   "a scene has [[bond]]s or tracks, not both yet; a [[joint]] of type \"weld\" with "
+                   "'breaks' holds two bodies together");
   if (model.solver == sim::Solver::iterative)
     complaints.add(Fields::of(top, "physics").place("solver"),
                    "tracks are for the direct solver; leave 'solver' out, or write \"direct\"");
@@ -557,13 +575,15 @@ void refuse_off_tracks(const Node& top, const sim::Model<D>& model, Diagnostics&
       complaints.add(
           where,
           sim::is_point(body.shape)
-              ? fmt::format("'{}' is a point, which passes by the track '{}' in space; give it a 'radius', or "
-                            "thread = [\"{}\"]",
-                            body.name, rail.name, body.name)
-              : fmt::format("'{}' might come upon the track '{}', and of bodies only particles, balls and those "
-                            "made of balls roll and slide on tracks; let its group ignore that of the track: "
-                            "[contact] ignore",
-                            body.name, rail.name));
+              ? fmt::format(
+                    "'{}' is a point, which passes by the track '{}' in space; give it a 'radius', or "
+                    "thread = [\"{}\"]",
+                    body.name, rail.name, body.name)
+              : fmt::format(
+                    "'{}' might come upon the track '{}', and of bodies only particles, balls and those "
+                    "made of balls roll and slide on tracks; let its group ignore that of the track: "
+                    "[contact] ignore",
+                    body.name, rail.name));
       return;
     }
   }

@@ -71,9 +71,9 @@ class Stage {
                                 : body.fixed ? draw::neutral(scene.look.theme)
                                              : draw::turn(next++);
       // a track without a body of another form is one
-      const auto bare = std::find_if(cast.rails.begin(), cast.rails.end(), [&](const sim::SceneInfo::Rail& rail) {
-        return body.bare && rail.body == int(i);
-      });
+      const auto bare =
+          std::find_if(cast.rails.begin(), cast.rails.end(),
+                       [&](const sim::SceneInfo::Rail& rail) { return body.bare && rail.body == int(i); });
       Glb::Mesh mesh = bare == cast.rails.end() ? surface(body, depth_) : tube(bare->places, depth_ / 20);
       mesh.name = body.name, mesh.color = linear(color);
       add(body.name, std::move(mesh));
@@ -125,10 +125,11 @@ class Stage {
       if (!on_node(rail)) continue;
       Glb::Node& it = glb.nodes[node++];
       const bool room = rail.body < 0;
-      it.translations.push_back(narrow(room ? Vec3(Vec3::Zero()) : now.bodies[std::size_t(rail.body)].position));
-      it.rotations.push_back(narrow(room ? Eigen::Quaterniond::Identity()
-                                         : now.bodies[std::size_t(rail.body)].orientation,
-                                    it.rotations));
+      it.translations.push_back(
+          narrow(room ? Vec3(Vec3::Zero()) : now.bodies[std::size_t(rail.body)].position));
+      it.rotations.push_back(
+          narrow(room ? Eigen::Quaterniond::Identity() : now.bodies[std::size_t(rail.body)].orientation,
+                 it.rotations));
     }
   }
 

@@ -11,7 +11,7 @@ using Mesh = media::Glb::Mesh;
 using sim::ShapeKind;
 using sim::Vec3;
 
-constexpr int kTube = 8;  // sides of a rod along places
+constexpr int kTube = 8;     // sides of a rod along places
 constexpr int kAround = 32;  // corners of what is round
 
 std::array<float, 3> narrowed(const Vec3& v) { return {float(v.x()), float(v.y()), float(v.z())}; }

@@ -56,8 +56,7 @@ EvaluatedContact<D> evaluate_at_rail(const ContactCandidate<D>& gap, const BodyM
                                      const BodyMotion<D>& b) {
   const bool mine = gap.kind == ContactCandidate<D>::Kind::corner_at_rail_b;
   const RailPlace<D> its = rail_place(gap, a, b);
-  return {its.gap, Vec<D>(its.place + its.normal * (its.gap / 2)),
-          mine ? its.normal : Vec<D>(-its.normal)};
+  return {its.gap, Vec<D>(its.place + its.normal * (its.gap / 2)), mine ? its.normal : Vec<D>(-its.normal)};
 }
 
 template <int D>
@@ -126,9 +125,9 @@ void collide_rail(int a, const Shape<D>& shape, const BodyMotion<D>& at, int b, 
 template RailPlace<2> rail_place<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
 template RailPlace<3> rail_place<3>(const ContactCandidate<3>&, const BodyMotion<3>&, const BodyMotion<3>&);
 template EvaluatedContact<2> evaluate_at_rail<2>(const ContactCandidate<2>&, const BodyMotion<2>&,
-                                                const BodyMotion<2>&);
+                                                 const BodyMotion<2>&);
 template EvaluatedContact<3> evaluate_at_rail<3>(const ContactCandidate<3>&, const BodyMotion<3>&,
-                                                const BodyMotion<3>&);
+                                                 const BodyMotion<3>&);
 template bool touches_rails<2>(const Shape<2>&);
 template bool touches_rails<3>(const Shape<3>&);
 template void collide_rail<2>(int, const Shape<2>&, const BodyMotion<2>&, int, int, const Rail<2>&,

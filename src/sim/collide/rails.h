@@ -1,7 +1,7 @@
 #pragma once
 
-// Contacts of round bodies with rails: curves that are part of a body. The gap is that between the vertex p of
-// the one and the place c on the other's curve that is nearest to it, T . (p - c) = 0,
+// Contacts of round bodies with rails: curves that are part of a body. The gap is that between the vertex p
+// of the one and the place c on the other's curve that is nearest to it, T . (p - c) = 0,
 //   g = n . (p - c) - r                n  in the plane the curve's normal to the side that is touched
 //   g = |p - c| - r                    in space
 //   s' = u . T / (1 - k . (p - c))     speed of c along the curve; u  velocity of p in the rail's frame
@@ -23,9 +23,7 @@ struct RailFeature {
 
   static constexpr int kRails = 256, kPieces = 1 << 15, kVertices = 16;
 
-  int packed() const {
-    return 1 << 30 | rail << 22 | int(left) << 21 | end << 19 | vertex << 15 | piece;
-  }
+  int packed() const { return 1 << 30 | rail << 22 | int(left) << 21 | end << 19 | vertex << 15 | piece; }
   static RailFeature of(int feature) {
     return {feature >> 22 & 0xff, feature & 0x7fff, feature >> 15 & 0xf, (feature >> 21 & 1) != 0,
             feature >> 19 & 3};
@@ -46,11 +44,11 @@ const Rail<D>* rail_of(const Model<D>& model, const ContactKey& key) {
 template <int D>
 struct RailPlace {
   typename Curve<D>::Foot foot;
-  Vec<D> tangent, curvature;        // room's frame
-  Vec<D> place;                     // c, room
-  Vec<D> normal;                    // n, from the rail to the vertex
-  double gap = 0;                   // m
-  double speed = 0;                 // s', m/s
+  Vec<D> tangent, curvature;  // room's frame
+  Vec<D> place;               // c, room
+  Vec<D> normal;              // n, from the rail to the vertex
+  double gap = 0;             // m
+  double speed = 0;           // s', m/s
   Vec<D> place_rate, normal_rate;
 };
 
@@ -67,8 +65,8 @@ bool touches_rails(const Shape<D>& shape);
 /// behind.
 inline double deepest_in_rail(double r, double scale) { return r > 0 ? r / 2 : 1e-3 * scale; }
 
-/// Appends the gaps below `margin` (m) between the shape of body a and a rail of body b, a and b in any order.
-/// `scale`: the room's size, m.
+/// Appends the gaps below `margin` (m) between the shape of body a and a rail of body b, a and b in any
+/// order. `scale`: the room's size, m.
 template <int D>
 void collide_rail(int a, const Shape<D>& shape, const BodyMotion<D>& at, int b, int number,
                   const Rail<D>& rail, const BodyMotion<D>& rail_at, double margin, double scale,

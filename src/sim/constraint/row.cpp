@@ -107,7 +107,8 @@ Carried<D> carried(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const
   using Kind = typename ContactCandidate<D>::Kind;
   const Vec<D> arm_a = a.arm(gap.on_a), arm_b = b.arm(gap.on_b);
   Vec<D> pa = a.x + arm_a, pb = b.x + arm_b;
-  if (gap.kind == Kind::corner_at_rail_a || gap.kind == Kind::corner_at_rail_b) return on_rail(gap, a, b, value);
+  if (gap.kind == Kind::corner_at_rail_a || gap.kind == Kind::corner_at_rail_b)
+    return on_rail(gap, a, b, value);
   if (gap.kind != Kind::corner_of_a && gap.kind != Kind::corner_of_b) {
     Vec<D> va = a.velocity(arm_a), vb = b.velocity(arm_b), if_none = Vec<D>::Unit(0);
     if constexpr (D == 3) {

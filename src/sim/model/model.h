@@ -99,9 +99,9 @@ struct Spring {
 };
 
 /// The kinds of joint, by the relative motions of two ends that they forbid. Numbers of rows: weld D +
-/// D(D-1)/2, pin D, slider, hinge and screw one less than a weld, wire D - 1, rod and rope one. In space a pin
-/// is a ball joint; in the plane a pin and a hinge are the same. Mechanisms hold more than two bodies by one
-/// row: a pulley, a gear.
+/// D(D-1)/2, pin D, slider, hinge and screw one less than a weld, wire D - 1, rod and rope one. In space a
+/// pin is a ball joint; in the plane a pin and a hinge are the same. Mechanisms hold more than two bodies by
+/// one row: a pulley, a gear.
 enum class JointKind { pin, weld, slider, rod, rope, hinge, pulley, gear, screw, wire, count };
 inline constexpr int kJointKinds = int(JointKind::count);
 

@@ -22,13 +22,13 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kRightAngle = std::numbers::pi / 2;
-constexpr double kMostTurn = 0.25;    // rad: of a polynomial piece
-constexpr double kHermite = 1e-13;    // of the size: how far a formula's pieces may be from it
-constexpr int kFirstPieces = 32;      // of a formula
-constexpr int kMostHalvings = 12;     // of those
+constexpr double kMostTurn = 0.25;  // rad: of a polynomial piece
+constexpr double kHermite = 1e-13;  // of the size: how far a formula's pieces may be from it
+constexpr int kFirstPieces = 32;    // of a formula
+constexpr int kMostHalvings = 12;   // of those
 constexpr int kMostPieces = 32000;
-constexpr double kTouch = 1e-7;       // of the length: places of a crossing are no farther apart
-constexpr int kLooksForCrossings = 8; // a piece
+constexpr double kTouch = 1e-7;              // of the length: places of a crossing are no farther apart
+constexpr int kLooksForCrossings = 8;        // a piece
 constexpr double kSamePlaceOfCurve = 1e-10;  // of the length: how far over its end a piece has feet
 
 // nodes and weights of Gauss and Legendre on [0, 1], eight of them
@@ -95,7 +95,7 @@ typename Curve<D>::Piece part_of(const typename Curve<D>::Piece& piece, double u
   typename Curve<D>::Piece it = piece;
   const double h = u1 - u0;
   // Taylor's series at u0
-  static constexpr int kBinomial[6][6] = {{1, 1, 1, 1, 1, 1},  {0, 1, 2, 3, 4, 5},   {0, 0, 1, 3, 6, 10},
+  static constexpr int kBinomial[6][6] = {{1, 1, 1, 1, 1, 1},  {0, 1, 2, 3, 4, 5}, {0, 0, 1, 3, 6, 10},
                                           {0, 0, 0, 1, 4, 10}, {0, 0, 0, 0, 1, 5}, {0, 0, 0, 0, 0, 1}};
   double scale = 1;
   for (int k = 0; k < 6; ++k) {
@@ -230,8 +230,7 @@ typename Curve<D>::Foot Curve<D>::foot(int piece, const Vec<D>& p) const {
     if (to == 0 || to == -way || i > size()) return foot;
     int other = piece + to;
     if (closed_) other = (other + size()) % size();
-    if (other < 0 || other >= size() ||
-        pieces_[std::size_t(other)].run != pieces_[std::size_t(piece)].run)
+    if (other < 0 || other >= size() || pieces_[std::size_t(other)].run != pieces_[std::size_t(piece)].run)
       return foot;
     // what has a run alone and is closed goes around
     if (other == piece) return foot;
@@ -355,10 +354,10 @@ void Curve<D>::find_crossings() {
       looks.push_back({i, u, before(piece, u), at(i, u).x});
     }
   }
-  if (!closed_) looks.push_back({size() - 1, pieces_.back().end, length_, at(size() - 1, pieces_.back().end).x});
+  if (!closed_)
+    looks.push_back({size() - 1, pieces_.back().end, length_, at(size() - 1, pieces_.back().end).x});
   double step = 0;
-  for (std::size_t i = 1; i < looks.size(); ++i)
-    step = std::max(step, looks[i].along - looks[i - 1].along);
+  for (std::size_t i = 1; i < looks.size(); ++i) step = std::max(step, looks[i].along - looks[i - 1].along);
   const double touch = kTouch * length_;
   for (std::size_t i = 0; i < looks.size(); ++i) {
     for (std::size_t j = i + 1; j < looks.size(); ++j) {
@@ -639,7 +638,8 @@ typename Curve<D>::Piece quintic(const Jet<D>& a, const Jet<D>& b) {
   typename Curve<D>::Piece piece;
   piece.kind = Curve<D>::Kind::polynomial;
   const double h = b.s - a.s;
-  const Vec<D> d = b.x[0] - a.x[0], p1 = h * a.x[1], q1 = h * b.x[1], p2 = h * h * a.x[2], q2 = h * h * b.x[2];
+  const Vec<D> d = b.x[0] - a.x[0], p1 = h * a.x[1], q1 = h * b.x[1], p2 = h * h * a.x[2],
+               q2 = h * h * b.x[2];
   piece.c[0] = a.x[0], piece.c[1] = p1, piece.c[2] = 0.5 * p2;
   piece.c[3] = 10 * d - 6 * p1 - 4 * q1 - 1.5 * p2 + 0.5 * q2;
   piece.c[4] = -15 * d + 8 * p1 + 7 * q1 + 1.5 * p2 - q2;
@@ -650,8 +650,7 @@ typename Curve<D>::Piece quintic(const Jet<D>& a, const Jet<D>& b) {
 template <int D>
 class FormulaCurve {
  public:
-  FormulaCurve(const Program& formula, double from, double to)
-      : evaluation_(formula), from_(from), to_(to) {}
+  FormulaCurve(const Program& formula, double from, double to) : evaluation_(formula), from_(from), to_(to) {}
 
   std::variant<std::vector<typename Curve<D>::Piece>, std::string> pieces() {
     std::vector<Jet<D>> jets;
@@ -659,7 +658,8 @@ class FormulaCurve {
       jets.push_back(at(from_ + (to_ - from_) * i / kFirstPieces));
       if (!check(jets.back())) return wrong_;
       fastest_ = std::max(fastest_, length_of<D>(jets.back().x[1]));
-      size_ = std::max({size_, length_of<D>(jets.back().x[0]), length_of<D>(jets.back().x[0] - jets[0].x[0])});
+      size_ =
+          std::max({size_, length_of<D>(jets.back().x[0]), length_of<D>(jets.back().x[0] - jets[0].x[0])});
     }
     for (int i = 0; i < kFirstPieces; ++i)
       if (!add(jets[std::size_t(i)], jets[std::size_t(i + 1)], 0)) return wrong_;
@@ -716,7 +716,8 @@ class FormulaCurve {
     }
     if (halvings == kMostHalvings || int(pieces_.size()) > kMostPieces) {
       wrong_ = "the track is not smooth near s = " + number(a.s) +
-               ": a corner, or a bend too sharp to follow; write it as 'points', or begin or end it a little beside";
+               ": a corner, or a bend too sharp to follow; write it as 'points', or begin or end it a little "
+               "beside";
       return false;
     }
     const Jet<D> middle = at(0.5 * (a.s + b.s));
@@ -760,13 +761,13 @@ std::variant<Program, std::pair<int, ExpressionFault>> curve_formula(
   return Program(graph, outputs);
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                            \
-  template class Curve<D>;                                                                                \
-  template class CurvePath<D>;                                                                            \
-  template std::optional<Vec<D>> arc_direction<D>(const Vec<D>&, const Vec<D>&, const Vec<D>&);           \
+#define OBSCURA_INSTANTIATE(D)                                                                             \
+  template class Curve<D>;                                                                                 \
+  template class CurvePath<D>;                                                                             \
+  template std::optional<Vec<D>> arc_direction<D>(const Vec<D>&, const Vec<D>&, const Vec<D>&);            \
   template std::variant<std::vector<Curve<D>::Piece>, std::string> curve_pieces<D>(const Program&, double, \
-                                                                                  double);                \
-  template std::variant<Program, std::pair<int, ExpressionFault>> curve_formula<D>(                       \
+                                                                                   double);                \
+  template std::variant<Program, std::pair<int, ExpressionFault>> curve_formula<D>(                        \
       const std::vector<std::string>&, const std::vector<std::pair<std::string, double>>&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

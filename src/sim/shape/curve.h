@@ -24,12 +24,12 @@ class Curve {
   struct Piece {
     Kind kind = Kind::line;
     Vec<D> c[6];
-    double radius = 0;                // of an arc, m
-    double end = 1;                   // u from 0 to this
-    double start = 0, length = 0;     // m along the curve: where it begins, and its own
-    int run = 0;                      // number of its run
-    Vec<D> center = Vec<D>::Zero();   // of a ball around it
-    double reach = 0;                 // and its radius, m
+    double radius = 0;               // of an arc, m
+    double end = 1;                  // u from 0 to this
+    double start = 0, length = 0;    // m along the curve: where it begins, and its own
+    int run = 0;                     // number of its run
+    Vec<D> center = Vec<D>::Zero();  // of a ball around it
+    double reach = 0;                // and its radius, m
   };
 
   /// The curve at a place of it.
@@ -54,8 +54,8 @@ class Curve {
     double span = 0;               // m: how far to either side of them
   };
 
-  /// Pieces in order; their `start`, `length`, `center` and `reach` are found here. `closed`: the last goes on
-  /// in the first.
+  /// Pieces in order; their `start`, `length`, `center` and `reach` are found here. `closed`: the last goes
+  /// on in the first.
   Curve(std::vector<Piece> pieces, bool closed);
 
   int size() const { return int(pieces_.size()); }
@@ -80,8 +80,8 @@ class Curve {
   /// The piece that follows the run of `piece`, or comes before it; none at an open end.
   std::optional<int> next(int piece, bool forward) const;
 
-  /// All nearest places to p, up to `far` (m) from it: one for each part of the curve that comes near. Ends of
-  /// an open curve are none.
+  /// All nearest places to p, up to `far` (m) from it: one for each part of the curve that comes near. Ends
+  /// of an open curve are none.
   void feet(const Vec<D>& p, double far, std::vector<Foot>& out) const;
   /// The nearest place of all, ends among them.
   Foot nearest(const Vec<D>& p) const;

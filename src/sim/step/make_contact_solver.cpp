@@ -82,7 +82,7 @@ BodyCounts body_counts(const Model<D>& model) {
 template <int D>
 Solver solver(const Model<D>& model) {
   if (model.collision == Collision::event) return Solver::direct;
-  if (!model.chains.empty()) return Solver::direct;  // links are sides of its rows alone
+  if (!model.chains.empty()) return Solver::direct;                     // links are sides of its rows alone
   if (!model.rails.empty() || has_wires(model)) return Solver::direct;  // curves are its alone
   if (model.solver != Solver::automatic) return model.solver;
   return body_counts(model).template few<D>() ? Solver::direct : Solver::iterative;

@@ -20,9 +20,9 @@ namespace obscura::sim {
 // in the order of JointKind
 template <int D>
 const JointEquations<D>& equations(JointKind kind) {
-  static constexpr auto kTable = std::to_array<JointEquations<D>>(
-      {kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>, kPulley<D>, kGear<D>, kScrew<D>,
-       kWire<D>});
+  static constexpr auto kTable =
+      std::to_array<JointEquations<D>>({kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>,
+                                        kPulley<D>, kGear<D>, kScrew<D>, kWire<D>});
   static_assert(in_order(kTable) && std::ranges::all_of(kTable, [](const auto& its) {
                   return its.hold && its.rows <= kMostHeld<D>;
                 }));

@@ -1,9 +1,9 @@
 #pragma once
 
 // Wire: a point of a stays on a curve of b, as a bead that is threaded.
-//   C    = n_i . e,  e = x_a + r_a - c                  c   the place of the curve nearest to the point, T . e = 0
-//   J    = [ n_i  r_a x n_i  -n_i  -(r x n_i) ]         n_i the D-1 directions across the tangent T; r from x_b
-//   J' v = n_i' . u + n_i . (w_a x (w_a x r_a) - w_b x (v_p - v_b))
+//   C    = n_i . e,  e = x_a + r_a - c                  c   the place of the curve nearest to the point, T .
+//   e = 0 J    = [ n_i  r_a x n_i  -n_i  -(r x n_i) ]         n_i the D-1 directions across the tangent T; r
+//   from x_b J' v = n_i' . u + n_i . (w_a x (w_a x r_a) - w_b x (v_p - v_b))
 //          n_i' = w_b x n_i - (k . n_i) s' T,  s' = u . T / (1 - k . e)     k  curvature; u  velocity of the
 //          point in b's frame
 //   free: the way s along the curve, whose row is T, with T' = w_b x T + s' k; limits act on it at open ends,
@@ -18,12 +18,12 @@ namespace obscura::sim {
 template <int D>
 struct WirePlace {
   typename Curve<D>::Foot foot;
-  Vec<D> tangent, curvature;      // room's frame
-  Vec<D> arm_a, arm_b;            // of the bead's point, m
-  Vec<D> apart;                   // e, m
-  Vec<D> velocity;                // u, m/s
-  double speed = 0;               // s', m/s
-  Vec<D> centripetal;             // what J' v has of the bodies' turns
+  Vec<D> tangent, curvature;  // room's frame
+  Vec<D> arm_a, arm_b;        // of the bead's point, m
+  Vec<D> apart;               // e, m
+  Vec<D> velocity;            // u, m/s
+  double speed = 0;           // s', m/s
+  Vec<D> centripetal;         // what J' v has of the bodies' turns
 };
 
 /// `turn` of the pose has 1 + the number of the piece that the bead is on; 0: the nearest.
@@ -62,8 +62,7 @@ void hold_on_wire(const JointPose<D>& at, Row<D>* J, double* C) {
   const WirePlace<D> its = wire_place(at);
   for (int i = 0; i < D - 1; ++i) {
     const Vec<D> n = tangent<D>(its.tangent, i);
-    const Vec<D> n_rate =
-        cross_velocity<D>(at.b.w, n) - (its.curvature.dot(n) * its.speed) * its.tangent;
+    const Vec<D> n_rate = cross_velocity<D>(at.b.w, n) - (its.curvature.dot(n) * its.speed) * its.tangent;
     J[i] = wire_row<D>(its, n, n_rate);
     C[i] = n.dot(its.apart);
   }
@@ -78,9 +77,7 @@ double way_on_wire(const JointPose<D>& at, Row<D>& J) {
 }
 
 template <int D>
-inline constexpr JointEquations<D> kWire = {.kind = JointKind::wire,
-                                            .rows = D - 1,
-                                            .hold = hold_on_wire<D>,
-                                            .coordinate = way_on_wire<D>};
+inline constexpr JointEquations<D> kWire = {
+    .kind = JointKind::wire, .rows = D - 1, .hold = hold_on_wire<D>, .coordinate = way_on_wire<D>};
 
 }  // namespace obscura::sim

@@ -15,7 +15,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kMostRounds = 50;       // of friction on wires
+constexpr int kMostRounds = 50;      // of friction on wires
 constexpr double kLeastPart = 1e-3;  // of the way back to where joints belong
 constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: a stack's floor bears it once
 

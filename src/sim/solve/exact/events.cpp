@@ -309,8 +309,7 @@ double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& whic
     if (!may_close(state, h, couple)) continue;
     if (const double part = closing_time(state, h, couple); part < first) first = part, which = couple;
     if (has_rails(couple.a) || has_rails(couple.b)) {
-      if (const double part = rail_closing_time(state, h, couple); part < first)
-        first = part, which = couple;
+      if (const double part = rail_closing_time(state, h, couple); part < first) first = part, which = couple;
     }
     poses_[couple.a] = end_pose(state, couple.a);
     if (couple.b >= 0) poses_[couple.b] = end_pose(state, couple.b);

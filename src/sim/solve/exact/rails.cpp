@@ -1,10 +1,11 @@
-// Rails and wires within the exact solver: which part of a curve a body is on, and where it comes to the next.
+// Rails and wires within the exact solver: which part of a curve a body is on, and where it comes to the
+// next.
 //
-// A contact or bead keeps its run of the curve through an interval, however far the stages reach beyond it, so
-// that all is smooth there. The interval is cut where the run ends; the next begins on the run that follows.
-// Where a curve crosses itself, what is on one part of it does not feel the other: the contacts of the step
-// before, and State::on_piece of beads, tell which part that is. What comes upon a rail from behind passes:
-// only a gap that was open counts when it closes.
+// A contact or bead keeps its run of the curve through an interval, however far the stages reach beyond it,
+// so that all is smooth there. The interval is cut where the run ends; the next begins on the run that
+// follows. Where a curve crosses itself, what is on one part of it does not feel the other: the contacts of
+// the step before, and State::on_piece of beads, tell which part that is. What comes upon a rail from behind
+// passes: only a gap that was open counts when it closes.
 
 #include <algorithm>
 #include <cmath>
@@ -16,15 +17,15 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kNoEvent = 2;          // a part of the interval
-constexpr double kAtTheStart = 1e-9;    // a part too short to go
-constexpr double kSamePart = 1e-6;      // of the length of a curve: places so near are on one part of it
-constexpr double kBehind = 1e-5;        // of its radius: what is deeper in a rail at first has come from behind
-constexpr double kPointBehind = 1e-8;   // of the room: the same of a point
-constexpr double kFinePart = 0.25;      // of the depth that is seen: how far to go between two looks
-constexpr double kFastestPart = 2.5;    // of its way: how fast one goes in its interval, at most
-constexpr int kMostRailLooks = 20000;   // of a couple in an interval
-constexpr double kSteady = 1e-13;       // of the friction on a wire: it no longer changes
+constexpr double kNoEvent = 2;        // a part of the interval
+constexpr double kAtTheStart = 1e-9;  // a part too short to go
+constexpr double kSamePart = 1e-6;    // of the length of a curve: places so near are on one part of it
+constexpr double kBehind = 1e-5;      // of its radius: what is deeper in a rail at first has come from behind
+constexpr double kPointBehind = 1e-8;  // of the room: the same of a point
+constexpr double kFinePart = 0.25;     // of the depth that is seen: how far to go between two looks
+constexpr double kFastestPart = 2.5;   // of its way: how fast one goes in its interval, at most
+constexpr int kMostRailLooks = 20000;  // of a couple in an interval
+constexpr double kSteady = 1e-13;      // of the friction on a wire: it no longer changes
 
 // how far along its curve the foot of a candidate is, m
 template <int D>
@@ -138,8 +139,9 @@ void ExactSolver<D>::choose_rail_contacts() {
       } else if (p.curve && q.curve) {
         // the joint of two runs: the one that it goes to
         const bool forward = motion(p) > 0;
-        const bool q_later = curve.next(p.piece, true) == q.piece ||
-                             curve.piece(curve.next(p.piece, true).value_or(0)).run == curve.piece(q.piece).run;
+        const bool q_later =
+            curve.next(p.piece, true) == q.piece ||
+            curve.piece(curve.next(p.piece, true).value_or(0)).run == curve.piece(q.piece).run;
         out[forward == q_later ? i : j] = 1;
       } else if (p.curve || q.curve) {
         // an open end: beyond it, if it goes there
@@ -178,7 +180,8 @@ double ExactSolver<D>::rail_closing_time(const State<D>& state, double h, Couple
       for (const Constraint& one : constraints_) {
         if (one.kind != Constraint::Kind::contact || !active(one)) continue;
         const ContactCandidate<D>& held = candidates_[one.of];
-        if (held.key.a != gap.key.a || held.key.b != gap.key.b || rail_of(model_, held.key) != &rail) continue;
+        if (held.key.a != gap.key.a || held.key.b != gap.key.b || rail_of(model_, held.key) != &rail)
+          continue;
         const RailFeature other = RailFeature::of(held.key.feature);
         if (other.vertex != its.vertex) continue;
         const double there = held.curve ? along_of(held, poses_) : other.end == 1 ? 0 : rail.curve->length();
@@ -295,12 +298,14 @@ void ExactSolver<D>::follow_wires(const State<D>& state) {
     const Curve<D>& curve = *joint.curve;
     int piece = its.foot.piece;
     const auto& run = curve.piece(piece);
-    const bool forward = (std::abs(its.speed) > still_speed_ ? its.speed : its.tangent.dot(model_.gravity)) > 0;
+    const bool forward =
+        (std::abs(its.speed) > still_speed_ ? its.speed : its.tangent.dot(model_.gravity)) > 0;
     const double slack = 4 * limits_.touching_gap;
     // at the end of the run in the way that it goes, or beyond it
     if (const auto next = curve.next(piece, forward)) {
-      const bool last = curve.piece(*next).run != run.run &&
-                        (forward ? its.foot.along > run.start + run.length - slack : its.foot.along < run.start + slack);
+      const bool last =
+          curve.piece(*next).run != run.run &&
+          (forward ? its.foot.along > run.start + run.length - slack : its.foot.along < run.start + slack);
       const int beside = forward ? piece + 1 : piece - 1;
       const bool at_end = beside < 0 || beside >= curve.size() || curve.piece(beside).run != run.run;
       if (last && at_end) piece = *next;
@@ -352,14 +357,14 @@ void ExactSolver<D>::let_go_of_wires(State<D>& state) {
   }
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                        \
-  template void ExactSolver<D>::near_rails(const std::vector<BodyMotion<D>>&, Couple, double);        \
-  template void ExactSolver<D>::choose_rail_contacts();                                               \
-  template double ExactSolver<D>::rail_closing_time(const State<D>&, double, Couple);                 \
-  template double ExactSolver<D>::passing_time(const State<D>&, double);                              \
-  template AngularVec<D> ExactSolver<D>::wire_pose(int) const;                                        \
-  template void ExactSolver<D>::follow_wires(const State<D>&);                                        \
-  template bool ExactSolver<D>::rub_wires();                                                          \
+#define OBSCURA_INSTANTIATE(D)                                                                 \
+  template void ExactSolver<D>::near_rails(const std::vector<BodyMotion<D>>&, Couple, double); \
+  template void ExactSolver<D>::choose_rail_contacts();                                        \
+  template double ExactSolver<D>::rail_closing_time(const State<D>&, double, Couple);          \
+  template double ExactSolver<D>::passing_time(const State<D>&, double);                       \
+  template AngularVec<D> ExactSolver<D>::wire_pose(int) const;                                 \
+  template void ExactSolver<D>::follow_wires(const State<D>&);                                 \
+  template bool ExactSolver<D>::rub_wires();                                                   \
   template void ExactSolver<D>::let_go_of_wires(State<D>&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
