@@ -408,8 +408,8 @@ microsecond.
 
 ## Tracks
 
-A track is a smooth curve on which particles, balls and bodies made of balls slide and roll, without seams: straight pieces, arcs and
-splines, of which each goes on as the one before, or formulas of a parameter s.
+A track is a smooth curve on which bodies slide and roll, without seams: straight pieces, arcs and splines, of which each goes on as
+the one before, or formulas of a parameter s.
 
 ```toml
 [[track]]                                                        # a slope, a bend and the floor
@@ -435,8 +435,8 @@ thread = ["bead"]                                                # begins where 
 Seen along the track from its first place, `side` is where bodies roll; what comes from the other side passes. A ball may leave the
 track, where nothing presses, and land on it again. The ends of a track let go what rolls off; beads stop there, or leave with
 `ends = "free"`. With `on = "cart"` a track is part of a body and in that body's own frame: of a cart, of a hoop with a `motion`. In space, balls
-roll on a track as on a rail, from any side of it. Friction and elasticity are as a wall's. Tracks are for the direct solver, in `contact`
-and `event`; boxes and other bodies with corners do not touch them.
+and bodies made of balls roll on a track as on a rail, from any side of it; other bodies do not touch it there. Friction and elasticity are
+as a wall's. Tracks are for the direct solver, in `contact` and `event`.
 
 ## Expressions
 

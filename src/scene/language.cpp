@@ -344,7 +344,7 @@ std::vector<Key> rows() {
        .example = "\"paper\""},
 
       {.path = "track", .form = tables,
-       .doc = "A smooth curve on which particles, balls and bodies of balls slide and roll, or beads run as on a wire; without seams. It is of `points`, or of formulas of s."},
+       .doc = "A smooth curve on which bodies slide and roll, or beads run as on a wire; without seams. It is of `points`, or of formulas of s."},
       {.path = "track.name", .form = name, .absent = "`track[0]`, ...", .doc = "Its name.", .example = "\"loop\""},
       {.path = "track.points", .form = curve, .unit = "m", .absent = "`x` and `y` are given",
        .doc = "Places that straight pieces join; `{ through, to }`: an arc; `{ to }`: an arc that goes on as the piece before; `{ spline = [...] }`: a smooth curve through places. Each piece goes on as the one before. It is closed if it comes back to its beginning.",

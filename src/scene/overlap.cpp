@@ -14,6 +14,7 @@
 #include "sim/collide/narrow_phase.h"
 #include "sim/collide/rails.h"
 #include "sim/model/stance.h"
+#include "sim/shape/convex_polygon.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::scene {
@@ -58,6 +59,31 @@ double depth_in_rail(const sim::Shape<D>& shape, const sim::BodyMotion<D>& at, c
         if (!(left >= 0 ? rail.left : rail.right)) continue;
       }
       most = std::max(most, tip.radius - e.norm());
+    }
+  }
+  if constexpr (D == 2) {
+    // places of the curve within a polygon that stands in front of it
+    const sim::Lie lies = sim::inverse(sim::lie(at, rail_at));
+    const double size = sim::bounding_radius(shape);
+    const auto middle = rail.curve->nearest(rail_at.room_from_body.transpose() * (at.x - rail_at.x));
+    const sim::Vec<2> e = rail_at.room_from_body.transpose() * (at.x - rail_at.x) - middle.at.x;
+    const double left = middle.at.tangent[0] * e[1] - middle.at.tangent[1] * e[0];
+    if (!(left >= 0 ? rail.left : rail.right) || e.norm() > size) return most;
+    for (int i = 0; i < sim::parts(shape); ++i) {
+      const sim::ConvexPolygon polygon(sim::part(shape, i));
+      if (polygon.faces() == 0) continue;
+      const auto depth = [&](const sim::Vec<2>& x) {
+        double least = 1e300;
+        for (int k = 0; k < polygon.faces(); ++k)
+          least = std::min(least, polygon.normal(k).dot(polygon.corner(k) - x));
+        return least;
+      };
+      for (int piece = 0; piece < rail.curve->size(); ++piece) {
+        const auto& its = rail.curve->piece(piece);
+        const int looks = std::clamp(int(std::ceil(20 * its.length / size)), 2, 1000);
+        for (int k = 0; k <= looks; ++k)
+          most = std::max(most, depth(lies * rail.curve->at(piece, its.end * k / looks).x));
+      }
     }
   }
   return most;

@@ -282,9 +282,9 @@ class TrackCurve {
     std::vector<double> cut(n, 0.0);
     const auto corner = [&](std::size_t i, const Vec& before, const Vec& at, const Vec& after) {
       const Vec u = (at - before).normalized(), v = (after - at).normalized();
-      const double turn = std::acos(std::clamp(u.dot(v), -1.0, 1.0));
-      cut[i] = turn > 1e-9 ? radius * std::tan(turn / 2) : 0;
-      return std::pair(u, v);
+      // the tangent of half the turn
+      const double off = (v - u).norm(), on = (v + u).norm();
+      cut[i] = off > 1e-9 ? radius * off / on : 0;
     };
     const auto straight = [&](std::size_t i) {
       return i > 0 && i < n && stops[i].kind == Stop<D>::Kind::place;
@@ -574,15 +574,18 @@ void refuse_off_tracks(const Node& top, const sim::Model<D>& model, Diagnostics&
         continue;
       complaints.add(
           where,
-          sim::is_point(body.shape)
+          D == 2 ? fmt::format(
+                       "'{}' has more corners than the {} with which bodies lie on tracks; let its group "
+                       "ignore that of the track '{}': [contact] ignore",
+                       body.name, sim::RailFeature::kVertices, rail.name)
+          : sim::is_point(body.shape)
               ? fmt::format(
                     "'{}' is a point, which passes by the track '{}' in space; give it a 'radius', or "
                     "thread = [\"{}\"]",
                     body.name, rail.name, body.name)
               : fmt::format(
-                    "'{}' might come upon the track '{}', and of bodies only particles, balls and those "
-                    "made of balls roll and slide on tracks; let its group ignore that of the track: "
-                    "[contact] ignore",
+                    "'{}' might come upon the track '{}', and in space only balls and bodies made of balls "
+                    "roll and slide on tracks; let its group ignore that of the track: [contact] ignore",
                     body.name, rail.name));
       return;
     }

@@ -195,6 +195,34 @@ TEST(Wire, OnACartMomentumAndEnergyStay) {
   }
 }
 
+// A wire in a loop crosses itself: a bead goes once around and out; and a figure eight is run through
+// straight on.
+TEST(Wire, WhatCrossesItselfIsFollowed) {
+  for (const std::string& mode : kTrackModes) {
+    TextRun loop(
+        open_room(mode) +
+        "[[track]]\npoints = [[-3, 0], [0, 0], { through = [1, 1], to = [0, 2] }, { through = [-1, 1], to = "
+        "[0, 0] }, [3, 0]]\nthread = \"bead\"\nfriction = 0\nends = \"free\"\n"
+        "[[particle]]\nname = \"bead\"\nposition = [-2, 0]\nvelocity = [7, 0]\n");
+    double highest = 0;
+    for (int i = 1; i <= 100; ++i) highest = std::max(highest, loop.place(0.02 * i).y());
+    EXPECT_NEAR(highest, 2, 0.01) << mode;
+    // beyond the end it flies on, with the speed that it had at first
+    EXPECT_NEAR(moving(loop.at(2.2), loop, "bead").velocity.x(), 7, 1e-8) << mode;
+    EXPECT_LT(moving(loop.at(2.2), loop, "bead").position.y(), -1e-3) << mode;
+    TextRun eight(open_room(mode, "gravity = [0, 0]") +
+                  "[[track]]\nx = \"sin(s)\"\ny = \"sin(2*s)\"\nfrom = 0\nto = \"2*pi\"\nthread = \"bead\"\n"
+                  "friction = 0\n[[particle]]\nname = \"bead\"\nposition = [1, 0]\nvelocity = [0, -1]\n");
+    // without forces along it the speed stays; a round is its length, a half lies between both places [-1,
+    // 0], [1, 0]
+    const double length = integral(
+        [](double u) { return std::sqrt(std::pow(std::cos(u), 2) + 4 * std::pow(std::cos(2 * u), 2)); }, 0,
+        2 * kHalfTurn);
+    EXPECT_NEAR((eight.place(to_a_microsecond(length / 2)) - sim::Vec3(-1, 0, 0)).norm(), 0, 2e-6) << mode;
+    EXPECT_NEAR((eight.place(to_a_microsecond(5 * length)) - sim::Vec3(1, 0, 0)).norm(), 0, 2e-6) << mode;
+  }
+}
+
 // --- rails
 
 // a slope of 3-4-5 from [-7, 8] to the floor, and a loop of radius 1 about [1, 1]
@@ -336,6 +364,195 @@ TEST(Rail, ABallLandsFromInFrontAndPassesFromBehind) {
   }
 }
 
+// A ball in a bowl on a cart: with the cart pulled along with acceleration a it rests where tan(phi) = a/g;
+// on a free cart momentum and energy stay.
+TEST(Rail, OnAMovingBodyItHasThatMotion) {
+  const std::string bowl =
+      "[[track]]\non = \"cart\"\npoints = [[-1, 1], { through = [0, 0], to = [1, 1] }]\nfriction = "
+      "0\nelasticity = "
+      "0\n";
+  for (const std::string& mode : kTrackModes) {
+    const double a = 3, phi = std::atan(a / kFall), R = 1 - 0.2;
+    TextRun pulled(
+        open_room(mode) +
+        "[[box]]\nname = \"cart\"\nsize = [2, 0.2]\nposition = [0, -1.5]\nmotion = { x = \"1.5*t^2\" }\n" +
+        bowl +
+        fmt::format("[[ball]]\nname = \"it\"\nradius = 0.2\nposition = [{:.17g}, {:.17g}]\n",
+                    -R * std::sin(phi), 0.5 - R * std::cos(phi)));
+    const sim::Snapshot now = pulled.at(1.5);
+    EXPECT_NEAR(moving(now, pulled, "it").velocity.x(), a * 1.5, 1e-9) << mode;
+    EXPECT_NEAR(moving(now, pulled, "it").position.y(), 0.5 - R * std::cos(phi), 1e-9) << mode;
+    TextRun free(open_room(mode) +
+                 "[[box]]\nname = \"cart\"\nsize = [2, 0.2]\nmass = 3\nposition = [0, -1.5]\n"
+                 "[[joint]]\ntype = \"slider\"\nbetween = [\"cart\", \"room\"]\n" +
+                 bowl + "[[ball]]\nname = \"it\"\nradius = 0.2\nposition = [-0.64, 0.02]\n");
+    const double begun = free.at(0).energies.total();
+    for (const double t : {0.3, 0.9, 2.1}) {
+      EXPECT_NEAR(free.at(t).momentum.x(), 0, 1e-10) << mode;
+      EXPECT_NEAR(free.at(t).energies.total(), begun, 1e-8) << mode;
+    }
+  }
+}
+
+// What rolls off the end of a track turns over the edge or flies on, and what goes over a rail of both sides
+// stays on its own.
+TEST(Rail, EndsAndBothSides) {
+  for (const std::string& mode : kTrackModes) {
+    TextRun flies(
+        open_room(mode) +
+        "[[track]]\npoints = [[-2, 0], [0, 0]]\nfriction = 0\n[[ball]]\nname = \"it\"\nradius = 0.2\n"
+        "position = [-1, 0.2]\nvelocity = [2, 0]\nfriction = 0\n");
+    // v^2 > g r: it leaves at the edge
+    EXPECT_NEAR(moving(flies.at(1), flies, "it").position.y(), 0.2 - kFall * 0.125, 1e-9) << mode;
+    TextRun turns(open_room(mode) +
+                  "[[track]]\npoints = [[-2, 0], [0, 0]]\nfriction = 0\nelasticity = 0\n[[ball]]\nname = "
+                  "\"it\"\nradius = "
+                  "0.2\nposition = [-0.5, 0.2]\nvelocity = [0.5, 0]\nfriction = 0\n");
+    // over the edge at first with half of g r: it stays until cos = (2 + v^2/(g r)) / 3
+    const double begun = turns.at(0).energies.total();
+    EXPECT_NEAR(turns.at(1.1).energies.total(), begun, 1e-9) << mode;
+    EXPECT_NEAR(moving(turns.at(1.05), turns, "it").position.norm(), 0.2, 1e-9) << mode;
+    for (const double side : {1.0, -1.0}) {
+      TextRun both(open_room(mode, fmt::format("gravity = [0, {}]", -kFall * side)) +
+                   "[[track]]\npoints = [[-4, 0], [4, 0]]\nside = \"both\"\nelasticity = 0.5\n" +
+                   fmt::format("[[particle]]\nname = \"it\"\nposition = [0, {}]\nelasticity = 0.5\n", side));
+      const double down = std::sqrt(2 / kFall), v = kFall * down;
+      EXPECT_NEAR(side * moving(both.at(to_a_microsecond(down + 0.5 * v / kFall)), both, "it").position.y(),
+                  0.25, 1e-9)
+          << mode;
+      EXPECT_NEAR(moving(both.at(5), both, "it").position.y(), 0, 1e-9) << mode;
+    }
+  }
+}
+
+// --- in space
+
+// A ball on two rails of space turns about a shorter lever: a = g sin a / (1 + 2/5 r^2 / (r^2 - d^2)).
+TEST(RailInSpace, ABallRollsOnTwoRails) {
+  for (const std::string& mode : kTrackModes) {
+    const double r = 0.5, d = 0.3, lever2 = r * r - d * d, lever = std::sqrt(lever2);  // 0.4
+    std::string rails;
+    for (const double z : {-d, d})
+      rails += fmt::format("[[track]]\npoints = [[-8, 6, {0}], [0, 0, {0}]]\n", z);
+    TextRun scene(
+        open_room(mode, "", 3) + rails +
+        fmt::format("[[ball]]\nname = \"it\"\nradius = 0.5\nfriction = 2\nposition = [{:.17g}, {:.17g}, 0]\n",
+                    -6 + 0.6 * lever, 4.5 + 0.8 * lever));
+    const sim::Snapshot now = scene.at(1);
+    const double a = kFall * 0.6 / (1 + 0.4 * r * r / lever2);
+    EXPECT_NEAR(moving(now, scene, "it").velocity.norm(), a, 1e-8) << mode;
+    EXPECT_NEAR(moving(now, scene, "it").spin.z(), -a / lever, 1e-8) << mode;
+    EXPECT_NEAR(moving(now, scene, "it").position.z(), 0, 1e-9) << mode;
+  }
+}
+
+// A ball that hangs in the plane of a rail moves as in the plane: without friction, in a bowl and over a
+// joint of pieces; until what is unstable across it has grown.
+TEST(RailInSpace, InAPlaneItIsThatOfThePlane) {
+  for (const std::string& mode : kTrackModes) {
+    const std::string tail = "friction = 0\nelasticity = 0\n";
+    TextRun flat(open_room(mode) + "[[track]]\npoints = [[-4, 3], [0, 0], [3, 0]]\nround = 1\n" + tail +
+                 "[[ball]]\nname = \"it\"\nradius = 0.2\nposition = [-2.88, 2.41]\n");
+    TextRun space(open_room(mode, "", 3) +
+                  "[[track]]\npoints = [[-4, 3, 0], [0, 0, 0], [3, 0, 0]]\nround = 1\n" + tail +
+                  "[[ball]]\nname = \"it\"\nradius = 0.2\nposition = [-2.88, 2.41, 0]\n");
+    for (const double t : {0.4, 0.8, 1.1})
+      EXPECT_NEAR(
+          (moving(flat.at(t), flat, "it").position - moving(space.at(t), space, "it").position).norm(), 0,
+          1e-9)
+          << mode << t;
+  }
+}
+
+// --- bodies with corners
+
+// A block on a slope of 3-4-5 slides with (sin a - mu cos a) g, or stays; and along a straight piece that
+// bends up, its energy stays.
+TEST(RailOfBoxes, ABlockSlidesOnASlopeAndUpABend) {
+  for (const std::string& mode : kTrackModes) {
+    const auto block = [&](double friction) {
+      return open_room(mode) + "[[track]]\npoints = [[-8, 6], [0, 0]]\n" +
+             fmt::format(
+                 "[[box]]\nname = \"it\"\nsize = [0.4, 0.2]\nposition = [-5.94, 4.58]\nangle = "
+                 "-36.86989764584402\nfriction = {}\n",
+                 friction);
+    };
+    TextRun slides(block(0.5)), stays(block(0.8));
+    const sim::Snapshot now = slides.at(1);
+    EXPECT_NEAR(moving(now, slides, "it").velocity.norm(), kFall * (0.6 - 0.5 * 0.8), 1e-9) << mode;
+    EXPECT_NEAR(moving(now, slides, "it").spin.z(), 0, 1e-9) << mode;
+    EXPECT_NEAR((moving(stays.at(2), stays, "it").position - sim::Vec3(-5.94, 4.58, 0)).norm(), 0, 1e-9)
+        << mode;
+    TextRun bends(open_room(mode) +
+                  "[[track]]\npoints = [[-4, 0], [0, 0], { to = [3, 3] }]\nfriction = 0\nelasticity = 0\n"
+                  "[[box]]\nname = \"it\"\nsize = [0.6, 0.2]\nposition = [-1, 0.1]\nvelocity = [4, 0]\n");
+    const double begun = bends.at(0).energies.total();
+    for (const double t : {0.2, 0.4, 0.8, 1.4})
+      EXPECT_NEAR(bends.at(t).energies.total(), begun, 1e-7) << mode << t;
+    // both of its corners stay on the arc of radius 3 about [0, 3]
+    const sim::Snapshot later = bends.at(0.5);
+    const auto& it = moving(later, bends, "it");
+    for (const double x : {-0.3, 0.3}) {
+      const sim::Vec3 corner = it.position + it.orientation * sim::Vec3(x, -0.1, 0);
+      EXPECT_NEAR((corner - sim::Vec3(0, 3, 0)).norm(), 3, 1e-8) << mode;
+    }
+  }
+}
+
+// A plank rocks on a round top of radius R: half its thickness h below R it comes back, with
+// omega^2 = g (R - h) / (L^2/12 + h^2/3), small.
+TEST(RailOfBoxes, APlankRocksOnARoundTop) {
+  for (const std::string& mode : kTrackModes) {
+    const double R = 1, h = 0.1, L = 2, tilt = 1e-3;  // half its height is h
+    const double omega = std::sqrt(kFall * (R - h) / (L * L / 12 + h * h / 3 + h * h));
+    // tilted by rolling: the contact is R tilt along the plank
+    const double s = std::sin(tilt), c = std::cos(tilt);
+    TextRun rocks(
+        open_room(mode) +
+        "[[track]]\npoints = [[-1, 0], { through = [0, 1], to = [1, 0] }]\nelasticity = 0\n" +
+        fmt::format("[[box]]\nname = \"it\"\nsize = [2, 0.2]\nposition = [{:.17g}, {:.17g}]\nangle = "
+                    "{:.17g}\nfriction = 2\n",
+                    -(R + h) * s + R * tilt * c, (R + h) * c + R * tilt * s, tilt * 180 / kHalfTurn));
+    const double half = to_a_microsecond(kHalfTurn / omega);
+    EXPECT_NEAR(moving(rocks.at(half), rocks, "it").angle, -tilt, 1e-8) << mode;
+    EXPECT_NEAR(rocks.at(half).energies.total(), rocks.at(0).energies.total(), 1e-10) << mode;
+  }
+}
+
+// A block and a triangle that fall onto a track of two sides lie there, above it and below it.
+TEST(RailOfBoxes, BothSidesBear) {
+  for (const std::string& mode : kTrackModes) {
+    for (const int side : {1, -1}) {
+      TextRun falls(
+          open_room(mode, fmt::format("gravity = [0, {}]", -kFall * side)) +
+          "[[track]]\npoints = [[-4, 0], [4, 0]]\nside = \"both\"\nelasticity = 0\n" +
+          fmt::format("[[box]]\nname = \"box\"\nsize = [0.6, 0.2]\nposition = [-1, {}]\nangle = 20\n", side) +
+          fmt::format("[[polygon]]\nname = \"triangle\"\npoints = [[0, 0], [0.6, 0], [0.3, 0.5]]\nposition = "
+                      "[1, {}]\nangle = {}\n",
+                      side, side > 0 ? 0 : 180));
+      const sim::Snapshot now = falls.at(4);
+      EXPECT_NEAR(moving(now, falls, "box").position.y(), 0.1 * side, 1e-8) << mode;
+      EXPECT_NEAR(moving(now, falls, "triangle").position.y(), 0.5 / 3 * side, 1e-8) << mode;
+    }
+  }
+}
+
+// A block slides off the end of a track that lets nothing fall through before.
+TEST(RailOfBoxes, ABlockTipsOverTheEnd) {
+  for (const std::string& mode : kTrackModes) {
+    TextRun tips(open_room(mode) +
+                 "[[track]]\npoints = [[-2, 0], [0, 0]]\nfriction = 0\nelasticity = 0\n"
+                 "[[box]]\nname = \"it\"\nsize = [1, 0.2]\nposition = [-1, 0.1]\nvelocity = [1, 0]\n");
+    // its centre comes to the end after 1 s, until when it lies flat
+    EXPECT_NEAR(moving(tips.at(0.999), tips, "it").position.y(), 0.1, 1e-9) << mode;
+    const sim::Snapshot later = tips.at(1.2);
+    const auto& it = moving(later, tips, "it");
+    EXPECT_LT(it.angle, -0.01) << mode;
+    EXPECT_NEAR(it.velocity.x(), 1, 0.1) << mode;
+    EXPECT_LT(moving(tips.at(3), tips, "it").position.y(), -3) << mode;
+  }
+}
+
 // --- what is refused
 
 TEST(Tracks, ErrorsSayWhatToWrite) {
@@ -351,8 +568,13 @@ TEST(Tracks, ErrorsSayWhatToWrite) {
   EXPECT_THAT(said_against(room + "[[track]]\nx = \"s - sin(s)\"\ny = \"cos(s)\"\nfrom = 0\nto = 1\n"),
               HasSubstr("the track has no direction at s = 0"));
   EXPECT_THAT(said_against(room + "[[track]]\n"), HasSubstr("a track needs 'points', or 'x' and 'y'"));
-  EXPECT_THAT(said_against(room + "[[track]]\npoints = [[0, 1], [1, 1]]\n[[box]]\nposition = [5, 2]\n"),
+  EXPECT_THAT(said_against("[room]\nsize = [8, 4, 8]\n[[track]]\npoints = [[0, 1, 0], [1, 1, "
+                           "0]]\n[[box]]\nposition = [2, 2, 2]\n"),
               HasSubstr("'box[0]' might come upon the track 'track[0]'"));
+  EXPECT_THAT(
+      said_against(room +
+                   "[[track]]\npoints = [[0, 1], [3, 1]]\n[[box]]\nsize = [1, 1]\nposition = [1.5, 1.4]\n"),
+      HasSubstr("'box[0]' overlaps the track 'track[0]' by 0.1 m"));
   EXPECT_THAT(
       said_against(room + "[[track]]\npoints = [[0, 1], [1, 1]]\n[physics]\nsolver = \"iterative\"\n"),
       HasSubstr("tracks are for the direct solver"));

@@ -31,7 +31,9 @@ struct ContactCandidate {
     corner_at_edge_b,  // a's
     corner_at_edge_a,  // b's
     corner_at_rail_b,  // a's, see sim/collide/rails.h
-    corner_at_rail_a   // b's
+    corner_at_rail_a,  // b's
+    face_at_rail_b,    // a's
+    face_at_rail_a     // b's
   };
 
   ContactKey key;
@@ -129,6 +131,8 @@ EvaluatedContact<D> evaluate(const ContactCandidate<D>& gap, const BodyMotion<D>
     }
     case ContactCandidate<D>::Kind::corner_at_rail_b:
     case ContactCandidate<D>::Kind::corner_at_rail_a:
+    case ContactCandidate<D>::Kind::face_at_rail_b:
+    case ContactCandidate<D>::Kind::face_at_rail_a:
       return evaluate_at_rail(gap, a, b);
     case ContactCandidate<D>::Kind::edges:
       if constexpr (D == 3) {

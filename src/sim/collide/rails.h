@@ -1,13 +1,17 @@
 #pragma once
 
-// Contacts of round bodies with rails: curves that are part of a body. The gap is that between the vertex p
-// of the one and the place c on the other's curve that is nearest to it, T . (p - c) = 0,
+// Contacts with rails: curves that are part of a body. A vertex p, rounded by r, touches the place c of the
+// curve that is nearest to it, T . (p - c) = 0,
 //   g = n . (p - c) - r                n  in the plane the curve's normal to the side that is touched
 //   g = |p - c| - r                    in space
 //   s' = u . T / (1 - k . (p - c))     speed of c along the curve; u  velocity of p in the rail's frame
 //   n' = w x n - (k . n) s' T          k  curvature; in the plane
-// and between the vertex and an end of an open curve that of two vertices. A rail is touched from in front
-// only: one that comes from behind passes.
+// In the plane a flat face of outward normal m touches the place where T . m = 0,
+//   g = m . (c - q)                    q  a place of the face;  n = -m
+//   s' = (w_face - w) / (k . N)        N  to the left of T
+//   n' = w_face x n
+// and an end of an open curve touches as a vertex. A rail is touched from in front only: what comes from
+// behind passes.
 
 #include <vector>
 
@@ -17,16 +21,16 @@ namespace obscura::sim {
 
 /// What ContactKey::feature says of a contact with a rail.
 struct RailFeature {
-  int rail = 0, piece = 0, vertex = 0;
+  int rail = 0, piece = 0, vertex = 0;  // faces are numbered after kVertices
   bool left = true;
   int end = 0;  // 1: the beginning of an open curve, 2: its end
 
-  static constexpr int kRails = 256, kPieces = 1 << 15, kVertices = 16;
+  static constexpr int kRails = 128, kPieces = 1 << 15, kVertices = 16;  // and as many faces
 
-  int packed() const { return 1 << 30 | rail << 22 | int(left) << 21 | end << 19 | vertex << 15 | piece; }
+  int packed() const { return 1 << 30 | rail << 23 | int(left) << 22 | end << 20 | vertex << 15 | piece; }
   static RailFeature of(int feature) {
-    return {feature >> 22 & 0xff, feature & 0x7fff, feature >> 15 & 0xf, (feature >> 21 & 1) != 0,
-            feature >> 19 & 3};
+    return {feature >> 23 & 0x7f, feature & 0x7fff, feature >> 15 & 0x1f, (feature >> 22 & 1) != 0,
+            feature >> 20 & 3};
   }
 };
 
@@ -40,24 +44,42 @@ const Rail<D>* rail_of(const Model<D>& model, const ContactKey& key) {
   return rail.body == key.a || rail.body == key.b ? &rail : nullptr;
 }
 
+/// Whether a candidate is of a curve, and of which body it is part.
+template <int D>
+bool rail_is_of_b(const ContactCandidate<D>& gap) {
+  return gap.kind == ContactCandidate<D>::Kind::corner_at_rail_b ||
+         gap.kind == ContactCandidate<D>::Kind::face_at_rail_b;
+}
+template <int D>
+bool rail_is_of_a(const ContactCandidate<D>& gap) {
+  return gap.kind == ContactCandidate<D>::Kind::corner_at_rail_a ||
+         gap.kind == ContactCandidate<D>::Kind::face_at_rail_a;
+}
+template <int D>
+bool is_face_at_rail(const ContactCandidate<D>& gap) {
+  return gap.kind == ContactCandidate<D>::Kind::face_at_rail_b ||
+         gap.kind == ContactCandidate<D>::Kind::face_at_rail_a;
+}
+
 /// How such a gap stands and moves.
 template <int D>
 struct RailPlace {
   typename Curve<D>::Foot foot;
-  Vec<D> tangent, curvature;  // room's frame
-  Vec<D> place;               // c, room
-  Vec<D> normal;              // n, from the rail to the vertex
-  double gap = 0;             // m
-  double speed = 0;           // s', m/s
-  Vec<D> place_rate, normal_rate;
+  Vec<D> tangent;    // room's frame
+  Vec<D> place;      // c, room
+  Vec<D> normal;     // n, from the rail to the other body
+  Vec<D> point;      // of contact
+  double gap = 0;    // m
+  double speed = 0;  // s', m/s
+  Vec<D> normal_rate, point_rate;
 };
 
 /// Of a contact candidate of a rail, at given poses.
 template <int D>
 RailPlace<D> rail_place(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b);
 
-/// Whether a rail is touched by a shape: balls and points, and bodies of several balls. A point touches a
-/// rail in the plane alone.
+/// Whether a rail is touched by a shape: in the plane by all of some corners, in space by balls and bodies of
+/// several balls.
 template <int D>
 bool touches_rails(const Shape<D>& shape);
 

@@ -81,23 +81,19 @@ Carried<3> between_edges(const ContactCandidate<3>& gap, const BodyMotion<3>& a,
   return c;
 }
 
-// between a corner and a rail
+// between a corner or face and a rail
 template <int D>
 Carried<D> on_rail(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b,
                    double& value) {
-  const bool mine = gap.kind == ContactCandidate<D>::Kind::corner_at_rail_b;
+  const bool mine = rail_is_of_b(gap);
   const RailPlace<D> its = rail_place(gap, a, b);
   Carried<D> c;
   value = its.gap;
   c.n = mine ? its.normal : Vec<D>(-its.normal);
   c.n_rate = mine ? its.normal_rate : Vec<D>(-its.normal_rate);
-  const double radius = mine ? gap.radius_a : gap.radius_b;
-  const BodyMotion<D>& corner = mine ? a : b;
-  const Vec<D> arm = corner.arm(mine ? gap.on_a : gap.on_b);
-  c.point = corner.x + arm - radius * its.normal;
-  c.velocity = corner.velocity(arm) - radius * its.normal_rate;
-  c.turns_with_face = false;
-  c.w = AngularVec<D>::Zero();
+  c.point = its.point, c.velocity = its.point_rate;
+  c.turns_with_face = is_face_at_rail(gap);
+  c.w = mine ? a.w : b.w;
   return c;
 }
 
@@ -107,8 +103,7 @@ Carried<D> carried(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const
   using Kind = typename ContactCandidate<D>::Kind;
   const Vec<D> arm_a = a.arm(gap.on_a), arm_b = b.arm(gap.on_b);
   Vec<D> pa = a.x + arm_a, pb = b.x + arm_b;
-  if (gap.kind == Kind::corner_at_rail_a || gap.kind == Kind::corner_at_rail_b)
-    return on_rail(gap, a, b, value);
+  if (rail_is_of_b(gap) || rail_is_of_a(gap)) return on_rail(gap, a, b, value);
   if (gap.kind != Kind::corner_of_a && gap.kind != Kind::corner_of_b) {
     Vec<D> va = a.velocity(arm_a), vb = b.velocity(arm_b), if_none = Vec<D>::Unit(0);
     if constexpr (D == 3) {

@@ -220,11 +220,13 @@ double Curve<D>::before(const Piece& piece, double u) const {
   return piece.start + piece.length * (u / piece.end);
 }
 
+// the place that `on` finds on a piece, or on those beside it of the same run
 template <int D>
-typename Curve<D>::Foot Curve<D>::foot(int piece, const Vec<D>& p) const {
+template <class On>
+typename Curve<D>::Foot Curve<D>::walk(int piece, On&& on) const {
   int way = 0;
   for (int i = 0;; ++i) {
-    Foot foot = on(piece, p);
+    Foot foot = on(piece);
     const int to = foot.u > pieces_[std::size_t(piece)].end ? 1 : foot.u < 0 ? -1 : 0;
     // at the joint of two pieces rounding may send it back and forth
     if (to == 0 || to == -way || i > size()) return foot;
@@ -235,6 +237,62 @@ typename Curve<D>::Foot Curve<D>::foot(int piece, const Vec<D>& p) const {
     // what has a run alone and is closed goes around
     if (other == piece) return foot;
     piece = other, way = to;
+  }
+}
+
+template <int D>
+typename Curve<D>::Foot Curve<D>::foot(int piece, const Vec<D>& p) const {
+  return walk(piece, [&](int each) { return on(each, p); });
+}
+
+template <int D>
+typename Curve<D>::Foot Curve<D>::under_face(int piece, const Vec<D>& normal) const {
+  return walk(piece, [&](int each) { return flat_on(each, normal); });
+}
+
+// where a piece, or what it goes on as, runs across a normal and bends along it
+template <int D>
+typename Curve<D>::Foot Curve<D>::flat_on(int number, const Vec<D>& normal) const {
+  const Piece& piece = pieces_[std::size_t(number)];
+  Foot foot;
+  foot.piece = number, foot.u = piece.end / 2;
+  if (piece.kind == Kind::arc) {
+    foot.u = elementary::atan2(-normal.dot(piece.c[2]), -normal.dot(piece.c[1]));
+    if (foot.u < piece.end / 2 - std::numbers::pi) foot.u += 2 * std::numbers::pi;
+    if (foot.u > piece.end / 2 + std::numbers::pi) foot.u -= 2 * std::numbers::pi;
+  } else if (piece.kind == Kind::polynomial) {
+    for (int i = 0; i < 40; ++i) {
+      Vec<D> x, first, second;
+      place_on<D>(piece, foot.u, x, first, second);
+      const double bend = second.dot(normal);
+      const double step = bend != 0 ? -first.dot(normal) / bend : 0;
+      foot.u = std::clamp(foot.u + std::clamp(step, -0.5, 0.5), -1.0, 2.0);
+      if (std::abs(step) < 1e-15) break;
+    }
+  }
+  foot.at = at(number, foot.u);
+  foot.along = before(piece, foot.u);
+  return foot;
+}
+
+template <int D>
+void Curve<D>::under_faces(const Vec<D>& normal, const Vec<D>& p, double far, std::vector<Foot>& out) const {
+  const double slack = kSamePlaceOfCurve * length_;
+  for (int i = 0; i < size(); ++i) {
+    const Piece& piece = pieces_[std::size_t(i)];
+    if (piece.kind == Kind::line) continue;
+    const double reach = piece.reach + far;
+    if ((p - piece.center).squaredNorm() > reach * reach) continue;
+    Foot foot = flat_on(i, normal);
+    const double over = slack * piece.end / piece.length;
+    if (!(foot.u >= -over && foot.u <= piece.end + over)) continue;
+    if (!(foot.at.curvature.dot(normal) > 0) || std::abs(foot.at.tangent.dot(normal)) > 1e-9) continue;
+    const auto same = [&](const Foot& other) {
+      return pieces_[std::size_t(other.piece)].run == piece.run &&
+             apart(other.along, foot.along) <= 4 * slack;
+    };
+    if (!out.empty() && std::any_of(out.begin(), out.end(), same)) continue;
+    out.push_back(foot);
   }
 }
 

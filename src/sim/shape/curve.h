@@ -74,6 +74,11 @@ class Curve {
 
   /// The nearest place to p on the run of `piece`; beyond the ends of the run, on what it goes on as.
   Foot foot(int piece, const Vec<D>& p) const;
+  /// In the plane: the place on the run of `piece` over which a flat face with this outward normal lies, if
+  /// the run bends away from it; beyond the ends of the run, as foot().
+  Foot under_face(int piece, const Vec<D>& normal) const;
+  /// The same on each piece that has such a place and comes nearer than `far` to p.
+  void under_faces(const Vec<D>& normal, const Vec<D>& p, double far, std::vector<Foot>& out) const;
   /// Where a foot lies beyond its run: metres past its end, or before its beginning as a negative number; 0:
   /// within it.
   double beyond(const Foot& foot) const;
@@ -96,6 +101,9 @@ class Curve {
 
  private:
   Foot on(int piece, const Vec<D>& p) const;
+  Foot flat_on(int piece, const Vec<D>& normal) const;
+  template <class On>
+  Foot walk(int piece, On&& on) const;
   double before(const Piece& piece, double u) const;
   void find_crossings();
 

@@ -21,10 +21,11 @@ constexpr double kNoEvent = 2;        // a part of the interval
 constexpr double kAtTheStart = 1e-9;  // a part too short to go
 constexpr double kSamePart = 1e-6;    // of the length of a curve: places so near are on one part of it
 constexpr double kBehind = 1e-5;      // of its radius: what is deeper in a rail at first has come from behind
-constexpr double kPointBehind = 1e-8;  // of the room: the same of a point
+constexpr double kPointBehind = 2e-6;  // of the room: the same of a point
 constexpr double kFinePart = 0.25;     // of the depth that is seen: how far to go between two looks
 constexpr double kFastestPart = 2.5;   // of its way: how fast one goes in its interval, at most
 constexpr int kMostRailLooks = 20000;  // of a couple in an interval
+constexpr double kAtEnd = 1e-9;        // of its length: what is so near an end of a curve is at it
 constexpr double kSteady = 1e-13;      // of the friction on a wire: it no longer changes
 
 // how far along its curve the foot of a candidate is, m
@@ -131,7 +132,9 @@ void ExactSolver<D>::choose_rail_contacts() {
         } else {
           const RailPlace<D> at = rail_place(p, poses_[p.key.a], poses_[p.key.b]);
           const int own = p.key.a == rail->body ? p.key.b : p.key.a;
-          const double closing = at.normal.dot(poses_[own].v - at.place_rate);
+          const BodyMotion<D>&its_pose = poses_[own], &rail_pose = poses_[rail->body];
+          const double closing = at.normal.dot(its_pose.velocity(Vec<D>(at.point - its_pose.x)) -
+                                               rail_pose.velocity(Vec<D>(at.point - rail_pose.x)));
           const double by = std::abs(closing) > still_speed_ ? closing : at.normal.dot(model_.gravity);
           stays = by > 0 ? !f.left : f.left;
         }
@@ -153,6 +156,15 @@ void ExactSolver<D>::choose_rail_contacts() {
       }
     }
   }
+  // what has come to an open end leaves it; a ball and a face have another gap for the end itself
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const ContactCandidate<D>& gap = candidates_[i];
+    if (out[i] || !gap.curve || gap.curve->closed()) continue;
+    const double along = along_of(gap, poses_), slack = kAtEnd * gap.curve->length();
+    if (along > slack && along < gap.curve->length() - slack) continue;
+    const double way = motion(gap);
+    out[i] = along > slack ? way > 0 : way < 0;
+  }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < candidates_.size(); ++i)
     if (!out[i]) candidates_[kept++] = candidates_[i];
@@ -162,55 +174,89 @@ void ExactSolver<D>::choose_rail_contacts() {
 // the part of the interval at which a couple closes on a rail, beyond what is held. Moves their stances.
 template <int D>
 double ExactSolver<D>::rail_closing_time(const State<D>& state, double h, Couple couple) {
-  const auto [a, b] = couple;
+  const int a = couple.a, b = couple.b;  // no binding: lambdas of clang 14 cannot hold one
   const double ways = travel(state, a, h) + travel(state, b, h), touch = limits_.touching_gap;
   std::vector<double> known;
   double depth = model_.scale;
-  const auto least = [&, a = a, b = b](double part) {
+  // the side of each rail that each vertex or face is on: 1 and -1; 0 where it is behind it, or far
+  struct Front {
+    int rail, vertex, side;
+    bool near;
+  };
+  std::vector<Front> fronts;
+  const auto front_of = [&](const RailFeature& its) -> Front& {
+    for (Front& front : fronts)
+      if (front.rail == its.rail && front.vertex == its.vertex) return front;
+    return fronts.emplace_back(Front{its.rail, its.vertex, 0, false});
+  };
+  for (const ContactCandidate<D>& gap : candidates_) {
+    if (gap.key.a != a || gap.key.b != b || !rail_of(model_, gap.key)) continue;
+    const RailFeature its = RailFeature::of(gap.key.feature);
+    front_of(its).side = its.left ? 1 : -1;
+  }
+  // whether one of the places that are held
+  const auto is_held = [&](const ContactCandidate<D>& gap, const Rail<D>& rail, const RailFeature& its,
+                           double along) {
+    for (const Constraint& one : constraints_) {
+      if (one.kind != Constraint::Kind::contact || !active(one)) continue;
+      const ContactCandidate<D>& held = candidates_[one.of];
+      if (held.key.a != gap.key.a || held.key.b != gap.key.b || rail_of(model_, held.key) != &rail) continue;
+      const RailFeature other = RailFeature::of(held.key.feature);
+      if (other.vertex != its.vertex) continue;
+      double there = other.end == 1 ? 0 : rail.curve->length(), past = 0;
+      if (held.curve) {
+        const auto foot = rail_place(held, poses_[held.key.a], poses_[held.key.b]).foot;
+        there = foot.along, past = std::abs(rail.curve->beyond(foot));
+      }
+      // the held place itself, beyond the end of its run the one beside it; a point on both sides
+      if (rail.curve->apart(along, there) < 2 * past + kSamePart * rail.curve->length() ||
+          rail.curve->conflict(along, there))
+        return true;
+    }
+    return false;
+  };
+  // the least gap of what is in front; `look`: of the next instant, which may bring more to the front
+  const auto least = [&](double part, bool look) {
     if (shifts(a)) poses_[a] = pose_at(state, a, h, part);
     if (shifts(b)) poses_[b] = pose_at(state, b, h, part);
     scratch_.on_rails.clear();
     near_rails(poses_, couple, ways + touch);
     double value = 1e300;
+    for (Front& front : fronts) front.near = false;
     for (const ContactCandidate<D>& gap : scratch_.on_rails) {
       const Rail<D>& rail = *rail_of(model_, gap.key);
       const RailFeature its = RailFeature::of(gap.key.feature);
+      Front& front = front_of(its);
+      const int side = its.left ? 1 : -1;
+      front.near = true;
+      if (look && front.side == 0 && gap.value >= -touch) front.side = side;
+      if (front.side != side) continue;
       const double along = gap.curve ? along_of(gap, poses_) : its.end == 1 ? 0 : rail.curve->length();
-      bool counts = true;
-      for (const Constraint& one : constraints_) {
-        if (one.kind != Constraint::Kind::contact || !active(one)) continue;
-        const ContactCandidate<D>& held = candidates_[one.of];
-        if (held.key.a != gap.key.a || held.key.b != gap.key.b || rail_of(model_, held.key) != &rail)
-          continue;
-        const RailFeature other = RailFeature::of(held.key.feature);
-        if (other.vertex != its.vertex) continue;
-        const double there = held.curve ? along_of(held, poses_) : other.end == 1 ? 0 : rail.curve->length();
-        // the held place itself, which may lie on what its run goes on as; a point on both sides
-        if (rail.curve->apart(along, there) < std::max(ways, kSamePart * rail.curve->length()) ||
-            rail.curve->conflict(along, there))
-          counts = false;
-      }
+      if (is_held(gap, rail, its, along)) continue;
       known_places(gap.key, known);
-      for (const double other : known) counts = counts && !rail.curve->conflict(along, other);
-      if (!counts) continue;
+      if (std::any_of(known.begin(), known.end(),
+                      [&](double other) { return rail.curve->conflict(along, other); }))
+        continue;
       value = std::min(value, gap.value);
       depth = std::min(depth, deepest_in_rail(radius_of(gap), model_.scale));
     }
+    for (Front& front : fronts)
+      if (look && !front.near) front.side = 0;
     return value;
   };
-  double part = 0, value = least(0);
+  double part = 0, value = least(0, true);
   bool open = value >= -touch;
   const bool touching = std::abs(value) <= touch;
   for (int looks = 0; part < 1 && looks < kMostRailLooks; ++looks) {
     const double spare = value < 1e299 ? std::max(0.0, value) : ways;
     const double step = std::max(spare / (kFastestPart * ways), kFinePart * depth / ways);
     const double next = std::min(1.0, part + step);
-    const double at_next = least(next);
+    const double at_next = least(next, true);
     progress_.searches += looks > 0;
     if (open && at_next < -touch) {
       double low = part, high = next, below = at_next;
       for (int i = 0; i < 60 && high - low > 1e-15 && below < -0.1 * touch; ++i) {
-        const double middle = 0.5 * (low + high), there = least(middle);
+        const double middle = 0.5 * (low + high), there = least(middle, false);
         if (there >= 0) {
           low = middle;
         } else {
