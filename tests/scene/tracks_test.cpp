@@ -16,7 +16,7 @@
 namespace obscura::scene {
 namespace {
 
-constexpr double kFall = 9.81, kHalfTurn = std::numbers::pi;
+constexpr double kTrackG = 9.81, kHalfTurn = std::numbers::pi;
 
 const std::vector<std::string> kTrackModes = {"contact", "event"};
 
@@ -86,15 +86,15 @@ TEST(Wire, ABrachistochroneTakesItsTime) {
     std::string curve, bead;
     double time;
   };
-  const double line = std::sqrt(2 * (w * w + h * h) / (kFall * h));
+  const double line = std::sqrt(2 * (w * w + h * h) / (kTrackG * h));
   // y = -h sqrt(x / w), as x = w (y / h)^2: upright where it begins
   const double parabola = 2 * integral(
                                   [&](double p) {  // y = p^2
                                     const double slope = 2 * w * p * p / (h * h);
-                                    return std::sqrt((1 + slope * slope) / (2 * kFall));
+                                    return std::sqrt((1 + slope * slope) / (2 * kTrackG));
                                   },
                                   0, std::sqrt(h));
-  const double cycloid = kHalfTurn * std::sqrt(r / kFall);
+  const double cycloid = kHalfTurn * std::sqrt(r / kTrackG);
   EXPECT_LT(cycloid, parabola);
   EXPECT_LT(parabola, line);
   const std::vector<Race> cases = {
@@ -105,7 +105,7 @@ TEST(Wire, ABrachistochroneTakesItsTime) {
     for (const Race& each : cases) {
       TextRun race(open_room(mode) + "[[track]]\n" + each.curve + "\nfriction = 0\nthread = [\"bead\"]\n" +
                    "[[particle]]\nname = \"bead\"\nposition = " + each.bead + "\n");
-      const double just = to_a_microsecond(each.time * (1 - 1e-4)), v = std::sqrt(2 * kFall * h);
+      const double just = to_a_microsecond(each.time * (1 - 1e-4)), v = std::sqrt(2 * kTrackG * h);
       // as far from its end as it goes in a ten-thousandth of the time, and then it stands there
       const sim::Vec3 end(w, -h, 0);
       EXPECT_NEAR((race.place(just) - end).norm(), 1e-4 * each.time * v, 2e-6 * v * each.time)
@@ -141,7 +141,7 @@ TEST(Wire, FrictionGoesByTheLoad) {
                   "[[particle]]\nname = \"slides\"\nposition = [0, 0]\nfriction = 0.5\n"
                   "[[particle]]\nname = \"stays\"\nposition = [4, -3]\nfriction = 0.8\n");
     const sim::Snapshot now = slope.at(1);
-    EXPECT_NEAR(moving(now, slope, "slides").velocity.norm(), kFall * (0.6 - 0.5 * 0.8), 1e-9) << mode;
+    EXPECT_NEAR(moving(now, slope, "slides").velocity.norm(), kTrackG * (0.6 - 0.5 * 0.8), 1e-9) << mode;
     EXPECT_NEAR((moving(now, slope, "stays").position - sim::Vec3(4, -3, 0)).norm(), 0, 1e-9) << mode;
   }
 }
@@ -149,7 +149,7 @@ TEST(Wire, FrictionGoesByTheLoad) {
 // A bead on a hoop that turns about its upright diameter: cos theta = g / (omega^2 R), and about that place
 // it swings with omega sin theta.
 TEST(Wire, ABeadOnAHoopThatTurnsHasItsPlace) {
-  const double omega = 8, R = 0.5, cosine = kFall / (omega * omega * R),
+  const double omega = 8, R = 0.5, cosine = kTrackG / (omega * omega * R),
                sine = std::sqrt(1 - cosine * cosine);
   for (const std::string& mode : kTrackModes) {
     const auto hoop = [&](double x, double y) {
@@ -294,7 +294,7 @@ TEST(Rail, JointsOfPiecesChangeNoVelocity) {
         const sim::Snapshot now = scene.at(0.016 * i);
         const auto& it = moving(now, scene, "it");
         const double rise = it.position.y() - (ball ? 0.2 : 0);
-        const double v = std::sqrt(25 - 2 * kFall * rise / share);
+        const double v = std::sqrt(25 - 2 * kTrackG * rise / share);
         EXPECT_NEAR(it.velocity.norm(), v, 1e-8)
             << mode << " " << body << 0.016 * i << " " << it.position.x();
         EXPECT_FALSE(now.contacts.empty()) << mode << " " << it.position.x();
@@ -321,7 +321,7 @@ TEST(Rail, ASkierLeavesTheRidgeWhereNothingPresses) {
                                   // (cos b - cos phi) / u^2 at u = 0 is sin b
                                   const double drop = u < 1e-6 ? std::sin(begun)
                                                                : (std::cos(begun) - std::cos(phi)) / (u * u);
-                                  return 1 / std::sqrt(2 * kFall * drop / R);
+                                  return 1 / std::sqrt(2 * kTrackG * drop / R);
                                 },
                                 0, std::sqrt(leaves - begun));
     const auto touches = [&](double t) {
@@ -333,11 +333,12 @@ TEST(Rail, ASkierLeavesTheRidgeWhereNothingPresses) {
     EXPECT_TRUE(touches(time - 0.004)) << mode;
     EXPECT_FALSE(touches(time + 0.004)) << mode;
     // from there on it falls freely
-    const double v = std::sqrt(2 * kFall * R * (std::cos(begun) - std::cos(leaves))),
+    const double v = std::sqrt(2 * kTrackG * R * (std::cos(begun) - std::cos(leaves))),
                  t = to_a_microsecond(time + 0.1);
     const double fell = t - time;
     const sim::Vec3 expected(R * std::sin(leaves) + v * std::cos(leaves) * fell,
-                             R * std::cos(leaves) - v * std::sin(leaves) * fell - kFall * fell * fell / 2, 0);
+                             R * std::cos(leaves) - v * std::sin(leaves) * fell - kTrackG * fell * fell / 2,
+                             0);
     EXPECT_NEAR((moving(scene.at(t), scene, "it").position - expected).norm(), 0, 1e-8) << mode;
   }
 }
@@ -351,13 +352,13 @@ TEST(Rail, ABallLandsFromInFrontAndPassesFromBehind) {
         open_room(mode) + bowl +
         "elasticity = 0.5\n[[ball]]\nname = \"it\"\nradius = 0.2\nposition = [0, 2.2]\nelasticity = 0.5\n");
     // it falls 2 m and rises a quarter of that
-    const double down = std::sqrt(2 * 2 / kFall), v = std::sqrt(2 * kFall * 2);
-    EXPECT_NEAR(moving(lands.at(to_a_microsecond(down + 0.5 * v / kFall)), lands, "it").position.y(),
+    const double down = std::sqrt(2 * 2 / kTrackG), v = std::sqrt(2 * kTrackG * 2);
+    EXPECT_NEAR(moving(lands.at(to_a_microsecond(down + 0.5 * v / kTrackG)), lands, "it").position.y(),
                 0.2 + 0.5, 1e-9)
         << mode;
     TextRun passes(open_room(mode) + bowl +
                    "[[ball]]\nname = \"it\"\nradius = 0.2\nposition = [0, -2]\nvelocity = [0, 9]\n");
-    EXPECT_NEAR(moving(passes.at(0.5), passes, "it").position.y(), -2 + 9 * 0.5 - kFall * 0.125, 1e-9)
+    EXPECT_NEAR(moving(passes.at(0.5), passes, "it").position.y(), -2 + 9 * 0.5 - kTrackG * 0.125, 1e-9)
         << mode;
     // and from then on it is in front
     EXPECT_GT(moving(passes.at(4), passes, "it").position.y(), 0) << mode;
@@ -368,11 +369,11 @@ TEST(Rail, ABallLandsFromInFrontAndPassesFromBehind) {
 // on a free cart momentum and energy stay.
 TEST(Rail, OnAMovingBodyItHasThatMotion) {
   const std::string bowl =
-      "[[track]]\non = \"cart\"\npoints = [[-1, 1], { through = [0, 0], to = [1, 1] }]\nfriction = "
+      "[[track]]\non = \"cart\"\npoints = [[-1, 2], { through = [0, 1], to = [1, 2] }]\nfriction = "
       "0\nelasticity = "
       "0\n";
   for (const std::string& mode : kTrackModes) {
-    const double a = 3, phi = std::atan(a / kFall), R = 1 - 0.2;
+    const double a = 3, phi = std::atan(a / kTrackG), R = 1 - 0.2;
     TextRun pulled(
         open_room(mode) +
         "[[box]]\nname = \"cart\"\nsize = [2, 0.2]\nposition = [0, -1.5]\nmotion = { x = \"1.5*t^2\" }\n" +
@@ -403,7 +404,7 @@ TEST(Rail, EndsAndBothSides) {
         "[[track]]\npoints = [[-2, 0], [0, 0]]\nfriction = 0\n[[ball]]\nname = \"it\"\nradius = 0.2\n"
         "position = [-1, 0.2]\nvelocity = [2, 0]\nfriction = 0\n");
     // v^2 > g r: it leaves at the edge
-    EXPECT_NEAR(moving(flies.at(1), flies, "it").position.y(), 0.2 - kFall * 0.125, 1e-9) << mode;
+    EXPECT_NEAR(moving(flies.at(1), flies, "it").position.y(), 0.2 - kTrackG * 0.125, 1e-9) << mode;
     TextRun turns(open_room(mode) +
                   "[[track]]\npoints = [[-2, 0], [0, 0]]\nfriction = 0\nelasticity = 0\n[[ball]]\nname = "
                   "\"it\"\nradius = "
@@ -413,11 +414,11 @@ TEST(Rail, EndsAndBothSides) {
     EXPECT_NEAR(turns.at(1.1).energies.total(), begun, 1e-9) << mode;
     EXPECT_NEAR(moving(turns.at(1.05), turns, "it").position.norm(), 0.2, 1e-9) << mode;
     for (const double side : {1.0, -1.0}) {
-      TextRun both(open_room(mode, fmt::format("gravity = [0, {}]", -kFall * side)) +
+      TextRun both(open_room(mode, fmt::format("gravity = [0, {}]", -kTrackG * side)) +
                    "[[track]]\npoints = [[-4, 0], [4, 0]]\nside = \"both\"\nelasticity = 0.5\n" +
                    fmt::format("[[particle]]\nname = \"it\"\nposition = [0, {}]\nelasticity = 0.5\n", side));
-      const double down = std::sqrt(2 / kFall), v = kFall * down;
-      EXPECT_NEAR(side * moving(both.at(to_a_microsecond(down + 0.5 * v / kFall)), both, "it").position.y(),
+      const double down = std::sqrt(2 / kTrackG), v = kTrackG * down;
+      EXPECT_NEAR(side * moving(both.at(to_a_microsecond(down + 0.5 * v / kTrackG)), both, "it").position.y(),
                   0.25, 1e-9)
           << mode;
       EXPECT_NEAR(moving(both.at(5), both, "it").position.y(), 0, 1e-9) << mode;
@@ -439,7 +440,7 @@ TEST(RailInSpace, ABallRollsOnTwoRails) {
         fmt::format("[[ball]]\nname = \"it\"\nradius = 0.5\nfriction = 2\nposition = [{:.17g}, {:.17g}, 0]\n",
                     -6 + 0.6 * lever, 4.5 + 0.8 * lever));
     const sim::Snapshot now = scene.at(1);
-    const double a = kFall * 0.6 / (1 + 0.4 * r * r / lever2);
+    const double a = kTrackG * 0.6 / (1 + 0.4 * r * r / lever2);
     EXPECT_NEAR(moving(now, scene, "it").velocity.norm(), a, 1e-8) << mode;
     EXPECT_NEAR(moving(now, scene, "it").spin.z(), -a / lever, 1e-8) << mode;
     EXPECT_NEAR(moving(now, scene, "it").position.z(), 0, 1e-9) << mode;
@@ -479,7 +480,7 @@ TEST(RailOfBoxes, ABlockSlidesOnASlopeAndUpABend) {
     };
     TextRun slides(block(0.5)), stays(block(0.8));
     const sim::Snapshot now = slides.at(1);
-    EXPECT_NEAR(moving(now, slides, "it").velocity.norm(), kFall * (0.6 - 0.5 * 0.8), 1e-9) << mode;
+    EXPECT_NEAR(moving(now, slides, "it").velocity.norm(), kTrackG * (0.6 - 0.5 * 0.8), 1e-9) << mode;
     EXPECT_NEAR(moving(now, slides, "it").spin.z(), 0, 1e-9) << mode;
     EXPECT_NEAR((moving(stays.at(2), stays, "it").position - sim::Vec3(-5.94, 4.58, 0)).norm(), 0, 1e-9)
         << mode;
@@ -504,7 +505,7 @@ TEST(RailOfBoxes, ABlockSlidesOnASlopeAndUpABend) {
 TEST(RailOfBoxes, APlankRocksOnARoundTop) {
   for (const std::string& mode : kTrackModes) {
     const double R = 1, h = 0.1, L = 2, tilt = 1e-3;  // half its height is h
-    const double omega = std::sqrt(kFall * (R - h) / (L * L / 12 + h * h / 3 + h * h));
+    const double omega = std::sqrt(kTrackG * (R - h) / (L * L / 12 + h * h / 3 + h * h));
     // tilted by rolling: the contact is R tilt along the plank
     const double s = std::sin(tilt), c = std::cos(tilt);
     TextRun rocks(
@@ -524,7 +525,7 @@ TEST(RailOfBoxes, BothSidesBear) {
   for (const std::string& mode : kTrackModes) {
     for (const int side : {1, -1}) {
       TextRun falls(
-          open_room(mode, fmt::format("gravity = [0, {}]", -kFall * side)) +
+          open_room(mode, fmt::format("gravity = [0, {}]", -kTrackG * side)) +
           "[[track]]\npoints = [[-4, 0], [4, 0]]\nside = \"both\"\nelasticity = 0\n" +
           fmt::format("[[box]]\nname = \"box\"\nsize = [0.6, 0.2]\nposition = [-1, {}]\nangle = 20\n", side) +
           fmt::format("[[polygon]]\nname = \"triangle\"\npoints = [[0, 0], [0.6, 0], [0.3, 0.5]]\nposition = "

@@ -10,7 +10,7 @@
 namespace obscura::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kCurvePi = std::numbers::pi;
 
 template <int D>
 Curve<D> of_formula(const std::vector<std::string>& texts, double from, double to, bool closed = false) {
@@ -22,8 +22,8 @@ Curve<D> of_formula(const std::vector<std::string>& texts, double from, double t
 
 // A circle as a formula of s: length, curvature and the nearest place of any point, to rounding.
 TEST(CurveOfFormulas, ACircleIsOneToRounding) {
-  const Curve<2> circle = of_formula<2>({"2*cos(s)", "2*sin(s)"}, 0, 2 * kPi, true);
-  EXPECT_NEAR(circle.length(), 4 * kPi, 1e-11);
+  const Curve<2> circle = of_formula<2>({"2*cos(s)", "2*sin(s)"}, 0, 2 * kCurvePi, true);
+  EXPECT_NEAR(circle.length(), 4 * kCurvePi, 1e-11);
   for (int i = 0; i < 100; ++i) {
     const double angle = 0.0628 * i + 0.01, far = 1.2 + 0.02 * i;
     const Vec<2> p(far * std::cos(angle), far * std::sin(angle));
@@ -39,13 +39,13 @@ TEST(CurveOfFormulas, ACircleIsOneToRounding) {
 
 // One arc of a cycloid is eight times its radius long.
 TEST(CurveOfFormulas, ACycloidHasItsLength) {
-  const Curve<2> cycloid = of_formula<2>({"s - sin(s)", "cos(s) - 1"}, 0.01, kPi);
+  const Curve<2> cycloid = of_formula<2>({"s - sin(s)", "cos(s) - 1"}, 0.01, kCurvePi);
   EXPECT_NEAR(cycloid.length(), 4 * std::cos(0.005), 1e-10);
 }
 
 TEST(CurveOfFormulas, WhatHasNoDirectionIsRefused) {
   const auto cusp = curve_formula<2>({"s - sin(s)", "cos(s) - 1"}, {});
-  const auto pieces = curve_pieces<2>(std::get<Program>(cusp), 0, kPi);
+  const auto pieces = curve_pieces<2>(std::get<Program>(cusp), 0, kCurvePi);
   ASSERT_TRUE(std::holds_alternative<std::string>(pieces));
   EXPECT_NE(std::get<std::string>(pieces).find("no direction at s = 0"), std::string::npos);
   const auto corner = curve_formula<2>({"s", "abs(s - 0.3)"}, {});
@@ -63,7 +63,7 @@ TEST(CurvePath, ArcsAreCircles) {
   ASSERT_TRUE(path.arc({2, 2}, {1, 1}));  // half of it
   EXPECT_NEAR(path.kink(), 0, 1e-15);
   const Curve<2> curve(path.pieces(), false);
-  EXPECT_NEAR(curve.length(), 2 + 1.5 * kPi, 1e-14);
+  EXPECT_NEAR(curve.length(), 2 + 1.5 * kCurvePi, 1e-14);
   const auto foot = curve.nearest({2, 1.7});
   EXPECT_NEAR((foot.at.x - Vec<2>(2, 2)).norm(), 0, 1e-15);
   EXPECT_NEAR((foot.at.curvature - Vec<2>(0, -1)).norm(), 0, 1e-14);
@@ -126,14 +126,14 @@ TEST(Curve, CrossingsAreFound) {
   const Curve<2> loop(path.pieces(), false);
   ASSERT_EQ(loop.crossings().size(), 1u);
   EXPECT_NEAR(loop.crossings()[0].first, 3, 1e-9);
-  EXPECT_NEAR(loop.crossings()[0].second, 3 + 2 * kPi, 1e-9);
-  EXPECT_TRUE(loop.conflict(2.9, 3.1 + 2 * kPi));
-  EXPECT_TRUE(loop.conflict(3.1 + 2 * kPi, 2.9));
+  EXPECT_NEAR(loop.crossings()[0].second, 3 + 2 * kCurvePi, 1e-9);
+  EXPECT_TRUE(loop.conflict(2.9, 3.1 + 2 * kCurvePi));
+  EXPECT_TRUE(loop.conflict(3.1 + 2 * kCurvePi, 2.9));
   EXPECT_FALSE(loop.conflict(2.9, 3.1));
-  const Curve<2> eight = of_formula<2>({"sin(s)", "sin(2*s)"}, 0, 2 * kPi, true);
+  const Curve<2> eight = of_formula<2>({"sin(s)", "sin(2*s)"}, 0, 2 * kCurvePi, true);
   ASSERT_EQ(eight.crossings().size(), 1u);
   EXPECT_NEAR(eight.apart(eight.crossings()[0].first, eight.crossings()[0].second), eight.length() / 2, 1e-6);
-  EXPECT_TRUE(of_formula<2>({"cos(s)", "sin(s)"}, 0, 2 * kPi, true).crossings().empty());
+  EXPECT_TRUE(of_formula<2>({"cos(s)", "sin(s)"}, 0, 2 * kCurvePi, true).crossings().empty());
   EXPECT_TRUE(of_formula<2>({"s", "sin(s)"}, 0, 20).crossings().empty());
 }
 

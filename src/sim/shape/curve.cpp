@@ -422,7 +422,10 @@ void Curve<D>::find_crossings() {
       if ((looks[i].x - looks[j].x).squaredNorm() > step * step) continue;
       if (apart(looks[i].along, looks[j].along) < std::max(4 * step, 0.01 * length_)) continue;
       const auto known = [&](const Crossing& it) {
-        return apart(it.first, looks[i].along) < 2 * step && apart(it.second, looks[j].along) < 2 * step;
+        const auto is = [&](double first, double second) {
+          return apart(first, looks[i].along) < 2 * step && apart(second, looks[j].along) < 2 * step;
+        };
+        return is(it.first, it.second) || is(it.second, it.first);
       };
       if (std::any_of(crossings_.begin(), crossings_.end(), known)) continue;
       // each in turn to the nearest place on its own piece, and those beside it

@@ -15,7 +15,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kMostRounds = 50;      // of friction on wires
+constexpr int kMostRubRounds = 50;   // of friction on wires
 constexpr double kLeastPart = 1e-3;  // of the way back to where joints belong
 constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: a stack's floor bears it once
 
@@ -297,7 +297,7 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
   warm_start_rows(1);
   bool found = solve();
-  for (int i = 0; i < kMostRounds && rub_wires(); ++i) found = solve();
+  for (int i = 0; i < kMostRubRounds && rub_wires(); ++i) found = solve();
   // hold contacts that separate now, but that the forces without them would close again at once
   for (const Constraint& constraint : constraints_) {
     if (progress_.forced.empty() || constraint.kind != Constraint::Kind::contact) continue;
