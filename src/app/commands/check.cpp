@@ -43,6 +43,16 @@ std::string count(std::size_t n, std::string_view one, std::string_view many) {
 // how long the first steps are watched, s
 constexpr double kPatience = 0.5;
 
+// tracks that are touched, and wires, which beads share
+template <int D>
+std::size_t tracks_of(const sim::Model<D>& model) {
+  std::set<const sim::Curve<D>*> all;
+  for (const sim::Rail<D>& rail : model.rails) all.insert(rail.curve.get());
+  for (const sim::Joint<D>& joint : model.joints)
+    if (joint.curve) all.insert(joint.curve.get());
+  return all.size();
+}
+
 // the contact solver, and why this one
 template <int D>
 std::string contact(const sim::Model<D>& model) {
@@ -55,6 +65,8 @@ std::string contact(const sim::Model<D>& model) {
     why = "every event at its own time";
   else if (!model.chains.empty())
     why = count(model.chains.size(), "chain", "chains");
+  else if (const std::size_t tracks = tracks_of(model); tracks > 0)
+    why = count(tracks, "track", "tracks");
   else if (model.solver != sim::Solver::automatic)
     why = "as the scene says";
   else
@@ -73,16 +85,6 @@ std::vector<std::size_t> numbers_of(const sim::Model<D>& model) {
   for (const sim::Body<D>& body : model.bodies)
     if (!body.bare) ++numbers[std::size_t(&scene::kind_of(body) - scene::body_kinds().data())];
   return numbers;
-}
-
-// tracks that are touched, and wires, which beads share
-template <int D>
-std::size_t tracks_of(const sim::Model<D>& model) {
-  std::set<const sim::Curve<D>*> all;
-  for (const sim::Rail<D>& rail : model.rails) all.insert(rail.curve.get());
-  for (const sim::Joint<D>& joint : model.joints)
-    if (joint.curve) all.insert(joint.curve.get());
-  return all.size();
 }
 
 template <int D>
