@@ -22,6 +22,7 @@ constexpr double kAtTheStart = 1e-9;  // a part too short to go
 constexpr double kSamePart = 1e-6;    // of the length of a curve: places so near are on one part of it
 constexpr double kBehind = 1e-5;      // of its radius: what is deeper in a rail at first has come from behind
 constexpr double kPointBehind = 2e-6;  // of the room: the same of a point
+constexpr double kLeftBehind = 2e-3;   // of the room: how deep a rough step leaves what is not from behind
 constexpr double kFinePart = 0.25;     // of the depth that is seen: how far to go between two looks
 constexpr double kFastestPart = 2.5;   // of its way: how fast one goes in its interval, at most
 constexpr int kMostRailLooks = 20000;  // of a couple in an interval
@@ -87,14 +88,32 @@ void ExactSolver<D>::choose_rail_contacts() {
     const RailFeature f = RailFeature::of(p.key.feature), g = RailFeature::of(q.key.feature);
     return p.key.a == q.key.a && p.key.b == q.key.b && f.rail == g.rail && f.vertex == g.vertex;
   };
-  // nothing that has come from behind
+  const auto closing = [&](const ContactCandidate<D>& gap, const Rail<D>& rail) {
+    const RailPlace<D> at = rail_place(gap, poses_[gap.key.a], poses_[gap.key.b]);
+    const BodyMotion<D>&own = poses_[gap.key.a == rail.body ? gap.key.b : gap.key.a],
+          &its = poses_[rail.body];
+    return at.normal.dot(its.velocity(Vec<D>(at.point - its.x)) - own.velocity(Vec<D>(at.point - own.x)));
+  };
+  // whether the middle of the body is on the side that touches
+  const auto in_front = [&](const ContactCandidate<D>& gap, const Rail<D>& rail) {
+    if (D == 3) return true;
+    const BodyMotion<D>&own = poses_[gap.key.a == rail.body ? gap.key.b : gap.key.a],
+          &its = poses_[rail.body];
+    const Vec<D> middle = its.room_from_body.transpose() * (own.x - its.x);
+    const auto foot = rail.curve->nearest(middle);
+    const Vec<D> e = middle - foot.at.x;
+    return gap.side * (foot.at.tangent[0] * e[1] - foot.at.tangent[1] * e[0]) > 0;
+  };
+  // nothing that has come from behind; what a rough step has left in a rail comes on, that from behind goes
   std::erase_if(candidates_, [&](const ContactCandidate<D>& gap) {
     const Rail<D>* rail = rail_of(model_, gap.key);
     if (!rail) return false;
     const double r = radius_of(gap);
     if (gap.value > -(r > 0 ? kBehind * r : kPointBehind * model_.scale)) return false;
     known_places(gap.key, known);
-    return known.empty();
+    if (!known.empty()) return false;
+    return !gap.curve || gap.value < -kLeftBehind * model_.scale || !in_front(gap, *rail) ||
+           closing(gap, *rail) <= still_speed_;
   });
   std::vector<char> out(candidates_.size(), 0);
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
@@ -130,13 +149,10 @@ void ExactSolver<D>::choose_rail_contacts() {
         if (left != right) {
           stays = left;
         } else {
-          const RailPlace<D> at = rail_place(p, poses_[p.key.a], poses_[p.key.b]);
-          const int own = p.key.a == rail->body ? p.key.b : p.key.a;
-          const BodyMotion<D>&its_pose = poses_[own], &rail_pose = poses_[rail->body];
-          const double closing = at.normal.dot(its_pose.velocity(Vec<D>(at.point - its_pose.x)) -
-                                               rail_pose.velocity(Vec<D>(at.point - rail_pose.x)));
-          const double by = std::abs(closing) > still_speed_ ? closing : at.normal.dot(model_.gravity);
-          stays = by > 0 ? !f.left : f.left;
+          const double by = closing(p, *rail);
+          const double down = rail_place(p, poses_[p.key.a], poses_[p.key.b]).normal.dot(model_.gravity);
+          const bool away = std::abs(by) > still_speed_ ? by < 0 : down > 0;
+          stays = away ? !f.left : f.left;
         }
         out[stays == f.left ? j : i] = 1;
       } else if (p.curve && q.curve) {
