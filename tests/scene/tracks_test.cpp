@@ -223,6 +223,19 @@ TEST(Wire, WhatCrossesItselfIsFollowed) {
   }
 }
 
+// A helix is a slope that is wound up: s = g sin(a) t^2 / 2 along it.
+TEST(Wire, AHelixIsASlope) {
+  for (const std::string& mode : kTrackModes) {
+    TextRun helix(
+        open_room(mode, "", 3) +
+        "[[track]]\nx = \"cos(s)\"\ny = \"5 - 0.75*s\"\nz = \"sin(s)\"\nfrom = 0\nto = 12\nfriction = 0\n"
+        "thread = \"bead\"\n[[particle]]\nname = \"bead\"\nposition = [1, 5, 0]\n");
+    const double t = 1.5, along = 0.5 * kTrackG * 0.6 * t * t, s = along / 1.25;
+    const sim::Vec3 expected(std::cos(s), 5 - 0.75 * s, std::sin(s));
+    EXPECT_NEAR((helix.place(t) - expected).norm(), 0, 1e-9) << mode;
+  }
+}
+
 // --- rails
 
 // a slope of 3-4-5 from [-7, 8] to the floor, and a loop of radius 1 about [1, 1]
@@ -391,6 +404,51 @@ TEST(Rail, OnAMovingBodyItHasThatMotion) {
     for (const double t : {0.3, 0.9, 2.1}) {
       EXPECT_NEAR(free.at(t).momentum.x(), 0, 1e-10) << mode;
       EXPECT_NEAR(free.at(t).energies.total(), begun, 1e-8) << mode;
+    }
+  }
+}
+
+// On curves of formulas and splines nothing is lost; and the mirror image of a track, which runs the other
+// way and is touched from its right, is the mirror image of the motion.
+TEST(Rail, FormulasAndSplinesLoseNothingAndHaveMirrorImages) {
+  const std::vector<std::string> tracks = {
+      "x = \"{0}*s\"\ny = \"0.3*s^2 + 0.1*sin(3*s)\"\nfrom = -3\nto = 3\n",
+      "points = [[{1}3, 2.5], {{ spline = [[{1}1.5, 0.6], [0, 0.3], [{2}1.2, 0.7], [{2}3, 2.6]] }}]\n"};
+  for (const std::string& mode : kTrackModes) {
+    for (const std::string& track : tracks) {
+      const auto text = [&](int side) {
+        return open_room(mode) + "[[track]]\n" +
+               fmt::format(fmt::runtime(track), side, side > 0 ? "-" : "", side > 0 ? "" : "-") +
+               fmt::format(
+                   "side = \"{}\"\nelasticity = 0\n[[ball]]\nname = \"it\"\nradius = 0.1\nelasticity = "
+                   "0\nfriction = "
+                   "5\nposition = [{}, 2.4]\n",
+                   side > 0 ? "left" : "right", -1.8 * side);
+      };
+      TextRun scene(text(1)), mirror(text(-1));
+      const double begun = scene.at(1).energies.total();
+      for (const double t : {1.3, 2.0, 3.1}) {
+        const sim::Snapshot now = scene.at(t), other = mirror.at(t);
+        EXPECT_NEAR(now.energies.total(), begun, 1e-8) << mode << track << t;
+        const sim::Vec3 p = moving(now, scene, "it").position, q = moving(other, mirror, "it").position;
+        EXPECT_NEAR(p.x(), -q.x(), 1e-9) << mode << track << t;
+        EXPECT_NEAR(p.y(), q.y(), 1e-9) << mode << track << t;
+        EXPECT_FALSE(now.contacts.empty()) << mode << track << t;
+      }
+    }
+  }
+}
+
+// At a kilometre a second nothing passes: a ball, a point and a box come back from a track.
+TEST(Rail, NothingIsTooFast) {
+  for (const std::string& mode : kTrackModes) {
+    for (const std::string& body :
+         {std::string("[[particle]]\nradius = 0.05\n"), std::string("[[particle]]\n"),
+          std::string("[[box]]\nsize = [0.3, 0.2]\n")}) {
+      TextRun scene(open_room(mode, "gravity = [0, 0]") +
+                    "[[track]]\npoints = [[-2, -3], { through = [0, -5], to = [2, -3] }]\nelasticity = 1\n" +
+                    body + "position = [0, 4]\nvelocity = [0, -1000]\nelasticity = 1\nfriction = 0\n");
+      EXPECT_NEAR(scene.at(0.02).bodies[0].velocity.y(), 1000, 1e-6) << mode << body;
     }
   }
 }

@@ -563,6 +563,11 @@ std::optional<ContactCandidate<3>> named_candidate(const ContactKey& key, const 
       return couple.corner_at_edge_b(which_a, which_b, 0);
     case Kind::corner_at_edge_a:
       return couple.corner_at_edge_a(which_a, which_b, 0);
+    case Kind::corner_at_rail_b:  // these have keys of their own
+    case Kind::corner_at_rail_a:
+    case Kind::face_at_rail_b:
+    case Kind::face_at_rail_a:
+      break;
   }
   return {};
 }
