@@ -225,8 +225,10 @@ class TrackCurve {
     if (i >= stops.size()) return {};
     const Vec from = stops[i - 1].places.back();
     if (stops[i].kind == Stop<D>::Kind::place) return Vec((stops[i].places[0] - from).normalized());
-    if (stops[i].kind == Stop<D>::Kind::arc)
-      return sim::arc_direction<D>(from, stops[i].places[0], stops[i].places[1]);
+    if (stops[i].kind == Stop<D>::Kind::arc) {
+      const auto bent = sim::arc_direction<D>(from, stops[i].places[0], stops[i].places[1]);
+      return bent ? bent : Vec((stops[i].places[1] - from).normalized());
+    }
     return {};
   }
 
@@ -237,9 +239,13 @@ class TrackCurve {
         path.line(it.places[0]);
         break;
       case Stop<D>::Kind::arc:
+        // three places in a line are a straight piece
         if (!path.arc(it.places[0], it.places[1])) {
-          refuse(it.at, "these three places of an arc lie in a line");
-          return false;
+          if (!((it.places[0] - path.place()).dot(it.places[1] - it.places[0]) > 0)) {
+            refuse(it.at, "these places of an arc lie in a line, and the second not between the others");
+            return false;
+          }
+          path.line(it.places[1]);
         }
         break;
       case Stop<D>::Kind::onward:

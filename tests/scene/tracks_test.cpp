@@ -642,8 +642,12 @@ TEST(Tracks, ErrorsSayWhatToWrite) {
       HasSubstr("[[track]] is not in `collision = \"handout\"`"));
   EXPECT_THAT(said_against(room + "[[track]]\npoints = [[0, 1], [1, 1]]\n[[ball]]\nposition = [0.5, 1.1]\n"),
               HasSubstr("'ball[0]' overlaps the track 'track[0]' by 0.1 m"));
-  EXPECT_THAT(said_against(room + "[[track]]\npoints = [[0, 1], { through = [1, 1], to = [2, 1] }]\n"),
+  EXPECT_THAT(said_against(room + "[[track]]\npoints = [[0, 1], { through = [3, 1], to = [2, 1] }]\n"),
               HasSubstr("lie in a line"));
+  EXPECT_EQ(
+      said_against(room + "[[track]]\npoints = [[0, 2], { through = [1, 1], to = [2, 0] }, { spline = [[3, "
+                          "1], [4, 0]] }]\n"),
+      "");
   EXPECT_THAT(said_against(room + "[[track]]\npoints = [[0, 1], { thru = [1, 1], to = [2, 1] }]\n"),
               HasSubstr("unknown key 'thru' in a piece of a track: expected through, to or spline"));
 }
