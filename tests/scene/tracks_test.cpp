@@ -596,6 +596,27 @@ TEST(RailOfBoxes, BothSidesBear) {
   }
 }
 
+// A block that comes from behind passes, or falls back: it does not hang by its corners.
+TEST(RailOfBoxes, FromBehindTheyPass) {
+  for (const std::string& mode : kTrackModes) {
+    for (const double v : {4.0, 4.8, 9.0}) {
+      TextRun scene(
+          open_room(mode) + "[[track]]\npoints = [[-4, 0], [4, 0]]\nelasticity = 0\n" +
+          fmt::format("[[box]]\nname = \"it\"\nsize = [0.3, 0.5]\nposition = [0, -1]\nvelocity = [0, {}]\n"
+                      "elasticity = 0\n",
+                      v));
+      // it rises by v^2 / 2 g: 0.82, 1.17 and 4.1 m
+      const double t = to_a_microsecond(2 * v / kTrackG + 0.5);
+      const double y = moving(scene.at(t), scene, "it").position.y();
+      if (v < 9) {
+        EXPECT_NEAR(y, -1 - v * 0.5 - kTrackG * 0.125, 1e-5) << mode << v;
+      } else {
+        EXPECT_NEAR(y, 0.25, 1e-9) << mode << v;
+      }
+    }
+  }
+}
+
 // A block slides off the end of a track that lets nothing fall through before.
 TEST(RailOfBoxes, ABlockTipsOverTheEnd) {
   for (const std::string& mode : kTrackModes) {

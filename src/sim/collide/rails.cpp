@@ -108,6 +108,8 @@ struct RailCollision {
   int a, b, number;
   const Rail<D>& rail;
   double margin, scale;
+  Vec<D> middle;  // of the body, in the rail's frame: a corner touches where that is in front of the rail too
+  bool round;     // one vertex is all of it
   std::vector<ContactCandidate<D>>& out;
 
   // a gap between a feature of a and one of b's rail, as if a came first
@@ -136,6 +138,7 @@ struct RailCollision {
       for (const double side : {1.0, -1.0}) {
         if (!has(side) || (D == 3 && side < 0)) continue;
         const Vec<D> n = normal_beside<D>(foot.at.tangent, e, side);
+        if (!round && !(n.dot(middle - foot.at.x) > 0)) continue;
         made.side = D == 2 ? side : 0, feature.left = side > 0;
         add(made, feature, Kind::corner_at_rail_b, Kind::corner_at_rail_a, tip.at, tip.radius, foot.at.x,
             n.dot(e) - tip.radius);
@@ -204,9 +207,12 @@ template <int D>
 void collide_rail(int a, const Shape<D>& shape, const BodyMotion<D>& at, int b, int number,
                   const Rail<D>& rail, const BodyMotion<D>& rail_at, double margin, double scale,
                   std::vector<ContactCandidate<D>>& out) {
-  const RailCollision<D> collision{a, b, number, rail, margin, scale, out};
+  const std::vector<SupportVertex<D>> vertices = support_vertices(shape);
+  const Vec<D> middle = rail_at.room_from_body.transpose() * (at.x - rail_at.x);
+  const RailCollision<D> collision{a,  b, number, rail, margin, scale, middle, D == 3 || vertices.size() == 1,
+                                   out};
   int vertex = 0;
-  for (const SupportVertex<D>& tip : support_vertices(shape)) {
+  for (const SupportVertex<D>& tip : vertices) {
     const Vec<D> p = rail_at.room_from_body.transpose() * (at.x + at.arm(tip.at) - rail_at.x);
     collision.corner(vertex++, tip, p);
   }
