@@ -52,8 +52,8 @@ TEST(Diagnostics, TablesNobodyKnowsAreToldWhichThereAre) {
   refused(
       "[[sphere]]",
       "a.toml:1:3: unknown key 'sphere'; there are [[particle]], [[ball]], [[box]], [[polygon]], [[body]], "
-      "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[explosion]], [[force]], [[attractor]], "
-      "[[when]], [[mouse]]");
+      "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[explosion]], [[track]], [[force]], "
+      "[[attractor]], [[when]], [[mouse]]");
 }
 
 TEST(Diagnostics, AKeyInTheWrongTableIsSentHome) {

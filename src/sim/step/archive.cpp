@@ -196,6 +196,10 @@ bool fits(const State<D>& state, const Model<D>& model) {
     good = state.chain_states[i].q.size() == std::size_t(tree.positions()) &&
            state.chain_states[i].v.size() == std::size_t(tree.velocities());
   }
+  for (std::size_t i = 0; i < state.on_piece.size() && good; ++i) {
+    const auto& curve = model.joints[i].curve;
+    good = state.on_piece[i] >= 0 && state.on_piece[i] <= (curve ? curve->size() : 0);
+  }
   for (const Contact<D>& contact : state.contacts) {
     good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&
            contact.touching <= ContactMode::slide;
