@@ -29,9 +29,9 @@ struct Glyphs::Type {
 
   FT_Face open(draw::Face face) {
     FT_Face& found = faces[std::size_t(face)];
-    const std::string& file = draw::font_file(face);
-    if (!found && FT_New_Face(library, file.c_str(), 0, &found))
-      throw Error(file + ": FreeType cannot read it");
+    const draw::FontFile& file = draw::font_file(face);
+    if (!found && FT_New_Face(library, file.path.c_str(), file.index, &found))
+      throw Error(file.path + ": FreeType cannot read it");
     return found;
   }
 };
@@ -61,12 +61,12 @@ GlyphPicture Glyphs::draw(draw::Face which, std::uint32_t index, int size_26_6, 
   const FT_Face face = type_->open(which);
   if (FT_Set_Char_Size(face, size_26_6, size_26_6, 72, 72) ||
       FT_Load_Glyph(face, index, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP)) {
-    throw Error(draw::font_file(which) + ": FreeType cannot load glyph " + std::to_string(index));
+    throw Error(draw::font_file(which).path + ": FreeType cannot load glyph " + std::to_string(index));
   }
   const FT_GlyphSlot slot = face->glyph;
   FT_Outline_Translate(&slot->outline, quarter * 64 / kQuarters, 0);
   if (FT_Render_Glyph(slot, FT_RENDER_MODE_NORMAL)) {
-    throw Error(draw::font_file(which) + ": FreeType cannot draw glyph " + std::to_string(index));
+    throw Error(draw::font_file(which).path + ": FreeType cannot draw glyph " + std::to_string(index));
   }
 
   const FT_Bitmap& bitmap = slot->bitmap;

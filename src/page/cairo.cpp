@@ -28,10 +28,11 @@ struct Type {
 
 cairo_font_face_t* open(draw::Face which) {
   static const cairo_user_data_key_t key{};
-  const std::string& file = draw::font_file(which);
+  const draw::FontFile& file = draw::font_file(which);
   auto type = std::make_unique<Type>();
-  if (FT_Init_FreeType(&type->library) || FT_New_Face(type->library, file.c_str(), 0, &type->face))
-    throw Error(file + ": FreeType cannot read it");
+  if (FT_Init_FreeType(&type->library) ||
+      FT_New_Face(type->library, file.path.c_str(), file.index, &type->face))
+    throw Error(file.path + ": FreeType cannot read it");
   cairo_font_face_t* face =
       cairo_ft_font_face_create_for_ft_face(type->face, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP);
   const auto drop = [](void* held) { delete static_cast<Type*>(held); };
@@ -169,6 +170,10 @@ class Pdf final : public Pen {
     cairo_clip(cairo_);
   }
   void unclip() override { cairo_restore(cairo_); }
+  void next_page() override {
+    cairo_show_page(cairo_);
+    kept_.clear();
+  }
 
   std::vector<std::uint8_t> finish() override {
     cairo_show_page(cairo_);

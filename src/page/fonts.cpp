@@ -17,12 +17,13 @@ namespace obscura::page {
 namespace {
 
 FaceName read_name(draw::Face which) {
-  const std::string& file = draw::font_file(which);
+  const draw::FontFile& file = draw::font_file(which);
   FT_Library library = nullptr;
   if (FT_Init_FreeType(&library)) throw Error("FreeType cannot be started");
   const std::unique_ptr<FT_LibraryRec_, decltype(&FT_Done_FreeType)> closed(library, FT_Done_FreeType);
   FT_Face face = nullptr;
-  if (FT_New_Face(library, file.c_str(), 0, &face)) throw Error(file + ": FreeType cannot read it");
+  if (FT_New_Face(library, file.path.c_str(), file.index, &face))
+    throw Error(file.path + ": FreeType cannot read it");
   FaceName name{face->family_name ? face->family_name : "", 400,
                 (face->style_flags & FT_STYLE_FLAG_ITALIC) != 0};
   if (const auto* os2 = static_cast<TT_OS2*>(FT_Get_Sfnt_Table(face, FT_SFNT_OS2)))
@@ -43,8 +44,9 @@ const FaceName& face_name(draw::Face face) {
 }
 
 std::vector<std::uint8_t> subset(draw::Face face, const std::set<std::uint32_t>& characters) {
-  const Held<hb_blob_t> file(hb_blob_create_from_file(draw::font_file(face).c_str()), hb_blob_destroy);
-  const Held<hb_face_t> whole(hb_face_create(file.get(), 0), hb_face_destroy);
+  const draw::FontFile& font = draw::font_file(face);
+  const Held<hb_blob_t> file(hb_blob_create_from_file(font.path.c_str()), hb_blob_destroy);
+  const Held<hb_face_t> whole(hb_face_create(file.get(), unsigned(font.index)), hb_face_destroy);
   const Held<hb_subset_input_t> wanted(hb_subset_input_create_or_fail(), hb_subset_input_destroy);
   if (!wanted) throw Error("HarfBuzz cannot make a font smaller: out of memory");
   for (const std::uint32_t c : characters) hb_set_add(hb_subset_input_unicode_set(wanted.get()), c);

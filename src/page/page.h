@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,5 +43,28 @@ struct Raster {
 /// lines. The same bytes for the same picture. Throws page::Error, draw::Error where a font is missing.
 std::vector<std::uint8_t> page(const draw::Picture& picture, Form form, const Sheet& sheet,
                                const std::optional<Raster>& raster = {});
+
+class Pen;
+
+/// A PDF of several pages of one size, a picture each.
+class Pages {
+ public:
+  Pages(const Sheet& sheet, double aspect);
+  ~Pages();
+
+  void add(const draw::Picture& picture, const std::optional<Raster>& raster = {});
+  /// The file; requires a page.
+  std::vector<std::uint8_t> finish();
+
+ private:
+  Sheet sheet_;
+  std::unique_ptr<Pen> pen_;
+  bool begun_ = false;
+};
+
+/// The words of a picture that are apart as LaTeX over `pdf`, the file of its page without words. Needs
+/// graphicx and color; the document's own fonts, sizes in points; as wide as \obscurawidth where that is
+/// defined.
+std::string latex_page(const draw::Picture& picture, const Sheet& sheet, const std::string& pdf);
 
 }  // namespace obscura::page

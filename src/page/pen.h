@@ -31,6 +31,8 @@ class Pen {
   virtual void image(const draw::Rect& where, const Raster& raster) = 0;
   virtual void clip(const draw::Rect& rect) = 0;
   virtual void unclip() = 0;
+  /// Ends a page and begins the next.
+  virtual void next_page() = 0;
   /// The file.
   virtual std::vector<std::uint8_t> finish() = 0;
 };

@@ -78,7 +78,8 @@ class Svg final : public Pen {
       const draw::Span& span = text.spans[i];
       if (span.text.empty() || line.spans[i].glyphs.empty()) continue;
       const FaceName& face = face_name(span.face);
-      characters(span.text, used_[std::size_t(span.face)]);
+      const std::string shown = draw::characters_of(span);
+      characters(shown, used_[std::size_t(span.face)]);
       const double x = start.x() + scale * line.spans[i].glyphs.front().at.x();
       // a later span says its baseline too: it would take over that of the one before
       body_ += fmt::format(
@@ -88,7 +89,7 @@ class Svg final : public Pen {
           face.weight != 400 ? fmt::format(" font-weight=\"{}\"", face.weight) : "",
           face.italic ? " font-style=\"italic\"" : "",
           span.tabular ? " style=\"font-feature-settings:'tnum'\"" : "", ink("fill", span.color),
-          escaped(span.text));
+          escaped(shown));
     }
     body_ += "</text>\n";
   }
@@ -109,6 +110,7 @@ class Svg final : public Pen {
         clips_, number(r.x), number(r.y), number(r.width), number(r.height), number(-r.width), clips_);
   }
   void unclip() override { body_ += "</g>\n"; }
+  void next_page() override { throw Error("an SVG has one page"); }
 
   std::vector<std::uint8_t> finish() override {
     std::string out = fmt::format(
@@ -119,6 +121,14 @@ class Svg final : public Pen {
     if (!sheet_.title.empty()) out += fmt::format("<title>{}</title>\n", escaped(sheet_.title));
     if (!sheet_.text.empty()) out += fmt::format("<desc>{}</desc>\n", escaped(sheet_.text));
     std::string faces;
+    // faces of one font are one
+    const auto same = [](std::size_t i, std::size_t k) {
+      const draw::FontFile &a = draw::font_file(draw::Face(i)), &b = draw::font_file(draw::Face(k));
+      return a.path == b.path && a.index == b.index;
+    };
+    for (std::size_t i = 0; i < used_.size(); ++i)
+      for (std::size_t k = 0; k < i && !used_[i].empty(); ++k)
+        if (!used_[k].empty() && same(i, k)) used_[k].merge(used_[i]), used_[i].clear();
     for (std::size_t i = 0; i < used_.size(); ++i) {
       if (used_[i].empty()) continue;
       const std::vector<std::uint8_t> font = subset(draw::Face(i), used_[i]);

@@ -94,6 +94,20 @@ class Reader {
       complaints_.add(fields.place("end"), "'end' comes before 'start': it would never be shown");
     return interval;
   }
+  // the same, and in which panels of a figure
+  draw::Interval marked(const Fields& fields, bool film) const {
+    draw::Interval interval = shown(fields);
+    interval.panels = fields.text("panel");
+    if (film && fields.given("panel"))
+      complaints_.add(fields.place("panel"),
+                      "'panel' is of figures: a film shows its marks from 'start' to 'end'");
+    else if (interval.panels.find_first_not_of("abcdefghijklmnopqrstuvwxyz") != std::string::npos)
+      complaints_.add(
+          fields.place("panel"),
+          fmt::format("'panel': expected the letters of panels, as in \"a\" or \"bc\", got \"{}\"",
+                      interval.panels));
+    return interval;
+  }
   // a command that is not known, and where
   void mathematics(const Fields& fields, const char* key) const {
     if (!fields.given(key)) return;
@@ -148,18 +162,19 @@ template <int D>
 draw::Marks read_marks(const Fields& fields, const std::string& owner, const Reader<D>& read,
                        Diagnostics& complaints) {
   draw::Marks marks;
+  const bool film = owner == "film";
   marks.axes = fields.flag("axes");
   for (const Node& node : tables(fields, "point")) {
     const Fields its(node, owner + ".point");
     if (const auto at = read.site(its, "at"))
       marks.points.push_back(
-          {*at, read.label(its, "label", false), its.flag("dot"), read.color(its), read.shown(its)});
+          {*at, read.label(its, "label", false), its.flag("dot"), read.color(its), read.marked(its, film)});
   }
   for (const Node& node : tables(fields, "vector")) {
     const Fields its(node, owner + ".vector");
-    draw::Marks::Vector vector{
-        quantity(its.text("quantity")), read.body(its, "of"), read.site(its, "at"), read.site(its, "to"),
-        read.label(its, "label"),       read.color(its),      read.shown(its)};
+    draw::Marks::Vector vector{quantity(its.text("quantity")), read.body(its, "of"),     read.site(its, "at"),
+                               read.site(its, "to"),           read.label(its, "label"), read.color(its),
+                               read.marked(its, film)};
     const bool position = vector.quantity == draw::Quantity::position;
     if (position ? !vector.to && vector.body < 0 : vector.body < 0)
       complaints.add(node.place, position ? "a position needs 'to', a place, or 'of', a body"
@@ -169,7 +184,7 @@ draw::Marks read_marks(const Fields& fields, const std::string& owner, const Rea
   for (const Node& node : tables(fields, "angle")) {
     const Fields its(node, owner + ".angle");
     marks.angles.push_back({read.body(its, "of"), read.site(its, "at"), read.site(its, "from"),
-                            read.site(its, "to"), read.label(its, "label"), read.shown(its)});
+                            read.site(its, "to"), read.label(its, "label"), read.marked(its, film)});
     if (!its.given("of") && (!its.given("at") || !its.given("from") || !its.given("to")))
       complaints.add(node.place, "an angle needs 'of', a body, or 'at', 'from' and 'to', three places");
     if (D == 3 && its.given("of"))
@@ -177,7 +192,7 @@ draw::Marks read_marks(const Fields& fields, const std::string& owner, const Rea
   }
   for (const Node& node : tables(fields, "cone")) {
     const Fields its(node, owner + ".cone");
-    marks.cones.push_back({read.body(its, "of"), read.label(its, "label"), read.shown(its)});
+    marks.cones.push_back({read.body(its, "of"), read.label(its, "label"), read.marked(its, film)});
   }
   for (const Node& node : tables(fields, "length")) {
     const Fields its(node, owner + ".length");
@@ -185,14 +200,15 @@ draw::Marks read_marks(const Fields& fields, const std::string& owner, const Rea
     if (!between) continue;
     const auto from = read.site(between->list()[0]), to = read.site(between->list()[1]);
     if (from && to)
-      marks.lengths.push_back({*from, *to, read.label(its, "label"), its.number("offset"), read.shown(its)});
+      marks.lengths.push_back(
+          {*from, *to, read.label(its, "label"), its.number("offset"), read.marked(its, film)});
   }
   for (const Node& node : tables(fields, "label")) {
     const Fields its(node, owner + ".label");
     const auto at = read.site(its, "at");
     if (!at || !its.given("text")) continue;
     draw::Marks::Label label{*at, read.label(its, "text", its.given("quantity")), "", read.body(its, "of"),
-                             read.shown(its)};
+                             read.marked(its, film)};
     if (its.given("quantity")) label.quantity = its.text("quantity");
     if (const draw::Measure* shown = draw::measure(label.quantity); shown && shown->of_body && label.body < 0)
       complaints.add(its.place("quantity"),
@@ -206,12 +222,12 @@ draw::Marks read_marks(const Fields& fields, const std::string& owner, const Rea
     if (at->body < 0) complaints.add(its.place("at"), "a place of the room has no path: expected a body");
     const Node* lasting = its.given("lasting");
     marks.paths.push_back(
-        {*at, lasting ? lasting->number() : 0, its.flag("front"), read.color(its), read.shown(its)});
+        {*at, lasting ? lasting->number() : 0, its.flag("front"), read.color(its), read.marked(its, film)});
   }
   for (const Node& node : tables(fields, "ghost")) {
     const Fields its(node, owner + ".ghost");
     if (!its.given("time")) continue;
-    draw::Marks::Ghost ghost{its.rational("time"), read.bodies(its, "of"), read.shown(its)};
+    draw::Marks::Ghost ghost{its.rational("time"), read.bodies(its, "of"), read.marked(its, film)};
     if (!ghost.shown.start) ghost.shown.start = draw::Cue{sim::value(ghost.time)};
     marks.ghosts.push_back(ghost);
   }
@@ -246,6 +262,15 @@ void read_frame(const Fields& fields, const Reader<D>& read, Diagnostics& compla
   figure.scale_bar = fields.flag("scale_bar");
   figure.formula = fields.text("formula");
   read.mathematics(fields, "formula");
+  figure.times_of = read.body(fields, "times_of");
+  const std::string& titles = fields.text("titles");
+  for (std::size_t from = 0; fields.given("titles") && from <= titles.size();) {
+    const std::size_t end = std::min(titles.find(';', from), titles.size());
+    const std::size_t first = std::min(titles.find_first_not_of(' ', from), end);
+    figure.titles.push_back(titles.substr(first, end - first));
+    from = end + 1;
+  }
+  read.mathematics(fields, "titles");
   figure.vary = fields.text("vary");
   if (const auto equals = figure.vary.find('=');
       fields.given("vary") && (equals == 0 || equals == std::string::npos))
@@ -349,6 +374,12 @@ draw::Marks film_marks(const Node& top, const Seating<D>& roster, const sim::Wor
   Diagnostics known("", {});
   draw::Marks own =
       read_marks<D>(Fields::of(top, "figure"), "figure", Reader<D>(roster, world, known, speed), known);
+  // a film has no panels
+  const auto unbound = [](auto& all) {
+    std::erase_if(all, [](const auto& mark) { return !mark.shown.panels.empty(); });
+  };
+  unbound(own.points), unbound(own.vectors), unbound(own.angles), unbound(own.lengths), unbound(own.cones);
+  unbound(own.labels), unbound(own.paths), unbound(own.ghosts);
   own.axes = own.axes || marks.axes;
   const auto join = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   join(own.points, marks.points), join(own.vectors, marks.vectors), join(own.angles, marks.angles);

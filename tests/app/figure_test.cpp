@@ -35,6 +35,17 @@ std::string written(std::string svg) {
   return words;
 }
 
+// names of the fonts that an SVG is set in
+std::set<std::string> families(const std::string& svg) {
+  const std::string key = "font-family=\"";
+  std::set<std::string> names;
+  for (auto at = svg.find(key); at != svg.npos; at = svg.find(key, at + 1)) {
+    const auto from = at + key.size();
+    names.insert(svg.substr(from, svg.find('"', from) - from));
+  }
+  return names;
+}
+
 const char* const kMarked = R"(
 duration = 2
 [room]
@@ -210,6 +221,102 @@ TEST_F(Figure, SeveralInstantsAndValuesArePanelsWithLetters) {
     EXPECT_THAT(written(svg), HasSubstr(words));
 }
 
+/// "before" and "after" have marks of their own.
+TEST_F(Figure, PanelsHaveTitlesAndMarksOfTheirOwn) {
+  scene(R"(
+duration = 1
+[room]
+size = [4, 2]
+[[ball]]
+name = "ball"
+radius = 0.1
+position = [1, 1]
+velocity = [1, 0]
+[figure]
+at = [0.2, 0.9]
+every = 0.3
+times_of = "ball"
+titles = '"before"; "after" t_0'
+[[figure.vector]]
+quantity = "velocity"
+of = "ball"
+label = 'v_{in}'
+panel = "a"
+[[figure.vector]]
+quantity = "velocity"
+of = "ball"
+label = 'v_{out}'
+panel = "b"
+[[figure.point]]
+at = [3, 1.5]
+label = "Q"
+)");
+  const auto words = [&](const std::string& sets) {
+    const Outcome drawn = obscura("figure scene.toml -o a.svg " + sets);
+    EXPECT_EQ(drawn.exit, 0) << drawn.err;
+    return written(contents(path("a.svg")));
+  };
+  const auto count = [](const std::string& text, const std::string& word) {
+    int n = 0;
+    for (auto at = text.find(word); at != text.npos; at = text.find(word, at + 1)) ++n;
+    return n;
+  };
+  const std::string text = words("");
+  for (const char* each : {"before", "after t0"}) EXPECT_THAT(text, HasSubstr(each));
+  EXPECT_THAT(text, testing::Not(HasSubstr("t = 0.2")));
+  EXPECT_EQ(count(text, "vin"), 1);
+  EXPECT_EQ(count(text, "vout"), 1);
+  EXPECT_EQ(count(text, "Q"), 2);
+  // exposures of 0, and of 0, 0.3 and 0.6 s
+  EXPECT_EQ(count(text, "0 s"), 2);
+  EXPECT_EQ(count(text, "0.3 s"), 1);
+  EXPECT_EQ(count(text, "0.6 s"), 1);
+}
+
+/// No letter and no arrow of a figure reaches beyond its page, but the ends of what is clipped there.
+TEST_F(Figure, WordsStayOnThePage) {
+  namespace fs = std::filesystem;
+  int words = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(OBSCURA_SOURCE_DIR) / "scenes/figures")) {
+    OBSCURA_NEEDS(page::writes(page::Form::pdf) && installed("pdftotext"), "libcairo2-dev, poppler-utils");
+    ASSERT_EQ(obscura("figure '" + entry.path().string() + "' -o a.pdf --dpi 40").exit, 0) << entry.path();
+    const std::string page = shell("pdftotext -bbox a.pdf -").out;
+    static const std::regex size("<page width=\"([0-9.]+)\" height=\"([0-9.]+)\">"),
+        word(
+            "<word xMin=\"([-0-9.]+)\" yMin=\"([-0-9.]+)\" xMax=\"([-0-9.]+)\" yMax=\"([-0-9.]+)\">([^<]*)<");
+    std::smatch whole;
+    ASSERT_TRUE(std::regex_search(page, whole, size)) << entry.path();
+    const double width = std::stod(whole[1]), height = std::stod(whole[2]);
+    for (std::sregex_iterator it(page.begin(), page.end(), word), end; it != end; ++it, ++words) {
+      // a box is as high as the font's tallest letter
+      EXPECT_GE(std::stod((*it)[1]), 0) << entry.path() << ": " << (*it)[5];
+      EXPECT_LE(std::stod((*it)[3]), width) << entry.path() << ": " << (*it)[5];
+      const double middle = (std::stod((*it)[2]) + std::stod((*it)[4])) / 2;
+      EXPECT_GT(middle, 2) << entry.path() << ": " << (*it)[5];
+      EXPECT_LT(middle, height - 2) << entry.path() << ": " << (*it)[5];
+    }
+  }
+  EXPECT_GT(words, 200);
+}
+
+/// By its family's name, whatever its files are called; mathematics too where the font has it.
+TEST_F(Figure, FontsAreFoundByTheirFamily) {
+  OBSCURA_NEEDS(installed("fc-list"), "fontconfig");
+  scene(kMarked);
+  const std::string known = shell("fc-list : family").out;
+  const auto drawn_in = [&](const std::string& family) {
+    const Outcome drawn = obscura("figure scene.toml -o a.svg --font '" + family + "'");
+    EXPECT_EQ(drawn.exit, 0) << drawn.err;
+    return families(contents(path("a.svg")));
+  };
+  // in the file STIXMath-Regular.otf
+  if (known.find("STIX Math\n") == known.npos) GTEST_SKIP() << "needs fonts-stix with STIX Math";
+  EXPECT_EQ(drawn_in("STIX Math"), std::set<std::string>{"STIX Math"});
+  EXPECT_EQ(drawn_in("stix math"), std::set<std::string>{"STIX Math"});
+  // letters of mathematics are characters of their own there
+  EXPECT_THAT(contents(path("a.svg")), HasSubstr("\U0001D497"));  // bold italic v
+}
+
 TEST_F(Figure, ErrorsAreOneClearLine) {
   scene(kMarked);
   const auto fails = [&](const std::string& arguments, int exit, const std::string& words) {
@@ -218,10 +325,10 @@ TEST_F(Figure, ErrorsAreOneClearLine) {
     EXPECT_THAT(outcome.err, HasSubstr(words));
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   };
-  fails("scene.toml -o a.jpg", 2, "ends with .svg, .pdf or .png");
+  fails("scene.toml -o a.jpg", 2, "ends with .svg, .pdf, .png or .tex");
   fails("scene.toml -o a.svg --width 3", 2, "--width 3: expected 20mm to 1000mm");
   fails("scene.toml -o a.svg --vary crate", 2, "expected PATH=VALUES");
-  fails("scene.toml -o a.svg --font NoSuchFamily", 4, "cannot find the font NoSuchFamily-Regular.otf");
+  fails("scene.toml -o a.svg --font NoSuchFamily", 4, "cannot find the font family 'NoSuchFamily'");
   fails("scene.toml -o a.svg --at 0:10:0.01", 2, "1001 panels are more than 100");
   fails("scene.toml -o a.svg --every 0.0001", 2, "4000 exposures are more than 2000");
   fails("scene.toml -o a.svg --set figure.room=false", 3, "a figure without its picture needs a plot");
@@ -379,17 +486,6 @@ std::string without_fonts(std::string svg) {
   const std::string raster = "data:image/png;base64,";
   if (const auto from = svg.find(raster); from != svg.npos) svg.erase(from, svg.find('"', from) - from);
   return svg;
-}
-
-// names of the fonts that an SVG is set in
-std::set<std::string> families(const std::string& svg) {
-  const std::string key = "font-family=\"";
-  std::set<std::string> names;
-  for (auto at = svg.find(key); at != svg.npos; at = svg.find(key, at + 1)) {
-    const auto from = at + key.size();
-    names.insert(svg.substr(from, svg.find('"', from) - from));
-  }
-  return names;
 }
 
 // script/figures makes them anew

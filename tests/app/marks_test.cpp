@@ -132,7 +132,7 @@ TEST(Marks, AnArrowsTipLiesWhereTheQuantitySays) {
   EXPECT_GT(arrows, 150) << "too few were looked at";
 }
 
-/// Numbers in labels are those of `states`, rounded as the label says.
+/// Numbers in labels are those of `states`, rounded as the label says: over ten films.
 TEST(Marks, PrintedNumbersAreTheRuns) {
   for (const auto& [file, word, body, path] :
        {std::tuple("slope", "normal_force", "block", "block.normal_force"),
@@ -144,7 +144,13 @@ TEST(Marks, PrintedNumbersAreTheRuns) {
         std::tuple("pendulum", "spring_force", "bob", "bob.spring_force"),
         std::tuple("pendulum", "acceleration", "bob", "bob.acceleration"),
         std::tuple("swing", "kinetic", "bob", "energy.kinetic"),
-        std::tuple("energy", "height", "ball", "ball.position.y")}) {
+        std::tuple("energy", "height", "ball", "ball.position.y"),
+        std::tuple("bounce", "height", "ball[2]", "ball[2].position.y"),
+        std::tuple("spring", "spring_force", "weight[1]", "weight[1].spring_force"),
+        std::tuple("drag", "vx", "ball[3]", "ball[3].velocity.x"),
+        std::tuple("planets", "momentum", "planet_1", "planet_1.momentum"),
+        std::tuple("atwood", "vy", "left", "left.velocity.y"),
+        std::tuple("cradle", "kinetic", "swung", "energy.kinetic")}) {
     scene::Scene scene = scene::read(kScenes + file + ".toml");
     scene.film.marks = {};
     scene.film.charts.clear();

@@ -63,11 +63,17 @@ std::string ending(const std::string& name) {
 void check_ending(const std::string& out) {
   const std::string end = ending(out);
   if (end == "png") return;
-  const auto form = page::form(end);
-  if (!form) throw UsageError(fmt::format("-o {}: expected a name that ends with .svg, .pdf or .png", out));
+  const auto form = end == "tex" ? page::Form::pdf : page::form(end);
+  if (!form)
+    throw UsageError(fmt::format("-o {}: expected a name that ends with .svg, .pdf, .png or .tex", out));
   if (!page::writes(*form))
     throw UsageError(fmt::format(
         "-o {}: this obscura was built without Cairo and cannot write PDF; use .svg or .png", out));
+}
+
+// the PDF beside LaTeX's words
+std::string lines_of(const std::string& out) {
+  return std::filesystem::path(out).replace_extension(".pdf").string();
 }
 
 void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {
@@ -132,6 +138,7 @@ int run(const FigureFlags& flags) {
   }
   options.columns = flags.columns;
   options.vary = flags.vary;
+  options.latex = ending(out) == "tex";
   if (flags.theme) options.theme = *flags.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
   if (flags.font) {
     ::setenv("OBSCURA_FONT", flags.font->c_str(), 1);
@@ -166,7 +173,16 @@ int run(const FigureFlags& flags) {
       raster = page::Raster{under.width, under.height, height / 1080 / grid.per_unit, under.pixels.data(),
                             media::encode_png(under)};
     }
-    write(out, page::page(made.picture, *page::form(ending(out)), sheet, raster));
+    if (options.latex) {
+      const std::string lines = lines_of(out);
+      write(lines, page::page(made.picture, page::Form::pdf, sheet, raster));
+      const std::string words =
+          page::latex_page(made.picture, sheet, std::filesystem::path(lines).filename().string());
+      write(out, {words.begin(), words.end()});
+      size += fmt::format(", words over {}", lines);
+    } else {
+      write(out, page::page(made.picture, *page::form(ending(out)), sheet, raster));
+    }
   }
   say(stdout, "{}: {}\n", out, size);
   return kDone;
@@ -175,12 +191,14 @@ int run(const FigureFlags& flags) {
 }  // namespace
 
 OBSCURA_COMMAND(30, figure) {
-  const Command command(program, exit, "figure", "Draw a figure for print: SVG, PDF or PNG");
+  const Command command(program, exit, "figure", "Draw a figure for print: SVG, PDF, PNG or LaTeX");
   auto flags = std::make_shared<FigureFlags>();
   add_scene(command, flags->scene);
   command
       .option("-o,--output", flags->out,
-              "The output: .svg or .pdf (vectors, with text as text) or .png [render_out/SCENE.svg]")
+              "The output: .svg or .pdf (vectors, with text as text), .png, or .tex (a .pdf without words, "
+              "and its words as "
+              "LaTeX over it) [render_out/SCENE.svg]")
       .type("OUT");
   command
       .option("--at", flags->at,
@@ -202,7 +220,10 @@ OBSCURA_COMMAND(30, figure) {
       .type("PATH=VALUES")
       .repeated();
   command.option("--columns", flags->columns, "Panels in a row").range(1, 20);
-  command.option("--font", flags->font, "Font family of the text, as in 'Source Sans 3' [Inter]")
+  command
+      .option(
+          "--font", flags->font,
+          "Font family of words, as in 'Source Sans 3'; of mathematics too where it has a MATH table [Inter]")
       .type("NAME");
   command.option("--dpi", flags->dpi, "Pixels per inch of a PNG, and of lit surfaces in space [300]")
       .range(10.0, 4800.0);

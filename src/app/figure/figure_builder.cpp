@@ -51,6 +51,33 @@ sim::Rational impact(const scene::Scene& scene) {
                                run->scene_info().bodies[std::size_t(body)].name));
 }
 
+// "0.351 "s"", as mathematics: to the millisecond
+std::string seconds_words(double time) {
+  std::string number = fmt::format("{:.3f}", std::abs(time) < 5e-4 ? 0.0 : time);
+  while (number.back() == '0') number.pop_back();
+  if (number.back() == '.') number.pop_back();
+  return number + " \"s\"";
+}
+
+// what a panel shows of a figure's marks, but for ghosts; and the times of earlier exposures
+draw::Marks marks_of(const draw::Figure& figure, int panel, const sim::SceneInfo& cast,
+                     const std::vector<sim::Snapshot>& before) {
+  draw::Marks marks = figure;
+  const auto leave = [&](auto& all) {
+    std::erase_if(all, [&](const auto& mark) { return !mark.shown.in(panel); });
+  };
+  leave(marks.points), leave(marks.vectors), leave(marks.angles), leave(marks.lengths);
+  leave(marks.cones), leave(marks.labels), leave(marks.paths);
+  if (figure.times_of < 0) return marks;
+  const sim::SceneInfo::Body& body = cast.bodies[std::size_t(figure.times_of)];
+  const double reach = body.radius > 0 ? body.radius : body.half.y();
+  for (const sim::Snapshot& then : before) {
+    const sim::Vec3 top = then.bodies[std::size_t(figure.times_of)].position + reach * sim::Vec3::UnitY();
+    marks.points.push_back({{-1, top}, seconds_words(then.time), false});
+  }
+  return marks;
+}
+
 bool traced(const draw::Marks& marks, int body) {
   return std::any_of(marks.paths.begin(), marks.paths.end(),
                      [&](const auto& path) { return path.at.body == body; });
@@ -63,14 +90,6 @@ draw::Text words(const std::string& text, draw::Face face, double size, const dr
           {{.text = text, .face = face, .size = size * draw::kPoint, .color = color, .tabular = true}}};
 }
 
-// "t = 0.351 "s"", as mathematics: to the millisecond
-std::string clock_words(double time) {
-  std::string number = fmt::format("{:.3f}", std::abs(time) < 5e-4 ? 0.0 : time);
-  while (number.back() == '0') number.pop_back();
-  if (number.back() == '.') number.pop_back();
-  return "t = " + number + " \"s\"";
-}
-
 // how large marks are
 draw::Annotating lettered(const draw::Look& look) {
   draw::Annotating how;
@@ -81,7 +100,8 @@ draw::Annotating lettered(const draw::Look& look) {
 }  // namespace
 
 FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::string>& sets,
-                             const AlbumOptions& options) {
+                             const AlbumOptions& options)
+    : apart_(options.latex) {
   // one scene for each value, all combinations
   std::vector<std::string> varies = options.vary;
   if (varies.empty() && file != "-")
@@ -156,7 +176,7 @@ void FigureBuilder::take(const scene::Scene& scene, const std::vector<sim::Ratio
     Panel panel{scene, run->scene_info(), at(time), before, then, {}, said};
     ways.push_back(std::make_shared<const sim::Track>(run->take_track()));
     panel.ways = ways;
-    if (times.size() > 1) panel.words += (said.empty() ? "" : ", ") + clock_words(sim::value(time));
+    if (times.size() > 1) panel.words += (said.empty() ? "t = " : ", t = ") + seconds_words(sim::value(time));
     panels_.push_back(std::move(panel));
   }
 }
@@ -164,11 +184,15 @@ void FigureBuilder::take(const scene::Scene& scene, const std::vector<sim::Ratio
 std::vector<FigureBuilder::Cell> FigureBuilder::cells() const {
   const std::vector<draw::Camera>& cameras = panels_.front().scene.cameras;
   const int seen = panels_.front().cast.dimension == 3 ? int(cameras.size()) : 1;
+  const std::vector<std::string>& titles = panels_.front().scene.figure.titles;
   std::vector<Cell> all;
   for (int camera = 0; camera < seen; ++camera) {
     for (const Panel& panel : panels_) {
       const std::string name = seen > 1 ? cameras[std::size_t(camera)].name : "";
-      all.push_back({&panel, camera, name + (name.empty() || panel.words.empty() ? "" : ", ") + panel.words});
+      const std::size_t index = all.size();
+      const std::string title = index < titles.size() ? titles[index] : "";
+      all.push_back({&panel, camera, int(index),
+                     name + (name.empty() || panel.words.empty() ? "" : ", ") + panel.words, title});
     }
   }
   return all;
@@ -199,6 +223,7 @@ Page FigureBuilder::page() const {
 
   Page page;
   draw::List all;
+  all.apart = apart_;
   double top = 0;
   if (!figure.formula.empty()) {
     const draw::Formula formula = draw::formula(figure.formula, kFormula * draw::kPoint, colours.ink);
@@ -214,6 +239,7 @@ Page FigureBuilder::page() const {
     const draw::Point corner(column * (each + kGutter) * draw::kPoint, top);
     const draw::Illustrator artist = depictor(cells[i], each);
     draw::List list;
+    list.apart = apart_;
     if (space) {
       Lit lit;
       list = in_space(artist, cells[i], scales, each, height, lit);
@@ -226,18 +252,19 @@ Page FigureBuilder::page() const {
       const double baseline = 9 * draw::kPoint;
       list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9,
                      {2 * draw::kPoint, baseline}, colours.ink));
-      // what is varied in words, the time as mathematics
+      // what is varied in words, the time as mathematics; or what the scene says
       double x = 18 * draw::kPoint;
-      const auto clock = cells[i].words.rfind("t = ");
-      const std::string plain = cells[i].words.substr(0, clock);
+      const bool named = !cells[i].title.empty();
+      const std::string& said = named ? cells[i].title : cells[i].words;
+      const auto clock = named ? 0 : said.rfind("t = ");
+      const std::string plain = said.substr(0, clock);
       if (!plain.empty()) {
         list.add(words(plain, draw::Face::regular, 8.5, {x, baseline}, colours.ink));
         x += draw::width_of(plain, draw::Face::regular, 8.5 * draw::kPoint, true);
         if (plain.back() == ' ') x += 0.25 * 8.5 * draw::kPoint;
       }
       if (clock != std::string::npos)
-        draw::add(draw::formula(cells[i].words.substr(clock), 8.5 * draw::kPoint, colours.ink), {x, baseline},
-                  list);
+        draw::add(draw::formula(said.substr(clock), 8.5 * draw::kPoint, colours.ink), {x, baseline}, list);
     }
     all.add(list, 1, corner);
     row_height = std::max(row_height, height);
@@ -334,8 +361,11 @@ draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell
   const draw::Palette colours = draw::palette(panel.scene.look.theme);
 
   // fixed things, earlier exposures from the oldest on, the instant itself, its annotations
+  const draw::Marks marks = marks_of(panel.scene.figure, cell.index, panel.cast, panel.before);
   draw::Picture picture = depictor.depict(panel.now, panel.ways);
-  draw::List list = *picture.still;
+  draw::List list;
+  list.apart = apart_;
+  list.add(*picture.still, 1, {0, 0});
   for (std::size_t k = 0; k < panel.before.size(); ++k) {
     const double age = double(k) / double(panel.before.size());
     depictor.ghosts(panel.before[k], kFaintest + (kStrongest - kFaintest) * age, list);
@@ -344,16 +374,15 @@ draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell
   const double film = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < panel.ghosts.size(); ++i) {
     const draw::Marks::Ghost& ghost = panel.scene.figure.ghosts[i];
-    if (panel.ghosts[i] && ghost.shown.has(panel.now.time, film))
+    if (panel.ghosts[i] && ghost.shown.in(cell.index) && ghost.shown.has(panel.now.time, film))
       depictor.ghosts(*panel.ghosts[i], draw::kGhost, list, ghost.bodies);
   }
-  const auto paths = draw::path_lines(panel.scene.figure,
-                                      draw::paths_of(panel.scene.figure, panel.ways, kPathError / view.scale),
-                                      panel.now, film);
+  const auto paths =
+      draw::path_lines(marks, draw::paths_of(marks, panel.ways, kPathError / view.scale), panel.now, film);
   depictor.draw_lines(view, paths, false, list);
   list.add(picture.moving, 1, {0, 0});
   depictor.draw_lines(view, paths, true, list);
-  draw::annotate(panel.scene.figure, scales, panel.cast, colours, draw::Projection(view), panel.now, list,
+  draw::annotate(marks, scales, panel.cast, colours, draw::Projection(view), panel.now, list,
                  lettered(panel.scene.look));
   if (panel.scene.figure.axes) draw::draw_rulers(depictor.layout(), view, colours, list);
   height = depictor.layout().height;
@@ -365,6 +394,7 @@ draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell
                                    const draw::Scales& scales, double width, double& height, Lit& lit) const {
   const Panel& panel = *cell.panel;
   const draw::Palette colours = draw::palette(panel.scene.look.theme);
+  const draw::Marks marks = marks_of(panel.scene.figure, cell.index, panel.cast, panel.before);
   const double at_target = depictor.scale(panel.now);
   const double film = std::numeric_limits<double>::quiet_NaN();
   const std::vector<int> all;
@@ -375,21 +405,21 @@ draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell
   }
   for (std::size_t i = 0; i < panel.ghosts.size(); ++i) {
     const draw::Marks::Ghost& ghost = panel.scene.figure.ghosts[i];
-    if (panel.ghosts[i] && ghost.shown.has(panel.now.time, film))
+    if (panel.ghosts[i] && ghost.shown.in(cell.index) && ghost.shown.has(panel.now.time, film))
       ghosts.push_back({&*panel.ghosts[i], &ghost.bodies, draw::kGhost});
   }
-  const auto paths = draw::path_lines(panel.scene.figure,
-                                      draw::paths_of(panel.scene.figure, panel.ways, kPathError / at_target),
-                                      panel.now, film);
+  const auto paths =
+      draw::path_lines(marks, draw::paths_of(marks, panel.ways, kPathError / at_target), panel.now, film);
   lit.picture = depictor.depict(panel.now, panel.ways, paths, ghosts);
   const double scale = width * draw::kPoint / (1080 * lit.picture.aspect);
   const draw::Point corner(0, panels_.size() * panel.scene.cameras.size() > 1 ? kLetter * draw::kPoint : 0);
   lit.where = {corner.x(), corner.y(), 1080 * lit.picture.aspect * scale, 1080 * scale};
   height = corner.y() + lit.where.height;
   draw::List list;
+  list.apart = apart_;
   list.add(lit.picture.moving, scale, corner);
   lit.picture.moving = {};
-  draw::annotate(panel.scene.figure, scales, panel.cast, colours,
+  draw::annotate(marks, scales, panel.cast, colours,
                  draw::Projection(depictor.lens(panel.now), scale, corner), panel.now, list,
                  lettered(panel.scene.look));
   return list;

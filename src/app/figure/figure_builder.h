@@ -24,6 +24,7 @@ struct AlbumOptions {
   std::optional<int> columns;
   std::vector<std::string> vary;  // "crate.elasticity=0,0.5,1"
   std::optional<draw::Theme> theme;
+  bool latex = false;  // words are set apart, for LaTeX
 };
 
 /// The part of a page that is pixels: surfaces, their light and their shadows.
@@ -65,8 +66,8 @@ class FigureBuilder {
   /// The content of one place of the page.
   struct Cell {
     const Panel* panel = nullptr;
-    int camera = 0;
-    std::string words;
+    int camera = 0, index = 0;
+    std::string words, title;
   };
   std::vector<Cell> cells() const;
   draw::Illustrator depictor(const Cell& cell, double width) const;
@@ -86,6 +87,7 @@ class FigureBuilder {
   std::vector<Variant> variants_;
   double width_ = 0;
   int columns_ = 1;
+  bool apart_ = false;
   std::optional<sim::Rational> every_;
 };
 

@@ -96,6 +96,7 @@ class Notes {
   Placing::Candidate planned(const Word& word, double& leader) const;
   void plate(const Point& center, const Point& size, std::uint8_t strength);
   void lead(const Word& word, const Point& center, double strength);
+  static Hold hold(const Word& word, const Point& center);
   void offer_places();
   bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink);
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
@@ -437,7 +438,7 @@ void Notes::length(int index, const Marks::Length& length) {
 void Notes::point(int index, const Marks::Point& point) {
   if (!view_.before(place(point.at, now_))) return;
   const Point at = view_.page(place(point.at, now_));
-  const Color ink = point.color.value_or(colours_.ink);
+  const Color ink = inked(point.color.value_or(colours_.ink), colours_);
   if (point.dot) dots_.emplace_back(at, ink);
   const Formula f = formula(point.label, type_, ink);
   placing_.avoid(at - Point(dot_radius_, 0), at + Point(dot_radius_, 0), 8);
@@ -576,7 +577,8 @@ void Notes::finish() {
   if (how_.survey) return offer_places();
   const auto write = [&](const Word& word, const Point& center) {
     const Point half = size(word.set) / 2;
-    add(word.set, {center.x() - half.x(), center.y() - half.y() + word.set.ascent}, list_);
+    add(word.set, {center.x() - half.x(), center.y() - half.y() + word.set.ascent}, list_,
+        hold(word, center));
   };
   std::vector<Point> centers;
   for (Word& word : words_) {
@@ -592,6 +594,24 @@ void Notes::finish() {
   for (std::size_t i = 0; i < words_.size(); ++i)
     plate(centers[i], size(words_[i].set), words_[i].set.color.a);
   for (std::size_t i = 0; i < words_.size(); ++i) write(words_[i], centers[i]);
+}
+
+// the side of words that faces what they name
+Hold Notes::hold(const Word& word, const Point& center) {
+  Point to = word.anchor;
+  if (word.arrow) {
+    const auto& [tail, tip] = *word.arrow;
+    const Point way = tip - tail;
+    const double part = way.squaredNorm() > 0 ? (center - tail).dot(way) / way.squaredNorm() : 0;
+    to = tail + std::clamp(part, 0.0, 1.0) * way;
+  }
+  const Point out = to - center, half = 0.8 * size(word.set) / 2;
+  return {out.x() < -half.x()  ? Align::left
+          : out.x() > half.x() ? Align::right
+                               : Align::center,
+          out.y() < -half.y()  ? Level::top
+          : out.y() > half.y() ? Level::bottom
+                               : Level::middle};
 }
 
 // the places where words could stand, each with its cost

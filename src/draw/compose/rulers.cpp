@@ -33,7 +33,10 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
   };
   const auto write = [&](const std::string& text, const Point& at, double align) {
     const Formula f = formula(text, kRulerType, colours.ink);
-    add(f, {at.x() - align * f.width, at.y()}, list);
+    add(f, {at.x() - align * f.width, at.y()}, list,
+        {align > 0.9   ? Align::right
+         : align > 0.1 ? Align::center
+                       : Align::left});
     return f.width;
   };
   const auto number = [](double x) { return fmt::format("{:g}", std::abs(x) < 1e-9 ? 0.0 : x); };

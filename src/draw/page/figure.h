@@ -29,7 +29,9 @@ struct Figure : Marks {
   std::optional<sim::Rational> every;
   std::string vary;  // "crate.elasticity=0,0.5,1": a panel and a line of each plot for each value
   int columns = 0;
-  bool room = true;  // the run's picture; false: plots alone
+  std::vector<std::string> titles;  // of the panels, in place of what sets them apart; as mathematics
+  int times_of = -1;                // the body whose earlier exposures have their times beside them
+  bool room = true;                 // the run's picture; false: plots alone
   bool scale_bar = false;
   std::string formula;  // above the picture
   std::vector<Plot> plots;

@@ -54,7 +54,12 @@ struct Cue {
 /// From when on and until when a mark is shown: always where neither is said.
 struct Interval {
   std::optional<Cue> start, end;
+  std::string panels{};  // of a figure, by their letters; empty: all
 
+  /// Whether a figure's panel has it.
+  bool in(int panel) const {
+    return panels.empty() || (panel < 26 && panels.find(char('a' + panel)) != std::string::npos);
+  }
   /// Whether it is shown at an instant of the run, `film` seconds into its film (not a number: of no film).
   bool has(double time, double film) const;
 };

@@ -300,7 +300,10 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
   };
   const auto write = [&](const std::string& text, const Point& p, double align, Color color) {
     const Formula f = formula(text, type, color);
-    add(f, {p.x() - align * f.width, p.y()}, list);
+    add(f, {p.x() - align * f.width, p.y()}, list,
+        {align > 0.9   ? Align::right
+         : align > 0.1 ? Align::center
+                       : Align::left});
   };
 
   // values up, time along zero's line or the bottom
@@ -372,7 +375,8 @@ void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, L
     // at the right end above it, where the line's name is beside it
     const bool last = p.x() > area.right - 10 * unit;
     const Formula f = formula(dot.label, kTypeSize * unit, colours.ink);
-    add(f, p + (last ? Point(-f.width / 2, -5 * unit) : Point(3.5 * unit, -2.5 * unit)), list);
+    add(f, p + (last ? Point(-f.width / 2, -5 * unit) : Point(3.5 * unit, -2.5 * unit)), list,
+        {last ? Align::center : Align::left});
   }
 }
 

@@ -213,8 +213,10 @@ double* scale_of(Quantity quantity, Scales& scales) {
   }
 }
 
+Color inked(Color color, const Palette& colours) { return color == Color{0, 0, 0} ? colours.ink : color; }
+
 Color color_of(const Marks::Vector& vector, const Palette& colours) {
-  if (vector.color) return *vector.color;
+  if (vector.color) return inked(*vector.color, colours);
   switch (vector.quantity) {
     case Quantity::position:
       return mix(*color("blue"), colours.ink, 0.3);

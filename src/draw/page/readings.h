@@ -37,5 +37,7 @@ struct Scales {
 double* scale_of(Quantity quantity, Scales& scales);
 
 Color color_of(const Marks::Vector& vector, const Palette& colours);
+/// The colour of a mark: black is the page's ink, for a picture has one.
+Color inked(Color color, const Palette& colours);
 
 }  // namespace obscura::draw

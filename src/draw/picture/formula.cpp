@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <utility>
 
+#include "draw/picture/formula_text.h"
+#include "draw/picture/latex.h"
 #include "draw/picture/type.h"
 
 namespace obscura::draw {
@@ -20,60 +21,9 @@ constexpr double kAxis = 0.25;      // height of its bar, em
 constexpr double kBar = 0.05, kAroundBar = 0.13;
 constexpr double kBig = 1.45;  // size of a sum's sign
 
-struct Name {
-  std::string_view word, symbol;
-};
-constexpr Name kNames[] = {
-    {"alpha", "α"},      {"beta", "β"},       {"gamma", "γ"},     {"delta", "δ"},      {"epsilon", "ε"},
-    {"varepsilon", "ε"}, {"zeta", "ζ"},       {"eta", "η"},       {"theta", "θ"},      {"vartheta", "ϑ"},
-    {"iota", "ι"},       {"kappa", "κ"},      {"lambda", "λ"},    {"mu", "μ"},         {"nu", "ν"},
-    {"xi", "ξ"},         {"pi", "π"},         {"rho", "ρ"},       {"sigma", "σ"},      {"tau", "τ"},
-    {"upsilon", "υ"},    {"phi", "φ"},        {"varphi", "φ"},    {"chi", "χ"},        {"psi", "ψ"},
-    {"omega", "ω"},      {"Gamma", "Γ"},      {"Delta", "Δ"},     {"Theta", "Θ"},      {"Lambda", "Λ"},
-    {"Xi", "Ξ"},         {"Pi", "Π"},         {"Sigma", "Σ"},     {"Phi", "Φ"},        {"Psi", "Ψ"},
-    {"Omega", "Ω"},      {"perp", "⊥"},       {"times", "×"},     {"cdot", "·"},       {"pm", "±"},
-    {"mp", "∓"},         {"div", "÷"},        {"le", "≤"},        {"leq", "≤"},        {"ge", "≥"},
-    {"geq", "≥"},        {"ne", "≠"},         {"neq", "≠"},       {"ll", "≪"},         {"gg", "≫"},
-    {"approx", "≈"},     {"sim", "∼"},        {"propto", "∝"},    {"equiv", "≡"},      {"infty", "∞"},
-    {"to", "→"},         {"rightarrow", "→"}, {"leftarrow", "←"}, {"Rightarrow", "⇒"}, {"circ", "°"},
-    {"deg", "°"},        {"degree", "°"},     {"prime", "′"},     {"parallel", "∥"},   {"partial", "∂"},
-    {"nabla", "∇"},      {"hbar", "ħ"},       {"ell", "ℓ"},       {"dots", "…"},       {"ldots", "…"},
-    {"cdots", "⋯"},      {"in", "∈"},         {"langle", "⟨"},    {"rangle", "⟩"},     {"quad", "  "},
-};
-/// Signs that are larger than letters; a sum's limits stand below and above it, an integral's beside it.
-constexpr Name kLarge[] = {{"sum", "∑"}, {"prod", "∏"}, {"int", "∫"}, {"oint", "∮"}};
-constexpr std::string_view kFunctions[] = {"sin",    "cos",  "tan",  "cot",  "arcsin", "arccos",
-                                           "arctan", "sinh", "cosh", "tanh", "log",    "ln",
-                                           "exp",    "min",  "max",  "lim",  "det",    "sgn"};
-constexpr std::string_view kAccents[] = {"bar", "vec", "dot", "ddot", "hat", "tilde"};
-constexpr std::string_view kForms[] = {"frac",       "sqrt", "text",   "mathrm", "mathbf",
-                                       "boldsymbol", "bm",   "mathit", "left",   "right"};
-
-const Name* entry(std::span<const Name> names, std::string_view word) {
-  const auto found =
-      std::find_if(names.begin(), names.end(), [&](const Name& each) { return each.word == word; });
-  return found == names.end() ? nullptr : &*found;
-}
-
-bool among(std::span<const std::string_view> words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-bool known(std::string_view word) {
-  return entry(kNames, word) || entry(kLarge, word) || among(kFunctions, word) || among(kAccents, word) ||
-         among(kForms, word);
-}
-
-bool latin(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-std::size_t length_of(char first) {
-  const auto c = static_cast<unsigned char>(first);
-  return c < 0x80 ? 1 : c < 0xE0 ? 2 : c < 0xF0 ? 3 : 4;
-}
-
 // Greek small letters are italic, as Latin ones are
 bool italic(std::string_view c) {
-  if (c.size() == 1) return latin(c[0]);
+  if (c.size() == 1) return formulas::latin(c[0]);
   const std::string_view small[] = {"α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "κ", "λ", "μ", "ν",
                                     "ξ", "π", "ρ", "σ", "τ", "φ", "χ", "ψ", "ω", "ϵ", "ϕ"};
   return std::find(std::begin(small), std::end(small), c) != std::end(small);
@@ -114,11 +64,11 @@ std::string nearest(std::string_view word) {
   const auto offer = [&](std::string_view name) {
     if (const std::size_t d = distance(word, name); d < least && d < name.size()) least = d, best = name;
   };
-  for (const Name& each : kNames) offer(each.word);
-  for (const Name& each : kLarge) offer(each.word);
-  for (const auto each : kFunctions) offer(each);
-  for (const auto each : kAccents) offer(each);
-  for (const auto each : kForms) offer(each);
+  for (const formulas::Name& each : formulas::kNames) offer(each.word);
+  for (const formulas::Name& each : formulas::kLarge) offer(each.word);
+  for (const auto each : formulas::kFunctions) offer(each);
+  for (const auto each : formulas::kAccents) offer(each);
+  for (const auto each : formulas::kForms) offer(each);
   return best;
 }
 
@@ -209,7 +159,7 @@ class Setter {
     Formula below, above;
     for (int k = 0; k < 2 && i < text.size() && (text[i] == '_' || text[i] == '^'); ++k) {
       const bool under = text[i++] == '_';
-      (under ? below : above) = inner(argument(text, i), kScript * scale);
+      (under ? below : above) = inner(formulas::argument(text, i, latex_), kScript * scale);
     }
     Setter setter(symbol, kBig * em, out_.color, 0);
     setter.put(symbol, Face::math, 1, 0);
@@ -266,7 +216,7 @@ class Setter {
       static constexpr std::string_view kRelations[] = {"=", "<", ">", "≤", "≥", "≠", "≈", "∼",
                                                         "∝", "≡", "→", "←", "⇒", "≪", "≫", "∈"};
       static constexpr std::string_view kBinary[] = {"+", "-", "±", "∓", "×", "·", "÷"};
-      const bool relation = among(kRelations, c), binary = among(kBinary, c) && operand_;
+      const bool relation = formulas::among(kRelations, c), binary = formulas::among(kBinary, c) && operand_;
       const double room = (relation ? 0.26 : binary ? 0.2 : 0) * scale * out_.size;
       if (scale == 1) pending_ += room;
       put(c == "-" ? std::string_view("−") : c,
@@ -275,48 +225,11 @@ class Setter {
                      : Face::math_italic,
           scale, rise);
       if (scale == 1) pending_ += room;
-      operand_ = !relation && !among(kBinary, c) && c != "(" && c != "[" && c != ",";
+      operand_ = !relation && !formulas::among(kBinary, c) && c != "(" && c != "[" && c != ",";
       return;
     }
     const Face face = !italic(c) ? Face::math : bold_ ? Face::math_bold_italic : Face::math_italic;
     put(c == "-" ? std::string_view("−") : c, face, scale, rise);
-  }
-
-  // the argument of a script or an accent: {...}, or one symbol
-  std::string_view argument(std::string_view text, std::size_t& i) {
-    if (i < text.size() && text[i] == '{') {
-      std::size_t depth = 0, from = i + 1;
-      for (; i < text.size(); ++i) {
-        if (text[i] == '{') ++depth;
-        if (text[i] == '}' && --depth == 0) break;
-      }
-      const std::string_view inner = text.substr(from, i - from);
-      i = std::min(i + 1, text.size());
-      return inner;
-    }
-    const std::size_t from = i;
-    if (i < text.size() && text[i] == '\\') {
-      ++i;
-      while (i < text.size() && latin(text[i])) ++i;
-    } else if (i < text.size() && latin(text[i]) && latex_) {
-      ++i;
-    } else if (i < text.size() && latin(text[i])) {
-      // "v_center": a word is one
-      while (i < text.size() && latin(text[i])) ++i;
-    } else if (i < text.size()) {
-      i += length_of(text[i]);
-    }
-    return text.substr(from, i - from);
-  }
-
-  // where the brace at i is closed
-  static std::size_t closing(std::string_view text, std::size_t i) {
-    std::size_t depth = 0;
-    for (; i < text.size(); ++i) {
-      if (text[i] == '{') ++depth;
-      if (text[i] == '}' && --depth == 0) return i;
-    }
-    return text.npos;
   }
 
   void run(std::string_view text, double scale, double rise) {
@@ -329,7 +242,7 @@ class Setter {
       } else if (c == '_' || c == '^') {
         ++i;
         const bool bold = std::exchange(bold_, false);
-        run(argument(text, i), kScript * scale, rise + scale * (c == '_' ? kSub : kSuper));
+        run(formulas::argument(text, i, latex_), kScript * scale, rise + scale * (c == '_' ? kSub : kSuper));
         bold_ = bold;
       } else if (c == '\'') {
         put("′", Face::math, scale, rise), ++i;
@@ -339,13 +252,13 @@ class Setter {
         i = std::min(end + 1, text.size());
       } else if (c == '\\') {
         name(text, ++i, scale, rise);
-      } else if (c == '{' && closing(text, i) != text.npos) {
-        run(argument(text, i), scale, rise);
-      } else if (latin(c) && latex_) {
+      } else if (c == '{' && formulas::closing(text, i) != text.npos) {
+        run(formulas::argument(text, i, latex_), scale, rise);
+      } else if (formulas::latin(c) && latex_) {
         letter(text.substr(i++, 1), scale, rise);
-      } else if (latin(c)) {
+      } else if (formulas::latin(c)) {
         std::size_t end = i;
-        while (end < text.size() && latin(text[end])) ++end;
+        while (end < text.size() && formulas::latin(text[end])) ++end;
         if (end - i >= 3) {
           put(text.substr(i, end - i), Face::math, scale, rise);
         } else {
@@ -353,7 +266,7 @@ class Setter {
         }
         i = end;
       } else {
-        const std::size_t n = std::min(length_of(c), text.size() - i);
+        const std::size_t n = std::min(formulas::length_of(c), text.size() - i);
         letter(text.substr(i, n), scale, rise);
         i += n;
       }
@@ -362,7 +275,7 @@ class Setter {
 
   void name(std::string_view text, std::size_t& i, double scale, double rise) {
     const std::size_t from = i;
-    while (i < text.size() && latin(text[i])) ++i;
+    while (i < text.size() && formulas::latin(text[i])) ++i;
     const std::string_view word = text.substr(from, i - from);
     if (word.empty() && i < text.size()) {
       // "\,": a space; "\{": the sign itself
@@ -379,16 +292,17 @@ class Setter {
       while (i < text.size() && text[i] == ' ') ++i;
     };
     operand_ = true;
-    if (among(kAccents, word)) {
+    if (formulas::among(formulas::kAccents, word)) {
       skip();
       const double before = width();
-      const std::string_view inner = argument(text, i);
+      const std::string_view inner = formulas::argument(text, i, latex_);
       run(inner, scale, rise);
       const double em = scale * out_.size;
       const double top = rise * out_.size + em * (inner.size() == 1 && low(inner) ? 0.56 : 0.78);
       using enum Formula::Over::Kind;
       static constexpr Formula::Over::Kind kinds[] = {bar, arrow, dot, dots, hat, tilde};
-      const auto which = std::find(std::begin(kAccents), std::end(kAccents), word) - std::begin(kAccents);
+      const auto which = std::find(std::begin(formulas::kAccents), std::end(formulas::kAccents), word) -
+                         std::begin(formulas::kAccents);
       // over the middle of a letter that leans
       out_.overs.push_back({kinds[which], before + 0.06 * em, width() + 0.03 * em, top});
       out_.ascent = std::max(out_.ascent, top + (which >= 4 ? 0.18 : 0.08) * em);
@@ -396,9 +310,9 @@ class Setter {
     }
     if (word == "frac") {
       skip();
-      const std::string_view above = argument(text, i);
+      const std::string_view above = formulas::argument(text, i, latex_);
       skip();
-      return fraction(above, argument(text, i), scale, rise);
+      return fraction(above, formulas::argument(text, i, latex_), scale, rise);
     }
     if (word == "sqrt") {
       skip();
@@ -406,38 +320,39 @@ class Setter {
       if (i < text.size() && text[i] == '[')
         if (const std::size_t end = text.find(']', i); end != text.npos)
           index = text.substr(i + 1, end - i - 1), i = end + 1;
-      return root(index, argument(text, i), scale, rise);
+      return root(index, formulas::argument(text, i, latex_), scale, rise);
     }
     if (word == "text" || word == "mathrm") {
       skip();
-      return put(argument(text, i), Face::math, scale, rise);
+      return put(formulas::argument(text, i, latex_), Face::math, scale, rise);
     }
     if (word == "mathbf" || word == "boldsymbol" || word == "bm") {
       skip();
       const bool before = std::exchange(bold_, true);
-      run(argument(text, i), scale, rise);
+      run(formulas::argument(text, i, latex_), scale, rise);
       bold_ = before;
       return;
     }
     if (word == "mathit") {
       skip();
-      return put(argument(text, i), Face::math_italic, scale, rise);
+      return put(formulas::argument(text, i, latex_), Face::math_italic, scale, rise);
     }
     // brackets keep their size
     if (word == "left" || word == "right") {
       if (i < text.size() && text[i] == '.') ++i;
       return;
     }
-    if (const Name* sign = entry(kLarge, word))
+    if (const formulas::Name* sign = formulas::entry(formulas::kLarge, word))
       return large(sign->symbol, word.ends_with("int"), text, i, scale, rise);
-    if (among(kFunctions, word)) {
+    if (formulas::among(formulas::kFunctions, word)) {
       const double room = latex_ ? 0.17 * scale * out_.size : 0;
       if (room > 0 && !out_.empty()) pending_ += room;
       put(word, Face::math, scale, rise);
       pending_ += room;
       return;
     }
-    if (const Name* symbol = entry(kNames, word)) return letter(symbol->symbol, scale, rise);
+    if (const formulas::Name* symbol = formulas::entry(formulas::kNames, word))
+      return letter(symbol->symbol, scale, rise);
     put("\\", Face::math, scale, rise);
     put(word, Face::math, scale, rise);
   }
@@ -454,11 +369,22 @@ class Setter {
 }  // namespace
 
 Formula formula(std::string_view text, double size, Color color, double pad) {
-  return Setter(text, size, color, pad).set();
+  Formula set = Setter(text, size, color, pad).set();
+  set.source = text;
+  return set;
 }
 
-void add(const Formula& f, const Point& at, List& list) {
+void add(const Formula& f, const Point& at, List& list, const Hold& hold) {
   if (f.empty()) return;
+  if (list.apart) {
+    const double x = hold.align == Align::left ? 0 : hold.align == Align::center ? f.width / 2 : f.width;
+    const double y = hold.level == Level::baseline ? 0
+                     : hold.level == Level::top    ? -f.ascent
+                     : hold.level == Level::bottom ? f.descent
+                                                   : (f.descent - f.ascent) / 2;
+    list.words.push_back({latex(f.source), at + Point(x, y), hold.align, hold.level, f.size, f.color});
+    return;
+  }
   if (!f.spans.empty()) list.add(Text{at, Align::left, f.spans});
   for (std::size_t i = 0; i < f.parts.size(); ++i) add(f.parts[i], at + f.places[i], list);
   for (const Formula::Line& each : f.lines) {
@@ -518,11 +444,11 @@ std::optional<FormulaMistake> mistake(std::string_view text) {
     if (text[i] == '$') ++dollars, opened = i;
     if (text[i] != '\\') continue;
     const std::size_t from = ++i;
-    while (i < text.size() && latin(text[i])) ++i;
+    while (i < text.size() && formulas::latin(text[i])) ++i;
     const std::string_view word = text.substr(from, i - from);
     if (word.empty()) continue;
     --i;
-    if (known(word)) continue;
+    if (formulas::known(word)) continue;
     FormulaMistake found{from, fmt::format("unknown command '\\{}'", word)};
     if (const std::string near = nearest(word); !near.empty())
       found.what += fmt::format("; did you mean '\\{}'?", near);
@@ -533,7 +459,7 @@ std::optional<FormulaMistake> mistake(std::string_view text) {
 }
 
 std::string as_vector(const std::string& text) {
-  if (text.empty() || text.find('*') != text.npos || !latin(text[0])) return text;
+  if (text.empty() || text.find('*') != text.npos || !formulas::latin(text[0])) return text;
   std::string vector = "*";
   vector.append(text, 0, 1).append("*").append(text, 1);
   return vector;
@@ -561,7 +487,7 @@ std::string after(std::string rest, std::string_view unit) {
   for (const std::string& word : {std::string(unit), typed}) {
     if (rest.compare(gap, word.size(), word) != 0) continue;
     const std::size_t end = gap + word.size();
-    if (end < rest.size() && latin(rest[end])) continue;
+    if (end < rest.size() && formulas::latin(rest[end])) continue;
     return fmt::format("\"{}{}\"{}", rest.substr(0, gap), unit, rest.substr(end));
   }
   return rest;

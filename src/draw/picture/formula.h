@@ -31,6 +31,7 @@ struct Formula {
   std::vector<Line> lines;
   std::vector<Formula> parts;  // numerators, radicands, limits,
   std::vector<Point> places;   // each with its baseline's left end there, y down
+  std::string source;          // the text that it sets; of the whole alone
   double size = 0;
   double width = 0, ascent = 0, descent = 0;  // page units
   Color color{};
@@ -50,8 +51,14 @@ std::optional<FormulaMistake> mistake(std::string_view text);
 Formula formula(std::string_view text, double size, Color color, double pad = 0);
 inline constexpr char kNumber = '\x01', kNumberEnd = '\x02';
 
-/// Puts it down with its baseline's left end at `at`.
-void add(const Formula& formula, const Point& at, List& list);
+/// Which point of words stays where it is when another font sets them: that beside what they name.
+struct Hold {
+  Align align = Align::left;
+  Level level = Level::baseline;
+};
+
+/// Puts it down with its baseline's left end at `at`; on a list whose words are apart, as LaTeX.
+void add(const Formula& formula, const Point& at, List& list, const Hold& hold = {});
 
 /// `text` with its first letter a vector, unless it says itself what is one.
 std::string as_vector(const std::string& text);

@@ -1,5 +1,6 @@
 #include "draw/picture/list.h"
 
+#include "draw/picture/latex.h"
 #include "draw/picture/solids.h"
 
 namespace obscura::draw {
@@ -23,6 +24,10 @@ void List::add(const Box& box) {
 }
 
 void List::add(const Text& text) {
+  if (apart) {
+    words.push_back(latex_words(text));
+    return;
+  }
   texts.push_back(text);
   mark(Kind::text, int(texts.size()));
 }
@@ -97,6 +102,10 @@ void List::add(const List& list, double k, const Point& at) {
         }
       }
     }
+  }
+  for (Words each : list.words) {
+    each.at = moved(each.at), each.size *= k;
+    words.push_back(std::move(each));
   }
   unclip();
 }

@@ -90,6 +90,19 @@ struct Text {
   std::vector<Span> spans;
 };
 
+/// The height of words at which they are placed.
+enum class Level : std::uint8_t { baseline, top, middle, bottom };
+
+/// A line of LaTeX that another program sets over the picture, in fonts that are not known here.
+struct Words {
+  std::string latex{};
+  Point at;  // of its end or middle along the line, at `level`
+  Align align = Align::left;
+  Level level = Level::baseline;
+  double size = 24;  // em, page units
+  Color color{};
+};
+
 enum class Kind : std::uint8_t { disc, box, stroke, polygon, text };
 
 /// Consecutive things of one kind, which are drawn in one go.
@@ -113,6 +126,8 @@ struct List {
   std::vector<Node> nodes;
   std::vector<Point> points;
   std::vector<Rect> clips;
+  std::vector<Words> words;  // those set apart, over all else
+  bool apart = false;        // whether type goes there
 
   void add(const Disc& disc);
   void add(const Box& box);

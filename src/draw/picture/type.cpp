@@ -2,14 +2,21 @@
 
 #include <hb-ot.h>
 #include <hb.h>
+#ifdef OBSCURA_FONTCONFIG
+#include <fontconfig/fontconfig.h>
+#endif
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "draw/picture/error.h"
+#include "draw/picture/latex.h"
 
 namespace obscura::draw {
 namespace {
@@ -73,7 +80,95 @@ std::vector<std::string> files_of(Face face) {
   return files;
 }
 
-std::string find(Face face) {
+const char* own_family() {
+  const char* family = std::getenv("OBSCURA_FONT");
+  return family && *family ? family : nullptr;
+}
+
+#ifdef OBSCURA_FONTCONFIG
+template <class T>
+using Config = std::unique_ptr<T, void (*)(T*)>;
+
+/// The upright font of a family whose weight is nearest, as fontconfig knows them; none where there is no
+/// such family. Of the same weight the first by its file's name. Variable fonts are left out.
+std::optional<FontFile> of_family(const char* family, int weight) {
+  static const Config<FcConfig> config = [] {
+    Config<FcConfig> made(FcInitLoadConfigAndFonts(), FcConfigDestroy);
+    if (const char* own = std::getenv("OBSCURA_FONTS"); own && made) {
+      std::string_view rest = own;
+      while (!rest.empty()) {
+        const auto colon = rest.find(':');
+        const std::string folder(rest.substr(0, colon));
+        FcConfigAppFontAddDir(made.get(), reinterpret_cast<const FcChar8*>(folder.c_str()));
+        rest.remove_prefix(colon == rest.npos ? rest.size() : colon + 1);
+      }
+    }
+    return made;
+  }();
+  if (!config) return {};
+  const Config<FcPattern> wanted(FcPatternCreate(), FcPatternDestroy);
+  FcPatternAddString(wanted.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>(family));
+  FcPatternAddInteger(wanted.get(), FC_SLANT, FC_SLANT_ROMAN);
+  FcPatternAddBool(wanted.get(), FC_VARIABLE, FcFalse);
+  const Config<FcObjectSet> asked(FcObjectSetBuild(FC_FILE, FC_INDEX, FC_WEIGHT, FC_WIDTH, nullptr),
+                                  FcObjectSetDestroy);
+  const Config<FcFontSet> all(FcFontList(config.get(), wanted.get(), asked.get()), FcFontSetDestroy);
+  std::optional<FontFile> best;
+  std::pair<double, std::string> least;
+  for (int i = 0; all && i < all->nfont; ++i) {
+    FcPattern* each = all->fonts[i];
+    FcChar8* file = nullptr;
+    int index = 0, width = FC_WIDTH_NORMAL;
+    double heavy = FC_WEIGHT_REGULAR;
+    if (FcPatternGetString(each, FC_FILE, 0, &file) != FcResultMatch) continue;
+    FcPatternGetInteger(each, FC_INDEX, 0, &index);
+    FcPatternGetInteger(each, FC_WIDTH, 0, &width);
+    FcPatternGetDouble(each, FC_WEIGHT, 0, &heavy);
+    if (index > 0xffff) continue;  // an instance of a variable font
+    const std::string path(reinterpret_cast<const char*>(file));
+    std::pair<double, std::string> off{std::abs(heavy - weight) + 10.0 * std::abs(width - FC_WIDTH_NORMAL),
+                                       path};
+    if (best && least <= off) continue;
+    least = std::move(off), best = FontFile{path, index};
+  }
+  return best;
+}
+
+int weight_of(Face face) {
+  return face == Face::bold ? FC_WEIGHT_BOLD : face == Face::medium ? FC_WEIGHT_MEDIUM : FC_WEIGHT_REGULAR;
+}
+#else
+std::optional<FontFile> of_family(const char*, int) { return {}; }
+int weight_of(Face) { return 0; }
+#endif
+
+// a MATH table, and the letters to go with it
+bool has_mathematics(const FontFile& file) {
+  hb_blob_t* blob = hb_blob_create_from_file_or_fail(file.path.c_str());
+  if (!blob) return false;
+  hb_face_t* face = hb_face_create(blob, unsigned(file.index));
+  bool has = hb_ot_math_has_data(face) != 0;
+  hb_font_t* font = hb_font_create(face);
+  hb_ot_font_set_funcs(font);
+  for (const hb_codepoint_t letter : {0x1D463u, 0x1D497u, 0x1D714u}) {
+    hb_codepoint_t glyph = 0;
+    has = has && hb_font_get_nominal_glyph(font, letter, &glyph) != 0;
+  }
+  hb_font_destroy(font), hb_face_destroy(face), hb_blob_destroy(blob);
+  return has;
+}
+
+FontFile find(Face face) {
+  if (const char* family = own_family()) {
+    if (face <= Face::bold) {
+      if (const auto found = of_family(family, weight_of(face))) return *found;
+    } else {
+      // the family's own mathematics
+      FontFile words = font_file(Face::regular);
+      words.alphabets = true;
+      if (has_mathematics(words)) return words;
+    }
+  }
   const Source& source = kSources[std::size_t(face)];
   const std::vector<std::string> files = files_of(face);
   for (const fs::path& folder : folders()) {
@@ -93,28 +188,30 @@ std::string find(Face face) {
       }
     }
     for (const std::string& path : here) {
-      if (!path.empty()) return path;
+      if (!path.empty()) return {path};
     }
   }
   if (files[0] != source.files[0])
-    throw Error("cannot find the font " + files[0] + ": name a folder that has it in OBSCURA_FONTS");
+    throw Error(std::string("cannot find the font family '") + own_family() +
+                "': fc-list names those that are installed; a folder that has it goes into OBSCURA_FONTS");
   throw Error(std::string("cannot find the font ") + source.what + " (" + std::string(source.files[0]) +
               "): install " + source.package + ", or name a folder that has it in OBSCURA_FONTS");
 }
 
 template <Face face>
-const std::string& file() {
-  static const std::string path = find(face);
-  return path;
+const FontFile& file() {
+  static const FontFile found = find(face);
+  return found;
 }
 
 /// A font that shapes in its own units. Once made it is never changed, so that threads may share it.
 class Font {
  public:
-  explicit Font(const std::string& path) {
+  explicit Font(const FontFile& file) {
+    const std::string& path = file.path;
     hb_blob_t* blob = hb_blob_create_from_file_or_fail(path.c_str());
     if (!blob) throw Error("cannot read the font " + path);
-    hb_face_t* face = hb_face_create(blob, 0);
+    hb_face_t* face = hb_face_create(blob, unsigned(file.index));
     hb_blob_destroy(blob);
     if (hb_face_get_glyph_count(face) == 0) {
       hb_face_destroy(face);
@@ -170,7 +267,7 @@ struct Buffer {
 
 }  // namespace
 
-const std::string& font_file(Face face) {
+const FontFile& font_file(Face face) {
   switch (face) {
     case Face::regular:
       return file<Face::regular>();
@@ -198,7 +295,11 @@ Line shape(const Text& text) {
   for (const Span& span : text.spans) {
     const Font& face = font(span.face);
     hb_buffer_reset(buffer.it);
-    hb_buffer_add_utf8(buffer.it, span.text.data(), int(span.text.size()), 0, int(span.text.size()));
+    // most are as they were written
+    const bool own = span.face >= Face::math_italic && font_file(span.face).alphabets;
+    const std::string letters = own ? characters_of(span) : std::string();
+    const std::string& shown = own ? letters : span.text;
+    hb_buffer_add_utf8(buffer.it, shown.data(), int(shown.size()), 0, int(shown.size()));
     hb_buffer_set_language(buffer.it, language);
     hb_buffer_guess_segment_properties(buffer.it);
     const hb_feature_t tabular{HB_TAG('t', 'n', 'u', 'm'), 1, HB_FEATURE_GLOBAL_START, HB_FEATURE_GLOBAL_END};
@@ -224,8 +325,42 @@ Line shape(const Text& text) {
   return line;
 }
 
+// Mathematical Alphanumeric Symbols, Unicode 1D400 to 1D7FF
+std::string characters_of(const Span& span) {
+  if (span.face < Face::math_italic || !font_file(span.face).alphabets) return span.text;
+  const bool bold = span.face == Face::math_bold_italic;
+  std::string out;
+  for (std::size_t i = 0; i < span.text.size();) {
+    const auto first = static_cast<unsigned char>(span.text[i]);
+    const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+    std::uint32_t c = length == 1 ? first : first & (0xFFu >> (length + 1));
+    for (std::size_t k = 1; k < length && i + k < span.text.size(); ++k)
+      c = c << 6 | (static_cast<unsigned char>(span.text[i + k]) & 0x3Fu);
+    std::uint32_t to = 0;
+    if (c >= 'A' && c <= 'Z') to = (bold ? 0x1D468u : 0x1D434u) + (c - 'A');
+    if (c >= 'a' && c <= 'z') to = (bold ? 0x1D482u : 0x1D44Eu) + (c - 'a');
+    if (c == 'h' && !bold) to = 0x210E;
+    if (c >= 0x3B1 && c <= 0x3C9) to = (bold ? 0x1D736u : 0x1D6FCu) + (c - 0x3B1);
+    // those that stand after omega there
+    constexpr std::uint32_t kMore[] = {0x2202, 0x3F5, 0x3D1, 0x3F0, 0x3D5, 0x3F1, 0x3D6};
+    for (std::uint32_t k = 0; k < 7; ++k)
+      if (c == kMore[k]) to = (bold ? 0x1D74Fu : 0x1D715u) + k;
+    if (to == 0) {
+      out.append(span.text, i, length);
+    } else if (to < 0x10000) {
+      out += {char(0xE0 | to >> 12), char(0x80 | (to >> 6 & 0x3F)), char(0x80 | (to & 0x3F))};
+    } else {
+      out += {char(0xF0 | to >> 18), char(0x80 | (to >> 12 & 0x3F)), char(0x80 | (to >> 6 & 0x3F)),
+              char(0x80 | (to & 0x3F))};
+    }
+    i += length;
+  }
+  return out;
+}
+
 void set_decimal_mark(List& list, const std::string& mark) {
   if (mark == ".") return;
+  for (Words& each : list.words) each.latex = latex_with_mark(each.latex, mark);
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   for (Text& text : list.texts)
     for (Span& span : text.spans) {

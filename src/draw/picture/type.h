@@ -35,8 +35,20 @@ Line shape(const Text& text);
 /// Sets the decimal mark of all numbers in mathematics and of figures of equal width.
 void set_decimal_mark(List& list, const std::string& mark);
 
-/// The file of a face: Inter, or the family in $OBSCURA_FONT, for words, STIX for mathematics. Looked for in
-/// $OBSCURA_FONTS and the system's font folders. Throws draw::Error naming the package.
-const std::string& font_file(Face face);
+/// A font in a file, which may hold several.
+struct FontFile {
+  std::string path;
+  int index = 0;
+  bool alphabets =
+      false;  // letters of mathematics are characters of their own, as in fonts with a MATH table
+};
+
+/// The font of a face: Inter, or the family in $OBSCURA_FONT, for words; for mathematics STIX, or that family
+/// where it has a MATH table. Looked for in $OBSCURA_FONTS and the system's font folders, a family by
+/// fontconfig too. Throws draw::Error naming the package.
+const FontFile& font_file(Face face);
+
+/// A span's text in the characters of its face's font.
+std::string characters_of(const Span& span);
 
 }  // namespace obscura::draw

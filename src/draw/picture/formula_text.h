@@ -1,0 +1,102 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+
+namespace obscura::draw::formulas {
+
+// The language of formulas (formula.h): its names, and how its text is taken apart.
+
+struct Name {
+  std::string_view word, symbol;
+};
+
+inline constexpr Name kNames[] = {
+    {"alpha", "α"},      {"beta", "β"},       {"gamma", "γ"},     {"delta", "δ"},      {"epsilon", "ε"},
+    {"varepsilon", "ε"}, {"zeta", "ζ"},       {"eta", "η"},       {"theta", "θ"},      {"vartheta", "ϑ"},
+    {"iota", "ι"},       {"kappa", "κ"},      {"lambda", "λ"},    {"mu", "μ"},         {"nu", "ν"},
+    {"xi", "ξ"},         {"pi", "π"},         {"rho", "ρ"},       {"sigma", "σ"},      {"tau", "τ"},
+    {"upsilon", "υ"},    {"phi", "φ"},        {"varphi", "φ"},    {"chi", "χ"},        {"psi", "ψ"},
+    {"omega", "ω"},      {"Gamma", "Γ"},      {"Delta", "Δ"},     {"Theta", "Θ"},      {"Lambda", "Λ"},
+    {"Xi", "Ξ"},         {"Pi", "Π"},         {"Sigma", "Σ"},     {"Phi", "Φ"},        {"Psi", "Ψ"},
+    {"Omega", "Ω"},      {"perp", "⊥"},       {"times", "×"},     {"cdot", "·"},       {"pm", "±"},
+    {"mp", "∓"},         {"div", "÷"},        {"le", "≤"},        {"leq", "≤"},        {"ge", "≥"},
+    {"geq", "≥"},        {"ne", "≠"},         {"neq", "≠"},       {"ll", "≪"},         {"gg", "≫"},
+    {"approx", "≈"},     {"sim", "∼"},        {"propto", "∝"},    {"equiv", "≡"},      {"infty", "∞"},
+    {"to", "→"},         {"rightarrow", "→"}, {"leftarrow", "←"}, {"Rightarrow", "⇒"}, {"circ", "°"},
+    {"deg", "°"},        {"degree", "°"},     {"prime", "′"},     {"parallel", "∥"},   {"partial", "∂"},
+    {"nabla", "∇"},      {"hbar", "ħ"},       {"ell", "ℓ"},       {"dots", "…"},       {"ldots", "…"},
+    {"cdots", "⋯"},      {"in", "∈"},         {"langle", "⟨"},    {"rangle", "⟩"},     {"quad", "  "},
+};
+/// Signs that are larger than letters; a sum's limits stand below and above it, an integral's beside it.
+inline constexpr Name kLarge[] = {{"sum", "∑"}, {"prod", "∏"}, {"int", "∫"}, {"oint", "∮"}};
+inline constexpr std::string_view kFunctions[] = {"sin",    "cos",  "tan",  "cot",  "arcsin", "arccos",
+                                                  "arctan", "sinh", "cosh", "tanh", "log",    "ln",
+                                                  "exp",    "min",  "max",  "lim",  "det",    "sgn"};
+inline constexpr std::string_view kAccents[] = {"bar", "vec", "dot", "ddot", "hat", "tilde"};
+inline constexpr std::string_view kForms[] = {"frac",       "sqrt", "text",   "mathrm", "mathbf",
+                                              "boldsymbol", "bm",   "mathit", "left",   "right"};
+
+inline const Name* entry(std::span<const Name> names, std::string_view word) {
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](const Name& each) { return each.word == word; });
+  return found == names.end() ? nullptr : &*found;
+}
+
+inline bool among(std::span<const std::string_view> words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+inline bool known(std::string_view word) {
+  return entry(kNames, word) || entry(kLarge, word) || among(kFunctions, word) || among(kAccents, word) ||
+         among(kForms, word);
+}
+
+inline bool latin(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+/// Bytes of the UTF-8 character that begins with `first`.
+inline std::size_t length_of(char first) {
+  const auto c = static_cast<unsigned char>(first);
+  return c < 0x80 ? 1 : c < 0xE0 ? 2 : c < 0xF0 ? 3 : 4;
+}
+
+/// The argument of a script or an accent at text[i], which goes on behind it: {...}, or one symbol. Where
+/// spaces count (not `latex`), a word is one.
+inline std::string_view argument(std::string_view text, std::size_t& i, bool latex) {
+  if (i < text.size() && text[i] == '{') {
+    std::size_t depth = 0, from = i + 1;
+    for (; i < text.size(); ++i) {
+      if (text[i] == '{') ++depth;
+      if (text[i] == '}' && --depth == 0) break;
+    }
+    const std::string_view inner = text.substr(from, i - from);
+    i = std::min(i + 1, text.size());
+    return inner;
+  }
+  const std::size_t from = i;
+  if (i < text.size() && text[i] == '\\') {
+    ++i;
+    while (i < text.size() && latin(text[i])) ++i;
+  } else if (i < text.size() && latin(text[i]) && latex) {
+    ++i;
+  } else if (i < text.size() && latin(text[i])) {
+    // "v_center"
+    while (i < text.size() && latin(text[i])) ++i;
+  } else if (i < text.size()) {
+    i += length_of(text[i]);
+  }
+  return text.substr(from, i - from);
+}
+
+/// Where the brace at i is closed.
+inline std::size_t closing(std::string_view text, std::size_t i) {
+  std::size_t depth = 0;
+  for (; i < text.size(); ++i) {
+    if (text[i] == '{') ++depth;
+    if (text[i] == '}' && --depth == 0) return i;
+  }
+  return text.npos;
+}
+
+}  // namespace obscura::draw::formulas
