@@ -36,7 +36,7 @@ const std::vector<Container>& containers() {
   static const std::vector<Container> all = {
       {"mp4", "mp4", h264, {"libx265", "libvpx-vp9"}, "H.264"},
       {"mkv", "matroska", h264, {"libx265", "libvpx-vp9"}, "H.264"},
-      {"mov", "mov", h264, {"libx265"}, "H.264"},
+      {"mov", "mov", h264, {"libx265", "prores_ks"}, "H.264"},
       {"webm", "webm", {"libvpx-vp9"}, {}, "VP9"},
       {"gif", "gif", {"gif"}, {}, "GIF"},
       {"y4m", "y4m", {"yuv4mpeg"}, {}, "raw 4:2:0"},
@@ -49,6 +49,7 @@ const std::map<std::string, std::vector<std::string>> kFamilies = {
     {"hevc", {"libx265"}},
     {"h265", {"libx265"}},
     {"vp9", {"libvpx-vp9"}},
+    {"prores", {"prores_ks"}},
 };
 
 const std::vector<std::string> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
@@ -126,11 +127,24 @@ std::string encoder_name(const std::string& path, const MovieSpec& spec,
     return found == names.end() ? std::string() : *found;
   };
   // gif and raw frames need no library encoder
-  if (kind.ending == "gif" || kind.ending == "y4m") {
+  if (!spec.alpha && (kind.ending == "gif" || kind.ending == "y4m")) {
     if (spec.codec.empty() || spec.codec == kind.encoders[0]) return kind.encoders[0];
     throw Error(fmt::format("{}: no codec '{}' in a .{} file", path, spec.codec, kind.ending));
   }
 
+  if (spec.alpha) {
+    const char* name = kind.ending == "webm" ? "libvpx-vp9" : kind.ending == "mov" ? "prores_ks" : nullptr;
+    if (!name)
+      throw Error(fmt::format("{}: a .{} has no transparency: .webm (VP9), .mov (ProRes 4444) and .png have",
+                              path, kind.ending));
+    const auto asked = kFamilies.find(spec.codec);
+    const std::string codec = asked != kFamilies.end() ? asked->second.front() : spec.codec;
+    if (!codec.empty() && codec != name)
+      throw Error(fmt::format("{}: with transparency the codec of a .{} is {}, not {}", path, kind.ending,
+                              name, spec.codec));
+    if (!present(name)) throw Error(fmt::format("{}: the FFmpeg in use has no {}", path, name));
+    return name;
+  }
   if (spec.codec.empty()) {
     const std::string name = first_of(kind.encoders);
     if (!name.empty()) return name;
@@ -173,10 +187,17 @@ Options encoder_options(const std::string& path, const MovieSpec& spec, const st
   if (encoder == "libx265") return x265(path, spec);
   if (encoder == "libvpx-vp9") {
     // the likeness of "good" at speed 4 in a fifth of its time, for an eighth more bytes
-    return {{"crf", fmt::format("{}", std::lround(crf_of(path, spec, 24, 63)))},
-            {"deadline", "realtime"},
-            {"cpu-used", "5"},
-            {"row-mt", "0"}};
+    Options options{{"crf", fmt::format("{}", std::lround(crf_of(path, spec, 24, 63)))},
+                    {"deadline", "realtime"},
+                    {"cpu-used", "5"},
+                    {"row-mt", "0"}};
+    // frames that are never shown have no alpha
+    if (spec.alpha) options.emplace_back("auto-alt-ref", "0");
+    return options;
+  }
+  if (encoder == "prores_ks") {
+    if (spec.crf) throw Error(fmt::format("{}: {} has no crf", path, encoder));
+    return {{"profile", "4444"}, {"vendor", "apl0"}};
   }
   // libopenh264 aims at a bit rate, not a quality: an eighth of a bit a pixel is ample for pictures like ours
   if (spec.crf) throw Error(fmt::format("{}: {} has no crf", path, encoder));

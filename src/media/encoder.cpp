@@ -25,6 +25,8 @@ std::string words(const AVCodec& codec) {
       return "HEVC";
     case AV_CODEC_ID_VP9:
       return "VP9";
+    case AV_CODEC_ID_PRORES:
+      return "ProRes";
     default:
       return codec.name;
   }
@@ -66,7 +68,9 @@ CodecContext open_encoder(const std::string& path, const MovieSpec& spec) {
   context->width = spec.width;
   context->height = spec.height;
   context->sample_aspect_ratio = {1, 1};
-  context->pix_fmt = AV_PIX_FMT_YUV420P;
+  context->pix_fmt = codec->id == AV_CODEC_ID_PRORES ? AV_PIX_FMT_YUVA444P10
+                     : spec.alpha                    ? AV_PIX_FMT_YUVA420P
+                                                     : AV_PIX_FMT_YUV420P;
   context->time_base = {int(spec.fps_den), int(spec.fps_num)};
   context->framerate = {int(spec.fps_num), int(spec.fps_den)};
   // bt709 in all three, which is what players assume of such sizes: the sRGB transfer would be the truer

@@ -52,4 +52,13 @@ std::string complaint(int code) {
   return last_line[0] ? last_line : meaning;
 }
 
+std::vector<std::uint8_t> beside(const AVPacket& packet) {
+  // libav 5 counts it in size_t, libav 4 in int
+  for (int i = 0; i < packet.side_data_elems; ++i) {
+    const AVPacketSideData& side = packet.side_data[i];
+    if (side.type == AV_PKT_DATA_MATROSKA_BLOCKADDITIONAL) return {side.data, side.data + side.size};
+  }
+  return {};
+}
+
 }  // namespace obscura::media

@@ -11,6 +11,7 @@ extern "C" {
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace obscura::media {
 
@@ -25,6 +26,9 @@ using Packet = std::unique_ptr<AVPacket, FreeLibav>;
 
 Frame make_frame();
 Packet make_packet();
+
+/// What a packet of VP9 has beside its bytes: its alpha; empty: none.
+std::vector<std::uint8_t> beside(const AVPacket& packet);
 
 /// Keeps libav from writing to stderr, and begins to record: `complaint` tells the errors that it logs in
 /// this thread from here on.

@@ -31,6 +31,7 @@ struct MovieSpec {
   std::optional<double> crf{};  // none: 18 for H.264 and HEVC, 24 for VP9
   std::string preset{};  // x264's or x265's; empty: quick settings that reach `medium`'s likeness (codec.cpp)
   Tags tags{};           // "Title" is the movie's title too
+  bool alpha = false;    // with transparency: VP9 in webm, ProRes 4444 in mov
   std::vector<TextCue> captions{};  // one after another; a GIF has none
   std::vector<Chapter> chapters{};  // the same
 };
@@ -52,6 +53,7 @@ struct Segment {
     std::vector<std::uint8_t> bytes;
     std::int64_t pts = 0, dts = 0, duration = 1;  // in frames
     bool key = false;
+    std::vector<std::uint8_t> beside{};  // what a container keeps beside the bytes: the alpha of VP9
   };
   std::vector<Packet> packets;
   std::vector<std::uint8_t> extradata;  // the codec's header, the same for a whole movie; a GIF's palette

@@ -110,6 +110,8 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
   // Apple's players ask for parameter sets outside the stream
   if (quicktime && encoder->codec_id == AV_CODEC_ID_HEVC)
     stream_->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');
+  // what readers look for
+  if (spec.alpha && kind.muxer == "webm") av_dict_set(&stream_->metadata, "alpha_mode", "1", 0);
   if (const auto title = spec.tags.find("Title"); title != spec.tags.end()) {
     av_dict_set(&format_->metadata, "title", title->second.c_str(), 0);
   }
@@ -225,6 +227,12 @@ void Muxer::add(const Segment& segment) {
   for (const Segment::Packet& one : segment.packets) {
     if (av_new_packet(packet_.get(), int(one.bytes.size())) < 0) throw std::bad_alloc();
     std::memcpy(packet_->data, one.bytes.data(), one.bytes.size());
+    if (!one.beside.empty()) {
+      std::uint8_t* to =
+          av_packet_new_side_data(packet_.get(), AV_PKT_DATA_MATROSKA_BLOCKADDITIONAL, one.beside.size());
+      if (!to) throw std::bad_alloc();
+      std::memcpy(to, one.beside.data(), one.beside.size());
+    }
     packet_->stream_index = stream_->index;
     packet_->flags = one.key ? AV_PKT_FLAG_KEY : 0;
     // frames shown out of the order of decoding have dts before the segment's first pts; every segment's lag

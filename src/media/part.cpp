@@ -65,18 +65,26 @@ Part packets_of(const std::string& path) {
                                  av_rescale_q(packet->pts, stream.time_base, frame),
                                  av_rescale_q(packet->dts, stream.time_base, frame),
                                  1,
-                                 (packet->flags & AV_PKT_FLAG_KEY) != 0});
+                                 (packet->flags & AV_PKT_FLAG_KEY) != 0,
+                                 beside(*packet)});
     av_packet_unref(packet.get());
   }
   if (code != AVERROR_EOF) require(code, path);
   segment.frames = int(segment.packets.size());
-  if (segment.frames == 0 || segment.frames != stream.nb_frames) throw Error(path + ": is not whole");
+  // Matroska says how long it is instead, and that at its end
+  const std::int64_t said = stream.nb_frames > 0 || format->duration == AV_NOPTS_VALUE
+                                ? stream.nb_frames
+                                : av_rescale_q(format->duration, {1, AV_TIME_BASE}, frame);
+  if (segment.frames == 0 || segment.frames != said) throw Error(path + ": is not whole");
   return part;
 }
 
 }  // namespace
 
-std::string part_ending(const std::string& movie) { return container(movie).ending == "gif" ? "gif" : "mp4"; }
+std::string part_ending(const std::string& movie, bool alpha) {
+  const std::string ending = container(movie).ending;
+  return alpha || ending == "gif" ? ending : "mp4";
+}
 
 void write_part(const std::string& path, const MovieSpec& spec, const Segment& segment) {
   MovieWriter movie(path, spec);

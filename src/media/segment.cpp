@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "media/alpha.h"
 #include "media/codec.h"
 #include "media/encoder.h"
 #include "media/error.h"
@@ -35,8 +36,7 @@ class LibavEncoder {
     listen();
     // the encoder may still hold the planes of the frame before
     if (av_frame_make_writable(frame_.get()) < 0) throw std::bad_alloc();
-    convert(image, {frame_->data[0], frame_->data[1], frame_->data[2], frame_->linesize[0],
-                    frame_->linesize[1], frame_->linesize[2]});
+    fill(image);
     frame_->pts = segment_.frames++;
     send(frame_.get());
   }
@@ -52,6 +52,27 @@ class LibavEncoder {
   }
 
  private:
+  // the frame's planes
+  void fill(const Image& image) {
+    const auto deep = [&](int k) { return reinterpret_cast<std::uint16_t*>(frame_->data[k]); };
+    const auto stride = [&](int k) { return frame_->linesize[k] / 2; };
+    const Yuv420 planes{frame_->data[0],     frame_->data[1],     frame_->data[2],
+                        frame_->linesize[0], frame_->linesize[1], frame_->linesize[2]};
+    switch (context_->pix_fmt) {
+      case AV_PIX_FMT_YUVA444P10:
+        return convert_deep(image,
+                            {deep(0), deep(1), deep(2), deep(3), stride(0), stride(1), stride(2), stride(3)});
+      case AV_PIX_FMT_YUVA420P: {
+        Image spread = image;
+        spread_colors(spread);
+        convert(spread, planes);
+        return alpha_plane(image, frame_->data[3], frame_->linesize[3]);
+      }
+      default:
+        return convert(image, planes);
+    }
+  }
+
   // hands over a frame, or the end, and takes what packets come back
   void send(const AVFrame* frame) {
     int code = avcodec_send_frame(context_.get(), frame);
@@ -59,7 +80,7 @@ class LibavEncoder {
     while ((code = avcodec_receive_packet(context_.get(), packet_.get())) >= 0) {
       const AVPacket& p = *packet_;
       segment_.packets.push_back(
-          {{p.data, p.data + p.size}, p.pts, p.dts, 1, (p.flags & AV_PKT_FLAG_KEY) != 0});
+          {{p.data, p.data + p.size}, p.pts, p.dts, 1, (p.flags & AV_PKT_FLAG_KEY) != 0, beside(p)});
       av_packet_unref(packet_.get());
     }
     if (code != AVERROR(EAGAIN) && code != AVERROR_EOF) fail(code);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "app/console/command.h"
@@ -13,11 +15,13 @@
 #include "app/console/say.h"
 #include "app/film/estimate.h"
 #include "app/film/film.h"
+#include "app/film/pages.h"
 #include "app/run/imported_run.h"
 #include "app/run/origin.h"
 #include "app/run/run_marks.h"
 #include "app/run/shard.h"
 #include "app/run/trouble.h"
+#include "media/error.h"
 #include "sim/step/run.h"
 
 namespace obscura::app {
@@ -29,6 +33,7 @@ struct RenderFlags {
   std::vector<std::string> sets;
   std::optional<std::string> out, size, fps, from, to, at, frames, theme, preset, codec, camera, states;
   std::optional<std::string> shard, checkpoint_every;
+  std::optional<std::string> poster, under;
   std::optional<double> crf;
   bool draft = false, no_overwrite = false, interpolate = false;
   FilmOptions film;
@@ -69,6 +74,60 @@ void override_film(const RenderFlags& flags, scene::Scene& scene) {
   if (flags.codec) scene.film.codec = *flags.codec;
 }
 
+// pages are turned by hand or by a viewer that is slow
+void suit_pages(const std::string& out, scene::Film& film) {
+  if (!out.ends_with(".pdf") || sim::value(film.fps) <= 15) return;
+  while (sim::value(film.fps) > 15) film.fps = film.fps / sim::rational(2);
+  say(stderr, "{}: at {:g} pages per second of film; --fps says otherwise\n", out, sim::value(film.fps));
+}
+
+// the film, and a still of it for where it does not play
+int film_and_poster(const scene::Scene& scene, const Shots& shots, const Output& out,
+                    const RenderFlags& flags) {
+  const int exit = film(scene, shots, out, flags.film);
+  if (exit != kDone || !flags.poster || flags.film.prepare) return exit;
+  if (flags.film.shard && flags.film.shard->first > 1) return exit;
+  FilmOptions options = flags.film;
+  options.shard.reset(), options.from_checkpoint.reset();
+  options.resume = options.anew = false, options.checkpoint_every = {0, 1};
+  const Output poster{Output::Form::still,
+                      std::filesystem::path(out.path).replace_extension(".poster.png").string(), true};
+  return film(scene, Shots::still(seconds("--poster", *flags.poster), scene.film.fps, scene.film.speed),
+              poster, options);
+}
+
+// a GIF of at most so many bytes: smaller until it fits, by what the last one took
+int film_under(scene::Scene scene, const Shots& shots, const Output& out, const RenderFlags& flags) {
+  constexpr double kAim = 0.94;  // of what is allowed
+  constexpr int kLeast = 64;     // px
+  const double most = parse_bytes(*flags.under);
+  const Output trial{Output::Form::movie, out.path + ".sizing.gif", true};
+  FilmOptions options = flags.film;
+  options.anew = true;
+  const double aspect = double(scene.film.width) / scene.film.height;
+  double height = scene.film.height;
+  for (;;) {
+    scene.film.height = std::max(2, int(std::lround(height)));
+    scene.film.width = std::max(2, int(std::lround(height * aspect)));
+    if (const int exit = film(scene, shots, trial, options); exit != kDone) return exit;
+    const double size = double(std::filesystem::file_size(trial.path));
+    if (size <= most) break;
+    // bytes grow with edges and with areas
+    height = std::min(height - 2, height * std::pow(kAim * most / size, 0.7));
+    if (height * std::min(aspect, 1.0) < kLeast) {
+      std::filesystem::remove(trial.path);
+      throw UsageError(
+          fmt::format("--under {}: {} of it at {}x{}; fewer frames (--fps, --from, --to) take less",
+                      *flags.under, bytes_text(size), scene.film.width, scene.film.height));
+    }
+  }
+  if (std::rename(trial.path.c_str(), out.path.c_str()) != 0)
+    throw media::Error(fmt::format("{}: cannot rename into place", out.path));
+  say(stdout, "{}: {}x{}, {}\n", out.path, scene.film.width, scene.film.height,
+      bytes_text(double(std::filesystem::file_size(out.path))));
+  return kDone;
+}
+
 // a file for each camera: their names in OUT's {camera}
 int render_each(const scene::Scene& scene, const Shots& shots, const RenderFlags& flags) {
   for (const draw::Camera& camera : scene.cameras) {
@@ -79,7 +138,7 @@ int render_each(const scene::Scene& scene, const Shots& shots, const RenderFlags
     std::string name = *flags.out;
     name.replace(name.find("{camera}"), 8, camera.name);
     const Output out = output(name, scene.name, flags.at.has_value(), shots.size());
-    if (const int exit = film(one, shots, out, flags.film); exit != kDone) return exit;
+    if (const int exit = film_and_poster(one, shots, out, flags); exit != kDone) return exit;
   }
   return kDone;
 }
@@ -186,7 +245,7 @@ int render(RenderFlags flags) {
     say(stderr, "{}: events are of its own run, and {} is another: what waits for marks is not shown\n",
         scene.file, *flags.states);
   override_film(flags, scene);
-  if (flags.out && !flags.fps) suit_gif(*flags.out, scene.film);
+  if (flags.out && !flags.fps) suit_gif(*flags.out, scene.film), suit_pages(*flags.out, scene.film);
   if (flags.interpolate && !flags.states) throw UsageError("--interpolate is for --states");
   if (flags.states) take_run(flags, scene);
   Shots shots = shots_of(flags, scene);
@@ -194,18 +253,35 @@ int render(RenderFlags flags) {
   if (flags.camera) choose_camera(*flags.camera, scene);
   // a draft never takes the film's place
   const bool each = flags.out && flags.out->find("{camera}") != std::string::npos;
+  if (flags.out && flags.out->ends_with(".pdf")) {
+    if (each) throw UsageError("-o '{camera}.pdf': pages are of one camera, or of all; --camera chooses");
+    if (flags.shard || flags.film.prepare || flags.film.resume || flags.film.anew || flags.checkpoint_every ||
+        flags.poster || flags.under || flags.film.from_checkpoint)
+      throw UsageError("pages are made at once: no shards, no --resume, no checkpoints, no --poster");
+    return film_pages(scene, shots, *flags.out, flags.film);
+  }
   const Output out =
       output(flags.out, flags.draft ? scene.name + ".draft" : scene.name, flags.at.has_value(), shots.size());
-  if (flags.film.transparent && out.form != Output::Form::frames && out.form != Output::Form::still) {
-    throw UsageError("--transparent is for PNG: movies and streams have no alpha");
-  }
+  if (flags.film.transparent &&
+      (out.form == Output::Form::pipe ||
+       (out.form == Output::Form::movie && !out.path.ends_with(".webm") && !out.path.ends_with(".mov"))))
+    throw UsageError("--transparent is for .webm (VP9), .mov (ProRes 4444) and PNG: others have no alpha");
   if (flags.draft) make_quick(flags, out, scene);
+  if (flags.poster && out.form != Output::Form::movie)
+    throw UsageError("--poster is a still beside a movie; --at makes one alone");
+  const bool under = flags.under.has_value();
+  if (under && (each || out.form != Output::Form::movie || !out.path.ends_with(".gif")))
+    throw UsageError("--under is for one GIF: --crf makes other movies smaller");
+  if (under && (flags.shard || flags.film.prepare || flags.film.resume || flags.poster))
+    throw UsageError("--under makes a GIF several times: no shards, no --resume, no --poster");
+  if (under) parse_bytes(*flags.under);
   divide(flags, out);
   for (const sim::Trouble& ahead : scene.stability_warnings()) {
     say(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
   }
   see_what_it_needs(scene, shots, out, flags.film);
-  return each ? render_each(scene, shots, flags) : film(scene, shots, out, flags.film);
+  if (under) return film_under(scene, shots, out, flags);
+  return each ? render_each(scene, shots, flags) : film_and_poster(scene, shots, out, flags);
 }
 
 }  // namespace
@@ -219,7 +295,8 @@ OBSCURA_COMMAND(10, render) {
       .option("-o,--output", flags->out,
               "The output; its form decides what is made: movie.mp4 (.mkv .mov .webm .gif), "
               "frames/{frame:04}.png or "
-              "frames/%04d.png, one picture.png with --at, - for a stream. Left out: render_out/SCENE.mp4")
+              "frames/%04d.png, pages.pdf (one a frame), one picture.png with --at, - for a stream. Left "
+              "out: render_out/SCENE.mp4")
       .type("OUT");
   add_sets(command, flags->sets);
   command.option("--camera", flags->camera, "Only this camera; -o '{camera}.mp4' writes a file for each")
@@ -241,7 +318,8 @@ OBSCURA_COMMAND(10, render) {
   command.flag("--interpolate", flags->interpolate, "With --states: straight lines between its rows");
   command.flag("--draft", flags->draft,
                "Small and quick: 480 lines, at most 30 frames per second, ultrafast");
-  command.flag("--transparent", flags->film.transparent, "PNG: leave the page's colour out");
+  command.flag("--transparent", flags->film.transparent,
+               "Leave the page's colour out: of PNG, .webm (VP9) and .mov (ProRes 4444)");
   command.flag("--no-overwrite", flags->no_overwrite, "Refuse to overwrite an earlier render");
   command.option("--crf", flags->crf, "Quality of the movie, lower is better [18]").range(1.0, 63.0);
   command.option("--preset", flags->preset, "x264's preset [fast settings with medium's quality]");
@@ -251,6 +329,14 @@ OBSCURA_COMMAND(10, render) {
               {{"y4m", media::PipeFormat::y4m}, {"rgba", media::PipeFormat::rgba}},
               "With -o -: y4m or rgba, raw frames [y4m]")
       .type("FORM");
+  command
+      .option("--poster", flags->poster,
+              "Also a still of this instant (s), for where the movie does not play: movie.poster.png")
+      .type("SECONDS");
+  command
+      .option("--under", flags->under,
+              "Of a GIF: at most so large, as in 5MB; its picture is made smaller until it is")
+      .type("SIZE");
   command.flag("--resume", flags->film.resume,
                "Continue a film that was stopped from its finished parts, to the same bytes");
   command.flag("--anew", flags->film.anew,

@@ -68,7 +68,7 @@ class Filming {
   void shoot(Simulation& simulation, Progress& progress);
   int finish(Progress& progress, const Simulation& simulation, std::int64_t wanted);
   std::string cut_part() const {
-    return (fs::path(store_->folder()) / ("cut." + media::part_ending(output_.path))).string();
+    return (fs::path(store_->folder()) / ("cut." + media::part_ending(output_.path, spec_.alpha))).string();
   }
 
   const scene::Scene& scene_of_run(std::size_t number) const {
@@ -93,6 +93,7 @@ class Filming {
 Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& output,
                  const FilmOptions& options)
     : scene_(scene), shots_(shots), output_(output), options_(options), spec_(movie_spec(scene)) {
+  spec_.alpha = movie() && options.transparent;
   if (movie()) media::check(output.path, spec_);
   if (output.form == Output::Form::pipe && options.pipe == media::PipeFormat::y4m)
     media::check("pipe.y4m", spec_);
@@ -230,7 +231,7 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
       print.whole = false;
       break;
     }
-    const media::Image& image = darkroom.print(take, i, pictures() && options_.transparent);
+    const media::Image& image = darkroom.print(take, i, (pictures() || movie()) && options_.transparent);
     if (encoder) {
       encoder->add(image);
       states.add(take.number * journal_.take_frames + std::int64_t(i), take.states[i], take.all_bodies(i));

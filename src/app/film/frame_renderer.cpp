@@ -54,6 +54,10 @@ draw::Picture FrameRenderer::picture(const FilmSegment& take, std::size_t frame,
   return artists_.front().depict(drawn(take), take.ways, at);
 }
 
+draw::Picture FrameRenderer::frame(const FilmSegment& take, std::size_t frame) const {
+  return picture(take, frame, film_time(take.shots[frame], fps_, speed_), 0);
+}
+
 const media::Image& FrameRenderer::print(const FilmSegment& take, std::size_t frame, bool transparent) {
   const double film = film_time(take.shots[frame], fps_, speed_);
   const auto draw = [&](std::size_t exposure) -> const media::Image& {

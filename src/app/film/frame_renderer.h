@@ -23,6 +23,11 @@ class FrameRenderer {
   /// The picture of a frame of a take, good until the next one. `transparent`: with the ground left out.
   const media::Image& print(const FilmSegment& take, std::size_t frame, bool transparent);
 
+  /// The same as things, not yet pixels; of the instant alone.
+  draw::Picture frame(const FilmSegment& take, std::size_t frame) const;
+  /// The pixels of a picture, good until the next ones.
+  const media::Image& pixels(const draw::Picture& picture) { return renderer_.draw(picture); }
+
   const gl::Renderer& renderer() const { return renderer_; }
   const sim::SceneInfo& scene_info() const { return artists_.front().scene_info(); }
 

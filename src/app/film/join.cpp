@@ -74,6 +74,7 @@ std::int64_t join(Store& store, const std::string& movie, const Joining& joining
       spec.width = origin.width, spec.height = origin.height;
       spec.fps_num = fps.num, spec.fps_den = fps.den;
       spec.codec = origin.encoder, spec.preset = origin.preset, spec.crf = origin.crf;
+      spec.alpha = origin.transparent;
       const auto title = part.tags.find("Title");
       const auto tags = [&] { return first->tags(title == part.tags.end() ? "" : title->second); };
       spec.tags = tags();
