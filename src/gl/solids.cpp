@@ -118,7 +118,9 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   window.height = std::clamp(int(std::ceil(px(w.y + w.height) - 1e-6)), 0, height_) - window.y;
   if (window.width <= 0 || window.height <= 0) return;
   gl_.Enable(GL_SCISSOR_TEST);
-  if (solids.shade.a > 0 && !solids.shades.empty()) paint_ground(solids, frame, window, damage);
+  // where bodies are near it, and where the light does not reach it
+  if (solids.touch.a > 0) paint_ground(solids, solids.touches, solids.touch, frame, window, damage);
+  if (solids.shade.a > 0) paint_ground(solids, solids.shades, solids.shade, frame, window, damage);
   if (solids.triangles.empty() && solids.shadowed.empty()) {
     gl_.Disable(GL_SCISSOR_TEST);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, frame);
@@ -202,8 +204,8 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   gl_.Disable(GL_SCISSOR_TEST);
 }
 
-void SolidPainter::paint_ground(const draw::Solids& solids, unsigned frame, const Damage::Rect& window,
-                                Damage& damage) {
+void SolidPainter::paint_ground(const draw::Solids& solids, const std::vector<draw::Solids::Shade>& shades,
+                                draw::Color ink, unsigned frame, const Damage::Rect& window, Damage& damage) {
   // each ray's shadows are shifted within a pixel of the half picture: their mean has smooth edges
   const Bounds seen{float(window.x), float(window.y), float(window.x + window.width),
                     float(window.y + window.height)};
@@ -214,7 +216,7 @@ void SolidPainter::paint_ground(const draw::Solids& solids, unsigned frame, cons
   };
   touched_.clear();
   seen_.clear();
-  for (const draw::Solids::Shade& shade : solids.shades) {
+  for (const draw::Solids::Shade& shade : shades) {
     Bounds b{1e9f, 1e9f, -1e9f, -1e9f};
     for (int i = shade.begin; i < shade.end; ++i) {
       const draw::Point p = solids.points[std::size_t(i)] * scale_;
@@ -261,10 +263,9 @@ void SolidPainter::paint_ground(const draw::Solids& solids, unsigned frame, cons
   gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   cover_array_.bind();
   shade_program_.use();
-  const draw::Color c = solids.shade;
-  const float alpha = float(c.a) / 255.0f;
-  gl_.Uniform4f(shade_program_.uniform("shade"), float(c.r) / 255.0f * alpha, float(c.g) / 255.0f * alpha,
-                float(c.b) / 255.0f * alpha, alpha);
+  const float alpha = float(ink.a) / 255.0f;
+  gl_.Uniform4f(shade_program_.uniform("shade"), float(ink.r) / 255.0f * alpha, float(ink.g) / 255.0f * alpha,
+                float(ink.b) / 255.0f * alpha, alpha);
   for (const Damage::Rect& r : touched_.rects()) {
     // the window's edge cuts it
     const int x0 = std::max(r.x, window.x), y0 = std::max(r.y, window.y);

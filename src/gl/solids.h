@@ -24,7 +24,8 @@ class SolidPainter {
   void paint(const draw::Solids& solids, unsigned frame, Damage& damage);
 
  private:
-  void paint_ground(const draw::Solids& solids, unsigned frame, const Damage::Rect& window, Damage& damage);
+  void paint_ground(const draw::Solids& solids, const std::vector<draw::Solids::Shade>& shades,
+                    draw::Color ink, unsigned frame, const Damage::Rect& window, Damage& damage);
   void paint_map(const draw::Solids& solids);
 
   const Functions& gl_;

@@ -40,8 +40,10 @@ struct Solids {
   std::vector<std::uint32_t> shadowed;        // that something may
   std::vector<std::array<float, 3>> casters;  // triangles turned away from the light, as `light` of a vertex
   std::vector<Shade> shades;
-  std::vector<Point> points;  // page units
-  Color shade{0, 0, 0, 0};    // laid over the ground where no ray reaches it
+  std::vector<Point> points;   // page units
+  Color shade{0, 0, 0, 0};     // laid over the ground where no ray reaches it
+  std::vector<Shade> touches;  // how near bodies are to the ground: a ray is a distance
+  Color touch{0, 0, 0, 0};     // laid over the ground where they touch it
 };
 
 /// The same on a larger page: each of its lengths times `scale`, its origin at `at`.

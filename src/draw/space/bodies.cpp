@@ -1,9 +1,11 @@
 // Bodies in space: triangles for what faces the eye, and outlines and creases as lines where they are seen.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "draw/picture/joint_look.h"
 #include "draw/space/space.h"
 
 namespace obscura::draw {
@@ -11,11 +13,16 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kEdgeLine = 2.3;   // page units
-constexpr double kThinEdge = 0.11;  // of a body's thickness: an outline is not wider
-constexpr double kCrease = 0.94;    // cosine of a turn between faces that shows as an edge
-constexpr double kAround = 60;      // page units outside the window where things are still drawn
-constexpr double kLeast = 1.6;      // radius of what is too small to see
+constexpr double kEdgeLine = 2.3;                            // page units
+constexpr double kSilhouetteLine = 1.3, kCreaseLine = 0.75;  // of that
+constexpr double kContact = 0.26;        // how much darker it is where a body touches the ground,
+constexpr double kContactReach = 0.8;    // of its thickness: up to where
+constexpr double kBracket = 20;          // page units: half a plate from which something hangs
+constexpr int kBracketNumber = 1 << 29;  // theirs in sight, above those of all others
+constexpr double kThinEdge = 0.11;       // of a body's thickness: an outline is not wider
+constexpr double kCrease = 0.94;         // cosine of a turn between faces that shows as an edge
+constexpr double kAround = 60;           // page units outside the window where things are still drawn
+constexpr double kLeast = 1.6;           // radius of what is too small to see
 
 Vec3 placed(const sim::Snapshot::Body& body, const Vec3& local) {
   return body.position + body.orientation * local;
@@ -34,7 +41,27 @@ void begin(SpaceFrame& s, const Vec3& center, double reach, int piece) {
 }
 void end(SpaceFrame& s) { s.chunks.back().end = s.triangles.size(); }
 
-std::uint32_t corner(SpaceFrame& s, const Vec3& place, const Vec3& normal, const Shaded& color) {
+/// Whether a piece is all of its body: pieces of one have their corners at other heights, and would not be
+/// dark alike where they meet.
+bool alone(const std::vector<Piece>& pieces, int piece) {
+  if (piece < 0 || piece >= int(pieces.size())) return false;
+  const auto at = std::size_t(piece);
+  return (at == 0 || pieces[at - 1].body != pieces[at].body) &&
+         (at + 1 == pieces.size() || pieces[at + 1].body != pieces[at].body);
+}
+
+// darker near the ground, which keeps light from it as it keeps light from the ground
+std::uint32_t corner(SpaceFrame& s, const Vec3& place, const Vec3& normal, Shaded color) {
+  const int piece = s.chunks.empty() ? -1 : s.chunks.back().piece;
+  if (s.stage.ground && alone(s.stage.pieces, piece)) {
+    const double high = (place - s.stage.ground->point).dot(s.stage.ground->normal);
+    const double reach = kContactReach * s.stage.pieces[std::size_t(piece)].least;
+    if (reach > 0 && high < 4 * reach) {
+      const double dark = kContact * std::exp(-std::max(high, 0.0) / reach);
+      const Color ink{0x0C, 0x10, 0x16};
+      color.lit = mix(color.lit, ink, dark), color.shaded = mix(color.shaded, ink, dark);
+    }
+  }
   s.corners.push_back({place, normal, color});
   return std::uint32_t(s.corners.size() - 1);
 }
@@ -225,7 +252,7 @@ void add_bodies(SpaceFrame& s) {
 }
 
 void trace(SpaceFrame& s, const std::vector<Vec3>& way, bool closed, int own, int too, double width,
-           Color color) {
+           Color color, std::span<const Vec3> faces) {
   if (way.size() < 2) return;
   HiddenLines::Parts parts;
   std::vector<Trace> found;
@@ -238,7 +265,7 @@ void trace(SpaceFrame& s, const std::vector<Vec3>& way, bool closed, int own, in
   const std::size_t count = closed ? way.size() : way.size() - 1;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 &a = way[i], &b = way[(i + 1) % way.size()];
-    s.sight.seen(a, b, own, too, parts);
+    s.sight.seen(a, b, own, too, parts, faces);
     if (parts.size() != 1 || parts[0].first > 0 || parts[0].second < 1) whole = false;
     if (parts.empty()) {
       flush();
@@ -268,22 +295,28 @@ void trace(SpaceFrame& s, const std::vector<Vec3>& way, bool closed, int own, in
 namespace {
 
 // the outline and the creases of one piece of a body, `number` among those that hide; -1: it hides nothing
+void trace_flat(SpaceFrame& s, const Polyhedron& flat, int number, double width, Color color) {
+  std::vector<char> front;
+  for (const Polyhedron::Face& face : flat.faces) {
+    const Vec3& place = flat.vertices[face.loop[0]];
+    front.push_back(face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) > 0);
+  }
+  for (const Polyhedron::Edge& e : flat.edges) {
+    const bool left = front[e.left], right = e.right >= 0 && front[e.right];
+    if (!left && !right) continue;
+    const Vec3 &a = flat.faces[e.left].normal, &b = flat.faces[right ? e.right : e.left].normal;
+    if (left && right && a.dot(b) > kCrease) continue;
+    const std::array<Vec3, 2> faces{left ? a : flat.faces[e.right].normal, right ? b : a};
+    trace(s, {flat.vertices[e.a], flat.vertices[e.b]}, false, number, -1,
+          width * (left && right ? kCreaseLine : kSilhouetteLine), color, faces);
+  }
+}
+
 void trace_piece(SpaceFrame& s, const Piece& piece, const sim::Snapshot::Body& body, const Polyhedron& flat,
                  int number, Color color) {
   if (piece.form == Piece::Form::polyhedron) {
     if (!in_window(s.lens, body.position, piece.reach)) return;
-    std::vector<char> front;
-    for (const Polyhedron::Face& face : flat.faces) {
-      const Vec3& place = flat.vertices[face.loop[0]];
-      front.push_back(face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) > 0);
-    }
-    const double width = line_width(s, body.position, piece.least);
-    for (const Polyhedron::Edge& e : flat.edges) {
-      const bool left = front[e.left], right = e.right >= 0 && front[e.right];
-      if (!left && !right) continue;
-      if (left && right && flat.faces[e.left].normal.dot(flat.faces[e.right].normal) > kCrease) continue;
-      trace(s, {flat.vertices[e.a], flat.vertices[e.b]}, false, number, -1, width, color);
-    }
+    trace_flat(s, flat, number, line_width(s, body.position, piece.least), color);
     return;
   }
   const Vec3 a = placed(body, piece.a), b = placed(body, piece.b);
@@ -292,7 +325,7 @@ void trace_piece(SpaceFrame& s, const Piece& piece, const sim::Snapshot::Body& b
   if (s.lens.depth(a) < 1e-3 || s.lens.depth(b) < 1e-3) return;
   const double page = radius * s.lens.scale_at(a);
   if (page < 2.2) return;
-  const double width = line_width(s, a, radius);
+  const double width = kSilhouetteLine * line_width(s, a, radius);
   // the line lies inside the rim
   if (piece.form == Piece::Form::ball)
     trace(s, contour(s.lens, a, radius * (1 - 0.25 * width / page), roundness(page)), true, number, -1, width,
@@ -303,8 +336,53 @@ void trace_piece(SpaceFrame& s, const Piece& piece, const sim::Snapshot::Body& b
 
 }  // namespace
 
+// a plate over each place of the room that holds what may hang, but for those near the ground, a wall or a
+// body that is held: there one sees what holds it
+void add_brackets(SpaceFrame& s) {
+  const sim::SceneInfo& cast = s.stage.cast;
+  if (!(cast.gravity.norm() > 0)) return;
+  const Vec3 up = -cast.gravity.normalized();
+  const double half = kBracket * s.stage.layout.weight * s.zoom / s.lens.scale, thick = 0.3 * half;
+  const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), up).toRotationMatrix();
+  const auto held = [&](const Vec3& at) {
+    for (const sim::SceneInfo::Wall& wall : cast.walls)
+      if ((at - wall.point).dot(wall.normal.normalized()) < 2 * half) return true;
+    for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
+      const sim::SceneInfo::Body& body = cast.bodies[i];
+      const double reach = std::max(body.radius, body.half.norm()) + half;
+      if (body.fixed && (s.now.bodies[i].position - at).norm() < reach) return true;
+    }
+    return false;
+  };
+  const auto add = [&](const Vec3& at) {
+    const Vec3 center = at + thick * up;
+    const double reach = 2 * half;
+    if (held(at) || !in_window(s.lens, center, reach) || s.lens.depth(center) < 1e-2) return;
+    const Polyhedron plate = box({half, thick, half}).placed(turn, center);
+    begin(s, center, reach, -1);
+    add_faces(s, plate, neutral(s.stage.look.theme));
+    end(s);
+    s.sight.add(plate, kBracketNumber + int(s.brackets.size()));
+    s.brackets.push_back(plate);
+  };
+  for (std::size_t i = 0; i < cast.springs.size() && i < s.now.springs.size(); ++i) {
+    const sim::SceneInfo::Spring& spring = cast.springs[i];
+    if ((spring.a < 0) != (spring.b < 0)) add(spring.a < 0 ? s.now.springs[i].a : s.now.springs[i].b);
+  }
+  for (std::size_t i = 0; i < cast.joints.size() && i < s.now.joints.size(); ++i) {
+    const sim::SceneInfo::Joint& joint = cast.joints[i];
+    const JointMark mark = joint_look(joint.kind).space;
+    if (s.now.joints[i].broken || (joint.a < 0) == (joint.b < 0)) continue;
+    if (mark != JointMark::line && mark != JointMark::rope && mark != JointMark::dot) continue;
+    add(joint.a < 0 ? s.now.joints[i].a : s.now.joints[i].b);
+  }
+}
+
 void trace_edges(SpaceFrame& s) {
   const auto& pieces = s.stage.pieces;
+  for (std::size_t i = 0; i < s.brackets.size(); ++i)
+    trace_flat(s, s.brackets[i], kBracketNumber + int(i), kEdgeLine * s.stage.layout.weight,
+               edge(neutral(s.stage.look.theme), s.stage.look.theme));
   for (int i = 0; i < int(pieces.size()); ++i)
     trace_piece(s, pieces[i], s.now.bodies[pieces[i].body], s.placed[i], i,
                 edge(s.stage.own[pieces[i].body], s.stage.look.theme));

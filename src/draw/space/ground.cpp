@@ -101,7 +101,7 @@ void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list
     for (const Vec3& v : loop) radius = std::max(radius, (v - foot).norm());
   }
   const auto last = std::int64_t(std::min(std::ceil(radius / tile), 400.0));
-  const Color ink = stage.look.theme == Theme::paper ? Color{0xC6, 0xCB, 0xD1} : Color{0x33, 0x3E, 0x49};
+  const Color ink = stage.look.theme == Theme::paper ? Color{0xC6, 0xCB, 0xD1} : Color{0x43, 0x4F, 0x5B};
   const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
   std::vector<Node> line;
   for (int way = 0; way < 2; ++way) {

@@ -21,6 +21,8 @@ namespace {
 using sim::Vec3;
 
 constexpr double kSpread = 0.10;  // radius of the light's disc at distance 1
+constexpr double kFoot = 0.35;    // of a ball's radius: where it is near the ground
+constexpr double kFall = 1.6;     // of the darkness around a contact: how much sooner than straight it falls
 constexpr double kNear = 1e-3;    // least depth over the target's
 constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
 constexpr double kLevel = 0.05;   // light that comes from lower throws no shadows on the ground
@@ -98,6 +100,7 @@ std::uint32_t stopped(double share) {
 
 GroundShadow::GroundShadow(const Ground& ground, const Light& light, const CameraProjection& lens)
     : ground_(ground), light_(light), lens_(lens), slope_(light.toward.dot(ground.normal)) {
+  plumb_ = ray(ground.normal);
   if (slope_ <= kLevel) return;
   for (int i = 0; i < kRays; ++i) rays_[i] = ray(light.rays[i]);
   rays_[kRays] = ray(light.toward);
@@ -163,6 +166,37 @@ void GroundShadow::cast(std::span<const Vec3> corners, double radius, bool many,
     const int begin = int(solids.points.size());
     solids.points.insert(solids.points.end(), outline_.begin(), outline_.end());
     solids.shades.push_back({begin, int(solids.points.size()), own & rays});
+  }
+}
+
+void GroundShadow::touch(std::span<const Vec3> corners, double radius, double reach, bool many,
+                         Solids& solids) {
+  double least = 1e300;
+  for (const Vec3& c : corners)
+    least = std::min(least, std::max((c - ground_.point).dot(ground_.normal) - radius, 0.0));
+  const int share = many ? 2 : 1;
+  for (int i = 0; i < kRays && least < reach; i += share) {
+    // the hull of the discs under its corners, each as much smaller as it is higher
+    const double near = reach * std::pow(double(i + share) / kRays, kFall);
+    cast_.clear();
+    bool behind = false;
+    for (const Vec3& c : corners) {
+      const double high = (c - ground_.point).dot(ground_.normal);
+      const double wide = near - std::max(high - radius, 0.0) + kFoot * radius;
+      if (!(wide > kFoot * radius) || high < -reach) continue;
+      const Vec3 foot = seen_at(lens_, c) + high * plumb_.down;
+      for (const Vec3& rim : plumb_.round) {
+        const Vec3 place = foot + wide * rim;
+        behind = behind || place.z() < kNear;
+        cast_.push_back(place.head<2>() / place.z());
+      }
+    }
+    if (behind || cast_.size() < 3) continue;
+    hull(cast_, outline_);
+    if (outline_.size() < 3) continue;
+    const int begin = int(solids.points.size());
+    solids.points.insert(solids.points.end(), outline_.begin(), outline_.end());
+    solids.touches.push_back({begin, int(solids.points.size()), ((1u << share) - 1) << i});
   }
 }
 

@@ -52,6 +52,10 @@ class GroundShadow {
   /// `many` bodies every second ray is enough.
   void cast(std::span<const sim::Vec3> corners, double radius, bool many, std::uint32_t rays, Solids& solids);
 
+  /// The ground is darker around where such a body is near it, up to `reach` from it, m: a ray each for so
+  /// many distances, all that is nearer than that.
+  void touch(std::span<const sim::Vec3> corners, double radius, double reach, bool many, Solids& solids);
+
  private:
   static constexpr int kRim = 14;
   // in (x w, y w, w) of the page, see CameraProjection::homogeneous
@@ -66,6 +70,7 @@ class GroundShadow {
   CameraProjection lens_;
   double slope_;                     // how straight the light comes down
   std::array<Ray, kRays + 1> rays_;  // the last one the light's middle
+  Ray plumb_;                        // straight down
   std::vector<sim::Vec3> seen_;
   std::vector<double> heights_;
   std::vector<Point> cast_, outline_;

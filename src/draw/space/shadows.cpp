@@ -18,6 +18,8 @@ namespace {
 
 using sim::Vec3;
 
+// of a body's thickness, and at most of the window: up to where the ground near it is darker
+constexpr double kTouchReach = 1.4, kTouchMost = 0.06;
 constexpr double kSoft =
     0.02;                      // of the window's width in the world: what a soft edge may reach beyond a body
 constexpr double kSteep = 12;  // slopes are cut off there
@@ -346,15 +348,19 @@ void cast_on_ground(SpaceFrame& s) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece& piece = pieces[i];
     const sim::Snapshot::Body& body = s.now.bodies[piece.body];
+    const double near = std::min(kTouchReach * piece.least, kTouchMost * s.lens.window.width / s.lens.scale);
     if (piece.form == Piece::Form::polyhedron) {
       fall.cast(s.placed[i].vertices, 0, many, all, s.solids);
+      fall.touch(s.placed[i].vertices, 0, near, many, s.solids);
       continue;
     }
     const double radius =
         s.stage.dots[piece.body] > 0 ? s.stage.dots[piece.body] / s.lens.scale : piece.radius;
     const std::array<Vec3, 2> ends{body.position + body.orientation * piece.a,
                                    body.position + body.orientation * piece.b};
-    fall.cast(std::span(ends).first(piece.form == Piece::Form::capsule ? 2 : 1), radius, many, all, s.solids);
+    const auto places = std::span(ends).first(piece.form == Piece::Form::capsule ? 2 : 1);
+    fall.cast(places, radius, many, all, s.solids);
+    fall.touch(places, radius, near, many, s.solids);
   }
   for (const Rod& rod : s.rods)
     fall.cast(std::array{rod.a, rod.b}, rod.radius, many || s.rods.size() > 64, stopped(rod.share), s.solids);
@@ -369,6 +375,7 @@ void add_shadows(SpaceFrame& s) {
                          s.lens.perspective() ? Vec3(s.lens.eye() - s.stage.ground->point) : s.lens.back) > 0;
   if (!above) return;
   s.solids.shade = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 62} : Color{0, 0, 0, 115};
+  s.solids.touch = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 90} : Color{0, 0, 0, 150};
   cast_on_ground(s);
 }
 

@@ -26,6 +26,7 @@ constexpr double kCell = 48;     // page units
 constexpr double kRound = 6;     // page units: the front of a round thing of a larger radius is not flat
 constexpr double kFacet = std::numbers::pi / 6;  // from one plane of such a front to the next
 constexpr double kSeam = 2 * kBehind;            // so near to the front of its own thing a line is a seam
+constexpr double kSamePlane = 0.99999;           // cosine between planes that are one
 constexpr double kSightNear = 1e-3;              // least depth over the target's
 constexpr double kShort = 0.25;  // page units: shorter parts are left out, shorter gaps closed
 
@@ -200,7 +201,8 @@ void HiddenLines::finish() {
   stamp_.assign(pieces_.size(), 0);
 }
 
-void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts& parts) const {
+void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts& parts,
+                       std::span<const Vec3> faces) const {
   parts.clear();
   if (lens_.depth(from) < kSightNear || lens_.depth(to) < kSightNear) return;
   const Vec3 a = lens_.seen(from), b = lens_.seen(to), way = b - a;
@@ -210,6 +212,22 @@ void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts
   const double y0 = std::min(a.y(), b.y()), y1 = std::max(a.y(), b.y());
   const int group = group_of(own);
   if (x1 < w.x || y1 < w.y || x0 > w.x + w.width || y0 > w.y + w.height) return;
+
+  // the planes of its own faces
+  planes_at_.clear();
+  for (const Vec3& normal : faces) planes_at_.push_back(plane(lens_, normal, from));
+  const auto continues = [&](const Piece& piece) {
+    if (group < 0 || piece.group != group || planes_at_.empty()) return false;
+    for (int i = piece.begin; i < piece.end; ++i) {
+      Eigen::Vector4d p = planes_[i];
+      if (!(p.z() > 0)) continue;
+      p.w() += kBehind;
+      for (const Eigen::Vector4d& own_face : planes_at_)
+        if (own_face.head<3>().dot(p.head<3>()) > kSamePlane && std::abs(own_face.w() - p.w()) < kSeam)
+          return true;
+    }
+    return false;
+  };
 
   // the lines that each piece hides
   hidden_.clear();
@@ -221,11 +239,13 @@ void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts
     if (piece.number == own || piece.number == too) return;
     if (x1 < piece.x0 || x0 > piece.x1 || y1 < piece.y0 || y0 > piece.y1) return;
     double low = 0, high = 1;
+    const bool own_face = continues(piece);
     for (int i = piece.begin; i < piece.end; ++i) {
       const Eigen::Vector4d& p = planes_[i];
       // inside where height + t rise < 0
       const bool seam = group >= 0 && piece.group == group && p.z() > 0;
-      const double height = p.head<3>().dot(a) - p.w() - (seam ? kSeam : 0), rise = p.head<3>().dot(way);
+      const double more = seam ? kSeam : own_face ? 2 * kInside : 0;
+      const double height = p.head<3>().dot(a) - p.w() - more, rise = p.head<3>().dot(way);
       if (height >= 0 && height + rise >= 0) return;
       if (height < 0 && height + rise < 0) continue;
       const double t = height / -rise;

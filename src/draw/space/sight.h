@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -29,8 +30,10 @@ class HiddenLines {
   using Parts = std::vector<std::pair<double, double>>;
   /// The parts of the line from a to b (world) that no piece hides but those numbered `own` and `too`, each
   /// as its ends between 0 and 1 along the line's picture on the page. Empty too where a or b is behind the
-  /// eye.
-  void seen(const sim::Vec3& a, const sim::Vec3& b, int own, int too, Parts& parts) const;
+  /// eye. `faces`: the normals of the faces of `own` that meet in the line: where another piece of its group
+  /// continues one of them, the line is a seam up to that piece's very edge.
+  void seen(const sim::Vec3& a, const sim::Vec3& b, int own, int too, Parts& parts,
+            std::span<const sim::Vec3> faces = {}) const;
   /// Whether a place is seen.
   bool seen(const sim::Vec3& place, int own, int too = -1) const;
 
@@ -56,6 +59,7 @@ class HiddenLines {
   mutable std::vector<int> stamp_;
   mutable int stamps_ = 0;
   mutable Parts hidden_;
+  mutable std::vector<Eigen::Vector4d> planes_at_;
 };
 
 /// The points where sight lines touch a ball: `count` of them on a circle, counter-clockwise as seen.

@@ -127,7 +127,8 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
   layout.weight = page_weight(aspect) * look.weight;
   layout.width -= charts.right(), layout.height -= charts.below();
   const double w = layout.weight;
-  // the ground has no edge: one colour for the page and the room
+  // the ground has no edge: one colour for the page and the room; light enough to carry shadows
+  if (look.theme == Theme::screen) colours.room = {0x24, 0x2C, 0x35};
   colours.ground = colours.room;
 
   // the room, cut from a large block
@@ -248,12 +249,14 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
                        {},
                        {},
                        {},
+                       {},
                        {}};
     scenery.solids.window = panel.window;
     picture.moving.clip(panel.window);
     // first the hiding bodies, then the lines
     add_bodies(scenery);
     add_links(scenery);
+    add_brackets(scenery);
     scenery.sight.finish();
     add_shadows(scenery);
     trace_trails(scenery, ways);

@@ -115,6 +115,7 @@ struct SpaceFrame {
   std::vector<Chunk> chunks;
   std::vector<Trace> lines;
   std::vector<Rod> rods;
+  std::vector<Polyhedron> brackets;
 };
 
 /// Grid, room, caption: the things that stand still while the camera does.
@@ -131,7 +132,9 @@ void add_ball(SpaceFrame& scenery, const sim::Vec3& center, double radius, Color
 void add_bodies(SpaceFrame& scenery);
 /// Springs, rods, ropes, pins, the hands' springs; before lines are traced, since they hide them.
 void add_links(SpaceFrame& scenery);
-/// The edges of bodies that are seen.
+/// Pieces of ceiling over the places of the room from which something hangs.
+void add_brackets(SpaceFrame& scenery);
+/// The edges of bodies that are seen, and of those pieces.
 void trace_edges(SpaceFrame& scenery);
 void trace_ghost(SpaceFrame& scenery, const SpaceGhost& ghost);
 void trace_trails(SpaceFrame& scenery, Ways ways);
@@ -145,6 +148,6 @@ void draw_space_hands(SpaceFrame& scenery);
 
 /// The parts of a line through `way` that are seen, as lines of this width and colour.
 void trace(SpaceFrame& scenery, const std::vector<sim::Vec3>& way, bool closed, int own, int too,
-           double width, Color color);
+           double width, Color color, std::span<const sim::Vec3> faces = {});
 
 }  // namespace obscura::draw
