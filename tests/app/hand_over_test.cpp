@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 using HandOver = Program;
 
-const std::string kSmall = " --size 160x90 --fps 20 ";
+const std::string kQuarter = " --size 160x90 --fps 20 ";
 
 /// The mean and the largest difference of the alphas of two pictures, levels of 255.
 std::pair<double, int> apart(const media::Image& a, const media::Image& b) {
@@ -40,10 +40,10 @@ std::pair<double, int> apart(const media::Image& a, const media::Image& b) {
 TEST_F(HandOver, MoviesCarryTheirAlpha) {
   OBSCURA_NEEDS(installed("ffmpeg"), "ffmpeg");
   scene(kCrateAndBall);
-  ASSERT_EQ(obscura("render scene.toml --transparent -o 'p/{frame:03}.png'" + kSmall).exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --transparent -o 'p/{frame:03}.png'" + kQuarter).exit, 0);
   for (const auto& [file, decoder, mean, most] :
        {std::tuple("f.webm", "-c:v libvpx-vp9", 1.0, 90), std::tuple("f.mov", "", 0.01, 1)}) {
-    const Outcome made = obscura("render scene.toml --transparent -o " + std::string(file) + kSmall);
+    const Outcome made = obscura("render scene.toml --transparent -o " + std::string(file) + kQuarter);
     ASSERT_EQ(made.exit, 0) << made.err;
     fs::create_directory(path(std::string(file) + ".d"));
     const Outcome read = shell("ffmpeg -v error " + std::string(decoder) + " -i " + file +
@@ -64,7 +64,7 @@ TEST_F(HandOver, MoviesCarryTheirAlpha) {
 TEST_F(HandOver, ShardsOfAMovieWithAlphaAreTheMovie) {
   scene(kCrateAndBall);
   for (const std::string file : {"f.webm", "f.mov"}) {
-    const std::string film = "render scene.toml --transparent -o " + file + " --set duration=2.5" + kSmall;
+    const std::string film = "render scene.toml --transparent -o " + file + " --set duration=2.5" + kQuarter;
     ASSERT_EQ(obscura(film).exit, 0);
     const std::string whole = contents(path(file));
     fs::remove(path(file));
@@ -91,8 +91,8 @@ TEST_F(HandOver, OtherMoviesSayWhichHaveAlpha) {
 
 TEST_F(HandOver, APosterIsTheStillOfItsInstant) {
   scene(kCrateAndBall);
-  ASSERT_EQ(obscura("render scene.toml -o f.mp4 --poster 0.5" + kSmall).exit, 0);
-  ASSERT_EQ(obscura("render scene.toml -o still.png --at 0.5" + kSmall).exit, 0);
+  ASSERT_EQ(obscura("render scene.toml -o f.mp4 --poster 0.5" + kQuarter).exit, 0);
+  ASSERT_EQ(obscura("render scene.toml -o still.png --at 0.5" + kQuarter).exit, 0);
   EXPECT_TRUE(media::read_png(path("f.poster.png")).image.pixels ==
               media::read_png(path("still.png")).image.pixels);
   EXPECT_EQ(obscura("render scene.toml -o a.png --at 0 --poster 0.5").exit, 2);

@@ -122,8 +122,8 @@ TEST_F(LatexFigure, BothEnginesSetItInTheDocumentsFonts) {
 /// digits; the others may move.
 TEST_F(LatexFigure, WordsAreHeldOnTheSideOfWhatTheyName) {
   OBSCURA_NEEDS(installed("pdflatex"), "texlive-latex-base");
-  ASSERT_EQ(obscura("figure scene.toml -o figures/a.tex").exit, 0);
-  ASSERT_EQ(obscura("figure scene.toml -o whole.pdf").exit, 0);
+  ASSERT_EQ(obscura("figure scene.toml --set 'figure.formula=\"\"' -o figures/a.tex").exit, 0);
+  ASSERT_EQ(obscura("figure scene.toml --set 'figure.formula=\"\"' -o whole.pdf").exit, 0);
   document("pdflatex");
   if (HasFatalFailure()) return;
   const auto set = words_of(shell("pdftotext -bbox document.pdf -").out),

@@ -27,7 +27,7 @@ namespace obscura::app {
 namespace {
 
 constexpr double kColumn = 84 * 72 / 25.4;   // pt
-constexpr double kGutter = 8, kLetter = 13;  // pt: between panels; above one, for its letter
+constexpr double kGutter = 8, kLetter = 17;  // pt: between panels; above one, for its letter
 // lines of runs: ink, and colours that mean nothing else
 constexpr std::array<const char*, 5> kTold{"", "orange", "purple", "sky", "grey"};
 constexpr std::int64_t kMostPanels = 100;

@@ -98,6 +98,8 @@ class Notes {
   void lead(const Word& word, const Point& center, double strength);
   static Hold hold(const Word& word, const Point& center);
   void offer_places();
+  bool on_body(const Point& p) const;
+  double bare(const Point& tail, const Point& tip) const;
   bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink);
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
   void dashes(const Point& a, const Point& b);
@@ -121,7 +123,8 @@ class Notes {
   std::vector<Word> words_;
   std::vector<std::pair<Point, Color>> dots_;
   std::vector<Arrow> arrows_;
-  std::vector<Color> inks_;  // theirs
+  std::vector<Color> inks_;                   // theirs
+  std::vector<std::vector<Point>> outlines_;  // of bodies
 };
 
 void Notes::avoid_bodies() {
@@ -144,6 +147,7 @@ void Notes::avoid_bodies() {
     }
     for (std::size_t k = 0; k < outline.size(); ++k)
       placing_.avoid(outline[k], outline[(k + 1) % outline.size()], 2);
+    outlines_.push_back(std::move(outline));
   }
   avoid_springs();
 }
@@ -156,11 +160,42 @@ void Notes::avoid_springs() {
   }
 }
 
+bool Notes::on_body(const Point& p) const {
+  return std::any_of(outlines_.begin(), outlines_.end(), [&](const std::vector<Point>& outline) {
+    bool left = false, right = false;
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const Point a = outline[k], way = outline[(k + 1) % outline.size()] - a;
+      const double side = way.x() * (p.y() - a.y()) - way.y() * (p.x() - a.x());
+      left = left || side > 0, right = right || side < 0;
+    }
+    return !(left && right);
+  });
+}
+
+// where an arrow that runs along a spring leaves the body that it begins in: its halo would bite the coils
+double Notes::bare(const Point& tail, const Point& tip) const {
+  constexpr int kPieces = 64;
+  const Point u = (tip - tail).normalized();
+  for (const sim::Snapshot::Spring& spring : now_.springs) {
+    const Point a = view_.page(spring.a), b = view_.page(spring.b), way = b - a;
+    if (!(way.norm() > 0) || std::abs(way.normalized().dot(u)) < 0.9) continue;
+    const auto off = [&](const Point& p) {
+      const double part = std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0);
+      return (p - a - part * way).norm();
+    };
+    if (off(tip) > 4 * point_ || off((tail + tip) / 2) > 4 * point_) continue;
+    for (int k = 0; k <= kPieces; ++k)
+      if (const double part = double(k) / kPieces; !on_body(tail + part * (tip - tail))) return part;
+  }
+  return 2;
+}
+
 bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink) {
   std::vector<Arrow> arrows;
   offer(tail, tip, view_.window(), arrow_, arrows);
   if (arrows.empty()) return false;
   // those of a film are drawn together: few batches
+  if (!film()) arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);
   if (film())
     arrows_.push_back(arrows[0]), inks_.push_back(ink);
   else

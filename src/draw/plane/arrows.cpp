@@ -48,10 +48,17 @@ void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& ink
   auto shaft = [&](const Arrow& a, double halo, Color ink) {
     const Point u = (a.tip - a.tail).normalized();
     const double width = kArrowLine * weight * a.grow + 2 * halo;
-    list.add({{a.tail, width, ink}, {a.tip - u * (kNotch - 1) * weight * a.grow, width, ink}}, Cap::butt);
+    Point end = a.tip - u * (kNotch - 1) * weight * a.grow;
+    if (halo > 0 && a.bare < 1) {
+      const Point last = a.tail + a.bare * (a.tip - a.tail);
+      if ((last - end).dot(u) < 0) end = last;
+    }
+    list.add({{a.tail, width, ink}, {end, width, ink}}, Cap::butt);
   };
-  for (const Arrow& a : arrows) shaft(a, kHalo * weight * a.grow, room);
-  for (const Arrow& a : arrows) list.add(head(a, weight, kHalo * weight * a.grow), room);
+  for (const Arrow& a : arrows)
+    if (a.bare > 0) shaft(a, kHalo * weight * a.grow, room);
+  for (const Arrow& a : arrows)
+    if (a.bare > 1) list.add(head(a, weight, kHalo * weight * a.grow), room);
   for (std::size_t i = 0; i < arrows.size(); ++i) shaft(arrows[i], 0, inks[i]);
   for (std::size_t i = 0; i < arrows.size(); ++i) list.add(head(arrows[i], weight, 0), inks[i]);
 }

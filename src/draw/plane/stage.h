@@ -70,6 +70,7 @@ inline constexpr int kMany = 12;
 struct Arrow {
   Point tail, tip;
   double grow = 1;  // of its head and shaft
+  double bare = 2;  // from here on along its way (0 to 1) it has no halo: 2: all of it has
 };
 
 /// An arrow, if it is large enough to be seen. One that begins in the window ends there.
