@@ -15,6 +15,7 @@
 #include "draw/compose/annotations.h"
 #include "draw/page/measure.h"
 #include "draw/page/readings.h"
+#include "draw/plane/stage.h"
 #include "program.h"
 #include "where.h"
 
@@ -267,7 +268,7 @@ bool crosses(const draw::Rect& rect, const draw::Point& a, const draw::Point& b)
   return from < to;
 }
 
-/// Words cover no body's outline and no arrow. Letters' own boxes, a pixel in.
+/// Words cover no body's outline, no arrow and no hatching. Letters' own boxes, a pixel in.
 TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
   for (const char* name : {"slope", "swing"}) {
     Filmed film(kScenes + name + ".toml");
@@ -291,6 +292,14 @@ TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
         }
         for (std::size_t k = 0; k < outline.size(); ++k)
           lines.emplace_back(outline[k], outline[(k + 1) % outline.size()]);
+      }
+      // the hatching behind the walls
+      for (const draw::HalfPlane& wall : draw::half_planes(cast, *page.view())) {
+        const draw::Point along(-wall.normal.y(), wall.normal.x());
+        for (const double deep : {2.0, 8.0, 14.0, 20.0}) {
+          const draw::Point at = wall.point - deep * film.artist.weight() * wall.normal;
+          lines.emplace_back(at - 1e4 * along, at + 1e4 * along);
+        }
       }
       draw::Scales scales = film.ahead.annotations->scales();
       for (const draw::Marks::Vector& vector : film.scene.film.marks.vectors) {

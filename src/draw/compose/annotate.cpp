@@ -31,6 +31,7 @@ constexpr double kAxes = 0.36;        // of the picture's shorter side: axes in 
 constexpr double kFull = 0.5;         // of an arrow's growth: from here on its words are as strong as others
 constexpr double kOutOfBall = 0.35;   // of a ball's radius: how far beyond it an arrow's words are as strong
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
+constexpr double kOffHatching = 2.5;  // points: from it to the words of a film
 constexpr double kCovered = 60;       // points: the cost of words over a body
 
 using sim::Vec3;
@@ -62,11 +63,12 @@ class Notes {
     if (!view_.view()) return;
     for (const HalfPlane& wall : half_planes(cast, *view_.view())) {
       const Point along(-wall.normal.y(), wall.normal.x());
-      placing_.avoid(wall.point - 1e4 * along, wall.point + 1e4 * along, 3);
-      // nor in the hatching
-      for (double deep = 2; deep < kBand * how_.lettering.weight; deep += 4)
+      placing_.avoid(wall.point - 1e4 * along, wall.point + 1e4 * along, film() ? 12 : 3);
+      // nor in the hatching; in a film not at its edge either, where a word that moves would touch it
+      const double band = kBand * how_.lettering.weight + (film() ? kOffHatching * point_ : 0);
+      for (double deep = 2; deep < band; deep += 4)
         placing_.avoid(wall.point - deep * wall.normal - 1e4 * along,
-                       wall.point - deep * wall.normal + 1e4 * along, 1);
+                       wall.point - deep * wall.normal + 1e4 * along, film() ? 12 : 1);
     }
   }
 

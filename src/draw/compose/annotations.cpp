@@ -62,6 +62,37 @@ double cost_of_way(const Offered& label, std::size_t i, std::size_t j) {
   return cost;
 }
 
+/// How long before its jump, at sample k, a label begins its way from place i to place j: so that of the time
+/// before and after it spends the least at places that cost. On its way it is at half of either.
+double best_lead(const std::vector<std::pair<std::size_t, const Offered*>>& at,
+                 const std::vector<double>& films, std::size_t k, int i, int j, double lasting) {
+  const double jump = (films[at[k].first] + films[at[k - 1].first]) / 2;
+  double best = lasting / 2, least = 1e300;
+  for (const double part : {0.5, 0.75, 1.0, 0.25, 0.0}) {
+    const double begin = jump - part * lasting, end = begin + lasting;
+    double sum = 0;
+    for (const auto& [sample, offered] : at) {
+      const double film = films[sample];
+      if (film < jump - lasting || film > jump + lasting) continue;
+      const double gone = std::clamp((film - begin) / (end - begin), 0.0, 1.0);
+      const auto cost = [&](int place) { return offered->places[std::size_t(place)].cost; };
+      sum += (1 - gone) * cost(i) + gone * cost(j);
+    }
+    if (sum < 0.98 * least) least = sum, best = part * lasting;
+  }
+  return best;
+}
+
+/// Brings moves, from the first that may be brought, forward in time so that the last of them ends at
+/// `until`.
+void make_room(std::vector<LabelPlan::Move>& moves, std::size_t first, double until) {
+  for (std::size_t m = moves.size(); m > first && moves[m - 1].end > until; --m) {
+    const double early = std::min(moves[m - 1].end - until, std::max(moves[m - 1].begin, 0.0));
+    moves[m - 1].begin -= early, moves[m - 1].end -= early;
+    until = moves[m - 1].begin;
+  }
+}
+
 // the place of a course at a sample, without the way between
 int place_at(const LabelPlan::Course& course, double film) {
   int at = course.first;
@@ -158,7 +189,8 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
     for (std::size_t k = at.size() - 1; k > 0; --k) place[k - 1] = from[k][std::size_t(place[k])];
 
     LabelPlan::Course course{place[0], {}};
-    double free = -1e300;  // when the last way ends
+    double free = -1e300;   // when the last way ends
+    std::size_t shown = 0;  // the first move since it is shown
     for (std::size_t k = 1; k < at.size(); ++k) {
       if (place[k] == place[k - 1]) continue;
       const double here = films[at[k].first], before = films[at[k - 1].first];
@@ -168,9 +200,18 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
         const auto center = [&](int i) { return at[k].second->places[std::size_t(i)].center; };
         const double way = (center(place[k]) - center(place[k - 1])).norm();
         const double lasting = std::clamp(1.5 * way / speed, kQuickest, kSlowest);
-        move.begin = std::max(move.begin - lasting / 2, free), move.end = move.begin + lasting;
-      } else if (free > move.begin) {
-        course.moves.back().end = course.moves.back().begin = std::min(course.moves.back().begin, before);
+        move.begin -= best_lead(at, films, k, place[k - 1], place[k], lasting);
+        move.end = move.begin + lasting;
+        make_room(course.moves, shown, move.begin);
+        if (move.begin < free) {
+          // the last way cannot be over sooner
+          free = shown < course.moves.size() ? course.moves.back().end : free;
+          if (move.begin < free) move.end += free - move.begin, move.begin = free;
+        }
+      } else {
+        if (free > move.begin)
+          course.moves.back().end = course.moves.back().begin = std::min(course.moves.back().begin, before);
+        shown = course.moves.size() + 1;
       }
       free = move.end;
       course.moves.push_back(move);
