@@ -81,9 +81,9 @@ Part packets_of(const std::string& path) {
 
 }  // namespace
 
-std::string part_ending(const std::string& movie, bool alpha) {
+std::string part_ending(const std::string& movie, const MovieSpec& spec) {
   const std::string ending = container(movie).ending;
-  return alpha || ending == "gif" ? ending : "mp4";
+  return spec.alpha || spec.codec.starts_with("prores") || ending == "gif" ? ending : "mp4";
 }
 
 void write_part(const std::string& path, const MovieSpec& spec, const Segment& segment) {

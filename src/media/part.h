@@ -9,8 +9,9 @@ namespace obscura::media {
 // A part is a segment in a file of its own: a movie that plays, and that gives the segment back, so that a
 // film that was made in pieces, at several times or in several places, is joined of them by stream copy.
 
-/// The ending of the names of a movie's parts: "mp4", for a GIF "gif"; with alpha the movie's own.
-std::string part_ending(const std::string& movie, bool alpha = false);
+/// The ending of the names of a movie's parts: "mp4", for a GIF "gif"; the movie's own with alpha and of
+/// ProRes.
+std::string part_ending(const std::string& movie, const MovieSpec& spec = {});
 
 /// Writes a segment as a part; `spec` is the movie's, with the part's own tags. Throws media::Error.
 void write_part(const std::string& path, const MovieSpec& spec, const Segment& segment);

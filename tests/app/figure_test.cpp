@@ -299,6 +299,43 @@ TEST_F(Figure, WordsStayOnThePage) {
   EXPECT_GT(words, 200);
 }
 
+/// The white around an arrow ends where it leaves the ball: on the spring that it runs along it would be a
+/// gap. Without walls the margin is 2 pt and 84 mm are 238.11 pt, so that a metre is 234.11 / 3 pt.
+TEST_F(Figure, AnArrowAlongASpringLeavesItsCoilsWhole) {
+  scene(R"(
+duration = 1
+[room]
+size = [4, 3]
+walls = "none"
+gravity = [0, 0]
+[[ball]]
+name = "ball"
+radius = 0.2
+position = [3, 1.5]
+[[spring]]
+between = [[1, 1.5], "ball"]
+stiffness = 10
+rest_length = 1.2
+[figure]
+at = 0
+low = [0.5, 0.5]
+high = [3.5, 2.5]
+[[figure.vector]]
+quantity = "spring"
+of = "ball"
+label = "f"
+)");
+  ASSERT_EQ(obscura("figure scene.toml -o a.svg").exit, 0);
+  const std::string svg = contents(path("a.svg"));
+  static const std::regex halo(
+      "d=\"M([0-9.]+) [0-9.]+L([0-9.]+) [0-9.]+\" fill=\"none\" stroke-width=\"([0-9.]+)\" "
+      "stroke=\"#ffffff\"");
+  int found = 0;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), halo), end; it != end; ++it, ++found)
+    EXPECT_NEAR(std::stod((*it)[1]) - std::stod((*it)[2]), 0.2 * 234.11 / 3, 0.5);
+  EXPECT_EQ(found, 1);
+}
+
 /// By its family's name, whatever its files are called; mathematics too where the font has it.
 TEST_F(Figure, FontsAreFoundByTheirFamily) {
   OBSCURA_NEEDS(installed("fc-list"), "fontconfig");

@@ -74,7 +74,17 @@ TEST_F(HandOver, ShardsOfAMovieWithAlphaAreTheMovie) {
     }
     ASSERT_EQ(obscura("join " + file).exit, 0);
     EXPECT_TRUE(contents(path(file)) == whole) << file;
+    EXPECT_THAT(obscura("verify " + file).out, HasSubstr("movie: the same, byte by byte")) << file;
   }
+}
+
+TEST_F(HandOver, ProResIsForOpaqueFilmsToo) {
+  OBSCURA_NEEDS(installed("ffprobe"), "ffmpeg");
+  scene(kCrateAndBall);
+  const Outcome made = obscura("render scene.toml --codec prores -o f.mov" + kQuarter);
+  ASSERT_EQ(made.exit, 0) << made.err;
+  EXPECT_THAT(shell("ffprobe -v error -show_entries stream=codec_name,nb_frames -of csv f.mov").out,
+              HasSubstr("prores,20"));
 }
 
 TEST_F(HandOver, OtherMoviesSayWhichHaveAlpha) {

@@ -118,7 +118,7 @@ bool film_again(const std::string& file, const VerifyFlags& flags, const std::st
   if (fs::path(file).extension() == ".gif") scene.film.codec.clear();
   FilmOptions options = flags.film;
   options.progress = ProgressKind::none;
-  options.context = context_of(now, flags);
+  options.context = context_of(now, flags), options.transparent = now.transparent;
   if (film(scene, shots_of(now, scene), {Output::Form::movie, again}, options) != kDone) return false;
   if (const auto made = Frames(again).origin()) now.state = made->state, now.states = made->states;
   return true;

@@ -68,7 +68,7 @@ class Filming {
   void shoot(Simulation& simulation, Progress& progress);
   int finish(Progress& progress, const Simulation& simulation, std::int64_t wanted);
   std::string cut_part() const {
-    return (fs::path(store_->folder()) / ("cut." + media::part_ending(output_.path, spec_.alpha))).string();
+    return (fs::path(store_->folder()) / ("cut." + media::part_ending(output_.path, spec_))).string();
   }
 
   const scene::Scene& scene_of_run(std::size_t number) const {

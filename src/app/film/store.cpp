@@ -306,7 +306,7 @@ std::optional<std::string> Store::part(std::int64_t take) {
 
 void Store::put(std::int64_t take, const std::string& movie, const media::MovieSpec& spec,
                 const media::Segment& segment) {
-  const std::string ending = "." + media::part_ending(movie, spec.alpha);
+  const std::string ending = "." + media::part_ending(movie, spec);
   const std::string fresh = impl_->at(fmt::format("fresh-{:06}{}", take, ending));
   media::write_part(fresh, spec, segment);
   const std::string name = named(take, file_hash(fresh), ending), whole = impl_->at(name);
