@@ -63,7 +63,7 @@ double depth_in_rail(const sim::Shape<D>& shape, const sim::BodyMotion<D>& at, c
   }
   if constexpr (D == 2) {
     // places of the curve within a polygon that stands in front of it
-    const sim::Lie lies = sim::inverse(sim::lie(at, rail_at));
+    const sim::RelativePose lies = sim::inverse(sim::relative_pose(at, rail_at));
     const double size = sim::bounding_radius(shape);
     const auto middle = rail.curve->nearest(rail_at.room_from_body.transpose() * (at.x - rail_at.x));
     const sim::Vec<2> e = rail_at.room_from_body.transpose() * (at.x - rail_at.x) - middle.at.x;

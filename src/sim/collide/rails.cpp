@@ -163,7 +163,8 @@ struct RailCollision {
   }
 
   // a face from one corner to another, in the body's frame; `at` how that stands in the rail's
-  void face(int vertex, const Vec<2>& from, const Vec<2>& to, const Vec<2>& normal, const Lie& at) const {
+  void face(int vertex, const Vec<2>& from, const Vec<2>& to, const Vec<2>& normal,
+            const RelativePose& at) const {
     const Curve<2>& curve = *rail.curve;
     const Vec<2> m = at.turn * normal, q = at * from, t(-m[1], m[0]);
     const double length = std::sqrt((to - from).squaredNorm()), reach = length + std::max(margin, 0.0);
@@ -217,7 +218,7 @@ void collide_rail(int a, const Shape<D>& shape, const BodyMotion<D>& at, int b, 
     collision.corner(vertex++, tip, p);
   }
   if constexpr (D == 2) {
-    const Lie lies = lie(at, rail_at);
+    const RelativePose lies = relative_pose(at, rail_at);
     int face = 0;
     for (int i = 0; i < parts(shape); ++i) {
       const ConvexPolygon polygon(part(shape, i));
