@@ -33,6 +33,7 @@ TEST(Joints, OfTheTableHaveTheirRowsAndFreeCoordinate) {
   expect_equations<2>(JointKind::pulley, 1, false), expect_equations<3>(JointKind::pulley, 1, false);
   expect_equations<2>(JointKind::gear, 1, false), expect_equations<3>(JointKind::gear, 1, false);
   expect_equations<3>(JointKind::screw, 5, true);
+  expect_equations<2>(JointKind::wire, 1, true), expect_equations<3>(JointKind::wire, 2, true);
 }
 
 // a body of the plane at an angle, moving
@@ -94,6 +95,17 @@ void complete(Joint<2>& joint, Dice& dice) {
   }
 }
 
+// puts a point of a onto a wire of b, three quarters of a circle
+void thread(Joint<2>& joint, const Placed& a, const Placed& b, Dice& dice) {
+  CurvePath<2> path({1, 0});
+  path.arc({0, 1}, {-1, 0}), path.arc({0, -1});
+  joint.curve = std::make_shared<const Curve<2>>(path.pieces(), false);
+  const double angle = dice.between(0.2, 4.5);
+  const BodyMotion<2> at = b.motion();
+  const Vec<2> place = at.x + at.arm(Vec<2>(std::cos(angle), std::sin(angle)));
+  joint.a.local = a.motion().room_from_body.transpose() * (place - a.x);
+}
+
 // d C / dt = J v and d (J v) / dt = J' v for bodies that nothing accelerates; differences are right to h^2 of
 // third derivatives, which are of order 10 and for short rods more
 TEST(Joints, OfThePlaneChangeByTheirRows) {
@@ -109,6 +121,7 @@ TEST(Joints, OfThePlaneChangeByTheirRows) {
       std::array<Placed, 3> at{Placed(dice), Placed(dice), Placed(dice)};
       at[2].x += Vec<2>(6, 6);
       complete(joint, dice);
+      if (kind == JointKind::wire) thread(joint, at[0], at[1], dice);
       const auto after = [&](double t) {
         return std::array<Placed, 3>{at[0].after(t), at[1].after(t), at[2].after(t)};
       };

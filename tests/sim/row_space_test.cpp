@@ -60,6 +60,7 @@ TEST(SpaceRows, OfAJointChangeByTheirDrift) {
   const double h = 1e-5;
   for (int k = 0; k < kJointKinds; ++k) {
     const JointKind kind = JointKind(k);
+    if (kind == JointKind::wire) continue;  // holds on its wire alone: tests/scene/tracks_test.cpp
     for (int n = 0; n < 200; ++n) {
       Joint<3> joint = joint_of(kind, dice);
       if (kind == JointKind::pulley) joint.over = {{-1, Vec<3>(6, 7, 5)}, {1, dice.vec(1)}};

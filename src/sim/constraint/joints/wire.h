@@ -37,7 +37,7 @@ WirePlace<D> wire_place(const JointPose<D>& at) {
   it.arm_b = p - b.x;
   const Vec<D> local = b.room_from_body.transpose() * it.arm_b;
   const int piece = int(at.turn[0]) - 1;
-  it.foot = piece < 0 ? curve.nearest(local) : curve.foot(piece, local);
+  it.foot = piece < 0 || piece >= curve.size() ? curve.nearest(local) : curve.foot(piece, local);
   it.tangent = b.arm(it.foot.at.tangent), it.curvature = b.arm(it.foot.at.curvature);
   it.apart = b.arm(Vec<D>(local - it.foot.at.x));
   const Vec<D> rate = a.velocity(it.arm_a) - b.v;
