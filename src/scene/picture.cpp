@@ -6,6 +6,7 @@
 
 #include "draw/space/camera.h"
 #include "scene/fields.h"
+#include "sim/model/stance.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::scene {
