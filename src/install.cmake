@@ -67,6 +67,9 @@ set(OBSCURA_REQUIRES "eigen3 libpng freetype2 harfbuzz harfbuzz-subset fmt tomlp
 if(CAIRO_FOUND)
   string(APPEND OBSCURA_REQUIRES " cairo cairo-ft cairo-pdf")
 endif()
+if(FONTCONFIG_FOUND)
+  string(APPEND OBSCURA_REQUIRES " fontconfig")
+endif()
 # a definition with quotes does not outlive a shell's $(pkg-config --cflags): a header makes it
 if(OBSCURA_SUMS)
   set(OBSCURA_PC_SUMS " -include sim/math/order.h")
