@@ -17,8 +17,8 @@ namespace {
 std::vector<std::string_view> named_tables() {
   std::vector<std::string_view> all;
   for (const BodyKind& kind : body_kinds()) all.push_back(kind.name);
-  for (const std::string_view other :
-       {"spring", "net", "joint", "chain", "bond", "explosion", "force", "attractor", "mouse", "when", "track"})
+  for (const std::string_view other : {"spring", "net", "joint", "chain", "bond", "explosion", "force",
+                                       "attractor", "mouse", "when", "track"})
     all.push_back(other);
   return all;
 }

@@ -116,8 +116,8 @@ void refuse_moved_bonds(const Node& top, const sim::Model<D>& model, Diagnostics
 void refuse_taken_names(const Node& top, const NameTable& roster, Diagnostics& complaints) {
   std::map<std::string, Place> taken;
   for (const Group& group : roster.groups) taken.emplace(group.name, group.place);
-  for (const char* kind :
-       {"spring", "net", "joint", "chain", "bond", "explosion", "force", "attractor", "mouse", "when", "track"}) {
+  for (const char* kind : {"spring", "net", "joint", "chain", "bond", "explosion", "force", "attractor",
+                           "mouse", "when", "track"}) {
     const Node* all = top.find(kind);
     for (std::size_t i = 0; all && i < all->list().size(); ++i) {
       const Node* name = all->list()[i].find("name");

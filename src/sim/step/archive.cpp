@@ -174,8 +174,7 @@ bool fits(const State<D>& state, const Model<D>& model) {
               state.bonded.size() == std::size_t(!model.bonds.empty()) &&
               state.part_poses.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
               state.quiet.size() == state.frozen.size() && sized(state.broken, joints) &&
-              sized(state.on_piece, joints) &&
-              state.joint_forces.size() == state.broken.size();
+              sized(state.on_piece, joints) && state.joint_forces.size() == state.broken.size();
   std::size_t things = 0;
   for (const When<D>& when : model.whens) things += std::size_t(when.things());
   const EventLog& events = state.events;
