@@ -97,25 +97,23 @@ b2Body* add(b2World& world, const Start& s, const b2Shape& shape, float density)
 }
 
 // The GL functions used, looked up once.
-#define FUNCTIONS(F)                                                                                         \
-  F(PFNGLCREATESHADERPROC, glCreateShader)                                                                   \
-  F(PFNGLSHADERSOURCEPROC, glShaderSource)                                                                   \
-  F(PFNGLCOMPILESHADERPROC, glCompileShader)                                                                 \
-  F(PFNGLCREATEPROGRAMPROC, glCreateProgram)                                                                 \
-  F(PFNGLATTACHSHADERPROC, glAttachShader) F(PFNGLLINKPROGRAMPROC, glLinkProgram)                            \
-      F(PFNGLUSEPROGRAMPROC, glUseProgram) F(PFNGLGENVERTEXARRAYSPROC, glGenVertexArrays)                    \
-          F(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray) F(PFNGLGENBUFFERSPROC, glGenBuffers)                \
-              F(PFNGLBINDBUFFERPROC, glBindBuffer) F(PFNGLBUFFERDATAPROC, glBufferData)                      \
-                  F(PFNGLVERTEXATTRIBPOINTERPROC, glVertexAttribPointer)                                     \
-                      F(PFNGLENABLEVERTEXATTRIBARRAYPROC, glEnableVertexAttribArray)                         \
-                          F(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers)                                     \
-                              F(PFNGLBINDFRAMEBUFFERPROC, glBindFramebuffer)                                 \
-                                  F(PFNGLGENRENDERBUFFERSPROC, glGenRenderbuffers)                           \
-                                      F(PFNGLBINDRENDERBUFFERPROC, glBindRenderbuffer)                       \
-                                          F(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC,                         \
-                                            glRenderbufferStorageMultisample)                                \
-                                              F(PFNGLFRAMEBUFFERRENDERBUFFERPROC, glFramebufferRenderbuffer) \
-                                                  F(PFNGLBLITFRAMEBUFFERPROC, glBlitFramebuffer)
+#define FUNCTIONS(F)                                                                                        \
+  F(PFNGLCREATESHADERPROC, glCreateShader)                                                                  \
+  F(PFNGLSHADERSOURCEPROC, glShaderSource)                                                                  \
+  F(PFNGLCOMPILESHADERPROC, glCompileShader)                                                                \
+  F(PFNGLCREATEPROGRAMPROC, glCreateProgram)                                                                \
+  F(PFNGLATTACHSHADERPROC, glAttachShader)                                                                  \
+  F(PFNGLLINKPROGRAMPROC, glLinkProgram) F(PFNGLUSEPROGRAMPROC, glUseProgram)                               \
+      F(PFNGLGENVERTEXARRAYSPROC, glGenVertexArrays) F(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray) F(      \
+          PFNGLGENBUFFERSPROC, glGenBuffers) F(PFNGLBINDBUFFERPROC, glBindBuffer)                           \
+          F(PFNGLBUFFERDATAPROC, glBufferData) F(PFNGLVERTEXATTRIBPOINTERPROC, glVertexAttribPointer) F(    \
+              PFNGLENABLEVERTEXATTRIBARRAYPROC, glEnableVertexAttribArray)                                  \
+              F(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers) F(PFNGLBINDFRAMEBUFFERPROC, glBindFramebuffer) \
+                  F(PFNGLGENRENDERBUFFERSPROC, glGenRenderbuffers)                                          \
+                      F(PFNGLBINDRENDERBUFFERPROC, glBindRenderbuffer)                                      \
+                          F(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, glRenderbufferStorageMultisample)      \
+                              F(PFNGLFRAMEBUFFERRENDERBUFFERPROC, glFramebufferRenderbuffer)                \
+                                  F(PFNGLBLITFRAMEBUFFERPROC, glBlitFramebuffer)
 #define DECLARE(type, name) type name##_;
 FUNCTIONS(DECLARE)
 #undef DECLARE
