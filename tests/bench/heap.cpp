@@ -1,6 +1,6 @@
-// A heap of boxes in space beside Bullet and ODE, where they are installed, sixty steps a second, one thread,
-// nobody asleep in theirs: heap [BOXES]. Of each the processor time of a step from 1 to 3 s, while they fall
-// on each other and settle.
+// A heap of boxes in space beside Bullet and ODE, where they are installed, and Box3D, where OBSCURA_BOX3D
+// names its sources, sixty steps a second (Box3D: with 4 substeps), one thread, nobody asleep in theirs: heap
+// [BOXES]. Of each the processor time of a step from 1 to 3 s, while they fall on each other and settle.
 
 #include <cmath>
 #include <cstdio>
@@ -16,6 +16,9 @@
 #ifdef OBSCURA_ODE
 #include <ode/ode.h>
 #endif
+#ifdef OBSCURA_BOX3D
+#include <box3d/box3d.h>
+#endif
 
 #include "sim/math/exponential.h"
 #include "sim/shape/shape.h"
@@ -28,16 +31,16 @@ using obscura::sim::Vec3;
 constexpr int kRate = 60;
 constexpr double kHalf = 0.125, kRoom = 1.7, kMass = 15.625, kFriction = 0.5;
 
-struct Box {
+struct Crate {
   Vec3 place, turn;
 };
 
-std::vector<Box> heap(int count) {
+std::vector<Crate> heap(int count) {
   std::mt19937 bits(7);
   const auto any = [&] { return double(bits()) / 2147483648.0 - 1; };
-  std::vector<Box> all;
+  std::vector<Crate> all;
   for (int i = 0; i < count; ++i) {
-    Box box;
+    Crate box;
     box.place = {-1.4 + 0.4 * (i % 8), 0.3 + 0.4 * (i / 64), -1.4 + 0.4 * (i / 8 % 8)};
     for (int axis = 0; axis < 3; ++axis) box.turn[axis] = any();
     all.push_back(box);
@@ -57,14 +60,14 @@ double timed(Step&& step) {
   return 1e3 * double(std::clock() - begun) / CLOCKS_PER_SEC / (2 * kRate);
 }
 
-double ours(const std::vector<Box>& boxes) {
+double ours(const std::vector<Crate>& boxes) {
   using namespace obscura::sim;
   World<3> world;
   world.model.rate = {kRate, 1};
   world.model.collision = Collision::contact, world.model.solver = Solver::iterative;
   world.model.scale = 4;
   for (const auto& [normal, d] : kWalls) world.model.walls.push_back({d * normal, normal, {}, {}});
-  for (const Box& box : boxes) {
+  for (const Crate& box : boxes) {
     Body<3> body;
     body.shape = Box<3>{Vec3::Constant(kHalf)};
     body.mass = kMass, body.elasticity = 0, body.friction = kFriction;
@@ -79,7 +82,7 @@ double ours(const std::vector<Box>& boxes) {
 }
 
 #ifdef OBSCURA_BULLET
-double bullet(const std::vector<Box>& boxes) {
+double bullet(const std::vector<Crate>& boxes) {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broad;
@@ -95,7 +98,7 @@ double bullet(const std::vector<Box>& boxes) {
   shape->setMargin(0.005);
   btVector3 inertia;
   shape->calculateLocalInertia(kMass, inertia);
-  for (const Box& box : boxes) {
+  for (const Crate& box : boxes) {
     const auto q = obscura::sim::exponential(box.turn);
     const btTransform at(btQuaternion(q[0], q[1], q[2], q[3]),
                          btVector3(box.place[0], box.place[1], box.place[2]));
@@ -121,13 +124,13 @@ void meet(void*, dGeomID a, dGeomID b) {
   }
 }
 
-double ode(const std::vector<Box>& boxes) {
+double ode(const std::vector<Crate>& boxes) {
   dInitODE();
   world = dWorldCreate(), touches = dJointGroupCreate(0);
   dWorldSetGravity(world, 0, -9.81, 0);
   const dSpaceID space = dHashSpaceCreate(nullptr);
   for (const auto& [n, d] : kWalls) dCreatePlane(space, n[0], n[1], n[2], d);
-  for (const Box& box : boxes) {
+  for (const Crate& box : boxes) {
     const dBodyID body = dBodyCreate(world);
     dMass mass;
     dMassSetBoxTotal(&mass, kMass, 2 * kHalf, 2 * kHalf, 2 * kHalf);
@@ -147,6 +150,39 @@ double ode(const std::vector<Box>& boxes) {
 
 #endif
 
+#ifdef OBSCURA_BOX3D
+double box3d(const std::vector<Crate>& boxes) {
+  b3WorldDef settings = b3DefaultWorldDef();
+  settings.gravity = {0, -9.81f, 0}, settings.enableSleep = false;
+  const b3WorldId world = b3CreateWorld(&settings);
+  b3ShapeDef shape = b3DefaultShapeDef();
+  shape.baseMaterial.friction = float(kFriction), shape.baseMaterial.restitution = 0;
+  // walls are boxes: the floor lies below 0, the others are beyond their planes
+  for (const auto& [n, d] : kWalls) {
+    b3BodyDef wall = b3DefaultBodyDef();
+    const Vec3 middle = (d - 1) * n;
+    wall.position = {float(middle[0]), float(middle[1]), float(middle[2])};
+    const auto half = [&](int axis) { return n[axis] != 0 ? 1.0f : 40.0f; };
+    const b3BoxHull hull = b3MakeBoxHull(half(0), half(1), half(2));
+    b3CreateHullShape(b3CreateBody(world, &wall), &shape, &hull.base);
+  }
+  const b3BoxHull hull = b3MakeBoxHull(float(kHalf), float(kHalf), float(kHalf));
+  shape.density = float(kMass / (8 * kHalf * kHalf * kHalf));
+  for (const Crate& box : boxes) {
+    b3BodyDef body = b3DefaultBodyDef();
+    body.type = b3_dynamicBody;
+    body.position = {float(box.place[0]), float(box.place[1]), float(box.place[2])};
+    const auto q = obscura::sim::exponential(box.turn);
+    body.rotation = {{float(q[0]), float(q[1]), float(q[2])}, float(q[3])};
+    b3CreateHullShape(b3CreateBody(world, &body), &shape, &hull.base);
+  }
+  const double took = timed([&] { b3World_Step(world, 1.0f / kRate, 4); });
+  b3DestroyWorld(world);
+  return took;
+}
+
+#endif
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -161,6 +197,9 @@ int main(int argc, char** argv) {
 #endif
 #ifdef OBSCURA_ODE
   beside("ODE", ode(boxes));
+#endif
+#ifdef OBSCURA_BOX3D
+  beside("Box3D", box3d(boxes));
 #endif
   std::printf("\n");
 }
