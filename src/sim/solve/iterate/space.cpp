@@ -249,12 +249,13 @@ double SpaceIterative<D>::pair_margin(int a, int b, double h) const {
                                                kSpare * (bounding_radius_[a] + bounding_radius_[b]));
 }
 
-// All features are looked for sixty times a second. In between, a pair that hardly moves keeps those of its
-// contacts in the state.
+// All features are looked for sixty times a second. In between, a pair keeps those of its contacts in the
+// state for one, two, four, ... substeps, as long as it hardly moves in these.
 template <int D>
 void SpaceIterative<D>::find(StepPart<D> step) {
   const double h = step.h;
   const double elapsed = double(step.state.step % every_) / value(model_.rate) + step.substep * h;
+  const std::int64_t number = std::llround(elapsed / h);
   const int n = int(model_.bodies.size());
   bounds_.resize(n), margin_.resize(n), swing_.resize(n), touches_.clear();
   known_.swap(features_), features_.clear();
@@ -284,7 +285,7 @@ void SpaceIterative<D>::find(StepPart<D> step) {
       const int b = pair->second;
       if (!bounds_[a].meets(bounds_[b])) continue;
       gaps_.clear();
-      if (elapsed == 0 || !keep_features(a, b, elapsed, old, memo)) {
+      if (number == 0 || !keep_features(a, b, number, h, old, memo)) {
         const Body<D>& q = model_.bodies[b];
         sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], pair_margin(a, b, h), gaps_);
       }
@@ -316,18 +317,23 @@ void SpaceIterative<D>::find_near() {
       wide_, inactive_, [&](int a, int b) { return may_touch_(a, b); }, points_);
 }
 
-// The features of a pair's contacts in the state, into gaps_; false where it has none, moves too fast, or a
-// key does not say all. `old`: contacts from this pair on; `memo`: where its keys would be among those known.
+// The features of a pair's contacts in the state, into gaps_; false where it has none, where they are to be
+// looked for in the substep of this number, or a key does not say all. `old`: contacts from this pair on;
+// `memo`: where its keys would be among those known.
 template <int D>
-bool SpaceIterative<D>::keep_features(int a, int b, double elapsed, std::span<const Contact<D>>& old,
-                                      std::size_t& memo) {
+bool SpaceIterative<D>::keep_features(int a, int b, std::int64_t number, double h,
+                                      std::span<const Contact<D>>& old, std::size_t& memo) {
   const auto before = [&](const Contact<D>& c) { return c.key.a != a ? c.key.a < a : c.key.b < b; };
   std::size_t begin = 0, end = 0;
   while (begin < old.size() && before(old[begin])) ++begin;
   for (end = begin; end < old.size() && old[end].key.a == a && old[end].key.b == b;) ++end;
   const std::span<const Contact<D>> its = old.subspan(begin, end - begin);
   old = old.subspan(begin);
-  if (its.empty() || passing_speed(a, b) * elapsed > kSlow * std::min(width_[a], width_[b])) return false;
+  if (its.empty()) return false;
+  const double way = h * passing_speed(a, b), most = kSlow * std::min(width_[a], width_[b]);
+  std::int64_t keeps = 1;  // substeps
+  while (keeps <= number && double(2 * keeps) * way <= most) keeps *= 2;
+  if (number % keeps == 0) return false;
   for (const Contact<D>& contact : its) {
     while (memo < known_.size() && known_[memo].key < contact.key) ++memo;
     if (memo < known_.size() && known_[memo].key == contact.key && !known_[memo].of_poses) {

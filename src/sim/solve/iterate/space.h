@@ -91,7 +91,8 @@ class SpaceIterative final : public ContactSolver<D> {
   void prepare(const State<D>& state, double t, double h);
   void find(StepPart<D> step);
   void find_near();
-  bool keep_features(int a, int b, double elapsed, std::span<const Contact<D>>& old, std::size_t& memo);
+  bool keep_features(int a, int b, std::int64_t number, double h, std::span<const Contact<D>>& old,
+                     std::size_t& memo);
   void add(const ContactCandidate<D>& gap, const Material& pair);
   bool update_sleep(State<D>& state, double t, double h);
   void build_joint_rows(const State<D>& state);
