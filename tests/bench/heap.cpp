@@ -1,6 +1,7 @@
 // A heap of boxes in space beside Bullet and ODE, where they are installed, and Box3D, where OBSCURA_BOX3D
-// names its sources, sixty steps a second (Box3D: with 4 substeps), one thread, nobody asleep in theirs: heap
-// [BOXES]. Of each the processor time of a step from 1 to 3 s, while they fall on each other and settle.
+// names its sources, sixty steps a second (Box3D: with 4 substeps), one thread, sleeping switched off in
+// theirs: heap [BOXES]. Of each the processor time of a step from 1 to 3 s, while they fall on each other and
+// settle.
 
 #include <cmath>
 #include <cstdio>

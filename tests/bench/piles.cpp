@@ -1,5 +1,5 @@
 // Piles of boxes beside Box2D and Chipmunk at their usual settings (60 steps a second, 8 + 3 and 10
-// iterations), one thread: with nobody asleep, and, of ours and Box2D, as they come: Chipmunk's bodies sleep
+// iterations), one thread: with sleeping off, and, of ours and Box2D, as they come: Chipmunk's bodies sleep
 // only where that is asked for. Of each the processor time of a sixtieth of a second, in all and while most
 // of the boxes fall, land and lie; the deepest penetration, how far the farthest body has come from its
 // place, and how many times longer it takes than ours, awake: of the least times of each sixtieth in all
