@@ -88,7 +88,8 @@ bool Cone<D>::attempt(std::span<const ConeBlock<D>> blocks, int switches) {
     double residual = check(blocks, trial_);
     if constexpr (D > 2) {
       double aim = residual / 2;
-      for (int k = 0, left = kPatience; k < kTurns && residual > kExact && left > 0; ++k, --left) {
+      for (int k = 0, left = kPatience; k < kTurns && residual > kExact && left > 0 && tries_ <= patience;
+           ++k, --left) {
         const double before = residual;
         if (!turn(blocks, trial_)) break;
         residual = check(blocks, trial_);
@@ -98,7 +99,7 @@ bool Cone<D>::attempt(std::span<const ConeBlock<D>> blocks, int switches) {
     }
     if (residual < best_residual_) best_residual_ = residual, best_ = trial_, best_g_ = g_;
     if (residual <= kTolerance) return true;
-    if (!std::isfinite(residual)) return false;
+    if (!std::isfinite(residual) || tries_ > patience) return false;
 
     const std::uint64_t now = name<D>(trial_);
     if (std::find(seen_.begin(), seen_.end(), now) != seen_.end()) {

@@ -4,6 +4,7 @@
 
 #include "sim/solve/cone/statics.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/collide/narrow_phase.h"
@@ -13,6 +14,10 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kStaticResidual = 1e-9;  // of g
+
+// What holds is found in a few systems; others of a pile that rocks would be sought for seconds.
+constexpr double kWork = 5e8;  // multiplications: systems times rows cubed
+constexpr int kFewestSystems = 2, kMostSystems = 300;
 
 }  // namespace
 
@@ -78,6 +83,8 @@ bool Statics<D>::in_equilibrium(std::vector<BearingContact<D>>& touches,
       K_(i, j) = K_(j, i) = sum;
     }
   }
+  cone_.patience =
+      int(std::clamp(kWork / (double(rows) * rows * rows), double(kFewestSystems), double(kMostSystems)));
   bool held = cone_.solve(K_, b_, blocks_, modes_, f_).found;
   for (int i = 0; i < rows; ++i) {
     for (const Side<D>& side : rows_[i]) {

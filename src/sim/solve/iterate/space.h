@@ -100,6 +100,7 @@ class SpaceIterative final : public ContactSolver<D> {
   Flown fly(int body, double t, double h) const;
   Instant instant(int touch, double t, double h) const;
   double closing_time(int touch, double h);
+  double most_passing(const ContactConstraint& touch) const;
   void limit_speed(int body, double h);
   double approach_limit(int touch, double h) const;
   double bend_limit(int touch, const Instant& at, double h) const;

@@ -19,6 +19,7 @@ namespace {
 constexpr int kNewtonSteps = 8;       // for the time of an impact
 constexpr double kLatest = 1.5;       // steps: so late a gap may close that its tangent would close in one
 constexpr double kFarthestPoint = 3;  // bounding radii of both: how far from a body features of a pair touch
+constexpr double kWidest = 2.5;       // bounding radii of the smaller: across all where two bodies touch
 constexpr double kLeastPart = 1e-3;   // of what a root is in: how far from its ends it is looked for
 constexpr int kRenewals = 4;          // of a gap's features in a step
 
@@ -90,6 +91,25 @@ typename SpaceIterative<D>::Instant SpaceIterative<D>::instant(int i, double t, 
   at.now = evaluate(features_[i], at.a, at.b);
   at.speed = at.now.normal.dot(at.a.velocity(at.now.point - at.a.x) - at.b.velocity(at.now.point - at.b.x));
   return at;
+}
+
+// How fast the matter of two bodies passes at most, m/s, wherever they touch in the step before an impact: at
+// the contact, and farther from it by how differently they turn and fall.
+template <int D>
+double SpaceIterative<D>::most_passing(const ContactConstraint& touch) const {
+  static const BodyMotion<D> room;
+  const bool wall = touch.b == int(inactive_.size());
+  const BodyMotion<D>&a = stances_[touch.a], &b = wall ? room : stances_[touch.b];
+  const auto gain = [&](int body) -> Vec<D> {
+    if (body == int(inactive_.size()) || (inactive_[body] && drives_.number(body) < 0)) return Vec<D>::Zero();
+    return v_free_[body] - stances_[body].v;
+  };
+  const double size =
+      wall ? bounding_radius_[touch.a] : std::min(bounding_radius_[touch.a], bounding_radius_[touch.b]);
+  const Vec<D> here = a.velocity(touch.arm_a) - b.velocity(touch.arm_b);
+  const AngularVec<D> turns = a.w - b.w;
+  return std::sqrt(here.squaredNorm()) + std::sqrt((gain(touch.a) - gain(touch.b)).squaredNorm()) +
+         kWidest * size * std::sqrt(turns.squaredNorm());
 }
 
 // how fast a body may become until its next impact
@@ -304,6 +324,7 @@ void SpaceIterative<D>::find_turned_pairs(double h) {
 
 template const typename SpaceIterative<3>::Flown& SpaceIterative<3>::flown(int, double, double) const;
 template typename SpaceIterative<3>::Instant SpaceIterative<3>::instant(int, double, double) const;
+template double SpaceIterative<3>::most_passing(const ContactConstraint&) const;
 template void SpaceIterative<3>::limit_speed(int, double);
 template double SpaceIterative<3>::approach_limit(int, double) const;
 template double SpaceIterative<3>::closing_time(int, double);

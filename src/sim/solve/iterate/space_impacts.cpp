@@ -199,15 +199,7 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
   const int n = int(model_.bodies.size());
   struck_ = false;
   when_.assign(n + 1, -1), due_.clear();
-  const auto fast = [&](int i) {
-    const ContactConstraint& touch = touches_[i];
-    const auto speed = [&](int body) {
-      return body == n ? 0
-                       : std::sqrt(stances_[body].v.squaredNorm()) +
-                             bounding_radius_[body] * std::sqrt(stances_[body].w.squaredNorm());
-    };
-    return speed(touch.a) + speed(touch.b) >= restitution_threshold_;
-  };
+  const auto fast = [&](int i) { return most_passing(touches_[i]) >= restitution_threshold_; };
   bool any = false;
   for (int i = 0; i < int(touches_.size()) && !any; ++i) any = fast(i);
   if (!any) return;
