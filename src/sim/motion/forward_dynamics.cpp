@@ -249,6 +249,7 @@ void ForwardDynamics<D>::load(const State<D>& state) {
 template <int D>
 std::span<const double> ForwardDynamics<D>::accelerations(const State<D>& state, double t) {
   load(state);
+  posed_ = true;
   rates(t, d_, v_, d_rate_, v_rate_);
   return v_rate_;
 }
@@ -270,6 +271,7 @@ void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, d
   if (all_.empty()) return;
   if (flying_ && !with && !blasting(state)) return fly(integrate, state, t, h, stages);
   const int n = pieces(state, h);
+  posed_ = with != nullptr;
   for (int i = 0; i < n; ++i) piece(integrate, state, t + i * (h / n), h / n, stages, with ? *with : *this);
 }
 
@@ -402,7 +404,9 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
   std::copy_n(v.begin(), D * n, d_rate.begin());
   unconstrained_rates(gravity_, drag_, v.first(D * n), v_rate.first(D * n));
 
-  // poses at this stage, and the torque-free rotation
+  // poses at this stage, where anything asks for them, and the torque-free rotation
+  const bool pushed =
+      posed_ || !(ties_.empty() && joint_ties_.empty() && acting_.empty() && held_.empty()) || forces_.any();
   for (int i = 0; i < n; ++i) {
     stances_[i].x = x_[i] + Eigen::Map<const Vec<D>>(d.data() + D * i);
     stances_[i].v = Eigen::Map<const Vec<D>>(v.data() + D * i);
@@ -412,9 +416,11 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     const AngularVec<D> by = Eigen::Map<const AngularVec<D>>(d.data() + at);
     const AngularVec<D> w =
         whole_spin<D>(base_[i], AngularVec<D>(Eigen::Map<const AngularVec<D>>(v.data() + at)));
-    BodyMotion<D>& it = stances_[still + i];
-    it.room_from_body = rotation<D>(displaced<D>(turn_[i], by));
-    it.w = to_room<D>(it.room_from_body, w);
+    if (pushed) {
+      BodyMotion<D>& it = stances_[still + i];
+      it.room_from_body = rotation<D>(displaced<D>(turn_[i], by));
+      it.w = to_room<D>(it.room_from_body, w);
+    }
     Eigen::Map<AngularVec<D>>(d_rate.data() + at) = displacement_rate<D>(by, w);
     Eigen::Map<AngularVec<D>>(v_rate.data() + at) =
         gyroscopic_acceleration<D>(model_.bodies[bodies_[still + i]].inertia, w);

@@ -63,8 +63,8 @@ class ForwardDynamics final : public System {
   /// gathered.
   std::span<const double> accelerations(const State<D>& state, double t);
 
-  /// Pose and velocity of the coupled bodies at the stage that rates() saw last: bodies(), then the links of
-  /// chains().
+  /// Pose and velocity of the coupled bodies at the stage that rates() saw last, of accelerations() or of a
+  /// step() `with` another system: bodies(), then the links of chains().
   const std::vector<BodyMotion<D>>& stances() const { return stances_; }
 
   /// The kinematic bodies at the time that rates() saw last, in the order of Drives.
@@ -141,6 +141,7 @@ class ForwardDynamics final : public System {
   std::vector<DrivenMotion<D>> driven_;
   bool books_ = false;  // some bodies are kinematic or have belts
   double work_ = 0;
+  bool posed_ = true;  // poses at each stage are asked for from outside
   Articulated<D> chains_;
   std::vector<int> bodies_;      // ascending: those that turn come last
   std::vector<int> member_;      // a body's place in bodies_, a link's after them, or -1
