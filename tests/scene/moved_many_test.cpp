@@ -25,15 +25,6 @@ std::string by_iterations(const std::string& room = "", const std::string& physi
 // what there is less what was given
 double without_work(const sim::Snapshot& now) { return now.energies.total() - now.energies.work; }
 
-// of a body by its name
-std::size_t number_of(const TextRun& scene, const std::string& name) {
-  const auto& all = scene.run->scene_info().bodies;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].name == name) return i;
-  ADD_FAILURE() << name;
-  return 0;
-}
-
 // A ball rests on a platform y = A sin w t until that falls faster than g, sin w t = g / (A w^2), and then
 // flies. It sinks by the third derivative of y, h^3 A w^3 / 12 in a step, of which a share of h / (h + 1/60
 // s) is pushed back in each, beside a half millionth of the platform's radius that is let be: 1.4e-6 m.

@@ -34,6 +34,15 @@ struct TextRun {
   sim::Vec3 place(double t, std::size_t body = 0) const { return at(t).bodies[body].position; }
 };
 
+/// The number of a body by its name.
+inline std::size_t number_of(const TextRun& scene, const std::string& name) {
+  const auto& all = scene.run->scene_info().bodies;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].name == name) return i;
+  ADD_FAILURE() << name;
+  return 0;
+}
+
 /// A time as at() has it.
 inline double to_a_microsecond(double t) { return std::round(t * 1e6) / 1e6; }
 

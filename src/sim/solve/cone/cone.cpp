@@ -88,7 +88,7 @@ bool Cone<D>::attempt(std::span<const ConeBlock<D>> blocks, int switches) {
     double residual = check(blocks, trial_);
     if constexpr (D > 2) {
       double aim = residual / 2;
-      for (int k = 0, left = kPatience; k < kTurns && residual > kExact && left > 0 && tries_ <= patience;
+      for (int k = 0, left = kPatience; k < kTurns && residual > kExact && left > 0 && tries_ < most_systems;
            ++k, --left) {
         const double before = residual;
         if (!turn(blocks, trial_)) break;
@@ -99,7 +99,7 @@ bool Cone<D>::attempt(std::span<const ConeBlock<D>> blocks, int switches) {
     }
     if (residual < best_residual_) best_residual_ = residual, best_ = trial_, best_g_ = g_;
     if (residual <= kTolerance) return true;
-    if (!std::isfinite(residual) || tries_ > patience) return false;
+    if (!std::isfinite(residual) || tries_ >= most_systems) return false;
 
     const std::uint64_t now = name<D>(trial_);
     if (std::find(seen_.begin(), seen_.end(), now) != seen_.end()) {
@@ -159,7 +159,7 @@ bool Cone<D>::search(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Re
                      std::span<const ConeBlock<D>> blocks, Eigen::Ref<Eigen::VectorXd> f) {
   // as sweeps leave it
   for (const int sweeps : kSweeps) {
-    if (best_residual_ <= enough || tries_ > patience) break;
+    if (best_residual_ <= enough || tries_ > patience || tries_ >= most_systems) break;
     sweep(K, b, blocks, trial_, f, sweeps);
     for (std::size_t i = 0; i < blocks.size(); ++i) trial_[i] = fit(blocks[i], trial_[i]);
     if (attempt(blocks, 6)) return true;

@@ -39,8 +39,8 @@ class Cone {
   /// A residual above kTolerance that is accepted if no strategy finds a smaller one.
   double enough = kTolerance;
 
-  /// After so many linear systems a solve gives up.
-  int patience = std::numeric_limits<int>::max();
+  /// After so many linear systems a solve starts no further strategy, and after so many it gives up.
+  int patience = std::numeric_limits<int>::max(), most_systems = std::numeric_limits<int>::max();
 
   /// Responses w this small, in b's unit, count as zero: for rows all of whose terms are rounding errors.
   double negligible = 0;

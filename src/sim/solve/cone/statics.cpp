@@ -15,9 +15,11 @@ namespace {
 
 constexpr double kStaticResidual = 1e-9;  // of g
 
-// What holds is found in a few systems; others of a pile that rocks would be sought for seconds.
-constexpr double kWork = 5e8;  // multiplications: systems times rows cubed
-constexpr int kFewestSystems = 2, kMostSystems = 300;
+// What holds is found in a few systems where bodies rest on each other, in hundreds on a rope over a drum.
+// For a large pile that rocks still they would be solved for seconds, and in vain: fewer with the fourth
+// power of the rows, of which the cube is the time of a system.
+constexpr double kWork = 3e11;  // systems times rows to the fourth
+constexpr int kFewestSystems = 2, kMostSystems = 2000;
 
 }  // namespace
 
@@ -83,8 +85,9 @@ bool Statics<D>::in_equilibrium(std::vector<BearingContact<D>>& touches,
       K_(i, j) = K_(j, i) = sum;
     }
   }
-  cone_.patience =
-      int(std::clamp(kWork / (double(rows) * rows * rows), double(kFewestSystems), double(kMostSystems)));
+  const double cubed = double(rows) * rows * rows;
+  cone_.patience = cone_.most_systems =
+      int(std::clamp(kWork / (cubed * rows), double(kFewestSystems), double(kMostSystems)));
   bool held = cone_.solve(K_, b_, blocks_, modes_, f_).found;
   for (int i = 0; i < rows; ++i) {
     for (const Side<D>& side : rows_[i]) {

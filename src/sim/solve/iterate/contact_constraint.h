@@ -12,6 +12,7 @@ struct ContactConstraint {
   Vec<D> n, arm_a, arm_b, point;
   double gap = 0, mu = 0, bounce = 0;
   double per_width = 0;                     // 1/m: of the narrower body
+  double rate = 0;                          // 1/s: how fast the bodies pass there, in widths of the narrower
   double least = 0;                         // m/s: of the normal speed after the substep
   double normal_impulse = 0;                // N s, along n
   Vec<D> tangent_impulse = Vec<D>::Zero();  // N s

@@ -34,11 +34,14 @@ constexpr int kPartRounds = 2000;  // gaps times rounds of pushing apart; 4 to 1
 constexpr int kMostParts = 10000;  // and so many, until changes are
 constexpr double kParted = 1e-12;  // of what is wanted
 constexpr int kSettlingTouches = 50000;  // times iterations, of touches that have not settled then
+constexpr int kIslandTouches = 300;      // the least of an island
+constexpr int kFewestFollowed = 20;      // iterations: of less none are accelerated
 constexpr int kFewTouches = 500;         // of more, less in proportion, but as if
 constexpr int kSettlingRounds = 3;       // so many were of all
 constexpr int kFewExactly = 60;          // touches
-constexpr double kExactly = 1e-12;       // of how fast pairs closed as the step began,
+constexpr double kExactly = 1e-12;       // of how fast bodies of an island pass each other,
 constexpr int kExactTouches = 2000;      // within so many touches times iterations
+constexpr int kShedding = 5;             // sweeps
 constexpr int kTempering = 5;            // rounds
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
 
@@ -174,6 +177,7 @@ void SpaceIterative<D>::iterate(StepPart<D> step) {
     }
     settle_contacts();
     batches_.store(touches_);
+    shed_gains();
     place_bodies(step.state, step.h);
     if (!temper(step.state)) break;
   }
@@ -476,7 +480,9 @@ void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
     ContactConstraint& touch = touches_[i];
     all_.push_back(i);
     const BodyMotion<D>& b = touch.b == n ? room : stances_[touch.b];
-    const double before = touch.n.dot(stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b));
+    const Vec<D> passes = stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b);
+    const double before = touch.n.dot(passes);
+    touch.rate = touch.per_width * std::sqrt(passes.squaredNorm());
     if (touch.after) {
       // what is left of the step
     } else if (before < -restitution_threshold_ && touch.gap + h * (before - g_ * h) < 0) {
@@ -507,28 +513,74 @@ void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
 // Bodies on joints are left out.
 template <int D>
 void SpaceIterative<D>::settle_contacts() {
-  const int count = int(touches_.size()), most = settling_budget(count);
-  const bool accelerates = count <= kFewTouches;
-  activate();
-  if (accelerates) batches_.begin_directions();
-  bool back = false;
-  for (int spent = 0, done = 1; spent < most && done > 0; back = !back) {
-    active_.friction = count <= kFewExactly && spent < kExactTouches;
-    active_.settled = active_.friction ? kExactly * closing_rate_ : settled_rate(closing_rate_);
-    done = batches_.iterate(moving_, back, active_);
-    spent += done;
-    if (!accelerates || !active_.any()) continue;
-    if (back) batches_.follow_directions(moving_);
-    activate();
+  settling_.begin(touches_, all_, moving_, joints_.bodies());
+  bool follows = false;
+  const double rounds = double(settling_budget(int(touches_.size()))) / std::max(1, int(touches_.size()));
+  for (Settling::Island& island : settling_.islands) {
+    island.budget = std::max(int(rounds * island.contacts), kIslandTouches);
+    island.follows = island.contacts <= kFewTouches && island.budget >= kFewestFollowed * island.contacts;
+    follows = follows || island.follows;
+  }
+  batches_.set_islands(settling_);
+  if (follows) batches_.begin_directions();
+  if (settling_.islands.empty()) return;
+  for (bool back = false;; back = !back) {
+    for (Settling::Island& island : settling_.islands) {
+      island.friction = int(touches_.size()) <= kFewExactly && island.spent < kExactTouches;
+      island.settled = island.friction ? kExactly * island.rate : kSettled;
+    }
+    batches_.iterate(moving_, back, settling_);
+    if (!settling_.close_settled()) return;
+    if (follows && back) batches_.follow_directions(moving_, settling_);
+    settling_.activate_next();
   }
 }
 
-// all contacts but those of joints are to be iterated
+// Where iterations end before they have converged, contacts may press more than they should, and what they
+// bear bounces. Over the substep a contact gives its bodies
+//   W = p . (u + u') / 2        u, u'  how fast they pass there, before and after
+// Of islands that gain, those contacts that give press less, until nothing is gained: what bounces is
+// stopped, and nothing else of the island braked.
 template <int D>
-void SpaceIterative<D>::activate() {
-  active_.bodies.assign(moving_.size(), ActiveBodies::kNow);
-  active_.bodies.back() = 0;
-  for (const int body : joints_.bodies()) active_.bodies[body] = ActiveBodies::kNever;
+void SpaceIterative<D>::shed_gains() {
+  static const BodyMotion<D> room;
+  const int n = int(model_.bodies.size());
+  const auto passing = [&](const ContactConstraint& touch) -> Vec<D> {
+    const BodyMotion<D>& b = touch.b == n ? room : stances_[touch.b];
+    return stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b) + touch.belt + slip(touch);
+  };
+  const auto island = [&](const ContactConstraint& touch) {
+    const int a = settling_.island_of[touch.a];
+    return a >= 0 ? a : settling_.island_of[touch.b];
+  };
+  const auto opens = [&](const ContactConstraint& touch) { return touch.n.dot(passing(touch)); };
+  given_.assign(settling_.islands.size(), 0), some_.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    const ContactConstraint& touch = touches_[i];
+    if (!(touch.normal_impulse > 0) || touch.after || island(touch) < 0) continue;
+    if (!settling_.islands[island(touch)].exhausted) continue;
+    const Vec<D> passes = passing(touch);
+    const double along = touch.n.dot(passes);
+    given_[island(touch)] += touch.normal_impulse * along + touch.tangent_impulse.dot(passes);
+    if (along > 0 && !touch.bounces) some_.push_back(i);
+  }
+  std::erase_if(some_, [&](int i) { return !(given_[island(touches_[i])] > 0); });
+  for (int sweep = 0; sweep < kShedding && !some_.empty(); ++sweep) {
+    for (const int i : some_) {
+      ContactConstraint& touch = touches_[i];
+      const double less = std::min(touch.normal_impulse, opens(touch) / normal_response(touch));
+      if (!(less > 0)) continue;
+      touch.normal_impulse -= less;
+      Vec<D> back = -less * touch.n;
+      const double size = std::sqrt(touch.tangent_impulse.squaredNorm()),
+                   most = touch.mu * touch.normal_impulse;
+      if (size > most) {
+        const Vec<D> cut = (most / size - 1) * touch.tangent_impulse;
+        touch.tangent_impulse += cut, back += cut;
+      }
+      push(touch, back);
+    }
+  }
 }
 
 // velocities to the joints, of all that they have or of those marked, and back

@@ -138,7 +138,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void start_rows(StepPart<D> step);
   void warm_start_contacts(const State<D>& state, double h);
   void settle_contacts();
-  void activate();
+  void shed_gains();
   double closing_rate(double h) const;
   void keep_impulses(const State<D>& state);
   void add_impulses(State<D>& state) const;
@@ -211,7 +211,7 @@ class SpaceIterative final : public ContactSolver<D> {
   int iterations_ = 0;                      // of this substep, of all touches
   std::vector<ContactConstraint> touches_;  // ascending by key
   SpaceBatches batches_;                    // of them, those that are iterated
-  ActiveBodies active_;
+  Settling settling_;
   std::vector<ContactCandidate<D>> features_;      // theirs
   std::vector<ContactCandidate<D>> known_;         // and before: of a key always the same
   std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows
@@ -228,6 +228,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<Vec<D>> corrections_;  // how far this step has pushed each body out of others, m
   bool corrected_ = false;
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
+  std::vector<double> given_;                       // by the contacts of each island, J
   bool struck_ = false;                             // whether any body had an impact in this step
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
   std::vector<Flown> flown_;                        // after it, or as the step began

@@ -136,27 +136,29 @@ OBSCURA_INLINE void respond_all(const std::vector<SpaceBatches::Batch>& batches,
   }
 }
 
-// kSome: of active bodies alone
+// kSome: of active bodies alone, of the batches `open`
 template <class V, bool kSome>
-OBSCURA_INLINE int iterate_all(std::vector<SpaceBatches::Batch>& batches,
-                               std::vector<SpaceBatches::Row>& rows,
-                               const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back,
-                               [[maybe_unused]] ActiveBodies* active) {
+OBSCURA_INLINE void iterate_all(std::vector<SpaceBatches::Batch>& batches,
+                                std::vector<SpaceBatches::Row>& rows,
+                                const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back,
+                                [[maybe_unused]] const std::vector<int>& open,
+                                [[maybe_unused]] Settling* settling) {
   using Batch = SpaceBatches::Batch;
   using Row = SpaceBatches::Row;
   const V none{}, one = V{} + 1.0;
-  const int count = int(batches.size());
-  [[maybe_unused]] int done = 0;
+  const int count = kSome ? int(open.size()) : int(batches.size());
   for (int i = 0; i < count; ++i) {
-    const Batch& g = batches[std::size_t(back ? count - 1 - i : i)];
+    const int at = back ? count - 1 - i : i;
+    const Batch& g = batches[std::size_t(kSome ? open[std::size_t(at)] : at)];
     [[maybe_unused]] unsigned char on = 0;
+    [[maybe_unused]] alignas(32) double friction[SpaceBatches::kLanes] = {};
     if constexpr (kSome) {
       for (int lane = 0; lane < SpaceBatches::kLanes; ++lane) {
-        const int flags = active->bodies[std::size_t(g.a[lane])] | active->bodies[std::size_t(g.b[lane])];
-        if ((flags & ActiveBodies::kNow) && !(flags & ActiveBodies::kNever))
-          on = static_cast<unsigned char>(on | 1 << lane);
+        const int flags = settling->flags[std::size_t(g.a[lane])] | settling->flags[std::size_t(g.b[lane])];
+        if (!(flags & Settling::kNow) || (flags & Settling::kNever) || !(g.used >> lane & 1)) continue;
+        on = static_cast<unsigned char>(on | 1 << lane);
+        friction[lane] = settling->islands[std::size_t(g.island[lane])].friction ? 1 : 0;
       }
-      on &= g.used;
       if (!on) continue;
     }
     for (int lane = 0; lane < SpaceBatches::kLanes; lane += Of<V>::lanes) {
@@ -193,8 +195,8 @@ OBSCURA_INLINE int iterate_all(std::vector<SpaceBatches::Batch>& batches,
         a.push(p, arm_a), b.push({-p.x, -p.y, -p.z}, arm_b);
         if constexpr (kSome) {
           V left = pick<V>(l0 > none, magnitude<V>(wrong), wrong);
-          if (active->friction)
-            left = larger<V>(left, load<V>(r.across + lane) * root(inner<V>(change, change)));
+          left = larger<V>(
+              left, load<V>(friction + lane) * (load<V>(r.across + lane) * root(inner<V>(change, change))));
           most_wrong = larger<V>(most_wrong, left);
           store<V>(r.normal_impulse + lane, pick<V>(moves, l, l0));
           store3<V>(r.tangent_impulse, lane,
@@ -209,32 +211,50 @@ OBSCURA_INLINE int iterate_all(std::vector<SpaceBatches::Batch>& batches,
         most_wrong *= load<V>(g.per_width + lane);
         for (int k = 0; k < Of<V>::lanes; ++k) {
           if (!(on >> (lane + k) & 1)) continue;
-          done += g.count;
-          if (!(most_wrong[k] > active->settled)) continue;
-          active->bodies[std::size_t(g.a[lane + k])] |= ActiveBodies::kNext,
-              active->bodies[std::size_t(g.b[lane + k])] |= ActiveBodies::kNext;
+          Settling::Island& island = settling->islands[std::size_t(g.island[lane + k])];
+          island.spent += g.count;
+          if (!(most_wrong[k] > island.settled)) continue;
+          island.changed = true;
+          settling->flags[std::size_t(g.a[lane + k])] |= Settling::kNext,
+              settling->flags[std::size_t(g.b[lane + k])] |= Settling::kNext;
         }
       }
       a.back(bodies, g.at_a + lane), b.back(bodies, g.at_b + lane);
     }
   }
-  if constexpr (kSome) return done;
-  return 0;
 }
 
-// Impulses go on along the directions, `share` times as far; the next directions are that and what the
-// iterations changed. share 0: what these changed alone.
+// Impulses go on along the directions, the share of their island times as far; the next directions are that
+// and what the iterations changed. Share 0: what these changed alone.
 template <class V>
 OBSCURA_INLINE void follow_all(const std::vector<SpaceBatches::Batch>& batches,
                                std::vector<SpaceBatches::Row>& rows,
                                std::vector<SpaceBatches::Impulses>& before,
                                std::vector<SpaceBatches::Impulses>& directions, double* bodies,
-                               double share) {
-  const V none{}, one = V{} + 1.0, by = V{} + share;
-  for (const SpaceBatches::Batch& g : batches) {
+                               const std::vector<int>& open, const Settling& settling) {
+  const V none{}, one = V{} + 1.0;
+  for (const int at : open) {
+    const SpaceBatches::Batch& g = batches[std::size_t(at)];
+    unsigned char on = 0;
+    alignas(32) double shares[SpaceBatches::kLanes] = {};
+    for (int lane = 0; lane < SpaceBatches::kLanes; ++lane) {
+      if (!(g.used >> lane & 1)) continue;
+      const Settling::Island& island = settling.islands[std::size_t(g.island[lane])];
+      if (!island.follows || !island.open) continue;
+      on = static_cast<unsigned char>(on | 1 << lane), shares[lane] = island.share;
+    }
+    if (!on) continue;
     for (int lane = 0; lane < SpaceBatches::kLanes; lane += Of<V>::lanes) {
       WideBody<V> a(bodies, g.at_a + lane), b(bodies, g.at_b + lane);
-      const V mu = load<V>(g.mu + lane);
+      const WideBody<V> begun_a = a, begun_b = b;
+      const V mu = load<V>(g.mu + lane), by = load<V>(shares + lane);
+      const Mask<V> moves = mask<V>(on, lane);
+      const auto set = [&](double* to, const V& changed) {
+        store<V>(to, pick<V>(moves, changed, load<V>(to)));
+      };
+      const auto set3 = [&](double(&to)[3][4], const Wide3<V>& changed) {
+        set(to[0] + lane, changed.x), set(to[1] + lane, changed.y), set(to[2] + lane, changed.z);
+      };
       for (int i = g.first; i < g.first + g.count; ++i) {
         SpaceBatches::Row& r = rows[std::size_t(i)];
         SpaceBatches::Impulses &from = before[std::size_t(i)], &to = directions[std::size_t(i)];
@@ -242,8 +262,8 @@ OBSCURA_INLINE void follow_all(const std::vector<SpaceBatches::Batch>& batches,
                        tf = load3<V>(from.tangent, lane), td = load3<V>(to.tangent, lane);
         const V l0 = load<V>(r.normal_impulse + lane), ld = by * load<V>(to.normal + lane);
         const Wide3<V> t1{by * td.x, by * td.y, by * td.z};
-        store<V>(to.normal + lane, ld + (l0 - load<V>(from.normal + lane)));
-        store3<V>(to.tangent, lane, {t1.x + (t0.x - tf.x), t1.y + (t0.y - tf.y), t1.z + (t0.z - tf.z)});
+        set(to.normal + lane, ld + (l0 - load<V>(from.normal + lane)));
+        set3(to.tangent, {t1.x + (t0.x - tf.x), t1.y + (t0.y - tf.y), t1.z + (t0.z - tf.z)});
         const V l = larger<V>(l0 + ld, none), most = mu * l;
         const Wide3<V> wanted{t0.x + t1.x, t0.y + t1.y, t0.z + t1.z};
         const V size = root(inner<V>(wanted, wanted));
@@ -254,9 +274,10 @@ OBSCURA_INLINE void follow_all(const std::vector<SpaceBatches::Batch>& batches,
         const Wide3<V> p{pushed * n.x + (t.x - t0.x), pushed * n.y + (t.y - t0.y),
                          pushed * n.z + (t.z - t0.z)};
         a.push(p, load3<V>(r.arm_a, lane)), b.push({-p.x, -p.y, -p.z}, load3<V>(r.arm_b, lane));
-        store<V>(r.normal_impulse + lane, l), store3<V>(r.tangent_impulse, lane, t);
-        store<V>(from.normal + lane, l), store3<V>(from.tangent, lane, t);
+        set(r.normal_impulse + lane, l), set3(r.tangent_impulse, t);
+        set(from.normal + lane, l), set3(from.tangent, t);
       }
+      a.keep(moves, begun_a), b.keep(moves, begun_b);
       a.back(bodies, g.at_a + lane), b.back(bodies, g.at_b + lane);
     }
   }
@@ -265,8 +286,9 @@ OBSCURA_INLINE void follow_all(const std::vector<SpaceBatches::Batch>& batches,
 OBSCURA_WIDE void follow_wide(const std::vector<SpaceBatches::Batch>& batches,
                               std::vector<SpaceBatches::Row>& rows,
                               std::vector<SpaceBatches::Impulses>& before,
-                              std::vector<SpaceBatches::Impulses>& directions, double* bodies, double share) {
-  follow_all<V4>(batches, rows, before, directions, bodies, share);
+                              std::vector<SpaceBatches::Impulses>& directions, double* bodies,
+                              const std::vector<int>& open, const Settling& settling) {
+  follow_all<V4>(batches, rows, before, directions, bodies, open, settling);
 }
 OBSCURA_WIDE void respond_wide(const std::vector<SpaceBatches::Batch>& batches,
                                std::vector<SpaceBatches::Row>& rows, const double* bodies) {
@@ -275,16 +297,80 @@ OBSCURA_WIDE void respond_wide(const std::vector<SpaceBatches::Batch>& batches,
 OBSCURA_WIDE void iterate_wide(std::vector<SpaceBatches::Batch>& batches,
                                std::vector<SpaceBatches::Row>& rows,
                                const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back) {
-  iterate_all<V4, false>(batches, rows, belts, bodies, back, nullptr);
+  iterate_all<V4, false>(batches, rows, belts, bodies, back, {}, nullptr);
 }
-OBSCURA_WIDE int iterate_some_wide(std::vector<SpaceBatches::Batch>& batches,
-                                   std::vector<SpaceBatches::Row>& rows,
-                                   const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back,
-                                   ActiveBodies& active) {
-  return iterate_all<V4, true>(batches, rows, belts, bodies, back, &active);
+OBSCURA_WIDE void iterate_some_wide(std::vector<SpaceBatches::Batch>& batches,
+                                    std::vector<SpaceBatches::Row>& rows,
+                                    const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back,
+                                    const std::vector<int>& open, Settling& settling) {
+  iterate_all<V4, true>(batches, rows, belts, bodies, back, open, &settling);
 }
 
 }  // namespace
+
+void Settling::begin(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+                     std::span<const PointBody<3>> moving, std::span<const int> never) {
+  const int n = int(moving.size());
+  flags.assign(moving.size(), kNow);
+  for (const int body : never) flags[std::size_t(body)] = kNever;
+  const auto counts = [&](int body) {
+    return moving[std::size_t(body)].inverse_mass > 0 && !(flags[std::size_t(body)] & kNever);
+  };
+  sets_.reset(n);
+  for (const int i : which) {
+    const ContactConstraint<3>& contact = contacts[std::size_t(i)];
+    if (counts(contact.a) && counts(contact.b)) sets_.join(contact.a, contact.b);
+  }
+  islands.clear(), island_of.assign(moving.size(), -1);
+  for (const int i : which) {
+    const ContactConstraint<3>& contact = contacts[std::size_t(i)];
+    if ((flags[std::size_t(contact.a)] | flags[std::size_t(contact.b)]) & kNever) continue;
+    const int body = counts(contact.a) ? contact.a : contact.b;
+    if (!counts(body)) continue;
+    int& number = island_of[std::size_t(sets_.root(body))];
+    if (number < 0) number = int(islands.size()), islands.emplace_back();
+    Island& island = islands[std::size_t(number)];
+    ++island.contacts, island.rate = std::max(island.rate, contact.rate);
+  }
+  for (int i = 0; i < n; ++i) {
+    if (const int number = island_of[std::size_t(sets_.root(i))]; number >= 0 && counts(i))
+      island_of[std::size_t(i)] = number, ++islands[std::size_t(number)].last;
+  }
+  int first = 0;
+  for (Island& island : islands) {
+    const int count = island.last;
+    island.first = island.last = first, first += count;
+  }
+  bodies.resize(std::size_t(first));
+  for (int i = 0; i < n; ++i) {
+    if (const int number = island_of[std::size_t(i)]; number >= 0)
+      bodies[std::size_t(islands[std::size_t(number)].last++)] = i;
+  }
+  narrowed = false;
+}
+
+bool Settling::close_settled() {
+  bool any = false;
+  for (Island& island : islands) {
+    if (!island.open) continue;
+    island.open = island.changed && island.spent < island.budget;
+    any = any || island.open, narrowed = narrowed || !island.open;
+    if (island.open) continue;
+    island.exhausted = island.changed;
+    for (int i = island.first; i < island.last; ++i) flags[std::size_t(bodies[std::size_t(i)])] = 0;
+  }
+  return any;
+}
+
+void Settling::activate_next() {
+  for (const Island& island : islands) {
+    if (!island.open) continue;
+    for (int i = island.first; i < island.last; ++i) {
+      unsigned char& flag = flags[std::size_t(bodies[std::size_t(i)])];
+      flag = island.follows || (flag & kNext) ? kNow : 0;
+    }
+  }
+}
 
 // Pairs, and of each its level: one more than that of the last pair before it that has a body of its own
 // which moves. Level by level is the order in which they come, for all that it changes.
@@ -329,7 +415,8 @@ void SpaceBatches::build(std::span<const ContactConstraint<3>> contacts, std::sp
   for (const Pair& pair : sorted_) {
     if (lane == kLanes || pair.level != level) {
       Batch& made = batches_.emplace_back();
-      std::fill_n(made.a, kLanes, none), std::fill_n(made.b, kLanes, none);
+      std::fill_n(made.a, kLanes, none), std::fill_n(made.b, kLanes, none),
+          std::fill_n(made.island, kLanes, -1);
       std::fill_n(made.at_a, kLanes, kBodyFours * none), std::fill_n(made.at_b, kLanes, kBodyFours * none);
       std::fill_n(made.mu, kLanes, 0.0), std::fill_n(made.per_width, kLanes, 1.0);
       made.first = int(rows_.size());
@@ -389,52 +476,78 @@ void SpaceBatches::store(std::span<ContactConstraint<3>> contacts) const {
   }
 }
 
+void SpaceBatches::set_islands(const Settling& settling) {
+  open_.clear();
+  for (Batch& g : batches_) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int a = settling.island_of[std::size_t(g.a[lane])];
+      g.island[lane] = a >= 0 ? a : settling.island_of[std::size_t(g.b[lane])];
+      if (g.island[lane] < 0) g.used = static_cast<unsigned char>(g.used & ~(1 << lane));
+    }
+    open_.push_back(int(&g - batches_.data()));
+  }
+}
+
 void SpaceBatches::begin_directions() {
-  before_.resize(rows_.size()), direction_.assign(rows_.size(), {}), change_ = 0;
+  before_.resize(rows_.size()), direction_.assign(rows_.size(), {});
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     std::copy_n(rows_[i].normal_impulse, kLanes, before_[i].normal);
     for (int k = 0; k < 3; ++k) std::copy_n(rows_[i].tangent_impulse[k], kLanes, before_[i].tangent[k]);
   }
 }
 
-void SpaceBatches::follow_directions(std::span<PointBody<3>> bodies) {
-  double change = 0;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const Row& r = rows_[i];
-    const Impulses& from = before_[i];
+void SpaceBatches::follow_directions(std::span<PointBody<3>> bodies, Settling& settling) {
+  for (Settling::Island& island : settling.islands) island.change = 0;
+  for (const int at : open_) {
+    const Batch& g = batches_[std::size_t(at)];
     for (int lane = 0; lane < kLanes; ++lane) {
-      double sum = r.normal_impulse[lane] - from.normal[lane];
-      sum *= sum;
-      for (int k = 0; k < 3; ++k) {
-        const double t = r.tangent_impulse[k][lane] - from.tangent[k][lane];
-        sum += t * t;
+      if (!(g.used >> lane & 1)) continue;
+      Settling::Island& island = settling.islands[std::size_t(g.island[lane])];
+      if (!island.follows || !island.open) continue;
+      for (int i = g.first; i < g.first + g.count; ++i) {
+        const Row& r = rows_[std::size_t(i)];
+        const Impulses& from = before_[std::size_t(i)];
+        double sum = r.normal_impulse[lane] - from.normal[lane];
+        sum *= sum;
+        for (int k = 0; k < 3; ++k) {
+          const double t = r.tangent_impulse[k][lane] - from.tangent[k][lane];
+          sum += t * t;
+        }
+        island.change += r.across[lane] * sum;
       }
-      change += r.across[lane] * sum;
     }
   }
-  const double share = change_ > 0 && change <= change_ ? change / change_ : 0;
-  change_ = change;
+  for (Settling::Island& island : settling.islands) {
+    island.share = island.before > 0 && island.change <= island.before ? island.change / island.before : 0;
+    if (island.open) island.before = island.change;
+  }
   double* const numbers = bodies.data()->v.data();
-  if (four_lanes) return follow_wide(batches_, rows_, before_, direction_, numbers, share);
-  follow_all<V2>(batches_, rows_, before_, direction_, numbers, share);
+  if (four_lanes) return follow_wide(batches_, rows_, before_, direction_, numbers, open_, settling);
+  follow_all<V2>(batches_, rows_, before_, direction_, numbers, open_, settling);
 }
 
 void SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back) {
   double* const numbers = bodies.data()->v.data();
   if (four_lanes) return iterate_wide(batches_, rows_, belts_, numbers, back);
-  iterate_all<V2, false>(batches_, rows_, belts_, numbers, back, nullptr);
+  iterate_all<V2, false>(batches_, rows_, belts_, numbers, back, {}, nullptr);
 }
 
-int SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back, ActiveBodies& active) {
+void SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back, Settling& settling) {
+  const auto open = [&](const Batch& g) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if ((g.used >> lane & 1) && settling.islands[std::size_t(g.island[lane])].open) return true;
+    }
+    return false;
+  };
+  if (settling.narrowed) std::erase_if(open_, [&](int at) { return !open(batches_[std::size_t(at)]); });
+  settling.narrowed = false;
+  for (Settling::Island& island : settling.islands) island.changed = false;
   double* const numbers = bodies.data()->v.data();
-  const int done = four_lanes ? iterate_some_wide(batches_, rows_, belts_, numbers, back, active)
-                              : iterate_all<V2, true>(batches_, rows_, belts_, numbers, back, &active);
-  active.bodies.back() = 0;
-  for (unsigned char& body : active.bodies) {
-    const bool next = body & ActiveBodies::kNext;
-    body = static_cast<unsigned char>((body & ActiveBodies::kNever) | (next ? ActiveBodies::kNow : 0));
+  if (four_lanes) {
+    iterate_some_wide(batches_, rows_, belts_, numbers, back, open_, settling);
+  } else {
+    iterate_all<V2, true>(batches_, rows_, belts_, numbers, back, open_, &settling);
   }
-  return done;
 }
 
 }  // namespace obscura::sim

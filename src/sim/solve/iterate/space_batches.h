@@ -5,21 +5,48 @@
 #include <vector>
 
 #include "sim/constraint/response.h"
+#include "sim/math/islands.h"
 #include "sim/solve/iterate/contact_constraint.h"
 
 namespace obscura::sim {
 
-/// Bodies whose contacts are still to be iterated: those of a contact that an iteration changed by more than
-/// `settled`. Contacts of bodies on joints are never among them.
-struct ActiveBodies {
+/// Iterations that go on until contacts have settled, island by island, so that how far one gets does not
+/// hang on the others. Contacts of bodies on joints are left out.
+struct Settling {
   static constexpr unsigned char kNow = 1, kNext = 2, kNever = 4;
-  double settled = 0;                 // widths of the narrower body, 1/s
-  bool friction = false;              // whether changes of friction count
-  std::vector<unsigned char> bodies;  // flags; one more for walls, which never are
 
-  bool any() const {
-    return std::any_of(bodies.begin(), bodies.end(), [](unsigned char flags) { return flags & kNow; });
-  }
+  /// Bodies that move and touch each other, directly or through others.
+  struct Island {
+    int contacts = 0;
+    int budget = 0, spent = 0;  // contacts times iterations
+    double rate = 0;            // the fastest that its bodies pass each other, in widths of the narrower, 1/s
+    double settled = 0;         // widths, 1/s: smaller corrections count as none
+    bool friction = false;      // whether those of friction count
+    bool follows = false;       // whether it is accelerated by conjugate directions
+    bool open = true;           // whether it has neither settled nor spent its budget
+    bool exhausted = false;     // whether it has spent its budget and not settled
+    bool changed = false;       // whether the last iteration made larger corrections
+    double change = 0, before = 0;  // by the last iterations, and those before, squared; 0: begins
+    double share = 0;               // of the directions along which it goes on
+    int first = 0, last = 0;        // its bodies, in `bodies`
+  };
+  std::vector<Island> islands;
+  std::vector<int> island_of;        // of each body, and of walls; -1: it does not move
+  std::vector<int> bodies;           // island by island
+  std::vector<unsigned char> flags;  // of each body: its contacts are iterated now, next, never
+
+  /// The islands of the bodies that the contacts `which` join; all are open. `never`: bodies on joints.
+  void begin(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+             std::span<const PointBody<3>> moving, std::span<const int> never);
+  /// After an iteration: closes islands that have settled or spent their budget. Whether any is left.
+  bool close_settled();
+  /// The bodies that the last iteration named are iterated now; of islands that follow, all.
+  void activate_next();
+
+  bool narrowed = false;  // islands have closed since the last iteration
+
+ private:
+  Islands sets_;
 };
 
 /// The contacts of space, four pairs side by side that share no body which moves. They come to what one pair
@@ -31,6 +58,8 @@ class SpaceBatches {
   /// Lays out the contacts `which`, ascending, of `contacts`, in which those of a pair follow each other.
   void build(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
              std::span<const PointBody<3>> bodies);
+  /// Says which islands their bodies are of, before the following.
+  void set_islands(const Settling& settling);
 
   /// Impulses and aims of the contacts anew, where they have changed since.
   void load(std::span<const ContactConstraint<3>> contacts);
@@ -40,15 +69,15 @@ class SpaceBatches {
   /// One iteration over all of them, in order or back.
   void iterate(std::span<PointBody<3>> bodies, bool back);
 
-  /// One iteration of those of `active` bodies alone; then says whose are next. Returns how many contacts
-  /// that were.
-  int iterate(std::span<PointBody<3>> bodies, bool back, ActiveBodies& active);
+  /// One iteration of those of active bodies alone; says which bodies and islands it changed.
+  void iterate(std::span<PointBody<3>> bodies, bool back, Settling& settling);
 
   /// Begins to accelerate iterations by conjugate directions: keeps the impulses.
   void begin_directions();
   /// After some iterations: goes on along the directions that they and those before took (Fletcher and
-  /// Reeves), back into the friction cones; begins anew where they come to more than those before.
-  void follow_directions(std::span<PointBody<3>> bodies);
+  /// Reeves), back into the friction cones, island by island; begins anew where they come to more than those
+  /// before.
+  void follow_directions(std::span<PointBody<3>> bodies, Settling& settling);
 
   /// One contact point of four pairs.
   struct alignas(64) Row {
@@ -67,8 +96,9 @@ class SpaceBatches {
     double mu[kLanes], per_width[kLanes];
     int a[kLanes], b[kLanes];        // bodies; of unused lanes the one after the last
     int at_a[kLanes], at_b[kLanes];  // where they are, in fours of numbers
-    int first = 0, count = 0;        // rows
-    unsigned char used = 0;          // a bit a lane
+    int island[kLanes];
+    int first = 0, count = 0;  // rows
+    unsigned char used = 0;    // a bit a lane
   };
 
  private:
@@ -89,7 +119,7 @@ class SpaceBatches {
   std::vector<Row> rows_;
   std::vector<Belt> belts_;                   // of rows; empty where there are none
   std::vector<Impulses> before_, direction_;  // of rows
-  double change_ = 0;                         // by the iterations before, squared; 0: begins
+  std::vector<int> open_;                     // batches with islands that have not settled
 };
 
 }  // namespace obscura::sim

@@ -87,6 +87,9 @@ template <int D>
 void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h) {
   const double near = Sleep<D>::kBalanced * g_ * h;
   batches_.build(touches_, some_, moving_);
+  settling_.begin(touches_, some_, moving_, {});
+  for (Settling::Island& island : settling_.islands) island.follows = true;
+  batches_.set_islands(settling_);
   batches_.begin_directions();
   for (int i = 1, found = 0; i < kRestSweeps && !found; ++i) {
     if (!components_.empty()) {
@@ -95,7 +98,7 @@ void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> is
       copy_from_joints(&on_joints_);
     }
     batches_.iterate(moving_, i % 2 == 0);
-    if (i % 2 == 0 && components_.empty()) batches_.follow_directions(moving_);
+    if (i % 2 == 0 && components_.empty()) batches_.follow_directions(moving_, settling_);
     if (i % kBetweenChecks != 0) continue;
     found = std::all_of(islands.begin(), islands.end(), [&](const auto& island) {
       return std::all_of(island.bodies.begin(), island.bodies.end(),

@@ -51,12 +51,14 @@ inline constexpr double kNearly = 0.1;
 /// The width of a point, of the size of the room.
 inline constexpr double kPointWidth = 1e-3;
 
-/// The closing speed at which iterations end, in widths of the narrower body, 1/s. `rate`: the largest
-/// closing speed before. A larger remainder would let bodies sink and be lifted again, and they would never
-/// rest.
+/// The closing speed at which iterations end, in widths of the narrower body, 1/s. In space it is one number
+/// whatever else moves: what rests is not to be held the worse where something fast is near. A larger
+/// remainder would let bodies sink and be lifted again, and they would never rest.
+inline constexpr double kSettled = 1e-7;
+/// The same in the plane. `rate`: the largest closing speed before.
 inline double settled_rate(double rate) {
-  constexpr double kStill = 1e-7, kShare = 5e-3;
-  return std::max(kStill, kShare * rate);
+  constexpr double kShare = 5e-3;
+  return std::max(kSettled, kShare * rate);
 }
 
 /// Tolerance of the time of an impact, of a substep; Newton's next correction would be of the order of its
