@@ -113,8 +113,29 @@ TEST_P(Column, FallsAndStacksUp) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Overlaps, Column,
-                         testing::Combine(testing::Bool(), testing::Values(2, 3, 7, 21, 60),
+                         testing::Combine(testing::Bool(), testing::Values(2, 3, 7, 21, 60, 200),
                                           testing::Values(60, 200, 600)));
+
+// a million kilograms that fall by a centimetre onto a block of one
+class HeavyOnLight : public testing::TestWithParam<std::tuple<bool, int>> {};
+
+TEST_P(HeavyOnLight, StandsOnIt) {
+  const auto [space, rate] = GetParam();
+  const std::string size = space ? "[0.4, 0.4, 0.4]" : "[0.4, 0.4]";
+  const auto place = [&](double y) {
+    return space ? fmt::format("[0, {}, 0]", y) : fmt::format("[4, {}]", y);
+  };
+  const Scene scene = parse(fmt::format("[room]\nsize = {}\n[physics]\nsolver = \"iterative\"\n"
+                                        "[[box]]\nsize = {}\nmass = 1\nelasticity = 0\nposition = {}\n"
+                                        "[[box]]\nsize = {}\nmass = 1e6\nelasticity = 0\nposition = {}\n",
+                                        space ? "[8, 8, 8]" : "[8, 8]", size, place(0.2), size, place(0.61)),
+                            "heavy.toml", {fmt::format("physics.rate={}", rate)});
+  const Outcome out = run(scene, 1);
+  EXPECT_LE(out.falling, 1e-3);
+  EXPECT_NEAR(out.top, 0.6, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Overlaps, HeavyOnLight, testing::Combine(testing::Bool(), testing::Values(60, 600)));
 
 // a block of balls, boxes or sticks that falls onto the floor
 std::string heap(bool space, const std::string& kind) {

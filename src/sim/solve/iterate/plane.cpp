@@ -38,6 +38,8 @@ constexpr int kFirstPlaneIterations = 100;  // of the first step, which knows no
 constexpr int kSettlingPairs = 20000;       // more, of unsettled pairs: pairs times iterations, at least
 constexpr int kSettlingIterations = 8;      // or as many as so many iterations of all pairs
 
+constexpr int kFewPairs = 300;  // accelerated
+
 // iterations of correct_overlaps()
 constexpr int kProjections = 5;  // for each of a substep
 constexpr int kFewestProjections = 8;
@@ -272,6 +274,7 @@ void PlaneIterative<D>::iterate(StepPart<D> part) {
     plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_);
   }
   settle_pairs();
+  solve_exhausted();
   solve_joint_velocities();
   plane::iterate_last(batches_.data(), count, poses_.data(), v_.data(), constants_,
                       last ? part.state.contacts.data() : nullptr);
@@ -280,17 +283,61 @@ void PlaneIterative<D>::iterate(StepPart<D> part) {
 }
 
 // More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
-// the impact must pass through all of it in this substep.
+// the impact must pass through all of it in this substep. Those of few are accelerated by conjugate
+// directions (Silcowitz, Niebe and Erleben 2010).
 template <int D>
 void PlaneIterative<D>::settle_pairs() {
   const int count = int(batches_.size());
+  const bool follows = awake_pairs_ <= kFewPairs;
   active_bodies_.settled = settled_rate(closing_rate_);
-  active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
-  active_bodies_.bodies.back() = 0;
-  for (const int body : joints_.bodies()) active_bodies_.bodies[body] = plane::ActiveBodies::kNever;
-  for (int left = std::max(kSettlingPairs, kSettlingIterations * awake_pairs_), pairs = 1;
-       left > 0 && pairs > 0; left -= pairs)
+  const auto activate = [&] {
+    active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
+    active_bodies_.bodies.back() = 0;
+    for (const int body : joints_.bodies()) active_bodies_.bodies[body] = plane::ActiveBodies::kNever;
+  };
+  activate();
+  if (follows) {
+    before_.resize(std::size_t(count)), directions_.assign(std::size_t(count), {});
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < 2; ++k)
+        std::copy_n(batches_[i].p[k], kLanes, before_[i].p[k]),
+            std::copy_n(batches_[i].q[k], kLanes, before_[i].q[k]);
+    }
+  }
+  double change = 0;
+  int left = std::max(kSettlingPairs, kSettlingIterations * awake_pairs_);
+  for (int pairs = 1; left > 0; left -= pairs) {
     pairs = plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_, active_bodies_);
+    if (pairs == 0) return;
+    const auto now = [](unsigned char flags) { return flags & plane::ActiveBodies::kNow; };
+    if (!follows || left <= pairs) continue;
+    if (std::none_of(active_bodies_.bodies.begin(), active_bodies_.bodies.end(), now)) return;
+    const double changed = squared_change();
+    plane::follow(batches_.data(), count, poses_.data(), v_.data(), before_.data(), directions_.data(),
+                  change > 0 && changed <= change ? changed / change : 0, active_bodies_);
+    change = changed;
+    activate();
+  }
+}
+
+// what the last iteration has changed of the impulses, each by the masses that it moves; in the order of
+// pairs
+template <int D>
+double PlaneIterative<D>::squared_change() const {
+  double sum = 0;
+  for (const Pair& pair : pairs_.all()) {
+    if (pair.slot < 0) continue;
+    const ContactBatch& g = batches_[pair.slot / kLanes];
+    const plane::LaneImpulses& before = before_[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    double its = 0;
+    for (int k = 0; k < 2; ++k) {
+      const double p = g.p[k][lane] - before.p[k][lane], q = g.q[k][lane] - before.q[k][lane];
+      its += p * p + q * q;
+    }
+    sum += (v_[g.a[lane]].im + v_[g.b[lane]].im) * its;
+  }
+  return sum;
 }
 
 template <int D>

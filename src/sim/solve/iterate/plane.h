@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/collide/core_shapes.h"
+#include "sim/math/islands.h"
 #include "sim/model/drives.h"
 #include "sim/motion/forward_dynamics.h"
+#include "sim/solve/cone/cone.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/plane_contact_rows.h"
@@ -68,6 +72,9 @@ class PlaneIterative final : public ContactSolver<D> {
   int fewest_iterations() const;
   void begin_joints(StepPart<D> part);
   void settle_pairs();
+  double squared_change() const;
+  void solve_exhausted();
+  void solve_together(std::span<const std::pair<int, int>> lanes);
   void integrate_unconstrained(State<D>& state, double t, double h);
   void share_free_motion(StepPart<D> part);
   void move_driven(StepPart<D> part);
@@ -142,6 +149,23 @@ class PlaneIterative final : public ContactSolver<D> {
   plane::LaneList slow_, fast_;
   plane::StepConstants constants_;  // of the substep
   plane::ActiveBodies active_bodies_;
+  std::vector<plane::LaneImpulses> before_, directions_;  // by group, while iterations are accelerated
+  // islands that iterations have not settled
+  struct Touch {
+    int slot, k;
+    plane::TouchRow row;
+  };
+  struct Exhausted {
+    Islands sets;
+    std::vector<int> contacts;               // at roots
+    std::vector<std::pair<int, int>> lanes;  // root and lane
+    std::vector<Touch> touches;
+    Cone<2> cone;
+    std::vector<ConeBlock<2>> blocks;
+    std::vector<ConeMode<2>> modes;
+    Eigen::MatrixXd K;
+    Eigen::VectorXd b, p;
+  } exhausted_;
   bool deep_ = false;                    // some overlap exceeds the allowed one
   int iterations_ = 0;                   // of this substep, over all pairs
   std::vector<int> slots_, next_slots_;  // the pair in each lane

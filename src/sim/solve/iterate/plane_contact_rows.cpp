@@ -395,6 +395,46 @@ OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* pos
 }
 
 template <class V>
+OBSCURA_INLINE void follow_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
+                               LaneImpulses* before, LaneImpulses* directions, double share,
+                               const ActiveBodies& active) {
+  const V none{}, by = V{} + share;
+  for (ContactBatch* g = batches; g < batches + count; ++g, ++before, ++directions) {
+    unsigned char on = 0;
+    for (int lane = 0; g->used && lane < kLanes; ++lane) {
+      if (g->pair[lane] >= 0 &&
+          !((active.bodies[g->a[lane]] | active.bodies[g->b[lane]]) & ActiveBodies::kNever))
+        on = static_cast<unsigned char>(on | 1 << lane);
+    }
+    if (!on) continue;
+    for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
+      Quad<V> a, b;
+      gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
+      Two<V> two(*g, lane, v);
+      const Two<V> begun = two;
+      const V mu = load<V>(g->mu + lane);
+      const Mask<V> moves = mask<V>(on, lane);
+      const auto set = [&](double* to, const V& next) { store<V>(to, pick<V>(moves, next, load<V>(to))); };
+      for (int k = 0; k < 2; ++k) {
+        WideRow<V> r;
+        make<V>(*g, lane, k, a, b, r);
+        const V l0 = load<V>(g->p[k] + lane), t0 = load<V>(g->q[k] + lane);
+        const V dl = by * load<V>(directions->p[k] + lane), dt = by * load<V>(directions->q[k] + lane);
+        set(directions->p[k] + lane, dl + (l0 - load<V>(before->p[k] + lane)));
+        set(directions->q[k] + lane, dt + (t0 - load<V>(before->q[k] + lane)));
+        const V l = larger<V>(l0 + dl, none), most = mu * l;
+        const V t = larger<V>(smaller<V>(t0 + dt, most), -most);
+        two.push(r.nx, r.ny, r.na, r.nb, l - l0), two.push(-r.ny, r.nx, r.ta, r.tb, t - t0);
+        set(g->p[k] + lane, l), set(g->q[k] + lane, t);
+        set(before->p[k] + lane, l), set(before->q[k] + lane, t);
+      }
+      two.keep(moves, begun);
+      two.back(*g, lane, v);
+    }
+  }
+}
+
+template <class V>
 OBSCURA_INLINE void project_all(const ContactBatch* batches, Projection* p, int count, const Pose* poses,
                                 Motion* d, double share, AllowedOverlap let) {
   const V none{}, part = V{} + share;
@@ -443,6 +483,10 @@ OBSCURA_WIDE void iterate_last_wide(ContactBatch* s, int n, const Pose* at, Moti
                                     const StepConstants& pace, Contact<2>* contacts) {
   contacts ? iterate_all<V4, true, true>(s, n, at, v, pace, contacts)
            : iterate_all<V4, true, false>(s, n, at, v, pace, nullptr);
+}
+OBSCURA_WIDE void follow_wide(ContactBatch* s, int n, const Pose* at, Motion* v, LaneImpulses* before,
+                              LaneImpulses* directions, double share, const ActiveBodies& active) {
+  follow_all<V4>(s, n, at, v, before, directions, share, active);
 }
 OBSCURA_WIDE void project_wide(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d,
                                double share, AllowedOverlap let) {
@@ -530,6 +574,11 @@ int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstan
                                       (body & ActiveBodies::kNext ? ActiveBodies::kNow : 0));
   }
   return pairs;
+}
+void follow(ContactBatch* s, int n, const Pose* at, Motion* v, LaneImpulses* before, LaneImpulses* directions,
+            double share, const ActiveBodies& active) {
+  four_lanes ? follow_wide(s, n, at, v, before, directions, share, active)
+             : follow_all<V2>(s, n, at, v, before, directions, share, active);
 }
 void iterate_last(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
                   Contact<2>* contacts) {

@@ -129,6 +129,16 @@ struct ActiveBodies {
 /// One iteration of the pairs of such bodies alone. Sets the flags for the next; returns the number of pairs.
 int iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             ActiveBodies& active);
+/// Impulses of four pairs, as ContactBatch has them.
+struct alignas(64) LaneImpulses {
+  double p[2][kLanes], q[2][kLanes];
+};
+/// Impulses of all pairs go on along the directions, one of each group, `share` times as far, within their
+/// bounds; the next directions are that and what has changed since `before`, which then are the impulses. Of
+/// pairs on bodies that are never active neither changes.
+void follow(ContactBatch* batches, int count, const Pose* poses, Motion* v, LaneImpulses* before,
+            LaneImpulses* directions, double share, const ActiveBodies& active);
+
 /// The last iteration of a substep: stores forces in the lanes and, unless null, in `contacts`.
 void iterate_last(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
                   Contact<2>* contacts);

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/solve/iterate/substeps.h"
 
@@ -177,6 +178,7 @@ void SpaceIterative<D>::iterate(StepPart<D> step) {
     }
     settle_contacts();
     batches_.store(touches_);
+    solve_exhausted();
     shed_gains();
     place_bodies(step.state, step.h);
     if (!temper(step.state)) break;
@@ -534,6 +536,78 @@ void SpaceIterative<D>::settle_contacts() {
     if (follows && back) batches_.follow_directions(moving_, settling_);
     settling_.activate_next();
   }
+}
+
+// Islands of few contacts that iterations do not settle, as where something heavy stands on something light,
+// exactly:
+//   w = K p + u,  of all contacts at once by their laws        u  how fast they pass without impulses
+template <int D>
+void SpaceIterative<D>::solve_exhausted() {
+  const auto few = [&](int number) {
+    if (number < 0) return false;
+    const Settling::Island& island = settling_.islands[number];
+    return island.exhausted && island.contacts <= kFewSolved;
+  };
+  std::vector<std::pair<int, int>>& all = exhausted_;
+  all.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    const int a = settling_.island_of[touches_[i].a],
+              number = a >= 0 ? a : settling_.island_of[touches_[i].b];
+    if (few(number) && !touches_[i].passes) all.emplace_back(number, i);
+  }
+  std::sort(all.begin(), all.end());
+  for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+    meets_.clear();
+    for (; last < all.size() && all[last].first == all[first].first; ++last)
+      meets_.push_back(all[last].second);
+    solve_together();
+  }
+}
+
+// the contacts meets_
+template <int D>
+void SpaceIterative<D>::solve_together() {
+  static const BodyMotion<D> room;
+  const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
+  K_.resize(rows, rows), b_.resize(rows), p_.resize(rows), blocks_.assign(count, {}),
+      modes_.assign(count, {});
+  impact_rows_.assign(rows, {}), impact_responses_.resize(rows);
+  for (int k = 0; k < count; ++k) {
+    const ContactConstraint& touch = touches_[meets_[k]];
+    const BodyMotion<D>&a = stances_[touch.a], &b = touch.b == n ? room : stances_[touch.b];
+    Vec<D> ways[D];
+    ways[0] = touch.n, ways[1] = perpendicular<D>(touch.n);
+    if constexpr (D == 3) ways[2] = ways[0].cross(ways[1]);
+    blocks_[k].mu = touch.mu;
+    const Vec<D> u = slip(touch), impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
+    for (int i = 0; i < D; ++i) {
+      Row<D>& row = impact_rows_[D * k + i];
+      row.a = touch.a, row.b = touch.b == n ? -1 : touch.b, row.along = ways[i];
+      row.angular_a = moment<D>(touch.arm_a, ways[i]), row.angular_b = moment<D>(touch.arm_b, ways[i]);
+      impact_responses_[D * k + i] = response_.of(row, a, b);
+      b_[D * k + i] = ways[i].dot(u) - (i == 0 ? touch.least : 0), p_[D * k + i] = ways[i].dot(impulse);
+    }
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j <= i; ++j)
+      K_(i, j) = K_(j, i) = coupling(impact_rows_[i], impact_responses_[i], impact_rows_[j]);
+  }
+  b_ -= K_ * p_;
+  cone_.patience = cone_.most_systems = kSolvedSystems;
+  cone_.sweep(K_, b_, blocks_, modes_, p_, 1);
+  const bool found = cone_.solve(K_, b_, blocks_, modes_, p_).found;
+  cone_.most_systems = std::numeric_limits<int>::max();
+  if (!found) return;
+  for (int k = 0; k < count; ++k) {
+    ContactConstraint& touch = touches_[meets_[k]];
+    Vec<D> impulse = Vec<D>::Zero();
+    for (int i = 0; i < D; ++i) impulse += p_[D * k + i] * impact_rows_[D * k + i].along;
+    push(touch, impulse - touch.normal_impulse * touch.n - touch.tangent_impulse);
+    touch.normal_impulse = p_[D * k], touch.tangent_impulse = impulse - p_[D * k] * touch.n;
+  }
+  const ContactConstraint& any = touches_[meets_[0]];
+  const int a = settling_.island_of[any.a];
+  settling_.islands[a >= 0 ? a : settling_.island_of[any.b]].exhausted = false;
 }
 
 // Where iterations end before they have converged, contacts may press more than they should, and what they

@@ -138,6 +138,8 @@ class SpaceIterative final : public ContactSolver<D> {
   void start_rows(StepPart<D> step);
   void warm_start_contacts(const State<D>& state, double h);
   void settle_contacts();
+  void solve_exhausted();
+  void solve_together();
   void shed_gains();
   double closing_rate(double h) const;
   void keep_impulses(const State<D>& state);
@@ -212,6 +214,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<ContactConstraint> touches_;  // ascending by key
   SpaceBatches batches_;                    // of them, those that are iterated
   Settling settling_;
+  std::vector<std::pair<int, int>> exhausted_;     // islands and their touches
   std::vector<ContactCandidate<D>> features_;      // theirs
   std::vector<ContactCandidate<D>> known_;         // and before: of a key always the same
   std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows

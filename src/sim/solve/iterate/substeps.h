@@ -61,6 +61,10 @@ inline double settled_rate(double rate) {
   return std::max(kSettled, kShare * rate);
 }
 
+/// Islands of so many contacts at most are solved exactly where iterations do not settle them, by so many
+/// linear systems at most.
+inline constexpr int kFewSolved = 24, kSolvedSystems = 20;
+
 /// Tolerance of the time of an impact, of a substep; Newton's next correction would be of the order of its
 /// square.
 inline constexpr double kInTime = 1e-9;
