@@ -267,6 +267,8 @@ void Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::ve
 
   const Step step{pairs, poses, dv, pace};
   for (const int lane : found) look_at(batches[lane / kLanes].pair[lane % kLanes]);
+  // which lane a pair has hangs on the steps before; the order of pairs does not
+  std::sort(queue_.begin(), queue_.end());
   const std::size_t most = 40 * found.size() + 100;
   double now = 0;
   for (std::size_t at = 0; impacts_.size() < most;) {
