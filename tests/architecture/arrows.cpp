@@ -29,7 +29,7 @@ const std::map<std::string, std::vector<std::string>> kSubRooms = {
      {"math", "shape", "model", "collide", "force", "multibody", "constraint", "constraint/joints", "motion",
       "energy", "solve/cone", "solve", "solve/exact", "solve/iterate", "handout", "fracture", "step"}},
     {"draw", {"picture", "page", "plane", "space", "compose"}},
-    {"app", {"console", "run", "film", "study", "compare", "figure", "cluster", "commands"}},
+    {"app", {"console", "run", "film", "watch", "study", "compare", "figure", "cluster", "commands"}},
 };
 
 // the folder of a file within its room: of "sim/solve/exact/cone.h" "solve/exact"

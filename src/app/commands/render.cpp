@@ -15,6 +15,7 @@
 #include "app/console/say.h"
 #include "app/film/estimate.h"
 #include "app/film/film.h"
+#include "app/film/film_page.h"
 #include "app/film/pages.h"
 #include "app/run/imported_run.h"
 #include "app/run/origin.h"
@@ -260,6 +261,15 @@ int render(RenderFlags flags) {
       throw UsageError("pages are made at once: no shards, no --resume, no checkpoints, no --poster");
     return film_pages(scene, shots, *flags.out, flags.film);
   }
+  if (flags.out && flags.out->ends_with(".html")) {
+    if (each) throw UsageError("-o '{camera}.html': a page is of one camera, or of all; --camera chooses");
+    if (flags.at || flags.shard || flags.film.prepare || flags.film.resume || flags.film.anew ||
+        flags.checkpoint_every || flags.poster || flags.under || flags.film.from_checkpoint ||
+        flags.film.transparent)
+      throw UsageError(
+          "a page is made at once, of a film: no --at, no shards, no --resume, no checkpoints, no --poster");
+    return film_page(scene, shots, *flags.out, flags.film);
+  }
   const Output out =
       output(flags.out, flags.draft ? scene.name + ".draft" : scene.name, flags.at.has_value(), shots.size());
   if (flags.film.transparent &&
@@ -295,7 +305,8 @@ OBSCURA_COMMAND(10, render) {
       .option("-o,--output", flags->out,
               "The output; its form decides what is made: movie.mp4 (.mkv .mov .webm .gif), "
               "frames/{frame:04}.png or "
-              "frames/%04d.png, pages.pdf (one a frame), one picture.png with --at, - for a stream. Left "
+              "frames/%04d.png, pages.pdf (one a frame), page.html (plays in a browser, without a network), one "
+              "picture.png with --at, - for a stream. Left "
               "out: render_out/SCENE.mp4")
       .type("OUT");
   add_sets(command, flags->sets);

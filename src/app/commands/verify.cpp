@@ -21,12 +21,14 @@
 #include "app/console/say.h"
 #include "app/console/waiting.h"
 #include "app/film/film.h"
+#include "app/film/film_page.h"
 #include "app/film/pictures.h"
 #include "app/run/diagnosis.h"
 #include "app/run/frames.h"
 #include "app/run/table.h"
 #include "app/run/trouble.h"
 #include "media/error.h"
+#include "page/html.h"
 #include "scene/document.h"
 #include "scene/error.h"
 #include "scene/scene.h"
@@ -139,6 +141,17 @@ void judge_movie(const std::string& file, const std::string& again, Verdict& ver
     for (const std::string& line : found.cause->lines) verdict.lines.push_back("  " + line);
 }
 
+// makes the page anew, at another place; `now` becomes its origin
+bool page_again(const VerifyFlags& flags, const std::string& again, Origin& now) {
+  const scene::Scene scene = scene_of(now);
+  FilmOptions options = flags.film;
+  options.progress = ProgressKind::none;
+  if (film_page(scene, shots_of(now, scene), again, options) != kDone) return false;
+  const auto made = origin_in({{"obscura", page::origin_in_html(file_bytes(again))}});
+  now.state = made->state, now.states = made->states;
+  return true;
+}
+
 // the table of the run that a file shows: the one of its name, or the only one
 std::shared_ptr<const Table> run_of(const std::string& file, const Origin& origin, const VerifyFlags& flags) {
   for (const auto& run : flags.runs)
@@ -149,7 +162,42 @@ std::shared_ptr<const Table> run_of(const std::string& file, const Origin& origi
       file, origin.trajectory));
 }
 
+Origin with_another_scene(const Origin& origin, const std::string& file, const VerifyFlags& flags) {
+  Origin now = origin;
+  if (!origin.trajectory.empty()) now.run = run_of(file, origin, flags);
+  if (flags.scene) {
+    now.scene_text = flags.scene_text;
+    now.scene_hash = hash(now.scene_text);
+  }
+  return now;
+}
+
+Verdict judge_page(const std::string& file, const VerifyFlags& flags) {
+  const std::string bytes = file_bytes(file);
+  const auto origin = origin_in({{"obscura", page::origin_in_html(bytes)}});
+  if (!origin) throw media::Error(file + ": has no origin from obscura: nothing to verify");
+  Verdict verdict;
+  if (hash(origin->scene_text) != origin->scene_hash) verdict.no("scene: its text does not match its hash");
+  Origin now = with_another_scene(*origin, file, flags);
+  if (flags.states) {
+    const auto again = simulated(now);
+    if (again) judge_states(*origin, *again, verdict);
+    return verdict;
+  }
+  const Workbench bench;
+  const std::string again = (bench.folder / fs::path(file).filename()).string();
+  if (!page_again(flags, again, now)) return verdict;
+  judge_states(*origin, now, verdict);
+  verdict.only.clear();
+  if (file_bytes(again) == bytes)
+    verdict.lines.push_back("page: the same, byte by byte");
+  else
+    verdict.no("page: others are the keys, the words or the player that it carries");
+  return verdict;
+}
+
 Verdict judge(const std::string& file, const VerifyFlags& flags) {
+  if (fs::path(file).extension() == ".html") return judge_page(file, flags);
   Frames frames(file);
   if (frames.kind() == Frames::Kind::folder)
     throw media::Error(file + ": is a folder; name its pictures, as in frames/*.png");
@@ -159,12 +207,7 @@ Verdict judge(const std::string& file, const VerifyFlags& flags) {
   const Origin& origin = *frames.origin();
   Verdict verdict;
   if (hash(origin.scene_text) != origin.scene_hash) verdict.no("scene: its text does not match its hash");
-  Origin now = origin;
-  if (!origin.trajectory.empty()) now.run = run_of(file, origin, flags);
-  if (flags.scene) {
-    now.scene_text = flags.scene_text;
-    now.scene_hash = hash(now.scene_text);
-  }
+  Origin now = with_another_scene(origin, file, flags);
   if (flags.states || frames.kind() == Frames::Kind::still) {
     const auto again = simulated(now);
     if (interrupted()) return verdict;
@@ -285,7 +328,7 @@ OBSCURA_COMMAND(110, verify) {
   auto flags = std::make_shared<VerifyFlags>();
   command
       .option("FILE", flags->files,
-              "PNGs and movies that obscura wrote; and, if they show another program's run, its table (.csv)")
+              "PNGs, movies and pages (.html) that obscura wrote; and, if they show another program's run, its table (.csv)")
       .required();
   command.option("--scene", flags->scene, "Compare with this scene as it is now, not as it was")
       .type("SCENE");

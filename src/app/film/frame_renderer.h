@@ -1,12 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
-#include <vector>
 
+#include "app/film/frame_painter.h"
 #include "app/run/simulation.h"
-#include "draw/compose/comparison.h"
-#include "draw/compose/depict.h"
 #include "gl/renderer.h"
 #include "media/exposure.h"
 #include "media/image.h"
@@ -24,23 +21,17 @@ class FrameRenderer {
   const media::Image& print(const FilmSegment& take, std::size_t frame, bool transparent);
 
   /// The same as things, not yet pixels; of the instant alone.
-  draw::Picture frame(const FilmSegment& take, std::size_t frame) const;
+  draw::Picture frame(const FilmSegment& take, std::size_t frame) const { return painter_.frame(take, frame); }
   /// The pixels of a picture, good until the next ones.
   const media::Image& pixels(const draw::Picture& picture) { return renderer_.draw(picture); }
 
   const gl::Renderer& renderer() const { return renderer_; }
-  const sim::SceneInfo& scene_info() const { return artists_.front().scene_info(); }
+  const sim::SceneInfo& scene_info() const { return painter_.scene_info(); }
 
  private:
-  draw::Picture picture(const FilmSegment& take, std::size_t frame, double film, std::size_t exposure) const;
-
   gl::Renderer renderer_;
-  std::vector<draw::Illustrator> artists_;      // one a run
-  std::vector<draw::ComparedRun> names_;        // of several
-  std::optional<draw::Comparison> comparison_;  // of several in panels
+  FramePainter painter_;
   media::Exposure exposure_;
-  sim::Rational fps_;
-  draw::Pace speed_;
 };
 
 }  // namespace obscura::app

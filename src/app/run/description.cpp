@@ -26,6 +26,7 @@ namespace {
 
 constexpr std::int64_t kMostSteps = 100'000;  // read; of longer runs every second, third, ...
 constexpr std::size_t kToldSingly = 6;        // bodies, impacts: told one by one
+constexpr std::size_t kMostHappenings = 300;  // impacts that are listed
 constexpr double kSoft = 0.02;                // of sqrt(g L): slower is no impact
 constexpr double kSame = 1e-3;                // of the energy: it has not changed
 
@@ -151,6 +152,7 @@ class Account {
   }
   void read(const sim::Snapshot& now);
   std::vector<std::string> sentences() const;
+  std::vector<Happening> happenings() const;
 
  private:
   struct Extremes {
@@ -352,6 +354,23 @@ std::vector<std::string> Account::ending() const {
   return all;
 }
 
+std::vector<Happening> Account::happenings() const {
+  std::vector<const Impact*> impacts;
+  for (const Impact& each : impacts_) impacts.push_back(&each);
+  if (impacts.size() > kMostHappenings) {
+    std::nth_element(impacts.begin(), impacts.begin() + kMostHappenings, impacts.end(),
+                     [](const Impact* a, const Impact* b) { return a->speed > b->speed; });
+    impacts.resize(kMostHappenings);
+  }
+  std::vector<Happening> all;
+  for (const Impact* each : impacts)
+    all.push_back({each->time, fmt::format("{} hits {} at {} m/s", called(cast_, each->body), other(*each),
+                                           numeral(each->speed))});
+  for (const auto& [when, joint] : broken_)
+    all.push_back({when, fmt::format("joint {} breaks", scene::one_line(cast_.joints[std::size_t(joint)].name))});
+  return all;
+}
+
 std::vector<std::string> Account::sentences() const {
   std::vector<std::string> all;
   if (!first_) return all;
@@ -360,18 +379,27 @@ std::vector<std::string> Account::sentences() const {
   return all;
 }
 
+void sort(std::vector<Happening>& events) {
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Happening& a, const Happening& b) { return a.time < b.time; });
+}
+
 }  // namespace
 
-std::vector<std::string> description(const scene::Scene& scene) {
+Story story(const scene::Scene& scene) {
   if (std::vector<Ahead::Run> runs = compared(scene); !runs.empty()) {
-    std::vector<std::string> all;
-    if (!scene.look.title.empty()) all.push_back(scene.look.title + ".");
-    all.push_back(fmt::format("The film shows {} runs {} each other.", runs.size(),
+    Story all;
+    if (!scene.look.title.empty()) all.sentences.push_back(scene.look.title + ".");
+    all.sentences.push_back(fmt::format("The film shows {} runs {} each other.", runs.size(),
                               scene.film.over ? "over" : "beside"));
     for (Ahead::Run& run : runs) {
       run.scene.look.title = run.look.name, run.scene.look.subtitle = "";
-      for (std::string& sentence : description(run.scene)) all.push_back(std::move(sentence));
+      Story its = story(run.scene);
+      for (std::string& sentence : its.sentences) all.sentences.push_back(std::move(sentence));
+      for (Happening& each : its.events)
+        all.events.push_back({each.time, run.look.name + ": " + std::move(each.text)});
     }
+    sort(all.events);
     return all;
   }
   const auto run = scene.shown_run();
@@ -399,9 +427,12 @@ std::vector<std::string> description(const scene::Scene& scene) {
     for (std::int64_t k = 0; k <= steps && !trouble; k += stride) read(last = sim::rational(k) / run->rate());
     if (!trouble && last < scene.duration) read(scene.duration);
   }
-  std::vector<std::string> all = account.sentences();
+  Story all{account.sentences(), account.happenings()};
+  for (const sim::RunEvent& event : run->events())
+    for (const std::string& mark : event.marks) all.events.push_back({sim::value(event.time), scene::one_line(mark)});
+  sort(all.events);
   if (trouble)
-    all.push_back(fmt::format("At {} the run ends: the {} of {} {}.", time(trouble->time), trouble->quantity,
+    all.sentences.push_back(fmt::format("At {} the run ends: the {} of {} {}.", time(trouble->time), trouble->quantity,
                               scene::one_line(trouble->body), trouble->what));
   return all;
 }

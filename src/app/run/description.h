@@ -8,9 +8,24 @@
 
 namespace obscura::app {
 
-/// What happens in a run of a scene, in sentences: what is there, what hits what when, what comes to rest,
-/// what becomes of the energy, what the film says. Runs the scene once. Throws Interrupted.
-std::vector<std::string> description(const scene::Scene& scene);
+/// Something that happens at an instant: an impact, a joint that breaks, a mark of the scene's own.
+struct Happening {
+  double time = 0;   // s of the run
+  std::string text;  // "the stone hits board[3] at 4.2 m/s"
+};
+
+/// What happens in a run of a scene.
+struct Story {
+  std::vector<std::string> sentences;
+  std::vector<Happening> events;  // in the order of time; of very many impacts the hardest
+};
+
+/// Runs a scene once. Throws Interrupted.
+Story story(const scene::Scene& scene);
+
+/// Its sentences: what is there, what hits what when, what comes to rest, what becomes of the energy, what
+/// the film says.
+inline std::vector<std::string> description(const scene::Scene& scene) { return story(scene).sentences; }
 
 /// What a picture of an instant shows, in sentences: the alternative text of a still.
 std::string picture_text(const scene::Scene& scene, const sim::SceneInfo& cast, const sim::Snapshot& now);

@@ -145,7 +145,8 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
     if (!still_->list || still_->parts != seen) {
       auto list = std::make_shared<List>();
       for (std::size_t i = 0; i < parts.size(); ++i)
-        if (seen[i]) add_panel(*seen[i], panels_[i], *list);
+        if (seen[i]) list->part = int(i), add_panel(*seen[i], panels_[i], *list);
+      list->part = 0;
       for (const Text& text : layout_.words) list->add(text);
       charts_.draw_still(*list);
       const double w = layout_.weight;
@@ -170,15 +171,19 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
     for (const auto& solids : parts[i].solids)
       picture.solids.push_back(
           std::make_shared<const Solids>(placed(*solids, panel.height / 1080, {panel.x, panel.y})));
+    list.part = int(i);
     add_panel(parts[i].moving, panel, list);
     nows.push_back({&runs[i].frame, runs[i].fate});
   }
+  list.part = 0;
   if (layout_.caption && look_.clock) {
     Text clock = layout_.clock;
     clock.spans[0].text = clock_text(time);
+    list.of({Subject::What::page, 1});
     list.add(clock);
   }
   charts_.draw_lines(nows, list);
+  list.of({Subject::What::page, 2});
   draw_titles(titles_, layout_, aspect_, colours_, time, film, speed, list);
   set_decimal_mark(list, look_.decimal);
   return picture;

@@ -20,26 +20,34 @@ namespace {
 constexpr double kPathLine = 3.6;    // the line of a path, page units at the weight 1
 constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
 
+constexpr int kMarks = 100;  // layers up to there are of bodies and what ties them
+
 bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::ShapeKind::point && !body.bare; }
 
 // bodies, what ties them, their own arrows and names
 void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
-  draw_brackets(stage, view, now, list);
-  draw_ways(stage, view, now, list);
-  draw_tracks(stage, view, now, list);
-  draw_rails(stage, view, now, list);
-  draw_springs(stage, view, now, false, list);
-  draw_boxes(stage, view, now, list);
-  draw_polygons(stage, view, now, list);
-  draw_springs(stage, view, now, true, list);
-  draw_rods(stage, view, now, list);
-  draw_rounds(stage, view, now, list);
-  draw_gears(stage, view, now, list);
-  draw_pulleys(stage, view, now, list);
-  draw_pins(stage, view, now, list);
-  draw_contacts(stage, view, now, list);
-  draw_velocities(stage, view, now, list);
-  draw_labels(stage, view, now, list);
+  int layer = 0;
+  const auto draw = [&](auto&& things) {
+    list.of({Subject::What::layer, layer++});
+    things();
+  };
+  draw([&] { draw_brackets(stage, view, now, list); });
+  draw([&] { draw_ways(stage, view, now, list); });
+  draw([&] { draw_tracks(stage, view, now, list); });
+  draw([&] { draw_rails(stage, view, now, list); });
+  draw([&] { draw_springs(stage, view, now, false, list); });
+  draw([&] { draw_boxes(stage, view, now, list); });
+  draw([&] { draw_polygons(stage, view, now, list); });
+  draw([&] { draw_springs(stage, view, now, true, list); });
+  draw([&] { draw_rods(stage, view, now, list); });
+  draw([&] { draw_rounds(stage, view, now, list); });
+  draw([&] { draw_gears(stage, view, now, list); });
+  draw([&] { draw_pulleys(stage, view, now, list); });
+  draw([&] { draw_pins(stage, view, now, list); });
+  draw([&] { draw_contacts(stage, view, now, list); });
+  draw([&] { draw_velocities(stage, view, now, list); });
+  draw([&] { draw_labels(stage, view, now, list); });
+  list.of({});
 }
 
 }  // namespace
@@ -198,6 +206,19 @@ Illustrator::Illustrator(const sim::SceneInfo& cast, const Look& look, const Ext
 
 const Layout& Illustrator::layout() const { return plan_->stage.layout; }
 
+Rect Illustrator::window() const {
+  if (plan_) return plan_->stage.layout.window;
+  Rect all = space_->panels.front().window;
+  for (const Panel& panel : space_->panels) {
+    const Rect& w = panel.window;
+    const double right = std::max(all.x + all.width, w.x + w.width),
+                 bottom = std::max(all.y + all.height, w.y + w.height);
+    all.x = std::min(all.x, w.x), all.y = std::min(all.y, w.y);
+    all.width = right - all.x, all.height = bottom - all.y;
+  }
+  return all;
+}
+
 View Illustrator::view(double t) const { return view_at(plan_->stage.camera, plan_->stage.layout, t); }
 
 CameraProjection Illustrator::lens(const sim::Snapshot& now, int panel) const {
@@ -234,10 +255,14 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
     space_->charts.draw_lines({{&frame, at.fate}}, picture.moving);
     for (int panel = 0; annotations_ && panel < panels(); ++panel) {
       const Projection seen = projection(panel, frame);
+      picture.moving.part = panel;
+      picture.moving.of({Subject::What::layer, kMarks + 1});
       picture.moving.clip(seen.window());
       annotations_->draw(panel, seen, frame, film, picture.moving);
       picture.moving.unclip();
     }
+    picture.moving.part = 0;
+    picture.moving.of({Subject::What::page, 2});
     draw_fate({&frame, at.fate}, space_->layout.window, space_->layout.weight, space_->colours,
               picture.moving);
     draw_titles(titles_, space_->layout, space_->layout.aspect, space_->colours, frame.time, film, at.speed,
@@ -255,6 +280,7 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   List& list = picture.moving;
   if (stage.layout.clipped) list.clip(view.window);
   draw_trails(stage, view, now, ways, list);
+  list.of({Subject::What::layer, kMarks});
   if (annotations_) {
     draw_lines(view, lines, false, list);
     for (const auto& [then, ghost] : annotations_->ghosts(frame, film))
@@ -263,13 +289,18 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   draw_forms(stage, view, now, list);
   for (std::size_t i = 1; at.over && i < at.over->runs.size(); ++i) {
     const RunsOver::Run& run = at.over->runs[i];
+    list.part = int(i);
     run.artist->draw_bodies(view, *run.now, run.ways, list);
   }
+  list.part = 0;
   if (annotations_) {
+    list.of({Subject::What::layer, kMarks + 1});
     draw_lines(view, lines, true, list);
     annotations_->draw(0, projection(0, frame), frame, film, list);
   }
+  list.of({Subject::What::layer, kMarks + 2});
   draw_hands(stage, view, now, list);
+  list.of({});
   list.unclip();
   std::vector<RunInstant> nows{{&frame, at.fate}};
   if (at.over) {
@@ -282,9 +313,11 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   if (stage.layout.caption && stage.look.clock) {
     Text clock = stage.layout.clock;
     clock.spans[0].text = clock_text(at.over ? at.over->time : frame.time);
+    list.of({Subject::What::page, 1});
     list.add(clock);
   }
   stage.charts.draw_lines(nows, list);
+  list.of({Subject::What::page, 2});
   draw_titles(titles_, stage.layout, stage.layout.aspect, stage.colours, frame.time, film, at.speed, list);
   set_decimal_mark(list, stage.look.decimal);
   return picture;

@@ -57,6 +57,9 @@ class Illustrator {
   /// In the plane: the view from the world to the page at time t (s).
   View view(double t) const;
 
+  /// What pictures in space have in common; null in the plane.
+  const SpaceStage* space() const { return space_.get(); }
+
   /// In space: how it lies in a panel.
   CameraProjection lens(const sim::Snapshot& now, int panel = 0) const;
 
@@ -104,6 +107,9 @@ class Illustrator {
 
   /// In the plane: lines through the world as it lies on the page.
   void draw_lines(const View& view, std::span<const WorldLine> lines, bool front, List& list) const;
+
+  /// The part of the page that shows the world: in space all panels.
+  Rect window() const;
 
   /// In the plane: how the page is laid out.
   const Layout& layout() const;

@@ -10,6 +10,7 @@
 namespace obscura::draw {
 namespace {
 
+constexpr int kMostLines = 1000;      // of a chart, as subjects are counted
 constexpr double kAboveAxis = 4.5;  // points: how high above the axis the middle of a name is at least
 
 constexpr double kMargin = 36;  // page units at the weight 1, as of the caption
@@ -102,6 +103,12 @@ double Charts::Panel::offset(std::size_t line, double time) const {
   return all[next - 1] + u * (all[next] - all[next - 1]);
 }
 
+std::vector<Charts::Shown> Charts::shown() const {
+  std::vector<Shown> all;
+  for (const Panel& panel : panels_) all.push_back({panel.chart, panel.plot, panel.area});
+  return all;
+}
+
 void Charts::draw_still(List& list) const {
   for (const Panel& panel : panels_) draw_axes(panel.plot, panel.area, colours_, list);
 }
@@ -135,7 +142,8 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
       }
       past.lines.push_back(std::move(line));
     }
-    obscura::draw::draw_lines(past, panel.area, list);
+    const int number = kMostLines * int(&panel - panels_.data());
+    obscura::draw::draw_lines(past, panel.area, list, number);
     for (std::size_t i = 0; i < past.lines.size(); ++i) {
       const Series& line = past.lines[i];
       if (line.values.empty()) continue;
@@ -145,6 +153,7 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
         while (last > 0 && !panel.area.spans(line.values[last])) --last;
       const bool inside = last + 1 == line.values.size();
       const Point at = panel.area.at(line.along[last], line.values[last]);
+      list.of({Subject::What::chart, number + int(i)});
       const double unit = panel.area.point;
       if (within[i] && inside)
         list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
@@ -154,6 +163,7 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
                 {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)}, list);
     }
   }
+  list.of({});
 }
 
 }  // namespace obscura::draw

@@ -47,6 +47,14 @@ class Charts {
   double right() const { return right_; }
   double below() const { return below_ + foot_; }
 
+  /// A chart and where its values lie on the page.
+  struct Shown {
+    const Chart& chart;
+    const Plot& plot;
+    const PlotArea& area;
+  };
+  std::vector<Shown> shown() const;
+
   /// Axes and ticks: the things that do not move.
   void draw_still(List& list) const;
   /// The lines up to `now`, where they are now, and their names there.

@@ -346,7 +346,7 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
       line(area.at(mark, area.low), area.at(mark, area.high), 0.3 * area.point, colours.hatch);
 }
 
-void draw_lines(const Plot& plot, const PlotArea& area, List& list) {
+void draw_lines(const Plot& plot, const PlotArea& area, List& list, std::optional<int> number) {
   // a line that leaves the range is cut off there
   const double half = kLine * area.point;
   if (plot.range)
@@ -359,6 +359,7 @@ void draw_lines(const Plot& plot, const PlotArea& area, List& list) {
       if (area.has(way[i], each.values[i]))
         nodes.push_back({area.at(way[i], each.values[i]), kLine * each.weight * area.point, each.color});
     if (nodes.empty()) continue;
+    if (number) list.of({Subject::What::chart, (*number)++});
     add_dashed(nodes, kDashes[std::size_t(each.style) % kDashes.size()], area.point, list);
     for (const Node& node : nodes)
       if (plot.dotted) add_marker(each.style, node.at, kDotRadius * area.point, each.color, list);

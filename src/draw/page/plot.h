@@ -75,7 +75,7 @@ std::vector<double> spread(const std::vector<double>& wanted, double apart, doub
 /// Axes, ticks, units and marks.
 void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
 /// The lines, as far as there are values.
-void draw_lines(const Plot& plot, const PlotArea& area, List& list);
+void draw_lines(const Plot& plot, const PlotArea& area, List& list, std::optional<int> number = {});
 /// The dots with names.
 void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
 /// The names of the lines, beside their ends. A line that is alone is named by its axis.

@@ -1,5 +1,7 @@
 #include "draw/picture/list.h"
 
+#include <algorithm>
+
 #include "draw/picture/latex.h"
 #include "draw/picture/solids.h"
 
@@ -32,11 +34,11 @@ void List::add(const Text& text) {
   mark(Kind::text, int(texts.size()));
 }
 
-void List::add(const std::vector<Node>& line, Cap cap, Blend blend, bool closed) {
+void List::add(const std::vector<Node>& line, Cap cap, Blend blend, bool closed, const Winding& winding) {
   if (line.size() < 2) return;
   const int begin = int(nodes.size());
   nodes.insert(nodes.end(), line.begin(), line.end());
-  strokes.push_back({begin, int(nodes.size()), closed, cap, blend});
+  strokes.push_back({begin, int(nodes.size()), closed, cap, blend, winding});
   mark(Kind::stroke, int(strokes.size()));
 }
 
@@ -55,8 +57,32 @@ void List::clip(const Rect& rect) {
 
 void List::unclip() { clip_ = -1; }
 
+void List::of(Subject subject) {
+  subject.part = part;
+  const std::array<int, kKinds> first{int(discs.size()), int(boxes.size()), int(strokes.size()),
+                                      int(polygons.size()), int(texts.size())};
+  if (!abouts.empty() && abouts.back().first == first) abouts.pop_back();
+  if (abouts.empty() || abouts.back().subject != subject) abouts.push_back({subject, first});
+}
+
+std::vector<Subject> List::subjects(Kind kind) const {
+  const auto n = std::size_t(kind);
+  const std::array<std::size_t, kKinds> counts{discs.size(), boxes.size(), strokes.size(), polygons.size(),
+                                               texts.size()};
+  std::vector<Subject> all(counts[n]);
+  for (std::size_t i = 0; i < abouts.size(); ++i) {
+    const auto from = std::size_t(abouts[i].first[n]);
+    const std::size_t to = i + 1 < abouts.size() ? std::size_t(abouts[i + 1].first[n]) : counts[n];
+    std::fill(all.begin() + std::ptrdiff_t(from), all.begin() + std::ptrdiff_t(to), abouts[i].subject);
+  }
+  return all;
+}
+
 void List::add(const List& list, double k, const Point& at) {
   const auto moved = [&](const Point& p) { return Point(at + k * p); };
+  std::array<std::vector<Subject>, kKinds> whose;
+  for (std::size_t kind = 0; kind < kKinds; ++kind) whose[kind] = list.subjects(Kind(kind));
+  const int strokes_before = int(strokes.size());
   for (const Batch& batch : list.batches) {
     if (batch.clip >= 0) {
       const Rect& r = list.clips[std::size_t(batch.clip)];
@@ -66,6 +92,7 @@ void List::add(const List& list, double k, const Point& at) {
     }
     for (int i = batch.begin; i < batch.end; ++i) {
       const auto n = std::size_t(i);
+      of(whose[std::size_t(batch.kind)][n]);
       switch (batch.kind) {
         case Kind::disc: {
           Disc disc = list.discs[n];
@@ -83,7 +110,9 @@ void List::add(const List& list, double k, const Point& at) {
           const Stroke& stroke = list.strokes[n];
           std::vector<Node> line(list.nodes.begin() + stroke.begin, list.nodes.begin() + stroke.end);
           for (Node& node : line) node.at = moved(node.at), node.width *= k;
-          add(line, stroke.cap, stroke.blend, stroke.closed);
+          Winding winding = stroke.winding;
+          winding.lead *= k, winding.amplitude *= k;
+          add(line, stroke.cap, stroke.blend, stroke.closed, winding);
           break;
         }
         case Kind::polygon: {
@@ -103,6 +132,14 @@ void List::add(const List& list, double k, const Point& at) {
       }
     }
   }
+  for (Trail trail : list.trails) {
+    trail.begin += strokes_before, trail.end += strokes_before, trail.widest *= k;
+    trail.origin = moved(trail.origin), trail.scale *= k;
+    trail.subject.part = part;
+    for (Trail::Point& p : trail.way) p.at = moved(p.at);
+    trails.push_back(std::move(trail));
+  }
+  of({});
   for (Words each : list.words) {
     each.at = moved(each.at), each.size *= k;
     words.push_back(std::move(each));

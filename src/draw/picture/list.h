@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -53,6 +54,12 @@ enum class Blend : std::uint8_t {
   lighten,
 };
 
+/// The form of a coil between two ends (draw/plane/springs.h): what else its line follows from.
+struct Winding {
+  int turns = 0;  // 0: no coil
+  double lead = 0, amplitude = 0;
+};
+
 /// An open or closed line through nodes [begin, end) of List::nodes, width and colour linear in between,
 /// joints mitred.
 struct Stroke {
@@ -60,6 +67,7 @@ struct Stroke {
   bool closed = false;
   Cap cap = Cap::round;
   Blend blend = Blend::over;
+  Winding winding{};
 };
 
 /// A filled polygon through points [begin, end) of List::points, star-shaped about its first point's
@@ -104,6 +112,47 @@ struct Words {
 };
 
 enum class Kind : std::uint8_t { disc, box, stroke, polygon, text };
+inline constexpr std::size_t kKinds = 5;
+
+/// What a thing of the picture is of, by which it is known again in the next picture of the same run.
+struct Subject {
+  enum class What : std::uint8_t {
+    page,   // captions, titles, the clock: they stay where they are when the view is moved
+    chart,  // a plot's lines
+    layer,  // other things of the world
+    body,
+    spring,
+    joint,
+    trail,
+  };
+  What what = What::page;
+  int index = 0;  // of its kind; of a layer its place among them
+  int part = 0;   // of a page of several runs: which
+  auto operator<=>(const Subject&) const = default;
+};
+
+/// From the counts `first` of the kinds of things on, they are of this subject.
+struct About {
+  Subject subject;
+  std::array<int, kKinds> first{};
+};
+
+/// A trail: its strokes, and the way along which they lie, up to now.
+struct Trail {
+  struct Point {
+    double time = 0;  // s
+    draw::Point at;
+    bool cusp = false;
+  };
+  int begin = 0, end = 0;       // strokes
+  double now = 0, lasting = 0;  // s
+  double widest = 0;
+  Color strong{}, faint{};       // of its head, and of its end
+  draw::Point origin{0, 0};      // where the world's lies on the page
+  double scale = 1;              // page units a metre
+  std::vector<Point> way{};  // its nodes, from the oldest; the first may lie between two
+  Subject subject{};
+};
 
 /// Consecutive things of one kind, which are drawn in one go.
 struct Batch {
@@ -128,18 +177,25 @@ struct List {
   std::vector<Rect> clips;
   std::vector<Words> words;  // those set apart, over all else
   bool apart = false;        // whether type goes there
+  std::vector<About> abouts;
+  std::vector<Trail> trails;  // in the order of their strokes
+  int part = 0;               // of the subjects that come
 
   void add(const Disc& disc);
   void add(const Box& box);
   void add(const Text& text);
   /// A stroke through `line`.
-  void add(const std::vector<Node>& line, Cap cap = Cap::round, Blend blend = Blend::over,
-           bool closed = false);
+  void add(const std::vector<Node>& line, Cap cap = Cap::round, Blend blend = Blend::over, bool closed = false,
+           const Winding& winding = {});
   /// A filled polygon.
   void add(const std::vector<Point>& outline, Color fill);
   /// Clips everything that is added after this call to `rect`, until the next call of clip or unclip.
   void clip(const Rect& rect);
   void unclip();
+  /// Everything that is added after this call is of this subject, until the next call.
+  void of(Subject subject);
+  /// The subject of each thing of a kind.
+  std::vector<Subject> subjects(Kind kind) const;
   /// Another list on top of this one: each of its lengths times `scale`, its origin at `at`.
   void add(const List& list, double scale, const Point& at);
 

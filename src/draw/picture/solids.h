@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "draw/picture/color.h"
+#include "draw/picture/lens.h"
 #include "draw/picture/list.h"
+#include "sim/math/vec.h"
 
 namespace obscura::draw {
 
@@ -19,6 +21,9 @@ inline constexpr int kRays = 32;
 
 /// Texels a side of the map in which the light sees what casts shadows on bodies.
 inline constexpr int kMap = 1024;
+
+/// Of lines that are found by what hides them: who sees space from elsewhere draws them anew.
+inline constexpr Subject kSeenLines{Subject::What::layer, -1};
 
 struct Solids {
   struct Vertex {
@@ -44,6 +49,37 @@ struct Solids {
   Color shade{0, 0, 0, 0};     // laid over the ground where no ray reaches it
   std::vector<Shade> touches;  // how near bodies are to the ground: a ray is a distance
   Color touch{0, 0, 0, 0};     // laid over the ground where they touch it
+
+  // What stands in space besides the bodies, before a camera sees it; lengths in m, of a coil's winding in
+  // page units at the target.
+  struct Tube {
+    std::vector<sim::Vec3> way;  // of a coil its ends
+    double radius = 0;
+    Color color{};
+    Winding winding{};
+  };
+  struct Ball {
+    sim::Vec3 center;
+    double radius = 0;
+    Color color{};
+  };
+  struct Plate {
+    sim::Vec3 center;
+    double half = 0, thick = 0;
+  };
+  struct Way {
+    int body = 0;
+    double now = 0, lasting = 0, widest = 0;  // s, page units
+    Color strong{}, faint{};
+    std::vector<sim::Vec3> places;
+    std::vector<double> times;
+  };
+  CameraProjection lens;
+  std::vector<Tube> tubes;
+  std::vector<Tube> lines;  // of earlier instants; their radius in page units
+  std::vector<Ball> balls;
+  std::vector<Plate> plates;
+  std::vector<Way> ways;
 };
 
 /// The same on a larger page: each of its lengths times `scale`, its origin at `at`.

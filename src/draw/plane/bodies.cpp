@@ -18,6 +18,7 @@ void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, 
       if (!stage.cast.bodies[i].turns || radius < 7 * weight || outside(view.window, center, radius))
         continue;
       const double width = std::min(kAxisLine * weight, 0.14 * radius);
+      list.of({Subject::What::body, i});
       mark(center, radius, width, now.bodies[i].angle, stage.paints[i].axis);
     }
   };
@@ -53,6 +54,7 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
     box.fill = stage.paints[i].fill;
     box.outline = stage.paints[i].outline;
     box.axis_color = stage.paints[i].axis;
+    list.of({Subject::What::body, i});
     list.add(box);
   }
 }
@@ -66,6 +68,7 @@ void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now,
     const double radius = std::max(own, kLeast * weight);
     if (outside(view.window, center, radius)) continue;
     const Paint& paint = stage.paints[i];
+    list.of({Subject::What::body, i});
     // small ones are all outline: a pale fill would be lost
     if (radius < 3.2 * weight) {
       list.add(Disc{center, radius, 0, paint.outline, paint.outline});

@@ -129,7 +129,7 @@ void draw_hands(const Stage& stage, const View& view, const sim::Snapshot& now, 
     for (const Point& p : coil_line(form, held, hand.at, zoom)) {
       nodes.push_back({p, width, stage.colours.spring});
     }
-    list.add(nodes, Cap::round);
+    list.add(nodes, Cap::round, Blend::over, false, winding(form, (hand.at - held).norm(), zoom));
     list.add(Disc{held, kJoint * weight, 0, stage.colours.spring, stage.colours.spring});
   }
   for (const Hand& hand : found) draw_pointer(hand.at, hand.alpha, weight, stage.colours, list);

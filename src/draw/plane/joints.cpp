@@ -209,6 +209,7 @@ void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, 
     const auto end = [&](double limit) { return std::clamp(limit * view.scale, -kFar, kFar); };
     const Point from = home + end(joint.lower) * along, to = home + end(joint.upper) * along;
     const double width = kSpringLine * weight;
+    list.of({Subject::What::joint, int(i)});
     list.add({{from, width, color}, {to, width, color}}, Cap::butt);
     for (const auto& [limit, at] : {std::pair(joint.lower, from), std::pair(joint.upper, to)}) {
       if (std::abs(limit) * view.scale >= kFar) continue;
@@ -238,6 +239,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
     } else {
       nodes = {{a, width, color}, {b, width, color}};
     }
+    list.of({Subject::What::joint, int(i)});
     list.add(nodes, Cap::round);
   }
   // made fast to the room, or to a point of a body
@@ -247,6 +249,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
     for (const auto& [body, at] :
          {std::pair(joint.a, now.joints[i].a), std::pair(joint.b, now.joints[i].b)}) {
       const double radius = (body < 0 ? kPin : kJoint) * weight;
+      list.of({Subject::What::joint, int(i)});
       if (body < 0 || stage.solid(body)) list.add(Disc{view.page(at), radius, 0, color, color});
     }
   }
@@ -262,6 +265,7 @@ void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now
     nodes.clear();
     for (const Vec3& at : rope_way(stage.cast, i, now))
       nodes.push_back({view.page(at), kRope * weight, color});
+    list.of({Subject::What::joint, int(i)});
     list.add(nodes, Cap::round);
     // made fast to the room or to a body, or led around a point of one
     for (const sim::SceneInfo::Joint::Place& at : joint.places) {
@@ -282,6 +286,7 @@ void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, L
     const double radius = std::max(std::min(kPin * weight, 0.7 * room_for(stage, view, joint)), 1.6 * weight);
     if (outside(view.window, at, radius)) continue;
     // a ring; filled where it is fast to the room
+    list.of({Subject::What::joint, int(i)});
     const bool fast = joint.b < 0;
     const Color color = stage.colours.spring;
     list.add(Disc{at, radius, 0.38 * radius, fast ? color : stage.colours.room, color});

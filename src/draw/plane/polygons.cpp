@@ -123,6 +123,7 @@ void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& no
     const sim::SceneInfo::Body& info = stage.cast.bodies[i];
     const sim::Snapshot::Body& body = now.bodies[i];
     const Paint& paint = stage.paints[i];
+    list.of({Subject::What::body, i});
     std::vector<Part> parts = info.parts;
     if (info.kind == sim::ShapeKind::polygon)
       parts.push_back({sim::ShapeKind::polygon, 0, sim::Vec3::Zero(), sim::Vec3::Zero(), info.vertices});

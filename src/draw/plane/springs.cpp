@@ -78,6 +78,11 @@ std::vector<Point> coil_line(const Coil& coil, const Point& a, const Point& b, d
   return line;
 }
 
+Winding winding(const Coil& coil, double length, double zoom) {
+  if (coil.turns == 0 || length < 1e-6) return {};
+  return {coil.turns, lead(coil, length), amplitude(coil, length, zoom)};
+}
+
 void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool solids, List& list) {
   const double zoom = view.scale / stage.layout.scale, weight = stage.layout.weight;
   std::vector<Node> nodes;
@@ -86,14 +91,17 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
     const Point a = view.page(now.springs[i].a), b = view.page(now.springs[i].b);
     const Coil& form = stage.coils[i];
     nodes.clear();
+    list.of({Subject::What::spring, int(i)});
+    Winding winding;
     if (form.turns == 0) {
       const double width = std::min(kNetLine * weight, std::max(0.9 * weight, 0.09 * form.rest * zoom));
       nodes = {{a, width, stage.colours.spring}, {b, width, stage.colours.spring}};
     } else {
       const double width = line_width(form, (b - a).norm(), zoom);
       for (const Point& p : coil_line(form, a, b, zoom)) nodes.push_back({p, width, stage.colours.spring});
+      winding = draw::winding(form, (b - a).norm(), zoom);
     }
-    list.add(nodes, Cap::round);
+    list.add(nodes, Cap::round, Blend::over, false, winding);
   }
 
   // made fast to the room or a body that turns; a particle covers the end itself
@@ -105,6 +113,7 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = stage.cast.springs[i];
     if (holds_solid(stage, spring) != solids) continue;
+    list.of({Subject::What::spring, int(i)});
     joint(spring.a, view.page(now.springs[i].a), stage.coils[i]);
     joint(spring.b, view.page(now.springs[i].b), stage.coils[i]);
   }

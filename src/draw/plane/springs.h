@@ -28,4 +28,7 @@ double line_width(const Coil& coil, double length, double zoom);
 /// spring.
 std::vector<Point> coil_line(const Coil& coil, const Point& a, const Point& b, double zoom);
 
+/// What the line of coil_line follows from, besides its ends.
+Winding winding(const Coil& coil, double length, double zoom);
+
 }  // namespace obscura::draw

@@ -164,10 +164,12 @@ void draw_still(const Stage& stage, const View& view, List& list) {
     const std::vector<HalfPlane> walls = half_planes(stage.cast, view);
     const Convex room = cut_all(page, walls, -kWallLine * weight / 2);
     if (stage.layout.clipped) list.clip(w);
+    list.of({Subject::What::layer, 0});
     if (!(stage.colours.room == stage.colours.ground)) list.add(room.outline(), stage.colours.room);
     if (stage.look.hatching) hatch(walls, view, page, weight, stage.colours.hatch, list);
     if (!room.empty()) draw_walls(room, kWallLine * weight, stage.colours.wall, list);
     list.unclip();
+    list.of({});
 
     // a thin line marks where the strip cuts the room
     if (stage.layout.clipped && stage.layout.caption) {

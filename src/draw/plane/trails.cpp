@@ -101,15 +101,23 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
       chosen.emplace_back(k, cusp);
     }
 
+    list.of({Subject::What::trail, int(i)});
+    Trail trail;
+    trail.begin = int(list.strokes.size());
+    trail.now = now.time, trail.lasting = lasting, trail.widest = widest;
+    trail.strong = strong, trail.faint = stage.colours.room;
+    trail.origin = view.origin, trail.scale = view.scale;
+    trail.subject = {Subject::What::trail, int(i), list.part};
     line.clear();
     for (const auto& [k, cusp] : chosen) {
       const bool last = k + 1 == way.size();
       Node next = node(way[k]);
       if (!line.empty() && (next.at - line.back().at).norm() < kClose) {
-        if (last && line.size() > 1) line.back() = next;
+        if (last && line.size() > 1) line.back() = next, trail.way.back() = {way[k].time, next.at, false};
         continue;
       }
       line.push_back(next);
+      trail.way.push_back({way[k].time, next.at, cusp && !last});
       // a bounce is a corner with round ends, not a mitre
       if (cusp && !last) {
         list.add(line, Cap::round, blend);
@@ -117,7 +125,10 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
       }
     }
     list.add(line, Cap::round, blend);
+    trail.end = int(list.strokes.size());
+    if (trail.end > trail.begin) list.trails.push_back(std::move(trail));
   }
+  list.of({});
 }
 
 }  // namespace obscura::draw

@@ -184,6 +184,7 @@ std::vector<Vec3> outline(const CameraProjection& lens, const Vec3& a, const Vec
 }  // namespace
 
 void add_ball(SpaceFrame& s, const Vec3& center, double radius, Color color, int number) {
+  if (number >= int(s.stage.pieces.size())) s.solids.balls.push_back({center, radius, color});
   if (!in_window(s.lens, center, radius) || s.lens.depth(center) < 1e-3) return;
   begin(s, center, radius, number);
   add_cap(s, center, radius, color);
@@ -192,8 +193,11 @@ void add_ball(SpaceFrame& s, const Vec3& center, double radius, Color color, int
                    center, radius, number);
 }
 
-void add_tube(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color color, int number) {
+void add_tube(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color color, int number,
+              const Solids::Tube* coil) {
   if (way.size() < 2) return;
+  if (number >= int(s.stage.pieces.size()))
+    s.solids.tubes.push_back(coil ? *coil : Solids::Tube{way, radius, color});
   Vec3 low = way[0], high = way[0];
   for (const Vec3& p : way) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const Vec3 center = (low + high) / 2;
@@ -254,6 +258,10 @@ void add_bodies(SpaceFrame& s) {
 void trace(SpaceFrame& s, const std::vector<Vec3>& way, bool closed, int own, int too, double width,
            Color color, std::span<const Vec3> faces) {
   if (way.size() < 2) return;
+  if (own < 0) {
+    s.solids.lines.push_back({way, width / 2, color});
+    if (closed) s.solids.lines.back().way.push_back(way.front());
+  }
   HiddenLines::Parts parts;
   std::vector<Trace> found;
   Trace line;
@@ -357,6 +365,7 @@ void add_brackets(SpaceFrame& s) {
   const auto add = [&](const Vec3& at) {
     const Vec3 center = at + thick * up;
     const double reach = 2 * half;
+    if (!held(at)) s.solids.plates.push_back({center, half, thick});
     if (held(at) || !in_window(s.lens, center, reach) || s.lens.depth(center) < 1e-2) return;
     const Polyhedron plate = box({half, thick, half}).placed(turn, center);
     begin(s, center, reach, -1);

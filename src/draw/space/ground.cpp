@@ -162,11 +162,13 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
   for (std::size_t i = 0; i < lenses.size(); ++i) {
     const CameraProjection& lens = lenses[i];
     list.clip(lens.window);
+    list.of(kSeenLines);
     const bool above =
         stage.ground &&
         stage.ground->normal.dot(lens.perspective() ? Vec3(lens.eye() - stage.ground->point) : lens.back) > 0;
     if (above && stage.look.ground) draw_grid(stage, lens, list);
     draw_frame(stage, lens, true, list);
+    list.of({});
     list.unclip();
     for (const Text& text : stage.panels[i].words) list.add(text);
   }
@@ -175,6 +177,7 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
 }
 
 void draw_room_front(const SpaceStage& stage, const CameraProjection& lens, List& list) {
+  list.of(kSeenLines);
   draw_frame(stage, lens, false, list);
 }
 

@@ -20,6 +20,7 @@ constexpr double kStep = 14, kWayDot = 2.1;
 }  // namespace
 
 void trace_trails(SpaceFrame& s, Ways ways) {
+  s.list.of(kSeenLines);
   const SpaceStage& stage = s.stage;
   const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
   HiddenLines::Parts parts;
@@ -57,6 +58,10 @@ void trace_trails(SpaceFrame& s, Ways ways) {
       before = k;
       chosen.push_back(way[k]);
     }
+    Solids::Way seen{int(i), s.now.time, lasting, kTrailLine * stage.layout.weight, strong, stage.colours.room,
+                     {}, {}};
+    for (const sim::Track::Point& p : chosen) seen.places.push_back(p.place), seen.times.push_back(p.time);
+    s.solids.ways.push_back(std::move(seen));
 
     std::vector<Node> line;
     const auto flush = [&] {
@@ -88,6 +93,7 @@ void trace_trails(SpaceFrame& s, Ways ways) {
 }
 
 void trace_paths(SpaceFrame& s, std::span<const WorldLine> paths, bool front) {
+  s.list.of({Subject::What::layer, front ? 1 : 0});
   const SpaceStage& stage = s.stage;
   const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
   HiddenLines::Parts parts;
@@ -135,10 +141,12 @@ void draw_space_arrows(SpaceFrame& s) {
   // the lines that are seen, the farthest first
   std::stable_sort(s.lines.begin(), s.lines.end(),
                    [](const Trace& a, const Trace& b) { return a.near < b.near; });
+  s.list.of(kSeenLines);
   for (const Trace& line : s.lines) s.list.add(line.nodes, Cap::round, Blend::over, line.closed);
 
   const SpaceStage& stage = s.stage;
   const double weight = stage.layout.weight;
+  s.list.of({Subject::What::layer, 2});
   std::vector<Arrow> arrows;
   const auto arrow = [&](const Vec3& tail, const Vec3& tip) {
     if (s.lens.depth(tail) < 1e-2 || s.lens.depth(tip) < 1e-2) return;
@@ -147,6 +155,7 @@ void draw_space_arrows(SpaceFrame& s) {
   for (const Push& push : pushes(stage.cast, stage.look, s.now))
     arrow(push.point, push.point + stage.force_scale * push.force);
   draw_arrows(arrows, weight, stage.colours.room, stage.colours.force, s.list);
+  s.list.of({Subject::What::layer, 3});
   arrows.clear();
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
     if (!stage.look.bodies[i].velocity) continue;
@@ -159,6 +168,7 @@ void draw_space_arrows(SpaceFrame& s) {
 void draw_space_hands(SpaceFrame& s) {
   const SpaceStage& stage = s.stage;
   if (!stage.look.pointer) return;
+  s.list.of({Subject::What::layer, 5});
   const double weight = stage.layout.weight;
   for (std::size_t i = 0; i < s.now.mice.size() && i < stage.cast.mice.size(); ++i) {
     const sim::SceneInfo::Mouse& mouse = stage.cast.mice[i];

@@ -64,7 +64,8 @@ void add_coil(SpaceFrame& s, const Coil& form, const Vec3& a, const Vec3& b, int
   const double whole = amplitude(form, length * page, s.zoom);
   const double wide = whole * std::clamp(seen / (kEndOn * whole), kNarrow, 1.0) / page;
   const std::vector<Vec3> way = helix(form, a, b, wire, wide);
-  add_tube(s, way, wire, s.stage.colours.spring, number);
+  const Solids::Tube coil{{a, b}, wire, s.stage.colours.spring, {form.turns, 0, whole}};
+  add_tube(s, way, wire, s.stage.colours.spring, number, &coil);
   if (length < 1e-9) return;
   // its leads, and what it winds around, of which its wire covers a part
   double wound = 0;

@@ -252,6 +252,8 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
                        {},
                        {}};
     scenery.solids.window = panel.window;
+    scenery.solids.lens = lens;
+    picture.moving.part = int(i);
     picture.moving.clip(panel.window);
     // first the hiding bodies, then the lines
     add_bodies(scenery);
@@ -266,15 +268,20 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     draw_room_front(stage, lens, picture.moving);
     draw_space_arrows(scenery);
     trace_paths(scenery, paths, true);
+    picture.moving.of({Subject::What::layer, 4});
     draw_space_labels(scenery);
     draw_space_hands(scenery);
+    picture.moving.of({});
     picture.moving.unclip();
     picture.solids.push_back(std::make_shared<const Solids>(std::move(scenery.solids)));
   }
+  picture.moving.part = 0;
   if (stage.layout.caption && stage.look.clock) {
     Text clock = stage.layout.clock;
     clock.spans[0].text = clock_text(frame.time);
+    picture.moving.of({Subject::What::page, 1});
     picture.moving.add(clock);
+    picture.moving.of({});
   }
   return picture;
 }

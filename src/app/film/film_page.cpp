@@ -1,0 +1,298 @@
+#include "app/film/film_page.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/console/exit.h"
+#include "app/console/interrupt.h"
+#include "app/console/memory.h"
+#include "app/film/frame_painter.h"
+#include "app/film/space_page.h"
+#include "app/film/subtitles.h"
+#include "app/run/description.h"
+#include "app/run/origin.h"
+#include "app/run/plots.h"
+#include "app/run/simulation.h"
+#include "app/run/trouble.h"
+#include "media/error.h"
+#include "media/file.h"
+#include "page/html.h"
+#include "scene/complaints.h"
+
+namespace obscura::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kPlaceBound = 2e-4, kSpeedBound = 1e-3;  // of a body's numbers: m, or of the room's; m/s
+constexpr double kAngleBound = 1e-3, kTimeBound = 2e-6;   // rad, s
+constexpr double kPlotBound = 1e-3;                       // of an axis
+
+std::string css(draw::Color c) { return fmt::format("rgb({},{},{})", c.r, c.g, c.b); }
+
+const char* kind_of(sim::ShapeKind kind) {
+  switch (kind) {
+    case sim::ShapeKind::point:
+      return "particle";
+    case sim::ShapeKind::ball:
+      return "ball";
+    case sim::ShapeKind::box:
+      return "box";
+    case sim::ShapeKind::capsule:
+      return "capsule";
+    default:
+      return "body";
+  }
+}
+
+// What a page says of a run besides its pictures, frame by frame.
+class PageNumbers {
+ public:
+  PageNumbers(const std::vector<draw::Illustrator>& artists, const Ahead& ahead, page::Reel& reel);
+  void add(const FilmSegment& take, std::size_t frame);
+  Json bodies() const { return bodies_; }
+  Json charts() const { return charts_; }
+  int time() const { return time_; }
+
+ private:
+  struct Body {
+    std::size_t run, index;
+    int first;  // of its numbers
+    bool angle;
+  };
+  struct Line {
+    std::size_t run;
+    draw::Measured::Line line;
+    int number;
+  };
+
+  const std::vector<draw::Illustrator>& artists_;
+  page::Reel& reel_;
+  int dimension_;
+  int time_;
+  std::vector<Body> tracked_;
+  std::vector<Line> lines_;
+  Json bodies_ = Json::array(), charts_ = Json::array();
+};
+
+PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, const Ahead& ahead, page::Reel& reel)
+    : artists_(artists), reel_(reel), dimension_(artists.front().scene_info().dimension) {
+  time_ = reel.number(kTimeBound);
+  for (std::size_t run = 0; run < artists.size(); ++run) {
+    const sim::SceneInfo& cast = artists[run].scene_info();
+    const double length = kPlaceBound * std::max(cast.scale, 1e-6);
+    for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
+      const sim::SceneInfo::Body& body = cast.bodies[i];
+      if (body.bare) continue;
+      Json each{{"name", scene::one_line(body.name)}, {"part", run}, {"index", i}, {"kind", kind_of(body.kind)}};
+      Body its{run, i, -1, dimension_ == 2 && body.turns};
+      Json place = Json::array(), velocity = Json::array();
+      for (int k = 0; k < dimension_; ++k) place.push_back(reel.number(length));
+      for (int k = 0; k < dimension_; ++k)
+        velocity.push_back(reel.number(kSpeedBound * std::max(cast.scale, 1e-6)));
+      its.first = place[0];
+      each["place"] = place, each["velocity"] = velocity;
+      if (its.angle) each["angle"] = reel.number(kAngleBound);
+      if (body.turns) each["spin"] = reel.number(kSpeedBound);
+      if (body.fixed)
+        each["fixed"] = true;
+      else
+        each["mass"] = body.mass;
+      tracked_.push_back(its);
+      bodies_.push_back(std::move(each));
+    }
+  }
+  for (const draw::Charts::Shown& shown : ahead.charts.shown()) {
+    const draw::PlotArea& area = shown.area;
+    const bool over_time = shown.chart.against.empty();
+    Json each{{"left", area.left}, {"right", area.right}, {"top", area.top}, {"bottom", area.bottom},
+              {"first", area.first}, {"last", area.last}, {"low", area.low},
+              {"high", area.high}, {"time", over_time && !area.log}};
+    Json lines = Json::array();
+    const std::vector<draw::Measured::Line> measured = shown.chart.lines();
+    for (std::size_t i = 0; i < shown.plot.lines.size(); ++i) {
+      const std::size_t run = i / measured.size();
+      const draw::Measured::Line& line = measured[i % measured.size()];
+      const sim::SceneInfo& cast = artists[run].scene_info();
+      std::string name(line.measure->name);
+      if (line.body >= 0) name += " of " + scene::one_line(cast.bodies[std::size_t(line.body)].name);
+      if (artists.size() > 1 && ahead.runs) name = (*ahead.runs)[run].look.name + ": " + name;
+      const int number = reel.number(kPlotBound * std::max(area.high - area.low, 1e-12));
+      lines_.push_back({run, line, number});
+      lines.push_back({{"name", name},
+                       {"unit", line.measure->unit ? line.measure->unit : ""},
+                       {"color", css(shown.plot.lines[i].color)},
+                       {"number", number}});
+    }
+    each["lines"] = lines;
+    charts_.push_back(std::move(each));
+  }
+}
+
+void PageNumbers::add(const FilmSegment& take, std::size_t frame) {
+  reel_.put(time_, sim::value(take.shots[frame].time));
+  for (const Body& each : tracked_) {
+    const sim::Snapshot::Body& now = take.run(each.run).moments[frame].bodies[each.index];
+    int number = each.first;
+    for (int k = 0; k < dimension_; ++k) reel_.put(number++, now.position[k]);
+    for (int k = 0; k < dimension_; ++k) reel_.put(number++, now.velocity[k]);
+    if (each.angle) reel_.put(number++, now.angle);
+    if (artists_[each.run].scene_info().bodies[each.index].turns)
+      reel_.put(number, dimension_ == 2 ? now.spin.z() : now.spin.norm());
+  }
+  for (const Line& each : lines_)
+    reel_.put(each.number,
+              each.line.at(artists_[each.run].scene_info(), take.run(each.run).moments[frame]));
+}
+
+Json events_of(const scene::Scene& scene, const std::vector<Happening>& events) {
+  Json all = Json::array();
+  for (const Happening& each : events) {
+    const double film = sim::value(scene.film.speed.film(sim::rational(std::llround(each.time * 1e6), 1'000'000)));
+    all.push_back({{"time", each.time}, {"film", film}, {"text", each.text}});
+  }
+  return all;
+}
+
+}  // namespace
+
+struct PageFilm::Making {
+  Making(const scene::Scene& as_filmed, const Shots& wanted)
+      : scene(without_shutter(as_filmed)),
+        blurred(as_filmed.film.shutter > 0),
+        shots(wanted),
+        ahead(app::ahead(scene)),
+        simulation(scene, shots, ahead, {.frames = 1}),
+        artist(scene, ahead),
+        numbers(artist.artists(), ahead, reel) {
+    // of several runs in space the page has the pictures' lines alone
+    if (artist.artists().size() == 1 && artist.artists().front().space())
+      space.emplace(*artist.artists().front().space(), reel);
+    origin = origin_of(as_filmed);
+    origin.shots = shots.text(), origin.shot = shots[0], origin.encoder = "html";
+  }
+  static scene::Scene without_shutter(scene::Scene scene) {
+    scene.film.shutter = 0;
+    return scene;
+  }
+
+  scene::Scene scene;
+  bool blurred;
+  Shots shots;
+  Ahead ahead;
+  Simulation simulation;
+  FramePainter artist;
+  page::Reel reel;
+  PageNumbers numbers;
+  std::optional<SpacePage> space;
+  Origin origin;
+  std::optional<Checksums> states;
+  double aspect = 1;
+  draw::Color ground{};
+  std::optional<Story> story;
+};
+
+PageFilm::PageFilm(const scene::Scene& scene, const Shots& shots) {
+  if (scene.dimension() == 3 && !scene.film.vary.empty())
+    throw UsageError(fmt::format("{}: a page of several runs in space is not made yet", scene.file));
+  making_ = std::make_unique<Making>(scene, shots);
+}
+PageFilm::~PageFilm() = default;
+
+bool PageFilm::next() {
+  Making& m = *making_;
+  const auto take = m.simulation.next();
+  if (!take) return false;
+  const draw::Picture picture = m.artist.frame(*take, 0);
+  if (!m.states) {
+    m.aspect = picture.aspect, m.ground = picture.ground;
+    m.states.emplace(m.shots.size(), take->all_bodies(0).bodies.size());
+    m.origin.state = take->states[0];
+  }
+  m.states->add(m.reel.frames(), take->states[0], take->all_bodies(0));
+  m.reel.add(picture);
+  m.numbers.add(*take, 0);
+  if (m.space) m.space->add(take->moments[0], picture);
+  return true;
+}
+
+std::int64_t PageFilm::frames() const { return making_->reel.frames(); }
+
+const std::optional<sim::Trouble>& PageFilm::trouble() const { return making_->simulation.trouble(); }
+
+std::string PageFilm::html(bool watched) {
+  Making& m = *making_;
+  const scene::Scene& scene = m.scene;
+  const bool whole = frames() == m.shots.size();
+  m.origin.frames = frames();
+  m.origin.states = m.states;
+  if (whole) m.origin.states->close();
+  page::FilmPage out;
+  out.title = scene.look.title.empty() ? scene.name : scene.look.title;
+  out.dark = scene.look.theme == draw::Theme::screen;
+  out.watched = watched;
+  out.generator = "obscura " OBSCURA_VERSION;
+  out.origin = m.origin.tags(scene.look.title).at("obscura");
+  // what happens is told of a whole run
+  if (whole && !m.story) m.story = app::story(scene);
+  if (m.story) out.sentences = m.story->sentences;
+  out.footer = fmt::format("Made by obscura {} from {}; `obscura verify` makes it again.", OBSCURA_VERSION,
+                           m.origin.scene_file);
+  Json& film = out.film;
+  film["title"] = out.title;
+  film["aspect"] = m.aspect;
+  film["ground"] = {m.ground.r, m.ground.g, m.ground.b};
+  film["theme"] = out.dark ? "screen" : "paper";
+  film["fps"] = sim::value(m.shots.fps());
+  film["dimension"] = scene.dimension();
+  film["time"] = m.numbers.time();
+  if (!whole) film["of"] = m.shots.size();
+  film["windows"] = Json::array();
+  for (const draw::Rect& w : m.artist.windows()) film["windows"].push_back({w.x, w.y, w.width, w.height});
+  film["bodies"] = m.numbers.bodies();
+  film["charts"] = m.numbers.charts();
+  if (m.space) film["space"] = m.space->json();
+  film["events"] = events_of(scene, m.story ? m.story->events : std::vector<Happening>());
+  film["captions"] = Json::array();
+  for (const media::TextCue& cue : subtitles(scene, m.shots, frames()).captions)
+    film["captions"].push_back({{"from", cue.begin}, {"to", cue.end}, {"text", cue.text}});
+  film["exact"] = fmt::format(
+      "In each of its {} frames, {:g} a second, what moves is drawn within {} px, of 1080, of where the run has it; "
+      "between frames it is in between.{}{}",
+      frames(), sim::value(m.shots.fps()), page::kReelBound,
+      m.space ? " Bodies in space are lit and hidden by WebGL: edges and shadows are softer or harder by some pixels "
+                "than in the movie."
+              : "",
+      m.blurred ? " The movie has motion blur, which this page leaves out." : "");
+  page::Reel so_far = m.reel;
+  return page::html(out, so_far);
+}
+
+int film_page(const scene::Scene& scene, const Shots& shots, const std::string& path,
+              const FilmOptions& options) {
+  if (!options.overwrite && std::filesystem::exists(path))
+    throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", path));
+  media::make_folder_of(path);
+  PageFilm film(scene, shots);
+  Progress progress(options.progress, path, shots.size(), 1 / sim::value(shots.fps()));
+  while (film.next()) {
+    if (interrupted()) return kInterrupted;
+    progress.at(film.frames());
+  }
+  if (film.trouble()) throw TroubleError(scene.file, *film.trouble(), "");
+  if (interrupted()) return kInterrupted;
+  const std::string text = film.html();
+  media::File file(path);
+  file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  file.place(false);
+  progress.finish(film.frames(),
+                  fmt::format("{}: {} frames at {:g} a second, {}", path, film.frames(), sim::value(shots.fps()),
+                              bytes_text(double(text.size()))),
+                  true);
+  return kDone;
+}
+
+}  // namespace obscura::app

@@ -1,0 +1,96 @@
+// Triangles of bodies in space, each corner as a centre, a normal, and how far along it the corner lies.
+
+import { cross, dot, plus, sub, unit } from "./lens.js";
+
+export const CORNER = 9;  // numbers: centre, normal, radius (negative: page units), body, thickness near the ground
+
+const SIDES = 8;     // of a tube
+const COIL_NODES = 14;    // of a coil's turn, as in draw/space/links.cpp
+const LEAVES = 0.5;  // turns over which it leaves its axis
+
+/** Corners that come to be triangles. */
+export class Mesh {
+  constructor() {
+    /** @type {number[]} */
+    this.corners = [];
+    /** @type {number[]} */
+    this.colors = [];  // one a corner, 0xRRGGBB
+  }
+
+  add(center, normal, radius, body, least, color) {
+    this.corners.push(center[0], center[1], center[2], normal[0], normal[1], normal[2], radius, body, least);
+    this.colors.push(color);
+  }
+
+  get count() {
+    return this.colors.length;
+  }
+
+  /** A polyhedron's faces. */
+  flat(shape, body, least, color) {
+    const at = (/** @type {number} */ i) => shape.vertices.slice(3 * i, 3 * i + 3);
+    shape.faces.forEach((/** @type {number[]} */ loop, /** @type {number} */ f) => {
+      const n = shape.normals.slice(3 * f, 3 * f + 3);
+      for (let i = 2; i < loop.length; ++i)
+        for (const v of [loop[0], loop[i - 1], loop[i]]) this.add(at(v), n, 0, body, least, color);
+    });
+  }
+
+  /** A ball, or the half of one that looks along `axis` from `from` (cosine). */
+  ball(center, radius, body, least, color, around) {
+    const rings = around / 2;
+    const normal = (/** @type {number} */ r, /** @type {number} */ k) => {
+      const polar = Math.PI * r / rings, turn = 2 * Math.PI * k / around;
+      return [Math.sin(polar) * Math.cos(turn), Math.cos(polar), Math.sin(polar) * Math.sin(turn)];
+    };
+    for (let r = 0; r < rings; ++r)
+      for (let k = 0; k < around; ++k)
+        for (const [dr, dk] of [[0, 0], [0, 1], [1, 1], [0, 0], [1, 1], [1, 0]])
+          this.add(center, normal(r + dr, k + dk), radius, body, least, color);
+  }
+
+  /** A tube without ends along places. */
+  tube(way, radius, body, least, color, sides = SIDES) {
+    /** @type {number[] | null} */
+    let side = null;
+    /** @type {number[][] | null} */
+    let before = null;
+    for (let i = 0; i < way.length; ++i) {
+      const along = unit(plus(i > 0 ? unit(sub(way[i], way[i - 1])) : [0, 0, 0],
+        i + 1 < way.length ? unit(sub(way[i + 1], way[i])) : [0, 0, 0]));
+      if (!side) side = unit(cross(along, Math.abs(along[1]) < 0.9 ? [0, 1, 0] : [1, 0, 0]));
+      side = unit(plus(side, along, -dot(side, along)));
+      const up = cross(along, side), ring = [];
+      for (let k = 0; k < sides; ++k) {
+        const a = 2 * Math.PI * k / sides;
+        ring.push(plus(plus([0, 0, 0], side, Math.cos(a)), up, Math.sin(a)));
+      }
+      for (let k = 0; before && k < sides; ++k) {
+        const l = (k + 1) % sides;
+        for (const [j, n] of /** @type {[number, number[]][]} */ ([[i - 1, before[k]], [i, ring[k]], [i, ring[l]], [i - 1, before[k]], [i, ring[l]], [i - 1, before[l]]]))
+          this.add(way[j], n, radius, body, least, color);
+      }
+      before = ring;
+    }
+  }
+}
+
+const smooth_end = (/** @type {number} */ u) => {
+  const s = Math.min(Math.max(u, 0), 1);
+  return s * s * (3 - 2 * s);
+};
+
+/** The wire of a coil from a to b. */
+export function helix(a, b, turns, wire, radius) {
+  const length = Math.hypot(...sub(b, a));
+  if (turns === 0 || length < 1e-9) return [a, b];
+  const d = unit(sub(b, a)), level = cross([0, 1, 0], d);
+  const u = Math.hypot(...level) > 0.05 ? unit(level) : unit(plus([1, 0, 0], d, -d[0])), v = cross(d, u);
+  const lead = Math.min(Math.min(Math.max(0.085 * length, 2 * wire), 14 * wire), 0.2 * length), way = [a];
+  for (let i = 0; i <= turns * COIL_NODES; ++i) {
+    const s = i / COIL_NODES, turn = 2 * Math.PI * s, high = radius * smooth_end(s / LEAVES) * smooth_end((turns - s) / LEAVES);
+    way.push(plus(plus(plus(a, d, lead + (length - 2 * lead) * s / turns), u, high * Math.cos(turn)), v, high * Math.sin(turn)));
+  }
+  way.push(b);
+  return way;
+}

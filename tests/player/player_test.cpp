@@ -1,0 +1,327 @@
+// The page that `obscura render SCENE -o page.html` writes, in a browser: what it shows against the pictures of
+// the same instants, what keys and pointers do, and that it keeps to itself.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+
+#include "app/program.h"
+#include "media/browser.h"
+#include "media/png.h"
+#include "needs.h"
+#include "player/tab.h"
+
+namespace obscura::app {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+const std::string kScenes = OBSCURA_SOURCE_DIR "/scenes/";
+
+std::vector<std::uint8_t> from_base64(const std::string& text) {
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t held = 0;
+  int bits = 0;
+  for (const char c : text) {
+    const std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const std::size_t at = letters.find(c);
+    if (at == letters.npos) continue;
+    held = held << 6 | std::uint32_t(at);
+    if ((bits += 6) >= 8) bytes.push_back(std::uint8_t(held >> (bits -= 8)));
+  }
+  return bytes;
+}
+
+class Player : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    browser_ = media::browser();
+    OBSCURA_NEEDS(browser_, "chromium-headless-shell");
+  }
+
+  /// Makes a page of a scene, and opens it.
+  void open(const std::string& scene, const std::string& flags = {}) {
+    const Outcome made = obscura("render " + scene + " -o page.html --progress none " + flags);
+    if (made.exit != 0) throw std::runtime_error(made.err);
+    url_ = "file://" + path("page.html");
+    tab_ = std::make_unique<Tab>(*browser_, folder_.string(), 960, 640);
+    tab_->open(url_);
+    tab_->value("obscura.then(() => 1)");
+  }
+
+  Tab::Json player(const std::string& does) {
+    return tab_->value("obscura.then((player) => { " + does + " })");
+  }
+  double frame() { return player("return player.frame;"); }
+
+  /// Its picture of a frame.
+  media::Image picture(double frame, int width, int height) {
+    const std::string url = player("player.pause(); player.picture.size(" + std::to_string(width) + ", " +
+                                   std::to_string(height) + "); player.frame = " + std::to_string(frame) +
+                                   "; player.draw(); return player.picture.canvas.toDataURL('image/png');");
+    const std::vector<std::uint8_t> bytes = from_base64(url.substr(url.find(',') + 1));
+    std::ofstream(path("seen.png"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    return media::read_png(path("seen.png")).image;
+  }
+
+  /// The films' pictures of some frames.
+  std::vector<media::Image> frames(const std::string& scene, const std::vector<int>& numbers, int width,
+                                   int height) {
+    std::string list;
+    for (const int n : numbers) list += (list.empty() ? "" : ",") + std::to_string(n);
+    const Outcome made = obscura("render " + scene + " -o frames/{frame}.png --progress none --size " +
+                                 std::to_string(width) + "x" + std::to_string(height) + " --frames " + list);
+    EXPECT_EQ(made.exit, 0) << made.err;
+    std::vector<media::Image> all;
+    for (const int n : numbers) all.push_back(media::read_png(path("frames/" + std::to_string(n) + ".png")).image);
+    return all;
+  }
+
+  std::optional<std::string> browser_;
+  std::string url_;
+  std::unique_ptr<Tab> tab_;
+};
+
+// How many pixels differ from all that the film's picture is up to half a pixel around them, by more than what
+// two ways of covering an edge's pixels do.
+int displaced(const media::Image& film, const media::Image& page) {
+  constexpr int kWays = 56;  // levels
+  int count = 0;
+  const auto level = [&](int x, int y, int c) {
+    x = std::clamp(x, 0, film.width - 1), y = std::clamp(y, 0, film.height - 1);
+    return int(film.row(y)[4 * x + c]);
+  };
+  for (int y = 0; y < film.height; ++y)
+    for (int x = 0; x < film.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        double low = 255, high = 0;
+        for (int j = -1; j <= 1; ++j)
+          for (int i = -1; i <= 1; ++i) {
+            const double v = (level(x, y, c) + level(x + i, y, c) + level(x, y + j, c) + level(x + i, y + j, c)) / 4.0;
+            low = std::min(low, v), high = std::max(high, v);
+          }
+        const int seen = page.row(y)[4 * x + c];
+        if (seen >= low - kWays && seen <= high + kWays) continue;
+        ++count;
+        break;
+      }
+  return count;
+}
+
+TEST_F(Player, ShowsThePicturesOfTheFilm) {
+  std::vector<int> numbers;
+  for (int i = 0; i < 20; ++i) numbers.push_back(i * 31 % 600);
+  const auto film = frames(kScenes + "room.toml", numbers, 960, 540);
+  open(kScenes + "room.toml");
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const media::Image page = picture(numbers[i], 960, 540);
+    EXPECT_EQ(displaced(film[i], page), 0) << "frame " << numbers[i];
+  }
+}
+
+TEST_F(Player, ShowsPlotsMarksAndCaptionsOfTheFilm) {
+  for (const char* scene : {"swing", "energy", "slope"}) {
+    const std::vector<int> numbers{0, 77, 190};
+    const auto film = frames(kScenes + scene + ".toml", numbers, 960, 540);
+    open(kScenes + scene + ".toml");
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const media::Image page = picture(numbers[i], 960, 540);
+      EXPECT_EQ(displaced(film[i], page), 0) << scene << " frame " << numbers[i];
+      }
+  }
+}
+
+TEST_F(Player, ShowsSeveralRunsBesideEachOther) {
+  const std::vector<int> numbers{150};
+  const auto film = frames(kScenes + "euler_and_rk4.toml", numbers, 960, 540);
+  open(kScenes + "euler_and_rk4.toml");
+  EXPECT_EQ(displaced(film[0], picture(150, 960, 540)), 0);
+}
+
+// Space is lit and hidden pixel by pixel: it looks alike, and bodies stand where they do.
+TEST_F(Player, ShowsSpaceAlike) {
+  const std::vector<int> numbers{30, 120};
+  const auto film = frames(kScenes + "crate.toml", numbers, 640, 360);
+  open(kScenes + "crate.toml");
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const media::Image page = picture(numbers[i], 640, 360);
+    double sum = 0;
+    for (std::size_t k = 0; k < page.pixels.size(); ++k) sum += std::abs(page.pixels[k] - film[i].pixels[k]);
+    EXPECT_LT(sum / double(page.pixels.size()), 0.8) << "levels, on the average";
+    EXPECT_LT(displaced(film[i], page), 0.003 * 640 * 360);
+  }
+}
+
+TEST_F(Player, KeysAndButtonsMoveTheFilm) {
+  open(kScenes + "cradle.toml");
+  EXPECT_EQ(frame(), 0);
+  tab_->press("ArrowRight");
+  tab_->press("ArrowRight");
+  EXPECT_EQ(frame(), 2);
+  tab_->press("ArrowLeft");
+  EXPECT_EQ(frame(), 1);
+  tab_->press("ArrowRight", "", 8);
+  EXPECT_EQ(frame(), 61) << "with Shift a second";
+  tab_->press("End");
+  EXPECT_EQ(frame(), double(player("return player.last;")));
+  tab_->press("Home");
+  EXPECT_EQ(frame(), 0);
+  tab_->press("n", "n");
+  const double event = player("return player.film.events[0].film * player.film.fps;");
+  EXPECT_NEAR(frame(), event, 1e-9) << "the first event";
+  tab_->press(" ", " ");
+  EXPECT_TRUE(bool(player("return player.playing;")));
+  tab_->press(" ", " ");
+  EXPECT_FALSE(bool(player("return player.playing;")));
+  tab_->press("]", "]");
+  EXPECT_EQ(double(player("return player.rate;")), 2);
+  tab_->press("l", "l");
+  EXPECT_EQ(tab_->value("document.getElementById('loop').getAttribute('aria-pressed')"), "true");
+  tab_->value("document.getElementById('on').click()");
+  tab_->value("(() => { const s = document.getElementById('scrub'); s.value = 42; s.dispatchEvent(new Event('input')); })()");
+  EXPECT_EQ(frame(), 42);
+  EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+}
+
+TEST_F(Player, PlaysAndBeginsAgain) {
+  open(kScenes + "cradle.toml", "--to 0.2");
+  player("player.loop(); player.speed(4); player.play(); return 1;");
+  // it has begun again when it is at an earlier frame than before
+  const bool again = player(
+      "return new Promise((done) => { let before = -1; const look = () => { if (player.frame < before) return done(true); "
+      "before = player.frame; requestAnimationFrame(look); }; look(); });");
+  EXPECT_TRUE(again);
+  EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+}
+
+TEST_F(Player, PointingAtABodyTellsItsNameAndValues) {
+  open(kScenes + "bounce.toml");
+  const Tab::Json at = player(
+      "player.show(30); player.draw(); const body = player.film.bodies[0]; const disc = player.reel.things.find((t) => t.what "
+      "=== 3 && t.kind === 0 && t.index === body.index); disc.lives_at(30); const n = disc.numbers(30, []); const box = "
+      "player.picture.canvas.getBoundingClientRect(); return [box.left + n[0] * box.height / 1080, box.top + n[1] * "
+      "box.height / 1080, body.name];");
+  tab_->mouse("mouseMoved", at[0], at[1]);
+  const std::string tip = tab_->value(
+      "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => "
+      "done(document.getElementById('tip').textContent))))");
+  EXPECT_THAT(tip, HasSubstr(std::string(at[2])));
+  EXPECT_THAT(tip, HasSubstr("m/s"));
+  // half a second of free fall
+  EXPECT_THAT(tip, HasSubstr("4.9"));
+  EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+}
+
+TEST_F(Player, WheelAndFingersComeNearer) {
+  open(kScenes + "cradle.toml");
+  tab_->call("Input.dispatchMouseEvent",
+             {{"type", "mouseWheel"}, {"x", 300}, {"y", 200}, {"deltaX", 0}, {"deltaY", -200}});
+  EXPECT_GT(double(player("return player.picture.view.zoom;")), 1.1);
+  tab_->press("0", "0");
+  EXPECT_EQ(double(player("return player.picture.view.zoom;")), 1);
+  const auto touch = [&](const char* type, double apart) {
+    Tab::Json points = Tab::Json::array();
+    if (apart > 0) points = {{{"x", 400 - apart}, {"y", 200}, {"id", 1}}, {{"x", 400 + apart}, {"y", 200}, {"id", 2}}};
+    tab_->call("Input.dispatchTouchEvent", {{"type", type}, {"touchPoints", points}});
+  };
+  touch("touchStart", 40), touch("touchMove", 60), touch("touchMove", 80), touch("touchEnd", 0);
+  EXPECT_GT(double(player("return player.picture.view.zoom;")), 1.2);
+}
+
+TEST_F(Player, SpaceIsSeenFromAbove) {
+  open(kScenes + "crate.toml");
+  tab_->press("t", "t");
+  const double up = player("return player.picture.space.lenses(0)[0].back[1];");
+  EXPECT_NEAR(up, 1, 1e-6);
+  // what is pointed at is found where it is seen from there
+  const Tab::Json found = player(
+      "player.frame = 0; player.draw(); const s = player.picture.space, lens = s.lenses(0)[0]; const [x, y] = "
+      "lens.page(s.body(0).at); return s.body_at(x, y, 0);");
+  EXPECT_TRUE(found.is_array());
+  tab_->press("0", "0");
+  EXPECT_FALSE(bool(player("return player.picture.view.moved;")));
+  std::vector<std::string> said = tab_->complaints(url_);
+  // without a graphics card it says that reading from one is slow
+  std::erase_if(said, [](const std::string& each) { return each.find("GL Driver Message") != each.npos; });
+  EXPECT_THAT(said, IsEmpty());
+}
+
+TEST_F(Player, WordsOfASceneAreWords) {
+  std::ofstream(path("evil.toml")) << R"toml(
+title = "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"quoted\""
+duration = 0.1
+[room]
+size = [4, 3]
+[[ball]]
+radius = 0.2
+position = [2, 1.5]
+[[film.caption]]
+text = "<!-- --> </script><script>document.title='owned'</script>"
+)toml";
+  open(path("evil.toml"));
+  EXPECT_EQ(tab_->value("document.title"),
+            "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"quoted\"");
+  EXPECT_EQ(tab_->value("document.images.length"), 0);
+  EXPECT_EQ(tab_->value("document.scripts.length"), 1);
+  EXPECT_THAT(std::string(player("player.frame = 3; player.draw(); return document.getElementById('caption').textContent;")),
+              HasSubstr("</script>"));
+  EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+  // what the page may do is said in it, and nothing of elsewhere is in it
+  const std::string page = contents(path("page.html"));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(page, Not(HasSubstr("unsafe")));
+  EXPECT_FALSE(std::regex_search(page, std::regex("(src|href)=\"?(https?:)?//")));
+}
+
+TEST_F(Player, HasRolesForThoseWhoDoNotSeeIt) {
+  open(kScenes + "swing.toml");
+  EXPECT_EQ(tab_->value("document.getElementById('picture').getAttribute('role')"), "img");
+  EXPECT_GT(int(tab_->value("document.querySelectorAll('#story li').length")), 2);
+  EXPECT_EQ(tab_->value("[...document.querySelectorAll('button, select, input')].filter((e) => !(e.title || "
+                        "e.textContent.trim() || e.getAttribute('aria-label') || e.closest('label'))).length"),
+            0)
+      << "all controls have names";
+  const std::string time = player(
+      "player.show(60); player.draw(); return document.getElementById('scrub').getAttribute('aria-valuetext');");
+  EXPECT_THAT(time, HasSubstr("1.00 s"));
+  EXPECT_EQ(tab_->value("document.getElementById('caption').getAttribute('aria-live')"), "polite");
+}
+
+}  // namespace
+
+using PageFile = Program;
+
+TEST_F(PageFile, TenSecondsOfTheRoomAreSmall) {
+  const Outcome made = obscura("render " OBSCURA_SOURCE_DIR "/scenes/room.toml -o room.html --progress none");
+  ASSERT_EQ(made.exit, 0) << made.err;
+  EXPECT_LT(std::filesystem::file_size(path("room.html")), 500'000u);
+}
+
+TEST_F(PageFile, IsMadeAgainByVerify) {
+  ASSERT_EQ(obscura("render " OBSCURA_SOURCE_DIR "/scenes/cradle.toml -o cradle.html --to 1 --fps 30").exit, 0);
+  const Outcome still = obscura("verify cradle.html");
+  EXPECT_EQ(still.exit, 0) << still.out;
+  EXPECT_THAT(still.out, ::testing::HasSubstr("byte by byte"));
+  EXPECT_EQ(obscura("verify --states cradle.html").exit, 0);
+  std::string page = contents(path("cradle.html"));
+  page.replace(page.find("id=\"reel\">") + 40, 1, "!");
+  std::ofstream(path("cradle.html"), std::ios::binary) << page;
+  EXPECT_EQ(obscura("verify cradle.html").exit, 1);
+}
+
+TEST_F(PageFile, IsOfAFilm) {
+  const Outcome still = obscura("render " OBSCURA_SOURCE_DIR "/scenes/cradle.toml -o cradle.html --at 1");
+  EXPECT_EQ(still.exit, 2);
+  EXPECT_THAT(still.err, ::testing::HasSubstr("--at"));
+}
+
+}  // namespace obscura::app
