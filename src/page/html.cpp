@@ -31,8 +31,8 @@ constexpr std::string_view kOriginBefore = "<meta name=\"obscura\" content=\"";
 
 // the text of an attribute, the other way round
 std::string unescaped(std::string_view text) {
-  static const std::map<std::string_view, char> kNames{
-      {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&#39;", '\''}, {"&apos;", '\''}};
+  static const std::map<std::string_view, char> kNames{{"&amp;", '&'},  {"&lt;", '<'},   {"&gt;", '>'},
+                                                       {"&quot;", '"'}, {"&#39;", '\''}, {"&apos;", '\''}};
   std::string all;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::size_t end = text[i] == '&' ? text.find(';', i) : text.npos;
@@ -94,7 +94,8 @@ std::string words_page(const std::string& title, const std::vector<std::string>&
   static const std::string style =
       "body{font:15px/1.5 Inter,system-ui,sans-serif;margin:0;padding:2rem clamp(1rem,5vw,5rem)}"
       "body{color:#1f2328;background:#fff}[data-theme=screen]{color:#e8edf2;background:#0e1318}"
-      "h1{font-size:1.2rem}pre{font:14px/1.6 ui-monospace,monospace;white-space:pre-wrap;overflow-wrap:anywhere}";
+      "h1{font-size:1.2rem}pre{font:14px/1.6 "
+      "ui-monospace,monospace;white-space:pre-wrap;overflow-wrap:anywhere}";
   static const std::string script =
       "new EventSource('changes').addEventListener('message',e=>{"
       "if(e.data!==document.body.dataset.watched)location.reload()});";

@@ -21,12 +21,13 @@ using draw::Point;
 using Json = nlohmann::ordered_json;
 
 // bounds of the parts of a thing's place, whose sum is below kReelBound
-constexpr double kPlace = 0.06;    // each coordinate
-constexpr double kTurn = 0.04;     // what an angle moves the farthest point by, and what a scale does
-constexpr double kForm = 0.03;     // how far a form may be from one that only moves
-constexpr double kWidth = 0.03;    // of a line, a radius
-constexpr int kPoint = 64;         // steps a page unit of points that are written once
-constexpr int kLoose = 16;         // of those that are written each frame
+constexpr double kPlace = 1.0 / 16;    // each coordinate
+constexpr double kLetter = 1.0 / 128;  // of a line of type, which is rounded to pixels
+constexpr double kTurn = 0.04;         // what an angle moves the farthest point by, and what a scale does
+constexpr double kForm = 0.03;         // how far a form may be from one that only moves
+constexpr double kWidth = 1.0 / 32;    // of a line, a radius
+constexpr int kPoint = 64;             // steps a page unit of points that are written once
+constexpr int kLoose = 16;             // of those that are written each frame
 constexpr double kTrailScale = 2e-5;
 
 double wrapped_near(double angle, double before) {
@@ -48,13 +49,15 @@ struct Reel::Outline {
 };
 
 int Reel::color(draw::Color c) {
-  const std::uint32_t rgba = std::uint32_t(c.r) << 24 | std::uint32_t(c.g) << 16 | std::uint32_t(c.b) << 8 | c.a;
+  const std::uint32_t rgba =
+      std::uint32_t(c.r) << 24 | std::uint32_t(c.g) << 16 | std::uint32_t(c.b) << 8 | c.a;
   return colors_.emplace(rgba, int(colors_.size())).first->second;
 }
 
 int Reel::clip(const draw::Rect& r) {
   const auto whole = [](double x) { return int(std::lround(x * kPoint)); };
-  return clips_.emplace(std::array{whole(r.x), whole(r.y), whole(r.width), whole(r.height)}, int(clips_.size()))
+  return clips_
+      .emplace(std::array{whole(r.x), whole(r.y), whole(r.width), whole(r.height)}, int(clips_.size()))
       .first->second;
 }
 
@@ -74,7 +77,8 @@ int Reel::line(const draw::Text& text) {
     if (span.glyphs.empty()) continue;
     json += fmt::format("{}[{:.3f},{}", json.size() > 1 ? "," : "", span.size, color(span.color));
     for (const draw::Glyph& each : span.glyphs)
-      json += fmt::format(",{},{:.2f},{:.2f}", glyph(span.face, each.index), start + each.at.x(), each.at.y());
+      json +=
+          fmt::format(",{},{:.2f},{:.2f}", glyph(span.face, each.index), start + each.at.x(), each.at.y());
     json += "]";
   }
   json += "]";
@@ -133,7 +137,8 @@ bool Reel::add_rigid(Thing& it, const Outline& outline) {
   if (!(square > 1e-12)) return false;
   const std::complex<double> turn = across / square;
   for (std::size_t i = 0; i < n; ++i)
-    if (!(std::abs(turn * complex(it.points[i]) - complex(outline.points[i] - middle)) <= kForm)) return false;
+    if (!(std::abs(turn * complex(it.points[i]) - complex(outline.points[i] - middle)) <= kForm))
+      return false;
   const bool goes_on = !it.lives.empty() && it.lives.back().second == frames_;
   const double before = goes_on ? it.courses.back()[2].last() : 0;
   std::vector<double> numbers{middle.x(), middle.y(), wrapped_near(std::arg(turn), before), std::abs(turn)};
@@ -197,7 +202,8 @@ std::vector<int> Reel::loose_frame(const Outline& outline) {
   const auto whole = [](double x) { return int(std::lround(std::clamp(x, -1e6, 1e6) * kLoose)); };
   const bool plain = outline.plain();
   std::vector<int> all{int(outline.points.size()), plain ? 0 : 1};
-  for (std::size_t i = 0; i < (plain ? std::min<std::size_t>(outline.widths.size(), 1) : outline.widths.size()); ++i)
+  for (std::size_t i = 0;
+       i < (plain ? std::min<std::size_t>(outline.widths.size(), 1) : outline.widths.size()); ++i)
     all.push_back(int(std::lround(outline.widths[i] * kPoint)));
   for (std::size_t i = 0; i < (plain ? 1 : outline.colors.size()); ++i) all.push_back(outline.colors[i]);
   for (const Point& p : outline.points) all.push_back(whole(p.x())), all.push_back(whole(p.y()));
@@ -250,8 +256,9 @@ void Reel::add_outline(Thing& it, const Outline& outline) {
 void Reel::add_trail(Thing& it, const draw::Trail& trail) {
   if (it.lives.empty()) it.trail = trail;
   const double k = trail.scale / it.trail.scale;
-  // its ends lie between the points of its way
-  for (std::size_t i = 1; i + 1 < trail.way.size(); ++i) {
+  // its ends lie between the points of its way; but for the run's first
+  const bool cut = trail.way.front().time <= trail.now - trail.lasting + 1e-9;
+  for (std::size_t i = cut ? 1 : 0; i + 1 < trail.way.size(); ++i) {
     const draw::Trail::Point& p = trail.way[i];
     if (it.way.empty() || p.time > it.way.back().time)
       it.way.push_back({p.time, (p.at - trail.origin) / k, p.cusp});
@@ -298,8 +305,8 @@ void Reel::add(const draw::List& list, bool still) {
         case Kind::box: {
           const draw::Box& b = list.boxes[n];
           const bool goes_on = !it.lives.empty() && it.lives.back().second == frames_;
-          const double angle = wrapped_near(std::atan2(b.x_axis.y(), b.x_axis.x()),
-                                            goes_on ? it.courses.back()[2].last() : 0);
+          const double angle =
+              wrapped_near(std::atan2(b.x_axis.y(), b.x_axis.x()), goes_on ? it.courses.back()[2].last() : 0);
           const double reach = std::max(b.half.norm(), 1.0);
           live(it, {b.center.x(), b.center.y(), angle, b.half.x(), b.half.y(), b.line, b.axis, b.axis_line},
                {kPlace, kPlace, kTurn / reach, kWidth, kWidth, kWidth, kWidth, kWidth},
@@ -331,14 +338,15 @@ void Reel::add(const draw::List& list, bool still) {
         }
         case Kind::polygon: {
           const draw::Polygon& polygon = list.polygons[n];
-          for (int p = polygon.begin; p < polygon.end; ++p) outline.points.push_back(list.points[std::size_t(p)]);
+          for (int p = polygon.begin; p < polygon.end; ++p)
+            outline.points.push_back(list.points[std::size_t(p)]);
           outline.colors.assign(outline.points.size(), color(polygon.fill));
           add_outline(it, outline);
           break;
         }
         case Kind::text: {
           const draw::Text& text = list.texts[n];
-          live(it, {text.at.x(), text.at.y()}, {kPlace, kPlace}, {line(text)});
+          live(it, {text.at.x(), text.at.y()}, {kLetter, kLetter}, {line(text)});
           break;
         }
       }
@@ -376,7 +384,8 @@ void Reel::add(const draw::Solids& solids) {
     Thing& it = next(4, 0, 0, way.body);
     if (it.lives.empty())
       it.trail.lasting = way.lasting, it.trail.strong = way.strong, it.trail.faint = way.faint;
-    for (std::size_t i = 1; i + 1 < way.places.size(); ++i) {
+    const bool cut = way.times.front() <= way.now - way.lasting + 1e-9;
+    for (std::size_t i = cut ? 1 : 0; i + 1 < way.places.size(); ++i) {
       if (!it.way.empty() && way.times[i] <= it.way.back().time) continue;
       it.way.push_back({way.times[i], {0, 0}, false});
       it.places.push_back(way.places[i]);
@@ -533,7 +542,8 @@ std::string Reel::finish(Json& json) {
   json["things"] = std::move(things);
   std::string streams;
   Json sizes = Json::array();
-  for (const Numbers* each : {&keys_.starts, &keys_.gaps, &keys_.ends, &keys_.bends, &points_, &steps_, &loose_}) {
+  for (const Numbers* each :
+       {&keys_.starts, &keys_.gaps, &keys_.ends, &keys_.bends, &points_, &steps_, &loose_}) {
     sizes.push_back(each->bytes().size());
     streams += each->bytes();
   }

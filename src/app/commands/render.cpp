@@ -302,12 +302,13 @@ OBSCURA_COMMAND(10, render) {
   auto flags = std::make_shared<RenderFlags>();
   add_scene(command, flags->scene);
   command
-      .option("-o,--output", flags->out,
-              "The output; its form decides what is made: movie.mp4 (.mkv .mov .webm .gif), "
-              "frames/{frame:04}.png or "
-              "frames/%04d.png, pages.pdf (one a frame), page.html (plays in a browser, without a network), one "
-              "picture.png with --at, - for a stream. Left "
-              "out: render_out/SCENE.mp4")
+      .option(
+          "-o,--output", flags->out,
+          "The output; its form decides what is made: movie.mp4 (.mkv .mov .webm .gif), "
+          "frames/{frame:04}.png or "
+          "frames/%04d.png, pages.pdf (one a frame), page.html (plays in a browser, without a network), one "
+          "picture.png with --at, - for a stream. Left "
+          "out: render_out/SCENE.mp4")
       .type("OUT");
   add_sets(command, flags->sets);
   command.option("--camera", flags->camera, "Only this camera; -o '{camera}.mp4' writes a file for each")

@@ -328,7 +328,8 @@ OBSCURA_COMMAND(110, verify) {
   auto flags = std::make_shared<VerifyFlags>();
   command
       .option("FILE", flags->files,
-              "PNGs, movies and pages (.html) that obscura wrote; and, if they show another program's run, its table (.csv)")
+              "PNGs, movies and pages (.html) that obscura wrote; and, if they show another program's run, "
+              "its table (.csv)")
       .required();
   command.option("--scene", flags->scene, "Compare with this scene as it is now, not as it was")
       .type("SCENE");

@@ -103,8 +103,7 @@ class Watching {
     };
     scene::Scene scene = with_run_marks(scene::read(flags_.scene, flags_.sets));
     if (flags_.fps) scene.film.fps = parse_fps(*flags_.fps);
-    if (flags_.theme)
-      scene.look.theme = *flags_.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
+    if (flags_.theme) scene.look.theme = *flags_.theme == "screen" ? draw::Theme::screen : draw::Theme::paper;
     const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
     if (shots.size() == 0) throw UsageError(fmt::format("{}: a film of 0 s has no frames", scene.file));
     PageFilm film(scene, shots);
@@ -129,7 +128,8 @@ class Watching {
 int watch(const WatchFlags& flags) {
   if (flags.scene == "-") throw UsageError("watch needs a file that can be saved again");
   std::error_code none;
-  if (!fs::exists(flags.scene, none)) throw media::Error(fmt::format("{}: there is no such file", flags.scene));
+  if (!fs::exists(flags.scene, none))
+    throw media::Error(fmt::format("{}: there is no such file", flags.scene));
   PageServer server(flags.port);
   server.show(page::words_page(flags.scene, {"simulating ..."}));
   say(stdout, "http://localhost:{}/ shows {}; Ctrl-C ends\n", server.port(), flags.scene);
@@ -148,15 +148,18 @@ OBSCURA_COMMAND(15, watch) {
   auto flags = std::make_shared<WatchFlags>();
   add_scene(command, flags->scene);
   add_sets(command, flags->sets);
-  command.option("--port", flags->port, "The port of this machine to serve at [the first free one from 8765 on]")
+  command
+      .option("--port", flags->port, "The port of this machine to serve at [the first free one from 8765 on]")
       .range(1, 65535)
       .type("PORT");
   command.option("--fps", flags->fps, "Frames per second, as 30 or 30000/1001 [film.fps]").type("RATE");
   command.option("--theme", flags->theme, "The look [look.theme]").one_of({"paper", "screen"});
   add_memory_limit(command);
   command.footer(
-      "The page is that of `obscura render SCENE -o page.html`, and stays at the same instant and view when the "
-      "scene is saved. A long run is shown as far as it is simulated. Where the scene is wrong, the page has the "
+      "The page is that of `obscura render SCENE -o page.html`, and stays at the same instant and view when "
+      "the "
+      "scene is saved. A long run is shown as far as it is simulated. Where the scene is wrong, the page has "
+      "the "
       "errors with their lines. Only browsers on this machine can see it.\n\n"
       "Examples:\n"
       "  obscura watch scenes/room.toml");

@@ -87,7 +87,8 @@ PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, const Ah
     for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
       const sim::SceneInfo::Body& body = cast.bodies[i];
       if (body.bare) continue;
-      Json each{{"name", scene::one_line(body.name)}, {"part", run}, {"index", i}, {"kind", kind_of(body.kind)}};
+      Json each{
+          {"name", scene::one_line(body.name)}, {"part", run}, {"index", i}, {"kind", kind_of(body.kind)}};
       Body its{run, i, -1, dimension_ == 2 && body.turns};
       Json place = Json::array(), velocity = Json::array();
       for (int k = 0; k < dimension_; ++k) place.push_back(reel.number(length));
@@ -108,9 +109,9 @@ PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, const Ah
   for (const draw::Charts::Shown& shown : ahead.charts.shown()) {
     const draw::PlotArea& area = shown.area;
     const bool over_time = shown.chart.against.empty();
-    Json each{{"left", area.left}, {"right", area.right}, {"top", area.top}, {"bottom", area.bottom},
-              {"first", area.first}, {"last", area.last}, {"low", area.low},
-              {"high", area.high}, {"time", over_time && !area.log}};
+    Json each{{"left", area.left},     {"right", area.right}, {"top", area.top},
+              {"bottom", area.bottom}, {"first", area.first}, {"last", area.last},
+              {"low", area.low},       {"high", area.high},   {"time", over_time && !area.log}};
     Json lines = Json::array();
     const std::vector<draw::Measured::Line> measured = shown.chart.lines();
     for (std::size_t i = 0; i < shown.plot.lines.size(); ++i) {
@@ -144,14 +145,14 @@ void PageNumbers::add(const FilmSegment& take, std::size_t frame) {
       reel_.put(number, dimension_ == 2 ? now.spin.z() : now.spin.norm());
   }
   for (const Line& each : lines_)
-    reel_.put(each.number,
-              each.line.at(artists_[each.run].scene_info(), take.run(each.run).moments[frame]));
+    reel_.put(each.number, each.line.at(artists_[each.run].scene_info(), take.run(each.run).moments[frame]));
 }
 
 Json events_of(const scene::Scene& scene, const std::vector<Happening>& events) {
   Json all = Json::array();
   for (const Happening& each : events) {
-    const double film = sim::value(scene.film.speed.film(sim::rational(std::llround(each.time * 1e6), 1'000'000)));
+    const double film =
+        sim::value(scene.film.speed.film(sim::rational(std::llround(each.time * 1e6), 1'000'000)));
     all.push_back({{"time", each.time}, {"film", film}, {"text", each.text}});
   }
   return all;
@@ -260,10 +261,12 @@ std::string PageFilm::html(bool watched) {
   for (const media::TextCue& cue : subtitles(scene, m.shots, frames()).captions)
     film["captions"].push_back({{"from", cue.begin}, {"to", cue.end}, {"text", cue.text}});
   film["exact"] = fmt::format(
-      "In each of its {} frames, {:g} a second, what moves is drawn within {} px, of 1080, of where the run has it; "
+      "In each of its {} frames, {:g} a second, what moves is drawn within {} px, of 1080, of where the run "
+      "has it; "
       "between frames it is in between.{}{}",
       frames(), sim::value(m.shots.fps()), page::kReelBound,
-      m.space ? " Bodies in space are lit and hidden by WebGL: edges and shadows are softer or harder by some pixels "
+      m.space ? " Bodies in space are lit and hidden by WebGL: edges and shadows are softer or harder by "
+                "some pixels "
                 "than in the movie."
               : "",
       m.blurred ? " The movie has motion blur, which this page leaves out." : "");
@@ -289,8 +292,8 @@ int film_page(const scene::Scene& scene, const Shots& shots, const std::string& 
   file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   file.place(false);
   progress.finish(film.frames(),
-                  fmt::format("{}: {} frames at {:g} a second, {}", path, film.frames(), sim::value(shots.fps()),
-                              bytes_text(double(text.size()))),
+                  fmt::format("{}: {} frames at {:g} a second, {}", path, film.frames(),
+                              sim::value(shots.fps()), bytes_text(double(text.size()))),
                   true);
   return kDone;
 }

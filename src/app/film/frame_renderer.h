@@ -21,7 +21,9 @@ class FrameRenderer {
   const media::Image& print(const FilmSegment& take, std::size_t frame, bool transparent);
 
   /// The same as things, not yet pixels; of the instant alone.
-  draw::Picture frame(const FilmSegment& take, std::size_t frame) const { return painter_.frame(take, frame); }
+  draw::Picture frame(const FilmSegment& take, std::size_t frame) const {
+    return painter_.frame(take, frame);
+  }
   /// The pixels of a picture, good until the next ones.
   const media::Image& pixels(const draw::Picture& picture) { return renderer_.draw(picture); }
 

@@ -367,7 +367,8 @@ std::vector<Happening> Account::happenings() const {
     all.push_back({each->time, fmt::format("{} hits {} at {} m/s", called(cast_, each->body), other(*each),
                                            numeral(each->speed))});
   for (const auto& [when, joint] : broken_)
-    all.push_back({when, fmt::format("joint {} breaks", scene::one_line(cast_.joints[std::size_t(joint)].name))});
+    all.push_back(
+        {when, fmt::format("joint {} breaks", scene::one_line(cast_.joints[std::size_t(joint)].name))});
   return all;
 }
 
@@ -391,7 +392,7 @@ Story story(const scene::Scene& scene) {
     Story all;
     if (!scene.look.title.empty()) all.sentences.push_back(scene.look.title + ".");
     all.sentences.push_back(fmt::format("The film shows {} runs {} each other.", runs.size(),
-                              scene.film.over ? "over" : "beside"));
+                                        scene.film.over ? "over" : "beside"));
     for (Ahead::Run& run : runs) {
       run.scene.look.title = run.look.name, run.scene.look.subtitle = "";
       Story its = story(run.scene);
@@ -429,11 +430,12 @@ Story story(const scene::Scene& scene) {
   }
   Story all{account.sentences(), account.happenings()};
   for (const sim::RunEvent& event : run->events())
-    for (const std::string& mark : event.marks) all.events.push_back({sim::value(event.time), scene::one_line(mark)});
+    for (const std::string& mark : event.marks)
+      all.events.push_back({sim::value(event.time), scene::one_line(mark)});
   sort(all.events);
   if (trouble)
-    all.sentences.push_back(fmt::format("At {} the run ends: the {} of {} {}.", time(trouble->time), trouble->quantity,
-                              scene::one_line(trouble->body), trouble->what));
+    all.sentences.push_back(fmt::format("At {} the run ends: the {} of {} {}.", time(trouble->time),
+                                        trouble->quantity, scene::one_line(trouble->body), trouble->what));
   return all;
 }
 

@@ -52,17 +52,20 @@ PageServer::PageServer(int port) {
     here.sin_family = AF_INET;
     here.sin_port = htons(std::uint16_t(port_));
     here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 && ::listen(socket_, 16) == 0)
+    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
+        ::listen(socket_, 16) == 0)
       return;
     const int why = errno;
     ::close(socket_);
     if (why != EADDRINUSE || port != 0)
-      throw media::Error(why == EADDRINUSE
-                             ? fmt::format("port {} is taken: --port says another, and without it a free one is found",
-                                           port_)
-                             : fmt::format("port {}: {}", port_, std::strerror(why)));
+      throw media::Error(
+          why == EADDRINUSE
+              ? fmt::format("port {} is taken: --port says another, and without it a free one is found",
+                            port_)
+              : fmt::format("port {}: {}", port_, std::strerror(why)));
   }
-  throw media::Error(fmt::format("ports {} to {} are taken: --port says another", kFirstPort, kFirstPort + kTries - 1));
+  throw media::Error(
+      fmt::format("ports {} to {} are taken: --port says another", kFirstPort, kFirstPort + kTries - 1));
 }
 
 PageServer::~PageServer() {
@@ -93,7 +96,8 @@ bool PageServer::answer(Caller& caller) {
   const std::string& said = caller.said;
   const std::string line = said.substr(0, said.find("\r\n"));
   std::string head = said;
-  std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  std::transform(head.begin(), head.end(), head.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
   // a page of elsewhere that a name leads here has that name
   const auto called = [&](const char* name) {
     return head.find(fmt::format("\r\nhost: {}:{}\r\n", name, port_)) != head.npos;

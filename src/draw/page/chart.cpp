@@ -10,7 +10,7 @@
 namespace obscura::draw {
 namespace {
 
-constexpr int kMostLines = 1000;      // of a chart, as subjects are counted
+constexpr int kMostLines = 1000;    // of a chart, as subjects are counted
 constexpr double kAboveAxis = 4.5;  // points: how high above the axis the middle of a name is at least
 
 constexpr double kMargin = 36;  // page units at the weight 1, as of the caption

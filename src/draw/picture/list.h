@@ -147,9 +147,9 @@ struct Trail {
   int begin = 0, end = 0;       // strokes
   double now = 0, lasting = 0;  // s
   double widest = 0;
-  Color strong{}, faint{};       // of its head, and of its end
-  draw::Point origin{0, 0};      // where the world's lies on the page
-  double scale = 1;              // page units a metre
+  Color strong{}, faint{};   // of its head, and of its end
+  draw::Point origin{0, 0};  // where the world's lies on the page
+  double scale = 1;          // page units a metre
   std::vector<Point> way{};  // its nodes, from the oldest; the first may lie between two
   Subject subject{};
 };
@@ -185,8 +185,8 @@ struct List {
   void add(const Box& box);
   void add(const Text& text);
   /// A stroke through `line`.
-  void add(const std::vector<Node>& line, Cap cap = Cap::round, Blend blend = Blend::over, bool closed = false,
-           const Winding& winding = {});
+  void add(const std::vector<Node>& line, Cap cap = Cap::round, Blend blend = Blend::over,
+           bool closed = false, const Winding& winding = {});
   /// A filled polygon.
   void add(const std::vector<Point>& outline, Color fill);
   /// Clips everything that is added after this call to `rect`, until the next call of clip or unclip.

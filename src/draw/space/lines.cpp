@@ -58,8 +58,8 @@ void trace_trails(SpaceFrame& s, Ways ways) {
       before = k;
       chosen.push_back(way[k]);
     }
-    Solids::Way seen{int(i), s.now.time, lasting, kTrailLine * stage.layout.weight, strong, stage.colours.room,
-                     {}, {}};
+    Solids::Way seen{int(i), s.now.time,         lasting, kTrailLine * stage.layout.weight,
+                     strong, stage.colours.room, {},      {}};
     for (const sim::Track::Point& p : chosen) seen.places.push_back(p.place), seen.times.push_back(p.time);
     s.solids.ways.push_back(std::move(seen));
 

@@ -3,7 +3,7 @@
 
 import { cross, dot, plus, sub, turned, unit } from "./lens.js";
 
-const LEVELS = 8, MANY = 64;
+const LEVELS = 16, MANY = 64;
 const FALL = 1.6, FOOT = 0.35, REACH_OF = 1.4, MOST = 0.06;  // as there, and draw/space/shadows.cpp
 
 /** The hull of points of a plane, in order. */
@@ -76,8 +76,9 @@ export function draw_contacts(c, space, lens, body_of, dark) {
     }
     if (corners.length > 0) feet.push({ corners, reach, radius });
   }
-  const share = feet.length > MANY ? 2 : 1, alpha = (dark ? 150 : 90) / 255 * share / LEVELS;
-  c.fillStyle = dark ? `rgba(0,0,0,${alpha})` : `rgba(20,26,36,${alpha})`;
+  const share = feet.length > MANY ? 4 : 1, alpha = (dark ? 150 : 90) / 255 * share / LEVELS;
+  // of one grey: channels of their own would be rounded apart, level upon level
+  c.fillStyle = dark ? `rgba(0,0,0,${alpha})` : `rgba(24,24,24,${alpha})`;
   for (let i = 0; i < LEVELS; i += share) {
     c.beginPath();
     for (const { corners, reach, radius } of feet) {
