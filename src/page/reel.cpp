@@ -78,7 +78,7 @@ int Reel::line(const draw::Text& text) {
     json += fmt::format("{}[{:.3f},{}", json.size() > 1 ? "," : "", span.size, color(span.color));
     for (const draw::Glyph& each : span.glyphs)
       json +=
-          fmt::format(",{},{:.2f},{:.2f}", glyph(span.face, each.index), start + each.at.x(), each.at.y());
+          fmt::format(",{},{:.4f},{:.4f}", glyph(span.face, each.index), start + each.at.x(), each.at.y());
     json += "]";
   }
   json += "]";

@@ -174,7 +174,8 @@ export class Pen {
     if (thing.closed) c.closePath();
     c.lineWidth = width;
     c.lineCap = thing.round && !thing.closed ? "round" : "butt";
-    c.lineJoin = "miter";
+    // a coil that is pressed bends sharply, and has no spikes there
+    c.lineJoin = thing.turns > 0 ? "round" : "miter";
     c.miterLimit = 4;
     c.strokeStyle = thing.blend === OVER ? this.reel.inks[color] : ink(this.mixed(thing, this.reel.colors[color]));
     c.stroke();
