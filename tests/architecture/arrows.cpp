@@ -46,7 +46,7 @@ const std::map<std::string, Names> kLibraries = {
     {"epoxy/", {"gl"}},
     {"png.h", {"media"}},
     {"zlib.h", {"media"}},
-    {"libdeflate", {"media"}},
+    {"libdeflate", {"media", "page"}},
     {"libav", {"media"}},
     {"libsw", {"media"}},
     {"toml++/", {"scene"}},
