@@ -3,7 +3,7 @@
 
 import { cross, dot, plus, sub, turned, unit } from "./lens.js";
 
-const LEVELS = 16, MANY = 64;
+const LEVELS = 16, MANY = 64, RIM = 12;
 const FALL = 1.6, FOOT = 0.35, REACH_OF = 1.4, MOST = 0.06;  // as there, and draw/space/shadows.cpp
 
 /** The hull of points of a plane, in order. */
@@ -24,31 +24,6 @@ function hull(points) {
   chain(all);
   chain(all.reverse());
   return out.length > 0 ? out : points.slice(0, 1);
-}
-
-/** The outline of a convex form, `by` larger all around. */
-function widened(form, by) {
-  const n = form.length, out = [];
-  const arc = (p, from, to) => {
-    const steps = Math.max(1, Math.ceil((to - from) / 0.5));
-    for (let i = 0; i <= steps; ++i) {
-      const a = from + (to - from) * i / steps;
-      out.push([p[0] + by * Math.cos(a), p[1] + by * Math.sin(a)]);
-    }
-  };
-  if (n === 1) {
-    arc(form[0], 0, 2 * Math.PI);
-    return out;
-  }
-  for (let i = 0; i < n; ++i) {
-    const a = form[(i + n - 1) % n], p = form[i], b = form[(i + 1) % n];
-    // outwards of the sides before and after; the form runs counter-clockwise
-    const from = Math.atan2(a[0] - p[0], p[1] - a[1]);
-    let to = Math.atan2(p[0] - b[0], b[1] - p[1]);
-    while (to < from) to += 2 * Math.PI;
-    arc(p, from, to);
-  }
-  return out;
 }
 
 /**
@@ -82,17 +57,19 @@ export function draw_contacts(c, space, lens, body_of, dark) {
   for (let i = 0; i < LEVELS; i += share) {
     c.beginPath();
     for (const { corners, reach, radius } of feet) {
-      const near = reach * ((i + share) / LEVELS) ** FALL, low = [];
-      let wide = 0;
+      // the hull of the discs under its corners, each as much smaller as it is higher
+      const near = reach * ((i + share) / LEVELS) ** FALL, rims = [];
       for (const { p, high } of corners) {
-        const by = near - Math.max(high - radius, 0) + FOOT * radius;
-        if (by <= FOOT * radius) continue;
-        low.push(p);
-        wide = Math.max(wide, by);
+        const wide = near - Math.max(high - radius, 0) + FOOT * radius;
+        if (wide <= FOOT * radius) continue;
+        for (let k = 0; k < RIM; ++k) {
+          const a = 2 * Math.PI * k / RIM;
+          rims.push([p[0] + wide * Math.cos(a), p[1] + wide * Math.sin(a)]);
+        }
       }
-      if (low.length === 0) continue;
+      if (rims.length === 0) continue;
       let first = true;
-      for (const [x, y] of widened(hull(low), wide)) {
+      for (const [x, y] of hull(rims)) {
         const at = plus(plus(point, u, x), v, y);
         if (lens.depth(at) < 0.02) {
           first = true;

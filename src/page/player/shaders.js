@@ -226,6 +226,7 @@ const ROUND_VERTEX = `${PLACE}
 layout(location = 0) in vec4 ball;  // centre, radius
 layout(location = 1) in float body;
 layout(location = 2) in vec3 own;
+layout(location = 3) in vec3 other;  // of a capsule: towards its other end
 out vec2 place;
 flat out float along, wide_a, wide_b;
 out vec4 color;
@@ -244,7 +245,9 @@ void main() {
   vec3 s = sight(c), u = normalize(cross(abs(s.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0), s)), v = cross(s, u);
   float d = camera.x > 1e-9 ? length(eye - c) : 1e9, cosine = min(rim / d, 1.0);
   float turn = 6.283185307 * float(gl_VertexID / 2) / 64.0, side = (gl_VertexID & 1) != 0 ? 1.0 : -1.0;
-  vec3 p = c + rim * (cosine * s + sqrt(1.0 - cosine * cosine) * (cos(turn) * u + sin(turn) * v));
+  vec3 out_to = cos(turn) * u + sin(turn) * v;
+  if (dot(out_to, turned(q, other)) > 1e-6) color.a = 0.0;
+  vec3 p = c + rim * (cosine * s + sqrt(1.0 - cosine * cosine) * out_to);
   vec3 at = seen(p), middle = seen(c);
   vec2 out_of = normalize(at.xy / at.z - middle.xy / middle.z);
   float reach = half_wide + 1.0;
@@ -254,6 +257,24 @@ void main() {
   vec3 w = p + (sqrt(seen_r * width) + 1.0) * depth / camera.y * s;
   float dw = depth_of(w), z = camera.x > 1e-9 ? z_of(w, dw) / dw : z_of(w, 1.0);
   gl_Position = vec4(2.0 * px.x / (page.x * page.z) - 1.0, 1.0 - 2.0 * px.y / (page.y * page.z), z, 1.0);
+}`;
+
+// a side of a capsule's outline
+const SIDE_VERTEX = `${PLACE}${SEGMENT}
+layout(location = 0) in vec3 a;
+layout(location = 1) in vec3 b;
+layout(location = 2) in vec3 form;  // radius, side, body
+layout(location = 3) in vec3 own;
+out vec4 color;
+void main() {
+  vec4 q = turn_of(form.z);
+  vec3 p = at_of(form.z) + turned(q, a), r = at_of(form.z) + turned(q, b), across = cross(r - p, sight(0.5 * (p + r)));
+  float depth = depth_of(p), seen_r = form.x * camera.y / depth;
+  color = vec4(own, 1.0);
+  if (seen_r < 2.2 || dot(across, across) < 1e-16) { gl_Position = kNowhere; return; }
+  float width = 1.3 * clamp(0.22 * seen_r, 0.5 * page.w, 2.3 * page.w);
+  vec3 by = form.y * form.x * (1.0 - 0.25 * width / seen_r) * normalize(across);
+  gl_Position = segment(p + by, r + by, width, width, (sqrt(seen_r * width) + 1.0) * depth / camera.y);
 }`;
 
 export class Program {
@@ -320,5 +341,6 @@ export function make_programs(gl) {
     trail: new Program(gl, LINE_VERTEX, TRAIL_FRAGMENT),
     edge: new Program(gl, EDGE_VERTEX, LINE_FRAGMENT),
     round: new Program(gl, ROUND_VERTEX, LINE_FRAGMENT),
+    side: new Program(gl, SIDE_VERTEX, LINE_FRAGMENT),
   };
 }

@@ -114,7 +114,7 @@ export class Space {
   }
 
   build() {
-    const { gl, space } = this, mesh = new Mesh(), edges = [], rounds = [];
+    const { gl, space } = this, mesh = new Mesh(), edges = [], rounds = [], sides = [];
     const balls = space.pieces.filter((/** @type {any} */ p) => p.shape === undefined).length;
     const around = balls > 200 ? 16 : balls > 40 ? 24 : 48;
     const alone = new Map();
@@ -139,11 +139,13 @@ export class Space {
       } else {
         const radius = piece.dot ? -piece.dot : piece.radius;
         mesh.ball(piece.a, radius, piece.body, least, own, around);
-        rounds.push(...piece.a, radius, piece.body, ink[0], ink[1], ink[2]);
-        if (Math.hypot(...sub(piece.b, piece.a)) > 0) {
+        const axis = sub(piece.b, piece.a);
+        rounds.push(...piece.a, radius, piece.body, ink[0], ink[1], ink[2], ...axis);
+        if (Math.hypot(...axis) > 0) {
           mesh.ball(piece.b, radius, piece.body, least, own, around);
           mesh.tube([piece.a, piece.b], piece.radius, piece.body, least, own, around);
-          rounds.push(...piece.b, radius, piece.body, ink[0], ink[1], ink[2]);
+          rounds.push(...piece.b, radius, piece.body, ink[0], ink[1], ink[2], -axis[0], -axis[1], -axis[2]);
+          for (const side of [-1, 1]) sides.push(...piece.a, ...piece.b, piece.radius, side, piece.body, ink[0], ink[1], ink[2]);
         }
         reach = Math.max(Math.hypot(...piece.a), Math.hypot(...piece.b)) + piece.radius;
       }
@@ -154,8 +156,10 @@ export class Space {
     this.linked = new Corners(gl);
     this.edges = new Instances(gl, [3, 3, 3, 3, 2, 3]);
     this.edges.fill(edges);
-    this.rounds = new Instances(gl, [4, 1, 3]);
+    this.rounds = new Instances(gl, [4, 1, 3, 3]);
     this.rounds.fill(rounds);
+    this.sides = new Instances(gl, [3, 3, 3, 3]);
+    this.sides.fill(sides);
     this.lines = new Instances(gl, [3, 3, 2, 4, 4]);
     this.trails = this.space.panels.map(() => new Instances(gl, [3, 3, 2, 4, 4]));
     this.pose_texture = texture(gl, gl.RGBA32F, 2, Math.max(this.bodies, 1), gl.RGBA, gl.FLOAT, gl.NEAREST);
@@ -297,6 +301,8 @@ export class Space {
     this.edges.draw(4);
     set(programs.round);
     this.rounds.draw(130);
+    set(programs.side);
+    this.sides.draw(4);
     gl.depthMask(true);
   }
 
