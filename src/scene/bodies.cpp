@@ -12,6 +12,7 @@
 #include "scene/copies.h"
 #include "scene/fields.h"
 #include "scene/motions.h"
+#include "scene/overlap.h"
 #include "scene/path.h"
 #include "scene/solid.h"
 #include "sim/model/stance.h"
@@ -58,14 +59,16 @@ bool rotates(const BuilderContext<D>& making, const Fields& fields, const BodyKi
   return own ? std::get<bool>(own->value) : making.rotation;
 }
 
-// moments of inertia that a table gives: one number in the plane, three in space
-sim::AngularVec<2> moments(const Node& node, sim::AngularVec<2>*) {
-  return sim::AngularVec<2>(node.number());
+// moments of inertia that a table gives the i-th of n: one number in the plane, three in space
+sim::AngularVec<2> moments(const Node& node, int i, int n, sim::AngularVec<2>*) {
+  return sim::AngularVec<2>(number(node, i, n));
 }
-sim::AngularVec<3> moments(const Node& node, sim::AngularVec<3>*) { return vector<3>(node); }
+sim::AngularVec<3> moments(const Node& node, int i, int n, sim::AngularVec<3>*) {
+  return vector<3>(node, i, n);
+}
 template <int D>
-sim::AngularVec<D> given_inertia(const Node& node, Diagnostics& complaints) {
-  const sim::AngularVec<D> I = moments(node, static_cast<sim::AngularVec<D>*>(nullptr));
+sim::AngularVec<D> given_inertia(const Node& node, int i, int n, Diagnostics& complaints) {
+  const sim::AngularVec<D> I = moments(node, i, n, static_cast<sim::AngularVec<D>*>(nullptr));
   if (!(I.minCoeff() > 0))
     complaints.add(node.place, "'inertia' must be positive");
   else if (D == 3 && 2 * I.maxCoeff() > I.sum() * (1 + 1e-9))
@@ -105,7 +108,7 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
     body.mass = mass ? number(*mass, i, n) : number(fields.node("density"), i, n) * solid.bulk.content;
     body.inertia = body.mass * (solid.bulk.second / solid.bulk.content);
     if (const Node* given = fields.given("inertia"))
-      body.inertia = given_inertia<D>(*given, making.complaints);
+      body.inertia = given_inertia<D>(*given, i, n, making.complaints);
     if (!(body.inertia.allFinite() && body.inertia.minCoeff() > 0))
       making.complaints.add(fields.place(kind.measure),
                             fmt::format("the {}'s moment of inertia is too {} to compute with", kind.name,
@@ -179,7 +182,9 @@ void refuse_outside(const BuilderContext<D>& making, const Group& group, Place p
       if (far > most) most = far, worst = w;
     }
     const double rounding = 1e-9 * (1 + making.world.state.x[std::size_t(body)].cwiseAbs().maxCoeff());
-    if (most <= rounding) continue;
+    const double allowed =
+        kAllowedOverlap * 2 * sim::bounding_radius(making.world.model.bodies[std::size_t(body)].shape);
+    if (most <= std::max(rounding, allowed)) continue;
     if (outside++ > 0) continue;
     const Place wall = making.room.places[worst];
     message = fmt::format("'{}' is outside the room: {:.3g} m beyond {} ({})",

@@ -65,7 +65,7 @@ class Values : private Reporter {
       case Form::cue:
         return cue(node, key);
       case Form::vector:
-        return key.varies && node.is_table() ? varied(node, key) : vector(node, key);
+        return key.varies && (node.is_table() || several(node, key)) ? varied(node, key) : vector(node, key);
       case Form::spin:
         return spin(node, key);
       case Form::turn:
@@ -217,6 +217,9 @@ class Values : private Reporter {
 
   bool vector(const Node& node, const Key& key) {
     if (!node.is_list()) return mistyped(node, key);
+    if (key.varies && key.last() == "position" && !node.list().empty() && node.list().front().is_list())
+      return wrong(node,
+                   "'position' is one place; copies = { at = [[1, 2], [3, 2]] } says that of each copy");
     if (!components(node, key)) return false;
     const std::size_t n = node.list().size();
     if (n != 2 && n != 3) return instead(node, key, fmt::format("{} of them", n));
@@ -257,8 +260,15 @@ class Values : private Reporter {
     return good;
   }
 
+  // one vector for each copy; places of copies are copies.at
+  static bool several(const Node& node, const Key& key) {
+    return node.is_list() && !node.list().empty() && node.list().front().is_list() &&
+           key.last() != "position";
+  }
+
   // over copies: { from = a, to = b }, or a list with one for each
   bool varied(const Node& node, const Key& key) {
+    if (several(node, key)) return vectors(node, key);
     if (node.is_list()) return components(node, key);
     if (!node.is_table()) return mistyped(node, key);
     bool good = each(node.table(), [&](const Entry& entry) {

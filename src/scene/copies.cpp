@@ -72,7 +72,7 @@ void refuse_odd_lists(const Fields& fields, const std::string& kind, bool copied
     const Node* node = fields.given(key->last());
     if (!key->varies || !node) continue;
     const bool number = key->form == Form::number || (key->form == Form::spin && dimension == 2);
-    const bool list = node->is_list() && number;
+    const bool list = node->is_list() && (number || (!node->list().empty() && node->list()[0].is_list()));
     if (!copied && (list || node->is_table()))
       complaints.add(node->place, fmt::format("'{}' varies over copies, and there are none: expected {}",
                                               key->last(), expected(*key, dimension)));
@@ -224,7 +224,10 @@ Node single(const Fields& fields, const std::string& kind, int i, int n, const S
     const Node* node = fields.given(key->last());
     if (!node || !key->varies || node->is_number()) continue;
     if (key->form == Form::number) put(std::string(key->last()), leaf(node->place, number(*node, i, n)));
-    if (key->form == Form::spin) put("spin", typed_spin(*node, start.spin, i, n));
+    if (key->last() == "spin") put("spin", typed_spin(*node, start.spin, i, n));
+    if (key->last() == "inertia")
+      put("inertia",
+          D == 2 ? leaf(node->place, number(*node, i, n)) : typed(node->place, vector<3>(*node, i, n)));
     if (key->form == Form::color && node->is_table())
       put("color", {node->place,
                     hex(draw::mix(*draw::color(node->find("from")->text()),

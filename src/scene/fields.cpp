@@ -60,7 +60,8 @@ double number(const Node& node, int i, int n) {
 
 template <int D>
 sim::Vec<D> vector(const Node& node, int i, int n) {
-  if (node.is_list()) return vector<D>(node);
+  if (node.is_list())
+    return node.list().front().is_list() ? vector<D>(node.list()[std::size_t(i)]) : vector<D>(node);
   const double t = along(i, n);
   return (1 - t) * vector<D>(*node.find("from")) + t * vector<D>(*node.find("to"));
 }

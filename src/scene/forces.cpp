@@ -310,6 +310,7 @@ class ForceBuilder {
     if (subjects.empty()) return;
     Force force;
     force.name = wind.isZero(0) ? "quadratic_drag" : "room.wind", force.subjects = std::move(subjects);
+    force.drag = true;
     sim::ForceText text;
     const std::string u[] = {"(vx - a)", "(vy - b)", "(vz - c)"}, w[] = {"a", "b", "c"};
     std::string squares;

@@ -113,8 +113,8 @@ copies     = { count = 6, offset = [0.5, 0] }               # a row
 # copies   = { count = 12, turn = 30, around = [4, 2] }     # a ring
 ```
 
-Where the table below says *varies*, a number may also be a list with one value for each copy, or `{ from, to }`; a position or velocity
-may be `{ from, to }`. In a grid the copies are counted along the first direction, then row by row. `jitter` moves each copy a little; it
+Where the table below says *varies*, a number may also be a list with one value for each copy, or `{ from, to }`; a position may be
+`{ from, to }`, a velocity also a list of velocities. In a grid the copies are counted along the first direction, then row by row. `jitter` moves each copy a little; it
 depends only on `seed` and on the copy, so it stays the same when other parts of the scene change.
 
 ## Springs and nets
@@ -165,7 +165,7 @@ shapes = [
 ]
 
 [contact]
-ignore = [["stones", "stones"]]                                  # these do not touch each other
+ignore = [["stones", "stones"]]                                  # these do not touch each other; names of bodies will do
 ```
 
 ## Joints
@@ -390,7 +390,9 @@ do     = [{ stop = true }]                                       # everything st
 
 `leaves` is the end of a touch, `time` an instant. A condition that is true at the start must become false before it fires. A
 value compares quantities of bodies: `ball.x`, `y`, `vx`, `vy`, `speed`, `angle`, `spin`, in space also `z` and `vz`, in metres, seconds
-and radians, the time `t` and constants.
+and radians, the time `t` and constants. It may also read forces: `ball.contact`, `normal_force`, `friction`, `spring_force` and
+`joint_force`, as long as the sum of all that the body has, and `rope.force` of a joint. They are compared at the end of each
+step; under `event` the time is then sought within the step. What is zero up to rounding is now true, now not: write `ball.vy < -1e-6`.
 
 `release` lets go what is `fixed` or has a `motion`, with its velocity, or takes away a joint. `set` writes a key as `--set`
 does: those of motors, forces (`push.components`, `room.wind`), `room.gravity`, and `fixed` of a body; others stay as they are. What the
@@ -398,7 +400,8 @@ hand that does so gives of energy is `energy.work`. Actions are done in their or
 served in the order of the file.
 
 With `collision = "event"` a condition fires at its exact time, to a billionth of a second; in other modes at the end of the step in which it
-becomes true, also where it has become false again. A `time` is exact in all modes. A joint breaks at the end of a step. Marks alone
+becomes true, also where it has become false again. A `time` is exact in all modes. A joint breaks so, too: under `event` when its load is
+more than it bears, else at the end of the step. Marks alone
 change nothing of a run. The list of events is one for every frame rate, and for shards and runs that go on from a
 checkpoint: `obscura states SCENE --events`.
 
@@ -463,7 +466,8 @@ acos atan atan2 sinh cosh tanh exp log sqrt abs sign floor min max`; `if(conditi
 
 A potential depends on places and the time, and is differentiated exactly; it counts as potential energy (`fields` in plots and
 `energy.fields` in tables). What components, wind and drag do is booked as `work` (`energy.work`) in scenes that have such forces: the total
-energy minus the work stays constant where nothing collides. A force that comes to no finite number ends the run, with the body, the place
+energy minus the work stays constant where nothing collides. The spring of a mouse's hand is not of the room: what it holds is `hand`
+(`energy.hand`), beside the total, which changes by what the hand gives. A force that comes to no finite number ends the run, with the body, the place
 and the time.
 
 ## Films

@@ -143,7 +143,7 @@ std::vector<Key> rows() {
 
       {.path = "contact", .form = table, .doc = "Which bodies may touch."},
       {.path = "contact.ignore", .form = pairs, .fallback = "[]",
-       .doc = "Pairs of groups that do not touch each other; a group may be paired with itself.",
+       .doc = "Pairs that do not touch each other: groups, or bodies by their names; one may be paired with itself.",
        .example = "[[\"stones\", \"frame\"]]"},
 
       {.path = "any.name", .form = name, .absent = "`KIND[0]`, `KIND[1]`, ... in the order of the file",
@@ -165,7 +165,7 @@ std::vector<Key> rows() {
        .doc = "Mass per area, in space per volume.", .example = "2"},
       {.path = "rigid.mass", .form = number, .unit = "kg", .absent = "`density` times its area, in space its volume", .range = kPositive,
        .varies = true, .doc = "Its mass, instead of `density`.", .example = "0.5"},
-      {.path = "rigid.inertia", .form = spin, .unit = "kg m^2", .absent = "that of its form",
+      {.path = "rigid.inertia", .form = spin, .unit = "kg m^2", .absent = "that of its form", .varies = true,
        .doc = "Its moment of inertia about its centre of mass; in space three, about its principal axes, which those of a box, ball or capsule are.", .example = "0.2"},
       {.path = "rigid.center_of_mass", .form = vector, .unit = "m", .absent = "its centroid",
        .doc = "Its centre of mass, in its own frame, as of a body with a weight inside; the form stays where it is.", .example = "[0, -0.1]"},

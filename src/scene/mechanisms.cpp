@@ -107,7 +107,8 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
   good = good && add(between->list()[1], false);
   if (!good) return;
   // the first end moves, if one does
-  if (turns.front().end.body < 0 && turns.back().end.body >= 0) std::reverse(turns.begin(), turns.end());
+  const bool turned_round = turns.front().end.body < 0 && turns.back().end.body >= 0;
+  if (turned_round) std::reverse(turns.begin(), turns.end());
   if (std::all_of(turns.begin(), turns.end(), [&](const Turn<D>& turn) {
         return turn.end.body < 0 || world.model.bodies[std::size_t(turn.end.body)].fixed;
       })) {
@@ -185,6 +186,8 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
     }
     pieces[0].length = length->number();
   }
+  // numbered from the first end as typed
+  if (turned_round) std::reverse(pieces.begin(), pieces.end());
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     pieces[k].name = pieces.size() == 1 ? name : fmt::format("{}[{}]", name, k);
     world.model.joints.push_back(std::move(pieces[k]));
@@ -265,18 +268,35 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
   const sim::Vec<D> p = start(world, both[0].a), q = start(world, both[1].a);
   const double far = (q - p).norm();
   const bool pins = !slides[0] && !slides[1];
+  const auto seen = [&](int body, const sim::Vec<D>& direction) -> sim::Vec<D> {
+    if (body < 0) return direction;
+    return sim::rotation<D>(turn_of(world, body)).transpose() * direction;
+  };
   if (pins && far > 0 && n != 1) {
     it.on_a.offset = n < 0 ? far / (1 - n) : far / std::fabs(n - 1);
     it.on_b.offset = std::fabs(n) * it.on_a.offset;
     const sim::Vec<D> e = (n > 1 ? p - q : q - p) / far;
-    const auto seen = [&](int body, const sim::Vec<D>& direction) -> sim::Vec<D> {
-      if (body < 0) return direction;
-      return sim::rotation<D>(turn_of(world, body)).transpose() * direction;
-    };
     it.on_a.start = seen(both[0].a.body, e);
     it.on_b.start = seen(both[1].a.body, n < 0 ? sim::Vec<D>(-e) : e);
-  } else if (!pins && !(slides[0] && slides[1])) {
+  } else if (pins) {
+    if (const Node* breaks = fields.given("breaks"))
+      complaints.add(
+          breaks->place,
+          fmt::format("both joints turn about one place{}, so it has no teeth whose force could break "
+                      "it; give a 'breaks' to what holds the wheels",
+                      n == 1 && far > 0 ? ", as one wheel does" : ""));
+  } else if (!(slides[0] && slides[1])) {
+    // of a rack the way from its teeth to itself: a pinion that turns to the left moves it to the left of
+    // that
     (slides[0] ? it.on_b : it.on_a).offset = slides[0] ? std::fabs(n) : 1 / std::fabs(n);
+    if constexpr (D == 2) {
+      const sim::Joint<D>& slider = both[slides[0] ? 0 : 1];
+      const sim::Vec<D> along =
+          (n < 0 ? -1 : 1) * (slider.b.body < 0
+                                  ? slider.axis
+                                  : sim::Vec<D>(turned<D>(slider.axis, turn_of(world, slider.b.body))));
+      (slides[0] ? it.on_a : it.on_b).start = seen(slider.a.body, sim::Vec<D>(along[1], -along[0]));
+    }
   }
   world.model.joints.push_back(std::move(it));
   world.state.broken.push_back(0);

@@ -21,8 +21,7 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr double kAllowed = 1e-6;               // of the smaller body's size: what the first step puts right
-constexpr std::int64_t kMostCounted = 100'000;  // overlaps that are counted, at most
+constexpr std::int64_t kMostCounted = 100'000;    // overlaps that are counted, at most
 constexpr std::int64_t kMostLooked = 20'000'000;  // pairs that are near each other: each takes 500 bytes
 
 std::pair<int, int> ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
@@ -135,7 +134,7 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
         -sim::separation(one, sim::body_motion(world.state, a), other, sim::body_motion(world.state, b));
     const double size = 2 * std::max(std::min(sim::bounding_radius(one), sim::bounding_radius(other)),
                                      1e-3 * std::max(sim::bounding_radius(one), sim::bounding_radius(other)));
-    if (!(depth > kAllowed * size)) return true;
+    if (!(depth > kAllowedOverlap * size)) return true;
     ++overlapping;
     OverlapsFound& its = found[std::size_t(group_of[std::size_t(b)])];
     if (its.a < 0 || ordered(b, a) < ordered(its.b, its.a)) {
@@ -154,7 +153,7 @@ void refuse_overlaps(const NameTable& roster, const sim::World<D>& world, Diagno
       if (i == rail.body || body.fixed || !sim::touches_rails<D>(body.shape) || !may_touch(i, rail.body))
         continue;
       const double depth = depth_in_rail(body.shape, sim::body_motion(world.state, i), rail, at);
-      if (!(depth > kAllowed * 2 * sim::bounding_radius(body.shape))) continue;
+      if (!(depth > kAllowedOverlap * 2 * sim::bounding_radius(body.shape))) continue;
       complaints.add(roster.groups[std::size_t(group_of[std::size_t(i)])].at,
                      fmt::format("'{}' overlaps the track '{}' by {:.3g} m at the start; move it away",
                                  body.name, rail.name, depth));

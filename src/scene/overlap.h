@@ -6,6 +6,10 @@
 
 namespace obscura::scene {
 
+/// How deep bodies may be in each other, and in walls, at the start: parts of the smaller one's size. They
+/// are pushed apart by the first steps.
+constexpr double kAllowedOverlap = 1e-6;
+
 /// Complains of bodies that overlap at the start by more than a millionth of their size, unless the model
 /// separates them: the first pair of each declaration, and how many more there are. Complains also if more
 /// pairs are near each other than can be simulated. These may overlap: fixed bodies among themselves, groups

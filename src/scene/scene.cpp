@@ -23,6 +23,7 @@
 #include "scene/links.h"
 #include "scene/overlap.h"
 #include "scene/overrides.h"
+#include "scene/path.h"
 #include "scene/picture.h"
 #include "scene/room.h"
 #include "scene/tracks.h"
@@ -72,24 +73,62 @@ void refuse_beyond_handout(const Node& top, int dimension, Diagnostics& complain
   }
 }
 
+// The groups that a word of contact.ignore means: one that bodies have as their `group`, or those of bodies
+// of that name, which are made for them where they have none.
+template <int D>
+std::vector<int> groups_of(const Node& word, NameTable& roster, sim::Model<D>& model,
+                           Diagnostics& complaints) {
+  const std::string& text = word.text();
+  if (const auto found = roster.families.find(text); found != roster.families.end()) return {found->second};
+  const auto its = reference(text);
+  if (!roster.index.contains(text) && !(its && its->bracketed && roster.index.contains(its->name))) {
+    std::vector<std::string_view> words;
+    for (const auto& [name, number] : roster.families) words.push_back(name);
+    for (const Group& group : roster.groups) words.push_back(group.name);
+    complaints.add(word.place, fmt::format("no group or body is called {}{}", scene::quoted(text),
+                                           did_you_mean(text, words)));
+    return {};
+  }
+  const auto whole = roster.index.find(text);
+  const std::string all =
+      whole == roster.index.end() || roster.groups[std::size_t(whole->second)].grid.empty() ? text
+                                                                                            : text + "[*]";
+  const std::vector<int> bodies = roster.bodies(all, word.place, complaints);
+  std::vector<int> groups;
+  int fresh = 0;
+  for (const int body : bodies) {
+    int& group = model.bodies[std::size_t(body)].group;
+    if (group == 0) {
+      if (fresh == 0) fresh = roster.families.emplace(text, int(roster.families.size()) + 1).first->second;
+      group = fresh;
+    }
+    groups.push_back(group);
+  }
+  std::sort(groups.begin(), groups.end());
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+  // others of these groups would be let through as well
+  for (int body = 0; body < int(model.bodies.size()); ++body) {
+    if (!std::binary_search(groups.begin(), groups.end(), model.bodies[std::size_t(body)].group) ||
+        std::find(bodies.begin(), bodies.end(), body) != bodies.end())
+      continue;
+    complaints.add(word.place,
+                   fmt::format("{} is of a group with '{}', and a body has one group; give 'group' "
+                               "to what [contact] ignore names",
+                               scene::quoted(text), model.bodies[std::size_t(body)].name));
+    return {};
+  }
+  return groups;
+}
+
 // groups that do not touch, as the bodies number them
 template <int D>
-void ignore(const Node& top, const NameTable& roster, sim::Model<D>& model, Diagnostics& complaints) {
+void ignore(const Node& top, NameTable& roster, sim::Model<D>& model, Diagnostics& complaints) {
   const Fields contact = Fields::of(top, "contact");
   for (const Node& pair : contact.node("ignore").list()) {
-    int groups[2] = {0, 0};
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Node& word = pair.list()[k];
-      if (const auto found = roster.families.find(word.text()); found != roster.families.end()) {
-        groups[k] = found->second;
-        continue;
-      }
-      std::vector<std::string_view> words;
-      for (const auto& [name, number] : roster.families) words.push_back(name);
-      complaints.add(word.place, fmt::format("no body is of the group {}{}", scene::quoted(word.text()),
-                                             did_you_mean(word.text(), words)));
-    }
-    if (groups[0] > 0 && groups[1] > 0) model.ignore.emplace_back(groups[0], groups[1]);
+    const std::vector<int> one = groups_of(pair.list()[0], roster, model, complaints),
+                           other = groups_of(pair.list()[1], roster, model, complaints);
+    for (const int a : one)
+      for (const int b : other) model.ignore.emplace_back(a, b);
   }
 }
 

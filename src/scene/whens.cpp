@@ -39,6 +39,12 @@ constexpr Quantity kQuantities[] = {
     {"velocity.x", sim::Reading::Of::vx},
     {"velocity.y", sim::Reading::Of::vy},
     {"velocity.z", sim::Reading::Of::vz},
+    {"contact", sim::Reading::Of::contact},
+    {"normal_force", sim::Reading::Of::normal_force},
+    {"friction", sim::Reading::Of::friction},
+    {"spring_force", sim::Reading::Of::spring_force},
+    {"joint_force", sim::Reading::Of::joint_force},
+    {"force", sim::Reading::Of::force},
 };
 
 bool in_word(char c) {
@@ -287,9 +293,26 @@ class WhenBuilder {
       for (; begin < dot; ++begin) {
         const bool starts = begin == 0 || !in_word(text[begin - 1]);
         const std::string name = text.substr(begin, dot - begin);
-        if (!starts || !is_body(roster_, name)) continue;
+        const std::vector<int> held = starts && !is_body(roster_, name) ? joints(name) : std::vector<int>();
+        if (!starts || (!is_body(roster_, name) && held.empty())) continue;
         const std::string word = text.substr(begin, end - begin);
         if (std::find(words.begin(), words.end(), word) != words.end()) break;
+        if (!held.empty()) {
+          if (held.size() > 1) {
+            complaints_.add(node.place,
+                            fmt::format("'value': {} is {} joints; a condition reads one of them, {}",
+                                        scene::quoted(name), held.size(),
+                                        scene::quoted(model_.joints[std::size_t(held[0])].name)));
+            return;
+          }
+          if (quantity != "force") {
+            refused.push_back({word, -1, "is not what conditions read of a joint: force"});
+            break;
+          }
+          words.push_back(word);
+          when.reads.push_back({held[0], sim::Reading::Of::force});
+          break;
+        }
         const std::vector<int> found = roster_.bodies(name, node.place, complaints_);
         if (found.empty()) return;
         if (found.size() > 1) {
@@ -329,9 +352,12 @@ class WhenBuilder {
     const auto found = std::find_if(std::begin(kQuantities), std::end(kQuantities),
                                     [&](const Quantity& it) { return it.word == quantity; });
     if (found == std::end(kQuantities))
-      return D == 2 ? "is not what conditions read: x, y, vx, vy, speed, angle and spin"
-                    : "is not what conditions read: x, y, z, vx, vy, vz, speed and spin";
+      return D == 2 ? "is not what conditions read: x, y, vx, vy, speed, angle, spin, contact, "
+                      "normal_force, friction, spring_force and joint_force"
+                    : "is not what conditions read: x, y, z, vx, vy, vz, speed, spin, contact, "
+                      "normal_force, friction, spring_force and joint_force";
     using enum sim::Reading::Of;
+    if (found->of == force) return "is of a joint, and this is a body; joint_force is what joints give it";
     if (D == 2 && (found->of == z || found->of == vz)) return "is of space, and this scene is in the plane";
     if (D == 3 && found->of == angle) return "is of the plane, and this scene is in space";
     if ((found->of == angle || found->of == spin) && !model_.bodies[std::size_t(body)].turns())

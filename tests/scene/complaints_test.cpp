@@ -217,7 +217,13 @@ TEST(Diagnostics, JointsSayWhereTheyAre) {
 
 TEST(Diagnostics, GroupsAreThoseOfBodies) {
   refused("[[box]]\ngroup = \"stones\"\n[contact]\nignore = [[\"stones\", \"stone\"]]",
-          "a.toml:4:22: no body is of the group 'stone'; did you mean 'stones'?");
+          "a.toml:4:22: no group or body is called 'stone'; did you mean 'stones'?");
+  refused(
+      "[[box]]\nname = \"a\"\ngroup = \"stones\"\n[[box]]\nname = \"b\"\ngroup = \"stones\"\n"
+      "position = [1, 1]\n[contact]\nignore = [[\"a\", \"stones\"]]",
+      "a.toml:9:12: 'a' is of a group with 'b', and a body has one group; give 'group' to what [contact] "
+      "ignore "
+      "names");
   refused("[[box]]\n[contact]\nignore = [\"stones\"]",
           "a.toml:3:11: 'ignore': expected pairs of names such as [\"stones\", \"frame\"], got the string "
           "\"stones\"");
@@ -434,9 +440,10 @@ TEST(Diagnostics, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
           "a.toml:2:12: 'quantity': expected one at least, such as [\"energy\"]");
   refused(
       "[[film.plot]]\nquantity = [\"warmth\"]\n[[ball]]",
-      "a.toml:2:13: 'quantity': expected one of energy, kinetic, potential, gravity, springs, fields, work, "
+      "a.toml:2:13: 'quantity': expected one of energy, kinetic, potential, gravity, springs, fields, hand, "
+      "work, "
       "x, height, speed, vx, vy, angle, spin, length, push, acceleration, momentum, weight, "
-      "normal_force, friction, net_force, spring_force, joint_force, drag, contact, blast, torque, "
+      "normal_force, friction, net_force, spring_force, joint_force, drag, field, contact, blast, torque, "
       "got 'warmth'");
   refused(
       "[[film.plot]]\nquantity = [\"energy\"]\nsize = 50\n[[film.plot]]\nquantity = [\"energy\"]\n[[ball]]",

@@ -404,7 +404,46 @@ TEST(Events, AStopHoldsTheInstant) {
   }
 }
 
-// A rope breaks at the end of the step at which its load is above what it bears: m g + F.
+// Under `event` a rope breaks when its load, m g + F, is what it bears, and the ball falls from there. All
+// pieces of a rope over a wheel break together.
+TEST(Events, UnderEventABreakIsAtItsExactTime) {
+  for (const bool space : {false, true}) {
+    for (const double k : {0.0, 40.0}) {
+      // F = 20 t + k t^2 / 2
+      const std::string text = open_room("event", space, "mass = 1\nposition = " + spot(space, 2, 3)) +
+                               "[[joint]]\nname = \"rope\"\ntype = \"rod\"\nbetween = [\"ball\", " +
+                               spot(space, 2, 5) +
+                               "]\nbreaks = 20\n[[force]]\nof = \"ball\"\ncomponents = [\"0\", " +
+                               fmt::format("\"-20*t - {}*t^2/2\"{}]\n", k, space ? ", \"0\"" : "");
+      const double F = 20 - kFalling, t = k == 0 ? F / 20 : (-20 + std::sqrt(400 + 2 * k * F)) / k;
+      const auto events = events_until(text + when("breaks = \"rope\""), 2);
+      ASSERT_EQ(events.size(), 1u) << space << k;
+      EXPECT_NEAR(sim::value(events[0].time), t, kInTime) << space << k;
+      // y'' = -(g + F), whether a condition looks at it or not
+      const auto speed = [&](double s) { return kFalling * s + 10 * s * s + k * s * s * s / 6; };
+      const auto way = [&](double s) {
+        return kFalling * s * s / 2 + 10 * s * s * s / 3 + k * s * s * s * s / 24;
+      };
+      const double at = 1, fall = way(at) - way(t) - speed(t) * (at - t);
+      for (const std::string& looks : {std::string(), when("breaks = \"rope\"")}) {
+        const auto run = run_of(text + looks);
+        EXPECT_NEAR(snapshot_at(*run, at).bodies[0].position.y(), 3 - fall, 1e-9) << space << k << looks;
+      }
+    }
+  }
+  const std::string rope =
+      "[room]\nsize = [8, 8]\nwalls = \"none\"\n[physics]\ncollision = \"event\"\n[[particle]]\nname = "
+      "\"a\"\nposition = [1, 2]\n[[particle]]\nname = \"b\"\nposition = [2, 2]\n"
+      "[[ball]]\nname = \"w\"\nradius = 0.5\nposition = [1.5, 4]\n[[joint]]\ntype = \"pin\"\n"
+      "between = [\"w\", \"room\"]\n[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"a\", "
+      "\"b\"]\nover = [\"w\"]\nbreaks = 12\n[[force]]\nof = \"b\"\ncomponents = [\"0\", \"-20*t\"]\n";
+  const auto events =
+      events_until(rope + when("breaks = \"rope\"", "{ mark = \"snap\" }", "again = true"), 2);
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].time, events[1].time);
+}
+
+// In other modes at the end of the step.
 TEST(Events, ABreakIsSeen) {
   for (const char* solver : {"direct", "iterative"}) {
     const std::string text =
@@ -541,6 +580,56 @@ TEST(Events, MirroredRunsFireTogether) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-11);
 }
 
+// On a table with the acceleration -c t a block presses with m (g - c t), and friction takes it along with m
+// c t. A pendulum of 1 m that starts level has 3 m g sin(phi) in its rod.
+TEST(Events, ReadForces) {
+  constexpr double c = 20, m = 2;
+  const auto on_table = [&](const char* mode, bool space, const char* along, const std::string& condition) {
+    return fmt::format(
+               "duration = 2\n[room]\nsize = {0}\nwalls = \"none\"\n[physics]\ncollision = \"{1}\"\n"
+               "[[box]]\nname = \"table\"\nsize = {2}\nposition = {3}\nmotion = {{ {4} = \"-{5}*t^3/6\" }}\n"
+               "[[box]]\nname = \"block\"\nsize = {6}\nmass = {7}\nposition = {8}\nfriction = 1\n",
+               space ? "[8, 8, 8]" : "[8, 8]", mode, space ? "[4, 0.2, 4]" : "[4, 0.2]", spot(space, 0, 2),
+               along, c, space ? "[0.4, 0.4, 0.4]" : "[0.4, 0.4]", m, spot(space, 0, 2.3)) +
+           when(condition);
+  };
+  for (const bool space : {false, true}) {
+    for (const auto& [along, condition, t] :
+         {std::tuple("y", fmt::format("value = \"block.normal_force < {}\"", m * kFalling / 2),
+                     kFalling / 2 / c),
+          std::tuple("y", fmt::format("value = \"block.contact < {}\"", m * kFalling / 4),
+                     0.75 * kFalling / c),
+          std::tuple("x", std::string("value = \"block.friction > 7.7\""), 7.7 / m / c)}) {
+      const std::vector<double> exact = times_until(on_table("event", space, along, condition), 1);
+      ASSERT_EQ(exact.size(), 1u) << condition << space;
+      EXPECT_NEAR(exact[0], t, kInTime) << condition << space;
+      const std::vector<double> steps = times_until(on_table("contact", space, along, condition), 1);
+      ASSERT_EQ(steps.size(), 1u) << condition << space;
+      EXPECT_NEAR(steps[0], std::ceil(t * 600) / 600, 1e-12) << condition << space;
+    }
+    for (const char* what : {"rod.force", "ball.joint_force"}) {
+      const std::string text = open_room("event", space, "mass = 1\nposition = " + spot(space, 1, 3)) +
+                               "[[joint]]\nname = \"rod\"\ntype = \"rod\"\nbetween = [\"ball\", " +
+                               spot(space, 0, 3) + "]\n" +
+                               when(fmt::format("value = \"{} > {}\"", what, 2 * kFalling));
+      const auto events = events_until(text, 1);
+      ASSERT_EQ(events.size(), 1u) << what << space;
+      const auto run = run_of(text);
+      const auto now = std::get<sim::Snapshot>(run->at(events[0].time));
+      // the scheme's error of the swing
+      EXPECT_NEAR(now.bodies[0].position.y(), 3 - 2.0 / 3, 1e-8) << what << space;
+    }
+    const std::string text = open_room("event", space, "mass = 1\nposition = " + spot(space, 0, 3)) +
+                             "[[spring]]\nbetween = [\"ball\", " + spot(space, 0, 4) +
+                             "]\nstiffness = 40\nrest_length = 1\n" +
+                             when("value = \"ball.spring_force > 8\"");
+    const std::vector<double> times = times_until(text, 1);
+    ASSERT_EQ(times.size(), 1u);
+    // 0.2 m = (m g / k) (1 - cos w t)
+    EXPECT_NEAR(times[0], std::acos(1 - 0.2 * 40 / kFalling) / std::sqrt(40.0), kInTime);
+  }
+}
+
 // Ties are served in the order of the file.
 TEST(Events, TiesAreInTheOrderOfTheFile) {
   const std::string text =
@@ -563,6 +652,11 @@ TEST(Events, MistakesAreToldWithTheirPlace) {
       HasSubstr("a.toml:13:10: 'value', column 1: nothing is called 'bal.y' here; did you mean 'ball.y'?"));
   EXPECT_THAT(with("value = \"2 + ball.mass < 1\""),
               HasSubstr("column 5: 'ball.mass' is not what conditions read"));
+  EXPECT_THAT(with("value = \"ball.force > 1\""),
+              HasSubstr("'ball.force' is of a joint, and this is a body"));
+  EXPECT_THAT(wrong_with(ball + "[[joint]]\nname = \"rod\"\ntype = \"rod\"\nbetween = [\"ball\", [0, 4]]\n" +
+                         when("value = \"rod.length > 1\"")),
+              HasSubstr("'rod.length' is not what conditions read of a joint: force"));
   EXPECT_THAT(with("value = \"ball.y\""), HasSubstr("compares nothing"));
   EXPECT_THAT(with("value = \"ball.y == 1\""), HasSubstr("== and != hold for an instant"));
   EXPECT_THAT(with("value = \"ball.z < 1\""), HasSubstr("is of space"));

@@ -412,6 +412,23 @@ TEST(Forces, WorkIsBookedWhereThereIsNoPotential) {
   }
 }
 
+// An instant has them on each body: the air's as drag, all others as its field.
+TEST(Forces, AreShownOnTheirBodies) {
+  for (const Sets& mode : kModes) {
+    const TextRun run(open_room("wind = [3, 0]\nmagnetic = 2") +
+                          "[[particle]]\nposition = [0.4, 0]\nvelocity = [0, 2]\nmass = 2\ncharge = 0.5\n"
+                          "drag = 0.1\nquadratic_drag = 0.2\n[[force]]\npotential = \"3*m*x^2\"\n",
+                      mode);
+    const sim::Snapshot now = run.at(0);
+    const double past = std::hypot(3, 2);
+    const Vec3 drag = -(0.1 + 0.2 * past) * Vec3(-3, 2, 0);
+    // -dU/dx, and q v x B
+    const Vec3 field = Vec3(-6 * 2 * 0.4, 0, 0) + 0.5 * Vec3(2 * 2, 0, 0);
+    EXPECT_NEAR((now.bodies[0].drag - drag).norm(), 0, 1e-14) << mode[0];
+    EXPECT_NEAR((now.bodies[0].field - field).norm(), 0, 1e-14) << mode[0];
+  }
+}
+
 TEST(Forces, TheFormulasKnowTheirVariables) {
   const auto velocity = [](const std::string& of, const std::string& by, double t) {
     return TextRun(open_room() +

@@ -456,6 +456,59 @@ TEST(Gear, FaultsAreTold) {
   EXPECT_THAT(refusal(gear("joints = [\"p\", \"p\"]\nratio = 2\n")), HasSubstr("these are one"));
   EXPECT_THAT(refusal(gear("joints = [\"p\", \"p\"]\n")), HasSubstr("needs 'ratio'"));
   EXPECT_THAT(refusal(gear("between = [\"a\", \"b\"]\n")), HasSubstr("leave out 'between'"));
+  // wheels about one place have no teeth that meet
+  EXPECT_THAT(
+      refusal(room + "[[ball]]\nname = \"c\"\nposition = [2, 4]\n[contact]\nignore = [[\"a\", \"c\"]]\n"
+                     "[[joint]]\nname = \"r\"\ntype = \"pin\"\nbetween = [\"c\", \"room\"]\n"
+                     "[[joint]]\ntype = \"gear\"\njoints = [\"p\", \"r\"]\nratio = 2\nbreaks = 3\n"),
+      HasSubstr("no teeth whose force could break it"));
+}
+
+// The links of a chain carry gears, springs of pins and ropes as other bodies do: the same motion with the
+// chain and without it, by the direct solver to rounding, for there both hold joints exactly.
+TEST(Mechanisms, OnTheLinksOfChainsAreAsOnOtherBodies) {
+  const std::string text =
+      "duration = 2\n[room]\nsize = [8, 6]\nwalls = \"none\"\n[contact]\nignore = [[\"g\", \"g\"]]\n"
+      "[[box]]\nname = \"arm\"\ngroup = \"g\"\nsize = [1.2, 0.1]\nposition = [3.6, 4]\nmass = 1\n"
+      "[[ball]]\nname = \"sun\"\ngroup = \"g\"\nradius = 0.3\nposition = [3.3, 4]\nmass = 1\n"
+      "[[ball]]\nname = \"planet\"\ngroup = \"g\"\nradius = 0.2\nposition = [3.8, 4]\nmass = 0.5\n"
+      "[[particle]]\nname = \"weight\"\ngroup = \"g\"\nposition = [5.5, 3]\nmass = 0.4\n"
+      "[[joint]]\ntype = \"pin\"\nbetween = [\"arm\", \"room\"]\nat = [3, 4]\n"
+      "[[joint]]\nname = \"s\"\ntype = \"pin\"\nbetween = [\"sun\", \"arm\"]\nat = [3.3, 4]\n"
+      "[[joint]]\nname = \"p\"\ntype = \"pin\"\nbetween = [\"planet\", \"arm\"]\nat = [3.8, 4]\n"
+      "spring = { stiffness = 3, rest_angle = 90 }\n"
+      "[[joint]]\nname = \"g\"\ntype = \"gear\"\njoints = [\"s\", \"p\"]\nratio = -0.6666666666666666\n"
+      "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [{ body = \"arm\", at = \"right\" }, "
+      "\"weight\"]\n"
+      "over = [[5.5, 5]]\n";
+  TextRun loose(text), linked(text + "[[chain]]\nof = [\"arm\", \"sun\", \"planet\"]\n");
+  for (const double t : {0.3, 0.8}) {
+    const sim::Snapshot a = loose.at(t), b = linked.at(t);
+    for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+      EXPECT_NEAR((a.bodies[i].position - b.bodies[i].position).norm(), 0, 1e-10) << i;
+      EXPECT_NEAR(a.bodies[i].angle, b.bodies[i].angle, 1e-10) << i;
+    }
+    for (std::size_t i = 0; i < a.joints.size(); ++i)
+      EXPECT_NEAR((a.joints[i].force - b.joints[i].force).norm(), 0, 1e-9) << i;
+    EXPECT_NEAR(b.energies.total(), linked.at(0).energies.total(), 1e-9);
+  }
+}
+
+// Pieces of a rope have their numbers from the end that is written first, whichever end is fast.
+TEST(Pulley, PiecesAreNumberedFromTheFirstEnd) {
+  const std::string yoyo =
+      "duration = 1\n[room]\nsize = [4, 4]\nwalls = \"none\"\n[[ball]]\nname = \"disc\"\nradius = 0.2\nmass "
+      "= 1\n"
+      "position = [2, 3.4]\n[[particle]]\nname = \"end\"\nmass = 1e-6\nposition = [2.2, 3]\n"
+      "[[joint]]\nname = \"string\"\ntype = \"pulley\"\nover = [\"disc\"]\nbetween = ";
+  for (const bool turned : {false, true}) {
+    const TextRun run(yoyo + (turned ? "[\"end\", [1.8, 4]]\n" : "[[1.8, 4], \"end\"]\n"));
+    const sim::Snapshot now = run.at(0.3);
+    // a yo-yo falls with 2/3 g, its string bears m g / 3
+    EXPECT_NEAR(now.bodies[body_called(run, "disc")].position.y(), 3.4 - kEarth / 3 * 0.09, 1e-5);
+    EXPECT_NEAR(now.joints[turned ? 1 : 0].force.norm(), kEarth / 3, 1e-4) << turned;
+    EXPECT_LT(now.joints[turned ? 0 : 1].force.norm(), 1e-4) << turned;
+  }
 }
 
 }  // namespace

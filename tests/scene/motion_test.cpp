@@ -352,5 +352,29 @@ TEST(Motion, ThatIsNotFiniteEndsTheRunWithBodyAndTime) {
   EXPECT_NEAR(trouble->time, 1, 0.01);
 }
 
+// The spring of a hand is beside the room's energy: the two together stay while the hand rests, and where it
+// lets go the room's own goes on.
+TEST(Hand, HasItsEnergyBesideTheRooms) {
+  for (const char* mode : {"handout", "contact", "event"}) {
+    const TextRun run(fmt::format(
+        "duration = 3\n[room]\nsize = [8, 8]\nwalls = \"none\"\n[physics]\ncollision = \"{}\"\n"
+        "[[particle]]\nname = \"p\"\nposition = [3, 4]\nmass = 2\n"
+        "[[spring]]\nbetween = [\"p\", [3, 6]]\nstiffness = 15\n"
+        "[[mouse]]\npath = [[0.5, 4, 4], [1.25, 4, 4]]\nstiffness = 50\nrest_length = 0\ndamping = 0\n",
+        mode));
+    EXPECT_EQ(run.at(0.4).energies.hand, 0) << mode;
+    const sim::Energies held = run.at(0.6).energies, later = run.at(1.2).energies;
+    EXPECT_GT(held.hand, 1) << mode;
+    EXPECT_GT(held.springs, 1) << mode;
+    EXPECT_GT(std::abs(later.hand - held.hand), 0.1) << mode;
+    EXPECT_NEAR(held.total() + held.hand, later.total() + later.hand, 1e-7) << mode;
+    const sim::Energies before = run.at(1.249999).energies, after = run.at(1.250001).energies;
+    EXPECT_GT(before.hand, 0.1) << mode;
+    EXPECT_EQ(after.hand, 0) << mode;
+    EXPECT_NEAR(before.total(), after.total(), 1e-3) << mode;
+    EXPECT_NEAR(run.at(2.5).energies.total(), after.total(), 1e-7) << mode;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -2,6 +2,7 @@
 // any pair, of the narrower width, while they fall and when they rest; and how high a column stands.
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "scene/error.h"
 #include "scene/scene.h"
 #include "sim/collide/broad_phase.h"
 #include "sim/collide/may_touch.h"
 #include "sim/collide/narrow_phase.h"
+#include "sim/step/run.h"
 #include "sim/step/stepper.h"
 #include "where.h"
 
@@ -374,6 +377,45 @@ TEST_P(Shipped, SceneKeepsItsBodiesApart) {
 INSTANTIATE_TEST_SUITE_P(Overlaps, Shipped,
                          testing::Combine(testing::Values(std::string("pour"), std::string("cards")),
                                           testing::Values(60, 600)));
+
+// Less than a millionth of the size is no mistake, between bodies and at walls, and nothing is shot away:
+// rounding puts bodies so.
+TEST(Overlaps, OfAMillionthArePushedApartWithoutAWord) {
+  for (const bool space : {false, true}) {
+    for (const char* physics : {"solver = \"direct\"", "solver = \"iterative\"", "collision = \"event\""}) {
+      for (const bool gravity : {false, true}) {
+        const auto at = [&](double x, double y) {
+          return space ? fmt::format("[{}, {}, 0]", x, y) : fmt::format("[{}, {}]", x, y);
+        };
+        std::string text = fmt::format("[room]\nsize = {}\n{}[physics]\n{}\n", space ? "[4, 3, 4]" : "[4, 3]",
+                                       gravity ? "" : fmt::format("gravity = {}\n", at(0, 0)), physics);
+        const char* size = space ? "[0.5, 0.5, 0.5]" : "[0.5, 0.5]";
+        // in the floor by 2e-7 m, and in each other by 4e-7 m
+        for (const auto& [x, y] :
+             {std::pair(1.0, 0.2499998), std::pair(1.0, 0.7499994), std::pair(1.4999996, 0.25)})
+          text += fmt::format("[[box]]\nsize = {}\nposition = {}\nelasticity = 1\n", size, at(x, y));
+        text += fmt::format("[[ball]]\nradius = 0.25\nposition = {}\nelasticity = 1\n",
+                            at(space ? -1 : 3, 0.2499998));
+        const Scene scene = parse(text, "a.toml");
+        const auto run = scene.run();
+        const auto now = std::get<sim::Snapshot>(run->at(sim::rational(1)));
+        for (const auto& body : now.bodies) {
+          EXPECT_LT(body.velocity.norm(), 1e-5) << physics << space << gravity;
+          EXPECT_LT(body.spin.norm(), 1e-5) << physics << space << gravity;
+        }
+        EXPECT_NEAR(now.bodies[3].position.y(), 0.25, 2.5e-7) << physics << space << gravity;
+        EXPECT_LT(now.energies.kinetic, 1e-10) << physics << space << gravity;
+      }
+    }
+  }
+  // a millionth of a box's size and a half is said
+  try {
+    parse("[room]\nsize = [4, 3]\n[[box]]\nsize = [0.5, 0.5]\nposition = [1, 0.249999]\n", "a.toml");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("outside the room: 1e-06 m beyond the floor"));
+  }
+}
 
 }  // namespace
 }  // namespace obscura::scene

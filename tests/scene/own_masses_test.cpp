@@ -77,6 +77,41 @@ TEST(OwnMasses, CopiesStandWhereTheListSays) {
               HasSubstr("needs 'count' or 'at'"));
 }
 
+TEST(OwnMasses, CopiesHaveVelocitiesAndInertiaOfTheirOwn) {
+  const std::string two = "copies = { at = [[1, 2], [3, 2]] }\n";
+  const Scene scene = parse("[[ball]]\nvelocity = [[1, 0], [0, 2]]\ninertia = [0.5, 0.25]\n" + two, "a.toml");
+  EXPECT_EQ(std::get<sim::World<2>>(scene.world).state.v[1], sim::Vec<2>(0, 2));
+  EXPECT_EQ(model_of<2>(scene).bodies[0].inertia[0], 0.5);
+  EXPECT_EQ(model_of<2>(scene).bodies[1].inertia[0], 0.25);
+  const Scene space = parse(
+      "[room]\nsize = [8, 4, 4]\n[[ball]]\nvelocity = [[1, 0, 0], [0, 0, 2]]\n"
+      "inertia = [[1, 1, 1], [2, 2, 2]]\ncopies = { at = [[1, 2, 0], [3, 2, 0]] }\n",
+      "a.toml");
+  EXPECT_EQ(std::get<sim::World<3>>(space.world).state.v[1], sim::Vec3(0, 0, 2));
+  EXPECT_EQ(model_of<3>(space).bodies[1].inertia, sim::Vec3(2, 2, 2));
+  // and of one copy, where --set changes another key of it
+  const Scene set =
+      parse("[[ball]]\nname = \"b\"\nvelocity = [[1, 0], [0, 2]]\ninertia = [0.5, 0.25]\n" + two, "a.toml",
+            {"b[1].mass=3"});
+  EXPECT_EQ(std::get<sim::World<2>>(set.world).state.v[1], sim::Vec<2>(0, 2));
+  EXPECT_EQ(model_of<2>(set).bodies[1].inertia[0], 0.25);
+  EXPECT_THAT(complaint_about("[[ball]]\nvelocity = [[1, 0], [0, 2], [0, 0]]\n" + two),
+              HasSubstr("expected one for each of the 2 copies, got 3"));
+  EXPECT_THAT(complaint_about("[[ball]]\nvelocity = [[1, 0], [0, 2]]\n"), HasSubstr("there are none"));
+  EXPECT_THAT(complaint_about("[[ball]]\nposition = [[1, 1], [2, 2]]\n"), HasSubstr("copies = { at ="));
+}
+
+// Sides are those of the form, wherever its centre of mass is.
+TEST(OwnMasses, SidesOfABoxStayWithItsForm) {
+  const Scene scene = parse(
+      "[[box]]\nname = \"b\"\nsize = [2, 0.2]\nposition = [3, 2]\ncenter_of_mass = [0.5, 0]\n"
+      "[[joint]]\ntype = \"pin\"\nbetween = [{ body = \"b\", at = \"left\" }, \"room\"]\n",
+      "a.toml");
+  const sim::Joint<2>& joint = model_of<2>(scene).joints[0];
+  EXPECT_EQ(joint.a.local, sim::Vec<2>(-1.5, 0));
+  EXPECT_EQ(joint.b.local, sim::Vec<2>(2, 2));
+}
+
 TEST(OwnMasses, ColoursHaveTheNamesThatPeopleType) {
   for (const char* name : {"red", "brown", "pink", "cyan", "gray", "gold"})
     EXPECT_EQ(complaint_about(fmt::format("[[box]]\ncolor = \"{}\"\n", name)), "") << name;

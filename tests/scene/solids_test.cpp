@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "scene/error.h"
@@ -132,6 +133,31 @@ TEST(Groups, ThatIgnoreEachOtherAreNumbered) {
   EXPECT_EQ(it.plane().model.bodies[1].group, 2);
   EXPECT_EQ(it.plane().model.bodies[2].group, 0);
   EXPECT_THAT(it.plane().model.ignore, ElementsAre(std::pair(2, 1), std::pair(1, 1)));
+}
+
+// Names of bodies will do, where these have no group: then one is made for them.
+TEST(Groups, AreMadeForBodiesThatAreNamed) {
+  const Scene it = contact_scene(
+      "[[ball]]\nname = \"b\"\nradius = 0.1\ncopies = { count = 2, offset = [1, 0] }\nposition = [1, "
+      "1]\n[[box]]\n"
+      "name = \"c\"\nposition = [6, 3]\n[[box]]\nposition = [7, 1]\ngroup = \"d\"\n"
+      "[contact]\nignore = [[\"b\", \"c\"], [\"c\", \"d\"], [\"b\", \"b\"]]");
+  const auto& bodies = it.plane().model.bodies;
+  const auto ignored = [&](int a, int b) {
+    const std::pair pair(bodies[std::size_t(a)].group, bodies[std::size_t(b)].group);
+    const auto& all = it.plane().model.ignore;
+    return std::find(all.begin(), all.end(), pair) != all.end() ||
+           std::find(all.begin(), all.end(), std::pair(pair.second, pair.first)) != all.end();
+  };
+  EXPECT_TRUE(ignored(0, 1));
+  EXPECT_TRUE(ignored(0, 2) && ignored(1, 2));
+  EXPECT_TRUE(ignored(2, 3));
+  EXPECT_FALSE(ignored(0, 3));
+  const Scene one = contact_scene(
+      "[[ball]]\nname = \"b\"\nradius = 0.1\ncopies = { count = 3, offset = [1, 0] }\nposition = [1, 1]\n"
+      "[contact]\nignore = [[\"b[0]\", \"b[2]\"]]");
+  EXPECT_NE(one.plane().model.bodies[0].group, one.plane().model.bodies[2].group);
+  EXPECT_EQ(one.plane().model.bodies[1].group, 0);
 }
 
 TEST(Physics, ABodyMayKeepTheHandoutsLaw) {

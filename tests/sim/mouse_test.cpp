@@ -128,11 +128,11 @@ TEST(Mouse, TakesOnceAndHoldsUntilReleased) {
   const auto held = shown(*all, {299, 1000});
   EXPECT_EQ(held.mice[0].body, 0);
   EXPECT_EQ(held.mice[0].held, held.bodies[0].position);
-  EXPECT_GT(held.energies.springs, 0);
+  EXPECT_GT(held.energies.hand, 0);
   const auto let_go = shown(*all, {3, 10});
   EXPECT_FALSE(let_go.mice[0].pressed);
   EXPECT_EQ(let_go.mice[0].body, -1);
-  EXPECT_EQ(let_go.energies.springs, 0);
+  EXPECT_EQ(let_go.energies.hand, 0);
   const Vec3 v = let_go.bodies[0].velocity;
   EXPECT_GT(v.x(), 0);
   EXPECT_EQ(shown(*all, {1, 1}).bodies[0].velocity, v) << "free again";

@@ -91,10 +91,11 @@ std::string json(const sim::Snapshot& now, const sim::SceneInfo& cast, const std
       "    {{\"time\": {}, \"step\": {}, \"hash\": \"{}\",\n"
       "     \"energy\": {{\"kinetic\": {}, \"potential\": {}, \"gravity\": {}, \"springs\": {}, \"total\": "
       "{}, "
-      "\"displacement\": {}, \"impacts\": {}{}}},\n"
+      "\"displacement\": {}, \"impacts\": {}{}{}}},\n"
       "     \"momentum\": {}, \"angular_momentum\": {},\n     \"bodies\": [",
       number(now.time), now.step, hash, number(e.kinetic), number(e.potential()), number(e.gravity),
       number(e.springs), number(e.total()), number(e.displacement), number(e.impacts),
+      cast.mice.empty() ? "" : fmt::format(", \"hand\": {}", number(e.hand)),
       cast.forces ? fmt::format(", \"fields\": {}, \"work\": {}", number(e.fields), number(e.work)) : "",
       vector(now.momentum, d), spin(now.angular_momentum, d));
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
@@ -316,7 +317,9 @@ OBSCURA_COMMAND(60, states) {
       "or another body; the normal points to the body, and the force (N) and the impulse (N s) of the last "
       "step act on it. A joint's force acts on its first body. at_rest: proved to stay.\n"
       "energy.displacement: what pushing bodies out of walls and each other has gained since the start; "
-      "energy.impacts: what impacts of collision = \"handout\" have lost.\n\n"
+      "energy.impacts: what impacts of collision = \"handout\" have lost; energy.hand: in the springs of "
+      "mice, "
+      "beside the total.\n\n"
       "Examples:\n"
       "  obscura states scenes/room.toml --at 0,0.5,2\n"
       "  obscura states scenes/room.toml --every 0.1 -o room.csv\n"

@@ -42,6 +42,7 @@ std::vector<Column> columns(const sim::SceneInfo& cast, const std::vector<Eigen:
     list.number("energy.fields", [](Now now) { return now.energies.fields; });
     list.number("energy.work", [](Now now) { return now.energies.work; });
   }
+  if (!cast.mice.empty()) list.number("energy.hand", [](Now now) { return now.energies.hand; });
   list.number("energy.displacement", [](Now now) { return now.energies.displacement; });
   list.number("energy.impacts", [](Now now) { return now.energies.impacts; });
   list.vector("momentum", [](Now now) -> const sim::Vec3& { return now.momentum; });

@@ -42,6 +42,7 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
   draw([&] { draw_rods(stage, view, now, list); });
   draw([&] { draw_rounds(stage, view, now, list); });
   draw([&] { draw_gears(stage, view, now, list); });
+  draw([&] { draw_racks(stage, view, now, list); });
   draw([&] { draw_pulleys(stage, view, now, list); });
   draw([&] { draw_pins(stage, view, now, list); });
   draw([&] { draw_contacts(stage, view, now, list); });

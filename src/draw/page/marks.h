@@ -35,6 +35,7 @@ enum class Quantity {
   spring_force,
   joint_force,
   drag,
+  field,
   spring,
   contact,
   impulse,

@@ -100,7 +100,7 @@ Vec3 net_force(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
   const sim::SceneInfo::Body& its = cast.bodies[std::size_t(body)];
   if (its.fixed) return Vec3::Zero();
   const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
-  Vec3 sum = its.mass * cast.gravity + it.drag + it.blast;
+  Vec3 sum = its.mass * cast.gravity + it.drag + it.field + it.blast;
   sum += total(touches(now, body, Quantity::contact)) + total(pulls(cast, now, body, true)) +
          total(held(cast, now, body));
   for (const sim::Snapshot::Mouse& mouse : now.mice)
@@ -136,6 +136,8 @@ std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo&
       return {{at, net_force(cast, now, vector.body)}};
     case Quantity::drag:
       return {{at, body.drag}};
+    case Quantity::field:
+      return {{at, body.field}};
     case Quantity::spring:
     case Quantity::spring_force:
       return pulls(cast, now, vector.body, vector.quantity == Quantity::spring_force);

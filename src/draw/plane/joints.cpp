@@ -196,6 +196,51 @@ void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, 
   }
 }
 
+// Teeth of racks, as far as their bodies reach. Where the pinion has a tooth, theirs have a gap: the place
+// that meets the rack's is at r (angle of the tooth - angle of the way there) along the rack.
+void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const std::map<int, Toothed> wheels = toothed_wheels(stage.cast, now);
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
+    if (joint_look(joint.kind).plane != JointMark::teeth || now.joints[i].broken || joint.places.size() != 4)
+      continue;
+    const bool first = !(joint.offset_a > 0);
+    if (first == !(joint.offset_b > 0)) continue;
+    const int rack = joint.places[first ? 0 : 2].body;
+    const auto found = wheels.find(joint.places[first ? 2 : 0].body);
+    if (rack < 0 || found == wheels.end()) continue;
+    const Toothed& pinion = found->second;
+    const Vec3 own = first ? joint.tooth_a : joint.tooth_b;
+    const sim::Snapshot::Body& body = now.bodies[std::size_t(rack)];
+    const Vec3 out = body.orientation * own, along(-out.y(), out.x(), 0);
+    const Vec3 foot = place_of(now, pinion.center) + pinion.radius * out;
+    // how far the body reaches along it
+    const sim::SceneInfo::Body& its = stage.cast.bodies[std::size_t(rack)];
+    const Vec3 own_along(-own.y(), own.x(), 0);
+    double reach = its.radius;
+    if (its.kind == sim::ShapeKind::box)
+      reach = std::abs(own_along.x()) * its.half.x() + std::abs(own_along.y()) * its.half.y();
+    for (const Vec3& vertex : its.vertices) reach = std::max(reach, std::abs(vertex.dot(own_along)));
+    const double middle = (body.position - foot).dot(along);
+    const double pitch = kRound / pinion.count * pinion.radius, high = kToothHeight * pitch;
+    const double tooth = pinion.radius * (pinion.first + now.bodies[std::size_t(found->first)].angle -
+                                          std::atan2(out.y(), out.x()));
+    const Color color = stage.paints[std::size_t(rack)].outline;
+    nodes.clear();
+    const auto add = [&](double x, double h) {
+      nodes.push_back({view.page(foot + x * along - h * out), kSpringLine * stage.layout.weight, color});
+    };
+    const double from = std::ceil((middle - reach - tooth) / pitch) - 0.5;
+    for (double x = tooth + from * pitch; x <= middle + reach; x += pitch) {
+      if (x - 0.32 * pitch < middle - reach || x + 0.32 * pitch > middle + reach) continue;
+      add(x - 0.32 * pitch, -high), add(x - 0.15 * pitch, high);
+      add(x + 0.15 * pitch, high), add(x + 0.32 * pitch, -high);
+    }
+    if (!nodes.empty()) list.add(nodes, Cap::round);
+  }
+}
+
 void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {

@@ -80,7 +80,7 @@ std::optional<Trouble> DivergenceMonitor<D>::check_bounds(const State<D>& state,
 template <int D>
 void DivergenceMonitor<D>::start(State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
-  double energy_budget = e.kinetic + e.springs + std::fabs(e.fields);
+  double energy_budget = e.kinetic + e.springs + e.hand + std::fabs(e.fields);
   const double little = 0.1 * model_.scale;
   double fastest = little;
   for (const Mouse<D>& mouse : model_.mice) {
@@ -108,7 +108,8 @@ template <int D>
 std::optional<Trouble> DivergenceMonitor<D>::check_energy(const State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
   const double energy_budget = state.energy_budget.amount + std::max(0.0, state.ledger.displacement);
-  const double now = e.kinetic + e.springs + e.gravity + e.fields - e.work - state.energy_budget.level;
+  const double now =
+      e.kinetic + e.springs + e.hand + e.gravity + e.fields - e.work - state.energy_budget.level;
   if (now <= kSuspect * energy_budget) return {};
   const Tightness worst = tightest(model_, state.grips);
   if (now <= kProof * energy_budget && worst.body < 0) return {};

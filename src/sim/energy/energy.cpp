@@ -94,7 +94,7 @@ Energies energies(const Model<D>& model, const State<D>& state, const std::vecto
   for (int joint = 0; joint < int(model.joints.size()); ++joint)
     if (model.joints[std::size_t(joint)].coil) sum.springs += joint_spring_energy(model, state, joint);
   for (int mouse = 0; mouse < int(model.mice.size()); ++mouse)
-    sum.springs += spring_energy(model, state, paths, mouse, t);
+    sum.hand += spring_energy(model, state, paths, mouse, t);
   sum.fields = field_energy(model, state, t);
   for (const double work : state.work) sum.work += work;
   sum.displacement = state.ledger.displacement;

@@ -97,7 +97,8 @@ void Forces<D>::find_flying() {
     }
     if (all.empty()) continue;
     std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->body < b->body; });
-    Flying& it = flying_.emplace_back(Flying{&force, {}, {}, Evaluation(force.formula->force), {}, false});
+    Flying& it =
+        flying_.emplace_back(Flying{&force, {}, {}, Evaluation(force.formula->force), {}, {}, false});
     it.fixed.resize(16);
     for (int slot = 0; slot < each_slot::time; ++slot)
       it.reads[std::size_t(slot)] = force.formula->force.reads(slot);
@@ -109,6 +110,11 @@ void Forces<D>::find_flying() {
       it.fixed[each_slot::copy].push_back(subject->copy), it.fixed[each_slot::drag].push_back(subject->drag);
       it.fixed[each_slot::quadratic_drag].push_back(subject->quadratic_drag);
     }
+    // a product with 1/m is the quotient to the bit where 1/m is exact
+    const std::vector<double>& masses = it.fixed[each_slot::mass];
+    int exponent = 0;
+    if (std::all_of(masses.begin(), masses.end(), [&](double m) { return std::frexp(m, &exponent) == 0.5; }))
+      for (const double m : masses) it.inverse.push_back(1 / m);
   }
   all_fly_ = any();
   bool drag = false;
@@ -172,12 +178,16 @@ double Forces<D>::accelerate(double t, int first, int count, const double* x, co
       }
       it.evaluation.run(n, inputs);
       const double* const masses = inputs[mass];
+      const double* const inverse = it.inverse.empty() ? nullptr : it.inverse.data() + at;
       std::int64_t finite = 0;
       double given[4] = {};
       for (int axis = 0; axis < D; ++axis) {
         const double* const f = it.evaluation.output(axis);
         finite |= within(f, n, kFinite);
-        each_lane([&](int k, int i) { rates[i + axis] += f[k] / masses[k]; });
+        if (inverse)
+          each_lane([&](int k, int i) { rates[i + axis] += f[k] * inverse[k]; });
+        else
+          each_lane([&](int k, int i) { rates[i + axis] += f[k] / masses[k]; });
         if (!it.booked) continue;
         const double* const speed = inputs[std::size_t(vx + axis)];
         for (int k = 0; k + 4 <= n; k += 4) {
@@ -598,28 +608,40 @@ void Forces<D>::all(Active& it, double t, const std::vector<BodyMotion<D>>& moti
 }
 
 template <int D>
+void Forces<D>::apply(Active& it, double t, const std::vector<BodyMotion<D>>& motions,
+                      std::vector<Wrench<D>>& wrenches) {
+  const bool potential = !formula_of(*it.force) || it.force->formula->potential;
+  const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& at = {}) {
+    const int member = k < 0 ? it.center : it.members[std::size_t(k)];
+    const Subject<D>& subject =
+        k < 0 ? *it.force->center : it.force->subjects[std::size_t(it.subjects[std::size_t(k)])];
+    if (member < 0) {
+      if (potential && !driven_.empty()) driven_power_ -= f.dot(point(subject, member, motions).v);
+      return;
+    }
+    Wrench<D>& wrench = wrenches[std::size_t(member)];
+    wrench.f += f;
+    if (at)
+      wrench.n += moment<D>(Vec<D>(*at - motions[std::size_t(member)].x), f);
+    else if (offset(subject))
+      wrench.n += moment<D>(motions[std::size_t(member)].arm(subject.local), f);
+  };
+  all(it, t, motions, false, found);
+}
+
+template <int D>
 void Forces<D>::apply(double t, const std::vector<BodyMotion<D>>& motions, std::vector<Wrench<D>>& wrenches) {
   move_driven(t);
   driven_power_ = 0;
-  for (Active& it : active_) {
-    const bool potential = !formula_of(*it.force) || it.force->formula->potential;
-    const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& at = {}) {
-      const int member = k < 0 ? it.center : it.members[std::size_t(k)];
-      const Subject<D>& subject =
-          k < 0 ? *it.force->center : it.force->subjects[std::size_t(it.subjects[std::size_t(k)])];
-      if (member < 0) {
-        if (potential && !driven_.empty()) driven_power_ -= f.dot(point(subject, member, motions).v);
-        return;
-      }
-      Wrench<D>& wrench = wrenches[std::size_t(member)];
-      wrench.f += f;
-      if (at)
-        wrench.n += moment<D>(Vec<D>(*at - motions[std::size_t(member)].x), f);
-      else if (offset(subject))
-        wrench.n += moment<D>(motions[std::size_t(member)].arm(subject.local), f);
-    };
-    all(it, t, motions, false, found);
-  }
+  for (Active& it : active_) apply(it, t, motions, wrenches);
+}
+
+template <int D>
+void Forces<D>::apply_drag(double t, bool drag, const std::vector<BodyMotion<D>>& motions,
+                           std::vector<Wrench<D>>& wrenches) {
+  move_driven(t);
+  for (Active& it : active_)
+    if (it.force->drag == drag) apply(it, t, motions, wrenches);
 }
 
 template <int D>

@@ -48,6 +48,10 @@ class Forces {
   /// Adds the force and torque on each member at time t, room's frame, torque about its centre.
   void apply(double t, const std::vector<BodyMotion<D>>& motions, std::vector<Wrench<D>>& wrenches);
 
+  /// The same at one instant of those that are drag, or of all others.
+  void apply_drag(double t, bool drag, const std::vector<BodyMotion<D>>& motions,
+                  std::vector<Wrench<D>>& wrenches);
+
   /// The power (W) that kinematic bodies supplied against forces with a potential in the last apply().
   double driven_power() const { return driven_power_; }
 
@@ -91,6 +95,8 @@ class Forces {
   void attract(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
   template <class Found>
   void float_up(Active& it, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
+  void apply(Active& it, double t, const std::vector<BodyMotion<D>>& motions,
+             std::vector<Wrench<D>>& wrenches);
   template <class Found>
   void all(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
   [[noreturn]] void refuse(const Force<D>& of, int body, double t, const Vec<D>& force,
@@ -104,7 +110,8 @@ class Forces {
     std::vector<std::vector<double>> fixed;
     Evaluation evaluation;
     std::array<bool, 16> reads{};
-    bool booked = false;  // its work is
+    std::vector<double> inverse;  // of the masses, 1/kg, where all are exact; else none
+    bool booked = false;          // its work is
   };
 
   const Model<D>& model_;

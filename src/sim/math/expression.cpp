@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "sim/math/elementary.h"
+#include "sim/math/lanes.h"
 
 namespace obscura::sim {
 
@@ -427,67 +428,99 @@ namespace {
 
 // one operation for n bodies: `to` is none of the others
 template <class F>
-[[gnu::always_inline]] inline void each(int n, double* __restrict to, const double* a, F&& f) {
+OBSCURA_INLINE void each(int n, double* __restrict to, const double* a, F&& f) {
   for (int i = 0; i < n; ++i) to[i] = f(a[i]);
 }
 template <class F>
-[[gnu::always_inline]] inline void each(int n, double* __restrict to, const double* a, const double* b,
-                                        F&& f) {
+OBSCURA_INLINE void each(int n, double* __restrict to, const double* a, const double* b, F&& f) {
   for (int i = 0; i < n; ++i) to[i] = f(a[i], b[i]);
+}
+
+// std::sqrt may set errno, so compilers make no vectors of it
+#if defined(__SSE2__) && __has_builtin(__builtin_ia32_sqrtpd)
+typedef double Two __attribute__((vector_size(16), aligned(8), may_alias));
+OBSCURA_INLINE int pairs_of_roots(int n, double* __restrict to, const double* a) {
+  int i = 0;
+  for (; i + 2 <= n; i += 2)
+    *reinterpret_cast<Two*>(to + i) = __builtin_ia32_sqrtpd(*reinterpret_cast<const Two*>(a + i));
+  return i;
+}
+#else
+OBSCURA_INLINE int pairs_of_roots(int, double*, const double*) { return 0; }
+#endif
+OBSCURA_INLINE void roots(int n, double* __restrict to, const double* a) {
+  for (int i = pairs_of_roots(n, to, a); i < n; ++i) to[i] = std::sqrt(a[i]);
+}
+
+// those that the compiler makes vectors of; false: another
+OBSCURA_INLINE bool operate(Operation operation, int n, double* __restrict to, const double* a,
+                            const double* b, const double* c) {
+  using enum Operation;
+  switch (operation) {
+    case add:
+      each(n, to, a, b, [](double x, double y) { return x + y; });
+      return true;
+    case subtract:
+      each(n, to, a, b, [](double x, double y) { return x - y; });
+      return true;
+    case multiply:
+      each(n, to, a, b, [](double x, double y) { return x * y; });
+      return true;
+    case divide:
+      each(n, to, a, b, [](double x, double y) { return x / y; });
+      return true;
+    case negate:
+      each(n, to, a, [](double x) { return -x; });
+      return true;
+    case square_root:
+      roots(n, to, a);
+      return true;
+    case absolute:
+      each(n, to, a, [](double x) { return std::fabs(x); });
+      return true;
+    case minimum:
+      each(n, to, a, b, [](double x, double y) { return y < x ? y : x; });
+      return true;
+    case maximum:
+      each(n, to, a, b, [](double x, double y) { return y > x ? y : x; });
+      return true;
+    case less:
+      each(n, to, a, b, [](double x, double y) { return x < y ? 1.0 : 0.0; });
+      return true;
+    case less_equal:
+      each(n, to, a, b, [](double x, double y) { return x <= y ? 1.0 : 0.0; });
+      return true;
+    case choose:
+      for (int i = 0; i < n; ++i) to[i] = a[i] != 0 ? b[i] : c[i];
+      return true;
+    default:
+      return false;
+  }
+}
+
+// the same bits by two lanes and by four
+bool operate_by_two(Operation operation, int n, double* to, const double* a, const double* b,
+                    const double* c) {
+  return operate(operation, n, to, a, b, c);
+}
+OBSCURA_WIDE bool operate_by_four(Operation operation, int n, double* to, const double* a, const double* b,
+                                  const double* c) {
+  return operate(operation, n, to, a, b, c);
 }
 
 }  // namespace
 
 void Evaluation::run(int n, std::span<const double* const> inputs) {
-  using enum Operation;
   inputs_ = inputs;
   for (const Program::Instruction& it : program_->code_) {
-    double* __restrict to = registers_.data() + std::size_t(it.to - program_->slots_) * Program::kLanes;
+    double* const to = registers_.data() + std::size_t(it.to - program_->slots_) * Program::kLanes;
     const double* a = at(it.a);
     const double* b = it.b < 0 ? nullptr : at(it.b);
     const double* c = it.c < 0 ? nullptr : at(it.c);
-    switch (it.operation) {
-      // those that the compiler makes vectors of
-      case add:
-        each(n, to, a, b, [](double x, double y) { return x + y; });
-        break;
-      case subtract:
-        each(n, to, a, b, [](double x, double y) { return x - y; });
-        break;
-      case multiply:
-        each(n, to, a, b, [](double x, double y) { return x * y; });
-        break;
-      case divide:
-        each(n, to, a, b, [](double x, double y) { return x / y; });
-        break;
-      case negate:
-        each(n, to, a, [](double x) { return -x; });
-        break;
-      case square_root:
-        each(n, to, a, [](double x) { return std::sqrt(x); });
-        break;
-      case absolute:
-        each(n, to, a, [](double x) { return std::fabs(x); });
-        break;
-      case minimum:
-        each(n, to, a, b, [](double x, double y) { return y < x ? y : x; });
-        break;
-      case maximum:
-        each(n, to, a, b, [](double x, double y) { return y > x ? y : x; });
-        break;
-      case less:
-        each(n, to, a, b, [](double x, double y) { return x < y ? 1.0 : 0.0; });
-        break;
-      case less_equal:
-        each(n, to, a, b, [](double x, double y) { return x <= y ? 1.0 : 0.0; });
-        break;
-      case choose:
-        for (int i = 0; i < n; ++i) to[i] = a[i] != 0 ? b[i] : c[i];
-        break;
-      default:
-        for (int i = 0; i < n; ++i) to[i] = evaluated(it.operation, a[i], b ? b[i] : 0, 0);
-        break;
-    }
+    if (lanes::four_lanes ? operate_by_four(it.operation, n, to, a, b, c)
+                          : operate_by_two(it.operation, n, to, a, b, c))
+      continue;
+    for (int i = 0; i < n; ++i) to[i] = evaluated(it.operation, a[i], b ? b[i] : 0, 0);
   }
 }
 

@@ -55,15 +55,22 @@ struct Course {
     double begun = 0, ended = 0;
   };
 
+  /// A joint that breaks within the step.
+  struct Break {
+    int joint = -1;
+    double at = 0;
+  };
+
   std::vector<char> watched;                        // one a body
   std::vector<std::vector<CoursePiece<D>>> pieces;  // one list a body, in the order of time
   std::vector<Meeting> meetings;
+  std::vector<Break> breaks;
 
   bool watches(int body) const { return body >= 0 && watched[std::size_t(body)] != 0; }
 
   void clear() {
     for (auto& all : pieces) all.clear();
-    meetings.clear();
+    meetings.clear(), breaks.clear();
   }
   /// What is known of a body, which is moved anew.
   void forget(int body) {

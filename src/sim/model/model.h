@@ -287,6 +287,7 @@ struct Force {
   std::optional<Subject<D>> center;    // of `each`: where d is measured from; a body feels the opposite
   double strength = 0, softening = 0;  // c, N m^2/kg^2 or N m^2/C^2; s, m
   double level = 0, density = 0;       // m; kg/m^2, in space kg/m^3
+  bool drag = false;                   // of the air, beside that of Body::drag
 };
 
 template <int D>
@@ -316,11 +317,30 @@ struct Change {
   bool replaces(const Change& other) const { return of == other.of && index == other.index; }
 };
 
-/// A quantity of a body, as the condition of an event reads it.
+/// A quantity of a body or joint, as the condition of an event reads it.
 struct Reading {
-  enum class Of { x, y, z, vx, vy, vz, speed, angle, spin };
-  int body = -1;
+  enum class Of {
+    x,
+    y,
+    z,
+    vx,
+    vy,
+    vz,
+    speed,
+    angle,
+    spin,
+    // lengths of sums of forces, known at the ends of steps
+    contact,
+    normal_force,
+    friction,
+    spring_force,
+    joint_force,
+    force  // of a joint
+  };
+  int body = -1;  // or joint
   Of of = Of::x;
+
+  bool of_forces() const { return of >= Of::contact; }
 };
 
 /// A condition, and what is done when it becomes true: see sim/step/events.h.
@@ -351,6 +371,12 @@ struct When {
   /// For how many things its truth is known apart.
   int things() const {
     return on == On::touches || on == On::leaves ? int(pairs.size()) : those.empty() ? 1 : int(those.size());
+  }
+  /// Whether it reads forces.
+  bool of_forces() const {
+    for (const Reading& it : reads)
+      if (it.of_forces()) return true;
+    return false;
   }
   /// Whether it only notes when it fires.
   bool only_marks() const {

@@ -83,8 +83,9 @@ struct SceneInfo {
 };
 
 struct Energies {
-  double kinetic = 0, gravity = 0, springs = 0;  // J; springs: those of the scene and of pressed mice
+  double kinetic = 0, gravity = 0, springs = 0;  // J
   double fields = 0;                             // potentials of forces, J
+  double hand = 0;                               // in the springs of pressed mice, beside the total, J
   double work = 0;                       // of forces without one and of drag, beside them, J since t = 0
   double displacement = 0, impacts = 0;  // the ledger of `handout`, J since t = 0
   double potential() const { return gravity + springs + fields; }
@@ -100,7 +101,8 @@ struct Snapshot {
     double angle = 0;           // plane: rad, not wrapped
     bool at_rest = false;       // frozen: steps leave it alone
     Vec3 blast = Vec3::Zero();  // what explosions push it with, N
-    Vec3 drag = Vec3::Zero();   // of the room's drag, and of the ground's, N
+    Vec3 drag = Vec3::Zero();   // of the air, and of the ground, N
+    Vec3 field = Vec3::Zero();  // the sum of all other forces of the scene: formulas, attraction, charges, N
   };
   struct Spring {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are

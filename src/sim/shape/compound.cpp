@@ -84,7 +84,18 @@ Shape<D> Compound<D>::moved(const Placing<D>& placing, const Orientation<D>& tur
 
 template <int D>
 std::optional<Vec<D>> Compound<D>::side(const Vec<D>& way) const {
-  return way.isZero(0) ? std::optional<Vec<D>>(way) : std::nullopt;
+  if (way.isZero(0)) return way;
+  if (parts.size() != 1) return {};
+  // one form that is not about its centre of mass
+  return of_form(parts[0], [&](const auto& form) -> std::optional<Vec<D>> {
+    const std::optional<Vec<D>> its = form.side(way);
+    if constexpr (requires { form.center, form.turn; }) {
+      if (its) return Vec<D>(form.center + rotation<D>(form.turn) * *its);
+    } else if constexpr (requires { form.center; }) {
+      if (its) return Vec<D>(form.center + *its);
+    }
+    return its;
+  });
 }
 
 template <int D>

@@ -16,6 +16,7 @@
 #include "sim/collide/narrow_phase.h"
 #include "sim/constraint/joints/joint.h"
 #include "sim/energy/energy.h"
+#include "sim/force/spring.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/step/archive.h"
 #include "sim/step/stepper.h"
@@ -31,6 +32,7 @@ constexpr double kFirstBracket = 1e-8;  // of a step
 constexpr double kLastBracket = 1e-2;
 constexpr double kSmooth = 0.2;      // of its speeds: how far they differ in a smooth step
 constexpr double kLettingGo = 1e-5;  // of a step
+constexpr double kMoment = 1e-9;     // of a step
 constexpr int kMostTries = 60;       // partial steps of a search
 constexpr int kSamples = 16;         // of a smooth piece
 constexpr int kNarrowings = 60;
@@ -69,8 +71,17 @@ double read(const Instant<D>& at, Reading::Of of) {
       return at.turn[0];
     case spin:
       return D == 2 ? at.spin[0] : std::sqrt(at.spin.squaredNorm());
+    default:
+      return 0;
   }
-  return 0;
+}
+
+// how a point of a body, or a place of the room, is and moves
+template <int D>
+std::pair<Vec<D>, Vec<D>> place_and_velocity(const State<D>& state, const End<D>& end) {
+  if (end.body < 0) return {end.local, Vec<D>(Vec<D>::Zero())};
+  const BodyMotion<D> at = body_motion(state, end.body);
+  return {at.x + at.arm(end.local), at.velocity(at.arm(end.local))};
 }
 
 }  // namespace
@@ -91,7 +102,8 @@ Events<D>::Events(const Model<D>& model) : model_(model), exact_(model.collision
     if (when.value) {
       evaluations_.emplace_back(*when.value);
       evaluations_.back().begin({});
-      for (const Reading& it : when.reads) read.push_back(it.body);
+      for (const Reading& it : when.reads)
+        if (!it.of_forces()) read.push_back(it.body);
     }
     if (when.on == On::crosses) read = when.those;
     for (const auto& [a, b] : when.pairs) {
@@ -106,6 +118,43 @@ Events<D>::Events(const Model<D>& model) : model_(model), exact_(model.collision
 
 template <int D>
 Events<D>::~Events() = default;
+
+// a quantity in a state; of forces how long the sum of what it has from all that touches or holds it is
+template <int D>
+double Events<D>::read(const State<D>& state, const Reading& of) {
+  using enum Reading::Of;
+  const int body = of.body;
+  if (!of.of_forces()) return sim::read(instant(state, body), of.of);
+  const auto known = [&](int joint) { return std::size_t(joint) < state.joint_forces.size(); };
+  if (of.of == force) return known(body) ? std::sqrt(state.joint_forces[std::size_t(body)].squaredNorm()) : 0;
+  const Model<D>& model = stepper_->model(state);
+  Vec<D> sum = Vec<D>::Zero();
+  const auto touch = [&](const Vec<D>& push, const Vec<D>& normal) {
+    const Vec<D> pressed = push.dot(normal) * normal;
+    sum += of.of == contact ? push : of.of == normal_force ? pressed : Vec<D>(push - pressed);
+  };
+  if (of.of == spring_force) {
+    for (const Spring<D>& spring : model.springs) {
+      if (spring.a.body != body && spring.b.body != body) continue;
+      const auto [a, va] = place_and_velocity(state, spring.a);
+      const auto [b, vb] = place_and_velocity(state, spring.b);
+      sum += (spring.a.body == body ? 1 : -1) * pull<D>(law(spring), a, va, b, vb);
+    }
+  } else if (of.of == joint_force) {
+    for (int i = 0; i < int(model.joints.size()); ++i) {
+      const Joint<D>& joint = model.joints[std::size_t(i)];
+      if (known(i) && (joint.a.body == body || joint.b.body == body))
+        sum += (joint.a.body == body ? 1 : -1) * state.joint_forces[std::size_t(i)];
+    }
+  } else {
+    for (const Contact<D>& it : state.contacts)
+      if (it.touching != ContactMode::open && (it.key.a == body || it.key.b == body))
+        touch((it.key.a == body ? 1 : -1) * it.force, it.normal);
+    for (const Touch<D>& it : state.touches)
+      if (it.body == body) touch(it.impulse * value(model.rate), model.walls[std::size_t(it.wall)].normal);
+  }
+  return std::sqrt(sum.squaredNorm());
+}
 
 template <int D>
 double Events<D>::seconds(double fraction) const {
@@ -158,6 +207,9 @@ void Events<D>::make(const State<D>& state) {
         break;
     }
   }
+  probes_ =
+      model_.bonds.empty() && (now_.collision == Collision::event ||
+                               (now_.collision == Collision::contact && solver(now_) == Solver::direct));
   stepper_ = std::make_unique<Stepper<D>>(now_);
   stepper_->watch(&course_);
 }
@@ -418,7 +470,7 @@ void Events<D>::find(const State<D>& state, double from, double to) {
         find_values(state, w, from, to);
         break;
       case On::breaks:
-        find_breaks(state, w, to);
+        find_breaks(state, w, from, to);
         break;
       case On::time:
         break;
@@ -439,11 +491,15 @@ void Events<D>::find_times(const State<D>& state, double from, double to) {
 }
 
 template <int D>
-void Events<D>::find_breaks(const State<D>& state, int w, double to) {
+void Events<D>::find_breaks(const State<D>& state, int w, double from, double to) {
   const When<D>& when = model_.whens[std::size_t(w)];
   for (int k = 0; k < int(when.those.size()); ++k) {
-    if (broken(state, when.those[std::size_t(k)]) && !state.events.on[std::size_t(slot(w, k))])
-      found_.push_back({to, w, k, true, 0});
+    const int joint = when.those[std::size_t(k)];
+    if (!broken(state, joint) || state.events.on[std::size_t(slot(w, k))]) continue;
+    double at = to;
+    for (const auto& it : course_.breaks)
+      if (exact_ && it.joint == joint) at = std::min(to, from + it.at / step_length(model_.rate));
+    found_.push_back({at, w, k, true, 0});
   }
 }
 
@@ -672,6 +728,11 @@ void Events<D>::evaluate(const State<D>& state, int w, double from, double to, s
 template <int D>
 void Events<D>::find_values(const State<D>& state, int w, double from, double to) {
   bool was = state.events.on[std::size_t(slot(w, 0))] != 0;
+  // forces are known at the ends of what has been stepped
+  if (model_.whens[std::size_t(w)].of_forces()) {
+    if (!was && true_now(state, w, to)) found_.push_back({to, w, 0, false, 0});
+    return;
+  }
   stretches(read_[std::size_t(w)], from, to);
   const std::vector<double> knots = knots_;
   std::vector<double> at(kSamples + 1), more;
@@ -756,15 +817,17 @@ void Events<D>::find_values(const State<D>& state, int w, double from, double to
 
 // whether a value is true in a state
 template <int D>
-bool Events<D>::true_now(const State<D>& state, int w, double fraction) {
+bool Events<D>::true_now(const State<D>& as_it_is, int w, double fraction) {
   const When<D>& when = model_.whens[std::size_t(w)];
+  const bool probed = probes_ && when.of_forces();
+  if (probed) probe(as_it_is, fraction);
+  const State<D>& state = probed ? probed_ : as_it_is;
   const std::size_t reads = when.reads.size();
   inputs_.resize(std::max(inputs_.size(), reads + 1));
   std::vector<const double*> slots;
   for (std::size_t k = 0; k <= reads; ++k) {
     inputs_[k].resize(Program::kLanes);
-    inputs_[k][0] = k < reads ? sim::read(instant(state, when.reads[k].body), when.reads[k].of)
-                              : time_at(begun_, fraction);
+    inputs_[k][0] = k < reads ? read(state, when.reads[k]) : time_at(begun_, fraction);
     slots.push_back(inputs_[k].data());
   }
   Evaluation& evaluation = evaluations_[std::size_t(evaluation_of_[std::size_t(w)])];
@@ -772,6 +835,17 @@ bool Events<D>::true_now(const State<D>& state, int w, double fraction) {
   margins_.resize(std::size_t(when.value->outputs() - 1));
   for (std::size_t m = 0; m < margins_.size(); ++m) margins_[m].assign(1, evaluation.output(int(m) + 1)[0]);
   return evaluation.output(0)[0] != 0;
+}
+
+// Into probed_: a state with the forces of its instant, which are those that the next moment of its motion
+// begins with. The exact solver keeps those of contacts as they were at the last event of a step.
+template <int D>
+void Events<D>::probe(const State<D>& state, double fraction) {
+  probed_ = state;
+  stepper_->watch(nullptr);
+  const double from = state.step > begun_.step ? 0 : fraction;
+  stepper_->go(probed_, from, from + kMoment < 1 ? from + kMoment : 1);
+  stepper_->watch(&course_);
 }
 
 // the time of what was found on the course, on the motion itself
@@ -796,6 +870,7 @@ void Events<D>::search(Found& found, double from, double to) {
     const bool is = true_now(tried_, found.when, at);
     return Tried{is, margins_.size() == 1 ? margins_[0][0] : 0};
   };
+  const bool forces = when.of_forces();
   double low = 0, high = 0;
   Tried at_low, at_high;
   bool before = false, after = false;
@@ -809,6 +884,8 @@ void Events<D>::search(Found& found, double from, double to) {
     else
       at_low = attempt(low), before = !at_low.is;
   }
+  // forces may have changed anywhere in the step
+  if (forces && after && !before) low = from, before = true, at_low = attempt(from);
   // its margin is a straight line there, nearly: then a little before and a little after it
   for (; before && after && high - low > kFound && tries < kMostTries; ++tries) {
     double middle = 0.5 * (low + high);

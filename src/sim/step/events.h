@@ -69,7 +69,7 @@ class Events {
   void find_touches(const State<D>& state, int when, double from, double to);
   void find_crossings(const State<D>& state, int when, double from, double to);
   void find_values(const State<D>& state, int when, double from, double to);
-  void find_breaks(const State<D>& state, int when, double to);
+  void find_breaks(const State<D>& state, int when, double from, double to);
   void spans(const State<D>& state, std::pair<int, int> pair, bool touched, double from, double to);
   Instant<D> pose_at(const State<D>& state, int body, double from, double to, double at, double inside) const;
   void stretches(const std::vector<int>& bodies, double from, double to);
@@ -78,6 +78,8 @@ class Events {
   void evaluate(const State<D>& state, int when, double from, double to, std::span<const double> at,
                 double inside);
   bool true_now(const State<D>& state, int when, double fraction);
+  double read(const State<D>& state, const Reading& of);
+  void probe(const State<D>& state, double fraction);
   double side_of(const When<D>& when, const Vec<D>& x) const;
   bool within(const When<D>& when, const Vec<D>& x) const;
   void search(Found& found, double from, double to);
@@ -88,6 +90,7 @@ class Events {
 
   const Model<D>& model_;
   bool exact_ = false;                   // under `event`
+  bool probes_ = false;                  // by the exact solver, without bonds
   std::vector<int> slots_;               // of each condition, its first in EventLog::on
   std::vector<Evaluation> evaluations_;  // of values, in the order of the conditions
   std::vector<int> evaluation_of_;
@@ -99,7 +102,7 @@ class Events {
   std::unique_ptr<Stepper<D>> stepper_;
 
   Course<D> course_;
-  State<D> begun_, tried_;
+  State<D> begun_, tried_, probed_;
   std::vector<Found> found_;
   std::vector<Span> spans_;
   std::vector<double> knots_;

@@ -10,6 +10,7 @@
 #include "sim/constraint/material.h"
 #include "sim/energy/energy.h"
 #include "sim/force/explosion.h"
+#include "sim/force/forces.h"
 #include "sim/force/spring.h"
 #include "sim/model/stance.h"
 #include "sim/shape/shape.h"
@@ -116,6 +117,25 @@ void drag(const Model<D>& model, const State<D>& state, Snapshot& now) {
   }
 }
 
+// what the forces of the scene give each body: the air's with the other drag
+template <int D>
+void field(const Model<D>& model, const State<D>& state, double t, Snapshot& now) {
+  if (model.forces.empty()) return;
+  Forces<D> forces(model);
+  forces.gather(state);
+  std::vector<BodyMotion<D>> motions;
+  stand(state, motions);
+  std::vector<Wrench<D>> wrenches;
+  for (const bool drag : {true, false}) {
+    wrenches.assign(motions.size(), {});
+    forces.apply_drag(t, drag, motions, wrenches);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (model.bodies[i].fixed) continue;
+      (drag ? now.bodies[i].drag : now.bodies[i].field) += to_3d<D>(wrenches[i].f);
+    }
+  }
+}
+
 // how a point of a body, or a place of the room, moves
 template <int D>
 Vec<D> velocity(const State<D>& state, const End<D>& end) {
@@ -214,6 +234,11 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
   }
   if (blasting(state)) blow(model, state, now);
   drag(model, state, now);
+  try {
+    field(model, state, t, now);
+  } catch (const NotFinite&) {
+    // the step tells of it
+  }
   for (const Spring<D>& s : model.springs) {
     const Vec<D> a = place(state, s.a), b = place(state, s.b);
     now.springs.push_back({to_3d<D>(a), to_3d<D>(b), s.a.body, s.b.body,

@@ -23,6 +23,7 @@ constexpr int kMostLooks = 200000;  // of a couple in an interval
 constexpr double kSteepest = 2.5;  // of its way: how fast one goes in its interval, at most (Hermite's cubic)
 constexpr int kMostRoots = 100;
 constexpr double kStraight = 0.8;  // of an interval cut at a release: earlier releases in it are ignored
+constexpr double kBeyond = 1e-12;  // of what a joint bears
 constexpr double kSlight = 1e-6;   // of the largest force: a contact may pull so much before it is released
 
 }  // namespace
@@ -288,6 +289,30 @@ double ExactSolver<D>::release_time(const Constraint*& which) {
   return first;
 }
 
+// The fraction of the interval at which the first joint is loaded beyond its strength, by linear
+// interpolation of the loads; a little later, so that it is found to be so. And whom it holds.
+template <int D>
+double ExactSolver<D>::breaking_time(const State<D>& state, Couple& which) const {
+  if (model_.collision != Collision::event) return kNever;
+  double first = kNever;
+  for (const int i : active_.joints) {
+    const Joint<D>& joint = model_.joints[i];
+    if (!(joint.breaks < 1e299) || state.broken[i] || !moves(joint)) continue;
+    Vec<D> load = Vec<D>::Zero();
+    for (const Constraint& constraint : constraints_) {
+      if (constraint.kind == Constraint::Kind::contact || constraint.of != i) continue;
+      for (int k = constraint.first; k < constraint.first + constraint.rows; ++k)
+        load += f_[k] * rows_[k].along;
+    }
+    const double begun = std::sqrt(outcome_.joint_forces[i].squaredNorm()),
+                 now = std::sqrt(load.squaredNorm()), most = joint.breaks * (1 + kBeyond);
+    if (begun >= most || now <= most) continue;
+    const double part = (most - begun) / (now - begun);
+    if (part < first) first = part, which = {joint.a.body, joint.b.body};
+  }
+  return first;
+}
+
 // the part of the interval from interval_.begun to `state` at which the first thing happens, and to whom;
 // kNever: nothing does
 template <int D>
@@ -414,9 +439,11 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
     // a force that comes down as far in a shorter time is one of many that may bear the same load
     if (progress_.released && opens < kStraight)
       progress_.unclear.push_back(candidates_[which->of].key), opens = kNever;
-    Couple meets{-1, -1};
+    Couple held{-1, -1}, meets{-1, -1};
+    const double breaks = breaking_time(state, held);
     bool passes = false;
-    const double part = std::min(opens, first_event(state, length, meets, passes));
+    double part = std::min(opens, first_event(state, length, meets, passes));
+    if (breaks < part) part = breaks, passes = false, meets = held;
     if (part > 1) return length;
     cut = true;
     progress_.passes = passes && part < opens;

@@ -174,6 +174,7 @@ bool ExactSolver<D>::collide(StepPart<D> step) {
   collect_bodies(state);
   save(state, step_.begun);
   step_.frozen = state.frozen, step_.quiet = state.quiet, step_.on_piece = state.on_piece;
+  step_.broken = state.broken;
   bound_travel(state, step.t, step.h);
   step_.near.reset(int(n)), step_.old_root.assign(n, -1), step_.travelled.assign(n, 0.0),
       step_.cuts.assign(n, 0), step_.given.assign(n, 0.0);
@@ -185,7 +186,7 @@ void ExactSolver<D>::advance(StepPart<D> step) {
   State<D>& state = step.state;
   for (int round = 0; round < kMostRounds; ++round) {
     // bodies that got farther than expected, into the reach of others, are stepped again together with them
-    join_near_bodies(state);
+    join_near_bodies();
     bool any = false;
     list_groups(state);
     for (const Group& group : step_.groups) {
@@ -196,6 +197,7 @@ void ExactSolver<D>::advance(StepPart<D> step) {
       activate(group);
       if (round > 0) {
         restore(step_.begun, state);
+        for (const int i : active_.joints) state.broken[i] = step_.broken[i];
         for (const int body : group.subset.bodies)
           state.frozen[body] = step_.frozen[body], state.quiet[body] = step_.quiet[body];
         const auto of_group = [&](const Contact<D>& c) {
@@ -256,6 +258,11 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   int grown = 0;  // cuts at which rest has grown
   for (const int body : active_.subset.bodies)
     if (course_) course_->forget(body);
+  if (course_) {
+    std::erase_if(course_->breaks, [&](const auto& it) {
+      return std::find(active_.joints.begin(), active_.joints.end(), it.joint) != active_.joints.end();
+    });
+  }
   // `event` counts all cuts of the group, whoever they are of
   for (int spent = 0; done < h; spent = event_mode ? spent + !progress_.passes : cuts_so_far()) {
     progress_.passes = false;
@@ -278,6 +285,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     if (chosen && spent < most_cuts && tiny <= kStuck) {
       if (progress_.released) release_contact();
       record_forces();
+      if (event_mode && break_loaded(state, done)) continue;
       if (coming_apart()) project_state(state);
       // at the friction limit nothing slips: as an equality it is sticking
       interval_.modes = modes_;
@@ -469,6 +477,34 @@ void ExactSolver<D>::note_motion(const State<D>& state, double begun, double end
       piece.from.turn = interval_.begun.turn[k], piece.from.spin = interval_.begun.spin[k];
     course_->pieces[std::size_t(body)].push_back(piece);
   }
+}
+
+// under `event`: takes away joints that are loaded beyond their strength at this instant; whether there are
+// any
+template <int D>
+bool ExactSolver<D>::break_loaded(State<D>& state, double done) {
+  scratch_.unheld.clear();
+  for (const int i : active_.joints) {
+    const Joint<D>& joint = model_.joints[i];
+    if (state.broken[i] || !moves(joint) ||
+        !(std::sqrt(outcome_.joint_forces[i].squaredNorm()) > joint.breaks))
+      continue;
+    state.broken[i] = 1;
+    joint.each_body([&](int body) {
+      if (body >= 0) scratch_.unheld.push_back(body);
+    });
+  }
+  if (scratch_.unheld.empty()) return false;
+  break_ropes(model_, state.broken);
+  for (const int i : active_.joints) {
+    const bool known = !course_ || step_.broken[i] || !state.broken[i] ||
+                       std::any_of(course_->breaks.begin(), course_->breaks.end(),
+                                   [&](const auto& it) { return it.joint == i; });
+    if (!known) course_->breaks.push_back({i, done});
+  }
+  sleep_.wake(state, scratch_.unheld);
+  collect_bodies(state);
+  return true;
 }
 
 // removes joints that are loaded beyond their strength, from the next step on, and wakes the bodies they held

@@ -118,6 +118,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   struct Step {
     Motion begun;
     std::vector<char> frozen;   // where it began
+    std::vector<char> broken;   // joints there
     std::vector<double> quiet;  // there
     Islands near;               // bodies that may meet, or are tied together
     std::vector<Group> groups;
@@ -210,12 +211,13 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void record_forces();
   void release_contact();
   void break_joints(State<D>& state);
+  bool break_loaded(State<D>& state, double done);
   void note_contacts(double begun, double ended);
   void note_motion(const State<D>& state, double begun, double ended);
 
   // groups.cpp
   void bound_travel(const State<D>& state, double t, double h);
-  void join_near_bodies(const State<D>& state);
+  void join_near_bodies();
   void list_groups(const State<D>& state);
   void classify_sets(const State<D>& state);
   void find_reached();
@@ -304,6 +306,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double stopping_time(Couple& first);
   double force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const;
   double release_time(const Constraint*& which);
+  double breaking_time(const State<D>& state, Couple& which) const;
   double travel(const State<D>& state, int body, double h) const;
   bool may_close(const State<D>& state, double h, Couple couple) const;
   AngularVec<D> turn_between_at(const State<D>& state, const Joint<D>& joint, double h, double part);

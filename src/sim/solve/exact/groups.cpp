@@ -61,7 +61,7 @@ void ExactSolver<D>::bound_travel(const State<D>& state, double t, double h) {
 
 // step_.near: which bodies may meet, or are tied together
 template <int D>
-void ExactSolver<D>::join_near_bodies(const State<D>& state) {
+void ExactSolver<D>::join_near_bodies() {
   step_.near.reset(limits_.bodies);
   for (int body = 0; body < int(step_.travel_bound.size()); ++body)
     step_.travel_bound[body] = std::max(step_.travel_bound[body], step_.travelled[body]);
@@ -77,7 +77,8 @@ void ExactSolver<D>::join_near_bodies(const State<D>& state) {
     for (const int body : chain.bodies) link(body, chain.bodies[0]);
   }
   for (int i = 0; i < int(model_.joints.size()); ++i) {
-    if (state.broken[i]) continue;
+    // one that breaks within the step holds them up to there
+    if (step_.broken[i]) continue;
     const Joint<D>& joint = model_.joints[i];
     link(joint.a.body, joint.b.body);
     if (joint.over.empty()) continue;
@@ -352,7 +353,7 @@ int ExactSolver<D>::cuts_so_far() const {
 
 #define OBSCURA_INSTANTIATE(D)                                                 \
   template void ExactSolver<D>::bound_travel(const State<D>&, double, double); \
-  template void ExactSolver<D>::join_near_bodies(const State<D>&);             \
+  template void ExactSolver<D>::join_near_bodies();                            \
   template void ExactSolver<D>::list_groups(const State<D>&);                  \
   template void ExactSolver<D>::activate(const Group&);                        \
   template void ExactSolver<D>::resize_for(State<D>&);                         \
