@@ -1,0 +1,249 @@
+// Forces, motion, mechanisms, tracks and events in everything that the program does with a scene: a run that
+// goes on from a checkpoint, shards, --set and sweeps, export, figures and goldens.
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+struct Feature {
+  const char* name;
+  std::string scene;
+  std::string set;  // a key of it that changes its run
+};
+
+const std::string kStart = "duration = 1\n[physics]\nrate = 240\n";
+const std::string kFlat = kStart + "[room]\nsize = [4, 2.25]\n";
+const std::string kDeep = kStart + "[room]\nsize = [4, 2.25, 2]\n";
+const std::string kBall =
+    "[[ball]]\nname = 'ball'\nradius = 0.15\nposition = [1, 1.5]\nvelocity = [1, 0.5]\n";
+const std::string kLow = "[[ball]]\nname = 'ball'\nradius = 0.15\nposition = [1, 0.5]\nvelocity = [1, 0]\n";
+const std::string kTable = R"([[box]]
+name = 'table'
+size = [3, 0.2]
+position = [2, 0.6]
+motion = { x = '0.2*sin(6*t)', angle = '10*sin(5*t)' }
+)";
+const std::string kRope = R"([[box]]
+name = 'a'
+size = [0.2, 0.2]
+position = [1.5, 1]
+[[box]]
+name = 'b'
+size = [0.3, 0.2]
+position = [2.5, 1]
+[[ball]]
+name = 'wheel'
+radius = 0.2
+position = [2, 2]
+[[joint]]
+type = 'pin'
+between = ['wheel', 'room']
+[[joint]]
+name = 'rope'
+type = 'pulley'
+between = ['a', 'b']
+over = ['wheel']
+)";
+const std::string kGears = R"([[ball]]
+name = 'small'
+radius = 0.2
+position = [1, 1.2]
+[[ball]]
+name = 'large'
+radius = 0.4
+position = [1.6, 1.2]
+[[box]]
+name = 'rack'
+size = [0.2, 1]
+position = [2.1, 1]
+[[joint]]
+name = 'axle'
+type = 'pin'
+between = ['small', 'room']
+motor = { speed = '90*t', most = 1 }
+[[joint]]
+name = 'other'
+type = 'pin'
+between = ['large', 'room']
+[[joint]]
+name = 'guide'
+type = 'slider'
+between = ['rack', 'room']
+axis = [0, 1]
+[[joint]]
+type = 'gear'
+joints = ['axle', 'other']
+ratio = -2
+[[joint]]
+type = 'gear'
+joints = ['guide', 'other']
+ratio = 0.4
+)";
+const std::string kRail = R"([[ball]]
+name = 'ball'
+radius = 0.15
+position = [0.6, 1.8]
+[[track]]
+name = 'way'
+points = [[0.2, 1.8], [1.5, 0.5], { to = [3.5, 1] }]
+friction = 0.5
+)";
+const std::string kEvents = kBall + R"([[box]]
+name = 'gate'
+size = [0.2, 1]
+position = [2, 1.4]
+fixed = true
+[[joint]]
+name = 'rope'
+type = 'rope'
+between = ['ball', [1, 2.2]]
+breaks = 20
+[[when]]
+touches = ['ball', 'gate']
+do = [{ mark = 'hit' }, { release = 'gate' }]
+[[when]]
+value = 'ball.y < 0.8'
+again = true
+do = [{ mark = 'low' }, { set = 'room.gravity', to = [0, -3] }]
+[[when]]
+time = 0.6
+do = [{ set = 'gate.fixed', to = true }]
+)";
+const std::string kIterative = "solver = 'iterative'\n", kEvent = "collision = 'event'\n";
+
+std::string in_physics(const std::string& scene, const std::string& line) {
+  std::string text = scene;
+  const std::string head = "[physics]\n";
+  return text.insert(text.find(head) + head.size(), line);
+}
+
+const std::vector<Feature>& features() {
+  static const std::vector<Feature> all{
+      {"force",
+       kFlat + kBall + "[[force]]\nname = 'f'\nof = 'ball'\ncomponents = ['-3*vx*speed', '2*sin(9*t)']\n",
+       "f.components=['0', '5']"},
+      {"potential", kFlat + kBall + "[constants]\nk = 9\n[[force]]\nof = 'ball'\npotential = 'k*(x-2)^2/2'\n",
+       "constants.k=4"},
+      {"pairs",
+       kFlat + "gravitation = 0.5\nsoftening = 0.1\n" + kBall +
+           "[[ball]]\nname = 'other'\nposition = [3, 1]\n[[force]]\nbetween = ['ball', 'other']\n"
+           "potential = '2*(r-1)^2'\n",
+       "room.gravitation=0.1"},
+      {"charge", kFlat + "magnetic = 3\nelectric = [0, 1]\n" + kBall + "charge = 2\n", "room.magnetic=-3"},
+      {"air", kFlat + "wind = [3, 0]\nquadratic_drag = 0.3\n" + kBall, "room.quadratic_drag=0.1"},
+      {"fluid", kFlat + "fluid = { level = 1, density = 2 }\n" + kBall, "room.fluid.density=3"},
+      {"motion", kFlat + kBall + kTable, "table.motion.x='0.1*t'"},
+      {"motion_iterative", in_physics(kFlat + kBall + kTable, kIterative), "table.motion.x='0.1*t'"},
+      {"release",
+       kFlat + kBall +
+           "[[box]]\nname = 'table'\nsize = [3, 0.2]\nrelease = 0.4\n"
+           "motion = { path = [[0, 2, 0.6], [0.5, 2, 1], [1, 2, 0.6]] }\n",
+       "table.release=0.7"},
+      {"belt",
+       kFlat + kLow +
+           "[[box]]\nname = 'belt'\nsize = [3, 0.2]\nposition = [2, 0.2]\nfixed = true\nsurface_speed = 2\n",
+       "belt.surface_speed=-1"},
+      {"pulley", kFlat + kRope, "b.mass=0.05"},
+      {"pulley_iterative", in_physics(kFlat + kRope, kIterative), "b.mass=0.05"},
+      {"gears", kFlat + kGears, "axle.motor.speed='45*t'"},
+      {"gears_iterative", in_physics(kFlat + kGears, kIterative), "axle.motor.speed='45*t'"},
+      {"coils",
+       kFlat + "[[box]]\nname = 'bar'\nposition = [1, 1]\nspin = 90\n[[joint]]\nname = 'p'\ntype = 'pin'\n"
+               "between = ['bar', 'room']\nspring = { stiffness = 2, damping = 0.1, rest_angle = 30 }\n",
+       "p.spring.stiffness=5"},
+      {"screw",
+       kDeep + "[[box]]\nname = 'nut'\nsize = [0.3, 0.3, 0.3]\nposition = [0, 1, 0]\n[[joint]]\nname = 's'\n"
+               "type = 'screw'\nbetween = ['nut', 'room']\naxis = [0, 1, 0]\npitch = 0.5\n",
+       "s.pitch=0.3"},
+      {"rail", kFlat + kRail, "way.friction=0"},
+      {"rail_event", in_physics(kFlat + kRail, kEvent), "way.friction=0"},
+      {"rail_on_a_cart",
+       kFlat +
+           "[[ball]]\nname = 'ball'\nradius = 0.15\nposition = [1.5, 1.2]\n[[box]]\nname = 'cart'\n"
+           "size = [2, 0.2]\nposition = [2, 0.3]\nmotion = { x = '0.2*sin(5*t)' }\n[[track]]\non = 'cart'\n"
+           "points = [[-1, 1], { spline = [[0, 0.3], [1, 1]] }]\n",
+       "ball.radius=0.1"},
+      {"wire",
+       kFlat +
+           "[[particle]]\nname = 'bead'\nposition = [2.7, 1]\n[[track]]\nname = 'hoop'\nx = '2+0.8*cos(s)'\n"
+           "y = '1.1+0.8*sin(s)'\nfrom = 0\nto = '2*pi'\nthread = ['bead']\nfriction = 0.1\n",
+       "hoop.friction=0.4"},
+      {"wire_in_space",
+       kDeep +
+           "[[particle]]\nname = 'bead'\nposition = [0.8, 2, 0]\n[[track]]\nx = '0.8*cos(s)'\ny = '2-0.1*s'\n"
+           "z = '0.8*sin(s)'\nfrom = 0\nto = 18\nthread = ['bead']\nfriction = 0.1\n",
+       "track[0].friction=0"},
+      {"events", kFlat + kEvents, "ball.velocity=[3, 0]"},
+      {"events_iterative", in_physics(kFlat + kEvents, kIterative), "ball.velocity=[3, 0]"},
+      {"events_exact", in_physics(kFlat + kEvents, kEvent), "ball.velocity=[3, 0]"},
+  };
+  return all;
+}
+
+class Lecture : public Program, public ::testing::WithParamInterface<Feature> {
+ protected:
+  // runs it, and fails where it does not end well
+  std::string good(const std::string& arguments) const {
+    const Outcome run = obscura(arguments);
+    EXPECT_EQ(run.exit, 0) << arguments << "\n" << run.out << run.err;
+    return run.out;
+  }
+  // the hash of the last row of a table of states
+  static std::string hash(const std::string& table) {
+    std::istringstream lines(table);
+    std::string line, last;
+    while (std::getline(lines, line))
+      if (!line.empty()) last = line;
+    std::istringstream cells(last);
+    std::string cell;
+    for (int i = 0; i < 3; ++i) std::getline(cells, cell, ',');
+    return cell;
+  }
+};
+
+TEST_P(Lecture, GoesWithEverything) {
+  scene(GetParam().scene);
+  const std::string film = " --size 96x54 --fps 8 --progress none",
+                    end = "states scene.toml --at 1 --format csv";
+  const std::string set = " --set \"" + GetParam().set + "\"";
+  const std::string state = hash(good(end));
+  ASSERT_EQ(state.size(), 32u) << state;
+
+  // shards are the film, and a run goes on from its checkpoints
+  good("render scene.toml -o a.mp4 --checkpoint-every 0.3" + film);
+  good("render scene.toml -o b.mp4 --prepare 2" + film);
+  good("render scene.toml -o b.mp4 --shard 2/2" + film);
+  good("render scene.toml -o b.mp4 --shard 1/2" + film);
+  good("join b.mp4");
+  EXPECT_EQ(contents(path("a.mp4")), contents(path("b.mp4")));
+  std::istringstream checkpoints(shell("find . -name '*.checkpoint'").out);
+  int resumed = 0;
+  for (std::string file; std::getline(checkpoints, file); ++resumed)
+    EXPECT_EQ(hash(good(end + " --from-checkpoint '" + file + "'")), state) << file;
+  EXPECT_GT(resumed, 0);
+
+  // --set and sweeps change one run alike
+  const std::string other = hash(good(end + set));
+  EXPECT_NE(other, state);
+  EXPECT_NE(good("sweep scene.toml --vary \"" + GetParam().set + "\" --measure hash@end").find(other),
+            std::string::npos);
+
+  good("export scene.toml -o a.glb --fps 8");
+  good("figure scene.toml -o a.svg --at 0.5");
+  good("describe scene.toml");
+  scene(GetParam().scene + "[golden]\nat = [0.5]\nsize = [96, 54]\n");
+  good("golden scene.toml --references kept --update");
+  good("golden scene.toml --references kept");
+}
+
+INSTANTIATE_TEST_SUITE_P(Features, Lecture, ::testing::ValuesIn(features()),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace obscura::app
