@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 namespace obscura::gl {
 namespace {
@@ -15,6 +16,20 @@ constexpr double kSlab = 0.75;  // px half extent under which a pixel may meet b
 constexpr int kTile = 16;       // px, of the layers
 
 constexpr GLsizei kCorners = 4;  // of a quad, as a triangle strip
+
+// a straight stroke of one width and colour without round ends: as a box it takes half the time
+std::optional<draw::Box> as_bar(const draw::List& list, const draw::Stroke& stroke) {
+  if (stroke.end - stroke.begin != 2 || stroke.cap != draw::Cap::butt || stroke.blend != draw::Blend::over)
+    return {};
+  const draw::Node &a = list.nodes[std::size_t(stroke.begin)], &b = list.nodes[std::size_t(stroke.begin) + 1];
+  const draw::Point way = b.at - a.at;
+  const double length = way.norm();
+  if (!(length > 0) || a.width != b.width || a.color != b.color) return {};
+  draw::Box bar;
+  bar.center = (a.at + b.at) / 2, bar.x_axis = way / length, bar.half = {length / 2, a.width / 2};
+  bar.fill = bar.outline = a.color;
+  return bar;
+}
 
 }  // namespace
 
@@ -110,7 +125,12 @@ void Painter::encode(const draw::List& list, const draw::Batch& batch, Damage& d
         add(list.boxes[at], damage);
         break;
       case draw::Kind::stroke:
-        add(list, list.strokes[at], damage);
+        if (const auto bar = as_bar(list, list.strokes[at])) {
+          add(*bar, damage);
+        } else {
+          lay_boxes();
+          add(list, list.strokes[at], damage);
+        }
         break;
       case draw::Kind::polygon:
         add(list, list.polygons[at], damage);

@@ -56,6 +56,8 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
       scale_(height / 1080.0),
       solid_program_(gl, "solid.vert", "solid.frag"),
       shadow_program_(gl, "solid.vert", "solid_shadow.frag"),
+      grained_program_(gl, "solid.vert", "grained.frag"),
+      grained_shadow_program_(gl, "solid.vert", "grained_shadow.frag"),
       caster_program_(gl, "caster.vert", "caster.frag"),
       shade_program_(gl, "cover.vert", "shade.frag"),
       resolve_program_(gl, "cover.vert", "resolve.frag"),
@@ -64,7 +66,8 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
                     {4, GL_UNSIGNED_BYTE, offsetof(draw::Solids::Vertex, lit)},
                     {4, GL_UNSIGNED_BYTE, offsetof(draw::Solids::Vertex, shaded)},
                     {3, GL_FLOAT, offsetof(draw::Solids::Vertex, light)},
-                    {2, GL_FLOAT, offsetof(draw::Solids::Vertex, slope)}}),
+                    {2, GL_FLOAT, offsetof(draw::Solids::Vertex, slope)},
+                    {4, GL_FLOAT, offsetof(draw::Solids::Vertex, grain)}}),
       caster_array_(gl, 3 * sizeof(float), 0, {{3, GL_FLOAT, 0}}),
       cover_array_(gl, 0, 0, {}),
       index_buffer_(gl, GL_ELEMENT_ARRAY_BUFFER),
@@ -92,12 +95,15 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
 
   dark_texture_ = texture(gl, GL_R8, GL_RED, GL_UNSIGNED_BYTE, half_width_, half_height_, GL_LINEAR);
 
-  for (const Program* program : {&solid_program_, &shadow_program_}) {
+  for (const Program* program :
+       {&solid_program_, &shadow_program_, &grained_program_, &grained_shadow_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
   }
-  shadow_program_.use();
-  gl.Uniform2f(shadow_program_.uniform("texel"), 1.0f / kMap, kBias);
+  for (const Program* program : {&shadow_program_, &grained_shadow_program_}) {
+    program->use();
+    gl.Uniform2f(program->uniform("texel"), 1.0f / kMap, kBias);
+  }
   shade_program_.use();
   // the half picture may be half a pixel larger
   gl.Uniform2f(shade_program_.uniform("per_size"), 0.5f / float(half_width_), 0.5f / float(half_height_));
@@ -182,10 +188,12 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
     gl_.DrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(sizeof(std::uint32_t) * first));
   };
-  draw(solid_program_, 0, solids.triangles.size());
+  const Program& plain = solids.grained ? grained_program_ : solid_program_;
+  const Program& shadowed = solids.grained ? grained_shadow_program_ : shadow_program_;
+  draw(plain, 0, solids.triangles.size());
   gl_.ActiveTexture(GL_TEXTURE0);
   gl_.BindTexture(GL_TEXTURE_2D, map_texture_);
-  draw(map ? shadow_program_ : solid_program_, solids.triangles.size(), solids.shadowed.size());
+  draw(map ? shadowed : plain, solids.triangles.size(), solids.shadowed.size());
   if (gl_.ClipControl) gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   gl_.Disable(GL_DEPTH_TEST);
 

@@ -153,6 +153,13 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
   look.velocity = arrows ? has(*arrows, "velocity") : making.velocity && !still;
   look.contact = arrows ? has(*arrows, "contact") : making.contact && !still;
   if (fields.given("label")) look.label = fields.text("label");
+  if (const Node* material = fields.given("material")) {
+    const std::string& word = material->text();
+    look.material = word == "metal"    ? draw::Material::metal
+                    : word == "wood"   ? draw::Material::wood
+                    : word == "checks" ? draw::Material::checks
+                                       : draw::Material::matte;
+  }
   making.looks.push_back(look);
 }
 

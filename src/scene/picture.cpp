@@ -31,6 +31,7 @@ draw::CameraKey camera_key(const Fields& fields) {
   draw::CameraKey key;
   if (const Node* center = fields.given("center")) key.center = in_space<D>(vector<D>(*center));
   if (const Node* width = fields.given("width")) key.width = width->number();
+  if (D == 3 && fields.given("height")) key.height = fields.given("height")->number();
   if (const Node* eye = fields.given("eye")) key.eye = in_space<D>(vector<D>(*eye));
   return key;
 }
@@ -62,6 +63,7 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
     look.light = sim::Vec3(0, 1, 0);
   }
   look.ground = fields.flag("ground");
+  look.drop_lines = fields.flag("drop_lines");
   if (const Node* tile = fields.given("tile")) look.tile = tile->number();
 
   if (const Node* emphasis = fields.given("emphasis")) {
@@ -104,6 +106,7 @@ draw::Camera standing(const Fields& fields) {
   if (const Node* azimuth = fields.given("azimuth")) camera.azimuth = radians(azimuth->number());
   if (const Node* elevation = fields.given("elevation")) camera.elevation = radians(elevation->number());
   camera.orbit = radians(fields.number("orbit"));
+  camera.fits_run = fields.text("fit") == "run";
   return camera;
 }
 
@@ -111,7 +114,10 @@ template <int D>
 draw::Camera camera(const Fields& fields, const NameTable& roster, Diagnostics& complaints) {
   draw::Camera camera = D == 3 ? standing(fields) : draw::Camera{};
   const Node* keys = fields.given("keys");
-  const bool stands = fields.given("center") || fields.given("width") || fields.given("eye");
+  const bool high = D == 3 && fields.given("height");
+  const bool stands = fields.given("center") || fields.given("width") || fields.given("eye") || high;
+  if (high && fields.given("width"))
+    complaints.add(fields.place("height"), "'width' and 'height' both say how much it shows; leave one out");
   if (fields.given("eye"))
     for (const char* key : {"azimuth", "elevation", "orbit"})
       if (const Node* both = fields.given(key))
@@ -120,6 +126,7 @@ draw::Camera camera(const Fields& fields, const NameTable& roster, Diagnostics& 
   if (keys && stands) {
     complaints.add(fields.place(fields.given("center")  ? "center"
                                 : fields.given("width") ? "width"
+                                : high                  ? "height"
                                                         : "eye"),
                    "the camera stands, or moves by 'keys'; leave one out");
     return camera;
@@ -135,6 +142,8 @@ draw::Camera camera(const Fields& fields, const NameTable& roster, Diagnostics& 
     const Fields its(keys->list()[i], "camera.keys");
     if (!its.given("time")) continue;
     draw::CameraKey key = camera_key<D>(its);
+    if (key.width && key.height)
+      complaints.add(its.place("height"), "'width' and 'height' both say how much it shows; leave one out");
     if (const Node* azimuth = its.given("azimuth")) key.azimuth = radians(azimuth->number());
     if (const Node* elevation = its.given("elevation")) key.elevation = radians(elevation->number());
     key.time = its.number("time");

@@ -328,7 +328,8 @@ TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
 
 /// The forces by their kinds add up, and to what the motion shows: the change of velocity over a step.
 TEST(Marks, TheKindsOfForcesAddUpToTheAcceleration) {
-  for (const char* name : {"slope", "swing", "pendulum", "drag_particle", "spring"}) {
+  for (const char* name :
+       {"slope", "swing", "pendulum", "drag_particle", "spring", "planets", "crossed_fields"}) {
     const scene::Scene scene = scene::read(kScenes + name + ".toml");
     const auto run = scene.run();
     const sim::SceneInfo& cast = run->scene_info();

@@ -33,10 +33,10 @@ TEST(Camera, InAndOutStartAndEndAtRest) {
 
 Made filmed() {
   Made made = room(8, 4.5);
-  made.camera.keys = {{0, {}, {}, Ease::linear},
-                      {2, sim::Vec3(6, 1, 0), 3.0, Ease::in_out},
-                      {3, sim::Vec3(2, 3, 0), 3.0, Ease::out},
-                      {5, sim::Vec3(4, 2, 0), 12.0, Ease::hold}};
+  made.camera.keys = {{0, {}, {}, {}, Ease::linear},
+                      {2, sim::Vec3(6, 1, 0), 3.0, {}, Ease::in_out},
+                      {3, sim::Vec3(2, 3, 0), 3.0, {}, Ease::out},
+                      {5, sim::Vec3(4, 2, 0), 12.0, {}, Ease::hold}};
   return made;
 }
 
@@ -57,7 +57,8 @@ TEST(Camera, KeysAreHitExactly) {
 
 TEST(Camera, ZoomKeepsOnePlaceOfTheWorldStill) {
   Made made = room(8, 4.5);
-  made.camera.keys = {{0, sim::Vec3(4, 2, 0), 8.0, Ease::linear}, {1, sim::Vec3(6, 1, 0), 2.0, Ease::linear}};
+  made.camera.keys = {{0, sim::Vec3(4, 2, 0), 8.0, {}, Ease::linear},
+                      {1, sim::Vec3(6, 1, 0), 2.0, {}, Ease::linear}};
   const Illustrator depictor = made.depictor();
   // 4 + 2 s = 6 + s (2 - 8) / ... : the centre of the similarity between the two rectangles
   const sim::Vec3 fixed(4 + 2 / (1 - 2.0 / 8), 2 - 1 / (1 - 2.0 / 8), 0);

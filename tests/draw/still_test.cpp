@@ -163,8 +163,8 @@ TEST(Still, HatchingGoesWithTheWorld) {
   // the camera pans by a length that is no multiple of the hatching's step: the same lines, elsewhere
   // (no line meets a corner of this room, where either wall may cut it, out of sight under their lines)
   Made made = slanted();
-  made.camera.keys = {{0, sim::Vec3(4, 2.25, 0), 12.0, CameraKey::Ease::linear},
-                      {1, sim::Vec3(4.1237, 2.25, 0), 12.0, CameraKey::Ease::linear}};
+  made.camera.keys = {{0, sim::Vec3(4, 2.25, 0), 12.0, {}, CameraKey::Ease::linear},
+                      {1, sim::Vec3(4.1237, 2.25, 0), 12.0, {}, CameraKey::Ease::linear}};
   const Illustrator depictor = made.depictor();
   const auto before = depictor.depict(made.now, {}).still;
   made.now.time = 1;

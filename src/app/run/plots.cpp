@@ -191,8 +191,31 @@ struct Watched {
   std::vector<draw::Plot> plots;
   draw::RunAhead marks;
   sim::SceneInfo cast;
-  bool any = false;  // an instant
+  bool any = false;                    // an instant
+  std::optional<draw::Extent> bounds;  // where bodies went
 };
+
+draw::Extent together(const draw::Extent& a, const draw::Extent& b) {
+  return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
+}
+
+// around all bodies
+draw::Extent reached(const sim::SceneInfo& cast, const sim::Snapshot& now) {
+  draw::Extent all{sim::Vec3::Constant(1e300), sim::Vec3::Constant(-1e300)};
+  for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
+    const sim::SceneInfo::Body& body = cast.bodies[i];
+    if (body.bare) continue;
+    double reach = std::max(body.radius, body.half.norm());
+    for (const sim::Vec3& v : body.vertices) reach = std::max(reach, v.norm());
+    for (const auto& part : body.parts) {
+      reach = std::max(reach, part.center.norm() + part.radius + part.half.norm());
+      for (const sim::Vec3& v : part.vertices) reach = std::max(reach, part.center.norm() + v.norm());
+    }
+    const sim::Vec3 &at = now.bodies[i].position, around = sim::Vec3::Constant(reach);
+    all = together(all, {at - around, at + around});
+  }
+  return all;
+}
 
 Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
               const std::vector<sim::Rational>& times, const draw::Palette& colours) {
@@ -259,6 +282,8 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
       continue;
     }
     watched.any = true;
+    const draw::Extent here = reached(watched.cast, now);
+    watched.bounds = watched.bounds ? together(*watched.bounds, here) : here;
     for (std::size_t i = 0; i < wanted.size(); ++i)
       add(watched.cast, now, wanted[i], lines[i], watched.plots[i]);
     const double film = sim::value(scene.film.speed.film(t));
@@ -301,7 +326,7 @@ void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watch
 std::shared_ptr<const draw::Annotations> annotations(const scene::Scene& scene, const Ahead& page,
                                                      draw::RunAhead found, const draw::Scales& given) {
   return std::make_shared<const draw::Annotations>(scene.film.marks, depictor(scene, page), std::move(found),
-                                                   given, sim::value(scene.film.fps));
+                                                   given, sim::value(scene.film.fps), scene.film.height);
 }
 
 // the marks of several runs, with one scale for each kind of arrow: that of the longest
@@ -329,19 +354,23 @@ void annotate(const Ahead& page, const std::vector<Watched>& watched, std::vecto
 Ahead ahead(const scene::Scene& scene) {
   const std::vector<draw::Chart>& wanted = scene.film.charts;
   std::vector<Ahead::Run> runs = compared(scene);
-  if (runs.empty() && wanted.empty() && scene.film.marks.empty()) return {};
+  const bool fitted = std::any_of(scene.cameras.begin(), scene.cameras.end(),
+                                  [](const draw::Camera& camera) { return camera.fits_run; });
+  if (runs.empty() && wanted.empty() && scene.film.marks.empty() && !fitted) return {};
   draw::Palette colours = draw::palette(scene.look.theme);
   if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
   const sim::Rational rate = std::visit([](const auto& world) { return world.model.rate; }, scene.world);
   const std::vector<sim::Rational> times = beats(scene, rate);
   std::vector<Watched> watched;
-  const bool needed = !wanted.empty() || !scene.film.marks.empty();
+  const bool needed = !wanted.empty() || !scene.film.marks.empty() || fitted;
   if (runs.empty()) watched.push_back(watch(scene, wanted, times, colours));
   for (const Ahead::Run& run : runs)
     if (needed) watched.push_back(watch(run.scene, wanted, times, colours));
   if (!runs.empty() && needed) join_plots(runs, watched);
 
   Ahead all;
+  for (const Watched& each : watched)
+    if (fitted && each.bounds) all.bounds = all.bounds ? together(*all.bounds, *each.bounds) : each.bounds;
   const double aspect = double(scene.film.width) / scene.film.height;
   if (!wanted.empty() && std::any_of(watched.begin(), watched.end(), [](const auto& w) { return w.any; })) {
     std::vector<sim::SceneInfo> casts;

@@ -36,7 +36,10 @@ draw::Illustrator depictor(const scene::Scene& scene, const Ahead& ahead) {
   const auto run = scene.run();
   const double aspect = double(scene.film.width) / scene.film.height;
   const draw::Titles titles = draw::laid_out(scene.film.titles, aspect, scene.look.type_scale);
-  draw::Illustrator artist(run->scene_info(), scene.look, scene.cameras, scene.extent, aspect,
+  std::vector<draw::Camera> cameras = scene.cameras;
+  for (draw::Camera& camera : cameras)
+    if (camera.fits_run) camera.bounds = ahead.bounds;
+  draw::Illustrator artist(run->scene_info(), scene.look, cameras, scene.extent, aspect,
                            ahead.charts.empty() ? draw::Charts(titles.foot) : ahead.charts);
   artist.annotate(ahead.annotations);
   artist.entitle(titles);

@@ -541,10 +541,9 @@ Placing::Candidate Notes::planned(const Word& word, double& leader) const {
 void Notes::plate(const Point& center, const Point& size, std::uint8_t strength) {
   Color color = colours_.room;
   color.a = std::uint8_t(kPlate * strength / 255);
-  const Point half = size / 2 + Point(1.2, 0.8) * point_;
-  list_.add({center - half, center + Point(half.x(), -half.y()), center + half,
-             center + Point(-half.x(), half.y())},
-            color);
+  Box box;
+  box.center = center, box.x_axis = {1, 0}, box.half = size / 2 + Point(1.2, 0.8) * point_, box.fill = color;
+  list_.add(box);
 }
 
 // the outlines of bodies, and what lies within
@@ -612,9 +611,14 @@ void Notes::finish() {
     list_.add(Disc{at, dot_radius_, 0, ink, ink});
   }
   if (how_.survey) return offer_places();
+  // words that move keep to whole pixels: they look the same in every frame, and are cheap to encode
+  const auto whole = [&](const Point& at) {
+    const double pixel = how_.lettering.pixel;
+    return pixel > 0 ? Point(std::round(at.x() / pixel) * pixel, std::round(at.y() / pixel) * pixel) : at;
+  };
   const auto write = [&](const Word& word, const Point& center) {
     const Point half = size(word.set) / 2;
-    add(word.set, {center.x() - half.x(), center.y() - half.y() + word.set.ascent}, list_,
+    add(word.set, whole({center.x() - half.x(), center.y() - half.y() + word.set.ascent}), list_,
         hold(word, center));
   };
   std::vector<Point> centers;
@@ -629,7 +633,7 @@ void Notes::finish() {
   if (!film()) return;
   // one kind after another is drawn in few batches
   for (std::size_t i = 0; i < words_.size(); ++i)
-    plate(centers[i], size(words_[i].set), words_[i].set.color.a);
+    plate(whole(centers[i]), size(words_[i].set), words_[i].set.color.a);
   for (std::size_t i = 0; i < words_.size(); ++i) write(words_[i], centers[i]);
 }
 

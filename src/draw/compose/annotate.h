@@ -54,6 +54,7 @@ struct Lettering {
   double point = kPoint;                     // page units a point of type and thin lines
   double arrow = 1.1 * kPoint / kArrowLine;  // weight of arrows: a shaft of 1.1 pt
   double weight = 0.9 / kOutline * kPoint;   // of the bodies' outlines
+  double pixel = 0;                          // page units; words keep to whole ones; 0: there are none
 };
 
 /// Which words: of which list of marks, of which mark, of which of its arrows.

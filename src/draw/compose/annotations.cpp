@@ -272,10 +272,13 @@ std::vector<WorldLine> path_lines(const Marks& marks,
 }
 
 Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead ahead, const Scales& given,
-                         double fps)
+                         double fps, int rows)
     : marks_(marks), cast_(artist.scene_info()), colours_(artist.colours()), scales_(given) {
   const double weight = artist.weight();
-  lettering_ = {.point = kFilmType * weight * artist.type_scale(), .arrow = weight, .weight = weight};
+  lettering_ = {.point = kFilmType * weight * artist.type_scale(),
+                .arrow = weight,
+                .weight = weight,
+                .pixel = 1080.0 / rows};
   ghosts_ = std::move(ahead.ghosts);
   if (ahead.samples.empty()) {
     plans_.resize(std::size_t(artist.panels()));

@@ -33,7 +33,9 @@ struct RunAhead {
 class Annotations {
  public:
   /// `given`: scales that the scene sets; those that are 0 are chosen by the run. `fps`: of the film.
-  Annotations(const Marks& marks, const Illustrator& artist, RunAhead ahead, const Scales& given, double fps);
+  /// `rows`: of its pixels; words keep to whole ones.
+  Annotations(const Marks& marks, const Illustrator& artist, RunAhead ahead, const Scales& given, double fps,
+              int rows);
 
   /// What lies in the world: the paths of points up to an instant.
   std::vector<WorldLine> lines(const sim::Snapshot& now, double film) const;

@@ -5,12 +5,16 @@
 #include <vector>
 
 #include "draw/picture/color.h"
+#include "draw/picture/view.h"
 #include "sim/math/rational.h"
 #include "sim/model/snapshot.h"
 
 namespace obscura::draw {
 
 enum class Theme { paper, screen };
+
+/// What the surface of a body in space looks like, in its own colour.
+enum class Material { matte, metal, wood, checks };
 
 /// The scene's looks of one body.
 struct BodyLook {
@@ -20,6 +24,7 @@ struct BodyLook {
   bool contact = false;        // draw the forces where it touches as arrows
   std::string label = {};      // words beside it
   bool quiet = false;          // grey, for others are to be looked at
+  Material material = Material::matte;
 };
 
 /// The scene's looks of the picture.
@@ -39,6 +44,7 @@ struct Look {
   // in space
   sim::Vec3 light{-0.6, 1, 0.42};  // towards the light
   bool ground = true;              // the grid, and shadows on it
+  bool drop_lines = false;         // from what flies to the ground under it
   double tile = 0;                 // m from one line of the grid to the next; 0: chosen by the camera
   double type_scale = 1;           // of all type but formulas above a figure
   double weight = 1;          // of lines and type, beside that of the page: a small panel has heavier ones
@@ -51,7 +57,8 @@ struct CameraKey {
   enum class Ease { linear, in, out, in_out, hold };
   double time = 0;                       // s
   std::optional<sim::Vec3> center = {};  // m; none: the room's
-  std::optional<double> width = {};  // m that the picture shows of the world across; none: all of the room
+  std::optional<double> width = {};   // m that the picture shows of the world across; none: all of the room
+  std::optional<double> height = {};  // m, instead of the width: a wider window shows more; in space
   Ease ease = Ease::in_out;
   // in space; left out: as the camera says
   std::optional<double> azimuth = {}, elevation = {};  // rad: from where it looks, see Camera
@@ -72,7 +79,9 @@ struct Camera {
   double field = 0.5235987755982988;      // rad, of a perspective camera, over the longer side of its window
   double azimuth = 0.5235987755982988;    // rad: where no key says otherwise
   double elevation = 0.3839724354387525;  // rad
-  double orbit = 0;  // rad/s, added to the azimuth, about the vertical through the centre
+  double orbit = 0;              // rad/s, added to the azimuth, about the vertical through the centre
+  bool fits_run = false;         // instead of the room: where bodies go in the whole run
+  std::optional<Extent> bounds;  // of that run, where it is known
 };
 
 }  // namespace obscura::draw

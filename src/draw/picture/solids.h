@@ -32,6 +32,8 @@ struct Solids {
     std::array<float, 3>
         light;  // where the light sees it: 0 to 1 over Solids' shadow map, the third away from it
     std::array<float, 2> slope;  // how the third grows with the first and second along the surface
+    std::array<float, 4>
+        grain{};  // where it is in its material: see shaders/material.glsl; the fourth: which
   };
   /// A convex shadow on the ground that some of the light's rays draw.
   struct Shade {
@@ -40,6 +42,7 @@ struct Solids {
   };
 
   Rect window;
+  bool grained = false;  // whether a body is of a material with a pattern
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> triangles;       // that nothing can throw a shadow on
   std::vector<std::uint32_t> shadowed;        // that something may

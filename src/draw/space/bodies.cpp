@@ -15,8 +15,6 @@ using sim::Vec3;
 
 constexpr double kEdgeLine = 2.3;                            // page units
 constexpr double kSilhouetteLine = 1.3, kCreaseLine = 0.75;  // of that
-constexpr double kContact = 0.26;        // how much darker it is where a body touches the ground,
-constexpr double kContactReach = 0.8;    // of its thickness: up to where
 constexpr double kBracket = 20;          // page units: half a plate from which something hangs
 constexpr int kBracketNumber = 1 << 29;  // theirs in sight, above those of all others
 constexpr double kThinEdge = 0.11;       // of a body's thickness: an outline is not wider
@@ -41,29 +39,18 @@ void begin(SpaceFrame& s, const Vec3& center, double reach, int piece) {
 }
 void end(SpaceFrame& s) { s.chunks.back().end = s.triangles.size(); }
 
-/// Whether a piece is all of its body: pieces of one have their corners at other heights, and would not be
-/// dark alike where they meet.
-bool alone(const std::vector<Piece>& pieces, int piece) {
-  if (piece < 0 || piece >= int(pieces.size())) return false;
-  const auto at = std::size_t(piece);
-  return (at == 0 || pieces[at - 1].body != pieces[at].body) &&
-         (at + 1 == pieces.size() || pieces[at + 1].body != pieces[at].body);
+std::uint32_t corner(SpaceFrame& s, const Vec3& place, const Vec3& normal, Shaded color) {
+  s.corners.push_back({place, normal, color, s.chunks.empty() ? -1 : s.chunks.back().piece});
+  return std::uint32_t(s.corners.size() - 1);
 }
 
-// darker near the ground, which keeps light from it as it keeps light from the ground
-std::uint32_t corner(SpaceFrame& s, const Vec3& place, const Vec3& normal, Shaded color) {
-  const int piece = s.chunks.empty() ? -1 : s.chunks.back().piece;
-  if (s.stage.ground && alone(s.stage.pieces, piece)) {
-    const double high = (place - s.stage.ground->point).dot(s.stage.ground->normal);
-    const double reach = kContactReach * s.stage.pieces[std::size_t(piece)].least;
-    if (reach > 0 && high < 4 * reach) {
-      const double dark = kContact * std::exp(-std::max(high, 0.0) / reach);
-      const Color ink{0x0C, 0x10, 0x16};
-      color.lit = mix(color.lit, ink, dark), color.shaded = mix(color.shaded, ink, dark);
-    }
-  }
-  s.corners.push_back({place, normal, color});
-  return std::uint32_t(s.corners.size() - 1);
+/// The colours of a surface there, of the piece that is being added.
+Shaded surface(const SpaceFrame& s, Color own, const Vec3& place, const Vec3& normal) {
+  const int piece = s.chunks.back().piece;
+  const bool metal = piece >= 0 && piece < int(s.stage.pieces.size()) &&
+                     s.stage.looks(s.stage.pieces[std::size_t(piece)].body).material == Material::metal;
+  return metal ? shine(own, s.stage.look.theme, s.stage.light, normal, s.lens.sight(place))
+               : shade(own, s.stage.look.theme, s.stage.light, normal);
 }
 
 /// The faces of a polyhedron that look at the eye.
@@ -71,9 +58,9 @@ void add_faces(SpaceFrame& s, const Polyhedron& body, Color own) {
   for (const Polyhedron::Face& face : body.faces) {
     const Vec3& place = body.vertices[face.loop[0]];
     if (face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) <= 0) continue;
-    const Shaded color = shade(own, s.stage.look.theme, s.stage.light, face.normal);
     const auto first = std::uint32_t(s.corners.size());
-    for (int v : face.loop) corner(s, body.vertices[v], face.normal, color);
+    for (int v : face.loop)
+      corner(s, body.vertices[v], face.normal, surface(s, own, body.vertices[v], face.normal));
     for (std::uint32_t i = 2; i < face.loop.size(); ++i)
       for (std::uint32_t k : {first, first + i - 1, first + i}) s.triangles.push_back(k);
   }
@@ -90,7 +77,7 @@ void add_cap(SpaceFrame& s, const Vec3& center, double radius, Color own) {
   const auto at = [&](int ring, int k) {
     const double polar = last * ring / rings, turn = 2 * std::numbers::pi * k / around;
     const Vec3 n = std::cos(polar) * sight + std::sin(polar) * (std::cos(turn) * side + std::sin(turn) * up);
-    return corner(s, center + radius * n, n, shade(own, s.stage.look.theme, s.stage.light, n));
+    return corner(s, center + radius * n, n, surface(s, own, center + radius * n, n));
   };
   const std::uint32_t pole = at(0, 0);
   std::uint32_t above = pole;
@@ -127,7 +114,7 @@ void add_rings(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color
     for (int k = 0; k < around; ++k) {
       const double a = 2 * std::numbers::pi * k / around;
       const Vec3 n = std::cos(a) * side + std::sin(a) * up;
-      corner(s, way[i] + radius * n, n, shade(own, s.stage.look.theme, s.stage.light, n));
+      corner(s, way[i] + radius * n, n, surface(s, own, way[i] + radius * n, n));
     }
     for (int k = 0; k < around && i > 0; ++k) {
       const auto a = first + std::uint32_t(k), b = first + std::uint32_t((k + 1) % around),
@@ -194,7 +181,7 @@ void add_ball(SpaceFrame& s, const Vec3& center, double radius, Color color, int
 }
 
 void add_tube(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color color, int number,
-              const Solids::Tube* coil) {
+              int rings, const Solids::Tube* coil) {
   if (way.size() < 2) return;
   if (number >= int(s.stage.pieces.size()))
     s.solids.tubes.push_back(coil ? *coil : Solids::Tube{way, radius, color});
@@ -207,7 +194,10 @@ void add_tube(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color 
     if (s.lens.depth(p) < 1e-3) return;
   }
   begin(s, center, reach, number);
-  add_rings(s, way, radius, color);
+  std::vector<Vec3> fine{way[0]};
+  for (std::size_t i = 1; i < way.size(); ++i)
+    for (int k = 1; k <= rings; ++k) fine.push_back(way[i - 1] + (way[i] - way[i - 1]) * (double(k) / rings));
+  add_rings(s, fine, radius, color);
   add_cap(s, way.front(), radius, color);
   add_cap(s, way.back(), radius, color);
   end(s);
@@ -246,7 +236,9 @@ void add_bodies(SpaceFrame& s) {
       case Piece::Form::capsule: {
         const Vec3 a = placed(body, piece.a), b = placed(body, piece.b);
         if (s.lens.depth(a) < 1e-3 || s.lens.depth(b) < 1e-3) break;
-        add_tube(s, {a, b}, piece.radius, own, i);
+        // rings along it, for it is darker where others are near
+        const int rings = std::clamp(int((b - a).norm() / (0.7 * piece.radius)), 1, 16);
+        add_tube(s, {a, b}, piece.radius, own, i, rings);
         for (const Vec3& end : {a, b})
           s.sight.add_disc(contour(s.lens, end, piece.radius, 24), end, piece.radius, i);
         break;

@@ -46,13 +46,14 @@ CameraProjection lens(const Camera& camera, const CameraAim& shot, const Rect& w
 CameraAim shot(const Camera& camera, const CameraKey& key, const Aim& fitted, const Rect& window) {
   CameraAim s{key.center.value_or(fitted.target), key.azimuth.value_or(camera.azimuth),
               key.elevation.value_or(camera.elevation), key.width.value_or(fitted.width)};
+  if (key.height) s.width = *key.height * window.width / window.height;
   if (!key.eye) return s;
   const Vec3 back = *key.eye - s.target;
   const double far = back.norm();
   if (!(far > 0)) return s;
   s.elevation = std::asin(std::clamp(back.y() / far, -1.0, 1.0));
   if (std::hypot(back.x(), back.z()) > 1e-9 * far) s.azimuth = std::atan2(back.x(), back.z());
-  if (!key.width && camera.projection == Camera::Projection::perspective)
+  if (!key.width && !key.height && camera.projection == Camera::Projection::perspective)
     s.width = window.width * far / page_distance(camera, window);
   return s;
 }

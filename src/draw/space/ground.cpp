@@ -16,7 +16,11 @@ constexpr double kTile = 105;  // page units that a tile measures at least where
 constexpr double kFrom = 0.35,
                  kTo = 1.25;  // of the width that is shown: where the grid begins to fade, and ends
 constexpr double kGridLine = 1.5, kFrameLine = 1.8;
-constexpr int kPieces = 28;  // of a line that fades
+constexpr int kPieces = 28;     // of a line that fades
+constexpr double kPool = 0.62;  // of the width that is shown: the radius of the pool of light
+constexpr double kRow = 4;      // page units: the height of a row of it,
+constexpr int kColumns = 48;    // and its pieces
+constexpr Color kPoolInk{0x5A, 0x6B, 0x7C, 0x70};
 
 Color faded(Color c, double alpha) {
   c.a = std::uint8_t(std::lround(c.a * std::clamp(alpha, 0.0, 1.0)));
@@ -101,7 +105,7 @@ void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list
     for (const Vec3& v : loop) radius = std::max(radius, (v - foot).norm());
   }
   const auto last = std::int64_t(std::min(std::ceil(radius / tile), 400.0));
-  const Color ink = stage.look.theme == Theme::paper ? Color{0xC6, 0xCB, 0xD1} : Color{0x43, 0x4F, 0x5B};
+  const Color ink = stage.look.theme == Theme::paper ? Color{0xC6, 0xCB, 0xD1} : Color{0x50, 0x5D, 0x6A};
   const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
   std::vector<Node> line;
   for (int way = 0; way < 2; ++way) {
@@ -131,6 +135,37 @@ void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list
       }
       list.add(line, Cap::butt, blend);
     }
+  }
+}
+
+/// A pool of light around what is looked at, on the dark theme: rows of the page, each of one height, as
+/// strong as 1 - smoothstep(r / R) where its line of sight meets the ground at the distance r from the foot.
+void draw_pool(const SpaceStage& stage, const CameraProjection& lens, List& list) {
+  if (stage.look.theme != Theme::screen) return;
+  const Ground& ground = *stage.ground;
+  const Vec3 foot = lens.target - ground.normal * (lens.target - ground.point).dot(ground.normal);
+  const double radius = kPool * lens.window.width / lens.scale;
+  const auto strength = [&](const Point& page) {
+    Vec3 from;
+    const Vec3 way = lens.ray(page, from);
+    const double fall = way.dot(ground.normal);
+    if (!(fall < -1e-6)) return 0.0;
+    const Vec3 place = from - way * ((from - ground.point).dot(ground.normal) / fall);
+    return 1 - smooth((place - foot).norm() / radius);
+  };
+  const Rect& w = lens.window;
+  std::vector<Node> row;
+  for (double y = w.y; y < w.y + w.height; y += kRow) {
+    const double high = std::min(kRow, w.y + w.height - y), middle = y + high / 2;
+    row.clear();
+    bool any = false;
+    for (int i = 0; i <= kColumns; ++i) {
+      const Point at(w.x + w.width * i / kColumns, middle);
+      const double s = strength(at);
+      any = any || s > 0;
+      row.push_back({at, high, faded(kPoolInk, s)});
+    }
+    if (any) list.add(row, Cap::butt);
   }
 }
 
@@ -166,7 +201,10 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
     const bool above =
         stage.ground &&
         stage.ground->normal.dot(lens.perspective() ? Vec3(lens.eye() - stage.ground->point) : lens.back) > 0;
-    if (above && stage.look.ground) draw_grid(stage, lens, list);
+    if (above && stage.look.ground) {
+      draw_pool(stage, lens, list);
+      draw_grid(stage, lens, list);
+    }
     draw_frame(stage, lens, true, list);
     list.of({});
     list.unclip();

@@ -87,6 +87,27 @@ Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
   return {tone(base + 0.58 * sun), tone(base + 0.12 * sun)};
 }
 
+Shaded shine(Color own, Theme theme, const Light& light, const Vec3& normal, const Vec3& sight) {
+  const Vec3 back = 2 * normal.dot(sight) * normal - sight;  // where what one sees comes from
+  const auto smooth = [](double from, double to, double x) {
+    const double u = std::clamp((x - from) / (to - from), 0.0, 1.0);
+    return u * u * (3 - 2 * u);
+  };
+  // a dark ground, a bright horizon, a sky that darkens upwards
+  const double sky = 0.16 + 0.5 * smooth(-0.35, 0.1, back.y()) - 0.26 * smooth(0.1, 0.95, back.y());
+  const double spot = std::pow(std::max(back.dot(light.toward), 0.0), 28);
+  const double sun = std::max(0.0, normal.dot(light.toward));
+  const Color grey{0xA9, 0xB0, 0xB8}, white{255, 255, 255};
+  const Color tint = mix(own, grey, 0.25);
+  const Color dark =
+      mix(tint, theme == Theme::paper ? Color{0x18, 0x1C, 0x22} : Color{0x08, 0x0C, 0x12}, 0.72);
+  const auto tone = [&](double s, double bright) {
+    return mix(mix(dark, mix(tint, white, 0.3), std::clamp(s, 0.0, 1.0)), white,
+               std::clamp(bright, 0.0, 1.0));
+  };
+  return {tone(sky + 0.42 * sun, 0.75 * spot), tone(sky + 0.08 * sun, 0)};
+}
+
 Color edge(Color own, Theme theme) {
   return theme == Theme::paper ? mix(own, {0x10, 0x13, 0x18}, 0.58) : mix(own, {0x06, 0x09, 0x0D}, 0.80);
 }

@@ -31,6 +31,10 @@ struct Shaded {
 /// never black: the sky lights what looks up a little more than what looks down.
 Shaded shade(Color own, Theme theme, const Light& light, const sim::Vec3& normal);
 
+/// The same of polished metal, which shows the sky, the horizon and the light; `sight`: the way from there to
+/// the eye, unit.
+Shaded shine(Color own, Theme theme, const Light& light, const sim::Vec3& normal, const sim::Vec3& sight);
+
 /// The colour of edges on a body.
 Color edge(Color own, Theme theme);
 

@@ -16,6 +16,8 @@ constexpr double kCusp = 0.9;      // cosine of a turn that is kept
 constexpr double kBent = 0.8;      // page units: see draw/plane/trails.cpp
 constexpr double kPathLine = 3.6;  // page units at the weight 1
 constexpr double kStep = 14, kWayDot = 2.1;
+// page units: of a line from a body to the ground, and of the cross there
+constexpr double kDropLine = 1.6, kDropDash = 7, kDropGap = 5, kDropFoot = 9;
 
 }  // namespace
 
@@ -89,6 +91,59 @@ void trace_trails(SpaceFrame& s, Ways ways) {
       }
     }
     flush();
+  }
+}
+
+// from a body's middle, where it comes out of the body, to the ground, and a cross there
+void trace_drops(SpaceFrame& s) {
+  const SpaceStage& stage = s.stage;
+  if (!stage.look.drop_lines || !stage.ground) return;
+  const Vec3 up = stage.ground->normal;
+  const Vec3 side = up.unitOrthogonal(), ahead = up.cross(side);
+  const double weight = stage.layout.weight;
+  HiddenLines::Parts parts;
+  // how high the lowest point of each is, and how large it is
+  std::vector<double> lowest(s.now.bodies.size(), 1e300), size(s.now.bodies.size(), 0);
+  for (std::size_t i = 0; i < stage.pieces.size(); ++i) {
+    const Piece& piece = stage.pieces[i];
+    const sim::Snapshot::Body& body = s.now.bodies[std::size_t(piece.body)];
+    double& low = lowest[std::size_t(piece.body)];
+    const auto height = [&](const Vec3& p) { return (p - stage.ground->point).dot(up); };
+    for (const Vec3& v : s.placed[i].vertices) low = std::min(low, height(v));
+    if (piece.form != Piece::Form::polyhedron)
+      for (const Vec3& end : {piece.a, piece.b})
+        low = std::min(low, height(body.position + body.orientation * end) - piece.radius);
+    size[std::size_t(piece.body)] = std::max(size[std::size_t(piece.body)], piece.reach);
+  }
+  for (std::size_t i = 0; i < s.now.bodies.size(); ++i) {
+    if (stage.cast.bodies[i].fixed || !(lowest[i] < 1e299)) continue;
+    const Vec3 top = s.now.bodies[i].position;
+    const double high = (top - stage.ground->point).dot(up);
+    const Vec3 foot = top - high * up;
+    const double strength = std::clamp(lowest[i] / std::max(size[i], 1e-9) - 0.1, 0.0, 1.0);
+    if (!(strength > 0) || s.lens.depth(top) < 1e-2 || s.lens.depth(foot) < 1e-2) continue;
+    Color color = paint(stage.own[i], stage.look.theme).outline;
+    color.a = std::uint8_t(std::lround(190 * strength));
+    const auto seen = [&](const Vec3& a, const Vec3& b, double width, double dash, double gap) {
+      s.sight.seen(a, b, -1, -1, parts);
+      const Point p = s.lens.page(a), q = s.lens.page(b);
+      const double length = (q - p).norm();
+      if (!(length > 0)) return;
+      for (const auto& [from, to] : parts)
+        for (double at = std::floor(from * length / (dash + gap)) * (dash + gap); at < to * length;
+             at += dash + gap) {
+          const double begin = std::max(at, from * length), end = std::min(at + dash, to * length);
+          if (end - begin < 0.3) continue;
+          s.list.add(
+              {{p + begin / length * (q - p), width, color}, {p + end / length * (q - p), width, color}},
+              Cap::butt);
+        }
+    };
+    // dashes are counted from the ground, so that they do not run along it
+    seen(foot, top, kDropLine * weight, kDropDash * weight, kDropGap * weight);
+    const double arm = kDropFoot * weight / s.lens.scale_at(foot);
+    for (const Vec3& way : {side, ahead})
+      seen(foot - arm * way, foot + arm * way, 1.3 * kDropLine * weight, 1e9, 0);
   }
 }
 

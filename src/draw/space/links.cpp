@@ -65,7 +65,7 @@ void add_coil(SpaceFrame& s, const Coil& form, const Vec3& a, const Vec3& b, int
   const double wide = whole * std::clamp(seen / (kEndOn * whole), kNarrow, 1.0) / page;
   const std::vector<Vec3> way = helix(form, a, b, wire, wide);
   const Solids::Tube coil{{a, b}, wire, s.stage.colours.spring, {form.turns, 0, whole}};
-  add_tube(s, way, wire, s.stage.colours.spring, number, &coil);
+  add_tube(s, way, wire, s.stage.colours.spring, number, 1, &coil);
   if (length < 1e-9) return;
   // its leads, and what it winds around, of which its wire covers a part
   double wound = 0;

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "draw/space/darkness.h"
 #include "draw/space/space.h"
 
 namespace obscura::draw {
@@ -232,6 +233,7 @@ Cast divide_triangles(SpaceFrame& s, const LightView& view) {
   const auto& [frame, soft, things, outlines] = view;
   const auto casters = pair_up(things, s.chunks, soft);
   const double reach = reach_of_edges(view);
+  Darkness darkness(s);
   Cast cast;
   cast.casts.resize(s.chunks.size(), 0);
   for (int i : nearest_first(s)) {
@@ -253,9 +255,7 @@ Cast divide_triangles(SpaceFrame& s, const LightView& view) {
         cast.casters.add(things[caster].low), cast.casters.add(things[caster].high);
       }
       if (darkened) cast.darkened.add(triangle.low), cast.darkened.add(triangle.high);
-      auto& list = darkened ? s.solids.shadowed : s.solids.triangles;
-      list.insert(list.end(), s.triangles.begin() + std::ptrdiff_t(k),
-                  s.triangles.begin() + std::ptrdiff_t(k) + 3);
+      darkness.lay(chunk, k, darkened ? s.solids.shadowed : s.solids.triangles);
     }
   }
   return cast;
@@ -292,6 +292,20 @@ ShadowMap fit_map(const LightView& view, const Cast& cast, bool any) {
   return map;
 }
 
+// where a corner is in its material's pattern; a little below the surface, so that no face is on the edge
+// of a cell
+std::array<float, 4> grain(const SpaceFrame& s, const Corner& corner) {
+  const Piece& piece = s.stage.pieces[std::size_t(corner.piece)];
+  const Material material = s.stage.looks(piece.body).material;
+  if (material != Material::wood && material != Material::checks) return {};
+  const sim::Snapshot::Body& body = s.now.bodies[std::size_t(piece.body)];
+  const Vec3 below = corner.place - 0.02 * piece.least * corner.normal;
+  Vec3 at = piece.grain * (body.orientation.conjugate() * (below - body.position));
+  // no two boards are cut from one place of the tree
+  if (material == Material::wood) at += std::fmod(0.618034 * piece.body, 1.0) * Vec3(11, 1.5, 2.5);
+  return {float(at.x()), float(at.y()), float(at.z()), material == Material::wood ? 1.0f : 2.0f};
+}
+
 // all corners as the eye and the light see them
 void add_vertices(SpaceFrame& s, const ShadowMap& lit) {
   const LightFrame& frame = lit.frame;
@@ -306,6 +320,7 @@ void add_vertices(SpaceFrame& s, const ShadowMap& lit) {
   }
   if (s.lens.perspective()) near = std::max(near, kLightNear);
   const double span = std::max(farthest - near, 1e-12 + 1e-9 * std::abs(near));
+  s.solids.grained = s.stage.grained;
   s.solids.vertices.reserve(s.corners.size());
   for (std::size_t i = 0; i < s.corners.size(); ++i) {
     const Corner& c = s.corners[i];
@@ -313,6 +328,7 @@ void add_vertices(SpaceFrame& s, const ShadowMap& lit) {
     const double z = s.lens.perspective() ? 0.999 * near : 0.001 + 0.998 * (h.z() + farthest) / span;
     Solids::Vertex v{
         {float(h.x()), float(h.y()), float(z), float(h.w())}, c.color.lit, c.color.shaded, {}, {}};
+    if (c.piece >= 0 && c.piece < int(s.stage.pieces.size())) v.grain = grain(s, c);
     if (lit.any) {
       v.light = lit(c.place);
       const double facing = std::max(-c.normal.dot(frame.away), 1e-3);

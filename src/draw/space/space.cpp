@@ -70,9 +70,30 @@ void add_pieces(int body, const Form& form, const Eigen::Matrix3d& turn, const V
   }
 }
 
-/// The region that cameras fit: the room, or the bodies and the ground under them.
-std::vector<Vec3> fitted_corners(const SpaceStage& stage, const Extent& extent) {
-  if (stage.closed) return stage.room.vertices;
+/// The frame of a material's pattern, in units of half the thickness of a piece; its first axis is the
+/// piece's longest. Of a box checks are as many along each side as fit.
+Eigen::Matrix3d grain_of(const Piece& piece, Material material) {
+  Vec3 half = Vec3::Constant(piece.radius);
+  if (piece.form == Piece::Form::capsule) half += (piece.b - piece.a).cwiseAbs() / 2;
+  if (piece.form == Piece::Form::polyhedron) {
+    Vec3 low = piece.flat.vertices[0], high = low;
+    for (const Vec3& v : piece.flat.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
+    half = (high - low) / 2;
+  }
+  const double least = std::max(half.minCoeff(), 1e-12);
+  int longest = 0;
+  half.maxCoeff(&longest);
+  Eigen::Matrix3d grain = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const int axis = (longest + i) % 3;
+    const double cell = material == Material::checks ? half[axis] / std::round(half[axis] / least) : least;
+    grain(i, axis) = 1 / cell;
+  }
+  return grain;
+}
+
+/// The region that cameras fit: the bodies and the ground under them.
+std::vector<Vec3> corners_around(const SpaceStage& stage, const Extent& extent) {
   Vec3 low = extent.low.cwiseMin(extent.high), high = extent.low.cwiseMax(extent.high);
   const double least = 0.25 * stage.cast.scale;
   for (int i = 0; i < 3; ++i) {
@@ -168,6 +189,12 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
       add_pieces(i, part, part.turn.toRotationMatrix(), part.center, pieces);
   }
 
+  for (Piece& piece : pieces) {
+    const Material material = looks(piece.body).material;
+    piece.grain = grain_of(piece, material);
+    grained = grained || material == Material::wood || material == Material::checks;
+  }
+
   // the page: caption, then a window for each camera
   const double strip = lay_caption(layout, look);
   const bool several = cameras.size() > 1;
@@ -175,9 +202,11 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
   const bool named =
       several && std::any_of(cameras.begin(), cameras.end(), [](const Camera& c) { return !c.name.empty(); });
   const std::vector<Rect> rects = windows(int(cameras.size()), layout.width, top, layout.height, named, w);
-  const std::vector<Vec3> corners = fitted_corners(*this, extent);
+  const std::vector<Vec3> corners = closed ? room.vertices : corners_around(*this, extent);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    Panel panel{cameras[i], rects[i], aim(cameras[i], corners, rects[i]), {}};
+    const std::optional<Extent>& run = cameras[i].bounds;
+    Panel panel{
+        cameras[i], rects[i], aim(cameras[i], run ? corners_around(*this, *run) : corners, rects[i]), {}};
     if (several && !cameras[i].name.empty()) {
       const double size = kPanelName * w, inset = std::max(w * 36, 0.045 * layout.width);
       const double left = rects[i].x + (rects[i].x == 0 ? inset : 0);
@@ -262,6 +291,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     scenery.sight.finish();
     add_shadows(scenery);
     trace_trails(scenery, ways);
+    trace_drops(scenery);
     trace_paths(scenery, paths, false);
     for (const SpaceGhost& ghost : ghosts) trace_ghost(scenery, ghost);
     trace_edges(scenery);

@@ -20,11 +20,12 @@ struct Piece {
   enum class Form { polyhedron, ball, capsule };
   Form form = Form::ball;
   int body = 0;
-  Polyhedron flat;                         // of a polyhedron
-  sim::Vec3 a = sim::Vec3::Zero(), b = a;  // a ball's centre; the ends of a capsule's axis
-  double radius = 0;                       // m; 0: a point, drawn as a dot
-  double reach = 0;                        // from the body's centre, m
-  double least = 0;                        // half its thickness, m
+  Polyhedron flat;                                      // of a polyhedron
+  sim::Vec3 a = sim::Vec3::Zero(), b = a;               // a ball's centre; the ends of a capsule's axis
+  double radius = 0;                                    // m; 0: a point, drawn as a dot
+  double reach = 0;                                     // from the body's centre, m
+  double least = 0;                                     // half its thickness, m
+  Eigen::Matrix3d grain = Eigen::Matrix3d::Identity();  // body frame to that of its material's pattern
 };
 
 /// A window on the page and the camera that looks out of it.
@@ -45,6 +46,7 @@ struct SpaceStage {
   std::vector<Panel> panels;
   Light light;
   std::vector<Piece> pieces;  // by body
+  bool grained = false;       // whether one of them is of wood or checks
   std::vector<Color> own;     // one a body
   std::vector<double> dots;   // as Stage's
   Polyhedron room;            // what the walls leave of space
@@ -91,6 +93,7 @@ struct Chunk {
 struct Corner {
   sim::Vec3 place, normal;
   Shaded color;
+  int piece = -1;  // of which it is the surface
 };
 
 /// The shadow of a spring, rod or rope on the ground: that of a round rod that stops a share of the light.
@@ -124,10 +127,10 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
 /// The hairlines of the room that lie between it and the eye.
 void draw_room_front(const SpaceStage& stage, const CameraProjection& lens, List& list);
 
-/// A round rod along `way`, of this radius (m), into the solids; `number`: in sight. `coil`: what it is,
-/// where it is the wire of one.
+/// A round rod along `way`, of this radius (m), into the solids; `number`: in sight. `rings`: of corners, from
+/// one place of the way to the next. `coil`: what it is, where it is the wire of one.
 void add_tube(SpaceFrame& scenery, const std::vector<sim::Vec3>& way, double radius, Color color, int number,
-              const Solids::Tube* coil = nullptr);
+              int rings = 1, const Solids::Tube* coil = nullptr);
 void add_ball(SpaceFrame& scenery, const sim::Vec3& center, double radius, Color color, int number);
 
 /// Bodies: first the regions that they hide, then their visible parts.
@@ -141,6 +144,8 @@ void trace_edges(SpaceFrame& scenery);
 void trace_ghost(SpaceFrame& scenery, const SpaceGhost& ghost);
 void trace_trails(SpaceFrame& scenery, Ways ways);
 void trace_paths(SpaceFrame& scenery, std::span<const WorldLine> paths, bool front);
+/// Lines from what flies to the ground.
+void trace_drops(SpaceFrame& scenery);
 /// The shadows on the ground and on each other.
 void add_shadows(SpaceFrame& scenery);
 /// The lines that were traced, the farthest first, and arrows over them.

@@ -1,0 +1,115 @@
+// Triangles are small enough, where others are near, for their colours to be even between their corners.
+
+#include "draw/space/darkness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace obscura::draw {
+namespace {
+
+using sim::Vec3;
+
+constexpr double kReach = 1.7;       // of the least half thickness of a body: how far its darkness reaches,
+constexpr double kReachMost = 0.06;  // and at most of the window
+constexpr double kCell = 0.4;        // of the reach: how large a piece may be,
+constexpr double kCellLeast = 9;     // and how small, page units
+constexpr int kManyBodies = 64;      // from so many bodies on pieces are twice as large
+constexpr int kMostPieces = 24;      // of an edge
+
+Occlusion around(const SpaceFrame& s) {
+  const auto& pieces = s.stage.pieces;
+  const double most = kReachMost * s.lens.window.width / s.lens.scale;
+  // pieces of one body are dark alike where they meet
+  std::vector<double> least(s.now.bodies.size(), 1e300);
+  for (const Piece& piece : pieces) {
+    double& of = least[std::size_t(piece.body)];
+    of = std::min(of, piece.least);
+  }
+  std::vector<Occlusion::Body> bodies(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& piece = pieces[i];
+    const sim::Snapshot::Body& body = s.now.bodies[std::size_t(piece.body)];
+    Occlusion::Body& it = bodies[i];
+    // points keep no light from anything
+    if (piece.radius <= 0 && piece.form != Piece::Form::polyhedron) continue;
+    it.reach = std::min(kReach * least[std::size_t(piece.body)], most);
+    if (piece.form == Piece::Form::polyhedron) {
+      it.flat = &s.placed[i];
+      for (const Vec3& v : it.flat->vertices) it.center += v / double(it.flat->vertices.size());
+      for (const Vec3& v : it.flat->vertices) it.around = std::max(it.around, (v - it.center).norm());
+      continue;
+    }
+    it.a = body.position + body.orientation * piece.a, it.b = body.position + body.orientation * piece.b;
+    it.radius = piece.radius;
+    it.center = (it.a + it.b) / 2, it.around = (it.a - it.b).norm() / 2 + it.radius;
+  }
+  return Occlusion(std::move(bodies), s.stage.look.ground ? s.stage.ground : std::nullopt);
+}
+
+}  // namespace
+
+Darkness::Darkness(SpaceFrame& frame) : frame_(frame), occlusion_(around(frame)) {
+  darkened_.resize(frame.corners.size(), 0);
+}
+
+void Darkness::darken(Corner& corner, int body, std::span<const int> others) const {
+  const double dark = occlusion_.at(body, others, corner.place, corner.normal);
+  if (!(dark > 0)) return;
+  const Color ink{0x0C, 0x10, 0x16};
+  corner.color.lit = mix(corner.color.lit, ink, dark),
+  corner.color.shaded = mix(corner.color.shaded, ink, dark);
+}
+
+// how many pieces each edge of a triangle has; of half a rectangle its sides count, not the diagonal
+int Darkness::pieces(int body, const std::array<Vec3, 3>& corners) const {
+  std::array<double, 3> edges{};
+  for (std::size_t i = 0; i < 3; ++i) edges[i] = (corners[(i + 1) % 3] - corners[i]).norm();
+  std::sort(edges.begin(), edges.end());
+  const double longest = edges[1];
+  const double many = frame_.stage.pieces.size() > kManyBodies ? 2 : 1;
+  const double page = many * kCellLeast * frame_.stage.layout.weight / frame_.lens.scale_at(corners[0]);
+  const double cell = std::max(many * kCell * occlusion_.reach(body), page);
+  return std::clamp(int(std::ceil(longest / cell)), 1, kMostPieces);
+}
+
+void Darkness::lay(const Chunk& chunk, std::size_t k, std::vector<std::uint32_t>& list) {
+  const std::array<std::uint32_t, 3> at{frame_.triangles[k], frame_.triangles[k + 1],
+                                        frame_.triangles[k + 2]};
+  const int body = chunk.piece;
+  const auto whole = [&] { list.insert(list.end(), at.begin(), at.end()); };
+  if (body < 0 || body >= int(frame_.stage.pieces.size()) || occlusion_.near(body).empty()) return whole();
+  // a round surface has small triangles
+  if (frame_.stage.pieces[std::size_t(body)].form != Piece::Form::polyhedron) {
+    for (const std::uint32_t i : at)
+      if (!std::exchange(darkened_[i], char(1))) darken(frame_.corners[i], body, occlusion_.near(body));
+    return whole();
+  }
+  const std::array<Corner, 3> corners{frame_.corners[at[0]], frame_.corners[at[1]], frame_.corners[at[2]]};
+  const std::array<Vec3, 3> places{corners[0].place, corners[1].place, corners[2].place};
+  occlusion_.near(body, places, corners[0].normal, others_);
+  if (others_.empty()) return whole();
+
+  // rows of pieces from the first corner to the edge of the other two
+  const int n = pieces(body, places);
+  const auto first = std::uint32_t(frame_.corners.size());
+  for (int row = 0; row <= n; ++row)
+    for (int i = 0; i <= row; ++i) {
+      Corner corner = corners[0];
+      corner.place += (double(row - i) * (places[1] - places[0]) + double(i) * (places[2] - places[0])) / n;
+      darken(corner, body, others_);
+      frame_.corners.push_back(corner);
+    }
+  const auto index = [&](int row, int i) { return first + std::uint32_t(row * (row + 1) / 2 + i); };
+  for (int row = 0; row < n; ++row)
+    for (int i = 0; i <= row; ++i) {
+      for (const std::uint32_t v : {index(row, i), index(row + 1, i), index(row + 1, i + 1)})
+        list.push_back(v);
+      if (i == row) continue;
+      for (const std::uint32_t v : {index(row, i), index(row + 1, i + 1), index(row, i + 1)})
+        list.push_back(v);
+    }
+}
+
+}  // namespace obscura::draw

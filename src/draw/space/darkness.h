@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "draw/space/occlusion.h"
+#include "draw/space/space.h"
+
+namespace obscura::draw {
+
+/// Darkens the surfaces of a panel's bodies where others are near.
+class Darkness {
+ public:
+  explicit Darkness(SpaceFrame& frame);
+
+  /// Appends the triangle at `k` of the frame's triangles, which is of `chunk`, to `list`: in pieces where
+  /// its darkness is not even.
+  void lay(const Chunk& chunk, std::size_t k, std::vector<std::uint32_t>& list);
+
+ private:
+  void darken(Corner& corner, int body, std::span<const int> others) const;
+  int pieces(int body, const std::array<sim::Vec3, 3>& corners) const;
+
+  SpaceFrame& frame_;
+  Occlusion occlusion_;
+  std::vector<char> darkened_;  // one a corner: it is as dark as it shall be
+  std::vector<int> others_;
+};
+
+}  // namespace obscura::draw
