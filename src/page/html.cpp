@@ -70,6 +70,9 @@ std::string html(const FilmPage& page, Reel& reel) {
       {"title", escaped(page.title)},
       {"theme", page.dark ? "screen" : "paper"},
       {"noscript", "This page plays a film, and needs JavaScript for it. Below is told what happens in it."},
+      {"still", page.still.empty() ? ""
+                                   : "<img class=\"still\" alt=\"" + escaped(page.title) +
+                                         "\" src=\"data:image/svg+xml;base64," + base64(page.still) + "\">"},
       {"story", story},
       {"footer", escaped(page.footer)},
       {"style", kPlayerStyle},

@@ -19,6 +19,7 @@ struct FilmPage {
   std::string generator;               // "obscura 0.2.0"
   std::vector<std::string> sentences;  // what happens, for those who do not see it
   std::string footer;                  // text
+  std::vector<std::uint8_t> still;     // an SVG that is shown where no script runs; empty: words alone
   nlohmann::ordered_json film;         // what its player needs besides the reel (page/player/player.js)
 };
 

@@ -313,6 +313,16 @@ text = "<!-- --> </script><script>document.title='owned'</script>"
   EXPECT_FALSE(std::regex_search(page, std::regex("(src|href)=\"?(https?:)?//")));
 }
 
+TEST_F(Player, ShowsAStillAndWordsWithoutScripts) {
+  ASSERT_EQ(obscura("render " + kScenes + "cradle.toml -o page.html --to 0.2 --progress none").exit, 0);
+  tab_ = std::make_unique<Tab>(*browser_, folder_.string(), 960, 640);
+  tab_->call("Emulation.setScriptExecutionDisabled", {{"value", true}});
+  tab_->open("file://" + path("page.html"));
+  tab_->call("Emulation.setScriptExecutionDisabled", {{"value", false}});
+  EXPECT_GT(double(tab_->value("document.querySelector('img.still').naturalWidth")), 100);
+  EXPECT_GT(int(tab_->value("document.querySelectorAll('#story li').length")), 2);
+}
+
 TEST_F(Player, HasRolesForThoseWhoDoNotSeeIt) {
   open(kScenes + "swing.toml");
   EXPECT_EQ(tab_->value("document.getElementById('picture').getAttribute('role')"), "img");

@@ -19,6 +19,7 @@
 #include "media/error.h"
 #include "media/file.h"
 #include "page/html.h"
+#include "page/page.h"
 #include "scene/complaints.h"
 
 namespace obscura::app {
@@ -193,6 +194,7 @@ struct PageFilm::Making {
   std::optional<Checksums> states;
   double aspect = 1;
   draw::Color ground{};
+  std::vector<std::uint8_t> still;  // the first frame
   std::optional<Story> story;
 };
 
@@ -210,6 +212,9 @@ bool PageFilm::next() {
   const draw::Picture picture = m.artist.frame(*take, 0);
   if (!m.states) {
     m.aspect = picture.aspect, m.ground = picture.ground;
+    // of space a still would have no surfaces
+    if (picture.solids.empty())
+      m.still = page::page(picture, page::Form::svg, {.width = 720, .title = m.scene.look.title});
     m.states.emplace(m.shots.size(), take->all_bodies(0).bodies.size());
     m.origin.state = take->states[0];
   }
@@ -235,6 +240,7 @@ std::string PageFilm::html(bool watched) {
   out.title = scene.look.title.empty() ? scene.name : scene.look.title;
   out.dark = scene.look.theme == draw::Theme::screen;
   out.watched = watched;
+  if (!watched) out.still = m.still;
   out.generator = "obscura " OBSCURA_VERSION;
   out.origin = m.origin.tags(scene.look.title).at("obscura");
   // what happens is told of a whole run
