@@ -218,8 +218,7 @@ void walk(const std::string& name, const std::vector<std::string>& sets = {}) {
 }
 
 TEST(Marks, WordsDoNotJump) {
-  walk("slope");
-  walk("swing");
+  for (const char* name : {"slope", "swing", "atwood"}) walk(name);
   walk("slope", {"film.fps=30"});
 }
 

@@ -27,6 +27,7 @@ constexpr double kMillimetre = 72 / 25.4;
 constexpr double kNormal = 9 * 72 / 25.4;  // a unit normal: 9 mm
 constexpr double kAngle = 13;              // radius of an arc
 
+constexpr double kCone = 0.5;         // of the picture's shorter side: how long a friction cone is at most
 constexpr double kAxes = 0.36;        // of the picture's shorter side: axes in space
 constexpr double kFull = 0.5;         // of an arrow's growth: from here on its words are as strong as others
 constexpr double kOutOfBall = 0.35;   // of a ball's radius: how far beyond it an arrow's words are as strong
@@ -100,6 +101,7 @@ class Notes {
   void lead(const Word& word, const Point& center, double strength);
   static Hold hold(const Word& word, const Point& center);
   void offer_places();
+  bool covers(const WordKey& key) const;
   bool on_body(const Point& p) const;
   double bare(const Point& tail, const Point& tip) const;
   bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink);
@@ -395,7 +397,11 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
     // a little longer than the arrow of the force
     const double mu = sim::friction(cast_, first), half = std::atan(mu);
     const double arrow = scales.force * force.norm();
-    const double long_side = arrow > 0 ? 1.2 * arrow : 15 * millimetre_ / view_.scale_at(point);
+    double long_side = arrow > 0 ? 1.2 * arrow : 15 * millimetre_ / view_.scale_at(point);
+    // and within the picture, where a film shows it
+    const Rect& window = view_.window();
+    if (film())
+      long_side = std::min(long_side, kCone * std::min(window.width, window.height) / view_.scale_at(point));
     const Vec3 n = first.body == cone.body ? first.normal : Vec3(-first.normal), along(-n.y(), n.x(), 0);
     const auto edge = [&](double a) { return Vec3(std::cos(a) * n + std::sin(a) * along); };
     const auto tip = [&](double a, double r) { return view_.page(point + r * edge(a)); };
@@ -633,8 +639,15 @@ void Notes::finish() {
   if (!film()) return;
   // one kind after another is drawn in few batches
   for (std::size_t i = 0; i < words_.size(); ++i)
-    plate(whole(centers[i]), size(words_[i].set), words_[i].set.color.a);
+    if (covers(words_[i].key)) plate(whole(centers[i]), size(words_[i].set), words_[i].set.color.a);
   for (std::size_t i = 0; i < words_.size(); ++i) write(words_[i], centers[i]);
+}
+
+// whether something may lie under words of a film
+bool Notes::covers(const WordKey& key) const {
+  if (!how_.plan) return true;
+  const auto found = how_.plan->courses.find(key);
+  return found == how_.plan->courses.end() || found->second.covers;
 }
 
 // the side of words that faces what they name
@@ -660,7 +673,10 @@ void Notes::offer_places() {
   for (Word& word : words_) {
     Offered offered{word.key, size(word.set), word.anchor, std::move(word.places), word.arrow};
     if (!how_.ranges)
-      for (Placing::Candidate& each : offered.places) each.cost = placing_.cost(offered.size, each);
+      for (Placing::Candidate& each : offered.places) {
+        const double cost = placing_.cost(offered.size, each);
+        each.clear = cost <= each.cost, each.cost = cost;
+      }
     how_.survey->push_back(std::move(offered));
   }
 }

@@ -89,6 +89,7 @@ struct LabelPlan {
   struct Course {
     int first = 0;
     std::vector<Move> moves;
+    bool covers = true;  // whether something may lie under them
   };
   std::map<WordKey, ValueRange> ranges;
   std::map<WordKey, Course> courses;

@@ -216,6 +216,9 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
       free = move.end;
       course.moves.push_back(move);
     }
+    course.covers = !course.moves.empty();
+    for (std::size_t k = 0; k < at.size(); ++k)
+      course.covers = course.covers || !at[k].second->places[std::size_t(place[k])].clear;
     for (const auto& [sample, offered] : at)
       taken[sample].emplace_back(offered, place_at(course, films[sample]));
     planned.emplace(key, std::move(course));
@@ -324,6 +327,9 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
                how);
     }
     plan.courses = courses(offered, films, lettering_.point, kSpeed * fps);
+    // lines behind bodies are not among what is avoided
+    if (!marks_.paths.empty() || !marks_.ghosts.empty() || artist.longest_trail() > 0)
+      for (auto& [key, course] : plan.courses) course.covers = true;
     plans_.push_back(std::move(plan));
   }
 }

@@ -24,6 +24,7 @@ class Placing {
     Point center;
     double cost = 0;  // of its own: how far from what is usual
     bool leader = false;
+    bool clear = false;  // of a survey: nothing lies under it
   };
   /// The centre of a label of `size` that lies best; it is taken from then on.
   Candidate place(const Point& size, const std::vector<Candidate>& candidates);
