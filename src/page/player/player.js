@@ -262,6 +262,7 @@ class Player {
   wire() {
     const { film } = this;
     $("scrub").max = String(this.last);
+    $("stage").style.background = `rgb(${film.ground.join(",")})`;
     $("scrub").addEventListener("input", () => {
       this.pause();
       this.show(Number($("scrub").value));

@@ -308,12 +308,12 @@ export class Space {
 
   /**
    * Trails over what hides them: the darker of two colours is taken, or on a dark page the lighter, as in the plane. They
-   * are drawn on the ground's colour alone, under the depths of what is there already.
+   * are drawn on white, or black, alone, under the depths of what is there already.
    */
   draw_trails(context, lenses, scale) {
-    const { gl, canvas, programs } = this, [r, g, b] = this.film.ground;
+    const { gl, canvas, programs } = this, neither = this.dark ? 0 : 1;
     gl.disable(gl.SCISSOR_TEST);
-    gl.clearColor(r / 255, g / 255, b / 255, 1);
+    gl.clearColor(neither, neither, neither, 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.enable(gl.SCISSOR_TEST);
     gl.enable(gl.DEPTH_TEST);
@@ -323,7 +323,7 @@ export class Space {
       const [x, y, width, height] = this.window(lens, scale);
       gl.scissor(x, canvas.height - y - height, width, height);
       this.setters[i](programs.trail);
-      programs.trail.vec("page_color", [r / 255, g / 255, b / 255]);
+      programs.trail.vec("page_color", [neither, neither, neither]);
       this.trails[i].draw(4);
     });
     gl.blendEquation(gl.FUNC_ADD);
