@@ -11,16 +11,16 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kReach = 1.7;       // of the least half thickness of a body: how far its darkness reaches,
-constexpr double kReachMost = 0.06;  // and at most of the window
-constexpr double kCell = 0.4;        // of the reach: how large a piece may be,
-constexpr double kCellLeast = 9;     // and how small, page units
-constexpr int kManyBodies = 64;      // from so many bodies on pieces are twice as large
-constexpr int kMostPieces = 24;      // of an edge
+constexpr double kDarkReach = 1.7;  // of the least half thickness of a body: how far its darkness reaches,
+constexpr double kDarkReachMost = 0.06;  // and at most of the window
+constexpr double kPieceWide = 0.4;       // of the reach: how large a piece may be,
+constexpr double kPieceLeast = 9;        // and how small, page units
+constexpr int kManyBodies = 64;          // from so many bodies on pieces are twice as large
+constexpr int kMostPieces = 24;          // of an edge
 
 Occlusion around(const SpaceFrame& s) {
   const auto& pieces = s.stage.pieces;
-  const double most = kReachMost * s.lens.window.width / s.lens.scale;
+  const double most = kDarkReachMost * s.lens.window.width / s.lens.scale;
   // pieces of one body are dark alike where they meet
   std::vector<double> least(s.now.bodies.size(), 1e300);
   for (const Piece& piece : pieces) {
@@ -34,7 +34,7 @@ Occlusion around(const SpaceFrame& s) {
     Occlusion::Body& it = bodies[i];
     // points keep no light from anything
     if (piece.radius <= 0 && piece.form != Piece::Form::polyhedron) continue;
-    it.reach = std::min(kReach * least[std::size_t(piece.body)], most);
+    it.reach = std::min(kDarkReach * least[std::size_t(piece.body)], most);
     if (piece.form == Piece::Form::polyhedron) {
       it.flat = &s.placed[i];
       for (const Vec3& v : it.flat->vertices) it.center += v / double(it.flat->vertices.size());
@@ -69,8 +69,8 @@ int Darkness::pieces(int body, const std::array<Vec3, 3>& corners) const {
   std::sort(edges.begin(), edges.end());
   const double longest = edges[1];
   const double many = frame_.stage.pieces.size() > kManyBodies ? 2 : 1;
-  const double page = many * kCellLeast * frame_.stage.layout.weight / frame_.lens.scale_at(corners[0]);
-  const double cell = std::max(many * kCell * occlusion_.reach(body), page);
+  const double page = many * kPieceLeast * frame_.stage.layout.weight / frame_.lens.scale_at(corners[0]);
+  const double cell = std::max(many * kPieceWide * occlusion_.reach(body), page);
   return std::clamp(int(std::ceil(longest / cell)), 1, kMostPieces);
 }
 
