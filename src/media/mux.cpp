@@ -225,6 +225,7 @@ void Muxer::add(const Segment& segment) {
   }
   const AVRational frame{int(spec_.fps_den), int(spec_.fps_num)};
   for (const Segment::Packet& one : segment.packets) {
+    write_captions(double(one.pts + frames_) * double(frame.num) / frame.den);
     if (av_new_packet(packet_.get(), int(one.bytes.size())) < 0) throw std::bad_alloc();
     std::memcpy(packet_->data, one.bytes.data(), one.bytes.size());
     if (!one.beside.empty()) {
@@ -244,7 +245,6 @@ void Muxer::add(const Segment& segment) {
     packet_->dts = av_rescale_q(dts, frame, stream_->time_base);
     packet_->duration =
         av_rescale_q(one.pts + frames_ + one.duration, frame, stream_->time_base) - packet_->pts;
-    write_captions(double(one.pts + frames_) * double(frame.num) / frame.den);
     const int code = av_write_frame(format_.get(), packet_.get());
     av_packet_unref(packet_.get());
     require(code, "write");

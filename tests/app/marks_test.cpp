@@ -16,6 +16,7 @@
 #include "draw/page/measure.h"
 #include "draw/page/readings.h"
 #include "draw/plane/stage.h"
+#include "needs.h"
 #include "program.h"
 #include "where.h"
 
@@ -450,6 +451,20 @@ a &lt; b &amp; c
   for (const char* other : {"whole.mkv", "whole.mov"})
     EXPECT_EQ(obscura(std::string("render scene.toml --size 320x180 --fps 20 -o ") + other).exit, 0) << other;
   EXPECT_THAT(contents(path("whole.mkv")), HasSubstr("S_TEXT/UTF8"));
+  // and has every frame: words come in between packets
+  if (installed("ffprobe")) {
+    ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o frames/{frame}.png").exit, 0);
+    int frames = 0;
+    for (const auto& each : std::filesystem::directory_iterator(path("frames")))
+      frames += each.is_regular_file();
+    for (const char* name : {"whole.mp4", "whole.mkv", "whole.mov"})
+      EXPECT_EQ(shell(std::string("ffprobe -v error -count_packets -select_streams v -show_entries "
+                                  "stream=nb_read_packets -of csv=p=0 ") +
+                      name)
+                    .out,
+                std::to_string(frames) + "\n")
+          << name;
+  }
   // without captions there is no such file
   scene("duration = 0.1\n[room]\nsize = [4, 2.25]\n");
   ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o mute.mp4").exit, 0);
