@@ -153,7 +153,8 @@ TEST_F(Player, ShowsPlotsMarksAndCaptionsOfTheFilm) {
   for (const char* scene : {"swing", "energy", "slope"}) {
     const std::vector<int> numbers{0, 77, 190};
     const auto film = frames(kScenes + scene + ".toml", numbers, 960, 540);
-    open(kScenes + scene + ".toml");
+    // of the same size, for words keep to whole pixels
+    open(kScenes + scene + ".toml", "--size 960x540");
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const media::Image page = picture(numbers[i], 960, 540);
       EXPECT_EQ(displaced(film[i], page), 0) << scene << " frame " << numbers[i];
