@@ -180,8 +180,8 @@ void add_ball(SpaceFrame& s, const Vec3& center, double radius, Color color, int
                    center, radius, number);
 }
 
-void add_tube(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color color, int number,
-              int rings, const Solids::Tube* coil) {
+void add_tube(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color color, int number, int rings,
+              const Solids::Tube* coil) {
   if (way.size() < 2) return;
   if (number >= int(s.stage.pieces.size()))
     s.solids.tubes.push_back(coil ? *coil : Solids::Tube{way, radius, color});

@@ -127,8 +127,8 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
 /// The hairlines of the room that lie between it and the eye.
 void draw_room_front(const SpaceStage& stage, const CameraProjection& lens, List& list);
 
-/// A round rod along `way`, of this radius (m), into the solids; `number`: in sight. `rings`: of corners, from
-/// one place of the way to the next. `coil`: what it is, where it is the wire of one.
+/// A round rod along `way`, of this radius (m), into the solids; `number`: in sight. `rings`: of corners,
+/// from one place of the way to the next. `coil`: what it is, where it is the wire of one.
 void add_tube(SpaceFrame& scenery, const std::vector<sim::Vec3>& way, double radius, Color color, int number,
               int rings = 1, const Solids::Tube* coil = nullptr);
 void add_ball(SpaceFrame& scenery, const sim::Vec3& center, double radius, Color color, int number);

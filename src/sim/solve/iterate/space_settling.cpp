@@ -1,0 +1,185 @@
+// How iterations of a substep in space end: island by island they go on until contacts have settled; what few
+// contacts do not settle is solved exactly, and what contacts would give is shed.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/solve/iterate/space.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr int kSettlingTouches = 50000;  // times iterations, of touches that have not settled then
+constexpr int kIslandTouches = 300;      // the least of an island
+constexpr int kFewestFollowed = 20;      // iterations: of less none are accelerated
+constexpr int kFewTouches = 500;         // of more, less in proportion, but as if
+constexpr int kSettlingRounds = 3;       // so many were of all
+constexpr int kFewExactly = 60;          // touches
+constexpr double kExactly = 1e-12;       // of how fast bodies of an island pass each other,
+constexpr int kExactTouches = 2000;      // within so many touches times iterations
+constexpr int kShedding = 5;             // sweeps
+
+int settling_budget(int touches) {
+  return touches <= kFewTouches
+             ? kSettlingTouches
+             : std::max(kSettlingTouches / touches * kFewTouches, kSettlingRounds * touches);
+}
+
+}  // namespace
+
+// More iterations of those contacts that are not settled and of those beside them: where a column is struck
+// from below, the blow is to pass through all of it in this substep. Few go on until hardly anything changes,
+// for a while: then the order in which they are visited does not matter, and mirror images stay so. Those of
+// few are accelerated (Silcowitz, Niebe and Erleben 2010): a tower of fifty blocks sinks a quarter as far.
+// Bodies on joints are left out.
+template <int D>
+void SpaceIterative<D>::settle_contacts() {
+  settling_.begin(touches_, all_, moving_, joints_.bodies());
+  bool follows = false;
+  const double rounds = double(settling_budget(int(touches_.size()))) / std::max(1, int(touches_.size()));
+  for (Settling::Island& island : settling_.islands) {
+    island.budget = std::max(int(rounds * island.contacts), kIslandTouches);
+    island.follows = island.contacts <= kFewTouches && island.budget >= kFewestFollowed * island.contacts;
+    follows = follows || island.follows;
+  }
+  batches_.set_islands(settling_);
+  if (follows) batches_.begin_directions();
+  if (settling_.islands.empty()) return;
+  for (bool back = false;; back = !back) {
+    for (Settling::Island& island : settling_.islands) {
+      island.friction = int(touches_.size()) <= kFewExactly && island.spent < kExactTouches;
+      island.settled = island.friction ? kExactly * island.rate : kSettled;
+    }
+    batches_.iterate(moving_, back, settling_);
+    if (!settling_.close_settled()) return;
+    if (follows && back) batches_.follow_directions(moving_, settling_);
+    settling_.activate_next();
+  }
+}
+
+// Islands of few contacts that iterations do not settle, as where something heavy stands on something light,
+// exactly:
+//   w = K p + u,  of all contacts at once by their laws        u  how fast they pass without impulses
+template <int D>
+void SpaceIterative<D>::solve_exhausted() {
+  const auto few = [&](int number) {
+    if (number < 0) return false;
+    const Settling::Island& island = settling_.islands[number];
+    return island.exhausted && island.contacts <= kFewSolved;
+  };
+  std::vector<std::pair<int, int>>& all = exhausted_;
+  all.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    const int a = settling_.island_of[touches_[i].a],
+              number = a >= 0 ? a : settling_.island_of[touches_[i].b];
+    if (few(number) && !touches_[i].passes) all.emplace_back(number, i);
+  }
+  std::sort(all.begin(), all.end());
+  for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+    meets_.clear();
+    for (; last < all.size() && all[last].first == all[first].first; ++last)
+      meets_.push_back(all[last].second);
+    solve_together();
+  }
+}
+
+// the contacts meets_
+template <int D>
+void SpaceIterative<D>::solve_together() {
+  static const BodyMotion<D> room;
+  const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
+  K_.resize(rows, rows), b_.resize(rows), p_.resize(rows), blocks_.assign(count, {}),
+      modes_.assign(count, {});
+  impact_rows_.assign(rows, {}), impact_responses_.resize(rows);
+  for (int k = 0; k < count; ++k) {
+    const ContactConstraint& touch = touches_[meets_[k]];
+    const BodyMotion<D>&a = stances_[touch.a], &b = touch.b == n ? room : stances_[touch.b];
+    Vec<D> ways[D];
+    ways[0] = touch.n, ways[1] = perpendicular<D>(touch.n);
+    if constexpr (D == 3) ways[2] = ways[0].cross(ways[1]);
+    blocks_[k].mu = touch.mu;
+    const Vec<D> u = slip(touch), impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
+    for (int i = 0; i < D; ++i) {
+      Row<D>& row = impact_rows_[D * k + i];
+      row.a = touch.a, row.b = touch.b == n ? -1 : touch.b, row.along = ways[i];
+      row.angular_a = moment<D>(touch.arm_a, ways[i]), row.angular_b = moment<D>(touch.arm_b, ways[i]);
+      impact_responses_[D * k + i] = response_.of(row, a, b);
+      b_[D * k + i] = ways[i].dot(u) - (i == 0 ? touch.least : 0), p_[D * k + i] = ways[i].dot(impulse);
+    }
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j <= i; ++j)
+      K_(i, j) = K_(j, i) = coupling(impact_rows_[i], impact_responses_[i], impact_rows_[j]);
+  }
+  b_ -= K_ * p_;
+  cone_.patience = cone_.most_systems = kSolvedSystems;
+  cone_.sweep(K_, b_, blocks_, modes_, p_, 1);
+  const bool found = cone_.solve(K_, b_, blocks_, modes_, p_).found;
+  cone_.most_systems = std::numeric_limits<int>::max();
+  if (!found) return;
+  for (int k = 0; k < count; ++k) {
+    ContactConstraint& touch = touches_[meets_[k]];
+    Vec<D> impulse = Vec<D>::Zero();
+    for (int i = 0; i < D; ++i) impulse += p_[D * k + i] * impact_rows_[D * k + i].along;
+    push(touch, impulse - touch.normal_impulse * touch.n - touch.tangent_impulse);
+    touch.normal_impulse = p_[D * k], touch.tangent_impulse = impulse - p_[D * k] * touch.n;
+  }
+  const ContactConstraint& any = touches_[meets_[0]];
+  const int a = settling_.island_of[any.a];
+  settling_.islands[a >= 0 ? a : settling_.island_of[any.b]].exhausted = false;
+}
+
+// Where iterations end before they have converged, contacts may press more than they should, and what they
+// bear bounces. Over the substep a contact gives its bodies
+//   W = p . (u + u') / 2        u, u'  how fast they pass there, before and after
+// Of islands that gain, those contacts that give press less, until nothing is gained: what bounces is
+// stopped, and nothing else of the island braked.
+template <int D>
+void SpaceIterative<D>::shed_gains() {
+  static const BodyMotion<D> room;
+  const int n = int(model_.bodies.size());
+  const auto passing = [&](const ContactConstraint& touch) -> Vec<D> {
+    const BodyMotion<D>& b = touch.b == n ? room : stances_[touch.b];
+    return stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b) + touch.belt + slip(touch);
+  };
+  const auto island = [&](const ContactConstraint& touch) {
+    const int a = settling_.island_of[touch.a];
+    return a >= 0 ? a : settling_.island_of[touch.b];
+  };
+  const auto opens = [&](const ContactConstraint& touch) { return touch.n.dot(passing(touch)); };
+  given_.assign(settling_.islands.size(), 0), some_.clear();
+  for (int i = 0; i < int(touches_.size()); ++i) {
+    const ContactConstraint& touch = touches_[i];
+    if (!(touch.normal_impulse > 0) || touch.after || island(touch) < 0) continue;
+    if (!settling_.islands[island(touch)].exhausted) continue;
+    const Vec<D> passes = passing(touch);
+    const double along = touch.n.dot(passes);
+    given_[island(touch)] += touch.normal_impulse * along + touch.tangent_impulse.dot(passes);
+    if (along > 0 && !touch.bounces) some_.push_back(i);
+  }
+  std::erase_if(some_, [&](int i) { return !(given_[island(touches_[i])] > 0); });
+  for (int sweep = 0; sweep < kShedding && !some_.empty(); ++sweep) {
+    for (const int i : some_) {
+      ContactConstraint& touch = touches_[i];
+      const double less = std::min(touch.normal_impulse, opens(touch) / normal_response(touch));
+      if (!(less > 0)) continue;
+      touch.normal_impulse -= less;
+      Vec<D> back = -less * touch.n;
+      const double size = std::sqrt(touch.tangent_impulse.squaredNorm()),
+                   most = touch.mu * touch.normal_impulse;
+      if (size > most) {
+        const Vec<D> cut = (most / size - 1) * touch.tangent_impulse;
+        touch.tangent_impulse += cut, back += cut;
+      }
+      push(touch, back);
+    }
+  }
+}
+
+template void SpaceIterative<3>::settle_contacts();
+template void SpaceIterative<3>::solve_exhausted();
+template void SpaceIterative<3>::shed_gains();
+
+}  // namespace obscura::sim
