@@ -19,6 +19,7 @@ constexpr int kSettlingRounds = 3;       // so many were of all
 constexpr int kFewExactly = 60;          // touches
 constexpr double kExactly = 1e-12;       // of how fast bodies of an island pass each other,
 constexpr int kExactTouches = 2000;      // within so many touches times iterations
+constexpr double kUneven = 50;           // masses of an island that is solved exactly, most to least
 constexpr int kShedding = 5;             // sweeps
 
 int settling_budget(int touches) {
@@ -59,15 +60,21 @@ void SpaceIterative<D>::settle_contacts() {
   }
 }
 
-// Islands of few contacts that iterations do not settle, as where something heavy stands on something light,
-// exactly:
+// Islands of few contacts and uneven masses that iterations do not settle, as where something heavy stands on
+// something light, exactly:
 //   w = K p + u,  of all contacts at once by their laws        u  how fast they pass without impulses
 template <int D>
 void SpaceIterative<D>::solve_exhausted() {
   const auto few = [&](int number) {
     if (number < 0) return false;
     const Settling::Island& island = settling_.islands[number];
-    return island.exhausted && island.contacts <= kFewSolved;
+    if (!island.exhausted || island.contacts > kFewSolved) return false;
+    double least = std::numeric_limits<double>::infinity(), most = 0;  // 1/kg
+    for (int i = island.first; i < island.last; ++i) {
+      const double inverse_mass = moving_[settling_.bodies[i]].inverse_mass;
+      least = std::min(least, inverse_mass), most = std::max(most, inverse_mass);
+    }
+    return most >= kUneven * least;
   };
   std::vector<std::pair<int, int>>& all = exhausted_;
   all.clear();
