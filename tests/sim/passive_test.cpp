@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "sim/energy/energy_guard.h"
@@ -126,7 +127,37 @@ TEST(Passive, RandomHeapsOfSpaceOnlyLose) {
 // Up to a dozen in a closed room, each on one before it or on the room by a joint of any kind, some held
 // twice and some in loops, masses up to 50 : 1, thrown at random; joints up to a metre from the middles they
 // hold.
-World<3> tangle(int seed) {
+template <int D>
+World<D> tangle(int seed);
+
+template <int D>
+void join_tangle(World<D>& world, SpaceDice& dice, int bodies, std::span<const JointKind> kinds) {
+  const auto vec = [&](double most) { return Vec<D>(dice.vec(most).template head<D>()); };
+  const auto join = [&](int a, int b, const Vec<D>& at, JointKind kind) {
+    Joint<D> joint;
+    joint.kind = kind;
+    const auto end = [&](int body, const Vec<D>& p) {
+      return End<D>{body, body < 0 ? p : Vec<D>(p - world.state.x[std::size_t(body)])};
+    };
+    const bool reaches = kind == JointKind::rod || kind == JointKind::rope;
+    const Vec<D> other = reaches ? Vec<D>(at + vec(0.3)) : at;
+    joint.a = end(a, at), joint.b = end(b, other);
+    joint.length = (other - at).norm();
+    joint.axis = vec(1).normalized();
+    const bool turns = kind == (D == 2 ? JointKind::pin : JointKind::hinge);
+    if (turns && dice.between(0, 1) < 0.3) joint.lower = -0.2, joint.upper = 0.3;
+    if (kind == JointKind::slider) joint.lower = -0.1, joint.upper = 0.1;
+    world.model.joints.push_back(joint);
+  };
+  for (int i = 0; i < bodies; ++i) {
+    const int on = int(dice.between(0, i + 1)) - 1, more = dice.between(0, 1) < 0.4 ? 2 : 1;
+    const Vec<D> at = world.state.x[std::size_t(i)] + vec(dice.between(0, 1) < 0.2 ? 1 : 0.2);
+    for (int k = 0; k < more; ++k) join(i, on, at, kinds[std::size_t(dice.between(0, double(kinds.size())))]);
+  }
+}
+
+template <>
+World<3> tangle<3>(int seed) {
   SpaceDice dice(std::uint32_t(seed + 1000));
   World<3> world = space();
   world.model.rate = {600, 1}, world.model.scale = 4, world.model.solver = Solver::iterative;
@@ -147,53 +178,63 @@ World<3> tangle(int seed) {
     add_solid(world, shape, mass, x, v, no_rotation<3>(), spin, dice.between(0, 1));
     world.model.bodies.back().friction = dice.between(0, 1);
   }
-  const auto join = [&](int a, int b, Vec3 at, JointKind kind) {
-    Joint<3> joint;
-    joint.kind = kind;
-    const auto end = [&](int body, const Vec3& p) {
-      return End<3>{body, body < 0 ? p : p - world.state.x[body]};
-    };
-    const bool reaches = kind == JointKind::rod || kind == JointKind::rope;
-    const Vec3 other = reaches ? Vec3(at + dice.vec(0.3)) : at;
-    joint.a = end(a, at), joint.b = end(b, other);
-    joint.length = (other - at).norm();
-    joint.axis = dice.vec(1).normalized();
-    if (kind == JointKind::hinge && dice.between(0, 1) < 0.3) joint.lower = -0.2, joint.upper = 0.3;
-    if (kind == JointKind::slider) joint.lower = -0.1, joint.upper = 0.1;
-    world.model.joints.push_back(joint);
-  };
   constexpr JointKind kKinds[] = {JointKind::pin,    JointKind::hinge, JointKind::weld,
                                   JointKind::slider, JointKind::rod,   JointKind::rope};
-  for (int i = 0; i < bodies; ++i) {
-    const int on = int(dice.between(0, i + 1)) - 1, more = dice.between(0, 1) < 0.4 ? 2 : 1;
-    const Vec3 at = world.state.x[i] + dice.vec(dice.between(0, 1) < 0.2 ? 1 : 0.2);
-    for (int k = 0; k < more; ++k) join(i, on, at, kKinds[int(dice.between(0, 6))]);
-  }
+  join_tangle<3>(world, dice, bodies, kKinds);
   return world;
 }
 
-// Rattle errs by (w h)^2, of the motion: a hundredth of it is granted in a step, and 300 seeds took 4e-3. One
-// of them is thrown by its joints, if these may put it back over any distance
-TEST(Passive, TanglesOfJointsLoseAndStayInTheRoom) {
-  constexpr int kThrown = 203, kSeeds = 16;
-  for (int i = 0; i <= kSeeds; ++i) {
-    const int seed = i < kSeeds ? i : kThrown;
-    const World<3> world = tangle(seed);
-    State<3> state = world.state;
-    Stepper<3> stepper(world.model);
+template <>
+World<2> tangle<2>(int seed) {
+  SpaceDice dice(std::uint32_t(seed + 2000));
+  World<2> world = touching_room();
+  world.model.solver = Solver::iterative;
+  add_walls(world, 2.4, 1.8);
+  const int bodies = 4 + int(dice.between(0, 9));
+  for (int i = 0; i < bodies; ++i) {
+    const Vec2 x(0.4 + 0.5 * (i % 4), 0.4 + 0.5 * (i / 4)), v = dice.vec(3).head<2>();
+    const double mass = dice.between(0, 1) < 0.3 ? 10 : dice.between(0.2, 2), e = dice.between(0, 1);
+    const double spin = dice.between(-6, 6), a = dice.between(0.05, 0.3), b = dice.between(0.05, 0.3);
+    if (dice.between(0, 2) < 1)
+      add_box(world, {a, b}, mass, x, v, 0, spin, e);
+    else
+      add_ball(world, a / 2, mass, x, v, spin, e);
+    world.model.bodies.back().friction = dice.between(0, 1);
+  }
+  constexpr JointKind kKinds[] = {JointKind::pin, JointKind::weld, JointKind::slider, JointKind::rod,
+                                  JointKind::rope};
+  join_tangle<2>(world, dice, bodies, kKinds);
+  return world;
+}
+
+// What joints, limits, ropes and contacts do, beside the booked work of putting positions back, gives no
+// energy; the scheme errs by (w h)^5, with w of up to 67 rad/s.
+constexpr double kWhirl = 1.7e-5;
+
+template <int D>
+void expect_tangles_only_lose() {
+  for (int seed = 0; seed < 30; ++seed) {
+    const World<D> world = tangle<D>(seed);
+    State<D> state = world.state;
+    Stepper<D> stepper(world.model);
     stepper.begin(state);
     ASSERT_FALSE(stepper.step(state)) << seed;  // joints strike what begins apart
+    const auto left = [&] { return energy(world, state) - state.ledger.displacement; };
     const double all = energy(world, state);
-    double before = all;
+    double before = left();
     for (int step = 1; step < 300; ++step) {
-      ASSERT_FALSE(stepper.step(state)) << "seed " << seed << " at step " << step;
-      const double now = energy(world, state);
-      ASSERT_LE(now, before + 5e-3 * all) << "seed " << seed << " at step " << step;
+      const auto trouble = stepper.step(state);
+      ASSERT_FALSE(trouble) << "seed " << seed << " at step " << step << ": " << trouble->what;
+      const double now = left();
+      ASSERT_LE(now, before + kWhirl * all) << "seed " << seed << " at step " << step;
       before = now;
     }
-    for (const Vec3& x : state.x) EXPECT_LT(x.cwiseAbs().maxCoeff(), 1.6) << "seed " << seed;
+    for (const Vec<D>& x : state.x) EXPECT_LT(x.cwiseAbs().maxCoeff(), 2.5) << "seed " << seed;
   }
 }
+
+TEST(Passive, TanglesOfJointsInThePlaneOnlyLose) { expect_tangles_only_lose<2>(); }
+TEST(Passive, TanglesOfJointsInSpaceOnlyLose) { expect_tangles_only_lose<3>(); }
 
 // a step that has made all of it faster by a thousandth
 template <int D>

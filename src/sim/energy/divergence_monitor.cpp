@@ -10,11 +10,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/energy/energy.h"
 #include "sim/math/lie_step.h"
 #include "sim/math/limits.h"
-#include "sim/model/stance.h"
 #include "sim/motion/stability.h"
 #include "sim/shape/shape.h"
 
@@ -23,6 +24,9 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kProof = 100, kSuspect = 4;
+constexpr double kOpen = 0.01;       // of a joint's size, or rad
+constexpr double kLong = 0.1;        // the same of a rope, which joints beside it may hardly let be put back
+constexpr double kOpenPoint = 1e-3;  // of the scene's size, for joints of points without a length
 
 template <int D>
 bool apart(const Eigen::Matrix<double, D, 1>& numbers, double limit) {
@@ -126,6 +130,48 @@ std::optional<Trouble> DivergenceMonitor<D>::check_energy(const State<D>& state,
 }
 
 template <int D>
+std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state, double t) const {
+  if (model_.joints.empty()) return {};
+  static const BodyMotion<D> room;
+  at_.resize(model_.bodies.size());
+  for (std::size_t body = 0; body < at_.size(); ++body) at_[body] = body_motion(state, int(body));
+  const auto side = [&](int body) -> const BodyMotion<D>& {
+    return body < 0 ? room : at_[std::size_t(body)];
+  };
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (joint.linked || (i < state.broken.size() && state.broken[i])) continue;
+    const AngularVec<D> turn = joint.turn_between([&](int body) {
+      const int k = body < 0 ? -1 : turning(state, body);
+      return k < 0 ? AngularVec<D>(AngularVec<D>::Zero())
+                   : AngularVec<D>(rounds<D>(state.turn[std::size_t(k)]));
+    });
+    Row<D> J[kMostHeld<D>];
+    double off[kMostHeld<D>];
+    const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn, J, off, at_);
+    double size = joint.length;
+    joint.each_body([&](int body) {
+      if (body >= 0) size = std::max(size, bounding_radius(model_.bodies[std::size_t(body)].shape));
+    });
+    for (const End<D>& end : {joint.a, joint.b}) {
+      if (end.body >= 0) size = std::max(size, std::sqrt(end.local.squaredNorm()));
+    }
+    const double share = one_sided(joint) ? kLong : kOpen,
+                 open = size > 0 ? share * size : kOpenPoint * model_.scale;
+    for (int r = 0; r < n; ++r) {
+      const bool turns = J[r].along.isZero(0);
+      const double gap = one_sided(joint) ? std::max(0.0, -off[r]) : std::fabs(off[r]);
+      if (!(gap > (turns ? kOpen : open))) continue;
+      char what[64];
+      std::snprintf(what, sizeof what, "opened to %.2g %s", gap, turns ? "rad" : "m");
+      return Trouble{t, joint.name, "gap", what,
+                     "its bodies move too far in a step, or its loop cannot close: raise physics.rate"};
+    }
+  }
+  return {};
+}
+
+template <int D>
 std::string DivergenceMonitor<D>::likely(const State<D>& state, int body) const {
   if (const Tightness worst = tightest(model_, state.grips); worst.body >= 0)
     return step_too_long_message(model_, worst);
@@ -136,6 +182,10 @@ std::string DivergenceMonitor<D>::likely(const State<D>& state, int body) const 
     const bool feeds = model_.integrator == Integrator::euler || model_.integrator == Integrator::midpoint;
     return std::string(feeds ? spelled(model_.integrator) : "the step") +
            " feeds its springs: raise physics.rate" + (feeds ? ", or take rk4 or semi-implicit" : "");
+  }
+  for (const Joint<D>& joint : model_.joints) {
+    if (joint.any_body([&](int held) { return held == body; }))
+      return "its joints pull it harder than the steps can follow: raise physics.rate";
   }
   for (const Force<D>& force : model_.forces) {
     for (const Subject<D>& subject : force.subjects) {

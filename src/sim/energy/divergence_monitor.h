@@ -4,13 +4,15 @@
 #include <vector>
 
 #include "sim/model/path.h"
+#include "sim/model/stance.h"
 #include "sim/model/state.h"
 #include "sim/model/trouble.h"
 
 namespace obscura::sim {
 
-/// Finds the body that diverged and the likely cause, and energy that nothing could have supplied. The step
-/// itself detects overflow and NaN at no cost (sim/math/limits.h); this class names them.
+/// Finds the body that diverged and the likely cause, energy that nothing could have supplied, and joints
+/// that do not hold. The step itself detects overflow and NaN at no cost (sim/math/limits.h); this class
+/// names them.
 template <int D>
 class DivergenceMonitor {
  public:
@@ -27,11 +29,15 @@ class DivergenceMonitor {
   /// so.
   std::optional<Trouble> check_energy(const State<D>& state, double t) const;
 
+  /// The first unbroken joint whose equations are off by more than a hundredth of its size, or of a radian.
+  std::optional<Trouble> check_joints(const State<D>& state, double t) const;
+
  private:
   std::string likely(const State<D>& state, int body) const;
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
+  mutable std::vector<BodyMotion<D>> at_;  // of check_joints()
 };
 
 }  // namespace obscura::sim

@@ -89,10 +89,9 @@ void EnergyGuard<D>::open(const State<D>& state, double t) {
   t_ = t;
   if (forces_.potentials()) forces_.gather(state);
   const int n = int(weights_.size());
-  x_ = state.x, moved_.resize(n), before_.resize(n), now_.resize(n), booked_.assign(n, 0);
+  x_ = state.x, before_.resize(n), now_.resize(n), booked_.assign(n, 0);
   for (int i = 0; i < n; ++i) {
-    moved_[i] = kinetic(state, i);
-    before_[i] = moved_[i] - weights_[i].mass * model_.gravity.dot(state.x[i]);
+    before_[i] = kinetic(state, i) - weights_[i].mass * model_.gravity.dot(state.x[i]);
   }
   add_fields(state, before_);
   for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = in_spring(state, i);
@@ -115,8 +114,7 @@ bool EnergyGuard<D>::risen(const State<D>& state) {
   }
   if (!(sum > kRounding * (motion + size_))) return false;
   islands_.reset(n);
-  touched_.assign(n, 0), carried_.assign(n, 0), rooted_.assign(n, 0), granted_.assign(n, 0),
-      parts_.assign(n, 0);
+  touched_.assign(n, 0), carried_.assign(n, 0), rooted_.assign(n, 0), granted_.assign(n, 0);
   return true;
 }
 
@@ -189,7 +187,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     Island& it = island(i);
     const double m = weights_[i].mass;
     it.gain += gain(i), it.kinetic += kinetic(state, i), it.mass += m;
-    it.granted += granted_[i] * m * g_ * model_.scale + parts_[i] * moved_[i];
+    it.granted += granted_[i] * m * g_ * model_.scale;
     it.momentum += m * state.v[i], it.middle += m * state.x[i];
     Bound& group = bound_[groups_.root(i)];
     group.lift -= m * model_.gravity.dot(state.x[i] - x_[i]), group.mass += m;
@@ -279,8 +277,8 @@ double EnergyGuard<D>::take_back(State<D>& state, bool lower) {
     if (!it.touched || it.driven || (it.chained && !it.rooted) || !(it.gain > 0)) continue;
     const double has = std::max(it.kinetic, 0.0);
     it.keeps = has > it.gain ? std::sqrt(1 - it.gain / has) : 0;
-    if (!it.rooted || it.gain <= has || it.height <= 0) continue;
-    if (lower) {
+    if (!it.rooted || it.gain <= has) continue;
+    if (lower && it.height > 0) {
       it.lowers = std::min(1.0, (it.gain - has) / it.height);
     } else {
       left += it.gain - has;

@@ -29,14 +29,17 @@ class EnergyGuard {
 
   /// If it has risen: records that a and b (a body; a wall if negative) touched in the step.
   void touch(int a, int b);
-  /// If it has risen: allows the island of `body` to gain share * m g * (height of the room) and part * (the
-  /// kinetic energy of the body before the step).
-  void excuse(int body, double share, double part = 0) { granted_[body] = share, parts_[body] = part; }
+  /// The same of a body that something has pushed which its joints tell.
+  void touch(int body) {
+    if (weights_[body].mass > 0) touched_[body] = 1;
+  }
+  /// If it has risen: allows the island of `body` to gain share * m g * (height of the room).
+  void excuse(int body, double share) { granted_[body] = share; }
   /// Removes from each island of touching bodies the energy that it gained, by scaling its velocities; for an
   /// island that touches nothing fixed, its velocities relative to each other, so that momentum and angular
   /// momentum stay. If the motion has too little energy and `lower` is true, bodies that rose are lowered; in
   /// a crowd they would be lowered into each other. Islands on which hands, motors or explosions do work are
-  /// left alone. `state` is that of risen(). Returns the energy (J) of the risen height that remains.
+  /// left alone. `state` is that of risen(). Returns the energy (J) that remains: that of risen height.
   double take_back(State<D>& state, bool lower);
 
  private:
@@ -79,15 +82,15 @@ class EnergyGuard {
   std::vector<Weight> weights_;
   double size_ = 0;  // J: m g times the room's height
   std::vector<Vec<D>> x_;
-  std::vector<double> moved_, before_, now_, booked_;  // one a body, J
-  std::vector<int> sprung_;                            // joints with a spring
-  std::vector<double> springs_before_, springs_now_;   // J: of springs, then of those
+  std::vector<double> before_, now_, booked_;         // one a body, J
+  std::vector<int> sprung_;                           // joints with a spring
+  std::vector<double> springs_before_, springs_now_;  // J: of springs, then of those
   Islands islands_, groups_;
   std::vector<char> touched_, rooted_, tied_, jointed_;
-  std::vector<char> carried_;            // one a body: something that is moved, or a belt, works on it
-  std::vector<double> granted_, parts_;  // one a body
-  std::vector<Island> sums_;             // at the lowest of their bodies
-  std::vector<Bound> bound_;             // likewise
+  std::vector<char> carried_;    // one a body: something that is moved, or a belt, works on it
+  std::vector<double> granted_;  // one a body
+  std::vector<Island> sums_;     // at the lowest of their bodies
+  std::vector<Bound> bound_;     // likewise
 };
 
 }  // namespace obscura::sim

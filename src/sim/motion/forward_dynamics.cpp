@@ -60,11 +60,11 @@ typename ForwardDynamics<D>::Hold ForwardDynamics<D>::hold(const State<D>& state
 }
 
 template <int D>
-void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake) {
+void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake, std::span<const int> also) {
   const Subset all{numbers_[0], numbers_[1], numbers_[2]};
   if (all_awake || blasting(state)) return gather(state, all);
   // the same as last time?
-  if (only_forces_ && forces_.any() && !bodies_.empty()) {
+  if (only_forces_ && forces_.any() && !bodies_.empty() && also.empty()) {
     bool same = true;
     for (int body = 0; same && body < int(member_.size()); ++body) {
       const bool asleep = model_.bodies[body].fixed || (!state.frozen.empty() && state.frozen[body]);
@@ -86,6 +86,9 @@ void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake) {
     const bool pushed = model_.bodies[body].ground_drag != 0 ||
                         (forces_.push(body) && !(leaves_flying_ && forces_.flies(body)));
     if (pushed && (state.frozen.empty() || !state.frozen[body])) mark(body);
+  }
+  for (const int body : also) {
+    if (state.frozen.empty() || !state.frozen[body]) mark(body);
   }
   gather_marked(state, all);
 }

@@ -42,9 +42,10 @@ class ForwardDynamics final : public System {
   bool ever() const { return ever_; }
 
   /// Collects the bodies that springs, mice and forces act on in `state`; with `all_awake` all that can move
-  /// and are awake, as while an explosion acts. Bodies with drag on the ground count too. To be called
-  /// whenever a grip changes, a body falls asleep or wakes, or an explosion begins or ends.
-  void gather(const State<D>& state, bool all_awake = false);
+  /// and are awake, as while an explosion acts; of `also` those that can move and are awake. Bodies with drag
+  /// on the ground count too. To be called whenever a grip changes, a body falls asleep or wakes, or an
+  /// explosion begins or ends.
+  void gather(const State<D>& state, bool all_awake = false, std::span<const int> also = {});
   /// The same for a part of the model: all else stays out of it.
   void gather(const State<D>& state, const Subset& of);
 

@@ -60,6 +60,10 @@ class ContactSolver {
   /// count the work of these pushes.
   virtual const Vec<D>* corrections() const { return nullptr; }
 
+  /// Bodies that a limit, a rope, a motor or friction of a joint has pushed in the last step, one a body;
+  /// null: none. Like contacts these may only take energy.
+  virtual const std::vector<char>* pushed_by_joints() const { return nullptr; }
+
   /// Into how many substeps the following stages divide the step.
   virtual int substeps() const { return 1; }
   // of each substep, whose h is part.h

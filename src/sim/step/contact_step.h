@@ -39,6 +39,7 @@ class ContactStep {
   EnergyGuard<D> energy_guard_;
   std::unique_ptr<LoneBodies<D>> lone_bodies_;  // beside a solver for many
   std::vector<std::pair<int, int>> touched_;
+  std::vector<char> jointed_;  // one a body
 };
 
 }  // namespace obscura::sim

@@ -257,6 +257,8 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
   }
   ++state.step;
   touch_script(state, {state.step, 0});
+  if (contact_ && state.step % watch_every_ == 0)
+    return divergence_.check_joints(state, time({state.step, 0}, model_.rate));
   return {};
 }
 

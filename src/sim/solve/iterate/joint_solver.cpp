@@ -1,11 +1,16 @@
-// Joints between velocities and places, after Rattle (Andersen 1983): with J at the start of a step and J' at
-// its end
-//   v*  = v + h a + M^-1 J l              l: J v* = 0, in iterations with the contacts
-//   x'  = x + h (v + v*) / 2 + M^-1 J s   s: g(x') = 0, Newton with the factors at hand
-//   v'  = v* + M^-1 (J (s / h - l / 2) + J' m)     m: J' v' = 0, and motors hold their speed there
-// in space with angular momenta for spins, so that a body that turns on in the step keeps its own. The scheme
-// is of second order, and no joint drifts. Beside them rows with bounds, r: a unit of impulse along r makes
-// the joints react by c = -K^-1 J M^-1 r, so that the effective mass is
+// Joints between velocities and places. Equality rows, C(q) = 0, and those of taut ropes act in each stage of
+// the integrator that the scene names,
+//   v' = a + M^-1 J f            f: J v' + J' v = 0
+// which leads from x, v to x_free, v_free. What iterations with the contacts then change is kept on the
+// joints after Rattle (Andersen 1983): with J at the start of a step and J' at its end
+//   v*  = v_free + M^-1 (contacts + J l)      l: J v* = J v_free
+//   x'  = x_free + h (v* - v_free) / 2 + M^-1 J s   s: C(x') = 0, Newton with the factors at hand
+//   v'  = v* + M^-1 (J (s / h - l / 2) + J' (s / h + l / 2) + J' m)     m: J' v' = 0, and motors hold their
+//                                                                       speed there
+// in space with angular momenta for spins, so that a body that turns on in the step keeps its own. The free
+// motion has the order of the integrator, all else is of second order, and no joint drifts. Beside them rows
+// with bounds, r: a unit of impulse along r makes the joints react by c = -K^-1 J M^-1 r, so that the
+// effective mass is
 //   m = 1 / (r M^-1 r - r M^-1 J K^-1 J M^-1 r)
 
 #include "sim/solve/iterate/joint_solver.h"
@@ -27,17 +32,22 @@ constexpr double kLeastFraction = 1e-3;  // of a way, in it
 constexpr double kPut = 1e-9;            // of the scene's size: how far off joints may stay
 constexpr int kBoundedRounds =
     16;  // an iteration, of rows with bounds among themselves: they begin from nothing
-constexpr double kLocked = 1e-6;  // of a row's own: what it can move once joints have answered
+constexpr double kLocked = 1e-8;  // of a row's own: what it can move once joints have answered
 constexpr double kApart = 1e-9;   // 1/s, of the scene's size: slower at a joint is rounding
+constexpr double kTaut = 1e-8;    // of the scene's size: a rope that is so near its length is taut
+constexpr double kAims = 1e-6;    // of its speed: what a motor may be off it that holds it
 constexpr double kEndless = 1e300;
 
 }  // namespace
 
 template <int D>
-JointSolver<D>::JointSolver(const Model<D>& model) : model_(model), motors_(model), response_(model) {
+JointSolver<D>::JointSolver(const Model<D>& model)
+    : model_(model), motors_(model), response_(model), drives_(model) {
   const std::size_t n = model.bodies.size();
   member_.assign(n, 0), component_of_body_.assign(n, -1);
-  at_.resize(n), turn_.resize(n);
+  clear_pushed();
+  at_.resize(n), turn_.resize(n), unprojected_.resize(n);
+  pulls_.resize(model.joints.size()), begun_motors_.resize(model.joints.size());
   for (Orientation<D>& turn : turn_) turn.setZero();
   for (const Joint<D>& joint : model.joints) {
     joint.each_body([&](int body) {
@@ -79,17 +89,18 @@ std::span<const int> JointSolver<D>::components_of(std::span<const int> bodies) 
 
 template <int D>
 void JointSolver<D>::plan() {
-  held_.clear(), pairs_.clear();
+  held_.clear(), pairs_.clear(), ropes_.clear();
   std::vector<int> sizes;
   std::vector<std::vector<int>> of(model_.bodies.size());  // blocks of each body that moves
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || one_sided(joint) || !moves(joint)) continue;
+    if (broken_[i] || !moves(joint)) continue;
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
     joint.each_body([&](int body) {
       if (response_.moves(body)) of[body].push_back(int(held_.size()));
     });
+    if (one_sided(joint)) ropes_.push_back(int(held_.size()));
     held_.push_back(i);
     sizes.push_back(rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_));
   }
@@ -101,16 +112,6 @@ void JointSolver<D>::plan() {
     }
   };
   for (const auto& all : of) meet(all, all);
-  // what a rope ties together answers together
-  for (int i = 0; i < int(model_.joints.size()); ++i) {
-    const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || !one_sided(joint)) continue;
-    joint.each_body([&](int a) {
-      joint.each_body([&](int b) {
-        if (response_.moves(a) && response_.moves(b)) meet(of[a], of[b]);
-      });
-    });
-  }
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   factors_.plan(sizes, pairs_);
@@ -122,6 +123,11 @@ void JointSolver<D>::plan() {
   }
   rows_.resize(factors_.rows()), old_rows_.resize(factors_.rows());
   for (auto* numbers : {&impulses_, &totals_, &rhs_, &shifts_}) numbers->resize(factors_.rows());
+  targets_.assign(std::size_t(factors_.rows()), 0.0);
+  taut_.assign(held_.size(), 0), least_force_.assign(held_.size(), 0.0);
+  loose_.assign(std::size_t(factors_.rows()), 0);
+  for (const int k : ropes_) loose_[std::size_t(factors_.first(k))] = 1;
+  first_forces_.assign(held_.size(), Vec<D>::Zero()), last_forces_ = first_forces_;
 }
 
 template <int D>
@@ -153,14 +159,192 @@ void JointSolver<D>::shift(const Row<D>& row, double by) {
   });
 }
 
+template <int D>
+void JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, State<D>& state, double t,
+                          double h, Stages& stages) {
+  dynamics_ = &dynamics, begun_ = &state;
+  set_poses(state);
+  begin_motors();
+  find_taut_ropes(h);
+  if (!ropes_.empty()) save(state);
+  for (;;) {
+    first_stage_ = true;
+    dynamics.step(integrate, state, t, h, stages, held_.empty() ? nullptr : this);
+    if (!slacken_ropes()) break;
+    restore(state);
+  }
+  for (const int k : ropes_) loose_[std::size_t(factors_.first(k))] = 1;
+}
+
+template <int D>
+void JointSolver<D>::set_poses(const State<D>& state) {
+  for (const int body : bodies_) {
+    if (!response_.moves(body)) continue;
+    at_[body] = sim::body_motion(state, body);
+    if (const int k = turning(state, body); k >= 0) turn_[body] = state.turn[std::size_t(k)];
+  }
+}
+
+// ropes at their length, with ends that do not come nearer each other: taut as long as they pull
+template <int D>
+void JointSolver<D>::find_taut_ropes(double h) {
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  pulls_.assign(model_.joints.size(), {});
+  for (const int k : ropes_) {
+    const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
+    Row<D> out[kMostHeld<D>];
+    double off[kMostHeld<D>];
+    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
+    taut_[std::size_t(k)] =
+        std::fabs(off[0]) <= kTaut * model_.scale && std::fabs(speed(out[0], at_)) <= g * h;
+    loose_[std::size_t(factors_.first(k))] = !taut_[std::size_t(k)];
+    least_force_[std::size_t(k)] = kEndless;
+  }
+}
+
+// ropes that would have had to push; true if there are any
+template <int D>
+bool JointSolver<D>::slacken_ropes() {
+  bool any = false;
+  for (const int k : ropes_) {
+    if (!taut_[std::size_t(k)] || least_force_[std::size_t(k)] >= 0) continue;
+    taut_[std::size_t(k)] = 0, loose_[std::size_t(factors_.first(k))] = 1, any = true;
+  }
+  for (const int k : ropes_) least_force_[std::size_t(k)] = kEndless;
+  return any;
+}
+
+template <int D>
+void JointSolver<D>::save(const State<D>& state) {
+  saved_.clear(), saved_work_ = state.work;
+  for (const int body : dynamics_->bodies()) {
+    Saved& it = saved_.emplace_back();
+    it.x = state.x[std::size_t(body)], it.v = state.v[std::size_t(body)];
+    const int k = turning(state, body);
+    if (k < 0) continue;
+    it.turn = state.turn[std::size_t(k)], it.spin = state.spin[std::size_t(k)];
+    if (std::size_t(k) < state.body_spin.size()) it.body_spin = state.body_spin[std::size_t(k)];
+  }
+}
+
+template <int D>
+void JointSolver<D>::restore(State<D>& state) const {
+  for (std::size_t i = 0; i < saved_.size(); ++i) {
+    const int body = dynamics_->bodies()[i];
+    const Saved& it = saved_[i];
+    state.x[std::size_t(body)] = it.x, state.v[std::size_t(body)] = it.v;
+    const int k = turning(state, body);
+    if (k < 0) continue;
+    state.turn[std::size_t(k)] = it.turn, state.spin[std::size_t(k)] = it.spin;
+    if (std::size_t(k) < state.body_spin.size()) state.body_spin[std::size_t(k)] = it.body_spin;
+  }
+  state.work = saved_work_;
+}
+
+// the coordinates of motors where the step begins
+template <int D>
+void JointSolver<D>::begin_motors() {
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (!joint.motor || broken_[i] || !moves(joint)) continue;
+    Row<D> row;
+    double value = 0;
+    free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), row, value);
+    begun_motors_[i] = {value, speed(row, at_)};
+  }
+}
+
+// J v'
+template <int D>
+double JointSolver<D>::row_acceleration(const Row<D>& row, std::span<const double> v_rate) const {
+  double sum = 0;
+  each_side(row, [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
+    if (const int drive = drives_.number(body); drive >= 0) {
+      const DrivenMotion<D>& its = dynamics_->driven()[std::size_t(drive)];
+      sum += along.dot(its.a) + angular.dot(its.alpha);
+    }
+    if (!response_.moves(body)) return;
+    const int place = dynamics_->place(body);
+    sum += along.dot(Eigen::Map<const Vec<D>>(v_rate.data() + D * place));
+    if (const int at = dynamics_->spin_start(place); at >= 0)
+      sum += angular.dot(
+          to_room<D>(at_[body].room_from_body, Eigen::Map<const AngularVec<D>>(v_rate.data() + at)));
+  });
+  return sum;
+}
+
+template <int D>
+void JointSolver<D>::rates(double t, std::span<const double> d, std::span<const double> v,
+                           std::span<double> d_rate, std::span<double> v_rate) {
+  dynamics_->rates(t, d, v, d_rate, v_rate);
+  for (const int body : bodies_) {
+    if (const int drive = drives_.number(body); drive >= 0) {
+      const DrivenMotion<D>& its = dynamics_->driven()[std::size_t(drive)];
+      at_[body] = its.at, turn_[body] = its.turn;
+    }
+    if (!response_.moves(body)) continue;
+    const int place = dynamics_->place(body);
+    at_[body] = dynamics_->stances()[std::size_t(place)];
+    if constexpr (D == 2) {
+      if (const int at = dynamics_->spin_start(place); at >= 0)
+        turn_[body][0] = begun_->turn[std::size_t(turning(*begun_, body))][0] + d[std::size_t(at)];
+    }
+  }
+  compute_rows();
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    rhs_[r] = -row_acceleration(rows_[r], v_rate) - rows_[r].velocity_product;
+  factors_.solve(rhs_.data());
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    each_push(rows_[r], rhs_[r], [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
+      const int place = dynamics_->place(body);
+      Eigen::Map<Vec<D>>(v_rate.data() + D * place) += dv;
+      if (const int at = dynamics_->spin_start(place); at >= 0)
+        Eigen::Map<AngularVec<D>>(v_rate.data() + at) += from_room<D>(at_[body].room_from_body, dw);
+    });
+  }
+  if (const int work = dynamics_->work_place(); work >= 0 && driven_) {
+    for (std::size_t r = 0; r < rows_.size(); ++r) v_rate[std::size_t(work)] += rhs_[r] * drive_works_[r];
+  }
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    last_forces_[k].setZero();
+    const int first = factors_.first(int(k));
+    for (int r = first; r < first + factors_.size(int(k)); ++r) last_forces_[k] += rhs_[r] * rows_[r].along;
+  }
+  for (const int k : ropes_) {
+    if (taut_[std::size_t(k)])
+      least_force_[std::size_t(k)] =
+          std::min(least_force_[std::size_t(k)], rhs_[std::size_t(factors_.first(k))]);
+  }
+  if (first_stage_) first_forces_ = last_forces_;
+  first_stage_ = false;
+}
+
+template <int D>
+void JointSolver<D>::keep_row_speeds() {
+  for (std::size_t r = 0; r < rows_.size(); ++r) targets_[r] = speed(rows_[r], at_);
+  for (const int k : ropes_) {
+    if (!taut_[std::size_t(k)]) continue;
+    const int i = held_[std::size_t(k)];
+    const Joint<D>& joint = model_.joints[std::size_t(i)];
+    Row<D> out[kMostHeld<D>];
+    double off[kMostHeld<D>];
+    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
+    pulls_[std::size_t(i)] = {true, speed(out[0], at_)};
+  }
+}
+
 // rows at the present poses, and their factors
 template <int D>
 void JointSolver<D>::compute_rows() {
   double off[kMostHeld<D>];
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
-    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), &rows_[factors_.first(k)], off,
-         at_);
+    Row<D>* const first = &rows_[factors_.first(k)];
+    if (loose_[std::size_t(factors_.first(k))]) {
+      *first = {};
+      continue;
+    }
+    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), first, off, at_);
   }
   drive_works_.assign(driven_ ? rows_.size() : 0, 0);
   for (std::size_t r = 0; r < drive_works_.size(); ++r) drive_works_[r] = given(rows_[r]);
@@ -172,7 +356,10 @@ void JointSolver<D>::compute_rows() {
             response_.coupling(rows_[factors_.first(i) + r], rows_[factors_.first(j) + c], at_);
     }
   };
-  for (int k = 0; k < int(held_.size()); ++k) fill(factors_.diagonal(k), k, k);
+  for (int k = 0; k < int(held_.size()); ++k) {
+    fill(factors_.diagonal(k), k, k);
+    if (loose_[std::size_t(factors_.first(k))]) factors_.diagonal(k)[0] = 1;
+  }
   for (int e = 0; e < int(pairs_.size()); ++e) fill(factors_.entry(e), pairs_[e].first, pairs_[e].second);
   factors_.factorise();
 }
@@ -246,12 +433,18 @@ void JointSolver<D>::collect_bounded(double h) {
     if (double off = 0; left(b, off)) {
       const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
       if (off > sees) return;
-      b.target = -std::max(off, 0.0) / h;
-      b.taut = one_sided(joint) && off <= kPut * model_.scale;
+      b.target = pulls_[std::size_t(i)].taut ? pulls_[std::size_t(i)].target : -std::max(off, 0.0) / h;
+      b.taut = one_sided(joint) && std::fabs(off) <= kPut * model_.scale;
     } else {
       b.most = h * (load == motor ? joint.motor->most : joint.friction), b.least = -b.most;
-      if (load == motor)
+      if (load == motor) {
         b.target = motors_.at(i, ends_, offs[0] + h * speed(b.row, at_), speed(b.row, at_)).speed;
+        b.ends = kEndless;
+        const Coordinate& begun = begun_motors_[std::size_t(i)];
+        const double aimed = motors_.at(i, ends_ - h, begun.value, begun.rate).speed;
+        if (std::fabs(begun.rate - aimed) <= kAims * (std::fabs(aimed) + h * h))
+          b.ends = begun.value + 0.5 * h * (begun.rate + b.target);
+      }
     }
 
     b.begun_drive_work = driven_ ? given(b.row) : 0;
@@ -400,7 +593,7 @@ void JointSolver<D>::iterate() {
 template <int D>
 void JointSolver<D>::iterate(int component) {
   if (component >= 0) {
-    each_row(component, [&](int, int r) { rhs_[r] = -speed(rows_[r], at_); });
+    each_row(component, [&](int, int r) { rhs_[r] = targets_[r] - speed(rows_[r], at_); });
     factors_.solve(rhs_.data(), component);
     each_row(component, [&](int, int r) {
       impulses_[r] += rhs_[r], totals_[r] += rhs_[r];
@@ -439,6 +632,10 @@ double JointSolver<D>::position_error() {
   double worst = 0;
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
+    if (one_sided(joint)) {
+      rhs_[factors_.first(k)] = 0;
+      continue;
+    }
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
     const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
@@ -460,21 +657,52 @@ bool JointSolver<D>::near() const {
   return true;
 }
 
+// Motors that hold their speed all through the step, to where it leads them: else what the forces change by
+// within a step adds up.
+template <int D>
+void JointSolver<D>::put_motors() {
+  for (std::size_t k = 0; k < active_; ++k) {
+    const Bounded& bounded = bounded_[k];
+    if (bounded.load != motor || bounded.ends == kEndless || !(std::fabs(bounded.impulse) < bounded.most))
+      continue;
+    const Joint<D>& joint = model_.joints[std::size_t(bounded.joint)];
+    Row<D> row;
+    double value = 0;
+    free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), row, value);
+    const double off = bounded.ends - value;
+    if (std::fabs(off) < kStride) shift_bounded(bounded, off * bounded.effective_mass);
+  }
+}
+
 // places back onto what joints keep, and within what they let
 template <int D>
 void JointSolver<D>::project_positions(double h) {
+  put_motors();
   for (std::size_t k = 0; k < active_; ++k) {
+    Bounded& bounded = bounded_[k];
     double off = 0;
-    if (!left(bounded_[k], off) || off >= 0) continue;
+    if (!left(bounded, off)) continue;
+    // a rope that pulled keeps its length to both sides
+    const bool pulls = pulls_[std::size_t(bounded.joint)].taut && std::fabs(off) <= kTaut * model_.scale;
+    if (!pulls && off >= 0) continue;
     const double strayed = position_error();
     begun_at_ = at_, begun_turn_ = turn_;
-    const double put = -off * bounded_[k].effective_mass;
-    shift_bounded(bounded_[k], put);
-    // what joints hardly let it do throws them far
-    if (!near() || position_error() > strayed - off) {
-      at_.swap(begun_at_), turn_.swap(begun_turn_);
-    } else if (bounded_[k].taut) {
-      bounded_[k].put = put;
+    if (pulls) {
+      shift_bounded(bounded, -off * bounded.effective_mass);
+      if (!near() || position_error() > strayed + std::fabs(off)) at_ = begun_at_, turn_ = begun_turn_;
+      continue;
+    }
+    // what joints hardly let it do would throw them far: then only a part of it
+    for (double fraction = 1; fraction > kLeastFraction; fraction /= 2) {
+      const double put = -fraction * off * bounded.effective_mass;
+      shift_bounded(bounded, put);
+      double rest = 0;
+      left(bounded, rest);
+      if (near() && rest > (1 - fraction / 4) * off && position_error() <= strayed - fraction * off) {
+        if (bounded.taut) bounded.put = put;
+        break;
+      }
+      at_ = begun_at_, turn_ = begun_turn_;
     }
   }
   begun_at_ = at_, begun_turn_ = turn_;
@@ -525,6 +753,7 @@ template <int D>
 void JointSolver<D>::finish(double h) {
   work_ = 0;
   if (bodies_.empty()) return;
+  for (const int i : bodies_) unprojected_[i] = at_[i].x;
   project_positions(h);
   // a taut rope turns its bodies' motion as an equality does: s / h of Rattle's
   for (std::size_t k = 0; k < active_; ++k) {
@@ -534,6 +763,7 @@ void JointSolver<D>::finish(double h) {
               [&](int body, const Vec<D>& v, const AngularVec<D>& w) { at_[body].v += v, at_[body].w += w; });
   }
   compute_rows();
+  stop_rows();
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     push(old_rows_[r], shifts_[r] - 0.5 * impulses_[r]);
     const double half = 0.5 * impulses_[r] + shifts_[r];
@@ -547,6 +777,15 @@ void JointSolver<D>::finish(double h) {
     for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
   }
   book();
+  for (std::size_t k = 0; k < active_; ++k) {
+    const Bounded& bounded = bounded_[k];
+    if (bounded.impulse == 0) continue;
+    any_pushed_ = true;
+    for (const int component : bounded.components) {
+      if (component < 0) continue;
+      for (const int body : members_[std::size_t(component)]) pushed_[std::size_t(body)] = 1;
+    }
+  }
 }
 
 // half of each impulse where the step began, half where it ends
@@ -606,6 +845,7 @@ void JointSolver<D>::keep(State<D>& state, double h, const std::vector<char>* of
   }
   for (int k = 0; k < int(held_.size()); ++k) {
     if (!wanted(held_[k])) continue;
+    if (!of) state.joint_forces[held_[k]] += 0.5 * (first_forces_[k] + last_forces_[k]);
     for (int r = factors_.first(k); r < factors_.first(k) + factors_.size(k); ++r)
       state.joint_forces[held_[k]] += totals_[r] / h * rows_[r].along;
   }

@@ -11,15 +11,19 @@
 #include "sim/constraint/joints/motors.h"
 #include "sim/constraint/response.h"
 #include "sim/math/block_factors.h"
+#include "sim/model/drives.h"
 #include "sim/model/state.h"
+#include "sim/motion/forward_dynamics.h"
 
 namespace obscura::sim {
 
 /// Joints of the iterative solvers. All equality rows are solved at once, exactly, by a sparse factorisation,
-/// in linear time if the joints form trees. Ropes, limits, motors and dry friction are rows with bounds,
-/// solved one after another, each with the reaction of the equality rows to it.
+/// in linear time if the joints form trees: as forces in each stage of the free motion, as impulses in each
+/// iteration after it. Ropes, limits, motors and dry friction are rows with bounds, solved one after another,
+/// each with the reaction of the equality rows to it. In the free motion a rope that is taut is an equality,
+/// as long as it pulls.
 template <int D>
-class JointSolver {
+class JointSolver final : public System {
  public:
   /// Kept by reference.
   explicit JointSolver(const Model<D>& model);
@@ -45,12 +49,28 @@ class JointSolver {
   /// half the displacement of a step comes from the velocities at its start.
   void project_initial_velocities(State<D>& state);
 
+  /// Steps the bodies that `dynamics` has gathered from t to t + h, with the joints' forces in each stage of
+  /// the integrator; limits, motors and friction do nothing yet. After gather(), with kinematic bodies as
+  /// they are at t.
+  void step(ForwardDynamics<D>& dynamics, Integrate* integrate, State<D>& state, double t, double h,
+            Stages& stages);
+  /// The system of that step: what `dynamics` has, and f with J v' + J' v = 0.
+  void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
+             std::span<double> v_rate) override;
+
   /// Computes the rows at the present poses.
   void compute_rows();
+  /// From here on iterations keep J v as it is at the present velocities, those of the free motion; or at
+  /// zero.
+  void keep_row_speeds();
+  void stop_rows() {
+    std::fill(targets_.begin(), targets_.end(), 0.0);
+    pulls_.assign(model_.joints.size(), {});
+  }
   /// Starts a step of h (s) from there, at time t. All forces begin at zero.
   void begin(double h, double t = 0);
 
-  /// One iteration: velocities with J v = 0 and rows within bounds; of all joints, or of one component.
+  /// One iteration: velocities with J v as it was and rows within bounds; of all joints, or of one component.
   /// Joints of different components share no moving body. Component -1: ropes between bodies without other
   /// joints.
   void iterate();
@@ -95,13 +115,21 @@ class JointSolver {
   void finish(double h);
   /// The work of kinematic bodies through joints in the step that was finished last, J.
   double given() const { return work_; }
+  /// Bodies that rows with bounds have pushed, directly or through joints, since clear_pushed(), one a body;
+  /// null: none.
+  const std::vector<char>* pushed() const { return any_pushed_ ? &pushed_ : nullptr; }
+  void clear_pushed() { pushed_.assign(member_.size(), 0), any_pushed_ = false; }
+  /// How far the centre of a body of bodies() was moved then to project the positions, m.
+  Vec<D> displacement(int body) const { return at_[body].x - unprojected_[body]; }
 
   /// act(row, spare) for each loaded row of a component. spare: the change of velocity that the row can still
   /// give within the step, its bound less its present impulse; infinite for equality rows and for loaded
   /// limits and ropes.
   template <class Act>
   void each_bearing(int component, Act&& act) const {
-    each_row(component, [&](int, int r) { act(rows_[r], kWithoutEnd); });
+    each_row(component, [&](int, int r) {
+      if (!loose_[std::size_t(r)]) act(rows_[r], kWithoutEnd);
+    });
     for (int i = component_first_[component + 1]; i < component_first_[component + 2]; ++i) {
       const Bounded& b = bounded_[by_component_[i]];
       if (b.load == lower || b.load == upper) {
@@ -131,6 +159,7 @@ class JointSolver {
     double impulse = 0;
     bool taut = false;            // a rope that is at its length when the step begins
     double put = 0;               // kg m: pseudo-impulse of the position projection, of a rope left too long
+    double ends = 0;              // rad or m: of a motor, the coordinate that its speed leads to
     double begun_drive_work = 0;  // work of kinematic bodies by a unit of impulse, at the start of the step
     int first = 0;                // start of its row in yields_
   };
@@ -142,6 +171,7 @@ class JointSolver {
     return joint.any_body([&](int body) { return response_.moves(body); });
   }
   const BodyMotion<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
+  double row_acceleration(const Row<D>& row, std::span<const double> v_rate) const;
   double given(const Row<D>& row) const;
   void push(const Row<D>& row, double impulse);
   template <class Act>
@@ -169,6 +199,13 @@ class JointSolver {
   void push_bounded(int component);
   void shift_bounded(const Bounded& bounded, double by);
   bool left(const Bounded& bounded, double& off) const;
+  void set_poses(const State<D>& state);
+  void begin_motors();
+  void find_taut_ropes(double h);
+  bool slacken_ropes();
+  void save(const State<D>& state);
+  void restore(State<D>& state) const;
+  void put_motors();
   double position_error();
   bool near() const;
   void project_positions(double h);
@@ -181,15 +218,20 @@ class JointSolver {
   BodyMotion<D> room_;
   std::vector<int> bodies_;
   std::vector<char> member_;
+  std::vector<char> pushed_;
+  bool any_pushed_ = false;
   std::vector<BodyMotion<D>> at_;
   std::vector<Orientation<D>> turn_;
   std::vector<BodyMotion<D>> begun_at_;  // before they are put back
   std::vector<Orientation<D>> begun_turn_;
+  std::vector<Vec<D>> unprojected_;  // centres before the positions were projected
   Response<D> response_;
 
   std::vector<char> broken_, frozen_;  // of the state, when plan() ran
   bool planned_ = false;
-  std::vector<int> held_;                   // joints with equalities: the blocks
+  std::vector<int> held_;                   // joints: the blocks. Of a loose rope its row is empty
+  std::vector<char> loose_;                 // one a row: of ropes; all but in the free motion
+  std::vector<int> ropes_;                  // blocks that are ropes
   std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
   std::vector<int> component_of_body_;
   std::vector<std::vector<int>> members_;  // of components
@@ -201,7 +243,33 @@ class JointSolver {
       begun_drive_works_;  // their work by a unit along each row: now, at the start of the step
   double work_ = 0;
   std::vector<double> impulses_, totals_, rhs_, shifts_, ways_;
-  std::vector<Bounded> bounded_;  // the first `active_` are in use
+  std::vector<double> targets_;  // of J v, m/s or rad/s
+  // of the free motion
+  Drives<D> drives_;
+  ForwardDynamics<D>* dynamics_ = nullptr;  // while it is stepped
+  const State<D>* begun_ = nullptr;
+  bool first_stage_ = true;
+  std::vector<char> taut_;           // one a block: ropes that are equalities in the free motion
+  std::vector<double> least_force_;  // one a block: of a taut rope in all stages, N
+  struct Pull {
+    bool taut = false;  // in the free motion
+    double target = 0;  // m/s: of J v
+  };
+  std::vector<Pull> pulls_;  // one a joint: of ropes
+  struct Saved {
+    Vec<D> x = Vec<D>::Zero(), v = Vec<D>::Zero();
+    Orientation<D> turn = no_rotation<D>();
+    AngularVec<D> spin = AngularVec<D>::Zero();
+    BodySpin<D> body_spin;
+  };
+  std::vector<Saved> saved_;  // bodies that are stepped
+  std::vector<double> saved_work_;
+  struct Coordinate {
+    double value = 0, rate = 0;  // rad or m; a second
+  };
+  std::vector<Coordinate> begun_motors_;  // one a joint: of those with a motor, where the step begins
+  std::vector<Vec<D>> first_forces_, last_forces_;  // of each joint of held_ in its first and last stage, N
+  std::vector<Bounded> bounded_;                    // the first `active_` are in use
   std::size_t active_ = 0;
   std::vector<int> by_component_;     // numbers of them by component, those of component -1 first
   std::vector<int> component_first_;  // where each component begins there

@@ -84,10 +84,11 @@ template <int D>
 bool PlaneIterative<D>::collide(StepPart<D> step) {
   State<D>& state = step.state;
   const int n = int(model_.bodies.size());
-  outran_ = corrected_ = false;
+  outran_ = false, corrected_ = !joints_.empty();
+  if (corrected_) std::fill(corrections_.begin(), corrections_.end(), Vec<D>::Zero());
   if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
   if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
-  if (!joints_.empty()) joints_.prepare(state);
+  if (!joints_.empty()) joints_.prepare(state), joints_.clear_pushed();
   if (state.step == 0) joints_.project_initial_velocities(state);
 
   const bool due = state.step % every_ == 0 || anew_;
@@ -216,7 +217,9 @@ void PlaneIterative<D>::move_free(StepPart<D> part) {
   renew_pairs(part);
   if (part.substep == 0) integrate_unconstrained(part.state, part.t, substeps_ * part.h);
   share_free_motion(part);
+  if (!joints_.empty()) integrate_jointed(part);
   move_driven(part);
+  if (!joints_.empty()) start_joint_rows();
 }
 
 // The wide kernel that applies the forces of the last step also finds the contact points that close.
@@ -230,17 +233,6 @@ void PlaneIterative<D>::warm_start(StepPart<D> part) {
 
 template <int D>
 void PlaneIterative<D>::resolve_impacts(StepPart<D> part) {
-  if (!joints_.empty()) {
-    copy_to_joints();
-    // kinematic bodies as the substep begins
-    for (int i = 0; i < drives_.size(); ++i) {
-      const int body = drives_.body(i);
-      if (!joints_.has(body)) continue;
-      const Motion& u = old_[body];
-      joints_.body_motion(body).v = {u.x, u.y}, joints_.body_motion(body).w[0] = u.w;
-    }
-    joints_.compute_rows();
-  }
   impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, constants_, joints_);
   if (!part.state.work.empty()) part.state.work[0] += impacts_.drive_work();
   constants_.least = impacts_.least();
@@ -448,8 +440,8 @@ void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
     bend_[i] = {h * (v_[i].x * u + h * r * gx), h * (v_[i].y * u + h * r * gy), 0, 0};
   }
 
-  // springs and hands
-  if (!dynamics_.ever()) return;
+  // springs and hands; with joints in each substep
+  if (!dynamics_.ever() || !joints_.empty()) return;
   const std::vector<int>& bodies = dynamics_.bodies();
   stages_.reserve(std::size_t(dynamics_.size()));
   dynamics_.step(integrate(model_.integrator), state, t, h, stages_);
@@ -468,6 +460,53 @@ void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
     }
     state.x[i] = {poses_[i].x, poses_[i].y}, state.v[i] = {v.x, v.y};
     if (i >= still) state.turn[i - still][0] = turns_[i], state.spin[i - still][0] = v.w;
+  }
+}
+
+// dv_ and dx_ of bodies on joints, and of those that springs, hands and forces act on, in a substep
+template <int D>
+void PlaneIterative<D>::integrate_jointed(StepPart<D> part) {
+  State<D>& state = part.state;
+  const int still = int(turns_.size() - state.turn.size());
+  dynamics_.gather(state, false, joints_.bodies());
+  stages_.reserve(std::size_t(dynamics_.size()));
+  copy_to_joints();
+  set_driven_joints(old_);
+  joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
+  if (!state.work.empty()) state.work[0] += dynamics_.work();
+  for (const int i : dynamics_.bodies()) {
+    const Motion o = old_[i];
+    if (Motion& v = v_[i]; v.im > 0) {
+      v.x = state.v[i][0], v.y = state.v[i][1];
+      Motion &dv = dv_[i], &dx = dx_[i];
+      dx.x = state.x[i][0] - poses_[i].x, dx.y = state.x[i][1] - poses_[i].y;
+      if (i >= still) v.w = state.spin[i - still][0], dx.w = state.turn[i - still][0] - turns_[i];
+      dv = {v.x - o.x, v.y - o.y, v.w - o.w, 0};
+    }
+    state.x[i] = {poses_[i].x, poses_[i].y}, state.v[i] = {o.x, o.y};
+    if (i >= still) state.turn[i - still][0] = turns_[i], state.spin[i - still][0] = o.w;
+  }
+}
+
+// rows of the joints where the substep begins, with the velocities of kinematic bodies there, and what the
+// free motion makes of their speeds
+template <int D>
+void PlaneIterative<D>::start_joint_rows() {
+  copy_to_joints();
+  set_driven_joints(old_);
+  joints_.compute_rows();
+  set_driven_joints(v_);
+  joints_.keep_row_speeds();
+}
+
+// velocities of kinematic bodies to the joint solver
+template <int D>
+void PlaneIterative<D>::set_driven_joints(const std::vector<Motion>& motions) {
+  for (int i = 0; i < drives_.size(); ++i) {
+    const int body = drives_.body(i);
+    if (!joints_.has(body)) continue;
+    const Motion& u = motions[body];
+    joints_.body_motion(body).v = {u.x, u.y}, joints_.body_motion(body).w[0] = u.w;
   }
 }
 
@@ -624,6 +663,7 @@ void PlaneIterative<D>::project_joints(State<D>& state, double h) {
   for (const int i : joints_.bodies()) {
     if (v_[i].im == 0) continue;
     const BodyMotion<D>& at = joints_.body_motion(i);
+    corrections_[i] += joints_.displacement(i);
     state.x[i] = at.x, state.v[i] = at.v;
     poses_[i].x = at.x[0], poses_[i].y = at.x[1];
     if (i < still) continue;

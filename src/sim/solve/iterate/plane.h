@@ -37,6 +37,7 @@ class PlaneIterative final : public ContactSolver<D> {
   void wake(StepPart<D> step) override;
   int substeps() const override { return substeps_; }
   const Vec<D>* corrections() const override { return corrected_ ? corrections_.data() : nullptr; }
+  const std::vector<char>* pushed_by_joints() const override { return joints_.pushed(); }
   void move_free(StepPart<D> part) override;
   void warm_start(StepPart<D> part) override;
   void resolve_impacts(StepPart<D> part) override;
@@ -77,6 +78,9 @@ class PlaneIterative final : public ContactSolver<D> {
   void solve_together(std::span<const std::pair<int, int>> lanes);
   void integrate_unconstrained(State<D>& state, double t, double h);
   void share_free_motion(StepPart<D> part);
+  void integrate_jointed(StepPart<D> part);
+  void start_joint_rows();
+  void set_driven_joints(const std::vector<Motion>& motions);
   void move_driven(StepPart<D> part);
   void place_driven(State<D>& state);
   bool wake_near_driven(StepPart<D> step);

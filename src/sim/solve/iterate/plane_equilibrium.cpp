@@ -53,6 +53,7 @@ void Equilibrium::fall(std::span<const Sleep<2>::Island> islands, JointSolver<2>
     jointed = jointed || island.jointed;
   }
   if (!jointed) return;
+  joints.stop_rows();
   joints.begin(h);
   for (const Sleep<2>::Island& island : islands) copy_from_joints(island, joints);
 }

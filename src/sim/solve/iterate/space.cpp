@@ -71,7 +71,7 @@ bool SpaceIterative<D>::collide(StepPart<D> step) {
   State<D>& state = step.state;
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n);
-  joints_.prepare(state);
+  joints_.prepare(state), joints_.clear_pushed();
   if (state.step == 0) joints_.project_initial_velocities(state);
   prepare(state, step.t, step.h);
   find(step);
@@ -444,7 +444,11 @@ void SpaceIterative<D>::move_free(StepPart<D> step) {
   x_ = state.x, turn_ = state.turn;
   dynamics_.gather(state, true);
   stages_.reserve(std::size_t(dynamics_.size()));
-  dynamics_.step(integrate(model_.integrator), state, step.t, step.h, stages_);
+  if (joints_.empty()) {
+    dynamics_.step(integrate(model_.integrator), state, step.t, step.h, stages_);
+  } else {
+    joints_.step(dynamics_, integrate(model_.integrator), state, step.t, step.h, stages_);
+  }
   if (!state.work.empty()) state.work[0] += dynamics_.work();
   move_driven(state, step.t, step.h);
   v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
@@ -454,6 +458,15 @@ void SpaceIterative<D>::move_free(StepPart<D> step) {
     moving_[i].v = state.v[i];
     if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
   }
+  if (joints_.empty()) return;
+  // rows where the step began, and what the free motion makes of their speeds
+  for (const int i : joints_.bodies()) {
+    joints_.body_motion(i) = stances_[i];
+    if (const int k = turning(state, i); k >= 0) joints_.turn(i) = turn_[k];
+  }
+  joints_.compute_rows();
+  copy_to_joints();
+  joints_.keep_row_speeds();
 }
 
 // what each touch wants of the step, and the forces it had in the last
@@ -647,6 +660,12 @@ double SpaceIterative<D>::normal_response(const ContactConstraint& touch) const 
   return sum;
 }
 
+template <int D>
+void SpaceIterative<D>::begin_corrections() {
+  if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
+  corrected_ = true;
+}
+
 // positions out of each other, a part of the way, by the same rows
 template <int D>
 void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
@@ -663,8 +682,7 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
     if (touch.gap < -allowed(touch)) some_.push_back(i);
   }
   if (some_.empty()) return;
-  if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
-  corrected_ = true;
+  begin_corrections();
   kept_ = moving_, parted_.assign(some_.size(), 0), responses_.clear();
   for (const int i : some_) responses_.push_back(normal_response(touches_[i]));
   for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();  // and belts do not push
@@ -708,8 +726,10 @@ void SpaceIterative<D>::project_joints(State<D>& state, double h) {
   joints_.keep(state, h);
   joints_.break_joints(state);
   copy_from_joints();
+  begin_corrections();
   for (const int i : joints_.bodies()) {
     if (inactive_[i]) continue;
+    corrections_[i] += joints_.displacement(i);
     state.x[i] = joints_.body_motion(i).x, state.v[i] = moving_[i].v;
     if (const int k = turning(state, i); k >= 0)
       state.turn[k] = joints_.turn(i), state.spin[k] = moving_[i].w;

@@ -38,6 +38,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void wake(StepPart<D> step) override;
   int substeps() const override { return substeps_; }
   const Vec<D>* corrections() const override { return corrected_ ? corrections_.data() : nullptr; }
+  const std::vector<char>* pushed_by_joints() const override { return joints_.pushed(); }
   void move_free(StepPart<D> step) override;
   void resolve_impacts(StepPart<D> step) override;
   void iterate(StepPart<D> step) override;
@@ -171,6 +172,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void find_strikes(double h);
   void place_bodies(State<D>& state, double h);
   double normal_response(const ContactConstraint& touch) const;
+  void begin_corrections();
   void correct_overlaps(State<D>& state, double h);
   void project_joints(State<D>& state, double h);
   void report_contacts(State<D>& state, double h) const;

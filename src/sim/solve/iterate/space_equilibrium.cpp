@@ -79,7 +79,7 @@ void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island
   }
   std::sort(components_.begin(), components_.end());
   components_.erase(std::unique(components_.begin(), components_.end()), components_.end());
-  if (!components_.empty()) copy_to_joints(&on_joints_), joints_.begin(h);
+  if (!components_.empty()) copy_to_joints(&on_joints_), joints_.stop_rows(), joints_.begin(h);
 }
 
 // forces of candidates for sleep, all at once, into their contacts; and what they leave
