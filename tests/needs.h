@@ -26,3 +26,10 @@ inline bool installed(const std::string& command) {
       GTEST_SKIP() << "needs " << packages;                                 \
     }                                                                       \
   } while (false)
+
+/// The same of what `script/test all` tries: where all is not asked for the test is skipped.
+#define OBSCURA_LONG(packages, there)                                                                 \
+  do {                                                                                                \
+    if (!std::getenv("OBSCURA_TEST_ALL")) GTEST_SKIP() << "script/test all tries this: " << packages; \
+    OBSCURA_NEEDS(there, packages);                                                                   \
+  } while (false)

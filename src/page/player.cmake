@@ -1,11 +1,11 @@
 # Embeds page/player into obscura_page: its modules become one, in the order of MODULES, so that a page needs no other
 # file. `import` lines and the word `export` are left out. Run as a script (cmake -D FROM=... -D TO=... -P) it writes the source.
-set(MODULES bytes keys reel pen values charts lens contact forms shaders space picture player)
+set(MODULES bytes keys reel pen values charts lens contact forms shaders card ground occlusion pick space picture player)
 if(CMAKE_SCRIPT_MODE_FILE)
   set(script "")
   foreach(module IN LISTS MODULES)
     file(READ ${FROM}/${module}.js text)
-    string(REGEX REPLACE "(^|\n)import [^\n]*;" "\\1" text "${text}")
+    string(REGEX REPLACE "(^|\n)import [^;]*;" "\\1" text "${text}")
     string(REGEX REPLACE "(^|\n)export " "\\1" text "${text}")
     string(APPEND script "${text}")
   endforeach()
@@ -31,7 +31,8 @@ if(CMAKE_SCRIPT_MODE_FILE)
   return()
 endif()
 
-file(GLOB player CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/page/player/*)
+file(GLOB player CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/page/player/*.js ${CMAKE_CURRENT_SOURCE_DIR}/page/player/player.css
+     ${CMAKE_CURRENT_SOURCE_DIR}/page/player/page.html)
 set(embedded ${CMAKE_CURRENT_BINARY_DIR}/page/player.cpp)
 add_custom_command(OUTPUT ${embedded}
   COMMAND ${CMAKE_COMMAND} -D FROM=${CMAKE_CURRENT_SOURCE_DIR}/page/player -D TO=${embedded} -P ${CMAKE_CURRENT_LIST_FILE}

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -69,16 +70,17 @@ int Reel::glyph(draw::Face face, std::uint32_t index) {
 
 int Reel::line(const draw::Text& text) {
   const draw::Line line = draw::shape(text);
-  double start = 0;
-  if (text.align == draw::Align::center) start = -line.width / 2;
-  if (text.align == draw::Align::right) start = -line.width;
+  const Point from = text.whole ? Point(text.at - *text.whole) : Point::Zero();
+  double start = from.x();
+  if (text.align == draw::Align::center) start -= line.width / 2;
+  if (text.align == draw::Align::right) start -= line.width;
   std::string json = "[";
   for (const draw::Shaped& span : line.spans) {
     if (span.glyphs.empty()) continue;
     json += fmt::format("{}[{:.3f},{}", json.size() > 1 ? "," : "", span.size, color(span.color));
     for (const draw::Glyph& each : span.glyphs)
-      json +=
-          fmt::format(",{},{:.4f},{:.4f}", glyph(span.face, each.index), start + each.at.x(), each.at.y());
+      json += fmt::format(",{},{:.4f},{:.4f}", glyph(span.face, each.index), start + each.at.x(),
+                          from.y() + each.at.y());
     json += "]";
   }
   json += "]";
@@ -105,8 +107,14 @@ Reel::Thing& Reel::thing(const Key& key) {
   return things_[std::size_t(at->second)];
 }
 
-void Reel::live(Thing& it, const std::vector<double>& numbers, const std::vector<double>& bounds,
+void Reel::live(Thing& it, std::vector<double> numbers, std::vector<double> bounds,
                 const std::vector<int>& steps) {
+  if (hang_ && !numbers.empty()) {
+    // the last of its numbers
+    numbers.insert(numbers.end(), hang_->a.begin(), hang_->a.end());
+    if (it.key.style.hang > 1) numbers.insert(numbers.end(), hang_->b.begin(), hang_->b.end());
+    bounds.resize(numbers.size(), hang_bound_);
+  }
   if (it.lives.empty() || it.lives.back().second != frames_) {
     it.lives.emplace_back(frames_, frames_);
     it.courses.emplace_back(numbers.size());
@@ -115,7 +123,7 @@ void Reel::live(Thing& it, const std::vector<double>& numbers, const std::vector
   it.lives.back().second = frames_ + 1;
   for (std::size_t i = 0; i < numbers.size(); ++i) it.courses.back()[i].add(numbers[i]);
   for (std::size_t i = 0; i < steps.size(); ++i) it.steps.back()[i].add(steps[i]);
-  it.bounds = bounds;
+  it.bounds = std::move(bounds);
 }
 
 bool Reel::add_rigid(Thing& it, const Outline& outline) {
@@ -225,7 +233,7 @@ void Reel::add_outline(Thing& it, const Outline& outline) {
     const bool still = std::all_of(it.courses.begin(), it.courses.end(), [](const auto& life) {
       return std::all_of(life.begin(), life.end(), [](const Course& c) { return c.constant(); });
     });
-    if (still && it.lives.size() == 1 && it.key.style.kind == Kind::stroke && it.widths.empty()) {
+    if (still && !hang_ && it.lives.size() == 1 && it.key.style.kind == Kind::stroke && it.widths.empty()) {
       Thing grown;
       grown.key = it.key, grown.form = Form::grown;
       const Point middle(it.courses[0][0].first(), it.courses[0][1].first());
@@ -269,18 +277,21 @@ void Reel::add_trail(Thing& it, const draw::Trail& trail) {
 }
 
 void Reel::add(const draw::List& list, bool still) {
-  std::array<std::vector<draw::Subject>, draw::kKinds> subjects;
-  for (std::size_t kind = 0; kind < draw::kKinds; ++kind) subjects[kind] = list.subjects(Kind(kind));
+  std::array<std::vector<draw::About>, draw::kKinds> abouts;
+  for (std::size_t kind = 0; kind < draw::kKinds; ++kind) abouts[kind] = list.about(Kind(kind));
   std::map<Key, int> count;
   std::size_t trail = 0;
   for (const draw::Batch& batch : list.batches) {
     const int clipped = batch.clip < 0 ? -1 : clip(list.clips[std::size_t(batch.clip)]);
     for (int i = batch.begin; i < batch.end; ++i) {
       const auto n = std::size_t(i);
-      const draw::Subject& subject = subjects[std::size_t(batch.kind)][n];
+      const auto& [subject, hang, none] = abouts[std::size_t(batch.kind)][n];
       if (subject.what == draw::kSeenLines.what && subject.index == draw::kSeenLines.index) continue;
       Style style{.kind = batch.kind, .still = still, .clip = clipped};
+      hang_ = hang;
+      if (hang) style.hang = hang->a == hang->b ? 1 : 2;
       Outline outline;
+      if (batch.kind == Kind::text) style.whole = list.texts[n].whole.has_value();
       if (batch.kind == Kind::stroke) {
         while (trail < list.trails.size() && list.trails[trail].end <= i) ++trail;
         if (trail < list.trails.size() && list.trails[trail].begin <= i) {
@@ -346,7 +357,8 @@ void Reel::add(const draw::List& list, bool still) {
         }
         case Kind::text: {
           const draw::Text& text = list.texts[n];
-          live(it, {text.at.x(), text.at.y()}, {kLetter, kLetter}, {line(text)});
+          const Point& at = text.whole ? *text.whole : text.at;
+          live(it, {at.x(), at.y()}, {kLetter, kLetter}, {line(text)});
           break;
         }
       }
@@ -354,26 +366,29 @@ void Reel::add(const draw::List& list, bool still) {
   }
 }
 
-void Reel::add(const draw::Solids& solids) {
+void Reel::add(const draw::Solids& solids, int panel) {
+  hang_ = {};
   const double place = kPlace / solids.lens.scale, narrow = kWidth / solids.lens.scale;
   std::map<Key, int> count;
   const auto next = [&](int space, int nodes, int turns, int index = 0) -> Thing& {
     Style style{.turns = turns, .space = space, .nodes = nodes};
-    Key key{{draw::Subject::What::layer, index}, style, 0};
+    Key key{{draw::Subject::What::layer, index, solids.part}, style, 0};
     key.place = count[key]++;
     return thing(key);
   };
-  const auto tubes = [&](int space, const std::vector<draw::Solids::Tube>& all, double width) {
+  const auto tubes = [&](int space, const std::vector<draw::Solids::Tube>& all, double width, int index) {
     for (const draw::Solids::Tube& tube : all) {
       std::vector<double> numbers, bounds(3 * tube.way.size(), place);
       for (const auto& p : tube.way) numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
       numbers.insert(numbers.end(), {tube.radius, tube.winding.amplitude});
       bounds.insert(bounds.end(), {width, kWidth});
-      live(next(space, int(tube.way.size()), tube.winding.turns), numbers, bounds, {color(tube.color)});
+      live(next(space, int(tube.way.size()), tube.winding.turns, index), numbers, bounds,
+           {color(tube.color)});
     }
   };
-  tubes(1, solids.tubes, narrow);
-  tubes(5, solids.lines, kWidth);
+  tubes(5, solids.lines, kWidth, panel);
+  if (panel > 0) return;
+  tubes(1, solids.tubes, narrow, 0);
   for (const draw::Solids::Ball& ball : solids.balls)
     live(next(2, 0, 0), {ball.center.x(), ball.center.y(), ball.center.z(), ball.radius},
          {place, place, place, narrow}, {color(ball.color)});
@@ -411,8 +426,14 @@ void Reel::add(const draw::Picture& picture) {
     still_ = picture.still;
     add(*picture.still, true);
   }
+  if (!picture.solids.empty()) hang_bound_ = kPlace / picture.solids.front()->lens.scale;
   add(picture.moving, false);
-  if (!picture.solids.empty()) add(*picture.solids.front());
+  // the cameras of a run see the same, but outlines
+  int part = -1, panel = 0;
+  for (const auto& solids : picture.solids) {
+    panel = std::exchange(part, solids->part) == solids->part ? panel + 1 : 0;
+    add(*solids, panel);
+  }
   ++frames_;
 }
 
@@ -422,6 +443,8 @@ void Reel::write(Thing& it, Json& json) {
   json["kind"] = int(style.kind);
   if (style.clip >= 0) json["clip"] = style.clip;
   if (style.still) json["still"] = 1;
+  if (style.whole) json["whole"] = 1;
+  if (style.hang > 0 && it.form != Form::loose) json["hang"] = style.hang;
   if (style.kind == Kind::stroke) {
     json["style"] = (style.closed ? 1 : 0) | (style.round ? 2 : 0) | int(style.blend) << 2;
     if (style.turns > 0) json["turns"] = style.turns;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <list>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,12 +42,13 @@ class Reel {
   // what a thing is, apart from its numbers
   struct Style {
     draw::Kind kind{};
-    bool trail = false, closed = false, round = false, still = false;
+    bool trail = false, closed = false, round = false, still = false, whole = false;
     draw::Blend blend{};
     int turns = 0;
     int clip = -1;
     int space = 0;  // what stands in space: 1 a tube, 2 a ball, 3 a plate, 4 a trail, 5 a line
     int nodes = 0;  // of a tube
+    int hang = 0;   // at so many places of space
     auto operator<=>(const Style&) const = default;
   };
   struct Key {
@@ -83,9 +85,9 @@ class Reel {
   struct Outline;
 
   void add(const draw::List& list, bool still);
-  void add(const draw::Solids& solids);
+  void add(const draw::Solids& solids, int panel);
   Thing& thing(const Key& key);
-  void live(Thing& it, const std::vector<double>& numbers, const std::vector<double>& bounds,
+  void live(Thing& it, std::vector<double> numbers, std::vector<double> bounds,
             const std::vector<int>& steps);
   void add_outline(Thing& it, const Outline& outline);
   void loosen(Thing& it);
@@ -107,6 +109,8 @@ class Reel {
   std::list<int> order_;  // of painting
   std::vector<std::list<int>::iterator> places_;
   std::list<int>::iterator after_;
+  std::optional<draw::Hang> hang_;  // of what is being added
+  double hang_bound_ = 0;           // m
 
   std::map<std::uint32_t, int> colors_;
   std::map<std::array<int, 4>, int> clips_;

@@ -36,6 +36,7 @@ struct Film {
       vary;  // "physics.integrator=euler,rk4": the runs that are filmed together; none: one
   std::vector<std::string> vary_names;  // what they are called; none: by their values
   bool over = false;                    // in the plane: over each other
+  bool rows = true;  // its words keep to whole pixels of its height; not where that is not known yet
 };
 
 /// The moments of a scene that are drawn and compared with references.

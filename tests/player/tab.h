@@ -1,29 +1,21 @@
 #pragma once
 
-#include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <deque>
-#include <filesystem>
-#include <fstream>
+#include <memory>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
-#include <nlohmann/json.hpp>
+#include "player/browser.h"
 
 namespace obscura {
 
 /// A page in a headless Chromium, driven through its DevTools protocol over two pipes.
-class Tab {
+class Tab : public Browser {
  public:
-  using Json = nlohmann::json;
-
-  Tab(const std::string& program, const std::string& folder, int width, int height) {
+  /// `flag`: one more of the browser.
+  Tab(const std::string& program, const std::string& folder, int width, int height,
+      const std::string& flag = {}) {
     int to[2], from[2];
     if (::pipe(to) != 0 || ::pipe(from) != 0) throw std::runtime_error("no pipe");
     std::vector<std::string> words = {program,
@@ -40,22 +32,13 @@ class Tab {
                                       "--disable-extensions",
                                       "--disable-sync",
                                       "about:blank"};
-    child_ = ::fork();
-    if (child_ == 0) {
-      ::setpgid(0, 0);
+    if (!flag.empty()) words.insert(words.end() - 1, flag);
+    child_ = std::make_unique<Child>(words, [&] {
       ::setenv("HOME", folder.c_str(), 1);
       // it reads commands from 3 and writes answers to 4
       const int in = ::fcntl(to[0], F_DUPFD, 10), out = ::fcntl(from[1], F_DUPFD, 10);
       ::dup2(in, 3), ::dup2(out, 4);
-      const int quiet = ::open("/dev/null", O_WRONLY);
-      ::dup2(quiet, 1), ::dup2(quiet, 2);
-      std::vector<char*> arguments;
-      for (std::string& word : words) arguments.push_back(word.data());
-      arguments.push_back(nullptr);
-      ::execv(program.c_str(), arguments.data());
-      ::_exit(127);
-    }
-    ::setpgid(child_, child_);
+    });
     ::close(to[0]), ::close(from[1]);
     write_ = to[1], read_ = from[0];
     const std::string target = call("Target.createTarget", {{"url", "about:blank"}})["targetId"];
@@ -64,13 +47,7 @@ class Tab {
     call("Emulation.setDeviceMetricsOverride",
          {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
   }
-  ~Tab() {
-    ::close(write_), ::close(read_);
-    ::kill(-child_, SIGKILL);
-    ::waitpid(child_, nullptr, 0);
-  }
-  Tab(const Tab&) = delete;
-  Tab& operator=(const Tab&) = delete;
+  ~Tab() override { ::close(write_), ::close(read_); }
 
   /// Sends a command and waits for its answer.
   Json call(const std::string& method, const Json& parameters = Json::object()) {
@@ -94,8 +71,9 @@ class Tab {
     }
   }
 
-  /// Opens a page and waits until it is loaded.
-  void open(const std::string& url) {
+  void open(const std::string& url) override {
+    std::erase_if(events_,
+                  [](const Json& each) { return each.value("method", "") == "Page.loadEventFired"; });
     call("Page.navigate", {{"url", url}});
     for (;;) {
       for (const Json& each : events_)
@@ -104,30 +82,44 @@ class Tab {
     }
   }
 
-  /// The value of an expression, waited for where it is a promise. Throws what it throws.
-  Json value(const std::string& expression) {
-    const Json result = call("Runtime.evaluate",
-                             {{"expression", expression}, {"awaitPromise", true}, {"returnByValue", true}});
-    if (result.contains("exceptionDetails"))
-      throw std::runtime_error(expression + ": " + result["exceptionDetails"].dump());
-    return result["result"].value("value", Json());
+  Json value(const std::string& expression) override { return evaluate(expression, Json::object()); }
+
+  /// The same in the newest frame of the page, of whatever origin.
+  Json value_in_frame(const std::string& expression) {
+    int context = 0;
+    for (const Json& each : events_)
+      if (each.value("method", "") == "Runtime.executionContextCreated" &&
+          each["params"]["context"]["auxData"].value("isDefault", false))
+        context = each["params"]["context"]["id"];
+    return evaluate(expression, {{"contextId", context}});
   }
 
-  /// A key, pressed and released.
-  void press(const std::string& key, const std::string& text = {}, int modifiers = 0) {
+  void press(const std::string& key, bool shift = false) override {
+    const int modifiers = shift ? 8 : 0;
     Json down{{"type", "keyDown"}, {"key", key}, {"modifiers", modifiers}};
-    if (!text.empty()) down["text"] = text;
+    if (key.size() == 1) down["text"] = key;
     call("Input.dispatchKeyEvent", down);
     call("Input.dispatchKeyEvent", {{"type", "keyUp"}, {"key", key}, {"modifiers", modifiers}});
   }
 
-  void mouse(const std::string& type, double x, double y, int buttons = 0) {
-    call("Input.dispatchMouseEvent", {{"type", type},
-                                      {"x", x},
-                                      {"y", y},
-                                      {"button", type == "mouseMoved" && buttons == 0 ? "none" : "left"},
-                                      {"buttons", buttons},
-                                      {"clickCount", type == "mouseMoved" ? 0 : 1}});
+  void point(double x, double y) override { mouse("mouseMoved", x, y, 0); }
+  void drag(double x, double y, double to_x, double to_y) override {
+    mouse("mousePressed", x, y, 1);
+    for (const double part : {0.5, 1.0}) mouse("mouseMoved", x + part * (to_x - x), y + part * (to_y - y), 1);
+    mouse("mouseReleased", to_x, to_y, 0);
+  }
+  void wheel(double x, double y, double by) override {
+    call("Input.dispatchMouseEvent",
+         {{"type", "mouseWheel"}, {"x", x}, {"y", y}, {"deltaX", 0}, {"deltaY", by}});
+  }
+  void pinch(double x, double y, std::initializer_list<double> apart) override {
+    const char* type = "touchStart";
+    for (const double off : apart) {
+      const Json points = {{{"x", x - off}, {"y", y}, {"id", 1}}, {{"x", x + off}, {"y", y}, {"id", 2}}};
+      call("Input.dispatchTouchEvent", {{"type", type}, {"touchPoints", points}});
+      type = "touchMove";
+    }
+    call("Input.dispatchTouchEvent", {{"type", "touchEnd"}, {"touchPoints", Json::array()}});
   }
 
   /// A screenshot as PNG, base64.
@@ -137,14 +129,16 @@ class Tab {
                  {"clip", {{"x", 0}, {"y", 0}, {"width", width}, {"height", height}, {"scale", 1}}}})["data"];
   }
 
-  /// What the page said on its console, what it threw, and what it asked of the network besides itself.
-  std::vector<std::string> complaints(const std::string& itself) const {
+  std::vector<std::string> complaints(const std::string& itself) override {
     std::vector<std::string> all;
     for (const Json& each : events_) {
       const std::string method = each.value("method", "");
       if (method == "Runtime.consoleAPICalled" || method == "Runtime.exceptionThrown" ||
-          method == "Log.entryAdded")
-        all.push_back(each["params"].dump());
+          method == "Log.entryAdded") {
+        // without a graphics card it says that reading from one is slow
+        if (each["params"].dump().find("GL Driver Message") == std::string::npos)
+          all.push_back(each["params"].dump());
+      }
       if (method == "Network.requestWillBeSent" &&
           !each["params"]["request"].value("url", "").starts_with(itself))
         all.push_back(each["params"]["request"].dump());
@@ -153,6 +147,24 @@ class Tab {
   }
 
  private:
+  Json evaluate(const std::string& expression, Json parameters) {
+    parameters["expression"] = expression;
+    parameters["awaitPromise"] = parameters["returnByValue"] = true;
+    const Json result = call("Runtime.evaluate", parameters);
+    if (result.contains("exceptionDetails"))
+      throw std::runtime_error(expression + ": " + result["exceptionDetails"].dump());
+    return result["result"].value("value", Json());
+  }
+
+  void mouse(const char* type, double x, double y, int buttons) {
+    call("Input.dispatchMouseEvent", {{"type", type},
+                                      {"x", x},
+                                      {"y", y},
+                                      {"button", buttons > 0 || type[5] == 'R' ? "left" : "none"},
+                                      {"buttons", buttons},
+                                      {"clickCount", type[5] == 'M' ? 0 : 1}});
+  }
+
   Json receive() {
     for (;;) {
       if (const std::size_t end = buffer_.find('\0'); end != buffer_.npos) {
@@ -169,7 +181,7 @@ class Tab {
     }
   }
 
-  pid_t child_ = -1;
+  std::unique_ptr<Child> child_;
   int write_ = -1, read_ = -1, last_ = 0;
   std::string session_, buffer_;
   std::deque<Json> events_;

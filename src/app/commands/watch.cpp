@@ -111,12 +111,12 @@ class Watching {
     while (film.next()) {
       if (interrupted() || saved(flags_.scene) != version) return;
       if (seconds() < due) continue;
-      if (film.frames() < shots.size()) server_.show(film.html(true));
+      if (film.frames() < shots.size()) server_.show(film.watched());
       due = 2 * seconds();
     }
     if (film.trouble()) throw TroubleError(scene.file, *film.trouble(), "");
     if (interrupted()) return;
-    server_.show(film.html(true));
+    server_.show(film.watched());
     say(stdout, "{}: {} frames in {:.1f} s\n", flags_.scene, film.frames(), seconds());
     std::fflush(stdout);
   }

@@ -1,5 +1,7 @@
 #include "app/film/film_page.h"
 
+#include <cmath>
+#include <deque>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -16,8 +18,10 @@
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "app/run/trouble.h"
+#include "gl/renderer.h"
 #include "media/error.h"
 #include "media/file.h"
+#include "media/png.h"
 #include "page/html.h"
 #include "page/page.h"
 #include "scene/complaints.h"
@@ -30,6 +34,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kPlaceBound = 2e-4, kSpeedBound = 1e-3;  // of a body's numbers: m, or of the room's; m/s
 constexpr double kAngleBound = 1e-3, kTimeBound = 2e-6;   // rad, s
+constexpr double kStill = 720;                            // pt: the width of the first picture,
+constexpr int kStillPixels = 720;                         // and of its surfaces
 constexpr double kPlotBound = 1e-3;                       // of an axis
 
 std::string css(draw::Color c) { return fmt::format("rgb({},{},{})", c.r, c.g, c.b); }
@@ -163,21 +169,23 @@ Json events_of(const scene::Scene& scene, const std::vector<Happening>& events) 
 
 struct PageFilm::Making {
   Making(const scene::Scene& as_filmed, const Shots& wanted)
-      : scene(without_shutter(as_filmed)),
+      : scene(as_shown(as_filmed)),
         blurred(as_filmed.film.shutter > 0),
         shots(wanted),
         ahead(app::ahead(scene)),
         simulation(scene, shots, ahead, {.frames = 1}),
         artist(scene, ahead),
         numbers(artist.artists(), ahead, reel) {
-    // of several runs in space the page has the pictures' lines alone
-    if (artist.artists().size() == 1 && artist.artists().front().space())
-      space.emplace(*artist.artists().front().space(), reel);
+    const std::vector<draw::Rect> panels = artist.panels();
+    for (std::size_t i = 0; i < artist.artists().size(); ++i)
+      if (const draw::SpaceStage* stage = artist.artists()[i].space())
+        spaces.emplace_back(*stage, int(i), panels[i], reel);
     origin = origin_of(as_filmed);
     origin.shots = shots.text(), origin.shot = shots[0], origin.encoder = "html";
   }
-  static scene::Scene without_shutter(scene::Scene scene) {
+  static scene::Scene as_shown(scene::Scene scene) {
     scene.film.shutter = 0;
+    scene.film.rows = false;
     return scene;
   }
 
@@ -189,18 +197,14 @@ struct PageFilm::Making {
   FramePainter artist;
   page::Reel reel;
   PageNumbers numbers;
-  std::optional<SpacePage> space;
+  std::deque<SpacePage> spaces;  // one a run
   Origin origin;
   std::optional<Checksums> states;
-  double aspect = 1;
-  draw::Color ground{};
-  std::vector<std::uint8_t> still;  // the first frame
+  draw::Picture first;
   std::optional<Story> story;
 };
 
 PageFilm::PageFilm(const scene::Scene& scene, const Shots& shots) {
-  if (scene.dimension() == 3 && !scene.film.vary.empty())
-    throw UsageError(fmt::format("{}: a page of several runs in space is not made yet", scene.file));
   making_ = std::make_unique<Making>(scene, shots);
 }
 PageFilm::~PageFilm() = default;
@@ -211,17 +215,14 @@ bool PageFilm::next() {
   if (!take) return false;
   const draw::Picture picture = m.artist.frame(*take, 0);
   if (!m.states) {
-    m.aspect = picture.aspect, m.ground = picture.ground;
-    // of space a still would have no surfaces
-    if (picture.solids.empty())
-      m.still = page::page(picture, page::Form::svg, {.width = 720, .title = m.scene.look.title});
+    m.first = picture;
     m.states.emplace(m.shots.size(), take->all_bodies(0).bodies.size());
     m.origin.state = take->states[0];
   }
   m.states->add(m.reel.frames(), take->states[0], take->all_bodies(0));
   m.reel.add(picture);
   m.numbers.add(*take, 0);
-  if (m.space) m.space->add(take->moments[0], picture);
+  for (std::size_t i = 0; i < m.spaces.size(); ++i) m.spaces[i].add(take->run(i).moments[0], picture);
   return true;
 }
 
@@ -229,7 +230,24 @@ std::int64_t PageFilm::frames() const { return making_->reel.frames(); }
 
 const std::optional<sim::Trouble>& PageFilm::trouble() const { return making_->simulation.trouble(); }
 
-std::string PageFilm::html(bool watched) {
+std::string PageFilm::watched() { return html(true, {}); }
+
+std::string PageFilm::html(const gl::ContextOptions& context) {
+  draw::Picture& first = making_->first;
+  const page::Sheet sheet{.width = kStill, .title = making_->scene.look.title};
+  if (first.solids.empty()) return html(false, page::page(first, page::Form::svg, sheet));
+  // surfaces are pixels, lines over them are not
+  gl::Renderer renderer(kStillPixels, int(std::lround(kStillPixels / first.aspect)), context);
+  draw::List lines;
+  std::swap(lines, first.moving);
+  const media::Image& image = renderer.draw(first);
+  std::swap(lines, first.moving);
+  const page::Raster raster{image.width, image.height, kStill / image.width, image.pixels.data(),
+                            media::encode_png(image)};
+  return html(false, page::page(first, page::Form::svg, sheet, raster));
+}
+
+std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still) {
   Making& m = *making_;
   const scene::Scene& scene = m.scene;
   const bool whole = frames() == m.shots.size();
@@ -240,7 +258,7 @@ std::string PageFilm::html(bool watched) {
   out.title = scene.look.title.empty() ? scene.name : scene.look.title;
   out.dark = scene.look.theme == draw::Theme::screen;
   out.watched = watched;
-  if (!watched) out.still = m.still;
+  out.still = still;
   out.generator = "obscura " OBSCURA_VERSION;
   out.origin = m.origin.tags(scene.look.title).at("obscura");
   // what happens is told of a whole run
@@ -250,8 +268,8 @@ std::string PageFilm::html(bool watched) {
                            m.origin.scene_file);
   Json& film = out.film;
   film["title"] = out.title;
-  film["aspect"] = m.aspect;
-  film["ground"] = {m.ground.r, m.ground.g, m.ground.b};
+  film["aspect"] = m.first.aspect;
+  film["ground"] = {m.first.ground.r, m.first.ground.g, m.first.ground.b};
   film["theme"] = out.dark ? "screen" : "paper";
   film["fps"] = sim::value(m.shots.fps());
   film["dimension"] = scene.dimension();
@@ -261,7 +279,7 @@ std::string PageFilm::html(bool watched) {
   for (const draw::Rect& w : m.artist.windows()) film["windows"].push_back({w.x, w.y, w.width, w.height});
   film["bodies"] = m.numbers.bodies();
   film["charts"] = m.numbers.charts();
-  if (m.space) film["space"] = m.space->json();
+  for (const SpacePage& space : m.spaces) film["spaces"].push_back(space.json());
   film["events"] = events_of(scene, m.story ? m.story->events : std::vector<Happening>());
   film["captions"] = Json::array();
   for (const media::TextCue& cue : subtitles(scene, m.shots, frames()).captions)
@@ -271,10 +289,11 @@ std::string PageFilm::html(bool watched) {
       "has it; "
       "between frames it is in between.{}{}",
       frames(), sim::value(m.shots.fps()), page::kReelBound,
-      m.space ? " Bodies in space are lit and hidden by WebGL: edges and shadows are softer or harder by "
-                "some pixels "
-                "than in the movie."
-              : "",
+      !m.spaces.empty()
+          ? " Bodies in space are lit and hidden by WebGL: edges and shadows are softer or harder by "
+            "some pixels "
+            "than in the movie."
+          : "",
       m.blurred ? " The movie has motion blur, which this page leaves out." : "");
   page::Reel so_far = m.reel;
   return page::html(out, so_far);
@@ -293,7 +312,7 @@ int film_page(const scene::Scene& scene, const Shots& shots, const std::string& 
   }
   if (film.trouble()) throw TroubleError(scene.file, *film.trouble(), "");
   if (interrupted()) return kInterrupted;
-  const std::string text = film.html();
+  const std::string text = film.html(options.context);
   media::File file(path);
   file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   file.place(false);

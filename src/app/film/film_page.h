@@ -11,7 +11,8 @@
 
 namespace obscura::app {
 
-/// A film that becomes a page, frame by frame: one HTML file, without pixels (page/html.h).
+/// A film that becomes a page, frame by frame: one HTML file (page/html.h). Its pictures are no pixels; but
+/// for the surfaces of space in the first, which is shown where no script runs.
 class PageFilm {
  public:
   /// Throws UsageError for a film that a page cannot show.
@@ -25,10 +26,14 @@ class PageFilm {
   const std::optional<sim::Trouble>& trouble() const;
 
   /// The page of the frames so far, of one at least; of all with what happens in the run, which is simulated
-  /// once more for it. `watched`: it asks for the next version of itself (app/commands/watch.cpp).
-  std::string html(bool watched = false);
+  /// once more for it. `context`: draws the first picture's surfaces. Throws gl::Error.
+  std::string html(const gl::ContextOptions& context);
+  /// The same for a browser on this machine: it asks for the next version of itself (app/commands/watch.cpp).
+  std::string watched();
 
  private:
+  std::string html(bool watched, const std::vector<std::uint8_t>& still);
+
   struct Making;
   std::unique_ptr<Making> making_;
 };

@@ -3,14 +3,16 @@
 namespace obscura::app {
 
 FramePainter::FramePainter(const scene::Scene& scene, const Ahead& ahead)
-    : artists_(depictors(scene, ahead)), fps_(scene.film.fps), speed_(scene.film.speed) {
+    : artists_(depictors(scene, ahead)),
+      aspect_(double(scene.film.width) / scene.film.height),
+      fps_(scene.film.fps),
+      speed_(scene.film.speed) {
   if (!ahead.runs) return;
   for (const Ahead::Run& run : *ahead.runs) names_.push_back(run.look);
   if (scene.film.over) return;
   for (const Ahead::Run& run : *ahead.runs) panels_.push_back(run.panel);
-  const double aspect = double(scene.film.width) / scene.film.height;
-  comparison_.emplace(names_, artists_, panels_, scene.look, aspect, ahead.charts,
-                      draw::laid_out(scene.film.titles, aspect, scene.look.type_scale));
+  comparison_.emplace(names_, artists_, panels_, scene.look, aspect_, ahead.charts,
+                      draw::laid_out(scene.film.titles, aspect_, scene.look.type_scale));
 }
 
 draw::Picture FramePainter::frame(const FilmSegment& take, std::size_t frame, std::size_t exposure) const {
@@ -34,6 +36,11 @@ draw::Picture FramePainter::frame(const FilmSegment& take, std::size_t frame, st
   }
   if (!names_.empty()) at.over = &over;
   return artists_.front().depict(drawn(take), take.ways, at);
+}
+
+std::vector<draw::Rect> FramePainter::panels() const {
+  if (comparison_) return panels_;
+  return std::vector<draw::Rect>(artists_.size(), {0, 0, 1080 * aspect_, 1080});
 }
 
 std::vector<draw::Rect> FramePainter::windows() const {

@@ -23,12 +23,15 @@ class FramePainter {
   const sim::SceneInfo& scene_info() const { return artists_.front().scene_info(); }
   /// The parts of the page that show the worlds of the runs: in space one for all.
   std::vector<draw::Rect> windows() const;
+  /// The parts of the page that the runs have, one a run.
+  std::vector<draw::Rect> panels() const;
 
  private:
   std::vector<draw::Illustrator> artists_;      // one a run
   std::vector<draw::ComparedRun> names_;        // of several
   std::vector<draw::Rect> panels_;              // of several beside each other
   std::optional<draw::Comparison> comparison_;  // of those
+  double aspect_;
   sim::Rational fps_;
   draw::Pace speed_;
 };

@@ -36,7 +36,9 @@ Json shape(const draw::Polyhedron& body) {
 
 }  // namespace
 
-SpacePage::SpacePage(const draw::SpaceStage& stage, page::Reel& reel) : reel_(reel) {
+SpacePage::SpacePage(const draw::SpaceStage& stage, int part, const draw::Rect& panel, page::Reel& reel)
+    : reel_(reel), part_(part) {
+  const double k = panel.height / 1080;  // page units a unit of the run's own page
   Json shapes = Json::array(), pieces = Json::array(), colors = Json::array(), edges = Json::array();
   std::map<std::string, int> known;
   for (const draw::Piece& piece : stage.pieces) {
@@ -48,7 +50,12 @@ SpacePage::SpacePage(const draw::SpaceStage& stage, page::Reel& reel) : reel_(re
       each["shape"] = at->second;
     } else {
       each["a"] = array_of(piece.a), each["b"] = array_of(piece.b), each["radius"] = piece.radius;
-      if (const double dot = stage.dots[std::size_t(piece.body)]; dot > 0) each["dot"] = dot;
+      if (const double dot = stage.dots[std::size_t(piece.body)]; dot > 0) each["dot"] = k * dot;
+    }
+    const draw::Material material = stage.looks(piece.body).material;
+    if (material == draw::Material::wood || material == draw::Material::checks) {
+      each["grain"] = Json::array();
+      for (int i = 0; i < 9; ++i) each["grain"].push_back(piece.grain(i / 3, i % 3));
     }
     pieces.push_back(std::move(each));
   }
@@ -59,8 +66,23 @@ SpacePage::SpacePage(const draw::SpaceStage& stage, page::Reel& reel) : reel_(re
   json_["shapes"] = shapes, json_["pieces"] = pieces, json_["colors"] = colors, json_["edges"] = edges;
   const draw::Color plate = draw::neutral(stage.look.theme);
   json_["plate"] = {array_of(plate), array_of(draw::edge(plate, stage.look.theme))};
+  Json materials = Json::array();
+  bool plain = true;
+  for (std::size_t i = 0; i < stage.own.size(); ++i) {
+    const draw::Material material = stage.looks(int(i)).material;
+    plain = plain && material == draw::Material::matte;
+    materials.push_back(int(material));
+  }
+  if (!plain) json_["materials"] = materials;
+  if (stage.look.drop_lines) {
+    json_["drops"] = Json::array();
+    for (std::size_t i = 0; i < stage.own.size(); ++i)
+      json_["drops"].push_back(stage.cast.bodies[i].fixed
+                                   ? Json()
+                                   : array_of(draw::paint(stage.own[i], stage.look.theme).outline));
+  }
   json_["toward"] = array_of(stage.light.toward), json_["across"] = array_of(stage.light.across);
-  json_["weight"] = stage.layout.weight;
+  json_["weight"] = k * stage.layout.weight;
   json_["hatch"] = array_of(stage.colours.hatch);
   if (stage.ground) {
     json_["ground"] = {{"point", array_of(stage.ground->point)},
@@ -88,17 +110,17 @@ SpacePage::SpacePage(const draw::SpaceStage& stage, page::Reel& reel) : reel_(re
   json_["turns"] = poses_;
   const double length = kLengthBound * std::max(stage.cast.scale, 1e-6);
   Json panels = Json::array();
-  for (const draw::Panel& panel : stage.panels) {
-    const draw::Rect& w = panel.window;
+  for (const draw::Panel& each : stage.panels) {
+    const draw::Rect& w = each.window;
     const int first = several(3, length);
     several(9, kUnitBound);
     several(1, kUnitBound / std::max(stage.cast.scale, 1e-6));
-    several(1, kUnitBound * stage.layout.scale);
+    several(1, kUnitBound * k * stage.layout.scale);
     several(2, 0.02);
     if (lenses_ < 0) lenses_ = first;
-    panels.push_back({{"window", {w.x, w.y, w.width, w.height}},
+    panels.push_back({{"window", {panel.x + k * w.x, panel.y + k * w.y, k * w.width, k * w.height}},
                       {"lens", first},
-                      {"fitted", panel.window.width / panel.aim.width}});
+                      {"fitted", k * w.width / each.aim.width}});
   }
   json_["panels"] = panels;
   int places = -1;
@@ -121,6 +143,7 @@ void SpacePage::add(const sim::Snapshot& now, const draw::Picture& picture) {
   }
   number = lenses_;
   for (const auto& solids : picture.solids) {
+    if (solids->part != part_) continue;
     const draw::CameraProjection& lens = solids->lens;
     for (const sim::Vec3* v : {&lens.target, &lens.right, &lens.up, &lens.back})
       for (int k = 0; k < 3; ++k) reel_.put(number++, (*v)[k]);

@@ -13,7 +13,8 @@ namespace obscura::app {
 /// frame how bodies are turned and how cameras see.
 class SpacePage {
  public:
-  SpacePage(const draw::SpaceStage& stage, page::Reel& reel);
+  /// `part`: of a page of several runs, which; `panel`: the part of the page that it has.
+  SpacePage(const draw::SpaceStage& stage, int part, const draw::Rect& panel, page::Reel& reel);
 
   void add(const sim::Snapshot& now, const draw::Picture& picture);
   nlohmann::ordered_json json() const { return json_; }
@@ -21,6 +22,7 @@ class SpacePage {
  private:
   static constexpr int kLens = 16;  // numbers of one
   page::Reel& reel_;
+  int part_;
   int poses_ = -1, lenses_ = -1;  // the first number of each
   std::vector<Eigen::Vector4d> turns_;
   nlohmann::ordered_json json_;

@@ -326,7 +326,8 @@ void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watch
 std::shared_ptr<const draw::Annotations> annotations(const scene::Scene& scene, const Ahead& page,
                                                      draw::RunAhead found, const draw::Scales& given) {
   return std::make_shared<const draw::Annotations>(scene.film.marks, depictor(scene, page), std::move(found),
-                                                   given, sim::value(scene.film.fps), scene.film.height);
+                                                   given, sim::value(scene.film.fps),
+                                                   scene.film.rows ? scene.film.height : 0);
 }
 
 // the marks of several runs, with one scale for each kind of arrow: that of the longest

@@ -19,6 +19,8 @@
 #include "app/console/interrupt.h"
 #include "app/console/options.h"
 #include "app/console/progress.h"
+#include "app/film/film.h"
+#include "app/film/film_page.h"
 #include "app/film/ordered_pipeline.h"
 #include "app/run/measures.h"
 #include "app/run/run_marks.h"
@@ -61,7 +63,8 @@ RowForm form(const SweepFlags& flags) {
   if (flags.format) return named(*flags.format);
   if (ending == ".csv" || ending == ".jsonl") return named(ending.substr(1));
   throw UsageError(fmt::format(
-      "-o {}: expected a name that ends with .csv, .jsonl, .png or as a movie, or --format", *flags.out));
+      "-o {}: expected a name that ends with .csv, .jsonl, .png, .html or as a movie, or --format",
+      *flags.out));
 }
 
 /// The runs of a sweep: which there are, and the row of each.
@@ -165,6 +168,22 @@ int pictures(const SweepFlags& flags, bool still) {
                : mosaic_movie(std::move(tiles), *flags.out, options);
 }
 
+// all runs on one page that plays, as film.vary has them
+int page(const SweepFlags& flags) {
+  if (!flags.measure.empty() || flags.shard || flags.resume || flags.anew || flags.format || flags.at)
+    throw UsageError(fmt::format(
+        "-o {}: --measure, --at, --shard, --resume, --anew and --format are for tables and pictures",
+        *flags.out));
+  std::string vary;
+  for (const std::string& each : flags.vary) vary += (vary.empty() ? "" : ";") + each;
+  std::vector<std::string> sets = flags.sets;
+  sets.push_back("film.vary=\"" + vary + "\"");
+  const scene::Scene scene = with_run_marks(scene::read(flags.scene, sets));
+  FilmOptions options;
+  options.progress = flags.progress, options.context = flags.context;
+  return film_page(scene, Shots::film(scene.duration, scene.film.fps, scene.film.speed), *flags.out, options);
+}
+
 bool ends_in(const std::string& name, std::initializer_list<std::string_view> endings) {
   return std::find(endings.begin(), endings.end(), std::filesystem::path(name).extension().string()) !=
          endings.end();
@@ -175,6 +194,7 @@ int sweep(SweepFlags flags) {
   if (flags.out && ends_in(*flags.out, {".png"})) return pictures(flags, true);
   if (flags.out && ends_in(*flags.out, {".mp4", ".mkv", ".mov", ".webm", ".gif"}))
     return pictures(flags, false);
+  if (flags.out && ends_in(*flags.out, {".html"})) return page(flags);
   if (flags.at)
     throw UsageError(
         "--at is for a picture: -o with a name that ends in .png; for a table use --measure NAME@SECONDS");
@@ -266,8 +286,8 @@ OBSCURA_COMMAND(70, sweep) {
   add_sets(command, flags->sets);
   command
       .option("-o,--output", flags->out,
-              "The output: .csv or .jsonl is a table; .png with --at, or .mp4 .mkv .mov .webm .gif shows all "
-              "runs side by side [standard output]")
+              "The output: .csv or .jsonl is a table; .png with --at, .mp4 .mkv .mov .webm .gif or a page, "
+              ".html, shows all runs side by side [standard output]")
       .type("OUT");
   command.option("--at", flags->at, "The instant (s) of a picture of all runs").type("SECONDS");
   command.option("--format", flags->format, "csv or jsonl [by OUT's ending, csv]").one_of({"csv", "jsonl"});

@@ -89,7 +89,9 @@ class Notes {
     std::vector<Placing::Candidate> places;
     Point anchor;
     std::optional<std::pair<Point, Point>> arrow;
+    std::optional<Hang> hang;
   };
+  void hang(const Vec3& a, const Vec3& b);
   bool film() const { return how_.plan != nullptr || how_.survey != nullptr; }
   static Point size(const Formula& f) { return {f.width, f.ascent + f.descent}; }
   void avoid_bodies();
@@ -113,7 +115,7 @@ class Notes {
   void arc(const At& at, double radius, double from, double to, double width, Color color);
   void word(const WordKey& key, Formula set, std::vector<Placing::Candidate> places, const Point& anchor,
             std::optional<std::pair<Point, Point>> arrow = {}) {
-    if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor, arrow});
+    if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor, arrow, hang_});
   }
 
   const sim::SceneInfo& cast_;
@@ -124,8 +126,14 @@ class Notes {
   List& list_;
   Placing placing_;
   double point_, arrow_, type_, thin_, dot_radius_, gap_, millimetre_, normal_, angle_;  // page units
+  std::optional<Hang> hang_;  // where what comes next is, in space
   std::vector<Word> words_;
-  std::vector<std::pair<Point, Color>> dots_;
+  struct Dot {
+    Point at;
+    Color ink;
+    std::optional<Hang> hang;
+  };
+  std::vector<Dot> dots_;
   std::vector<Arrow> arrows_;
   std::vector<Color> inks_;                   // theirs
   std::vector<std::vector<Point>> outlines_;  // of bodies
@@ -198,6 +206,7 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   std::vector<Arrow> arrows;
   offer(tail, tip, view_.window(), arrow_, arrows);
   if (arrows.empty()) return false;
+  arrows[0].hang = hang_;
   // those of a film are drawn together: few batches
   if (!film()) arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);
   if (film())
@@ -211,6 +220,12 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   word(key, label, Placing::along(tail, end, 1.7 * gap_, size(label), point_, film()), (tail + end) / 2,
        std::pair(tail, end));
   return true;
+}
+
+void Notes::hang(const Vec3& a, const Vec3& b) {
+  if (view_.view() || how_.survey) return;
+  hang_ = Hang{a, b};
+  list_.hang(hang_);
 }
 
 void Notes::stroke(const std::vector<Point>& line, double width, Color color, double weight) {
@@ -300,6 +315,7 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
   const Color ink = color_of(vector, colours_);
   for (const Reading& reading : readings(vector, cast_, now_)) {
     if (!view_.before(reading.tail)) continue;
+    hang(reading.tail, reading.tail);
     const WordKey key{WordKey::vector, index, reading.part};
     const std::string label = as_vector(vector.label);
     const auto set = [&](double value) { return this->set(key, label, value, unit(vector.quantity), ink); };
@@ -318,6 +334,7 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
                             : scale                             ? *scale
                                                                 : 1.0;
       const Vec3 tip = reading.tail + length * reading.value;
+      hang(reading.tail, tip);
       // words of an arrow within its ball would stand on the ball: they come and go with its tip
       const double radius = vector.body >= 0 ? cast_.bodies[std::size_t(vector.body)].radius : 0;
       if (film() && radius > 0 &&
@@ -347,6 +364,7 @@ void Notes::angle(int index, const Marks::Angle& angle) {
     const double shorter = std::min(from.norm(), to.norm()) * view_.scale_at(center);
     if (!view_.view()) wide = std::clamp(0.4 * shorter, angle_, 2.5 * angle_);
     from.normalize(), to.normalize();
+    hang(center, center);
     dashes(view_.page(center), view_.page(center + (wide + 7 * point_) / view_.scale_at(center) * from));
   }
   // an arc of the great circle through both
@@ -394,6 +412,7 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
     }
     if ((first.body != cone.body && first.other != cone.body) || !(pressed > 0)) continue;
     point /= pressed;
+    hang(point, point);
     // a little longer than the arrow of the force
     const double mu = sim::friction(cast_, first), half = std::atan(mu);
     const double arrow = scales.force * force.norm();
@@ -442,6 +461,7 @@ void Notes::axes() {
   for (const auto& [axis, name] : all) {
     // the plane's two
     if (view_.view() && index == 2) break;
+    hang(Vec3::Zero(), length * axis);
     arrow({WordKey::axis, index++}, view_.page(Vec3::Zero()), view_.page(length * axis),
           formula(name, type_, colours_.ink), colours_.ink);
   }
@@ -450,6 +470,7 @@ void Notes::axes() {
 void Notes::length(int index, const Marks::Length& length) {
   if (!view_.before(place(length.from, now_)) || !view_.before(place(length.to, now_))) return;
   const Point a = view_.page(place(length.from, now_)), b = view_.page(place(length.to, now_));
+  hang(place(length.from, now_), place(length.to, now_));
   const Point u = (b - a).normalized(), v(u.y(), -u.x());
   const Point off = length.offset * millimetre_ * v;
   const Point from = a + off, to = b + off;
@@ -481,8 +502,9 @@ void Notes::length(int index, const Marks::Length& length) {
 void Notes::point(int index, const Marks::Point& point) {
   if (!view_.before(place(point.at, now_))) return;
   const Point at = view_.page(place(point.at, now_));
+  hang(place(point.at, now_), place(point.at, now_));
   const Color ink = inked(point.color.value_or(colours_.ink), colours_);
-  if (point.dot) dots_.emplace_back(at, ink);
+  if (point.dot) dots_.push_back({at, ink, hang_});
   const Formula f = formula(point.label, type_, ink);
   placing_.avoid(at - Point(dot_radius_, 0), at + Point(dot_radius_, 0), 8);
   word({WordKey::point, index}, f, Placing::around(at, dot_radius_ + gap_, size(f), point_), at);
@@ -491,6 +513,7 @@ void Notes::point(int index, const Marks::Point& point) {
 void Notes::label(int index, const Marks::Label& label) {
   if (!view_.before(place(label.at, now_))) return;
   const Point at = view_.page(place(label.at, now_));
+  hang(place(label.at, now_), place(label.at, now_));
   const WordKey key{WordKey::label, index};
   const Measure* measure = draw::measure(label.quantity);
   const Formula f = measure && measure->read ? set(key, label.text, measure->at(cast_, now_, label.body),
@@ -612,10 +635,12 @@ void Notes::avoid_areas() {
 
 void Notes::finish() {
   draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
-  for (const auto& [at, ink] : dots_) {
+  for (const auto& [at, ink, hang] : dots_) {
+    list_.hang(hang);
     list_.add(Disc{at, dot_radius_ + 0.6 * point_, 0, colours_.room, colours_.room});
     list_.add(Disc{at, dot_radius_, 0, ink, ink});
   }
+  list_.hang({});
   if (how_.survey) return offer_places();
   // words that move keep to whole pixels: they look the same in every frame, and are cheap to encode
   const auto whole = [&](const Point& at) {
@@ -624,14 +649,19 @@ void Notes::finish() {
   };
   const auto write = [&](const Word& word, const Point& center) {
     const Point half = size(word.set) / 2;
-    add(word.set, whole({center.x() - half.x(), center.y() - half.y() + word.set.ascent}), list_,
-        hold(word, center));
+    const Point at(center.x() - half.x(), center.y() - half.y() + word.set.ascent);
+    const std::size_t first = list_.texts.size();
+    list_.hang(word.hang);
+    add(word.set, whole(at), list_, hold(word, center));
+    if (how_.lettering.pixel > 0) return;
+    for (std::size_t i = first; i < list_.texts.size(); ++i) list_.texts[i].whole = at;
   };
   std::vector<Point> centers;
   for (Word& word : words_) {
     double leader = 1;
     const Placing::Candidate best =
         how_.plan ? planned(word, leader) : placing_.place(size(word.set), word.places);
+    list_.hang(word.hang);
     if (best.leader) lead(word, best.center, leader);
     centers.push_back(best.center);
     if (!film()) write(word, best.center);
@@ -639,8 +669,10 @@ void Notes::finish() {
   if (!film()) return;
   // one kind after another is drawn in few batches
   for (std::size_t i = 0; i < words_.size(); ++i)
-    if (covers(words_[i].key)) plate(whole(centers[i]), size(words_[i].set), words_[i].set.color.a);
+    if (covers(words_[i].key))
+      list_.hang(words_[i].hang), plate(whole(centers[i]), size(words_[i].set), words_[i].set.color.a);
   for (std::size_t i = 0; i < words_.size(); ++i) write(words_[i], centers[i]);
+  list_.hang({});
 }
 
 // whether something may lie under words of a film

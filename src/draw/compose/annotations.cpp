@@ -281,7 +281,7 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
   lettering_ = {.point = kFilmType * weight * artist.type_scale(),
                 .arrow = weight,
                 .weight = weight,
-                .pixel = 1080.0 / rows};
+                .pixel = rows > 0 ? 1080.0 / rows : 0};
   ghosts_ = std::move(ahead.ghosts);
   if (ahead.samples.empty()) {
     plans_.resize(std::size_t(artist.panels()));

@@ -33,7 +33,7 @@ struct RunAhead {
 class Annotations {
  public:
   /// `given`: scales that the scene sets; those that are 0 are chosen by the run. `fps`: of the film.
-  /// `rows`: of its pixels; words keep to whole ones.
+  /// `rows`: of its pixels; words keep to whole ones. 0: how many is not known, and Text::whole says so.
   Annotations(const Marks& marks, const Illustrator& artist, RunAhead ahead, const Scales& given, double fps,
               int rows);
 

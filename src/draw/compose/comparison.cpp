@@ -168,9 +168,11 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
   std::vector<RunInstant> nows;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Rect& panel = panels_[i];
-    for (const auto& solids : parts[i].solids)
-      picture.solids.push_back(
-          std::make_shared<const Solids>(placed(*solids, panel.height / 1080, {panel.x, panel.y})));
+    for (const auto& solids : parts[i].solids) {
+      Solids its = placed(*solids, panel.height / 1080, {panel.x, panel.y});
+      its.part = int(i);
+      picture.solids.push_back(std::make_shared<const Solids>(std::move(its)));
+    }
     list.part = int(i);
     add_panel(parts[i].moving, panel, list);
     nows.push_back({&runs[i].frame, runs[i].fate});

@@ -28,12 +28,13 @@ struct Label {
   const std::string& words;
   Point center;
   Height body;
+  std::optional<Hang> hang = {};  // in space
 };
 
 void add(const std::vector<Label>& labels, const Rect& window, double weight, const Palette& colours,
          List& list) {
   const double size = kLabel * weight, around = kAround * weight;
-  std::vector<Text> texts;
+  std::vector<std::pair<Text, std::optional<Hang>>> texts;
   for (const Label& label : labels) {
     if (outside(window, label.center, 0)) continue;
     const std::string words = fitted(label.words, Face::medium, size, window.width - 2 * around);
@@ -48,16 +49,22 @@ void add(const std::vector<Label>& labels, const Rect& window, double weight, co
                          : window.x + window.width / 2;
     Color plate = colours.room;
     plate.a = 190;
+    if (label.hang) list.hang(label.hang);
     list.add({{x - half, baseline - high},
               {x + half, baseline - high},
               {x + half, baseline + low},
               {x - half, baseline + low}},
              plate);
-    texts.push_back({{x, baseline},
-                     Align::center,
-                     {{.text = words, .face = Face::medium, .size = size, .color = colours.ink}}});
+    texts.push_back({{{x, baseline},
+                      Align::center,
+                      {{.text = words, .face = Face::medium, .size = size, .color = colours.ink}}},
+                     label.hang});
   }
-  for (const Text& text : texts) list.add(text);
+  for (const auto& [text, hang] : texts) {
+    if (hang) list.hang(hang);
+    list.add(text);
+  }
+  if (!texts.empty() && texts.back().second) list.hang({});
 }
 
 /// A form of the plane: a body's own, or a part's at its place.
@@ -118,7 +125,7 @@ void draw_space_labels(SpaceFrame& s) {
   for (std::size_t i = 0; i < bodies.size() && i < spans.size(); ++i) {
     const sim::Vec3& place = s.now.bodies[i].position;
     if (bodies[i].label.empty() || s.lens.depth(place) < 1e-2) continue;
-    labels.push_back({bodies[i].label, s.lens.page(place), spans[i]});
+    labels.push_back({bodies[i].label, s.lens.page(place), spans[i], Hang{place, place}});
   }
   add(labels, s.lens.window, s.stage.layout.weight, s.stage.colours, s.list);
 }

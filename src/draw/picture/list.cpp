@@ -59,29 +59,39 @@ void List::unclip() { clip_ = -1; }
 
 void List::of(Subject subject) {
   subject.part = part;
+  of(subject, {});
+}
+
+void List::hang(const std::optional<Hang>& at) {
+  of(abouts.empty() ? Subject{.part = part} : abouts.back().subject, at);
+}
+
+void List::of(const Subject& subject, const std::optional<Hang>& hang) {
   const std::array<int, kKinds> first{int(discs.size()), int(boxes.size()), int(strokes.size()),
                                       int(polygons.size()), int(texts.size())};
   if (!abouts.empty() && abouts.back().first == first) abouts.pop_back();
-  if (abouts.empty() || abouts.back().subject != subject) abouts.push_back({subject, first});
+  if (abouts.empty() || abouts.back().subject != subject || abouts.back().hang != hang)
+    abouts.push_back({subject, hang, first});
 }
 
-std::vector<Subject> List::subjects(Kind kind) const {
+std::vector<About> List::about(Kind kind) const {
   const auto n = std::size_t(kind);
   const std::array<std::size_t, kKinds> counts{discs.size(), boxes.size(), strokes.size(), polygons.size(),
                                                texts.size()};
-  std::vector<Subject> all(counts[n]);
+  std::vector<About> all(counts[n]);
   for (std::size_t i = 0; i < abouts.size(); ++i) {
     const auto from = std::size_t(abouts[i].first[n]);
     const std::size_t to = i + 1 < abouts.size() ? std::size_t(abouts[i + 1].first[n]) : counts[n];
-    std::fill(all.begin() + std::ptrdiff_t(from), all.begin() + std::ptrdiff_t(to), abouts[i].subject);
+    std::fill(all.begin() + std::ptrdiff_t(from), all.begin() + std::ptrdiff_t(to),
+              About{abouts[i].subject, abouts[i].hang, {}});
   }
   return all;
 }
 
 void List::add(const List& list, double k, const Point& at) {
   const auto moved = [&](const Point& p) { return Point(at + k * p); };
-  std::array<std::vector<Subject>, kKinds> whose;
-  for (std::size_t kind = 0; kind < kKinds; ++kind) whose[kind] = list.subjects(Kind(kind));
+  std::array<std::vector<About>, kKinds> whose;
+  for (std::size_t kind = 0; kind < kKinds; ++kind) whose[kind] = list.about(Kind(kind));
   const int strokes_before = int(strokes.size());
   for (const Batch& batch : list.batches) {
     if (batch.clip >= 0) {
@@ -92,7 +102,9 @@ void List::add(const List& list, double k, const Point& at) {
     }
     for (int i = batch.begin; i < batch.end; ++i) {
       const auto n = std::size_t(i);
-      of(whose[std::size_t(batch.kind)][n]);
+      const About& about = whose[std::size_t(batch.kind)][n];
+      of(about.subject);
+      if (about.hang) hang(about.hang);
       switch (batch.kind) {
         case Kind::disc: {
           Disc disc = list.discs[n];
@@ -125,6 +137,7 @@ void List::add(const List& list, double k, const Point& at) {
         case Kind::text: {
           Text text = list.texts[n];
           text.at = moved(text.at);
+          if (text.whole) text.whole = moved(*text.whole);
           for (Span& span : text.spans) span.size *= k, span.rise *= k, span.lead *= k;
           add(text);
           break;
@@ -156,6 +169,10 @@ Solids placed(Solids solids, double k, const Point& at) {
     v.at[1] = float(k * v.at[1] + at.y() * v.at[3]);
   }
   for (Point& p : solids.points) p = moved(p);
+  solids.lens.scale *= k, solids.lens.middle = moved(solids.lens.middle), solids.lens.window = solids.window;
+  for (Solids::Tube& tube : solids.tubes) tube.winding.lead *= k, tube.winding.amplitude *= k;
+  for (Solids::Tube& line : solids.lines) line.radius *= k;
+  for (Solids::Way& way : solids.ways) way.widest *= k;
   return solids;
 }
 

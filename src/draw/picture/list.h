@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,8 @@ struct Text {
   Point at;
   Align align = Align::left;
   std::vector<Span> spans;
+  // a place that is brought to a whole pixel wherever it moves, and the words with it
+  std::optional<Point> whole = {};
 };
 
 /// The height of words at which they are placed.
@@ -131,9 +134,16 @@ struct Subject {
   auto operator<=>(const Subject&) const = default;
 };
 
+/// Where in space a thing of the page hangs, m: at a place, or between two. Seen from elsewhere it is there.
+struct Hang {
+  Eigen::Vector3d a, b;
+  bool operator==(const Hang&) const = default;
+};
+
 /// From the counts `first` of the kinds of things on, they are of this subject.
 struct About {
   Subject subject;
+  std::optional<Hang> hang;
   std::array<int, kKinds> first{};
 };
 
@@ -194,14 +204,17 @@ struct List {
   void unclip();
   /// Everything that is added after this call is of this subject, until the next call.
   void of(Subject subject);
-  /// The subject of each thing of a kind.
-  std::vector<Subject> subjects(Kind kind) const;
+  /// Everything that is added after this call hangs there, until the next call of this or of `of`.
+  void hang(const std::optional<Hang>& at);
+  /// What the things of a kind are said to be, each `first` left out.
+  std::vector<About> about(Kind kind) const;
   /// Another list on top of this one: each of its lengths times `scale`, its origin at `at`.
   void add(const List& list, double scale, const Point& at);
 
  private:
   int clip_ = -1;
   void mark(Kind kind, int end);
+  void of(const Subject& subject, const std::optional<Hang>& hang);
 };
 
 struct Solids;

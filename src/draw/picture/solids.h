@@ -78,6 +78,7 @@ struct Solids {
     std::vector<double> times;
   };
   CameraProjection lens;
+  int part = 0;  // of a page of several runs: which
   std::vector<Tube> tubes;
   std::vector<Tube> lines;  // of earlier instants; their radius in page units
   std::vector<Ball> balls;

@@ -45,7 +45,12 @@ void offer(const Point& tail, Point tip, const Rect& window, double weight, std:
 // one kind after another: few batches
 void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& inks, double weight, Color room,
                  List& list) {
+  const bool hung = std::any_of(arrows.begin(), arrows.end(), [](const Arrow& a) { return a.hang; });
+  const auto hang = [&](const Arrow& a) {
+    if (hung) list.hang(a.hang);
+  };
   auto shaft = [&](const Arrow& a, double halo, Color ink) {
+    hang(a);
     const Point u = (a.tip - a.tail).normalized();
     const double width = kArrowLine * weight * a.grow + 2 * halo;
     Point end = a.tip - u * (kNotch - 1) * weight * a.grow;
@@ -58,9 +63,11 @@ void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& ink
   for (const Arrow& a : arrows)
     if (a.bare > 0) shaft(a, kHalo * weight * a.grow, room);
   for (const Arrow& a : arrows)
-    if (a.bare > 1) list.add(head(a, weight, kHalo * weight * a.grow), room);
+    if (a.bare > 1) hang(a), list.add(head(a, weight, kHalo * weight * a.grow), room);
   for (std::size_t i = 0; i < arrows.size(); ++i) shaft(arrows[i], 0, inks[i]);
-  for (std::size_t i = 0; i < arrows.size(); ++i) list.add(head(arrows[i], weight, 0), inks[i]);
+  for (std::size_t i = 0; i < arrows.size(); ++i)
+    hang(arrows[i]), list.add(head(arrows[i], weight, 0), inks[i]);
+  if (hung) list.hang({});
 }
 
 void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list) {

@@ -69,8 +69,9 @@ inline constexpr int kMany = 12;
 /// An arrow from `tail` to `tip` on the page.
 struct Arrow {
   Point tail, tip;
-  double grow = 1;  // of its head and shaft
-  double bare = 2;  // from here on along its way (0 to 1) it has no halo: 2: all of it has
+  double grow = 1;                // of its head and shaft
+  double bare = 2;                // from here on along its way (0 to 1) it has no halo: 2: all of it has
+  std::optional<Hang> hang = {};  // in space
 };
 
 /// An arrow, if it is large enough to be seen. One that begins in the window ends there.

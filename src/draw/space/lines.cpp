@@ -205,7 +205,9 @@ void draw_space_arrows(SpaceFrame& s) {
   std::vector<Arrow> arrows;
   const auto arrow = [&](const Vec3& tail, const Vec3& tip) {
     if (s.lens.depth(tail) < 1e-2 || s.lens.depth(tip) < 1e-2) return;
+    const std::size_t before = arrows.size();
     offer(s.lens.page(tail), s.lens.page(tip), s.lens.window, weight, arrows);
+    if (arrows.size() > before) arrows.back().hang = Hang{tail, tip};
   };
   for (const Push& push : pushes(stage.cast, stage.look, s.now))
     arrow(push.point, push.point + stage.force_scale * push.force);

@@ -30,7 +30,9 @@ export class Numbers {
 
   /** @returns {number} */
   next() {
-    let value = 0, unit = 1, byte = 0;
+    let value = 0,
+      unit = 1,
+      byte = 0;
     do {
       byte = this.bytes[this.place++];
       value += (byte & 127) * unit;

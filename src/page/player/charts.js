@@ -24,8 +24,9 @@ export class Charts {
 
   /** The frame that a place of a chart is of: the last one up to its time. */
   frame_at(chart, x) {
-    const time = chart.first + (x - chart.left) / (chart.right - chart.left) * (chart.last - chart.first);
-    let low = 0, high = this.frames - 1;
+    const time = chart.first + ((x - chart.left) / (chart.right - chart.left)) * (chart.last - chart.first);
+    let low = 0,
+      high = this.frames - 1;
     while (low < high) {
       const middle = (low + high + 1) >> 1;
       if (this.time.at(middle) <= time + 1e-9) low = middle;
@@ -36,8 +37,12 @@ export class Charts {
 
   /** Words on all lines of a chart in a frame. */
   words(chart, frame) {
-    return [`t = ${this.time.at(frame).toFixed(3)} s`].concat(chart.lines.map((/** @type {any} */ line) =>
-      `${line.name} = ${numeral(this.reel.numbers[line.number].at(frame))}${line.unit ? " " + line.unit : ""}`));
+    return [`t = ${this.time.at(frame).toFixed(3)} s`].concat(
+      chart.lines.map(
+        (/** @type {any} */ line) =>
+          `${line.name} = ${numeral(this.reel.numbers[line.number].at(frame))}${line.unit ? " " + line.unit : ""}`,
+      ),
+    );
   }
 
   /**
@@ -46,8 +51,9 @@ export class Charts {
    */
   draw(c, color) {
     if (!this.cursor) return;
-    const { chart, frame } = this.cursor, time = this.time.at(frame);
-    const x = chart.left + (time - chart.first) / (chart.last - chart.first) * (chart.right - chart.left);
+    const { chart, frame } = this.cursor,
+      time = this.time.at(frame);
+    const x = chart.left + ((time - chart.first) / (chart.last - chart.first)) * (chart.right - chart.left);
     c.lineWidth = 1.5;
     c.lineCap = "butt";
     c.strokeStyle = color;
@@ -66,7 +72,7 @@ export class Charts {
         const v = this.reel.numbers[line.number].at(frame);
         if (!(v >= each.low && v <= each.high)) continue;
         c.beginPath();
-        c.arc(x, each.bottom - (v - each.low) / (each.high - each.low) * (each.bottom - each.top), 5, 0, 2 * Math.PI);
+        c.arc(x, each.bottom - ((v - each.low) / (each.high - each.low)) * (each.bottom - each.top), 5, 0, 2 * Math.PI);
         c.fillStyle = line.color;
         c.fill();
       }

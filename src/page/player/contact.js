@@ -3,17 +3,24 @@
 
 import { cross, dot, plus, sub, turned, unit } from "./lens.js";
 
-const LEVELS = 16, MANY = 64, RIM = 12;
-const FALL = 1.6, FOOT = 0.35, REACH_OF = 1.4, MOST = 0.06;  // as there, and draw/space/shadows.cpp
+const LEVELS = 16,
+  MANY = 64,
+  RIM = 12;
+const FALL = 1.6,
+  FOOT = 0.35,
+  REACH_OF = 1.4,
+  MOST = 0.06; // as there, and draw/space/shadows.cpp
 
 /** The hull of points of a plane, in order. */
 function hull(points) {
-  const all = points.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]), out = [];
+  const all = points.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]),
+    out = [];
   const chain = (each) => {
     const first = out.length;
     for (const p of each) {
       while (out.length >= first + 2) {
-        const a = out[out.length - 2], b = out[out.length - 1];
+        const a = out[out.length - 2],
+          b = out[out.length - 1];
         if ((b[0] - a[0]) * (p[1] - b[1]) - (b[1] - a[1]) * (p[0] - b[0]) > 1e-12) break;
         out.pop();
       }
@@ -39,31 +46,37 @@ export function draw_contacts(c, space, lens, body_of, dark) {
   let u = plus([1, 0, 0], normal, -normal[0]);
   if (Math.hypot(...u) < 0.1) u = plus([0, 0, 1], normal, -normal[2]);
   u = unit(u);
-  const v = cross(u, normal), feet = [];
+  const v = cross(u, normal),
+    feet = [];
   for (const piece of space.pieces) {
     const { at, turn } = body_of(piece.body);
-    const reach = Math.min(REACH_OF * piece.least, MOST * lens.window[2] / lens.scale);
-    const ball = piece.shape === undefined, radius = ball ? Math.max(piece.radius, (piece.dot ?? 0) / lens.scale) : 0;
-    const shape = ball ? piece.a.concat(piece.b) : space.shapes[piece.shape].vertices, corners = [];
+    const reach = Math.min(REACH_OF * piece.least, (MOST * lens.window[2]) / lens.scale);
+    const ball = piece.shape === undefined,
+      radius = ball ? Math.max(piece.radius, (piece.dot ?? 0) / lens.scale) : 0;
+    const shape = ball ? piece.a.concat(piece.b) : space.shapes[piece.shape].vertices,
+      corners = [];
     for (let i = 0; i < shape.length; i += 3) {
-      const p = sub(plus(at, turned(turn, shape.slice(i, i + 3))), point), high = dot(p, normal);
+      const p = sub(plus(at, turned(turn, shape.slice(i, i + 3))), point),
+        high = dot(p, normal);
       if (high - radius < reach && high > -reach) corners.push({ p: [dot(p, u), dot(p, v)], high });
     }
     if (corners.length > 0) feet.push({ corners, reach, radius });
   }
-  const share = feet.length > MANY ? 4 : 1, alpha = (dark ? 150 : 90) / 255 * share / LEVELS;
+  const share = feet.length > MANY ? 4 : 1,
+    alpha = (((dark ? 150 : 90) / 255) * share) / LEVELS;
   // of one grey: channels of their own would be rounded apart, level upon level
   c.fillStyle = dark ? `rgba(0,0,0,${alpha})` : `rgba(24,24,24,${alpha})`;
   for (let i = 0; i < LEVELS; i += share) {
     c.beginPath();
     for (const { corners, reach, radius } of feet) {
       // the hull of the discs under its corners, each as much smaller as it is higher
-      const near = reach * ((i + share) / LEVELS) ** FALL, rims = [];
+      const near = reach * ((i + share) / LEVELS) ** FALL,
+        rims = [];
       for (const { p, high } of corners) {
         const wide = near - Math.max(high - radius, 0) + FOOT * radius;
         if (wide <= FOOT * radius) continue;
         for (let k = 0; k < RIM; ++k) {
-          const a = 2 * Math.PI * k / RIM;
+          const a = (2 * Math.PI * k) / RIM;
           rims.push([p[0] + wide * Math.cos(a), p[1] + wide * Math.sin(a)]);
         }
       }

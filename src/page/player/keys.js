@@ -16,7 +16,10 @@ export class Course {
    * @param {number} bound
    */
   constructor(streams, count, bound) {
-    const step = bound / STEPS, times = [0], values = [streams.starts.next()], bends = [];
+    const step = bound / STEPS,
+      times = [0],
+      values = [streams.starts.next()],
+      bends = [];
     let moves = false;
     for (let frame = 0; frame < count - 1;) {
       const gap = streams.gaps.next();
@@ -24,17 +27,17 @@ export class Course {
       times.push(frame);
       const by = streams.ends.next();
       values.push(values[values.length - 1] + by);
-      const a = gap > 1 ? streams.bends.next() : 0, b = gap > 1 ? streams.bends.next() : 0;
+      const a = gap > 1 ? streams.bends.next() : 0,
+        b = gap > 1 ? streams.bends.next() : 0;
       bends.push(3 * step * a, 3 * step * b);
       moves ||= by !== 0 || a !== 0 || b !== 0;
     }
     this.constant = !moves;
     this.first = step * values[0];
-    if (!moves) return;
+    this.piece = 0;
     this.times = Int32Array.from(times);
     this.values = Float64Array.from(values, (v) => v * step);
     this.bends = Float64Array.from(bends);
-    this.piece = 0;
   }
 
   /**
@@ -45,13 +48,14 @@ export class Course {
     const times = this.times;
     let k = this.piece;
     if (times[k] <= frame && frame < times[k + 1]) return k;
-    let low = 0, high = times.length - 2;
+    let low = 0,
+      high = times.length - 2;
     while (low < high) {
       const middle = (low + high + 1) >> 1;
       if (times[middle] <= frame) low = middle;
       else high = middle - 1;
     }
-    return this.piece = low;
+    return (this.piece = low);
   }
 
   /**
@@ -60,9 +64,13 @@ export class Course {
    */
   at(frame) {
     if (this.constant) return this.first;
-    const k = this.find(frame), from = this.times[k], to = this.times[k + 1];
-    const u = Math.min(1, (frame - from) / (to - from)), v = 1 - u;
-    const p = this.values[k], q = this.values[k + 1];
+    const k = this.find(frame),
+      from = this.times[k],
+      to = this.times[k + 1];
+    const u = Math.min(1, (frame - from) / (to - from)),
+      v = 1 - u;
+    const p = this.values[k],
+      q = this.values[k + 1];
     return p + u * (q - p) + u * v * (v * this.bends[2 * k] + u * this.bends[2 * k + 1]);
   }
 }
@@ -74,7 +82,8 @@ export class Steps {
    * @param {number} count
    */
   constructor(stream, count) {
-    const values = [], ends = [];
+    const values = [],
+      ends = [];
     for (let frame = 0; frame < count;) {
       values.push(stream.next());
       frame += stream.next();
@@ -93,7 +102,8 @@ export class Steps {
     const ends = this.ends;
     let k = this.piece;
     if (frame >= ends[k] || (k > 0 && frame < ends[k - 1])) {
-      let low = 0, high = ends.length - 1;
+      let low = 0,
+        high = ends.length - 1;
       while (low < high) {
         const middle = (low + high) >> 1;
         if (ends[middle] > frame) high = middle;

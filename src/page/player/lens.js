@@ -5,19 +5,27 @@
 export const dot = (/** @type {Vec} */ a, /** @type {Vec} */ b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const sub = (/** @type {Vec} */ a, /** @type {Vec} */ b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const plus = (/** @type {Vec} */ a, /** @type {Vec} */ b, k = 1) => [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]];
-export const cross = (/** @type {Vec} */ a, /** @type {Vec} */ b) =>
-  [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const cross = (/** @type {Vec} */ a, /** @type {Vec} */ b) => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];
 export const unit = (/** @type {Vec} */ a) => plus([0, 0, 0], a, 1 / Math.max(Math.hypot(...a), 1e-300));
 
+export const clamp = (/** @type {number} */ x, /** @type {number} */ low, /** @type {number} */ high) => Math.min(Math.max(x, low), high);
+
 /** A vector turned by a quaternion (w, x, y, z). */
-export function turned([w, x, y, z], v) {
-  const u = [x, y, z], t = plus([0, 0, 0], cross(u, v), 2);
+export function turned(q, v) {
+  const [w, x, y, z] = q,
+    u = [x, y, z],
+    t = plus([0, 0, 0], cross(u, v), 2);
   return plus(plus(v, t, w), cross(u, t));
 }
 
 /** A vector turned about a unit axis. */
 export function about(axis, angle, v) {
-  const half = angle / 2, s = Math.sin(half);
+  const half = angle / 2,
+    s = Math.sin(half);
   return turned([Math.cos(half), s * axis[0], s * axis[1], s * axis[2]], v);
 }
 
@@ -26,7 +34,9 @@ export class Orbit {
   /** @param {Vec} up the vertical */
   constructor(up) {
     this.vertical = up;
-    this.home();
+    this.turn = this.tilt = this.dx = this.dy = 0;
+    this.zoom = 1;
+    this.flat = false; // from above
   }
 
   home() {
@@ -65,10 +75,19 @@ export class Orbit {
   see(lens) {
     if (!this.moved) return lens;
     const rises = Math.asin(Math.min(Math.max(dot(lens.back, this.vertical), -1), 1));
-    const most = Math.PI / 2 - 1e-4, tilt = Math.min(Math.max((this.flat ? most : rises + this.tilt), -most), most) - rises;
+    const most = Math.PI / 2 - 1e-4,
+      tilt = Math.min(Math.max(this.flat ? most : rises + this.tilt, -most), most) - rises;
     const turn = (/** @type {Vec} */ v) => about(this.vertical, this.turn, about(lens.right, -tilt, v));
-    return new Lens(lens.target, turn(lens.right), turn(lens.up), turn(lens.back), lens.per_distance, lens.scale * this.zoom,
-      [lens.middle[0] + this.dx, lens.middle[1] + this.dy], lens.window);
+    return new Lens(
+      lens.target,
+      turn(lens.right),
+      turn(lens.up),
+      turn(lens.back),
+      lens.per_distance,
+      lens.scale * this.zoom,
+      [lens.middle[0] + this.dx, lens.middle[1] + this.dy],
+      lens.window,
+    );
   }
 }
 
@@ -92,7 +111,10 @@ export class Lens {
   }
 
   get key() {
-    return [this.target, this.right, this.up, this.back, this.per_distance, this.scale, this.middle].flat().map((x) => x.toPrecision(7)).join();
+    return [this.target, this.right, this.up, this.back, this.per_distance, this.scale, this.middle]
+      .flat()
+      .map((x) => x.toPrecision(7))
+      .join();
   }
 
   /** The eye, or for an orthographic camera a place far towards it. */
@@ -107,7 +129,8 @@ export class Lens {
 
   /** A place on the page. */
   page(place) {
-    const p = sub(place, this.target), k = this.scale / this.depth(place);
+    const p = sub(place, this.target),
+      k = this.scale / this.depth(place);
     return [this.middle[0] + k * dot(p, this.right), this.middle[1] - k * dot(p, this.up)];
   }
 

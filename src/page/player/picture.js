@@ -2,16 +2,18 @@
 
 import { Charts } from "./charts.js";
 import { Pen } from "./pen.js";
+import { Card } from "./card.js";
+import { Orbit } from "./lens.js";
 import { Space } from "./space.js";
 import { BODY, BOX, CHART, DISC, LOOSE, PAGE, POLYGON, RIGID } from "./reel.js";
 
-const REACH = 12;  // page units around a body within which it is pointed at
+const REACH = 12; // page units around a body within which it is pointed at
 
 /** How the world lies on the page beyond what the film says. */
 export class View {
   constructor() {
     this.zoom = 1;
-    this.dx = this.dy = 0;  // page units
+    this.dx = this.dy = 0; // page units
   }
 
   get moved() {
@@ -25,7 +27,8 @@ export class View {
 
   /** Nearer by a factor, with a place of the page where it is. */
   nearer(by, x, y) {
-    const zoom = Math.min(Math.max(this.zoom * by, 0.2), 60), k = zoom / this.zoom;
+    const zoom = Math.min(Math.max(this.zoom * by, 0.2), 60),
+      k = zoom / this.zoom;
     this.dx = x - k * (x - this.dx);
     this.dy = y - k * (y - this.dy);
     this.zoom = zoom;
@@ -54,8 +57,15 @@ export class Picture {
     this.reel = reel;
     this.pen = new Pen(this.context, reel, film.ground);
     this.charts = new Charts(film, reel);
-    this.space = film.space ? new Space(film, reel) : null;
-    this.view = this.space ? this.space.view : new View();
+    /** @type {Space[]} one a run */
+    this.spaces = [];
+    /** @type {View | Orbit} */
+    this.view = new View();
+    if (film.spaces) {
+      const card = new Card(),
+        view = (this.view = new Orbit(film.spaces[0].ground ? film.spaces[0].ground.normal : [0, 1, 0]));
+      this.spaces = film.spaces.map((/** @type {any} */ _, /** @type {number} */ run) => new Space(film, run, reel, card, view));
+    }
     this.frame = 0;
   }
 
@@ -78,19 +88,26 @@ export class Picture {
   /** @param {number} frame not necessarily whole: between two, what moves is between */
   draw(frame) {
     this.frame = frame;
-    const { context: c, pen, reel, view, canvas } = this, scale = canvas.height / 1080, whole = Math.floor(frame);
+    const { context: c, pen, reel, view, canvas } = this,
+      scale = canvas.height / 1080,
+      whole = Math.floor(frame);
     c.setTransform(1, 0, 0, 1, 0, 0);
     c.globalCompositeOperation = "source-over";
     c.fillStyle = `rgb(${this.film.ground.join(",")})`;
     c.fillRect(0, 0, canvas.width, canvas.height);
-    if (this.space) this.space.draw(c, frame);
-    let clip = -2, world = false;
+    for (const space of this.spaces) space.draw(c, frame);
+    let clip = -2,
+      world = false;
     c.save();
     for (const thing of reel.things) {
       if (thing.space > 0 || !thing.lives_at(whole)) continue;
-      const now = !this.space && this.world(thing);
-      // marks are of the film's view: labels and arrows would not follow
-      if (this.space && view.moved && this.world(thing)) continue;
+      const now = !this.spaces.length && this.world(thing);
+      // what is said of space goes with the places that it is said of
+      pen.hanging = null;
+      if (this.spaces.length && view.moved && this.world(thing)) {
+        pen.hanging = this.spaces[Math.min(thing.part, this.spaces.length - 1)].hanging(thing, frame);
+        if (!pen.hanging) continue;
+      }
       const window = now && view.moved ? this.film.windows[thing.part] : null;
       const clipped = window ? -100 - thing.part : thing.clip;
       if (clipped !== clip) {
@@ -108,6 +125,7 @@ export class Picture {
       }
       pen.draw(thing, frame);
     }
+    pen.hanging = null;
     c.restore();
     pen.place(scale);
     this.charts.draw(c, this.film.theme === "screen" ? "#9aa5b1" : "#5b6570");
@@ -117,7 +135,8 @@ export class Picture {
   clip([x, y, width, height], scale) {
     const c = this.context;
     c.setTransform(1, 0, 0, 1, 0, 0);
-    const left = Math.floor(x * scale + 1e-6), top = Math.floor(y * scale + 1e-6);
+    const left = Math.floor(x * scale + 1e-6),
+      top = Math.floor(y * scale + 1e-6);
     c.beginPath();
     c.rect(left, top, Math.ceil((x + width) * scale - 1e-6) - left, Math.ceil((y + height) * scale - 1e-6) - top);
     c.clip();
@@ -125,10 +144,15 @@ export class Picture {
 
   /** The body at a place of the page, as [part, index]. */
   body_at(x, y) {
-    if (this.space) return this.space.body_at(x, y, this.frame);
-    const { view, reel } = this, px = (x - view.dx) / view.zoom, py = (y - view.dy) / view.zoom;
-    const whole = Math.floor(this.frame), numbers = [];
-    let best = null, least = REACH / view.zoom;
+    if (this.spaces.length)
+      return this.spaces.reduce((/** @type {number[] | null} */ found, space) => found ?? space.body_at(x, y, this.frame), null);
+    const { view, reel } = this,
+      px = (x - view.dx) / view.zoom,
+      py = (y - view.dy) / view.zoom;
+    const whole = Math.floor(this.frame),
+      numbers = [];
+    let best = null,
+      least = REACH / view.zoom;
     for (let i = reel.things.length - 1; i >= 0; --i) {
       const thing = reel.things[i];
       if (thing.what !== BODY || thing.form === LOOSE || !thing.lives_at(whole)) continue;
@@ -137,7 +161,10 @@ export class Picture {
       if (thing.kind === DISC) {
         off = Math.hypot(px - n[0], py - n[1]) - n[2];
       } else if (thing.kind === BOX) {
-        const cos = Math.cos(n[2]), sin = Math.sin(n[2]), u = px - n[0], v = py - n[1];
+        const cos = Math.cos(n[2]),
+          sin = Math.sin(n[2]),
+          u = px - n[0],
+          v = py - n[1];
         off = Math.max(Math.abs(cos * u + sin * v) - n[3], Math.abs(cos * v - sin * u) - n[4]);
       } else if (thing.kind === POLYGON && thing.form === RIGID) {
         off = inside(this.pen.turned(thing.outline.points, n), px, py) ? 0 : Infinity;
@@ -156,8 +183,9 @@ export class Picture {
 function inside(points, x, y) {
   let within = false;
   for (let i = 0, j = points.length - 2; i < points.length; j = i, i += 2) {
-    const ay = points[i + 1], by = points[j + 1];
-    if ((ay > y) !== (by > y) && x < (points[j] - points[i]) * (y - ay) / (by - ay) + points[i]) within = !within;
+    const ay = points[i + 1],
+      by = points[j + 1];
+    if (ay > y !== by > y && x < ((points[j] - points[i]) * (y - ay)) / (by - ay) + points[i]) within = !within;
   }
   return within;
 }

@@ -1,12 +1,13 @@
 // The page's player: time, controls, keys and pointers.
 
 import { from_base64, inflate } from "./bytes.js";
+import { Orbit } from "./lens.js";
 import { Picture } from "./picture.js";
 import { Reel } from "./reel.js";
 import { Values, clock } from "./values.js";
 
 const $ = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
-const NOTHING = 1e-6;  // of a frame: what counts as none
+const NOTHING = 1e-6; // of a frame: what counts as none
 
 class Player {
   /**
@@ -19,12 +20,12 @@ class Player {
     this.values = new Values(film, reel);
     this.picture = new Picture($("picture"), film, reel);
     this.last = reel.frames - 1;
-    this.frame = 0;  // of the film, not necessarily whole
+    this.frame = 0; // of the film, not necessarily whole
     this.rate = 1;
     this.playing = false;
     this.again = false;
     /** @type {any} */
-    this.pointed = null;  // what the pointer is on
+    this.pointed = null; // what the pointer is on
     this.due = false;
     this.wire();
     this.layout();
@@ -65,7 +66,7 @@ class Player {
 
   tick(now) {
     if (!this.playing) return;
-    this.frame += Math.min(now - this.before, 250) / 1000 * this.rate * this.film.fps;
+    this.frame += (Math.min(now - this.before, 250) / 1000) * this.rate * this.film.fps;
     this.before = now;
     if (this.frame > this.last) {
       if (this.again) this.frame %= this.last + 1;
@@ -93,13 +94,16 @@ class Player {
     // at full speed the frames of the film, slower also what is between them
     const frame = this.playing && this.rate >= 1 ? Math.floor(this.frame + NOTHING) : this.frame;
     this.picture.draw(frame);
-    const seconds = frame / this.film.fps, run = this.values.time(frame);
+    const seconds = frame / this.film.fps,
+      run = this.values.time(frame);
     const scrub = $("scrub");
     if (Math.abs(Number(scrub.value) - frame) > NOTHING) scrub.value = String(frame);
     scrub.setAttribute("aria-valuetext", `${clock(run)} of the run`);
     $("clock").textContent = `${clock(run)}${this.slow ? ` (${clock(seconds)})` : ""}`;
-    const said = this.film.captions.filter((/** @type {any} */ c) => c.from <= seconds && seconds < c.to)
-      .map((/** @type {any} */ c) => c.text).join(" ");
+    const said = this.film.captions
+      .filter((/** @type {any} */ c) => c.from <= seconds && seconds < c.to)
+      .map((/** @type {any} */ c) => c.text)
+      .join(" ");
     if ($("caption").textContent !== said) $("caption").textContent = said;
     this.tell();
     if (!this.playing) this.list();
@@ -112,12 +116,16 @@ class Player {
   }
 
   layout() {
-    const full = document.fullscreenElement === $("film"), embedded = document.body.classList.contains("embedded");
-    const wide = document.documentElement.clientWidth, bar = $("controls").offsetHeight || 48;
+    const full = document.fullscreenElement === $("film"),
+      embedded = document.body.classList.contains("embedded");
+    const wide = document.documentElement.clientWidth,
+      bar = $("controls").offsetHeight || 48;
     const high = window.innerHeight - bar - (full || embedded ? 0 : 8);
     const most = Math.min(wide, full ? 1e9 : 1920);
-    const width = Math.max(160, Math.min(most, Math.max(high, 160) * this.film.aspect)), height = width / this.film.aspect;
-    const canvas = $("picture"), pixel = window.devicePixelRatio || 1;
+    const width = Math.max(160, Math.min(most, Math.max(high, 160) * this.film.aspect)),
+      height = width / this.film.aspect;
+    const canvas = $("picture"),
+      pixel = window.devicePixelRatio || 1;
     canvas.style.width = `${width}px`;
     canvas.style.height = `${height}px`;
     this.picture.size(Math.round(width * pixel), Math.round(height * pixel));
@@ -127,7 +135,8 @@ class Player {
 
   /** Page units of a pointer. */
   place(event) {
-    const box = $("picture").getBoundingClientRect(), k = 1080 / box.height;
+    const box = $("picture").getBoundingClientRect(),
+      k = 1080 / box.height;
     return [(event.clientX - box.left) * k, (event.clientY - box.top) * k];
   }
 
@@ -140,8 +149,10 @@ class Player {
 
   to_event(way) {
     const frames = this.film.events.map((/** @type {any} */ e) => this.frame_of(e));
-    const found = way > 0 ? frames.find((/** @type {number} */ f) => f > this.frame + 1e-3)
-      : frames.reverse().find((/** @type {number} */ f) => f < this.frame - 1e-3);
+    const found =
+      way > 0
+        ? frames.find((/** @type {number} */ f) => f > this.frame + 1e-3)
+        : frames.reverse().find((/** @type {number} */ f) => f < this.frame - 1e-3);
     if (found === undefined) return;
     this.pause();
     this.show(found);
@@ -156,7 +167,8 @@ class Player {
     $("events").hidden = false;
     const list = $("events").querySelector("ol");
     for (const event of events) {
-      const item = document.createElement("li"), button = document.createElement("button");
+      const item = document.createElement("li"),
+        button = document.createElement("button");
       button.type = "button";
       button.textContent = `${event.time.toFixed(3)} s  ${event.text}`;
       button.addEventListener("click", () => {
@@ -181,14 +193,18 @@ class Player {
   }
 
   draw_ticks() {
-    const canvas = $("ticks"), pixel = window.devicePixelRatio || 1;
-    const width = canvas.clientWidth, height = canvas.clientHeight;
+    const canvas = $("ticks"),
+      pixel = window.devicePixelRatio || 1;
+    const width = canvas.clientWidth,
+      height = canvas.clientHeight;
     if (width === 0) return;
     canvas.width = Math.round(width * pixel);
     canvas.height = Math.round(height * pixel);
-    const c = canvas.getContext("2d"), style = getComputedStyle(document.body);
+    const c = canvas.getContext("2d"),
+      style = getComputedStyle(document.body);
     c.scale(pixel, pixel);
-    const inset = 7, x = (/** @type {number} */ frame) => inset + (width - 2 * inset) * frame / Math.max(this.last, 1);
+    const inset = 7,
+      x = (/** @type {number} */ frame) => inset + ((width - 2 * inset) * frame) / Math.max(this.last, 1);
     c.fillStyle = style.getPropertyValue("--line");
     c.fillRect(inset, height / 2 - 2, width - 2 * inset, 4);
     c.fillStyle = style.getPropertyValue("--quiet");
@@ -199,7 +215,8 @@ class Player {
 
   /** The words beside the pointer. */
   tell() {
-    const tip = $("tip"), it = this.pointed;
+    const tip = $("tip"),
+      it = this.pointed;
     this.picture.charts.cursor = it?.chart ? it : null;
     if (!it) {
       tip.hidden = true;
@@ -216,10 +233,18 @@ class Player {
       }
       const name = document.createElement("b");
       name.textContent = body.name;
-      tip.append(name, this.values.rows(body, this.picture.frame).map(([what, value]) => `\n${what}  ${value}`).join(""));
+      tip.append(
+        name,
+        this.values
+          .rows(body, this.picture.frame)
+          .map(([what, value]) => `\n${what}  ${value}`)
+          .join(""),
+      );
     }
     tip.hidden = false;
-    const stage = $("stage").getBoundingClientRect(), left = it.x - stage.left, top = it.y - stage.top;
+    const stage = $("stage").getBoundingClientRect(),
+      left = it.x - stage.left,
+      top = it.y - stage.top;
     const x = left + 16 + tip.offsetWidth > stage.width ? left - 16 - tip.offsetWidth : left + 16;
     tip.style.left = `${Math.max(0, x)}px`;
     tip.style.top = `${Math.max(0, Math.min(top + 14, stage.height - tip.offsetHeight))}px`;
@@ -244,7 +269,8 @@ class Player {
   }
 
   point(event) {
-    const [x, y] = this.place(event), canvas = $("picture");
+    const [x, y] = this.place(event),
+      canvas = $("picture");
     const chart = this.picture.charts.at(x, y);
     if (chart) {
       this.pointed = { chart, frame: this.picture.charts.frame_at(chart, x), x: event.clientX, y: event.clientY };
@@ -276,7 +302,7 @@ class Player {
     press("loop", () => this.loop());
     press("home", () => this.home());
     press("above", () => this.above());
-    $("above").hidden = !film.space;
+    $("above").hidden = !film.spaces;
     press("full", () => this.full());
     press("help", () => this.help());
     $("speed").addEventListener("change", () => this.speed(Number($("speed").value)));
@@ -291,21 +317,26 @@ class Player {
   }
 
   wire_pointers() {
-    const stage = $("stage"), canvas = $("picture");
+    const stage = $("stage"),
+      canvas = $("picture");
     /** @type {Map<number, number[]>} */
     const held = new Map();
-    let moved = false, seeking = false, was = 0;
+    let moved = false,
+      seeking = false,
+      was = 0;
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       held.set(event.pointerId, this.place(event));
       moved = false;
-      const [x, y] = this.place(event), chart = this.picture.charts.at(x, y);
+      const [x, y] = this.place(event),
+        chart = this.picture.charts.at(x, y);
       seeking = Boolean(chart) && held.size === 1;
       if (seeking) this.seek_chart(event);
       was = 0;
     });
     canvas.addEventListener("pointermove", (event) => {
-      const before = held.get(event.pointerId), now = this.place(event);
+      const before = held.get(event.pointerId),
+        now = this.place(event);
       if (!before) return this.point(event);
       if (seeking) return this.seek_chart(event);
       held.set(event.pointerId, now);
@@ -313,7 +344,8 @@ class Player {
       moved ||= Math.hypot(dx, dy) > 2;
       canvas.classList.add("held");
       if (held.size === 2) {
-        const [a, b] = [...held.values()], apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
+        const [a, b] = [...held.values()],
+          apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
         if (was > 0) this.picture.view.nearer(apart / was, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
         was = apart;
         this.picture.view.shift(dx / 2, dy / 2);
@@ -338,17 +370,22 @@ class Player {
       this.pointed = null;
       this.refresh();
     });
-    stage.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      const [x, y] = this.place(event);
-      this.picture.view.nearer(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), x, y);
-      this.refresh();
-    }, { passive: false });
+    stage.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        const [x, y] = this.place(event);
+        this.picture.view.nearer(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), x, y);
+        this.refresh();
+      },
+      { passive: false },
+    );
     canvas.addEventListener("dblclick", () => this.home());
   }
 
   seek_chart(event) {
-    const [x, y] = this.place(event), chart = this.picture.charts.at(x, y) ?? this.pointed?.chart;
+    const [x, y] = this.place(event),
+      chart = this.picture.charts.at(x, y) ?? this.pointed?.chart;
     if (!chart) return;
     const frame = this.picture.charts.frame_at(chart, x);
     this.pointed = { chart, frame, x: event.clientX, y: event.clientY };
@@ -376,14 +413,17 @@ class Player {
   }
 
   above() {
-    if (!this.picture.space) return;
-    this.picture.space.view.above();
+    if (!(this.picture.view instanceof Orbit)) return;
+    this.picture.view.above();
     this.refresh();
   }
 
   full() {
     if (document.fullscreenElement) document.exitFullscreen();
-    else $("film").requestFullscreen?.().catch(() => undefined);
+    else
+      $("film")
+        .requestFullscreen?.()
+        .catch(() => undefined);
   }
 
   help() {
@@ -406,35 +446,65 @@ class Player {
   /** @param {KeyboardEvent} event */
   key(event) {
     if (event.ctrlKey || event.metaKey) return;
-    const on = /** @type {HTMLElement} */ (event.target), kind = on.tagName;
+    const on = /** @type {HTMLElement} */ (event.target),
+      kind = on.tagName;
     if (kind === "SELECT" || (kind === "INPUT" && /^(Arrow|Home|End|Page)/.test(event.key))) return;
     if ((kind === "BUTTON" || kind === "SUMMARY") && (event.key === " " || event.key === "Enter")) return;
-    const view = this.picture.view, middle = [this.picture.width / 2, 540];
+    const view = this.picture.view,
+      middle = [this.picture.width / 2, 540];
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     const arrow = arrows[/** @type {keyof typeof arrows} */ (event.key)];
     const does = () => {
-      if (arrow && event.altKey) return view.move(-40 * arrow[0], -40 * arrow[1]), this.refresh();
+      if (arrow && event.altKey) return (view.move(-40 * arrow[0], -40 * arrow[1]), this.refresh());
       if (event.altKey) return false;
       if (arrow) return arrow[0] !== 0 && this.step(arrow[0] * (event.shiftKey ? Math.round(this.film.fps) : 1));
       switch (event.key) {
-        case " ": case "k": return this.toggle();
-        case ",": return this.step(-1);
-        case ".": return this.step(1);
-        case "p": case "P": return this.to_event(-1);
-        case "n": case "N": return this.to_event(1);
-        case "Home": return this.pause(), this.show(0);
-        case "End": return this.pause(), this.show(this.last);
-        case "[": return this.faster(-1);
-        case "]": return this.faster(1);
-        case "l": case "L": return this.loop();
-        case "f": case "F": return this.full();
-        case "+": case "=": return view.nearer(1.25, ...middle), this.refresh();
-        case "-": case "−": return view.nearer(0.8, ...middle), this.refresh();
-        case "0": return this.home();
-        case "t": case "T": return this.above();
-        case "v": case "V": $("values").open = !$("values").open; return undefined;
-        case "?": return this.help();
-        default: return false;
+        case " ":
+        case "k":
+          return this.toggle();
+        case ",":
+          return this.step(-1);
+        case ".":
+          return this.step(1);
+        case "p":
+        case "P":
+          return this.to_event(-1);
+        case "n":
+        case "N":
+          return this.to_event(1);
+        case "Home":
+          return (this.pause(), this.show(0));
+        case "End":
+          return (this.pause(), this.show(this.last));
+        case "[":
+          return this.faster(-1);
+        case "]":
+          return this.faster(1);
+        case "l":
+        case "L":
+          return this.loop();
+        case "f":
+        case "F":
+          return this.full();
+        case "+":
+        case "=":
+          return (view.nearer(1.25, ...middle), this.refresh());
+        case "-":
+        case "−":
+          return (view.nearer(0.8, ...middle), this.refresh());
+        case "0":
+          return this.home();
+        case "t":
+        case "T":
+          return this.above();
+        case "v":
+        case "V":
+          $("values").open = !$("values").open;
+          return undefined;
+        case "?":
+          return this.help();
+        default:
+          return false;
       }
     };
     if (does() !== false) event.preventDefault();
@@ -459,11 +529,19 @@ function watch(player) {
   }
   new EventSource("changes").addEventListener("message", (event) => {
     if (event.data === document.body.dataset.watched) return;
-    const { view } = player.picture, { zoom, dx, dy, turn, tilt, flat } = /** @type {any} */ (view);
-    sessionStorage.setItem(key, JSON.stringify({
-      title: player.film.title, seconds: player.frame / player.film.fps, playing: player.playing, rate: player.rate,
-      again: player.again, view: { zoom, dx, dy, turn, tilt, flat },
-    }));
+    const { view } = player.picture,
+      { zoom, dx, dy, turn, tilt, flat } = /** @type {any} */ (view);
+    sessionStorage.setItem(
+      key,
+      JSON.stringify({
+        title: player.film.title,
+        seconds: player.frame / player.film.fps,
+        playing: player.playing,
+        rate: player.rate,
+        again: player.again,
+        view: { zoom, dx, dy, turn, tilt, flat },
+      }),
+    );
     location.reload();
   });
 }

@@ -3,10 +3,24 @@
 import { Numbers } from "./bytes.js";
 import { Course, Steps } from "./keys.js";
 
-export const PAGE = 0, CHART = 1, LAYER = 2, BODY = 3, SPRING = 4, JOINT = 5, TRAIL = 6;
-export const DISC = 0, BOX = 1, STROKE = 2, POLYGON = 3, TEXT = 4;
-export const NUMBERS = 0, RIGID = 1, GROWN = 2, LOOSE = 3;
-const POINT = 64, LOOSE_STEPS = 16;
+export const PAGE = 0,
+  CHART = 1,
+  LAYER = 2,
+  BODY = 3,
+  SPRING = 4,
+  JOINT = 5,
+  TRAIL = 6;
+export const DISC = 0,
+  BOX = 1,
+  STROKE = 2,
+  POLYGON = 3,
+  TEXT = 4;
+export const NUMBERS = 0,
+  RIGID = 1,
+  GROWN = 2,
+  LOOSE = 3;
+const POINT = 64,
+  LOOSE_STEPS = 16;
 
 /**
  * @typedef {{from: number, to: number, courses: Course[], steps: Steps[], frames: Loose[]}} Life
@@ -22,11 +36,18 @@ export class Thing {
    * @param {any} streams
    */
   constructor(json, frames, streams) {
-    [this.what, this.index, this.part] = json.of;
+    const [what, index, part] = json.of;
+    this.what = what;
+    this.index = index;
+    this.part = part;
     this.kind = json.kind;
     this.clip = json.clip ?? -1;
     this.form = json.form ?? NUMBERS;
     this.still = json.still === 1;
+    // of so many places of space, at which it hangs: the last of its numbers
+    this.hang = json.hang ?? 0;
+    // words that keep to whole pixels
+    this.whole = json.whole === 1;
     const style = json.style ?? 0;
     this.closed = (style & 1) !== 0;
     this.round = (style & 2) !== 0;
@@ -45,8 +66,7 @@ export class Thing {
     const lives = json.lives ?? [0, frames];
     /** @type {Life[]} */
     this.lives = [];
-    for (let i = 0; i < lives.length; i += 2)
-      this.lives.push({ from: lives[i], to: lives[i + 1], courses: [], steps: [], frames: [] });
+    for (let i = 0; i < lives.length; i += 2) this.lives.push({ from: lives[i], to: lives[i + 1], courses: [], steps: [], frames: [] });
     if (this.form === LOOSE) this.read_frames(streams.loose);
     else for (const life of this.lives) this.read_life(life, json.bounds, streams);
     /** @type {Life | null} */
@@ -55,9 +75,13 @@ export class Thing {
 
   /** @returns {Outline} */
   read_outline(json, stream) {
-    const n = json.points ?? 0, points = new Float32Array(2 * n);
-    const times = json.trail ? new Float64Array(n) : undefined, cusps = json.trail ? [] : undefined;
-    let x = 0, y = 0, time = 0;
+    const n = json.points ?? 0,
+      points = new Float32Array(2 * n);
+    const times = json.trail ? new Float64Array(n) : undefined,
+      cusps = json.trail ? /** @type {boolean[]} */ ([]) : undefined;
+    let x = 0,
+      y = 0,
+      time = 0;
     for (let i = 0; i < n; ++i) {
       if (times && cusps) {
         const by = stream.next();
@@ -72,7 +96,8 @@ export class Thing {
       points[2 * i + 1] = y / POINT;
     }
     if (!json.profile) return { points, times, cusps };
-    const widths = new Float32Array(n), colors = [];
+    const widths = new Float32Array(n),
+      colors = [];
     for (let i = 0; i < n; ++i) {
       widths[i] = stream.next() / POINT;
       colors.push(stream.next());
@@ -82,7 +107,8 @@ export class Thing {
 
   /** A trail's way in space. */
   read_way(json, stream) {
-    const at = [0, 0, 0], unit_of = json.bounds[0];
+    const at = [0, 0, 0],
+      unit_of = json.bounds[0];
     let time = 0;
     for (let i = 0; i < json.points; ++i) {
       time += stream.next();
@@ -109,7 +135,8 @@ export class Thing {
   read_frames(stream) {
     /** @type {number[] | null} */
     let before = null;
-    let nodes = 0, mixed = 0;
+    let nodes = 0,
+      mixed = 0;
     for (const life of this.lives) {
       for (let frame = life.from; frame < life.to; ++frame) {
         const n = stream.next();
@@ -118,12 +145,12 @@ export class Thing {
           mixed = stream.next();
         }
         const stroke = this.kind === STROKE;
-        const widths = stroke ? (mixed ? nodes : 1) : 0, colors = mixed ? nodes : 1;
+        const widths = stroke ? (mixed ? nodes : 1) : 0,
+          colors = mixed ? nodes : 1;
         const size = widths + colors + 2 * nodes;
         /** @type {number[]} */
         const all = new Array(size);
-        for (let i = 0; i < size; ++i)
-          all[i] = stream.next() + (n === 0 && before ? before[i] : i >= 2 ? all[i - 2] : 0);
+        for (let i = 0; i < size; ++i) all[i] = stream.next() + (n === 0 && before ? before[i] : i >= 2 ? all[i - 2] : 0);
         before = all;
         life.frames.push({
           widths: all.slice(0, widths).map((w) => w / POINT),
@@ -155,6 +182,14 @@ export class Thing {
     const local = Math.min((this.steady ? frame : Math.floor(frame)) - life.from, life.to - life.from - 1);
     for (let i = 0; i < life.courses.length; ++i) out[i] = life.courses[i].at(local);
     return out;
+  }
+
+  /** The places at which it hangs, of its numbers in a frame. */
+  places(numbers) {
+    const end = /** @type {Life} */ (this.life).courses.length,
+      all = [];
+    for (let i = end - 3 * this.hang; i < end; i += 3) all.push(numbers.slice(i, i + 3));
+    return all;
   }
 
   /**
@@ -192,8 +227,7 @@ export class Reel {
     const streams = { keys, points, steps, loose };
     /** @type {number} */
     this.frames = json.frames;
-    this.colors = json.colors.map(
-      (/** @type {number} */ c) => [c >>> 24, (c >>> 16) & 255, (c >>> 8) & 255, c & 255]);
+    this.colors = json.colors.map((/** @type {number} */ c) => [c >>> 24, (c >>> 16) & 255, (c >>> 8) & 255, c & 255]);
     /** @type {string[]} */
     this.inks = this.colors.map(ink);
     /** @type {number[][]} */

@@ -7,6 +7,7 @@ uniform highp sampler2D poses;
 uniform vec3 target, right, up, back, eye;
 uniform vec4 camera, page;  // per distance, scale, middle; width, height, pixels a unit, weight
 uniform vec2 depths;
+const int METAL = 1, WOOD = 2, CHECKS = 3;
 vec3 turned(vec4 q, vec3 v) { vec3 t = 2.0 * cross(q.yzw, v); return v + q.x * t + cross(q.yzw, t); }
 vec4 turn_of(float body) { return body < 0.0 ? vec4(1, 0, 0, 0) : texelFetch(poses, ivec2(1, int(body)), 0); }
 vec3 at_of(float body) { return body < 0.0 ? vec3(0) : texelFetch(poses, ivec2(0, int(body)), 0).xyz; }
@@ -33,7 +34,7 @@ layout(location = 0) in vec3 center;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float radius;
 layout(location = 3) in float body;
-layout(location = 4) in float least;
+layout(location = 4) in float piece;  // from 1 on; 0: none
 layout(location = 5) in vec4 own;
 uniform vec4 ground;
 vec3 corner(out vec3 n) {
@@ -47,37 +48,150 @@ vec3 corner(out vec3 n) {
 }
 `;
 
-const SOLID_VERTEX = `${PLACE}${CORNERS}
+// pieces of bodies, six texels each, and their planes; what is near them (occlusion.js)
+const OF_PIECES = `
+uniform highp sampler2D pieces, near;
+vec4 of_pieces(int i) { return texelFetch(pieces, ivec2(i & 1023, i >> 10), 0); }
+vec4 of_near(int i) { return texelFetch(near, ivec2(i & 1023, i >> 10), 0); }
+`;
+
+const SOLID_VERTEX = `${PLACE}${CORNERS}${OF_PIECES}
 uniform vec4 light_u, light_v, light_w;
 uniform vec2 light_size;
-out vec3 world_normal, color, light;
-out float contact;
+out vec3 place, world_normal, color, light;
 flat out vec2 slope;
+flat out int number, material;
+out vec3 grain;
+invariant gl_Position;
 void main() {
   vec3 n, p = corner(n);
   gl_Position = clip_of(p);
+  place = p;
   world_normal = n;
+  number = int(piece) - 1;
+  material = 0;
+  grain = vec3(0);
+  if (number >= 0) {
+    vec4 its = of_pieces(6 * number + 2);
+    material = int(its.z);
+    // a little below the surface, so that no face is on the edge of a cell
+    vec3 below = center + (radius - 0.02 * its.w) * normal;
+    for (int i = 0; i < 3; ++i) grain[i] = dot(of_pieces(6 * number + 3 + i).xyz, below);
+    // no two boards are cut from one place of the tree
+    if (material == WOOD) grain += fract(0.618034 * body) * vec3(11, 1.5, 2.5);
+  }
   color = own.rgb;
   light = vec3(dot(light_u.xyz, p) - light_u.w, dot(light_v.xyz, p) - light_v.w, dot(light_w.xyz, p) - light_w.w) / vec3(light_size.xx, light_size.y);
   float facing = max(-dot(n, light_w.xyz), 1e-3);
   slope = clamp(vec2(dot(n, light_u.xyz), dot(n, light_v.xyz)) / facing, -12.0, 12.0) * light_size.x / light_size.y;
-  float high = dot(ground.xyz, p) - ground.w, reach = 0.8 * least;
-  contact = least > 0.0 && high < 4.0 * reach ? 0.26 * exp(-max(high, 0.0) / reach) : 0.0;
 }`;
 
-const SOLID_FRAGMENT = `#version 300 es
-precision highp float;
+// how dark a place is by the bodies near it (draw/space/occlusion.cpp)
+const DARKNESS = `
+const int BOX = 2;
+uniform vec4 ground;
+// a piece in its body's frame: what it is, and where
+struct Piece { vec4 one, two; int first, count; };
+float distance_to(Piece piece, vec3 p) {
+  int kind = int(piece.two.w);
+  if (kind == BOX) {
+    vec3 q = abs(p - piece.one.xyz) - piece.two.xyz;
+    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
+  }
+  if (kind < BOX) {
+    vec3 way = piece.two.xyz - piece.one.xyz, off = p - piece.one.xyz;
+    float l = dot(way, way);
+    return length(off - (l > 0.0 ? clamp(dot(off, way) / l, 0.0, 1.0) : 0.0) * way) - piece.one.w;
+  }
+  // the farthest of its planes, and beyond the edge with the one that is farthest across it
+  float most = -1e30, across = 0.0;
+  vec3 normal;
+  for (int i = piece.first; i < piece.first + piece.count; ++i) {
+    vec4 plane = of_pieces(i);
+    float d = dot(plane.xyz, p) - plane.w;
+    if (d > most) { most = d; normal = plane.xyz; }
+  }
+  if (most <= 0.0) return most;
+  for (int i = piece.first; i < piece.first + piece.count; ++i) {
+    vec4 plane = of_pieces(i);
+    float cosine = dot(plane.xyz, normal), sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    if (sine >= 0.05) across = max(across, (dot(plane.xyz, p) - plane.w - most * cosine) / sine);
+  }
+  return sqrt(most * most + across * across);
+}
+float near_part(float high, float reach) {
+  float g = clamp(1.0 - high / reach, 0.0, 1.0);
+  return g * g;
+}
+float darkness(int own, vec3 p, vec3 n) {
+  if (own < 0) return 0.0;
+  vec4 list = of_near(2 * own + 1);
+  float light = 1.0;
+  for (int i = int(list.x); i < int(list.x + list.y); ++i) {
+    vec4 entry = of_near(i);
+    int other = int(entry.x);
+    float reach = entry.y;
+    // what leaves the far height free leaves the near one free
+    float g;
+    if (other < 0) {
+      float high = dot(ground.xyz, p) - ground.w, rise = dot(ground.xyz, n);
+      g = near_part(high + reach * rise, reach) + near_part(high + reach / 3.0 * rise, reach / 3.0);
+    } else {
+      vec4 ball = of_near(2 * other);
+      vec3 off = p - ball.xyz;
+      float far = ball.w + 2.0 * reach;
+      if (dot(off, off) > far * far) continue;
+      float body = of_near(2 * other + 1).w;
+      vec4 q = turn_of(body), planes = of_pieces(6 * other + 2);
+      q.yzw = -q.yzw;
+      vec3 local = turned(q, p - at_of(body)), out_to = turned(q, n);
+      Piece piece = Piece(of_pieces(6 * other), of_pieces(6 * other + 1), int(planes.x), int(planes.y));
+      float high = distance_to(piece, local + reach * out_to);
+      if (high >= reach) continue;
+      g = near_part(high, reach) + near_part(distance_to(piece, local + reach / 3.0 * out_to), reach / 3.0);
+    }
+    light *= 1.0 - 0.25 * g;
+  }
+  return 1.0 - light;
+}
+`;
+
+// the patterns of materials (shaders/material.glsl), and metal (draw/space/light.cpp)
+const MATERIALS = `
+float wood(vec3 p) {
+  float r = 2.6 * length(p.yz + vec2(0.7, 2.3)) + 0.3 * sin(0.55 * p.x + 1.1 * p.y) + 0.12 * sin(1.7 * p.x + 2.3);
+  float t = fract(r), late = smoothstep(0.25, 0.85, t) * (1.0 - smoothstep(0.9, 1.0, t));
+  return 1.0 - 0.25 * mix(0.4, late, clamp(2.2 - 4.0 * fwidth(r), 0.0, 1.0));
+}
+float checks(vec3 p) {
+  vec3 w = max(fwidth(p), 1e-4);
+  vec3 i = 2.0 * (abs(fract((p - 0.5 * w) * 0.5) - 0.5) - abs(fract((p + 0.5 * w) * 0.5) - 0.5)) / w;
+  return 0.78 + 0.22 * clamp(i.x, -1.0, 1.0) * clamp(i.y, -1.0, 1.0) * clamp(i.z, -1.0, 1.0);
+}
+vec3 shine(vec3 n, vec3 s, float sun, bool lit) {
+  vec3 back = 2.0 * dot(n, s) * n - s;
+  float sky = 0.16 + 0.5 * smoothstep(-0.35, 0.1, back.y) - 0.26 * smoothstep(0.1, 0.95, back.y);
+  float spot = pow(max(dot(back, toward), 0.0), 28.0);
+  vec3 tint = mix(color, vec3(169, 176, 184) / 255.0, 0.25);
+  vec3 low = mix(tint, darkest(), 0.72), high = mix(tint, vec3(1), 0.3);
+  return mix(mix(low, high, clamp(sky + (lit ? 0.42 : 0.08) * sun, 0.0, 1.0)), vec3(1), lit ? 0.75 * spot : 0.0);
+}
+`;
+
+const SOLID_FRAGMENT = `${PLACE}${OF_PIECES}${DARKNESS}
 uniform highp sampler2DShadow map;
 uniform vec3 toward, across;
 uniform float dark;
-in vec3 world_normal, color, light;
-in float contact;
+in vec3 place, world_normal, color, light, grain;
 flat in vec2 slope;
+flat in int number, material;
 out vec4 ink;
+vec3 darkest() { return (dark > 0.5 ? vec3(8, 12, 18) : vec3(24, 28, 34)) / 255.0; }
 vec3 tone(float s) {
-  vec3 low = dark > 0.5 ? mix(color, vec3(8, 12, 18) / 255.0, 0.72) : mix(color, vec3(24, 28, 34) / 255.0, 0.52);
+  vec3 low = mix(color, darkest(), dark > 0.5 ? 0.72 : 0.52);
   return mix(low, mix(color, vec3(1), dark > 0.5 ? 0.14 : 0.5), clamp(s, 0.0, 1.0));
 }
+${MATERIALS}
 void main() {
   vec3 n = normalize(world_normal);
   float sun = max(0.0, dot(n, toward));
@@ -88,9 +202,22 @@ void main() {
       vec2 d = vec2(i, j) * (1.1 / 2048.0);
       reached += texture(map, vec3(light.xy + d, light.z + dot(slope, d) - 0.0025));
     }
-  vec3 it = mix(tone(base + 0.12 * sun), tone(base + 0.58 * sun), reached / 4.0);
-  ink = vec4(mix(it, vec3(12, 16, 22) / 255.0, contact), 1.0);
+  vec3 shaded, lit;
+  if (material == METAL) {
+    vec3 s = sight(place);
+    shaded = shine(n, s, sun, false), lit = shine(n, s, sun, true);
+  } else {
+    shaded = tone(base + 0.12 * sun), lit = tone(base + 0.58 * sun);
+  }
+  vec3 it = mix(mix(shaded, lit, reached / 4.0), vec3(12, 16, 22) / 255.0, darkness(number, place, n));
+  // both are worked out for every pixel of a quad, as their widths need
+  float w = wood(grain), c = checks(grain);
+  ink = vec4(it * (material == WOOD ? w : material == CHECKS ? c : 1.0), 1.0);
 }`;
+
+// depths alone, so that only what is seen is lit
+const DEPTH_FRAGMENT = `#version 300 es
+void main() {}`;
 
 const CASTER_VERTEX = `${PLACE}${CORNERS}
 uniform vec4 light_u, light_v, light_w;
@@ -181,14 +308,17 @@ out vec4 ink;
 void main() {
   float t = along > 0.0 ? clamp(place.x / along, 0.0, 1.0) : 0.0;
   float off = length(vec2(place.x - clamp(place.x, 0.0, along), place.y)), half_wide = mix(wide_a, wide_b, t);
-  float a = color.a * clamp(half_wide + 0.5 - off, 0.0, 1.0) * min(1.0, 2.0 * half_wide);
+  // how much of the pixel lies between both sides
+  float a = color.a * (clamp(half_wide + 0.5 - off, 0.0, 1.0) + clamp(half_wide + 0.5 + off, 0.0, 1.0) - 1.0);
   if (a <= 0.0) discard;
   ink = vec4(color.rgb * a, a);
 }`;
 
 // the same on the page's colour, for the darker or the lighter of two
-const TRAIL_FRAGMENT = LINE_FRAGMENT.replace("out vec4 ink;", "uniform vec3 page_color;\nout vec4 ink;")
-  .replace("ink = vec4(color.rgb * a, a);", "ink = vec4(mix(page_color, color.rgb, a), 1.0);");
+const TRAIL_FRAGMENT = LINE_FRAGMENT.replace("out vec4 ink;", "uniform vec3 page_color;\nout vec4 ink;").replace(
+  "ink = vec4(color.rgb * a, a);",
+  "ink = vec4(mix(page_color, color.rgb, a), 1.0);",
+);
 
 const LINE_VERTEX = `${PLACE}${SEGMENT}
 layout(location = 0) in vec3 a;
@@ -218,7 +348,12 @@ void main() {
   color = vec4(own, 1.0);
   if ((!one && !two) || (one && two && dot(m, n) > 0.94)) { gl_Position = kNowhere; return; }
   float width = clamp(0.22 * whose.y * camera.y / depth_of(c), 0.5 * page.w, 2.3 * page.w) * (one && two ? 0.75 : 1.3);
-  gl_Position = segment(p, r, width, width, min(0.06 * whose.y, 3.0 / camera.y));
+  // before the faces beside it, up to where the line ends
+  float half_wide = 0.5 * width * depth_of(c) / camera.y, steep = 0.0;
+  if (one) steep = sqrt(1.0 - pow(dot(m, s), 2.0)) / dot(m, s);
+  if (two) steep = max(steep, sqrt(1.0 - pow(dot(n, s), 2.0)) / dot(n, s));
+  float near = max(min(0.06 * whose.y, 3.0 / camera.y), min(1.2 * half_wide * steep, 0.4 * whose.y));
+  gl_Position = segment(p, r, width, width, near);
 }`;
 
 // the outline of a ball: 64 pieces of the circle that the eye sees, as a strip
@@ -285,8 +420,11 @@ export class Program {
    */
   constructor(gl, vertex, fragment) {
     this.gl = gl;
-    const program = this.program = /** @type {WebGLProgram} */ (gl.createProgram());
-    for (const [kind, text] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
+    const program = (this.program = /** @type {WebGLProgram} */ (gl.createProgram()));
+    for (const [kind, text] of /** @type {[number, string][]} */ ([
+      [gl.VERTEX_SHADER, vertex],
+      [gl.FRAGMENT_SHADER, fragment],
+    ])) {
       const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
@@ -334,6 +472,7 @@ export class Program {
 export function make_programs(gl) {
   return {
     solid: new Program(gl, SOLID_VERTEX, SOLID_FRAGMENT),
+    depth: new Program(gl, SOLID_VERTEX, DEPTH_FRAGMENT),
     caster: new Program(gl, CASTER_VERTEX, CASTER_FRAGMENT),
     shadow: new Program(gl, SHADOW_VERTEX, SHADOW_FRAGMENT),
     cover: new Program(gl, COVER_VERTEX, COVER_FRAGMENT),

@@ -43,20 +43,22 @@ export class Values {
 
   /** The place, velocity and turning of a body. */
   state(body, frame) {
-    const at = (/** @type {number} */ i) => this.reel.numbers[i].at(frame), { place, velocity, angle, spin } = body;
+    const at = (/** @type {number} */ i) => this.reel.numbers[i].at(frame),
+      { place, velocity, angle, spin } = body;
     const v = velocity.map(at);
     return {
       place: place.map(at),
       velocity: v,
       speed: Math.hypot(...v),
-      angle: angle === undefined ? undefined : at(angle) * 180 / Math.PI,
+      angle: angle === undefined ? undefined : (at(angle) * 180) / Math.PI,
       spin: spin === undefined ? undefined : at(spin),
     };
   }
 
   /** Rows of words on a body: what, and its value. */
   rows(body, frame) {
-    const now = this.state(body, frame), list = (/** @type {number[]} */ v) => v.map((x) => numeral(x)).join(", ");
+    const now = this.state(body, frame),
+      list = (/** @type {number[]} */ v) => v.map((x) => numeral(x)).join(", ");
     const rows = [["position", `(${now.place.map((x) => (Math.round(x * 1000) / 1000).toFixed(3).replace("-", "−")).join(", ")}) m`]];
     if (!body.fixed) {
       rows.push(["speed", `${numeral(now.speed)} m/s`], ["velocity", `(${list(now.velocity)}) m/s`]);
