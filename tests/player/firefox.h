@@ -36,7 +36,8 @@ class Firefox : public Browser {
     ::close(told[0]);
     if (number.empty()) throw std::runtime_error("Xvfb has no display");
 
-    const std::string profile = folder + "/firefox";
+    static int count = 0;
+    const std::string profile = folder + "/firefox" + std::to_string(++count);
     std::filesystem::create_directories(profile);
     std::ofstream(profile + "/user.js") << "user_pref('marionette.port', 0);\n"
                                            "user_pref('webgl.force-enabled', true);\n"
@@ -72,7 +73,15 @@ class Firefox : public Browser {
     call("WebDriver:SetWindowRect",
          {{"width", width + int(bars[0])}, {"height", height + int(bars[1])}, {"x", 0}, {"y", 0}});
   }
-  ~Firefox() override { ::close(socket_); }
+  ~Firefox() override {
+    // its own processes end with it
+    try {
+      call("Marionette:Quit", {{"flags", {"eForceQuit"}}});
+    } catch (const std::exception&) {
+      // it is killed then
+    }
+    ::close(socket_);
+  }
 
   void open(const std::string& url) override {
     call("WebDriver:Navigate", {{"url", url}});

@@ -55,7 +55,13 @@ class Player : public Program, public ::testing::WithParamInterface<const char*>
     }
   }
 
+  void TearDown() override {
+    tab_.reset();  // before its folder goes
+    Program::TearDown();
+  }
+
   void start() {
+    tab_.reset();
     if (browser_)
       tab_ = std::make_unique<Tab>(*browser_, folder_.string(), 960, 640);
     else
