@@ -253,7 +253,8 @@ of = ["trunk", "head", "arm[*]", "leg[*]"]
 If the joints do not allow the velocities at the start, impulses between the links correct them. The joints of a chain do not break.
 All this is done by the direct solver, for up to 100 links (30 in space) beside its other bodies. With more links or bodies, or `solver =
 "iterative"`, the links are held by their joints as other bodies are, in the plane and in space: a figure may fall into a pile of hundreds.
-The joints do not drift there either (1e-13 of the room); the motion is then of second order in the step.
+The joints do not drift there either (1e-13 of the room). The free motion has the order of `physics.integrator`; what contacts and
+limits change is of second order in the step.
 
 ## Pieces
 

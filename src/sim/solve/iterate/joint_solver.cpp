@@ -32,7 +32,7 @@ constexpr double kLeastFraction = 1e-3;  // of a way, in it
 constexpr double kPut = 1e-9;            // of the scene's size: how far off joints may stay
 constexpr int kBoundedRounds =
     16;  // an iteration, of rows with bounds among themselves: they begin from nothing
-constexpr double kLocked = 1e-8;  // of a row's own: what it can move once joints have answered
+constexpr double kLocked = 1e-6;  // of a row's own: what it can move once joints have answered
 constexpr double kApart = 1e-9;   // 1/s, of the scene's size: slower at a joint is rounding
 constexpr double kTaut = 1e-8;    // of the scene's size: a rope that is so near its length is taut
 constexpr double kAims = 1e-6;    // of its speed: what a motor may be off it that holds it
