@@ -1,3 +1,4 @@
+#include "sim/force/force_coupling.h"
 #include "sim/force/forces.h"
 
 #include <gtest/gtest.h>

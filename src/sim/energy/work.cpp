@@ -39,7 +39,7 @@ template <int D>
 void WorkBooks<D>::close(State<D>& state, double t, double h) {
   if (!any_ || !(h > 0)) return;
   const int n = int(state.x.size()), still = n - int(state.turn.size());
-  if (forces_.all_fly()) {
+  if (forces_.flying().all()) {
     const std::size_t size = std::size_t(D * n);
     flat_.resize(4 * size);
     double *const x = flat_.data(), *const none = x + size, *const v = none + size, *const rates = v + size;
@@ -49,11 +49,15 @@ void WorkBooks<D>::close(State<D>& state, double t, double h) {
       const double r = 1 - s, a = r * r * (1 + 2 * s), b = s * s * (3 - 2 * s), c = h * s * r * r,
                    e = h * s * s * r;
       const double p = 6 * s * r / h, q = r * (1 - 3 * s), w = s * (3 * s - 2);
-      for (std::size_t i = 0; i < size; ++i) {
-        x[i] = a * x0[i] + b * x1[i] + c * v0[i] - e * v1[i];
-        v[i] = p * (x1[i] - x0[i]) + q * v0[i] + w * v1[i];
+      for (int axis = 0; axis < D; ++axis) {
+        double *const places = x + axis * n, *const speeds = v + axis * n;
+        for (int k = 0; k < n; ++k) {
+          const int i = D * k + axis;
+          places[k] = a * x0[i] + b * x1[i] + c * v0[i] - e * v1[i];
+          speeds[k] = p * (x1[i] - x0[i]) + q * v0[i] + w * v1[i];
+        }
       }
-      state.work[0] += 0.5 * h * forces_.accelerate(t + s * h, 0, n, x, none, v, rates);
+      state.work[0] += 0.5 * h * forces_.flying().accelerate(t + s * h, 0, n, x, none, v, rates);
     }
     return;
   }

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/force/force_coupling.h"
+#include "sim/force/force_trouble.h"
 #include "sim/force/formula.h"
 #include "sim/math/elementary.h"
 #include "sim/math/limits.h"
@@ -22,14 +24,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr int kLanes = Program::kLanes;
-constexpr double kFinite = 1e300;
 constexpr double kTwoPi = 6.283185307179586;
-
-std::string brief_number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", x);
-  return text;
-}
 
 template <int D>
 bool offset(const Subject<D>& subject) {
@@ -45,14 +40,9 @@ bool formula_of(const Force<D>& force) {
 
 template <int D>
 Forces<D>::Forces(const Model<D>& model)
-    : model_(model), pushed_(model.bodies.size(), 0), flies_(model.bodies.size(), 0), drives_(model) {
-  const auto mark = [&](const Subject<D>& subject) {
-    if (subject.body >= 0 && !model.bodies[std::size_t(subject.body)].fixed)
-      pushed_[std::size_t(subject.body)] = 1;
-  };
+    : model_(model), pushed_(pushed_by_forces(model)), flying_(model), drives_(model) {
   for (const Force<D>& force : model.forces) {
-    for (const Subject<D>& subject : force.subjects) mark(subject);
-    if (force.center) mark(*force.center);
+    potentials_ = potentials_ || !formula_of(force) || force.formula->potential;
     Active& it = active_.emplace_back();
     it.force = &force;
     if (!force.formula) continue;
@@ -62,152 +52,6 @@ Forces<D>::Forces(const Model<D>& model)
         reads_angle_ || (force.on == Force<D>::On::each && force.formula->force.reads(each_slot::angle));
   }
   lanes_.resize(std::size_t(kLanes) * 16);
-  find_flying();
-}
-
-// which bodies fly, and the forces on them by body
-template <int D>
-void Forces<D>::find_flying() {
-  const auto alone = [](const Force<D>& force) {
-    return force.on == Force<D>::On::each && formula_of(force) &&
-           !(force.center && force.center->body >= 0) && !force.formula->force.reads(each_slot::angle) &&
-           !force.formula->force.reads(each_slot::spin);
-  };
-  flies_ = pushed_;
-  for (const Force<D>& force : model_.forces)
-    potentials_ = potentials_ || !formula_of(force) || force.formula->potential;
-  for (const Force<D>& force : model_.forces) {
-    for (const Subject<D>& subject : force.subjects) {
-      if (!alone(force) || offset(subject)) flies_[std::size_t(subject.body)] = 0;
-    }
-    if (force.center && force.center->body >= 0) flies_[std::size_t(force.center->body)] = 0;
-  }
-  for (std::size_t i = 0; i < flies_.size(); ++i) {
-    if (model_.bodies[i].linked || model_.bodies[i].ground_drag != 0) flies_[i] = 0;
-  }
-  for (const Spring<D>& spring : model_.springs) {
-    for (const int body : {spring.a.body, spring.b.body})
-      if (body >= 0) flies_[std::size_t(body)] = 0;
-  }
-  for (const Force<D>& force : model_.forces) {
-    if (!alone(force)) continue;
-    std::vector<const Subject<D>*> all;
-    for (const Subject<D>& subject : force.subjects) {
-      if (flies_[std::size_t(subject.body)]) all.push_back(&subject);
-    }
-    if (all.empty()) continue;
-    std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->body < b->body; });
-    Flying& it =
-        flying_.emplace_back(Flying{&force, {}, {}, Evaluation(force.formula->force), {}, {}, false});
-    it.fixed.resize(16);
-    for (int slot = 0; slot < each_slot::time; ++slot)
-      it.reads[std::size_t(slot)] = force.formula->force.reads(slot);
-    it.booked = !force.formula->potential && force.formula->works;
-    for (const Subject<D>* subject : all) {
-      it.bodies.push_back(subject->body);
-      it.fixed[each_slot::mass].push_back(subject->mass),
-          it.fixed[each_slot::charge].push_back(subject->charge);
-      it.fixed[each_slot::copy].push_back(subject->copy), it.fixed[each_slot::drag].push_back(subject->drag);
-      it.fixed[each_slot::quadratic_drag].push_back(subject->quadratic_drag);
-    }
-    // a product with 1/m is the quotient to the bit where 1/m is exact
-    const std::vector<double>& masses = it.fixed[each_slot::mass];
-    int exponent = 0;
-    if (std::all_of(masses.begin(), masses.end(), [&](double m) { return std::frexp(m, &exponent) == 0.5; }))
-      for (const double m : masses) it.inverse.push_back(1 / m);
-  }
-  all_fly_ = any();
-  bool drag = false;
-  for (std::size_t i = 0; i < flies_.size(); ++i) {
-    const Body<D>& body = model_.bodies[i];
-    all_fly_ = all_fly_ && !body.turns() && !body.linked && (body.fixed || !pushed_[i] || flies_[i]);
-    drag = drag || body.drag != 0;
-  }
-  if (!drag) return;
-  for (const Body<D>& body : model_.bodies) drags_.push_back(body.fixed ? 0 : body.drag);
-}
-
-template <int D>
-double Forces<D>::accelerate(double t, int first, int count, const double* x, const double* d,
-                             const double* v, double* rates) {
-  using namespace each_slot;
-  double power = 0;
-  if (!drags_.empty()) {
-    for (int i = 0; i < count; ++i) {
-      double v2 = 0;
-      for (int axis = 0; axis < D; ++axis) v2 += v[D * i + axis] * v[D * i + axis];
-      power -= drags_[std::size_t(first + i)] * v2;
-    }
-  }
-  for (Flying& it : flying_) {
-    const auto begin = std::lower_bound(it.bodies.begin(), it.bodies.end(), first);
-    const auto end = std::lower_bound(begin, it.bodies.end(), first + count);
-    if (begin == end) continue;
-    const Force<D>& force = *it.force;
-    std::array<double, std::size_t(each_slot::end)> uniform{};
-    uniform[each_slot::time] = t;
-    if (force.center) {
-      for (int k = 0; k < D; ++k) uniform[std::size_t(center + k)] = force.center->local[k];
-    }
-    it.evaluation.begin(uniform);
-    std::array<const double*, std::size_t(each_slot::time)> inputs{};
-    for (int at = int(begin - it.bodies.begin()), last = int(end - it.bodies.begin()); at < last;
-         at += kLanes) {
-      const int n = std::min(kLanes, last - at);
-      const int* const bodies = it.bodies.data() + at;
-      // side by side they are read and written without looking
-      const bool dense = bodies[n - 1] - bodies[0] == n - 1;
-      const int from = D * (bodies[0] - first);
-      const auto each_lane = [&](auto&& act) {
-        if (dense) {
-          for (int k = 0; k < n; ++k) act(k, from + D * k);
-        } else {
-          for (int k = 0; k < n; ++k) act(k, D * (bodies[k] - first));
-        }
-      };
-      for (const int slot : {int(mass), int(charge), int(copy), int(drag), int(quadratic_drag)})
-        inputs[std::size_t(slot)] = it.fixed[std::size_t(slot)].data() + at;
-      for (int axis = 0; axis < D; ++axis) {
-        double* const place = lanes_.data() + std::size_t(each_slot::x + axis) * kLanes;
-        double* const speed = lanes_.data() + std::size_t(vx + axis) * kLanes;
-        if (it.reads[std::size_t(each_slot::x + axis)])
-          each_lane([&](int k, int i) { place[k] = x[i + axis] + d[i + axis]; });
-        if (it.reads[std::size_t(vx + axis)] || it.booked)
-          each_lane([&](int k, int i) { speed[k] = v[i + axis]; });
-        inputs[std::size_t(each_slot::x + axis)] = place, inputs[std::size_t(vx + axis)] = speed;
-      }
-      it.evaluation.run(n, inputs);
-      const double* const masses = inputs[mass];
-      const double* const inverse = it.inverse.empty() ? nullptr : it.inverse.data() + at;
-      std::int64_t finite = 0;
-      double given[4] = {};
-      for (int axis = 0; axis < D; ++axis) {
-        const double* const f = it.evaluation.output(axis);
-        finite |= within(f, n, kFinite);
-        if (inverse)
-          each_lane([&](int k, int i) { rates[i + axis] += f[k] * inverse[k]; });
-        else
-          each_lane([&](int k, int i) { rates[i + axis] += f[k] / masses[k]; });
-        if (!it.booked) continue;
-        const double* const speed = inputs[std::size_t(vx + axis)];
-        for (int k = 0; k + 4 <= n; k += 4) {
-          for (int lane = 0; lane < 4; ++lane) given[lane] += f[k + lane] * speed[k + lane];
-        }
-        for (int k = n & ~3; k < n; ++k) given[0] += f[k] * speed[k];
-      }
-      power += (given[0] + given[1]) + (given[2] + given[3]);
-      if (finite >= 0) continue;
-      for (int k = 0; k < n; ++k) {
-        Vec<D> f, place;
-        for (int axis = 0; axis < D; ++axis) {
-          const int i = D * (bodies[k] - first) + axis;
-          f[axis] = it.evaluation.output(axis)[k], place[axis] = x[i] + d[i];
-        }
-        if (within(f.data(), D, kFinite) < 0) refuse(force, bodies[k], t, f, place);
-      }
-    }
-  }
-  return power;
 }
 
 template <int D>
@@ -321,21 +165,6 @@ BodyMotion<D> Forces<D>::point(const Subject<D>& subject, int member,
   return at;
 }
 
-template <int D>
-void Forces<D>::refuse(const Force<D>& of, int body, double t, const Vec<D>& force,
-                       const Vec<D>& place) const {
-  const std::string& name = model_.bodies[std::size_t(std::max(0, body))].name;
-  Trouble trouble;
-  trouble.time = t;
-  trouble.body = name.empty() ? "body " + std::to_string(body) : name;
-  trouble.quantity = "force";
-  trouble.what = force.array().isNaN().any() ? "is not a number" : "is infinite";
-  trouble.likely = of.name + " at ";
-  for (int k = 0; k < D; ++k)
-    trouble.likely += (k > 0 ? ", " : "") + std::string(1, "xyz"[k]) + " = " + brief_number(place[k]);
-  throw NotFinite(std::move(trouble));
-}
-
 // --- on each body
 
 template <int D>
@@ -392,13 +221,14 @@ void Forces<D>::each_force(Active& it, double t, const std::vector<BodyMotion<D>
       continue;
     }
     std::int64_t finite = 0;
-    for (int axis = 0; axis < D; ++axis) finite |= within(out[axis], count, kFinite);
+    for (int axis = 0; axis < D; ++axis) finite |= within(out[axis], count, kLargestForce);
     for (int k = 0; k < count; ++k) {
       Vec<D> f;
       for (int axis = 0; axis < D; ++axis) f[axis] = out[axis][k];
-      if (finite < 0 && within(f.data(), D, kFinite) < 0) {
+      if (finite < 0 && within(f.data(), D, kLargestForce) < 0) {
         const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(first + k)])];
-        refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(first + k)], motions).x);
+        refuse_force(model_, force, subject.body, t, f,
+                     point(subject, it.members[std::size_t(first + k)], motions).x);
       }
       found(first + k, f, 0);
       opposite -= f;
@@ -446,10 +276,11 @@ void Forces<D>::each_pair(Active& it, double t, const std::vector<BodyMotion<D>>
       }
       Vec<D> f;
       for (int axis = 0; axis < D; ++axis) f[axis] = out[axis][k];
-      if (within(f.data(), D, kFinite) < 0) {
+      if (within(f.data(), D, kLargestForce) < 0) {
         const int which = second(k);
         const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(which)])];
-        refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(which)], motions).x);
+        refuse_force(model_, force, subject.body, t, f,
+                     point(subject, it.members[std::size_t(which)], motions).x);
       }
       found(first(k), Vec<D>(-f), 0), found(second(k), f, 0);
     }
@@ -562,9 +393,9 @@ void Forces<D>::attract(Active& it, double t, const std::vector<BodyMotion<D>>& 
     Vec<D> f;
     for (int axis = 0; axis < D; ++axis)
       f[axis] = sums[axis][i] + ((own[axis][0] + own[axis][1]) + (own[axis][2] + own[axis][3]));
-    if (within(f.data(), D, kFinite) < 0) {
+    if (within(f.data(), D, kLargestForce) < 0) {
       const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(i)])];
-      refuse(force, subject.body, t, f, point(subject, it.members[std::size_t(i)], motions).x);
+      refuse_force(model_, force, subject.body, t, f, point(subject, it.members[std::size_t(i)], motions).x);
     }
     found(i, f, 0);
   }
@@ -719,48 +550,9 @@ void stand(const State<D>& state, std::vector<BodyMotion<D>>& motions) {
   for (int i = 0; i < int(state.x.size()); ++i) motions[std::size_t(i)] = body_motion(state, i);
 }
 
-template <int D>
-std::vector<std::vector<int>> tied_by_forces(const Model<D>& model) {
-  std::vector<std::vector<int>> all;
-  for (const Force<D>& force : model.forces) {
-    const bool centered = force.center && force.center->body >= 0;
-    if (force.on == Force<D>::On::each && !centered) continue;
-    if (force.on == Force<D>::On::between) {
-      for (std::size_t k = 0; k + 1 < force.subjects.size(); k += 2)
-        all.push_back({force.subjects[k].body, force.subjects[k + 1].body});
-      continue;
-    }
-    std::vector<int>& together = all.emplace_back();
-    if (centered) together.push_back(force.center->body);
-    for (const Subject<D>& subject : force.subjects) together.push_back(subject.body);
-  }
-  return all;
-}
-
-template <int D>
-std::vector<int> restless_by_forces(const Model<D>& model, bool known) {
-  std::vector<int> all;
-  for (const Force<D>& force : model.forces) {
-    const bool alone = force.on == Force<D>::On::each && !(force.center && force.center->body >= 0);
-    const bool timed = force.formula && force.formula->timed,
-               resting = !force.formula || force.formula->resting;
-    if (alone && !timed && (known || !resting)) continue;
-    for (const Subject<D>& subject : force.subjects) all.push_back(subject.body);
-    if (force.center && force.center->body >= 0) all.push_back(force.center->body);
-  }
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  std::erase_if(all, [&](int body) { return model.bodies[std::size_t(body)].fixed; });
-  return all;
-}
-
 template class Forces<2>;
 template class Forces<3>;
 template void stand<2>(const State<2>&, std::vector<BodyMotion<2>>&);
 template void stand<3>(const State<3>&, std::vector<BodyMotion<3>>&);
-template std::vector<std::vector<int>> tied_by_forces<2>(const Model<2>&);
-template std::vector<std::vector<int>> tied_by_forces<3>(const Model<3>&);
-template std::vector<int> restless_by_forces<2>(const Model<2>&, bool);
-template std::vector<int> restless_by_forces<3>(const Model<3>&, bool);
 
 }  // namespace obscura::sim

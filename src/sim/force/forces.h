@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/force/flying_forces.h"
 #include "sim/math/spatial.h"
 #include "sim/model/drives.h"
 #include "sim/model/stance.h"
@@ -24,17 +25,11 @@ class Forces {
   /// Whether any force may ever push body `body`.
   bool push(int body) const { return pushed_[std::size_t(body)] != 0; }
 
-  /// Whether all forces on a body act on it alone and ask for its place and velocity only: then accelerate()
-  /// serves it.
-  bool flies(int body) const { return flies_[std::size_t(body)] != 0; }
-  /// Adds to `rates` the accelerations at time t of `count` bodies from body `first` on, of those that fly: a
-  /// number an axis, one body after another. They are displaced by d from x. Answers the power of what is
-  /// booked, drag with it, W.
-  double accelerate(double t, int first, int count, const double* x, const double* d, const double* v,
-                    double* rates);
-  /// Whether any force has a potential; whether all that moves flies.
+  /// Those on bodies on which nothing else acts.
+  FlyingForces<D>& flying() { return flying_; }
+  const FlyingForces<D>& flying() const { return flying_; }
+  /// Whether any force has a potential.
   bool potentials() const { return potentials_; }
-  bool all_fly() const { return all_fly_; }
 
   /// Sets the numbering of bodies: `member` is the index of each body in the `motions` of apply(); negative:
   /// the body stands still where `state` has it.
@@ -99,26 +94,10 @@ class Forces {
              std::vector<Wrench<D>>& wrenches);
   template <class Found>
   void all(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
-  [[noreturn]] void refuse(const Force<D>& of, int body, double t, const Vec<D>& force,
-                           const Vec<D>& place) const;
-  void find_flying();
-
-  // a force on bodies that fly, by body
-  struct Flying {
-    const Force<D>* force;
-    std::vector<int> bodies;  // ascending
-    std::vector<std::vector<double>> fixed;
-    Evaluation evaluation;
-    std::array<bool, 16> reads{};
-    std::vector<double> inverse;  // of the masses, 1/kg, where all are exact; else none
-    bool booked = false;          // its work is
-  };
-
   const Model<D>& model_;
-  std::vector<char> pushed_, flies_;
-  std::vector<Flying> flying_;
-  std::vector<double> drags_;  // N s/m, one a body; empty where there is none
-  bool potentials_ = false, all_fly_ = false;
+  std::vector<char> pushed_;
+  FlyingForces<D> flying_;
+  bool potentials_ = false;
   std::vector<Active> active_;
   std::vector<BodyMotion<D>> still_;
   Drives<D> drives_;
@@ -134,14 +113,5 @@ class Forces {
 /// How all bodies of a state stand.
 template <int D>
 void stand(const State<D>& state, std::vector<BodyMotion<D>>& motions);
-
-/// Which bodies each force ties together: those of pairs, and all with a body at the centre of theirs.
-template <int D>
-std::vector<std::vector<int>> tied_by_forces(const Model<D>& model);
-
-/// Bodies that must not be put to rest: a force acts on them that changes with the time or with other bodies,
-/// or, where the solver does not know of forces at all, any that acts on what does not move.
-template <int D>
-std::vector<int> restless_by_forces(const Model<D>& model, bool known);
 
 }  // namespace obscura::sim

@@ -31,6 +31,7 @@ ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Pat
       chains_(model),
       blasts_(model),
       forces_(model),
+      forced_flight_(model, forces_.flying()),
       tips_(model.bodies) {
   member_.assign(model.bodies.size(), -1);
   const std::size_t counts[] = {model.bodies.size(), model.springs.size(), model.chains.size()};
@@ -68,7 +69,7 @@ void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake, std::span
     bool same = true;
     for (int body = 0; same && body < int(member_.size()); ++body) {
       const bool asleep = model_.bodies[body].fixed || (!state.frozen.empty() && state.frozen[body]);
-      const bool takes = forces_.push(body) && !asleep && !(leaves_flying_ && forces_.flies(body));
+      const bool takes = forces_.push(body) && !asleep && !(leaves_flying_ && forces_.flying().flies(body));
       same = takes == (member_[body] >= 0);
     }
     if (same) return;
@@ -84,7 +85,7 @@ void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake, std::span
   for (const Grip<D>& grip : state.grips) mark(grip.body);
   for (int body = 0; body < int(member_.size()); ++body) {
     const bool pushed = model_.bodies[body].ground_drag != 0 ||
-                        (forces_.push(body) && !(leaves_flying_ && forces_.flies(body)));
+                        (forces_.push(body) && !(leaves_flying_ && forces_.flying().flies(body)));
     if (pushed && (state.frozen.empty() || !state.frozen[body])) mark(body);
   }
   for (const int body : also) {
@@ -177,7 +178,7 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
   braked_.reserve(dragged_.size());
 
   flying_ = turning_ == 0 && ties_.empty() && joint_ties_.empty() && dragged_.empty() &&
-            chains_.size() == 0 && forces_.all_fly() && !books_;
+            chains_.size() == 0 && forces_.flying().all() && !books_;
 
   const std::size_t n = std::size_t(chain_start() + chains_.size() + int(books_));
   x_.resize(bodies_.size()), stances_.assign(all_.size(), {}), turn_.resize(turning_), base_.resize(turning_);
@@ -281,21 +282,13 @@ void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, d
 // bodies that nothing but forces on each alone acts on, in blocks that stay in the nearest cache
 template <int D>
 void ForwardDynamics<D>::fly(Integrate* integrate, State<D>& state, double t, double h, Stages& stages) {
-  constexpr int kBlock = 128;
   const int n = int(bodies_.size());
   for (int first = 0, count; first < n; first += count) {
     count = 1;
-    while (count < kBlock && first + count < n && bodies_[first + count] == bodies_[first] + count) ++count;
-    const std::size_t size = std::size_t(D) * std::size_t(count);
-    const std::span<double> d(d_.data(), size), v(state.v[bodies_[first]].data(), size);
-    std::fill(d.begin(), d.end(), 0.0);
-    double* const x = state.x[bodies_[first]].data();
-    const std::span<const double> gravity(gravity_), drag(drag_);
-    ForcedTranslation<D> flight(gravity.subspan(std::size_t(D * first), size),
-                                drag.empty() ? drag : drag.subspan(std::size_t(D * first), size), forces_,
-                                bodies_[first], x);
-    integrate(flight, t, h, d, v, stages);
-    for (std::size_t i = 0; i < size; ++i) x[i] += d[i];
+    while (count < ForcedFlight<D>::kMost && first + count < n &&
+           bodies_[first + count] == bodies_[first] + count)
+      ++count;
+    forced_flight_.step(integrate, state, bodies_[first], count, t, h, stages);
   }
 }
 

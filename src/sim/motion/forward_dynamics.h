@@ -9,6 +9,7 @@
 #include "sim/model/drives.h"
 #include "sim/model/path.h"
 #include "sim/model/stance.h"
+#include "sim/motion/forced_flight.h"
 #include "sim/motion/integrator.h"
 #include "sim/multibody/chains.h"
 
@@ -155,6 +156,7 @@ class ForwardDynamics final : public System {
   bool only_forces_ = false, flying_ = false;  // nothing else of the model ties; all that is gathered flies
   Blasts<D> blasts_;
   Forces<D> forces_;
+  ForcedFlight<D> forced_flight_;
   std::vector<Wrench<D>> pushes_;  // of forces_, one a member
   SupportVertices<D> tips_;
   std::vector<int> acting_;             // explosions that act

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "sim/force/forces.h"
 #include "sim/motion/integrator.h"
 
 namespace obscura::sim {
@@ -22,37 +21,6 @@ class FreeTranslation final : public System {
 
  private:
   std::span<const double> gravity_, drag_;
-};
-
-/// The same under forces on each of them alone (Forces::flies), for `count` bodies from body `first` on at x.
-template <int D>
-class ForcedTranslation final : public System {
- public:
-  ForcedTranslation(std::span<const double> gravity, std::span<const double> drag, Forces<D>& forces,
-                    int first, const double* x)
-      : flight_(gravity, drag), forces_(forces), first_(first), x_(x) {}
-
-  void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
-             std::span<double> v_rate) override {
-    flight_.rates(t, d, v, d_rate, v_rate);
-    const double power =
-        forces_.accelerate(t, first_, int(v.size()) / D, x_, d.data(), v.data(), v_rate.data());
-    if (stage_ < 4) powers_[stage_++] = power;
-  }
-
-  /// What the forces that are booked did in a step of h (s) by this scheme, J: its own quadrature.
-  double work(Integrator integrator, double h) const {
-    const double* const p = powers_;
-    if (integrator == Integrator::rk4) return h * (p[0] + 2 * (p[1] + p[2]) + p[3]) / 6;
-    return h * p[integrator == Integrator::midpoint ? 1 : 0];
-  }
-
- private:
-  FreeTranslation flight_;
-  Forces<D>& forces_;
-  int first_, stage_ = 0;
-  const double* x_;
-  double powers_[4] = {};
 };
 
 /// Free turning, see sim/math/lie_step.h: in the plane the spin stays, in space it wobbles.

@@ -15,7 +15,7 @@
 #include "sim/collide/rails.h"
 #include "sim/constraint/material.h"
 #include "sim/force/explosion.h"
-#include "sim/force/forces.h"
+#include "sim/force/force_coupling.h"
 #include "sim/model/stance.h"
 #include "sim/shape/shape.h"
 

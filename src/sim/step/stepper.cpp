@@ -26,7 +26,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kBlock = 128;  // bodies: the twelve rows of a Runge-Kutta step take 24 KiB
+// bodies: the twelve rows of a Runge-Kutta step take 24 KiB
+constexpr int kBlock = ForcedFlight<2>::kMost;
 
 template <int D>
 std::vector<Path<D>> paths(const Model<D>& model) {
@@ -52,6 +53,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       tied_(model, paths_),
       work_(model),
       forces_(model),
+      forced_flight_(model, forces_.flying()),
       springs_(!model.springs.empty() || !model.mice.empty()) {
   for (const Joint<D>& joint : model.joints) springs_ = springs_ || joint.coil.has_value();
   // so do bodies that are moved, and a potential that changes with the time
@@ -344,25 +346,22 @@ template <int D>
 bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
   const std::size_t n = std::size_t(D) * block.count;
   double* const x = state.x[block.first].data();
-  const std::span<double> v(state.v[block.first].data(), n), d(d_.data(), n);
-  const auto drag =
-      drag_.empty() ? std::span<const double>() : std::span<const double>(drag_).subspan(D * block.first, n);
-  std::fill(d.begin(), d.end(), 0.0);
+  const std::span<double> v(state.v[block.first].data(), n);
   if (forces_.any()) {
-    ForcedTranslation<D> flight(gravity_, drag, forces_, block.first, x);
-    integrate_(flight, t, h, d, v, stages_);
-    if (books_by_stage_) state.work[0] += flight.work(model_.integrator, h);
+    const double work = forced_flight_.step(integrate_, state, block.first, block.count, t, h, stages_);
+    if (books_by_stage_) state.work[0] += work;
   } else {
+    const auto drag = drag_.empty() ? std::span<const double>()
+                                    : std::span<const double>(drag_).subspan(D * block.first, n);
+    const std::span<double> d(d_.data(), n);
+    std::fill(d.begin(), d.end(), 0.0);
     FreeTranslation flight(gravity_, drag);
     integrate_(flight, t, h, d, v, stages_);
+    for (std::size_t i = 0; i < n; ++i) x[i] += d[i];
   }
 
   const double limit = kFarthest * model_.scale;
-  std::int64_t sound = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    x[i] += d[i];
-    sound |= within(x[i], limit) | within(v[i], limit);
-  }
+  const std::int64_t sound = within(x, int(n), limit) | within(v.data(), int(n), limit);
   handout_.look(state, block.first, block.count, suspects_);
   return sound >= 0;
 }

@@ -9,6 +9,7 @@
 #include "sim/force/explosion.h"
 #include "sim/handout/handout.h"
 #include "sim/model/script.h"
+#include "sim/motion/forced_flight.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/motion/integrator.h"
 #include "sim/solve/contact_solver.h"
@@ -101,7 +102,8 @@ class Stepper {
   DivergenceMonitor<D> divergence_;
   ForwardDynamics<D> tied_;
   WorkBooks<D> work_;
-  Forces<D> forces_;          // on bodies that fly
+  Forces<D> forces_;  // on bodies that fly
+  ForcedFlight<D> forced_flight_;
   std::vector<int> gripped_;  // by each mouse, as the plan knows
   bool planned_ = false, blasting_ = false, books_by_stage_ = false;
 

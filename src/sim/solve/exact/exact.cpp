@@ -14,6 +14,7 @@
 #include <numeric>
 
 #include "sim/energy/energy.h"
+#include "sim/force/force_coupling.h"
 #include "sim/solve/exact/couples.h"
 
 namespace obscura::sim {

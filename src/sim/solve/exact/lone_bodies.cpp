@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "sim/energy/energy.h"
-#include "sim/force/forces.h"
+#include "sim/force/force_coupling.h"
 
 namespace obscura::sim {
 
