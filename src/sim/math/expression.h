@@ -9,44 +9,12 @@
 #include <variant>
 #include <vector>
 
+#include "sim/math/operation.h"
+
 namespace obscura::sim {
 
 // Formulas from text: read into a graph, differentiated there, and made a flat program that is evaluated for
 // many bodies at a time. All functions are our own (sim/math/elementary.h): the same bits on every machine.
-
-/// What a node of a graph does. Comparisons give 1 or 0.
-enum class Operation : std::uint8_t {
-  constant,
-  variable,
-  add,
-  subtract,
-  multiply,
-  divide,
-  negate,
-  power,
-  square_root,
-  exponential,
-  logarithm,
-  sine,
-  cosine,
-  tangent,
-  arc_sine,
-  arc_cosine,
-  arc_tangent,
-  hyperbolic_sine,
-  hyperbolic_cosine,
-  hyperbolic_tangent,
-  absolute,
-  sign,
-  floor,
-  minimum,
-  maximum,
-  less,
-  less_equal,
-  equal,
-  not_equal,
-  choose,  // a != 0 ? b : c
-};
 
 /// A formula, or several: nodes in an order in which each follows those that it reads. Equal nodes are one,
 /// and operations on numbers are done at once.
