@@ -52,6 +52,14 @@ class Events {
     double begun, ended;
   };
 
+  static constexpr double kSameInstant = 1e-9;  // of a step: what is as near happens together
+  static constexpr int kNarrowings = 60;        // of a bracket, by halves
+
+  // whether a joint, or a bond as -1 - bond, is broken
+  static bool broken(const State<D>& state, int of) {
+    if (of < 0) return !state.intact.empty() && !state.intact[std::size_t(-1 - of)];
+    return std::size_t(of) < state.broken.size() && state.broken[std::size_t(of)];
+  }
   int slot(int when, int which) const { return slots_[std::size_t(when)] + which; }
   double seconds(double fraction) const;
   double time_at(const State<D>& state, double fraction) const;
