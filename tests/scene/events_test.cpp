@@ -192,6 +192,38 @@ TEST(Events, EachOfManyTouchesInAStepCounts) {
   EXPECT_EQ(many, 10u);
 }
 
+// A rolls slowly upon b, and c drives b away, all in one step of a sixtieth: the touch of a and b is neither
+// there at its end nor an impact. By the iterative solver, too, in both dimensions.
+TEST(Events, ATouchThatBeginsAndEndsWithinAStepIsSeen) {
+  for (const bool space : {false, true}) {
+    for (const char* solver : {"direct", "iterative"}) {
+      const double h = 1.0 / 60, slow = 0.05, fast = 10, along = -0.3, up = std::sqrt(1 - along * along);
+      const auto ball = [&](const char* name, double x, double y, double vx, double vy) {
+        return fmt::format(
+            "[[ball]]\nname = \"{}\"\nradius = 0.1\nposition = {}\nvelocity = {}\nfriction = 0\nelasticity = "
+            "0\n",
+            name, spot(space, x, y), spot(space, vx, vy));
+      };
+      const double far = 0.2 + 0.75 * h * fast;
+      const std::string text =
+          fmt::format(
+              "duration = 1\n[room]\nsize = {}\nfriction = 0\n[physics]\nrate = 60\nsolver = \"{}\"\n",
+              space ? "[8, 3, 2]" : "[8, 3]", solver) +
+          ball("a", 1.8 - 0.3 * h * slow, 0.1, slow, 0) + ball("b", 2, 0.1, 0, 0) +
+          ball("c", 2 + along * far, 0.1 + up * far, -along * fast, -up * fast) +
+          when("touches = [\"a\", \"b\"]", "{ mark = \"met\" }") +
+          when("leaves = [\"a\", \"b\"]", "{ mark = \"left\" }") +
+          when("touches = [\"b\", \"c\"]", "{ mark = \"struck\" }");
+      std::vector<std::string> marks;
+      for (const sim::RunEvent& event : events_until(text, h)) {
+        EXPECT_NEAR(sim::value(event.time), h, 1e-12);
+        marks.insert(marks.end(), event.marks.begin(), event.marks.end());
+      }
+      EXPECT_THAT(marks, ElementsAre("met", "left", "struck")) << solver << space;
+    }
+  }
+}
+
 // A bounce touches and leaves at sqrt(2 h / g), and again 2 e v / g later.
 TEST(Events, ABounceTouchesAndLeaves) {
   for (const bool space : {false, true}) {

@@ -27,6 +27,7 @@ constexpr double kChecks = 60;          // a second
 constexpr double kExact = 1e-10;        // of g: what exact forces may leave
 constexpr double kNear = 1e-3;          // of the thinner body: no wider a gap joins
 constexpr std::size_t kMany = 500;      // contacts: forces of more take long, too
+constexpr double kOverlaps = 2e-9;      // of a body's bounding radius: no rounding
 constexpr double kClosed = 1e-6;        // of it: no wider a gap bears what rests
 constexpr double kRounding = 1 + 1e-6;  // of a span of time
 
@@ -242,6 +243,12 @@ bool Sleep<D>::at_start(State<D>& state, std::span<Contact<D>> contacts) {
   }
   disturb_pulled(state);
   for (const int body : restless_at_start_) disturb(body);
+  // those that overlap are pushed apart first
+  for (const Contact<D>& contact : contacts) {
+    if (exact_ || !(contact.gap < -kOverlaps * bounding_radius_[contact.key.a])) continue;
+    disturb(contact.key.a);
+    if (contact.key.b >= 0) disturb(contact.key.b);
+  }
   for (const Joint<D>& joint : model_.joints) joint.each_body([&](int body) { disturb(body); });
   list_candidates(state, contacts);
   bool fell = false;

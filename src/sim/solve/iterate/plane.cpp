@@ -226,7 +226,8 @@ void PlaneIterative<D>::move_free(StepPart<D> part) {
 template <int D>
 void PlaneIterative<D>::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
-                part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap_};
+                part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_,
+                at_start(part.state) ? kAllowedAtStart : allowed_overlap_};
   deep_ = plane::warm_start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), v_.data(),
                             constants_, slow_, fast_);
 }
@@ -272,6 +273,24 @@ void PlaneIterative<D>::iterate(StepPart<D> part) {
                       last ? part.state.contacts.data() : nullptr);
   if (!carries_.empty()) book_contacts(part);
   impacts_.record(pairs_.all(), part.state.contacts, batches_);
+  if (notes_.any()) note_touches(part);
+}
+
+// which watched pairs bear or are struck in a substep
+template <int D>
+void PlaneIterative<D>::note_touches(StepPart<D> part) {
+  if (part.substep == 0) notes_.begin(part.state);
+  const double begun = part.substep * part.h, ended = begun + part.h;
+  for (const Pair& pair : pairs_.all()) {
+    if (pair.slot < 0 || !notes_.watches(pair.a, pair.b)) continue;
+    const ContactBatch& g = batches_[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    bool bears = false;
+    for (int k = 0; k < pair.touches; ++k)
+      bears = bears || (g.struck[k] >> lane & 1) || g.p[k][lane] != 0 || g.q[k][lane] != 0;
+    if (bears) notes_.note(pair.a, pair.b, begun, ended);
+  }
+  if (part.substep + 1 == substeps_) notes_.end();
 }
 
 // More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
@@ -691,7 +710,8 @@ void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
       push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
     }
     plane::project(batches_.data(), projections_.data(), int(batches_.size()), poses_.data(), push_.data(),
-                   corrected_share(span_), allowed_overlap_);
+                   at_start(state) ? 1 : corrected_share(span_),
+                   at_start(state) ? kAllowedAtStart : allowed_overlap_);
   }
   for (std::size_t i = 0; i < corrections_.size(); ++i) corrections_[i] = {push_[i].x, push_[i].y};
 }

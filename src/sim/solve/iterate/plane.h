@@ -17,6 +17,7 @@
 #include "sim/solve/iterate/plane_impacts.h"
 #include "sim/solve/iterate/plane_pair_cache.h"
 #include "sim/solve/iterate/substeps.h"
+#include "sim/solve/iterate/touch_notes.h"
 #include "sim/solve/sleep.h"
 
 namespace obscura::sim {
@@ -33,6 +34,7 @@ class PlaneIterative final : public ContactSolver<D> {
   explicit PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   void begin_anew() override { anew_ = true; }
+  void watch(Course<D>* course) override { notes_.watch(course); }
   bool collide(StepPart<D> step) override;
   void wake(StepPart<D> step) override;
   int substeps() const override { return substeps_; }
@@ -55,11 +57,14 @@ class PlaneIterative final : public ContactSolver<D> {
   static constexpr double kSight = 0.5;
 
   bool gather(const State<D>& state);
+  // whether overlaps are those that the scene has, too small for it to refuse them
+  bool at_start(const State<D>& state) const { return state.step == 0 && model_.overlap == Overlap::refuse; }
   bool first(StepPart<D> part) const { return part.substep == 0 && part.state.step % every_ == 0; }
   double share(StepPart<D> part) const;
   void renew_pairs(StepPart<D> part);
   bool strained(const State<D>& state) const;
   void report_pair(const plane::Pair& pair, State<D>& state) const;
+  void note_touches(StepPart<D> part);
   void build_batches(const State<D>& state, bool known);
   void place_contacts(State<D>& state, bool all) const;
   void clear_sleeping(const State<D>& state);
@@ -118,6 +123,7 @@ class PlaneIterative final : public ContactSolver<D> {
   std::int64_t every_ = 1;  // steps between two pair searches
   double span_ = 0;         // the same, s
   AllowedOverlap allowed_overlap_;
+  TouchNotes<D> notes_;
   int substeps_ = 1;                  // of this step
   double closing_rate_ = 0;           // at the start of the step, in widths, 1/s
   bool anew_ = false;                 // the next step searches for pairs, even if no search is due

@@ -165,7 +165,7 @@ OBSCURA_INLINE void expand_one(const ContactBatch& g, const Pose* poses, Rows& o
 
 template <class V>
 OBSCURA_INLINE V allowed_depth(const ContactBatch& g, int lane, const AllowedOverlap& let) {
-  return let.kLeast * load<V>(g.far + lane) + let.share / load<V>(g.per_width + lane);
+  return let.least * load<V>(g.far + lane) + let.share / load<V>(g.per_width + lane);
 }
 
 template <class V>

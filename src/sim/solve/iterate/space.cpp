@@ -84,6 +84,7 @@ void SpaceIterative<D>::wake(StepPart<D> step) {
   closing_rate_ = closing_rate(step.h);
   substeps_ = substeps_for(closing_rate_, step.h);
   impulses_.clear(), corrected_ = false;
+  notes_.begin(step.state);
 }
 
 // how fast those close that touch, or may within h s: the most, in widths of the narrower body, 1/s
@@ -176,7 +177,17 @@ void SpaceIterative<D>::project(StepPart<D> step) {
   correct_overlaps(step.state, step.h);
   if (!joints_.empty()) project_joints(step.state, step.h);
   report_contacts(step.state, step.h);
+  if (notes_.any()) note_touches(step);
   if (step.substep + 1 < substeps_) keep_impulses(step.state);
+}
+
+// which watched pairs bear or are struck in a substep
+template <int D>
+void SpaceIterative<D>::note_touches(StepPart<D> step) {
+  const double begun = step.substep * step.h, ended = begun + step.h;
+  for (const Contact<D>& it : step.state.contacts)
+    if (it.touching != ContactMode::open) notes_.note(it.key.a, it.key.b, begun, ended);
+  if (step.substep + 1 == substeps_) notes_.end();
 }
 
 template <int D>
@@ -670,12 +681,14 @@ void SpaceIterative<D>::begin_corrections() {
 template <int D>
 void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
+  // those that the scene has, too small for it to refuse them
+  const bool at_start = state.step == 0 && model_.overlap == Overlap::refuse;
+  const AllowedOverlap let = at_start ? kAllowedAtStart : allowed_overlap_;
   const auto allowed = [&](const ContactConstraint& touch) {
     const double far = bounding_radius_[touch.a];
-    return allowed_overlap_(touch.b == n ? far : std::max(far, bounding_radius_[touch.b]),
-                            1 / touch.per_width);
+    return let(touch.b == n ? far : std::max(far, bounding_radius_[touch.b]), 1 / touch.per_width);
   };
-  const double share = corrected_share(h);
+  const double share = at_start ? 1 : corrected_share(h);
   some_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
     const ContactConstraint& touch = touches_[i];

@@ -21,6 +21,7 @@
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/space_batches.h"
 #include "sim/solve/iterate/substeps.h"
+#include "sim/solve/iterate/touch_notes.h"
 #include "sim/solve/sleep.h"
 
 namespace obscura::sim {
@@ -34,6 +35,7 @@ class SpaceIterative final : public ContactSolver<D> {
   /// Both are kept by reference.
   SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
+  void watch(sim::Course<D>* course) override { notes_.watch(course); }
   bool collide(StepPart<D> step) override;
   void wake(StepPart<D> step) override;
   int substeps() const override { return substeps_; }
@@ -143,6 +145,7 @@ class SpaceIterative final : public ContactSolver<D> {
   void solve_together();
   void shed_gains();
   double closing_rate(double h) const;
+  void note_touches(StepPart<D> step);
   void keep_impulses(const State<D>& state);
   void add_impulses(State<D>& state) const;
   // an impulse on a, and back on b
@@ -200,6 +203,7 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<double> bounding_radius_, width_;  // of bodies, m
   std::vector<char> round_;
   AllowedOverlap allowed_overlap_;
+  TouchNotes<D> notes_;
   int substeps_ = 1;                  // of this step
   double closing_rate_ = 0;           // as it began, in widths, 1/s
   std::vector<Contact<D>> impulses_;  // of the substeps before

@@ -22,13 +22,16 @@ inline double corrected_share(double time) {
 /// iterations would open some of the contacts that are corrected to zero. An open contact bears nothing until
 /// it closes again, and the heap would creep.
 struct AllowedOverlap {
-  static constexpr double kLeast = 5e-7;  // of the larger bounding radius
-  double share = 0;                       // of the narrower width
+  static constexpr double kLeast = 5e-7;
+  double share = 0;       // of the narrower width
+  double least = kLeast;  // of the larger bounding radius
 
   double operator()(double bounding_radius, double width) const {
-    return kLeast * bounding_radius + share * width;
+    return least * bounding_radius + share * width;
   }
 };
+/// That of the first step, which pushes bodies wholly out of overlaps at the start: only rounding is left.
+inline constexpr AllowedOverlap kAllowedAtStart{0, 1e-9};
 template <int D>
 AllowedOverlap allowed_overlap(const Model<D>& model) {
   constexpr double kMost = 1e-3;
