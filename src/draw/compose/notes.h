@@ -1,0 +1,89 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "draw/compose/annotate.h"
+#include "draw/page/placing.h"
+#include "draw/picture/formula.h"
+#include "draw/plane/stage.h"
+
+namespace obscura::draw {
+
+/// Puts marks on one page (draw/compose/annotate.h): lines at once, words when all lines are known.
+class Notes {
+ public:
+  Notes(const sim::SceneInfo& cast, const Palette& colours, const Projection& projection,
+        const sim::Snapshot& now, const Annotating& how, List& list);
+
+  void vector(int index, const Marks::Vector& vector, Scales scales);
+  void angle(int index, const Marks::Angle& angle);
+  void length(int index, const Marks::Length& length);
+  void point(int index, const Marks::Point& point);
+  void label(int index, const Marks::Label& label);
+  void cone(int index, const Marks::Cone& cone, const Scales& scales);
+  void axes();
+  void finish();
+
+ private:
+  struct Word {
+    WordKey key;
+    Formula set;
+    std::vector<Placing::Candidate> places;
+    Point anchor;
+    std::optional<std::pair<Point, Point>> arrow;
+    std::optional<Hang> hang;
+  };
+  void hang(const Vec3& a, const Vec3& b);
+  bool film() const { return how_.plan != nullptr || how_.survey != nullptr; }
+  static Point size(const Formula& f) { return {f.width, f.ascent + f.descent}; }
+  void avoid_bodies();
+  void avoid_areas();
+  void avoid_springs();
+  Formula set(const WordKey& key, const std::string& text, double value, std::string_view unit, Color ink);
+  Placing::Candidate planned(const Word& word, double& leader) const;
+  void plate(const Point& center, const Point& size, std::uint8_t strength);
+  void lead(const Word& word, const Point& center, double strength);
+  static Hold hold(const Word& word, const Point& center);
+  void offer_places();
+  bool covers(const WordKey& key) const;
+  const std::vector<std::vector<Point>>& outlines();
+  bool on_body(const Point& p);
+  double bare(const Point& tail, const Point& tip);
+  bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink);
+  void stroke(const std::vector<Point>& line, double width, Color color, double weight);
+  void dashes(const Point& a, const Point& b);
+  void turn(const WordKey& key, const Marks::Vector& vector, const Reading& reading, const Formula& label,
+            Color ink);
+  template <class At>
+  void arc(const At& at, double radius, double from, double to, double width, Color color);
+  void word(const WordKey& key, Formula set, std::vector<Placing::Candidate> places, const Point& anchor,
+            std::optional<std::pair<Point, Point>> arrow = {}) {
+    if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor, arrow, hang_});
+  }
+
+  const sim::SceneInfo& cast_;
+  const Palette& colours_;
+  const Projection& view_;
+  const sim::Snapshot& now_;
+  const Annotating& how_;
+  List& list_;
+  Placing placing_;
+  double point_, arrow_, type_, thin_, dot_radius_, gap_, millimetre_, normal_, angle_;  // page units
+  std::optional<Hang> hang_;  // where what comes next is, in space
+  std::vector<Word> words_;
+  struct Dot {
+    Point at;
+    Color ink;
+    std::optional<Hang> hang;
+  };
+  std::vector<Dot> dots_;
+  std::vector<Arrow> arrows_;
+  std::vector<Color> inks_;                   // theirs
+  std::vector<std::vector<Point>> outlines_;  // of bodies, once they are asked for
+};
+
+}  // namespace obscura::draw
