@@ -134,8 +134,14 @@ draw::Camera camera(const Fields& fields, const NameTable& roster, Diagnostics& 
   if (const Node* follow = fields.given("follow")) {
     if (const Node* center = fields.given("center"))
       complaints.add(center->place, "the camera follows a body, or looks at 'center'; leave one out");
-    const std::vector<int> bodies = roster.bodies(follow->text(), follow->place, complaints);
-    if (!bodies.empty()) camera.follow = bodies.front();
+    const auto add = [&](const Node& one) {
+      const std::vector<int> some = roster.bodies(one.text(), one.place, complaints);
+      camera.follow.insert(camera.follow.end(), some.begin(), some.end());
+    };
+    if (follow->is_text())
+      add(*follow);
+    else
+      for (const Node& one : follow->list()) add(one);
   }
   if (stands) camera.keys.push_back(camera_key<D>(fields));
   for (std::size_t i = 0; keys && i < keys->list().size(); ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "draw/compose/annotate.h"
 #include "draw/made.h"
 
 namespace obscura::draw {
@@ -234,7 +235,7 @@ TEST(Contacts, TheScaleSuitsTheWeights) {
 TEST(Camera, KeepsWhomItFollowsInTheMiddle) {
   Made made = room(8, 4.5);
   made.body(ShapeKind::ball, {3, 2, 0}, 0.1);
-  made.camera.follow = 0;
+  made.camera.follow = {0};
   made.camera.keys.push_back({.time = 0, .center = {}, .width = 4});
   const Picture one = made.picture();
   made.now.bodies[0].position = {7, 1, 0};
@@ -242,6 +243,23 @@ TEST(Camera, KeepsWhomItFollowsInTheMiddle) {
   EXPECT_NEAR((one.moving.discs[0].center - two.moving.discs[0].center).norm(), 0, kExact);
   EXPECT_NEAR(one.moving.discs[0].center.x(), 960, kExact);
   EXPECT_NE(one.still, two.still) << "the walls move instead";
+}
+
+// Of several bodies the camera keeps their common centre of mass: two that meet do so in its frame.
+TEST(Camera, KeepsTheCentreOfMassOfThoseItFollowsInTheMiddle) {
+  Made made = room(8, 4.5);
+  const int light = made.body(ShapeKind::ball, {2, 2, 0}, 0.1),
+            heavy = made.body(ShapeKind::ball, {6, 2, 0}, 0.2);
+  made.cast.bodies[std::size_t(light)].mass = 1, made.cast.bodies[std::size_t(heavy)].mass = 3;
+  made.camera.follow = {light, heavy};
+  made.camera.keys.push_back({.time = 0, .center = {}, .width = 4});
+  const sim::Vec3 middle = *followed(made.camera, made.cast, made.now);
+  EXPECT_NEAR((middle - sim::Vec3(5, 2, 0)).norm(), 0, kExact);
+  EXPECT_NEAR(made.depictor().projection(0, made.now).page(middle).x(), 960, kExact);
+  made.now.bodies[std::size_t(light)].position.x() += 3,
+      made.now.bodies[std::size_t(heavy)].position.x() -= 1;
+  EXPECT_NEAR(made.depictor().projection(0, made.now).page(middle).x(), 960, kExact);
+  EXPECT_EQ(followed(draw::Camera{}, made.cast, made.now), std::nullopt);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(Travel, ACameraThatFollowsMovesTheRoomAndNotTheBody) {
   Made made = room(8, 4.5);
   const int ball = made.body(sim::ShapeKind::ball, {4, 2, 0}, 0.5);
   made.now.bodies[std::size_t(ball)].velocity = {2, 0, 0};
-  made.camera.follow = ball;
+  made.camera.follow = {ball};
   const Illustrator depictor = made.depictor();
   EXPECT_NEAR(depictor.travel(made.now, 0.01), 0.02 * depictor.view(0).scale, 1e-9);
 }

@@ -318,7 +318,7 @@ TEST(Space, CamerasStandBesideEachOther) {
   EXPECT_NEAR(it.cameras[1].azimuth, std::numbers::pi / 2, kExact);
   EXPECT_NEAR(it.cameras[1].orbit, std::numbers::pi / 5, kExact);
   EXPECT_EQ(it.cameras[1].projection, draw::Camera::Projection::orthographic);
-  EXPECT_EQ(it.cameras[1].follow, 0);
+  EXPECT_EQ(it.cameras[1].follow, std::vector<int>{0});
   const Scene eye = room_scene(kRoom + "[[box]]\n[camera]\neye = [1, 2, 3]\ncenter = [0, 1, 0]");
   ASSERT_EQ(eye.cameras.size(), 1u);
   EXPECT_EQ(eye.cameras[0].keys[0].eye, sim::Vec3(1, 2, 3));

@@ -165,10 +165,8 @@ struct Illustrator::Plan {
 
   View view(const sim::Snapshot& now) const {
     View view = view_at(stage.camera, stage.layout, now.time);
-    if (stage.camera.follow) {
-      const sim::Vec3& middle = now.bodies[*stage.camera.follow].position;
-      view.origin = stage.layout.middle - view.scale * Point(middle.x(), -middle.y());
-    }
+    if (const auto middle = followed(stage.camera, stage.cast, now))
+      view.origin = stage.layout.middle - view.scale * Point(middle->x(), -middle->y());
     return view;
   }
 
@@ -223,7 +221,7 @@ Rect Illustrator::window() const {
 View Illustrator::view(double t) const { return view_at(plan_->stage.camera, plan_->stage.layout, t); }
 
 CameraProjection Illustrator::lens(const sim::Snapshot& now, int panel) const {
-  return lens_of(space_->panels[panel], now);
+  return lens_of(*space_, space_->panels[panel], now);
 }
 
 Picture Illustrator::depict(const sim::Snapshot& now,

@@ -32,7 +32,7 @@ double seen_travel(const Rect& window, const Point& from, const Point& to, doubl
 
 double spatial(const SpaceStage& stage, const Panel& panel, const sim::Snapshot& now,
                const sim::Snapshot& then) {
-  const CameraProjection a = lens_of(panel, now), b = lens_of(panel, then);
+  const CameraProjection a = lens_of(stage, panel, now), b = lens_of(stage, panel, then);
   const auto way = [&](const Vec3& from, const Vec3& to, double around, double turned) {
     if (a.depth(from) < kNearestDepth || b.depth(to) < kNearestDepth) return 0.0;
     const double scale = a.scale_at(from);

@@ -283,7 +283,7 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   // height that is left over goes above and below in equal parts; with a camera that moves, or an unbounded
   // world, the caption stays at the top
   const double spare = layout.height - strip - 2 * band - w * kPageMargin - layout.scale * size.y();
-  const bool still = camera.keys.empty() && !camera.follow;
+  const bool still = camera.keys.empty() && camera.follow.empty();
   const double above = world.closed && still ? spare / 2 : 0;
   layout.clipped = !(world.closed && still);
   const double top = layout.caption ? strip + above - 0.12 * w * kStrip : 0;

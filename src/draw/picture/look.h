@@ -71,7 +71,7 @@ struct CameraKey {
 /// eye's distance follows from the field of view.
 struct Camera {
   std::vector<CameraKey> keys;  // by time
-  std::optional<int> follow;    // the body that it keeps in the middle
+  std::vector<int> follow;      // bodies whose common centre of mass it keeps in the middle
   // in space
   enum class Projection { perspective, orthographic };
   std::string name;  // over its panel, where there are several
@@ -83,5 +83,8 @@ struct Camera {
   bool fits_run = false;         // instead of the room: where bodies go in the whole run
   std::optional<Extent> bounds;  // of that run, where it is known
 };
+
+/// The place that a camera keeps in the middle, m; none where it follows nothing.
+std::optional<sim::Vec3> followed(const Camera& camera, const sim::SceneInfo& cast, const sim::Snapshot& now);
 
 }  // namespace obscura::draw

@@ -236,10 +236,8 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
   force_scale = look.force_scale > 0 ? look.force_scale : newton(cast);
 }
 
-CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now) {
-  std::optional<Vec3> followed;
-  if (panel.camera.follow) followed = now.bodies[*panel.camera.follow].position;
-  return lens_at(panel.camera, panel.aim, panel.window, now.time, followed);
+CameraProjection lens_of(const SpaceStage& stage, const Panel& panel, const sim::Snapshot& now) {
+  return lens_at(panel.camera, panel.aim, panel.window, now.time, followed(panel.camera, stage.cast, now));
 }
 
 Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways, const sim::Snapshot& frame,
@@ -248,7 +246,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
   picture.aspect = stage.layout.aspect;
   picture.ground = stage.colours.ground;
   std::vector<CameraProjection> lenses;
-  for (const Panel& panel : stage.panels) lenses.push_back(lens_of(panel, now));
+  for (const Panel& panel : stage.panels) lenses.push_back(lens_of(stage, panel, now));
   {
     const std::lock_guard lock(stage.mutex);
     if (!stage.still ||

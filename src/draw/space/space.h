@@ -68,7 +68,7 @@ struct SpaceStage {
 };
 
 /// How a panel sees space at an instant.
-CameraProjection lens_of(const Panel& panel, const sim::Snapshot& now);
+CameraProjection lens_of(const SpaceStage& stage, const Panel& panel, const sim::Snapshot& now);
 
 /// `frame`: of which the clock and the charts are. `paths`: lines among the bodies.
 Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways ways, const sim::Snapshot& frame,
