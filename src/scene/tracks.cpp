@@ -572,11 +572,15 @@ void refuse_off_tracks(const Node& top, const sim::Model<D>& model, Diagnostics&
     complaints.add(Fields::of(top, "physics").place("solver"),
                    "tracks are for the direct solver; leave 'solver' out, or write \"direct\"");
   const sim::MayTouch<D> may_touch(model);
+  // a bead stays on its wire
+  std::vector<char> threaded(model.bodies.size(), 0);
+  for (const sim::Joint<D>& joint : model.joints)
+    if (joint.curve && joint.a.body >= 0) threaded[std::size_t(joint.a.body)] = 1;
   for (const sim::Rail<D>& rail : model.rails) {
     for (int i = 0; i < int(model.bodies.size()); ++i) {
       const sim::Body<D>& body = model.bodies[std::size_t(i)];
       if (i == rail.body || body.fixed || body.bare || sim::touches_rails<D>(body.shape) ||
-          !may_touch(i, rail.body))
+          !may_touch(i, rail.body) || (sim::is_point(body.shape) && threaded[std::size_t(i)]))
         continue;
       complaints.add(
           where,

@@ -651,6 +651,13 @@ TEST(Tracks, ErrorsSayWhatToWrite) {
   EXPECT_THAT(said_against("[room]\nsize = [8, 4, 8]\n[[track]]\npoints = [[0, 1, 0], [1, 1, "
                            "0]]\n[[box]]\nposition = [2, 2, 2]\n"),
               HasSubstr("'box[0]' might come upon the track 'track[0]'"));
+  // a point passes by a track of space, but not one that runs on a wire of its own
+  const std::string rail_and_bead =
+      "[room]\nsize = [8, 4, 8]\n[[track]]\npoints = [[0, 1, 0], [1, 1, 0]]\n[[particle]]\nname = \"bead\"\n"
+      "position = [2, 2, 2]\n";
+  EXPECT_THAT(said_against(rail_and_bead), HasSubstr("thread = [\"bead\"]"));
+  EXPECT_EQ(said_against(rail_and_bead + "[[track]]\npoints = [[1, 2, 2], [3, 2, 2]]\nthread = [\"bead\"]\n"),
+            "");
   EXPECT_THAT(
       said_against(room +
                    "[[track]]\npoints = [[0, 1], [3, 1]]\n[[box]]\nsize = [1, 1]\nposition = [1.5, 1.4]\n"),

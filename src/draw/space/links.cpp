@@ -20,6 +20,7 @@ constexpr int kNodes = 14;     // a turn
 constexpr int kSag = 20;       // pieces of a rope that sags
 constexpr double kEndOn = 7;   // amplitudes: a coil that looks shorter is narrower
 constexpr double kNarrow = 0.3;
+constexpr double kRail = 2.2;  // widths of a rod
 
 double smooth_end(double u) {
   u = std::clamp(u, 0.0, 1.0);
@@ -166,8 +167,11 @@ void add_links(SpaceFrame& s) {
   for (const sim::SceneInfo::Rail& rail : cast.rails) {
     std::vector<Vec3> way;
     for (const Vec3& place : rail.places) way.push_back(place_of(s.now, {rail.body, place}));
-    const double radius = 0.5 * kRod * weight * metre;
-    add_tube(s, way, radius, track_color(s.stage.look, rail.name).value_or(color), number++);
+    // what is rolled on is a bar in the walls' colour, a wire is as thin as a rod
+    const bool wire = !rail.left && !rail.right;
+    const double radius = 0.5 * (wire ? 1 : kRail) * kRod * weight * metre;
+    const Color own = track_color(s.stage.look, rail.name).value_or(wire ? color : s.stage.colours.wall);
+    add_tube(s, way, radius, own, number++);
     for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
   }
   for (std::size_t i = 0; i < s.now.mice.size() && s.stage.look.pointer; ++i, ++number) {

@@ -180,7 +180,8 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   };
   for (const Rail<D>& rail : model.rails) {
     SceneInfo::Rail* it = add_curve(rail.name, rail.body, *rail.curve);
-    if (it && D == 2) it->left = rail.left, it->right = rail.right;
+    // of space from all sides
+    if (it) it->left = D == 3 || rail.left, it->right = D == 3 || rail.right;
     if (it) it->friction = rail.friction;
   }
   for (const Joint<D>& joint : model.joints)
