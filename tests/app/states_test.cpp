@@ -121,6 +121,29 @@ TEST_F(States, CsvHasOneRowAnInstantUnderThePathsOfTheLanguage) {
       std::string::npos);
 }
 
+// The numbers that sweeps measure, of one run: between two steps, at a mark, over the whole run.
+TEST_F(States, MeasuresAreThoseOfASweep) {
+  scene(kParabola + std::string("[[when]]\nvalue = \"ball.vy < 0\"\ndo = [{ mark = \"top\" }]\n"));
+  const std::string list = "ball.position.x@1.2345,ball.position.y@max,ball.velocity.y@top,hash@end";
+  const Outcome refused = obscura("states scene.toml --measure ball.position.x@1 --at 2");
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_NE(refused.err.find("exclude each other"), std::string::npos) << refused.err;
+  const Outcome run = obscura("states scene.toml --measure " + list);
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const auto found = nlohmann::json::parse(run.out)["measures"];
+  const Outcome sweep = obscura("sweep scene.toml --vary seed=0 --measure " + list);
+  std::istringstream cells(sweep.out.substr(sweep.out.find('\n') + 1));
+  std::string cell;
+  std::getline(cells, cell, ','), std::getline(cells, cell, ',');
+  for (const char* name : {"ball.position.x@1.2345", "ball.position.y@max", "ball.velocity.y@top"}) {
+    std::getline(cells, cell, ',');
+    EXPECT_EQ(found[name].get<double>(), std::stod(cell)) << name << sweep.out << sweep.err;
+  }
+  EXPECT_EQ(found["hash@end"].get<std::string>().size(), 32u);
+  const Outcome rows = obscura("states scene.toml --format csv --measure ball.position.x@1.2345");
+  EXPECT_EQ(rows.out.substr(0, rows.out.find('\n')), "ball.position.x@1.2345");
+}
+
 TEST_F(States, SetChangesAKeyFromOutside) {
   scene(kParabola);
   const auto json = nlohmann::json::parse(

@@ -20,6 +20,7 @@
 #include "app/console/waiting.h"
 #include "app/run/checkpoint.h"
 #include "app/run/columns.h"
+#include "app/run/measures.h"
 #include "app/run/origin.h"
 #include "app/run/shots.h"
 #include "app/run/trouble.h"
@@ -163,7 +164,7 @@ std::string solver_name(const sim::Model<D>& model) {
 
 struct StatesFlags {
   std::string scene;
-  std::optional<std::string> at, every, from_checkpoint, format, out;
+  std::optional<std::string> at, every, from_checkpoint, format, measure, out;
   std::vector<std::string> sets;
   bool events = false;
 };
@@ -222,8 +223,45 @@ int list_events(const StatesFlags& flags, const scene::Scene& scene, sim::Run& r
   return kDone;
 }
 
+// what --measure asks for, as sweeps measure it
+int measure(const StatesFlags& flags, const scene::Scene& scene) {
+  for (const auto& [word, given] :
+       {std::pair("--at", flags.at.has_value()), std::pair("--every", flags.every.has_value()),
+        std::pair("--events", flags.events),
+        std::pair("--from-checkpoint", flags.from_checkpoint.has_value())})
+    if (given)
+      throw UsageError(
+          fmt::format("--measure and {} exclude each other; a measure has its own time, as in x@2", word));
+  const std::vector<Question> asked = questions(*flags.measure);
+  check(asked, scene);
+  const bool as_json = form(flags) == "json";
+  Sink sink(flags.out);
+  const Answers found = answers(scene, asked);
+  std::string names, values;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const std::string value = i < found.values.size() ? found.values[i] : "";
+    const bool hash = asked[i].path == "hash";
+    names += (i > 0 ? "," : "") + asked[i].text;
+    values += as_json ? fmt::format("{}\n  {}: {}", i > 0 ? "," : "", quoted(asked[i].text),
+                                    value.empty() ? "null"
+                                    : hash        ? quoted(value)
+                                                  : value)
+                      : (i > 0 ? "," : "") + value;
+  }
+  sink.put(as_json ? fmt::format("{{\"version\": \"{}\", \"scene\": {},\n \"measures\": {{{}\n }}}}\n",
+                                 OBSCURA_VERSION, quoted(scene.file), values)
+                   : names + "\n" + values + "\n");
+  if (found.trouble) {
+    std::fflush(stdout);
+    throw TroubleError(scene.file, *found.trouble, "");
+  }
+  sink.finish();
+  return kDone;
+}
+
 int states(const StatesFlags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  if (flags.measure) return measure(flags, scene);
   auto times = times_of(flags, scene);
   const auto run = flags.from_checkpoint ? run_from(*flags.from_checkpoint, scene) : scene.run();
   if (scene.show_divergence) run->show_divergence();
@@ -306,6 +344,12 @@ OBSCURA_COMMAND(60, states) {
       .type("OUT");
   command.flag("--events", flags->events,
                "List what conditions ([[when]]) have fired, up to the last instant of --at or the duration");
+  command
+      .option(
+          "--measure", flags->measure,
+          "Print only these numbers of the run, as sweep measures them: ball.position.x@2, energy.total@max, "
+          "ball.speed@hit")
+      .type("LIST");
   command.option("--format", flags->format, "json or csv [by OUT's ending, json]").one_of({"json", "csv"});
   add_sets(command, flags->sets);
   add_memory_limit(command);
@@ -323,6 +367,7 @@ OBSCURA_COMMAND(60, states) {
       "Examples:\n"
       "  obscura states scenes/room.toml --at 0,0.5,2\n"
       "  obscura states scenes/room.toml --every 0.1 -o room.csv\n"
+      "  obscura states scenes/swing.toml --measure bob.speed@max,energy.total@end\n"
       "  obscura states scenes/room.toml --at 5 --set physics.rate=1200");
   command.run([flags] { return states(*flags); });
 }
