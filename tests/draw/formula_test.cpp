@@ -136,6 +136,8 @@ TEST(Formula, AValueHasThreeDigitsAndItsUnit) {
   EXPECT_EQ(with_value("v", 2, "m/s"), "v");
   EXPECT_EQ(as_vector("v_center"), "*v*_center");
   EXPECT_EQ(as_vector("*J* = J*n*"), "*J* = J*n*");
+  EXPECT_EQ(as_vector("mg"), "*m*g");
+  EXPECT_EQ(as_vector("net force"), "net force");
 }
 
 TEST(Placing, WordsKeepOffLinesAndOffEachOther) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "draw/page/layout.h"
@@ -155,7 +156,8 @@ TEST(Plot, DashesStayWhereTheyAreWhileALineGrows) {
 }
 
 TEST(Plot, NamesAreSpreadInTheirOrderAndWithinTheirEnds) {
-  const std::vector<double> found = spread({50, 52, 51, 10, 98}, 10, 0, 100);
+  const std::vector<double> wanted{50, 52, 51, 10, 98};
+  const std::vector<double> found = spread(wanted, 10, 0, 100, by_height(wanted));
   std::vector<double> sorted = found;
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t i = 1; i < sorted.size(); ++i) EXPECT_GE(sorted[i] - sorted[i - 1], 10 - 1e-9);
@@ -164,7 +166,15 @@ TEST(Plot, NamesAreSpreadInTheirOrderAndWithinTheirEnds) {
   EXPECT_EQ(found[3], 10);
   EXPECT_EQ(found[4], 98);
   EXPECT_NEAR(found[2], 51, 1e-9);
-  for (const double each : spread({99, 100, 100}, 10, 0, 100)) EXPECT_LE(each, 100);
+  for (const double each : spread({99, 100, 100}, 10, 0, 100, {0, 1, 2})) EXPECT_LE(each, 100);
+}
+
+// Names of two lines that wind about each other do not change places each time; those that have crossed do.
+TEST(Plot, NamesChangePlacesOnlyWhereTheirLinesHavePassedEachOther) {
+  EXPECT_THAT(by_height({5, 3, 5}), testing::ElementsAre(1, 0, 2));
+  EXPECT_THAT(by_height({5, 3}, 10, {0, 1}), testing::ElementsAre(0, 1));
+  EXPECT_THAT(by_height({15, 3}, 10, {0, 1}), testing::ElementsAre(1, 0));
+  EXPECT_THAT(spread({52, 50}, 10, 0, 100, {0, 1}), testing::ElementsAre(46, 56));
 }
 
 TEST(Plot, SeveralBodiesHaveLinesOfTheirOwn) {

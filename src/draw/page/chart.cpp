@@ -19,6 +19,8 @@ constexpr double kType = 33 / 8.5;
 constexpr double kHead = 2.7;     // points
 constexpr double kAround = 0.8;   // around a dot, points
 constexpr double kSettle = 0.02;  // of the run, at each side: how long names take to change places
+constexpr double kWhile = 0.05;   // of the run, at each side: whose mean gives the names their order
+constexpr double kPassed = 0.1;   // of the names' distance: so far past each other they change it
 
 }  // namespace
 
@@ -65,32 +67,55 @@ std::pair<double, double> Charts::room(const std::vector<Chart>& charts, double 
   return {right, below};
 }
 
-// Names stand beside the heads of their lines, as far from each other as they are high. Where lines cross the
-// names would jump past each other: they are where they would be on the average of some instants around.
+// Names stand beside the heads of their lines, as far from each other as they are high, in the order of the
+// heads over a while, so that lines that wind about each other do not change it all the time. Where two
+// change places the names would jump past each other: around such an instant they are where they would be on
+// the average.
 void Charts::place_names(Panel& panel) const {
   const PlotArea& area = panel.area;
   const std::vector<Series>& lines = panel.plot.lines;
-  const std::size_t n = panel.plot.times.size();
-  std::vector<std::vector<double>> sums(lines.size(), std::vector<double>(n + 1, 0));
+  const std::size_t n = panel.plot.times.size(), count = lines.size();
+  const double apart = kNamesApart * area.point, low = area.top, high = area.bottom - 3 * area.point;
+  using Rows = std::vector<std::vector<double>>;
+  Rows heads(n), sums(n + 1, std::vector<double>(count, 0));
+  // the mean over the instants around k, by sums of all before
+  const auto mean = [&](const Rows& of, std::size_t k, double share) {
+    const auto reach = std::size_t(share * double(n));
+    const std::size_t from = k < reach ? 0 : k - reach, to = std::min(n, k + reach + 1);
+    std::vector<double> found;
+    for (std::size_t i = 0; i < count; ++i) found.push_back((of[to][i] - of[from][i]) / double(to - from));
+    return found;
+  };
   for (std::size_t k = 0; k < n; ++k) {
-    std::vector<double> heads;
     for (const Series& line : lines) {
       // a run that diverges ends before the others
       const std::vector<double>& all = line.values;
       const double value = all.empty() ? area.low : all[std::min(k, all.size() - 1)];
-      heads.push_back(area.at(area.first, std::clamp(value, area.low, area.high)).y());
+      heads[k].push_back(area.at(area.first, std::clamp(value, area.low, area.high)).y());
+      const std::size_t i = heads[k].size() - 1;
+      sums[k + 1][i] = sums[k][i] + heads[k][i];
     }
-    const std::vector<double> names =
-        spread(heads, kNamesApart * area.point, area.top, area.bottom - 3 * area.point);
-    for (std::size_t i = 0; i < lines.size(); ++i) sums[i][k + 1] = sums[i][k] + names[i] - heads[i];
   }
-  const auto reach = std::size_t(kSettle * double(n));
-  panel.offsets.assign(lines.size(), std::vector<double>(n, 0));
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t low = k < reach ? 0 : k - reach, high = std::min(n, k + reach + 1);
-      panel.offsets[i][k] = (sums[i][high] - sums[i][low]) / double(high - low);
-    }
+  std::vector<std::vector<int>> orders(n);
+  std::vector<std::size_t> changes;  // the instants with another order than the one before
+  Rows moved(n + 1, std::vector<double>(count, 0));
+  for (std::size_t k = 0; k < n; ++k) {
+    // at first as they are on the whole
+    orders[k] = by_height(mean(sums, k, kWhile), kPassed * apart,
+                          k > 0 ? orders[k - 1] : by_height(mean(sums, 0, 1)));
+    if (k > 0 && orders[k] != orders[k - 1]) changes.push_back(k);
+    const std::vector<double> names = spread(heads[k], apart, low, high, orders[k]);
+    for (std::size_t i = 0; i < count; ++i) moved[k + 1][i] = moved[k][i] + names[i] - heads[k][i];
+  }
+  panel.offsets.assign(count, std::vector<double>(n, 0));
+  for (std::size_t k = 0; k < n; ++k) {
+    std::vector<double> names = mean(moved, k, kSettle);
+    for (std::size_t i = 0; i < count; ++i) names[i] += heads[k][i];
+    const auto reach = std::size_t(kSettle * double(n));
+    const auto change = std::upper_bound(changes.begin(), changes.end(), k < reach ? 0 : k - reach);
+    if (change == changes.end() || *change > k + reach) names = spread(names, apart, low, high, orders[k]);
+    for (std::size_t i = 0; i < count; ++i) panel.offsets[i][k] = names[i] - heads[k][i];
+  }
 }
 
 double Charts::Panel::offset(std::size_t line, double time) const {

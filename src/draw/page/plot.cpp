@@ -197,21 +197,35 @@ void tell_apart(Plot& plot) {
   for (std::size_t i = 0; i < plot.lines.size(); ++i) plot.lines[i].style = int(i);
 }
 
-std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high) {
+std::vector<int> by_height(const std::vector<double>& wanted, double apart, std::vector<int> before) {
+  if (before.size() != wanted.size()) {
+    before.resize(wanted.size());
+    std::iota(before.begin(), before.end(), 0);
+    apart = 0;
+  }
+  // insertion, from where it was
+  for (std::size_t i = 1; i < before.size(); ++i) {
+    for (std::size_t k = i; k > 0; --k) {
+      if (!(wanted[std::size_t(before[k - 1])] > wanted[std::size_t(before[k])] + apart)) break;
+      std::swap(before[k - 1], before[k]);
+    }
+  }
+  return before;
+}
+
+std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high,
+                           const std::vector<int>& order) {
   // x_i + i apart must not decrease: averages of those that would (pool adjacent violators)
   const std::size_t n = wanted.size();
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return wanted[a] < wanted[b]; });
   struct Pool {
     double sum = 0;
     std::size_t count = 0;
     double mean() const { return sum / double(count); }
   };
   std::vector<Pool> pools;
+  const auto number = [&](std::size_t i) { return std::size_t(order[i]); };
   for (std::size_t i = 0; i < n; ++i) {
-    pools.push_back({wanted[order[i]] - double(i) * apart, 1});
+    pools.push_back({wanted[number(i)] - double(i) * apart, 1});
     while (pools.size() > 1 && pools[pools.size() - 2].mean() > pools.back().mean()) {
       const Pool last = pools.back();
       pools.pop_back();
@@ -221,11 +235,11 @@ std::vector<double> spread(const std::vector<double>& wanted, double apart, doub
   std::vector<double> found(n);
   std::size_t i = 0;
   for (const Pool& pool : pools)
-    for (std::size_t k = 0; k < pool.count; ++k, ++i) found[order[i]] = pool.mean() + double(i) * apart;
+    for (std::size_t k = 0; k < pool.count; ++k, ++i) found[number(i)] = pool.mean() + double(i) * apart;
   // within the ends
   for (std::size_t k = n; k-- > 0;)
-    found[order[k]] = std::min(found[order[k]], high - double(n - 1 - k) * apart);
-  for (std::size_t k = 0; k < n; ++k) found[order[k]] = std::max(found[order[k]], low + double(k) * apart);
+    found[number(k)] = std::min(found[number(k)], high - double(n - 1 - k) * apart);
+  for (std::size_t k = 0; k < n; ++k) found[number(k)] = std::max(found[number(k)], low + double(k) * apart);
   return found;
 }
 
@@ -288,7 +302,8 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
   for (std::size_t i = 0; i < plot.lines.size(); ++i)
     if (const Point end = end_of(plot, area, plot.lines[i]); !leaves(plot, area, end))
       ends.push_back(end.y()), there.push_back(i);
-  const std::vector<double> heights = spread(ends, kNamesApart * point, area.top, area.bottom - 3 * point);
+  const std::vector<double> heights =
+      spread(ends, kNamesApart * point, area.top, area.bottom - 3 * point, by_height(ends));
   for (std::size_t i = 0; i < there.size(); ++i) area.names[there[i]] = heights[i];
   return area;
 }
@@ -321,9 +336,9 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
     line(p, p - Point(0.6 * tick, 0), 0.6 * axis, colours.ink);
   }
   if (area.low < 0) line(area.at(area.first, 0), area.at(area.last, 0), 0.3 * area.point, colours.hatch);
-  const Ticks across = area.log
-                           ? decades(area.first, area.last)
-                           : numbered(ticks(area.first, area.last, int((right - left) / (34 * area.point))));
+  const Ticks across =
+      area.log ? decades(area.first, area.last)
+               : numbered(ticks(area.first, area.last, std::max(2, int((right - left) / (34 * area.point)))));
   double reached = right;
   for (std::size_t i = 0; i < across.marks.size(); ++i) {
     const Point p{area.at(across.marks[i], area.low).x(), bottom};

@@ -68,9 +68,14 @@ std::string over_unit(const std::string& name, const std::string& unit);
 /// Gives lines styles by their order in the plot.
 void tell_apart(Plot& plot);
 
-/// As near as they can be to where they are wanted, `apart` from each other, from `low` to `high`; the order
-/// stays.
-std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high);
+/// The order of heights from the least on, equal ones in the order of their numbers. With the order `before`,
+/// two change places only where they have passed each other by more than `apart`.
+std::vector<int> by_height(const std::vector<double>& wanted, double apart = 0, std::vector<int> before = {});
+
+/// As near as they can be to where they are wanted, `apart` from each other, from `low` to `high`, in this
+/// order.
+std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high,
+                           const std::vector<int>& order);
 
 /// Axes, ticks, units and marks.
 void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);

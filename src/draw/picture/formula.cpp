@@ -259,7 +259,7 @@ class Setter {
       } else if (formulas::latin(c)) {
         std::size_t end = i;
         while (end < text.size() && formulas::latin(text[end])) ++end;
-        if (end - i >= 3) {
+        if (int(end - i) >= formulas::kWord) {
           put(text.substr(i, end - i), Face::math, scale, rise);
         } else {
           for (std::size_t k = i; k < end; ++k) letter(text.substr(k, 1), scale, rise);
@@ -459,7 +459,8 @@ std::optional<FormulaMistake> mistake(std::string_view text) {
 }
 
 std::string as_vector(const std::string& text) {
-  if (text.empty() || text.find('*') != text.npos || !formulas::latin(text[0])) return text;
+  const auto letters = std::find_if_not(text.begin(), text.end(), formulas::latin) - text.begin();
+  if (letters == 0 || letters >= formulas::kWord || text.find('*') != text.npos) return text;
   std::string vector = "*";
   vector.append(text, 0, 1).append("*").append(text, 1);
   return vector;

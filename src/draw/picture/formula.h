@@ -60,7 +60,7 @@ struct Hold {
 /// Puts it down with its baseline's left end at `at`; on a list whose words are apart, as LaTeX.
 void add(const Formula& formula, const Point& at, List& list, const Hold& hold = {});
 
-/// `text` with its first letter a vector, unless it says itself what is one.
+/// `text` with its first letter a vector, unless it says itself what is one, or begins with a word.
 std::string as_vector(const std::string& text);
 
 /// Where a value goes in a label: "{}", of three digits and with its unit, or "{:.2}", of as many digits

@@ -53,6 +53,9 @@ inline bool known(std::string_view word) {
          among(kForms, word);
 }
 
+/// So many letters together are a word, and upright.
+inline constexpr int kWord = 3;
+
 inline bool latin(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 /// Bytes of the UTF-8 character that begins with `first`.
