@@ -37,7 +37,7 @@ class Notes {
     std::optional<std::pair<Point, Point>> arrow;
     std::optional<Hang> hang;
   };
-  void hang(const Vec3& a, const Vec3& b);
+  void hang(const sim::Vec3& a, const sim::Vec3& b);
   bool film() const { return how_.plan != nullptr || how_.survey != nullptr; }
   static Point size(const Formula& f) { return {f.width, f.ascent + f.descent}; }
   void avoid_bodies();
