@@ -14,10 +14,10 @@ namespace obscura::page {
 struct FilmPage {
   std::string title;
   bool dark = false;
-  bool watched = false;                // it may ask the server that it is from, and nobody else
+  bool watched = false;                // it may ask the server that it is from, and no other
   std::string origin;                  // JSON, as pictures carry it
   std::string generator;               // "obscura 0.2.0"
-  std::vector<std::string> sentences;  // what happens, for those who do not see it
+  std::vector<std::string> sentences;  // what happens, for screen readers
   std::string footer;                  // text
   std::vector<std::uint8_t> still;     // an SVG that is shown where no script runs; empty: words alone
   nlohmann::ordered_json film;         // what its player needs besides the reel (page/player/player.js)

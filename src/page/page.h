@@ -27,7 +27,7 @@ bool writes(Form form);
 struct Sheet {
   double width = 238.11;  // pt; its height follows from the picture's aspect
   std::string title;      // of the file's properties
-  std::string text{};     // instead of the picture, for those who do not see it
+  std::string text{};     // instead of the picture, for screen readers
 };
 
 /// Colours of a picture's solids, which no vector says: put under its moving list, from the page's upper left

@@ -316,6 +316,28 @@ TEST_P(Player, PointingAtABodyTellsItsNameAndValues) {
   EXPECT_THAT(tab_->complaints(url_), IsEmpty());
 }
 
+// Given the page alone: when was the crate struck, how fast was it, how does that look from above?
+TEST_P(Player, TellsAStrangerWhenTheCrateWasStruckAndHowFastItWas) {
+  open(kScenes + "crate.toml");
+  tab_->press("n");
+  const std::string struck = tab_->value(
+      "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => "
+      "done(document.querySelector('#events .now').textContent))))");
+  EXPECT_THAT(struck, HasSubstr("0.580 s"));
+  EXPECT_THAT(struck, HasSubstr("hits the stone at 5.67 m/s"));
+  // it flew at 3 m/s and fell for that time: what is told is of before the impact
+  tab_->press("v");
+  const std::string table = tab_->value(
+      "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => "
+      "done([...document.querySelectorAll('#values tr')].find((row) => "
+      "row.textContent.startsWith('board[2]')).lastChild.textContent))))");
+  EXPECT_NEAR(std::stod(table), std::hypot(3, 9.81 * 34 / 60), 0.01);
+  EXPECT_THAT(std::string(tab_->value("document.getElementById('when').textContent")), HasSubstr("0.567 s"));
+  tab_->press("t");
+  EXPECT_NEAR(double(player("return player.picture.spaces[0].lenses(player.frame)[0].back[1];")), 1, 1e-6);
+  EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+}
+
 TEST_P(Player, WheelAndFingersComeNearer) {
   open(kScenes + "cradle.toml");
   tab_->wheel(300, 200, -200);

@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <stdexcept>
 
@@ -98,6 +99,11 @@ class Tab : public Browser {
     const int modifiers = shift ? 8 : 0;
     Json down{{"type", "keyDown"}, {"key", key}, {"modifiers", modifiers}};
     if (key.size() == 1) down["text"] = key;
+    // pages that read the old codes
+    static const std::map<std::string, int> kCodes{{"End", 35},     {"Home", 36},       {"ArrowLeft", 37},
+                                                   {"ArrowUp", 38}, {"ArrowRight", 39}, {"ArrowDown", 40}};
+    if (const auto code = kCodes.find(key); code != kCodes.end())
+      down["windowsVirtualKeyCode"] = code->second;
     call("Input.dispatchKeyEvent", down);
     call("Input.dispatchKeyEvent", {{"type", "keyUp"}, {"key", key}, {"modifiers", modifiers}});
   }

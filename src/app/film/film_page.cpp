@@ -264,7 +264,7 @@ std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still)
   // what happens is told of a whole run
   if (whole && !m.story) m.story = app::story(scene);
   if (m.story) out.sentences = m.story->sentences;
-  out.footer = fmt::format("Made by obscura {} from {}; `obscura verify` makes it again.", OBSCURA_VERSION,
+  out.footer = fmt::format("Made by obscura {} from {}; obscura verify makes it again.", OBSCURA_VERSION,
                            m.origin.scene_file);
   Json& film = out.film;
   film["title"] = out.title;

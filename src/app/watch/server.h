@@ -8,8 +8,8 @@
 namespace obscura::app {
 
 /// One page for the browsers of this machine: GET / is the page, GET /changes a stream that tells its version
-/// whenever it changes (server-sent events). Answers nothing else, and nobody who calls it by another name
-/// than localhost.
+/// whenever it changes (server-sent events). Answers nothing else, and only requests to
+/// localhost by that name.
 class PageServer {
  public:
   /// Listens on 127.0.0.1. `port` 0: the first free one from kFirstPort on. Throws media::Error where it is

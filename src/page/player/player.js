@@ -254,7 +254,9 @@ class Player {
   list() {
     const panel = $("values");
     if (!panel.open) return;
-    const { head, rows } = this.values.table(this.picture.frame);
+    const { head, rows } = this.values.table(this.picture.frame),
+      time = this.values.time(Math.floor(this.picture.frame + NOTHING));
+    $("when").textContent = `at ${time.toFixed(3)} s`;
     const row = (/** @type {string[]} */ cells, /** @type {string} */ kind) => {
       const line = document.createElement("tr");
       for (const text of cells) {

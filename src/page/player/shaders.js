@@ -23,6 +23,10 @@ float z_of(vec3 p, float w) {
   if (camera.x > 1e-9) return ((depths.y + depths.x) * w - 2.0 * depths.x * depths.y) / (depths.y - depths.x);
   return -1.0 + 2.0 * (-dot(p - target, back) - depths.x) / (depths.y - depths.x);
 }
+// a radius in m; negative ones are in page units, and none is too small to see
+float radius_at(float radius, float depth) {
+  return max(radius < 0.0 ? -radius / camera.y : radius, 1.6 * page.w * depth / camera.y);
+}
 vec4 clip_of(vec3 p) {
   vec3 s = seen(p);
   return vec4(2.0 * s.x / page.x - s.z, s.z - 2.0 * s.y / page.y, z_of(p, s.z), s.z);
@@ -41,10 +45,17 @@ vec3 corner(out vec3 n) {
   vec4 q = turn_of(body);
   n = turned(q, normal);
   vec3 c = at_of(body) + turned(q, center);
-  float small = 1.6 * page.w * depth_of(c) / camera.y;
-  float r = radius < 0.0 ? -radius / camera.y : radius;
-  if (r > 0.0 && body >= 0.0) r = max(r, small);
-  return c + r * n;
+  return c + (radius != 0.0 && body >= 0.0 ? radius_at(radius, depth_of(c)) : radius) * n;
+}
+`;
+
+// a place as the light sees it: 0 to 1 over what it sees, the third away from it
+const LIGHT = `
+uniform vec4 light_u, light_v, light_w;
+uniform vec2 light_size;
+vec3 light_at(vec3 p) {
+  vec3 at = vec3(dot(light_u.xyz, p) - light_u.w, dot(light_v.xyz, p) - light_v.w, dot(light_w.xyz, p) - light_w.w);
+  return at / vec3(light_size.xx, light_size.y);
 }
 `;
 
@@ -55,9 +66,7 @@ vec4 of_pieces(int i) { return texelFetch(pieces, ivec2(i & 1023, i >> 10), 0); 
 vec4 of_near(int i) { return texelFetch(near, ivec2(i & 1023, i >> 10), 0); }
 `;
 
-const SOLID_VERTEX = `${PLACE}${CORNERS}${OF_PIECES}
-uniform vec4 light_u, light_v, light_w;
-uniform vec2 light_size;
+const SOLID_VERTEX = `${PLACE}${CORNERS}${LIGHT}${OF_PIECES}
 out vec3 place, world_normal, color, light;
 flat out vec2 slope;
 flat out int number, material;
@@ -81,7 +90,7 @@ void main() {
     if (material == WOOD) grain += fract(0.618034 * body) * vec3(11, 1.5, 2.5);
   }
   color = own.rgb;
-  light = vec3(dot(light_u.xyz, p) - light_u.w, dot(light_v.xyz, p) - light_v.w, dot(light_w.xyz, p) - light_w.w) / vec3(light_size.xx, light_size.y);
+  light = light_at(p);
   float facing = max(-dot(n, light_w.xyz), 1e-3);
   slope = clamp(vec2(dot(n, light_u.xyz), dot(n, light_v.xyz)) / facing, -12.0, 12.0) * light_size.x / light_size.y;
 }`;
@@ -219,14 +228,11 @@ void main() {
 const DEPTH_FRAGMENT = `#version 300 es
 void main() {}`;
 
-const CASTER_VERTEX = `${PLACE}${CORNERS}
-uniform vec4 light_u, light_v, light_w;
-uniform vec2 light_size;
+const CASTER_VERTEX = `${PLACE}${CORNERS}${LIGHT}
 out vec3 world_normal;
 void main() {
   vec3 n, p = corner(n);
-  vec3 l = vec3(dot(light_u.xyz, p) - light_u.w, dot(light_v.xyz, p) - light_v.w, dot(light_w.xyz, p) - light_w.w) / vec3(light_size.xx, light_size.y);
-  gl_Position = vec4(2.0 * l - 1.0, 1.0);
+  gl_Position = vec4(2.0 * light_at(p) - 1.0, 1.0);
   world_normal = n;
 }`;
 
@@ -368,8 +374,7 @@ out vec4 color;
 void main() {
   vec4 q = turn_of(body);
   vec3 c = at_of(body) + turned(q, ball.xyz);
-  float depth = depth_of(c), small = 1.6 * page.w * depth / camera.y;
-  float r = max(ball.w < 0.0 ? -ball.w / camera.y : ball.w, small), seen_r = r * camera.y / depth;
+  float depth = depth_of(c), r = radius_at(ball.w, depth), seen_r = r * camera.y / depth;
   color = vec4(own, 1.0);
   along = 0.0;
   float width = 1.3 * clamp(0.22 * seen_r, 0.5 * page.w, 2.3 * page.w), half_wide = 0.5 * width * page.z;

@@ -41,9 +41,10 @@ export class Values {
     return this.reel.numbers[this.film.time].at(frame);
   }
 
-  /** The place, velocity and turning of a body. */
+  /** The place, velocity and turning of a body; between two frames those of the first, for an impact may lie between. */
   state(body, frame) {
-    const at = (/** @type {number} */ i) => this.reel.numbers[i].at(frame),
+    const whole = Math.floor(frame + 1e-6),
+      at = (/** @type {number} */ i) => this.reel.numbers[i].at(whole),
       { place, velocity, angle, spin } = body;
     const v = velocity.map(at);
     return {
