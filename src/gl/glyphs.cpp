@@ -5,7 +5,6 @@
 #include FT_OUTLINE_H
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "gl/error.h"
@@ -18,26 +17,8 @@ constexpr int kFirstHeight = 256;
 
 }  // namespace
 
-struct Glyphs::Type {
-  FT_Library library = nullptr;
-  std::array<FT_Face, 6> faces{};
-
-  Type() {
-    if (FT_Init_FreeType(&library)) throw Error("FreeType cannot be started");
-  }
-  ~Type() { FT_Done_FreeType(library); }  // and its faces
-
-  FT_Face open(draw::Face face) {
-    FT_Face& found = faces[std::size_t(face)];
-    const draw::FontFile& file = draw::font_file(face);
-    if (!found && FT_New_Face(library, file.path.c_str(), file.index, &found))
-      throw Error(file.path + ": FreeType cannot read it");
-    return found;
-  }
-};
-
 Glyphs::Glyphs(const Functions& gl)
-    : gl_(gl), type_(std::make_unique<Type>()), largest_(gl.integer(GL_MAX_TEXTURE_SIZE)) {
+    : gl_(gl), faces_(std::make_unique<draw::OpenFaces>()), largest_(gl.integer(GL_MAX_TEXTURE_SIZE)) {
   gl.GenTextures(1, &texture_);
   gl.BindTexture(GL_TEXTURE_2D, texture_);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -58,7 +39,7 @@ const GlyphPicture& Glyphs::picture(draw::Face face, std::uint32_t index, double
 
 GlyphPicture Glyphs::draw(draw::Face which, std::uint32_t index, int size_26_6, int quarter) {
   if (size_26_6 < 1) return {};
-  const FT_Face face = type_->open(which);
+  const FT_Face face = faces_->open(which);
   if (FT_Set_Char_Size(face, size_26_6, size_26_6, 72, 72) ||
       FT_Load_Glyph(face, index, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP)) {
     throw Error(draw::font_file(which).path + ": FreeType cannot load glyph " + std::to_string(index));

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "draw/picture/faces.h"
 #include "draw/picture/type.h"
 #include "gl/functions.h"
 
@@ -28,20 +29,19 @@ class Glyphs {
 
   static constexpr int kQuarters = 4;
 
-  /// `size` em in px, `quarter` of a pixel to the right. Throws gl::Error where the font cannot be read, or
-  /// the glyphs outgrow a texture.
+  /// `size` em in px, `quarter` of a pixel to the right. Throws draw::Error where the font cannot be read,
+  /// gl::Error where the glyphs outgrow a texture.
   const GlyphPicture& picture(draw::Face face, std::uint32_t index, double size, int quarter);
 
   /// Uploads what is new and binds the atlas to texture unit 0.
   void bind();
 
  private:
-  struct Type;
   GlyphPicture draw(draw::Face face, std::uint32_t index, int size_26_6, int quarter);
   GlyphPicture place(int width, int height);
 
   const Functions& gl_;
-  std::unique_ptr<Type> type_;
+  std::unique_ptr<draw::OpenFaces> faces_;
   std::unordered_map<std::uint64_t, GlyphPicture> pictures_;
   // rows of glyphs, each as tall as its tallest
   std::vector<std::uint8_t> texels_;

@@ -6,31 +6,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
+#include "draw/picture/faces.h"
 #include "draw/picture/type.h"
 #include "page/error.h"
 
 namespace obscura::page {
 namespace {
-
-struct OpenFaces {
-  FT_Library library = nullptr;
-  std::array<FT_Face, 6> faces{};
-
-  OpenFaces() {
-    if (FT_Init_FreeType(&library)) throw Error("FreeType cannot be started");
-  }
-  ~OpenFaces() { FT_Done_FreeType(library); }  // and its faces
-
-  FT_Face open(draw::Face face) {
-    FT_Face& found = faces[std::size_t(face)];
-    const draw::FontFile& file = draw::font_file(face);
-    if (!found && FT_New_Face(library, file.path.c_str(), file.index, &found))
-      throw Error(file.path + ": FreeType cannot read it");
-    return found;
-  }
-};
 
 // a path that is being written
 struct GlyphPath {
@@ -45,7 +26,7 @@ struct GlyphPath {
 }  // namespace
 
 std::string glyph_outline(draw::Face which, std::uint32_t index) {
-  static OpenFaces open;  // of one thread: pages are written by one
+  static draw::OpenFaces open;  // of one thread: pages are written by one
   const FT_Face face = open.open(which);
   if (FT_Load_Glyph(face, index, FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP))
     throw Error(draw::font_file(which).path + ": FreeType cannot load glyph " + std::to_string(index));

@@ -477,6 +477,20 @@ TEST_F(PageFile, IsMadeAgainByVerify) {
   EXPECT_EQ(obscura("verify cradle.html").exit, 1);
 }
 
+TEST_F(PageFile, ShowsASweep) {
+  const std::string scene = OBSCURA_SOURCE_DIR "/scenes/tumble.toml --set duration=0.2 --set film.fps=30 ";
+  const Outcome made =
+      obscura("sweep " + scene + "--vary physics.rate=300,600 --vary seed=1,2 -o sweep.html");
+  ASSERT_EQ(made.exit, 0) << made.err;
+  const std::string page = contents(path("sweep.html"));
+  EXPECT_EQ(obscura("verify sweep.html").exit, 0);
+  const Outcome many = obscura("sweep " + scene + "--vary seed=1:40 -o sweep.html");
+  EXPECT_EQ(many.exit, 2);
+  EXPECT_THAT(many.err, ::testing::HasSubstr("40 runs are more than 16"));
+  EXPECT_EQ(obscura("sweep " + scene + "--vary seed=1:4 --at 1 -o sweep.html").exit, 2);
+  EXPECT_EQ(contents(path("sweep.html")), page) << "and the page that was there is there yet";
+}
+
 TEST_F(PageFile, IsOfAFilm) {
   const Outcome still = obscura("render " OBSCURA_SOURCE_DIR "/scenes/cradle.toml -o cradle.html --at 1");
   EXPECT_EQ(still.exit, 2);
