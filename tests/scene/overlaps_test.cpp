@@ -406,9 +406,9 @@ TEST(Overlaps, OfAMillionthArePushedApartWithoutAWord) {
         // to the rounding of their sizes, under load, too
         const auto place = [&](const char* name) {
           const auto& cast = run->scene_info().bodies;
-          const auto at =
+          const auto found =
               std::find_if(cast.begin(), cast.end(), [&](const auto& it) { return it.name == name; });
-          return now.bodies[std::size_t(at - cast.begin())].position;
+          return now.bodies[std::size_t(found - cast.begin())].position;
         };
         if (gravity) {
           EXPECT_NEAR(place("box[0]").y(), 0.25, 1e-9) << physics << space;
