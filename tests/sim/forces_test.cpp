@@ -1,5 +1,5 @@
-#include "sim/force/force_coupling.h"
 #include "sim/force/forces.h"
+#include "sim/force/force_coupling.h"
 
 #include <gtest/gtest.h>
 
