@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,28 +29,33 @@ class TouchNotes {
     for (const Contact<D>& it : state.contacts)
       if (it.touching != ContactMode::open && watches(it.key.a, it.key.b))
         held_.emplace_back(it.key.a, it.key.b);
+    std::sort(held_.begin(), held_.end());
   }
   /// The two touch in a substep from `begun` to `ended`, s from the beginning of the step.
   void note(int a, int b, double begun, double ended) {
-    if (!watches(a, b)) return;
-    const auto at =
-        std::find_if(found_.begin(), found_.end(), [&](const auto& it) { return it.a == a && it.b == b; });
-    if (at != found_.end()) {
-      at->ended = ended;
-      return;
-    }
-    const bool held = std::find(held_.begin(), held_.end(), std::pair(a, b)) != held_.end();
-    found_.push_back({a, b, held ? 0 : begun, ended});
+    if (watches(a, b)) found_.push_back({a, b, begun, ended});
   }
   /// Ends a step.
   void end() {
-    if (course_) course_->meetings.insert(course_->meetings.end(), found_.begin(), found_.end());
+    if (!course_) return;
+    std::sort(found_.begin(), found_.end(), [](const Meeting& p, const Meeting& q) {
+      return std::tuple(p.a, p.b, p.begun) < std::tuple(q.a, q.b, q.begun);
+    });
+    for (std::size_t i = 0, j = 0; i < found_.size(); i = j) {
+      Meeting whole = found_[i];
+      for (; j < found_.size() && found_[j].a == whole.a && found_[j].b == whole.b; ++j)
+        whole.ended = std::max(whole.ended, found_[j].ended);
+      if (std::binary_search(held_.begin(), held_.end(), std::pair(whole.a, whole.b))) whole.begun = 0;
+      course_->meetings.push_back(whole);
+    }
   }
 
  private:
+  using Meeting = typename Course<D>::Meeting;
+
   Course<D>* course_ = nullptr;
   std::vector<std::pair<int, int>> held_;
-  std::vector<typename Course<D>::Meeting> found_;
+  std::vector<Meeting> found_;  // a substep each
 };
 
 }  // namespace obscura::sim
