@@ -219,13 +219,14 @@ void walk(const std::string& name, const std::vector<std::string>& sets = {}) {
 }
 
 TEST(Marks, WordsDoNotJump) {
-  for (const char* name : {"slope", "swing", "atwood"}) walk(name);
+  for (const char* name : {"slope", "swing", "atwood", "gears", "loop_the_loop"}) walk(name);
   walk("slope", {"film.fps=30"});
 }
 
 /// Words of one page do not cover each other.
 TEST(Marks, WordsKeepClearOfEachOther) {
-  for (const char* name : {"slope", "swing"}) {
+  for (const char* name : {"slope", "swing", "atwood", "conveyor", "drag_laws", "gears", "kapitza",
+                           "loop_the_loop", "platform", "three_bodies"}) {
     Filmed film(kScenes + name + ".toml");
     for (std::int64_t frame = 0; frame < film.shots.size(); frame += 5) {
       const sim::Snapshot now = film.now(frame);
