@@ -207,6 +207,48 @@ TEST_P(Player, ShowsSpaceAlike) {
   }
 }
 
+TEST_P(Player, ShowsMaterialsAlike) {
+  std::ofstream(path("materials.toml")) << R"toml(title = "materials"
+duration = 1
+[room]
+size  = [4, 3, 4]
+walls = "ground"
+[[ball]]
+name = "a"
+radius = 0.4
+position = [-1, 0.4, 0]
+material = "metal"
+[[box]]
+name = "b"
+size = [0.8, 0.8, 0.8]
+position = [0.2, 0.4, 0]
+material = "checks"
+[[capsule]]
+name = "c"
+length = 0.8
+radius = 0.2
+position = [1.2, 0.6, 0]
+material = "wood"
+[[box]]
+name = "d"
+size = [0.6, 0.3, 0.6]
+position = [0.2, 0.95, 0]
+material = "metal"
+[camera]
+width = 5
+center = [0, 0.6, 0]
+)toml";
+  const auto film = frames(path("materials.toml"), {3}, 640, 360);
+  open(path("materials.toml"));
+  EXPECT_LT(apart(film[0], picture(3, 640, 360)), 0.8);
+  // without them it would be another picture
+  player(
+      "const [space] = player.picture.spaces; space.occlusion.texels.forEach((_, i, all) => { if (i % 24 === "
+      "10) all[i] = 0; }); "
+      "space.pieces.fill(space.gl.TEXTURE2, space.occlusion.texels); return 1;");
+  EXPECT_GT(apart(film[0], picture(3, 640, 360)), 1.5);
+}
+
 constexpr const char* kThrown = R"toml(title = "thrown"
 duration = 1
 [room]
