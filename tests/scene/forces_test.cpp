@@ -76,13 +76,15 @@ TEST(Forces, KeplersEllipseHasFourthOrderInEveryMode) {
 }
 
 TEST(Forces, AHundredTurnsOfKeplersEllipseKeepEnergyAndAreas) {
-  const TextRun planet(open_room() + kPlanet + kText, {"physics.rate=800", "physics.collision=handout"});
-  const double energy = planet.at(0).energies.total();
-  EXPECT_NEAR(energy, -0.5, 1e-15);
-  for (int turn = 10; turn <= 100; turn += 10) {
-    const sim::Snapshot now = planet.at(turn * kCircle);
-    EXPECT_NEAR(now.energies.total(), energy, 1e-9 * 0.5) << turn;
-    EXPECT_NEAR(now.angular_momentum.z(), 0.8, 1e-10) << turn;
+  for (const Sets& mode : kModes) {
+    const TextRun planet(open_room() + kPlanet + kText, with(mode, {"physics.rate=800"}));
+    const double energy = planet.at(0).energies.total();
+    EXPECT_NEAR(energy, -0.5, 1e-15) << mode[0];
+    for (int turn = 10; turn <= 100; turn += 10) {
+      const sim::Snapshot now = planet.at(turn * kCircle);
+      EXPECT_NEAR(now.energies.total(), energy, 1e-9 * 0.5) << turn << mode[0];
+      EXPECT_NEAR(now.angular_momentum.z(), 0.8, 1e-10) << turn << mode[0];
+    }
   }
 }
 
@@ -166,19 +168,20 @@ TEST(Forces, CoulombScatteringHasRutherfordsAngle) {
         "[[particle]]\nname = \"target\"\nfixed = true\ncharge = 2\nposition = [0, 0]\n"
         "[[particle]]\nname = \"shot\"\ncharge = {}\nposition = [-500, 1]\nvelocity = [1.2, 0]\n",
         charge);
-    for (const bool preset : {true, false}) {
+    for (const auto& [preset, mode] : {std::pair(true, 0), std::pair(false, 0), std::pair(true, 1),
+                                       std::pair(false, 2), std::pair(true, 3)}) {
       const TextRun shot(preset ? open_room("coulomb = 0.5") + ions
                                 : open_room() + ions +
                                       "[[force]]\namong = [\"target\", \"shot\"]\npotential = "
                                       "\"k*charge1*charge2/r\"\n[constants]\nk = 0.5\n",
-                         {"physics.rate=200", "physics.collision=handout"});
+                         with(kModes[std::size_t(mode)], {"physics.rate=200"}));
       const sim::Snapshot before = shot.at(0);
       const double energy = before.energies.total(), v = std::sqrt(2 * energy), b = 1.2 * 1 / v;
       const double angle = 2 * std::atan(charge / (v * v * b));
       const Vec3 after = shot.at(1000).bodies[before.bodies[0].velocity.isZero() ? 1 : 0].velocity;
       // what is left of the deflection beyond 500 m: K b / (2 m v^2 r^2) on either side
-      EXPECT_NEAR(std::atan2(after.y(), after.x()), angle, 1e-5) << charge << preset;
-      EXPECT_NEAR(shot.at(1000).energies.total(), energy, 1e-9) << charge << preset;
+      EXPECT_NEAR(std::atan2(after.y(), after.x()), angle, 1e-5) << charge << preset << mode;
+      EXPECT_NEAR(shot.at(1000).energies.total(), energy, 1e-9) << charge << preset << mode;
     }
   }
 }
@@ -296,14 +299,18 @@ TEST(Forces, WhatFloatsAndTurnsKeepsItsEnergy) {
 
 TEST(Forces, APotentialAndItsComponentsAgree) {
   const std::string ball = "[[particle]]\nposition = [0.3, 0.1]\nvelocity = [0.2, -0.4]\nmass = 1.5\n";
-  const TextRun potential(
-      open_room() + ball +
-      "[[force]]\npotential = \"0.5*k*(x^2 + 2*y^2) + x*sin(y) + exp(-x*y)\"\n[constants]\nk = 4\n");
-  const TextRun components(open_room() + ball +
-                           "[[force]]\ncomponents = [\"-k*x - sin(y) + y*exp(-x*y)\", \"-2*k*y - x*cos(y) + "
-                           "x*exp(-x*y)\"]\n[constants]\nk = 4\n");
-  for (const double t : {0.5, 2.0, 10.0})
-    EXPECT_LT((potential.place(t) - components.place(t)).norm(), 1e-12) << t;
+  const std::string by_potential =
+      "[[force]]\npotential = \"0.5*k*(x^2 + 2*y^2) + x*sin(y) + exp(-x*y)\"\n[constants]\nk = 4\n";
+  const std::string by_components =
+      "[[force]]\ncomponents = [\"-k*x - sin(y) + y*exp(-x*y)\", \"-2*k*y - x*cos(y) + x*exp(-x*y)\"]\n"
+      "[constants]\nk = 4\n";
+  for (const Sets& mode : kModes) {
+    const TextRun one(open_room() + ball + by_potential, mode),
+        other(open_room() + ball + by_components, mode);
+    for (const double t : {0.5, 2.0, 10.0})
+      EXPECT_LT((one.place(t) - other.place(t)).norm(), 1e-12) << t << mode[0];
+  }
+  const TextRun potential(open_room() + ball + by_potential), components(open_room() + ball + by_components);
   const sim::Energies p = potential.at(10).energies, c = components.at(10).energies;
   EXPECT_NEAR(p.kinetic, c.kinetic, 1e-11);
   // what the components did is what the potential gave
@@ -316,12 +323,15 @@ TEST(Forces, APotentialAndItsComponentsAgree) {
 }
 
 TEST(Forces, HenonHeilesKeepsItsEnergy) {
-  const TextRun chaos(open_room() +
-                          "[[particle]]\nposition = [0, 0.1]\nvelocity = [0.49, 0.1]\n[[force]]\npotential = "
-                          "\"(x^2 + y^2)/2 + x^2*y - y^3/3\"\n",
-                      {"physics.rate=200", "physics.collision=handout"});
-  const double energy = chaos.at(0).energies.total();
-  EXPECT_NEAR(chaos.at(300).energies.total(), energy, 1e-9);
+  for (const Sets& mode : kModes) {
+    const TextRun chaos(
+        open_room() +
+            "[[particle]]\nposition = [0, 0.1]\nvelocity = [0.49, 0.1]\n[[force]]\npotential = "
+            "\"(x^2 + y^2)/2 + x^2*y - y^3/3\"\n",
+        with(mode, {"physics.rate=200"}));
+    const double energy = chaos.at(0).energies.total();
+    EXPECT_NEAR(chaos.at(300).energies.total(), energy, 1e-9) << mode[0];
+  }
 }
 
 // --- in every mode, on every kind of body
