@@ -23,7 +23,7 @@ WorkBooks<D>::WorkBooks(const Model<D>& model) : model_(model), forces_(model) {
   for (const Body<D>& body : model.bodies) drag_ = drag_ || body.drag != 0;
   any_ = drag_;
   for (const Force<D>& force : model.forces)
-    any_ = any_ || (force.formula && !force.formula->potential && force.formula->works);
+    any_ = any_ || force.does_work();
 }
 
 template <int D>

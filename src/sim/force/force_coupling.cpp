@@ -31,7 +31,12 @@ std::vector<std::vector<int>> tied_by_forces(const Model<D>& model) {
     }
     std::vector<int>& together = all.emplace_back();
     if (centered) together.push_back(force.center->body);
-    for (const Subject<D>& subject : force.subjects) together.push_back(subject.body);
+    for (const Subject<D>& subject : force.subjects) {
+      // a program's force lists what is fixed, too
+      if (force.law == Force<D>::Law::function && model.bodies[std::size_t(subject.body)].fixed) continue;
+      together.push_back(subject.body);
+    }
+    if (together.empty()) all.pop_back();
   }
   return all;
 }

@@ -3,6 +3,7 @@
 //   gravitation   f2 = -G m1 m2 d / (d^2 + s^2)^(3/2)      V = -G m1 m2 / sqrt(d^2 + s^2)
 //   coulomb       f2 =  k q1 q2 d / (d^2 + s^2)^(3/2)      V =  k q1 q2 / sqrt(d^2 + s^2)
 //   buoyancy      f  =  rho g A up, at the centroid c of A   V = rho g A (level - c_y)
+//   function      f, tau = what a program computes of all bodies; no potential
 // A is what of the body lies below the level; V is the work against the pressure of the fluid.
 
 #include "sim/force/forces.h"
@@ -42,7 +43,7 @@ template <int D>
 Forces<D>::Forces(const Model<D>& model)
     : model_(model), pushed_(pushed_by_forces(model)), flying_(model), drives_(model) {
   for (const Force<D>& force : model.forces) {
-    potentials_ = potentials_ || !formula_of(force) || force.formula->potential;
+    potentials_ = potentials_ || force.has_potential();
     Active& it = active_.emplace_back();
     it.force = &force;
     if (!force.formula) continue;
@@ -116,7 +117,10 @@ void Forces<D>::gather(const State<D>& state, std::span<const int> member) {
     };
     const auto mass = [](const Subject<D>& s) { return s.mass; };
     const auto charge = [](const Subject<D>& s) { return s.charge; };
-    if (force.on == On::each) {
+    if (force.law == Force<D>::Law::function) {
+      stage_.x.resize(it.subjects.size()), stage_.v.resize(it.subjects.size());
+      stage_.w.resize(it.subjects.size()), stage_.room_from_body.resize(it.subjects.size());
+    } else if (force.on == On::each) {
       using namespace each_slot;
       keep(each_slot::mass, mass), keep(each_slot::charge, charge);
       keep(copy, [](const Subject<D>& s) { return double(s.copy); });
@@ -420,6 +424,29 @@ void Forces<D>::float_up(Active& it, const std::vector<BodyMotion<D>>& motions, 
   }
 }
 
+// --- of a program
+
+// found(k, f, 0, {}, torque); all subjects at once, still ones among them
+template <int D>
+template <class Found>
+void Forces<D>::call(Active& it, double t, const std::vector<BodyMotion<D>>& motions, Found&& found) {
+  const std::size_t n = it.subjects.size();
+  stage_.time = t;
+  for (std::size_t k = 0; k < n; ++k) {
+    const BodyMotion<D>& at = motion(it.members[k], motions);
+    stage_.x[k] = at.x, stage_.v[k] = at.v, stage_.w[k] = at.w, stage_.room_from_body[k] = at.room_from_body;
+  }
+  answered_forces_.assign(n, Vec<D>::Zero()), answered_torques_.assign(n, AngularVec<D>::Zero());
+  (*it.force->function)(stage_, answered_forces_, answered_torques_);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec<D>& f = answered_forces_[k];
+    const AngularVec<D>& torque = answered_torques_[k];
+    if (within(f.data(), D, kFinite) < 0 || within(torque.data(), int(torque.size()), kFinite) < 0)
+      refuse(*it.force, it.force->subjects[std::size_t(it.subjects[k])].body, t, f, stage_.x[k]);
+    found(int(k), f, 0, std::optional<Vec<D>>(), torque);
+  }
+}
+
 // found(k, f, e): the subject at place k of the list has the force f, or the energy e; -1: the centre
 template <int D>
 template <class Found>
@@ -435,14 +462,17 @@ void Forces<D>::all(Active& it, double t, const std::vector<BodyMotion<D>>& moti
       return attract(it, t, motions, energies, found);
     case Force<D>::Law::buoyancy:
       return float_up(it, motions, energies, found);
+    case Force<D>::Law::function:
+      return energies ? void() : call(it, t, motions, found);
   }
 }
 
 template <int D>
 void Forces<D>::apply(Active& it, double t, const std::vector<BodyMotion<D>>& motions,
                       std::vector<Wrench<D>>& wrenches) {
-  const bool potential = !formula_of(*it.force) || it.force->formula->potential;
-  const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& at = {}) {
+  const bool potential = it.force->has_potential();
+  const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& at = {},
+                         const AngularVec<D>& torque = AngularVec<D>::Zero()) {
     const int member = k < 0 ? it.center : it.members[std::size_t(k)];
     const Subject<D>& subject =
         k < 0 ? *it.force->center : it.force->subjects[std::size_t(it.subjects[std::size_t(k)])];
@@ -452,6 +482,7 @@ void Forces<D>::apply(Active& it, double t, const std::vector<BodyMotion<D>>& mo
     }
     Wrench<D>& wrench = wrenches[std::size_t(member)];
     wrench.f += f;
+    if (it.force->law == Force<D>::Law::function) wrench.n += torque;
     if (at)
       wrench.n += moment<D>(Vec<D>(*at - motions[std::size_t(member)].x), f);
     else if (offset(subject))
@@ -480,8 +511,9 @@ double Forces<D>::energy(double t, const std::vector<BodyMotion<D>>& motions, st
   move_driven(t);
   double sum = 0;
   for (Active& it : active_) {
-    if (formula_of(*it.force) && !it.force->formula->potential) continue;
-    const auto found = [&](int k, const Vec<D>&, double e, const std::optional<Vec<D>>& = {}) {
+    if (!it.force->has_potential()) continue;
+    const auto found = [&](int k, const Vec<D>&, double e, const std::optional<Vec<D>>& = {},
+                           const AngularVec<D>& = AngularVec<D>::Zero()) {
       sum += e;
       const int member = k < 0 ? it.center : it.members[std::size_t(k)];
       if (each && member >= 0) (*each)[std::size_t(member)] += e;
@@ -497,7 +529,7 @@ double Forces<D>::energy_of(const State<D>& state, int body, const BodyMotion<D>
   double sum = 0;
   for (Active& it : active_) {
     const Force<D>& force = *it.force;
-    if (force.on != Force<D>::On::each || (formula_of(force) && !force.formula->potential)) continue;
+    if (force.on != Force<D>::On::each || !force.has_potential()) continue;
     for (const Subject<D>& subject : force.subjects) {
       if (subject.body != body) continue;
       if (!formula_of(force)) {
@@ -532,12 +564,15 @@ double Forces<D>::power(double t, const std::vector<BodyMotion<D>>& motions) {
   move_driven(t);
   double sum = 0;
   for (Active& it : active_) {
-    if (!formula_of(*it.force) || it.force->formula->potential || !it.force->formula->works) continue;
-    const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& = {}) {
+    if (!it.force->does_work()) continue;
+    const auto found = [&](int k, const Vec<D>& f, double, const std::optional<Vec<D>>& = {},
+                           const AngularVec<D>& torque = AngularVec<D>::Zero()) {
       const Subject<D>& subject =
           k < 0 ? *it.force->center : it.force->subjects[std::size_t(it.subjects[std::size_t(k)])];
       const int member = k < 0 ? it.center : it.members[std::size_t(k)];
-      if (member >= 0) sum += f.dot(point(subject, member, motions).v);
+      if (member < 0) return;
+      sum += f.dot(point(subject, member, motions).v);
+      if (it.force->law == Force<D>::Law::function) sum += torque.dot(motions[std::size_t(member)].w);
     };
     all(it, t, motions, false, found);
   }

@@ -89,6 +89,8 @@ class Forces {
   template <class Found>
   void attract(Active& it, double t, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
   template <class Found>
+  void call(Active& it, double t, const std::vector<BodyMotion<D>>& motions, Found&& found);
+  template <class Found>
   void float_up(Active& it, const std::vector<BodyMotion<D>>& motions, bool energies, Found&& found);
   void apply(Active& it, double t, const std::vector<BodyMotion<D>>& motions,
              std::vector<Wrench<D>>& wrenches);
@@ -104,6 +106,9 @@ class Forces {
   std::vector<std::pair<int, int>> driven_;  // of still_ those that are moved: place there, number of drives_
   double driven_power_ = 0;
   std::vector<int> gathered_;  // member, as last gathered
+  ForceStage<D> stage_;        // what functions are given, and what they answer
+  std::vector<Vec<D>> answered_forces_;
+  std::vector<AngularVec<D>> answered_torques_;
   std::vector<double> lanes_;  // rows of Program::kLanes
   std::vector<double> places_, pairs_;
   std::vector<double> angles_;  // of each body in the plane, where a force asks for it

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -271,23 +272,46 @@ struct ForceFormula {
   bool feeds = true;    // and may give energy, not only take it
 };
 
+/// All bodies at an instant within a step, as a force that a program computes is given them: one entry a body
+/// of the model, room's frame.
+template <int D>
+struct ForceStage {
+  double time = 0;                                            // s
+  std::vector<Vec<D>> x, v;                                   // centres of mass: m, m/s
+  std::vector<AngularVec<D>> w;                               // rad/s
+  std::vector<Eigen::Matrix<double, D, D>> room_from_body{};  // columns: the body's axes
+};
+
+/// A force that a program computes: adds to the forces at the centres (N) and the torques about them (N m),
+/// one entry a body. The same stage must always give the same answer; what it throws leaves the step.
+template <int D>
+using ForceFunction = std::function<void(const ForceStage<D>& stage, std::vector<Vec<D>>& forces,
+                                         std::vector<AngularVec<D>>& torques)>;
+
 /// A force on each of its subjects, or between each two of them.
 template <int D>
 struct Force {
   enum class On { each, among, between };  // between: the first and second, the third and fourth, ...
   /// `inverse_square`: c w1 w2 d / (d^2 + s^2)^(3/2) on the second, w its mass or charge and d the way to it.
   /// `buoyancy`: density g times what of each body lies below `level`.
-  enum class Law { formula, gravitation, coulomb, buoyancy };
+  /// `function`: what a program computes for all bodies at once; its subjects are all bodies in their order.
+  enum class Law { formula, gravitation, coulomb, buoyancy, function };
 
   std::string name;
   On on = On::each;
   Law law = Law::formula;
   std::shared_ptr<const ForceFormula> formula;
+  std::shared_ptr<const ForceFunction<D>> function;
   std::vector<Subject<D>> subjects;
   std::optional<Subject<D>> center;    // of `each`: where d is measured from; a body feels the opposite
   double strength = 0, softening = 0;  // c, N m^2/kg^2 or N m^2/C^2; s, m
   double level = 0, density = 0;       // m; kg/m^2, in space kg/m^3
   bool drag = false;                   // of the air, beside that of Body::drag
+
+  /// Whether it has a potential, which may change with the time.
+  bool has_potential() const { return formula ? formula->potential : law != Law::function; }
+  /// Whether it has none and does work.
+  bool does_work() const { return formula ? !formula->potential && formula->works : law == Law::function; }
 };
 
 template <int D>

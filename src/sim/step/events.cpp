@@ -130,6 +130,12 @@ bool Events<D>::fits(const State<D>& state) {
 }
 
 template <int D>
+void Events<D>::begin_anew(State<D>& state, double t) {
+  make(state);
+  stepper_->begin_anew(state, t);
+}
+
+template <int D>
 void Events<D>::begin(State<D>& state) {
   state.events = {};
   state.released.assign(model_.drives.size(), 0);

@@ -29,6 +29,7 @@ class Events {
   ~Events();
 
   void begin(State<D>& state);
+  void begin_anew(State<D>& state, double t);
   bool fits(const State<D>& state);
   std::optional<Trouble> step(State<D>& state);
   std::optional<Trouble> partial_step(State<D>& state, double fraction);

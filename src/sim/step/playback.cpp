@@ -66,11 +66,21 @@ class PlaybackOf final : public Run {
     return snapshot(model_, state_, stepper_, beat, now);
   }
 
+  std::variant<std::monostate, Trouble, Stopped> go(std::int64_t step) override {
+    auto found = at(rational(step) / model_.rate);
+    if (auto* trouble = std::get_if<Trouble>(&found)) return std::move(*trouble);
+    if (std::holds_alternative<Stopped>(found)) return Stopped{};
+    return std::monostate{};
+  }
+
   // it may begin anywhere: there is nothing to save
   void show_divergence() override {}
   std::optional<Divergence> divergence() const override { return {}; }
   std::vector<std::uint64_t> saved() const override { return {}; }
   Rational now() const override { return {0, 1}; }
+  bool restore(std::span<const std::uint64_t>) override { return false; }
+  BodyColumns columns() const override { return {}; }
+  std::string set(const NewBodyColumns&) override { return "another program's run is only shown"; }
 
   std::vector<std::uint64_t> words() const override { return sim::words(state_); }
 

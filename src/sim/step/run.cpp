@@ -5,7 +5,9 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <type_traits>
 
+#include "sim/model/incomplete.h"
 #include "sim/model/stance.h"
 #include "sim/step/archive.h"
 #include "sim/step/snapshots.h"
@@ -20,13 +22,15 @@ template <int D>
 class RunOf final : public Run {
  public:
   RunOf(World<D> world, std::optional<State<D>> saved)
-      : model_(std::move(world.model)), state_(std::move(world.state)), stepper_(model_) {
-    sound_ = !saved || stepper_.fits(*saved);
+      : model_(std::move(world.model)), state_(std::move(world.state)) {
+    stepper_.emplace(model_);
+    sound_ = !saved || stepper_->fits(*saved);
     if (saved)
       state_ = std::move(*saved);
     else
-      stepper_.begin(state_);
-    cast_ = sim::cast(model_, stepper_.paths());
+      stepper_->begin(state_);
+    for (const Force<D>& force : model_.forces) called_ = called_ || force.law == Force<D>::Law::function;
+    cast_ = sim::cast(model_, stepper_->paths());
     stride_ = std::max<std::int64_t>(1, std::llround(value(model_.rate) / kTrackRate));
   }
 
@@ -41,29 +45,41 @@ class RunOf final : public Run {
   std::variant<Snapshot, Trouble, Stopped> at(Rational t) override {
     const TimeStamp to = time_stamp(t, model_.rate);
     assert(trouble_ || to.step >= state_.step);
-    while (!trouble_ && state_.step < to.step) {
-      if (stop_ && stop_()) return Stopped{};
-      if (shown_) last_ = state_;
-      trouble_ = stepper_.step(state_);
-      // what comes after a whole step is too much energy, in finite numbers
-      if (shown_ && trouble_ && state_.step > last_.step) trouble_.reset();
-      if (trouble_ && shown_) state_ = last_;
-      if (!trouble_) keep_ways();
-    }
+    if (std::holds_alternative<Stopped>(go(to.step))) return Stopped{};
     divergence_.reset();
     if (trouble_) return shown_ ? last_finite(*trouble_) : Answer(*trouble_);
     if (shown_)
-      if (const auto much = stepper_.diverges(state_)) divergence_ = Divergence{*much, false};
+      if (const auto much = stepper_->diverges(state_)) divergence_ = Divergence{*much, false};
     between_ = to.fraction > 0;
-    if (!between_) return snapshot(model_, state_, stepper_, to, value(t));
+    if (!between_) return snapshot(model_, state_, *stepper_, to, value(t));
     copy_ = state_;
-    if (auto trouble = stepper_.partial_step(copy_, to.fraction)) {
+    if (auto trouble = guarded([&] { return stepper_->partial_step(copy_, to.fraction); })) {
       // the step as a whole decides whether the run ends here
       if (shown_) return last_finite(*trouble);
       trouble_ = trouble;
       return *trouble_;
     }
-    return snapshot(model_, copy_, stepper_, to, value(t));
+    return snapshot(model_, copy_, *stepper_, to, value(t));
+  }
+
+  std::variant<std::monostate, Trouble, Stopped> go(std::int64_t step) override {
+    between_ = false;
+    while (!trouble_ && state_.step < step) {
+      if (stop_ && stop_()) return Stopped{};
+      if (shown_ || called_) last_ = state_;
+      try {
+        trouble_ = guarded([&] { return stepper_->step(state_); });
+      } catch (...) {
+        if (called_) state_ = last_;
+        throw;
+      }
+      // what comes after a whole step is too much energy, in finite numbers
+      if (shown_ && trouble_ && state_.step > last_.step) trouble_.reset();
+      if (trouble_ && shown_) state_ = last_;
+      if (!trouble_) keep_ways();
+    }
+    if (trouble_) return *trouble_;
+    return std::monostate{};
   }
 
   /// Whether it had a state to begin with.
@@ -71,6 +87,28 @@ class RunOf final : public Run {
 
   std::vector<std::uint64_t> saved() const override { return sim::saved(state_); }
   Rational now() const override { return rational(state_.step) / model_.rate; }
+
+  bool restore(std::span<const std::uint64_t> words) override {
+    const std::optional<State<D>> state = loaded<D>(words);
+    if (!state || !stepper_->fits(*state)) return false;
+    // a copy: columns stay where they are
+    state_ = *state;
+    stepper_.emplace(model_);
+    trouble_.reset(), divergence_.reset();
+    between_ = false;
+    return true;
+  }
+
+  BodyColumns columns() const override {
+    const auto of = [](const auto& all) {
+      using StateRow = typename std::decay_t<decltype(all)>::value_type;
+      return Columns{all.empty() ? nullptr : all[0].data(), all.size(),
+                     std::size_t(StateRow::RowsAtCompileTime)};
+    };
+    return {of(state_.x), of(state_.v), of(state_.turn), of(state_.spin)};
+  }
+
+  std::string set(const NewBodyColumns& columns) override;
 
   std::vector<std::uint64_t> words() const override { return sim::words(between_ ? copy_ : state_); }
 
@@ -135,10 +173,21 @@ class RunOf final : public Run {
     return (rational(at.step) + rational(part, kParts)) / model_.rate;
   }
 
+  // what a program throws from within a step: nothing that the stepper keeps counts any more
+  template <class Act>
+  auto guarded(Act&& act) {
+    try {
+      return act();
+    } catch (...) {
+      stepper_.emplace(model_);
+      throw;
+    }
+  }
+
   Snapshot last_finite(const Trouble& trouble) {
     between_ = false;
     divergence_ = Divergence{trouble, true};
-    return snapshot(model_, state_, stepper_, {state_.step, 0}, time({state_.step, 0}, model_.rate));
+    return snapshot(model_, state_, *stepper_, {state_.step, 0}, time({state_.step, 0}, model_.rate));
   }
 
   // a point of every way that this step belongs to: all at equal steps, and bodies that have just had an
@@ -169,8 +218,9 @@ class RunOf final : public Run {
   }
 
   Model<D> model_;
-  State<D> state_, copy_, last_;  // last_: before the step, where divergence is shown
-  Stepper<D> stepper_;
+  State<D> state_, copy_, last_;  // last_: before the step, where divergence is shown or programs are called
+  std::optional<Stepper<D>> stepper_;
+  bool called_ = false;  // a force is a program's
   bool sound_ = true;
   SceneInfo cast_;
   std::optional<Trouble> trouble_;
@@ -184,8 +234,95 @@ class RunOf final : public Run {
 };
 
 template <int D>
+std::string RunOf<D>::set(const NewBodyColumns& columns) {
+  const auto wrong_size = [](std::span<const double> given, const auto& all, const char* what) {
+    using StateRow = typename std::decay_t<decltype(all)>::value_type;
+    const std::size_t wanted = all.size() * std::size_t(StateRow::RowsAtCompileTime);
+    return given.empty() || given.size() == wanted
+               ? std::string()
+               : std::string(what) + " have " + std::to_string(given.size()) + " numbers, expected " +
+                     std::to_string(wanted);
+  };
+  for (const std::string& why :
+       {wrong_size(columns.x, state_.x, "positions"), wrong_size(columns.v, state_.v, "velocities"),
+        wrong_size(columns.turn, state_.turn, "turns"), wrong_size(columns.spin, state_.spin, "spins")})
+    if (!why.empty()) return why;
+  for (const std::span<const double> each : {columns.x, columns.v, columns.turn, columns.spin})
+    if (!std::all_of(each.begin(), each.end(), [](double x) { return std::isfinite(x); }))
+      return "a number is not finite";
+  if (!model_.bonds.empty()) return "bodies with bonds move together: only a saved state can be restored";
+
+  State<D> next = state_;
+  const auto take = [](std::span<const double> given, auto& all) {
+    if (!given.empty()) std::copy(given.begin(), given.end(), all[0].data());
+  };
+  take(columns.x, next.x), take(columns.v, next.v), take(columns.turn, next.turn),
+      take(columns.spin, next.spin);
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    const Body<D>& body = model_.bodies[std::size_t(i)];
+    const int k = turning(next, i);
+    const auto other = [&](const State<D>& a, const State<D>& b) {
+      return a.x[std::size_t(i)] != b.x[std::size_t(i)] || a.v[std::size_t(i)] != b.v[std::size_t(i)] ||
+             (k >= 0 && (a.turn[std::size_t(k)] != b.turn[std::size_t(k)] ||
+                         a.spin[std::size_t(k)] != b.spin[std::size_t(k)]));
+    };
+    if (body.linked && other(next, state_))
+      return body.name + " is a link, moved by the joints of its chain: only a saved state can be restored";
+    if (D == 2 || k < 0) continue;
+    Orientation<D>& turn = next.turn[std::size_t(k)];
+    if (!(turn.squaredNorm() > 0)) return "the turn of " + body.name + " is no quaternion";
+    // a unit quaternion stays as it is, to the bit
+    if (std::fabs(turn.squaredNorm() - 1) > 1e-14) turn /= std::sqrt(turn.squaredNorm());
+  }
+
+  // nothing of the steps before counts any more
+  next.contacts.clear(), next.touches.clear();
+  std::fill(next.frozen.begin(), next.frozen.end(), 0);
+  std::fill(next.quiet.begin(), next.quiet.end(), 0.0);
+  state_ = next;
+  stepper_.emplace(model_);
+  stepper_->begin_anew(state_, time({state_.step, 0}, model_.rate));
+  trouble_.reset(), divergence_.reset();
+  between_ = false;
+  return "";
+}
+
+// The run of a world that cannot be stepped.
+template <int D>
+class NoRun final : public Run {
+ public:
+  NoRun(World<D> world, Trouble why) : model_(std::move(world.model)), why_(std::move(why)) {
+    cast_.dimension = D;
+  }
+
+  const SceneInfo& scene_info() const override { return cast_; }
+  Rational rate() const override { return model_.rate; }
+  std::variant<Snapshot, Trouble, Stopped> at(Rational) override { return why_; }
+  std::variant<std::monostate, Trouble, Stopped> go(std::int64_t) override { return why_; }
+  void heed(std::function<bool()>) override {}
+  void show_divergence() override {}
+  std::optional<Divergence> divergence() const override { return {}; }
+  std::vector<std::uint64_t> saved() const override { return {}; }
+  Rational now() const override { return {0, 1}; }
+  bool restore(std::span<const std::uint64_t>) override { return false; }
+  BodyColumns columns() const override { return {}; }
+  std::string set(const NewBodyColumns&) override { return why_.what; }
+  std::vector<RunEvent> events() const override { return {}; }
+  std::vector<std::uint64_t> words() const override { return {}; }
+  void track(std::vector<int>) override {}
+  Track take_track() override { return {}; }
+
+ private:
+  Model<D> model_;
+  Trouble why_;
+  SceneInfo cast_;
+};
+
+template <int D>
 std::unique_ptr<Run> begun(World<D> world, std::span<const std::uint64_t> words) {
   std::optional<State<D>> state;
+  if (auto lacking = incomplete(world))
+    return std::make_unique<NoRun<D>>(std::move(world), std::move(*lacking));
   if (!words.empty() && !(state = loaded<D>(words))) return {};
   auto run = std::make_unique<RunOf<D>>(std::move(world), std::move(state));
   return run->sound() ? std::move(run) : nullptr;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -36,6 +37,23 @@ struct RunEvent {
   bool stop = false;               // it ended the run
 };
 
+/// Numbers of a state, row by row: good for as long as the run is there, and of its last whole step.
+struct Columns {
+  const double* first = nullptr;
+  std::size_t rows = 0, columns = 0;
+};
+
+/// What a state holds of its bodies: a row a body for `x` (m) and `v` (m/s); for `turn` (rad, in space a unit
+/// quaternion x, y, z, w) and `spin` (rad/s) a row a body that turns, which are the last ones.
+struct BodyColumns {
+  Columns x, v, turn, spin;
+};
+
+/// The same to be set; what is empty stays.
+struct NewBodyColumns {
+  std::span<const double> x{}, v{}, turn{}, spin{};
+};
+
 /// A world that is stepped along its own clock and shown at given times. The interface that film and commands
 /// use; the loop over steps is in run.cpp. A frame between two steps is a partial step of a copy, so the
 /// trajectory does not depend on it.
@@ -49,6 +67,10 @@ class Run {
   /// Goes on to the instant t (s, >= 0 and not before the last one asked for). Trouble ends the run: the
   /// answer to every later call is the same trouble.
   virtual std::variant<Snapshot, Trouble, Stopped> at(Rational t) = 0;
+
+  /// Goes on to a whole step, without a snapshot of it. What a force of a program throws leaves the run where
+  /// its last whole step was.
+  virtual std::variant<std::monostate, Trouble, Stopped> go(std::int64_t step) = 0;
 
   /// From now on, `stop` is asked before every step whether to stop there.
   virtual void heed(std::function<bool()> stop) = 0;
@@ -64,6 +86,16 @@ class Run {
   virtual std::vector<std::uint64_t> saved() const = 0;
   virtual Rational now() const = 0;
 
+  /// Goes back, or on, to a state that was saved of a run of the same world. False: it is none, and nothing
+  /// has changed. Trouble is forgotten.
+  virtual bool restore(std::span<const std::uint64_t> saved) = 0;
+
+  /// The state at the last whole step, without a copy. Empty for a run that may begin anywhere.
+  virtual BodyColumns columns() const = 0;
+  /// Sets places and velocities of bodies, from which it goes on: what sleeps wakes, and contacts are found
+  /// anew. Answers why they do not fit, with nothing changed; empty: they are set.
+  virtual std::string set(const NewBodyColumns& columns) = 0;
+
   /// What has fired up to the last whole step, in the order of time.
   virtual std::vector<RunEvent> events() const = 0;
 
@@ -78,7 +110,8 @@ class Run {
 };
 
 /// A run of a world from its state, or from one that was saved of a run of the same world: it goes on to the
-/// same bits. None where that is no state of this world.
+/// same bits. None where that is no state of this world. A world that lacks something
+/// (sim/model/incomplete.h) gives a run whose every answer is that trouble.
 std::unique_ptr<Run> run(World<2> world, std::span<const std::uint64_t> saved = {});
 std::unique_ptr<Run> run(World<3> world, std::span<const std::uint64_t> saved = {});
 

@@ -151,9 +151,10 @@ const Model<D>& Stepper<D>::model(const State<D>& state) const {
   return events_ ? events_->model(state) : lets_go_ ? lets_go_->model(state) : model_;
 }
 
-// after bodies have been let go: this stepper knows nothing of the steps before
+// after bodies have been let go, too: this stepper knows nothing of the steps before
 template <int D>
 void Stepper<D>::begin_anew(State<D>& state, double t) {
+  if (events_) return events_->begin_anew(state, t);
   if (lets_go_) return lets_go_->begin_anew(state, t);
   if (contact_) contact_->begin_anew();
   divergence_.start(state, t);

@@ -38,6 +38,9 @@ class Stepper {
   /// Prepares a state that has not been stepped: does what the script does at its very instant.
   void begin(State<D>& state);
 
+  /// Prepares a state that was changed from outside at time t (s), a whole step.
+  void begin_anew(State<D>& state, double t);
+
   /// Whether a state that was saved can be one of this model's.
   bool fits(const State<D>& state);
 
@@ -77,7 +80,6 @@ class Stepper {
   std::optional<Trouble> advance_pieces(State<D>& state, double from, double fraction);
   std::optional<Trouble> check_energy(const State<D>& state);
   bool may_gain(const State<D>& state) const;
-  void begin_anew(State<D>& state, double t);
   void touch_script(State<D>& state, TimeStamp at);
   void plan(const State<D>& state);
   bool integrate(State<D>& state, double t, double h);
