@@ -1,10 +1,12 @@
-# What other projects take: the program, the rooms as static libraries with their headers, and three ways to
-# find them: find_package(obscura), pkg-config, and a function that adds golden tests.
+# What other projects take, as components of find_package(obscura): the program with a function that adds golden tests,
+# which needs no language; the simulation, which needs Eigen; the library (obscura/obscura.h), which needs all. The
+# library is in pkg-config, too.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# The public headers (docs/library.md), and what they include: no others are installed.
-set(public scene/scene.h app/film/pictures.h sim/step/run.h sim/step/stepper.h sim/step/playback.h sim/energy/energy.h)
+# The public headers (docs/library.md), and what they include: no others are installed. obscura/obscura.h is the
+# interface; those of sim are of its component; the two others are deprecated.
+set(public obscura/obscura.h scene/scene.h app/film/pictures.h sim/step/run.h sim/step/stepper.h sim/step/playback.h sim/energy/energy.h)
 if(OBSCURA_SUMS)
   list(APPEND public sim/math/sums.h sim/math/order.h)
 endif()
@@ -23,18 +25,27 @@ while(waiting)
 endwhile()
 foreach(header IN LISTS OBSCURA_HEADERS)
   get_filename_component(folder ${header} DIRECTORY)
+  if(folder STREQUAL obscura)
+    set(folder .)
+  endif()
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/obscura/${folder})
 endforeach()
 
-set(OBSCURA_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/obscura)
+# not below an architecture's folder: a project of no language does not look there
+set(OBSCURA_CMAKE_DIR lib/cmake/obscura)
 set(OBSCURA_ROOMS)
-foreach(room IN ITEMS app scene gl page media draw sim)
+foreach(room IN ITEMS obscura app scene gl page media draw sim)
   if(NOT TARGET obscura_${room})
     continue()
   endif()
   list(APPEND OBSCURA_ROOMS ${room})
   set_target_properties(obscura_${room} PROPERTIES EXPORT_NAME ${room})
-  install(TARGETS obscura_${room} EXPORT obscuraTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/obscura)
+  set(component Library)
+  if(room STREQUAL sim)
+    set(component Sim)
+  endif()
+  install(TARGETS obscura_${room} EXPORT obscura${component}Targets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/obscura)
 endforeach()
 
 # who uses the headers sees Eigen as the libraries do: the second changes the size of structs
@@ -45,13 +56,15 @@ if(OBSCURA_SUMS)
   target_compile_definitions(obscura_sim INTERFACE $<INSTALL_INTERFACE:${OBSCURA_SUMS}>)
 endif()
 
-add_library(obscura_all INTERFACE)
-target_link_libraries(obscura_all INTERFACE obscura::app)
-set_target_properties(obscura_all PROPERTIES EXPORT_NAME obscura)
+# the one header is included as <obscura/obscura.h>
+target_include_directories(obscura_obscura INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+
 set_target_properties(obscura PROPERTIES EXPORT_NAME program)
 add_executable(obscura::program ALIAS obscura)
-install(TARGETS obscura obscura_all EXPORT obscuraTargets)
-install(EXPORT obscuraTargets NAMESPACE obscura:: DESTINATION ${OBSCURA_CMAKE_DIR})
+install(TARGETS obscura EXPORT obscuraProgramTargets)
+foreach(component IN ITEMS Program Sim Library)
+  install(EXPORT obscura${component}Targets NAMESPACE obscura:: DESTINATION ${OBSCURA_CMAKE_DIR})
+endforeach()
 
 configure_package_config_file(obscuraConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/obscuraConfig.cmake
                               INSTALL_DESTINATION ${OBSCURA_CMAKE_DIR})

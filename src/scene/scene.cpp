@@ -322,6 +322,40 @@ std::unique_ptr<sim::Run> Scene::shown_run(std::span<const std::uint64_t> saved)
   return found;
 }
 
+Scene Scene::again(const std::vector<std::string>& other, const RunMarks* with) const {
+  Scene next = parse(text, file, other, with);
+  const auto keep = [&]<int D>(const sim::World<D>& from) {
+    for (const sim::Force<D>& force : from.model.forces)
+      if (force.function) next.add_force<D>(force.name, *force.function);
+  };
+  if (next.dimension() == dimension()) std::visit(keep, world);
+  return next;
+}
+
+template <int D>
+void Scene::add_force(const std::string& called, sim::ForceFunction<D> function) {
+  sim::Model<D>& model = std::get<sim::World<D>>(world).model;
+  sim::Force<D> force;
+  force.name = called;
+  force.on = sim::Force<D>::On::among, force.law = sim::Force<D>::Law::function;
+  force.function = std::make_shared<const sim::ForceFunction<D>>(std::move(function));
+  for (int i = 0; i < int(model.bodies.size()); ++i) force.subjects.push_back({.body = i});
+  model.forces.push_back(std::move(force));
+}
+template void Scene::add_force<2>(const std::string&, sim::ForceFunction<2>);
+template void Scene::add_force<3>(const std::string&, sim::ForceFunction<3>);
+
+std::vector<std::string> Scene::programs() const {
+  std::vector<std::string> names;
+  std::visit(
+      [&](const auto& of) {
+        for (const auto& force : of.model.forces)
+          if (force.function) names.push_back(force.name);
+      },
+      world);
+  return names;
+}
+
 std::vector<sim::Trouble> Scene::stability_warnings() const {
   return std::visit([](const auto& it) { return sim::stability_warnings(it.model); }, world);
 }

@@ -84,6 +84,14 @@ struct Scene {
   std::unique_ptr<sim::Run> shown_run(std::span<const std::uint64_t> saved = {}) const;
   std::vector<sim::Trouble> stability_warnings() const;
 
+  /// The same scene read again from its text with other overrides; forces of programs stay. Throws Error.
+  Scene again(const std::vector<std::string>& sets, const RunMarks* marks = nullptr) const;
+  /// Adds a force that a program computes. Requires D = dimension().
+  template <int D>
+  void add_force(const std::string& name, sim::ForceFunction<D> function);
+  /// The names of those.
+  std::vector<std::string> programs() const;
+
   /// The world of a scene in the plane, of one in space.
   const sim::World<2>& plane() const { return std::get<sim::World<2>>(world); }
   const sim::World<3>& space() const { return std::get<sim::World<3>>(world); }

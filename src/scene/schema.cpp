@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scene/document.h"
 #include "scene/keys.h"
 #include "scene/table.h"
 
@@ -22,6 +23,11 @@ Json json_literal(const Node& node) {
   if (node.is_number()) return node.number();
   if (const bool* flag = std::get_if<bool>(&node.value)) return *flag;
   if (node.is_text()) return node.text();
+  if (node.is_table()) {
+    Json table = Json::object();
+    for (const Entry& each : node.table()) table[each.key] = json_literal(each.node);
+    return table;
+  }
   Json list = Json::array();
   if (node.is_list())
     for (const Node& each : node.list()) list.push_back(json_literal(each));
@@ -196,6 +202,12 @@ Json property(const Key& key) {
   it["description"] = text;
   if (!key.fallback.empty() && key.absent.empty())
     it["default"] = json_literal(fallback(key.path, key.dimension == 3 ? 3 : 2));
+  // of a table the example is its lines
+  if (!key.example.empty() && key.form != Form::numbers && key.form != Form::table &&
+      key.form != Form::tables) {
+    const Node example = document("it = " + key.example, "");
+    it["examples"] = Json::array({json_literal(*example.find("it"))});
+  }
   return it;
 }
 

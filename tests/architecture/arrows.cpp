@@ -14,6 +14,8 @@ using Names = std::set<std::string>;
 
 // the picture (docs/design.md): a room includes itself and what its arrows point at
 const std::map<std::string, Names> kArrows = {
+    {"python", {"obscura"}},
+    {"obscura", {"app", "scene", "draw", "gl", "media", "sim", "page"}},
     {"app", {"scene", "draw", "gl", "media", "sim", "page"}},
     {"scene", {"draw", "sim"}},
     {"gl", {"draw", "media"}},
@@ -49,6 +51,7 @@ const std::map<std::string, Names> kLibraries = {
     {"libdeflate", {"media", "page"}},
     {"libav", {"media"}},
     {"libsw", {"media"}},
+    {"pybind11/", {"python"}},
     {"toml++/", {"scene"}},
     {"toml.hpp", {"scene"}},
     {"CLI/", {"app"}},
@@ -128,6 +131,8 @@ Complaints wrong_includes(const std::filesystem::path& src) {
       const auto complain = [&](const std::string& why) {
         wrong.push_back(name.string() + ":" + std::to_string(number) + ": " + why);
       };
+      if (name == "obscura/obscura.h" && (match[1] == "\"" || header.find_first_of("/.") != header.npos))
+        complain("the interface of programs knows only std, not " + header);
       if (match[1] == "\"") {
         const std::string to = header.substr(0, header.find('/'));
         if (!kArrows.contains(to))

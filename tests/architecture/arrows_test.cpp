@@ -45,6 +45,20 @@ TEST_F(Planted, AnIncludeAgainstAnArrowIsFound) {
                                                 "sim/step/step.cpp:3: sim may not include draw/list.h"));
 }
 
+TEST_F(Planted, AnInterfaceThatShowsWhatIsBelowItAndWhoIncludesItFromBelowAreFound) {
+  plant("obscura/obscura.h", "#include <vector>\n#include \"scene/scene.h\"\n#include <Eigen/Core>\n");
+  plant("app/film/film.cpp", "#include \"obscura/obscura.h\"\n");
+  plant("python/world.cpp",
+        "#include <pybind11/numpy.h>\n#include \"obscura/obscura.h\"\n#include \"sim/step/run.h\"\n");
+  plant("scene/text.cpp", "#include <pybind11/numpy.h>\n");
+  EXPECT_THAT(wrong_includes(src_),
+              ElementsAre("app/film/film.cpp:1: app may not include obscura/obscura.h",
+                          "obscura/obscura.h:2: the interface of programs knows only std, not scene/scene.h",
+                          "obscura/obscura.h:3: the interface of programs knows only std, not Eigen/Core",
+                          "python/world.cpp:3: python may not include sim/step/run.h",
+                          "scene/text.cpp:1: scene may not include <pybind11/numpy.h>"));
+}
+
 TEST_F(Planted, AnIncludeOfALaterSubRoomIsFound) {
   plant("sim/math/vec.h", "#include \"sim/model/state.h\"\n");
   plant("sim/solve/exact/cone.cpp",

@@ -12,13 +12,12 @@
 #include "app/console/command.h"
 #include "app/console/commands.h"
 #include "app/console/exit.h"
-#include "app/console/memory.h"
 #include "app/console/options.h"
 #include "app/console/say.h"
 #include "app/figure/figure_builder.h"
-#include "draw/picture/solids.h"
+#include "app/figure/figure_raster.h"
 #include "draw/picture/type.h"
-#include "gl/renderer.h"
+#include "gl/context.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "media/png.h"
@@ -82,47 +81,6 @@ void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {
   file.place(false);
 }
 
-struct Size {
-  int width, height;
-  double per_unit;  // pixels a page unit
-};
-
-// a page's size at a density: exactly so many pixels a point, the last ones cut where it ends between two
-Size size_at(const draw::Picture& picture, double width, double dpi) {
-  const double across = width / 72 * dpi, down = across / picture.aspect;
-  return {std::max(1, int(std::ceil(across - 0.01))), std::max(1, int(std::ceil(down - 0.01))), down / 1080};
-}
-
-// solids are placed as the lines over them, to a fraction of a pixel
-media::Image pixels(const draw::Picture& picture, const std::vector<Lit>& lit, const Size& size,
-                    const gl::ContextOptions& context) {
-  require_memory_to_draw(double(size.width) * size.height);
-  gl::Renderer renderer(size.width, size.height, context);
-  draw::Picture exact;
-  exact.aspect = double(size.width) / size.height;
-  exact.ground = picture.ground;
-  exact.transparent = picture.transparent;
-  const double k = size.per_unit * 1080 / size.height;
-  draw::List still;
-  for (const Lit& each : lit) {
-    const double scale = k * each.where.height / 1080;
-    const draw::Point at(k * each.where.x, k * each.where.y);
-    still.add(*each.picture.still, scale, at);
-    for (const auto& solids : each.picture.solids)
-      exact.solids.push_back(std::make_shared<const draw::Solids>(draw::placed(*solids, scale, at)));
-  }
-  exact.still = std::make_shared<const draw::List>(std::move(still));
-  exact.moving.add(picture.moving, k, {0, 0});
-  return renderer.draw(exact);
-}
-
-// lit surfaces, at their places on the page
-media::Image lit_pixels(const Page& page, const Size& size, const gl::ContextOptions& context) {
-  draw::Picture blank;
-  blank.ground = page.picture.ground;
-  return pixels(blank, page.lit, size, context);
-}
-
 int run(const FigureFlags& flags) {
   if (flags.out) check_ending(*flags.out);
   const std::string first = flags.scene == "-" ? "scene" : std::filesystem::path(flags.scene).stem().string();
@@ -151,8 +109,7 @@ int run(const FigureFlags& flags) {
   const double width = album.width(), height = width / made.picture.aspect;
   std::string size = fmt::format("{:.1f} x {:.1f} mm", width / kMillimetre, height / kMillimetre);
   if (ending(out) == "png") {
-    const media::Image image =
-        pixels(made.picture, made.lit, size_at(made.picture, width, flags.dpi), flags.context);
+    const media::Image image = pixels(made, width, flags.dpi, flags.context);
     media::Tags tags{{"Software", "obscura " OBSCURA_VERSION}};
     if (!album.title().empty()) tags["Title"] = album.title();
     tags["Description"] = album.text();
@@ -160,19 +117,8 @@ int run(const FigureFlags& flags) {
     size += fmt::format(", {} x {} px at {:g} dpi", image.width, image.height, flags.dpi);
   } else {
     const page::Sheet sheet{width, album.title(), album.text()};
-    std::optional<page::Raster> raster;
-    media::Image under;
-    if (!made.lit.empty()) {
-      // so many pixels that a panel has whole ones: its lines, which are vectors, then lie on its edges
-      Size grid = size_at(made.picture, width, flags.dpi);
-      const double rows = made.lit.front().where.height;
-      grid.per_unit = std::ceil(rows * grid.per_unit) / rows;
-      grid.width = int(std::ceil(1080 * made.picture.aspect * grid.per_unit));
-      grid.height = int(std::ceil(1080 * grid.per_unit));
-      under = lit_pixels(made, grid, flags.context);
-      raster = page::Raster{under.width, under.height, height / 1080 / grid.per_unit, under.pixels.data(),
-                            media::encode_png(under)};
-    }
+    const auto under = lit_surfaces(made, width, flags.dpi, flags.context);
+    const std::optional<page::Raster> raster = under ? std::optional(under->raster()) : std::nullopt;
     if (options.latex) {
       const std::string lines = lines_of(out);
       write(lines, page::page(made.picture, page::Form::pdf, sheet, raster));

@@ -172,10 +172,20 @@ Origin with_another_scene(const Origin& origin, const std::string& file, const V
   return now;
 }
 
+// nobody but that program can compute them again
+void refuse_programs(const std::string& file, const Origin& origin) {
+  if (origin.programs.empty()) return;
+  throw media::Error(
+      fmt::format("{}: cannot be verified: the force '{}' was computed by a program, which is not in "
+                  "the file",
+                  file, origin.programs.front()));
+}
+
 Verdict judge_page(const std::string& file, const VerifyFlags& flags) {
   const std::string bytes = file_bytes(file);
   const auto origin = origin_in({{"obscura", page::origin_in_html(bytes)}});
   if (!origin) throw media::Error(file + ": has no origin from obscura: nothing to verify");
+  refuse_programs(file, *origin);
   Verdict verdict;
   if (hash(origin->scene_text) != origin->scene_hash) verdict.no("scene: its text does not match its hash");
   Origin now = with_another_scene(*origin, file, flags);
@@ -205,6 +215,7 @@ Verdict judge(const std::string& file, const VerifyFlags& flags) {
   if (!frames.next(image)) throw media::Error(file + ": has no picture in it");
   if (!frames.origin()) throw media::Error(file + ": has no origin from obscura: nothing to verify");
   const Origin& origin = *frames.origin();
+  refuse_programs(file, origin);
   Verdict verdict;
   if (hash(origin.scene_text) != origin.scene_hash) verdict.no("scene: its text does not match its hash");
   Origin now = with_another_scene(origin, file, flags);

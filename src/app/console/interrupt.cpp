@@ -2,12 +2,14 @@
 
 #include <csignal>
 #include <initializer_list>
+#include <utility>
 
 namespace obscura::app {
 
 namespace {
 
 volatile std::sig_atomic_t asked = 0;
+thread_local std::function<bool()> also;
 
 void ask(int signal) {
   asked = 1;
@@ -24,6 +26,8 @@ void heed_interrupts() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
-bool interrupted() { return asked != 0; }
+bool interrupted() { return asked != 0 || (also && also()); }
+
+void interrupt_by(std::function<bool()> stop) { also = std::move(stop); }
 
 }  // namespace obscura::app

@@ -101,11 +101,22 @@ draw::Annotating lettered(const draw::Look& look) {
 
 FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::string>& sets,
                              const AlbumOptions& options)
+    : FigureBuilder(
+          file, sets, [&](const std::vector<std::string>& with) { return scene::read(file, with); },
+          options) {}
+
+FigureBuilder::FigureBuilder(const scene::Scene& scene, const AlbumOptions& options)
+    : FigureBuilder(
+          scene.file == "-" ? "scene" : scene.file, scene.sets,
+          [&](const std::vector<std::string>& with) { return scene.again(with); }, options) {}
+
+FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::string>& sets, const Read& read,
+                             const AlbumOptions& options)
     : apart_(options.latex) {
   // one scene for each value, all combinations
   std::vector<std::string> varies = options.vary;
   if (varies.empty() && file != "-")
-    if (const std::string own = scene::read(file, sets).figure.vary; !own.empty()) varies = {own};
+    if (const std::string own = read(sets).figure.vary; !own.empty()) varies = {own};
   const Variations variants(varies);
   if (file == "-" && variants.size > 1)
     throw UsageError("--vary reads its scene more than once: name a file");
@@ -113,7 +124,7 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
   int wanted = 0;
   for (std::int64_t run = 0; run < variants.size; ++run) {
     const std::string said = variants.words(run);
-    scene::Scene scene = with_run_marks(scene::read(file, variants.sets(run, sets)));
+    scene::Scene scene = with_run_marks(read(variants.sets(run, sets)));
     if (options.theme) scene.look.theme = *options.theme;
     const draw::Figure& figure = scene.figure;
     std::vector<sim::Rational> times = options.at.empty() ? figure.at : options.at;

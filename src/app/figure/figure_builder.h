@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +46,8 @@ class FigureBuilder {
  public:
   /// Reads the scene and runs it as far as the figure needs. Throws UsageError, scene::Error, TroubleError.
   FigureBuilder(const std::string& scene, const std::vector<std::string>& sets, const AlbumOptions& options);
+  /// The same of a scene that is read.
+  FigureBuilder(const scene::Scene& scene, const AlbumOptions& options);
 
   Page page() const;
   double width() const { return width_; }  // pt
@@ -62,6 +65,9 @@ class FigureBuilder {
     std::vector<std::shared_ptr<const sim::Track>> ways;  // of trails
     std::string words;                                    // what sets it apart from the others
   };
+  using Read = std::function<scene::Scene(const std::vector<std::string>& sets)>;
+  FigureBuilder(const std::string& file, const std::vector<std::string>& sets, const Read& read,
+                const AlbumOptions& options);
   void take(const scene::Scene& scene, const std::vector<sim::Rational>& times, const std::string& words);
   /// The content of one place of the page.
   struct Cell {

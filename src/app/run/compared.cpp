@@ -67,7 +67,7 @@ std::vector<Ahead::Run> compared(const scene::Scene& scene) {
   draw::Extent extent = scene.extent;
   double newton = 0;
   for (std::int64_t i = 0; i < all.size; ++i) {
-    Ahead::Run run{with_run_marks(scene::parse(scene.text, scene.file, all.sets(i, scene.sets))), {}, {}, {}};
+    Ahead::Run run{with_run_marks(scene.again(all.sets(i, scene.sets))), {}, {}, {}};
     scene::Scene& one = run.scene;
     if (one.dimension() != scene.dimension())
       throw UsageError("film.vary: some of its runs are in the plane, others in space");

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/console/exit.h"
@@ -68,6 +69,7 @@ media::Tags Origin::tags(const std::string& title) const {
   }
   json["state"] = state;
   if (states) json["states"] = states->json();
+  if (!programs.empty()) json["programs"] = programs;
   if (!trajectory.empty()) json["trajectory"] = trajectory;
   json["gl"] = {{"version", gl_version}, {"renderer", gl_renderer}, {"native", native}};
   media::Tags tags = {{"Software", "obscura " OBSCURA_VERSION},
@@ -102,6 +104,8 @@ std::string discord(const Origin& there, const Origin& here) {
                            {"the theme", there.theme, here.theme},
                            {"the camera", there.camera, here.camera},
                            {"--transparent", word(there.transparent), word(here.transparent)},
+                           {"forces of a program", fmt::format("{}", fmt::join(there.programs, ", ")),
+                            fmt::format("{}", fmt::join(here.programs, ", "))},
                            {"the run", there.trajectory, here.trajectory},
                            {"the choice of frames", there.shots, here.shots},
                            {"the encoder", there.encoder, here.encoder},
@@ -126,6 +130,7 @@ Origin origin_of(const scene::Scene& scene) {
   if (scene.dimension() == 3 && scene.cameras.size() == 1) origin.camera = scene.cameras[0].name;
   origin.fps = sim::text(scene.film.fps);
   origin.trajectory = scene.trajectory_file;
+  origin.programs = scene.programs();
   return origin;
 }
 
@@ -163,6 +168,8 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
     }
     origin.state = word(json.at("state"));
     if (json.contains("states")) origin.states = Checksums::read(json["states"]);
+    if (json.contains("programs"))
+      for (const auto& name : json["programs"]) origin.programs.push_back(word(name));
     if (json.contains("trajectory")) origin.trajectory = word(json["trajectory"]);
     const auto& gl = json.at("gl");
     origin.gl_version = word(gl.at("version")), origin.gl_renderer = word(gl.at("renderer"));
@@ -174,6 +181,10 @@ std::optional<Origin> origin_in(const media::Tags& tags) {
 }
 
 scene::Scene scene_of(const Origin& origin) {
+  if (!origin.programs.empty())
+    throw scene::Error({{origin.scene_file, 0, 0,
+                         fmt::format("has a force '{}' that a program computed: it cannot be run again",
+                                     origin.programs.front())}});
   scene::Scene scene = with_run_marks(scene::parse(origin.scene_text, origin.scene_file, origin.sets));
   scene.film.width = origin.width, scene.film.height = origin.height;
   scene.film.fps = *sim::parse_rational(origin.fps);

@@ -44,8 +44,9 @@ struct Origin {
   std::string shots;                // of a movie: which frames of the film (Shots::text)
   std::string encoder, preset;      // of a movie
   std::optional<double> crf;
-  std::string trajectory;            // the file of another program's run, where that is shown
-  std::shared_ptr<const Table> run;  // that run, where it is at hand; not in the file
+  std::vector<std::string> programs;  // forces that a program computed, by name: none can be computed again
+  std::string trajectory;             // the file of another program's run, where that is shown
+  std::shared_ptr<const Table> run;   // that run, where it is at hand; not in the file
 
   /// The program and library that drew it: "obscura 0.2.0, OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe
   /// (LLVM 15.0.6, 256 bits)".

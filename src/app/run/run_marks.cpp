@@ -43,7 +43,7 @@ scene::Scene with_run_marks(scene::Scene scene) {
     if (!found.at(mark))
       say(stderr, "{}: its run does not come to the mark '{}'; what waits for it is not shown\n", scene.file,
           mark);
-  scene::Scene put = scene::parse(scene.text, scene.file, scene.sets, &found);
+  scene::Scene put = scene.again(scene.sets, &found);
   put.marks = scene.marks;
   return put;
 }

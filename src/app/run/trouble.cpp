@@ -11,7 +11,7 @@ std::string text(const sim::Trouble& trouble) {
   return line;
 }
 
-TroubleError::TroubleError(const std::string& scene, const sim::Trouble& trouble, const std::string& kept)
-    : std::runtime_error(scene + ": " + text(trouble) + (kept.empty() ? "" : "; " + kept)) {}
+TroubleError::TroubleError(const std::string& scene, const sim::Trouble& of, const std::string& kept)
+    : std::runtime_error(scene + ": " + app::text(of) + (kept.empty() ? "" : "; " + kept)), trouble(of) {}
 
 }  // namespace obscura::app

@@ -13,7 +13,8 @@ std::string text(const sim::Trouble& trouble);
 /// A run that could not go on.
 struct TroubleError : std::runtime_error {
   /// `kept`: the part of the film that exists, or nothing.
-  TroubleError(const std::string& scene, const sim::Trouble& trouble, const std::string& kept);
+  TroubleError(const std::string& scene, const sim::Trouble& of, const std::string& kept);
+  sim::Trouble trouble;
 };
 
 }  // namespace obscura::app
