@@ -118,7 +118,7 @@ std::string film_page(const Scene& scene, const FilmOptions& options) {
     }
     if (film.trouble()) throw app::TroubleError(it.scene.file, *film.trouble(), "");
     if (app::interrupted()) throw app::Interrupted();
-    return film.html();
+    return film.html(it.how.context);
   });
 }
 
