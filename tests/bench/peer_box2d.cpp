@@ -105,10 +105,11 @@ b2Body* add(b2World& world, const Start& s, const b2Shape& shape, float density)
   F(PFNGLATTACHSHADERPROC, glAttachShader)                                                                  \
   F(PFNGLLINKPROGRAMPROC, glLinkProgram)                                                                    \
   F(PFNGLUSEPROGRAMPROC, glUseProgram)                                                                      \
-  F(PFNGLGENVERTEXARRAYSPROC, glGenVertexArrays) F(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray)             \
-      F(PFNGLGENBUFFERSPROC, glGenBuffers) F(PFNGLBINDBUFFERPROC, glBindBuffer)                             \
-          F(PFNGLBUFFERDATAPROC, glBufferData) F(PFNGLVERTEXATTRIBPOINTERPROC, glVertexAttribPointer) F(    \
-              PFNGLENABLEVERTEXATTRIBARRAYPROC, glEnableVertexAttribArray)                                  \
+  F(PFNGLGENVERTEXARRAYSPROC, glGenVertexArrays)                                                            \
+  F(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray) F(PFNGLGENBUFFERSPROC, glGenBuffers)                       \
+      F(PFNGLBINDBUFFERPROC, glBindBuffer) F(PFNGLBUFFERDATAPROC, glBufferData)                             \
+          F(PFNGLVERTEXATTRIBPOINTERPROC, glVertexAttribPointer) F(PFNGLENABLEVERTEXATTRIBARRAYPROC,        \
+                                                                   glEnableVertexAttribArray)               \
               F(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers) F(PFNGLBINDFRAMEBUFFERPROC, glBindFramebuffer) \
                   F(PFNGLGENRENDERBUFFERSPROC, glGenRenderbuffers)                                          \
                       F(PFNGLBINDRENDERBUFFERPROC, glBindRenderbuffer)                                      \

@@ -22,8 +22,7 @@ WorkBooks<D>::WorkBooks(const Model<D>& model) : model_(model), forces_(model) {
   if (!forces_.any()) return;
   for (const Body<D>& body : model.bodies) drag_ = drag_ || body.drag != 0;
   any_ = drag_;
-  for (const Force<D>& force : model.forces)
-    any_ = any_ || force.does_work();
+  for (const Force<D>& force : model.forces) any_ = any_ || force.does_work();
 }
 
 template <int D>

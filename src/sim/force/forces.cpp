@@ -441,8 +441,10 @@ void Forces<D>::call(Active& it, double t, const std::vector<BodyMotion<D>>& mot
   for (std::size_t k = 0; k < n; ++k) {
     const Vec<D>& f = answered_forces_[k];
     const AngularVec<D>& torque = answered_torques_[k];
-    if (within(f.data(), D, kLargestForce) < 0 || within(torque.data(), int(torque.size()), kLargestForce) < 0)
-      refuse_force(model_, *it.force, it.force->subjects[std::size_t(it.subjects[k])].body, t, f, stage_.x[k]);
+    if (within(f.data(), D, kLargestForce) < 0 ||
+        within(torque.data(), int(torque.size()), kLargestForce) < 0)
+      refuse_force(model_, *it.force, it.force->subjects[std::size_t(it.subjects[k])].body, t, f,
+                   stage_.x[k]);
     found(int(k), f, 0, std::optional<Vec<D>>(), torque);
   }
 }
