@@ -1,0 +1,107 @@
+#include "python/convert.h"
+
+#include <chrono>
+#include <string>
+
+namespace obscura::python {
+
+namespace py = pybind11;
+
+namespace {
+
+// how often a run asks whether a signal has come
+constexpr std::chrono::milliseconds kAsk{50};
+
+}  // namespace
+
+Value value(py::handle from) {
+  if (py::isinstance<py::bool_>(from)) return from.cast<bool>();
+  if (py::isinstance<py::int_>(from)) return from.cast<std::int64_t>();
+  if (py::isinstance<py::float_>(from)) return from.cast<double>();
+  if (py::isinstance<py::str>(from)) return from.cast<std::string>();
+  // numbers and arrays of NumPy
+  if (py::hasattr(from, "tolist")) return value(from.attr("tolist")());
+  if (py::hasattr(from, "__fspath__")) return py::str(from.attr("__fspath__")()).cast<std::string>();
+  if (py::hasattr(from, "keys")) return table(from);
+  if (py::isinstance<py::sequence>(from)) {
+    Value::List list;
+    for (const py::handle each : from) list.push_back(value(each));
+    return list;
+  }
+  throw py::type_error("a scene has numbers, words, lists and tables, not " +
+                       py::str(py::type::handle_of(from)).cast<std::string>());
+}
+
+Table table(py::handle from) {
+  Table table;
+  for (const py::handle key : from.attr("keys")())
+    table.emplace_back(py::str(key).cast<std::string>(), value(from[key]));
+  return table;
+}
+
+py::object object(const Value& from) {
+  struct Visitor {
+    py::object operator()(std::int64_t x) const { return py::int_(x); }
+    py::object operator()(double x) const { return py::float_(x); }
+    py::object operator()(bool x) const { return py::bool_(x); }
+    py::object operator()(const std::string& text) const { return py::str(text); }
+    py::object operator()(const Value::List& list) const {
+      py::list all;
+      for (const Value& each : list) all.append(object(each));
+      return all;
+    }
+    py::object operator()(const Table& table) const { return dict(table); }
+  };
+  return std::visit(Visitor{}, from.is);
+}
+
+py::dict dict(const Table& from) {
+  py::dict all;
+  for (const auto& [key, value] : from) all[py::str(key)] = object(value);
+  return all;
+}
+
+Unlocked::Unlocked() {
+  interrupt_by([asked = std::chrono::steady_clock::now(), ended = false]() mutable {
+    const auto now = std::chrono::steady_clock::now();
+    if (ended || now - asked < kAsk) return ended;
+    asked = now;
+    const py::gil_scoped_acquire locked;
+    return ended = PyErr_CheckSignals() != 0;
+  });
+}
+
+Unlocked::~Unlocked() { interrupt_by({}); }
+
+// The classes of exceptions are Python's (obscura/errors.py), so that they have attributes, and pickle.
+void add_errors(py::module_& module) {
+  static py::object errors = py::module_::import("obscura.errors");
+  (void)module;
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    const auto raise = [](const char* name, const auto&... arguments) {
+      const py::object error = errors.attr(name)(arguments...);
+      PyErr_SetObject(py::type::handle_of(error).ptr(), error.ptr());
+    };
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const SceneError& error) {
+      py::list faults;
+      for (const Fault& each : error.faults)
+        faults.append(errors.attr("Fault")(each.file, each.line, each.column, each.key, each.message));
+      raise("SceneError", faults);
+    } catch (const RunError& error) {
+      raise("RunError", error.std::runtime_error::what(), error.time, error.body, error.quantity, error.fault,
+            error.likely);
+    } catch (const UsageError& error) {
+      raise("UsageError", error.what());
+    } catch (const FileError& error) {
+      raise("FileError", error.what());
+    } catch (const Interrupted&) {
+      PyErr_SetNone(PyExc_KeyboardInterrupt);
+    } catch (const Error& error) {
+      raise("Error", error.what());
+    }
+  });
+}
+
+}  // namespace obscura::python

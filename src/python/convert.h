@@ -1,0 +1,46 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "obscura/obscura.h"
+
+namespace obscura::python {
+
+/// A value of Python as one of the scene language: numbers, truths, text, paths, sequences, arrays and
+/// mappings. Throws TypeError for others.
+Value value(pybind11::handle from);
+Table table(pybind11::handle from);
+
+/// The same back: numbers, text, lists and dicts.
+pybind11::object object(const Value& from);
+pybind11::dict dict(const Table& from);
+
+/// Makes the module's exceptions, and translates the library's errors to them.
+void add_errors(pybind11::module_& module);
+void add_scene(pybind11::module_& module);
+void add_world(pybind11::module_& module);
+void add_film(pybind11::module_& module);
+
+/// Long work without Python's lock, which Ctrl-C ends. Ends with the exception of the signal's handler.
+class __attribute__((visibility("hidden"))) Unlocked {
+ public:
+  Unlocked();
+  ~Unlocked();
+
+ private:
+  pybind11::gil_scoped_release released_;
+};
+
+/// act() without Python's lock.
+template <class Act>
+auto unlocked(Act&& act) {
+  try {
+    const Unlocked here;
+    return act();
+  } catch (const Interrupted&) {
+    if (PyErr_Occurred()) throw pybind11::error_already_set();
+    throw;
+  }
+}
+
+}  // namespace obscura::python

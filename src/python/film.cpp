@@ -1,0 +1,212 @@
+// Renderers, movies, films, pages, figures and sweeps.
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <memory>
+#include <optional>
+
+#include "python/convert.h"
+
+namespace obscura::python {
+
+namespace py = pybind11;
+
+namespace {
+
+using Pixels = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
+
+FilmOptions options(const py::kwargs& given) {
+  FilmOptions made;
+  for (const auto& [key, value] : given) {
+    const std::string name = py::str(key);
+    if (value.is_none()) continue;
+    if (name == "size") {
+      const auto [width, height] = value.cast<std::pair<int, int>>();
+      made.width = width, made.height = height;
+    } else if (name == "width") {
+      made.width = value.cast<int>();
+    } else if (name == "height") {
+      made.height = value.cast<int>();
+    } else if (name == "fps") {
+      made.fps = py::str(value);
+    } else if (name == "theme") {
+      made.theme = value.cast<std::string>();
+    } else if (name == "camera") {
+      made.camera = value.cast<std::string>();
+    } else if (name == "transparent") {
+      made.transparent = value.cast<bool>();
+    } else if (name == "start") {
+      made.from = value.cast<double>();
+    } else if (name == "end") {
+      made.to = value.cast<double>();
+    } else if (name == "crf") {
+      made.crf = value.cast<double>();
+    } else if (name == "preset") {
+      made.preset = value.cast<std::string>();
+    } else if (name == "codec") {
+      made.codec = value.cast<std::string>();
+    } else if (name == "jobs") {
+      made.jobs = value.cast<int>();
+    } else {
+      throw py::type_error(
+          "no option '" + name +
+          "'; there are size, width, height, fps, theme, camera, transparent, start, end, crf, preset, "
+          "codec and jobs");
+    }
+  }
+  return made;
+}
+
+// A picture of its own: an array, and what it shows.
+struct Picture {
+  Pixels pixels;  // height x width x 4
+  std::int64_t number = 0;
+  double time = 0;
+  std::string state;
+  bool transparent = false;
+};
+
+Picture kept(const Frame& frame, bool transparent) {
+  Picture made{Pixels({frame.height, frame.width, 4}), frame.number, frame.time, frame.state, transparent};
+  std::memcpy(made.pixels.mutable_data(), frame.pixels.data(), frame.pixels.size());
+  return made;
+}
+
+Frame frame_of(const Pixels& pixels) {
+  if (pixels.ndim() != 3 || pixels.shape(2) != 4)
+    throw py::value_error("a frame is an array of height x width x 4 bytes: red, green, blue, alpha");
+  return {int(pixels.shape(1)), int(pixels.shape(0)), {pixels.data(), std::size_t(pixels.size())}, 0, 0, ""};
+}
+
+// of three colours, or of four
+Pixels with_alpha(const py::handle& given) {
+  Pixels pixels = Pixels::ensure(given);
+  if (!pixels) throw py::error_already_set();
+  if (pixels.ndim() != 3 || pixels.shape(2) != 3) return pixels;
+  Pixels whole({pixels.shape(0), pixels.shape(1), py::ssize_t(4)});
+  for (py::ssize_t i = 0; i < pixels.size() / 3; ++i) {
+    std::memcpy(whole.mutable_data() + 4 * i, pixels.data() + 3 * i, 3);
+    whole.mutable_data()[4 * i + 3] = 255;
+  }
+  return whole;
+}
+
+// A renderer, and what its pictures have in common.
+struct Drawing {
+  Drawing(const Scene& scene, const FilmOptions& how)
+      : renderer(unlocked([&] { return std::make_unique<Renderer>(scene, how); })),
+        transparent(how.transparent) {}
+  std::unique_ptr<Renderer> renderer;
+  bool transparent;
+};
+
+// A movie; none after an exception has left it.
+struct Recording {
+  std::unique_ptr<Movie> movie;
+  Movie& open() const {
+    if (!movie) throw UsageError("this movie was given up");
+    return *movie;
+  }
+};
+
+}  // namespace
+
+void add_film(py::module_& module) {
+  py::class_<Picture>(module, "Frame", "A picture: red, green, blue and alpha, row 0 at the top.")
+      .def_readonly("array", &Picture::pixels, "height x width x 4, uint8.")
+      .def_readonly("number", &Picture::number, "In the film.")
+      .def_readonly("time", &Picture::time, "s of the run")
+      .def_readonly("state", &Picture::state, "The hash of the state that it shows.")
+      .def(
+          "__array__",
+          [](const Picture& it, const py::object& type) -> py::object {
+            return type.is_none() ? py::object(it.pixels) : it.pixels.attr("astype")(type);
+          },
+          py::arg("dtype") = py::none())
+      .def("save",
+           [](const Picture& it, const py::object& path) {
+             const py::object name = py::module_::import("os").attr("fspath")(path);
+             write_png(name.cast<std::string>(), frame_of(it.pixels), it.transparent);
+           })
+      .def("_repr_png_", [](const Picture& it) {
+        const auto bytes = png(frame_of(it.pixels), it.transparent);
+        return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      });
+
+  py::class_<Drawing>(module, "Renderer")
+      .def(py::init([](const Scene& scene, const py::kwargs& how) { return Drawing(scene, options(how)); }))
+      .def_property_readonly("width", [](const Drawing& it) { return it.renderer->width(); })
+      .def_property_readonly("height", [](const Drawing& it) { return it.renderer->height(); })
+      .def_property_readonly("fps", [](const Drawing& it) { return it.renderer->fps(); })
+      .def("__len__", [](const Drawing& it) { return it.renderer->frames(); })
+      .def("__iter__",
+           [](py::object self) {
+             self.cast<Drawing&>().renderer->rewind();
+             return self;
+           })
+      .def("__next__",
+           [](Drawing& it) {
+             const auto frame = unlocked([&] { return it.renderer->next(); });
+             if (!frame) throw py::stop_iteration();
+             return kept(*frame, it.transparent);
+           })
+      .def("at", [](Drawing& it,
+                    double t) { return kept(unlocked([&] { return it.renderer->at(t); }), it.transparent); })
+      .def("draw", [](Drawing& it, const World& world) {
+        return kept(unlocked([&] { return it.renderer->draw(world); }), it.transparent);
+      });
+
+  py::class_<Recording>(module, "Movie")
+      .def(py::init([](const std::string& path, const py::object& renderer, const py::kwargs& how) {
+             if (renderer.is_none()) return Recording{std::make_unique<Movie>(path, options(how))};
+             return Recording{
+                 std::make_unique<Movie>(path, *renderer.cast<Drawing&>().renderer, options(how))};
+           }),
+           py::arg("path"), py::arg("renderer") = py::none())
+      .def("add",
+           [](Recording& it, const py::object& frame) {
+             const Pixels pixels =
+                 py::isinstance<Picture>(frame) ? frame.cast<const Picture&>().pixels : with_alpha(frame);
+             const Frame view = frame_of(pixels);
+             Movie& movie = it.open();
+             unlocked([&] { movie.add(view); });
+           })
+      .def("__len__", [](Recording& it) { return it.open().frames(); })
+      .def("close",
+           [](Recording& it) {
+             Movie& movie = it.open();
+             unlocked([&] { movie.close(); });
+           })
+      .def("__enter__", [](py::object self) { return self; })
+      .def("__exit__", [](Recording& it, const py::object& type, const py::object&, const py::object&) {
+        if (!type.is_none()) return it.movie.reset();
+        Movie& movie = it.open();
+        unlocked([&] { movie.close(); });
+      });
+
+  module.def("render", [](const Scene& scene, const std::string& out, const py::kwargs& how) {
+    const FilmOptions made = options(how);
+    unlocked([&] { film(scene, out, made); });
+  });
+  module.def("still", [](const Scene& scene, double t, const std::string& out, const py::kwargs& how) {
+    const FilmOptions made = options(how);
+    unlocked([&] { still(scene, t, out, made); });
+  });
+  module.def("film_page", [](const Scene& scene, const py::kwargs& how) {
+    const FilmOptions made = options(how);
+    return unlocked([&] { return film_page(scene, made); });
+  });
+  module.def("figure_svg", [](const Scene& scene, const std::vector<double>& at, const py::kwargs& how) {
+    const FilmOptions made = options(how);
+    return unlocked([&] { return figure_svg(scene, at, made); });
+  });
+  module.def("sweep", [](const Scene& scene, const std::vector<std::string>& vary,
+                         const std::vector<std::string>& measure, int jobs) {
+    const Sweep made = unlocked([&] { return sweep(scene, vary, measure, jobs); });
+    return py::make_tuple(made.heads, made.rows);
+  });
+}
+
+}  // namespace obscura::python

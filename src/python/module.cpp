@@ -1,0 +1,13 @@
+// The extension module of the package `obscura`: its classes and functions, which obscura/__init__.py makes
+// friendlier.
+
+#include "python/convert.h"
+
+PYBIND11_MODULE(_obscura, module) {
+  using namespace obscura::python;
+  module.attr("__version__") = std::string(obscura::version());
+  add_errors(module);
+  add_scene(module);
+  add_world(module);
+  add_film(module);
+}

@@ -1,0 +1,147 @@
+"""The keys of a scene as attributes, by the language's schema: scene.room.size, scene.ball[0].radius."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import json
+from typing import Any, Iterator
+
+from . import _obscura
+
+
+@functools.lru_cache(maxsize=None)
+def schema() -> dict:
+    """The scene language's JSON Schema: every key with its type, range, default and description."""
+    return json.loads(_obscura.schema())
+
+
+def properties(node: dict) -> dict:
+    """The keys of what is a table, a list of tables, or either; none of what may be something else."""
+    if "anyOf" in node:
+        ways = [properties(way) for way in node["anyOf"]]
+        return ways[0] if all(ways) else {}
+    return node.get("properties") or node.get("items", {}).get("properties") or {}
+
+
+def is_list(node: dict) -> bool:
+    """Whether a key is a list of tables, as [[ball]] is."""
+    return node.get("type") == "array" and "properties" in node.get("items", {})
+
+
+class Section:
+    """A table of a scene: its keys are attributes, checked by name when they are set."""
+
+    def __init__(self, path: str, data: dict, keys: dict, touch):
+        self.__dict__.update(_path=path, _data=data, _keys=keys, _touch=touch)
+
+    def _key(self, name: str) -> dict:
+        if name in self._keys:
+            return self._keys[name]
+        near = difflib.get_close_matches(name, self._keys, 1)
+        where = f"[{self._path}]" if self._path else "a scene"
+        raise AttributeError(f"{where} has no key '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        node, path = self._key(name), f"{self._path}.{name}" if self._path else name
+        if is_list(node):
+            return Kind(path, self._data, name, properties(node), self._touch)
+        if properties(node) and not isinstance(self._data.get(name, {}), list):
+            return Section(path, _Late(self._data, name), properties(node), self._touch)
+        return self._data[name] if name in self._data else node.get("default")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self._key(name)
+        self._data[name] = value
+        self._touch()
+
+    def __delattr__(self, name: str) -> None:
+        self._key(name)
+        if name in self._data:
+            del self._data[name]
+            self._touch()
+
+    def __dir__(self) -> list[str]:
+        return sorted(self._keys)
+
+    def __repr__(self) -> str:
+        return f"<{self._path or 'scene'}: {dict(self._data.items())}>"
+
+
+class _Late:
+    """A table within another, which is made when its first key is set."""
+
+    def __init__(self, owner: Any, name: str):
+        self._owner, self._name = owner, name
+
+    def _there(self) -> dict:
+        return self._owner.get(self._name, {})
+
+    def get(self, key, default=None):
+        return self._there().get(key, default)
+
+    def items(self):
+        return self._there().items()
+
+    def __contains__(self, key) -> bool:
+        return key in self._there()
+
+    def __getitem__(self, key):
+        return self._there()[key]
+
+    def __setitem__(self, key, value) -> None:
+        there = self._owner.get(self._name)
+        if there is None:
+            there = self._owner[self._name] = {}
+        there[key] = value
+
+    def __delitem__(self, key) -> None:
+        del self._there()[key]
+
+
+class Kind:
+    """The things of a kind, as [[ball]] lists them: by number, or by name."""
+
+    def __init__(self, path: str, owner: Any, name: str, keys: dict, touch):
+        self._path, self._owner, self._name, self._keys, self._touch = path, owner, name, keys, touch
+
+    def _list(self) -> list:
+        return self._owner.get(self._name) or []
+
+    def _number(self, which: int | str) -> int:
+        if isinstance(which, str):
+            for i, each in enumerate(self._list()):
+                if each.get("name") == which:
+                    return i
+            raise KeyError(f"no [[{self._path}]] is called '{which}'")
+        return range(len(self._list()))[which]
+
+    def add(self, **keys: Any) -> Section:
+        """One more."""
+        section = Section(self._path, {}, self._keys, lambda: None)
+        for name in keys:
+            section._key(name)
+        self._owner[self._name] = [*self._list(), keys]
+        self._touch()
+        return self[-1]
+
+    def __len__(self) -> int:
+        return len(self._list())
+
+    def __getitem__(self, which: int | str) -> Section:
+        i = self._number(which)
+        return Section(f"{self._path}[{i}]", self._list()[i], self._keys, self._touch)
+
+    def __delitem__(self, which: int | str) -> None:
+        del self._list()[self._number(which)]
+        if not self._list():
+            del self._owner[self._name]
+        self._touch()
+
+    def __iter__(self) -> Iterator[Section]:
+        return (self[i] for i in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} [[{self._path}]]>"

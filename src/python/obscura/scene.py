@@ -1,0 +1,276 @@
+"""Scenes of Python: from keys, text or files; simulated, drawn, filmed."""
+
+from __future__ import annotations
+
+import base64
+import copy
+import html
+import os
+from typing import Any, Callable, Iterable, Mapping, Sequence
+
+import numpy
+
+from . import _obscura
+from .keys import Section, schema
+
+
+class Figure:
+    """A figure for print, as SVG."""
+
+    def __init__(self, svg: str):
+        self.svg = svg
+
+    def save(self, path: str | os.PathLike) -> None:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.svg)
+
+    def _repr_html_(self) -> str:
+        # as a picture of its own, whose fonts and styles are not the page's
+        data = base64.b64encode(self.svg.encode()).decode()
+        return f'<img src="data:image/svg+xml;base64,{data}">'
+
+    def _repr_svg_(self) -> str:
+        # within a page it has no declaration of its own
+        return self.svg.partition("?>")[2] if self.svg.startswith("<?xml") else self.svg
+
+
+class Scene(Section):
+    """What is in a room, what it looks like and how it is filmed.
+
+    Scene("room.toml") reads a file, with values over its keys as --set takes them; Scene({...}) and
+    Scene(room={"size": [4, 2.25]}, ...) take keys; Scene.parse(text) takes TOML. Keys are attributes:
+    scene.room.gravity = [0, -1.62], scene.ball[0].radius, scene.ball.add(name="b", radius=0.1, position=[1, 1]).
+    A name that the language does not have is an AttributeError at once; a value that cannot be is a SceneError when
+    the scene is used, with its line and column, or its key.
+    """
+
+    def __init__(self, source: str | os.PathLike | Mapping | None = None, /, *, sets: Sequence[str] = (),
+                 name: str | None = None, **keys: Any):
+        if source is None or isinstance(source, Mapping):
+            data = {**(dict(source) if source else {}), **keys}
+            if sets:
+                raise TypeError("'sets' go over the keys of a file or a text")
+            self._begin(("keys", name or "scene"), copy.deepcopy(data))
+        else:
+            if keys:
+                raise TypeError("a scene is a file or keys, not both: set keys after it is read")
+            self._begin(("file", os.fspath(source), list(sets)), None)
+            self._built()
+
+    @classmethod
+    def parse(cls, text: str, name: str = "scene.toml", sets: Sequence[str] = ()) -> "Scene":
+        """A scene of TOML; `name` stands for the file in messages."""
+        scene = cls.__new__(cls)
+        scene._begin(("text", text, name, list(sets)), None)
+        scene._built()
+        return scene
+
+    def _begin(self, source: tuple, data: dict | None) -> None:
+        self.__dict__.update(_source=source, _own=data, _made=None, _forces=[], _path="",
+                             _keys=schema()["properties"])
+        if data is not None:
+            for key in data:
+                self._key(key)
+
+    # keys are read only when somebody asks for them: a file keeps its own lines until one is changed
+    @property
+    def _data(self) -> dict:
+        if self._own is None:
+            self.__dict__["_own"] = self._built().keys()
+        return self._own
+
+    def _touch(self) -> None:
+        self.__dict__["_made"] = None
+        if self._source[0] != "keys":
+            self.__dict__["_source"] = ("keys", self._source[1] if self._source[0] == "file" else self._source[2])
+
+    def _built(self):
+        if self._made is None:
+            kind, *source = self._source
+            if kind == "file":
+                made = _obscura.Scene.read(*source)
+            elif kind == "text":
+                made = _obscura.Scene.parse(*source)
+            else:
+                made = _obscura.Scene.build(self._own, source[0])
+            for name, force in self._forces:
+                made = made.with_force(name, force)
+            self.__dict__["_made"] = made
+        return self._made
+
+    def __getstate__(self) -> dict:
+        return {"source": self._source, "own": self._own, "forces": self._forces}
+
+    def __setstate__(self, state: dict) -> None:
+        self._begin(state["source"], state["own"])
+        self.__dict__["_forces"] = state["forces"]
+
+    def copy(self) -> "Scene":
+        """Another one, whose keys may be changed."""
+        other = Scene.__new__(Scene)
+        other._begin(self._source, copy.deepcopy(self._own))
+        other.__dict__["_forces"] = list(self._forces)
+        return other
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self.hash == other.hash and self._forces == other._forces
+
+    __hash__ = None  # it can be changed
+
+    def __dir__(self) -> list[str]:
+        return sorted({*self._keys, *(name for name in dir(type(self)) if not name.startswith("_"))})
+
+    def __repr__(self) -> str:
+        scene = self._built()
+        return (f"<Scene {scene.name}: {len(scene.bodies)} bodies in {'the plane' if scene.dimension == 2 else 'space'}, "
+                f"{scene.duration:g} s>")
+
+    # --- what it is
+
+    @property
+    def text(self) -> str:
+        """As TOML."""
+        return self._built().text
+
+    @property
+    def hash(self) -> str:
+        """Equal for scenes that say the same, however they say it."""
+        return self._built().hash
+
+    @property
+    def name(self) -> str:
+        return self._built().name
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self._built().dimension
+
+    @property
+    def bodies(self) -> list:
+        """In the order of all columns: those that turn come last."""
+        return self._built().bodies
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is likely to go wrong: steps that are too long for springs."""
+        return self._built().warnings
+
+    def add_force(self, force: Callable, name: str | None = None) -> None:
+        """A force on all bodies, called in every stage of the integrator.
+
+        force(stage) returns forces (N, a row a body), or forces and torques, or fills stage.forces and stage.torques.
+        Its answer follows from the stage alone. A film of such a scene cannot be verified, and says so.
+        """
+        name = name or getattr(force, "__name__", "force")
+        made = self._built().with_force(name, force)
+        self._forces.append((name, force))
+        self.__dict__["_made"] = made
+
+    # --- what is made of it
+
+    def world(self) -> "World":
+        """The scene as it runs."""
+        return World(self)
+
+    def frames(self, **options: Any) -> "Renderer":
+        """The frames of its film, one by one."""
+        return Renderer(self, **options)
+
+    def frame(self, t: float = 0, **options: Any):
+        """The picture at t seconds."""
+        return Renderer(self, **options).at(t)
+
+    def render(self, out: str | os.PathLike, **options: Any) -> str:
+        """Films it as `obscura render` does, on all cores; answers the name of the file."""
+        _obscura.render(self._built(), os.fspath(out), **options)
+        return os.fspath(out)
+
+    def still(self, t: float, out: str | os.PathLike, **options: Any) -> str:
+        """The picture at t seconds as a PNG, as `obscura render --at` writes it."""
+        _obscura.still(self._built(), t, os.fspath(out), **options)
+        return os.fspath(out)
+
+    def page(self, **options: Any) -> str:
+        """The page that plays its film, as HTML."""
+        return _obscura.film_page(self._built(), **options)
+
+    def picture(self, at: float | Iterable[float] = (), **options: Any) -> Figure:
+        """Its figure for print, as `obscura figure` draws it, at one instant or several."""
+        times = [float(at)] if numpy.isscalar(at) else [float(t) for t in at]
+        return Figure(_obscura.figure_svg(self._built(), times, **options))
+
+    def sweep(self, vary: Mapping[str, Iterable] | Sequence[str], measure: str | Sequence[str],
+              jobs: int = 0) -> dict[str, numpy.ndarray]:
+        """Runs all combinations of the values of keys and measures each: a column a key and a measure.
+
+        sweep({"ball.elasticity": [0, 0.5, 1]}, "energy.total@5") is `obscura sweep --vary ball.elasticity=0,0.5,1
+        --measure energy.total@5`. What a run did not come to is nan; "trouble" says why.
+        """
+        if isinstance(vary, Mapping):
+            vary = [f"{key}=" + ",".join(str(value) for value in values) for key, values in vary.items()]
+        measure = [measure] if isinstance(measure, str) else list(measure)
+        heads, rows = _obscura.sweep(self._built(), list(vary), measure, jobs)
+        return {head: _column([row[i] for row in rows]) for i, head in enumerate(heads)}
+
+    def _repr_html_(self) -> str:
+        # a frame of its own, for a page has its own styles and scripts
+        page = html.escape(self.page(), quote=True)
+        film = self.film
+        width, height = getattr(film, "size", None) or (1920, 1080)
+        return (f'<iframe srcdoc="{page}" style="width:100%;aspect-ratio:{width}/{height * 1.08:g};border:0" '
+                'sandbox="allow-scripts"></iframe>')
+
+
+def _column(cells: list[str]) -> numpy.ndarray:
+    try:
+        return numpy.array([float(cell) if cell else numpy.nan for cell in cells])
+    except ValueError:
+        return numpy.array(cells)
+
+
+class World(_obscura.World):
+    """A scene that runs, by whole steps of its physics clock.
+
+    positions, velocities, turns and spins are columns of the state itself: arrays that cannot be written, follow the
+    world and keep it alive. Setting one takes hold from the next step on.
+    """
+
+    def __init__(self, scene: Scene):
+        super().__init__(scene._built())
+        self.scene = scene
+
+    def __reduce__(self):
+        return _world, (self.scene, self.save())
+
+    def __repr__(self) -> str:
+        return f"<World {self.scene.name} at {self.time:g} s>"
+
+
+def _world(scene: Scene, state) -> World:
+    world = World(scene)
+    world.restore(state)
+    return world
+
+
+class Renderer(_obscura.Renderer):
+    """Draws a scene: `for frame in renderer` its film, renderer.at(t) an instant, renderer.draw(world) a world.
+
+    Options: size=(width, height), fps, theme ("paper", "screen"), camera, transparent, start, end.
+    """
+
+    def __init__(self, scene: Scene, **options: Any):
+        super().__init__(scene._built(), **options)
+
+
+class Movie(_obscura.Movie):
+    """A movie file that takes frames, of a renderer or arrays of height x width x 3 or 4 bytes.
+
+    with Movie("a.mp4", renderer) as movie: movie.add(frame). Without a renderer it needs size and fps. An exception
+    within leaves no file.
+    """
+
+    def __init__(self, path: str | os.PathLike, renderer: Renderer | None = None, **options: Any):
+        super().__init__(os.fspath(path), renderer, **options)

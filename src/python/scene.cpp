@@ -1,0 +1,142 @@
+// Scenes, and forces of Python.
+
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <memory>
+
+#include "python/convert.h"
+
+namespace obscura::python {
+
+namespace py = pybind11;
+
+namespace {
+
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+// an array of its own: what Python keeps of a stage stays what it was
+Array copied(const Columns& of, std::vector<py::ssize_t> shape) {
+  Array array(std::move(shape));
+  std::memcpy(array.mutable_data(), of.first, of.size() * sizeof(double));
+  return array;
+}
+
+// An instant within a step, as Python's forces see it.
+struct StageView {
+  double time = 0;
+  Array positions, velocities, spins, orientations, forces, torques;
+};
+
+// adds the answer of a force, if it returns one: forces, or forces and torques
+void add(const py::handle answer, Array& to, const char* what) {
+  const Array given = Array::ensure(answer);
+  if (!given) throw py::error_already_set();
+  if (given.size() != to.size())
+    throw py::value_error(std::string("a force returned ") + std::to_string(given.size()) + " numbers of " +
+                          what + ", expected " + std::to_string(to.size()));
+  for (py::ssize_t i = 0; i < to.size(); ++i) to.mutable_data()[i] += given.data()[i];
+}
+
+// The function of Python behind a force; it may be let go in any thread.
+struct Callable {
+  explicit Callable(py::function of)
+      : function(new py::function(std::move(of)), [](py::function* it) {
+          if (!Py_IsInitialized()) return;
+          const py::gil_scoped_acquire locked;
+          delete it;
+        }) {}
+  std::shared_ptr<py::function> function;
+
+  void operator()(const Stage& stage, const Push& push) const {
+    const py::gil_scoped_acquire locked;
+    const auto n = py::ssize_t(stage.positions.rows), d = py::ssize_t(stage.positions.columns);
+    const auto spins = py::ssize_t(stage.spins.columns);
+    const auto shape = [&](py::ssize_t columns) {
+      return columns == 1 ? std::vector<py::ssize_t>{n} : std::vector<py::ssize_t>{n, columns};
+    };
+    StageView view{stage.time,
+                   copied(stage.positions, {n, d}),
+                   copied(stage.velocities, {n, d}),
+                   copied(stage.spins, shape(spins)),
+                   copied(stage.orientations, {n, d, d}),
+                   Array(shape(d)),
+                   Array(shape(spins))};
+    std::memset(view.forces.mutable_data(), 0, std::size_t(view.forces.nbytes()));
+    std::memset(view.torques.mutable_data(), 0, std::size_t(view.torques.nbytes()));
+    Array forces = view.forces, torques = view.torques;
+    const py::object answer = (*function)(view);
+    if (py::isinstance<py::tuple>(answer) && py::len(answer) == 2) {
+      add(answer[py::int_(0)], forces, "forces"), add(answer[py::int_(1)], torques, "torques");
+    } else if (!answer.is_none() && !answer.is(forces)) {
+      add(answer, forces, "forces");
+    }
+    std::memcpy(push.forces, forces.data(), std::size_t(forces.nbytes()));
+    std::memcpy(push.torques, torques.data(), std::size_t(torques.nbytes()));
+  }
+};
+
+}  // namespace
+
+void add_scene(py::module_& module) {
+  py::class_<StageView>(module, "Stage", "All bodies at an instant within a step, as a force is given them.")
+      .def_readonly("time", &StageView::time, "s")
+      .def_readonly("positions", &StageView::positions, "Centres of mass, m: a row a body.")
+      .def_readonly("velocities", &StageView::velocities, "m/s: a row a body.")
+      .def_readonly("spins", &StageView::spins, "rad/s: a number a body, in space a row.")
+      .def_readonly("orientations", &StageView::orientations,
+                    "Matrices that turn a body's axes into the room's: orientations[i] @ local.")
+      .def_readonly("forces", &StageView::forces, "What the force fills, N: a row a body, all zero before.")
+      .def_readonly("torques", &StageView::torques, "Likewise, N m about the centres of mass.");
+
+  py::class_<Body>(module, "Body", "One body of a scene.")
+      .def_readonly("name", &Body::name)
+      .def_readonly("kind", &Body::kind, "Its form: 'point', 'ball', 'box', ...")
+      .def_readonly("mass", &Body::mass, "kg")
+      .def_readonly("fixed", &Body::fixed)
+      .def_readonly("turns", &Body::turns)
+      .def("__repr__", [](const Body& it) { return "<Body " + it.name + ", a " + it.kind + ">"; });
+
+  py::class_<Scene>(module, "Scene")
+      .def_static(
+          "read",
+          [](const std::string& file, const std::vector<std::string>& sets) {
+            return unlocked([&] { return Scene::read(file, sets); });
+          },
+          py::arg("file"), py::arg("sets") = std::vector<std::string>())
+      .def_static(
+          "parse",
+          [](const std::string& text, const std::string& name, const std::vector<std::string>& sets) {
+            return unlocked([&] { return Scene::parse(text, name, sets); });
+          },
+          py::arg("text"), py::arg("name") = "scene.toml", py::arg("sets") = std::vector<std::string>())
+      .def_static(
+          "build",
+          [](const py::handle& keys, const std::string& name) { return Builder(table(keys)).build(name); },
+          py::arg("keys"), py::arg("name") = "scene")
+      .def("with_key", [](const Scene& it, const std::string& key,
+                          const py::handle& to) { return it.with(key, value(to)); })
+      .def("with_force", [](const Scene& it, const std::string& name,
+                            py::function force) { return it.with_force(name, Callable(std::move(force))); })
+      .def("keys", [](const Scene& it) { return dict(it.keys()); })
+      .def_property_readonly("name", &Scene::name)
+      .def_property_readonly("file", &Scene::file)
+      .def_property_readonly("text", &Scene::text)
+      .def_property_readonly("sets", &Scene::sets)
+      .def_property_readonly("duration", &Scene::duration)
+      .def_property_readonly("dimension", &Scene::dimension)
+      .def_property_readonly("bodies", &Scene::bodies)
+      .def_property_readonly("forces", &Scene::forces)
+      .def_property_readonly("warnings", &Scene::warnings)
+      .def_property_readonly("hash", &Scene::hash);
+
+  module.def(
+      "toml", [](const py::handle& keys) { return Builder(table(keys)).text(); }, "A scene's keys as TOML.");
+  module.def("check_key",
+             [](const std::string& path, const py::handle& to) { Builder().set(path, value(to)); });
+  module.def("schema", &schema, "The scene language's JSON Schema, as text.");
+}
+
+}  // namespace obscura::python

@@ -1,0 +1,146 @@
+// Worlds: states as columns of NumPy, which share the world's memory.
+
+#include <pybind11/numpy.h>
+#include <pybind11/operators.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+
+#include "python/convert.h"
+
+namespace obscura::python {
+
+namespace py = pybind11;
+
+namespace {
+
+using Given = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+// rows of the state itself, for reading: the array keeps its world
+py::array shared(const py::object& world, const Columns& of) {
+  std::vector<py::ssize_t> shape{py::ssize_t(of.rows)};
+  if (of.columns != 1) shape.push_back(py::ssize_t(of.columns));
+  py::array_t<double> array(shape, of.first, world);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+std::span<const double> span(const Given& array) { return {array.data(), std::size_t(array.size())}; }
+
+py::array_t<double> vector(const double (&x)[3]) { return py::array_t<double>(3, x); }
+
+template <Columns (World::*Get)() const>
+py::array column(const py::object& world) {
+  return shared(world, (world.cast<const World&>().*Get)());
+}
+template <void (World::*Set)(std::span<const double>)>
+void set_column(World& world, const Given& to) {
+  (world.*Set)(span(to));
+}
+
+}  // namespace
+
+void add_world(py::module_& module) {
+  py::class_<Contact> contact(module, "Contact", "Two that touch.");
+  contact.def_readonly("body", &Contact::body, "The number of a body.")
+      .def_readonly("other", &Contact::other, "The other body, or -1.")
+      .def_readonly("wall", &Contact::wall,
+                    "The wall, or -1: floor, left, right, ceiling, then the scene's own.")
+      .def_readonly("gap", &Contact::gap, "m, negative: inside")
+      .def_property_readonly(
+          "point", [](const Contact& it) { return vector(it.point); }, "m")
+      .def_property_readonly(
+          "normal", [](const Contact& it) { return vector(it.normal); }, "Unit, towards the body.")
+      .def_property_readonly(
+          "force", [](const Contact& it) { return vector(it.force); }, "On the body, N.")
+      .def_property_readonly(
+          "impulse", [](const Contact& it) { return vector(it.impulse); },
+          "On the body in the last step, N s.")
+      .def_property_readonly("mode", [](const Contact& it) {
+        constexpr const char* kModes[] = {"bouncing", "sliding", "sticking"};
+        return kModes[int(it.mode)];
+      });
+
+  py::class_<Pair>(module, "Pair", "Two that touch, whichever of their features do.")
+      .def_readonly("body", &Pair::body)
+      .def_readonly("other", &Pair::other)
+      .def_readonly("wall", &Pair::wall)
+      .def(py::self == py::self)
+      .def("__repr__", [](const Pair& it) {
+        return "<Pair of body " + std::to_string(it.body) +
+               (it.other >= 0 ? " and body " + std::to_string(it.other)
+                              : " and wall " + std::to_string(it.wall)) +
+               ">";
+      });
+
+  py::class_<Event>(module, "Event", "A condition of the scene that has fired.")
+      .def_readonly("time", &Event::time, "s")
+      .def_readonly("name", &Event::name)
+      .def_readonly("what", &Event::what)
+      .def_readonly("of", &Event::of)
+      .def_readonly("marks", &Event::marks)
+      .def_readonly("stop", &Event::stop)
+      .def("__repr__",
+           [](const Event& it) { return "<Event " + it.name + " at " + std::to_string(it.time) + " s>"; });
+
+  py::class_<Energies>(module, "Energies", "J")
+      .def_readonly("kinetic", &Energies::kinetic)
+      .def_readonly("gravity", &Energies::gravity)
+      .def_readonly("springs", &Energies::springs)
+      .def_readonly("fields", &Energies::fields)
+      .def_readonly("work", &Energies::work)
+      .def_readonly("total", &Energies::total)
+      .def("__repr__",
+           [](const Energies& it) { return "<Energies, " + std::to_string(it.total) + " J in all>"; });
+
+  py::class_<State>(module, "State", "The whole state of a world, as a value: it compares and pickles.")
+      .def(py::self == py::self)
+      .def("__bytes__",
+           [](const State& it) {
+             return py::bytes(reinterpret_cast<const char*>(it.words.data()), it.words.size() * 8);
+           })
+      .def(py::pickle(
+          [](const State& it) {
+            return py::make_tuple(
+                py::bytes(reinterpret_cast<const char*>(it.words.data()), it.words.size() * 8));
+          },
+          [](const py::tuple& saved) {
+            const std::string bytes = saved[0].cast<std::string>();
+            State state;
+            state.words.resize(bytes.size() / 8);
+            std::memcpy(state.words.data(), bytes.data(), state.words.size() * 8);
+            return state;
+          }));
+
+  py::class_<World>(module, "World", py::dynamic_attr())
+      .def(py::init([](const Scene& scene) { return unlocked([&] { return World(scene); }); }))
+      .def_property_readonly("time", &World::time, "s")
+      .def_property_readonly("steps", &World::steps, "Done since the start.")
+      .def_property_readonly("step_length", &World::step_length, "s")
+      .def(
+          "step", [](World& it, std::int64_t count) { unlocked([&] { it.step(count); }); },
+          py::arg("count") = 1)
+      .def(
+          "step_to", [](World& it, double t) { unlocked([&] { it.step_to(t); }); }, py::arg("t"))
+      .def("body", &World::body, py::arg("name"))
+      .def_property("positions", &column<&World::positions>, &set_column<&World::set_positions>)
+      .def_property("velocities", &column<&World::velocities>, &set_column<&World::set_velocities>)
+      .def_property("turns", &column<&World::turns>, &set_column<&World::set_turns>)
+      .def_property("spins", &column<&World::spins>, &set_column<&World::set_spins>)
+      .def_property_readonly("first_turning", &World::first_turning)
+      .def("read", &World::read, py::arg("quantity"))
+      .def_property_readonly("quantities", &World::quantities)
+      .def_property_readonly("energies", &World::energies)
+      .def_property_readonly("contacts", &World::contacts)
+      .def("contact_changes",
+           [](World& it) {
+             const ContactChanges changes = it.contact_changes();
+             return py::make_tuple(changes.began, changes.ended);
+           })
+      .def_property_readonly("events", &World::events)
+      .def("save", &World::save)
+      .def("restore", &World::restore, py::arg("state"))
+      .def_property_readonly("hash", &World::hash);
+}
+
+}  // namespace obscura::python

@@ -1,0 +1,378 @@
+"""The Python module: scenes, worlds, forces, frames and films. Run by tests/python/check."""
+
+import copy
+import inspect
+import json
+import os
+import pickle
+import re
+import subprocess
+import threading
+import time
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import obscura
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = sorted((ROOT / "scenes").glob("*.toml"))
+PROGRAM = os.environ["OBSCURA_PROGRAM"]
+SMALL = {"size": (160, 90), "fps": 30}
+
+
+def room(**more):
+    return obscura.Scene({"room": {"size": [4, 4], "walls": "none", "gravity": [0, 0]}, "physics": {"rate": 100},
+                          "ball": [{"name": "b", "radius": 0.1, "mass": 2, "position": [3, 2], "velocity": [0, 1]}], **more})
+
+
+def spring(stage):
+    return -8 * (stage.positions - 2)
+
+
+# --- scenes
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_keys_of_a_shipped_scene_are_the_same_scene(path):
+    scene = obscura.Scene(path)
+    again = obscura.Scene(scene._built().keys())
+    assert again.hash == scene.hash
+    a, b = scene.world(), again.world()
+    a.step(3), b.step(3)
+    assert a.hash == b.hash
+
+
+def test_every_key_of_the_schema_is_an_attribute_that_says_the_same_as_text():
+    def walk(keys, path):
+        for name, node in keys.items():
+            yield path + [name], node
+            yield from walk(obscura.keys.properties(node), path + [name])
+
+    seen = whole = 0
+    for path, node in walk(obscura.schema()["properties"], []):
+        for example in node.get("examples", []):
+            value, section, text = example, scene_section(path), json_toml(example)
+            scene, owner = section
+            setattr(owner, path[-1], value)
+            made, there = obscura._obscura.toml(scene._data), nested(path, text)
+            assert tomllib.loads(made) == tomllib.loads(there), path
+            seen += 1
+            try:
+                wanted = obscura.Scene.parse(there).hash
+            except obscura.SceneError:
+                continue
+            assert scene.hash == wanted, path
+            whole += 1
+    assert seen > 400 and whole > 100
+
+
+def scene_section(path):
+    scene = obscura.Scene()
+    owner = scene
+    for name in path[:-1]:
+        owner = getattr(owner, name)
+        if isinstance(owner, obscura.keys.Kind):
+            owner = owner.add()
+    return scene, owner
+
+
+def nested(path, text):
+    keys = obscura.schema()["properties"]
+    listed = []
+    for name in path[:-1]:
+        listed.append(obscura.keys.is_list(keys[name]))
+        keys = obscura.keys.properties(keys[name])
+    line = f"{path[-1]} = {text}"
+    for name, many in zip(reversed(path[:-1]), reversed(listed)):
+        line = f"{name} = [{{ {line} }}]" if many else f"{name} = {{ {line} }}"
+    return line
+
+
+def json_toml(value):
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f'"{key}" = {json_toml(each)}' for key, each in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(json_toml(each) for each in value) + "]"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def test_keys_are_attributes_and_wrong_ones_are_named():
+    scene = room()
+    scene.room.gravity = [0, -1]
+    assert scene.room.gravity == [0, -1]
+    assert scene.ball["b"].mass == 2 and scene.ball[0].name == "b" and len(scene.ball) == 1
+    scene.ball.add(name="c", radius=0.1, position=[1, 1])
+    assert [body.name for body in scene.bodies] == ["b", "c"]
+    assert scene.physics.rate == 100 and "gravity" in dir(scene.room)
+    with pytest.raises(AttributeError, match="did you mean 'gravity'"):
+        scene.room.gravitty = 1
+    with pytest.raises(AttributeError, match="did you mean 'radius'"):
+        scene.ball.add(radios=1)
+    with pytest.raises(AttributeError):
+        obscura.Scene({"rooom": {}})
+    del scene.ball["c"]
+    assert len(scene.bodies) == 1
+
+
+def test_faults_have_their_place():
+    with pytest.raises(obscura.SceneError) as found:
+        obscura.Scene.parse("[room]\nsize = [4, 4]\n[[ball]]\nradius = -1\nposition = [1, 1]\n", "a.toml")
+    assert (found.value.file, found.value.line, found.value.column) == ("a.toml", 4, 10)
+    scene = room()
+    scene.ball[0].radius = -1
+    with pytest.raises(obscura.SceneError) as found:
+        scene.world()
+    assert found.value.key == "ball[0].radius" and isinstance(found.value, ValueError)
+    assert pickle.loads(pickle.dumps(found.value)).key == "ball[0].radius"
+    with pytest.raises(TypeError):
+        obscura.Scene(room={"size": object()}).hash
+
+
+def test_a_file_keeps_its_lines_until_a_key_is_changed(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text("# mine\n[room]\nsize = [4, 4]\n")
+    scene = obscura.Scene(path, sets=["duration=2"])
+    assert scene.text.startswith("# mine") and scene.duration == 2
+    scene.duration = 3
+    assert obscura.Scene(path, sets=["duration=3"]) == scene
+
+
+def test_scenes_worlds_and_states_pickle():
+    for scene in (room(), obscura.Scene(SCENES[0]), obscura.Scene.parse("[room]\nsize = [4, 4]\n")):
+        again = pickle.loads(pickle.dumps(scene))
+        assert again == scene and copy.deepcopy(scene) == scene
+    scene = room()
+    scene.add_force(spring)
+    world = scene.world()
+    world.step(30)
+    other = pickle.loads(pickle.dumps(world))
+    assert other.hash == world.hash and other.save() == world.save()
+    world.step(30), other.step(30)
+    assert other.hash == world.hash
+
+
+# --- worlds
+
+
+def test_columns_share_the_memory_of_the_state():
+    world = room().world()
+    positions = world.positions
+    address = positions.__array_interface__["data"][0]
+    assert positions.shape == (1, 2) and not positions.flags.writeable
+    world.step(100)
+    assert np.allclose(positions, [[3, 3]]) and world.positions.__array_interface__["data"][0] == address
+    with pytest.raises(ValueError):
+        positions[0, 0] = 1
+    del world
+    assert np.allclose(positions, [[3, 3]])  # it keeps its world
+
+
+def test_states_are_saved_restored_and_set():
+    world = room().world()
+    state = world.save()
+    world.step(10)
+    end = world.hash
+    world.restore(state)
+    world.step(10)
+    assert world.hash == end
+    world.velocities = [[1, 0]]
+    world.step(100)
+    assert np.allclose(world.positions, [[4, 2.1]])
+    with pytest.raises(obscura.UsageError):
+        world.velocities = [1, 2, 3]
+    with pytest.raises(obscura.UsageError, match="did you mean 'b'"):
+        world.body("bb")
+    assert world.read("b.velocity.x") == 1 and world.energies.kinetic == 1
+
+
+def test_contacts_and_events():
+    scene = obscura.Scene({"room": {"size": [4, 4]}, "physics": {"collision": "event"},
+                           "ball": [{"name": "ball", "radius": 0.1, "position": [2, 1], "elasticity": 0.5}],
+                           "when": [{"name": "hit", "touches": ["ball", "floor"], "do": [{"mark": "hit"}]}]})
+    world = scene.world()
+    began = []
+    while world.time < 0.6:
+        world.step()
+        began += world.contact_changes()[0]
+    assert began and began[0].body == 0 and began[0].other == -1
+    assert abs(world.events[0].time - np.sqrt(2 * 0.9 / 9.81)) < 1e-9
+
+
+# --- forces
+
+
+def error_at(rate):
+    scene = room()
+    scene.physics.rate = rate
+    scene.add_force(spring)
+    world = scene.world()
+    world.step_to(1)
+    return np.hypot(*(world.positions[0] - [2 + np.cos(2 * world.time), 2 + np.sin(2 * world.time) / 2]))
+
+
+def test_a_force_keeps_order_four():
+    assert abs(np.log2(error_at(20) / error_at(40)) - 4) < 0.1
+
+
+def test_a_force_on_a_thousand_bodies_is_one_call_a_stage():
+    scene = obscura.Scene({"room": {"size": [40, 40], "walls": "none", "gravity": [0, 0]}, "physics": {"rate": 100},
+                           "ball": [{"name": "b", "radius": 0.1, "position": [1, 1],
+                                     "copies": {"count": [40, 25], "offset": [[0.9, 0], [0, 1.5]]}}]})
+    calls = []
+    scene.add_force(lambda stage: calls.append(len(stage.positions)) or 0 * stage.positions, "count")
+    world = scene.world()
+    calls.clear()
+    world.step(5)
+    # four stages, and two points for the work
+    assert calls == [1000] * 30
+
+
+def test_a_force_may_fill_its_arrays_and_give_torques():
+    scene = obscura.Scene({"room": {"size": [4, 4], "walls": "none", "gravity": [0, 0]},
+                           "box": [{"name": "box", "size": [1, 1], "mass": 6, "position": [2, 2]}]})
+    scene.add_force(lambda stage: (0 * stage.positions, np.ones(1)), "twist")
+
+    def push(stage):
+        stage.forces[:, 0] = 6
+
+    scene.add_force(push)
+    world = scene.world()
+    world.step_to(1)
+    assert abs(world.spins[0] - 1) < 1e-9 and abs(world.velocities[0, 0] - 1) < 1e-9
+
+
+def test_what_a_force_raises_comes_out_and_the_step_is_not_taken():
+    scene = room()
+
+    def moody(stage):
+        if stage.time > 0.1:
+            raise KeyError("enough")
+
+    scene.add_force(moody)
+    world = scene.world()
+    with pytest.raises(KeyError, match="enough"):
+        world.step(100)
+    assert world.steps == 10
+    scene = room()
+    scene.add_force(lambda stage: np.ones(7), "wrong")
+    with pytest.raises(ValueError, match="expected 2"):
+        scene.world().step()
+    scene = room()
+    scene.add_force(lambda stage: np.nan * stage.positions, "hole")
+    with pytest.raises(obscura.RunError) as found:
+        scene.world().step()
+    assert found.value.body == "b" and found.value.quantity == "force"
+
+
+# --- pictures and films
+
+
+def program(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+
+
+def test_frames_are_the_pictures_of_the_program(tmp_path):
+    path = ROOT / "scenes/room.toml"
+    assert program("render", path, "--size", "160x90", "--fps", "30", "--frames", "0..3", "-o", tmp_path / "{frame:02}.png").returncode == 0
+    scene = obscura.Scene(path)
+    for frame, _ in zip(scene.frames(**SMALL), range(4)):
+        frame.save(tmp_path / "own.png")
+        assert compare(tmp_path / f"0{frame.number}.png", tmp_path / "own.png")
+        assert frame.array.shape == (90, 160, 4) and np.asarray(frame).dtype == np.uint8
+    assert len(scene.frames(**SMALL)) == 300
+    scene.still(0.1, tmp_path / "still.png", **SMALL)
+    assert program("render", path, "--size", "160x90", "--fps", "30", "--at", "0.1", "-o", tmp_path / "cli.png").returncode == 0
+    assert (tmp_path / "still.png").read_bytes() == (tmp_path / "cli.png").read_bytes()
+
+
+def compare(a, b):
+    return program("compare", a, b).returncode == 0
+
+
+def test_films_movies_pages_figures_and_sweeps(tmp_path):
+    path = ROOT / "scenes/room.toml"
+    scene = obscura.Scene(path)
+    scene.render(tmp_path / "a.mp4", end=0.3, **SMALL)
+    assert program("render", path, "--size", "160x90", "--fps", "30", "--to", "0.3", "-o", tmp_path / "b.mp4").returncode == 0
+    assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
+    renderer = scene.frames(**SMALL)
+    world = scene.world()
+    with obscura.Movie(tmp_path / "c.mp4", renderer) as movie:
+        for _ in range(10):
+            movie.add(renderer.draw(world))
+            movie.add(renderer.draw(world).array[:, :, :3])
+            world.step(4)
+    assert (tmp_path / "c.mp4").stat().st_size > 1000
+    with pytest.raises(RuntimeError), obscura.Movie(tmp_path / "d.mp4", size=(16, 16), fps=10) as movie:
+        movie.add(np.zeros((16, 16, 4), np.uint8))
+        raise RuntimeError
+    assert not [name for name in os.listdir(tmp_path) if "d.mp4" in name]
+    assert scene.page(end=0.2, **SMALL).startswith("<!doctype html>")
+    found = scene.sweep({"ball.elasticity": [0.5, 1]}, ["energy.total@0.5"])
+    assert list(found["ball.elasticity"]) == [0.5, 1] and len(found["energy.total@0.5"]) == 2
+
+
+def test_a_film_of_a_force_says_that_it_cannot_be_verified(tmp_path):
+    scene = obscura.Scene(ROOT / "scenes/room.toml")
+    scene.add_force(lambda stage: 0 * stage.positions, "mine")
+    scene.render(tmp_path / "a.mp4", end=0.1, **SMALL)
+    run = program("verify", tmp_path / "a.mp4")
+    assert run.returncode == 4 and "cannot be verified: the force 'mine' was computed by a program" in run.stderr
+
+
+def test_notebooks_show_what_they_are_given():
+    scene = obscura.Scene(ROOT / "scenes/room.toml")
+    scene.duration = 0.2
+    assert scene._repr_html_().startswith("<iframe srcdoc=")
+    assert scene.frame(0.1, **SMALL)._repr_png_().startswith(b"\x89PNG")
+    assert "<svg" in scene.picture(0.1)._repr_svg_()
+
+
+def test_work_goes_on_without_the_lock():
+    world = obscura.Scene(ROOT / "scenes/pour.toml").world()
+    beats = []
+    thread = threading.Thread(target=lambda: world.step(200))
+    thread.start()
+    while thread.is_alive():
+        beats.append(1)
+        time.sleep(0.001)
+    assert len(beats) > 5  # this thread ran meanwhile
+
+
+def test_an_interrupt_ends_a_run(tmp_path):
+    script = tmp_path / "long.py"
+    script.write_text("import obscura, sys\nworld = obscura.Scene(sys.argv[1]).world()\nprint('begun', flush=True)\n"
+                      "try:\n  world.step(10**9)\nexcept KeyboardInterrupt:\n  print('ended', world.steps > 0)\n")
+    with subprocess.Popen(["/usr/bin/python3", script, ROOT / "scenes/room.toml"], stdout=subprocess.PIPE, text=True) as run:
+        assert run.stdout.readline() == "begun\n"
+        time.sleep(0.3)
+        run.send_signal(2)
+        assert run.stdout.read() == "ended True\n"
+
+
+# --- the package
+
+
+def test_stubs_name_what_there_is():
+    stub = (ROOT / "src/python/obscura/__init__.pyi").read_text()
+    named = set(re.findall(r"^(?:class|def) (\w+)", stub, re.M))
+    assert named == set(obscura.__all__)
+    for name in obscura.__all__:
+        thing = getattr(obscura, name)
+        assert inspect.getdoc(thing), name
+        if not inspect.isclass(thing):
+            continue
+        body = re.search(rf"^class {name}\b.*?(?=^\S|\Z)", stub, re.M | re.S).group()
+        told = set(re.findall(r"^    (?:def )?(\w+)(?:\(|:)", body, re.M))
+        there = {member for member in dir(thing) if not member.startswith("_")} - set(dir(Exception))
+        assert there <= told | inherited(stub, body), (name, there - told)
+
+
+def inherited(stub, body):
+    found = re.match(r"class \w+\((\w+)", body)
+    if not found or not (base := re.search(rf"^class {found.group(1)}\b.*?(?=^\S|\Z)", stub, re.M | re.S)):
+        return set()
+    return set(re.findall(r"^    (?:def )?(\w+)(?:\(|:)", base.group(), re.M))
