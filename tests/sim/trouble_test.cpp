@@ -287,8 +287,6 @@ TEST(Trouble, OfJointsThatDoNotHoldNamesTheJoint) {
     world.model.ignore.emplace_back(0, 0);
     const auto found = trouble(world, {2, 1});
     ASSERT_TRUE(found);
-    std::printf("%s %s %s %s\n", found->body.c_str(), found->quantity.c_str(), found->what.c_str(),
-                found->likely.c_str());
     EXPECT_THAT(found->likely, HasSubstr("raise physics.rate"));
   }
 }
