@@ -321,7 +321,7 @@ class World {
   Energies energies() const;
 
   std::vector<Contact> contacts() const;
-  /// Who has come to touch and who no longer does, since the last call, or the start.
+  /// Pairs that began to touch and pairs that parted, since the last call, or the start.
   ContactChanges contact_changes();
   /// All that has fired since the start, in the order of time.
   std::vector<Event> events() const;

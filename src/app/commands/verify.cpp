@@ -172,7 +172,7 @@ Origin with_another_scene(const Origin& origin, const std::string& file, const V
   return now;
 }
 
-// nobody but that program can compute them again
+// only that program can compute them again
 void refuse_programs(const std::string& file, const Origin& origin) {
   if (origin.programs.empty()) return;
   throw media::Error(
