@@ -185,18 +185,18 @@ void JointSolver<D>::set_poses(const State<D>& state) {
   }
 }
 
-// ropes at their length, with ends that do not come nearer each other: taut as long as they pull
+// ropes at their length that do not change it faster than gravity can in a step: taut as long as they pull
 template <int D>
 void JointSolver<D>::find_taut_ropes(double h) {
-  const double g = std::sqrt(model_.gravity.squaredNorm());
+  const double near = kTaut * model_.scale,
+               slow = std::max(std::sqrt(model_.gravity.squaredNorm()) * h, near / h);
   pulls_.assign(model_.joints.size(), {});
   for (const int k : ropes_) {
     const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
     rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
-    taut_[std::size_t(k)] =
-        std::fabs(off[0]) <= kTaut * model_.scale && std::fabs(speed(out[0], at_)) <= g * h;
+    taut_[std::size_t(k)] = std::fabs(off[0]) <= near && std::fabs(speed(out[0], at_)) <= slow;
     loose_[std::size_t(factors_.first(k))] = !taut_[std::size_t(k)];
     least_force_[std::size_t(k)] = kEndless;
   }
@@ -216,7 +216,7 @@ bool JointSolver<D>::slacken_ropes() {
 
 template <int D>
 void JointSolver<D>::save(const State<D>& state) {
-  saved_.clear(), saved_work_ = state.work;
+  saved_.clear();
   for (const int body : dynamics_->bodies()) {
     Saved& it = saved_.emplace_back();
     it.x = state.x[std::size_t(body)], it.v = state.v[std::size_t(body)];
@@ -238,7 +238,6 @@ void JointSolver<D>::restore(State<D>& state) const {
     state.turn[std::size_t(k)] = it.turn, state.spin[std::size_t(k)] = it.spin;
     if (std::size_t(k) < state.body_spin.size()) state.body_spin[std::size_t(k)] = it.body_spin;
   }
-  state.work = saved_work_;
 }
 
 // the coordinates of motors where the step begins

@@ -263,7 +263,6 @@ class JointSolver final : public System {
     BodySpin<D> body_spin;
   };
   std::vector<Saved> saved_;  // bodies that are stepped
-  std::vector<double> saved_work_;
   struct Coordinate {
     double value = 0, rate = 0;  // rad or m; a second
   };
