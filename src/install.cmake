@@ -48,7 +48,7 @@ foreach(room IN ITEMS obscura app scene gl page media draw sim)
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/obscura)
 endforeach()
 
-# who uses the headers sees Eigen as the libraries do: the second changes the size of structs
+# a program that uses the headers sees Eigen as the libraries do: the second changes the size of structs
 target_compile_features(obscura_sim INTERFACE cxx_std_20)
 target_compile_options(obscura_sim INTERFACE $<INSTALL_INTERFACE:-ffp-contract=off>)
 target_compile_definitions(obscura_sim INTERFACE $<INSTALL_INTERFACE:EIGEN_DONT_VECTORIZE>)

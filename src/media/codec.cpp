@@ -88,8 +88,8 @@ Options x264(const std::string& path, const MovieSpec& spec) {
   constexpr const char* kQuick = ":bframes=0:rc-lookahead=0:mbtree=0:weightp=0:qcomp=0.7:aq-strength=1.2";
   parameters += spec.preset.empty() ? kQuick : within_level(spec);
   // A segment is a film of its own: with the macroblock tree, x264 takes its first picture for one that
-  // nobody refers to. 1.4 times finer, as keyframes in the middle of a film are, quiet films gain 1.4 dB, and
-  // have what one encoder of the whole film gives them to 0.2 dB.
+  // no other refers to. 1.4 times finer, as keyframes in the middle of a film are, quiet films gain 1.4 dB,
+  // and have what one encoder of the whole film gives them to 0.2 dB.
   if (std::find(kTreeless.begin(), kTreeless.end(), spec.preset) == kTreeless.end())
     parameters += ":zones=0,0,b=1.4";
   return {{"preset", spec.preset.empty() ? "veryfast" : spec.preset},

@@ -399,7 +399,7 @@ void write_png(const std::string& path, const Frame& frame, bool transparent = f
 std::vector<std::uint8_t> png(const Frame& frame, bool transparent = false);
 
 /// A movie file that takes frames, from wherever: mp4, mkv, mov, webm or gif, by the ending of its name. Its
-/// bytes depend on the frames alone. Nobody can make it again from what it says: `obscura verify` refuses it.
+/// bytes depend on the frames alone. It does not say how to make it again: `obscura verify` refuses it.
 class Movie {
  public:
   /// Of the renderer's size and frame rate. Throws FileError where it cannot be made here.

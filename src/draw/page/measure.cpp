@@ -14,8 +14,8 @@ constexpr double kDegrees = 57.29577951308232;
 using Now = const sim::Snapshot&;
 
 const sim::Snapshot::Body& of(Now now, int body) {
-  static const sim::Snapshot::Body nobody;
-  return body < 0 ? nobody : now.bodies[std::size_t(body)];
+  static const sim::Snapshot::Body none;
+  return body < 0 ? none : now.bodies[std::size_t(body)];
 }
 
 /// The first spring that holds it; one of no length where none does.

@@ -22,7 +22,7 @@ inline constexpr int kRays = 32;
 /// Texels a side of the map in which the light sees what casts shadows on bodies.
 inline constexpr int kMap = 1024;
 
-/// Of lines that are found by what hides them: who sees space from elsewhere draws them anew.
+/// Of lines that are found by what hides them: seen from elsewhere, they are drawn anew.
 inline constexpr Subject kSeenLines{Subject::What::layer, -1};
 
 struct Solids {

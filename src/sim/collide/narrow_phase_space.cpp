@@ -413,8 +413,8 @@ void nearest_features(const Couple& couple, const ReferenceFace* touching, doubl
       const Vec<3> q0 = b.corner(q.from), q1 = b.corner(q.to);
       if (nearest(p0, a.corner(p.to), q0, q1).apart > best.apart + aligned) continue;
       double ends[2] = {along.dot(q0 - p0), along.dot(q1 - p0)};
-      int who[2] = {q.from, q.to};
-      if (ends[0] > ends[1]) std::swap(ends[0], ends[1]), std::swap(who[0], who[1]);
+      int corners[2] = {q.from, q.to};
+      if (ends[0] > ends[1]) std::swap(ends[0], ends[1]), std::swap(corners[0], corners[1]);
       if (std::min(length, ends[1]) - std::max(0.0, ends[0]) <= aligned) continue;
       for (int end = 0; end < 2; ++end) {
         // the inner of both corners
@@ -425,8 +425,8 @@ void nearest_features(const Couple& couple, const ReferenceFace* touching, doubl
           keep(couple.corner_at_edge_b(corner, k, std::sqrt((d - way * way.dot(d)).squaredNorm())), margin,
                out);
         } else {
-          const Vec<3> d = b.corner(who[end]) - p0;
-          keep(couple.corner_at_edge_a(i, who[end], std::sqrt((d - along * along.dot(d)).squaredNorm())),
+          const Vec<3> d = b.corner(corners[end]) - p0;
+          keep(couple.corner_at_edge_a(i, corners[end], std::sqrt((d - along * along.dot(d)).squaredNorm())),
                margin, out);
         }
       }

@@ -82,7 +82,7 @@ std::span<const std::string_view> expression_numbers();
 class Program {
  public:
   /// So many bodies at a time.
-  static constexpr int kLanes = 64;
+  static constexpr int kLanes = 128;
 
   Program() = default;
   Program(const ExpressionGraph& graph, std::span<const int> outputs);

@@ -37,7 +37,7 @@ void place(const Sighting& pose, int body, State<D>& state) {
 }
 
 template <int D>
-class PlaybackOf final : public Run {
+class PlaybackOf final : public RunWithoutSteps {
  public:
   PlaybackOf(World<D> world, std::shared_ptr<const Trajectory> trajectory)
       : model_(std::move(world.model)),
@@ -73,18 +73,9 @@ class PlaybackOf final : public Run {
     return std::monostate{};
   }
 
-  // it may begin anywhere: there is nothing to save
-  void show_divergence() override {}
-  std::optional<Divergence> divergence() const override { return {}; }
-  std::vector<std::uint64_t> saved() const override { return {}; }
-  Rational now() const override { return {0, 1}; }
-  bool restore(std::span<const std::uint64_t>) override { return false; }
-  BodyColumns columns() const override { return {}; }
   std::string set(const NewBodyColumns&) override { return "another program's run is only shown"; }
 
   std::vector<std::uint64_t> words() const override { return sim::words(state_); }
-
-  std::vector<RunEvent> events() const override { return {}; }
 
   void track(std::vector<int> bodies) override {
     track_.bodies = std::move(bodies);

@@ -289,7 +289,7 @@ std::string RunOf<D>::set(const NewBodyColumns& columns) {
 
 // The run of a world that cannot be stepped.
 template <int D>
-class NoRun final : public Run {
+class NoRun final : public RunWithoutSteps {
  public:
   NoRun(World<D> world, Trouble why) : model_(std::move(world.model)), why_(std::move(why)) {
     cast_.dimension = D;
@@ -300,14 +300,7 @@ class NoRun final : public Run {
   std::variant<Snapshot, Trouble, Stopped> at(Rational) override { return why_; }
   std::variant<std::monostate, Trouble, Stopped> go(std::int64_t) override { return why_; }
   void heed(std::function<bool()>) override {}
-  void show_divergence() override {}
-  std::optional<Divergence> divergence() const override { return {}; }
-  std::vector<std::uint64_t> saved() const override { return {}; }
-  Rational now() const override { return {0, 1}; }
-  bool restore(std::span<const std::uint64_t>) override { return false; }
-  BodyColumns columns() const override { return {}; }
   std::string set(const NewBodyColumns&) override { return why_.what; }
-  std::vector<RunEvent> events() const override { return {}; }
   std::vector<std::uint64_t> words() const override { return {}; }
   void track(std::vector<int>) override {}
   Track take_track() override { return {}; }

@@ -109,6 +109,19 @@ class Run {
   virtual Track take_track() = 0;
 };
 
+/// A run in which nothing is stepped: it may begin anywhere, so it has nothing to save, and nothing fires or
+/// diverges in it.
+class RunWithoutSteps : public Run {
+ public:
+  void show_divergence() final {}
+  std::optional<Divergence> divergence() const final { return {}; }
+  std::vector<std::uint64_t> saved() const final { return {}; }
+  Rational now() const final { return {0, 1}; }
+  bool restore(std::span<const std::uint64_t>) final { return false; }
+  BodyColumns columns() const final { return {}; }
+  std::vector<RunEvent> events() const final { return {}; }
+};
+
 /// A run of a world from its state, or from one that was saved of a run of the same world: it goes on to the
 /// same bits. None where that is no state of this world. A world that lacks something
 /// (sim/model/incomplete.h) gives a run whose every answer is that trouble.

@@ -290,7 +290,7 @@ double ExactSolver<D>::release_time(const Constraint*& which) {
 }
 
 // The fraction of the interval at which the first joint is loaded beyond its strength, by linear
-// interpolation of the loads; a little later, so that it is found to be so. And whom it holds.
+// interpolation of the loads; a little later, so that it is found to be so. And what it holds.
 template <int D>
 double ExactSolver<D>::breaking_time(const State<D>& state, Couple& which) const {
   if (model_.collision != Collision::event) return kNever;
@@ -313,7 +313,7 @@ double ExactSolver<D>::breaking_time(const State<D>& state, Couple& which) const
   return first;
 }
 
-// the part of the interval from interval_.begun to `state` at which the first thing happens, and to whom;
+// the part of the interval from interval_.begun to `state` at which the first thing happens, and to what;
 // kNever: nothing does
 template <int D>
 double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which, bool& passes) {

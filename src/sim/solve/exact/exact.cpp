@@ -36,7 +36,7 @@ constexpr int kMostLoneCuts =
 }  // namespace
 
 template <int D>
-typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& model, Serves whom) {
+typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& model, Serves bodies) {
   Limits limits;
   const double g = std::sqrt(model.gravity.squaredNorm()), h = 1 / value(model.rate);
   const bool event_mode = model.collision == Collision::event;
@@ -54,7 +54,7 @@ typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& mode
     limits.bounding_radius.push_back(sim::bounding_radius(body.shape));
     limits.half_thickness.push_back(sim::half_thickness(body.shape));
   }
-  if (whom == Serves::all) {
+  if (bodies == Serves::all) {
     list_couples<D>(model, [&](int a, int b) { limits.couples.push_back({a, b}); });
   } else {
     for (int a = 0; a < int(model.bodies.size()); ++a)
@@ -79,12 +79,12 @@ typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& mode
 }
 
 template <int D>
-ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom)
+ExactSolver<D>::ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves bodies)
     : model_(model),
       may_touch_(model),
       drives_(model),
       motors_(model),
-      limits_(make_limits(model, whom)),
+      limits_(make_limits(model, bodies)),
       integrate_(sim::integrate(model.integrator)),
       dynamics_(model, paths),
       response_(model),

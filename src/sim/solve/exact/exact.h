@@ -35,7 +35,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   enum class Serves { all, lone };
 
   /// Both are kept by reference.
-  ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves whom = Serves::all);
+  ExactSolver(const Model<D>& model, const std::vector<Path<D>>& paths, Serves bodies = Serves::all);
 
   /// Divides the bodies into groups that cannot meet within the step.
   bool collide(StepPart<D> step) override;
@@ -112,7 +112,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<std::vector<int>> rails;               // of each body, of a model that has some
     bool wires = false;                                // some joints are
   };
-  static Limits make_limits(const Model<D>& model, Serves whom);
+  static Limits make_limits(const Model<D>& model, Serves bodies);
 
   // the present step: its start, and its groups, whose members lie side by side in the lists
   struct Step {

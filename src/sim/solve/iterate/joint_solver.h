@@ -148,6 +148,9 @@ class JointSolver final : public System {
 
  private:
   static constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
+  // of the scene's size: how far off joints may stay, and ropes and still be taut
+  static constexpr double kPut = 1e-9, kTaut = 1e-8;
+  static constexpr double kEndless = 1e300;
 
   // a row with bounds
   enum Load { lower, upper, motor, friction };  // a rope is an upper

@@ -182,9 +182,9 @@ void PlaneIterative<D>::clear_lane(int slot) {
     return made;
   }();
   ContactBatch& g = batches_[slot / kLanes];
-  const int lane = slot % kLanes, rest = ~(1 << lane), nobody = int(turns_.size());
+  const int lane = slot % kLanes, rest = ~(1 << lane), none = int(turns_.size());
   copy_lane(empty, lane, g, lane);
-  g.a[lane] = g.b[lane] = nobody, g.pair[lane] = g.first[lane] = -1;
+  g.a[lane] = g.b[lane] = none, g.pair[lane] = g.first[lane] = -1;
   g.used = static_cast<unsigned char>(g.used & rest), g.boxes = static_cast<unsigned char>(g.boxes & rest);
 }
 

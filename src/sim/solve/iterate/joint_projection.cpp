@@ -1,0 +1,249 @@
+// Places back onto what joints keep, and what that makes of velocities: the end of a step by Rattle,
+//   x'  = x + M^-1 J s           s: C(x') = 0, Newton with the factors at hand
+//   v'  = v* + M^-1 (J (s / h - l / 2) + J' (s / h + l / 2) + J' m)     m: J' v' = 0
+
+#include "sim/solve/iterate/joint_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr int kRounds = 8;               // of Newton's
+constexpr int kSearches = 12;            // the same, with a search along each
+constexpr double kStride = 0.1;          // rad, and of the scene's size: farther nothing is put in a step
+constexpr double kLeastFraction = 1e-3;  // of a way, in it
+
+}  // namespace
+
+template <int D>
+void JointSolver<D>::solve_positions() {
+  for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] = -speed(rows_[r], at_);
+  factors_.solve(rhs_.data());
+  for (std::size_t r = 0; r < rows_.size(); ++r) push(rows_[r], rhs_[r]);
+}
+
+// how far joints are off, at most; into rhs_ what would bring each row back
+template <int D>
+double JointSolver<D>::position_error() {
+  double worst = 0;
+  for (int k = 0; k < int(held_.size()); ++k) {
+    const Joint<D>& joint = model_.joints[held_[k]];
+    if (one_sided(joint)) {
+      rhs_[factors_.first(k)] = 0;
+      continue;
+    }
+    Row<D> out[kMostHeld<D>];
+    double off[kMostHeld<D>];
+    const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
+    for (int i = 0; i < n; ++i) {
+      rhs_[factors_.first(k) + i] = -off[i];
+      worst = std::max(worst, std::fabs(off[i]));
+    }
+  }
+  return worst;
+}
+
+// whether all are near where they stood before they were put back
+template <int D>
+bool JointSolver<D>::near() const {
+  for (const int i : bodies_) {
+    if ((at_[i].x - begun_at_[i].x).norm() > kStride * model_.scale) return false;
+    if ((at_[i].room_from_body - begun_at_[i].room_from_body).norm() > kStride) return false;
+  }
+  return true;
+}
+
+// Motors that hold their speed all through the step, to where it leads them: else what the forces change by
+// within a step adds up.
+template <int D>
+void JointSolver<D>::put_motors() {
+  for (std::size_t k = 0; k < active_; ++k) {
+    const Bounded& bounded = bounded_[k];
+    if (bounded.load != motor || bounded.ends == kEndless || !(std::fabs(bounded.impulse) < bounded.most))
+      continue;
+    const Joint<D>& joint = model_.joints[std::size_t(bounded.joint)];
+    Row<D> row;
+    double value = 0;
+    free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), row, value);
+    const double off = bounded.ends - value;
+    if (std::fabs(off) < kStride) shift_bounded(bounded, off * bounded.effective_mass);
+  }
+}
+
+// places back onto what joints keep, and within what they let
+template <int D>
+void JointSolver<D>::project_positions(double h) {
+  put_motors();
+  for (std::size_t k = 0; k < active_; ++k) {
+    Bounded& bounded = bounded_[k];
+    double off = 0;
+    if (!left(bounded, off)) continue;
+    // a rope that pulled keeps its length to both sides
+    const bool pulls = pulls_[std::size_t(bounded.joint)].taut && std::fabs(off) <= kTaut * model_.scale;
+    if (!pulls && off >= 0) continue;
+    const double strayed = position_error();
+    begun_at_ = at_, begun_turn_ = turn_;
+    if (pulls) {
+      shift_bounded(bounded, -off * bounded.effective_mass);
+      if (!near() || position_error() > strayed + std::fabs(off)) at_ = begun_at_, turn_ = begun_turn_;
+      continue;
+    }
+    // what joints hardly let it do would throw them far: then only a part of it
+    for (double fraction = 1; fraction > kLeastFraction; fraction /= 2) {
+      const double put = -fraction * off * bounded.effective_mass;
+      shift_bounded(bounded, put);
+      double rest = 0;
+      left(bounded, rest);
+      if (near() && rest > (1 - fraction / 4) * off && position_error() <= strayed - fraction * off) {
+        if (bounded.taut) bounded.put = put;
+        break;
+      }
+      at_ = begun_at_, turn_ = begun_turn_;
+    }
+  }
+  begun_at_ = at_, begun_turn_ = turn_;
+  std::fill(shifts_.begin(), shifts_.end(), 0.0);
+  const double close = 1e-15 * model_.scale, enough = kPut * model_.scale;
+  double worst = position_error(), before = kEndless;
+  for (int round = 0; round < kRounds && worst > close && worst <= 0.9 * before; ++round) {
+    before = worst;
+    factors_.solve(rhs_.data());
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      shifts_[r] += rhs_[r];
+      shift(rows_[r], rhs_[r]);
+    }
+    worst = position_error();
+  }
+  for (double& s : shifts_) s /= h;
+  old_rows_ = rows_, begun_drive_works_ = drive_works_;
+  if (worst <= enough && near()) return;
+  at_.swap(begun_at_), turn_.swap(begun_turn_);
+  std::fill(shifts_.begin(), shifts_.end(), 0.0);
+  damped_newton();
+}
+
+// Position projection by damped Newton iterations, with new rows and factors in each, where the simple one
+// with old factors fails, as on levers that turn far in a step. Velocities stay as they are.
+template <int D>
+void JointSolver<D>::damped_newton() {
+  double worst = position_error();
+  for (int round = 0; round < kSearches && worst > kPut * model_.scale; ++round) {
+    compute_rows();
+    position_error();
+    factors_.solve(rhs_.data());
+    begun_at_ = at_, begun_turn_ = turn_, ways_ = rhs_;
+    const double before = worst;
+    bool helped = false;
+    for (double fraction = 1; !helped && fraction > kLeastFraction; fraction /= 2) {
+      at_ = begun_at_, turn_ = begun_turn_;
+      for (std::size_t r = 0; r < rows_.size(); ++r) shift(rows_[r], fraction * ways_[r]);
+      worst = position_error();
+      helped = worst < (1 - fraction / 4) * before && near();
+    }
+    if (!helped) at_ = begun_at_, turn_ = begun_turn_;
+    if (!helped || worst > 0.9 * before) break;
+  }
+}
+
+template <int D>
+void JointSolver<D>::finish(double h) {
+  work_ = 0;
+  if (bodies_.empty()) return;
+  for (const int i : bodies_) unprojected_[i] = at_[i].x;
+  project_positions(h);
+  // a taut rope turns its bodies' motion as an equality does: s / h of Rattle's
+  for (std::size_t k = 0; k < active_; ++k) {
+    if (bounded_[k].put == 0) continue;
+    bounded_[k].impulse += bounded_[k].put / h;
+    each_push(bounded_[k], bounded_[k].put / h,
+              [&](int body, const Vec<D>& v, const AngularVec<D>& w) { at_[body].v += v, at_[body].w += w; });
+  }
+  compute_rows();
+  stop_rows();
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    push(old_rows_[r], shifts_[r] - 0.5 * impulses_[r]);
+    const double half = 0.5 * impulses_[r] + shifts_[r];
+    push(rows_[r], half);
+    totals_[r] = 2 * half;
+  }
+  if (update_bounded()) {
+    iterate();
+  } else {
+    solve_positions();
+    for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
+  }
+  book();
+  for (std::size_t k = 0; k < active_; ++k) {
+    const Bounded& bounded = bounded_[k];
+    if (bounded.impulse == 0) continue;
+    any_pushed_ = true;
+    for (const int component : bounded.components) {
+      if (component < 0) continue;
+      for (const int body : members_[std::size_t(component)]) pushed_[std::size_t(body)] = 1;
+    }
+  }
+}
+
+// half of each impulse where the step began, half where it ends
+template <int D>
+void JointSolver<D>::book() {
+  work_ = 0;
+  if (!driven_) return;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    work_ += 0.5 * totals_[r] * (begun_drive_works_[r] + drive_works_[r]);
+  }
+  for (std::size_t k = 0; k < active_; ++k) {
+    const Bounded& b = bounded_[k];
+    work_ += 0.5 * b.impulse * (b.begun_drive_work + given(b.row));
+  }
+}
+
+// Motors where bodies now stand, with what they have left to give; what else has bounds has done its
+// component. False where there are none.
+template <int D>
+bool JointSolver<D>::update_bounded() {
+  bool any = false;
+  for (std::size_t k = 0; k < active_; ++k) {
+    Bounded& b = bounded_[k];
+    if (b.load != motor && b.put == 0) {
+      b.least = b.most = b.impulse;
+      continue;
+    }
+    any = true;
+    const Joint<D>& joint = model_.joints[b.joint];
+    if (b.load == motor) {
+      double way = 0;
+      free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), b.row, way);
+      b.target = motors_.at(b.joint, ends_, way, speed(b.row, at_)).speed;
+    } else {
+      Row<D> out[kMostHeld<D>];
+      double offs[kMostHeld<D>];
+      rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, offs, at_);
+      b.row = out[0], b.target = 0, b.least = b.impulse;
+    }
+    compute_response(b);
+    b.effective_mass = effective_mass(b);
+  }
+  if (any) couple_bounded();
+  return any;
+}
+
+#define OBSCURA_INSTANTIATE(D)                             \
+  template void JointSolver<D>::solve_positions();         \
+  template double JointSolver<D>::position_error();        \
+  template bool JointSolver<D>::near() const;              \
+  template void JointSolver<D>::put_motors();              \
+  template void JointSolver<D>::project_positions(double); \
+  template void JointSolver<D>::damped_newton();           \
+  template void JointSolver<D>::finish(double);            \
+  template void JointSolver<D>::book();                    \
+  template bool JointSolver<D>::update_bounded()
+OBSCURA_INSTANTIATE(2);
+OBSCURA_INSTANTIATE(3);
+#undef OBSCURA_INSTANTIATE
+
+}  // namespace obscura::sim
