@@ -74,9 +74,9 @@ Unlocked::Unlocked() {
 Unlocked::~Unlocked() { interrupt_by({}); }
 
 // The classes of exceptions are Python's (obscura/errors.py), so that they have attributes, and pickle.
-void add_errors(py::module_& module) {
-  static py::object errors = py::module_::import("obscura.errors");
-  (void)module;
+void add_errors() {
+  // never let go: destructors of statics run after Python's end, where no object can be
+  static const py::handle errors = py::module_::import("obscura.errors").release();
   py::register_exception_translator([](std::exception_ptr thrown) {
     const auto raise = [](const char* name, const auto&... arguments) {
       const py::object error = errors.attr(name)(arguments...);

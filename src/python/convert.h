@@ -16,7 +16,7 @@ pybind11::object object(const Value& from);
 pybind11::dict dict(const Table& from);
 
 /// Makes the module's exceptions, and translates the library's errors to them.
-void add_errors(pybind11::module_& module);
+void add_errors();
 void add_scene(pybind11::module_& module);
 void add_world(pybind11::module_& module);
 void add_film(pybind11::module_& module);

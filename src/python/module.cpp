@@ -6,7 +6,7 @@
 PYBIND11_MODULE(_obscura, module) {
   using namespace obscura::python;
   module.attr("__version__") = std::string(obscura::version());
-  add_errors(module);
+  add_errors();
   add_scene(module);
   add_world(module);
   add_film(module);
