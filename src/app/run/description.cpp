@@ -364,7 +364,7 @@ std::vector<Happening> Account::happenings() const {
   }
   std::vector<Happening> all;
   for (const Impact* each : impacts)
-    all.push_back({each->time, fmt::format("{} hits {} at {} m/s", called(cast_, each->body), other(*each),
+    all.push_back({each->time, fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body), other(*each),
                                            numeral(each->speed))});
   for (const auto& [when, joint] : broken_)
     all.push_back(

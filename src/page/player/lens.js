@@ -29,11 +29,17 @@ export function about(axis, angle, v) {
   return turned([Math.cos(half), s * axis[0], s * axis[1], s * axis[2]], v);
 }
 
+const LOWEST = 0.02; // rad over the ground
+
 /** How one looks at space: turned about the vertical, tilted, nearer, moved. */
 export class Orbit {
-  /** @param {Vec} up the vertical */
-  constructor(up) {
+  /**
+   * @param {Vec} up the vertical
+   * @param {boolean} [ground] whether there is ground, under which nothing is to be seen
+   */
+  constructor(up, ground = false) {
     this.vertical = up;
+    this.ground = ground;
     this.turn = this.tilt = this.dx = this.dy = 0;
     this.zoom = 1;
     this.flat = false; // from above
@@ -62,7 +68,7 @@ export class Orbit {
   }
 
   nearer(by) {
-    this.zoom = Math.min(Math.max(this.zoom * by, 0.1), 100);
+    this.zoom = clamp(this.zoom * by, 0.2, 60);
   }
 
   /** From above. */
@@ -76,7 +82,10 @@ export class Orbit {
     if (!this.moved) return lens;
     const rises = Math.asin(Math.min(Math.max(dot(lens.back, this.vertical), -1), 1));
     const most = Math.PI / 2 - 1e-4,
-      tilt = Math.min(Math.max(this.flat ? most : rises + this.tilt, -most), most) - rises;
+      least = this.ground ? Math.min(rises, LOWEST) : -most;
+    // not lower than that, so that one can turn back at once
+    this.tilt = clamp(this.tilt, least - rises, most - rises);
+    const tilt = (this.flat ? most : rises + this.tilt) - rises;
     const turn = (/** @type {Vec} */ v) => about(this.vertical, this.turn, about(lens.right, -tilt, v));
     return new Lens(
       lens.target,

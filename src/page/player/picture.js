@@ -7,6 +7,7 @@ import { Orbit } from "./lens.js";
 import { Space } from "./space.js";
 import { BODY, BOX, CHART, DISC, LOOSE, PAGE, POLYGON, RIGID } from "./reel.js";
 
+const RING = 26; // page units: the ring around a body that is named
 const REACH = 12; // page units around a body within which it is pointed at
 
 /** How the world lies on the page beyond what the film says. */
@@ -63,10 +64,13 @@ export class Picture {
     this.view = new View();
     if (film.spaces) {
       const card = new Card(),
-        view = (this.view = new Orbit(film.spaces[0].ground ? film.spaces[0].ground.normal : [0, 1, 0]));
+        { ground } = film.spaces[0],
+        view = (this.view = new Orbit(ground ? ground.normal : [0, 1, 0], Boolean(ground)));
       this.spaces = film.spaces.map((/** @type {any} */ _, /** @type {number} */ run) => new Space(film, run, reel, card, view));
     }
     this.frame = 0;
+    /** @type {[number, number] | null} a body around which there is a ring, as part and index */
+    this.named = null;
   }
 
   /** Page units: how wide and high the page is. */
@@ -128,7 +132,42 @@ export class Picture {
     pen.hanging = null;
     c.restore();
     pen.place(scale);
+    const at = this.named && this.place_of(...this.named);
+    if (at) this.ring(at);
     this.charts.draw(c, this.film.theme === "screen" ? "#9aa5b1" : "#5b6570");
+  }
+
+  /**
+   * Where a body is on the page, under the view.
+   * @param {number} part
+   * @param {number} index
+   */
+  place_of(part, index) {
+    if (this.spaces.length) return this.spaces[part].place_of(index, this.frame);
+    const { view } = this,
+      whole = Math.floor(this.frame);
+    const thing = this.reel.things.find(
+      (each) => each.what === BODY && each.part === part && each.index === index && each.form !== LOOSE && each.lives_at(whole),
+    );
+    if (!thing) return null;
+    const [x, y] = thing.numbers(this.frame, []);
+    return [view.zoom * x + view.dx, view.zoom * y + view.dy];
+  }
+
+  /** A ring around a place, in ink with a halo of the ground's. */
+  ring([x, y]) {
+    const c = this.context,
+      dark = this.film.theme === "screen";
+    for (const [width, color] of [
+      [9, `rgb(${this.film.ground.join(",")})`],
+      [4, dark ? "#e8edf2" : "#1f2328"],
+    ]) {
+      c.beginPath();
+      c.arc(x, y, RING, 0, 2 * Math.PI);
+      c.lineWidth = Number(width);
+      c.strokeStyle = String(color);
+      c.stroke();
+    }
   }
 
   /** To a rectangle of the page, widened to whole pixels. */

@@ -4,10 +4,11 @@ import { from_base64, inflate } from "./bytes.js";
 import { Orbit } from "./lens.js";
 import { Picture } from "./picture.js";
 import { Reel } from "./reel.js";
-import { Values, clock } from "./values.js";
+import { NOTHING, Values, clock, fixed } from "./values.js";
 
 const $ = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
-const NOTHING = 1e-6; // of a frame: what counts as none
+const TICK = 4; // px: a click so near an event's tick is meant for it
+const TOLD = 200; // ms between two tables while the film plays
 
 class Player {
   /**
@@ -27,6 +28,8 @@ class Player {
     /** @type {any} */
     this.pointed = null; // what the pointer is on
     this.due = false;
+    this.told = 0;
+    this.by = -1; // the column by which the table of values is sorted
     this.wire();
     this.layout();
   }
@@ -99,15 +102,24 @@ class Player {
     const scrub = $("scrub");
     if (Math.abs(Number(scrub.value) - frame) > NOTHING) scrub.value = String(frame);
     scrub.setAttribute("aria-valuetext", `${clock(run)} of the run`);
-    $("clock").textContent = `${clock(run)}${this.slow ? ` (${clock(seconds)})` : ""}`;
+    $("clock").textContent = this.slow ? `${clock(run)} (${clock(seconds)})` : `${run.toFixed(2)} / ${clock(this.ends)}`;
     const said = this.film.captions
       .filter((/** @type {any} */ c) => c.from <= seconds && seconds < c.to)
       .map((/** @type {any} */ c) => c.text)
       .join(" ");
     if ($("caption").textContent !== said) $("caption").textContent = said;
     this.tell();
-    if (!this.playing) this.list();
+    const now = performance.now();
+    if (!this.playing || now - this.told > TOLD) {
+      this.told = now;
+      this.list();
+    }
     this.mark_event(frame);
+  }
+
+  /** How long the film is, s. */
+  get ends() {
+    return (this.last + 1) / this.film.fps;
   }
 
   /** Whether the film's time is not the run's. */
@@ -147,12 +159,16 @@ class Player {
     return Math.min(Math.max(event.film * this.film.fps, 0), this.last);
   }
 
-  to_event(way) {
+  /** The frame of the next event, or of the one before; none: there is no more. */
+  event_beside(way) {
     const frames = this.film.events.map((/** @type {any} */ e) => this.frame_of(e));
-    const found =
-      way > 0
-        ? frames.find((/** @type {number} */ f) => f > this.frame + 1e-3)
-        : frames.reverse().find((/** @type {number} */ f) => f < this.frame - 1e-3);
+    return way > 0
+      ? frames.find((/** @type {number} */ f) => f > this.frame + 1e-3)
+      : frames.reverse().find((/** @type {number} */ f) => f < this.frame - 1e-3);
+  }
+
+  to_event(way) {
+    const found = this.event_beside(way);
     if (found === undefined) return;
     this.pause();
     this.show(found);
@@ -174,6 +190,8 @@ class Player {
       button.addEventListener("click", () => {
         this.pause();
         this.show(this.frame_of(event));
+        // what happens there is to be seen
+        $("film").scrollIntoView({ block: "nearest" });
       });
       item.append(button);
       list.append(item);
@@ -186,6 +204,11 @@ class Player {
     this.film.events.forEach((/** @type {any} */ e, /** @type {number} */ i) => {
       if (this.frame_of(e) <= frame + 1e-3) now = i;
     });
+    for (const [id, way] of /** @type {[string, number][]} */ ([
+      ["before", -1],
+      ["next", 1],
+    ]))
+      $(id).setAttribute("aria-disabled", String(this.event_beside(way) === undefined));
     if (now === this.event) return;
     if (this.event >= 0) items[this.event]?.classList.remove("now");
     if (now >= 0) items[now]?.classList.add("now");
@@ -203,12 +226,32 @@ class Player {
     const c = canvas.getContext("2d"),
       style = getComputedStyle(document.body);
     c.scale(pixel, pixel);
-    const inset = 7,
-      x = (/** @type {number} */ frame) => inset + ((width - 2 * inset) * frame) / Math.max(this.last, 1);
+    const x = (/** @type {number} */ frame) => this.track_place(frame, width);
     c.fillStyle = style.getPropertyValue("--line");
-    c.fillRect(inset, height / 2 - 2, width - 2 * inset, 4);
+    c.fillRect(x(0), height / 2 - 2, x(this.last) - x(0), 4);
     c.fillStyle = style.getPropertyValue("--quiet");
     for (const event of this.film.events) c.fillRect(x(this.frame_of(event)) - 0.75, height / 2 + 5, 1.5, 5);
+  }
+
+  /** Where a frame is on the track, px of its width. */
+  track_place(frame, width) {
+    const inset = 7;
+    return inset + ((width - 2 * inset) * frame) / Math.max(this.last, 1);
+  }
+
+  /** The frame of the event whose tick a click on the track is meant for. */
+  event_at(x, width) {
+    let best = null,
+      least = TICK;
+    for (const event of this.film.events) {
+      const frame = this.frame_of(event),
+        off = Math.abs(this.track_place(frame, width) - x);
+      if (off < least) {
+        least = off;
+        best = frame;
+      }
+    }
+    return best;
   }
 
   // what bodies do
@@ -253,21 +296,56 @@ class Player {
   /** The table of all bodies, where it is open. */
   list() {
     const panel = $("values");
-    if (!panel.open) return;
-    const { head, rows } = this.values.table(this.picture.frame),
-      time = this.values.time(Math.floor(this.picture.frame + NOTHING));
-    $("when").textContent = `at ${time.toFixed(3)} s`;
-    const row = (/** @type {string[]} */ cells, /** @type {string} */ kind) => {
-      const line = document.createElement("tr");
-      for (const text of cells) {
-        const cell = document.createElement(kind);
-        cell.textContent = text;
-        line.append(cell);
-      }
-      return line;
+    if (!panel.open) {
+      $("when").textContent = "";
+      return;
+    }
+    const { head, rows } = this.values.table(this.picture.frame, this.by),
+      { time, before } = this.values.instant(this.picture.frame);
+    $("when").textContent = `at ${time.toFixed(3)} s${before ? ", just before" : ""}`;
+    const cell = (/** @type {HTMLElement} */ line, /** @type {string} */ text) => {
+      line.appendChild(document.createElement("td")).textContent = text;
     };
-    panel.querySelector("thead").replaceChildren(row(head, "th"));
-    panel.querySelector("tbody").replaceChildren(...rows.map((each) => row(each, "td")));
+    const lines = rows.map((/** @type {any} */ each) => {
+      const line = document.createElement("tr"),
+        { part, index } = each.body,
+        it = this.pointed;
+      cell(line, each.body.name);
+      for (const value of each.values) cell(line, fixed(value));
+      line.classList.toggle("now", Boolean(it && !it.chart && it.part === part && it.index === index));
+      line.addEventListener("pointerenter", () => this.name([part, index]));
+      line.addEventListener("pointerleave", () => this.name(null));
+      return line;
+    });
+    panel.querySelector("tbody").replaceChildren(...lines);
+    const heads = panel.querySelector("thead");
+    if (!heads.firstChild) heads.append(this.heads(head));
+    heads.querySelectorAll("th").forEach((/** @type {HTMLElement} */ each, /** @type {number} */ i) => {
+      if (i === this.by) each.setAttribute("aria-sort", i === 0 ? "ascending" : "descending");
+      else each.removeAttribute("aria-sort");
+    });
+  }
+
+  /** The head of the table: a column is sorted where it is clicked, and again as in the scene. */
+  heads(names) {
+    const line = document.createElement("tr");
+    names.forEach((/** @type {string} */ name, /** @type {number} */ i) => {
+      const button = line.appendChild(document.createElement("th")).appendChild(document.createElement("button"));
+      button.type = "button";
+      button.textContent = name;
+      button.title = "Sort";
+      button.addEventListener("click", () => {
+        this.by = this.by === i ? -1 : i;
+        this.list();
+      });
+    });
+    return line;
+  }
+
+  /** Puts a ring around a body, or takes it away. */
+  name(body) {
+    this.picture.named = body;
+    if (!this.playing) this.refresh();
   }
 
   point(event) {
@@ -295,6 +373,14 @@ class Player {
       this.pause();
       this.show(Number($("scrub").value));
     });
+    // a click on a tick goes to its event, not only near it
+    let from = 0;
+    $("scrub").addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => (from = event.clientX));
+    $("scrub").addEventListener("click", (/** @type {MouseEvent} */ event) => {
+      const box = $("scrub").getBoundingClientRect(),
+        found = Math.abs(event.clientX - from) < TICK ? this.event_at(event.clientX - box.left, box.width) : null;
+      if (found !== null) this.show(found);
+    });
     const press = (/** @type {string} */ id, /** @type {() => void} */ what) => $(id).addEventListener("click", what);
     press("play", () => this.toggle());
     press("back", () => this.step(-1));
@@ -308,7 +394,19 @@ class Player {
     press("full", () => this.full());
     press("help", () => this.help());
     $("speed").addEventListener("change", () => this.speed(Number($("speed").value)));
+    // chosen with the pointer, the list does not keep the arrow keys
+    let by_pointer = false;
+    $("speed").addEventListener("pointerdown", () => (by_pointer = true));
+    $("speed").addEventListener("change", () => {
+      if (by_pointer) $("speed").blur();
+      by_pointer = false;
+    });
     $("values").addEventListener("toggle", () => this.list());
+    for (const id of ["story", "events", "values"])
+      $(id).addEventListener("toggle", () => {
+        if ($(id).open) $(id).scrollIntoView({ block: "nearest" });
+        else if (id === "values") this.name(null);
+      });
     document.addEventListener("keydown", (event) => this.key(event));
     window.addEventListener("resize", () => this.layout());
     document.addEventListener("fullscreenchange", () => this.layout());
@@ -505,6 +603,8 @@ class Player {
           return undefined;
         case "?":
           return this.help();
+        case "Escape":
+          return $("keys").hidden ? false : this.help();
         default:
           return false;
       }

@@ -199,7 +199,9 @@ export class Thing {
    */
   step(which, frame) {
     const life = /** @type {Life} */ (this.life);
-    return life.steps[which].at(Math.floor(frame) - life.from);
+    // the clock between two frames says the nearer
+    const whole = this.what === PAGE && this.kind === TEXT ? Math.min(Math.round(frame), life.to - 1) : Math.floor(frame);
+    return life.steps[which].at(whole - life.from);
   }
 
   /** @param {number} frame */

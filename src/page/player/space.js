@@ -87,6 +87,11 @@ export class Space {
     return { at: Array.from(this.poses.subarray(8 * i, 8 * i + 3)), turn: Array.from(this.poses.subarray(8 * i + 4, 8 * i + 8)) };
   }
 
+  /** Where a body is on the page. */
+  place_of(index, frame) {
+    return this.lenses(frame)[0].page(this.body(index).at);
+  }
+
   /** The panels' lenses in a frame, under the view. */
   lenses(frame) {
     return this.space.panels.map((/** @type {any} */ panel) => this.view.see(Lens.of(panel, this.reel.numbers, frame)));

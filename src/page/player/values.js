@@ -1,5 +1,8 @@
 // What the run's bodies are doing, in words: names, places, velocities.
 
+export const NOTHING = 1e-6; // of a frame: what counts as none
+const ROWS = 200; // rows of a table
+
 /**
  * A number with so many digits that count.
  * @param {number} x
@@ -10,6 +13,12 @@ export function numeral(x, digits = 3) {
   const decimals = Math.min(Math.max(digits - 1 - Math.floor(Math.log10(Math.abs(x))), 0), 4);
   const text = x.toFixed(decimals);
   return (Number(text) === 0 ? "0" : text).replace("-", "−");
+}
+
+/** A number with three decimals. */
+export function fixed(/** @type {number} */ x) {
+  const text = x.toFixed(3);
+  return (Number(text) === 0 ? "0.000" : text).replace("-", "−");
 }
 
 /** @param {number} seconds */
@@ -27,6 +36,10 @@ export class Values {
     this.film = film;
     this.reel = reel;
     this.space = film.dimension === 3;
+    /** @type {number[]} the frames of events, ascending */
+    this.events = film.events
+      .map((/** @type {any} */ each) => each.film * film.fps)
+      .sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
     /** @type {Map<string, any>} */
     this.bodies = new Map(film.bodies.map((/** @type {any} */ each) => [`${each.part}:${each.index}`, each]));
   }
@@ -41,14 +54,34 @@ export class Values {
     return this.reel.numbers[this.film.time].at(frame);
   }
 
-  /** The place, velocity and turning of a body; between two frames those of the first, for an impact may lie between. */
+  /**
+   * The instant whose values are told in a frame. Between two frames, up to an event, the velocities go on as in the
+   * frames before it; where another event lies so near that they do not, it is the frame before.
+   */
+  instant(frame) {
+    const whole = Math.floor(frame + NOTHING);
+    if (frame - whole <= NOTHING) return { frame: whole, time: this.time(whole), before: false };
+    const goes_on = whole > 0 && !this.events.some((each) => whole - 1 + NOTHING < each && each < frame - NOTHING);
+    if (!goes_on) return { frame: whole, time: this.time(whole), before: false };
+    return { frame, time: this.time(frame), before: this.events.some((each) => Math.abs(each - frame) <= NOTHING) };
+  }
+
+  /** The place, velocity and turning of a body. */
   state(body, frame) {
-    const whole = Math.floor(frame + 1e-6),
-      at = (/** @type {number} */ i) => this.reel.numbers[i].at(whole),
+    const whole = Math.floor(frame + NOTHING),
+      told = this.instant(frame).frame,
+      beyond = told - whole,
+      seconds = this.time(told) - this.time(whole),
       { place, velocity, angle, spin } = body;
+    const at = (/** @type {number} */ i) => {
+      const now = this.reel.numbers[i].at(whole);
+      return beyond > 0 ? now + beyond * (now - this.reel.numbers[i].at(whole - 1)) : now;
+    };
     const v = velocity.map(at);
     return {
-      place: place.map(at),
+      place: place.map((/** @type {number} */ i, /** @type {number} */ k) => {
+        return this.reel.numbers[i].at(whole) + (seconds / 2) * (this.reel.numbers[velocity[k]].at(whole) + v[k]);
+      }),
       velocity: v,
       speed: Math.hypot(...v),
       angle: angle === undefined ? undefined : (at(angle) * 180) / Math.PI,
@@ -60,7 +93,7 @@ export class Values {
   rows(body, frame) {
     const now = this.state(body, frame),
       list = (/** @type {number[]} */ v) => v.map((x) => numeral(x)).join(", ");
-    const rows = [["position", `(${now.place.map((x) => (Math.round(x * 1000) / 1000).toFixed(3).replace("-", "−")).join(", ")}) m`]];
+    const rows = [["position", `(${now.place.map(fixed).join(", ")}) m`]];
     if (!body.fixed) {
       rows.push(["speed", `${numeral(now.speed)} m/s`], ["velocity", `(${list(now.velocity)}) m/s`]);
       if (now.angle !== undefined) rows.push(["angle", `${numeral(now.angle)}°`]);
@@ -70,17 +103,23 @@ export class Values {
     return rows;
   }
 
-  /** Columns and rows of a table of all bodies that may move. */
-  table(frame) {
+  /**
+   * Columns of a table of the bodies that may move, and its rows, of one body each.
+   * @param {number} frame
+   * @param {number} by the column that they are sorted by, the largest first; -1: as in the scene
+   */
+  table(frame, by) {
     const axes = this.space ? ["x", "y", "z"] : ["x", "y"];
     const head = ["body", ...axes.map((a) => `${a} / m`), ...axes.map((a) => `v${a} / (m/s)`), "speed / (m/s)"];
-    const rows = [];
-    for (const body of this.film.bodies) {
-      if (body.fixed) continue;
-      const now = this.state(body, frame);
-      rows.push([body.name, ...now.place.map((x) => x.toFixed(3)), ...now.velocity.map((x) => x.toFixed(3)), now.speed.toFixed(3)]);
-      if (rows.length === 200) break;
-    }
-    return { head, rows };
+    const rows = this.film.bodies
+      .filter((/** @type {any} */ body) => !body.fixed)
+      .map((/** @type {any} */ body) => {
+        const now = this.state(body, frame);
+        return { body, values: [...now.place, ...now.velocity, now.speed] };
+      });
+    if (by === 0)
+      rows.sort((/** @type {any} */ p, /** @type {any} */ q) => p.body.name.localeCompare(q.body.name, undefined, { numeric: true }));
+    if (by > 0) rows.sort((/** @type {any} */ p, /** @type {any} */ q) => q.values[by - 1] - p.values[by - 1]);
+    return { head, rows: rows.slice(0, ROWS) };
   }
 }
