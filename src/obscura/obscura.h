@@ -387,6 +387,10 @@ class Renderer {
   Frame at(double t);
   /// A world of this scene as it stands, with the trails of its bodies since it was made.
   Frame draw(const World& world);
+  /// Gives away the pixels of the last picture, which its Frame goes on to show: to keep one without a copy.
+  /// Empty where there is none, or it has been given away. The next one is drawn into `memory`, as of a
+  /// picture that is no longer needed, where that is large enough.
+  std::vector<std::uint8_t> take(std::vector<std::uint8_t> memory = {});
 
  private:
   struct Inside;

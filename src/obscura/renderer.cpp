@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -129,6 +130,10 @@ Frame Renderer::draw(const World& world) {
     take.states.push_back(world.hash());
     return it.shown(take);
   });
+}
+
+std::vector<std::uint8_t> Renderer::take(std::vector<std::uint8_t> memory) {
+  return std::exchange(inside_->image.pixels, std::move(memory));
 }
 
 std::vector<std::uint8_t> png(const Frame& frame, bool transparent) {

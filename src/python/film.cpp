@@ -5,7 +5,9 @@
 
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <vector>
 
 #include "python/convert.h"
 
@@ -68,12 +70,6 @@ struct Picture {
   bool transparent = false;
 };
 
-Picture kept(const Frame& frame, bool transparent) {
-  Picture made{Pixels({frame.height, frame.width, 4}), frame.number, frame.time, frame.state, transparent};
-  std::memcpy(made.pixels.mutable_data(), frame.pixels.data(), frame.pixels.size());
-  return made;
-}
-
 Frame frame_of(const Pixels& pixels) {
   if (pixels.ndim() != 3 || pixels.shape(2) != 4)
     throw py::value_error("a frame is an array of height x width x 4 bytes: red, green, blue, alpha");
@@ -93,13 +89,54 @@ Pixels with_alpha(const py::handle& given) {
   return whole;
 }
 
+// Memory of pictures that are gone, for the next ones: what is fresh from the system costs a sixth of a
+// frame.
+class Attic {
+ public:
+  using Memory = std::vector<std::uint8_t>;
+  Memory out() {
+    const std::lock_guard held(lock_);
+    if (all_.empty()) return {};
+    Memory last = std::move(all_.back());
+    all_.pop_back();
+    return last;
+  }
+  void in(Memory memory) {
+    constexpr std::size_t kMost = 2;
+    const std::lock_guard held(lock_);
+    if (all_.size() < kMost) all_.push_back(std::move(memory));
+  }
+
+ private:
+  std::mutex lock_;
+  std::vector<Memory> all_;
+};
+
 // A renderer, and what its pictures have in common.
 struct Drawing {
   Drawing(const Scene& scene, const FilmOptions& how)
       : renderer(unlocked([&] { return std::make_unique<Renderer>(scene, how); })),
         transparent(how.transparent) {}
+
+  // its last picture, whose pixels the array takes over; they come back when the array is gone
+  Picture kept(const Frame& frame) {
+    struct Lent {
+      Attic::Memory pixels;
+      std::shared_ptr<Attic> of;
+    };
+    auto lent = std::make_unique<Lent>(Lent{renderer->take(attic->out()), attic});
+    const std::uint8_t* first = lent->pixels.data();
+    const py::capsule owner(lent.release(), [](void* it) {
+      const std::unique_ptr<Lent> back(static_cast<Lent*>(it));
+      back->of->in(std::move(back->pixels));
+    });
+    return {Pixels({frame.height, frame.width, 4}, first, owner), frame.number, frame.time, frame.state,
+            transparent};
+  }
+
   std::unique_ptr<Renderer> renderer;
   bool transparent;
+  std::shared_ptr<Attic> attic = std::make_shared<Attic>();
 };
 
 // A movie; none after an exception has left it.
@@ -150,12 +187,16 @@ void add_film(py::module_& module) {
            [](Drawing& it) {
              const auto frame = unlocked([&] { return it.renderer->next(); });
              if (!frame) throw py::stop_iteration();
-             return kept(*frame, it.transparent);
+             return it.kept(*frame);
            })
-      .def("at", [](Drawing& it,
-                    double t) { return kept(unlocked([&] { return it.renderer->at(t); }), it.transparent); })
+      .def("at",
+           [](Drawing& it, double t) {
+             const Frame frame = unlocked([&] { return it.renderer->at(t); });
+             return it.kept(frame);
+           })
       .def("draw", [](Drawing& it, const World& world) {
-        return kept(unlocked([&] { return it.renderer->draw(world); }), it.transparent);
+        const Frame frame = unlocked([&] { return it.renderer->draw(world); });
+        return it.kept(frame);
       });
 
   py::class_<Recording>(module, "Movie")

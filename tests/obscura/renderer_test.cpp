@@ -53,6 +53,24 @@ class Films : public testing::Test {
   fs::path folder_;
 };
 
+TEST(Renderer, GivesAwayThePixelsOfAPicture) {
+  Renderer renderer(Scene::read(kScene), kSmall);
+  EXPECT_TRUE(renderer.take().empty());
+  const Frame first = *renderer.next();
+  const std::uint8_t* at = first.pixels.data();
+  const Bytes shown = bytes(first);
+  Bytes mine = renderer.take();
+  EXPECT_EQ(mine.data(), at);  // no copy
+  EXPECT_TRUE(renderer.take().empty());
+  for (int n = 0; n < 9; ++n) renderer.next();
+  EXPECT_EQ(mine, shown);
+  EXPECT_NE(bytes(*renderer.next()), shown);
+
+  // the next is drawn into the memory of one that is no longer needed
+  (void)renderer.take(std::move(mine));
+  EXPECT_EQ(renderer.next()->pixels.data(), at);
+}
+
 TEST_F(Films, FramesAreThoseOfTheProgram) {
   ASSERT_EQ(
       obscura("render " + kScene + " --size 160x90 --fps 30 --frames 0..4 -o " + path("{frame:02}.png")), 0)

@@ -287,6 +287,41 @@ def test_frames_are_the_pictures_of_the_program(tmp_path):
     assert (tmp_path / "still.png").read_bytes() == (tmp_path / "cli.png").read_bytes()
 
 
+@pytest.mark.parametrize("scene", ["room", "slope", "crate", "top"])
+@pytest.mark.parametrize("transparent", [False, True])
+def test_arrays_are_the_pixels_of_the_programs_png(scene, transparent, tmp_path):
+    path = ROOT / f"scenes/{scene}.toml"
+    clear = ["--transparent"] if transparent else []
+    made = program("render", path, "--size", "320x180", "--fps", "30", "--frames", "7..10", *clear, "-o", tmp_path / "{frame:02}.png")
+    assert made.returncode == 0, made.stderr
+    frames = list(obscura.Scene(path).frames(size=(320, 180), fps=30, end=0.4, transparent=transparent))
+    for n in range(7, 11):
+        assert frames[n].number == n
+        assert np.array_equal(frames[n].array, decoded(tmp_path / f"{n:02}.png", (180, 320, 4))), n
+    assert (frames[7].array[:, :, 3].min() < 255) == transparent
+    assert len({frame.array.tobytes() for frame in frames[7:11]}) == 4  # each has its own
+
+
+def decoded(path, shape):
+    """The pixels of a PNG by another program than ours."""
+    run = subprocess.run(["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgba", "-"], capture_output=True, check=True)
+    return np.frombuffer(run.stdout, np.uint8).reshape(shape)
+
+
+def test_a_frame_keeps_its_pixels_and_the_memory_of_those_gone_is_used_again():
+    renderer = obscura.Scene(ROOT / "scenes/room.toml").frames(**SMALL)
+    first = next(renderer)
+    kept, pixels = first.array, first.array.copy()
+    del first
+    places = set()
+    for _ in range(20):
+        places.add(next(renderer).array.__array_interface__["data"][0])
+    del renderer
+    assert np.array_equal(kept, pixels)
+    assert len(places) < 5 and kept.__array_interface__["data"][0] not in places
+    kept[0, 0] = 0  # it is its owner's alone
+
+
 def compare(a, b):
     return program("compare", a, b).returncode == 0
 
