@@ -1,4 +1,5 @@
-// frames SCENE WIDTH HEIGHT COUNT: the seconds of CPU that the frames of a film take, one by one, by the library.
+// frames SCENE WIDTH HEIGHT COUNT: the CPU seconds that the frames of a film take, one by one, by the
+// library.
 
 #include <obscura/obscura.h>
 
