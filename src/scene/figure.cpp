@@ -14,6 +14,12 @@ namespace obscura::scene {
 
 namespace {
 
+// why a quantity of the whole room goes with no body
+std::string of_room(std::string_view name) {
+  return fmt::format("'{}' is of the whole room: leave 'of' out; of a body there are 'kinetic' and 'gravity'",
+                     name);
+}
+
 draw::Quantity quantity(const std::string& word) {
   const draw::Measure* found = draw::measure(word);
   return found && found->arrow ? *found->arrow : draw::Quantity::position;
@@ -65,7 +71,7 @@ class Reader {
     if (const Node* range = fields.given("range"))
       found.range = {range->list()[0].number(), range->list()[1].number()};
     if (const draw::Measure* other = draw::measure(found.against);
-        other && other->of_body && !fields.given("of"))
+        other && other->of == draw::Measure::Of::body && !fields.given("of"))
       complaints_.add(fields.place("against"),
                       fmt::format("a plot against '{}' needs 'of', the body that has it", found.against));
     const std::vector<const draw::Measure*> measures = found.measures();
@@ -77,11 +83,13 @@ class Reader {
                         measures[0]->name, measures[0]->unit, each->name, each->unit));
         break;
       }
-    if (!fields.given("of"))
-      for (const draw::Measure* each : found.measures())
-        if (each->of_body)
-          complaints_.add(fields.place(),
-                          fmt::format("a plot of '{}' needs 'of', the body that has it", each->name));
+    for (const draw::Measure* each : found.measures()) {
+      if (!fields.given("of") && each->of == draw::Measure::Of::body)
+        complaints_.add(fields.place(),
+                        fmt::format("a plot of '{}' needs 'of', the body that has it", each->name));
+      if (fields.given("of") && each->of == draw::Measure::Of::room)
+        complaints_.add(fields.place("of"), of_room(each->name));
+    }
     if (wanted && wanted->list().empty())
       complaints_.add(wanted->place, "'quantity': expected one at least, such as [\"energy\"]");
     return found;
@@ -210,9 +218,13 @@ draw::Marks read_marks(const Fields& fields, const std::string& owner, const Rea
     draw::Marks::Label label{*at, read.label(its, "text", its.given("quantity")), "", read.body(its, "of"),
                              read.marked(its, film)};
     if (its.given("quantity")) label.quantity = its.text("quantity");
-    if (const draw::Measure* shown = draw::measure(label.quantity); shown && shown->of_body && label.body < 0)
-      complaints.add(its.place("quantity"),
-                     fmt::format("a label of '{}' needs 'of', the body that has it", label.quantity));
+    if (const draw::Measure* shown = draw::measure(label.quantity)) {
+      if (shown->of == draw::Measure::Of::body && label.body < 0)
+        complaints.add(its.place("quantity"),
+                       fmt::format("a label of '{}' needs 'of', the body that has it", label.quantity));
+      if (shown->of == draw::Measure::Of::room && label.body >= 0)
+        complaints.add(its.place("of"), of_room(label.quantity));
+    }
     marks.labels.push_back(label);
   }
   for (const Node& node : tables(fields, "path")) {

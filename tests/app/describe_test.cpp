@@ -49,6 +49,20 @@ TEST_F(Describe, SaysWhatHitsWhatWhenAndHowFast) {
   EXPECT_EQ(run.out.find("hits the floor"), run.out.rfind("hits the floor"));
 }
 
+TEST_F(Describe, SaysNothingOfWhatDoesNotCome) {
+  scene(
+      "duration = 1\n[room]\nsize = [4, 3]\ngravity = [0, 0]\n[[ball]]\nname = \"hub\"\nradius = 0.2\n"
+      "position = [2, 1]\nspin = 180\n[[force]]\nof = \"hub\"\ncomponents = [\"0\", \"1\"]\n"
+      "[[when]]\ntouches = [\"hub\", \"left\"]\ndo = [{ mark = \"hit\" }]\n"
+      "[[film.caption]]\ntext = \"Hit.\"\nstart = \"hit\"\n");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("forces of the scene"));
+  EXPECT_THAT(run.out, HasSubstr("turning at 3.14 rad/s"));
+  EXPECT_THAT(run.out, Not(HasSubstr("there is no gravity")));
+  EXPECT_THAT(run.out, Not(HasSubstr("The film says")));
+}
+
 TEST_F(Describe, TellsOfManyTogether) {
   scene(
       "duration = 1\n[room]\nsize = [4, 3]\n[[ball]]\nname = \"drop\"\nradius = 0.05\nposition = [0.2, 1]\n"

@@ -145,14 +145,14 @@ TEST(Marks, PrintedNumbersAreTheRuns) {
         std::tuple("swing", "momentum", "bob", "bob.momentum"),
         std::tuple("pendulum", "spring_force", "bob", "bob.spring_force"),
         std::tuple("pendulum", "acceleration", "bob", "bob.acceleration"),
-        std::tuple("swing", "kinetic", "bob", "energy.kinetic"),
+        std::tuple("swing", "kinetic", "bob", "bob.kinetic"),
         std::tuple("energy", "height", "ball", "ball.position.y"),
         std::tuple("bounce", "height", "ball[2]", "ball[2].position.y"),
         std::tuple("spring", "spring_force", "weight[1]", "weight[1].spring_force"),
         std::tuple("drag", "vx", "ball[3]", "ball[3].velocity.x"),
         std::tuple("planets", "momentum", "planet_1", "planet_1.momentum"),
         std::tuple("atwood", "vy", "left", "left.velocity.y"),
-        std::tuple("cradle", "kinetic", "swung", "energy.kinetic")}) {
+        std::tuple("cradle", "kinetic", "swung", "swung.kinetic")}) {
     scene::Scene scene = scene::read(kScenes + file + ".toml");
     scene.film.marks = {};
     scene.film.charts.clear();

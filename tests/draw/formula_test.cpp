@@ -134,6 +134,12 @@ TEST(Formula, WhatIsNotClosedOrNotKnownStaysReadable) {
 TEST(Formula, AValueHasThreeDigitsAndItsUnit) {
   EXPECT_EQ(with_value("v = {}", 2.34567, "m/s"), "v = 2.35\" m/s\"");
   EXPECT_EQ(with_value("v", 2, "m/s"), "v");
+  // degrees stand at their number
+  EXPECT_EQ(with_value("\\alpha = {}", 30, "°"), "\\alpha = 30\"°\"");
+  // what is almost one is shown as one is: as wide
+  EXPECT_EQ(live("{}", 0.99999999, 0.99999999, 0.99999999, "m", 24, {}).width,
+            live("{}", 1, 1, 1, "m", 24, {}).width);
+  EXPECT_NE(live("{}", 0.994, 0.994, 0.994, "m", 24, {}).width, live("{}", 1, 1, 1, "m", 24, {}).width);
   EXPECT_EQ(as_vector("v_center"), "*v*_center");
   EXPECT_EQ(as_vector("*J* = J*n*"), "*J* = J*n*");
   EXPECT_EQ(as_vector("mg"), "*m*g");

@@ -205,5 +205,22 @@ TEST(Plot, SeveralBodiesHaveLinesOfTheirOwn) {
       EXPECT_FALSE(line.color == mix(*color(taken), colours.ink, 0.2)) << line.label << " " << taken;
 }
 
+TEST(Plot, KineticEnergyAndThatOfGravityAreOfBodiesToo) {
+  sim::SceneInfo cast;
+  cast.bodies.resize(2);
+  sim::Snapshot now;
+  now.bodies.resize(2);
+  now.bodies[0].kinetic = 1, now.bodies[1].kinetic = 2, now.bodies[1].gravity = 5;
+  now.energies.kinetic = 3, now.energies.gravity = 5;
+  Measured both;
+  both.quantities = {"kinetic", "gravity"}, both.bodies = {0, 1};
+  std::vector<double> read;
+  for (const Measured::Line& line : both.lines()) read.push_back(line.at(cast, now));
+  EXPECT_EQ(read, (std::vector<double>{1, 2, 0, 5}));
+  both.bodies.clear(), read.clear();
+  for (const Measured::Line& line : both.lines()) read.push_back(line.at(cast, now));
+  EXPECT_EQ(read, (std::vector<double>{3, 5}));
+}
+
 }  // namespace
 }  // namespace obscura::draw

@@ -436,6 +436,12 @@ TEST(Diagnostics, AnAxisHasOneUnit) {
 TEST(Diagnostics, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
   refused("[[film.plot]]\nquantity = [\"height\"]\n[[ball]]",
           "a.toml:1:1: a plot of 'height' needs 'of', the body that has it");
+  refused("[[film.plot]]\nquantity = [\"energy\"]\nof = \"a\"\n[[ball]]\nname = \"a\"",
+          "a.toml:3:6: 'energy' is of the whole room: leave 'of' out; of a body there are 'kinetic' and "
+          "'gravity'");
+  refused(
+      "[[film.label]]\nat = [1, 1]\ntext = \"{}\"\nquantity = \"work\"\nof = \"a\"\n[[ball]]\nname = \"a\"",
+      "a.toml:5:6: 'work' is of the whole room: leave 'of' out; of a body there are 'kinetic' and 'gravity'");
   refused("[[film.plot]]\nquantity = []\n[[ball]]",
           "a.toml:2:12: 'quantity': expected one at least, such as [\"energy\"]");
   refused(

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/jointed.h"
 #include "sim/rooms.h"
+#include "sim/touching.h"
 
 namespace obscura::sim {
 namespace {
@@ -171,6 +173,30 @@ TEST(Track, KeepsTheCuspOfABounce) {
   const auto track = all->take_track();
   for (const auto& point : track.points[0]) lowest = std::min(lowest, point.place.y());
   EXPECT_NEAR(lowest, 0, 1e-15);
+}
+
+// by both solvers, before any step: a box on the floor, and a weight on a rod
+TEST(Snapshot, KnowsTheForcesAtTheStart) {
+  for (const Solver solver : {Solver::direct, Solver::iterative}) {
+    World<2> world = touching_room();
+    world.model.solver = solver;
+    add_wall(world, {0, -1}, {0, 1});
+    add_particle(world, {3, 0});
+    add_box(world, {0.2, 0.2}, 2, {0, -0.9});
+    world.model.joints = {rod({0, {0, 0}}, {-1, {3, 1}}, 1)};
+    const auto all = run(world);
+    const Snapshot now = shown(*all, {0, 1});
+    double pushes = 0;
+    for (const Snapshot::Contact& contact : now.contacts) pushes += contact.force.y();
+    EXPECT_NEAR(pushes, 2 * 9.81, 1e-6) << int(solver);
+    EXPECT_NEAR(now.joints[0].force.y(), 9.81, 1e-6) << int(solver);
+    // and nothing has moved
+    EXPECT_EQ(now.bodies[1].position, Vec3(0, -0.9, 0));
+    const auto before = all->words();
+    EXPECT_EQ(before, run(world)->words());
+    shown(*all, {1, 60});
+    EXPECT_EQ(all->words(), words(stepped(world, 10)));
+  }
 }
 
 TEST(Snapshot, ShowsWhereSpringsEnd) {

@@ -83,7 +83,7 @@ std::string motion(const sim::Vec3& v, int dimension) {
 }
 
 std::string count(std::size_t n, const char* one, const char* many) {
-  return fmt::format("{} {}", n, n == 1 ? one : many);
+  return n == 1 ? fmt::format("one {}", one) : fmt::format("{} {}", n, many);
 }
 
 const char* kind(const sim::SceneInfo& cast, const sim::SceneInfo::Body& body, bool many) {
@@ -167,6 +167,15 @@ class Account {
     return each.other >= 0 ? called(cast_, each.other) : wall(cast_, each.wall);
   }
 
+  // a bead at a wire's end goes on without it, all else breaks
+  std::string parting(int joint) const {
+    const sim::SceneInfo::Joint& it = cast_.joints[std::size_t(joint)];
+    const std::string name = scene::one_line(it.name);
+    return it.kind == sim::JointKind::wire && it.a >= 0
+               ? fmt::format("{} leaves {}", called(cast_, it.a), name)
+               : fmt::format("joint {} breaks", name);
+  }
+
   const scene::Scene& scene_;
   const sim::SceneInfo& cast_;
   double soft_ = 0;
@@ -223,10 +232,11 @@ std::vector<std::string> Account::beginning() const {
     all.push_back(scene_.look.title +
                   (scene_.look.subtitle.empty() ? "." : ": " + scene_.look.subtitle + "."));
   const double g = cast_.gravity.norm();
-  all.push_back(
-      fmt::format("In {} there {} {}{}.", cast_.dimension == 2 ? "the plane" : "space",
-                  moving(cast_).size() == 1 ? "is" : "are", listed(cast_),
-                  g > 0 ? fmt::format("; gravity is {} m/s²", numeral(g)) : "; there is no gravity"));
+  all.push_back(fmt::format("In {} there {} {}{}.", cast_.dimension == 2 ? "the plane" : "space",
+                            moving(cast_).size() == 1 ? "is" : "are", listed(cast_),
+                            g > 0          ? fmt::format("; gravity is {} m/s²", numeral(g))
+                            : cast_.forces ? ", without the room's gravity but with forces of the scene"
+                                           : "; there is no gravity"));
   const std::vector<int> bodies = moving(cast_);
   if (bodies.size() > kToldSingly) {
     std::size_t resting = 0;
@@ -236,9 +246,11 @@ std::vector<std::string> Account::beginning() const {
   }
   for (const int body : bodies) {
     const sim::Snapshot::Body& it = first_->bodies[std::size_t(body)];
-    all.push_back(capital(fmt::format(
-        "{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_.dimension),
-        it.velocity.norm() > 1e-9 ? motion(it.velocity, cast_.dimension) : std::string("at rest"))));
+    all.push_back(capital(
+        fmt::format("{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_.dimension),
+                    it.velocity.norm() > 1e-9 ? motion(it.velocity, cast_.dimension)
+                    : it.spin.norm() > 1e-9   ? fmt::format("turning at {} rad/s", numeral(it.spin.norm()))
+                                              : std::string("at rest"))));
   }
   return all;
 }
@@ -282,14 +294,15 @@ std::vector<std::string> Account::events() const {
   }
   for (std::size_t i = 0; i < broken_.size() && i < kToldSingly; ++i)
     told.emplace_back(broken_[i].first,
-                      fmt::format("At {} joint {} breaks.", time(broken_[i].first),
-                                  scene::one_line(cast_.joints[std::size_t(broken_[i].second)].name)));
+                      fmt::format("At {} {}.", time(broken_[i].first), parting(broken_[i].second)));
   if (broken_.size() > kToldSingly) told.emplace_back(1e300, fmt::format("{} joints break.", broken_.size()));
-  for (const draw::Caption& caption : scene_.film.titles.captions)
-    told.emplace_back(
-        caption.shown.start ? caption.shown.start->time : 0,
-        fmt::format("The film says at {}: \"{}\"", time(caption.shown.start ? caption.shown.start->time : 0),
-                    scene::one_line(caption.text)));
+  for (const draw::Caption& caption : scene_.film.titles.captions) {
+    const double at = caption.shown.start ? caption.shown.start->time : 0;
+    // what waits for a mark that does not come is not shown
+    if (at <= last_->time)
+      told.emplace_back(at,
+                        fmt::format("The film says at {}: \"{}\"", time(at), scene::one_line(caption.text)));
+  }
   std::stable_sort(told.begin(), told.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> all;
   for (auto& [when, sentence] : told) all.push_back(std::move(sentence));
@@ -364,11 +377,9 @@ std::vector<Happening> Account::happenings() const {
   }
   std::vector<Happening> all;
   for (const Impact* each : impacts)
-    all.push_back({each->time, fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body), other(*each),
-                                           numeral(each->speed))});
-  for (const auto& [when, joint] : broken_)
-    all.push_back(
-        {when, fmt::format("joint {} breaks", scene::one_line(cast_.joints[std::size_t(joint)].name))});
+    all.push_back({each->time, fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body),
+                                           other(*each), numeral(each->speed))});
+  for (const auto& [when, joint] : broken_) all.push_back({when, parting(joint)});
   return all;
 }
 

@@ -82,7 +82,7 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
   std::vector<std::string> more{std::string(kHash)};
   for (const std::string& name : draw::plotted()) {
     const draw::Measure* measure = draw::measure(name);
-    if (measure->of_body) continue;
+    if (measure->of == draw::Measure::Of::body) continue;
     more.push_back(name);
     if (name == asked.path)
       return [measure, cast](const sim::Snapshot& now) { return measure->at(cast, now, -1); };
@@ -95,7 +95,8 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
     if (!asked.path.starts_with(whose + ".") && cast.bodies.size() > kFew) continue;
     for (const std::string& name : draw::plotted()) {
       const draw::Measure* measure = draw::measure(name);
-      if (!measure->of_body || (!sprung && (name == "length" || name == "push"))) continue;
+      if (measure->of == draw::Measure::Of::room || (!sprung && (name == "length" || name == "push")))
+        continue;
       more.push_back(whose + "." + name);
       if (more.back() == asked.path)
         return [measure, cast, body](const sim::Snapshot& now) { return measure->at(cast, now, body); };

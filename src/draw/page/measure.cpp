@@ -36,44 +36,50 @@ double length(Cast cast, Now now, int body) {
 
 /// A number, of all the room or of a body.
 constexpr Measure number(std::string_view name, const char* label, const char* unit, std::string_view color,
-                         bool of_body, double (*read)(Cast, Now, int)) {
-  return {name, label, unit, color, of_body, read, {}};
+                         Measure::Of of, double (*read)(Cast, Now, int)) {
+  return {name, label, unit, color, of, read, {}};
 }
 
 /// What arrows show; its number is how long their sum is, where that says something.
 constexpr Measure vector(std::string_view name, const char* label, const char* unit, std::string_view color,
                          Quantity quantity, double (*read)(Cast, Now, int)) {
-  return {name, label, unit, color, true, read, quantity};
+  return {name, label, unit, color, Measure::Of::body, read, quantity};
 }
 
 constexpr std::array kMeasures{
-    number("energy", "total", "J", "", false, [](Cast, Now now, int) { return now.energies.total(); }),
-    number("kinetic", "kinetic", "J", "orange", false,
-           [](Cast, Now now, int) { return now.energies.kinetic; }),
-    number("potential", "potential", "J", "purple", false,
+    number("energy", "total", "J", "", Measure::Of::room,
+           [](Cast, Now now, int) { return now.energies.total(); }),
+    number("kinetic", "kinetic", "J", "orange", Measure::Of::either,
+           [](Cast, Now now, int body) { return body < 0 ? now.energies.kinetic : of(now, body).kinetic; }),
+    number("potential", "potential", "J", "purple", Measure::Of::room,
            [](Cast, Now now, int) { return now.energies.potential(); }),
-    number("gravity", "gravity", "J", "purple", false,
-           [](Cast, Now now, int) { return now.energies.gravity; }),
-    number("springs", "springs", "J", "sky", false, [](Cast, Now now, int) { return now.energies.springs; }),
-    number("fields", "fields", "J", "grey", false, [](Cast, Now now, int) { return now.energies.fields; }),
-    number("hand", "hand", "J", "sky", false, [](Cast, Now now, int) { return now.energies.hand; }),
-    number("work", "work", "J", "grey", false, [](Cast, Now now, int) { return now.energies.work; }),
-    number("x", "x", "m", "blue", true, [](Cast, Now now, int body) { return of(now, body).position.x(); }),
-    number("height", "height", "m", "blue", true,
+    number("gravity", "gravity", "J", "purple", Measure::Of::either,
+           [](Cast, Now now, int body) { return body < 0 ? now.energies.gravity : of(now, body).gravity; }),
+    number("springs", "springs", "J", "sky", Measure::Of::room,
+           [](Cast, Now now, int) { return now.energies.springs; }),
+    number("fields", "fields", "J", "grey", Measure::Of::room,
+           [](Cast, Now now, int) { return now.energies.fields; }),
+    number("hand", "hand", "J", "sky", Measure::Of::room,
+           [](Cast, Now now, int) { return now.energies.hand; }),
+    number("work", "work", "J", "grey", Measure::Of::room,
+           [](Cast, Now now, int) { return now.energies.work; }),
+    number("x", "x", "m", "blue", Measure::Of::body,
+           [](Cast, Now now, int body) { return of(now, body).position.x(); }),
+    number("height", "height", "m", "blue", Measure::Of::body,
            [](Cast, Now now, int body) { return of(now, body).position.y(); }),
-    number("speed", "speed", "m/s", "green", true,
+    number("speed", "speed", "m/s", "green", Measure::Of::body,
            [](Cast, Now now, int body) { return of(now, body).velocity.norm(); }),
-    number("vx", "v_x", "m/s", "blue", true,
+    number("vx", "v_x", "m/s", "blue", Measure::Of::body,
            [](Cast, Now now, int body) { return of(now, body).velocity.x(); }),
-    number("vy", "v_y", "m/s", "green", true,
+    number("vy", "v_y", "m/s", "green", Measure::Of::body,
            [](Cast, Now now, int body) { return of(now, body).velocity.y(); }),
-    number("angle", "\\theta", "°", "", true,
+    number("angle", "\\theta", "°", "", Measure::Of::body,
            [](Cast, Now now, int body) { return kDegrees * of(now, body).angle; }),
     vector("spin", "\\omega", "rad/s", "", Quantity::spin,
            [](Cast, Now now, int body) { return of(now, body).spin.z(); }),
-    number("length", "l", "m", "blue", true,
+    number("length", "l", "m", "blue", Measure::Of::body,
            [](Cast, Now now, int body) { return (spring(now, body).b - spring(now, body).a).norm(); }),
-    number("push", "f", "N", "vermilion", true,
+    number("push", "f", "N", "vermilion", Measure::Of::body,
            [](Cast, Now now, int body) { return spring(now, body).push; }),
     vector("acceleration", "a", "m/s²", "purple", Quantity::acceleration, length<Quantity::acceleration>),
     vector("momentum", "p", "kg m/s", "green", Quantity::momentum, length<Quantity::momentum>),
@@ -148,8 +154,9 @@ std::string symbol(std::string_view unit) {
 std::vector<Measured::Line> Measured::lines() const {
   std::vector<Line> all;
   for (const Measure* each : measures()) {
-    if (!each->of_body || bodies.empty()) all.push_back({each, bodies.empty() ? -1 : bodies.front()});
-    for (const int body : each->of_body ? bodies : std::vector<int>()) all.push_back({each, body});
+    const bool of_room = each->of == Measure::Of::room || bodies.empty();
+    if (of_room) all.push_back({each, bodies.empty() ? -1 : bodies.front()});
+    for (const int body : of_room ? std::vector<int>() : bodies) all.push_back({each, body});
   }
   return all;
 }
@@ -168,7 +175,7 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
   for (const Measured::Line& line : measured.lines()) {
     const auto own = color(line.measure->color);
     Series series{line.measure->label, {}, own ? mix(*own, colours.ink, 0.2) : colours.ink};
-    if (several && line.measure->of_body) {
+    if (several && line.measure->of != Measure::Of::room) {
       const std::string name = "\"" + cast.bodies[std::size_t(line.body)].name + "\"";
       series.label = measures.size() > 1 ? series.label + " " + name : name;
       series.color = line_color(line.body);

@@ -15,14 +15,14 @@ namespace obscura::draw {
 
 /// A quantity of an instant: one table serves plots, arrows, values in labels and --measure.
 struct Measure {
-  std::string_view name;     // as a scene calls it
-  const char *label, *unit;  // what its line is called, as mathematics; of its values
-  std::string_view color;    // of the palette; empty: ink
-  bool of_body;              // else of all the room
+  std::string_view name;                    // as a scene calls it
+  const char *label, *unit;                 // what its line is called, as mathematics; of its values
+  std::string_view color;                   // of the palette; empty: ink
+  enum class Of { room, body, either } of;  // either: of a body where one is named, else of all the room
   double (*read)(const sim::SceneInfo& cast, const sim::Snapshot& now, int body);  // null: arrows alone
   std::optional<Quantity> arrow{};  // none: a number, which no arrow shows
 
-  /// Its value; `body` is the one that has it.
+  /// Its value; `body` is the one that has it, -1: the room.
   double at(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) const {
     return read(cast, now, body);
   }

@@ -494,6 +494,20 @@ std::string after(std::string rest, std::string_view unit) {
   return rest;
 }
 
+// a unit after its value: a space before it, but for degrees
+std::string spaced(std::string_view unit) {
+  return unit.empty() ? "" : fmt::format("\"{}{}\"", unit == "°" ? "" : " ", unit);
+}
+
+// how many digits after the point give three that count
+int three_digits(double value) {
+  if (!(value > 1e-9)) return 2;
+  int power = int(std::floor(std::log10(value)));
+  // 0.9999 is shown as 1.00
+  if (value + 0.5 * std::pow(10, power - 2) >= std::pow(10, power + 1)) ++power;
+  return std::clamp(2 - power, 0, 6);
+}
+
 // no minus before a zero
 std::string number(double value, int decimals) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
@@ -509,7 +523,7 @@ std::string with_value(const std::string& text, double value, std::string_view u
   const std::string before = text.substr(0, slot->begin), rest = text.substr(slot->end);
   if (slot->decimals) return before + number(value, *slot->decimals) + after(rest, unit);
   const double shown = std::abs(value) < 1e-9 ? 0 : value;
-  return before + fmt::format("{:.3g}", shown) + (unit.empty() ? "" : fmt::format("\" {}\"", unit)) + rest;
+  return before + fmt::format("{:.3g}", shown) + spaced(unit) + rest;
 }
 
 Formula live(const std::string& text, double value, double low, double high, std::string_view unit,
@@ -517,15 +531,14 @@ Formula live(const std::string& text, double value, double low, double high, std
   const auto slot = value_slot(text);
   if (!slot) return formula(text, size, color);
   const double most = std::max(std::abs(low), std::abs(high));
-  const int digits =
-      slot->decimals.value_or(most > 1e-9 ? std::clamp(2 - int(std::floor(std::log10(most))), 0, 6) : 2);
+  const int digits = slot->decimals.value_or(three_digits(most));
   const auto width = [&](double x) {
     return formula(kNumber + number(x, digits) + kNumberEnd, size, color).width;
   };
   const std::string shown = number(value, digits);
   const double own = width(value), widest = std::max({own, width(low), width(high)});
   std::string rest = text.substr(slot->end);
-  rest = slot->decimals ? after(rest, unit) : (unit.empty() ? "" : fmt::format("\" {}\"", unit)) + rest;
+  rest = slot->decimals ? after(rest, unit) : spaced(unit) + rest;
   return formula(text.substr(0, slot->begin) + kNumber + shown + kNumberEnd + rest, size, color,
                  widest - own);
 }

@@ -164,8 +164,10 @@ std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state,
       if (!(gap > (turns ? kOpen : open))) continue;
       char what[64];
       std::snprintf(what, sizeof what, "opened to %.2g %s", gap, turns ? "rad" : "m");
-      return Trouble{t, joint.name, "gap", what,
-                     "its bodies move too far in a step, or its loop cannot close: raise physics.rate"};
+      return Trouble{
+          t, joint.name, "gap", what,
+          "its bodies move too far in a step, or its loop cannot close: raise physics.rate, or write "
+          "physics.solver = \"direct\" where it is not"};
     }
   }
   return {};

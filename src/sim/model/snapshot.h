@@ -103,6 +103,7 @@ struct Snapshot {
     Vec3 blast = Vec3::Zero();  // what explosions push it with, N
     Vec3 drag = Vec3::Zero();   // of the air, and of the ground, N
     Vec3 field = Vec3::Zero();  // the sum of all other forces of the scene: formulas, attraction, charges, N
+    double kinetic = 0, gravity = 0;  // its parts of the energies, J; of what does not move none
   };
   struct Spring {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are

@@ -16,7 +16,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kTrackRate = 120;  // points a second of a way, about
+constexpr double kTrackRate = 120;              // points a second of a way, about
+constexpr double kFirst = 1 - 1.0 / (1 << 20);  // of a step: so far the first is tried for its forces
 
 template <int D>
 class RunOf final : public Run {
@@ -51,7 +52,11 @@ class RunOf final : public Run {
     if (shown_)
       if (const auto much = stepper_->diverges(state_)) divergence_ = Divergence{*much, false};
     between_ = to.fraction > 0;
-    if (!between_) return snapshot(model_, state_, *stepper_, to, value(t));
+    if (!between_) {
+      Snapshot now = snapshot(model_, state_, *stepper_, to, value(t));
+      if (to.step == 0) show_first_forces(now);
+      return now;
+    }
     copy_ = state_;
     if (auto trouble = guarded([&] { return stepper_->partial_step(copy_, to.fraction); })) {
       // the step as a whole decides whether the run ends here
@@ -181,6 +186,19 @@ class RunOf final : public Run {
     } catch (...) {
       stepper_.emplace(model_);
       throw;
+    }
+  }
+
+  // At the start no step has been taken yet: the forces shown there are those of the first.
+  void show_first_forces(Snapshot& now) {
+    if (model_.collision == Collision::handout || called_) return;
+    copy_ = state_;
+    if (stepper_->partial_step(copy_, kFirst)) return;
+    const Snapshot then = snapshot(model_, copy_, *stepper_, {0, kFirst}, kFirst / value(model_.rate));
+    for (std::size_t i = 0; i < now.joints.size(); ++i) now.joints[i].force = then.joints[i].force;
+    for (Snapshot::Contact each : then.contacts) {
+      if (!each.holds || !each.impulse.isZero(0)) continue;
+      now.contacts.push_back(each);
     }
   }
 

@@ -227,6 +227,8 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
     body.position = to_3d<D>(state.x[i]);
     body.velocity = to_3d<D>(state.v[i]);
     body.at_rest = i < int(state.frozen.size()) && state.frozen[i] != 0;
+    if (!model.bodies[i].fixed)
+      body.kinetic = kinetic(model, state, i), body.gravity = gravity_energy(model, state, i);
     if (const int k = turning(state, i); k >= 0) {
       body.spin = inertia_times<D>(state.spin[k]);
       if (D == 2) body.angle = state.turn[k][0];
