@@ -127,6 +127,8 @@ void Events<D>::find_touches(const State<D>& state, int w, double from, double t
       if (when.on == On::leaves) found_.push_back({exact_ ? at : to, w, k, true, 0});
     };
     double ended = from;
+    // two that stand at each other with a gap of rounding touch from the start, before they press
+    if (touched && begun_.step == 0 && from == 0 && !spans_.empty()) ended = spans_.front().begun;
     for (const Span& span : spans_) {
       if (touched && span.begun - ended > kSameInstant) left(ended), touched = false;
       if (!touched) met(span.begun);
