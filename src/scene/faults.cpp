@@ -23,7 +23,12 @@ bool Reporter::wrong(const Node& node, std::string message) {
 bool Reporter::mistyped(const Node& node, const Key& key, const std::string& what) {
   // a number in quotes: the value was right, its form was not
   const bool in_quotes = takes_numbers(key.form) && node.is_text() && sim::parse_rational(node.text());
-  return instead(node, key, what, described(node) + (in_quotes ? "; write it without the quotes" : ""));
+  // [[contact]] for [contact]
+  const bool doubled = what == "a table" && node.is_list() && node.header;
+  return instead(node, key, what,
+                 described(node) + (in_quotes ? "; write it without the quotes"
+                                    : doubled ? fmt::format("; write [{}], once", key.path)
+                                              : ""));
 }
 
 bool Reporter::instead(const Node& node, const Key& key, const std::string& what, const std::string& got) {

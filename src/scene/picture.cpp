@@ -97,7 +97,10 @@ draw::Camera standing(const Fields& fields) {
   const std::string& view = fields.text("view");
   draw::Camera camera = view == "side" || view == "front" ? draw::side() : draw::slant();
   if (view == "front") camera.elevation = 0;
-  if (view == "top") camera.azimuth = 0, camera.elevation = radians(90);
+  // a plan: what is high would be huge beside what is low
+  if (view == "top")
+    camera.azimuth = 0, camera.elevation = radians(90),
+    camera.projection = draw::Camera::Projection::orthographic;
   camera.name = fields.given("name") ? fields.text("name") : view;
   if (fields.given("projection"))
     camera.projection = fields.text("projection") == "orthographic" ? draw::Camera::Projection::orthographic

@@ -118,9 +118,10 @@ TEST(Standing, PartsThatLieAgainstEachOtherHaveNoSeam) {
   EXPECT_EQ(parts.size(), 1u) << "no face goes on there";
 }
 
-/// A ball on a rope hangs from a plate; on a rod that stands on the ground it does not.
+/// A ball on a rope hangs from a plate; on a rod that stands on the ground it does not, nor seen from above,
+/// where the plate would hide it.
 TEST(Standing, WhatHangsHangsFromSomething) {
-  const auto corners = [](const Vec3& anchor) {
+  const auto corners = [](const Vec3& anchor, double elevation) {
     Made made;
     made.cast.dimension = 3, made.cast.scale = 3;
     made.cast.gravity = {0, -9.81, 0};
@@ -128,6 +129,7 @@ TEST(Standing, WhatHangsHangsFromSomething) {
     made.extent = {{-1.5, 0, -1.5}, {1.5, 3, 1.5}};
     made.look.caption = false;
     made.camera = slant();
+    if (elevation > 0) made.camera.elevation = elevation;
     made.body(sim::ShapeKind::ball, {0, 1, 0}, 0.2);
     sim::SceneInfo::Joint rope;
     rope.kind = sim::JointKind::rope, rope.a = 0, rope.b = -1, rope.length = (anchor - Vec3(0, 1, 0)).norm();
@@ -136,9 +138,10 @@ TEST(Standing, WhatHangsHangsFromSomething) {
     const Picture picture = made.picture();
     return std::pair(picture.solids.at(0)->vertices.size(), picture.moving.strokes.size());
   };
-  const auto hung = corners({0, 2.5, 0}), stood = corners({0, 0, 0});
+  const auto hung = corners({0, 2.5, 0}, 0), stood = corners({0, 0, 0}, 0);
   // the three faces of the plate that are seen, of four corners each
   EXPECT_GE(hung.second, stood.second + 6);
+  EXPECT_EQ(corners({0, 2.5, 0}, 1.5).first, corners({0, 0, 0}, 1.5).first);
 }
 
 }  // namespace

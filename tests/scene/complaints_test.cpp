@@ -86,6 +86,8 @@ TEST(Diagnostics, TypesAreNeverGuessed) {
   refused("[[particle]]\nposition = 1979-05-27",
           "a.toml:2:12: 'position': expected two numbers [x, y] in metres, got a date or time");
   refused("room = 3", "a.toml:1:8: 'room': expected a table, got 3");
+  refused("[[contact]]\nignore = []",
+          "a.toml:1:1: 'contact': expected a table, got a list; write [contact], once");
   refused("[box]\nmass = 3", "a.toml:1:1: [box] stands for one of many; write [[box]]");
   refused("[ball]\nname = \"it\"\nposition = [1, 1]\n[[spring]]\nbetween = [\"it\", [1, 2]]",
           "a.toml:1:1: [ball] stands for one of many; write [[ball]]");
