@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pybind11
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
@@ -22,12 +23,15 @@ OUT.mkdir(exist_ok=True)
 
 VERSION = re.search(r"project\(obscura\s+VERSION\s+([\d.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
 
+# what this pybind11 was made for: NumPy 2 has another layout
+NUMPY = "numpy" if tuple(map(int, pybind11.__version__.split(".")[:2])) >= (2, 12) else "numpy<2"
+
 DESCRIPTION = """\
 Rooms of bodies, simulated and filmed without a window: see docs/python.md of the source tree.
 
-Obscura's own code is under the MIT license. It links FFmpeg, which Debian builds with x264 and x265, under the GNU General
-Public License: a wheel in which these libraries are bundled is as a whole under the GPL, version 2 or later, and whoever
-passes it on offers their source. Films that are made with it are not affected.
+Obscura's own code is under the MIT license. It links FFmpeg's libraries, which Debian builds with x264 and x265, under the GNU
+General Public License, version 2 or later. A copy linked with them may be passed on under the terms of the GPL alone, with
+the source of all of it. Films and pictures that are made with it are yours.
 """
 
 
@@ -49,9 +53,9 @@ setup(
     description="Rooms of bodies, simulated and filmed without a window",
     long_description=DESCRIPTION,
     long_description_content_type="text/plain",
-    license="MIT; with bundled FFmpeg libraries GPL-2.0-or-later",
+    license="MIT; linked with FFmpeg's libraries as Debian builds them GPL-2.0-or-later",
     python_requires=">=3.11",
-    install_requires=["numpy"],
+    install_requires=[NUMPY],
     packages=["obscura"],
     package_data={"obscura": ["*.pyi", "py.typed"]},
     ext_modules=[Extension("obscura._obscura", sources=[])],

@@ -437,6 +437,18 @@ except obscura.SceneError as error:
 # --- the package
 
 
+def test_the_six_lines_make_their_film(tmp_path):
+    block = re.search(r"## A film in six lines\n.*?```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), re.S).group(1)
+    lines = [line for line in block.splitlines() if line]
+    assert len(lines) <= 6
+    short = block.replace("duration=3", "duration=0.2").replace("(640, 360)", "(160, 90)")
+    assert short.count("0.2)") and short.count("(160, 90)") == 1
+    subprocess.run([sys.executable, "-c", short], cwd=tmp_path, check=True)
+    told = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=width,height,nb_read_frames", "-of", "csv=p=0", "fall.mp4"],
+                          cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert told.strip() == "160,90,12"
+
+
 def test_stubs_name_what_there_is():
     stub = (ROOT / "src/python/obscura/__init__.pyi").read_text()
     named = set(re.findall(r"^(?:class|def) (\w+)", stub, re.M))
