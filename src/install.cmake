@@ -1,6 +1,6 @@
 # What other projects take, as components of find_package(obscura): the program with a function that adds golden tests,
-# which needs no language; the simulation, which needs Eigen; the library (obscura/obscura.h), which needs all. The
-# library is in pkg-config, too.
+# which needs no language; the simulation, which needs Eigen; the library (obscura/obscura.h), which needs all, or as a
+# shared one nothing. The library is in pkg-config, too.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -48,6 +48,14 @@ foreach(room IN ITEMS obscura app scene gl page media draw sim)
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/obscura)
 endforeach()
 
+# the shared one asks for nothing but the header
+if(OBSCURA_SHARED)
+  set_target_properties(obscura_shared PROPERTIES EXPORT_NAME shared)
+  target_compile_features(obscura_shared INTERFACE cxx_std_20)
+  target_include_directories(obscura_shared INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  install(TARGETS obscura_shared EXPORT obscuraSharedTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endif()
+
 # a program that uses the headers sees Eigen as the libraries do: the second changes the size of structs
 target_compile_features(obscura_sim INTERFACE cxx_std_20)
 target_compile_options(obscura_sim INTERFACE $<INSTALL_INTERFACE:-ffp-contract=off>)
@@ -62,7 +70,12 @@ target_include_directories(obscura_obscura INTERFACE $<INSTALL_INTERFACE:${CMAKE
 set_target_properties(obscura PROPERTIES EXPORT_NAME program)
 add_executable(obscura::program ALIAS obscura)
 install(TARGETS obscura EXPORT obscuraProgramTargets)
-foreach(component IN ITEMS Program Sim Library)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/obscura)
+set(components Program Sim Library)
+if(OBSCURA_SHARED)
+  list(APPEND components Shared)
+endif()
+foreach(component IN LISTS components)
   install(EXPORT obscura${component}Targets NAMESPACE obscura:: DESTINATION ${OBSCURA_CMAKE_DIR})
 endforeach()
 
@@ -91,3 +104,7 @@ endif()
 file(RELATIVE_PATH OBSCURA_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(obscura.pc.in ${CMAKE_CURRENT_BINARY_DIR}/obscura.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/obscura.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+if(OBSCURA_SHARED)
+  configure_file(obscura-shared.pc.in ${CMAKE_CURRENT_BINARY_DIR}/obscura-shared.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/obscura-shared.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endif()

@@ -44,7 +44,7 @@
 #include <variant>
 #include <vector>
 
-namespace obscura {
+namespace [[gnu::visibility("default")]] obscura {
 
 /// The version of the library, "0.2.0".
 std::string_view version() noexcept;

@@ -1,6 +1,8 @@
 #include "app/console/command.h"
 
 #include <algorithm>
+#include <sstream>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,7 +22,45 @@ CLI::Validator known(const std::vector<std::string>& words) {
     return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
                        scene::did_you_mean(text, {words.begin(), words.end()}));
   };
-  return CLI::Validator(unknown, "");
+  // under this name table_of() finds the words again
+  return CLI::Validator(unknown, "", fmt::format("{}", fmt::join(words, ",")));
+}
+
+// of "FLOAT:in [1 - 63]" the placeholder and "1 to 63"
+std::pair<std::string, std::string> value_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t end = type.find(':'), range = type.find("in ["), to = type.find(" - ");
+  if (range == std::string::npos || to == std::string::npos) return {type.substr(0, end), ""};
+  const std::size_t least = range + 4, most = to + 3;
+  return {type.substr(0, end),
+          fmt::format("{} to {}", type.substr(least, to - least), type.substr(most, type.find(']') - most))};
+}
+
+OptionRow row_of(CLI::Option& option) {
+  OptionRow row;
+  for (const std::string& name : option.get_snames()) row.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) row.names.push_back("--" + name);
+  row.about = option.get_description();
+  row.required = option.get_required();
+  row.repeated = option.get_items_expected_max() > 1 ||
+                 option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
+  if (option.get_positional()) {
+    row.value = option.get_name(true);
+  } else if (option.get_items_expected_max() > 0) {
+    std::tie(row.value, row.range) = value_of(option);
+  }
+  try {
+    std::istringstream words(option.get_validator(0)->get_name());
+    for (std::string word; std::getline(words, word, ',');) row.words.push_back(word);
+  } catch (const CLI::OptionNotFound&) {  // takes anything
+  }
+  return row;
+}
+
+CommandTable table_of(CLI::App& command, const std::string& name) {
+  CommandTable table{name, command.get_description(), command.get_footer(), {}};
+  for (CLI::Option* option : command.get_options()) table.options.push_back(row_of(*option));
+  return table;
 }
 
 }  // namespace
@@ -99,5 +139,13 @@ void Command::run(std::function<int()> what) const {
   });
 }
 std::string Command::program() const { return app_->get_parent()->get_name(); }
+
+CommandTables Command::tables() const {
+  CLI::App& program = *app_->get_parent();
+  CommandTables tables{table_of(program, "obscura")};
+  for (CLI::App* command : program.get_subcommands({}))
+    tables.push_back(table_of(*command, command->get_name()));
+  return tables;
+}
 
 }  // namespace obscura::app

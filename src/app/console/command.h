@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/console/table.h"
+
 namespace CLI {
 class App;
 class Option;
@@ -71,6 +73,8 @@ class Command {
   void run(std::function<int()> what) const;
   /// The program's own name, as it was called.
   std::string program() const;
+  /// What --help of the program and of all its commands is made of.
+  CommandTables tables() const;
 
  private:
   Option choose(const char* names, std::vector<std::pair<std::string, int>> words,
