@@ -364,7 +364,7 @@ std::vector<Key> rows() {
       {.path = "track.elasticity", .form = number, .absent = "the body's own value", .range = kUnit,
        .doc = "Its elasticity. If given, the geometric mean with that of the body is used.", .example = "0.5"},
       {.path = "track.on", .form = thing, .absent = "the room", .doc = "The body that it is part of; it is then in that body's own frame, and moves with it.", .example = "\"cart\""},
-      {.path = "track.thread", .form = bodies, .absent = "none", .doc = "Bodies whose centres run on it as beads on a wire. Each begins at the place of it that is nearest to its `position`.", .example = "[\"bead\"]"},
+      {.path = "track.thread", .form = bodies, .absent = "none", .doc = "Bodies whose centres run on it as beads on a wire. Each begins at the place of it that is nearest to its `position`. What the wire gives a bead is its `joint_force`.", .example = "[\"bead\"]"},
       {.path = "track.ends", .form = choice, .fallback = "\"stop\"", .choices = {"stop", "free"}, .doc = "What beads do at its ends: `stop` there, or leave it.", .example = "\"free\""},
       {.path = "track.group", .form = text, .absent = "none", .doc = "The group it belongs to, for `contact.ignore`.", .example = "\"tracks\""},
       {.path = "track.color", .form = color, .absent = "that of walls", .doc = "Colour of its line.", .example = "\"blue\""},
