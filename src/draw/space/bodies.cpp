@@ -16,7 +16,7 @@ using sim::Vec3;
 constexpr double kEdgeLine = 2.3;                            // page units
 constexpr double kSilhouetteLine = 1.3, kCreaseLine = 0.75;  // of that
 constexpr double kBracket = 20;          // page units: half a plate from which something hangs
-constexpr double kSteep = 0.85;          // sine of the camera's elevation, from which on there are none
+constexpr double kFromAbove = 0.85;      // sine of the camera's elevation, from which on there are none
 constexpr int kBracketNumber = 1 << 29;  // theirs in sight, above those of all others
 constexpr double kThinEdge = 0.11;       // of a body's thickness: an outline is not wider
 constexpr double kCrease = 0.94;         // cosine of a turn between faces that shows as an edge
@@ -344,7 +344,7 @@ void add_brackets(SpaceFrame& s) {
   if (!(cast.gravity.norm() > 0)) return;
   const Vec3 up = -cast.gravity.normalized();
   // from above a plate would hide what hangs from it
-  if (s.lens.back.dot(up) > kSteep) return;
+  if (s.lens.back.dot(up) > kFromAbove) return;
   const double half = kBracket * s.stage.layout.weight * s.zoom / s.lens.scale, thick = 0.3 * half;
   const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), up).toRotationMatrix();
   const auto held = [&](const Vec3& at) {
