@@ -1,8 +1,8 @@
 #pragma once
 
-// Four numbers side by side, in vectors of the compiler: V4 is one AVX2 register, or V2 twice in SSE2. Code
-// written for a V does the same operations in both, so the bits are the same. Include this only in files that
-// end in such loops: everything is inlined.
+// Four numbers side by side, in vectors of the compiler: V4 is one AVX2 register, or V2 twice in SSE2, and in
+// NEON on aarch64. Code written for a V does the same operations in all of them, so the bits are the same.
+// Include this only in files that end in such loops: everything is inlined.
 
 #include <cmath>
 
