@@ -107,7 +107,9 @@ inline std::vector<Vec2> odd_polygon(Chance& chance, int n, double radius) {
   std::vector<Vec2> corners;
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * std::acos(-1) * (i + chance.between(-0.33, 0.33)) / n;
-    corners.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
+    // the same heap on every machine
+    const SinCos at = sin_cos(angle);
+    corners.push_back(radius * Vec2(at.cos, at.sin));
   }
   return corners;
 }
