@@ -31,7 +31,10 @@ position = [2, %s]
 class Watch : public Program {
  protected:
   void TearDown() override {
-    if (pid_ > 0) ::kill(pid_, SIGKILL);
+    // timeout(1), which it runs under, passes this on; SIGKILL would end timeout alone
+    if (pid_ > 0 && ::kill(pid_, SIGTERM) == 0) {
+      EXPECT_TRUE(comes([&] { return ::kill(pid_, 0) != 0; })) << "it does not end";
+    }
     Program::TearDown();
   }
 
