@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "draw/page/layout.h"
 #include "draw/page/measure.h"
+#include "draw/page/names_beside.h"
 #include "draw/picture/formula.h"
 
 namespace obscura::draw {
@@ -169,12 +171,50 @@ TEST(Plot, NamesAreSpreadInTheirOrderAndWithinTheirEnds) {
   for (const double each : spread({99, 100, 100}, 10, 0, 100, {0, 1, 2})) EXPECT_LE(each, 100);
 }
 
-// Names of two lines that wind about each other do not change places each time; those that have crossed do.
-TEST(Plot, NamesChangePlacesOnlyWhereTheirLinesHavePassedEachOther) {
+TEST(Plot, NamesAreInTheOrderOfTheirLines) {
   EXPECT_THAT(by_height({5, 3, 5}), testing::ElementsAre(1, 0, 2));
-  EXPECT_THAT(by_height({5, 3}, 10, {0, 1}), testing::ElementsAre(0, 1));
-  EXPECT_THAT(by_height({15, 3}, 10, {0, 1}), testing::ElementsAre(1, 0));
   EXPECT_THAT(spread({52, 50}, 10, 0, 100, {0, 1}), testing::ElementsAre(46, 56));
+}
+
+// Two lines that cross ten times in a run, and one between them.
+TEST(Plot, NamesStandBesideTheirOwnHeadsAndNeverOnEachOther) {
+  constexpr double kApart = 10;
+  constexpr std::size_t kInstants = 1000;
+  const auto winding = [](double periods) {
+    std::vector<std::vector<double>> heads;
+    for (std::size_t k = 0; k < kInstants; ++k) {
+      const double angle = 2 * std::numbers::pi * periods * double(k) / kInstants;
+      heads.push_back({50 + 40 * std::sin(angle), 50 - 40 * std::sin(angle), 55});
+    }
+    return heads;
+  };
+  const auto heads = winding(5);
+  const NamePlaces places = names_beside(heads, kApart, 0, 100);
+  ASSERT_EQ(places.offsets.size(), 3u);
+  for (std::size_t k = 0; k < kInstants; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double name = heads[k][i] + places.offsets[i][k];
+      EXPECT_GE(name, -1e-9);
+      EXPECT_LE(name, 100 + 1e-9);
+      const bool jumps = k == 0 || std::count(places.changes[i].begin(), places.changes[i].end(), k) > 0;
+      if (!jumps) {
+        const double before = heads[k - 1][i] + places.offsets[i][k - 1];
+        EXPECT_LE(std::abs(name - before), 2.6) << "at " << k << ": it glides as fast as a head";
+      }
+      for (std::size_t j = 0; j < i; ++j) {
+        const double other = heads[k][j] + places.offsets[j][k];
+        EXPECT_GE(std::abs(name - other), kApart - 1e-9) << i << " and " << j << " at " << k;
+        if (const double above = heads[k][i] - heads[k][j]; std::abs(above) > kApart) {
+          EXPECT_GT((name - other) * above, 0) << i << " and " << j << " at " << k;
+        }
+      }
+    }
+  }
+  // at about each crossing of the two; the third is passed by both
+  EXPECT_EQ(places.changes[0].size(), places.changes[1].size());
+  EXPECT_GE(places.changes[0].size(), 9u);
+  // so fast that they would flicker
+  for (const auto& changes : names_beside(winding(100), kApart, 0, 100).changes) EXPECT_TRUE(changes.empty());
 }
 
 TEST(Plot, SeveralBodiesHaveLinesOfTheirOwn) {

@@ -16,11 +16,9 @@ constexpr double kAboveAxis = 4.5;  // points: how high above the axis the middl
 constexpr double kMargin = 36;  // page units at the weight 1, as of the caption
 // page units a point of a plot for print: digits 24 high, to be read from the back row
 constexpr double kType = 33 / 8.5;
-constexpr double kHead = 2.7;     // points
-constexpr double kAround = 0.8;   // around a dot, points
-constexpr double kSettle = 0.02;  // of the run, at each side: how long names take to change places
-constexpr double kWhile = 0.05;   // of the run, at each side: whose mean gives the names their order
-constexpr double kPassed = 0.1;   // of the names' distance: so far past each other they change it
+constexpr double kHead = 2.7;    // points
+constexpr double kAround = 0.8;  // around a dot, points
+constexpr double kFade = 0.008;  // of the run: how long before and after a name changes places it is faint
 
 }  // namespace
 
@@ -67,64 +65,45 @@ std::pair<double, double> Charts::room(const std::vector<Chart>& charts, double 
   return {right, below};
 }
 
-// Names stand beside the heads of their lines, as far from each other as they are high, in the order of the
-// heads over a while, so that lines that wind about each other do not change it all the time. Where two
-// change places the names would jump past each other: around such an instant they are where they would be on
-// the average.
 void Charts::place_names(Panel& panel) const {
   const PlotArea& area = panel.area;
-  const std::vector<Series>& lines = panel.plot.lines;
-  const std::size_t n = panel.plot.times.size(), count = lines.size();
-  const double apart = kNamesApart * area.point, low = area.top, high = area.bottom - 3 * area.point;
-  using Rows = std::vector<std::vector<double>>;
-  Rows heads(n), sums(n + 1, std::vector<double>(count, 0));
-  // the mean over the instants around k, by sums of all before
-  const auto mean = [&](const Rows& of, std::size_t k, double share) {
-    const auto reach = std::size_t(share * double(n));
-    const std::size_t from = k < reach ? 0 : k - reach, to = std::min(n, k + reach + 1);
-    std::vector<double> found;
-    for (std::size_t i = 0; i < count; ++i) found.push_back((of[to][i] - of[from][i]) / double(to - from));
-    return found;
-  };
-  for (std::size_t k = 0; k < n; ++k) {
-    for (const Series& line : lines) {
+  std::vector<std::vector<double>> heads(panel.plot.times.size());
+  for (std::size_t k = 0; k < heads.size(); ++k) {
+    for (const Series& line : panel.plot.lines) {
       // a run that diverges ends before the others
       const std::vector<double>& all = line.values;
       const double value = all.empty() ? area.low : all[std::min(k, all.size() - 1)];
       heads[k].push_back(area.at(area.first, std::clamp(value, area.low, area.high)).y());
-      const std::size_t i = heads[k].size() - 1;
-      sums[k + 1][i] = sums[k][i] + heads[k][i];
     }
   }
-  std::vector<std::vector<int>> orders(n);
-  std::vector<std::size_t> changes;  // the instants with another order than the one before
-  Rows moved(n + 1, std::vector<double>(count, 0));
-  for (std::size_t k = 0; k < n; ++k) {
-    // at first as they are on the whole
-    orders[k] = by_height(mean(sums, k, kWhile), kPassed * apart,
-                          k > 0 ? orders[k - 1] : by_height(mean(sums, 0, 1)));
-    if (k > 0 && orders[k] != orders[k - 1]) changes.push_back(k);
-    const std::vector<double> names = spread(heads[k], apart, low, high, orders[k]);
-    for (std::size_t i = 0; i < count; ++i) moved[k + 1][i] = moved[k][i] + names[i] - heads[k][i];
-  }
-  panel.offsets.assign(count, std::vector<double>(n, 0));
-  for (std::size_t k = 0; k < n; ++k) {
-    std::vector<double> names = mean(moved, k, kSettle);
-    for (std::size_t i = 0; i < count; ++i) names[i] += heads[k][i];
-    const auto reach = std::size_t(kSettle * double(n));
-    const auto change = std::upper_bound(changes.begin(), changes.end(), k < reach ? 0 : k - reach);
-    if (change == changes.end() || *change > k + reach) names = spread(names, apart, low, high, orders[k]);
-    for (std::size_t i = 0; i < count; ++i) panel.offsets[i][k] = names[i] - heads[k][i];
-  }
+  panel.names =
+      names_beside(heads, kNamesApart * area.point, area.top, area.bottom - kAboveAxis * area.point);
+}
+
+double Charts::Panel::change(std::size_t line, std::size_t number) const {
+  const std::size_t k = names.changes[line][number];
+  return 0.5 * (plot.times[k - 1] + plot.times[k]);
+}
+
+double Charts::Panel::seen(std::size_t line, double time) const {
+  const double fade = kFade * (area.last - area.first);
+  double most = 1;
+  for (std::size_t i = 0; i < names.changes[line].size(); ++i)
+    most = std::min(most, std::abs(time - change(line, i)) / fade);
+  return most;
 }
 
 double Charts::Panel::offset(std::size_t line, double time) const {
   const std::vector<double>& times = plot.times;
-  const std::vector<double>& all = offsets[line];
+  const std::vector<double>& all = names.offsets[line];
   const auto next = std::size_t(std::lower_bound(times.begin(), times.end(), time) - times.begin());
   if (all.empty()) return 0;
   if (next == 0 || next >= all.size()) return next == 0 ? all.front() : all.back();
   const double u = (time - times[next - 1]) / (times[next] - times[next - 1]);
+  // not across a change of places
+  for (std::size_t i = 0; i < names.changes[line].size(); ++i) {
+    if (names.changes[line][i] == next) return time < change(line, i) ? all[next - 1] : all[next];
+  }
   return all[next - 1] + u * (all[next] - all[next - 1]);
 }
 
@@ -182,10 +161,11 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
       const double unit = panel.area.point;
       if (within[i] && inside)
         list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
-      // an average may lead below the axis
-      const double high = at.y() + (over_time && inside ? panel.offset(i, line.along.back()) : 0);
+      const bool placed = over_time && inside;
+      const double high = at.y() + (placed ? panel.offset(i, line.along.back()) : 0);
       draw_name(panel.plot, i, panel.area,
-                {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)}, list);
+                {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)}, list,
+                placed ? panel.seen(i, line.along.back()) : 1);
     }
   }
   list.of({});

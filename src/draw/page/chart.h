@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "draw/page/measure.h"
+#include "draw/page/names_beside.h"
 #include "draw/page/plot.h"
 #include "draw/picture/list.h"
 #include "draw/picture/theme.h"
@@ -69,9 +70,12 @@ class Charts {
     Chart chart;
     Plot plot;
     PlotArea area;
-    // where the names of the lines are beside their heads: how far up or down at each of the plot's times
-    std::vector<std::vector<double>> offsets;
+    NamePlaces names;  // at each of the plot's times
     double offset(std::size_t line, double time) const;
+    /// s: when the name of a line changes places for the nth time.
+    double change(std::size_t line, std::size_t number) const;
+    /// How well its name is seen, 0 to 1.
+    double seen(std::size_t line, double time) const;
   };
   void place_names(Panel& panel) const;
   std::vector<Panel> panels_;

@@ -197,20 +197,12 @@ void tell_apart(Plot& plot) {
   for (std::size_t i = 0; i < plot.lines.size(); ++i) plot.lines[i].style = int(i);
 }
 
-std::vector<int> by_height(const std::vector<double>& wanted, double apart, std::vector<int> before) {
-  if (before.size() != wanted.size()) {
-    before.resize(wanted.size());
-    std::iota(before.begin(), before.end(), 0);
-    apart = 0;
-  }
-  // insertion, from where it was
-  for (std::size_t i = 1; i < before.size(); ++i) {
-    for (std::size_t k = i; k > 0; --k) {
-      if (!(wanted[std::size_t(before[k - 1])] > wanted[std::size_t(before[k])] + apart)) break;
-      std::swap(before[k - 1], before[k]);
-    }
-  }
-  return before;
+std::vector<int> by_height(const std::vector<double>& wanted) {
+  std::vector<int> order(wanted.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return wanted[std::size_t(a)] < wanted[std::size_t(b)]; });
+  return order;
 }
 
 std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high,
@@ -396,10 +388,13 @@ void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, L
   }
 }
 
-void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at, List& list) {
-  if (!named(plot)) return;
+void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at, List& list,
+               double seen) {
+  if (!named(plot) || !(seen > 0)) return;
   const Series& its = plot.lines[line];
-  add(formula(its.label + its.note, kTypeSize * area.point, its.color),
+  Color color = its.color;
+  color.a = std::uint8_t(std::lround(color.a * std::min(seen, 1.0)));
+  add(formula(its.label + its.note, kTypeSize * area.point, color),
       at + Point(0, 0.24 * kTypeSize * area.point), list);
 }
 

@@ -68,9 +68,8 @@ std::string over_unit(const std::string& name, const std::string& unit);
 /// Gives lines styles by their order in the plot.
 void tell_apart(Plot& plot);
 
-/// The order of heights from the least on, equal ones in the order of their numbers. With the order `before`,
-/// two change places only where they have passed each other by more than `apart`.
-std::vector<int> by_height(const std::vector<double>& wanted, double apart = 0, std::vector<int> before = {});
+/// The order of heights from the least on, equal ones in the order of their numbers.
+std::vector<int> by_height(const std::vector<double>& wanted);
 
 /// As near as they can be to where they are wanted, `apart` from each other, from `low` to `high`, in this
 /// order.
@@ -85,8 +84,9 @@ void draw_lines(const Plot& plot, const PlotArea& area, List& list, std::optiona
 void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
 /// The names of the lines, beside their ends. A line that is alone is named by its axis.
 void draw_names(const Plot& plot, const PlotArea& area, List& list);
-/// One of them, with its left end's middle at `at`.
-void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at, List& list);
+/// One of them, with its left end's middle at `at`. `seen`: from 0, not at all, to 1.
+void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at, List& list,
+               double seen = 1);
 inline constexpr double kNamesApart = 10;  // points
 
 /// Puts plots down in rectangles of a sheet under each other (kPoint units a point), with type so much
