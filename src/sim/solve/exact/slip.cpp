@@ -63,7 +63,8 @@ void ExactSolver<D>::aim_slow_slips(State<D>& state, double t, double h) {
   if (!solve()) solve_roughly();
   cone_.enough = enough, cone_.patience = patience;
   for (Constraint& constraint : constraints_) {
-    if (!constraint.slow) continue;
+    // one that sticks at the end of the step stops within it: until then it slips on as it does
+    if (!constraint.slow || modes_[constraint.block].kind != ModeKind::slide) continue;
     Vec<D> drag = Vec<D>::Zero();
     for (int i = 0; i < D - 1; ++i)
       drag += f_[constraint.first + 1 + i] * rows_[constraint.first + 1 + i].along;

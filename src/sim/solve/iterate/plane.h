@@ -55,6 +55,12 @@ class PlaneIterative final : public ContactSolver<D> {
   // Of the thickness of the thinner body: contacts with wider gaps are ignored in a substep. A body fast
   // enough to cross such a gap is swept instead.
   static constexpr double kSight = 0.5;
+  // m; a point, which has no thickness, is seen from a little way off
+  double sight(const plane::CoreShape& a, const plane::CoreShape& b) const {
+    const double thin = std::max(std::min(a.half_thickness, b.half_thickness), 0.5 * (a.radius + b.radius));
+    const double thick = std::max(a.half_thickness, b.half_thickness);
+    return kSight * (thin > 0 ? thin : std::min(thick, kPointWidth * model_.scale));
+  }
 
   bool gather(const State<D>& state);
   // whether overlaps are those that the scene has, too small for it to refuse them

@@ -151,7 +151,6 @@ double PlaneIterative<D>::safe_fraction(int body, const plane::Pose& from, const
     }
     const plane::CoreShape& b = cores_.all[pair.core_b];
     const double thin = std::min(a.half_thickness, b.half_thickness);
-    const double sight = kSight * std::max(thin, 0.5 * (a.radius + b.radius));
     const double close = 0.02 * std::max(thin, 1e-6 * model_.scale);
     const int other = body == pair.a ? pair.b : pair.a;
     const Motion& o = old_[other];
@@ -165,7 +164,7 @@ double PlaneIterative<D>::safe_fraction(int body, const plane::Pose& from, const
       const double left = body == pair.a ? find_features(cores_, a, at, b, there, features)
                                          : find_features(cores_, a, there, b, at, features);
       // what is as near as this from the first, its rows keep apart
-      if (gone == 0 && left <= sight) break;
+      if (gone == 0 && left <= sight(a, b)) break;
       if (left <= close) {
         part = gone;
         break;

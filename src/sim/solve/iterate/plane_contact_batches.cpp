@@ -201,7 +201,7 @@ void PlaneIterative<D>::fill_lane(int i, const State<D>& state) {
   if (pair.b >= 0) {
     const plane::CoreShape& b = cores_.all[pair.core_b];
     far = std::max(far, b.bounding_radius), thin = std::min(thin, b.half_thickness), radius += b.radius;
-    sight = kSight * std::max(thin, 0.5 * radius);
+    sight = this->sight(a, b);
     // features of round things may change at any time, if there are more than one
     round = (a.count == 1) != (b.count == 1);
   }

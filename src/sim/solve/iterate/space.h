@@ -79,6 +79,7 @@ class SpaceIterative final : public ContactSolver<D> {
   // how fast a body is at most in the step, since its last impact or, `ever`, since the step began
   struct Fastest {
     double spin = 0, ever = 0, gain = 0;  // rad/s, m/s, m/s: what the step adds without contacts
+    double turns = 0;                     // rad/s, likewise
   };
   // an impact that is due; no longer so once one of its bodies had another
   struct Due {
@@ -243,7 +244,8 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<Flown> flown_;                        // after it, or as the step began
   mutable std::vector<Course> courses_;
   std::vector<Fastest> fastest_;
-  std::vector<Reach> reach_;  // of each touch
+  std::vector<AngularVec<D>> twist_;  // bodies: what the step adds to angular momentum without contacts
+  std::vector<Reach> reach_;          // of each touch
   std::vector<Due> due_;
   std::vector<double> strikes_;             // bodies: s, when what the iterations change begins to move them
   std::vector<int> rounds_;                 // impacts of each body

@@ -1,6 +1,6 @@
 // When gaps close with an impact in a step, and how they stand then. Until its first impact a body flies as
 // it would without contacts, after one with the velocity it got:
-//   x(t) = x + v t + a t^2 / 2,  and turns as a free body
+//   x(t) = x + v t + a t^2 / 2,    L(t) = L + M t      a and M as in the step without contacts
 // Most gaps do not close; two limits say so without a search. A gap changes no faster than its bodies' matter
 // moves there, and its second derivative is bounded by what accelerates and turns them:
 //   g(t) >= g - s t        g(t) >= g + g' t - b t^2 / 2
@@ -50,7 +50,9 @@ typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, dou
   const Vec<D> gain = (time / h) * (v_free_[body] - stances_[body].v);
   at.stance.x += time * (at.stance.v + 0.5 * gain), at.stance.v += gain;
   const int k = body - (int(model_.bodies.size()) - int(turn_.size()));
-  if (k < 0 || !it.turns() || (at.stance.w.isZero(0) && drives_.number(body) < 0)) return at;
+  if (k < 0 || !it.turns()) return at;
+  const AngularVec<D> twist = (time / h) * twist_[std::size_t(body)];
+  if (at.stance.w.isZero(0) && twist.isZero(0) && drives_.number(body) < 0) return at;
   if (drives_.number(body) >= 0) {
     const AngularVec<D> more = (time / h) * (w_free_[k] - stances_[body].w);
     at.turn = turned<D>(at.turn, AngularVec<D>(time * (at.stance.w + 0.5 * more)));
@@ -58,15 +60,22 @@ typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, dou
     return at;
   }
   if (!wobbles<D>(it.inertia)) {
-    at.turn = turned<D>(at.turn, AngularVec<D>(time * at.stance.w));
-    at.stance.room_from_body = rotation<D>(at.turn);
+    const AngularVec<D> more = inverse_inertia_times<D>(it.inertia, at.stance.room_from_body, twist);
+    at.turn = turned<D>(at.turn, AngularVec<D>(time * (at.stance.w + 0.5 * more)));
+    at.stance.room_from_body = rotation<D>(at.turn), at.stance.w += more;
     return at;
   }
   // Runge and Kutta, as the body sees itself (sim/math/lie_step.h)
   const int pieces = pieces_of_turn<D>(at.stance.w, time);
   const double piece = time / pieces;
   const AngularVec<D> momentum = inertia_times<D>(it.inertia, at.stance.room_from_body, at.stance.w);
+  const auto spins = [&](double part) {
+    return inverse_inertia_times<D>(it.inertia, at.stance.room_from_body,
+                                    AngularVec<D>(momentum + part * twist));
+  };
   for (int i = 0; i < pieces; ++i) {
+    // with the momentum of the middle of the piece
+    if (!twist.isZero(0)) at.stance.w = spins((i + 0.5) / pieces);
     const AngularVec<D> w0 = from_room<D>(at.stance.room_from_body, at.stance.w);
     AngularVec<D> d[4], w[4], step = AngularVec<D>::Zero(), spin = w0;
     for (int s = 0; s < 4; ++s) {
@@ -77,7 +86,7 @@ typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, dou
     const AngularVec<D> by = piece / 6 * (d[0] + 2 * d[1] + 2 * d[2] + d[3]);
     at.turn = displaced<D>(at.turn, by);
     at.stance.room_from_body = rotation<D>(at.turn);
-    at.stance.w = inverse_inertia_times<D>(it.inertia, at.stance.room_from_body, momentum);
+    at.stance.w = spins((i + 1.0) / pieces);
   }
   return at;
 }
@@ -118,7 +127,7 @@ void SpaceIterative<D>::limit_speed(int body, double h) {
   Fastest& it = fastest_[body];
   const BodyMotion<D>& at = flown_[body].stance;
   // what wobbles gains at most a third of its spin while it turns by a quarter of a radian
-  it.spin = 4.0 / 3 * std::sqrt(at.w.squaredNorm());
+  it.spin = 4.0 / 3 * (std::sqrt(at.w.squaredNorm()) + it.turns);
   if (it.spin * h > kFarTurn) it.spin = 1e300;
   it.ever = std::max(it.ever, std::sqrt(at.v.squaredNorm()) + it.gain);
 }
@@ -150,7 +159,7 @@ double SpaceIterative<D>::bend_limit(int i, const Instant& at, double h) const {
   const double falls = std::sqrt((gain(touch.a) - gain(touch.b)).squaredNorm());
   const double far = kFarthestPoint * size, spins = a.spin + b.spin;
   const double passes = std::sqrt((at.a.v - at.b.v).squaredNorm()) + falls + far * spins;
-  const double matter = 2 * far * (a.spin * a.spin + b.spin * b.spin);
+  const double matter = 2 * far * (a.spin * a.spin + b.spin * b.spin) + far * (a.turns + b.turns) / h;
   if constexpr (D == 3) {
     const ContactCandidate<D>& gap = features_[i];
     if (gap.kind == ContactCandidate<D>::Kind::edges) {

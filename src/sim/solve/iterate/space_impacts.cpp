@@ -208,10 +208,18 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
     flown_[i].stance = stances_[i];
     if (const int k = turning(state, i); k >= 0) flown_[i].turn = turn_[k];
   }
-  fastest_.assign(n + 1, {});
+  fastest_.assign(n + 1, {}), twist_.assign(n + 1, AngularVec<D>::Zero());
   for (int i = 0; i < n; ++i) {
     if (inactive_[i] && drives_.number(i) < 0) continue;
     fastest_[i].gain = std::sqrt((v_free_[i] - stances_[i].v).squaredNorm());
+    const int k = turning(state, i);
+    if (k >= 0 && drives_.number(i) < 0 && model_.bodies[i].turns()) {
+      const AngularVec<D>& inertia = model_.bodies[i].inertia;
+      const Rotation<D>&from = stances_[i].room_from_body, to = rotation<D>(turn_free_[k]);
+      const AngularVec<D> ends = carried_spin<D>(inertia, to, from, w_free_[k]);
+      twist_[i] = inertia_times<D>(inertia, from, AngularVec<D>(ends - stances_[i].w));
+      fastest_[i].turns = std::sqrt((ends - stances_[i].w).squaredNorm());
+    }
     limit_speed(i, h);
   }
   reach_.resize(touches_.size());
