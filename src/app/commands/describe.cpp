@@ -9,6 +9,7 @@
 #include "app/console/options.h"
 #include "app/console/say.h"
 #include "app/run/description.h"
+#include "app/run/trouble.h"
 #include "scene/scene.h"
 
 namespace obscura::app {
@@ -22,7 +23,10 @@ struct DescribeFlags {
 
 int describe(const DescribeFlags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
-  for (const std::string& sentence : description(scene)) say(stdout, "{}\n", sentence);
+  warn_of_steps(scene);
+  const Story told = story(scene);
+  for (const std::string& sentence : told.sentences) say(stdout, "{}\n", sentence);
+  if (told.trouble) throw TroubleError(scene.file, *told.trouble, "");
   return kDone;
 }
 

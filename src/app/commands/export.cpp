@@ -182,6 +182,7 @@ struct ExportFlags {
 
 int run(const ExportFlags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  warn_of_steps(scene);
   const sim::Rational fps = flags.fps ? parse_fps(*flags.fps) : scene.film.fps;
   const std::string out = flags.out.value_or(scene.name + ".glb");
   if (!out.ends_with(".glb"))

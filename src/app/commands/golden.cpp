@@ -78,7 +78,7 @@ std::vector<std::string> files(const GoldenFlags& flags) {
       continue;
     }
     std::vector<std::string> found;
-    for (const auto& entry : fs::directory_iterator(each))
+    for (const auto& entry : fs::recursive_directory_iterator(each))
       if (entry.path().extension() == ".toml" && wanted(entry.path().string()))
         found.push_back(entry.path().string());
     if (found.empty()) throw UsageError(each + ": no scene in it has a [golden] table");
@@ -231,6 +231,8 @@ void write_page(const GoldenFlags& flags, const std::vector<GoldenCase>& cases) 
 int golden(GoldenFlags& flags) {
   if (flags.golden.update && !flags.sets.empty())
     throw UsageError("--update takes the scenes as their files are: leave --set out, or write it into them");
+  if (flags.report) require_ending("--report", *flags.report, ".html");
+  if (flags.junit) require_ending("--junit", *flags.junit, ".xml");
   for (const std::string& each : flags.only) flags.golden.only.push_back(GoldenChoice::parse(each));
   const std::vector<std::string> named = files(flags);
   know_apart(named, flags.golden);
@@ -288,8 +290,9 @@ int golden(GoldenFlags& flags) {
 OBSCURA_COMMAND(120, golden) {
   const Command command(program, exit, "golden", "Compare pictures and states of scenes with references");
   auto flags = std::make_shared<GoldenFlags>();
-  command.option("SCENE", flags->scenes,
-                 "Scenes, or folders; in a folder those with a [golden] table [scenes, or .]");
+  command.option(
+      "SCENE", flags->scenes,
+      "Scenes, or folders; in a folder and those in it the scenes with a [golden] table [scenes, or .]");
   command
       .option("--references", flags->golden.references,
               "The folder of the references [golden/ beside each scene]")

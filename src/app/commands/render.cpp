@@ -82,6 +82,11 @@ void suit_pages(const std::string& out, scene::Film& film) {
   say(stderr, "{}: at {:g} pages per second of film; --fps says otherwise\n", out, sim::value(film.fps));
 }
 
+Output poster_of(const Output& movie) {
+  return {Output::Form::still, std::filesystem::path(movie.path).replace_extension(".poster.png").string(),
+          true};
+}
+
 // the film, and a still of it for where it does not play
 int film_and_poster(const scene::Scene& scene, const Shots& shots, const Output& out,
                     const RenderFlags& flags) {
@@ -91,10 +96,8 @@ int film_and_poster(const scene::Scene& scene, const Shots& shots, const Output&
   FilmOptions options = flags.film;
   options.shard.reset(), options.from_checkpoint.reset();
   options.resume = options.anew = false, options.checkpoint_every = {0, 1};
-  const Output poster{Output::Form::still,
-                      std::filesystem::path(out.path).replace_extension(".poster.png").string(), true};
   return film(scene, Shots::still(seconds("--poster", *flags.poster), scene.film.fps, scene.film.speed),
-              poster, options);
+              poster_of(out), options);
 }
 
 // a GIF of at most so many bytes: smaller until it fits, by what the last one took
@@ -104,7 +107,9 @@ int film_under(scene::Scene scene, const Shots& shots, const Output& out, const 
   const double most = parse_bytes(*flags.under);
   const Output trial{Output::Form::movie, out.path + ".sizing.gif", true};
   FilmOptions options = flags.film;
-  options.anew = true;
+  options.anew = options.overwrite = true;
+  if (!flags.film.overwrite && std::filesystem::exists(out.path))
+    throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", out.path));
   const double aspect = double(scene.film.width) / scene.film.height;
   double height = scene.film.height;
   for (;;) {
@@ -279,6 +284,12 @@ int render(RenderFlags flags) {
   if (flags.draft) make_quick(flags, out, scene);
   if (flags.poster && out.form != Output::Form::movie)
     throw UsageError("--poster is a still beside a movie; --at makes one alone");
+  if (flags.poster) {
+    seconds("--poster", *flags.poster);
+    const std::string poster = poster_of(out).path;
+    if (flags.no_overwrite && std::filesystem::exists(poster))
+      throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", poster));
+  }
   const bool under = flags.under.has_value();
   if (under && (each || out.form != Output::Form::movie || !out.path.ends_with(".gif")))
     throw UsageError("--under is for one GIF: --crf makes other movies smaller");
@@ -286,9 +297,7 @@ int render(RenderFlags flags) {
     throw UsageError("--under makes a GIF several times: no shards, no --resume, no --poster");
   if (under) parse_bytes(*flags.under);
   divide(flags, out);
-  for (const sim::Trouble& ahead : scene.stability_warnings()) {
-    say(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
-  }
+  warn_of_steps(scene);
   see_what_it_needs(scene, shots, out, flags.film);
   if (under) return film_under(scene, shots, out, flags);
   return each ? render_each(scene, shots, flags) : film_and_poster(scene, shots, out, flags);

@@ -261,6 +261,8 @@ int measure(const StatesFlags& flags, const scene::Scene& scene) {
 
 int states(const StatesFlags& flags) {
   const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  if (flags.out) spare(*flags.out, flags.scene);
+  warn_of_steps(scene);
   if (flags.measure) return measure(flags, scene);
   auto times = times_of(flags, scene);
   const auto run = flags.from_checkpoint ? run_from(*flags.from_checkpoint, scene) : scene.run();

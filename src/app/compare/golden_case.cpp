@@ -292,14 +292,14 @@ void sweep(const scene::Scene& scene, const std::string& references, const std::
     if (!name.starts_with(scene.name + "-") || entry.path().extension() != ".png") continue;
     bool known = false;
     for (const GoldenCase& each : cases) known = known || fs::path(each.file).filename() == name;
-    if (known) continue;
+    // others of its name are someone else's: room-poster.png
+    if (known || !is_time(entry.path().stem().string().substr(scene.name.size() + 1))) continue;
     std::optional<Origin> origin;
     try {
       origin = origin_in(media::read_png(entry.path().string()).tags);
     } catch (const media::Error& error) {
       // it may belong to another scene: leave it where it is
-      if (is_time(entry.path().stem().string().substr(scene.name.size() + 1)))
-        lines.push_back(fmt::format("{}; it is no moment of the scene any more", error.what()));
+      lines.push_back(fmt::format("{}; it is no moment of the scene any more", error.what()));
       continue;
     }
     if (!origin || fs::path(origin->scene_file).stem() != scene.name) continue;

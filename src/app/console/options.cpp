@@ -4,6 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
+
+#include <filesystem>
+
 #include "app/console/exit.h"
 #include "app/console/memory.h"
 
@@ -67,6 +71,17 @@ std::pair<int, int> parse_size(const std::string& text) {
     if (h.ec == std::errc() && h.ptr == end && width > 0 && height > 0) return {width, height};
   }
   throw UsageError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, as in 1920x1080", text));
+}
+
+void require_ending(std::string_view option, const std::string& path, std::string_view ending) {
+  if (!path.ends_with(ending) || path.size() == ending.size())
+    throw UsageError(fmt::format("{} {}: expected a name that ends with {}", option, path, ending));
+}
+
+void spare(const std::string& out, const std::string& in) {
+  std::error_code none;
+  if (std::filesystem::equivalent(out, in, none))
+    throw UsageError(fmt::format("-o {}: would be written over {}, which is read", out, in));
 }
 
 }  // namespace obscura::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,5 +33,11 @@ sim::Rational parse_fps(const std::string& text);
 
 /// "1920x1080". Throws UsageError.
 std::pair<int, int> parse_size(const std::string& text);
+
+/// Requires that a name that an option gives ends so. Throws UsageError.
+void require_ending(std::string_view option, const std::string& path, std::string_view ending);
+
+/// Requires that what is written to `out` does not replace the file `in`, which is read. Throws UsageError.
+void spare(const std::string& out, const std::string& in);
 
 }  // namespace obscura::app

@@ -18,6 +18,7 @@
 #include "app/film/join.h"
 #include "app/film/ordered_pipeline.h"
 #include "app/film/store.h"
+#include "app/film/subtitles.h"
 #include "app/run/checkpoint.h"
 #include "app/run/description.h"
 #include "app/run/origin.h"
@@ -121,8 +122,16 @@ Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& ou
   // report obstacles to the files before simulating
   if (output.form == Output::Form::pipe) return;
   const std::string first = movie() ? output.path : output.file(shots[0].frame);
-  if (!options.overwrite && fs::exists(first))
-    throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", first));
+  if (fs::is_directory(first)) throw media::Error(first + ": is a folder");
+  if (!options.overwrite) {
+    const auto keep = [](const std::string& file) {
+      if (fs::exists(file))
+        throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", file));
+    };
+    if (movie()) keep(output.path);
+    if (movie() && !scene.film.titles.captions.empty()) keep(captions_of(output.path));
+    for (std::int64_t i = 0; !movie() && i < shots.size(); ++i) keep(output.file(shots[i].frame));
+  }
   media::make_folder_of(first);
   if (output.form == Output::Form::still || already_whole()) return;
   store_.emplace(output, journal_, first_, last_,
@@ -379,6 +388,11 @@ int Filming::finish(Progress& progress, const Simulation& simulation, std::int64
     frames = joining.takes > 0 || joining.cut ? join(*store_, output_.path, joining) : 0;
   }
   if (store_ && !options_.shard && (whole || simulation.trouble())) store_->remove();
+  // what was there before it was gone on with is a part of it
+  if (movie() && whole && options_.resume && !options_.shard) {
+    std::error_code none;
+    fs::remove(output_.partial(), none), fs::remove(captions_of(output_.partial()), none);
+  }
 
   if (simulation.trouble()) {
     progress.finish(frames, "", false);

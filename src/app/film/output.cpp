@@ -88,6 +88,13 @@ Output output(const std::optional<std::string>& out, const std::string& name, bo
     path += still ? name + ".png" : "{frame:04}.png";
   }
   const auto p = pattern(path);
+  std::string rest = path;
+  if (p) rest.erase(p->begin, p->end - p->begin);
+  if (const auto open = rest.find('{'), close = rest.find('}', open); close != std::string::npos)
+    throw UsageError(
+        fmt::format("{}: {} is not known; a name may have {{camera}}, and that of a sequence "
+                    "{{frame:04}}, once",
+                    path, rest.substr(open, close + 1 - open)));
   if (ending(path) == ".png") {
     if (p && !still) return {Output::Form::frames, path};
     if (still || frames == 1) return {Output::Form::still, path};

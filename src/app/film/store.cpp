@@ -141,12 +141,15 @@ struct Store::Impl {
     }
   }
 
-  // all but the lock
+  // all that is ours but the lock
   void clear() {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       std::error_code ignored;
-      if (entry.path().filename() != "lock") fs::remove(entry.path(), ignored);
+      const std::string name = entry.path().filename().string();
+      const bool ours = name.starts_with("journal.json") || name.starts_with("seconds") ||
+                        name.starts_with(kTake) || name.starts_with(kStep) || name.starts_with("cut.");
+      if (ours) fs::remove(entry.path(), ignored);
     }
     parts.clear(), checkpoints.clear();
   }

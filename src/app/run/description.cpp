@@ -444,6 +444,7 @@ Story story(const scene::Scene& scene) {
     for (const std::string& mark : event.marks)
       all.events.push_back({sim::value(event.time), scene::one_line(mark)});
   sort(all.events);
+  if (trouble && !scene.show_divergence) all.trouble = trouble;
   if (trouble)
     all.sentences.push_back(fmt::format("At {} the run ends: the {} of {} {}.", time(trouble->time),
                                         trouble->quantity, scene::one_line(trouble->body), trouble->what));

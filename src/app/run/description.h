@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scene/scene.h"
 #include "sim/model/snapshot.h"
+#include "sim/model/trouble.h"
 
 namespace obscura::app {
 
@@ -17,15 +19,13 @@ struct Happening {
 /// What happens in a run of a scene.
 struct Story {
   std::vector<std::string> sentences;
-  std::vector<Happening> events;  // in the order of time; of very many impacts the hardest
+  std::vector<Happening> events;          // in the order of time; of very many impacts the hardest
+  std::optional<sim::Trouble> trouble{};  // what ended it, unless the scene shows runs that diverge
 };
 
-/// Runs a scene once. Throws Interrupted.
+/// Runs a scene once. The sentences say what is there, what hits what when, what comes to rest, what becomes
+/// of the energy, what the film says. Throws Interrupted.
 Story story(const scene::Scene& scene);
-
-/// Its sentences: what is there, what hits what when, what comes to rest, what becomes of the energy, what
-/// the film says.
-inline std::vector<std::string> description(const scene::Scene& scene) { return story(scene).sentences; }
 
 /// What a picture of an instant shows, in sentences: the alternative text of a still.
 std::string picture_text(const scene::Scene& scene, const sim::SceneInfo& cast, const sim::Snapshot& now);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "app/console/say.h"
+
 namespace obscura::app {
 
 std::string text(const sim::Trouble& trouble) {
@@ -9,6 +11,11 @@ std::string text(const sim::Trouble& trouble) {
                                  trouble.body, trouble.what);
   if (!trouble.likely.empty()) line += "; likely: " + trouble.likely;
   return line;
+}
+
+void warn_of_steps(const scene::Scene& scene) {
+  for (const sim::Trouble& ahead : scene.stability_warnings())
+    say(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
 }
 
 TroubleError::TroubleError(const std::string& scene, const sim::Trouble& of, const std::string& kept)

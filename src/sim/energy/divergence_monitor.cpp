@@ -48,7 +48,7 @@ std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit) 
 
 template <int D>
 DivergenceMonitor<D>::DivergenceMonitor(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), paths_(paths) {}
+    : model_(model), paths_(paths), too_long_(stability_warnings(model)) {}
 
 template <int D>
 std::optional<Trouble> DivergenceMonitor<D>::check_bounds(const State<D>& state, double t) const {
@@ -112,11 +112,12 @@ template <int D>
 std::optional<Trouble> DivergenceMonitor<D>::check_energy(const State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
   const double energy_budget = state.energy_budget.amount + std::max(0.0, state.ledger.displacement);
-  const double now =
-      e.kinetic + e.springs + e.hand + e.gravity + e.fields - e.work - state.energy_budget.level;
-  if (now <= kSuspect * energy_budget) return {};
+  const double held = e.kinetic + e.springs + e.hand + e.gravity + e.fields - state.energy_budget.level;
+  const double now = held - e.work;
+  if (std::max(now, held) <= kSuspect * energy_budget) return {};
+  // where the step is too long for them, the work of forces is not to be trusted either
   const Tightness worst = tightest(model_, state.grips);
-  if (now <= kProof * energy_budget && worst.body < 0) return {};
+  if (now <= kProof * energy_budget && worst.body < 0 && too_long_.empty()) return {};
 
   // the body to blame: the one with the most kinetic energy
   int body = 0;
@@ -177,6 +178,7 @@ template <int D>
 std::string DivergenceMonitor<D>::likely(const State<D>& state, int body) const {
   if (const Tightness worst = tightest(model_, state.grips); worst.body >= 0)
     return step_too_long_message(model_, worst);
+  if (!too_long_.empty()) return too_long_.front().likely;
   bool tied = false;
   for (const Spring<D>& s : model_.springs) tied = tied || s.a.body == body || s.b.body == body;
   for (const Grip<D>& grip : state.grips) tied = tied || grip.body == body;

@@ -37,6 +37,7 @@ class DivergenceMonitor {
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
+  std::vector<Trouble> too_long_;          // what the step is too long for, from the start
   mutable std::vector<BodyMotion<D>> at_;  // of check_joints()
 };
 

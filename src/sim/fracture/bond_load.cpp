@@ -6,6 +6,8 @@
 //   G z = (f_i, n_i),   z = G' (G G')^-1 (f_i, n_i)           the solution of least norm
 // without one part of a free body, whose equation follows from the others. For an impact the same with
 // impulses and without w; an impulse counts as a force through the bond's impact time.
+// Couples that joints transmit, as a weld does, are what the change of the body's spin in the step tells:
+//   C = I (dw / h - alpha)                                    shared out evenly where there are several
 
 #include "sim/fracture/bond_load.h"
 
@@ -27,6 +29,17 @@ SpinTensor<D> tensor(const Body<D>& body, const BodyMotion<D>& at) {
   } else {
     return at.room_from_body * body.inertia.asDiagonal() * at.room_from_body.transpose();
   }
+}
+
+// whether a joint may transmit more than a force at its ends
+template <int D>
+bool bears_couple(const Joint<D>& joint) {
+  const bool point = joint.kind == JointKind::pin || (D == 2 && joint.kind == JointKind::hinge);
+  const bool straight = joint.kind == JointKind::rod || joint.kind == JointKind::rope ||
+                        (joint.kind == JointKind::pulley && joint.on_a.offset == 0 && joint.on_b.offset == 0);
+  const bool turned =
+      joint.motor || joint.coil || joint.friction > 0 || joint.lower > -1e299 || joint.upper < 1e299;
+  return !straight && !(point && !turned);
 }
 
 }  // namespace
@@ -87,7 +100,8 @@ void BondLoads<D>::push(const State<D>& state, double t) {
 }
 
 template <int D>
-bool BondLoads<D>::snap(State<D>& state, const Model<D>& whole, const std::vector<int>& body, double t) {
+bool BondLoads<D>::snap(State<D>& state, const Model<D>& whole, const std::vector<int>& body,
+                        const std::vector<AngularVec<D>>& before, double t, double h) {
   std::fill(loads_.begin(), loads_.end(), 0.0);
   std::vector<std::vector<int>> parts(whole.bodies.size()), bonds(whole.bodies.size());
   bool breakable = false;
@@ -102,7 +116,8 @@ bool BondLoads<D>::snap(State<D>& state, const Model<D>& whole, const std::vecto
   bool any = false;
   for (int i = 0; i < int(whole.bodies.size()); ++i) {
     if (bonds[i].empty()) continue;
-    any = snap(state, {whole.bodies[i], body_motion(state.bonded[0], i), parts[i], bonds[i]}) || any;
+    const Composite it{whole.bodies[i], body_motion(state.bonded[0], i), parts[i], bonds[i], before[i], h};
+    any = snap(state, it) || any;
   }
   return any;
 }
@@ -117,6 +132,7 @@ template <int D>
 bool BondLoads<D>::snap(State<D>& state, const Composite& it) {
   const Unknown parts = number_parts(it);
   if (parts.count == 0) return false;
+  add_couples(state, it);
   const Required want = required(state, it, accelerate(state, it), parts);
   const std::vector<Lever> arms = levers(state, it);
   if (!may_break(it, want, arms)) return false;
@@ -146,6 +162,35 @@ typename BondLoads<D>::Rates BondLoads<D>::accelerate(const State<D>& state, con
   rates.alpha = inverse_inertia_times<D>(it.body.inertia, axes, AngularVec<D>(force.n - spin_cross<D>(w, L)));
   rates.dw = inverse_inertia_times<D>(it.body.inertia, axes, blow.n);
   return rates;
+}
+
+// couples of joints, on the parts that they hold
+template <int D>
+void BondLoads<D>::add_couples(const State<D>& state, const Composite& it) {
+  if (it.body.fixed || !it.body.turns()) return;
+  const auto within = [&](int part) {
+    return part >= 0 && std::find(it.parts.begin(), it.parts.end(), part) != it.parts.end();
+  };
+  std::vector<int> held;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (state.broken[i] || !bears_couple(joint) || within(joint.a.body) == within(joint.b.body)) continue;
+    held.push_back(within(joint.a.body) ? joint.a.body : joint.b.body);
+  }
+  if (held.empty()) return;
+  const Rates rates = accelerate(state, it);
+  const bool struck = std::any_of(it.parts.begin(), it.parts.end(),
+                                  [&](int i) { return !blows_[i].f.isZero(0) || !blows_[i].n.isZero(0); });
+  const AngularVec<D> missing =
+      inertia_times<D>(it.body.inertia, it.at.room_from_body,
+                       AngularVec<D>(it.at.w - it.before - rates.dw - it.h * rates.alpha));
+  for (const int part : held) {
+    if (struck) {
+      blows_[part].n += missing / double(held.size());
+    } else {
+      steady_[part].n += missing / (it.h * double(held.size()));
+    }
+  }
 }
 
 // all parts that are not fixed, but for one if the body is free: its equation follows from the others

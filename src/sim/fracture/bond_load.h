@@ -19,8 +19,10 @@ class BondLoads {
   BondLoads(const Model<D>& model, const std::vector<Path<D>>& paths);
 
   /// Breaks the bonds of `state` that are loaded beyond their strength: clears their `intact`. `whole`: the
-  /// model of the bonded bodies; `body`: for each part, its body there. Returns whether any broke.
-  bool snap(State<D>& state, const Model<D>& whole, const std::vector<int>& body, double t);
+  /// model of the bonded bodies; `body`: for each part, its body there; `before`: the bodies as the step of h
+  /// s began, which ends at t. Returns whether any broke.
+  bool snap(State<D>& state, const Model<D>& whole, const std::vector<int>& body,
+            const std::vector<AngularVec<D>>& before, double t, double h);
 
   /// The load of bond `bond` when last looked for, N: the root of |f|^2 + |tau|^2 / l^2, f the force through
   /// it and tau the torque about its point, midway between the two centres, l half their distance.
@@ -32,6 +34,8 @@ class BondLoads {
     const Body<D>& body;
     BodyMotion<D> at;
     const std::vector<int>&parts, &bonds;
+    AngularVec<D> before;  // its spin as the step of h s began
+    double h;
 
     // equations of a part
     int rows() const { return body.turns() ? D + kAngular<D> : D; }
@@ -61,6 +65,7 @@ class BondLoads {
   void push(const State<D>& state, double t);
   bool snap(State<D>& state, const Composite& it);
   Rates accelerate(const State<D>& state, const Composite& it) const;
+  void add_couples(const State<D>& state, const Composite& it);
   Unknown number_parts(const Composite& it) const;
   Required required(const State<D>& state, const Composite& it, const Rates& rates,
                     const Unknown& parts) const;

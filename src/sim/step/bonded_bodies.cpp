@@ -362,10 +362,14 @@ bool BondedBodies<D>::fits(const State<D>& state) {
 template <int D>
 std::optional<Trouble> BondedBodies<D>::step(State<D>& state) {
   gather(state);
+  std::vector<AngularVec<D>> spins;
+  for (int i = 0; i < int(whole_.model.bodies.size()); ++i)
+    spins.push_back(body_motion(state.bonded[0], i).w);
   auto trouble = stepper_->step(state.bonded[0]);
   tell(state);
   if (trouble) return trouble;
-  if (loads_.snap(state, whole_.model, whole_.body, time({state.step, 0}, model_.rate))) split(state);
+  const double t = time({state.step, 0}, model_.rate), h = 1 / value(model_.rate);
+  if (loads_.snap(state, whole_.model, whole_.body, spins, t, h)) split(state);
   return {};
 }
 

@@ -16,6 +16,7 @@
 #include "sim/math/limits.h"
 #include "sim/model/body_spin.h"
 #include "sim/motion/free_motion.h"
+#include "sim/motion/stability.h"
 #include "sim/step/archive.h"
 #include "sim/step/bonded_bodies.h"
 #include "sim/step/contact_step.h"
@@ -54,7 +55,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       work_(model),
       forces_(model),
       forced_flight_(model, forces_.flying()),
-      springs_(!model.springs.empty() || !model.mice.empty()) {
+      springs_(!model.springs.empty() || !model.mice.empty() || !stability_warnings(model).empty()) {
   for (const Joint<D>& joint : model.joints) springs_ = springs_ || joint.coil.has_value();
   // so do bodies that are moved, and a potential that changes with the time
   for (const Body<D>& body : model.bodies) springs_ = springs_ && !body.carries();

@@ -120,7 +120,7 @@ class Stepper {
   std::vector<int> by_handout_;  // bodies with that law in `contact` and `event` too
   Stages stages_;
   std::int64_t watch_every_ = 1;  // steps
-  bool springs_ = false;          // something may ever tie
+  bool springs_ = false;          // something may ever feed it
 };
 
 }  // namespace obscura::sim
