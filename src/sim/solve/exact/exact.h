@@ -65,6 +65,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     // of a sliding contact: the direction of its slip at the start of the interval, room's frame
     Vec<D> slip = Vec<D>::Zero();
     bool slow = false;  // that direction is kept through the interval
+    double taken = 0;   // how much of its slip friction takes away until the step ends, m/s
     double rubs = 0;    // of friction on a wire: the sign of the motion that it is against
   };
 

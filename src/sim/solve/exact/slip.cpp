@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "sim/solve/exact/exact.h"
 
@@ -22,6 +23,7 @@ constexpr double kSlowSlip =
 // four vertices, the directions take a thousand iterations.
 constexpr double kEnough = 1e-7;
 constexpr int kSlipPatience = 300;
+constexpr double kStops = 1e-5;  // of what friction takes away from the slip in a step: no slip
 
 }  // namespace
 
@@ -42,8 +44,8 @@ void ExactSolver<D>::begin_slip_directions(State<D>& state, double t, double h) 
       constraint.slip += interval_.modes[constraint.block].along[i] * row.along;
       most = std::max(most, self_coupling(constraint.first + 1 + i));
     }
-    const double taken = blocks_[constraint.block].mu * f_[constraint.first] * most * h;
-    constraint.slow = std::sqrt(slip.squaredNorm()) < kSlowSlip * taken;
+    constraint.taken = blocks_[constraint.block].mu * f_[constraint.first] * most * h;
+    constraint.slow = std::sqrt(slip.squaredNorm()) < kSlowSlip * constraint.taken;
     any = any || constraint.slow;
   }
   if (any) aim_slow_slips(state, t, h);
@@ -62,14 +64,21 @@ void ExactSolver<D>::aim_slow_slips(State<D>& state, double t, double h) {
   const int patience = std::exchange(cone_.patience, kSlipPatience);
   if (!solve()) solve_roughly();
   cone_.enough = enough, cone_.patience = patience;
+  std::vector<double> ends(rate.begin(), rate.end());
+  for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i] / h, ends);
   for (Constraint& constraint : constraints_) {
-    // one that sticks at the end of the step stops within it: until then it slips on as it does
-    if (!constraint.slow || modes_[constraint.block].kind != ModeKind::slide) continue;
-    Vec<D> drag = Vec<D>::Zero();
-    for (int i = 0; i < D - 1; ++i)
-      drag += f_[constraint.first + 1 + i] * rows_[constraint.first + 1 + i].along;
-    const double size = std::sqrt(drag.squaredNorm());
-    if (size > 0) constraint.slip = -drag / size;
+    if (!constraint.slow) continue;
+    // One that has no slip at the end of the step stops within it: until then it slips on as it does. Slips
+    // tell, and which way: the friction of several corners of a body is not determined.
+    Tangent<D> slip;
+    for (int i = 0; i < D - 1; ++i) {
+      const int row = constraint.first + 1 + i;
+      slip[i] = row_velocity(row) + h * (row_acceleration(row, ends) + rows_[row].velocity_product);
+    }
+    const double fast = std::sqrt(slip.squaredNorm());
+    if (fast <= kStops * constraint.taken) continue;
+    constraint.slip.setZero();
+    for (int i = 0; i < D - 1; ++i) constraint.slip += slip[i] / fast * rows_[constraint.first + 1 + i].along;
   }
   blocks_.swap(scratch_.blocks), modes_.swap(scratch_.modes), f_.swap(scratch_.f);
   turn_slip_directions();
