@@ -137,9 +137,9 @@ TEST(Ropes, SagByTheirLengthAndAreStraightWhereTaut) {
   EXPECT_GT(list.nodes[middle].at.y(), made.depictor().view(0).page({3.5, 2.5, 0}).y() + 0.2 * scale);
 }
 
-/// What hangs in the open hangs from a piece of ceiling; not at a wall or at a body that is held fast, not
-/// without gravity, and not what stands on it.
-TEST(Brackets, AreOverWhatHangsFromNothing) {
+/// What hangs in the open hangs from a piece of ceiling; not at a wall or at a body that is held fast, and
+/// not without gravity.
+TEST(Brackets, AreWhereSomethingIsMadeFastInTheOpen) {
   const auto strokes = [](double y, double gravity, bool held, double anchor) {
     Made made = room(8, 4.5);
     made.cast.gravity = {0, gravity, 0};
@@ -152,7 +152,49 @@ TEST(Brackets, AreOverWhatHangsFromNothing) {
   EXPECT_EQ(strokes(2, 0, false, 3), 1u);
   EXPECT_EQ(strokes(2, -9.81, true, 3), 1u);
   EXPECT_EQ(strokes(2, -9.81, false, 4.5), 1u);
-  EXPECT_EQ(strokes(4, -9.81, false, 3), 1u);
+}
+
+/// A bracket is where the run began with it, wherever what it holds swings: over it, under what stood on it,
+/// and beside a spring that lay.
+TEST(Brackets, StayOnOneSideThroughARun) {
+  const Vec3 anchor(3, 3, 0);
+  // the middle of its hatching from the anchor, in page units, y up
+  const auto side = [&](const Vec3& start, const Vec3& now, bool spring) {
+    Made made = room(8, 4.5);
+    made.cast.gravity = {0, -9.81, 0};
+    const int ball = made.body(ShapeKind::ball, anchor + now, 0.1);
+    if (spring) {
+      made.spring(-1, ball, anchor, anchor + now, 0.5);
+      made.cast.springs.back().start = start;
+    } else {
+      joint(made, JointKind::rod, -1, ball, anchor, anchor + now, start.norm());
+      made.cast.joints.back().start = start;
+    }
+    const Picture picture = made.picture();
+    const Point at = made.depictor().view(0).page(anchor);
+    Point sum(0, 0);
+    int count = 0;
+    for (const Stroke& stroke : picture.moving.strokes) {
+      if (stroke.end - stroke.begin != 2) continue;
+      const Point middle = (picture.moving.nodes[std::size_t(stroke.begin)].at +
+                            picture.moving.nodes[std::size_t(stroke.begin) + 1].at) /
+                               2 -
+                           at;
+      // the rod itself, and the bracket's own line, which is through the anchor
+      if (middle.norm() > 40 || middle.norm() < 1e-6) continue;
+      sum += Point(middle.x(), -middle.y()), ++count;
+    }
+    EXPECT_GT(count, 2);
+    return count > 0 ? Point(sum / count) : sum;
+  };
+  for (const double turn : {-90., -20., 20., 90., 150.}) {
+    const Vec3 now(std::cos(turn * std::numbers::pi / 180), std::sin(turn * std::numbers::pi / 180), 0);
+    EXPECT_GT(side({0, -1, 0}, now, false).y(), 3) << turn;
+    EXPECT_GT(side({0.9, 0.4, 0}, now, false).y(), 3) << turn;
+    EXPECT_LT(side({0, 1, 0}, now, false).y(), -3) << turn;
+    EXPECT_LT(side({1, 0, 0}, now, true).x(), -3) << turn;
+    EXPECT_GT(side({-1, 0, 0}, now, true).x(), 3) << turn;
+  }
 }
 
 TEST(Joints, ThatBrokeAreGone) {

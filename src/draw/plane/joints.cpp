@@ -79,22 +79,30 @@ bool held_there(const Stage& stage, const View& view, const sim::Snapshot& now, 
   return false;
 }
 
-/// A piece of ceiling over a place of the room from which something hangs; none near a wall. It goes where
-/// what it holds swings up to its height, for it does not hang then.
+/// On which side of a place of the room it is made fast what is held there, `start` (m) from it at the start:
+/// from above, but what stands on it from below, and a spring that lies from its side. A whole run has it on
+/// one side, wherever what is held swings.
+Point made_fast(const Stage& stage, const Vec3& start, bool spring) {
+  const Point up = Point(-stage.cast.gravity.x(), stage.cast.gravity.y()).normalized(),
+              along(-up.y(), up.x()), way(start.x(), -start.y());
+  const double rises = way.dot(up), reach = way.dot(along);
+  if (rises > std::abs(reach)) return -up;
+  if (spring && std::abs(reach) > std::abs(rises)) return reach > 0 ? Point(-along) : along;
+  return up;
+}
+
+/// A piece of ceiling, floor or wall at a place of the room where something is made fast, `out` into it; none
+/// near a wall.
 void draw_bracket(const Stage& stage, const View& view, const sim::Snapshot& now,
-                  const std::vector<HalfPlane>& walls, const Point& at, const Point& other,
+                  const std::vector<HalfPlane>& walls, const Point& at, const Point& out,
                   std::vector<Point>& hatched, List& list) {
   const double weight = stage.layout.weight;
-  const Point up = Point(-stage.cast.gravity.x(), stage.cast.gravity.y()).normalized(),
-              along(-up.y(), up.x());
-  const double hangs = -(other - at).normalized().dot(up);
-  const double strength = std::clamp(hangs / 0.5, 0.0, 1.0);
-  if (!(strength > 0) || outside(view.window, at, 2 * kBracket * weight)) return;
+  const Point along(-out.y(), out.x());
+  if (outside(view.window, at, 2 * kBracket * weight)) return;
   for (const HalfPlane& wall : walls)
     if ((at - wall.point).dot(wall.normal) < kNearWall * weight) return;
   if (held_there(stage, view, now, at)) return;
-  Color color = stage.colours.wall, hatch = stage.colours.hatch;
-  color.a = hatch.a = std::uint8_t(std::lround(255 * strength));
+  const Color color = stage.colours.wall, hatch = stage.colours.hatch;
   const double half = kBracket * weight, high = kHatchHigh * weight;
   // brackets beside each other have their hatching in common: its lines are at fixed places
   const double step = 0.7 * kHatchStep * weight, own = (at - view.origin).dot(along);
@@ -105,7 +113,7 @@ void draw_bracket(const Stage& stage, const View& view, const sim::Snapshot& now
     if (std::any_of(hatched.begin(), hatched.end(), drawn)) continue;
     hatched.push_back(foot);
     const double width = kHatchLine * weight;
-    list.add({{foot, width, hatch}, {home + (x + high) * along + high * up, width, hatch}}, Cap::butt);
+    list.add({{foot, width, hatch}, {home + (x + high) * along + high * out, width, hatch}}, Cap::butt);
   }
   const double line = kWallLine * weight;
   list.add({{at - half * along, line, color}, {at + half * along, line, color}}, Cap::butt);
@@ -161,16 +169,18 @@ void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& no
   std::vector<Point> hatched;
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = stage.cast.springs[i];
-    const Point a = view.page(now.springs[i].a), b = view.page(now.springs[i].b);
-    if (spring.a < 0 && spring.b >= 0) draw_bracket(stage, view, now, walls, a, b, hatched, list);
-    if (spring.b < 0 && spring.a >= 0) draw_bracket(stage, view, now, walls, b, a, hatched, list);
+    if ((spring.a < 0) == (spring.b < 0)) continue;
+    const bool first = spring.a < 0;
+    draw_bracket(stage, view, now, walls, view.page(first ? now.springs[i].a : now.springs[i].b),
+                 made_fast(stage, first ? spring.start : Vec3(-spring.start), true), hatched, list);
   }
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     if (!spans(joint_look(joint.kind).plane) || now.joints[i].broken) continue;
-    const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
-    if (joint.a < 0 && joint.b >= 0) draw_bracket(stage, view, now, walls, a, b, hatched, list);
-    if (joint.b < 0 && joint.a >= 0) draw_bracket(stage, view, now, walls, b, a, hatched, list);
+    if ((joint.a < 0) == (joint.b < 0)) continue;
+    const bool first = joint.a < 0;
+    draw_bracket(stage, view, now, walls, view.page(first ? now.joints[i].a : now.joints[i].b),
+                 made_fast(stage, first ? joint.start : Vec3(-joint.start), false), hatched, list);
   }
 }
 

@@ -80,7 +80,7 @@ void offer(const Point& tail, Point tip, const Rect& window, double weight, std:
 /// Halos of all below all arrows.
 void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list);
 
-/// Pieces of ceiling over places of the room from which springs, rods and ropes hang.
+/// Pieces of ceiling, floor or wall at places of the room where springs, rods and ropes are made fast.
 void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 /// The same, each in its own colour.

@@ -47,7 +47,7 @@ class PlaybackOf final : public RunWithoutSteps {
     stepper_.begin(state_);
     // the script's first actions are not part of this run
     for (Grip<D>& grip : state_.grips) grip = {};
-    cast_ = sim::cast(model_, stepper_.paths());
+    cast_ = sim::cast(model_, state_, stepper_.paths());
   }
 
   const SceneInfo& scene_info() const override { return cast_; }

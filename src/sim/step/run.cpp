@@ -25,13 +25,13 @@ class RunOf final : public Run {
   RunOf(World<D> world, std::optional<State<D>> saved)
       : model_(std::move(world.model)), state_(std::move(world.state)) {
     stepper_.emplace(model_);
+    cast_ = sim::cast(model_, state_, stepper_->paths());
     sound_ = !saved || stepper_->fits(*saved);
     if (saved)
       state_ = std::move(*saved);
     else
       stepper_->begin(state_);
     for (const Force<D>& force : model_.forces) called_ = called_ || force.law == Force<D>::Law::function;
-    cast_ = sim::cast(model_, stepper_->paths());
     stride_ = std::max<std::int64_t>(1, std::llround(value(model_.rate) / kTrackRate));
   }
 

@@ -158,8 +158,11 @@ double friction(const SceneInfo& cast, const Snapshot::Contact& contact) {
 }
 
 template <int D>
-SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
+SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<Path<D>>& paths) {
   SceneInfo cast;
+  const auto way = [&](const End<D>& a, const End<D>& b) {
+    return to_3d<D>(place(start, b) - place(start, a));
+  };
   cast.dimension = D;
   cast.scale = model.scale;
   cast.gravity = to_3d<D>(model.gravity);
@@ -187,9 +190,10 @@ SceneInfo cast(const Model<D>& model, const std::vector<Path<D>>& paths) {
   for (const Joint<D>& joint : model.joints)
     if (joint.curve) add_curve(joint.name, joint.b.body, *joint.curve);
   for (const Spring<D>& s : model.springs)
-    cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness});
+    cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness, way(s.a, s.b)});
   for (const Joint<D>& j : model.joints) {
     cast.joints.push_back({j.name, j.kind, j.a.body, j.b.body, j.length, to_3d<D>(j.axis), j.lower, j.upper});
+    cast.joints.back().start = way(j.a, j.b);
     if (!equations<D>(j.kind).mechanism) continue;
     SceneInfo::Joint& it = cast.joints.back();
     const auto add = [&](const End<D>& end) { it.places.push_back({end.body, to_3d<D>(end.local)}); };
@@ -292,9 +296,9 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
   return now;
 }
 
-template SceneInfo cast<2>(const Model<2>&, const std::vector<Path<2>>&);
+template SceneInfo cast<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&);
 template Snapshot snapshot<2>(const Model<2>&, const State<2>&, const Stepper<2>&, TimeStamp, double);
-template SceneInfo cast<3>(const Model<3>&, const std::vector<Path<3>>&);
+template SceneInfo cast<3>(const Model<3>&, const State<3>&, const std::vector<Path<3>>&);
 template Snapshot snapshot<3>(const Model<3>&, const State<3>&, const Stepper<3>&, TimeStamp, double);
 
 }  // namespace obscura::sim
