@@ -58,5 +58,14 @@ TEST(Color, MixingRunsFromOneToTheOther) {
   EXPECT_EQ(mix(a, b, 0.5), (Color{15, 150, 128, 128}));
 }
 
+/// WCAG's own examples: black on white, and the lightest grey that may carry text on white.
+TEST(Color, ContrastIsThatOfWcag) {
+  const Color white{255, 255, 255}, black{0, 0, 0}, grey{0x76, 0x76, 0x76};
+  EXPECT_NEAR(contrast(black, white), 21, 1e-9);
+  EXPECT_NEAR(contrast(grey, white), 4.54, 0.005);
+  EXPECT_EQ(contrast(white, grey), contrast(grey, white));
+  EXPECT_EQ(contrast(grey, grey), 1);
+}
+
 }  // namespace
 }  // namespace obscura::draw

@@ -46,7 +46,8 @@ TEST(Trails, EndAtTheBodyAndUnderIt) {
   EXPECT_EQ(list.batches[1].kind, Kind::disc);
 }
 
-TEST(Trails, TaperAndFadeIntoTheRoom) {
+/// LOOK: never paler than 15 % of the ink. Contrast as in WCAG 2: (a + 0.05) / (b + 0.05).
+TEST(Trails, TaperAndFadeButAreSeenToTheirEnds) {
   for (Theme theme : {Theme::paper, Theme::screen}) {
     Made made = with_trail();
     made.look.theme = theme;
@@ -54,8 +55,16 @@ TEST(Trails, TaperAndFadeIntoTheRoom) {
     const std::vector<Node>& nodes = picture.moving.nodes;
     for (std::size_t i = 1; i < nodes.size(); ++i) EXPECT_GE(nodes[i].width, nodes[i - 1].width - 1e-12);
     EXPECT_LT(nodes.front().width, 0.3 * nodes.back().width);
-    EXPECT_EQ(nodes.front().color,
-              theme == Theme::paper ? (Color{255, 255, 255}) : (Color{0x13, 0x1A, 0x21}));
+    const Palette colours = palette(theme);
+    for (const char* name : {"orange", "sky", "green", "blue", "purple", "yellow", "grey"}) {
+      made.look.bodies[0].color = *color(name);
+      const Picture own = made.picture();
+      const double old = contrast(own.moving.nodes.front().color, colours.room),
+                   now = contrast(own.moving.nodes[std::size_t(own.moving.strokes.back().end) - 1].color,
+                                  colours.room);
+      EXPECT_GE(old, contrast(mix(colours.room, colours.ink, 0.15), colours.room)) << name;
+      EXPECT_GT(now, 1.05 * old) << name;
+    }
     for (const Stroke& stroke : picture.moving.strokes) {
       EXPECT_EQ(stroke.blend, theme == Theme::paper ? Blend::darken : Blend::lighten);
     }

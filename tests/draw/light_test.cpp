@@ -12,19 +12,6 @@
 namespace obscura::draw {
 namespace {
 
-double luminance(Color c) {
-  const auto linear = [](std::uint8_t level) {
-    const double x = level / 255.0;
-    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
-  };
-  return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
-}
-
-double contrast(Color a, Color b) {
-  const double x = luminance(a) + 0.05, y = luminance(b) + 0.05;
-  return std::max(x, y) / std::min(x, y);
-}
-
 /// Two upright faces of a box that both look away from the light: 1.15:1 at least, 1.3:1 on the average, in
 /// the light and in the shadow, for the colours that bodies take in turn, on paper and on the screen.
 TEST(Light, FacesThatLookAwayFromItDiffer) {

@@ -11,6 +11,7 @@
 #include "draw/compose/depict.h"
 #include "draw/picture/solids.h"
 #include "draw/space/camera.h"
+#include "draw/space/outmost_places.h"
 #include "draw/space/space.h"
 
 namespace obscura::draw {
@@ -216,7 +217,8 @@ TEST(Camera, ShowsItsHeightInAnyWindow) {
 /// What a run reaches is in the picture of a camera that fits it.
 TEST(Camera, FitsWhatARunReaches) {
   BoxesInSpace made;
-  made.cameras[0].bounds = Extent{{-7, 0, -3}, {5, 2, 9}};
+  for (int i = 0; i < 8; ++i)
+    made.cameras[0].reached.push_back({i & 1 ? 5.0 : -7.0, i & 2 ? 2.0 : 0.0, i & 4 ? 9.0 : -3.0});
   const CameraProjection lens = made.artist().lens(made.now);
   double outmost = 0;
   for (int i = 0; i < 8; ++i) {
@@ -224,7 +226,75 @@ TEST(Camera, FitsWhatARunReaches) {
     EXPECT_TRUE(p.x() > 0 && p.x() < 1920 && p.y() > 0 && p.y() < 1080) << p.transpose();
     outmost = std::max({outmost, std::abs(p.x() / 960 - 1), std::abs(p.y() / 540 - 1)});
   }
-  EXPECT_GT(outmost, 0.6);
+  EXPECT_GT(outmost, 0.8);
+}
+
+/// The outmost places of a run are those of its bodies' own forms: of a long box that stands aslant not of a
+/// ball around it, of a ball not of a box.
+TEST(OutmostPlaces, AreOfTheBodiesOwnForms) {
+  BoxesInSpace made;
+  made.box({1, 2, 3}, {2, 0.1, 0.1});
+  sim::SceneInfo::Body ball;
+  ball.kind = sim::ShapeKind::ball, ball.radius = 0.5;
+  made.cast.bodies.push_back(ball);
+  made.now.bodies.emplace_back().position = {-1, 0, 0};
+  made.now.bodies[0].orientation = Eigen::AngleAxisd(0.5, Vec3::UnitZ());
+  OutmostPlaces reach, both;
+  reach.add(made.cast, made.now);
+  made.now.bodies[1].position = {-3, 0, 0};
+  both.add(reach), both.add(made.cast, made.now);
+  const auto low_high = [](const OutmostPlaces& it) {
+    Vec3 low = Vec3::Constant(1e300), high = -low;
+    for (const Vec3& at : it.places()) low = low.cwiseMin(at), high = high.cwiseMax(at);
+    return std::pair(low, high);
+  };
+  const double x = 2 * std::cos(0.5) + 0.1 * std::sin(0.5), y = 2 * std::sin(0.5) + 0.1 * std::cos(0.5);
+  const auto [low, high] = low_high(reach);
+  EXPECT_NEAR((low - Vec3(-1.5, -0.5, -0.5)).norm(), 0, 1e-12) << low.transpose();
+  EXPECT_NEAR((high - Vec3(1 + x, 2 + y, 3.1)).norm(), 0, 1e-12) << high.transpose();
+  EXPECT_NEAR(low_high(both).first.x(), -3.5, 1e-12);
+  EXPECT_NEAR(low_high(both).second.x(), 1 + x, 1e-12);
+  EXPECT_TRUE(OutmostPlaces().places().empty());
+}
+
+/// A joint lies within the limbs that it holds together: it does not stick out of them.
+TEST(Joints, OfSlenderLimbsAreWithinThem) {
+  for (const double radius : {0.01, 0.5}) {
+    BoxesInSpace made;
+    for (const double side : {-1.0, 1.0}) {
+      made.box({side, 1, 0}, {1, radius, radius});
+      made.cast.bodies.back().kind = sim::ShapeKind::capsule;
+      made.cast.bodies.back().half = {0, 1 - radius, 0}, made.cast.bodies.back().radius = radius;
+    }
+    sim::SceneInfo::Joint joint;
+    joint.kind = sim::JointKind::pin, joint.a = 0, joint.b = 1;
+    made.cast.joints.push_back(joint);
+    made.now.joints.push_back({{0, 1, 0}, {0, 1, 0}});
+    const Picture picture = made.picture();
+    ASSERT_EQ(picture.solids[0]->balls.size(), 1u);
+    EXPECT_GT(picture.solids[0]->balls[0].radius, 0);
+    EXPECT_LT(picture.solids[0]->balls[0].radius, 0.75 * radius);
+  }
+}
+
+/// Between two panels there is a line, and none at the edges of the page.
+TEST(Panels, HaveALineBetweenThem) {
+  BoxesInSpace made;
+  const auto lines = [&] {
+    const Picture picture = made.picture();
+    std::vector<double> at;
+    for (const Stroke& stroke : picture.still->strokes) {
+      const Node& a = picture.still->nodes[std::size_t(stroke.begin)];
+      const Node& b = picture.still->nodes[std::size_t(stroke.end) - 1];
+      if (a.at.x() == b.at.x() && std::abs(a.at.y() - b.at.y()) > 900) at.push_back(a.at.x());
+    }
+    return at;
+  };
+  made.look.ground = false;
+  EXPECT_TRUE(lines().empty());
+  made.cameras.push_back(side());
+  ASSERT_EQ(lines().size(), 1u);
+  EXPECT_NEAR(lines()[0], 960, 1e-9);
 }
 
 }  // namespace

@@ -42,6 +42,37 @@ std::pair<double, double> width_from(const Text& text) {
 
 constexpr Rect kRect{0, 0, 1000, 300};
 
+/// An exponent in the title of an axis is within the plot's rectangle.
+TEST(Plot, TitlesStayBelowItsUpperEdge) {
+  Plot plot = plot_of({1, 2});
+  plot.title = over_unit("\\omega", "rad/s");
+  for (const double point : {2.0, 4.0}) {
+    const PlotArea area = plot_area(plot, {0, 50, 1000, 300}, point);
+    List list;
+    draw_axes(plot, area, palette(Theme::paper), list);
+    double highest = 1e300;
+    for (const Text& text : list.texts)
+      for (const Span& span : text.spans)
+        highest = std::min(highest, text.at.y() - span.rise - 0.66 * span.size);  // digits' height
+    EXPECT_GE(highest, 50) << point;
+  }
+}
+
+/// A dot's halo keeps it off lines; on an axis it would eat the axis and the tick.
+TEST(Plot, ADotOnAnAxisHasNoHalo) {
+  Plot plot = plot_of({1, 2, 3});
+  const PlotArea area = plot_area(plot, kRect, 2);
+  const auto discs = [&](double along, double value) {
+    plot.dots = {{along, value, ""}};
+    List list;
+    draw_dots(plot, area, palette(Theme::paper), list);
+    return list.discs.size();
+  };
+  EXPECT_EQ(discs(1, 2), 2u);
+  EXPECT_EQ(discs(0, 2), 1u);
+  EXPECT_EQ(discs(1, area.low), 1u);
+}
+
 TEST(Plot, ItsAxisBeginsAtZeroWhereThatCostsLittleRoom) {
   const PlotArea high = plot_area(plot_of({2.2, 2.9, 2.4}), kRect, 2);
   EXPECT_GT(high.low, 2.1);

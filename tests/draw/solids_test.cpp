@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "draw/compose/annotate.h"
+#include "draw/compose/annotations.h"
 #include "draw/made.h"
+#include "draw/plane/stage.h"
 
 namespace obscura::draw {
 namespace {
@@ -253,6 +257,114 @@ TEST(Contacts, OneArrowForTwoThatTouchAtTheirCentreOfPressure) {
   const Point tip = picture.moving.points[picture.moving.polygons[1].begin];
   // three times the force on the left: a quarter of the way to the right
   EXPECT_NEAR((tip - made.depictor().view(0).page({2.9 + 0.1, 0.8, 0})).norm(), 0, kExact);
+}
+
+/// An arrow's halo takes nothing from a small disc, be it where it begins or where it ends; on a large one it
+/// keeps the arrow apart from the fill.
+TEST(Arrows, HaveNoHaloOnSmallDiscs) {
+  const double weight = 1;
+  const auto covered = [&](double tail_radius, double tip_radius) {
+    List list;
+    const std::vector<Disc> discs{{{100, 100}, tail_radius, 2.8, {}, {}},
+                                  {{400, 100}, tip_radius, 2.8, {}, {}}};
+    for (const Disc& disc : discs) list.add(disc);
+    const Color room{255, 255, 255}, ink{200, 80, 0};
+    draw_arrows({{{100, 100}, {395, 100}}}, weight, room, ink, list);
+    std::array<bool, 2> found{false, false};
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+      for (const Stroke& stroke : list.strokes) {
+        const Node &a = list.nodes[std::size_t(stroke.begin)], &b = list.nodes[std::size_t(stroke.end) - 1];
+        const bool within = std::min(a.at.x(), b.at.x()) < discs[i].center.x() + discs[i].radius - 0.5 &&
+                            std::max(a.at.x(), b.at.x()) > discs[i].center.x() - discs[i].radius + 0.5;
+        found[i] = found[i] || (a.color == room && within);
+      }
+      for (const Polygon& polygon : list.polygons)
+        for (int k = polygon.begin; k < polygon.end; ++k)
+          found[i] =
+              found[i] || (polygon.fill == room &&
+                           (list.points[std::size_t(k)] - discs[i].center).norm() < discs[i].radius - 0.5);
+    }
+    // the rest of its way has one
+    EXPECT_TRUE(std::any_of(list.strokes.begin(), list.strokes.end(), [&](const Stroke& stroke) {
+      return list.nodes[std::size_t(stroke.begin)].color == room;
+    }));
+    return found;
+  };
+  EXPECT_EQ(covered(14, 14), (std::array{false, false}));
+  EXPECT_EQ(covered(80, 14), (std::array{true, false}));
+  EXPECT_EQ(covered(14, 80), (std::array{false, true}));
+}
+
+/// Two arrows over each other on one line read as one with two heads: dots show where they begin; elsewhere
+/// there are none.
+TEST(Arrows, InLineShowWhereTheyBegin) {
+  const auto dots = [](const Vec3& second_tail, const Vec3& second) {
+    Made made = room(8, 4.5);
+    made.body(ShapeKind::box, {4, 2, 0}, 0.4);
+    Marks marks;
+    marks.vectors.push_back({.quantity = Quantity::position,
+                             .at = Site{-1, {4, 1.6, 0}},
+                             .to = Site{-1, {4, 2.6, 0}},
+                             .label = ""});
+    marks.vectors.push_back({.quantity = Quantity::position,
+                             .at = Site{-1, second_tail},
+                             .to = Site{-1, second_tail + second},
+                             .label = ""});
+    List list;
+    const Illustrator artist = made.depictor();
+    annotate(marks, {}, made.cast, artist.colours(), artist.projection(0, made.now), made.now, list);
+    return list.discs.size();
+  };
+  EXPECT_EQ(dots({4, 2, 0}, {0, -1, 0}), 2u) << "over each other";
+  EXPECT_EQ(dots({4, 2, 0}, {0, 1, 0}), 2u) << "one after another";
+  EXPECT_EQ(dots({4, 1.6, 0}, {0, -1, 0}), 0u) << "from one place";
+  EXPECT_EQ(dots({4, 2, 0}, {0.5, -1, 0}), 0u) << "aslant";
+  EXPECT_EQ(dots({4.5, 2, 0}, {0, -1, 0}), 0u) << "beside each other";
+  EXPECT_EQ(dots({4, 3, 0}, {0, 1, 0}), 0u) << "apart";
+}
+
+/// The arrows of a film end below the ceiling, over which its title stands, where that costs less than two
+/// fifths of their length.
+TEST(Arrows, OfFilmsEndBelowTheTitle) {
+  const auto scale = [](double height) {
+    Made made = room(8, 4.5);
+    made.body(ShapeKind::ball, {4, height, 0}, 0.1);
+    made.now.bodies[0].velocity = {0, 2, 0};
+    Marks marks;
+    marks.vectors.push_back({.quantity = Quantity::velocity, .body = 0, .label = ""});
+    RunAhead ahead;
+    ahead.samples.push_back({made.now, 0});
+    const Illustrator artist = made.depictor();
+    const Annotations all(marks, artist, std::move(ahead), {}, 60, 1080);
+    return std::pair(all.scales().velocity, (4.5 - height) / 2);
+  };
+  const double free = scale(1).first;
+  EXPECT_GT(free, 0.5);
+  const auto [near, reaches] = scale(4.5 - 1.6 * free);
+  EXPECT_NEAR(near, reaches, 1e-9);
+  EXPECT_EQ(scale(4.4).first, free) << "its head is at the edge";
+}
+
+/// Numbers of a ruler are all there and on the page; its name takes the place of none.
+TEST(Rulers, HaveAllTheirNumbersAndTheirNameBelow) {
+  Made made = room(8, 4.5);
+  made.cast.walls.clear();
+  const Sheet sheet{.region = Extent{{0, 0, 0}, {6, 3, 0}}, .below = kRulerBelow, .left = kRulerLeft};
+  const Illustrator artist(made.cast, made.look, made.extent, sheet);
+  List list;
+  draw_rulers(artist.layout(), artist.view(0), artist.colours(), list);
+  double numbers = 0, name = 0;
+  for (const Text& text : list.texts) {
+    std::string said;
+    for (const Span& span : text.spans) said += span.text;
+    if (said == "6" && text.at.y() > artist.layout().window.y + artist.layout().window.height)
+      numbers = text.at.y();
+    if (said.find('x') != std::string::npos) name = text.at.y();
+    EXPECT_LT(text.at.x(), artist.layout().width);
+  }
+  EXPECT_GT(numbers, 0) << "the last one is there";
+  EXPECT_GT(name, numbers + 6 * kPoint);
+  EXPECT_LT(name, artist.layout().height);
 }
 
 TEST(Contacts, TheScaleSuitsTheWeights) {

@@ -80,6 +80,18 @@ TEST(Springs, PressedTurnsDoNotRunTogether) {
   EXPECT_LE(amplitude(form, 4, 1), 2);
 }
 
+/// Flanks that are nearly parallel make a patch with a moire in it: a spring that is pressed to a tenth is
+/// narrow instead.
+TEST(Springs, FlanksAreNeverSteeperThanTwoPitches) {
+  for (const double rest : {100.0, 300.0, 900.0}) {
+    const Coil form = coil(rest, 1);
+    for (const double part : {0.05, 0.1, 0.2, 0.4, 1.0}) {
+      const double length = part * rest, pitch = length / form.turns;
+      EXPECT_LE(across(coil_line(form, {0, 0}, {length, 0}, 1)), 2 * pitch + 1e-9) << rest << " " << part;
+    }
+  }
+}
+
 TEST(Springs, LeadsAreStraight) {
   const std::vector<Point> line = coil_line(coil(300, 1), {0, 0}, {300, 0}, 1);
   for (const Point& p : line) {

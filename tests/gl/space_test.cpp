@@ -298,7 +298,7 @@ TEST(Space, TheSameBytesTwiceAndFromBothBackEnds) {
 TEST(Space, CamerasBesideEachOtherKeepToTheirWindows) {
   Made made = everything();
   made.cameras = {draw::side(), draw::slant()};
-  Renderer renderer(320, 180);
+  Renderer renderer(960, 540);
   const media::Image both = drawn(renderer, made.picture());
   const draw::CameraProjection left = made.depictor().lens(made.now, 0),
                                right = made.depictor().lens(made.now, 1);
@@ -307,9 +307,15 @@ TEST(Space, CamerasBesideEachOtherKeepToTheirWindows) {
     const Color green = at(both, lens.page({0.6, 0.3, 0.5}));
     EXPECT_GT(like(green, *draw::color("green")), 0.7);
   }
-  const int gap = int((left.window.x + left.window.width + 11) * both.height / 1080);
-  for (int y = 0; y < both.height; ++y)
-    EXPECT_EQ(at(both, {gap * 1080.0 / both.height + 1, y * 6.0 + 3}), (Color{255, 255, 255}));
+  // between them there is the page, with a line in the middle
+  const double end = left.window.x + left.window.width, begin = right.window.x;
+  for (int y = 0; y < both.height; ++y) {
+    const double down = (y + 0.5) * 1080 / both.height;
+    EXPECT_EQ(at(both, {end + 5, down}), (Color{255, 255, 255}));
+    EXPECT_EQ(at(both, {begin - 5, down}), (Color{255, 255, 255}));
+    if (down < left.window.y + 3) continue;
+    EXPECT_LT(at(both, {(end + begin) / 2, down}).r, 220);
+  }
 }
 
 }  // namespace

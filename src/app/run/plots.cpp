@@ -14,6 +14,7 @@
 #include "draw/compose/annotations.h"
 #include "draw/page/measure.h"
 #include "draw/plane/stage.h"
+#include "draw/space/outmost_places.h"
 #include "scene/table.h"
 #include "sim/step/run.h"
 
@@ -50,6 +51,12 @@ std::vector<sim::Rational> beats(const scene::Scene& scene, sim::Rational rate) 
   for (std::int64_t k = 0; k <= steps; k += stride) times.push_back(sim::rational(k) / rate);
   if (times.back() < scene.duration) times.push_back(scene.duration);
   return times;
+}
+
+// whether a camera of it shows all that the run reaches
+bool fits_run(const scene::Scene& scene) {
+  return std::any_of(scene.cameras.begin(), scene.cameras.end(),
+                     [](const draw::Camera& camera) { return camera.fits_run; });
 }
 
 // the same scene with more set
@@ -191,31 +198,9 @@ struct Watched {
   std::vector<draw::Plot> plots;
   draw::RunAhead marks;
   sim::SceneInfo cast;
-  bool any = false;                    // an instant
-  std::optional<draw::Extent> bounds;  // where bodies went
+  bool any = false;           // an instant
+  draw::OutmostPlaces reach;  // of its bodies
 };
-
-draw::Extent together(const draw::Extent& a, const draw::Extent& b) {
-  return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
-}
-
-// around all bodies
-draw::Extent reached(const sim::SceneInfo& cast, const sim::Snapshot& now) {
-  draw::Extent all{sim::Vec3::Constant(1e300), sim::Vec3::Constant(-1e300)};
-  for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
-    const sim::SceneInfo::Body& body = cast.bodies[i];
-    if (body.bare) continue;
-    double reach = std::max(body.radius, body.half.norm());
-    for (const sim::Vec3& v : body.vertices) reach = std::max(reach, v.norm());
-    for (const auto& part : body.parts) {
-      reach = std::max(reach, part.center.norm() + part.radius + part.half.norm());
-      for (const sim::Vec3& v : part.vertices) reach = std::max(reach, part.center.norm() + v.norm());
-    }
-    const sim::Vec3 &at = now.bodies[i].position, around = sim::Vec3::Constant(reach);
-    all = together(all, {at - around, at + around});
-  }
-  return all;
-}
 
 Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
               const std::vector<sim::Rational>& times, const draw::Palette& colours) {
@@ -282,8 +267,7 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
       continue;
     }
     watched.any = true;
-    const draw::Extent here = reached(watched.cast, now);
-    watched.bounds = watched.bounds ? together(*watched.bounds, here) : here;
+    if (fits_run(scene)) watched.reach.add(watched.cast, now);
     for (std::size_t i = 0; i < wanted.size(); ++i)
       add(watched.cast, now, wanted[i], lines[i], watched.plots[i]);
     const double film = sim::value(scene.film.speed.film(t));
@@ -355,8 +339,7 @@ void annotate(const Ahead& page, const std::vector<Watched>& watched, std::vecto
 Ahead ahead(const scene::Scene& scene) {
   const std::vector<draw::Chart>& wanted = scene.film.charts;
   std::vector<Ahead::Run> runs = compared(scene);
-  const bool fitted = std::any_of(scene.cameras.begin(), scene.cameras.end(),
-                                  [](const draw::Camera& camera) { return camera.fits_run; });
+  const bool fitted = fits_run(scene);
   if (runs.empty() && wanted.empty() && scene.film.marks.empty() && !fitted) return {};
   draw::Palette colours = draw::palette(scene.look.theme);
   if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
@@ -370,8 +353,9 @@ Ahead ahead(const scene::Scene& scene) {
   if (!runs.empty() && needed) join_plots(runs, watched);
 
   Ahead all;
-  for (const Watched& each : watched)
-    if (fitted && each.bounds) all.bounds = all.bounds ? together(*all.bounds, *each.bounds) : each.bounds;
+  draw::OutmostPlaces reach;
+  for (const Watched& each : watched) reach.add(each.reach);
+  all.reached = reach.places();
   const double aspect = double(scene.film.width) / scene.film.height;
   if (!wanted.empty() && std::any_of(watched.begin(), watched.end(), [](const auto& w) { return w.any; })) {
     std::vector<sim::SceneInfo> casts;

@@ -38,7 +38,7 @@ draw::Illustrator depictor(const scene::Scene& scene, const Ahead& ahead) {
   const draw::Titles titles = draw::laid_out(scene.film.titles, aspect, scene.look.type_scale);
   std::vector<draw::Camera> cameras = scene.cameras;
   for (draw::Camera& camera : cameras)
-    if (camera.fits_run) camera.bounds = ahead.bounds;
+    if (camera.fits_run) camera.reached = ahead.reached;
   draw::Illustrator artist(run->scene_info(), scene.look, cameras, scene.extent, aspect,
                            ahead.charts.empty() ? draw::Charts(titles.foot) : ahead.charts);
   artist.annotate(ahead.annotations);

@@ -50,7 +50,7 @@ std::string hash_of_states(const std::vector<std::string>& hashes);
 /// What a film knows of its run before it begins: the axes of its charts, and all that its marks need.
 struct Ahead {
   draw::Charts charts{};
-  std::optional<draw::Extent> bounds{};  // where bodies go, where a camera fits them
+  std::vector<sim::Vec3> reached{};  // by bodies, where a camera fits them: the outmost places, m
   std::shared_ptr<const draw::Annotations> annotations{};
   /// Of a film of several runs (film.vary): each with its own.
   struct Run {

@@ -19,6 +19,8 @@ namespace {
 
 constexpr double kCone = 0.5;        // of the picture's shorter side: how long a friction cone is at most
 constexpr double kAxes = 0.36;       // of the picture's shorter side: axes in space
+constexpr double kAslant = 0.05;     // sine of an angle: nearer to each other two arrows are in line
+constexpr double kTail = 1.7;        // widths of an arrow: radius of the dot where it begins
 constexpr double kFull = 0.5;        // of an arrow's growth: from here on its words are as strong as others
 constexpr double kOutOfBall = 0.35;  // of a ball's radius: how far beyond it an arrow's words are as strong
 
@@ -51,10 +53,8 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   arrows[0].hang = hang_;
   arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);
   // those of a film are drawn together: few batches
-  if (film())
-    arrows_.push_back(arrows[0]), inks_.push_back(ink);
-  else
-    draw_arrows(arrows, arrow_, colours_.room, ink, list_);
+  if (!film()) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
+  arrows_.push_back(arrows[0]), inks_.push_back(ink);
   const Point end = film() ? arrows[0].tip : tip;
   placing_.avoid(tail, end, 4);
   // words come and go with a small arrow
@@ -62,6 +62,33 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   word(key, label, Placing::along(tail, end, 1.7 * gap_, size(label), point_, film()), (tail + end) / 2,
        std::pair(tail, end));
   return true;
+}
+
+// Arrows that lie over each other on one line read as one, with a head at either end: a dot shows where each
+// begins. It grows as they come into line, so that it does not flicker.
+void Notes::mark_tails() {
+  if (!view_.view()) return;
+  std::vector<double> strength(arrows_.size(), 0);
+  for (std::size_t i = 0; i < arrows_.size(); ++i) {
+    for (std::size_t j = 0; j < arrows_.size(); ++j) {
+      const Arrow &a = arrows_[i], &b = arrows_[j];
+      const Point along = a.tip - a.tail, other = b.tip - b.tail;
+      const double length = along.norm(), wide = kArrowLine * arrow_;
+      if (i == j || (a.tail - b.tail).norm() < wide) continue;
+      const Point u = along / length, across(-u.y(), u.x());
+      const double from = (b.tail - a.tail).dot(u), to = (b.tip - a.tail).dot(u);
+      const double shared = std::min(std::max(from, to), length) - std::max(std::min(from, to), 0.0);
+      const double aslant = std::abs(other.normalized().dot(across)) / kAslant,
+                   off = std::abs((b.tail - a.tail).dot(across)) / wide;
+      const double here = std::min(std::clamp(2 - std::max(aslant, off), 0.0, 1.0),
+                                   std::clamp(shared / (2 * wide) - 0.5, 0.0, 1.0));
+      strength[i] = std::max(strength[i], here);
+    }
+  }
+  for (std::size_t i = 0; i < arrows_.size(); ++i) {
+    const double radius = kTail * kArrowLine * arrow_ * strength[i];
+    if (radius > 0.5 * kArrowLine * arrow_) list_.add(Disc{arrows_[i].tail, radius, 0, inks_[i], inks_[i]});
+  }
 }
 
 void Notes::hang(const Vec3& a, const Vec3& b) {

@@ -21,11 +21,42 @@ constexpr double kChange = 14;                   // points: of a change of place
 constexpr double kWay = 0.12;                    // of each unit of its way
 constexpr double kSpeed = 1.7;                   // page units a frame that a label moves by itself
 constexpr double kQuickest = 0.3, kSlowest = 4;  // s: a change
+constexpr double kShortest = 0.6;                // of the length that an arrow would have
 constexpr double kPathError = 0.2;               // page units
 constexpr double kFaintest = 0.22;               // of a path's oldest end
 constexpr double kShared = 40;                   // points: of lying on another label
 constexpr double kOver = 8;                      // of each unit of its own arrow that it passes over
 constexpr double kTouches = 120;                 // page units: of touching it on the way
+
+// In the plane: shortens the arrows of a kind so that those of a film end below the room's ceiling, beyond
+// which the title stands. Of one that would have to be much shorter the head is at the edge.
+void keep_below_the_top(const Marks& marks, const sim::SceneInfo& cast,
+                        const std::vector<sim::Snapshot>& moments, const Illustrator& artist,
+                        Scales& scales) {
+  Scales part{1, 1, 1, 1, 1};
+  for (const sim::Snapshot& now : moments) {
+    const Projection view = artist.projection(0, now);
+    if (!view.view()) return;
+    // its ceiling on the page, or the page's upper edge
+    double top = view.window().y;
+    for (const sim::SceneInfo::Wall& wall : cast.walls)
+      if (wall.normal.y() < -0.99 * wall.normal.norm()) top = std::max(top, view.page(wall.point).y());
+    for (const Marks::Vector& vector : marks.vectors) {
+      const double* scale = scale_of(vector.quantity, scales);
+      double* least = scale_of(vector.quantity, part);
+      if (!scale) continue;
+      for (const Reading& reading : readings(vector, cast, now)) {
+        const double tail = view.page(reading.tail).y(),
+                     tip = view.page(reading.tail + *scale * reading.value).y();
+        if (const double fits = (tail - top) / (tail - tip); tail > top && tip < top && fits > kShortest)
+          *least = std::min(*least, fits);
+      }
+    }
+  }
+  for (const auto member :
+       {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
+    scales.*member *= part.*member;
+}
 
 double overlap(const Offered& a, int i, const Offered& b, int j) {
   const Point d = (a.places[std::size_t(i)].center - b.places[std::size_t(j)].center).cwiseAbs();
@@ -294,7 +325,8 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
   for (RunAhead::Sample& sample : ahead.samples) moments.push_back(std::move(sample.now));
   const Projection first = artist.projection(0, moments.front());
   const double scale = artist.scale(moments.front());
-  const Scales chosen = draw::scales(marks_, cast_, moments, first.window(), scale);
+  Scales chosen = draw::scales(marks_, cast_, moments, first.window(), scale);
+  keep_below_the_top(marks_, cast_, moments, artist, chosen);
   for (const auto member :
        {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
     if (scales_.*member == 0) scales_.*member = chosen.*member;

@@ -212,7 +212,8 @@ void Notes::avoid_areas() {
 }
 
 void Notes::finish() {
-  draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
+  if (film()) draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
+  mark_tails();
   for (const auto& [at, ink, hang] : dots_) {
     list_.hang(hang);
     list_.add(Disc{at, dot_radius_ + 0.6 * point_, 0, colours_.room, colours_.room});

@@ -29,6 +29,7 @@ class Notes {
   void finish();
 
  private:
+  void mark_tails();
   struct Word {
     WordKey key;
     Formula set;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "draw/compose/annotate.h"
@@ -13,7 +14,9 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kRulerType = 8.5 * kPoint, kTick = 2.5 * kPoint, kLine = 0.6 * kPoint;
-constexpr double kOff = 3 * kPoint;  // from the picture
+constexpr double kOff = 3 * kPoint;        // from the picture
+constexpr double kNameBelow = 9 * kPoint;  // the numbers
+constexpr double kInside = 1 * kPoint;     // of the page's edge
 constexpr double kFarNumbers = 26 * kPoint,
                  kNearNumbers = 18 * kPoint;  // between numbers beside and above each other
 
@@ -37,17 +40,19 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
         {align > 0.9   ? Align::right
          : align > 0.1 ? Align::center
                        : Align::left});
-    return f.width;
   };
   const auto number = [](double x) { return fmt::format("{:g}", std::abs(x) < 1e-9 ? 0.0 : x); };
 
   line({left, under}, {right, under});
   const double base = under + kTick + 7.5 * kPoint;
-  const double name = write("x / \"m\"", {right, base}, 1);
+  // the name in a line of its own: beside the numbers it would take the place of the last
+  write("x / \"m\"", {(left + right) / 2, base + kNameBelow}, 0.5);
+  const double page_left = w.x, page_right = w.x + w.width;
   for (const double x : ticks(x_low, x_high, int((right - left) / kFarNumbers))) {
     const double at = view.page({x, 0, 0}).x();
     line({at, under}, {at, under + kTick});
-    if (at < right - name - 6 * kPoint) write(number(x), {at, base}, 0.5);
+    const double half = formula(number(x), kRulerType, colours.ink).width / 2 + kInside;
+    write(number(x), {std::clamp(at, page_left + half, page_right - half), base}, 0.5);
   }
   line({beside, top}, {beside, bottom});
   write("y / \"m\"", {beside - kTick - 1.5 * kPoint, top + 0.5 * kRulerType}, 1);

@@ -285,7 +285,10 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
   names = std::max(names, formula(plot.name, kTypeSize * point, {}).width + 12 * point);
   area.left = rect.x + numbers + kTick * point + 3 * point;
   area.right = rect.x + rect.width - names;
-  area.top = rect.y + kAbove * point, area.bottom = rect.y + rect.height - kBelow * point;
+  // exponents and fractions of the title stay below the upper edge
+  const double high = formula(plot.title, kTypeSize * point, {}).ascent + 0.5 * point;
+  area.top = rect.y + std::max(kAbove * point, (kAbove - 7) * point + high),
+  area.bottom = rect.y + rect.height - kBelow * point;
 
   // the names at the right end; those of lines that leave the range stand where they do
   std::vector<double> ends;
@@ -378,7 +381,10 @@ void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, L
   const double unit = area.point;
   for (const Plot::Dot& dot : plot.dots) {
     const Point p = area.at(dot.along, dot.value);
-    list.add(Disc{p, (kDotRadius + 0.6) * unit, 0, colours.ground, colours.ground});
+    // a halo keeps it apart from lines; from an axis it would take a piece, and the tick
+    const double halo = (kDotRadius + 0.6) * unit;
+    if (p.x() - area.left > halo && area.bottom - p.y() > halo)
+      list.add(Disc{p, halo, 0, colours.ground, colours.ground});
     list.add(Disc{p, kDotRadius * unit, 0, colours.ink, colours.ink});
     // at the right end above it, where the line's name is beside it
     const bool last = p.x() > area.right - 10 * unit;

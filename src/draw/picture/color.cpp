@@ -1,5 +1,6 @@
 #include "draw/picture/color.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -72,6 +73,19 @@ std::optional<Color> color(std::string_view name) {
     rgb[i] = std::uint8_t(16 * high + low);
   }
   return Color{rgb[0], rgb[1], rgb[2]};
+}
+
+double luminance(Color c) {
+  const auto linear = [](std::uint8_t level) {
+    const double x = level / 255.0;
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
+}
+
+double contrast(Color a, Color b) {
+  const double x = luminance(a) + 0.05, y = luminance(b) + 0.05;
+  return std::max(x, y) / std::min(x, y);
 }
 
 }  // namespace obscura::draw

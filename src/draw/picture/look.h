@@ -79,9 +79,9 @@ struct Camera {
   double field = 0.5235987755982988;      // rad, of a perspective camera, over the longer side of its window
   double azimuth = 0.5235987755982988;    // rad: where no key says otherwise
   double elevation = 0.3839724354387525;  // rad
-  double orbit = 0;              // rad/s, added to the azimuth, about the vertical through the centre
-  bool fits_run = false;         // instead of the room: where bodies go in the whole run
-  std::optional<Extent> bounds;  // of that run, where it is known
+  double orbit = 0;                     // rad/s, added to the azimuth, about the vertical through the centre
+  bool fits_run = false;                // instead of the room: where bodies go in the whole run
+  std::vector<sim::Vec3> reached = {};  // by the bodies of that run, where it is known: the outmost places, m
 };
 
 /// The place that a camera keeps in the middle, m; none where it follows nothing.

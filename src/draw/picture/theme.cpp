@@ -1,7 +1,6 @@
 #include "draw/picture/theme.h"
 
 #include <array>
-#include <cmath>
 
 namespace obscura::draw {
 
@@ -9,14 +8,7 @@ namespace {
 
 constexpr Color kWhite{0xFF, 0xFF, 0xFF}, kBlack{0, 0, 0};
 constexpr double kFaint = 0.75;  // luminance: white is 1
-
-double luminance(Color c) {
-  const auto linear = [](std::uint8_t level) {
-    const double x = level / 255.0;
-    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
-  };
-  return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
-}
+constexpr double kFaintestInk = 0.15;
 
 }  // namespace
 
@@ -62,6 +54,14 @@ Paint paint(Color own, Theme theme) {
 void hush(Paint& paint, const Palette& colours) {
   for (Color* color : {&paint.fill, &paint.outline, &paint.axis, &paint.trail})
     *color = mix(*color, colours.room, kHushed);
+}
+
+Color faintest(Color strong, const Palette& colours) {
+  const double least = contrast(mix(colours.room, colours.ink, kFaintestInk), colours.room);
+  for (int percent = 5; percent < 100; percent += 5)
+    if (const Color c = mix(colours.room, strong, percent / 100.0); contrast(c, colours.room) >= least)
+      return c;
+  return strong;
 }
 
 Color turn(int index) {

@@ -8,7 +8,7 @@ namespace obscura::draw {
 /// The colours of a theme: two grounds, and inks from loud to quiet.
 struct Palette {
   Color ground;  // of the page
-  Color room;    // of the room's inside: what trails fade into and halos are made of
+  Color room;    // of the room's inside: what halos are made of
   Color ink;     // title, time, pointer
   Color wall;
   Color quiet;  // subtitle
@@ -42,6 +42,10 @@ Paint paint(Color color, Theme theme);
 /// Makes a grey body recede further: others are to be looked at. How far towards the room's colour.
 void hush(Paint& paint, const Palette& colours);
 inline constexpr double kHushed = 0.35;
+
+/// What a trail of this colour fades to: nearer to the room's colour than it, but by contrast as far from it
+/// as 15 % of the way to the ink is, or not faded at all.
+Color faintest(Color strong, const Palette& colours);
 
 /// The colours that bodies without one take in turn. Vermilion is left to forces.
 Color turn(int index);

@@ -13,6 +13,7 @@ constexpr double kHead = 24, kHeadHalf = 8.6, kNotch = 17;  // tip to barbs, hal
 constexpr double kHalo = 2.4;
 constexpr double kWhole = 1.5;  // heads long: from here on the head is full
 constexpr double kEdge = 8;     // page units from a window's edge to a head
+constexpr double kSmall = 40;   // radius: a halo would bite a good part out of a smaller disc
 
 /// The head, larger by `halo` all around.
 std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
@@ -21,6 +22,30 @@ std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
   const double tip = std::min(slant, 2.2 * halo), back = kHead * g + halo, side = kHeadHalf * g + halo;
   return {arrow.tip + u * tip, arrow.tip - u * back + v * side, arrow.tip - u * (kNotch * g + halo),
           arrow.tip - u * back - v * side};
+}
+
+/// Draws a halo of this width along a way, but not over small discs.
+void draw_halo(const Point& from, const Point& to, double width, Color room, const std::vector<Disc>& small,
+               List& list) {
+  const double length = (to - from).norm();
+  if (!(length > 0)) return;
+  const Point u = (to - from) / length;
+  std::vector<std::pair<double, double>> covered;  // from one place to another, along the way
+  for (const Disc& disc : small) {
+    const double middle = (disc.center - from).dot(u), off = (disc.center - from - middle * u).norm();
+    if (off >= disc.radius + width / 2) continue;
+    // also where only an edge of the halo is over it
+    const double reach = std::sqrt(disc.radius * disc.radius - std::pow(std::max(off - width / 2, 0.0), 2));
+    covered.emplace_back(middle - reach, middle + reach);
+  }
+  std::sort(covered.begin(), covered.end());
+  covered.emplace_back(length, length);
+  double at = 0;
+  for (const auto& [begin, end] : covered) {
+    if (const double next = std::min(begin, length); next > at + 1e-9)
+      list.add({{from + at * u, width, room}, {from + next * u, width, room}}, Cap::butt);
+    at = std::max(at, end);
+  }
 }
 
 }  // namespace
@@ -49,6 +74,10 @@ void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& ink
   const auto hang = [&](const Arrow& a) {
     if (hung) list.hang(a.hang);
   };
+  // what is small, round and has an outline keeps it
+  std::vector<Disc> small;
+  for (const Disc& disc : list.discs)
+    if (disc.radius < kSmall * weight && disc.line > 0) small.push_back(disc);
   auto shaft = [&](const Arrow& a, double halo, Color ink) {
     hang(a);
     const Point u = (a.tip - a.tail).normalized();
@@ -58,12 +87,22 @@ void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& ink
       const Point last = a.tail + a.bare * (a.tip - a.tail);
       if ((last - end).dot(u) < 0) end = last;
     }
-    list.add({{a.tail, width, ink}, {end, width, ink}}, Cap::butt);
+    if (halo > 0)
+      draw_halo(a.tail, end, width, ink, small, list);
+    else
+      list.add({{a.tail, width, ink}, {end, width, ink}}, Cap::butt);
+  };
+  const auto beside = [&](const Arrow& a) {
+    const Point u = (a.tip - a.tail).normalized();
+    return std::none_of(small.begin(), small.end(), [&](const Disc& disc) {
+      const double along = std::clamp((disc.center - a.tip).dot(-u), 0.0, kHead * weight * a.grow);
+      return (a.tip - along * u - disc.center).norm() < disc.radius + kHalo * weight;
+    });
   };
   for (const Arrow& a : arrows)
     if (a.bare > 0) shaft(a, kHalo * weight * a.grow, room);
   for (const Arrow& a : arrows)
-    if (a.bare > 1) hang(a), list.add(head(a, weight, kHalo * weight * a.grow), room);
+    if (a.bare > 1 && beside(a)) hang(a), list.add(head(a, weight, kHalo * weight * a.grow), room);
   for (std::size_t i = 0; i < arrows.size(); ++i) shaft(arrows[i], 0, inks[i]);
   for (std::size_t i = 0; i < arrows.size(); ++i)
     hang(arrows[i]), list.add(head(arrows[i], weight, 0), inks[i]);

@@ -2,7 +2,8 @@
 //   along  = (s - k sin(4 pi s) / 4 pi) / n        k < 1: round crests, steep flanks, never backwards
 //   across = A e(s) sin(2 pi s)                    e rises from 0 over the first turn's part, so leads join
 //   smoothly
-// At length l and rest length l0 the amplitude is A0 (l0 / l)^0.6, and at most half the length.
+// At length l and rest length l0 the amplitude is A0 (l0 / l)^0.6, and at most half the length, and twice the
+// way from one turn to the next: steeper flanks would be a grey patch.
 
 #include "draw/plane/springs.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kPitch = 20, kAmplitude = 13;  // at rest, page units
 constexpr double kCrest = 0.22;                 // k
+constexpr double kSteepest = 2;                 // amplitude over pitch
 constexpr double kRise = 0.62;                  // turns over which the amplitude rises
 constexpr int kNodes = 22;                      // a turn
 
@@ -46,7 +48,8 @@ Coil coil(double rest, double weight) {
 double amplitude(const Coil& coil, double length, double zoom) {
   const double stretch = std::max(length, 1e-9) / std::max(coil.rest * zoom, 1e-9);
   const double free = coil.amplitude * std::min(1.25, std::pow(stretch, -0.6));
-  return std::min(free * std::clamp(zoom, 0.25, 3.0), 0.5 * length);
+  const double pitch = length / std::max(coil.turns, 1);
+  return std::min({free * std::clamp(zoom, 0.25, 3.0), 0.5 * length, kSteepest * pitch});
 }
 
 double line_width(const Coil& coil, double length, double zoom) {

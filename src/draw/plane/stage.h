@@ -77,7 +77,8 @@ struct Arrow {
 /// An arrow, if it is large enough to be seen. One that begins in the window ends there.
 void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows);
 
-/// Halos of all below all arrows.
+/// Halos of all below all arrows, but not over small discs with an outline that are in
+/// the list.
 void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list);
 
 /// Pieces of ceiling, floor or wall at places of the room where springs, rods and ropes are made fast.

@@ -1,8 +1,8 @@
-// A trail of duration T: a body's way from t - T to t, at age a as wide as W (0.25 + 0.75 s) and as strong as
-// s^1.3, s = 1 - a / T. Its nodes are chosen on the physics clock, the first point of each T/240 and every
-// cusp, so that they do not wander from frame to frame; where a long trail bends between two of them, points
-// between are added until it is as round as the motion. Drawn by minimum or maximum: where pieces overlap
-// nothing shows.
+// A trail of duration T: a body's way from t - T to t, at age a as wide as W (0.25 + 0.75 s) and of a colour
+// s^1.3 of the way from its faintest to its own, s = 1 - a / T. Its nodes are chosen on the physics clock,
+// the first point of each T/240 and every cusp, so that they do not wander from frame to frame; where a long
+// trail bends between two of them, points between are added until it is as round as the motion. Drawn by
+// minimum or maximum: where pieces overlap nothing shows.
 
 #include <algorithm>
 #include <cmath>
@@ -75,11 +75,10 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
     const sim::ShapeKind kind = stage.cast.bodies[i].kind;
     const bool round = kind == sim::ShapeKind::point || kind == sim::ShapeKind::ball;
     const double widest = std::min(kTrailLine * stage.layout.weight, round ? std::max(1.5 * own, 1.2) : 1e9);
-    const Color strong = stage.paints[i].trail;
+    const Color strong = stage.paints[i].trail, faint = faintest(strong, stage.colours);
     auto node = [&](const sim::Track::Point& p) {
       const double s = std::clamp(1 - (now.time - p.time) / lasting, 0.0, 1.0);
-      return Node{view.page(p.place), widest * (0.25 + 0.75 * s),
-                  mix(stage.colours.room, strong, std::pow(s, 1.3))};
+      return Node{view.page(p.place), widest * (0.25 + 0.75 * s), mix(faint, strong, std::pow(s, 1.3))};
     };
 
     // the points of fixed times, then those that the curve needs
@@ -105,7 +104,7 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
     Trail trail;
     trail.begin = int(list.strokes.size());
     trail.now = now.time, trail.lasting = lasting, trail.widest = widest;
-    trail.strong = strong, trail.faint = stage.colours.room;
+    trail.strong = strong, trail.faint = faint;
     trail.origin = view.origin, trail.scale = view.scale;
     trail.subject = {Subject::What::trail, int(i), list.part};
     line.clear();

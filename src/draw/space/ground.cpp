@@ -191,6 +191,21 @@ void draw_frame(const SpaceStage& stage, const CameraProjection& lens, bool back
   }
 }
 
+/// Lines between panels: the ground has no edge, and two would look like one.
+void draw_seams(const SpaceStage& stage, List& list) {
+  const double half = kCameraGap / 2 * stage.layout.weight, width = kHatchLine * stage.layout.weight;
+  const Color color = stage.colours.hatch;
+  for (const Panel& panel : stage.panels) {
+    const Rect& w = panel.window;
+    const double right = w.x + w.width, bottom = w.y + w.height;
+    const bool beside = right < stage.layout.width - half, over = bottom < stage.layout.height - half;
+    if (beside)
+      list.add({{{right + half, w.y}, width, color}, {{right + half, bottom}, width, color}}, Cap::butt);
+    if (over)
+      list.add({{{w.x, bottom + half}, width, color}, {{right, bottom + half}, width, color}}, Cap::butt);
+  }
+}
+
 }  // namespace
 
 void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjection>& lenses, List& list) {
@@ -210,6 +225,7 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
     list.unclip();
     for (const Text& text : stage.panels[i].words) list.add(text);
   }
+  draw_seams(stage, list);
   for (const Text& text : stage.layout.words) list.add(text);
   stage.charts.draw_still(list);
 }

@@ -30,14 +30,13 @@ void trace_trails(SpaceFrame& s, Ways ways) {
     const double lasting = stage.look.bodies[i].trail;
     if (!(lasting > 0)) continue;
     const auto way = way_of(int(i), s.now.time - lasting, s.now, ways);
-    const Color strong = paint(stage.own[i], stage.look.theme).trail;
+    const Color strong = paint(stage.own[i], stage.look.theme).trail, faint = faintest(strong, stage.colours);
     const auto age = [&](const sim::Track::Point& p) {
       return std::clamp(1 - (s.now.time - p.time) / lasting, 0.0, 1.0);
     };
     const auto node = [&](const Point& at, double strength, double depth) {
       const double width = kTrailLine * stage.layout.weight * std::clamp(1 / depth, 0.3, 1.6);
-      return Node{at, width * (0.25 + 0.75 * strength),
-                  mix(stage.colours.room, strong, std::pow(strength, 1.3))};
+      return Node{at, width * (0.25 + 0.75 * strength), mix(faint, strong, std::pow(strength, 1.3))};
     };
 
     // points at fixed times, cusps and the last
@@ -60,8 +59,7 @@ void trace_trails(SpaceFrame& s, Ways ways) {
       before = k;
       chosen.push_back(way[k]);
     }
-    Solids::Way seen{int(i), s.now.time,         lasting, kTrailLine * stage.layout.weight,
-                     strong, stage.colours.room, {},      {}};
+    Solids::Way seen{int(i), s.now.time, lasting, kTrailLine * stage.layout.weight, strong, faint, {}, {}};
     for (const sim::Track::Point& p : chosen) seen.places.push_back(p.place), seen.times.push_back(p.time);
     s.solids.ways.push_back(std::move(seen));
 

@@ -20,7 +20,8 @@ constexpr int kNodes = 14;     // a turn
 constexpr int kSag = 20;       // pieces of a rope that sags
 constexpr double kEndOn = 7;   // amplitudes: a coil that looks shorter is narrower
 constexpr double kNarrow = 0.3;
-constexpr double kRail = 2.2;  // widths of a rod
+constexpr double kRail = 2.2;    // widths of a rod
+constexpr double kWithin = 0.7;  // of half a body's thickness: a joint in it
 
 double smooth_end(double u) {
   u = std::clamp(u, 0.0, 1.0);
@@ -106,6 +107,12 @@ void add_links(SpaceFrame& s) {
   const double weight = s.stage.layout.weight, metre = s.zoom / s.lens.scale;  // m a fitted page unit
   const Color color = s.stage.colours.spring;
   int number = int(s.stage.pieces.size());
+  const auto slender = [&](int body) {
+    double least = 1e300;
+    for (const Piece& piece : s.stage.pieces)
+      if (piece.body == body) least = std::min(least, piece.least);
+    return least;
+  };
   const auto knob = [&](int body, const Vec3& at, double radius) {
     if (body < 0 || cast.bodies[body].turns) add_ball(s, at, radius * weight * metre, color, number);
   };
@@ -160,7 +167,11 @@ void add_links(SpaceFrame& s) {
         break;
       }
       case JointMark::dot:
-        add_ball(s, at.a, 0.8 * kPin * weight * metre, color, number);
+        // within what it holds together where that is slender
+        add_ball(
+            s, at.a,
+            std::min(0.8 * kPin * weight * metre, kWithin * std::min(slender(joint.a), slender(joint.b))),
+            color, number);
         break;
     }
   }

@@ -11,10 +11,11 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kStripGap = 8, kPanelGap = 22;      // page units
+constexpr double kStripGap = 8;                      // page units
 constexpr double kPanelName = 24, kPanelStrip = 44;  // em of a panel's name, and the height that it takes
 constexpr double kFar = 200;                         // of the scale: how far an open room is cut off
 constexpr double kRoundMargin = 1.12;                // bodies without walls around them get this much room
+constexpr double kRunMargin = 1.06;                  // and where it is known how far they go, this much
 
 Piece ball(int body, const Vec3& at, double radius) {
   Piece piece;
@@ -107,6 +108,20 @@ std::vector<Vec3> corners_around(const SpaceStage& stage, const Extent& extent) 
   return corners;
 }
 
+/// Places that bodies reach, with room around them.
+std::vector<Vec3> widened(std::vector<Vec3> places, double scale) {
+  Vec3 low = places[0], high = places[0];
+  for (const Vec3& at : places) low = low.cwiseMin(at), high = high.cwiseMax(at);
+  const Vec3 middle = (low + high) / 2;
+  for (Vec3& at : places) at = middle + kRunMargin * (at - middle);
+  // what hardly moves is not looked at through a microscope
+  const double least = 0.25 * scale / 2;
+  for (int i = 0; i < 3; ++i)
+    if (kRunMargin * (high - low)[i] < 2 * least)
+      for (const double side : {-least, least}) places.push_back(middle + side * Vec3::Unit(i));
+  return places;
+}
+
 /// Windows for so many panels under a strip: rows and columns that leave them about half again as wide as
 /// high.
 std::vector<Rect> windows(int count, double width, double top, double bottom, bool named, double weight) {
@@ -119,7 +134,7 @@ std::vector<Rect> windows(int count, double width, double top, double bottom, bo
     if (off < least) least = off, best = columns;
   }
   const int rows = (count + best - 1) / best;
-  const double gap = kPanelGap * weight, name = named ? kPanelStrip * weight : 0;
+  const double gap = kCameraGap * weight, name = named ? kPanelStrip * weight : 0;
   const double w = (width - gap * (best - 1)) / best, h = (bottom - top - gap * (rows - 1)) / rows;
   std::vector<Rect> found;
   for (int i = 0; i < count; ++i) {
@@ -204,9 +219,11 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
   const std::vector<Rect> rects = windows(int(cameras.size()), layout.width, top, layout.height, named, w);
   const std::vector<Vec3> corners = closed ? room.vertices : corners_around(*this, extent);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const std::optional<Extent>& run = cameras[i].bounds;
-    Panel panel{
-        cameras[i], rects[i], aim(cameras[i], run ? corners_around(*this, *run) : corners, rects[i]), {}};
+    const std::vector<Vec3>& reached = cameras[i].reached;
+    Panel panel{cameras[i],
+                rects[i],
+                aim(cameras[i], reached.empty() ? corners : widened(reached, cast.scale), rects[i]),
+                {}};
     if (several && !cameras[i].name.empty()) {
       const double size = kPanelName * w, inset = std::max(w * 36, 0.045 * layout.width);
       const double left = rects[i].x + (rects[i].x == 0 ? inset : 0);

@@ -121,7 +121,10 @@ struct SpaceFrame {
   std::vector<Polyhedron> brackets;
 };
 
-/// Grid, room, caption: the things that stand still while the camera does.
+/// Page units at the weight 1: between two panels, with a line in the middle.
+inline constexpr double kCameraGap = 22;
+
+/// Grid, room, caption, lines between panels: the things that stand still while the camera does.
 void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjection>& lenses, List& list);
 
 /// The hairlines of the room that lie between it and the eye.
