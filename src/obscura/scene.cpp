@@ -23,7 +23,7 @@ Scene wrapped(scene::Scene scene) {
       [&]<int D>(const sim::World<D>& world) {
         std::vector<sim::Path<D>> paths;
         for (const auto& mouse : world.model.mice) paths.emplace_back(mouse.path);
-        for (const sim::SceneInfo::Body& body : sim::cast(world.model, paths).bodies)
+        for (const sim::SceneInfo::Body& body : sim::cast(world.model, world.state, paths).bodies)
           inside->bodies.push_back({body.name, kind_name(body.kind), body.mass, body.fixed, body.turns});
       },
       scene.world);

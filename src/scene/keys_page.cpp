@@ -574,7 +574,7 @@ two pixels a frame at 1080p. Where it stands when follows from the whole run, so
 
 Quantities are the same everywhere: in plots, as arrows, in labels and after `--measure` (`block.friction@2`, `block.friction.x@2`). A body's
 `normal_force`, `friction`, `spring_force` and `joint_force` have one arrow for each thing that it touches or that holds it; the number in a plot is the length of
-their sum. `field` is the force of formulas: `[[force]]`, attractors, the fields of the room, wind and quadratic drag. `net_force` is the sum of all forces, `acceleration` that over the mass. Forces are those at the end of a step, impacts apart; at the
+their sum. `field` is the force of formulas: `[[force]]`, attractors, the fields of the room, wind and quadratic drag. `net_force` is the sum of all forces, `acceleration` that over the mass. Forces of joints are those at the end of a step, forces of contacts those at the start of it, impacts apart; at the
 start those of the first step.
 
 `shutter` adds motion blur: a frame is the mean, in linear light, of the pictures from its instant on while the shutter is open. 360 degrees

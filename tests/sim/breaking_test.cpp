@@ -55,6 +55,28 @@ TEST(Breaking, ASwingBreaksItsRodWhereTheTensionSays) {
   EXPECT_EQ(state.joint_forces[0], Vec2(0, 0));
 }
 
+// Two boxes of 1 kg bonded side by side, one of them held by what transmits a torque. The other weighs on its
+// bond with m g, and with the moment m g l about the bond's point: sqrt(2) m g.
+TEST(Breaking, ABondBearsTheTorqueThatAJointTransmits) {
+  const double load = std::sqrt(2) * 9.81;
+  for (int held = 0; held < 4; ++held) {
+    for (const double over : {0.99, 1.01}) {
+      World<2> world = room({0, -9.81});
+      world.model.scale = 8;
+      add_box(world, {0.2, 0.2}, 1, {4, 4}), add_box(world, {0.2, 0.2}, 1, {4.2, 4});
+      Joint<2> joint;
+      joint.a = {0, {0, 0}}, joint.b = {-1, {4, 4}};
+      joint.kind = held == 0 ? JointKind::weld : held == 1 ? JointKind::slider : JointKind::pin;
+      if (held == 2) joint.lower = joint.upper = 0;
+      if (held == 3) joint.motor = Joint<2>::Motor{0, 100};
+      world.model.joints.push_back(joint);
+      world.model.bonds.push_back({0, 1, load / over});
+      const State<2> now = stepped(world, held == 1 ? 1 : 300);
+      EXPECT_EQ(int(now.intact[0]), over < 1 ? 1 : 0) << held << " " << over;
+    }
+  }
+}
+
 TEST(Breaking, AChainBreaksWhereItCarriesMost) {
   // two weights under each other: the upper rod carries both, to rounding; it breaks at once, the lower holds
   World<2> world = touching_room();
