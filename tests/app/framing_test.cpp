@@ -42,7 +42,8 @@ TEST_P(Framing, KeepsBodiesInEachPanel) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Framing,
                          testing::Values(std::pair("explosion", "ball"), std::pair("tumble", ""),
-                                         std::pair("stairs", "")));
+                                         std::pair("stairs", "")),
+                         [](const auto& it) { return std::string(it.param.first); });
 
 }  // namespace
 }  // namespace obscura::app

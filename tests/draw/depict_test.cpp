@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "draw/made.h"
 #include "draw/page/layout.h"
@@ -119,6 +120,32 @@ TEST(Trails, JoinOverSeveralTracksAndBeginOnTime) {
   }
   // it begins 0.9 s ago, at x = 1 + 2 (1.2 - 0.9)
   EXPECT_NEAR(a.moving.nodes[0].at.x(), whole.depictor().view(0).page({1.6, 0, 0}).x(), 1e-6);
+}
+
+/// Where a body with a trail has left the picture, an arrow at the edge says where it went.
+TEST(Trails, OfABodyThatLeftEndInAnArrowAtTheEdge) {
+  Made made = with_trail();
+  made.cast.walls.clear();
+  const View view = made.depictor().view(0);
+  const Point middle(view.window.x + view.window.width / 2, view.window.y + view.window.height / 2);
+  const auto tip = [&](const sim::Vec3& at) -> std::optional<Point> {
+    made.now.bodies[0].position = at;
+    const Picture picture = made.picture();
+    if (picture.moving.polygons.size() != 2) return {};  // halo and head
+    return picture.moving.points[std::size_t(picture.moving.polygons[1].begin)];
+  };
+  EXPECT_FALSE(tip({4, 2, 0}));
+  for (const sim::Vec3& far : {sim::Vec3(30, 2, 0), sim::Vec3(-9, -20, 0), sim::Vec3(4, 1e9, 0)}) {
+    const auto found = tip(far);
+    ASSERT_TRUE(found) << far.transpose();
+    const Point away = view.page(far) - middle;
+    EXPECT_NEAR((*found - middle).normalized().dot(away.normalized()), 1, 1e-9);
+    const Point from_edge = Point(view.window.width, view.window.height) / 2 - (*found - middle).cwiseAbs();
+    EXPECT_GT(from_edge.minCoeff(), 0);
+    EXPECT_LT(from_edge.minCoeff(), 20);
+  }
+  made.look.bodies[0].trail = 0;
+  EXPECT_FALSE(tip({30, 2, 0})) << "without a trail";
 }
 
 TEST(Trails, OfABodyAtRestAreNoTrouble) {

@@ -48,6 +48,7 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
   draw([&] { draw_contacts(stage, view, now, list); });
   draw([&] { draw_velocities(stage, view, now, list); });
   draw([&] { draw_labels(stage, view, now, list); });
+  draw([&] { draw_gone(stage, view, now, list); });
   list.of({});
 }
 

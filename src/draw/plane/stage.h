@@ -114,6 +114,9 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
 /// front of the boxes; with a dot where they are made fast.
 void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool solids, List& list);
 
+/// Arrows at the picture's edge towards bodies with trails that have left it.
+void draw_gone(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+
 void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);

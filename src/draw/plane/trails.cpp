@@ -18,7 +18,9 @@ constexpr int kTrailPieces = 240;
 constexpr double kCusp = 0.9;   // cosine of a turn that breaks the line
 constexpr double kClose = 0.5;  // page units: nearer points are one
 constexpr double kLong = 10;    // s: of shorter trails the fixed times are near enough to each other
-constexpr double kBent = 0.4;   // page units: farther from the line through its neighbours a point is needed
+constexpr double kGone = 44,
+                 kGoneEdge = 10;  // page units: an arrow to what has left, and from its tip to the edge
+constexpr double kBent = 0.4;  // page units: farther from the line through its neighbours a point is needed
 
 using Way = std::vector<sim::Track::Point>;
 
@@ -128,6 +130,30 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
     if (trail.end > trail.begin) list.trails.push_back(std::move(trail));
   }
   list.of({});
+}
+
+void draw_gone(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const Rect& w = view.window;
+  const double weight = stage.layout.weight;
+  const Point half = Point(w.width, w.height) / 2, middle = Point(w.x, w.y) + half;
+  std::vector<Arrow> arrows;
+  std::vector<Color> inks;
+  for (std::size_t i = 0; i < stage.look.bodies.size() && i < now.bodies.size(); ++i) {
+    const sim::SceneInfo::Body& body = stage.cast.bodies[i];
+    if (!(stage.look.bodies[i].trail > 0) || body.fixed) continue;
+    double reach = std::max(body.radius, body.half.norm());
+    for (const sim::Vec3& vertex : body.vertices) reach = std::max(reach, vertex.norm());
+    const Point at = view.page(now.bodies[i].position), away = at - middle;
+    const double out = (away.cwiseAbs() - half).maxCoeff();
+    if (!at.allFinite() || !(out > std::max(view.scale * reach, stage.dots[i]))) continue;
+    // on the line to it from the picture's middle
+    const Point room = half - Point::Constant(kGoneEdge * weight);
+    const double part = (room.array() / away.cwiseAbs().array().max(1e-9)).minCoeff();
+    const Point tip = middle + part * away;
+    arrows.push_back({tip - kGone * weight * away.normalized(), tip});
+    inks.push_back(stage.paints[i].outline);
+  }
+  draw_arrows(arrows, inks, weight, stage.colours.room, list);
 }
 
 }  // namespace obscura::draw
