@@ -70,6 +70,7 @@ void offer(const Point& tail, Point tip, const Rect& window, double weight, std:
 // one kind after another: few batches
 void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& inks, double weight, Color room,
                  List& list) {
+  if (arrows.empty()) return;
   const bool hung = std::any_of(arrows.begin(), arrows.end(), [](const Arrow& a) { return a.hang; });
   const auto hang = [&](const Arrow& a) {
     if (hung) list.hang(a.hang);

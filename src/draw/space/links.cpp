@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "draw/picture/joint_look.h"
 #include "draw/picture/rope_way.h"
@@ -107,12 +108,10 @@ void add_links(SpaceFrame& s) {
   const double weight = s.stage.layout.weight, metre = s.zoom / s.lens.scale;  // m a fitted page unit
   const Color color = s.stage.colours.spring;
   int number = int(s.stage.pieces.size());
-  const auto slender = [&](int body) {
-    double least = 1e300;
-    for (const Piece& piece : s.stage.pieces)
-      if (piece.body == body) least = std::min(least, piece.least);
-    return least;
-  };
+  std::vector<double> least(cast.bodies.size(), 1e300);  // half the thickness of each body, m
+  for (const Piece& piece : s.stage.pieces)
+    least[std::size_t(piece.body)] = std::min(least[std::size_t(piece.body)], piece.least);
+  const auto slender = [&](int body) { return body < 0 ? 1e300 : least[std::size_t(body)]; };
   const auto knob = [&](int body, const Vec3& at, double radius) {
     if (body < 0 || cast.bodies[body].turns) add_ball(s, at, radius * weight * metre, color, number);
   };
