@@ -76,10 +76,10 @@ TEST_F(SparedFiles, GoldenUpdateRemovesMomentsAlone) {
   shell("mkdir golden");
   EXPECT_EQ(obscura("golden box.toml --update").exit, 0);
   EXPECT_EQ(obscura("render box.toml --at 0.05 -o golden/box-poster.png").exit, 0);
-  EXPECT_EQ(obscura("render box.toml --at 0.05 -o golden/box-0.05.png").exit, 0);
+  EXPECT_EQ(obscura("render box.toml --at 0.025 -o golden/box-0.025.png").exit, 0);
   const Outcome outcome = obscura("golden box.toml --update");
   EXPECT_TRUE(std::filesystem::exists(path("golden/box-poster.png"))) << outcome.out;
-  EXPECT_FALSE(std::filesystem::exists(path("golden/box-0.05.png"))) << outcome.out;
+  EXPECT_FALSE(std::filesystem::exists(path("golden/box-0.025.png"))) << outcome.out;
 }
 
 TEST_F(SparedFiles, GoldenLooksIntoFoldersOfFolders) {

@@ -35,8 +35,6 @@ struct CompareFlags {
 // whether a file that is to be written is one of those that are read: A, B, or a picture in either folder
 void spare_inputs(const CompareFlags& flags) {
   namespace fs = std::filesystem;
-  if (flags.diff) require_ending("--diff", *flags.diff, ".png");
-  if (flags.report) require_ending("--report", *flags.report, ".html");
   for (const auto& [name, out] : {std::pair("--diff", flags.diff), {"--report", flags.report}}) {
     if (!out || !fs::exists(*out)) continue;
     for (const std::string& in : {flags.a, flags.b}) {
@@ -48,6 +46,8 @@ void spare_inputs(const CompareFlags& flags) {
                                      inside ? "a picture of " + in : in));
     }
   }
+  if (flags.diff) require_ending("--diff", *flags.diff, ".png");
+  if (flags.report) require_ending("--report", *flags.report, ".html");
 }
 
 bool is_table(const std::string& path) {

@@ -90,6 +90,7 @@ Output output(const std::optional<std::string>& out, const std::string& name, bo
   const auto p = pattern(path);
   std::string rest = path;
   if (p) rest.erase(p->begin, p->end - p->begin);
+  if (const auto camera = rest.find("{camera}"); camera != std::string::npos) rest.erase(camera, 8);
   if (const auto open = rest.find('{'), close = rest.find('}', open); close != std::string::npos)
     throw UsageError(
         fmt::format("{}: {} is not known; a name may have {{camera}}, and that of a sequence "

@@ -81,6 +81,7 @@ std::optional<std::int64_t> number_in(const std::string& name, std::string_view 
 }
 
 constexpr const char* kTake = "take-";
+constexpr const char* kFresh = "fresh-";  // a take before its hash is known
 constexpr const char* kStep = "step-";
 constexpr const char* kCheckpoint = ".checkpoint";
 constexpr const char* kRun = "-run-";  // of a film of several runs: which, from the second on
@@ -143,13 +144,15 @@ struct Store::Impl {
 
   // all that is ours but the lock
   void clear() {
+    const auto ours = [](const std::string& name) {
+      return name == "journal.json" || name == "seconds" || name.starts_with(kTake) ||
+             name.starts_with(kFresh) || name.starts_with(kStep) || name.starts_with("cut.");
+    };
+    media::remove_leftovers(folder, ours);
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       std::error_code ignored;
-      const std::string name = entry.path().filename().string();
-      const bool ours = name.starts_with("journal.json") || name.starts_with("seconds") ||
-                        name.starts_with(kTake) || name.starts_with(kStep) || name.starts_with("cut.");
-      if (ours) fs::remove(entry.path(), ignored);
+      if (ours(entry.path().filename().string())) fs::remove(entry.path(), ignored);
     }
     parts.clear(), checkpoints.clear();
   }
@@ -310,7 +313,7 @@ std::optional<std::string> Store::part(std::int64_t take) {
 void Store::put(std::int64_t take, const std::string& movie, const media::MovieSpec& spec,
                 const media::Segment& segment) {
   const std::string ending = "." + media::part_ending(movie, spec);
-  const std::string fresh = impl_->at(fmt::format("fresh-{:06}{}", take, ending));
+  const std::string fresh = impl_->at(fmt::format("{}{:06}{}", kFresh, take, ending));
   media::write_part(fresh, spec, segment);
   const std::string name = named(take, file_hash(fresh), ending), whole = impl_->at(name);
   if (std::rename(fresh.c_str(), whole.c_str()) != 0)
