@@ -62,7 +62,7 @@ TEST(Breaking, ABondBearsTheTorqueThatAJointTransmits) {
   for (int held = 0; held < 4; ++held) {
     for (const double over : {0.99, 1.01}) {
       World<2> world = room({0, -9.81});
-      world.model.scale = 8;
+      world.model.scale = 8, world.model.collision = Collision::contact;
       add_box(world, {0.2, 0.2}, 1, {4, 4}), add_box(world, {0.2, 0.2}, 1, {4.2, 4});
       Joint<2> joint;
       joint.a = {0, {0, 0}}, joint.b = {-1, {4, 4}};
