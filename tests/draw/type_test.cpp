@@ -31,6 +31,21 @@ TEST(Type, ScalesWithItsSize) {
   EXPECT_NEAR(width("The room", false, Face::bold, 48), 2 * width("The room", false, Face::bold, 24), 1e-9);
 }
 
+// "proportional to" is in fonts of mathematics alone, a capital with a caron in those of words
+TEST(Type, SignsThatAFontLacksAreTakenFromAnother) {
+  const Text words{{0, 0}, Align::left, {{.text = "a ∝ b"}, {.text = "plain"}}};
+  const Text all = with_all_signs(words);
+  ASSERT_EQ(all.spans.size(), 4u);
+  EXPECT_EQ(all.spans[1].text, "∝");
+  EXPECT_EQ(all.spans[1].face, Face::math);
+  EXPECT_EQ(all.spans[2].face, Face::regular);
+  for (const Shaped& span : shape(all).spans)
+    for (const Glyph& glyph : span.glyphs) EXPECT_NE(glyph.index, 0u) << "no such sign";
+  List list;
+  list.add(words);
+  EXPECT_EQ(list.texts[0].spans.size(), 4u) << "in pictures";
+}
+
 TEST(Type, EverySignOfOurFormulasHasAGlyph) {
   const std::vector<std::pair<Face, std::string>> needs{{Face::regular, "Aäß…−°²Δ"},
                                                         {Face::bold, "Aäß…"},

@@ -4,6 +4,7 @@
 
 #include "draw/picture/latex.h"
 #include "draw/picture/solids.h"
+#include "draw/picture/type.h"
 
 namespace obscura::draw {
 
@@ -30,7 +31,7 @@ void List::add(const Text& text) {
     words.push_back(latex_words(text));
     return;
   }
-  texts.push_back(text);
+  texts.push_back(with_all_signs(text));
   mark(Kind::text, int(texts.size()));
 }
 

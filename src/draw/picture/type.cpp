@@ -6,6 +6,7 @@
 #include <fontconfig/fontconfig.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -283,6 +284,49 @@ const FontFile& font_file(Face face) {
       return file<Face::math_bold_italic>();
   }
   throw Error("no such face");
+}
+
+Text with_all_signs(const Text& text) {
+  const auto plain = [](const Span& span) {
+    return std::all_of(span.text.begin(), span.text.end(),
+                       [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  };
+  if (std::all_of(text.spans.begin(), text.spans.end(), plain)) return text;
+  const auto has = [](Face face, const Span& span, std::size_t begin, std::size_t length) {
+    Span sign = span;
+    sign.face = face, sign.text = span.text.substr(begin, length);
+    const std::string letters = characters_of(sign);
+    const auto first = static_cast<unsigned char>(letters[0]);
+    const std::size_t size = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+    std::uint32_t c = size == 1 ? first : first & (0xFFu >> (size + 1));
+    for (std::size_t k = 1; k < size && k < letters.size(); ++k)
+      c = c << 6 | (static_cast<unsigned char>(letters[k]) & 0x3Fu);
+    hb_codepoint_t glyph = 0;
+    return hb_font_get_nominal_glyph(font(face).get(), c, &glyph) != 0;
+  };
+  Text out = text;
+  out.spans.clear();
+  for (const Span& span : text.spans) {
+    Span piece = span;
+    piece.text.clear();
+    const auto put = [&](Face face, const std::string& sign) {
+      if (piece.face != face && !piece.text.empty()) {
+        out.spans.push_back(piece);
+        piece.text.clear(), piece.lead = 0;
+      }
+      piece.face = face, piece.text += sign;
+    };
+    for (std::size_t i = 0; i < span.text.size();) {
+      const auto first = static_cast<unsigned char>(span.text[i]);
+      const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+      const Face other = span.face < Face::math ? Face::math : Face::regular;
+      const bool lacks = length > 1 && !has(span.face, span, i, length) && has(other, span, i, length);
+      put(lacks ? other : span.face, span.text.substr(i, length));
+      i += length;
+    }
+    out.spans.push_back(piece);
+  }
+  return out;
 }
 
 Line shape(const Text& text) {

@@ -32,6 +32,10 @@ struct Line {
 /// missing.
 Line shape(const Text& text);
 
+/// The same line with signs that the font of a span lacks in spans of another face that has them: words and
+/// mathematics help each other out. Throws draw::Error where a font is missing.
+Text with_all_signs(const Text& text);
+
 /// Sets the decimal mark of all numbers in mathematics and of figures of equal width.
 void set_decimal_mark(List& list, const std::string& mark);
 
