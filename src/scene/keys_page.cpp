@@ -466,7 +466,7 @@ acos atan atan2 sinh cosh tanh exp log sqrt abs sign floor min max`; `if(conditi
     pendulum.toml:12:25: 'components', column 9: nothing is called 'sped' here; did you mean 'speed'?
 
 A potential depends on places and the time, and is differentiated exactly; it counts as potential energy (`fields` in plots and
-`energy.fields` in tables). What components, wind and drag do is booked as `work` (`energy.work`) in scenes that have such forces: the total
+`energy.fields` in tables). What components, wind and quadratic drag do (not motors of joints, nor the room's linear `drag`) is booked as `work` (`energy.work`) in scenes that have such forces: the total
 energy minus the work stays constant where nothing collides. The spring of a mouse's hand is not of the room: what it holds is `hand`
 (`energy.hand`), beside the total, which changes by what the hand gives. A force that comes to no finite number ends the run, with the body, the place
 and the time.

@@ -305,7 +305,7 @@ std::vector<Key> rows() {
       {.path = "joint.friction", .form = number, .fallback = "0", .range = kNotNegative,
        .doc = "Dry friction: the largest torque (N m) of a pin, or force (N) of a slider, against its motion.", .example = "0.1"},
       {.path = "joint.breaks", .form = number, .unit = "N", .absent = "never", .range = kPositive,
-       .doc = "The force above which it breaks.", .example = "50"},
+       .doc = "The force above which it breaks. A jerk is an impulse, not a force: the direct solver lets it pass, the iterative one takes its mean over the step.", .example = "50"},
       {.path = "joint.touching", .form = boolean, .fallback = "false",
        .doc = "Whether the two bodies may touch each other.", .example = "true"},
 
