@@ -43,6 +43,8 @@ TEST_F(SparedFiles, AScenesFileIsNoReport) {
   refuses("compare a.png b.png --diff box.toml", 2, "--diff box.toml: expected a name that ends with .png");
   refuses("compare a.png b.png --report box.toml", 2, "expected a name that ends with .html");
   refuses("states box.toml --format csv -o box.toml", 2, "would be written over box.toml, which is read");
+  refuses("sweep box.toml --vary seed=1,2 --measure energy.total@0 --format csv -o box.toml", 2,
+          "would be written over box.toml, which is read");
 }
 
 TEST_F(SparedFiles, NoOverwriteKeepsEachFrameAndTheCaptionsAndThePoster) {
@@ -96,6 +98,12 @@ TEST_F(SparedFiles, StepsThatAreTooLongAreTold) {
     EXPECT_EQ(outcome.exit, 6) << command;
     EXPECT_THAT(outcome.err, HasSubstr("raise physics.rate above")) << command;
   }
+  // what pushing it out of walls is said to have given is no source
+  write("stiff.toml",
+        "duration = 2\n[physics]\nrate = 60\n[room]\nsize = [8, 8]\ngravity = [0, 0]\n[[particle]]\nname = "
+        "\"p\"\n"
+        "position = [2.001, 4]\n[[spring]]\nbetween = [\"p\", [1, 4]]\nstiffness = 1e7\nrest_length = 1\n");
+  EXPECT_EQ(obscura("states stiff.toml --at 2").exit, 6);
   write("soft.toml", "duration = 1\n[room]\nwalls = \"none\"\ndrag = 2\n[[particle]]\nmass = 0.001\n");
   const Outcome outcome = obscura("states soft.toml --at 1");
   EXPECT_EQ(outcome.exit, 0);

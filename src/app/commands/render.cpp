@@ -108,8 +108,7 @@ int film_under(scene::Scene scene, const Shots& shots, const Output& out, const 
   const Output trial{Output::Form::movie, out.path + ".sizing.gif", true};
   FilmOptions options = flags.film;
   options.anew = options.overwrite = true;
-  if (!flags.film.overwrite && std::filesystem::exists(out.path))
-    throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", out.path));
+  if (!flags.film.overwrite) require_fresh(out.path);
   const double aspect = double(scene.film.width) / scene.film.height;
   double height = scene.film.height;
   for (;;) {
@@ -286,9 +285,7 @@ int render(RenderFlags flags) {
     throw UsageError("--poster is a still beside a movie; --at makes one alone");
   if (flags.poster) {
     seconds("--poster", *flags.poster);
-    const std::string poster = poster_of(out).path;
-    if (flags.no_overwrite && std::filesystem::exists(poster))
-      throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", poster));
+    if (flags.no_overwrite) require_fresh(poster_of(out).path);
   }
   const bool under = flags.under.has_value();
   if (under && (each || out.form != Output::Form::movie || !out.path.ends_with(".gif")))

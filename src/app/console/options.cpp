@@ -1,12 +1,10 @@
 #include "app/console/options.h"
 
 #include <charconv>
-
-#include <fmt/format.h>
-
+#include <filesystem>
 #include <system_error>
 
-#include <filesystem>
+#include <fmt/format.h>
 
 #include "app/console/exit.h"
 #include "app/console/memory.h"

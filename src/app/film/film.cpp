@@ -124,13 +124,9 @@ Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& ou
   const std::string first = movie() ? output.path : output.file(shots[0].frame);
   if (fs::is_directory(first)) throw media::Error(first + ": is a folder");
   if (!options.overwrite) {
-    const auto keep = [](const std::string& file) {
-      if (fs::exists(file))
-        throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", file));
-    };
-    if (movie()) keep(output.path);
-    if (movie() && !scene.film.titles.captions.empty()) keep(captions_of(output.path));
-    for (std::int64_t i = 0; !movie() && i < shots.size(); ++i) keep(output.file(shots[i].frame));
+    if (movie()) require_fresh(output.path);
+    if (movie() && !scene.film.titles.captions.empty()) require_fresh(captions_of(output.path));
+    for (std::int64_t i = 0; !movie() && i < shots.size(); ++i) require_fresh(output.file(shots[i].frame));
   }
   media::make_folder_of(first);
   if (output.form == Output::Form::still || already_whole()) return;

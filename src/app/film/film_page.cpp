@@ -11,6 +11,7 @@
 #include "app/console/interrupt.h"
 #include "app/console/memory.h"
 #include "app/film/frame_painter.h"
+#include "app/film/output.h"
 #include "app/film/space_page.h"
 #include "app/film/subtitles.h"
 #include "app/run/description.h"
@@ -301,8 +302,7 @@ std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still)
 
 int film_page(const scene::Scene& scene, const Shots& shots, const std::string& path,
               const FilmOptions& options) {
-  if (!options.overwrite && std::filesystem::exists(path))
-    throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", path));
+  if (!options.overwrite) require_fresh(path);
   media::make_folder_of(path);
   PageFilm film(scene, shots);
   Progress progress(options.progress, path, shots.size(), 1 / sim::value(shots.fps()));

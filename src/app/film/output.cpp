@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/console/exit.h"
+#include "media/error.h"
 
 namespace obscura::app {
 
@@ -72,6 +73,11 @@ std::string beside(const Output& output, const char* ending) {
 
 std::string Output::parts() const { return beside(*this, ".parts"); }
 std::string Output::checkpoints() const { return beside(*this, ".checkpoints"); }
+
+void require_fresh(const std::string& file) {
+  if (std::filesystem::exists(file))
+    throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", file));
+}
 
 Output output(const std::optional<std::string>& out, const std::string& name, bool still,
               std::int64_t frames) {

@@ -23,6 +23,9 @@ struct Output {
   std::string checkpoints() const;
 };
 
+/// Requires, for --no-overwrite, that there is no such file yet. Throws media::Error.
+void require_fresh(const std::string& file);
+
 /// Reads OUT. None: render_out/<name>.mp4, or .png for a still. A folder's name with its slash takes
 /// {frame:04}.png. Throws UsageError: a sequence without a pattern, an ending that is not known, a pattern
 /// for one still.

@@ -9,6 +9,7 @@
 #include "app/console/memory.h"
 #include "app/console/say.h"
 #include "app/film/frame_renderer.h"
+#include "app/film/output.h"
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "app/run/trouble.h"
@@ -32,8 +33,7 @@ int film_pages(const scene::Scene& scene, const Shots& shots, const std::string&
   if (shots.size() > kMostPages)
     throw UsageError(fmt::format("-o {}: {} pages are more than {}: --fps, --from and --to leave some out",
                                  path, shots.size(), kMostPages));
-  if (!options.overwrite && std::filesystem::exists(path))
-    throw media::Error(fmt::format("{}: is there already, and --no-overwrite was asked for", path));
+  if (!options.overwrite) require_fresh(path);
   media::make_folder_of(path);
 
   const Ahead ahead = app::ahead(scene);

@@ -87,6 +87,7 @@ class Sweep {
         throw UsageError(fmt::format("'{}' would head two columns", *head));
     const scene::Scene first = scene::read(file_, variations_.sets(0, sets_));
     check(asked_, first);
+    if (flags.out) spare(*flags.out, file_);
     warn_of_steps(first);
     text_ = first.text;
   }

@@ -261,6 +261,20 @@ const Font& font(Face face) {
   throw Error("no such face");
 }
 
+/// A character of UTF-8, and how many bytes it has.
+struct Sign {
+  std::uint32_t code = 0;
+  std::size_t length = 1;
+};
+Sign sign_at(const std::string& text, std::size_t i) {
+  const auto first = static_cast<unsigned char>(text[i]);
+  Sign sign{first, first < 0x80u ? 1u : first < 0xE0u ? 2u : first < 0xF0u ? 3u : 4u};
+  if (sign.length > 1) sign.code &= 0xFFu >> (sign.length + 1);
+  for (std::size_t k = 1; k < sign.length && i + k < text.size(); ++k)
+    sign.code = sign.code << 6 | (static_cast<unsigned char>(text[i + k]) & 0x3Fu);
+  return sign;
+}
+
 struct Buffer {
   hb_buffer_t* it = hb_buffer_create();
   ~Buffer() { hb_buffer_destroy(it); }
@@ -296,13 +310,8 @@ Text with_all_signs(const Text& text) {
     Span sign = span;
     sign.face = face, sign.text = span.text.substr(begin, length);
     const std::string letters = characters_of(sign);
-    const auto first = static_cast<unsigned char>(letters[0]);
-    const std::size_t size = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-    std::uint32_t c = size == 1 ? first : first & (0xFFu >> (size + 1));
-    for (std::size_t k = 1; k < size && k < letters.size(); ++k)
-      c = c << 6 | (static_cast<unsigned char>(letters[k]) & 0x3Fu);
     hb_codepoint_t glyph = 0;
-    return hb_font_get_nominal_glyph(font(face).get(), c, &glyph) != 0;
+    return hb_font_get_nominal_glyph(font(face).get(), sign_at(letters, 0).code, &glyph) != 0;
   };
   Text out = text;
   out.spans.clear();
@@ -317,8 +326,7 @@ Text with_all_signs(const Text& text) {
       piece.face = face, piece.text += sign;
     };
     for (std::size_t i = 0; i < span.text.size();) {
-      const auto first = static_cast<unsigned char>(span.text[i]);
-      const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+      const std::size_t length = sign_at(span.text, i).length;
       const Face other = span.face < Face::math ? Face::math : Face::regular;
       const bool lacks = length > 1 && !has(span.face, span, i, length) && has(other, span, i, length);
       put(lacks ? other : span.face, span.text.substr(i, length));
@@ -375,11 +383,7 @@ std::string characters_of(const Span& span) {
   const bool bold = span.face == Face::math_bold_italic;
   std::string out;
   for (std::size_t i = 0; i < span.text.size();) {
-    const auto first = static_cast<unsigned char>(span.text[i]);
-    const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-    std::uint32_t c = length == 1 ? first : first & (0xFFu >> (length + 1));
-    for (std::size_t k = 1; k < length && i + k < span.text.size(); ++k)
-      c = c << 6 | (static_cast<unsigned char>(span.text[i + k]) & 0x3Fu);
+    const auto [c, length] = sign_at(span.text, i);
     std::uint32_t to = 0;
     if (c >= 'A' && c <= 'Z') to = (bold ? 0x1D468u : 0x1D434u) + (c - 'A');
     if (c >= 'a' && c <= 'z') to = (bold ? 0x1D482u : 0x1D44Eu) + (c - 'a');

@@ -111,11 +111,13 @@ void DivergenceMonitor<D>::start(State<D>& state, double t) const {
 template <int D>
 std::optional<Trouble> DivergenceMonitor<D>::check_energy(const State<D>& state, double t) const {
   const Energies e = energies(model_, state, paths_, t);
-  const double energy_budget = state.energy_budget.amount + std::max(0.0, state.ledger.displacement);
+  // where the step is too long, the work of pushing bodies out of walls is not to be trusted
+  const double pushed = too_long_.empty() ? std::max(0.0, state.ledger.displacement) : 0;
+  const double energy_budget = state.energy_budget.amount + pushed;
   const double held = e.kinetic + e.springs + e.hand + e.gravity + e.fields - state.energy_budget.level;
   const double now = held - e.work;
   if (std::max(now, held) <= kSuspect * energy_budget) return {};
-  // where the step is too long for them, the work of forces is not to be trusted either
+  // nor is then that of forces
   const Tightness worst = tightest(model_, state.grips);
   if (now <= kProof * energy_budget && worst.body < 0 && too_long_.empty()) return {};
 
