@@ -1,6 +1,6 @@
 # Embeds page/player into obscura_page: its modules become one, in the order of MODULES, so that a page needs no other
 # file. `import` lines and the word `export` are left out. Run as a script (cmake -D FROM=... -D TO=... -P) it writes the source.
-set(MODULES bytes keys reel pen values charts lens contact forms shaders card ground occlusion pick space picture player)
+set(MODULES bytes keys reel pen values charts lens contact forms shaders card ground occlusion pick lit sketch space picture player)
 if(CMAKE_SCRIPT_MODE_FILE)
   set(script "")
   foreach(module IN LISTS MODULES)

@@ -111,8 +111,15 @@ void Reel::live(Thing& it, std::vector<double> numbers, std::vector<double> boun
                 const std::vector<int>& steps) {
   if (hang_ && !numbers.empty()) {
     // the last of its numbers
-    numbers.insert(numbers.end(), hang_->a.begin(), hang_->a.end());
-    if (it.key.style.hang > 1) numbers.insert(numbers.end(), hang_->b.begin(), hang_->b.end());
+    const auto put = [&](const Eigen::Vector3d& place) {
+      numbers.insert(numbers.end(), place.begin(), place.end());
+    };
+    if (it.key.style.through) {
+      std::for_each(hang_->nodes.begin(), hang_->nodes.end(), put);
+    } else {
+      put(hang_->a);
+      if (it.key.style.hang > 1) put(hang_->b);
+    }
     bounds.resize(numbers.size(), hang_bound_);
   }
   if (it.lives.empty() || it.lives.back().second != frames_) {
@@ -290,6 +297,7 @@ void Reel::add(const draw::List& list, bool still) {
       Style style{.kind = batch.kind, .still = still, .clip = clipped};
       hang_ = hang;
       if (hang) style.hang = hang->a == hang->b ? 1 : 2;
+      if (hang && !hang->nodes.empty()) style.hang = int(hang->nodes.size()), style.through = true;
       Outline outline;
       if (batch.kind == Kind::text) style.whole = list.texts[n].whole.has_value();
       if (batch.kind == Kind::stroke) {
@@ -332,6 +340,10 @@ void Reel::add(const draw::List& list, bool still) {
           }
           const draw::Node *first = &list.nodes[std::size_t(stroke.begin)],
                            *last = &list.nodes[std::size_t(stroke.end - 1)];
+          if (style.through) {
+            live(it, {first->width}, {kWidth}, {color(first->color)});
+            break;
+          }
           if (style.turns > 0) {
             live(it,
                  {first->at.x(), first->at.y(), last->at.x(), last->at.y(), stroke.winding.lead,
@@ -349,6 +361,10 @@ void Reel::add(const draw::List& list, bool still) {
         }
         case Kind::polygon: {
           const draw::Polygon& polygon = list.polygons[n];
+          if (style.through) {
+            live(it, {0}, {kWidth}, {color(polygon.fill)});
+            break;
+          }
           for (int p = polygon.begin; p < polygon.end; ++p)
             outline.points.push_back(list.points[std::size_t(p)]);
           outline.colors.assign(outline.points.size(), color(polygon.fill));
@@ -370,8 +386,8 @@ void Reel::add(const draw::Solids& solids, int panel) {
   hang_ = {};
   const double place = kPlace / solids.lens.scale, narrow = kWidth / solids.lens.scale;
   std::map<Key, int> count;
-  const auto next = [&](int space, int nodes, int turns, int index = 0) -> Thing& {
-    Style style{.turns = turns, .space = space, .nodes = nodes};
+  const auto next = [&](int space, int nodes, int turns, int index = 0, bool front = false) -> Thing& {
+    Style style{.turns = turns, .space = space, .nodes = nodes, .front = front};
     Key key{{draw::Subject::What::layer, index, solids.part}, style, 0};
     key.place = count[key]++;
     return thing(key);
@@ -396,10 +412,10 @@ void Reel::add(const draw::Solids& solids, int panel) {
     live(next(3, 0, 0), {plate.center.x(), plate.center.y(), plate.center.z(), plate.half, plate.thick},
          {place, place, place, narrow, narrow}, {});
   for (const draw::Solids::Way& way : solids.ways) {
-    Thing& it = next(4, 0, 0, way.body);
+    Thing& it = next(4, way.path + 1, 0, way.body, way.front);
     if (it.lives.empty())
       it.trail.lasting = way.lasting, it.trail.strong = way.strong, it.trail.faint = way.faint;
-    const bool cut = way.times.front() <= way.now - way.lasting + 1e-9;
+    const bool cut = way.lasting > 0 && way.times.front() <= way.now - way.lasting + 1e-9;
     for (std::size_t i = cut ? 1 : 0; i + 1 < way.places.size(); ++i) {
       if (!it.way.empty() && way.times[i] <= it.way.back().time) continue;
       it.way.push_back({way.times[i], {0, 0}, false});
@@ -445,6 +461,7 @@ void Reel::write(Thing& it, Json& json) {
   if (style.still) json["still"] = 1;
   if (style.whole) json["whole"] = 1;
   if (style.hang > 0 && it.form != Form::loose) json["hang"] = style.hang;
+  if (style.through) json["through"] = 1;
   if (style.kind == Kind::stroke) {
     json["style"] = (style.closed ? 1 : 0) | (style.round ? 2 : 0) | int(style.blend) << 2;
     if (style.turns > 0) json["turns"] = style.turns;
@@ -466,6 +483,7 @@ void Reel::write(Thing& it, Json& json) {
   }
   if (style.space == 4) {
     json["trail"] = {it.trail.lasting, color(it.trail.strong), color(it.trail.faint)};
+    if (style.nodes > 0) json["path"] = style.front ? 2 : 1;
     json["points"] = it.way.size();
     std::int64_t before = 0;
     Eigen::Matrix<std::int64_t, 3, 1> last = Eigen::Matrix<std::int64_t, 3, 1>::Zero();

@@ -46,9 +46,11 @@ class Reel {
     draw::Blend blend{};
     int turns = 0;
     int clip = -1;
-    int space = 0;  // what stands in space: 1 a tube, 2 a ball, 3 a plate, 4 a trail, 5 a line
-    int nodes = 0;  // of a tube
-    int hang = 0;   // at so many places of space
+    int space = 0;         // what stands in space: 1 a tube, 2 a ball, 3 a plate, 4 a trail, 5 a line
+    int nodes = 0;         // of a tube
+    int hang = 0;          // at so many places of space
+    bool through = false;  // which are its nodes
+    bool front = false;    // a trail over the bodies
     auto operator<=>(const Style&) const = default;
   };
   struct Key {

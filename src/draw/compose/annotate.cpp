@@ -97,6 +97,19 @@ void Notes::hang(const Vec3& a, const Vec3& b) {
   list_.hang(hang_);
 }
 
+// Seen from elsewhere it goes with its nodes.
+void Notes::stroke_through(const std::vector<Vec3>& way, double width, Color color, double weight) {
+  std::vector<Point> line;
+  for (const Vec3& place : way) line.push_back(view_.page(place));
+  by_nodes(way);
+  stroke(line, width, color, weight);
+  list_.hang(hang_);
+}
+
+void Notes::by_nodes(const std::vector<Vec3>& way) {
+  if (hang_) list_.hang(Hang{Vec3::Zero(), Vec3::Zero(), way});
+}
+
 void Notes::stroke(const std::vector<Point>& line, double width, Color color, double weight) {
   std::vector<Node> nodes;
   for (const Point& p : line) nodes.push_back({p, width, color});
@@ -104,17 +117,23 @@ void Notes::stroke(const std::vector<Point>& line, double width, Color color, do
   for (std::size_t i = 0; i + 1 < line.size(); ++i) placing_.avoid(line[i], line[i + 1], weight);
 }
 
-void Notes::dashes(const Point& a, const Point& b) {
+void Notes::dashes(const Vec3& from, const Vec3& to) {
+  const Point a = view_.page(from), b = view_.page(to);
   const double length = (b - a).norm(), dash = 2.4 * point_, gap = 1.8 * point_;
   if (!(length > 0)) return;
   const Point u = (b - a) / length;
-  for (double s = 0; s < length; s += dash + gap)
-    stroke({a + s * u, a + std::min(s + dash, length) * u}, thin_, colours_.ink, 1);
+  for (double s = 0; s < length; s += dash + gap) {
+    const double end = std::min(s + dash, length);
+    by_nodes({view_.between(from, to, s / length), view_.between(from, to, end / length)});
+    stroke({a + s * u, a + end * u}, thin_, colours_.ink, 1);
+  }
+  list_.hang(hang_);
 }
 
 // An arc with a tip through `at` of an angle, rad, of about `radius` on the page.
-template <class At>
-void Notes::arc(const At& at, double radius, double from, double to, double width, Color color) {
+template <class At, class Place>
+void Notes::arc(const At& at, const Place& place, double radius, double from, double to, double width,
+                Color color) {
   std::vector<Point> line;
   const int n = std::max(6, int(std::abs(to - from) / 0.06));
   // the shaft ends within its head
@@ -122,13 +141,20 @@ void Notes::arc(const At& at, double radius, double from, double to, double widt
   // longer where the arc is seen aslant
   while ((at(to) - at(to - head)).norm() < 16 * arrow_ && std::abs(head) < 0.4 * std::abs(to - from))
     head *= 1.2;
-  for (int i = 0; i <= n; ++i) line.push_back(at(from + (to - 0.8 * head - from) * i / n));
+  std::vector<Vec3> way;
+  for (int i = 0; i <= n; ++i) {
+    const double angle = from + (to - 0.8 * head - from) * i / n;
+    line.push_back(at(angle)), way.push_back(place(angle));
+  }
+  by_nodes(way);
   stroke(line, width, color, 3);
+  list_.hang(hang_);
   // the head points along the chord to its tip
   const Point end = at(to), back = at(to - head);
   const double grow = std::min(1.0, (end - back).norm() / (20 * arrow_));
   if (!(grow > 0)) return;
   std::vector<Arrow> arrows{{Point(end - (end - back).normalized() * 18 * arrow_ * grow), end, grow}};
+  if (hang_) arrows[0].hang = Hang{place(to - head), place(to)};
   draw_arrows(arrows, arrow_, colours_.room, color, list_);
   placing_.avoid(back, end, 4);
 }
@@ -159,7 +185,9 @@ void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading&
     const auto at = [&](double a) { return Point(center + radius * Point(std::cos(a), -std::sin(a))); };
     const double low = 25 * std::numbers::pi / 180, high = 165 * std::numbers::pi / 180;
     const bool left = reading.signed_value > 0;
-    arc(at, radius, left ? low : high, left ? high : low, wide, ink);
+    arc(
+        at, [](double) { return Vec3(Vec3::Zero()); }, radius, left ? low : high, left ? high : low, wide,
+        ink);
     around(at, {low, 0.8, 1.2, high, 1.6, 2.1});
   } else {
     const double reach = body.radius > 0 ? 1.4 * body.radius : 1.05 * body.half.norm();
@@ -169,12 +197,13 @@ void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading&
     near -= axis.dot(near) * axis;
     near = near.norm() > 1e-6 ? Vec3(near.normalized()) : axis.unitOrthogonal();
     const Vec3 on = axis.cross(near);
-    const auto at = [&](double a) {
-      return view_.page(reading.tail + world * (std::cos(a) * near + std::sin(a) * on));
+    const auto place = [&](double a) {
+      return Vec3(reading.tail + world * (std::cos(a) * near + std::sin(a) * on));
     };
+    const auto at = [&](double a) { return view_.page(place(a)); };
     const double back = -150 * std::numbers::pi / 180, ahead = 65 * std::numbers::pi / 180;
-    dashes(center, view_.page(reading.tail + 1.5 * world * axis));
-    arc(at, radius, back, ahead, wide, ink);
+    dashes(reading.tail, reading.tail + 1.5 * world * axis);
+    arc(at, place, radius, back, ahead, wide, ink);
     around(at, {ahead, 0.5 * ahead, 0.0, 0.3 * back, 0.6 * back, back});
   }
   word(key, label, places, center);
@@ -222,8 +251,8 @@ void Notes::angle(int index, const Marks::Angle& angle) {
     center = body.position;
     to = body.orientation * Vec3::UnitX();
     const double reach = 22 * point_ / view_.scale_at(center);
-    dashes(view_.page(center), view_.page(center + reach * from));
-    stroke({view_.page(center), view_.page(center + reach * to)}, thin_, colours_.ink, 2);
+    dashes(center, center + reach * from);
+    stroke_through({center, center + reach * to}, thin_, colours_.ink, 2);
   } else {
     if (!angle.at || !angle.from || !angle.to) return;
     center = place(*angle.at, now_);
@@ -234,7 +263,7 @@ void Notes::angle(int index, const Marks::Angle& angle) {
     if (!view_.view()) wide = std::clamp(0.4 * shorter, angle_, 2.5 * angle_);
     from.normalize(), to.normalize();
     hang(center, center);
-    dashes(view_.page(center), view_.page(center + (wide + 7 * point_) / view_.scale_at(center) * from));
+    dashes(center, center + (wide + 7 * point_) / view_.scale_at(center) * from);
   }
   // an arc of the great circle through both
   const double whole = std::atan2(from.cross(to).norm(), from.dot(to));
@@ -242,18 +271,19 @@ void Notes::angle(int index, const Marks::Angle& angle) {
   if (!(across.norm() > 1e-12)) return;
   across.normalize();
   const double radius = wide / view_.scale_at(center);
-  const auto at = [&](double a, double r) {
-    return view_.page(center + r * (std::cos(a) * from + std::sin(a) * across));
+  const auto on_arc = [&](double a) {
+    return Vec3(center + radius * (std::cos(a) * from + std::sin(a) * across));
   };
-  std::vector<Point> line;
+  std::vector<Vec3> way;
   const int n = std::max(6, int(whole / 0.06));
-  for (int i = 0; i <= n; ++i) line.push_back(at(whole * i / n, radius));
-  stroke(line, thin_, colours_.ink, 3);
+  for (int i = 0; i <= n; ++i) way.push_back(on_arc(whole * i / n));
+  stroke_through(way, thin_, colours_.ink, 3);
+  hang(on_arc(whole / 2), on_arc(whole / 2));
 
   const double degrees = whole * 180 / std::numbers::pi;
   const WordKey key{WordKey::angle, index};
   const Formula f = set(key, angle.label, degrees, "°", colours_.ink);
-  const Point hub = view_.page(center), rim = at(whole / 2, radius), out = rim - hub;
+  const Point hub = view_.page(center), rim = view_.page(on_arc(whole / 2)), out = rim - hub;
   const Point m = out.norm() > 0 ? Point(out.normalized()) : Point(1, 0);
   std::vector<Placing::Candidate> places;
   for (const double off : {1.0, 2.0, 4.0, -3.2})
@@ -292,8 +322,8 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
       long_side = std::min(long_side, kCone * std::min(window.width, window.height) / view_.scale_at(point));
     const Vec3 n = first.body == cone.body ? first.normal : Vec3(-first.normal), along(-n.y(), n.x(), 0);
     const auto edge = [&](double a) { return Vec3(std::cos(a) * n + std::sin(a) * along); };
-    const auto tip = [&](double a, double r) { return view_.page(point + r * edge(a)); };
-    std::vector<Point> sector{view_.page(point)}, arc;
+    const auto tip = [&](double a, double r) { return Vec3(point + r * edge(a)); };
+    std::vector<Vec3> sector{point}, arc;
     const double radius = std::max(angle_, 0.55 * long_side * view_.scale_at(point)) / view_.scale_at(point);
     for (int k = -8; k <= 8; ++k) sector.push_back(tip(half * k / 8, long_side));
     for (int k = 0; k <= 8; ++k) arc.push_back(tip(half * k / 8, radius));
@@ -301,16 +331,19 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
     Color tint = colours_.quiet;
     const Color rim_ink = colours_.quiet;
     tint.a = 40;
-    list_.add(sector, tint);
+    std::vector<Point> outline;
+    for (const Vec3& place : sector) outline.push_back(view_.page(place));
+    by_nodes(sector);
+    list_.add(outline, tint);
     for (const double side : {-1.0, 1.0})
-      stroke({view_.page(point), tip(side * half, long_side)}, thin_, rim_ink, 2);
-    dashes(view_.page(point), tip(0, long_side));
-    stroke(arc, thin_, colours_.ink, 2);
+      stroke_through({point, tip(side * half, long_side)}, thin_, rim_ink, 2);
+    dashes(point, tip(0, long_side));
+    stroke_through(arc, thin_, colours_.ink, 2);
     const WordKey key{WordKey::cone, index, first.other >= 0 ? first.other : -1 - first.wall};
     const Formula f = set(key, cone.label, half * 180 / std::numbers::pi, "°", colours_.ink);
-    const Point rim = tip(half / 2, radius);
+    const Point rim = view_.page(tip(half / 2, radius));
     std::vector<Placing::Candidate> places =
-        Placing::along(view_.page(point), tip(half, long_side), gap_, size(f), point_, film());
+        Placing::along(view_.page(point), view_.page(tip(half, long_side)), gap_, size(f), point_, film());
     for (Placing::Candidate& each : places) each.cost += 2 * point_;
     const Point out = (rim - view_.page(point)).normalized();
     places.insert(
@@ -408,6 +441,14 @@ Projection::Projection(const CameraProjection& lens, double scale, const Point& 
 
 Point Projection::page(const Vec3& place) const {
   return view_ ? view_->page(place) : Point(corner_ + scale_ * lens_.page(place));
+}
+
+Vec3 Projection::between(const Vec3& a, const Vec3& b, double part) const {
+  if (!view_) {
+    const double da = lens_.depth(a), db = lens_.depth(b);
+    part = part * da / (db + part * (da - db));
+  }
+  return a + part * (b - a);
 }
 
 double Projection::scale_at(const Vec3& place) const {

@@ -26,6 +26,8 @@ class Projection {
   Projection(const CameraProjection& lens, double scale, const Point& corner);
 
   Point page(const sim::Vec3& place) const;
+  /// The place of a segment that is seen at a part of its way on the page.
+  sim::Vec3 between(const sim::Vec3& a, const sim::Vec3& b, double part) const;
   /// Page units a metre there.
   double scale_at(const sim::Vec3& place) const;
   /// The way from there to the eye, unit.

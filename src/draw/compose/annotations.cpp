@@ -285,10 +285,10 @@ std::vector<WorldLine> path_lines(const Marks& marks,
     const double start = path.shown.start ? path.shown.start->time : 0;
     if (now.time < start || !Interval{{}, path.shown.end}.has(now.time, film)) continue;
     const double from = path.lasting > 0 ? std::max(now.time - path.lasting, start) : start;
-    WorldLine line{{}, path.at.body, path.color, path.front};
+    WorldLine line{{}, path.at.body, path.color, path.front, int(i), path.lasting};
     const auto add = [&](double time, const sim::Vec3& at) {
       const double age = path.lasting > 0 ? (now.time - time) / path.lasting : 0;
-      line.nodes.push_back({at, kFaintest + (1 - kFaintest) * std::clamp(1 - age, 0.0, 1.0)});
+      line.nodes.push_back({at, kFaintest + (1 - kFaintest) * std::clamp(1 - age, 0.0, 1.0), time});
     };
     const std::vector<sim::Track::Point>& way = paths[i];
     auto first = std::lower_bound(way.begin(), way.end(), from,

@@ -56,11 +56,14 @@ class Notes {
   double bare(const Point& tail, const Point& tip);
   bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink);
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
-  void dashes(const Point& a, const Point& b);
+  void stroke_through(const std::vector<sim::Vec3>& way, double width, Color color, double weight);
+  void by_nodes(const std::vector<sim::Vec3>& way);
+  void dashes(const sim::Vec3& from, const sim::Vec3& to);
   void turn(const WordKey& key, const Marks::Vector& vector, const Reading& reading, const Formula& label,
             Color ink);
-  template <class At>
-  void arc(const At& at, double radius, double from, double to, double width, Color color);
+  template <class At, class Place>
+  void arc(const At& at, const Place& place, double radius, double from, double to, double width,
+           Color color);
   void word(const WordKey& key, Formula set, std::vector<Placing::Candidate> places, const Point& anchor,
             std::optional<std::pair<Point, Point>> arrow = {}) {
     if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor, arrow, hang_});

@@ -134,9 +134,11 @@ struct Subject {
   auto operator<=>(const Subject&) const = default;
 };
 
-/// Where in space a thing of the page hangs, m: at a place, or between two. Seen from elsewhere it is there.
+/// Where in space a thing of the page hangs, m: at a place, or between two, or a line and a polygon node by
+/// node. Seen from elsewhere it is there.
 struct Hang {
   Eigen::Vector3d a, b;
+  std::vector<Eigen::Vector3d> nodes{};
   bool operator==(const Hang&) const = default;
 };
 

@@ -70,12 +70,15 @@ struct Solids {
     sim::Vec3 center;
     double half = 0, thick = 0;
   };
+  /// A trail, or a path of an annotation.
   struct Way {
     int body = 0;
-    double now = 0, lasting = 0, widest = 0;  // s, page units
+    double now = 0, lasting = 0, widest = 0;  // s (of a path 0: for ever), page units
     Color strong{}, faint{};
     std::vector<sim::Vec3> places;
     std::vector<double> times;
+    int path = -1;       // which
+    bool front = false;  // over the bodies
   };
   CameraProjection lens;
   int part = 0;  // of a page of several runs: which

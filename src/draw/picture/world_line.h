@@ -14,11 +14,14 @@ struct WorldLine {
   struct Node {
     sim::Vec3 at;
     double strength = 1;  // 0 to 1: how wide and how strong
+    double time = 0;      // s
   };
   std::vector<Node> nodes;
   int body = -1;  // whose colour it has, unless it has its own
   std::optional<Color> color{};
   bool front = false;
+  int path = 0;        // which
+  double lasting = 0;  // s; 0: for ever
 };
 
 /// Bodies as they were at another instant, in space: outlines where nothing hides them.

@@ -146,7 +146,7 @@ void trace_drops(SpaceFrame& s) {
 }
 
 void trace_paths(SpaceFrame& s, std::span<const WorldLine> paths, bool front) {
-  s.list.of({Subject::What::layer, front ? 1 : 0});
+  s.list.of(kSeenLines);
   const SpaceStage& stage = s.stage;
   const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
   HiddenLines::Parts parts;
@@ -155,6 +155,12 @@ void trace_paths(SpaceFrame& s, std::span<const WorldLine> paths, bool front) {
     const Color strong = path.color       ? *path.color
                          : path.body >= 0 ? paint(stage.own[std::size_t(path.body)], stage.look.theme).outline
                                           : stage.colours.ink;
+    Solids::Way seen{
+        path.body, s.now.time, path.lasting, kPathLine * stage.layout.weight, strong, stage.colours.room, {},
+        {},        path.path,  front};
+    for (const WorldLine::Node& node : path.nodes)
+      seen.places.push_back(node.at), seen.times.push_back(node.time);
+    if (!seen.places.empty()) s.solids.ways.push_back(std::move(seen));
     std::vector<Node> line;
     const auto flush = [&] {
       if (line.size() > 1) s.list.add(line, Cap::round, blend);

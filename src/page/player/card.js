@@ -130,10 +130,16 @@ export function texture(gl, inner, width, height, format, type, filter) {
 
 /** One for all runs of a page. */
 export class Card {
-  constructor() {
-    this.canvas = document.createElement("canvas");
-    const gl = this.canvas.getContext("webgl2", { antialias: true, alpha: true, depth: true, stencil: false, premultipliedAlpha: true });
-    if (!gl) throw new Error("this browser has no WebGL 2, which space is drawn with");
+  /** None where this browser has no WebGL 2. */
+  static made() {
+    const canvas = document.createElement("canvas");
+    const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, depth: true, stencil: false, premultipliedAlpha: true });
+    return gl && new Card(canvas, gl);
+  }
+
+  /** @param {HTMLCanvasElement} canvas @param {WebGL2RenderingContext} gl */
+  constructor(canvas, gl) {
+    this.canvas = canvas;
     this.gl = gl;
     this.programs = make_programs(gl);
     this.map = texture(gl, gl.DEPTH_COMPONENT24, MAP, MAP, gl.DEPTH_COMPONENT, gl.UNSIGNED_INT, gl.LINEAR);

@@ -12,7 +12,7 @@ const FALL = 1.6,
   MOST = 0.06; // as there, and draw/space/shadows.cpp
 
 /** The hull of points of a plane, in order. */
-function hull(points) {
+export function hull(points) {
   const all = points.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]),
     out = [];
   const chain = (each) => {

@@ -12,6 +12,7 @@ const TILE = 105,
   FROM = 0.35,
   TO = 1.25,
   PIECES = 28,
+  FEW = 7,
   GRID = 1.5,
   FRAME = 1.8;
 
@@ -41,30 +42,48 @@ export class Ground {
     this.lines = document.createElement("canvas");
   }
 
-  /** The ground's grid and the room's hairlines behind all, kept as long as one looks from one place. */
+  /** The ground's grid, the room's hairlines behind all, and what darkens the ground under bodies. */
   draw(context, lens, i, scale, fitted, body_of) {
-    const key = `${lens.key} ${scale}`;
-    let known = this.grids.get(i);
-    if (!known || known.key !== key) {
-      const picture = known?.picture ?? document.createElement("canvas"),
-        c = this.clear(picture, context.canvas, lens, scale);
-      if (above_ground(this.space.ground, lens) && this.space.ground.grid) {
-        if (this.dark) this.pool(c, lens, scale);
-        // lines on the page's colour, for the darker or the lighter of two
-        this.grid(this.clear(this.lines, context.canvas, lens, scale), lens, scale, fitted);
-        c.globalCompositeOperation = this.dark ? "lighten" : "darken";
-        c.drawImage(this.lines, 0, 0);
-        c.globalCompositeOperation = "source-over";
-      }
-      this.room(c, lens, scale, true);
-      this.grids.set(i, (known = { key, picture }));
-    }
     context.setTransform(1, 0, 0, 1, 0, 0);
-    context.drawImage(known.picture, 0, 0);
+    context.drawImage(this.kept(context.canvas, lens, i, scale, fitted), 0, 0);
     if (!above_ground(this.space.ground, lens)) return;
     this.clipped(context, lens, scale);
     draw_contacts(context, this.space, lens, body_of, this.dark);
     context.restore();
+  }
+
+  /** The same without contacts; where one looks from elsewhere than before, in few pieces. */
+  sketch(context, lens, i, scale, fitted) {
+    if (this.grids.get(i)?.key === `${lens.key} ${scale}`) {
+      context.setTransform(1, 0, 0, 1, 0, 0);
+      context.drawImage(this.kept(context.canvas, lens, i, scale, fitted), 0, 0);
+      return;
+    }
+    if (above_ground(this.space.ground, lens) && this.space.ground.grid) {
+      if (this.dark) this.pool(context, lens, scale);
+      this.grid(context, lens, scale, fitted, FEW);
+    }
+    this.room(context, lens, scale, true);
+  }
+
+  /** What is behind all, kept as long as one looks from one place. */
+  kept(like, lens, i, scale, fitted) {
+    const key = `${lens.key} ${scale}`,
+      known = this.grids.get(i);
+    if (known?.key === key) return known.picture;
+    const picture = known?.picture ?? document.createElement("canvas"),
+      c = this.clear(picture, like, lens, scale);
+    if (above_ground(this.space.ground, lens) && this.space.ground.grid) {
+      if (this.dark) this.pool(c, lens, scale);
+      // lines on the page's colour, for the darker or the lighter of two
+      this.grid(this.clear(this.lines, like, lens, scale), lens, scale, fitted, PIECES);
+      c.globalCompositeOperation = this.dark ? "lighten" : "darken";
+      c.drawImage(this.lines, 0, 0);
+      c.globalCompositeOperation = "source-over";
+    }
+    this.room(c, lens, scale, true);
+    this.grids.set(i, { key, picture });
+    return picture;
   }
 
   /** A panel's part of a canvas in the page's colour. */
@@ -114,7 +133,8 @@ export class Ground {
     c.restore();
   }
 
-  grid(c, lens, scale, fitted) {
+  /** Lines on the ground, each in so many pieces of one strength. */
+  grid(c, lens, scale, fitted, pieces) {
     const { ground, weight } = this.space,
       n = ground.normal,
       shown = lens.window[2] / lens.scale;
@@ -150,8 +170,8 @@ export class Ground {
         if (!part) continue;
         /** @type {{p: number[], s: number} | null} */
         let before = null;
-        for (let i = 0; i <= PIECES; ++i) {
-          const t = part[0] + ((part[1] - part[0]) * i) / PIECES,
+        for (let i = 0; i <= pieces; ++i) {
+          const t = part[0] + ((part[1] - part[0]) * i) / pieces,
             at = plus(start, along, t);
           if (lens.depth(at) < 0.05) {
             before = null;

@@ -136,7 +136,11 @@ export class Lens {
     return 1 - this.per_distance * dot(sub(place, this.target), this.back);
   }
 
-  /** A place on the page. */
+  /**
+   * A place on the page.
+   * @param {Vec} place
+   * @returns {[number, number]}
+   */
   page(place) {
     const p = sub(place, this.target),
       k = this.scale / this.depth(place);

@@ -36,6 +36,8 @@ export class Pen {
     this.dx = this.dy = 0;
     /** @type {Hanging | null} where what hangs in space has gone */
     this.hanging = null;
+    /** @type {number[] | null} those of a line or a polygon that hangs by them */
+    this.nodes = null;
   }
 
   /**
@@ -70,7 +72,7 @@ export class Pen {
         this.move(n);
         return this.text(n[0], n[1], this.reel.lines[thing.step(0, frame)], thing.whole);
       case POLYGON:
-        return this.polygon(this.turned(thing.outline.points, n), inks[thing.step(0, frame)]);
+        return this.polygon(this.nodes ?? this.turned(thing.outline.points, n), inks[thing.step(0, frame)]);
       case STROKE:
         return this.stroke(thing, frame, n);
     }
@@ -155,6 +157,7 @@ export class Pen {
   stroke(thing, frame, n) {
     if (thing.trail) return this.trail(thing, n);
     const color = thing.step(0, frame);
+    if (this.nodes) return this.line(thing, this.nodes, n[0], color);
     if (thing.turns > 0) return this.line(thing, coil(thing.turns, n), n[6], color);
     if (thing.form === GROWN) {
       const count = thing.step(1, frame),

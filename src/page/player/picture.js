@@ -63,7 +63,7 @@ export class Picture {
     /** @type {View | Orbit} */
     this.view = new View();
     if (film.spaces) {
-      const card = new Card(),
+      const card = Card.made(),
         { ground } = film.spaces[0],
         view = (this.view = new Orbit(ground ? ground.normal : [0, 1, 0], Boolean(ground)));
       this.spaces = film.spaces.map((/** @type {any} */ _, /** @type {number} */ run) => new Space(film, run, reel, card, view));
@@ -89,8 +89,11 @@ export class Picture {
     return thing.what !== PAGE && thing.what !== CHART;
   }
 
-  /** @param {number} frame not necessarily whole: between two, what moves is between */
-  draw(frame) {
+  /**
+   * @param {number} frame not necessarily whole: between two, what moves is between
+   * @param {boolean} [sketched] space without light and shadow
+   */
+  draw(frame, sketched = false) {
     this.frame = frame;
     const { context: c, pen, reel, view, canvas } = this,
       scale = canvas.height / 1080,
@@ -99,7 +102,7 @@ export class Picture {
     c.globalCompositeOperation = "source-over";
     c.fillStyle = `rgb(${this.film.ground.join(",")})`;
     c.fillRect(0, 0, canvas.width, canvas.height);
-    for (const space of this.spaces) space.draw(c, frame);
+    for (const space of this.spaces) space.draw(c, frame, sketched);
     let clip = -2,
       world = false;
     c.save();
@@ -107,9 +110,13 @@ export class Picture {
       if (thing.space > 0 || !thing.lives_at(whole)) continue;
       const now = !this.spaces.length && this.world(thing);
       // what is said of space goes with the places that it is said of
-      pen.hanging = null;
-      if (this.spaces.length && view.moved && this.world(thing)) {
-        pen.hanging = this.spaces[Math.min(thing.part, this.spaces.length - 1)].hanging(thing, frame);
+      const space = this.spaces[Math.min(thing.part, this.spaces.length - 1)];
+      pen.hanging = pen.nodes = null;
+      if (space && thing.through) {
+        pen.nodes = space.through(thing, frame);
+        if (!pen.nodes) continue;
+      } else if (space && view.moved && this.world(thing)) {
+        pen.hanging = space.hanging(thing, frame);
         if (!pen.hanging) continue;
       }
       const window = now && view.moved ? this.film.windows[thing.part] : null;
@@ -129,7 +136,7 @@ export class Picture {
       }
       pen.draw(thing, frame);
     }
-    pen.hanging = null;
+    pen.hanging = pen.nodes = null;
     c.restore();
     pen.place(scale);
     const at = this.named && this.place_of(...this.named);

@@ -9,6 +9,8 @@ import { NOTHING, Values, clock, fixed } from "./values.js";
 const $ = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
 const TICK = 4; // px: a click so near an event's tick is meant for it
 const TOLD = 200; // ms between two tables while the film plays
+const SLOW = 16, // ms: where a whole picture takes longer it is sketched while it moves,
+  REST = 150; // and drawn whole when it has stood so long
 
 class Player {
   /**
@@ -29,6 +31,11 @@ class Player {
     this.pointed = null; // what the pointer is on
     this.due = false;
     this.told = 0;
+    /** How long the last two whole pictures took, ms. */
+    this.costs = [0, 0];
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this.resting = undefined;
+    this.sketched = false; // what is on the page
     this.by = -1; // the column by which the table of values is sorted
     this.wire();
     this.layout();
@@ -78,31 +85,42 @@ class Player {
         if (!this.again) this.pause();
       }
     }
-    this.draw();
+    this.draw(this.slow);
     if (this.playing) requestAnimationFrame((then) => this.tick(then));
     else this.draw();
   }
 
-  /** Draws when the browser next does. */
+  /** Draws when the browser next does: where a whole picture takes long, a sketch of it until nothing moves. */
   refresh() {
     if (this.due) return;
     this.due = true;
     requestAnimationFrame(() => {
-      if (this.due) this.draw();
+      if (this.due) this.draw(this.slow);
     });
   }
 
-  draw() {
+  /** Whether pictures of space take long here. */
+  get slow() {
+    return Math.min(...this.costs) > SLOW;
+  }
+
+  /** @param {boolean} [sketched] */
+  draw(sketched = false) {
     this.due = false;
+    clearTimeout(this.resting);
+    this.sketched = sketched;
+    if (sketched && !this.playing) this.resting = setTimeout(() => this.draw(), REST);
+    const began = performance.now();
     // at full speed the frames of the film, slower also what is between them
     const frame = this.playing && this.rate >= 1 ? Math.floor(this.frame + NOTHING) : this.frame;
-    this.picture.draw(frame);
+    this.picture.draw(frame, sketched);
+    if (!sketched && this.picture.spaces.length) this.costs = [this.costs[1], performance.now() - began];
     const seconds = frame / this.film.fps,
       run = this.values.time(frame);
     const scrub = $("scrub");
     if (Math.abs(Number(scrub.value) - frame) > NOTHING) scrub.value = String(frame);
     scrub.setAttribute("aria-valuetext", `${clock(run)} of the run`);
-    $("clock").textContent = this.slow ? `${clock(run)} (${clock(seconds)})` : `${run.toFixed(2)} / ${clock(this.ends)}`;
+    $("clock").textContent = this.slowed ? `${clock(run)} (${clock(seconds)})` : `${run.toFixed(2)} / ${clock(this.ends)}`;
     const said = this.film.captions
       .filter((/** @type {any} */ c) => c.from <= seconds && seconds < c.to)
       .map((/** @type {any} */ c) => c.text)
@@ -123,7 +141,7 @@ class Player {
   }
 
   /** Whether the film's time is not the run's. */
-  get slow() {
+  get slowed() {
     return Math.abs(this.values.time(this.last) - this.last / this.film.fps) > 0.01;
   }
 

@@ -46,6 +46,8 @@ export class Thing {
     this.still = json.still === 1;
     // of so many places of space, at which it hangs: the last of its numbers
     this.hang = json.hang ?? 0;
+    // which are its nodes
+    this.through = json.through === 1;
     // words that keep to whole pixels
     this.whole = json.whole === 1;
     const style = json.style ?? 0;
@@ -57,6 +59,9 @@ export class Thing {
     // what stands in space: a tube of so many nodes, a ball, a plate, a trail
     this.space = json.space ?? 0;
     this.nodes = json.nodes ?? 0;
+    // a path of an annotation, and whether it is over the bodies
+    this.path = json.path !== undefined;
+    this.front = json.path === 2;
     /** @type {{places: number[], times: number[]}} */
     this.way = { places: [], times: [] };
     // between two frames only that is drawn which is the same thing in both
