@@ -487,9 +487,44 @@ TEST_P(Player, SpaceIsSeenFromAbove) {
       "= "
       "lens.page(s.body(0).at); return s.body_at(x, y, 0);");
   EXPECT_TRUE(found.is_array());
+  // turned a little from there
+  tab_->drag(480, 300, 480, 290);
+  const double turned = player("return player.picture.spaces[0].lenses(0)[0].back[1];");
+  EXPECT_LT(turned, 0.9999);
+  EXPECT_GT(turned, 0.95);
   tab_->press("0");
   EXPECT_FALSE(bool(player("return player.picture.view.moved;")));
+  tab_->press("t");
+  tab_->press("t");
+  EXPECT_FALSE(bool(player("return player.picture.view.moved;")));
+  // the wheel comes nearer to what it points at
+  const std::string place =
+      "const [x, y] = player.picture.spaces[0].lenses(0)[0].page(player.picture.spaces[0].body(0).at), box = "
+      "player.picture.canvas.getBoundingClientRect(); return [box.left + x * box.height / 1080, box.top + y "
+      "* "
+      "box.height / 1080];";
+  const Browser::Json before = player("player.pause(); player.frame = 0; player.draw(); " + place);
+  tab_->wheel(before[0], before[1], -300);
+  const Browser::Json after = player("player.draw(); " + place);
+  EXPECT_GT(double(player("return player.picture.view.zoom;")), 1.3);
+  EXPECT_NEAR(double(before[0]), double(after[0]), 3);
+  EXPECT_NEAR(double(before[1]), double(after[1]), 3);
   EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+}
+
+// A row of the table that is pointed at names its body as long as it is, and stays the row it is.
+TEST_P(Player, PointingAtARowNamesItsBody) {
+  open(kScenes + "swing.toml");
+  const std::string soon = "new Promise((done) => setTimeout(() => done(player.picture.named), 100))";
+  const Browser::Json at = player(
+      "player.pause(); document.getElementById('values').open = true; player.list(); window.row = "
+      "document.querySelector('#values tbody tr'); row.scrollIntoView({ block: 'center' }); const box = "
+      "row.getBoundingClientRect(); return [box.left + 20, box.top + box.height / 2];");
+  tab_->point(at[0], at[1]);
+  EXPECT_TRUE(player("return " + soon + ";").is_array());
+  EXPECT_TRUE(bool(player("player.draw(); return window.row.isConnected;")));
+  tab_->point(at[0], 5);
+  EXPECT_TRUE(player("return " + soon + ";").is_null());
 }
 
 TEST_P(Player, WordsOfASceneAreWords) {

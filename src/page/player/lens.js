@@ -43,6 +43,7 @@ export class Orbit {
     this.turn = this.tilt = this.dx = this.dy = 0;
     this.zoom = 1;
     this.flat = false; // from above
+    this.steep = 0; // rad: how far to tilt to there
   }
 
   home() {
@@ -55,8 +56,9 @@ export class Orbit {
     return this.zoom !== 1 || this.dx !== 0 || this.dy !== 0 || this.turn !== 0 || this.tilt !== 0 || this.flat;
   }
 
-  /** Around what is looked at, by page units of a pointer. */
+  /** Around what is looked at, by page units of a pointer; from above on, too. */
   move(x, y) {
+    if (this.flat) this.tilt = this.steep;
     this.turn -= x * 0.006;
     this.tilt += y * 0.006;
     this.flat = false;
@@ -67,14 +69,25 @@ export class Orbit {
     this.dy += y;
   }
 
-  nearer(by) {
-    this.zoom = clamp(this.zoom * by, 0.2, 60);
+  /**
+   * Nearer by a factor, with what is seen at a place of the page where it is.
+   * @param {number} by
+   * @param {number} x page units from the middle of the film's picture
+   * @param {number} y
+   */
+  nearer(by, x, y) {
+    const zoom = clamp(this.zoom * by, 0.2, 60),
+      k = zoom / this.zoom;
+    this.dx = x - k * (x - this.dx);
+    this.dy = y - k * (y - this.dy);
+    this.zoom = zoom;
   }
 
-  /** From above. */
+  /** From above, or back. */
   above() {
+    const was = this.flat;
     this.home();
-    this.flat = true;
+    this.flat = !was;
   }
 
   /** @param {Lens} lens of the film */
@@ -83,6 +96,7 @@ export class Orbit {
     const rises = Math.asin(Math.min(Math.max(dot(lens.back, this.vertical), -1), 1));
     const most = Math.PI / 2 - 1e-4,
       least = this.ground ? Math.min(rises, LOWEST) : -most;
+    this.steep = most - rises;
     // not lower than that, so that one can turn back at once
     this.tilt = clamp(this.tilt, least - rises, most - rises);
     const tilt = (this.flat ? most : rises + this.tilt) - rises;

@@ -84,6 +84,13 @@ export class Picture {
     if (this.canvas.height !== height) this.canvas.height = height;
   }
 
+  /** Nearer by a factor, with what is seen at a place of the page where it is. */
+  nearer(by, x, y) {
+    const space = this.spaces.find((each) => each.holds(x, y)) ?? this.spaces[0],
+      [left, top] = space ? space.middle_at(x, y, this.frame) : [0, 0];
+    this.view.nearer(by, x - left, y - top);
+  }
+
   /** Whether a thing moves with the view. */
   world(thing) {
     return thing.what !== PAGE && thing.what !== CHART;

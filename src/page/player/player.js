@@ -7,10 +7,12 @@ import { Reel } from "./reel.js";
 import { NOTHING, Values, clock, fixed } from "./values.js";
 
 const $ = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
-const TICK = 4; // px: a click so near an event's tick is meant for it
+const TICK = 4, // px: a click so near an event's tick is meant for it,
+  TAP = 8; // and a finger that goes no farther taps
 const TOLD = 200; // ms between two tables while the film plays
 const SLOW = 16, // ms: where a whole picture takes longer it is sketched while it moves,
-  REST = 150; // and drawn whole when it has stood so long
+  REST = 150, // and drawn whole when it has stood so long,
+  HELD = 600; // or so long under a pointer that is down
 
 class Player {
   /**
@@ -36,6 +38,7 @@ class Player {
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.resting = undefined;
     this.sketched = false; // what is on the page
+    this.held = false; // whether a pointer is down
     this.by = -1; // the column by which the table of values is sorted
     this.wire();
     this.layout();
@@ -109,7 +112,7 @@ class Player {
     this.due = false;
     clearTimeout(this.resting);
     this.sketched = sketched;
-    if (sketched && !this.playing) this.resting = setTimeout(() => this.draw(), REST);
+    if (sketched && !this.playing) this.resting = setTimeout(() => this.draw(), this.held ? HELD : REST);
     const began = performance.now();
     // at full speed the frames of the film, slower also what is between them
     const frame = this.playing && this.rate >= 1 ? Math.floor(this.frame + NOTHING) : this.frame;
@@ -228,8 +231,10 @@ class Player {
     ]))
       $(id).setAttribute("aria-disabled", String(this.event_beside(way) === undefined));
     if (now === this.event) return;
-    if (this.event >= 0) items[this.event]?.classList.remove("now");
-    if (now >= 0) items[now]?.classList.add("now");
+    // all that happen together
+    const together = (/** @type {number} */ i) =>
+      now >= 0 && Math.abs(this.frame_of(this.film.events[i]) - this.frame_of(this.film.events[now])) < 1e-3;
+    items.forEach((each, i) => each.classList.toggle("now", together(i)));
     this.event = now;
   }
 
@@ -321,27 +326,32 @@ class Player {
     const { head, rows } = this.values.table(this.picture.frame, this.by),
       { time, before } = this.values.instant(this.picture.frame);
     $("when").textContent = `at ${time.toFixed(3)} s${before ? ", just before" : ""}`;
-    const cell = (/** @type {HTMLElement} */ line, /** @type {string} */ text) => {
-      line.appendChild(document.createElement("td")).textContent = text;
-    };
-    const lines = rows.map((/** @type {any} */ each) => {
-      const line = document.createElement("tr"),
-        { part, index } = each.body,
-        it = this.pointed;
-      cell(line, each.body.name);
-      for (const value of each.values) cell(line, fixed(value));
+    const body = panel.querySelector("tbody"),
+      it = this.pointed;
+    while (body.rows.length > rows.length) body.deleteRow(-1);
+    while (body.rows.length < rows.length) this.row(body.insertRow(), head.length);
+    rows.forEach((/** @type {any} */ each, /** @type {number} */ i) => {
+      const line = body.rows[i],
+        { part, index, name } = each.body;
+      Object.assign(line.dataset, { part, index });
+      [name, ...each.values.map(fixed)].forEach((text, k) => {
+        if (line.cells[k].textContent !== text) line.cells[k].textContent = text;
+      });
       line.classList.toggle("now", Boolean(it && !it.chart && it.part === part && it.index === index));
-      line.addEventListener("pointerenter", () => this.name([part, index]));
-      line.addEventListener("pointerleave", () => this.name(null));
-      return line;
     });
-    panel.querySelector("tbody").replaceChildren(...lines);
     const heads = panel.querySelector("thead");
     if (!heads.firstChild) heads.append(this.heads(head));
     heads.querySelectorAll("th").forEach((/** @type {HTMLElement} */ each, /** @type {number} */ i) => {
       if (i === this.by) each.setAttribute("aria-sort", i === 0 ? "ascending" : "descending");
       else each.removeAttribute("aria-sort");
     });
+  }
+
+  /** A row of the table, of so many columns: pointed at, it names its body. */
+  row(line, columns) {
+    for (let k = 0; k < columns; ++k) line.insertCell();
+    line.addEventListener("pointerenter", () => this.name([Number(line.dataset.part), Number(line.dataset.index)]));
+    line.addEventListener("pointerleave", () => this.name(null));
   }
 
   /** The head of the table: a column is sorted where it is clicked, and again as in the scene. */
@@ -426,6 +436,12 @@ class Player {
         else if (id === "values") this.name(null);
       });
     document.addEventListener("keydown", (event) => this.key(event));
+    for (const kind of ["pointerdown", "pointerup", "pointercancel"])
+      document.addEventListener(kind, () => {
+        this.held = kind === "pointerdown";
+        // let go, it stands
+        if (!this.held && this.sketched && !this.playing) this.refresh();
+      });
     window.addEventListener("resize", () => this.layout());
     document.addEventListener("fullscreenchange", () => this.layout());
     document.body.classList.toggle("space", film.dimension === 3);
@@ -441,11 +457,13 @@ class Player {
     const held = new Map();
     let moved = false,
       seeking = false,
-      was = 0;
+      was = 0,
+      gone = 0; // px: how far the pointer has gone
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       held.set(event.pointerId, this.place(event));
       moved = false;
+      gone = 0;
       const [x, y] = this.place(event),
         chart = this.picture.charts.at(x, y);
       seeking = Boolean(chart) && held.size === 1;
@@ -459,12 +477,13 @@ class Player {
       if (seeking) return this.seek_chart(event);
       held.set(event.pointerId, now);
       const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
-      moved ||= Math.hypot(dx, dy) > 2;
+      gone += Math.hypot(event.movementX, event.movementY);
+      moved ||= gone > (event.pointerType === "touch" ? TAP : 2);
       canvas.classList.add("held");
       if (held.size === 2) {
         const [a, b] = [...held.values()],
           apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
-        if (was > 0) this.picture.view.nearer(apart / was, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
+        if (was > 0) this.picture.nearer(apart / was, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
         was = apart;
         this.picture.view.shift(dx / 2, dy / 2);
       } else if (event.shiftKey || event.buttons === 4) {
@@ -484,7 +503,9 @@ class Player {
     };
     canvas.addEventListener("pointerup", release);
     canvas.addEventListener("pointercancel", release);
-    stage.addEventListener("pointerleave", () => {
+    stage.addEventListener("pointerleave", (event) => {
+      // a finger that is lifted still points
+      if (event.pointerType === "touch") return;
       this.pointed = null;
       this.refresh();
     });
@@ -493,7 +514,8 @@ class Player {
       (event) => {
         event.preventDefault();
         const [x, y] = this.place(event);
-        this.picture.view.nearer(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), x, y);
+        this.picture.nearer(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), x, y);
+        this.pointed = null;
         this.refresh();
       },
       { passive: false },
@@ -606,10 +628,10 @@ class Player {
           return this.full();
         case "+":
         case "=":
-          return (view.nearer(1.25, ...middle), this.refresh());
+          return (this.picture.nearer(1.25, ...middle), this.refresh());
         case "-":
         case "−":
-          return (view.nearer(0.8, ...middle), this.refresh());
+          return (this.picture.nearer(0.8, ...middle), this.refresh());
         case "0":
           return this.home();
         case "t":

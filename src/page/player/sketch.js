@@ -1,6 +1,6 @@
 // Space sketched on the canvas alone, body by body from the farthest on: what a page shows while the picture moves where the
 // whole one takes too long, and where a browser has no WebGL. Bodies and lines are where they are in light; the shadows
-// of bodies on each other are left out, and the ground's are hard.
+// of bodies on each other are one tone a face, and the ground's are hard.
 
 import { hull } from "./contact.js";
 import { helix } from "./forms.js";
@@ -9,10 +9,13 @@ import { clamp, dot, plus, sub, turned } from "./lens.js";
 
 const WIDEST = 2.3,
   THINNEST = 0.5,
-  PART = 0.22; // widths of edges: draw/space/edges.cpp
+  PART = 0.22, // widths of edges: draw/space/edges.cpp
+  ALIKE = 0.94; // cosine: faces so much alike have none between them
 const ITEMS = 300; // items: more are put in order by their middles alone
 const TOUCH = 1e-3; // of a body's size: so far two that touch may be within each other
 const SHADES = 12; // of a trail
+const SHADOWS = 60; // bodies' pieces: of more, none shades another
+const MEANS = [1, 1, 0.9, 0.78]; // of the patterns of wood and checks: shaders.js
 
 /**
  * What is drawn in one go: a convex body's piece, or a line.
@@ -38,6 +41,8 @@ export class Sketch {
     this.lens = lens;
     /** @type {Item[]} */
     this.items = [];
+    /** @type {Item[]} those of bodies */
+    this.solids = [];
     /** @type {{at: number[], width: number, ink: number[]}[][]} trails over the bodies */
     this.fronts = [];
   }
@@ -59,6 +64,7 @@ export class Sketch {
     c.lineJoin = "round";
     c.lineCap = "round";
     for (const piece of space.pieces) this.piece(piece);
+    this.solids = this.items.slice();
     if (above_ground(space.ground, lens)) this.shadow();
     run.besides(lens, frame, number, this);
     for (const item of ordered(this.items, lens)) item.draw();
@@ -78,28 +84,51 @@ export class Sketch {
     return clamp((PART * least * this.lens.scale) / depth, THINNEST * weight, WIDEST * weight);
   }
 
-  /** A colour in light, by the way its surface looks (shaders.js: tone). */
-  tone(color, n) {
+  /**
+   * A colour in light, by the way its surface looks (shaders.js: tone), of which a part is in the sun, in the mean of its
+   * material's pattern.
+   */
+  tone(color, n, reached = 1, material = 0) {
     const { toward, across } = this.space,
       darkest = this.dark ? [8, 12, 18] : [24, 28, 34];
     const sun = Math.max(0, dot(n, toward)),
-      s = clamp(0.15 + (0.13 * (1 + n[1])) / 2 + (0.26 * (1 + dot(n, across))) / 2 + 0.58 * sun, 0, 1);
+      base = 0.15 + (0.13 * (1 + n[1])) / 2 + (0.26 * (1 + dot(n, across))) / 2,
+      s = clamp(base + (0.12 + 0.46 * reached) * sun, 0, 1),
+      mean = MEANS[material] ?? 1;
     const [down, up] = this.dark ? [0.72, 0.14] : [0.52, 0.5];
     return `rgb(${color.slice(0, 3).map((/** @type {number} */ x, /** @type {number} */ k) => {
       const low = x + down * (darkest[k] - x),
         high = x + up * (255 - x);
-      return Math.round(low + s * (high - low));
+      return Math.round(mean * (low + s * (high - low)));
     })})`;
   }
 
-  /** @param {number[][]} places in space @param {number} radius m around them @param {() => void} draw */
+  /** How much of a face the sun reaches: from its middle and towards its corners. */
+  reached(loop, own) {
+    if (this.solids.length > SHADOWS) return 1;
+    const middle = [0, 0, 0];
+    for (const p of loop) for (let k = 0; k < 3; ++k) middle[k] += p[k] / loop.length;
+    const from = loop.map((/** @type {number[]} */ p) => plus(middle, sub(p, middle), 0.6)).concat([middle]);
+    const free = from.filter(
+      (/** @type {number[]} */ p) => !this.solids.some((each) => each !== own && shades(each, p, this.space.toward)),
+    );
+    return free.length / from.length;
+  }
+
+  /**
+   * @param {number[][]} places in space
+   * @param {number} radius m around them
+   * @param {Item["planes"]} planes
+   * @param {() => void} draw
+   * @returns {Item | undefined} none where it is behind the eye
+   */
   item(places, radius, planes, draw) {
     const { lens } = this,
       middle = [0, 0, 0],
       box = [Infinity, Infinity, -Infinity, -Infinity];
     for (const p of places) {
       const depth = lens.depth(p);
-      if (depth < 0.02) return;
+      if (depth < 0.02) return undefined;
       const [x, y] = lens.page(p),
         r = (radius * lens.scale) / depth;
       box[0] = Math.min(box[0], x - r);
@@ -109,7 +138,9 @@ export class Sketch {
       for (let k = 0; k < 3; ++k) middle[k] += p[k] / places.length;
     }
     const size = radius + Math.max(...places.map((p) => Math.hypot(...sub(p, middle))));
-    this.items.push({ middle, size, near: dot(sub(middle, lens.target), lens.back), box, corners: places, radius, planes, draw });
+    const item = { middle, size, near: dot(sub(middle, lens.target), lens.back), box, corners: places, radius, planes, draw };
+    this.items.push(item);
+    return item;
   }
 
   piece(piece) {
@@ -122,30 +153,56 @@ export class Sketch {
     const shape = space.shapes[piece.shape],
       corners = [];
     for (let i = 0; i < shape.vertices.length; i += 3) corners.push(place(shape.vertices.slice(i, i + 3)));
-    this.faces(corners, shape.faces, (f) => turned(turn, shape.normals.slice(3 * f, 3 * f + 3)), own, ink, piece.least);
+    this.faces(corners, shape, (f) => turned(turn, shape.normals.slice(3 * f, 3 * f + 3)), own, {
+      ink,
+      least: piece.least,
+      material: space.materials?.[piece.body] ?? 0,
+    });
   }
 
-  /** A polyhedron: its faces that look at the eye. */
-  faces(corners, faces, normal_of, own, ink, least) {
-    const planes = faces.map((/** @type {number[]} */ loop, /** @type {number} */ f) => {
+  /**
+   * A polyhedron: its faces that look at the eye, and its edges there.
+   * @param {number[][]} corners
+   * @param {{faces: number[][], edges?: number[]}} shape
+   * @param {(face: number) => number[]} normal_of
+   * @param {number[]} own
+   * @param {{ink: string, least: number, material: number} | null} body none: a thing without edges and shadows
+   */
+  faces(corners, { faces, edges = [] }, normal_of, own, body) {
+    const planes = faces.map((loop, f) => {
       const n = normal_of(f),
         p = corners[loop[0]];
       return { n, d: dot(n, p), front: dot(n, this.sight(p)) > 0 };
     });
-    this.item(corners, 0, planes, () => {
+    const item = this.item(corners, 0, planes, () => {
       const { c, lens } = this,
-        width = ink ? this.edge(least, lens.depth(corners[0])) : 0.5;
-      faces.forEach((/** @type {number[]} */ loop, /** @type {number} */ f) => {
+        at = corners.map((p) => lens.page(p));
+      faces.forEach((loop, f) => {
         if (!planes[f].front) return;
+        const sunny = body && dot(planes[f].n, this.space.toward) > 0,
+          places = loop.map((i) => corners[i]);
         c.beginPath();
-        for (const i of loop) c.lineTo(...lens.page(corners[i]));
+        for (const i of loop) c.lineTo(...at[i]);
         c.closePath();
-        c.fillStyle = this.tone(own, planes[f].n);
+        c.strokeStyle = c.fillStyle = this.tone(own, planes[f].n, sunny ? this.reached(places, item) : 1, body?.material);
         c.fill();
-        c.lineWidth = width;
-        c.strokeStyle = ink ?? c.fillStyle;
+        // no seam between two
+        c.lineWidth = 0.5;
         c.stroke();
       });
+      if (!body) return;
+      c.beginPath();
+      for (let i = 0; i < edges.length; i += 4) {
+        const [a, b, left, right] = edges.slice(i, i + 4),
+          one = planes[left].front,
+          two = right >= 0 && planes[right].front;
+        if ((!one && !two) || (one && two && dot(planes[left].n, planes[right].n) > ALIKE)) continue;
+        c.moveTo(...at[a]);
+        c.lineTo(...at[b]);
+      }
+      c.lineWidth = this.edge(body.least, lens.depth(corners[0]));
+      c.strokeStyle = body.ink;
+      c.stroke();
     });
   }
 
@@ -275,7 +332,7 @@ export class Sketch {
   flat(shape, color) {
     const corners = [];
     for (let i = 0; i < shape.vertices.length; i += 3) corners.push(shape.vertices.slice(i, i + 3));
-    this.faces(corners, shape.faces, (f) => shape.normals.slice(3 * f, 3 * f + 3), color, null, 0);
+    this.faces(corners, shape, (f) => shape.normals.slice(3 * f, 3 * f + 3), color, null);
   }
 
   line(a, b, width, ink) {
@@ -337,6 +394,37 @@ function ordered(items, lens) {
   };
   for (const item of far) put(item, new Set());
   return out;
+}
+
+/** Whether an item lies on the way from a place to the sun. */
+function shades(item, from, toward) {
+  const far = sub(item.middle, from),
+    along = dot(far, toward);
+  if (along < -item.size || dot(far, far) - along * along > item.size * item.size) return false;
+  if (item.planes.length === 0) {
+    const off = Math.min(
+      ...item.corners.map((/** @type {number[]} */ p) => {
+        const way = sub(p, from),
+          l = dot(way, toward);
+        return l > 0 ? Math.sqrt(Math.max(dot(way, way) - l * l, 0)) : Infinity;
+      }),
+    );
+    return off < item.radius;
+  }
+  let enters = 1e-3 * item.size,
+    leaves = Infinity;
+  for (const { n, d } of item.planes) {
+    const high = dot(n, from) - d,
+      rise = dot(n, toward);
+    if (Math.abs(rise) < 1e-12) {
+      if (high > 0) return false;
+    } else if (rise < 0) {
+      enters = Math.max(enters, -high / rise);
+    } else {
+      leaves = Math.min(leaves, -high / rise);
+    }
+  }
+  return enters < leaves;
 }
 
 const meet = (/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];

@@ -85,13 +85,27 @@ export class Space {
     return this.space.panels.map((/** @type {any} */ panel) => this.view.see(Lens.of(panel, this.reel.numbers, frame)));
   }
 
+  /** The panel at a place of the page, or the first. */
+  panel_at(x, y) {
+    const { panels } = this.space;
+    return panels.find((/** @type {any} */ each) => within(each.window, [x, y])) ?? panels[0];
+  }
+
+  /** Whether a place of the page is in one of its panels. */
+  holds(x, y) {
+    return this.space.panels.some((/** @type {any} */ each) => within(each.window, [x, y]));
+  }
+
+  /** Where the film sees what the panel at a place of the page looks at. */
+  middle_at(x, y, frame) {
+    return Lens.of(this.panel_at(x, y), this.reel.numbers, frame).middle;
+  }
+
   /** The film's lens in the panel of a thing of the page. */
   lens_of(thing, frame) {
     // a panel's things are clipped to it
-    const [x, y, width, height] = this.reel.clips[thing.clip] ?? [0, 0, 0, 0],
-      middle = [x + width / 2, y + height / 2];
-    const panel = this.space.panels.find((/** @type {any} */ each) => within(each.window, middle)) ?? this.space.panels[0];
-    return Lens.of(panel, this.reel.numbers, frame);
+    const [x, y, width, height] = this.reel.clips[thing.clip] ?? [0, 0, 0, 0];
+    return Lens.of(this.panel_at(x + width / 2, y + height / 2), this.reel.numbers, frame);
   }
 
   /** The nodes of a line or a polygon that hangs by them, on the page; none where one is behind the eye. */
