@@ -343,6 +343,8 @@ void add_headers(const std::filesystem::path& file, const std::vector<std::files
 
 Complaints clashing_names(const std::filesystem::path& top, const Paths& apart,
                           const std::vector<std::filesystem::path>& roots) {
+  // src/CMakeLists.txt: BY_FOLDER
+  static const std::set<std::string> own_names{"sim", "draw"};
   std::map<std::filesystem::path, Paths> folders;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(top)) {
     const std::filesystem::path name = entry.path().lexically_relative(top);
@@ -350,7 +352,7 @@ Complaints clashing_names(const std::filesystem::path& top, const Paths& apart,
     const bool own_rules = entry.path().parent_path() != top &&
                            std::filesystem::exists(entry.path().parent_path() / "CMakeLists.txt");
     if (name.extension() == ".cpp" && !own_rules && !apart.contains(name))
-      folders[name.parent_path()].insert(name);
+      folders[own_names.contains(name.begin()->string()) ? name.parent_path() : *name.begin()].insert(name);
   }
 
   using Places = std::map<std::string, std::vector<std::pair<std::string, Defined>>>;

@@ -19,7 +19,7 @@ class PlantedNames : public Planted {
   Complaints clashes() const { return clashing_names(src_, compiled_apart(src_ / "CMakeLists.txt"), {src_}); }
 };
 
-TEST(EveryName, IsOfOneFileOfItsFolder) {
+TEST(EveryName, IsOfOneFile) {
   const std::filesystem::path src = std::filesystem::path(OBSCURA_SOURCE_DIR) / "src",
                               tests = std::filesystem::path(OBSCURA_SOURCE_DIR) / "tests";
   const auto apart = compiled_apart(src / "CMakeLists.txt");
@@ -75,6 +75,13 @@ int counted() { return 2; }
                   "sim/b.cpp:9: kPlaces is in a.cpp:10 too", "sim/b.cpp:10: kScene is in a.cpp:14 too",
                   "sim/b.cpp:11: Suite.Name is in a.cpp:17 too", "sim/b.cpp:12: Near is in a.cpp:18 too",
                   "sim/b.cpp:14: counted is in a.cpp:20 too"));
+}
+
+TEST_F(PlantedNames, OfTwoFoldersAreFoundWhereARoomIsCompiledAsOne) {
+  const std::string a = "namespace obscura { namespace { constexpr int kOne = 1; } }\n";
+  for (const char* file : {"app/film/a.cpp", "app/study/b.cpp", "sim/force/a.cpp", "sim/math/b.cpp"})
+    plant(file, a);
+  EXPECT_THAT(clashes(), ElementsAre("app/study/b.cpp:1: kOne is in a.cpp:1 too"));
 }
 
 TEST_F(PlantedNames, ThatHideAHeadersAreFound) {

@@ -41,7 +41,7 @@ std::string count(std::size_t n, std::string_view one, std::string_view many) {
 }
 
 // how long the first steps are watched, s
-constexpr double kPatience = 0.5;
+constexpr double kWatched = 0.5;
 
 // tracks that are touched, and wires, which beads share
 template <int D>
@@ -143,7 +143,7 @@ Plan plan(const scene::Scene& scene) {
   doing("measuring the first steps of " + scene.file);
   // all runs of a film have to be scenes
   const std::vector<Ahead::Run> runs = compared(scene);
-  Plan it{shots, needs(scene, shots, {Output::Form::movie, scene.name + ".mp4"}, kPatience), 1, {}, {}};
+  Plan it{shots, needs(scene, shots, {Output::Form::movie, scene.name + ".mp4"}, kWatched), 1, {}, {}};
   it.cores = std::max(1, int(std::thread::hardware_concurrency()));
   if (it.film.memory(1) > memory_limit())
     it.warnings.push_back(
@@ -159,7 +159,7 @@ Plan plan(const scene::Scene& scene) {
 }
 
 template <int D>
-std::string text(const scene::Scene& scene, const sim::Model<D>& model, const Plan& plan) {
+std::string report(const scene::Scene& scene, const sim::Model<D>& model, const Plan& plan) {
   std::string all = fmt::format("{}: good\n", scene.file);
   const auto row = [&](const char* name, const std::string& value) {
     all += fmt::format("  {:<8} {}\n", name, value);
@@ -239,7 +239,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
             if (format == Format::json)
               scenes.push_back(json(scene, world.model, made));
             else
-              said = text(scene, world.model, made);
+              said = report(scene, world.model, made);
           },
           scene.world);
       clear_waiting();

@@ -304,7 +304,7 @@ int states(const StatesFlags& flags) {
     if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
     auto& now = std::get<sim::Snapshot>(outcome);
     if (const auto divergence = run->divergence(); divergence && divergence->ended) {
-      say(stderr, "{}: {}; its states end there\n", scene.file, text(divergence->trouble));
+      say(stderr, "{}: {}; its states end there\n", scene.file, app::text(divergence->trouble));
       break;
     }
     const std::string state = state_hash(run->words());

@@ -1,4 +1,5 @@
 #include "app/compare/comparison.h"
+#include "app/console/say.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +19,6 @@ namespace obscura::app {
 namespace {
 
 constexpr std::size_t kMostRows = 12;  // of the table
-constexpr std::size_t kMostNames = 6;  // of files that only one folder has
 
 using Frame = Comparison::Frame;
 
@@ -31,13 +31,6 @@ bool worse(const Frame& a, const Frame& b) {
   return key(a.difference) > key(b.difference);
 }
 
-std::string names(const std::vector<std::string>& all) {
-  std::string text;
-  for (std::size_t i = 0; i < all.size() && i < kMostNames; ++i) text += (i ? ", " : "") + all[i];
-  if (all.size() > kMostNames) text += fmt::format(" and {} more", all.size() - kMostNames);
-  return text;
-}
-
 // frames of two folders belong together by name, where they have names in common
 void match(Frames& a, Frames& b, Comparison& found) {
   const std::set<std::string> left(a.names().begin(), a.names().end()),
@@ -47,8 +40,8 @@ void match(Frames& a, Frames& b, Comparison& found) {
   for (const std::string& name : b.names())
     if (!left.contains(name)) only_b.push_back(name);
   if (both.empty()) return;
-  if (!only_a.empty()) found.plain.push_back(fmt::format("only {} has {}", found.a, names(only_a)));
-  if (!only_b.empty()) found.plain.push_back(fmt::format("only {} has {}", found.b, names(only_b)));
+  if (!only_a.empty()) found.plain.push_back(fmt::format("only {} has {}", found.a, some_of(only_a)));
+  if (!only_b.empty()) found.plain.push_back(fmt::format("only {} has {}", found.b, some_of(only_b)));
   a.only(both), b.only(both);
 }
 

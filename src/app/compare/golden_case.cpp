@@ -93,7 +93,7 @@ void judge(const scene::Golden& golden, const media::Png& reference, const Pictu
 }
 
 // a moment as names of references end
-std::string time_text(sim::Rational time) { return fmt::format("{}", sim::value(time)); }
+std::string instant_text(sim::Rational time) { return fmt::format("{}", sim::value(time)); }
 
 bool is_time(const std::string& text) {
   double time = 0;
@@ -217,7 +217,7 @@ struct Record {
               const GoldenOptions& options) const {
     std::vector<std::string> all, times;
     bool changes = false;
-    for (const sim::Rational& each : golden.at) all.push_back(time_text(each));
+    for (const sim::Rational& each : golden.at) all.push_back(instant_text(each));
     for (const GoldenCase& it : cases) times.push_back(it.time);
     GoldenRecord now = record_of(times, made);
     now.moments = there ? there->moments : decltype(now.moments){};
@@ -416,7 +416,7 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
     GoldenCase it;
     it.scene = name;
     it.scene_file = scene.file, it.line = golden.line;
-    it.time = time_text(golden.at[i]);
+    it.time = instant_text(golden.at[i]);
     const std::string picture = picture_name(made[i]);
     it.choice = fmt::format("{}@{}:{}", name, it.time, picture);
     it.file = golden.hashes ? record.file : fmt::format("{}-{}.png", references, it.time);

@@ -1,4 +1,5 @@
 #include "app/compare/runs.h"
+#include "app/console/say.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostQuantities = 20;  // of the table of quantities
 
-struct Column {
+struct StateColumn {
   std::string body, quantity, component;  // "ball", "position", "x"
   std::size_t a = 0, b = 0;               // in the tables
   std::size_t group = 0;                  // in the quantities
@@ -31,8 +32,8 @@ bool is_component(const std::string& word) {
 // sums over all bodies stand under "energy", or under no name
 bool is_body(const std::string& name) { return !name.empty() && name != "energy"; }
 
-Column named(const std::string& name) {
-  Column column;
+StateColumn named(const std::string& name) {
+  StateColumn column;
   const std::size_t dot = name.find('.');
   if (dot == std::string::npos) {
     column.quantity = name;
@@ -77,21 +78,15 @@ std::optional<std::vector<double>> row_at(const Table& b, double t, bool interpo
   return row;
 }
 
-std::string several(const std::vector<std::string>& all) {
-  std::string text;
-  for (std::size_t i = 0; i < all.size() && i < 6; ++i) text += (i ? ", " : "") + all[i];
-  return all.size() > 6 ? text + fmt::format(" and {} more", all.size() - 6) : text;
-}
-
 std::string joined(const std::string& body, const std::string& quantity) {
   return body.empty() ? quantity : body + "." + quantity;
 }
 
 // the columns in common, in a's order; "time" matches rows, and "step" is another clock's. `missing`: those
 // of a alone
-std::vector<Column> common_columns(const Table& a, const Table& b, std::vector<std::string>& missing,
-                                   RunComparison& found) {
-  std::vector<Column> columns;
+std::vector<StateColumn> common_columns(const Table& a, const Table& b, std::vector<std::string>& missing,
+                                        RunComparison& found) {
+  std::vector<StateColumn> columns;
   for (std::size_t i = 0; i < a.columns.size(); ++i) {
     if (a.columns[i] == "time" || a.columns[i] == "step") continue;
     const auto there = b.column(a.columns[i]);
@@ -99,7 +94,7 @@ std::vector<Column> common_columns(const Table& a, const Table& b, std::vector<s
       missing.push_back(a.columns[i]);
       continue;
     }
-    Column column = named(a.columns[i]);
+    StateColumn column = named(a.columns[i]);
     column.a = i, column.b = *there;
     auto& all = found.quantities;
     auto group = std::find_if(all.begin(), all.end(), [&](const auto& q) {
@@ -112,12 +107,12 @@ std::vector<Column> common_columns(const Table& a, const Table& b, std::vector<s
   }
   // at one time, report bodies before sums over bodies
   std::stable_partition(columns.begin(), columns.end(),
-                        [](const Column& column) { return is_body(column.body); });
+                        [](const StateColumn& column) { return is_body(column.body); });
   return columns;
 }
 
 // says which columns only one table has
-void report_others(const Table& a, const Table& b, const std::vector<Column>& columns,
+void report_others(const Table& a, const Table& b, const std::vector<StateColumn>& columns,
                    std::vector<std::string> missing, RunComparison& found) {
   std::vector<std::string> extra;
   for (const std::string& name : b.columns)
@@ -126,30 +121,30 @@ void report_others(const Table& a, const Table& b, const std::vector<Column>& co
   // a missing body makes it another run; a quantity without a column is not compared
   std::vector<std::string> absent;
   std::erase_if(missing, [&](const std::string& name) {
-    const Column column = named(name);
+    const StateColumn column = named(name);
     const bool body =
         column.quantity == "position" &&
         std::none_of(columns.begin(), columns.end(), [&](const auto& c) { return c.body == column.body; });
     if (body && (absent.empty() || absent.back() != column.body)) absent.push_back(column.body);
     return body;
   });
-  if (!absent.empty()) found.plain.push_back(fmt::format("{} has no {}", b.file, several(absent)));
+  if (!absent.empty()) found.plain.push_back(fmt::format("{} has no {}", b.file, some_of(absent)));
   if (!missing.empty())
-    found.others.push_back(fmt::format("not compared, because only {} has it: {}", a.file, several(missing)));
+    found.others.push_back(fmt::format("not compared, because only {} has it: {}", a.file, some_of(missing)));
   if (!extra.empty())
-    found.others.push_back(fmt::format("not compared, because only {} has it: {}", b.file, several(extra)));
+    found.others.push_back(fmt::format("not compared, because only {} has it: {}", b.file, some_of(extra)));
 }
 
 // b's value of a column in `row`, near a's: angles without whole turns, and of q and -q the nearer one
-double value_near(const std::vector<double>& of_a, const std::vector<double>& row, const Column& column,
-                  const std::vector<Column>& columns) {
+double value_near(const std::vector<double>& of_a, const std::vector<double>& row, const StateColumn& column,
+                  const std::vector<StateColumn>& columns) {
   const double x = of_a[column.a];
   double y = row[column.b];
   if (column.quantity == "angle" && std::isfinite(x) && std::isfinite(y))
     y = x + std::remainder(y - x, 2 * std::numbers::pi);
   if (column.quantity == "orientation") {
     double dot = 0;
-    for (const Column& other : columns)
+    for (const StateColumn& other : columns)
       if (other.group == column.group) dot += of_a[other.a] * row[other.b];
     if (dot < 0) y = -y;
   }
@@ -167,7 +162,7 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
   RunComparison found;
   found.a = a.file, found.b = b.file;
   std::vector<std::string> missing;
-  const std::vector<Column> columns = common_columns(a, b, missing, found);
+  const std::vector<StateColumn> columns = common_columns(a, b, missing, found);
   report_others(a, b, columns, std::move(missing), found);
 
   std::size_t without = 0;
@@ -182,7 +177,7 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
     }
     ++found.times;
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      const Column& column = columns[k];
+      const StateColumn& column = columns[k];
       const double x = a.rows[i][column.a], y = value_near(a.rows[i], *row, column, columns);
       auto& quantity = found.quantities[column.group];
       const double off = the_same(x, y)                         ? 0

@@ -201,7 +201,7 @@ std::string page_name(const std::string& command) {
 
 std::string reference(const std::string& command) { return ".BR " + roff(page_name(command), true) + " (1)"; }
 
-std::string date() {
+std::string manual_date() {
   const char* fixed = std::getenv("SOURCE_DATE_EPOCH");
   return fixed ? fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time_t(std::atoll(fixed)))) : "";
 }
@@ -268,7 +268,7 @@ std::string manual(const CommandTables& tables, const std::string& name) {
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return char(std::toupper(c)); });
   std::string out = fmt::format(".TH {} 1 \"{}\" \"obscura {}\" \"User Commands\"\n", roff(upper, true),
-                                date(), OBSCURA_VERSION);
+                                manual_date(), OBSCURA_VERSION);
   out += section("NAME", wrapped(roff(page, true) + " \\- " + prose(small(command.about))));
   out += section("SYNOPSIS",
                  program ? bold("obscura") + " " + italic("COMMAND") + " [" + italic("ARGUMENTS") + "]\n"

@@ -43,6 +43,14 @@ inline std::vector<std::string> lines(std::string_view text) {
   return all;
 }
 
+/// The first few of some names; of more, how many.
+inline std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) text += (i ? ", " : "") + names[i];
+  return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
+}
+
 /// Prints a text of several lines, each as `say` would.
 inline void say_lines(std::FILE* to, std::string_view text) {
   for (const std::string& line : lines(text)) say(to, "{}\n", line);

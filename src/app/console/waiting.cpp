@@ -14,7 +14,7 @@ namespace obscura::app {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPatience(2000), kBetween(500);
+constexpr std::chrono::milliseconds kQuiet(2000), kBetween(500);
 
 // the text for the only Waiting
 struct Notices {
@@ -69,7 +69,7 @@ void Waiting::tell(std::stop_token stop) {
   Notices& it = said();
   std::unique_lock lock(it.mutex);
   const auto over = [&] { return stop.stop_requested(); };
-  for (auto wait = kPatience; !it.ended.wait_for(lock, stop, wait, over) && !over(); wait = kBetween) {
+  for (auto wait = kQuiet; !it.ended.wait_for(lock, stop, wait, over) && !over(); wait = kBetween) {
     if (it.hushed > 0) continue;
     std::string line = command_;
     if (!it.what.empty()) line += "  " + it.what;

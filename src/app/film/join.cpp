@@ -146,12 +146,12 @@ std::vector<int> shards_of(const Journal& journal, const std::vector<std::int64_
   return shards;
 }
 
-struct Flags {
+struct JoinFlags {
   std::string out;
   bool partial = false, missing = false;
 };
 
-int join_command(const Flags& flags) {
+int join_command(const JoinFlags& flags) {
   const Output out = output(flags.out, "", false, 2);
   if (out.form != Output::Form::movie && out.form != Output::Form::frames)
     throw UsageError(fmt::format("{}: join takes a movie or a sequence of pictures", flags.out));
@@ -201,7 +201,7 @@ int join_command(const Flags& flags) {
 
 OBSCURA_COMMAND(20, join) {
   const Command command(program, exit, "join", "Join the parts of all shards into the movie");
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<JoinFlags>();
   command.option("OUT", flags->out, "The movie, as `render -o` named it, or the pattern of its pictures")
       .required()
       .type("");

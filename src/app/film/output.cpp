@@ -42,7 +42,7 @@ std::optional<Pattern> pattern(const std::string& path) {
                  end == percent + 1 ? 0 : std::stoi(path.substr(percent + 1, end - percent - 1))};
 }
 
-std::string ending(const std::string& path) {
+std::string lower_ending(const std::string& path) {
   std::string e = std::filesystem::path(path).extension().string();
   std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   return e;
@@ -89,7 +89,7 @@ Output output(const std::optional<std::string>& out, const std::string& name, bo
   if (path == "-") return {Output::Form::pipe, path};
   if (path.empty()) throw UsageError("-o needs a name");
   std::error_code none;
-  if (path.back() == '/' || (ending(path).empty() && std::filesystem::is_directory(path, none))) {
+  if (path.back() == '/' || (lower_ending(path).empty() && std::filesystem::is_directory(path, none))) {
     if (path.back() != '/') path += '/';
     path += still ? name + ".png" : "{frame:04}.png";
   }
@@ -102,7 +102,7 @@ Output output(const std::optional<std::string>& out, const std::string& name, bo
         fmt::format("{}: {} is not known; a name may have {{camera}}, and that of a sequence "
                     "{{frame:04}}, once",
                     path, rest.substr(open, close + 1 - open)));
-  if (ending(path) == ".png") {
+  if (lower_ending(path) == ".png") {
     if (p && !still) return {Output::Form::frames, path};
     if (still || frames == 1) return {Output::Form::still, path};
     throw UsageError(

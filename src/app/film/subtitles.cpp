@@ -14,7 +14,7 @@ namespace obscura::app {
 namespace {
 
 // "00:01:02.500"
-std::string clock(double seconds) {
+std::string cue_time(double seconds) {
   const auto ms = std::llround(1000 * seconds);
   return fmt::format("{:02}:{:02}:{:02}.{:03}", ms / 3'600'000, ms / 60'000 % 60, ms / 1000 % 60, ms % 1000);
 }
@@ -77,7 +77,7 @@ Subtitles subtitles(const scene::Scene& scene, const Shots& shots, std::int64_t 
 std::string webvtt(const std::vector<media::TextCue>& captions) {
   std::string all = "WEBVTT\n";
   for (const media::TextCue& cue : captions)
-    all += fmt::format("\n{} --> {}\n{}\n", clock(cue.begin), clock(cue.end), escaped(cue.text));
+    all += fmt::format("\n{} --> {}\n{}\n", cue_time(cue.begin), cue_time(cue.end), escaped(cue.text));
   return all;
 }
 

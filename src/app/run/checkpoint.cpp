@@ -18,8 +18,6 @@ namespace obscura::app {
 
 namespace {
 
-using Json = nlohmann::json;
-
 // raised when a file of before would be read wrongly
 constexpr const char* kHeading = "obscura checkpoint 1 ";
 
@@ -59,10 +57,11 @@ void write_checkpoint(const std::string& path, const scene::Scene& scene, const 
   for (const std::uint64_t word : words) {
     for (int byte = 0; byte < 8; ++byte) state.push_back(std::uint8_t(word >> 8 * byte));
   }
-  const Json json = {{"version", OBSCURA_VERSION},   {"file", scene.name},
-                     {"text", scene.text},           {"set", scene.sets},
-                     {"time", sim::text(run.now())}, {"state", Json::binary(std::move(state))}};
-  const std::vector<std::uint8_t> body = Json::to_cbor(json);
+  const nlohmann::json json = {
+      {"version", OBSCURA_VERSION},   {"file", scene.name},
+      {"text", scene.text},           {"set", scene.sets},
+      {"time", sim::text(run.now())}, {"state", nlohmann::json::binary(std::move(state))}};
+  const std::vector<std::uint8_t> body = nlohmann::json::to_cbor(json);
   const std::string head = kHeading + hash(body.data(), body.size()) + "\n";
   media::File file(path);
   file.write({reinterpret_cast<const std::uint8_t*>(head.data()), head.size()});
@@ -83,12 +82,12 @@ std::unique_ptr<sim::Run> run_from(const std::string& path, const scene::Scene& 
   std::string version;
   std::vector<std::uint64_t> words;
   try {
-    const Json json = Json::from_cbor(body);
+    const nlohmann::json json = nlohmann::json::from_cbor(body);
     json.at("version").get_to(version), json.at("text").get_to(of.text), json.at("set").get_to(of.sets);
-    const Json::binary_t& state = json.at("state").get_binary();
+    const nlohmann::json::binary_t& state = json.at("state").get_binary();
     words.resize(state.size() / 8);
     for (std::size_t i = 0; i < 8 * words.size(); ++i) words[i / 8] |= std::uint64_t(state[i]) << 8 * (i % 8);
-  } catch (const Json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     refuse(path, "is a damaged checkpoint");
   }
   if (version != OBSCURA_VERSION)

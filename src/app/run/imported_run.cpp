@@ -1,3 +1,4 @@
+#include "app/console/say.h"
 #include "app/run/imported_run.h"
 
 #include <fmt/format.h>
@@ -19,14 +20,7 @@ namespace obscura::app {
 
 namespace {
 
-constexpr std::size_t kMostNames = 6;
 constexpr double kOffLength = 0.01;  // of an orientation, for rounding in a table
-
-std::string several(const std::vector<std::string>& all) {
-  std::string text;
-  for (std::size_t i = 0; i < all.size() && i < kMostNames; ++i) text += (i ? ", " : "") + all[i];
-  return all.size() > kMostNames ? text + fmt::format(" and {} more", all.size() - kMostNames) : text;
-}
 
 std::string body_of(const std::string& column) { return column.substr(0, column.find('.')); }
 std::string quantity_of(const std::string& column) { return column.substr(column.find('.') + 1); }
@@ -130,9 +124,9 @@ void Footage::check_columns(std::vector<std::string>& notes) const {
     unknown.push_back(name);
   }
   if (!strangers.empty())
-    notes.push_back(fmt::format("left out, because the scene has no such body: {}", several(strangers)));
+    notes.push_back(fmt::format("left out, because the scene has no such body: {}", some_of(strangers)));
   if (!unknown.empty())
-    notes.push_back(fmt::format("left out, because a film does not show it: {}", several(unknown)));
+    notes.push_back(fmt::format("left out, because a film does not show it: {}", some_of(unknown)));
 }
 
 // for "position" its x, y and in space z; none if the table has none of them
@@ -220,13 +214,13 @@ std::vector<std::vector<sim::Sighting>> Footage::poses(std::vector<std::string>&
     const std::string body = body_of(missing[0]);
     const std::string_view near = scene::nearest(body, {others.begin(), others.end()});
     throw media::Error(
-        fmt::format("{}:{}: has no column {}{}", table_.file, table_.head, several(missing),
+        fmt::format("{}:{}: has no column {}{}", table_.file, table_.head, some_of(missing),
                     near.empty() ? "" : fmt::format("; is its '{}' the scene's '{}'?", near, body)));
   }
   if (!upright.empty())
-    notes.push_back(fmt::format("{} does not say how {} turns", table_.file, several(upright)));
+    notes.push_back(fmt::format("{} does not say how {} turns", table_.file, some_of(upright)));
   if (!still.empty())
-    notes.push_back(fmt::format("{} has no velocity of {}: no arrow there", table_.file, several(still)));
+    notes.push_back(fmt::format("{} has no velocity of {}: no arrow there", table_.file, some_of(still)));
   return poses;
 }
 

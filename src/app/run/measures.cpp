@@ -29,7 +29,7 @@ constexpr std::array<std::pair<std::string_view, Over>, 6> kOver{{{"end", Over::
                                                                   {"mean", Over::mean},
                                                                   {"argmax", Over::argmax},
                                                                   {"argmin", Over::argmin}}};
-constexpr std::string_view kHash = "hash";
+constexpr std::string_view kHashName = "hash";
 constexpr std::size_t kFew = 200;  // bodies whose quantities are all offered where a name is not known
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -66,7 +66,7 @@ Question question(std::string_view text) {
                       when, fmt::join(names, ", ")));
     asked.over = Over::mark, asked.mark = mark->first, asked.time = mark->second;
   }
-  if (asked.path == kHash && over_run(asked.over))
+  if (asked.path == kHashName && over_run(asked.over))
     throw UsageError(fmt::format("--measure {}: a hash is of an instant, as in hash@end", text));
   return asked;
 }
@@ -74,12 +74,12 @@ Question question(std::string_view text) {
 // how a number is read from an instant; nothing of a hash
 std::function<double(const sim::Snapshot&)> reader(const Question& asked, const sim::SceneInfo& cast,
                                                    const std::vector<Column>& all) {
-  if (asked.path == kHash) return {};
+  if (asked.path == kHashName) return {};
   for (const Column& column : all)
     if (column.name == asked.path) return column.read;
 
   // a quantity that plots show: of a body, or of all the room
-  std::vector<std::string> more{std::string(kHash)};
+  std::vector<std::string> more{std::string(kHashName)};
   for (const std::string& name : draw::plotted()) {
     const draw::Measure* measure = draw::measure(name);
     if (measure->of == draw::Measure::Of::body) continue;

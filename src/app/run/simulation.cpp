@@ -16,7 +16,7 @@ namespace {
 
 // motion blur: the longest way, px, that counts as no motion; the fewest and most moments of a frame in which
 // things move, one for each pixel of the longest way; and the memory that they may take, 2 MiB a frame
-constexpr double kStill = 0.05, kFewest = 4, kMost = 64, kMostBytes = 2 << 20;
+constexpr double kStandsStill = 0.05, kFewest = 4, kMost = 64, kMostBytes = 2 << 20;
 
 constexpr double kTrailMargin = 0.1;  // s
 
@@ -199,7 +199,7 @@ int Simulation::Followed::exposures_of(std::int64_t shot, const sim::Snapshot& m
   if (film_.shutter <= 0) return 0;
   const auto [begins, until] = interval(shot);
   const double way = artist_.travel(moment, until - begins) * film_.height / 1080;
-  if (!(way >= kStill)) return 0;
+  if (!(way >= kStandsStill)) return 0;
   const double bytes = double(moment.bodies.size() * sizeof(sim::Snapshot::Body) +
                               moment.springs.size() * sizeof(sim::Snapshot::Spring) +
                               moment.joints.size() * sizeof(sim::Snapshot::Joint) +

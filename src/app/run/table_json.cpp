@@ -11,11 +11,10 @@ namespace obscura::app {
 
 namespace {
 
-using Json = nlohmann::json;
 using Cells = std::vector<std::pair<std::string, double>>;
 
 // a number, or several under x, y, z, w
-void add(const std::string& name, const Json& value, Cells& cells) {
+void add(const std::string& name, const nlohmann::json& value, Cells& cells) {
   constexpr const char* kAxes[] = {"x", "y", "z", "w"};
   if (!value.is_array()) {
     cells.emplace_back(name, value.get<double>());
@@ -26,7 +25,7 @@ void add(const std::string& name, const Json& value, Cells& cells) {
 }
 
 // the columns that CSV has for an instant too
-Cells cells_of(const Json& state) {
+Cells cells_of(const nlohmann::json& state) {
   Cells cells;
   for (const char* name : {"time", "step"})
     if (state.contains(name)) add(name, state[name], cells);
@@ -35,11 +34,11 @@ Cells cells_of(const Json& state) {
   for (const char* name : {"momentum", "angular_momentum"})
     if (state.contains(name)) add(name, state[name], cells);
   if (state.contains("contacts")) cells.emplace_back("contacts", double(state["contacts"].size()));
-  for (const Json& body : state.value("bodies", Json::array()))
+  for (const nlohmann::json& body : state.value("bodies", nlohmann::json::array()))
     for (const char* quantity : {"position", "orientation", "angle", "velocity", "spin"})
       if (body.contains(quantity))
         add(body.at("name").get<std::string>() + "." + quantity, body[quantity], cells);
-  for (const Json& joint : state.value("joints", Json::array()))
+  for (const nlohmann::json& joint : state.value("joints", nlohmann::json::array()))
     if (joint.contains("force")) add(joint.at("name").get<std::string>() + ".force", joint["force"], cells);
   return cells;
 }
@@ -50,8 +49,8 @@ Table table_of_json(const std::string& file, const std::string& text) {
   Table table;
   table.file = file, table.json = true;
   try {
-    const Json top = Json::parse(text);
-    for (const Json& state : top.at("states")) {
+    const nlohmann::json top = nlohmann::json::parse(text);
+    for (const nlohmann::json& state : top.at("states")) {
       const int number = int(table.rows.size()) + 1;
       const Cells cells = cells_of(state);
       if (table.rows.empty()) {
@@ -73,7 +72,7 @@ Table table_of_json(const std::string& file, const std::string& text) {
       if (!add_row(std::move(numbers), number, table))
         throw media::Error(fmt::format("{}, state {}: times must increase", file, number));
     }
-  } catch (const Json::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw media::Error(fmt::format("{}: is not as `obscura states` writes it: {}", file, error.what()));
   }
   if (table.rows.empty()) throw media::Error(file + ": has no states");

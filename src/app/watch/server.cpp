@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kTries = 20;                 // ports, where none is asked for
 constexpr std::size_t kMostAsked = 16384;  // bytes of a request
-constexpr int kPatience = 5000;            // ms until a browser that does not read is let go
+constexpr int kReading = 5000;            // ms until a browser that does not read is let go
 constexpr int kTurn = 100;                 // ms
 
 bool send_all(int socket, const std::string& text) {
@@ -34,7 +34,7 @@ bool send_all(int socket, const std::string& text) {
     }
     if (n < 0 && errno != EAGAIN && errno != EINTR) return false;
     pollfd writing{socket, POLLOUT, 0};
-    if (::poll(&writing, 1, kPatience) == 0) return false;
+    if (::poll(&writing, 1, kReading) == 0) return false;
   }
   return true;
 }
