@@ -7,6 +7,7 @@
 #include <limits>
 #include <tuple>
 
+#include "draw/picture/formula.h"
 #include "scene/body_kinds.h"
 #include "scene/check.h"
 #include "scene/copies.h"
@@ -152,7 +153,13 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
   const Node* arrows = fields.given("arrows");
   look.velocity = arrows ? has(*arrows, "velocity") : making.velocity && !still;
   look.contact = arrows ? has(*arrows, "contact") : making.contact && !still;
-  if (fields.given("label")) look.label = fields.text("label");
+  if (fields.given("label")) {
+    look.label = fields.text("label");
+    const auto wrong = i == 0 ? draw::mistake(look.label) : std::nullopt;
+    if (wrong)
+      making.complaints.add(fields.place("label"),
+                            fmt::format("'label', column {}: {}", wrong->column, wrong->what));
+  }
   if (const Node* material = fields.given("material")) {
     const std::string& word = material->text();
     look.material = word == "metal"    ? draw::Material::metal

@@ -569,7 +569,7 @@ time  = 4
 Captions have a strip below the picture; in a movie they are a text track as well, and `film.vtt` lies beside `film.mp4`. Cards are its chapters. `film.fade` lets the film
 come from the page's colour and go to it. `look.type_scale` makes all type larger, `look.decimal = ","` sets the decimal mark.
 
-A label keeps clear of bodies, walls, arrows and other labels. It goes to another place only where it would be in the way for long, and slowly: at most
+A label keeps clear of bodies, walls, arrows and other labels; so do the words of a body (`label = "m_1"` in its table). It goes to another place only where it would be in the way for long, and slowly: at most
 two pixels a frame at 1080p. Where it stands when follows from the whole run, so a still, a shard and a resumed film have the same frames.
 
 Quantities are the same everywhere: in plots, as arrows, in labels and after `--measure` (`block.friction@2`, `block.friction.x@2`). A body's

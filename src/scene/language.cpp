@@ -212,7 +212,7 @@ std::vector<Key> rows() {
        .doc = "How long its trail lasts.", .example = "1.5"},
       {.path = "any.arrows", .form = choices, .absent = "`look.arrows`", .choices = {"velocity", "contact"},
        .later = {"force"}, .doc = "Arrows drawn on it: its velocity; the force on it at each contact.", .example = "[\"velocity\"]"},
-      {.path = "any.label", .form = text, .absent = "none", .doc = "Text beside it, always upright.", .example = "\"m = 2 kg\""},
+      {.path = "any.label", .form = text, .absent = "none", .doc = "Text beside it: words, or mathematics as in `[[film.label]]`. It keeps clear of other things.", .example = "\"m = 2 kg\""},
       {.path = "any.copies", .form = table,
        .doc = "Copies of it: a row, a grid or a ring. Their names are `ball[0]`, `ball[1]`, ..."},
       {.path = "any.copies.count", .form = count, .absent = "as many as `at` has", .range = {1, 1e6},

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "draw/compose/annotate.h"
 #include "scene/bodies.h"
 #include "scene/body_kinds.h"
 #include "scene/bonds.h"
@@ -263,6 +264,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   scene.cameras = cameras<D>(top, roster, complaints);
   scene.figure = figure<D>(top, roster, world, complaints);
   scene.film.marks = film_marks<D>(top, roster, world, scene.film.speed, complaints);
+  scene.figure.names = scene.film.marks.names = draw::names_of(scene.look);
   scene.film.titles.captions = captions<D>(top, roster, world, scene.film.speed, complaints);
   scene.film.charts = charts<D>(top, roster, world, complaints);
 

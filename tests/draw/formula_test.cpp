@@ -1,12 +1,15 @@
 #include "draw/picture/formula.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "draw/page/placing.h"
 #include "draw/page/plot.h"
+#include "draw/picture/latex.h"
+#include "draw/picture/type.h"
 
 namespace obscura::draw {
 namespace {
@@ -142,8 +145,67 @@ TEST(Formula, AValueHasThreeDigitsAndItsUnit) {
   EXPECT_NE(live("{}", 0.994, 0.994, 0.994, "m", 24, {}).width, live("{}", 1, 1, 1, "m", 24, {}).width);
   EXPECT_EQ(as_vector("v_center"), "*v*_center");
   EXPECT_EQ(as_vector("*J* = J*n*"), "*J* = J*n*");
-  EXPECT_EQ(as_vector("mg"), "*m*g");
+  // a product has no first letter that is its vector
+  EXPECT_EQ(as_vector("mg"), "mg");
+  EXPECT_EQ(as_vector("m g"), "m g");
+  EXPECT_EQ(as_vector("m_1 g = {}"), "m_1 g = {}");
+  EXPECT_EQ(as_vector("m \\ddot{x}"), "m \\ddot{x}");
+  EXPECT_EQ(as_vector("k \\Delta"), "*k* \\Delta");
+  EXPECT_EQ(as_vector("v_1'"), "*v*_1'");
+  EXPECT_EQ(as_vector("F \\approx 2"), "*F* \\approx 2");
+  EXPECT_EQ(as_vector("v = {:.1} m/s"), "*v* = {:.1} m/s");
   EXPECT_EQ(as_vector("net force"), "net force");
+}
+
+// A number that changes: the digits stay, and nothing but its own space stands between it and the sign.
+TEST(Formula, DigitsOfALiveValueStayAndLeaveNoHole) {
+  const std::string text = "F = {:.1} N";
+  const auto ends = [&](double value) {
+    const Formula it = live(text, value, -3.2, 120, "N", 100, {});
+    double x = 0, equals = 0;
+    std::vector<double> at;  // where the sign, the number and the unit end
+    for (const Span& span : it.spans) {
+      x += span.lead;
+      if (span.tabular) {
+        EXPECT_NEAR(x, equals, 1e-9) << value;
+      }
+      x += shape({{0, 0}, Align::left, {span}}).width - span.lead;
+      if (span.text.find('=') != std::string::npos) equals = x;
+      at.push_back(x);
+    }
+    EXPECT_NEAR(x, it.width, 1e-6) << value;
+    return at;
+  };
+  const std::vector<double> long_one = ends(120), short_one = ends(2.4), below = ends(-3.2);
+  ASSERT_EQ(short_one.size(), long_one.size());
+  for (std::size_t k = short_one.size() - 2; k < short_one.size(); ++k) {
+    EXPECT_NEAR(short_one[k], long_one[k], 1e-9) << k;
+    EXPECT_NEAR(below[k], long_one[k], 1e-9) << k;
+  }
+}
+
+TEST(Formula, UnitsAfterANumberAreUpright) {
+  using enum Face;
+  EXPECT_THAT(set("m = 2 kg"), ElementsAre(std::pair("m", math_italic), std::pair(" = 2 kg", math)));
+  EXPECT_THAT(set("9.8 m/s^2"), ElementsAre(std::pair("9.8 m/s", math), std::pair("2", math)));
+  EXPECT_THAT(set("3 N m"), ElementsAre(std::pair("3 N m", math)));
+  EXPECT_THAT(set("2 m v"), ElementsAre(std::pair("2 ", math), std::pair("m", math_italic),
+                                        std::pair(" ", math), std::pair("v", math_italic)));
+  EXPECT_THAT(set("2 g"), ElementsAre(std::pair("2 ", math), std::pair("g", math_italic)));
+  EXPECT_EQ(latex("m = 2 kg"), "$m=2\\ \\mathrm{kg}$");
+}
+
+// Beside an arrow of a film, however it turns: no corner of the words lies over its line.
+TEST(Placing, WordsBesideAnArrowClearItsLineAtAnyAngle) {
+  const Point tail(0, 0), size(140, 28);
+  for (int k = 0; k < 72; ++k) {
+    const Point u(std::cos(k * 0.0872665), std::sin(k * 0.0872665)), v(-u.y(), u.x());
+    for (const Placing::Candidate& each : Placing::along(tail, 300 * u, 8, size, 3, true)) {
+      const double middle = each.center.dot(v), half = (size / 2).dot(v.cwiseAbs());
+      const bool at_tip = std::abs(middle) < 1 + 0.5 * half && each.center.dot(u) > 300;
+      EXPECT_TRUE(at_tip || std::abs(middle) - half > 8 - 1e-9) << k << " " << middle << " " << half;
+    }
+  }
 }
 
 TEST(Placing, WordsKeepOffLinesAndOffEachOther) {

@@ -6,6 +6,8 @@
 
 #include "draw/made.h"
 #include "draw/page/layout.h"
+#include "draw/picture/formula.h"
+#include "draw/picture/type.h"
 #include "draw/space/camera.h"
 
 namespace obscura::draw {
@@ -20,12 +22,15 @@ const Text* said(const List& list, const std::string& words) {
   return nullptr;
 }
 
+double middle(const Text& text) { return text.at.x() + shape(text).width / 2; }
+
 TEST(Labels, StandOverTheHighestCornerHoweverTheBodyIsTurned) {
   Made made = room(8, 4.5);
   const int it = made.body(ShapeKind::box, {3, 2, 0}, 0.5);
   made.look.bodies[it].label = "crate";
   for (double angle : {0.0, 0.4, 0.785398}) {
     made.now.bodies[it].angle = angle;
+    made.now.bodies[it].orientation = Eigen::AngleAxisd(angle, sim::Vec3::UnitZ());
     const Picture picture = made.picture();
     const Text* text = said(picture.moving, "crate");
     ASSERT_TRUE(text);
@@ -34,7 +39,7 @@ TEST(Labels, StandOverTheHighestCornerHoweverTheBodyIsTurned) {
     const double over = view.page({3, 2 + high, 0}).y() - text->at.y();
     EXPECT_GT(over, 5);
     EXPECT_LT(over, 25);
-    EXPECT_NEAR(text->at.x(), view.page({3, 2, 0}).x(), 1e-9);
+    EXPECT_NEAR(middle(*text), view.page({3, 2, 0}).x(), 1e-9);
   }
 }
 
@@ -50,8 +55,8 @@ TEST(Labels, StayInTheWindow) {
   const Text* text = said(picture.moving, "a ball with many words");
   ASSERT_TRUE(text);
   const View view = made.depictor().view(0);
-  const double half = width_of("a ball with many words", Face::medium, text->spans[0].size) / 2;
-  EXPECT_GE(text->at.x() - half, view.window.x);
+  EXPECT_GE(text->at.x(), view.window.x);
+  EXPECT_LE(text->at.x() + shape(*text).width, view.window.x + view.window.width);
   EXPECT_GE(text->at.y() - text->spans[0].size, view.window.y);
 }
 
@@ -71,11 +76,57 @@ TEST(Labels, InSpaceStandOverTheBodyForEachCamera) {
   for (int panel = 0; panel < 2; ++panel) {
     const CameraProjection lens = depictor.lens(made.now, panel);
     const Point center = lens.page(made.now.bodies[it].position);
-    EXPECT_NEAR(found[std::size_t(panel)].at.x(), center.x(), 1e-9);
+    EXPECT_NEAR(middle(found[std::size_t(panel)]), center.x(), 1e-9);
     const double over =
         center.y() - 0.2 * lens.scale_at(made.now.bodies[it].position) - found[std::size_t(panel)].at.y();
     EXPECT_GT(over, 5);
     EXPECT_LT(over, 25);
+  }
+}
+
+TEST(Labels, AreMathematicsOrWords) {
+  const auto of = [](const std::string& words) {
+    Made made = room(8, 4.5);
+    made.look.bodies[made.body(ShapeKind::ball, {3, 2, 0}, 0.3)].label = words;
+    std::vector<std::pair<std::string, Face>> spans;
+    for (const Text& text : made.picture().moving.texts)
+      for (const Span& span : text.spans)
+        if (span.face >= Face::math) spans.emplace_back(span.text, span.face);
+    return spans;
+  };
+  using Spans = std::vector<std::pair<std::string, Face>>;
+  EXPECT_EQ(of("m_1"), (Spans{{"m", Face::math_italic}, {"1", Face::math}}));
+  EXPECT_EQ(of("m = 2 kg"), (Spans{{"m", Face::math_italic}, {" = 2 kg", Face::math}}));
+  EXPECT_EQ(of("Io"), (Spans{{"Io", Face::math}}));
+  EXPECT_EQ(of("a ball at rest"), (Spans{{"a ball at rest", Face::math}}));
+  EXPECT_EQ(of("\xC3\x89tienne"), (Spans{{"\xC3\x89tienne", Face::math}}));
+  EXPECT_EQ(of("$\\mu m$")[0], (Spans::value_type{"μm", Face::math_italic}));
+}
+
+// a body that lies over the usual place, and an arrow there
+TEST(Labels, KeepOffOtherBodiesAndTheArrowsOfBodies) {
+  for (const bool arrow : {false, true}) {
+    Made made = room(8, 4.5);
+    const int it = made.body(ShapeKind::ball, {3, 2, 0}, 0.3);
+    made.look.bodies[it].label = "Sun";
+    if (arrow)
+      made.look.bodies[it].velocity = true, made.now.bodies[it].velocity = {0, 20, 0};
+    else
+      made.body(ShapeKind::ball, {3, 2.75, 0}, 0.4);
+    const Picture picture = made.picture();
+    const Text* text = said(picture.moving, "Sun");
+    ASSERT_TRUE(text);
+    const View view = made.depictor().view(0);
+    const double low = text->at.y(), high = text->at.y() - 0.7 * text->spans[0].size;
+    for (int k = 0; k <= 40; ++k) {
+      // its shaft, or the other ball's edge
+      const double a = 0.05 * k * 3.14159265;
+      const Point p = arrow ? view.page({3, 2.0 + 0.05 * k, 0})
+                            : view.page({3 + 0.4 * std::cos(a), 2.75 + 0.4 * std::sin(a), 0});
+      EXPECT_FALSE(p.x() > text->at.x() && p.x() < text->at.x() + shape(*text).width && p.y() > high &&
+                   p.y() < low)
+          << arrow << " " << k;
+    }
   }
 }
 

@@ -156,6 +156,21 @@ TEST(Layout, LongTitlesGoOnInAnotherLine) {
   EXPECT_LT(made.depictor().view(0).scale, plain);
 }
 
+// At every size of type: what is made smaller to fit does.
+TEST(Layout, SubtitlesThatFindRoomAreNotCut) {
+  for (int scale = 50; scale <= 200; scale += 3) {
+    for (int words = 1; words <= 12; ++words) {
+      Made made = room(8, 4.5);
+      made.look.type_scale = scale / 100.0;
+      made.look.title = "Twins";
+      made.look.subtitle = "two";
+      for (int k = 1; k < words; ++k) made.look.subtitle += " pendulums";
+      for (const Text& text : texts(made.picture()))
+        EXPECT_EQ(text.spans[0].text.find("…"), std::string::npos) << scale << " " << text.spans[0].text;
+    }
+  }
+}
+
 TEST(Layout, EllipsisKeepsWholeCharacters) {
   const std::string words = "Größe und Übermaß älterer Öfen";
   for (double width = 0; width < 500; width += 3) {

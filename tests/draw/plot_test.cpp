@@ -168,6 +168,28 @@ std::vector<double> look_of(int style) {
   return lengths;
 }
 
+// a column beside the picture: few ticks, but not two
+TEST(Plot, ANarrowAxisHasThreeTicksWhereTheirNumbersFindRoom) {
+  for (const int last : {5, 7, 9, 12, 14, 18, 25, 30, 45, 90}) {
+    for (const double wide : {100.0, 120.0, 150.0}) {
+      Plot plot = plot_of({0, 1});
+      plot.times = {0, double(last)};
+      const PlotArea area = plot_area(plot, {0, 0, wide, 100}, 1);
+      List list;
+      draw_axes(plot, area, palette(Theme::paper), list);
+      int numbers = 0;
+      std::pair<double, double> before{-1e9, -1e9};
+      for (const Text& text : list.texts) {
+        if (text.at.y() < area.bottom + 5 || said(text).find('t') != std::string::npos) continue;
+        ++numbers;
+        EXPECT_GT(width_from(text).first, before.second + 2) << last << " " << wide;
+        before = width_from(text);
+      }
+      EXPECT_GE(numbers, 3) << last << " " << wide;
+    }
+  }
+}
+
 TEST(Plot, LinesAreToldApartWithoutTheirColours) {
   for (int a = 0; a < 6; ++a)
     for (int b = 0; b < a; ++b) EXPECT_NE(look_of(a), look_of(b)) << a << " and " << b;
@@ -274,6 +296,11 @@ TEST(Plot, SeveralBodiesHaveLinesOfTheirOwn) {
   for (const char* taken : {"vermilion", "blue", "green"})
     for (const Series& line : second.lines)
       EXPECT_FALSE(line.color == mix(*color(taken), colours.ink, 0.2)) << line.label << " " << taken;
+}
+
+TEST(Plot, BodiesAreWordsNotIdentifiers) {
+  EXPECT_EQ(spoken("left_bob"), "\"left bob\"");
+  EXPECT_EQ(spoken("crate[2]"), "\"crate\"_{2}");
 }
 
 TEST(Plot, KineticEnergyAndThatOfGravityAreOfBodiesToo) {

@@ -94,6 +94,7 @@ draw::Text words(const std::string& text, draw::Face face, double size, const dr
 draw::Annotating lettered(const draw::Look& look) {
   draw::Annotating how;
   how.lettering.point *= look.type_scale;
+  how.look = &look;
   return how;
 }
 
@@ -354,6 +355,7 @@ draw::Illustrator FigureBuilder::depictor(const Cell& cell, double width) const 
   const Panel& panel = *cell.panel;
   draw::Look look = panel.scene.look;
   look.caption = false;
+  for (draw::BodyLook& body : look.bodies) body.label.clear();  // they are among the marks
   if (panel.cast.dimension == 3) {
     const scene::Film& film = panel.scene.film;
     return {panel.cast, look, panel.scene.cameras[std::size_t(cell.camera)], panel.scene.extent,

@@ -112,7 +112,7 @@ void plot_over(const scene::Scene& scene, const draw::Figure::Plot& wanted, draw
     }
   }
   const scene::Key* key = scene::key(over.path);
-  plot.name = draw::over_unit("\"" + over.name() + "\"", key ? key->unit : "");
+  plot.name = draw::over_unit(over.symbol(), key ? key->unit : "");
   if (const auto measures = wanted.measures(); !wanted.reference.empty() && !measures.empty())
     plot.title = draw::over_unit(std::string("\"error of\" ") + measures[0]->label, measures[0]->unit);
   plot.dotted = true;
@@ -142,9 +142,10 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
   const draw::Palette colours = draw::palette(scene.look.theme);
   const draw::Illustrator artist = depictor(scene, {});
   const auto line_color = [&](int body) { return artist.line_color(body); };
+  const auto called = [&](int body) { return artist.called(body); };
   std::vector<draw::Plot> all;
   for (const draw::Figure::Plot& wanted : scene.figure.plots) {
-    draw::Plot plot = draw::empty_plot(wanted, colours, artist.scene_info(), line_color);
+    draw::Plot plot = draw::empty_plot(wanted, colours, artist.scene_info(), line_color, called);
     plot.log = wanted.log;
     if (!wanted.over.empty()) {
       plot_over(scene, wanted, plot);
@@ -212,8 +213,9 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
   if (!wanted.empty()) {
     const draw::Illustrator artist = depictor(scene, {});
     for (const draw::Chart& each : wanted) {
-      watched.plots.push_back(draw::empty_plot(each, colours, artist.scene_info(),
-                                               [&](int body) { return artist.line_color(body); }));
+      watched.plots.push_back(draw::empty_plot(
+          each, colours, artist.scene_info(), [&](int body) { return artist.line_color(body); },
+          [&](int body) { return artist.called(body); }));
       lines.push_back(each.lines());
     }
   }

@@ -1,6 +1,9 @@
 #include "app/run/variation.h"
 
+#include <algorithm>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -110,6 +113,26 @@ std::string Variations::words(std::int64_t run) const {
 std::string Variation::name() const {
   const auto dot = path.rfind('.');
   return dot == path.npos ? path : path.substr(dot + 1);
+}
+
+std::string Variation::symbol() const {
+  static constexpr std::pair<std::string_view, const char*> kSymbols[] = {
+      {"angle", "\\theta"}, {"friction", "\\mu"},   {"elasticity", "e"}, {"mass", "m"},
+      {"stiffness", "k"},   {"rest_length", "l_0"}, {"length", "l"},     {"radius", "r"},
+      {"density", "\\rho"}, {"charge", "q"},        {"speed", "v"}};
+  static constexpr std::string_view kSections[] = {"physics", "room", "contact", "film", "look", "camera"};
+  const std::string key = name();
+  std::string of = path.substr(0, path.size() > key.size() ? path.size() - key.size() - 1 : 0);
+  const auto words = [](std::string text) {
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return "\"" + text + "\"";
+  };
+  const auto found = std::find_if(std::begin(kSymbols), std::end(kSymbols),
+                                  [&](const auto& each) { return each.first == key; });
+  if (found == std::end(kSymbols)) return words(key);
+  const std::string symbol = found->second;
+  const bool section = std::find(std::begin(kSections), std::end(kSections), of) != std::end(kSections);
+  return of.empty() || section || symbol.find('_') != symbol.npos ? symbol : symbol + "_{" + words(of) + "}";
 }
 
 double Variation::number(const std::string& value) const {

@@ -18,6 +18,8 @@ struct Variation {
 
   /// The key alone: "elasticity".
   std::string name() const;
+  /// The same as mathematics, for an axis: the quantity's letter with the name of what has it, or words.
+  std::string symbol() const;
   /// A value that is a number or a fraction. Throws UsageError where it is none.
   double number(const std::string& value) const;
 };

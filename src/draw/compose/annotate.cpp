@@ -13,20 +13,41 @@
 #include "draw/page/measure.h"
 #include "draw/page/readings.h"
 #include "draw/page/sheet.h"
+#include "draw/picture/convex.h"
 
 namespace obscura::draw {
 namespace {
 
-constexpr double kCone = 0.5;        // of the picture's shorter side: how long a friction cone is at most
-constexpr double kAxes = 0.36;       // of the picture's shorter side: axes in space
-constexpr double kAslant = 0.05;     // sine of an angle: nearer to each other two arrows are in line
-constexpr double kTail = 1.7;        // widths of an arrow: radius of the dot where it begins
+constexpr double kFilmType = 24 / 8.5;  // page units a point at the weight 1, as of charts
+constexpr double kCone = 0.5;           // of the picture's shorter side: how long a friction cone is at most
+constexpr double kAxes = 0.36;          // of the picture's shorter side: axes in space
+constexpr double kAslant = 0.05;        // sine of an angle: nearer to each other two arrows are in line
+constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
 constexpr double kFull = 0.5;        // of an arrow's growth: from here on its words are as strong as others
 constexpr double kOutOfBall = 0.35;  // of a ball's radius: how far beyond it an arrow's words are as strong
+
+constexpr std::size_t kManyNames = 40;  // from here on a name stands above its body or below
+constexpr double kNameGap = 1.3;        // from a body to its name, as against others
+constexpr double kLeader = 6;           // points: farther off words have a line to what they name
 
 using sim::Vec3;
 
 }  // namespace
+
+Lettering film_lettering(double weight, double type_scale, int rows) {
+  return {.point = kFilmType * weight * type_scale,
+          .arrow = weight,
+          .weight = weight,
+          .pixel = rows > 0 ? 1080.0 / rows : 0};
+}
+
+std::vector<Marks::Name> names_of(const Look& look) {
+  std::vector<Marks::Name> names;
+  for (std::size_t i = 0; i < look.bodies.size(); ++i)
+    if (const BodyLook& body = look.bodies[i]; !body.label.empty())
+      names.push_back({int(i), as_words(body.label), body.quiet});
+  return names;
+}
 
 // where an arrow that runs along a spring leaves the body that it begins in: its halo would bite the coils
 double Notes::bare(const Point& tail, const Point& tip) {
@@ -433,6 +454,60 @@ void Notes::label(int index, const Marks::Label& label) {
   word(key, f, places, at);
 }
 
+// Beside the body, however it is turned: best above it.
+void Notes::name(int index, const Marks::Name& name, bool many) {
+  const Vec3& center = now_.bodies[std::size_t(name.body)].position;
+  if (!view_.before(center)) return;
+  const Point at = view_.page(center);
+  const Rect& window = view_.window();
+  const double within = std::min({at.x() - window.x, window.x + window.width - at.x(), at.y() - window.y,
+                                  window.y + window.height - at.y()});
+  if (!(within > 0)) return;
+  hang(center, center);
+  const Color ink = name.quiet ? colours_.quiet : colours_.ink;
+  Formula f = formula(name.text, type_, ink);
+  const Point low(window.x + gap_, window.y + gap_),
+      high(window.x + window.width - gap_, window.y + window.height - gap_);
+  if (f.width > high.x() - low.x()) f = formula(name.text, type_ * (high.x() - low.x()) / f.width, ink);
+  // a body that leaves the picture takes it along
+  if (film()) fade(f, within / (2 * gap_));
+
+  std::vector<Point> outline;
+  for (const std::vector<Point>& form : forms(name.body, 24))
+    outline.insert(outline.end(), form.begin(), form.end());
+  if (outline.empty()) return;
+  outline = convex_hull(outline);
+  const Point half = size(f) / 2;
+  const auto in_window = [&](int i, double x) {
+    return std::clamp(x, low[i] + half[i], std::max(low[i] + half[i], high[i] - half[i]));
+  };
+  struct Side {
+    Point out;
+    double cost;  // points
+  };
+  const double s = std::numbers::sqrt2 / 2;
+  static const std::vector<Side> sides{{{0, -1}, 0}, {{0, 1}, 4},   {{1, 0}, 5}, {{-1, 0}, 6},
+                                       {{s, -s}, 7}, {{-s, -s}, 8}, {{s, s}, 9}, {{-s, s}, 10}};
+  std::vector<Placing::Candidate> places;
+  for (const double off : {0.0, 5.0, 12.0, 22.0, 34.0}) {
+    for (const Side& side : sides) {
+      const Point& n = side.out;
+      double reach = 0;
+      for (const Point& p : outline) reach = std::max(reach, (p - at).dot(n));
+      // its near side, or its near corner, is at the line that the body touches from within
+      Point middle = at + (reach + kNameGap * gap_ + off * point_) * n;
+      for (int i = 0; i < 2; ++i)
+        middle[i] =
+            std::abs(n[i]) < 1e-9 ? in_window(i, middle[i]) : middle[i] + std::copysign(half[i], n[i]);
+      places.push_back({middle, (side.cost + (off > 0 ? 4 + off : 0)) * point_, off > kLeader});
+      if (many && places.size() == 2) break;
+    }
+    if (many) break;
+  }
+  word({WordKey::name, index}, f, places, at);
+  if (!words_.empty() && words_.back().key == WordKey{WordKey::name, index}) words_.back().outline = outline;
+}
+
 Projection::Projection(const CameraProjection& lens, double scale, const Point& corner)
     : lens_(lens), scale_(scale), corner_(corner) {
   const Rect& w = lens.window;
@@ -461,7 +536,7 @@ Vec3 Projection::sight(const Vec3& place) const { return view_ ? Vec3(Vec3::Unit
 
 void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& cast, const Palette& colours,
               const Projection& projection, const sim::Snapshot& now, List& list, const Annotating& how) {
-  Notes notes(cast, colours, projection, now, how, list);
+  Notes notes(cast, colours, projection, now, how, !marks.names.empty(), list);
   const auto each = [&](const auto& all, auto draw) {
     for (std::size_t i = 0; i < all.size(); ++i)
       if (all[i].shown.has(now.time, how.film)) draw(int(i), all[i]);
@@ -473,6 +548,8 @@ void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& ca
   each(marks.vectors, [&](int i, const Marks::Vector& vector) { notes.vector(i, vector, scales); });
   each(marks.points, [&](int i, const Marks::Point& point) { notes.point(i, point); });
   each(marks.labels, [&](int i, const Marks::Label& label) { notes.label(i, label); });
+  for (std::size_t i = 0; i < marks.names.size(); ++i)
+    notes.name(int(i), marks.names[i], marks.names.size() > kManyNames);
   notes.finish();
 }
 

@@ -59,9 +59,12 @@ struct Lettering {
   double pixel = 0;                          // page units; words keep to whole ones; 0: there are none
 };
 
+/// Of a film, at a weight and a scale of its type.
+Lettering film_lettering(double weight, double type_scale, int rows = 0);
+
 /// Which words: of which list of marks, of which mark, of which of its arrows.
 struct WordKey {
-  enum Kind { axis, cone, length, angle, vector, point, label } kind = label;
+  enum Kind { axis, cone, length, angle, vector, point, label, name } kind = label;
   int index = 0, part = 0;
   auto operator<=>(const WordKey&) const = default;
 };
@@ -104,7 +107,11 @@ struct Annotating {
   const LabelPlan* plan = nullptr;         // of a film; none: words find their places in this one picture
   std::vector<Offered>* survey = nullptr;  // of a film: collects words instead of drawing them
   std::map<WordKey, ValueRange>* ranges = nullptr;  // collects their values
+  const Look* look = nullptr;                       // has the bodies' own arrows, which words keep off
 };
+
+/// The words of bodies that have some.
+std::vector<Marks::Name> names_of(const Look& look);
 
 /// Draws what marks say of an instant: arrows, angles, lengths, points, and their words where there is room
 /// for them.

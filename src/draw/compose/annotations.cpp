@@ -16,7 +16,6 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kFilmType = 24 / 8.5;           // page units a point at the weight 1, as of charts
 constexpr double kChange = 14;                   // points: of a change of place, as against a second of cost
 constexpr double kWay = 0.12;                    // of each unit of its way
 constexpr double kSpeed = 1.7;                   // page units a frame that a label moves by itself
@@ -81,10 +80,18 @@ double under(const Point& a, const Point& b, const Point& center, const Point& s
   return from < to ? (to - from) * (b - a).norm() : 0;
 }
 
+// how far it is from one place to another: a name goes around its body
+double way(const Offered& label, std::size_t i, std::size_t j) {
+  const Point a = label.places[i].center - label.anchor, b = label.places[j].center - label.anchor;
+  if (label.key.kind != WordKey::name) return (b - a).norm();
+  const double turn = std::atan2(std::abs(a.x() * b.y() - a.y() * b.x()), a.dot(b));
+  return std::hypot(turn * std::max(a.norm(), b.norm()), b.norm() - a.norm());
+}
+
 // the cost of its way from place i to place j: a label goes around the head of its arrow, not over it
 double cost_of_way(const Offered& label, std::size_t i, std::size_t j) {
   const Point &from = label.places[i].center, &to = label.places[j].center;
-  double cost = kWay * (to - from).norm();
+  double cost = kWay * way(label, i, j);
   if (!label.arrow) return cost;
   for (const double part : {0.2, 0.4, 0.6, 0.8}) {
     const double over = under(label.arrow->first, label.arrow->second, from + part * (to - from), label.size);
@@ -228,9 +235,8 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
       LabelPlan::Move move{(here + before) / 2, (here + before) / 2, place[k]};
       if (at[k - 1].first + 1 == at[k].first) {
         // in the middle of its way when it would jump
-        const auto center = [&](int i) { return at[k].second->places[std::size_t(i)].center; };
-        const double way = (center(place[k]) - center(place[k - 1])).norm();
-        const double lasting = std::clamp(1.5 * way / speed, kQuickest, kSlowest);
+        const double far = way(*at[k].second, std::size_t(place[k - 1]), std::size_t(place[k]));
+        const double lasting = std::clamp(1.5 * far / speed, kQuickest, kSlowest);
         move.begin -= best_lead(at, films, k, place[k - 1], place[k], lasting);
         move.end = move.begin + lasting;
         make_room(course.moves, shown, move.begin);
@@ -307,12 +313,12 @@ std::vector<WorldLine> path_lines(const Marks& marks,
 
 Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead ahead, const Scales& given,
                          double fps, int rows)
-    : marks_(marks), cast_(artist.scene_info()), colours_(artist.colours()), scales_(given) {
-  const double weight = artist.weight();
-  lettering_ = {.point = kFilmType * weight * artist.type_scale(),
-                .arrow = weight,
-                .weight = weight,
-                .pixel = rows > 0 ? 1080.0 / rows : 0};
+    : marks_(marks),
+      cast_(artist.scene_info()),
+      look_(artist.look()),
+      colours_(artist.colours()),
+      scales_(given) {
+  lettering_ = film_lettering(artist.weight(), look_.type_scale, rows);
   ghosts_ = std::move(ahead.ghosts);
   if (ahead.samples.empty()) {
     plans_.resize(std::size_t(artist.panels()));
@@ -345,8 +351,11 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
     for (const RunAhead::Sample& sample : ahead.samples) films.push_back(sample.film);
     for (std::size_t k = 0; k < moments.size(); ++k) {
       List unused;
-      Annotating how{
-          .lettering = lettering_, .film = films[k], .survey = &offered[k], .ranges = &plan.ranges};
+      Annotating how{.lettering = lettering_,
+                     .film = films[k],
+                     .survey = &offered[k],
+                     .ranges = &plan.ranges,
+                     .look = &look_};
       annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
                how);
     }
@@ -354,7 +363,8 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
     for (std::size_t k = 0; k < moments.size(); ++k) {
       List unused;
       offered[k].clear();
-      Annotating how{.lettering = lettering_, .film = films[k], .plan = &ranges, .survey = &offered[k]};
+      Annotating how{
+          .lettering = lettering_, .film = films[k], .plan = &ranges, .survey = &offered[k], .look = &look_};
       annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
                how);
     }

@@ -51,6 +51,7 @@ class Annotations {
  private:
   Marks marks_;
   sim::SceneInfo cast_;
+  Look look_;
   Palette colours_;
   Lettering lettering_;
   Scales scales_;

@@ -8,7 +8,9 @@
 #include "draw/compose/annotations.h"
 #include "draw/compose/comparison.h"
 #include "draw/compose/travel.h"
+#include "draw/page/measure.h"
 #include "draw/page/sheet.h"
+#include "draw/picture/formula.h"
 #include "draw/picture/type.h"
 #include "draw/plane/stage.h"
 #include "draw/space/camera.h"
@@ -47,7 +49,6 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
   draw([&] { draw_pins(stage, view, now, list); });
   draw([&] { draw_contacts(stage, view, now, list); });
   draw([&] { draw_velocities(stage, view, now, list); });
-  draw([&] { draw_labels(stage, view, now, list); });
   draw([&] { draw_gone(stage, view, now, list); });
   list.of({});
 }
@@ -261,6 +262,7 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
       annotations_->draw(panel, seen, frame, film, picture.moving);
       picture.moving.unclip();
     }
+    draw_names(now, picture.moving);
     picture.moving.part = 0;
     picture.moving.of({Subject::What::page, 2});
     draw_fate({&frame, at.fate}, space_->layout.window, space_->layout.weight, space_->colours,
@@ -298,6 +300,7 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
     draw_lines(view, lines, true, list);
     annotations_->draw(0, projection(0, frame), frame, film, list);
   }
+  draw_names(now, list);
   list.of({Subject::What::layer, kMarks + 2});
   draw_hands(stage, view, now, list);
   list.of({});
@@ -323,6 +326,25 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   return picture;
 }
 
+// of a picture of no film: what bodies are called
+void Illustrator::draw_names(const sim::Snapshot& now, List& list) const {
+  if (annotations_) return;
+  Marks marks;
+  marks.names = names_of(look_);
+  if (marks.names.empty()) return;
+  const Lettering lettering = film_lettering(weight(), look_.type_scale);
+  list.of({Subject::What::layer, kMarks + 1});
+  for (int panel = 0; panel < panels(); ++panel) {
+    const Projection seen = projection(panel, now);
+    list.part = panel;
+    if (space_) list.clip(seen.window());
+    draw::annotate(marks, {}, scene_info(), colours(), seen, now, list,
+                   {.lettering = lettering, .look = &look_});
+    if (space_) list.unclip();
+  }
+  list.part = 0;
+}
+
 void Illustrator::draw_bodies(const View& view, const sim::Snapshot& now,
                               std::span<const std::shared_ptr<const sim::Track>> ways, List& list) const {
   draw_trails(plan_->stage, view, now, ways, list);
@@ -339,11 +361,15 @@ const sim::SceneInfo& Illustrator::scene_info() const { return space_ ? space_->
 
 const Palette& Illustrator::colours() const { return space_ ? space_->colours : plan_->stage.colours; }
 
-double Illustrator::type_scale() const { return look_.type_scale; }
-
 Color Illustrator::line_color(int body) const {
   return space_ ? paint(space_->own[std::size_t(body)], look_.theme).outline
                 : plan_->stage.paints[std::size_t(body)].outline;
+}
+
+std::string Illustrator::called(int body) const {
+  const auto i = std::size_t(body);
+  const bool labelled = i < look_.bodies.size() && !look_.bodies[i].label.empty();
+  return labelled ? as_words(look_.bodies[i].label) : spoken(scene_info().bodies[i].name);
 }
 
 double Illustrator::weight() const { return space_ ? space_->layout.weight : plan_->stage.layout.weight; }

@@ -88,10 +88,11 @@ class Illustrator {
   const sim::SceneInfo& scene_info() const;
   const Palette& colours() const;
   double weight() const;
-  /// How much larger type is.
-  double type_scale() const;
+  const Look& look() const { return look_; }
   /// The colour of a body's lines.
   Color line_color(int body) const;
+  /// What a body is called, as mathematics: its words, or its name.
+  std::string called(int body) const;
   int panels() const;
   Projection projection(int panel, const sim::Snapshot& now) const;
   double scale(const sim::Snapshot& now) const;
@@ -124,6 +125,7 @@ class Illustrator {
   struct Plan;
   void ghosts(const sim::Snapshot& then, double strength, List& list, const std::vector<int>& only,
               const View& view) const;
+  void draw_names(const sim::Snapshot& now, List& list) const;
 
   Look look_;
   std::shared_ptr<const Annotations> annotations_;

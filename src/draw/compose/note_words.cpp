@@ -7,6 +7,7 @@
 
 #include "draw/compose/notes.h"
 #include "draw/page/measure.h"
+#include "draw/picture/convex.h"
 
 namespace obscura::draw {
 namespace {
@@ -20,6 +21,8 @@ constexpr double kNormal = 9 * 72 / 25.4;  // a unit normal: 9 mm
 constexpr double kAngle = 13;              // radius of an arc
 constexpr double kOffHatching = 2.5;       // from it to the words of a film
 constexpr double kCovered = 60;            // the cost of words over a body
+constexpr double kOnOutline = 8;           // of each unit of a body's outline under words of a film
+constexpr double kNameCovered = 6;         // as against the cost of other words over something
 
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
 
@@ -28,7 +31,7 @@ using sim::Vec3;
 }  // namespace
 
 Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projection& projection,
-             const sim::Snapshot& now, const Annotating& how, List& list)
+             const sim::Snapshot& now, const Annotating& how, bool names, List& list)
     : cast_(cast),
       colours_(colours),
       view_(projection),
@@ -47,7 +50,8 @@ Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projectio
       angle_(kAngle * point_) {
   // of a film the places are known
   if (how_.plan && !how_.survey) return;
-  how_.survey ? avoid_areas() : avoid_bodies();
+  how_.survey || names ? avoid_areas() : avoid_bodies();
+  avoid_own_arrows();
   if (!view_.view()) return;
   for (const HalfPlane& wall : half_planes(cast, *view_.view())) {
     const Point along(-wall.normal.y(), wall.normal.x());
@@ -123,6 +127,19 @@ Formula Notes::set(const WordKey& key, const std::string& text, double value, st
   return live(text, value, range.low, range.high, unit, type_, ink);
 }
 
+namespace {
+
+// from one place to another, a part of the way around a middle
+Point around(const Point& middle, const Point& from, const Point& to, double part) {
+  const Point a = from - middle, b = to - middle;
+  const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) * part,
+               far = a.norm() + part * (b.norm() - a.norm()), s = std::sin(turn), c = std::cos(turn);
+  if (!(a.norm() > 0)) return to;
+  return middle + far / a.norm() * Point(c * a.x() - s * a.y(), s * a.x() + c * a.y());
+}
+
+}  // namespace
+
 // where the plan has a word now; on its way from one place to another between both
 Placing::Candidate Notes::planned(const Word& word, double& leader) const {
   const auto found = how_.plan->courses.find(word.key);
@@ -137,7 +154,8 @@ Placing::Candidate Notes::planned(const Word& word, double& leader) const {
     const double u = how_.film >= move.end ? 1 : (how_.film - move.begin) / (move.end - move.begin);
     const double s = u * u * (3 - 2 * u);
     const Placing::Candidate next = at(move.to);
-    now.center += s * (next.center - now.center);
+    now.center = word.key.kind == WordKey::name ? around(word.anchor, now.center, next.center, s)
+                                                : Point(now.center + s * (next.center - now.center));
     led += s * ((next.leader ? 1 : 0) - led);
   }
   now.leader = led > 0, leader = led;
@@ -153,79 +171,126 @@ void Notes::plate(const Point& center, const Point& size, std::uint8_t strength)
   list_.add(box);
 }
 
+// The convex forms that a body is made of, round ones with so many corners; none if it is not wholly before
+// the eye.
+std::vector<std::vector<Point>> Notes::forms(int index, int corners) const {
+  const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(index)];
+  const sim::Snapshot::Body& it = now_.bodies[std::size_t(index)];
+  const double step = 2 * std::numbers::pi / corners;
+  std::vector<std::vector<Point>> all;
+  const auto add = [&](const sim::DrawnForm& form) {
+    const auto world = [&](const Vec3& local) {
+      return Vec3(it.position + it.orientation * (form.center + form.turn * local));
+    };
+    std::vector<Vec3> vertices = form.vertices;
+    if (form.kind == sim::ShapeKind::box)
+      for (int k = 0; k < 8; ++k)
+        vertices.push_back(form.half.cwiseProduct(Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)));
+    std::vector<Point> outline;
+    if (form.kind == sim::ShapeKind::capsule) {
+      for (int k = 0; k < 2 * corners; ++k) {
+        const Vec3 end = world(Vec3(0, k < corners ? form.half.y() : -form.half.y(), 0));
+        if (!view_.before(end)) return;
+        outline.push_back(view_.page(end) +
+                          view_.scale_at(end) * form.radius * Point(std::cos(k * step), std::sin(k * step)));
+      }
+    } else if (vertices.empty()) {
+      const Vec3 center = world(Vec3::Zero());
+      if (!view_.before(center)) return;
+      const double radius =
+          form.radius > 0 ? view_.scale_at(center) * form.radius : kDot * how_.lettering.weight;
+      for (int k = 0; k < corners; ++k)
+        outline.push_back(view_.page(center) + radius * Point(std::cos(k * step), -std::sin(k * step)));
+      all.push_back(std::move(outline));
+      return;
+    }
+    for (const Vec3& vertex : vertices) {
+      if (!view_.before(world(vertex))) return;
+      outline.push_back(view_.page(world(vertex)));
+    }
+    all.push_back(convex_hull(outline));
+  };
+  for (const sim::DrawnForm& part : body.parts) add(part);
+  if (!body.parts.empty()) return all;
+  sim::DrawnForm whole;
+  whole.kind = body.kind, whole.radius = body.radius, whole.half = body.half, whole.vertices = body.vertices;
+  add(whole);
+  return all;
+}
+
 // the outlines of bodies, and what lies within
 void Notes::avoid_areas() {
-  const auto area = [&](const std::vector<Point>& outline) {
-    for (std::size_t k = 0; k < outline.size(); ++k)
-      placing_.avoid(outline[k], outline[(k + 1) % outline.size()], 2);
-    placing_.avoid(outline, kCovered * point_);
-  };
-  const auto round = [&](const Vec3& center, double radius) {
-    if (!view_.before(center)) return;
-    const double r = radius > 0 ? view_.scale_at(center) * radius : kDot * how_.lettering.weight;
-    std::vector<Point> outline;
-    for (int k = 0; k < 12; ++k)
-      outline.push_back(view_.page(center) +
-                        r * Point(std::cos(k * std::numbers::pi / 6), -std::sin(k * std::numbers::pi / 6)));
-    area(outline);
-  };
-  const auto form = [&](const sim::DrawnForm& it, const sim::Snapshot::Body& body) {
-    std::vector<Vec3> corners = it.vertices;
-    if (it.kind == sim::ShapeKind::box)
-      for (int k = 0; k < 8; ++k)
-        corners.push_back(it.half.cwiseProduct(Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)));
-    const auto world = [&](const Vec3& local) {
-      return Vec3(body.position + body.orientation * (it.center + it.turn * local));
-    };
-    std::vector<Point> all;
-    if (it.kind == sim::ShapeKind::capsule) {
-      for (int k = 0; k < 24; ++k) {
-        const Vec3 end = world(Vec3(0, k < 12 ? it.half.y() : -it.half.y(), 0));
-        if (!view_.before(end)) return;
-        const double a = k * std::numbers::pi / 6;
-        all.push_back(view_.page(end) + view_.scale_at(end) * it.radius * Point(std::cos(a), std::sin(a)));
-      }
-      return area(convex_hull(all));
+  for (std::size_t i = 0; i < cast_.bodies.size(); ++i)
+    for (const std::vector<Point>& outline : forms(int(i), 12)) {
+      for (std::size_t k = 0; k < outline.size(); ++k)
+        placing_.avoid(outline[k], outline[(k + 1) % outline.size()], kOnOutline);
+      placing_.avoid(outline, kCovered * point_);
     }
-    if (corners.empty()) return round(world(Vec3::Zero()), it.radius);
-    for (const Vec3& corner : corners) {
-      if (!view_.before(world(corner))) return;
-      all.push_back(view_.page(world(corner)));
-    }
-    area(convex_hull(all));
-  };
-  for (std::size_t i = 0; i < cast_.bodies.size(); ++i) {
-    const sim::SceneInfo::Body& body = cast_.bodies[i];
-    for (const sim::DrawnForm& part : body.parts) form(part, now_.bodies[i]);
-    if (!body.parts.empty()) continue;
-    sim::DrawnForm whole;
-    whole.kind = body.kind, whole.radius = body.radius, whole.half = body.half,
-    whole.vertices = body.vertices;
-    form(whole, now_.bodies[i]);
-  }
   avoid_springs();
+  avoid_joints();
+}
+
+void Notes::avoid_joints() {
   for (std::size_t i = 0; i < cast_.joints.size(); ++i) {
     const sim::Snapshot::Joint& joint = now_.joints[i];
-    if (!joint.broken && view_.before(joint.a) && view_.before(joint.b))
-      placing_.avoid(view_.page(joint.a), view_.page(joint.b), 2);
+    if (joint.broken) continue;
+    const auto line = [&](const Vec3& a, const Vec3& b) {
+      if (view_.before(a) && view_.before(b)) placing_.avoid(view_.page(a), view_.page(b), 2);
+    };
+    line(joint.a, joint.b);
   }
 }
 
+// the arrows that bodies have by themselves
+void Notes::avoid_own_arrows() {
+  if (!how_.look) return;
+  const Look& look = *how_.look;
+  const auto arrow = [&](const Vec3& tail, const Vec3& tip) {
+    if (view_.before(tail) && view_.before(tip)) placing_.avoid(view_.page(tail), view_.page(tip), 4);
+  };
+  for (std::size_t i = 0; i < look.bodies.size() && i < now_.bodies.size(); ++i)
+    if (const sim::Snapshot::Body& body = now_.bodies[i]; look.bodies[i].velocity)
+      arrow(body.position, body.position + look.velocity_scale * body.velocity);
+  const bool any =
+      std::any_of(look.bodies.begin(), look.bodies.end(), [](const auto& b) { return b.contact; });
+  if (!any) return;
+  const double scale = look.force_scale > 0 ? look.force_scale : newton(cast_);
+  for (const Push& push : pushes(cast_, look, now_)) arrow(push.point, push.point + scale * push.force);
+}
+
 void Notes::finish() {
-  if (film()) draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
-  mark_tails();
-  for (const auto& [at, ink, hang] : dots_) {
-    list_.hang(hang);
-    list_.add(Disc{at, dot_radius_ + 0.6 * point_, 0, colours_.room, colours_.room});
-    list_.add(Disc{at, dot_radius_, 0, ink, ink});
-  }
-  list_.hang({});
   if (how_.survey) return offer_places();
   // words that move keep to whole pixels: they look the same in every frame, and are cheap to encode
   const auto whole = [&](const Point& at) {
     const double pixel = how_.lettering.pixel;
     return pixel > 0 ? Point(std::round(at.x() / pixel) * pixel, std::round(at.y() / pixel) * pixel) : at;
   };
+  struct Placed {
+    Placing::Candidate at;
+    double leader = 1;
+  };
+  std::vector<Placed> placed;
+  for (const Word& word : words_) {
+    Placed& it = placed.emplace_back();
+    it.at = how_.plan ? planned(word, it.leader) : placing_.place(size(word.set), word.places);
+  }
+  // plates lie over bodies and lines but under arrows, which stay whole; one kind after another is drawn in
+  // few batches
+  for (std::size_t i = 0; film() && i < words_.size(); ++i)
+    if (covers(words_[i].key)) {
+      const Formula& set = words_[i].set;
+      const Point blank(set.blank, 0);
+      list_.hang(words_[i].hang);
+      plate(whole(placed[i].at.center) + blank / 2, size(set) - blank, set.color.a);
+    }
+  if (film()) draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
+  list_.hang({});
+  mark_tails();
+  for (const auto& [at, ink, hang] : dots_) {
+    list_.hang(hang);
+    list_.add(Disc{at, dot_radius_ + 0.6 * point_, 0, colours_.room, colours_.room});
+    list_.add(Disc{at, dot_radius_, 0, ink, ink});
+  }
   const auto write = [&](const Word& word, const Point& center) {
     const Point half = size(word.set) / 2;
     const Point at(center.x() - half.x(), center.y() - half.y() + word.set.ascent);
@@ -235,22 +300,12 @@ void Notes::finish() {
     if (how_.lettering.pixel > 0) return;
     for (std::size_t i = first; i < list_.texts.size(); ++i) list_.texts[i].whole = at;
   };
-  std::vector<Point> centers;
-  for (Word& word : words_) {
-    double leader = 1;
-    const Placing::Candidate best =
-        how_.plan ? planned(word, leader) : placing_.place(size(word.set), word.places);
-    list_.hang(word.hang);
-    if (best.leader) lead(word, best.center, leader);
-    centers.push_back(best.center);
-    if (!film()) write(word, best.center);
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    list_.hang(words_[i].hang);
+    if (placed[i].at.leader) lead(words_[i], placed[i].at.center, placed[i].leader);
+    if (!film()) write(words_[i], placed[i].at.center);
   }
-  if (!film()) return;
-  // one kind after another is drawn in few batches
-  for (std::size_t i = 0; i < words_.size(); ++i)
-    if (covers(words_[i].key))
-      list_.hang(words_[i].hang), plate(whole(centers[i]), size(words_[i].set), words_[i].set.color.a);
-  for (std::size_t i = 0; i < words_.size(); ++i) write(words_[i], centers[i]);
+  for (std::size_t i = 0; film() && i < words_.size(); ++i) write(words_[i], placed[i].at.center);
   list_.hang({});
 }
 
@@ -286,7 +341,9 @@ void Notes::offer_places() {
     if (!how_.ranges)
       for (Placing::Candidate& each : offered.places) {
         const double cost = placing_.cost(offered.size, each);
-        each.clear = cost <= each.cost, each.cost = cost;
+        each.clear = cost <= each.cost;
+        // a name has room all around its body: it goes out of the way sooner
+        each.cost += (word.key.kind == WordKey::name ? kNameCovered : 1) * (cost - each.cost);
       }
     how_.survey->push_back(std::move(offered));
   }
@@ -298,7 +355,19 @@ void Notes::lead(const Word& word, const Point& center, double strength) {
   const double out = std::min(size.x() / 2 / std::max(std::abs(way.normalized().x()), 1e-9),
                               size.y() / 2 / std::max(std::abs(way.normalized().y()), 1e-9));
   const Point u = way.normalized();
-  const Point from = center + (out + 1.2 * point_) * u, to = word.anchor - (dot_radius_ + 1.5 * point_) * u;
+  const Point from = center + (out + 1.2 * point_) * u;
+  // as far as a body's outline, where it is that of one
+  double inner = word.outline.empty() ? dot_radius_ : 0;
+  for (std::size_t k = 0; k < word.outline.size(); ++k) {
+    const Point a = word.outline[k] - word.anchor,
+                d = word.outline[(k + 1) % word.outline.size()] - word.outline[k];
+    const double across = u.x() * d.y() - u.y() * d.x();
+    if (std::abs(across) < 1e-12) continue;
+    const double far = (a.x() * d.y() - a.y() * d.x()) / across,
+                 part = (a.x() * u.y() - a.y() * u.x()) / across;
+    if (part >= 0 && part <= 1) inner = std::max(inner, -far);
+  }
+  const Point to = word.anchor - (inner + 1.5 * point_) * u;
   Color line = word.set.color;
   line.a = std::uint8_t(std::lround(line.a * strength));
   if ((to - from).dot(u) > 2 * point_)

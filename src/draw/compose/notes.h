@@ -17,13 +17,14 @@ namespace obscura::draw {
 class Notes {
  public:
   Notes(const sim::SceneInfo& cast, const Palette& colours, const Projection& projection,
-        const sim::Snapshot& now, const Annotating& how, List& list);
+        const sim::Snapshot& now, const Annotating& how, bool names, List& list);
 
   void vector(int index, const Marks::Vector& vector, Scales scales);
   void angle(int index, const Marks::Angle& angle);
   void length(int index, const Marks::Length& length);
   void point(int index, const Marks::Point& point);
   void label(int index, const Marks::Label& label);
+  void name(int index, const Marks::Name& name, bool many);
   void cone(int index, const Marks::Cone& cone, const Scales& scales);
   void axes();
   void finish();
@@ -37,6 +38,7 @@ class Notes {
     Point anchor;
     std::optional<std::pair<Point, Point>> arrow;
     std::optional<Hang> hang;
+    std::vector<Point> outline{};  // convex: of the body that it names, where a leader ends
   };
   void hang(const sim::Vec3& a, const sim::Vec3& b);
   bool film() const { return how_.plan != nullptr || how_.survey != nullptr; }
@@ -44,6 +46,9 @@ class Notes {
   void avoid_bodies();
   void avoid_areas();
   void avoid_springs();
+  void avoid_joints();
+  void avoid_own_arrows();
+  std::vector<std::vector<Point>> forms(int body, int corners) const;
   Formula set(const WordKey& key, const std::string& text, double value, std::string_view unit, Color ink);
   Placing::Candidate planned(const Word& word, double& leader) const;
   void plate(const Point& center, const Point& size, std::uint8_t strength);

@@ -19,6 +19,7 @@ constexpr double kPageMargin = 36, kTitleGap = 18, kClockGap = 44;
 constexpr double kSmallestType = 0.82;                 // before the caption takes another line
 constexpr double kTitleLine = 42, kSubtitleLine = 34;  // of words in several lines
 constexpr std::size_t kMostRows = 3;
+constexpr double kRounding = 1e-9;
 
 }  // namespace
 
@@ -186,7 +187,8 @@ bool outside(const Rect& r, const Point& p, double reach) {
 }
 
 std::string fitted(const std::string& words, Face face, double size, double width) {
-  if (words.empty() || width_of(words, face, size) <= width) return words;
+  // what was made to fit exactly does so but for rounding
+  if (words.empty() || width_of(words, face, size) <= width * (1 + kRounding)) return words;
   // the ends of its characters
   std::vector<std::size_t> ends;
   for (std::size_t i = 1; i <= words.size(); ++i) {

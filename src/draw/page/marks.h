@@ -106,6 +106,12 @@ struct Marks {
     int body = -1;           // whose
     Interval shown{};
   };
+  /// The words of a body, which go with it.
+  struct Name {
+    int body = -1;
+    std::string text;    // as mathematics
+    bool quiet = false;  // grey, for others are to be looked at
+  };
   struct Path {
     Site at;
     double lasting = 0;  // s of the run; 0: all of it
@@ -126,12 +132,13 @@ struct Marks {
   std::vector<Length> lengths;
   std::vector<Cone> cones;
   std::vector<Label> labels;
+  std::vector<Name> names;
   std::vector<Path> paths;
   std::vector<Ghost> ghosts;
 
   bool empty() const {
     return !axes && points.empty() && vectors.empty() && angles.empty() && lengths.empty() && cones.empty() &&
-           labels.empty() && paths.empty() && ghosts.empty();
+           labels.empty() && names.empty() && paths.empty() && ghosts.empty();
   }
 };
 

@@ -167,8 +167,18 @@ std::optional<Measured::Line> Measured::along(const Line& line) const {
   return Line{other, line.body};
 }
 
+std::string spoken(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  // one of several: "crate[2]"
+  std::string number;
+  if (const std::size_t bracket = name.find('['); bracket != name.npos && name.back() == ']')
+    number = "_{" + name.substr(bracket + 1, name.size() - bracket - 2) + "}", name.resize(bracket);
+  return "\"" + name + "\"" + number;
+}
+
 Plot empty_plot(const Measured& measured, const Palette& colours, const sim::SceneInfo& cast,
-                const std::function<Color(int body)>& line_color) {
+                const std::function<Color(int body)>& line_color,
+                const std::function<std::string(int body)>& called) {
   Plot plot;
   const std::vector<const Measure*> measures = measured.measures();
   const bool several = measured.bodies.size() > 1;
@@ -176,7 +186,7 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
     const auto own = color(line.measure->color);
     Series series{line.measure->label, {}, own ? mix(*own, colours.ink, 0.2) : colours.ink};
     if (several && line.measure->of != Measure::Of::room) {
-      const std::string name = "\"" + cast.bodies[std::size_t(line.body)].name + "\"";
+      const std::string name = called ? called(line.body) : spoken(cast.bodies[std::size_t(line.body)].name);
       series.label = measures.size() > 1 ? series.label + " " + name : name;
       series.color = line_color(line.body);
     }

@@ -58,8 +58,13 @@ struct Measured {
 
 /// A plot of them before anything is measured: lines with names, colours and dashes, and titles of its axes.
 /// Of one body a quantity has its arrows' colour, or one that means nothing else; several bodies have theirs,
-/// which `line_color` tells.
+/// which `line_color` tells, and the names that `called` tells, as mathematics; those of the scene without
+/// it.
 Plot empty_plot(const Measured& measured, const Palette& colours, const sim::SceneInfo& cast,
-                const std::function<Color(int body)>& line_color);
+                const std::function<Color(int body)>& line_color,
+                const std::function<std::string(int body)>& called = {});
+
+/// A name of a scene as mathematics: "left_bob" is a left bob, "crate[2]" a crate with an index.
+std::string spoken(std::string name);
 
 }  // namespace obscura::draw

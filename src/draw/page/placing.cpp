@@ -54,6 +54,13 @@ Point clear(const Point& n, double gap, const Point& size) {
   return n * gap + Point(n.x() * size.x() / 2, n.y() * size.y() / 2);
 }
 
+/// The same for a label that clears the whole line across n: no corner of it reaches over.
+Point clear_line(const Point& n, double gap, const Point& size) {
+  const Point part = n.cwiseAbs();
+  const double corner = (part.array() * (1 - part.array()) * size.array()).sum() / 2;
+  return clear(n, gap, size) + corner * n;
+}
+
 }  // namespace
 
 void Placing::avoid(const Point& a, const Point& b, double weight) { lines_.push_back({a, b, weight}); }
@@ -141,7 +148,10 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
       // to the right of an arrow that points up
       const double first = fixed || u.y() < 0 ? 1 : -1;
       for (const double side : {first, -first}) {
-        all.push_back({at + clear(side * v, gap + off * unit, size), ring + order, off > 6});
+        const Point n = side * v;
+        const double far = gap + off * unit;
+        all.push_back({at + (fixed ? clear_line(n, far, size) : clear(n, far, size)), ring + order,
+                       off > (fixed ? 10 : 6)});
         order += 0.3 * unit;
       }
     }

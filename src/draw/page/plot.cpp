@@ -19,8 +19,9 @@ namespace {
 
 constexpr double kTypeSize = 8.5, kTick = 2.5, kLine = 1.0, kAxis = 0.6;  // points
 constexpr double kDotRadius = 1.6;
-constexpr double kAbove = 17, kBelow = 13;  // points: room for the title, for the numbers
-constexpr double kHeadroom = 0.05;          // of the range of the values: room above and below it
+constexpr double kAbove = 17, kBelow = 13;         // points: room for the title, for the numbers
+constexpr double kAcross = 34, kNumbersApart = 4;  // points: from tick to tick, between numbers at least
+constexpr double kHeadroom = 0.05;                 // of the range of the values: room above and below it
 constexpr double kFromZero = 0.4;   // of the largest value: what changes by less is shown without zero
 constexpr double kConstant = 1e-3;  // and what changes by less than this with it
 
@@ -69,6 +70,22 @@ Ticks numbered(std::vector<double> marks) {
   Ticks all{std::move(marks), {}};
   for (const double mark : all.marks) all.numbers.push_back(number(mark));
   return all;
+}
+
+/// Those of an axis of this width, in page units: three at least where their numbers find room.
+Ticks along_axis(double low, double high, double width, double point) {
+  const int usual = std::max(2, int(width / (kAcross * point)));
+  const Ticks few = numbered(ticks(low, high, usual));
+  for (int count = usual; few.marks.size() < 3 && count < usual + 6; ++count) {
+    const Ticks more = numbered(ticks(low, high, count));
+    if (more.marks.size() < 3) continue;
+    double widest = 0;
+    for (const std::string& each : more.numbers)
+      widest = std::max(widest, formula(each, kTypeSize * point, {}).width);
+    const double apart = (more.marks[1] - more.marks[0]) / (high - low) * width;
+    return apart > widest + kNumbersApart * point ? more : few;
+  }
+  return few;
 }
 
 Ticks upward(const PlotArea& area) { return area.log ? decades(area.low, area.high) : numbered(area.ticks); }
@@ -332,8 +349,7 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
   }
   if (area.low < 0) line(area.at(area.first, 0), area.at(area.last, 0), 0.3 * area.point, colours.hatch);
   const Ticks across =
-      area.log ? decades(area.first, area.last)
-               : numbered(ticks(area.first, area.last, std::max(2, int((right - left) / (34 * area.point)))));
+      area.log ? decades(area.first, area.last) : along_axis(area.first, area.last, right - left, area.point);
   double reached = right;
   for (std::size_t i = 0; i < across.marks.size(); ++i) {
     const Point p{area.at(across.marks[i], area.low).x(), bottom};

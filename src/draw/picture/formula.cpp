@@ -74,7 +74,7 @@ std::string nearest(std::string_view word) {
 
 class Setter {
  public:
-  Setter(std::string_view text, double size, Color color, double pad) : text_(text), pad_(pad) {
+  Setter(std::string_view text, double size, Color color) : text_(text) {
     out_.size = size;
     out_.color = color;
   }
@@ -104,7 +104,7 @@ class Setter {
 
   // set alone, to be placed as a whole
   Formula inner(std::string_view text, double scale) const {
-    Setter setter(text, scale * out_.size, out_.color, 0);
+    Setter setter(text, scale * out_.size, out_.color);
     setter.bold_ = bold_, setter.latex_ = latex_;
     setter.run(text, 1, 0);
     if (!setter.out_.empty()) setter.out_.width = setter.width();
@@ -161,7 +161,7 @@ class Setter {
       const bool under = text[i++] == '_';
       (under ? below : above) = inner(formulas::argument(text, i, latex_), kScript * scale);
     }
-    Setter setter(symbol, kBig * em, out_.color, 0);
+    Setter setter(symbol, kBig * em, out_.color);
     setter.put(symbol, Face::math, 1, 0);
     Formula sign = std::move(setter.out_);
     sign.width = setter.width_of(sign);
@@ -201,7 +201,7 @@ class Setter {
                             .size = em,
                             .color = out_.color,
                             .rise = up,
-                            .lead = pending_ + (leans ? 0.07 * out_.size : 0) + (number_ ? pad_ : 0),
+                            .lead = pending_ + (leans ? 0.07 * out_.size : 0),
                             .tabular = number_});
       pending_ = 0;
     }
@@ -233,8 +233,10 @@ class Setter {
   }
 
   void run(std::string_view text, double scale, double rise) {
+    std::size_t units = 0;  // where those end that are set now
     for (std::size_t i = 0; i < text.size();) {
       const char c = text[i];
+      if (!latex_ && !number_ && formulas::latin(c)) units = std::max(units, formulas::units_end(text, i));
       if (c == kNumber || c == kNumberEnd) {
         number_ = c == kNumber, ++i;
       } else if (c == '*') {
@@ -256,10 +258,8 @@ class Setter {
         run(formulas::argument(text, i, latex_), scale, rise);
       } else if (formulas::latin(c) && latex_) {
         letter(text.substr(i++, 1), scale, rise);
-      } else if (formulas::latin(c)) {
-        std::size_t end = i;
-        while (end < text.size() && formulas::latin(text[end])) ++end;
-        if (int(end - i) >= formulas::kWord) {
+      } else if (const auto [end, letters] = formulas::word(text, i); letters > 0 && !latex_) {
+        if (letters >= formulas::kWord || int(end - i) > letters || i < units) {
           put(text.substr(i, end - i), Face::math, scale, rise);
         } else {
           for (std::size_t k = i; k < end; ++k) letter(text.substr(k, 1), scale, rise);
@@ -359,7 +359,6 @@ class Setter {
 
   std::string_view text_;
   Formula out_;
-  double pad_ = 0;
   double pending_ = 0;  // page units before what comes next
   bool bold_ = false, number_ = false;
   bool latex_ = false;    // between dollars
@@ -368,8 +367,8 @@ class Setter {
 
 }  // namespace
 
-Formula formula(std::string_view text, double size, Color color, double pad) {
-  Formula set = Setter(text, size, color, pad).set();
+Formula formula(std::string_view text, double size, Color color) {
+  Formula set = Setter(text, size, color).set();
   set.source = text;
   return set;
 }
@@ -458,12 +457,49 @@ std::optional<FormulaMistake> mistake(std::string_view text) {
   return {};
 }
 
+namespace {
+
+// whether a letter follows, or a command that stands for one
+bool begins_factor(std::string_view text) {
+  if (text.empty() || text[0] != '\\') return !text.empty() && formulas::latin(text[0]);
+  const auto end = std::find_if_not(text.begin() + 1, text.end(), formulas::latin);
+  const std::string_view word(text.begin() + 1, end);
+  const formulas::Name* name = formulas::entry(formulas::kNames, word);
+  return (name && italic(name->symbol)) || formulas::among(formulas::kAccents, word) ||
+         formulas::among(formulas::kFunctions, word) || formulas::among(formulas::kForms, word);
+}
+
+}  // namespace
+
 std::string as_vector(const std::string& text) {
   const auto letters = std::find_if_not(text.begin(), text.end(), formulas::latin) - text.begin();
-  if (letters == 0 || letters >= formulas::kWord || text.find('*') != text.npos) return text;
+  if (letters != 1 || text.find('*') != text.npos || text.find('$') != text.npos) return text;
+  // behind its scripts: what it is multiplied by
+  std::size_t next = 1;
+  while (next < text.size() && std::string_view("_^'").find(text[next]) != std::string_view::npos)
+    if (text[next++] != '\'') formulas::argument(text, next, false);
+  next = std::min(text.find_first_not_of(' ', next), text.size());
+  const std::string_view rest = std::string_view(text).substr(next);
+  if (begins_factor(rest)) return text;
   std::string vector = "*";
   vector.append(text, 0, 1).append("*").append(text, 1);
   return vector;
+}
+
+std::string as_words(const std::string& text) {
+  if (text.find_first_of("=_^\\$*{}<>+'\"") != text.npos) return text;
+  // words of three letters or more, or one alone
+  std::size_t longest = 0, letters = 0, words = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t n = std::min(formulas::length_of(text[i]), text.size() - i);
+    if (formulas::letter(std::string_view(text).substr(i, n)))
+      words += letters++ == 0, longest = std::max(longest, letters);
+    else
+      letters = 0;
+    i += n;
+  }
+  const bool plain = longest >= formulas::kWord || (words == 1 && longest > 1);
+  return plain ? '"' + text + '"' : text;
 }
 
 std::optional<ValueSlot> value_slot(std::string_view text) {
@@ -515,6 +551,17 @@ std::string number(double value, int decimals) {
   return text;
 }
 
+// the same with so much room before it
+Formula set_back(Formula set, double room) {
+  if (!set.spans.empty()) set.spans.front().lead += room;
+  for (Formula::Over& over : set.overs) over.from += room, over.to += room;
+  for (Formula::Line& line : set.lines)
+    for (Point& point : line.points) point.x() += room;
+  for (Point& place : set.places) place.x() += room;
+  set.width += room, set.blank += room;
+  return set;
+}
+
 }  // namespace
 
 std::string with_value(const std::string& text, double value, std::string_view unit) {
@@ -539,8 +586,8 @@ Formula live(const std::string& text, double value, double low, double high, std
   const double own = width(value), widest = std::max({own, width(low), width(high)});
   std::string rest = text.substr(slot->end);
   rest = slot->decimals ? after(rest, unit) : spaced(unit) + rest;
-  return formula(text.substr(0, slot->begin) + kNumber + shown + kNumberEnd + rest, size, color,
-                 widest - own);
+  return set_back(formula(text.substr(0, slot->begin) + kNumber + shown + kNumberEnd + rest, size, color),
+                  widest - own);
 }
 
 void fade(Formula& formula, double strength) {

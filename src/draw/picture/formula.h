@@ -34,6 +34,7 @@ struct Formula {
   std::string source;          // the text that it sets; of the whole alone
   double size = 0;
   double width = 0, ascent = 0, descent = 0;  // page units
+  double blank = 0;                           // of the width, at the left: room for more digits
   Color color{};
 
   bool empty() const { return spans.empty() && parts.empty(); }
@@ -47,8 +48,8 @@ struct FormulaMistake {
 std::optional<FormulaMistake> mistake(std::string_view text);
 
 /// Sets `text` at an em of `size` page units. A name that is not known stays as it was written. What stands
-/// between kNumber and kNumberEnd is a number in digits of equal width, with `pad` page units before it.
-Formula formula(std::string_view text, double size, Color color, double pad = 0);
+/// between kNumber and kNumberEnd is a number in digits of equal width.
+Formula formula(std::string_view text, double size, Color color);
 inline constexpr char kNumber = '\x01', kNumberEnd = '\x02';
 
 /// Which point of words stays where it is when another font sets them: that beside what they name.
@@ -60,8 +61,12 @@ struct Hold {
 /// Puts it down with its baseline's left end at `at`; on a list whose words are apart, as LaTeX.
 void add(const Formula& formula, const Point& at, List& list, const Hold& hold = {});
 
-/// `text` with its first letter a vector, unless it says itself what is one, or begins with a word.
+/// `text` with its first letter a vector, unless it says itself what is one, or begins with a word or with a
+/// product: in "m g" nobody knows which is one.
 std::string as_vector(const std::string& text);
+
+/// `text` as it is where it is mathematics; plain words, such as a body is called by, upright.
+std::string as_words(const std::string& text);
 
 /// Where a value goes in a label: "{}", of three digits and with its unit, or "{:.2}", of as many digits
 /// after the point.
@@ -76,7 +81,8 @@ std::optional<ValueSlot> value_slot(std::string_view text);
 std::string with_value(const std::string& text, double value, std::string_view unit);
 
 /// The same for a value that goes from `low` to `high` while the label stays where it is: "{}" has as many
-/// digits after the point as give the largest three digits, and room is left for the longest.
+/// digits after the point as give the largest three digits. All labels are as wide as the longest and end
+/// where that ends: digits and unit stay where they are, and what the label begins with stands beside them.
 Formula live(const std::string& text, double value, double low, double high, std::string_view unit,
              double size, Color color);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace obscura::draw::formulas {
 
@@ -64,6 +65,50 @@ inline std::size_t length_of(char first) {
   return c < 0x80 ? 1 : c < 0xE0 ? 2 : c < 0xF0 ? 3 : 4;
 }
 
+/// A letter of Latin: also one with an accent, but neither a sign nor a Greek letter.
+inline bool letter(std::string_view c) {
+  if (c.size() == 1) return latin(c[0]);
+  const auto first = static_cast<unsigned char>(c[0]);
+  return c.size() == 2 && first >= 0xC3 && first <= 0xC9 && c != "×" && c != "÷";
+}
+
+/// Where a word that begins at text[i] ends, and how many letters it has.
+inline std::pair<std::size_t, int> word(std::string_view text, std::size_t i) {
+  int letters = 0;
+  while (i < text.size()) {
+    const std::size_t n = std::min(length_of(text[i]), text.size() - i);
+    if (!letter(text.substr(i, n))) break;
+    i += n, ++letters;
+  }
+  return {i, letters};
+}
+
+inline constexpr std::string_view kUnits[] = {"m",  "mm", "cm", "km", "s",  "ms", "g",  "kg",  "N",
+                                              "kN", "J",  "kJ", "W",  "kW", "Hz", "Pa", "rad", "Nm"};
+
+/// Where the units end that stand at text[i], a space after a number: "9.81 m/s^2". Where a letter follows
+/// them it is a product ("2 m v"), as is "2 g": i.
+inline std::size_t units_end(std::string_view text, std::size_t i) {
+  const auto digit = [&](std::size_t k) { return text[k] >= '0' && text[k] <= '9'; };
+  if (i < 2 || text[i - 1] != ' ' || !(digit(i - 2) || text[i - 2] == '\x02')) return i;
+  if (text.substr(i, 1) == "g" && word(text, i).second == 1) return i;
+  for (std::size_t k = i;;) {
+    const std::size_t end = word(text, k).first;
+    if (end == k || !among(kUnits, text.substr(k, end - k))) return i;
+    k = end;
+    if (k + 1 < text.size() && text[k] == '^' && digit(k + 1)) k += 2;
+    if (text.substr(k).starts_with("²")) k += 2;
+    const std::size_t next = std::min(text.find_first_not_of(' ', k), text.size());
+    if (next < text.size() && text[next] == '/') {
+      k = next + 1;
+    } else if (next > k && word(text, next).second > 0) {
+      k = next;
+    } else {
+      return next < text.size() && (text[next] == '\\' || text[next] == '{' || text[next] == '_') ? i : k;
+    }
+  }
+}
+
 /// The argument of a script or an accent at text[i], which goes on behind it: {...}, or one symbol. Where
 /// spaces count (not `latex`), a word is one.
 inline std::string_view argument(std::string_view text, std::size_t& i, bool latex) {
@@ -83,9 +128,8 @@ inline std::string_view argument(std::string_view text, std::size_t& i, bool lat
     while (i < text.size() && latin(text[i])) ++i;
   } else if (i < text.size() && latin(text[i]) && latex) {
     ++i;
-  } else if (i < text.size() && latin(text[i])) {
-    // "v_center"
-    while (i < text.size() && latin(text[i])) ++i;
+  } else if (const std::size_t end = word(text, i).first; end > i) {
+    i = end;  // "v_center"
   } else if (i < text.size()) {
     i += length_of(text[i]);
   }

@@ -151,10 +151,11 @@ class LatexWriter {
     } else if (c == ' ') {
       if (!latex_) space(text, i);
       ++i;
-    } else if (formulas::latin(c) && !latex_) {
-      std::size_t end = i;
-      while (end < text.size() && formulas::latin(text[end])) ++end;
-      if (end - i >= 3)
+    } else if (const auto [end, letters] = formulas::word(text, i); letters > 0 && !latex_) {
+      units_ = std::max(units_, formulas::units_end(text, i));
+      if (int(end - i) > letters)
+        words(text.substr(i, end - i));
+      else if (letters >= formulas::kWord || i < units_)
         put(fmt::format("\\mathrm{{{}}}", text.substr(i, end - i)));
       else
         for (std::size_t k = i; k < end; ++k) letter(text.substr(k, 1));
@@ -231,6 +232,7 @@ class LatexWriter {
 
   std::string out_;
   bool latex_, bold_;
+  std::size_t units_ = 0;               // where those end that are written now
   bool above_ = false, below_ = false;  // scripts of what came last
 };
 

@@ -122,9 +122,6 @@ void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& no
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
-/// The words of bodies that have some, over all of them.
-void draw_labels(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
-
 /// The forces where bodies touch that have such arrows: one arrow for two that touch, at their centre of
 /// pressure, the force on the one that is pushed up.
 void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);

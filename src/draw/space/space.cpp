@@ -313,8 +313,6 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     draw_room_front(stage, lens, picture.moving);
     draw_space_arrows(scenery);
     trace_paths(scenery, paths, true);
-    picture.moving.of({Subject::What::layer, 4});
-    draw_space_labels(scenery);
     draw_space_hands(scenery);
     picture.moving.of({});
     picture.moving.unclip();

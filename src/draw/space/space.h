@@ -153,7 +153,6 @@ void trace_drops(SpaceFrame& scenery);
 void add_shadows(SpaceFrame& scenery);
 /// The lines that were traced, the farthest first, and arrows over them.
 void draw_space_arrows(SpaceFrame& scenery);
-void draw_space_labels(SpaceFrame& scenery);
 void draw_space_hands(SpaceFrame& scenery);
 
 /// The parts of a line through `way` that are seen, as lines of this width and colour.
