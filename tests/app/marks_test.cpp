@@ -202,6 +202,10 @@ void walk(const std::string& name, const std::vector<std::string>& sets = {}) {
     }
     for (const draw::Text& text : list.texts) {
       const std::string letters = said(text).substr(0, 3);
+      // which of several alike it was nobody knows
+      if (std::count_if(list.texts.begin(), list.texts.end(),
+                        [&](const draw::Text& other) { return said(other).substr(0, 3) == letters; }) > 1)
+        continue;
       const auto then = before.find(letters);
       if (then == before.end() || then->second.second.size() != anchors.size()) continue;
       double moved = 0;
@@ -219,7 +223,8 @@ void walk(const std::string& name, const std::vector<std::string>& sets = {}) {
 }
 
 TEST(Marks, WordsDoNotJump) {
-  for (const char* name : {"slope", "swing", "atwood", "gears", "loop_the_loop"}) walk(name);
+  for (const char* name : {"slope", "swing", "atwood", "gears", "loop_the_loop", "crossed_fields"})
+    walk(name);
   walk("slope", {"film.fps=30"});
 }
 
