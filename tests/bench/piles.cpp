@@ -103,7 +103,7 @@ Result ours(const Scene& scene, double seconds, int rate, bool awake) {
         world.state.spin.push_back(sim::AngularVec<2>(0.0));
   }
   const std::vector<sim::Path<2>> paths;
-  sim::PlaneIterative<2> solver(world.model, paths);
+  sim::PlaneIterative solver(world.model, paths);
   Result result;
   int sixtieths = 0;
   result.ms = timed(seconds, [&] {

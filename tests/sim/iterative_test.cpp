@@ -25,7 +25,7 @@ namespace {
 struct Room {
   World<2> world = room();
   std::vector<Path<2>> paths;
-  std::unique_ptr<PlaneIterative<2>> solver;
+  std::unique_ptr<PlaneIterative> solver;
 
   Room() { world.model.rate = {600, 1}, world.model.collision = Collision::contact; }
   int box(Vec2 size, Vec2 x, double friction, double elasticity = 0, Vec2 v = {0, 0}, double angle = 0,
@@ -46,7 +46,7 @@ struct Room {
   }
   void floor(double slope = 0) { add_wall(world, {0, 0}, {-std::sin(slope), std::cos(slope)}); }
   void run(double seconds) {
-    if (!solver) solver = std::make_unique<PlaneIterative<2>>(world.model, paths);
+    if (!solver) solver = std::make_unique<PlaneIterative>(world.model, paths);
     const double h = 1 / value(world.model.rate);
     for (const auto end = world.state.step + std::llround(seconds / h); world.state.step < end;
          ++world.state.step)

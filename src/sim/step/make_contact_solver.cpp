@@ -44,7 +44,7 @@ constexpr Entry kEntries[] = {
     {{Solver::direct, "direct", "is exact, for up to some hundred contacts", true},
      {make<ExactSolver<2>>, make<ExactSolver<3>>}},
     {{Solver::iterative, "iterative", "is for thousands of bodies", false},
-     {make<PlaneIterative<2>>, make<SpaceIterative<3>>}},
+     {make<PlaneIterative>, make<SpaceIterative>}},
 };
 
 constexpr auto kKinds = [] {

@@ -46,8 +46,7 @@ constexpr int kFewestProjections = 8;
 
 }  // namespace
 
-template <int D>
-PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
+PlaneIterative::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model),
       cores_(model),
       pairs_(model, cores_),
@@ -80,8 +79,7 @@ PlaneIterative<D>::PlaneIterative(const Model<D>& model, const std::vector<Path<
   for (const Body<D>& body : model.bodies) carries_.push_back(body.carries());
 }
 
-template <int D>
-bool PlaneIterative<D>::collide(StepPart<D> step) {
+bool PlaneIterative::collide(StepPart<D> step) {
   State<D>& state = step.state;
   const int n = int(model_.bodies.size());
   outran_ = false, corrected_ = !joints_.empty();
@@ -119,8 +117,7 @@ bool PlaneIterative<D>::collide(StepPart<D> step) {
   return true;
 }
 
-template <int D>
-void PlaneIterative<D>::wake(StepPart<D> step) {
+void PlaneIterative::wake(StepPart<D> step) {
   if (step.state.step == 0) {
     place_contacts(step.state, true);
     if (sleep_.at_start(step.state, step.state.contacts)) clear_sleeping(step.state);
@@ -131,8 +128,7 @@ void PlaneIterative<D>::wake(StepPart<D> step) {
   substeps_ = substeps_for(closing_rate_, step.h);
 }
 
-template <int D>
-void PlaneIterative<D>::report(StepPart<D> step) {
+void PlaneIterative::report(StepPart<D> step) {
   impacts_.store_impulses(step.state.contacts);
   // the next step looks anyway, unless this was a fraction of one
   const bool whole = step.h * value(model_.rate) > 1 - 1e-9;
@@ -142,15 +138,13 @@ void PlaneIterative<D>::report(StepPart<D> step) {
   }
 }
 
-template <int D>
-void PlaneIterative<D>::sleep(StepPart<D> step) {
+void PlaneIterative::sleep(StepPart<D> step) {
   if (sleep_.due(step.state) && put_to_sleep(step.state, step.h / substeps_)) clear_sleeping(step.state);
   next_step_ = step.state.step + 1;
 }
 
 // computes points, normals and gaps at the present poses: of all contacts, or of those that have none yet
-template <int D>
-void PlaneIterative<D>::place_contacts(State<D>& state, bool all) const {
+void PlaneIterative::place_contacts(State<D>& state, bool all) const {
   for (const Pair& pair : pairs_.all()) {
     for (int k = pair.first; k < pair.first + pair.touches; ++k) {
       Contact<D>& contact = state.contacts[k];
@@ -164,15 +158,13 @@ void PlaneIterative<D>::place_contacts(State<D>& state, bool all) const {
   }
 }
 
-template <int D>
-bool PlaneIterative<D>::put_to_sleep(State<D>& state, double h) {
+bool PlaneIterative::put_to_sleep(State<D>& state, double h) {
   equilibrium_.find(sleep_.candidates(state), sleep_, state, {pairs_.all(), batches_, joints_, poses_}, h);
   return sleep_.settle(state);
 }
 
 // zeroes the velocities of bodies that have just fallen asleep
-template <int D>
-void PlaneIterative<D>::clear_sleeping(const State<D>& state) {
+void PlaneIterative::clear_sleeping(const State<D>& state) {
   for (std::size_t i = 0; i < turns_.size(); ++i) {
     if (state.frozen[i]) v_[i] = {};
   }
@@ -180,15 +172,13 @@ void PlaneIterative<D>::clear_sleeping(const State<D>& state) {
 }
 
 // the time of a substep since the last pair search, as a part of the time between two
-template <int D>
-double PlaneIterative<D>::share(StepPart<D> part) const {
+double PlaneIterative::share(StepPart<D> part) const {
   return (double(part.state.step % every_) * substeps_ + part.substep) / double(every_ * substeps_);
 }
 
 // Renews the pairs whose features have changed since the last search; all pairs, if a body has left its
 // margin.
-template <int D>
-void PlaneIterative<D>::renew_pairs(StepPart<D> part) {
+void PlaneIterative::renew_pairs(StepPart<D> part) {
   State<D>& state = part.state;
   if (outran_) {
     for (const Pair& pair : pairs_.all()) report_pair(pair, state);
@@ -212,8 +202,7 @@ void PlaneIterative<D>::renew_pairs(StepPart<D> part) {
   }
 }
 
-template <int D>
-void PlaneIterative<D>::move_free(StepPart<D> part) {
+void PlaneIterative::move_free(StepPart<D> part) {
   renew_pairs(part);
   if (part.substep == 0) integrate_unconstrained(part.state, part.t, substeps_ * part.h);
   share_free_motion(part);
@@ -223,8 +212,7 @@ void PlaneIterative<D>::move_free(StepPart<D> part) {
 }
 
 // The wide kernel that applies the forces of the last step also finds the contact points that close.
-template <int D>
-void PlaneIterative<D>::warm_start(StepPart<D> part) {
+void PlaneIterative::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
                 part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_,
                 at_start(part.state) ? kAllowedAtStart : allowed_overlap_};
@@ -232,21 +220,18 @@ void PlaneIterative<D>::warm_start(StepPart<D> part) {
                             constants_, slow_, fast_);
 }
 
-template <int D>
-void PlaneIterative<D>::resolve_impacts(StepPart<D> part) {
+void PlaneIterative::resolve_impacts(StepPart<D> part) {
   impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, constants_, joints_);
   if (!part.state.work.empty()) part.state.work[0] += impacts_.drive_work();
   constants_.least = impacts_.least();
 }
 
-template <int D>
-int PlaneIterative<D>::fewest_iterations() const {
+int PlaneIterative::fewest_iterations() const {
   return std::clamp(kPairIterations / std::max(1, awake_pairs_), 1, kPlaneIterations);
 }
 
 // the joints, whose forces begin at zero, and the number of iterations
-template <int D>
-void PlaneIterative<D>::begin_joints(StepPart<D> part) {
+void PlaneIterative::begin_joints(StepPart<D> part) {
   iterations_ = part.state.step == 0 && first(part) ? kFirstPlaneIterations : fewest_iterations();
   if (joints_.empty()) return;
   copy_to_joints();
@@ -257,8 +242,7 @@ void PlaneIterative<D>::begin_joints(StepPart<D> part) {
 }
 
 // forces stay in the lanes until the last substep
-template <int D>
-void PlaneIterative<D>::iterate(StepPart<D> part) {
+void PlaneIterative::iterate(StepPart<D> part) {
   begin_joints(part);
   const int count = int(batches_.size());
   const bool last = part.substep + 1 == substeps_;
@@ -277,8 +261,7 @@ void PlaneIterative<D>::iterate(StepPart<D> part) {
 }
 
 // which watched pairs bear or are struck in a substep
-template <int D>
-void PlaneIterative<D>::note_touches(StepPart<D> part) {
+void PlaneIterative::note_touches(StepPart<D> part) {
   if (part.substep == 0) notes_.begin(part.state);
   const double begun = part.substep * part.h, ended = begun + part.h;
   for (const Pair& pair : pairs_.all()) {
@@ -296,8 +279,7 @@ void PlaneIterative<D>::note_touches(StepPart<D> part) {
 // More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
 // the impact must pass through all of it in this substep. Those of few are accelerated by conjugate
 // directions (Silcowitz, Niebe and Erleben 2010).
-template <int D>
-void PlaneIterative<D>::settle_pairs() {
+void PlaneIterative::settle_pairs() {
   const int count = int(batches_.size());
   const bool follows = awake_pairs_ <= kFewPairs;
   active_bodies_.settled = settled_rate(closing_rate_);
@@ -333,8 +315,7 @@ void PlaneIterative<D>::settle_pairs() {
 
 // what the last iteration has changed of the impulses, each by the masses that it moves; in the order of
 // pairs
-template <int D>
-double PlaneIterative<D>::squared_change() const {
+double PlaneIterative::squared_change() const {
   double sum = 0;
   for (const Pair& pair : pairs_.all()) {
     if (pair.slot < 0) continue;
@@ -351,24 +332,21 @@ double PlaneIterative<D>::squared_change() const {
   return sum;
 }
 
-template <int D>
-void PlaneIterative<D>::advance(StepPart<D> part) {
+void PlaneIterative::advance(StepPart<D> part) {
   const bool correct = first(part) && deep_;
   if (correct) correct_overlaps(part.state);
   corrected_ = corrected_ || correct;
   place_bodies(part.state, part.h, correct);
 }
 
-template <int D>
-void PlaneIterative<D>::project(StepPart<D> part) {
+void PlaneIterative::project(StepPart<D> part) {
   if (!joints_.empty()) project_joints(part.state, part.h);
   outran_ = outran(part.h, (1 - share(part)) * span_);
 }
 
 // Whether joints press an awake body far into another. Few iterations of contacts, each with the mass of its
 // own body alone, would hardly move it out.
-template <int D>
-bool PlaneIterative<D>::strained(const State<D>& state) const {
+bool PlaneIterative::strained(const State<D>& state) const {
   const auto far = [&](int body) { return kStrained * cores_.half_thickness[body]; };
   return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact<D>& c) {
     const int a = c.key.a, b = c.key.b;
@@ -379,8 +357,7 @@ bool PlaneIterative<D>::strained(const State<D>& state) const {
 }
 
 // a pair's forces, from its lane
-template <int D>
-void PlaneIterative<D>::report_pair(const Pair& pair, State<D>& state) const {
+void PlaneIterative::report_pair(const Pair& pair, State<D>& state) const {
   if (pair.slot < 0) return;
   const ContactBatch& g = batches_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
@@ -395,8 +372,7 @@ void PlaneIterative<D>::report_pair(const Pair& pair, State<D>& state) const {
 }
 
 // searches for pairs, wakes bodies that they reach, and assigns lanes
-template <int D>
-void PlaneIterative<D>::update_pairs(State<D>& state, bool known) {
+void PlaneIterative::update_pairs(State<D>& state, bool known) {
   const int patience = state.contacts.empty() ? 0 : plane::NearPairs::patience(state.step / every_);
   bool changed = pairs_.find(state, poses_, span_, patience);
   if (Sleep<D>::any(state)) place_contacts(state, false);
@@ -416,8 +392,7 @@ void PlaneIterative<D>::update_pairs(State<D>& state, bool known) {
 }
 
 // false where the state is not the one that the last step left
-template <int D>
-bool PlaneIterative<D>::gather(const State<D>& state) {
+bool PlaneIterative::gather(const State<D>& state) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
   std::size_t contacts = 0;
   if (!pairs_.all().empty()) contacts = pairs_.all().back().first + pairs_.all().back().touches;
@@ -443,8 +418,7 @@ bool PlaneIterative<D>::gather(const State<D>& state) {
 
 // gain_ and bend_: how each body would move in the step without contacts and joints, by the scene's
 // integrator
-template <int D>
-void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, double h) {
+void PlaneIterative::integrate_unconstrained(State<D>& state, double t, double h) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
   const double gx = model_.gravity[0], gy = model_.gravity[1];
   for (int i = 0; i < n; ++i) {
@@ -483,8 +457,7 @@ void PlaneIterative<D>::integrate_unconstrained(State<D>& state, double t, doubl
 }
 
 // dv_ and dx_ of bodies on joints, and of those that springs, hands and forces act on, in a substep
-template <int D>
-void PlaneIterative<D>::integrate_jointed(StepPart<D> part) {
+void PlaneIterative::integrate_jointed(StepPart<D> part) {
   State<D>& state = part.state;
   const int still = int(turns_.size() - state.turn.size());
   dynamics_.gather(state, false, joints_.bodies());
@@ -509,8 +482,7 @@ void PlaneIterative<D>::integrate_jointed(StepPart<D> part) {
 
 // rows of the joints where the substep begins, with the velocities of kinematic bodies there, and what the
 // free motion makes of their speeds
-template <int D>
-void PlaneIterative<D>::start_joint_rows() {
+void PlaneIterative::start_joint_rows() {
   copy_to_joints();
   set_driven_joints(old_);
   joints_.compute_rows();
@@ -519,8 +491,7 @@ void PlaneIterative<D>::start_joint_rows() {
 }
 
 // velocities of kinematic bodies to the joint solver
-template <int D>
-void PlaneIterative<D>::set_driven_joints(const std::vector<Motion>& motions) {
+void PlaneIterative::set_driven_joints(const std::vector<Motion>& motions) {
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
     if (!joints_.has(body)) continue;
@@ -534,8 +505,7 @@ void PlaneIterative<D>::set_driven_joints(const std::vector<Motion>& motions) {
 // velocities of the substeps too, and contacts know of it. Of n substeps the k-th (from 0) has
 //   dv = gain / n - 12 bend / (n h) ((k + 1/2) / n - 1/2),   dx = h v / n + h dv / 2n + bend / n^3
 // with h of the whole step.
-template <int D>
-void PlaneIterative<D>::share_free_motion(StepPart<D> part) {
+void PlaneIterative::share_free_motion(StepPart<D> part) {
   const bool smooth = model_.integrator == Integrator::rk4 || model_.integrator == Integrator::midpoint;
   const double h = part.h, fraction = 1 / double(substeps_), half = 0.5 * h;
   const double late = smooth ? -12 * fraction / h * fraction * ((part.substep + 0.5) * fraction - 0.5) : 0;
@@ -559,8 +529,7 @@ void PlaneIterative<D>::share_free_motion(StepPart<D> part) {
 // --- kinematic bodies, and belts
 
 // wakes bodies that they may reach before the next pair search; true if any woke
-template <int D>
-bool PlaneIterative<D>::wake_near_driven(StepPart<D> step) {
+bool PlaneIterative::wake_near_driven(StepPart<D> step) {
   if (carries_.empty()) return false;
   return sleep_.wake_near_driven(step.state, [&](int body) {
     const int i = drives_.number(body);
@@ -569,8 +538,7 @@ bool PlaneIterative<D>::wake_near_driven(StepPart<D> step) {
 }
 
 // tells the pair search how far they may be from where their velocities at t take them
-template <int D>
-void PlaneIterative<D>::foresee_driven(double t) {
+void PlaneIterative::foresee_driven(double t) {
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
     const DrivenMotion<D> now = drives_.at(i, t), then = drives_.at(i, t + span_);
@@ -583,8 +551,7 @@ void PlaneIterative<D>::foresee_driven(double t) {
 }
 
 // their velocities and displacements in the substep, from their motion
-template <int D>
-void PlaneIterative<D>::move_driven(StepPart<D> part) {
+void PlaneIterative::move_driven(StepPart<D> part) {
   driven_gain_ = 0;
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
@@ -600,8 +567,7 @@ void PlaneIterative<D>::move_driven(StepPart<D> part) {
   }
 }
 
-template <int D>
-void PlaneIterative<D>::place_driven(State<D>& state) {
+void PlaneIterative::place_driven(State<D>& state) {
   const int still = int(turns_.size() - state.turn.size());
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
@@ -614,8 +580,7 @@ void PlaneIterative<D>::place_driven(State<D>& state) {
 }
 
 // Their work by the contacts of a substep, J: each force times the displacement of the carrying surface.
-template <int D>
-void PlaneIterative<D>::book_contacts(StepPart<D> part) const {
+void PlaneIterative::book_contacts(StepPart<D> part) const {
   if (part.state.work.empty()) return;
   const auto mean = [&](int body) {
     Motion m{};
@@ -642,8 +607,7 @@ void PlaneIterative<D>::book_contacts(StepPart<D> part) const {
 }
 
 // poses and velocities of bodies on joints to the joint solver; velocities back
-template <int D>
-void PlaneIterative<D>::copy_to_joints() {
+void PlaneIterative::copy_to_joints() {
   for (const int i : joints_.bodies()) {
     BodyMotion<D>& at = joints_.body_motion(i);
     at.x = {poses_[i].x, poses_[i].y}, at.v = {v_[i].x, v_[i].y}, at.w[0] = v_[i].w;
@@ -652,16 +616,14 @@ void PlaneIterative<D>::copy_to_joints() {
   }
 }
 
-template <int D>
-void PlaneIterative<D>::copy_from_joints() {
+void PlaneIterative::copy_from_joints() {
   for (const int i : joints_.bodies()) {
     const BodyMotion<D>& at = joints_.body_motion(i);
     v_[i].x = at.v[0], v_[i].y = at.v[1], v_[i].w = at.w[0];
   }
 }
 
-template <int D>
-void PlaneIterative<D>::solve_joint_velocities() {
+void PlaneIterative::solve_joint_velocities() {
   if (joints_.empty()) return;
   for (const int i : joints_.bodies())
     joints_.body_motion(i).v = {v_[i].x, v_[i].y}, joints_.body_motion(i).w[0] = v_[i].w;
@@ -670,8 +632,7 @@ void PlaneIterative<D>::solve_joint_velocities() {
 }
 
 // projects the joints, and copies poses and velocities of their bodies back
-template <int D>
-void PlaneIterative<D>::project_joints(State<D>& state, double h) {
+void PlaneIterative::project_joints(State<D>& state, double h) {
   copy_to_joints();
   joints_.finish(h);
   if (!state.work.empty()) state.work[0] += joints_.given();
@@ -694,8 +655,7 @@ void PlaneIterative<D>::project_joints(State<D>& state, double h) {
 }
 
 // pushes bodies out of overlaps, by a part of each
-template <int D>
-void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
+void PlaneIterative::correct_overlaps(const State<D>& state) {
   std::fill(projections_.begin(), projections_.end(), plane::Projection{});
   for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
   int iterations = std::max(kFewestProjections, kProjections * fewest_iterations());
@@ -715,7 +675,5 @@ void PlaneIterative<D>::correct_overlaps(const State<D>& state) {
   }
   for (std::size_t i = 0; i < corrections_.size(); ++i) corrections_[i] = {push_[i].x, push_[i].y};
 }
-
-template class PlaneIterative<2>;
 
 }  // namespace obscura::sim

@@ -27,8 +27,9 @@ namespace obscura::sim {
 /// those of pairs that may touch soon among them, hold forces and feature numbers. Members are scratch and
 /// follow from the state, so a run cut in two is the run in one. Scratch is reused if step, poses and
 /// velocities of the state are bit for bit those that the last step left.
-template <int D>
-class PlaneIterative final : public ContactSolver<D> {
+class PlaneIterative final : public ContactSolver<2> {
+  static constexpr int D = 2;
+
  public:
   /// Both are kept by reference.
   explicit PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths);

@@ -13,8 +13,7 @@ using plane::Feature;
 using plane::kLanes;
 using plane::Pair;
 
-template <int D>
-void PlaneIterative<D>::place_bodies(State<D>& state, double h, bool apply_push_out) {
+void PlaneIterative::place_bodies(State<D>& state, double h, bool apply_push_out) {
   const int n = int(turns_.size()), still = n - int(state.turn.size());
 
   begun_ = poses_;
@@ -47,8 +46,7 @@ void PlaneIterative<D>::place_bodies(State<D>& state, double h, bool apply_push_
 }
 
 // by the mean of old and new velocity
-template <int D>
-plane::Motion PlaneIterative<D>::mean_way(int i, double h) const {
+plane::Motion PlaneIterative::mean_way(int i, double h) const {
   const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
   const double half = 0.5 * h;
   return {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
@@ -56,8 +54,7 @@ plane::Motion PlaneIterative<D>::mean_way(int i, double h) const {
 }
 
 // the way of a body in the step, of one too that is struck or fast
-template <int D>
-plane::Motion PlaneIterative<D>::course(int i, double h) {
+plane::Motion PlaneIterative::course(int i, double h) {
   const Motion &v = v_[i], &o = old_[i], &dv = dv_[i];
   const double when = impacts_.first(i);
   Motion d;
@@ -101,8 +98,7 @@ plane::Motion PlaneIterative<D>::course(int i, double h) {
 }
 
 // whether a body comes to lie in what presses against it, if it goes this way
-template <int D>
-bool PlaneIterative<D>::sinks(int body, const Motion& way, double h) const {
+bool PlaneIterative::sinks(int body, const Motion& way, double h) const {
   for (const int i : impacts_.around(body)) {
     const Pair& pair = pairs_.all()[i];
     const int other = body == pair.a ? pair.b : pair.a, none = int(turns_.size());
@@ -126,16 +122,14 @@ bool PlaneIterative<D>::sinks(int body, const Motion& way, double h) const {
 }
 
 // whether it may pass through something in the step
-template <int D>
-bool PlaneIterative<D>::fast(int body, const Motion& way) const {
+bool PlaneIterative::fast(int body, const Motion& way) const {
   const double half = 0.5 * kSight * cores_.half_thickness[body];
   return way.x * way.x + way.y * way.y > half * half;
 }
 
 // The part of its way from `begun` s of the substep on that a body may go before it meets another, which
 // flies on as it did, or a wall: by steps as long as the distance that is left.
-template <int D>
-double PlaneIterative<D>::safe_fraction(int body, const plane::Pose& from, const Motion& way, double begun,
+double PlaneIterative::safe_fraction(int body, const plane::Pose& from, const Motion& way, double begun,
                                         double h, bool walls) const {
   double part = 1;
   Feature features[2];
@@ -177,8 +171,7 @@ double PlaneIterative<D>::safe_fraction(int body, const plane::Pose& from, const
 
 // whether a body may come farther in `left` s until the next look than its pairs foresaw, by more than a part
 // of its thickness
-template <int D>
-bool PlaneIterative<D>::outran(double h, double left) const {
+bool PlaneIterative::outran(double h, double left) const {
   const int n = int(turns_.size());
   const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
   for (int i = 0; i < n; ++i) {
@@ -195,8 +188,5 @@ bool PlaneIterative<D>::outran(double h, double left) const {
   }
   return false;
 }
-
-template void PlaneIterative<2>::place_bodies(State<2>&, double, bool);
-template bool PlaneIterative<2>::outran(double, double) const;
 
 }  // namespace obscura::sim

@@ -30,8 +30,7 @@ bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind ==
 }  // namespace
 
 // lanes for the pairs that are awake: greedy colours, in the order of pairs
-template <int D>
-void PlaneIterative<D>::build_batches(const State<D>& state, bool known) {
+void PlaneIterative::build_batches(const State<D>& state, bool known) {
   std::vector<Pair>& all = pairs_.all();
   if (version_ == pairs_.version() && frozen_ == state.frozen) {
     for (Pair& pair : all) {
@@ -108,8 +107,7 @@ void PlaneIterative<D>::build_batches(const State<D>& state, bool known) {
 }
 
 // The colour of a pair, the next in order; -1 where it is asleep.
-template <int D>
-int PlaneIterative<D>::colour(const Pair& pair) {
+int PlaneIterative::colour(const Pair& pair) {
   const bool a = v_[pair.a].im > 0, b = pair.b >= 0 && v_[pair.b].im > 0;
   if (!a && !b) return -1;
   const std::uint64_t used = (a ? colours_[pair.a] : 0) | (b ? colours_[pair.b] : 0);
@@ -122,8 +120,7 @@ int PlaneIterative<D>::colour(const Pair& pair) {
 
 // Batches after some pairs have come and some have gone: a pair that keeps its colour keeps its lane, for
 // within a colour the order is of no account. False where there are too few.
-template <int D>
-bool PlaneIterative<D>::update_batches(const State<D>& state) {
+bool PlaneIterative::update_batches(const State<D>& state) {
   if (begin_.empty()) return false;
   std::vector<Pair>& all = pairs_.all();
   const int end = begin_.back(), count = int(all.size());
@@ -174,8 +171,7 @@ bool PlaneIterative<D>::update_batches(const State<D>& state) {
   return true;
 }
 
-template <int D>
-void PlaneIterative<D>::clear_lane(int slot) {
+void PlaneIterative::clear_lane(int slot) {
   static const ContactBatch empty = [] {
     ContactBatch made{};
     for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -plane::kNowhere, made.per_width[k] = 1;
@@ -189,8 +185,7 @@ void PlaneIterative<D>::clear_lane(int slot) {
 }
 
 // what stays as long as a pair has its lane
-template <int D>
-void PlaneIterative<D>::fill_lane(int i, const State<D>& state) {
+void PlaneIterative::fill_lane(int i, const State<D>& state) {
   Pair& pair = pairs_.all()[i];
   const int n = int(turns_.size());
   ContactBatch& g = batches_[pair.slot / kLanes];
@@ -229,8 +224,7 @@ void PlaneIterative<D>::fill_lane(int i, const State<D>& state) {
 }
 
 // features and forces of a pair
-template <int D>
-void PlaneIterative<D>::write_lane(const Pair& pair, const State<D>& state) {
+void PlaneIterative::write_lane(const Pair& pair, const State<D>& state) {
   ContactBatch& g = batches_[pair.slot / kLanes];
   const int lane = pair.slot % kLanes;
   g.first[lane] = pair.first;
@@ -241,12 +235,5 @@ void PlaneIterative<D>::write_lane(const Pair& pair, const State<D>& state) {
     g.p[k][lane] = force[0], g.q[k][lane] = force[1];
   }
 }
-
-template void PlaneIterative<2>::build_batches(const State<2>&, bool);
-template bool PlaneIterative<2>::update_batches(const State<2>&);
-template int PlaneIterative<2>::colour(const Pair&);
-template void PlaneIterative<2>::clear_lane(int);
-template void PlaneIterative<2>::fill_lane(int, const State<2>&);
-template void PlaneIterative<2>::write_lane(const Pair&, const State<2>&);
 
 }  // namespace obscura::sim

@@ -18,8 +18,7 @@ using plane::kLanes;
 }  // namespace
 
 // the islands of bodies that are still active
-template <int D>
-void PlaneIterative<D>::solve_exhausted() {
+void PlaneIterative::solve_exhausted() {
   const std::vector<unsigned char>& flags = active_bodies_.bodies;
   const auto active = [](unsigned char flag) {
     return (flag & (ActiveBodies::kNow | ActiveBodies::kNever)) == ActiveBodies::kNow;
@@ -65,8 +64,7 @@ void PlaneIterative<D>::solve_exhausted() {
 }
 
 // the contacts of some lanes
-template <int D>
-void PlaneIterative<D>::solve_together(std::span<const std::pair<int, int>> lanes) {
+void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) {
   auto& [sets, contacts, all, touches, cone, blocks, modes, K, b, p] = exhausted_;
   touches.clear(), blocks.clear();
   for (const auto& [root, slot] : lanes) {
@@ -138,7 +136,5 @@ void PlaneIterative<D>::solve_together(std::span<const std::pair<int, int>> lane
     }
   }
 }
-
-template void PlaneIterative<2>::solve_exhausted();
 
 }  // namespace obscura::sim

@@ -50,8 +50,7 @@ bool balance(std::vector<Support>& supports, double weight, double moment) {
 
 }  // namespace
 
-template <int D>
-void PlaneIterative<D>::first_guess(State<D>& state) {
+void PlaneIterative::first_guess(State<D>& state) {
   const double g = std::sqrt(model_.gravity.squaredNorm());
   if (g == 0) return;
   const int n = int(turns_.size());
@@ -102,7 +101,5 @@ void PlaneIterative<D>::first_guess(State<D>& state) {
     }
   }
 }
-
-template void PlaneIterative<2>::first_guess(State<2>&);
 
 }  // namespace obscura::sim

@@ -7,15 +7,14 @@
 #include <cmath>
 
 #include "sim/math/trig.h"
+#include "sim/solve/iterate/closing_time.h"
 #include "sim/solve/iterate/plane_impacts.h"
 
 namespace obscura::sim::plane {
 
 namespace {
 
-constexpr int kTimes = 8;          // Newton steps for the time of an impact
 constexpr double kForward = 0.01;  // of the step: by so much at least features are looked for on the way
-constexpr double kLatest = 1.5;    // steps: so late a touch may close that its tangent would close in one
 
 // two corners of polygons: others may come nearer, however these move
 bool other_corners(const ContactBatch& g, int k, int lane) {
@@ -60,14 +59,14 @@ Impacts::PlacedPair Impacts::placed_at(const Pair& pair, double when, const Cont
   return at;
 }
 
-// when a touch closes with an impact, by its course from where it stands, s; never: 1e300
+// when a touch closes with an impact, by its course from where it stands, s; never: kNeverCloses
 double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, const PlacedPair& at,
                               const std::vector<Motion>& dv, const StepConstants& pace) const {
   const int lane = pair.slot % kLanes;
   const Motion &a = at.a, &b = at.b, &gain_a = dv[g.a[lane]], &gain_b = dv[g.b[lane]];
   const TouchRow& r = at.rows[k];
   const double vn = normal_speed(r, a, b), gap = r.gap;
-  if (gap > g.sight[lane] || !(vn < g.impact_speed[lane])) return 1e300;
+  if (gap > g.sight[lane] || !(vn < g.impact_speed[lane])) return kNeverCloses;
   const double dvn = normal_speed(r, gain_a, gain_b), left = std::max(0.0, gap);
   // two corners: |l n + v t| = radius, if they do not pass
   if (g.corners[k] >> lane & 1) {
@@ -79,47 +78,16 @@ double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, co
   return at.when + left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn));
 }
 
-// The same where its bodies stand by then: Newton's method along the course; where the bodies turn so far
-// that this misleads, by halving.
+// the same where its bodies stand by then
 double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, const PlacedPair& start,
                              const std::vector<Pose>& poses, const std::vector<Motion>& dv,
                              const StepConstants& pace) const {
-  const int lane = pair.slot % kLanes;
-  const double from = start.when;
-  double when = closing_guess(pair, k, g, start, dv, pace);
-  if (when == 1e300 || start.rows[k].gap <= 0) return when;
-  double low = from, high = -1;
-  for (int i = 0; i < kTimes && when <= from + kLatest * pace.h; ++i) {
+  const double guess = closing_guess(pair, k, g, start, dv, pace);
+  if (guess == kNeverCloses || start.rows[k].gap <= 0) return guess;
+  return sim::closing_time(start.when, guess, pace.h, g.impact_speed[pair.slot % kLanes], [&](double when) {
     const PlacedPair at = placed_at(pair, when, g, poses, dv, pace);
-    const double gap = at.rows[k].gap, speed = normal_speed(at.rows[k], at.a, at.b);
-    if (gap > 0 && !(speed < 0)) {
-      // it has come nearest before: was it closed then?
-      for (double parted = when; parted - low > kInTime * pace.h && high < 0;) {
-        const double mid = 0.5 * (low + parted);
-        const PlacedPair then = placed_at(pair, mid, g, poses, dv, pace);
-        if (then.rows[k].gap <= 0)
-          high = mid;
-        else
-          (normal_speed(then.rows[k], then.a, then.b) < 0 ? low : parted) = mid;
-      }
-      if (high < 0) return 1e300;
-      break;
-    }
-    if (!(speed < g.impact_speed[lane])) break;
-    const double next = when - gap / speed;
-    if (std::fabs(next - when) <= kInTime * pace.h) return when <= pace.h ? when : 1e300;
-    when = std::clamp(next, from, from + kLatest * pace.h);
-  }
-  if (high < 0) {
-    if (from >= pace.h || placed_at(pair, pace.h, g, poses, dv, pace).rows[k].gap > 0) return 1e300;
-    high = pace.h;
-  }
-  while (high - low > kInTime * pace.h) {
-    when = 0.5 * (low + high);
-    (placed_at(pair, when, g, poses, dv, pace).rows[k].gap > 0 ? low : high) = when;
-  }
-  const PlacedPair at = placed_at(pair, low, g, poses, dv, pace);
-  return normal_speed(at.rows[k], at.a, at.b) < g.impact_speed[lane] ? low : 1e300;
+    return GapInTime{at.rows[k].gap, normal_speed(at.rows[k], at.a, at.b)};
+  });
 }
 
 // Whether a pair may meet with an impact in what is left of the step, by its rows as it stands: most do not.
@@ -158,7 +126,7 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vecto
 double Impacts::first_closing(const Pair& pair, const ContactBatch& g, const PlacedPair& start,
                               const std::vector<Pose>& poses, const std::vector<Motion>& dv,
                               const StepConstants& pace, int& which) const {
-  double first = 1e300;
+  double first = kNeverCloses;
   which = 0;
   for (int k = 0; k < pair.touches; ++k) {
     const double when = closing_time(pair, k, g, start, poses, dv, pace);
@@ -198,18 +166,18 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
       find_features(std::min(when, pace.h));
       if (!knows(by, 0) || (pair.touches > 1 && !knows(by, 1))) {
         if (&by != &fresh_) copy_lane(by, lane, fresh_, lane);
-        if (when == 1e300 || !knows(by, which)) return false;
+        if (when == kNeverCloses || !knows(by, which)) return false;
         place_renewed(when);
         return true;
       }
     }
-    if (when < 1e300 && when != at.when) {
+    if (when < kNeverCloses && when != at.when) {
       at = placed_at(pair, when, by, poses, dv, pace);
       at.renewed = &by != &g;
     }
     return true;
   };
-  if (found(g)) return when < 1e300;
+  if (found(g)) return when < kNeverCloses;
 
   const double from = at.when;
   const Motion &p = at.a, &q = at.b;
@@ -234,7 +202,7 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
     }
     when = first_closing(pair, fresh_, at, poses, dv, pace, which);
     if (when == time) return true;
-    if (found(fresh_)) return when < 1e300;
+    if (found(fresh_)) return when < kNeverCloses;
     apart = gap() > 0 ? time : -1;
     time += std::max(kForward * pace.h, gap() / fastest);
   }

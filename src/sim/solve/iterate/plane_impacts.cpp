@@ -12,6 +12,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "sim/solve/iterate/closing_time.h"
 #include "sim/solve/iterate/plane_pair_impact.h"
 
 namespace obscura::sim::plane {
@@ -27,26 +28,18 @@ Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs)
     : pairs_(pairs), bounding_radius_(cores.bounding_radius) {
   const int bodies = int(bounding_radius_.size());
   bounding_radius_.push_back(0);
-  around_start_.resize(bodies + 2);
+  around_.build(bodies, 0, [](int, const auto&) {});
   first_.assign(bodies + 1, -1), when_.assign(bodies + 1, -1), rounds_.assign(bodies + 1, 0);
   pose_.resize(bodies + 1), way_.resize(bodies + 1), now_.resize(bodies + 1), dv_impacts_.resize(bodies + 1);
 }
 
 void Impacts::list_pairs(const std::vector<Pair>& pairs, const std::vector<Motion>& v) {
-  std::fill(around_start_.begin(), around_start_.end(), 0);
-  const int n = int(around_start_.size()) - 2;
-  const auto each = [&](const auto& act) {
-    for (int i = 0; i < int(pairs.size()); ++i) {
-      if (pairs[i].slot < 0) continue;
-      for (const int body : {pairs[i].a, pairs[i].b}) {
-        if (body >= 0 && v[body].im > 0) act(i, body);
-      }
+  around_.build(int(bounding_radius_.size()) - 1, int(pairs.size()), [&](int i, const auto& act) {
+    if (pairs[i].slot < 0) return;
+    for (const int body : {pairs[i].a, pairs[i].b}) {
+      if (body >= 0 && v[body].im > 0) act(body);
     }
-  };
-  each([&](int, int body) { ++around_start_[body + 2]; });
-  for (int i = 2; i < n + 2; ++i) around_start_[i] += around_start_[i - 1];
-  around_.resize(around_start_[n + 1]);
-  each([&](int i, int body) { around_[around_start_[body + 1]++] = i; });
+  });
   waiting_.assign(pairs.size(), 0), impacts_of_.assign(pairs.size(), 0);
   queue_.reserve(pairs.size()), passing_.reserve(pairs.size());
 }
@@ -238,10 +231,8 @@ void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<Co
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
       least = v[k] - vn;
       if (met == 2) least = std::min(least, 0.0);
-      if (gap <= kTogether * g.far[lane]) continue;
-      // an approach this fast would have been an impact if the pair could meet: it passes by
-      const bool passes = vn < g.impact_speed[lane] || left <= kInTime * pace.h;
-      least = passes ? -1e9 : least - gap / left;
+      least = target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], g.impact_speed[lane], left,
+                                   pace.h);
     }
   };
   for (const int i : passing_) leave(i);
@@ -279,16 +270,13 @@ void Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::ve
       if (at + kPairsAhead < queue_.size()) __builtin_prefetch(&pairs[queue_[at + kPairsAhead]]);
       if (!predict(i, impact, batches, step)) continue;
       if (impact.when > now) {
-        due_.push_back({impact.when, int(predicted_.size()), rounds(pairs[i])});
+        due_.push(impact.when, int(predicted_.size()), rounds(pairs[i]));
         predicted_.push_back(impact);
-        std::push_heap(due_.begin(), due_.end());
         continue;
       }
     } else if (!due_.empty()) {
-      std::pop_heap(due_.begin(), due_.end());
-      const Due due = due_.back();
-      due_.pop_back();
-      impact = predicted_[due.impact];
+      const ImpactQueue::Due due = due_.pop();
+      impact = predicted_[due.number];
       if (due.rounds != rounds(pairs[impact.pair])) continue;
       now = due.when;
     } else {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/model/state.h"
+#include "sim/solve/iterate/impact_queue.h"
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/plane_contact_rows.h"
 #include "sim/solve/iterate/plane_pair_cache.h"
@@ -45,9 +46,7 @@ class Impacts {
   void store_impulses(std::vector<Contact<2>>& contacts) const;
 
   /// The awake pairs of a body.
-  std::span<const int> around(int body) const {
-    return {around_.data() + around_start_[body], around_.data() + around_start_[body + 1]};
-  }
+  std::span<const int> around(int body) const { return around_.of(body); }
 
   /// Impacts of a body: the times of the first and the last (s from the start of the substep; -1: none), its
   /// displacement until the last, and its velocity after that.
@@ -82,17 +81,6 @@ class Impacts {
     bool renewed = false;  // by other features than those of the lane
     Motion a, b;
     TouchRow rows[2];
-  };
-  // an impact that is due; no longer so once one of its bodies had another
-  struct Due {
-    double when = 0;
-    int impact = 0;  // in predicted_: of one instant, the first come first
-    int rounds = 0;
-
-    // so that the next is the top of a heap
-    bool operator<(const Due& other) const {
-      return when != other.when ? when > other.when : impact > other.impact;
-    }
   };
   // what does not change while the impacts of a step are resolved
   struct Step {
@@ -149,7 +137,7 @@ class Impacts {
   const Pairs& pairs_;
   ContactBatch fresh_{};                    // of a pair: the features that are nearest when it meets
   std::vector<double> bounding_radius_;     // of bodies, and of walls, m
-  std::vector<int> around_, around_start_;  // pairs of each body
+  ByBody around_;                           // pairs
   std::vector<int> bodies_;                 // with impacts
   std::vector<double> first_, when_;        // s: of each body's first and last impact; -1: none
   std::vector<Pose> pose_;                  // of those with impacts: at the last
@@ -160,7 +148,7 @@ class Impacts {
   double drive_work_ = 0;                   // J
 
   std::vector<int> queue_;  // pairs to be looked at, as one of their bodies just had an impact
-  std::vector<Due> due_;
+  ImpactQueue due_;           // numbers of predicted_
   std::vector<char> waiting_;     // of pairs: in queue_
   std::vector<char> impacts_of_;  // of pairs: whether they had one
   std::vector<Impact> predicted_;

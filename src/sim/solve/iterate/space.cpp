@@ -39,8 +39,7 @@ constexpr double kRoundingGain = 1e-9;  // of its kinetic energy: what an island
 
 }  // namespace
 
-template <int D>
-SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
+SpaceIterative::SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
     : model_(model),
       may_touch_(model),
       dynamics_(model, paths),
@@ -66,8 +65,7 @@ SpaceIterative<D>::SpaceIterative(const Model<D>& model, const std::vector<Path<
   farther_.resize(carries_.size());
 }
 
-template <int D>
-bool SpaceIterative<D>::collide(StepPart<D> step) {
+bool SpaceIterative::collide(StepPart<D> step) {
   State<D>& state = step.state;
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n);
@@ -78,8 +76,7 @@ bool SpaceIterative<D>::collide(StepPart<D> step) {
   return true;
 }
 
-template <int D>
-void SpaceIterative<D>::wake(StepPart<D> step) {
+void SpaceIterative::wake(StepPart<D> step) {
   if (update_sleep(step.state, step.t, step.h)) prepare(step.state, step.t, step.h), find(step);
   closing_rate_ = closing_rate(step.h);
   substeps_ = substeps_for(closing_rate_, step.h);
@@ -88,8 +85,7 @@ void SpaceIterative<D>::wake(StepPart<D> step) {
 }
 
 // how fast those close that touch, or may within h s: the most, in widths of the narrower body, 1/s
-template <int D>
-double SpaceIterative<D>::closing_rate(double h) const {
+double SpaceIterative::closing_rate(double h) const {
   const int n = int(model_.bodies.size());
   double most = 0;
   for (const ContactConstraint& touch : touches_) {
@@ -108,8 +104,7 @@ double SpaceIterative<D>::closing_rate(double h) const {
 }
 
 // impulses of a substep that is not the last
-template <int D>
-void SpaceIterative<D>::keep_impulses(const State<D>& state) {
+void SpaceIterative::keep_impulses(const State<D>& state) {
   for (const Contact<D>& contact : state.contacts) {
     if (contact.impulse.isZero(0)) continue;
     impulses_.push_back(contact);
@@ -118,8 +113,7 @@ void SpaceIterative<D>::keep_impulses(const State<D>& state) {
 }
 
 // those of a step, to its contacts
-template <int D>
-void SpaceIterative<D>::add_impulses(State<D>& state) const {
+void SpaceIterative::add_impulses(State<D>& state) const {
   for (const Contact<D>& struck : impulses_) {
     const auto at = std::lower_bound(state.contacts.begin(), state.contacts.end(), struck,
                                      [](const auto& p, const auto& q) { return p.key < q.key; });
@@ -132,8 +126,7 @@ void SpaceIterative<D>::add_impulses(State<D>& state) const {
   }
 }
 
-template <int D>
-void SpaceIterative<D>::start_rows(StepPart<D> step) {
+void SpaceIterative::start_rows(StepPart<D> step) {
   warm_start_contacts(step.state, step.h);
   iterations_ =
       std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
@@ -152,8 +145,7 @@ void SpaceIterative<D>::start_rows(StepPart<D> step) {
   if (touches_.empty() && joints_.plain()) iterations_ = 1;
 }
 
-template <int D>
-void SpaceIterative<D>::iterate(StepPart<D> step) {
+void SpaceIterative::iterate(StepPart<D> step) {
   start_rows(step);
   batches_.build(touches_, all_, moving_);
   for (int round = 0; round < kTempering; ++round) {
@@ -172,8 +164,7 @@ void SpaceIterative<D>::iterate(StepPart<D> step) {
   book_contacts(step.state);
 }
 
-template <int D>
-void SpaceIterative<D>::project(StepPart<D> step) {
+void SpaceIterative::project(StepPart<D> step) {
   correct_overlaps(step.state, step.h);
   if (!joints_.empty()) project_joints(step.state, step.h);
   report_contacts(step.state, step.h);
@@ -182,27 +173,23 @@ void SpaceIterative<D>::project(StepPart<D> step) {
 }
 
 // which watched pairs bear or are struck in a substep
-template <int D>
-void SpaceIterative<D>::note_touches(StepPart<D> step) {
+void SpaceIterative::note_touches(StepPart<D> step) {
   const double begun = step.substep * step.h, ended = begun + step.h;
   for (const Contact<D>& it : step.state.contacts)
     if (it.touching != ContactMode::open) notes_.note(it.key.a, it.key.b, begun, ended);
   if (step.substep + 1 == substeps_) notes_.end();
 }
 
-template <int D>
-void SpaceIterative<D>::report(StepPart<D> step) {
+void SpaceIterative::report(StepPart<D> step) {
   add_impulses(step.state);
 }
 
-template <int D>
-void SpaceIterative<D>::sleep(StepPart<D> step) {
+void SpaceIterative::sleep(StepPart<D> step) {
   if (sleep_.due(step.state)) put_to_sleep(step.state, step.h / substeps_);
 }
 
 // poses, velocities and inverse inertias
-template <int D>
-void SpaceIterative<D>::prepare(const State<D>& state, double t, double h) {
+void SpaceIterative::prepare(const State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   stances_.resize(n), moving_.assign(n + 1, {}), inactive_.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -223,29 +210,25 @@ void SpaceIterative<D>::prepare(const State<D>& state, double t, double h) {
 }
 
 // of the fastest point, at most
-template <int D>
-double SpaceIterative<D>::swiftness(int body) const {
+double SpaceIterative::swiftness(int body) const {
   const PointBody<D>& m = moving_[body];
   return std::sqrt(m.v.squaredNorm()) + bounding_radius_[body] * std::sqrt(m.w.squaredNorm());
 }
 
 // how far a body may come in a step, m
-template <int D>
-double SpaceIterative<D>::margin(int body, double h) const {
+double SpaceIterative::margin(int body, double h) const {
   if (drives_.number(body) >= 0) return h * swiftness(body) + farther_[body] + 1e-3 * bounding_radius_[body];
   return inactive_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
 }
 
 // how fast points of one body pass those of another, at most
-template <int D>
-double SpaceIterative<D>::passing_speed(int a, int b) const {
+double SpaceIterative::passing_speed(int a, int b) const {
   return std::sqrt((moving_[a].v - moving_[b].v).squaredNorm()) + swing_[a] + swing_[b];
 }
 
 // How near features of a pair may come to touch in the step, m. Of two that fly side by side none comes
 // nearer, but for what strikes them meanwhile.
-template <int D>
-double SpaceIterative<D>::pair_margin(int a, int b, double h) const {
+double SpaceIterative::pair_margin(int a, int b, double h) const {
   const double farther = carries_.empty() ? 0 : farther_[a] + farther_[b];
   return std::min(margin_[a] + margin_[b], h * (passing_speed(a, b) + 2 * g_ * h) + farther +
                                                kSpare * (bounding_radius_[a] + bounding_radius_[b]));
@@ -253,8 +236,7 @@ double SpaceIterative<D>::pair_margin(int a, int b, double h) const {
 
 // All features are looked for sixty times a second. In between, a pair keeps those of its contacts in the
 // state for one, two, four, ... substeps, as long as it hardly moves in these.
-template <int D>
-void SpaceIterative<D>::find(StepPart<D> step) {
+void SpaceIterative::find(StepPart<D> step) {
   const double h = step.h;
   const double elapsed = double(step.state.step % every_) / value(model_.rate) + step.substep * h;
   const std::int64_t number = std::llround(elapsed / h);
@@ -299,8 +281,7 @@ void SpaceIterative<D>::find(StepPart<D> step) {
 }
 
 // Pairs whose bounds may overlap: those of wider bounds, as long as no body leaves its own.
-template <int D>
-void SpaceIterative<D>::find_near() {
+void SpaceIterative::find_near() {
   const auto holds = [&](const Bounds<D>& wide, const Bounds<D>& bounds) {
     return (wide.lower.array() <= bounds.lower.array()).all() &&
            (wide.upper.array() >= bounds.upper.array()).all();
@@ -322,8 +303,7 @@ void SpaceIterative<D>::find_near() {
 // The features of a pair's contacts in the state, into gaps_; false where it has none, where they are to be
 // looked for in the substep of this number, or a key does not say all. `old`: contacts from this pair on;
 // `memo`: where its keys would be among those known.
-template <int D>
-bool SpaceIterative<D>::keep_features(int a, int b, std::int64_t number, double h,
+bool SpaceIterative::keep_features(int a, int b, std::int64_t number, double h,
                                       std::span<const Contact<D>>& old, std::size_t& memo) {
   const auto before = [&](const Contact<D>& c) { return c.key.a != a ? c.key.a < a : c.key.b < b; };
   std::size_t begin = 0, end = 0;
@@ -352,8 +332,7 @@ bool SpaceIterative<D>::keep_features(int a, int b, std::int64_t number, double 
   return true;
 }
 
-template <int D>
-void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair) {
+void SpaceIterative::add(const ContactCandidate<D>& gap, const Material& pair) {
   static const BodyMotion<D> room;
   const int none = int(model_.bodies.size());
   const int a = gap.key.a, b = gap.key.b < 0 ? none : gap.key.b;
@@ -375,8 +354,7 @@ void SpaceIterative<D>::add(const ContactCandidate<D>& gap, const Material& pair
 // --- bodies that are moved, and belts
 
 // what belts add to the speed of a's surface against b's
-template <int D>
-Vec<D> SpaceIterative<D>::belt(const ContactConstraint& touch) const {
+Vec<3> SpaceIterative::belt(const ContactConstraint& touch) const {
   Vec<D> u = Vec<D>::Zero();
   const auto add = [&](int body, double sign) {
     if (!carries(body) || model_.bodies[body].belt.isZero(0)) return;
@@ -387,8 +365,7 @@ Vec<D> SpaceIterative<D>::belt(const ContactConstraint& touch) const {
 }
 
 // where they are and how they move at the end of the step, into the state and among those that others touch
-template <int D>
-void SpaceIterative<D>::move_driven(State<D>& state, double t, double h) {
+void SpaceIterative::move_driven(State<D>& state, double t, double h) {
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
     const DrivenMotion<D> to = drives_.at(i, t + h);
@@ -399,8 +376,7 @@ void SpaceIterative<D>::move_driven(State<D>& state, double t, double h) {
 }
 
 // what they give, J, by an impulse on a, and back on b, at arms from their centres
-template <int D>
-double SpaceIterative<D>::given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a,
+double SpaceIterative::given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a,
                                 const Vec<D>& arm_a, const BodyMotion<D>& b, int body_b,
                                 const Vec<D>& arm_b) const {
   double sum = 0;
@@ -411,8 +387,7 @@ double SpaceIterative<D>::given(const Vec<D>& impulse, const BodyMotion<D>& a, i
 }
 
 // their work by the contacts of a substep, by the mean of their velocities
-template <int D>
-void SpaceIterative<D>::book_contacts(State<D>& state) const {
+void SpaceIterative::book_contacts(State<D>& state) const {
   if (carries_.empty() || state.work.empty()) return;
   const auto mean = [&](int body) {
     BodyMotion<D> at;
@@ -432,8 +407,7 @@ void SpaceIterative<D>::book_contacts(State<D>& state) const {
 }
 
 // rows of the joints where the step begins
-template <int D>
-void SpaceIterative<D>::build_joint_rows(const State<D>& state) {
+void SpaceIterative::build_joint_rows(const State<D>& state) {
   joints_.gather(state);
   for (const int i : joints_.bodies()) {
     joints_.body_motion(i) = stances_[i];
@@ -443,8 +417,7 @@ void SpaceIterative<D>::build_joint_rows(const State<D>& state) {
 }
 
 // positions and velocities without contacts
-template <int D>
-void SpaceIterative<D>::move_free(StepPart<D> step) {
+void SpaceIterative::move_free(StepPart<D> step) {
   State<D>& state = step.state;
   if (substeps_ > 1) {
     if (step.substep > 0 && !joints_.empty()) joints_.prepare(state);
@@ -481,8 +454,7 @@ void SpaceIterative<D>::move_free(StepPart<D> step) {
 }
 
 // what each touch wants of the step, and the forces it had in the last
-template <int D>
-void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
+void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   static const BodyMotion<D> room;
   const int n = int(model_.bodies.size());
   closing_.assign(n + 1, 0), all_.clear();
@@ -518,22 +490,19 @@ void SpaceIterative<D>::warm_start_contacts(const State<D>& state, double h) {
 }
 
 // velocities to the joints, of all that they have or of those marked, and back
-template <int D>
-void SpaceIterative<D>::copy_to_joints(const std::vector<char>* of) {
+void SpaceIterative::copy_to_joints(const std::vector<char>* of) {
   for (const int i : joints_.bodies()) {
     if (!of || (*of)[i]) joints_.body_motion(i).v = moving_[i].v, joints_.body_motion(i).w = moving_[i].w;
   }
 }
 
-template <int D>
-void SpaceIterative<D>::copy_from_joints(const std::vector<char>* of) {
+void SpaceIterative::copy_from_joints(const std::vector<char>* of) {
   for (const int i : joints_.bodies()) {
     if (!of || (*of)[i]) moving_[i].v = joints_.body_motion(i).v, moving_[i].w = joints_.body_motion(i).w;
   }
 }
 
-template <int D>
-void SpaceIterative<D>::solve_joint_velocities() {
+void SpaceIterative::solve_joint_velocities() {
   if (joints_.empty()) return;
   copy_to_joints();
   joints_.iterate();
@@ -546,8 +515,7 @@ void SpaceIterative<D>::solve_joint_velocities() {
 //   dK = p . v' - p W p / 2
 // a share dK / p . v' less is enough where p stays; what stays of it is looked at again. True where there was
 // any.
-template <int D>
-bool SpaceIterative<D>::temper(const State<D>& state) {
+bool SpaceIterative::temper(const State<D>& state) {
   if (std::none_of(touches_.begin(), touches_.end(), [](const ContactConstraint& touch) {
         return touch.bounces && touch.least > 0 && touch.normal_impulse > 0;
       }))
@@ -600,8 +568,7 @@ bool SpaceIterative<D>::temper(const State<D>& state) {
 
 // When each body meets an impact that the iterations change its motion at, s from the start of the step: the
 // first that is left to them, or its last, if joints answered it. h: none.
-template <int D>
-void SpaceIterative<D>::find_strikes(double h) {
+void SpaceIterative::find_strikes(double h) {
   const int n = int(model_.bodies.size());
   strikes_.assign(n + 1, h);
   for (const ContactConstraint& touch : touches_) {
@@ -615,8 +582,7 @@ void SpaceIterative<D>::find_strikes(double h) {
 }
 
 // positions at the end of the step, from those without contacts
-template <int D>
-void SpaceIterative<D>::place_bodies(State<D>& state, double h) {
+void SpaceIterative::place_bodies(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   find_strikes(h);
   for (int i = 0; i < n; ++i) {
@@ -649,8 +615,7 @@ void SpaceIterative<D>::place_bodies(State<D>& state, double h) {
 }
 
 // velocities at the end of the step, and sleep timers
-template <int D>
-void SpaceIterative<D>::advance(StepPart<D> step) {
+void SpaceIterative::advance(StepPart<D> step) {
   State<D>& state = step.state;
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (inactive_[i]) continue;
@@ -660,8 +625,7 @@ void SpaceIterative<D>::advance(StepPart<D> step) {
 }
 
 // J M^-1 J' of a contact's normal, 1/kg
-template <int D>
-double SpaceIterative<D>::normal_response(const ContactConstraint& touch) const {
+double SpaceIterative::normal_response(const ContactConstraint& touch) const {
   double sum = 0;
   for (const auto& [body, arm] : {std::pair(touch.a, &touch.arm_a), std::pair(touch.b, &touch.arm_b)}) {
     const PointBody<D>& m = moving_[body];
@@ -671,15 +635,13 @@ double SpaceIterative<D>::normal_response(const ContactConstraint& touch) const 
   return sum;
 }
 
-template <int D>
-void SpaceIterative<D>::begin_corrections() {
+void SpaceIterative::begin_corrections() {
   if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
   corrected_ = true;
 }
 
 // positions out of each other, a part of the way, by the same rows
-template <int D>
-void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
+void SpaceIterative::correct_overlaps(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   // those that the scene has, too small for it to refuse them
   const bool at_start = state.step == 0 && model_.overlap == Overlap::refuse;
@@ -728,8 +690,7 @@ void SpaceIterative<D>::correct_overlaps(State<D>& state, double h) {
 }
 
 // what the step has pulled apart
-template <int D>
-void SpaceIterative<D>::project_joints(State<D>& state, double h) {
+void SpaceIterative::project_joints(State<D>& state, double h) {
   for (const int i : joints_.bodies()) {
     joints_.body_motion(i) = body_motion(state, i);
     if (const int k = turning(state, i); k >= 0) joints_.turn(i) = state.turn[k];
@@ -750,8 +711,7 @@ void SpaceIterative<D>::project_joints(State<D>& state, double h) {
 }
 
 // the forces of this substep; what sleeps keeps its own
-template <int D>
-void SpaceIterative<D>::report_contacts(State<D>& state, double h) const {
+void SpaceIterative::report_contacts(State<D>& state, double h) const {
   const auto asleep = [&](int body) { return body < 0 || inactive_[body]; };
   std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
   const std::size_t kept = state.contacts.size();
@@ -759,7 +719,5 @@ void SpaceIterative<D>::report_contacts(State<D>& state, double h) const {
   std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),
                      state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
 }
-
-template class SpaceIterative<3>;
 
 }  // namespace obscura::sim

@@ -18,6 +18,7 @@
 #include "sim/solve/cone/cone.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/iterate/contact_constraint.h"
+#include "sim/solve/iterate/impact_queue.h"
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/space_batches.h"
 #include "sim/solve/iterate/substeps.h"
@@ -29,8 +30,9 @@ namespace obscura::sim {
 /// Contact for hundreds of bodies of space: all that may touch within a step is found anew in each, forces by
 /// warm iterations over it, impacts of few exactly and at their time, joints exactly in each iteration. All
 /// that is carried from step to step is in the state, so a run cut in two is the run in one.
-template <int D>
-class SpaceIterative final : public ContactSolver<D> {
+class SpaceIterative final : public ContactSolver<3> {
+  static constexpr int D = 3;
+
  public:
   /// Both are kept by reference.
   SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
@@ -81,16 +83,6 @@ class SpaceIterative final : public ContactSolver<D> {
     double spin = 0, ever = 0, gain = 0;  // rad/s, m/s, m/s: what the step adds without contacts
     double turns = 0;                     // rad/s, likewise
   };
-  // an impact that is due; no longer so once one of its bodies had another
-  struct Due {
-    double when = 0;
-    int touch = 0, rounds = 0;
-
-    // so that the first is the top of a heap
-    bool operator<(const Due& other) const {
-      return when != other.when ? when > other.when : touch > other.touch;
-    }
-  };
 
   void prepare(const State<D>& state, double t, double h);
   void find(StepPart<D> step);
@@ -112,10 +104,6 @@ class SpaceIterative final : public ContactSolver<D> {
   int rounds(int touch) const {
     return rounds_[touches_[touch].a] + rounds_[touches_[touch].b] + touches_[touch].renewals;
   }
-  void push_due(int touch, double when) {
-    due_.push_back({when, touch, rounds(touch)});
-    std::push_heap(due_.begin(), due_.end());
-  }
   double margin(int body, double h) const;
   double passing_speed(int a, int b) const;
   double pair_margin(int a, int b, double h) const;
@@ -123,7 +111,7 @@ class SpaceIterative final : public ContactSolver<D> {
   bool features_change(const ContactConstraint& touch) const;
   void renew_features(int first, double low, double high, double h);
   void find_turned_pairs(double h);
-  bool has_nearest_features(const Due& due, double h);
+  bool has_nearest_features(const ImpactQueue::Due& due, double h);
   bool gather_impact(int touch, double t, double h);
   bool build_impact_rows(double t, double h);
   bool solve_impact(double t, double h, std::vector<double>& work);
@@ -181,8 +169,8 @@ class SpaceIterative final : public ContactSolver<D> {
   void project_joints(State<D>& state, double h);
   void report_contacts(State<D>& state, double h) const;
   Contact<D> contact(const ContactConstraint& touch, double h) const;
-  void fall_from_rest(std::span<const typename Sleep<D>::Island> islands, double h);
-  void find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h);
+  void fall_from_rest(std::span<const Sleep<D>::Island> islands, double h);
+  void find_equilibrium(std::span<Sleep<D>::Island> islands, double h);
   void put_to_sleep(State<D>& state, double h);
   double swiftness(int body) const;
 
@@ -246,18 +234,18 @@ class SpaceIterative final : public ContactSolver<D> {
   std::vector<Fastest> fastest_;
   std::vector<AngularVec<D>> twist_;  // bodies: what the step adds to angular momentum without contacts
   std::vector<Reach> reach_;          // of each touch
-  std::vector<Due> due_;
+  ImpactQueue due_;                   // numbers of touches
   std::vector<double> strikes_;             // bodies: s, when what the iterations change begins to move them
   std::vector<int> rounds_;                 // impacts of each body
   std::vector<char> crowded_;               // bodies whose impacts are left to the iterations
-  std::vector<int> around_, around_start_;  // touches of each body
+  ByBody around_;                           // touches
   std::vector<int> meets_, changed_;        // touches of an impact, and of all that it moves
   Cone<D> cone_;
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_;
   std::vector<Row<D>> impact_rows_;
   std::vector<RowResponse<D>> impact_responses_;
-  std::vector<typename JointSolver<D>::JointResponse> tied_responses_;
+  std::vector<JointSolver<D>::JointResponse> tied_responses_;
   bool impact_tied_ = false;  // whether joints answer the impact
   Eigen::MatrixXd K_;
   Eigen::VectorXd b_, p_, speeds_;

@@ -19,8 +19,7 @@ constexpr double kClosedGap = 1e-6;  // of the narrower body: so near it bears
 }  // namespace
 
 // a contact as the state keeps it
-template <int D>
-Contact<D> SpaceIterative<D>::contact(const ContactConstraint& touch, double h) const {
+Contact<3> SpaceIterative::contact(const ContactConstraint& touch, double h) const {
   Contact<D> it;
   it.key = touch.key, it.point = touch.point, it.normal = touch.n, it.gap = touch.gap;
   const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
@@ -37,8 +36,7 @@ Contact<D> SpaceIterative<D>::contact(const ContactConstraint& touch, double h) 
 }
 
 // whether bodies have fallen asleep or woken before the step
-template <int D>
-bool SpaceIterative<D>::update_sleep(State<D>& state, double t, double h) {
+bool SpaceIterative::update_sleep(State<D>& state, double t, double h) {
   const bool carried = sleep_.wake_near_driven(state, [&](int body) {
     const int i = drives_.number(body);
     return i < 0 ? 0 : drives_.travel(i, t, h);
@@ -53,8 +51,7 @@ bool SpaceIterative<D>::update_sleep(State<D>& state, double t, double h) {
 }
 
 // bodies of candidates for sleep without speed, for a step; what they touch and hang on
-template <int D>
-void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island> islands, double h) {
+void SpaceIterative::fall_from_rest(std::span<const Sleep<D>::Island> islands, double h) {
   const int n = int(model_.bodies.size());
   ripe_.assign(n + 1, 0), on_joints_.assign(n, 0);
   kept_ = moving_;
@@ -83,8 +80,7 @@ void SpaceIterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island
 }
 
 // forces of candidates for sleep, all at once, into their contacts; and what they leave
-template <int D>
-void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> islands, double h) {
+void SpaceIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, double h) {
   const double near = Sleep<D>::kBalanced * g_ * h;
   batches_.build(touches_, some_, moving_);
   settling_.begin(touches_, some_, moving_, {});
@@ -114,9 +110,8 @@ void SpaceIterative<D>::find_equilibrium(std::span<typename Sleep<D>::Island> is
 }
 
 // forces of candidates for sleep, and which of them fall asleep
-template <int D>
-void SpaceIterative<D>::put_to_sleep(State<D>& state, double h) {
-  const std::span<typename Sleep<D>::Island> islands = sleep_.candidates(state);
+void SpaceIterative::put_to_sleep(State<D>& state, double h) {
+  const std::span<Sleep<D>::Island> islands = sleep_.candidates(state);
   if (islands.empty()) return;
   fall_from_rest(islands, h);
   find_equilibrium(islands, h);
@@ -130,9 +125,5 @@ void SpaceIterative<D>::put_to_sleep(State<D>& state, double h) {
   report_contacts(state, h);
   sleep_.settle(state);
 }
-
-template Contact<3> SpaceIterative<3>::contact(const ContactConstraint&, double) const;
-template bool SpaceIterative<3>::update_sleep(State<3>&, double, double);
-template void SpaceIterative<3>::put_to_sleep(State<3>&, double);
 
 }  // namespace obscura::sim

@@ -10,14 +10,13 @@
 #include <limits>
 
 #include "sim/math/lie_step.h"
+#include "sim/solve/iterate/closing_time.h"
 #include "sim/solve/iterate/space.h"
 
 namespace obscura::sim {
 
 namespace {
 
-constexpr int kNewtonSteps = 8;       // for the time of an impact
-constexpr double kLatest = 1.5;       // steps: so late a gap may close that its tangent would close in one
 constexpr double kFarthestPoint = 3;  // bounding radii of both: how far from a body features of a pair touch
 constexpr double kWidest = 2.5;       // bounding radii of the smaller: across all where two bodies touch
 constexpr double kLeastPart = 1e-3;   // of what a root is in: how far from its ends it is looked for
@@ -26,8 +25,7 @@ constexpr int kRenewals = 4;          // of a gap's features in a step
 }  // namespace
 
 // where a body is at a time of the step, after its last impact if it had one
-template <int D>
-const typename SpaceIterative<D>::Flown& SpaceIterative<D>::flown(int body, double t, double h) const {
+const SpaceIterative::Flown& SpaceIterative::flown(int body, double t, double h) const {
   if (body >= int(model_.bodies.size()) || (inactive_[body] && drives_.number(body) < 0)) return flown_[body];
   if (t == std::max(0.0, when_[body])) return flown_[body];
   // of many gaps of a body one asks what another has asked; most do not close, and ask where the step ends
@@ -42,8 +40,7 @@ const typename SpaceIterative<D>::Flown& SpaceIterative<D>::flown(int body, doub
   return course.then[course.last];
 }
 
-template <int D>
-typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, double h) const {
+SpaceIterative::Flown SpaceIterative::fly(int body, double t, double h) const {
   Flown at = flown_[body];
   const double time = t - std::max(0.0, when_[body]);
   const Body<D>& it = model_.bodies[body];
@@ -92,8 +89,7 @@ typename SpaceIterative<D>::Flown SpaceIterative<D>::fly(int body, double t, dou
 }
 
 // a gap at a time: how wide, and how fast it changes
-template <int D>
-typename SpaceIterative<D>::Instant SpaceIterative<D>::instant(int i, double t, double h) const {
+SpaceIterative::Instant SpaceIterative::instant(int i, double t, double h) const {
   Instant at;
   const ContactConstraint& touch = touches_[i];
   at.a = flown(touch.a, t, h).stance, at.b = flown(touch.b, t, h).stance;
@@ -104,8 +100,7 @@ typename SpaceIterative<D>::Instant SpaceIterative<D>::instant(int i, double t, 
 
 // How fast the matter of two bodies passes at most, m/s, wherever they touch in the step before an impact: at
 // the contact, and farther from it by how differently they turn and fall.
-template <int D>
-double SpaceIterative<D>::most_passing(const ContactConstraint& touch) const {
+double SpaceIterative::most_passing(const ContactConstraint& touch) const {
   static const BodyMotion<D> room;
   const bool wall = touch.b == int(inactive_.size());
   const BodyMotion<D>&a = stances_[touch.a], &b = wall ? room : stances_[touch.b];
@@ -122,8 +117,7 @@ double SpaceIterative<D>::most_passing(const ContactConstraint& touch) const {
 }
 
 // how fast a body may become until its next impact
-template <int D>
-void SpaceIterative<D>::limit_speed(int body, double h) {
+void SpaceIterative::limit_speed(int body, double h) {
   Fastest& it = fastest_[body];
   const BodyMotion<D>& at = flown_[body].stance;
   // what wobbles gains at most a third of its spin while it turns by a quarter of a radian
@@ -133,8 +127,7 @@ void SpaceIterative<D>::limit_speed(int body, double h) {
 }
 
 // How fast a gap may close at most until one of its bodies is struck, m/s: as fast as their matter there.
-template <int D>
-double SpaceIterative<D>::approach_limit(int i, double h) const {
+double SpaceIterative::approach_limit(int i, double h) const {
   const ContactConstraint& touch = touches_[i];
   const Fastest &a = fastest_[touch.a], &b = fastest_[touch.b];
   const double size =
@@ -146,8 +139,7 @@ double SpaceIterative<D>::approach_limit(int i, double h) const {
 
 // By how much its second derivative may be below zero, m/s^2: by what accelerates and turns the bodies and
 // the normal.
-template <int D>
-double SpaceIterative<D>::bend_limit(int i, const Instant& at, double h) const {
+double SpaceIterative::bend_limit(int i, const Instant& at, double h) const {
   const ContactConstraint& touch = touches_[i];
   const Fastest &a = fastest_[touch.a], &b = fastest_[touch.b];
   const bool wall = touch.b == int(inactive_.size());
@@ -160,22 +152,19 @@ double SpaceIterative<D>::bend_limit(int i, const Instant& at, double h) const {
   const double far = kFarthestPoint * size, spins = a.spin + b.spin;
   const double passes = std::sqrt((at.a.v - at.b.v).squaredNorm()) + falls + far * spins;
   const double matter = 2 * far * (a.spin * a.spin + b.spin * b.spin) + far * (a.turns + b.turns) / h;
-  if constexpr (D == 3) {
-    const ContactCandidate<D>& gap = features_[i];
-    if (gap.kind == ContactCandidate<D>::Kind::edges) {
-      // the less they cross, the faster their normal turns
-      const double sine = std::sqrt(at.a.arm(gap.edge_a).cross(at.b.arm(gap.edge_b)).squaredNorm());
-      if (!(h * spins < 0.25 * sine)) return 1e300;
-      const double turns = 2 * spins / sine;
-      return falls / h + matter + 2 * turns * passes + 14 * far * turns * turns;
-    }
+  const ContactCandidate<D>& gap = features_[i];
+  if (gap.kind == ContactCandidate<D>::Kind::edges) {
+    // the less they cross, the faster their normal turns
+    const double sine = std::sqrt(at.a.arm(gap.edge_a).cross(at.b.arm(gap.edge_b)).squaredNorm());
+    if (!(h * spins < 0.25 * sine)) return 1e300;
+    const double turns = 2 * spins / sine;
+    return falls / h + matter + 2 * turns * passes + 14 * far * turns * turns;
   }
   return falls / h + matter + 2 * spins * passes;
 }
 
 // whether a gap surely stays wider than `apart` until the step ends or one of its bodies is struck
-template <int D>
-bool SpaceIterative<D>::stays_apart(int i, double apart, double h) {
+bool SpaceIterative::stays_apart(int i, double apart, double h) {
   const ContactConstraint& touch = touches_[i];
   Reach& reach = reach_[i];
   if (reach.least(h) > apart) return true;
@@ -186,52 +175,24 @@ bool SpaceIterative<D>::stays_apart(int i, double apart, double h) {
          (reach.gap > apart && reach.gap + left * (at.speed - 0.5 * left * bend_limit(i, at, h)) > apart);
 }
 
-// When a gap closes with an impact; never: 1e300. Newton's method along its course; where the body turns so
-// far that this misleads, by halving.
-template <int D>
-double SpaceIterative<D>::closing_time(int i, double h) {
+// when a gap closes with an impact
+double SpaceIterative::closing_time(int i, double h) {
   const ContactConstraint& touch = touches_[i];
-  if (stays_apart(i, kInTime * bounding_radius_[touch.a], h)) return 1e300;
+  if (stays_apart(i, kInTime * bounding_radius_[touch.a], h)) return kNeverCloses;
   const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
-  Instant at = instant(i, from, h);
+  const Instant at = instant(i, from, h);
   const bool nears = at.speed < -restitution_threshold_;
   const double gap = at.now.value;
-  if (gap <= 0) return nears ? from : 1e300;
-  double when = nears ? from - gap / at.speed : 1e300, low = from, high = -1;
-  for (int n = 0; n < kNewtonSteps && when <= from + kLatest * h; ++n) {
-    at = instant(i, when, h);
-    if (at.now.value > 0 && !(at.speed < 0)) {
-      // it has come nearest before: was it closed then?
-      for (double parted = when; parted - low > kInTime * h && high < 0;) {
-        const double mid = 0.5 * (low + parted);
-        const Instant then = instant(i, mid, h);
-        if (then.now.value <= 0)
-          high = mid;
-        else
-          (then.speed < 0 ? low : parted) = mid;
-      }
-      if (high < 0) return 1e300;
-      break;
-    }
-    if (!(at.speed < -restitution_threshold_)) break;
-    const double next = when - at.now.value / at.speed;
-    if (std::abs(next - when) <= kInTime * h) return when <= h ? when : 1e300;
-    when = std::clamp(next, from, from + kLatest * h);
-  }
-  if (high < 0) {
-    if (from >= h || instant(i, h, h).now.value > 0) return 1e300;
-    high = h;
-  }
-  while (high - low > kInTime * h) {
-    when = 0.5 * (low + high);
-    (instant(i, when, h).now.value > 0 ? low : high) = when;
-  }
-  return instant(i, low, h).speed < -restitution_threshold_ ? low : 1e300;
+  if (gap <= 0) return nears ? from : kNeverCloses;
+  return sim::closing_time(from, nears ? from - gap / at.speed : kNeverCloses, h, -restitution_threshold_,
+                           [&](double when) {
+                             const Instant then = instant(i, when, h);
+                             return GapInTime{then.now.value, then.speed};
+                           });
 }
 
 // the gaps of a pair at a time, by the features that are nearest then, into gaps_; how wide the least of them
-template <int D>
-double SpaceIterative<D>::find_features(int a, int b, double t, double h) {
+double SpaceIterative::find_features(int a, int b, double t, double h) {
   const BodyMotion<D> at_a = flown(a, t, h).stance, at_b = flown(b, t, h).stance;
   gaps_.clear();
   sim::collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps_);
@@ -244,8 +205,7 @@ double SpaceIterative<D>::find_features(int a, int b, double t, double h) {
 }
 
 // whether other features of a pair may come nearer while they turn
-template <int D>
-bool SpaceIterative<D>::features_change(const ContactConstraint& touch) const {
+bool SpaceIterative::features_change(const ContactConstraint& touch) const {
   const auto is_round = [&](int body) { return bool(round_radius(model_.bodies[body].shape)); };
   return touch.b < int(model_.bodies.size()) && touch.renewals < kRenewals &&
          !(is_round(touch.a) && is_round(touch.b));
@@ -253,8 +213,7 @@ bool SpaceIterative<D>::features_change(const ContactConstraint& touch) const {
 
 // Gives the gaps of a pair, from `first` on, those features by which it meets between `low` and `high`, when
 // some gap is closed or, where none is, those that are nearest then; they are due anew.
-template <int D>
-void SpaceIterative<D>::renew_features(int first, double low, double high, double h) {
+void SpaceIterative::renew_features(int first, double low, double high, double h) {
   const int a = touches_[first].a, b = touches_[first].b;
   double closed = find_features(a, b, high, h), open = closed < 0 ? find_features(a, b, low, h) : 0;
   if (closed < 0 && open > 0) {
@@ -282,19 +241,18 @@ void SpaceIterative<D>::renew_features(int first, double low, double high, doubl
     ++touches_[i].renewals;
     reach_[i].gap = -1e300;
     const double when = closing_time(i, h);
-    touches_[i].passes = when == 1e300;
-    if (when < 1e300) push_due(i, when);
+    touches_[i].passes = when == kNeverCloses;
+    if (when < kNeverCloses) due_.push(when, i, rounds(i));
   }
 }
 
 // Whether a pair meets by the features that are nearest then. Where others are, or have met before, its gaps
 // are due by those.
-template <int D>
-bool SpaceIterative<D>::has_nearest_features(const Due& due, double h) {
-  const ContactConstraint& touch = touches_[due.touch];
+bool SpaceIterative::has_nearest_features(const ImpactQueue::Due& due, double h) {
+  const ContactConstraint& touch = touches_[due.number];
   if (!features_change(touch)) return true;
   const double least = find_features(touch.a, touch.b, due.when, h);
-  const auto feature = features_[due.touch].key.feature;
+  const auto feature = features_[due.number].key.feature;
   const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
   const bool found = std::any_of(gaps_.begin(), gaps_.end(),
                                  [&](const ContactCandidate<D>& gap) { return gap.key.feature == feature; });
@@ -302,7 +260,7 @@ bool SpaceIterative<D>::has_nearest_features(const Due& due, double h) {
   if (found &&
       (least >= -kTogether * bounding_radius_[touch.a] || find_features(touch.a, touch.b, from, h) <= 0))
     return true;
-  int first = due.touch;
+  int first = due.number;
   while (first > 0 && touches_[first - 1].a == touch.a && touches_[first - 1].b == touch.b) --first;
   renew_features(first, from, due.when, h);
   return false;
@@ -310,8 +268,7 @@ bool SpaceIterative<D>::has_nearest_features(const Due& due, double h) {
 
 // Pairs that come to lie in each other, deeper than the features of the step's start say, none of which
 // closes.
-template <int D>
-void SpaceIterative<D>::find_turned_pairs(double h) {
+void SpaceIterative::find_turned_pairs(double h) {
   for (int first = 0, end = 0; first < int(touches_.size()); first = end) {
     const ContactConstraint& touch = touches_[first];
     bool due = false;
@@ -330,14 +287,5 @@ void SpaceIterative<D>::find_turned_pairs(double h) {
       renew_features(first, 0, h, h);
   }
 }
-
-template const typename SpaceIterative<3>::Flown& SpaceIterative<3>::flown(int, double, double) const;
-template typename SpaceIterative<3>::Instant SpaceIterative<3>::instant(int, double, double) const;
-template double SpaceIterative<3>::most_passing(const ContactConstraint&) const;
-template void SpaceIterative<3>::limit_speed(int, double);
-template double SpaceIterative<3>::approach_limit(int, double) const;
-template double SpaceIterative<3>::closing_time(int, double);
-template void SpaceIterative<3>::find_turned_pairs(double);
-template bool SpaceIterative<3>::has_nearest_features(const Due&, double);
 
 }  // namespace obscura::sim

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "sim/solve/cone/one_contact.h"
+#include "sim/solve/iterate/closing_time.h"
 #include "sim/solve/iterate/space.h"
 
 namespace obscura::sim {
@@ -29,15 +30,14 @@ constexpr int kTurns = 40;             // impacts, of those that there are at fi
 }  // namespace
 
 // what meets with a gap at a time, through gaps that are closed; false where that is not for here
-template <int D>
-bool SpaceIterative<D>::gather_impact(int first, double t, double h) {
+bool SpaceIterative::gather_impact(int first, double t, double h) {
   meets_.assign(1, first);
   bool few = true;
   for (std::size_t k = 0; few && k < meets_.size(); ++k) {
     for (const int side : {touches_[meets_[k]].a, touches_[meets_[k]].b}) {
       each_tied(side, [&](int body) {
-        for (int at = around_start_[body]; few && at < around_start_[body + 1]; ++at) {
-          const int other = around_[at];
+        for (const int other : around_.of(body)) {
+          if (!few) return;
           if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
           const double together = kTogether * bounding_radius_[body];
           if (reach_[other].least(t) > together || instant(other, t, h).now.value > together) continue;
@@ -52,8 +52,7 @@ bool SpaceIterative<D>::gather_impact(int first, double t, double h) {
 
 // the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; false where joints
 // leave it nothing to move
-template <int D>
-bool SpaceIterative<D>::build_impact_rows(double t, double h) {
+bool SpaceIterative::build_impact_rows(double t, double h) {
   const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
   K_.resize(rows, rows), speeds_.resize(rows), blocks_.assign(count, {});
   impact_rows_.assign(rows, {}), impact_responses_.resize(rows);
@@ -63,7 +62,7 @@ bool SpaceIterative<D>::build_impact_rows(double t, double h) {
     const Instant at = instant(meets_[k], t, h);
     Vec<D> ways[D];
     ways[0] = at.now.normal, ways[1] = perpendicular<D>(at.now.normal);
-    if constexpr (D == 3) ways[2] = ways[0].cross(ways[1]);
+    ways[2] = ways[0].cross(ways[1]);
     blocks_[k].mu = touch.mu;
     for (int i = 0; i < D; ++i) {
       Row<D>& row = impact_rows_[D * k + i];
@@ -104,8 +103,7 @@ bool SpaceIterative<D>::build_impact_rows(double t, double h) {
 }
 
 // all that meets at a time, at once; false where no impulses were found
-template <int D>
-bool SpaceIterative<D>::solve_impact(double t, double h, std::vector<double>& work) {
+bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work) {
   if (!build_impact_rows(t, h)) return false;
   const int count = int(meets_.size()), rows = D * count;
   const Eigen::VectorXd& v = speeds_;
@@ -123,12 +121,10 @@ bool SpaceIterative<D>::solve_impact(double t, double h, std::vector<double>& wo
     for (int k = 0; k < count; ++k) {
       if (v[D * k] < -restitution_threshold_) b_[D * k] += share * touches_[meets_[k]].bounce * v[D * k];
     }
-    if constexpr (D == 3) {
-      Vec3 p;
-      if (count == 1 && solve_one_contact(K_, b_, blocks_[0].mu, p)) {
-        p_ = p;
-        return rise();
-      }
+    Vec3 p;
+    if (count == 1 && solve_one_contact(K_, b_, blocks_[0].mu, p)) {
+      p_ = p;
+      return rise();
     }
     modes_.assign(count, {}), p_.setZero();
     cone_.sweep(K_, b_, blocks_, modes_, p_, kSweeps);
@@ -192,8 +188,7 @@ bool SpaceIterative<D>::solve_impact(double t, double h, std::vector<double>& wo
 
 // Adds the step's impacts to the positions without contacts, and leaves the rest to the iterations of the
 // gaps of those that had one.
-template <int D>
-void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
+void SpaceIterative::resolve_impacts(StepPart<D> step) {
   State<D>& state = step.state;
   const double h = step.h;
   const int n = int(model_.bodies.size());
@@ -227,45 +222,32 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
   for (int i = 0; i < int(touches_.size()); ++i) {
     if (!fast(i)) continue;
     const double when = closing_time(i, h);
-    if (when < 1e300)
-      due_.push_back({when, i, 0});
+    if (when < kNeverCloses)
+      due_.push(when, i, 0);
     else
       touches_[i].passes = true;
   }
   row_features_ = features_;
   rounds_.assign(n + 1, 0), crowded_.assign(n + 1, 0);
-  std::make_heap(due_.begin(), due_.end());
   find_turned_pairs(h);
   if (due_.empty()) {
     features_.swap(row_features_);
     return;
   }
 
-  // the gaps of each body
-  around_start_.assign(n + 2, 0);
-  const auto each = [&](const auto& act) {
-    for (int i = 0; i < int(touches_.size()); ++i) {
-      for (const int body : {touches_[i].a, touches_[i].b}) {
-        if (body < n && !inactive_[body]) act(i, body);
-      }
+  around_.build(n, int(touches_.size()), [&](int i, const auto& act) {
+    for (const int body : {touches_[i].a, touches_[i].b}) {
+      if (body < n && !inactive_[body]) act(body);
     }
-  };
-  each([&](int, int body) { ++around_start_[body + 1]; });
-  for (int i = 1; i < n + 2; ++i) around_start_[i] += around_start_[i - 1];
-  around_.resize(around_start_[n + 1]);
-  std::vector<int>& next = changed_;
-  next.assign(around_start_.begin(), around_start_.end());
-  each([&](int i, int body) { around_[next[body]++] = i; });
+  });
 
   // in the order of time, then of gaps
   for (std::size_t left = kTurns * due_.size() + 100; left > 0 && !due_.empty(); --left) {
-    std::pop_heap(due_.begin(), due_.end());
-    const Due due = due_.back();
-    due_.pop_back();
-    if (due.rounds != rounds(due.touch)) continue;
-    if (crowded_[touches_[due.touch].a] || crowded_[touches_[due.touch].b]) continue;
+    const ImpactQueue::Due due = due_.pop();
+    if (due.rounds != rounds(due.number)) continue;
+    if (crowded_[touches_[due.number].a] || crowded_[touches_[due.number].b]) continue;
     if (!has_nearest_features(due, h)) continue;
-    if (!gather_impact(due.touch, due.when, h)) {
+    if (!gather_impact(due.number, due.when, h)) {
       // so many touch there that what meets them later is left to the iterations, too
       for (const int i : meets_) crowded_[touches_[i].a] = crowded_[touches_[i].b] = 1;
       crowded_.back() = 0;
@@ -279,8 +261,8 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
         each_tied(side, [&](int body) {
           ++rounds_[body];
           limit_speed(body, h);
-          changed_.insert(changed_.end(), around_.begin() + around_start_[body],
-                          around_.begin() + around_start_[body + 1]);
+          const std::span<const int> its = around_.of(body);
+          changed_.insert(changed_.end(), its.begin(), its.end());
         });
       }
     }
@@ -289,7 +271,7 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
     for (const int i : changed_) {
       reach_[i] = {reach_[i].least(due.when), due.when, approach_limit(i, h)};
       const double when = closing_time(i, h);
-      if (when < 1e300) push_due(i, when);
+      if (when < kNeverCloses) due_.push(when, i, rounds(i));
     }
   }
   features_.swap(row_features_);
@@ -304,11 +286,9 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
       return touch.n.dot(body.velocity(arm));
     };
     touch.after = true;
-    touch.least = along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed;
-    if (at.now.value <= kTogether * bounding_radius_[touch.a]) continue;
-    // what comes near so fast passes: else it would have met
-    const bool passes = at.speed < -restitution_threshold_ || left <= kInTime * h;
-    touch.least = passes ? -1e9 : touch.least - at.now.value / left;
+    touch.least = target_after_impacts(along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed,
+                                       {at.now.value, at.speed}, kTogether * bounding_radius_[touch.a],
+                                       -restitution_threshold_, left, h);
   }
   for (int i = 0; i < n; ++i) {
     if (when_[i] < 0) continue;
@@ -320,7 +300,5 @@ void SpaceIterative<D>::resolve_impacts(StepPart<D> step) {
   }
   energy_guard_.open(state);
 }
-
-template void SpaceIterative<3>::resolve_impacts(StepPart<3>);
 
 }  // namespace obscura::sim

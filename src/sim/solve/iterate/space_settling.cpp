@@ -35,8 +35,7 @@ int settling_budget(int touches) {
 // for a while: then the order in which they are visited does not matter, and mirror images stay so. Those of
 // few are accelerated (Silcowitz, Niebe and Erleben 2010): a tower of fifty blocks sinks a quarter as far.
 // Bodies on joints are left out.
-template <int D>
-void SpaceIterative<D>::settle_contacts() {
+void SpaceIterative::settle_contacts() {
   settling_.begin(touches_, all_, moving_, joints_.bodies());
   bool follows = false;
   const double rounds = double(settling_budget(int(touches_.size()))) / std::max(1, int(touches_.size()));
@@ -63,8 +62,7 @@ void SpaceIterative<D>::settle_contacts() {
 // Islands of few contacts and uneven masses that iterations do not settle, as where something heavy stands on
 // something light, exactly:
 //   w = K p + u,  of all contacts at once by their laws        u  how fast they pass without impulses
-template <int D>
-void SpaceIterative<D>::solve_exhausted() {
+void SpaceIterative::solve_exhausted() {
   const auto few = [&](int number) {
     if (number < 0) return false;
     const Settling::Island& island = settling_.islands[number];
@@ -93,8 +91,7 @@ void SpaceIterative<D>::solve_exhausted() {
 }
 
 // the contacts meets_
-template <int D>
-void SpaceIterative<D>::solve_together() {
+void SpaceIterative::solve_together() {
   static const BodyMotion<D> room;
   const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
   K_.resize(rows, rows), b_.resize(rows), p_.resize(rows), blocks_.assign(count, {}),
@@ -105,7 +102,7 @@ void SpaceIterative<D>::solve_together() {
     const BodyMotion<D>&a = stances_[touch.a], &b = touch.b == n ? room : stances_[touch.b];
     Vec<D> ways[D];
     ways[0] = touch.n, ways[1] = perpendicular<D>(touch.n);
-    if constexpr (D == 3) ways[2] = ways[0].cross(ways[1]);
+    ways[2] = ways[0].cross(ways[1]);
     blocks_[k].mu = touch.mu;
     const Vec<D> u = slip(touch), impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
     for (int i = 0; i < D; ++i) {
@@ -143,8 +140,7 @@ void SpaceIterative<D>::solve_together() {
 //   W = p . (u + u') / 2        u, u'  how fast they pass there, before and after
 // Of islands that gain, those contacts that give press less, until nothing is gained: what bounces is
 // stopped, and nothing else of the island braked.
-template <int D>
-void SpaceIterative<D>::shed_gains() {
+void SpaceIterative::shed_gains() {
   static const BodyMotion<D> room;
   const int n = int(model_.bodies.size());
   const auto passing = [&](const ContactConstraint& touch) -> Vec<D> {
@@ -184,9 +180,5 @@ void SpaceIterative<D>::shed_gains() {
     }
   }
 }
-
-template void SpaceIterative<3>::settle_contacts();
-template void SpaceIterative<3>::solve_exhausted();
-template void SpaceIterative<3>::shed_gains();
 
 }  // namespace obscura::sim
