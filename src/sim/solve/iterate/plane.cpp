@@ -1,13 +1,6 @@
-// One step of bodies with contacts: pairs anew, if it is time; then, at low rates in several substeps so
-// that none is longer than 1/240 s, from v to v'
-//   1. features of pairs that move
-//   2. free motion: dv, dx of the step without contacts, springs and hands by Runge-Kutta
-//   3. forces of the last step
-//   4. impacts: touches that close in this step faster than the resting speed
-//   5. warm iterations: v_n' >= -g / h
-//      between them joints, all at once
-//   6. positions: by the mean of old and new velocity; a body struck at tau by that up to tau and after it;
-//      by the new one where a slow touch closed; back onto the joints
+// What the iterative solver does in the plane (its stages: sim/solve/iterate/iterative.h). Pairs and their
+// features are kept from step to step and sought sixty times a second; free motion is that which the
+// integrator gives for the whole step, shared out among the substeps.
 
 #include "sim/solve/iterate/plane.h"
 
@@ -26,69 +19,48 @@ using plane::Pair;
 
 namespace {
 
-constexpr double kPairUpdates = 60;  // pair searches a second
-
 // iterations of a substep
-constexpr int kPlaneIterations = 40;        // of few pairs
-constexpr int kPairIterations = 2000;       // of more: pairs times iterations, but at least one iteration
-constexpr int kJointIterations = 16;        // with joints, which are solved exactly in each
-constexpr int kStrainIterations = 64;       // if joints press a body far into another
-constexpr double kStrained = 0.02;          // how far that is, of its half thickness
-constexpr int kFirstPlaneIterations = 100;  // of the first step, which knows no forces
-constexpr int kSettlingPairs = 20000;       // more, of unsettled pairs: pairs times iterations, at least
-constexpr int kSettlingIterations = 8;      // or as many as so many iterations of all pairs
+constexpr int kPlaneIterations = 40;    // of few pairs
+constexpr int kPairIterations = 2000;   // of more: pairs times iterations, but at least one iteration
+constexpr int kJointIterations = 16;    // with joints, which are solved exactly in each
+constexpr int kStrainIterations = 64;   // if joints press a body far into another
+constexpr double kStrained = 0.02;      // how far that is, of its half thickness
+constexpr int kSettlingPairs = 20000;   // more, of unsettled pairs: pairs times iterations, at least
+constexpr int kSettlingIterations = 8;  // or as many as so many iterations of all pairs
 
 constexpr int kFewPairs = 300;  // accelerated
 
-// iterations of correct_overlaps()
+// iterations of push_out()
 constexpr int kProjections = 5;  // for each of a substep
 constexpr int kFewestProjections = 8;
 
 }  // namespace
 
 PlaneIterative::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model),
+    : Iterative(model, paths, 4 * sim::allowed_overlap(model).share + 2 * AllowedOverlap::kLeast),
       cores_(model),
       pairs_(model, cores_),
       impacts_(cores_, pairs_),
-      sleep_(model, Sleep<D>::Forces::iterated,
-             4 * allowed_overlap(model).share + 2 * AllowedOverlap::kLeast),
       equilibrium_(model, cores_),
-      dynamics_(model, paths),
-      joints_(model),
-      drives_(model),
       driven_(std::size_t(drives_.size())) {
   const int n = int(model.bodies.size());
-  const double h = 1 / value(model.rate);
-  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairUpdates));
-  span_ = double(every_) * h;
-  allowed_overlap_ = allowed_overlap(model);
-  substeps_ = substeps_for(0, h);
-  restitution_threshold_ = 2 * h / substeps_ * std::sqrt(model.gravity.squaredNorm()) + 1e-9 * model.scale;
+  span_ = double(every_) * (1 / value(model.rate));
   poses_.resize(n + 1), turns_.assign(n, 0), ii_.resize(n + 1);
-  gain_.resize(n + 1), bend_.resize(n + 1), corrections_.resize(n);
-  v_.resize(n + 1), old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
+  gain_.resize(n + 1), bend_.resize(n + 1);
+  old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
   closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);
   for (const Body<D>& body : model.bodies) {
     drag_ = drag_ || body.drag != 0;
     fixed_.push_back(body.fixed);
     light_.push_back({1 / body.mass, body.turns() ? 1 / body.inertia[0] : 0});
   }
-  if (std::none_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.carries(); }))
-    return;
-  for (const Body<D>& body : model.bodies) carries_.push_back(body.carries());
 }
 
-bool PlaneIterative::collide(StepPart<D> step) {
+bool PlaneIterative::find_contacts(StepPart<D> step) {
   State<D>& state = step.state;
   const int n = int(model_.bodies.size());
-  outran_ = false, corrected_ = !joints_.empty();
-  if (corrected_) std::fill(corrections_.begin(), corrections_.end(), Vec<D>::Zero());
-  if (int(state.frozen.size()) != n) state.frozen.assign(n, 0);
-  if (int(state.quiet.size()) != n) state.quiet.assign(n, 0);
-  if (!joints_.empty()) joints_.prepare(state), joints_.clear_pushed();
-  if (state.step == 0) joints_.project_initial_velocities(state);
-
+  outran_ = false;
+  impacts_.clear();
   const bool due = state.step % every_ == 0 || anew_;
   anew_ = false;
 
@@ -97,7 +69,7 @@ bool PlaneIterative::collide(StepPart<D> step) {
     dynamics_.gather(state);
     for (int i = 0; i < n; ++i) movers_[i] = dynamics_.has(i);
   }
-  bool held = wake_near_driven(step), asleep = true;
+  bool held = wake_near_driven(step, std::max(step.h, span_)), asleep = true;
   for (int i = 0; i < n; ++i) {
     held = held || (movers_[i] && state.frozen[i]);
     asleep = asleep && (state.frozen[i] | fixed_[i]);
@@ -117,15 +89,14 @@ bool PlaneIterative::collide(StepPart<D> step) {
   return true;
 }
 
-void PlaneIterative::wake(StepPart<D> step) {
-  if (step.state.step == 0) {
-    place_contacts(step.state, true);
-    if (sleep_.at_start(step.state, step.state.contacts)) clear_sleeping(step.state);
-  }
-  impacts_.clear();
-  closing_rate_ =
-      plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), v_.data(), step.h);
-  substeps_ = substeps_for(closing_rate_, step.h);
+void PlaneIterative::update_sleep(StepPart<D> step) {
+  if (step.state.step > 0) return;
+  place_contacts(step.state, true);
+  if (sleep_.at_start(step.state, step.state.contacts)) stop_sleeping(step.state);
+}
+
+double PlaneIterative::closing_rate(double h) const {
+  return plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), h);
 }
 
 void PlaneIterative::report(StepPart<D> step) {
@@ -136,10 +107,6 @@ void PlaneIterative::report(StepPart<D> step) {
     foresee_driven(step.t + step.h);
     update_pairs(step.state, true);
   }
-}
-
-void PlaneIterative::sleep(StepPart<D> step) {
-  if (sleep_.due(step.state) && put_to_sleep(step.state, step.h / substeps_)) clear_sleeping(step.state);
   next_step_ = step.state.step + 1;
 }
 
@@ -158,15 +125,14 @@ void PlaneIterative::place_contacts(State<D>& state, bool all) const {
   }
 }
 
-bool PlaneIterative::put_to_sleep(State<D>& state, double h) {
-  equilibrium_.find(sleep_.candidates(state), sleep_, state, {pairs_.all(), batches_, joints_, poses_}, h);
-  return sleep_.settle(state);
+void PlaneIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, State<D>& state, double h) {
+  equilibrium_.find(islands, sleep_, state, {pairs_.all(), batches_, joints_, poses_}, h);
 }
 
 // zeroes the velocities of bodies that have just fallen asleep
-void PlaneIterative::clear_sleeping(const State<D>& state) {
+void PlaneIterative::stop_sleeping(const State<D>& state) {
   for (std::size_t i = 0; i < turns_.size(); ++i) {
-    if (state.frozen[i]) v_[i] = {};
+    if (state.frozen[i]) moving_[i] = {};
   }
   build_batches(state, true);
 }
@@ -178,7 +144,7 @@ double PlaneIterative::share(StepPart<D> part) const {
 
 // Renews the pairs whose features have changed since the last search; all pairs, if a body has left its
 // margin.
-void PlaneIterative::renew_pairs(StepPart<D> part) {
+void PlaneIterative::renew_contacts(StepPart<D> part) {
   State<D>& state = part.state;
   if (outran_) {
     for (const Pair& pair : pairs_.all()) report_pair(pair, state);
@@ -186,15 +152,14 @@ void PlaneIterative::renew_pairs(StepPart<D> part) {
     update_pairs(state, true);
     outran_ = false;
   }
-  if (!joints_.empty()) joints_.gather(state);
   double fastest = 0;
   for (int i = 0; i < int(turns_.size()); ++i) {
-    const Motion& m = v_[i];
+    const Motion& m = moving_[i];
     fastest = std::max(fastest, std::fabs(m.x) + std::fabs(m.y) + std::fabs(m.w) * cores_.bounding_radius[i]);
   }
   const double gone = share(part);
   if (gone == 0 || 2 * gone * fastest <= calmest_) return;
-  for (const plane::ChangedPair& old : pairs_.outdated(batches_, v_, poses_, gone)) {
+  for (const plane::ChangedPair& old : pairs_.outdated(batches_, moving_, poses_, gone)) {
     const Pair& pair = pairs_.all()[old.pair];
     if (substeps_ > 1) report_pair(pair, state);
     pairs_.renew(old, state, poses_);
@@ -202,26 +167,33 @@ void PlaneIterative::renew_pairs(StepPart<D> part) {
   }
 }
 
-void PlaneIterative::move_free(StepPart<D> part) {
-  renew_pairs(part);
+void PlaneIterative::move_unconstrained(StepPart<D> part) {
   if (part.substep == 0) integrate_unconstrained(part.state, part.t, substeps_ * part.h);
   share_free_motion(part);
   if (!joints_.empty()) integrate_jointed(part);
   move_driven(part);
-  if (!joints_.empty()) start_joint_rows();
 }
+
+BodyMotion<2> PlaneIterative::begun(int body) const {
+  const plane::Pose& pose = poses_[body];
+  BodyMotion<D> at;
+  at.x = {pose.x, pose.y}, at.v = velocity(old_[body]), at.w = spin(old_[body]);
+  at.room_from_body << pose.c, -pose.s, pose.s, pose.c;
+  return at;
+}
+
+Orientation<2> PlaneIterative::begun_turn(int body) const { return Orientation<D>(turns_[body]); }
 
 // The wide kernel that applies the forces of the last step also finds the contact points that close.
 void PlaneIterative::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
-                part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_,
-                at_start(part.state) ? kAllowedAtStart : allowed_overlap_};
-  deep_ = plane::warm_start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), v_.data(),
+                part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap(part.state)};
+  deep_ = plane::warm_start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), moving_.data(),
                             constants_, slow_, fast_);
 }
 
 void PlaneIterative::resolve_impacts(StepPart<D> part) {
-  impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, v_, constants_, joints_);
+  impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, moving_, constants_, joints_);
   if (!part.state.work.empty()) part.state.work[0] += impacts_.drive_work();
   constants_.least = impacts_.least();
 }
@@ -230,56 +202,44 @@ int PlaneIterative::fewest_iterations() const {
   return std::clamp(kPairIterations / std::max(1, awake_pairs_), 1, kPlaneIterations);
 }
 
-// the joints, whose forces begin at zero, and the number of iterations
-void PlaneIterative::begin_joints(StepPart<D> part) {
-  iterations_ = part.state.step == 0 && first(part) ? kFirstPlaneIterations : fewest_iterations();
-  if (joints_.empty()) return;
-  copy_to_joints();
-  joints_.begin(part.h, part.t);
-  copy_from_joints();
+// all but the last, of finish_iterations()
+int PlaneIterative::iterations(StepPart<D> part) const {
+  const int few = starts(part) ? kFirstIterations : fewest_iterations();
+  if (joints_.empty()) return few - 1;
+  if (batches_.empty() && joints_.plain()) return 0;
   const int most = strained(part.state) ? kStrainIterations : kJointIterations;
-  iterations_ = batches_.empty() && joints_.plain() ? 1 : std::clamp(most / 4 * iterations_, 4, most);
+  return std::clamp(most / 4 * few, 4, most) - 1;
 }
 
-// forces stay in the lanes until the last substep
-void PlaneIterative::iterate(StepPart<D> part) {
-  begin_joints(part);
-  const int count = int(batches_.size());
+void PlaneIterative::iterate_contacts(int) {
+  plane::iterate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), constants_);
+}
+
+// one more; forces stay in the lanes until the last substep
+void PlaneIterative::finish_iterations(StepPart<D> part) {
   const bool last = part.substep + 1 == substeps_;
-  for (int i = 1; i < iterations_; ++i) {
-    solve_joint_velocities();
-    plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_);
-  }
-  settle_pairs();
-  solve_exhausted();
   solve_joint_velocities();
-  plane::iterate_last(batches_.data(), count, poses_.data(), v_.data(), constants_,
+  plane::iterate_last(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), constants_,
                       last ? part.state.contacts.data() : nullptr);
-  if (!carries_.empty()) book_contacts(part);
   impacts_.record(pairs_.all(), part.state.contacts, batches_);
-  if (notes_.any()) note_touches(part);
 }
 
-// which watched pairs bear or are struck in a substep
-void PlaneIterative::note_touches(StepPart<D> part) {
-  if (part.substep == 0) notes_.begin(part.state);
-  const double begun = part.substep * part.h, ended = begun + part.h;
+void PlaneIterative::list_touching(StepPart<D>, std::vector<std::pair<int, int>>& pairs) const {
   for (const Pair& pair : pairs_.all()) {
-    if (pair.slot < 0 || !notes_.watches(pair.a, pair.b)) continue;
+    if (pair.slot < 0) continue;
     const ContactBatch& g = batches_[pair.slot / kLanes];
     const int lane = pair.slot % kLanes;
     bool bears = false;
     for (int k = 0; k < pair.touches; ++k)
       bears = bears || (g.struck[k] >> lane & 1) || g.p[k][lane] != 0 || g.q[k][lane] != 0;
-    if (bears) notes_.note(pair.a, pair.b, begun, ended);
+    if (bears) pairs.emplace_back(pair.a, pair.b);
   }
-  if (part.substep + 1 == substeps_) notes_.end();
 }
 
 // More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
 // the impact must pass through all of it in this substep. Those of few are accelerated by conjugate
 // directions (Silcowitz, Niebe and Erleben 2010).
-void PlaneIterative::settle_pairs() {
+void PlaneIterative::settle_contacts() {
   const int count = int(batches_.size());
   const bool follows = awake_pairs_ <= kFewPairs;
   active_bodies_.settled = settled_rate(closing_rate_);
@@ -300,13 +260,13 @@ void PlaneIterative::settle_pairs() {
   double change = 0;
   int left = std::max(kSettlingPairs, kSettlingIterations * awake_pairs_);
   for (int pairs = 1; left > 0; left -= pairs) {
-    pairs = plane::iterate(batches_.data(), count, poses_.data(), v_.data(), constants_, active_bodies_);
+    pairs = plane::iterate(batches_.data(), count, poses_.data(), moving_.data(), constants_, active_bodies_);
     if (pairs == 0) return;
     const auto now = [](unsigned char flags) { return flags & plane::ActiveBodies::kNow; };
     if (!follows || left <= pairs) continue;
     if (std::none_of(active_bodies_.bodies.begin(), active_bodies_.bodies.end(), now)) return;
     const double changed = squared_change();
-    plane::follow(batches_.data(), count, poses_.data(), v_.data(), before_.data(), directions_.data(),
+    plane::follow(batches_.data(), count, poses_.data(), moving_.data(), before_.data(), directions_.data(),
                   change > 0 && changed <= change ? changed / change : 0, active_bodies_);
     change = changed;
     activate();
@@ -327,22 +287,12 @@ double PlaneIterative::squared_change() const {
       const double p = g.p[k][lane] - before.p[k][lane], q = g.q[k][lane] - before.q[k][lane];
       its += p * p + q * q;
     }
-    sum += (v_[g.a[lane]].im + v_[g.b[lane]].im) * its;
+    sum += (moving_[g.a[lane]].im + moving_[g.b[lane]].im) * its;
   }
   return sum;
 }
 
-void PlaneIterative::advance(StepPart<D> part) {
-  const bool correct = first(part) && deep_;
-  if (correct) correct_overlaps(part.state);
-  corrected_ = corrected_ || correct;
-  place_bodies(part.state, part.h, correct);
-}
-
-void PlaneIterative::project(StepPart<D> part) {
-  if (!joints_.empty()) project_joints(part.state, part.h);
-  outran_ = outran(part.h, (1 - share(part)) * span_);
-}
+void PlaneIterative::finish_substep(StepPart<D> part) { outran_ = outran(part.h, (1 - share(part)) * span_); }
 
 // Whether joints press an awake body far into another. Few iterations of contacts, each with the mass of its
 // own body alone, would hardly move it out.
@@ -350,7 +300,7 @@ bool PlaneIterative::strained(const State<D>& state) const {
   const auto far = [&](int body) { return kStrained * cores_.half_thickness[body]; };
   return std::any_of(state.contacts.begin(), state.contacts.end(), [&](const Contact<D>& c) {
     const int a = c.key.a, b = c.key.b;
-    const bool awake = v_[a].im > 0 || (b >= 0 && v_[b].im > 0);
+    const bool awake = moving_[a].im > 0 || (b >= 0 && moving_[b].im > 0);
     const bool tied = joints_.has(a) || (b >= 0 && joints_.has(b));
     return awake && tied && c.gap < -(b < 0 ? far(a) : std::min(far(a), far(b)));
   });
@@ -399,15 +349,15 @@ bool PlaneIterative::gather(const State<D>& state) {
   bool known = state.step == next_step_ && state.contacts.size() == contacts && state.frozen == frozen_;
   for (int i = 0; i < n; ++i) {
     const double x = state.x[i][0], y = state.x[i][1], vx = state.v[i][0], vy = state.v[i][1];
-    const bool same = (poses_[i].x == x) & (poses_[i].y == y) & (v_[i].x == vx) & (v_[i].y == vy);
+    const bool same = (poses_[i].x == x) & (poses_[i].y == y) & (moving_[i].x == vx) & (moving_[i].y == vy);
     known = known && (same || drives_.number(i) >= 0);
-    poses_[i].x = x, poses_[i].y = y, v_[i].x = vx, v_[i].y = vy;
+    poses_[i].x = x, poses_[i].y = y, moving_[i].x = vx, moving_[i].y = vy;
   }
   for (int i = still; i < n; ++i) {
     const double turn = state.turn[i - still][0], w = state.spin[i - still][0];
     const bool moved = drives_.number(i) >= 0;  // as its time says, to rounding
-    known = known && (v_[i].w == w || moved);
-    v_[i].w = w;
+    known = known && (moving_[i].w == w || moved);
+    moving_[i].w = w;
     if (turn == turns_[i]) continue;
     known = known && moved;
     const SinCos sc = sin_cos(turn);
@@ -428,9 +378,9 @@ void PlaneIterative::integrate_unconstrained(State<D>& state, double t, double h
       continue;
     }
     const FreeStep by = free_step(model_.integrator, drag_ ? -h * model_.bodies[i].drag * light_[i].im : 0);
-    gain_[i] = {v_[i].x * by.p + h * by.q * gx, v_[i].y * by.p + h * by.q * gy, 0, 0};
+    gain_[i] = {moving_[i].x * by.p + h * by.q * gx, moving_[i].y * by.p + h * by.q * gy, 0, 0};
     const double u = by.u - 1 - 0.5 * by.p, r = by.r - 0.5 * by.q;
-    bend_[i] = {h * (v_[i].x * u + h * r * gx), h * (v_[i].y * u + h * r * gy), 0, 0};
+    bend_[i] = {h * (moving_[i].x * u + h * r * gx), h * (moving_[i].y * u + h * r * gy), 0, 0};
   }
 
   // springs and hands; with joints in each substep
@@ -440,7 +390,7 @@ void PlaneIterative::integrate_unconstrained(State<D>& state, double t, double h
   dynamics_.step(integrate(model_.integrator), state, t, h, stages_);
   if (!state.work.empty()) state.work[0] += dynamics_.work();
   for (const int i : bodies) {
-    const Motion& v = v_[i];
+    const Motion& v = moving_[i];
     if (v.im > 0) {
       Motion &gain = gain_[i], &bend = bend_[i];
       gain.x = state.v[i][0] - v.x, gain.y = state.v[i][1] - v.y;
@@ -462,13 +412,12 @@ void PlaneIterative::integrate_jointed(StepPart<D> part) {
   const int still = int(turns_.size() - state.turn.size());
   dynamics_.gather(state, false, joints_.bodies());
   stages_.reserve(std::size_t(dynamics_.size()));
-  copy_to_joints();
-  set_driven_joints(old_);
+  poses_to_joints();
   joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
   if (!state.work.empty()) state.work[0] += dynamics_.work();
   for (const int i : dynamics_.bodies()) {
     const Motion o = old_[i];
-    if (Motion& v = v_[i]; v.im > 0) {
+    if (Motion& v = moving_[i]; v.im > 0) {
       v.x = state.v[i][0], v.y = state.v[i][1];
       Motion &dv = dv_[i], &dx = dx_[i];
       dx.x = state.x[i][0] - poses_[i].x, dx.y = state.x[i][1] - poses_[i].y;
@@ -477,26 +426,6 @@ void PlaneIterative::integrate_jointed(StepPart<D> part) {
     }
     state.x[i] = {poses_[i].x, poses_[i].y}, state.v[i] = {o.x, o.y};
     if (i >= still) state.turn[i - still][0] = turns_[i], state.spin[i - still][0] = o.w;
-  }
-}
-
-// rows of the joints where the substep begins, with the velocities of kinematic bodies there, and what the
-// free motion makes of their speeds
-void PlaneIterative::start_joint_rows() {
-  copy_to_joints();
-  set_driven_joints(old_);
-  joints_.compute_rows();
-  set_driven_joints(v_);
-  joints_.keep_row_speeds();
-}
-
-// velocities of kinematic bodies to the joint solver
-void PlaneIterative::set_driven_joints(const std::vector<Motion>& motions) {
-  for (int i = 0; i < drives_.size(); ++i) {
-    const int body = drives_.body(i);
-    if (!joints_.has(body)) continue;
-    const Motion& u = motions[body];
-    joints_.body_motion(body).v = {u.x, u.y}, joints_.body_motion(body).w[0] = u.w;
   }
 }
 
@@ -511,7 +440,7 @@ void PlaneIterative::share_free_motion(StepPart<D> part) {
   const double late = smooth ? -12 * fraction / h * fraction * ((part.substep + 0.5) * fraction - 0.5) : 0;
   const double bends = smooth ? fraction * fraction * fraction : fraction;
   for (std::size_t i = 0; i < turns_.size(); ++i) {
-    Motion &v = v_[i], &dv = dv_[i];
+    Motion &v = moving_[i], &dv = dv_[i];
     const Motion &gain = gain_[i], &bend = bend_[i];
     if (v.im == 0) {
       old_[i] = v = dv = dx_[i] = {};
@@ -527,15 +456,6 @@ void PlaneIterative::share_free_motion(StepPart<D> part) {
 }
 
 // --- kinematic bodies, and belts
-
-// wakes bodies that they may reach before the next pair search; true if any woke
-bool PlaneIterative::wake_near_driven(StepPart<D> step) {
-  if (carries_.empty()) return false;
-  return sleep_.wake_near_driven(step.state, [&](int body) {
-    const int i = drives_.number(body);
-    return i < 0 ? 0 : drives_.travel(i, step.t, std::max(step.h, span_));
-  });
-}
 
 // tells the pair search how far they may be from where their velocities at t take them
 void PlaneIterative::foresee_driven(double t) {
@@ -558,7 +478,7 @@ void PlaneIterative::move_driven(StepPart<D> part) {
     const DrivenMotion<D> from = drives_.at(i, part.t);
     const DrivenMotion<D>& to = driven_[i] = drives_.at(i, part.t + part.h);
     const Motion o{from.at.v[0], from.at.v[1], from.at.w[0], 0}, v{to.at.v[0], to.at.v[1], to.at.w[0], 0};
-    old_[body] = o, v_[body] = v;
+    old_[body] = o, moving_[body] = v;
     dv_[body] = {v.x - o.x, v.y - o.y, v.w - o.w, 0};
     dx_[body] = {to.at.x[0] - poses_[body].x, to.at.x[1] - poses_[body].y, to.turn[0] - turns_[body], 0};
     const Motion& gain = dv_[body];
@@ -579,13 +499,12 @@ void PlaneIterative::place_driven(State<D>& state) {
   }
 }
 
-// Their work by the contacts of a substep, J: each force times the displacement of the carrying surface.
-void PlaneIterative::book_contacts(StepPart<D> part) const {
-  if (part.state.work.empty()) return;
+// each force times the displacement of the carrying surface
+double PlaneIterative::contact_work(StepPart<D> part) const {
   const auto mean = [&](int body) {
     Motion m{};
     if (drives_.number(body) < 0) return m;
-    const Motion &o = old_[body], &v = v_[body];
+    const Motion &o = old_[body], &v = moving_[body];
     m.x = 0.5 * (o.x + v.x), m.y = 0.5 * (o.y + v.y), m.w = 0.5 * (o.w + v.w);
     return m;
   };
@@ -603,76 +522,35 @@ void PlaneIterative::book_contacts(StepPart<D> part) const {
       sum -= n * plane::normal_speed(r, a, b) + t * (plane::tangent_speed(r, a, b) + g.belt[lane]);
     }
   }
-  part.state.work[0] += part.h * sum;
+  return part.h * sum;
 }
 
-// poses and velocities of bodies on joints to the joint solver; velocities back
-void PlaneIterative::copy_to_joints() {
-  for (const int i : joints_.bodies()) {
-    BodyMotion<D>& at = joints_.body_motion(i);
-    at.x = {poses_[i].x, poses_[i].y}, at.v = {v_[i].x, v_[i].y}, at.w[0] = v_[i].w;
-    at.room_from_body << poses_[i].c, -poses_[i].s, poses_[i].s, poses_[i].c;
-    joints_.turn(i)[0] = turns_[i];
-  }
-}
-
-void PlaneIterative::copy_from_joints() {
-  for (const int i : joints_.bodies()) {
-    const BodyMotion<D>& at = joints_.body_motion(i);
-    v_[i].x = at.v[0], v_[i].y = at.v[1], v_[i].w = at.w[0];
-  }
-}
-
-void PlaneIterative::solve_joint_velocities() {
-  if (joints_.empty()) return;
-  for (const int i : joints_.bodies())
-    joints_.body_motion(i).v = {v_[i].x, v_[i].y}, joints_.body_motion(i).w[0] = v_[i].w;
-  joints_.iterate();
-  copy_from_joints();
-}
-
-// projects the joints, and copies poses and velocities of their bodies back
-void PlaneIterative::project_joints(State<D>& state, double h) {
-  copy_to_joints();
-  joints_.finish(h);
-  if (!state.work.empty()) state.work[0] += joints_.given();
-  joints_.keep(state, h);
-  joints_.break_joints(state);
-  copy_from_joints();
-  const int still = int(turns_.size() - state.turn.size());
-  for (const int i : joints_.bodies()) {
-    if (v_[i].im == 0) continue;
-    const BodyMotion<D>& at = joints_.body_motion(i);
-    corrections_[i] += joints_.displacement(i);
-    state.x[i] = at.x, state.v[i] = at.v;
-    poses_[i].x = at.x[0], poses_[i].y = at.x[1];
-    if (i < still) continue;
-    state.spin[i - still] = at.w, state.turn[i - still] = joints_.turn(i);
-    turns_[i] = joints_.turn(i)[0];
-    const SinCos sc = sin_cos(turns_[i]);
-    poses_[i].c = sc.cos, poses_[i].s = sc.sin;
-  }
+void PlaneIterative::moved_by_joints(const State<D>& state, int body) {
+  plane::Pose& pose = poses_[body];
+  pose.x = state.x[body][0], pose.y = state.x[body][1];
+  const int k = turning(state, body);
+  if (k < 0) return;
+  const SinCos sc = sin_cos(turns_[body] = state.turn[k][0]);
+  pose.c = sc.cos, pose.s = sc.sin;
 }
 
 // pushes bodies out of overlaps, by a part of each
-void PlaneIterative::correct_overlaps(const State<D>& state) {
+void PlaneIterative::push_out(const State<D>& state) {
   std::fill(projections_.begin(), projections_.end(), plane::Projection{});
-  for (std::size_t i = 0; i < v_.size(); ++i) push_[i] = {0, 0, 0, v_[i].im};
+  for (std::size_t i = 0; i < moving_.size(); ++i) push_[i] = {0, 0, 0, moving_[i].im};
   int iterations = std::max(kFewestProjections, kProjections * fewest_iterations());
   if (!joints_.empty() && strained(state)) iterations = kStrainIterations;
   for (int i = 0; i < iterations; ++i) {
     // joints go along
     for (const int k : joints_.bodies())
-      joints_.body_motion(k).v = {push_[k].x, push_[k].y}, joints_.body_motion(k).w[0] = push_[k].w;
+      joints_.body_motion(k).v = velocity(push_[k]), joints_.body_motion(k).w = spin(push_[k]);
     if (!joints_.empty()) joints_.solve_positions();
-    for (const int k : joints_.bodies()) {
-      const BodyMotion<D>& at = joints_.body_motion(k);
-      push_[k].x = at.v[0], push_[k].y = at.v[1], push_[k].w = at.w[0];
-    }
+    for (const int k : joints_.bodies())
+      set_velocity(push_[k], joints_.body_motion(k).v, joints_.body_motion(k).w);
     plane::project(batches_.data(), projections_.data(), int(batches_.size()), poses_.data(), push_.data(),
-                   at_start(state) ? 1 : corrected_share(span_),
-                   at_start(state) ? kAllowedAtStart : allowed_overlap_);
+                   corrected_share(state, span_), allowed_overlap(state));
   }
+  begin_corrections();
   for (std::size_t i = 0; i < corrections_.size(); ++i) corrections_[i] = {push_[i].x, push_[i].y};
 }
 

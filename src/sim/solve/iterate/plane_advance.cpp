@@ -13,8 +13,12 @@ using plane::Feature;
 using plane::kLanes;
 using plane::Pair;
 
-void PlaneIterative::place_bodies(State<D>& state, double h, bool apply_push_out) {
+void PlaneIterative::place_bodies(StepPart<D> part) {
+  State<D>& state = part.state;
+  const double h = part.h;
   const int n = int(turns_.size()), still = n - int(state.turn.size());
+  const bool correct = first(part) && deep_;
+  if (correct) push_out(state);
 
   begun_ = poses_;
   // bodies with slow contacts that closed
@@ -23,8 +27,8 @@ void PlaneIterative::place_bodies(State<D>& state, double h, bool apply_push_out
     closing_[batches_[i / kLanes].a[i % kLanes]] = closing_[batches_[i / kLanes].b[i % kLanes]] = 1;
 
   for (int i = 0; i < n; ++i) {
-    if (v_[i].im == 0) continue;
-    const Motion &v = v_[i], &o = old_[i];
+    if (moving_[i].im == 0) continue;
+    const Motion &v = moving_[i], &o = old_[i];
     const double far = 0.5 * kSight * cores_.half_thickness[i];
     Motion d;
     if (impacts_.last(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
@@ -32,14 +36,13 @@ void PlaneIterative::place_bodies(State<D>& state, double h, bool apply_push_out
     } else {
       d = closing_[i] ? Motion{h * v.x, h * v.y, h * v.w, 0} : mean_way(i, h);
     }
-    if (apply_push_out) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
+    if (correct) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
     state.x[i][0] = poses_[i].x += d.x, state.x[i][1] = poses_[i].y += d.y;
     state.v[i][0] = v.x, state.v[i][1] = v.y;
     if (i >= still) {
       state.spin[i - still][0] = v.w;
       state.turn[i - still][0] = turns_[i] += d.w;
     }
-    sleep_.time(state, i, v.x * v.x + v.y * v.y, v.w * v.w, h);
   }
   place_driven(state);
   plane::turn_all(turns_.data() + still, poses_.data() + still, n - still);
@@ -47,7 +50,7 @@ void PlaneIterative::place_bodies(State<D>& state, double h, bool apply_push_out
 
 // by the mean of old and new velocity
 plane::Motion PlaneIterative::mean_way(int i, double h) const {
-  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
+  const Motion &v = moving_[i], &o = old_[i], &dv = dv_[i], &dx = dx_[i];
   const double half = 0.5 * h;
   return {dx.x + half * (v.x - (o.x + dv.x)), dx.y + half * (v.y - (o.y + dv.y)),
           dx.w + half * (v.w - (o.w + dv.w)), 0};
@@ -55,7 +58,7 @@ plane::Motion PlaneIterative::mean_way(int i, double h) const {
 
 // the way of a body in the step, of one too that is struck or fast
 plane::Motion PlaneIterative::course(int i, double h) {
-  const Motion &v = v_[i], &o = old_[i], &dv = dv_[i];
+  const Motion &v = moving_[i], &o = old_[i], &dv = dv_[i];
   const double when = impacts_.first(i);
   Motion d;
   if (when >= 0) {
@@ -91,8 +94,8 @@ plane::Motion PlaneIterative::course(int i, double h) {
   const double gone = std::fabs(v.x - (o.x + dv.x)) + std::fabs(v.y - (o.y + dv.y)) +
                       std::fabs(v.w - (o.w + dv.w)) * cores_.bounding_radius[i];
   if (when < 0 && gone <= 1e-9 * (std::fabs(o.x) + std::fabs(o.y))) {
-    const double im = v_[i].im;
-    v_[i] = o, v_[i].im = im;
+    const double im = moving_[i].im;
+    moving_[i] = o, moving_[i].im = im;
   }
   return {part * way.x, part * way.y, part * way.w, 0};
 }
@@ -105,9 +108,9 @@ bool PlaneIterative::sinks(int body, const Motion& way, double h) const {
     const plane::ContactBatch& g = batches_[pair.slot / kLanes];
     const int lane = pair.slot % kLanes;
     Motion its{};
-    if (other >= 0 && v_[other].im > 0)
-      its =
-          closing_[other] ? Motion{h * v_[other].x, h * v_[other].y, h * v_[other].w, 0} : mean_way(other, h);
+    if (other >= 0 && moving_[other].im > 0)
+      its = closing_[other] ? Motion{h * moving_[other].x, h * moving_[other].y, h * moving_[other].w, 0}
+                            : mean_way(other, h);
     if (drives_.number(other) >= 0) its = dx_[other];
     const double let = allowed_overlap_(g.far[lane], 1 / g.per_width[lane]);
     for (int k = 0; k < pair.touches; ++k) {
@@ -130,7 +133,7 @@ bool PlaneIterative::fast(int body, const Motion& way) const {
 // The part of its way from `begun` s of the substep on that a body may go before it meets another, which
 // flies on as it did, or a wall: by steps as long as the distance that is left.
 double PlaneIterative::safe_fraction(int body, const plane::Pose& from, const Motion& way, double begun,
-                                        double h, bool walls) const {
+                                     double h, bool walls) const {
   double part = 1;
   Feature features[2];
   for (const int i : impacts_.around(body)) {
@@ -175,7 +178,7 @@ bool PlaneIterative::outran(double h, double left) const {
   const int n = int(turns_.size());
   const double falls = 3 * h * span_ * std::sqrt(model_.gravity.squaredNorm());
   for (int i = 0; i < n; ++i) {
-    const Motion &v = v_[i], &o = old_[i];
+    const Motion &v = moving_[i], &o = old_[i];
     const double radius = cores_.bounding_radius[i];
     const double gain = std::fabs(v.x - o.x) + std::fabs(v.y - o.y) + std::fabs(v.w - o.w) * radius;
     if (gain * left < 0.04 * cores_.half_thickness[i] + falls) continue;

@@ -41,14 +41,14 @@ void PlaneIterative::build_batches(const State<D>& state, bool known) {
   }
   version_ = pairs_.version();
   if (known && frozen_ == state.frozen && update_batches(state)) {
-    impacts_.list_pairs(all, v_);
+    impacts_.list_pairs(all, moving_);
     return;
   }
   const int n = int(turns_.size());
   frozen_ = state.frozen;
   for (int i = 0; i < n; ++i) {
     const bool moves = !fixed_[i] && !state.frozen[i];
-    v_[i].im = moves ? light_[i].im : 0, ii_[i] = moves ? light_[i].ii : 0;
+    moving_[i].im = moves ? light_[i].im : 0, ii_[i] = moves ? light_[i].ii : 0;
   }
 
   std::fill(colours_.begin(), colours_.end(), 0);
@@ -103,12 +103,12 @@ void PlaneIterative::build_batches(const State<D>& state, bool known) {
       fill_lane(slots_[slot], state);
     }
   }
-  impacts_.list_pairs(all, v_);
+  impacts_.list_pairs(all, moving_);
 }
 
 // The colour of a pair, the next in order; -1 where it is asleep.
 int PlaneIterative::colour(const Pair& pair) {
-  const bool a = v_[pair.a].im > 0, b = pair.b >= 0 && v_[pair.b].im > 0;
+  const bool a = moving_[pair.a].im > 0, b = pair.b >= 0 && moving_[pair.b].im > 0;
   if (!a && !b) return -1;
   const std::uint64_t used = (a ? colours_[pair.a] : 0) | (b ? colours_[pair.b] : 0);
   const int which = std::min(std::countr_one(used), kColours);

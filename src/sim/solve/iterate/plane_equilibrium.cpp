@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/solve/iterate/moving_body.h"
+
 namespace obscura::sim::plane {
 
 namespace {
@@ -62,7 +64,7 @@ void Equilibrium::copy_to_joints(const Sleep<2>::Island& island, JointSolver<2>&
   if (!island.jointed) return;
   for (const int body : island.bodies) {
     if (!joints.has(body)) continue;
-    joints.body_motion(body).v = {v_[body].x, v_[body].y}, joints.body_motion(body).w[0] = v_[body].w;
+    joints.body_motion(body).v = velocity(v_[body]), joints.body_motion(body).w = spin(v_[body]);
   }
 }
 
@@ -70,8 +72,7 @@ void Equilibrium::copy_from_joints(const Sleep<2>::Island& island, JointSolver<2
   if (!island.jointed) return;
   for (const int body : island.bodies) {
     if (!joints.has(body)) continue;
-    const BodyMotion<2>& at = joints.body_motion(body);
-    v_[body].x = at.v[0], v_[body].y = at.v[1], v_[body].w = at.w[0];
+    set_velocity(v_[body], joints.body_motion(body).v, joints.body_motion(body).w);
   }
 }
 

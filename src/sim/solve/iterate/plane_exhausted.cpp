@@ -25,7 +25,7 @@ void PlaneIterative::solve_exhausted() {
   };
   if (std::none_of(flags.begin(), flags.end(), active)) return;
   const int n = int(turns_.size());
-  const auto moves = [&](int body) { return v_[body].im > 0; };
+  const auto moves = [&](int body) { return moving_[body].im > 0; };
   const auto each_lane = [&](auto&& act) {
     for (ContactBatch& g : batches_) {
       for (int lane = 0; g.used && lane < kLanes; ++lane) {
@@ -96,7 +96,7 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
     const auto& [slot, k, r] = touches[i / 2];
     const ContactBatch& g = batches_[slot / kLanes];
     const int lane = slot % kLanes;
-    const Motion &va = v_[g.a[lane]], &vb = v_[g.b[lane]];
+    const Motion &va = moving_[g.a[lane]], &vb = moving_[g.b[lane]];
     if (i % 2 == 0) {
       const bool struck = g.struck[k] >> lane & 1;
       const double least =
@@ -112,7 +112,7 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
         const double ii = s.body < int(ii_.size()) ? ii_[s.body] : 0;
         for (const bool other : {false, true}) {
           const Side o = side(j, other);
-          if (s.body == o.body) sum += v_[s.body].im * (s.x * o.x + s.y * o.y) + ii * (s.turn * o.turn);
+          if (s.body == o.body) sum += moving_[s.body].im * (s.x * o.x + s.y * o.y) + ii * (s.turn * o.turn);
         }
       }
       K(i, j) = K(j, i) = sum;
@@ -130,7 +130,7 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
     const double change = p[i] - before[i];
     for (const bool of_b : {false, true}) {
       const Side s = side(i, of_b);
-      Motion& v = v_[s.body];
+      Motion& v = moving_[s.body];
       const double ii = s.body < int(ii_.size()) ? ii_[s.body] : 0;
       v.x += v.im * s.x * change, v.y += v.im * s.y * change, v.w += ii * s.turn * change;
     }

@@ -68,7 +68,7 @@ void PlaneIterative::first_guess(State<D>& state) {
   std::vector<double> load(n, 0), turn(n, 0);  // N upwards, N m
   std::vector<Support> supports;
   for (const auto& [height, body] : order) {
-    if (v_[body].im == 0) continue;
+    if (moving_[body].im == 0) continue;
     supports.clear();
     for (const int i : around[body]) {
       const Pair& pair = pairs_.all()[i];
@@ -86,7 +86,7 @@ void PlaneIterative::first_guess(State<D>& state) {
         supports.push_back(support);
       }
     }
-    const double weight = g / v_[body].im - load[body];
+    const double weight = g / moving_[body].im - load[body];
     if (!balance(supports, weight, turn[body])) {
       for (Support& s : supports) s.force = weight / double(supports.size()) / s.up;
     }

@@ -231,8 +231,8 @@ void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<Co
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
       least = v[k] - vn;
       if (met == 2) least = std::min(least, 0.0);
-      least = target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], g.impact_speed[lane], left,
-                                   pace.h);
+      least =
+          target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], g.impact_speed[lane], left, pace.h);
     }
   };
   for (const int i : passing_) leave(i);

@@ -135,20 +135,20 @@ class Impacts {
   const Rows& rows(int group, const std::vector<ContactBatch>& batches, const std::vector<Pose>& poses);
 
   const Pairs& pairs_;
-  ContactBatch fresh_{};                    // of a pair: the features that are nearest when it meets
-  std::vector<double> bounding_radius_;     // of bodies, and of walls, m
-  ByBody around_;                           // pairs
-  std::vector<int> bodies_;                 // with impacts
-  std::vector<double> first_, when_;        // s: of each body's first and last impact; -1: none
-  std::vector<Pose> pose_;                  // of those with impacts: at the last
-  std::vector<Motion> way_;                 // of those with impacts: from the start of the step to the last
-  std::vector<Motion> now_;                 // velocities after it, or as the step begins
-  std::vector<Motion> dv_impacts_;          // what their impacts gave to them
-  std::vector<int> rounds_;                 // impacts of each body
-  double drive_work_ = 0;                   // J
+  ContactBatch fresh_{};                 // of a pair: the features that are nearest when it meets
+  std::vector<double> bounding_radius_;  // of bodies, and of walls, m
+  ByBody around_;                        // pairs
+  std::vector<int> bodies_;              // with impacts
+  std::vector<double> first_, when_;     // s: of each body's first and last impact; -1: none
+  std::vector<Pose> pose_;               // of those with impacts: at the last
+  std::vector<Motion> way_;              // of those with impacts: from the start of the step to the last
+  std::vector<Motion> now_;              // velocities after it, or as the step begins
+  std::vector<Motion> dv_impacts_;       // what their impacts gave to them
+  std::vector<int> rounds_;              // impacts of each body
+  double drive_work_ = 0;                // J
 
-  std::vector<int> queue_;  // pairs to be looked at, as one of their bodies just had an impact
-  ImpactQueue due_;           // numbers of predicted_
+  std::vector<int> queue_;        // pairs to be looked at, as one of their bodies just had an impact
+  ImpactQueue due_;               // numbers of predicted_
   std::vector<char> waiting_;     // of pairs: in queue_
   std::vector<char> impacts_of_;  // of pairs: whether they had one
   std::vector<Impact> predicted_;

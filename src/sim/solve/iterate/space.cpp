@@ -1,14 +1,10 @@
-// One step of many bodies with contacts, from v to v':
-//   1. contact candidates that may close within the step; waking
-//   2. free motion, by Runge-Kutta: v -> v_free
-//   3. impacts of few, each at its time (sim/solve/iterate/space_impacts.cpp)
-//   4. forces of the last step, then iterations from gap to gap, over and over:
-//        v_n' >= -g / h,  of what closes fast  v_n' >= -e v_n         p_n >= 0
-//        p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
-//      (sim/solve/iterate/space_batches.cpp), between them joints exactly, J v' = 0
-//   5. positions: by the mean of old and new velocity; by the new one where a slow touch closed
-//   6. out of each other, a part of the way; joints back onto their places (sim/solve/iterate/joint_solver.h)
-//   7. rest: what is quiet and found in static equilibrium freezes
+// What the iterative solver does in space (its stages: sim/solve/iterate/iterative.h). All that may touch
+// within a substep is found anew in each, features of few pairs. Of each contact iterations solve, over and
+// over,
+//   v_n' >= -g / h,  of what closes fast  v_n' >= -e v_n         p_n >= 0
+//   p_t <- p_t - v_t / k_t, cut back to |p_t| <= mu p_n          k_t  the most a push across answers
+// (sim/solve/iterate/space_batches.cpp). Impacts of few are solved before, each at its time
+// (sim/solve/iterate/space_impacts.cpp).
 
 #include "sim/solve/iterate/space.h"
 
@@ -26,8 +22,6 @@ constexpr double kDeepest = 2e-3;        // of a body's bounding radius: deeper 
 constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
-constexpr int kFirstIterations = 100;    // of the first step, which knows no forces
-constexpr double kFeatureSearches = 60;  // a second, for the features of all pairs
 constexpr double kSlow = 0.01;           // of the narrower body: so far a pair moves with the same features
 constexpr double kWider = 0.05;    // bounding radii: how far a body may come before pairs are sought anew
 constexpr double kSpare = 0.02;    // of their bounding radius: what two may come nearer by being struck
@@ -40,48 +34,21 @@ constexpr double kRoundingGain = 1e-9;  // of its kinetic energy: what an island
 }  // namespace
 
 SpaceIterative::SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model),
-      may_touch_(model),
-      dynamics_(model, paths),
-      joints_(model),
-      sleep_(model, Sleep<D>::Forces::iterated, kDeepest),
-      response_(model),
-      energy_guard_(model),
-      drives_(model) {
-  const double h = 1 / value(model.rate);
-  g_ = std::sqrt(model.gravity.squaredNorm());
-  every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / kFeatureSearches));
-  restitution_threshold_ = 2 * h / substeps_for(0, h) * g_ + 1e-9 * model.scale;
-  allowed_overlap_ = allowed_overlap(model);
+    : Iterative(model, paths, kDeepest), may_touch_(model), response_(model), energy_guard_(model) {
   for (const Body<D>& body : model.bodies) {
     width_.push_back(std::max(2 * half_thickness(body.shape), kPointWidth * model.scale));
     round_.push_back(bool(round_radius(body.shape)));
     bounding_radius_.push_back(bounding_radius(body.shape));
     points_.push_back(is_point(body.shape));
   }
-  if (std::none_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.carries(); }))
-    return;
-  for (const Body<D>& body : model.bodies) carries_.push_back(body.carries());
   farther_.resize(carries_.size());
 }
 
-bool SpaceIterative::collide(StepPart<D> step) {
-  State<D>& state = step.state;
-  const std::size_t n = model_.bodies.size();
-  state.frozen.resize(n), state.quiet.resize(n);
-  joints_.prepare(state), joints_.clear_pushed();
-  if (state.step == 0) joints_.project_initial_velocities(state);
-  prepare(state, step.t, step.h);
+bool SpaceIterative::find_contacts(StepPart<D> step) {
+  impulses_.clear();
+  prepare(step.state, step.t, step.h);
   find(step);
   return true;
-}
-
-void SpaceIterative::wake(StepPart<D> step) {
-  if (update_sleep(step.state, step.t, step.h)) prepare(step.state, step.t, step.h), find(step);
-  closing_rate_ = closing_rate(step.h);
-  substeps_ = substeps_for(closing_rate_, step.h);
-  impulses_.clear(), corrected_ = false;
-  notes_.begin(step.state);
 }
 
 // how fast those close that touch, or may within h s: the most, in widths of the narrower body, 1/s
@@ -126,12 +93,10 @@ void SpaceIterative::add_impulses(State<D>& state) const {
   }
 }
 
-void SpaceIterative::start_rows(StepPart<D> step) {
-  warm_start_contacts(step.state, step.h);
-  iterations_ =
-      std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
-  if (step.state.step == 0 && step.substep == 0) iterations_ = kFirstIterations;
-  if (joints_.empty()) return;
+// the impacts decide which contacts the forces of the last step push
+void SpaceIterative::start_contacts(StepPart<D> part) {
+  warm_start_contacts(part.state, part.h);
+  batches_.build(touches_, all_, moving_);
   // what hangs together is struck together
   components_.assign(joints_.components(), 0);
   for (const int i : joints_.bodies()) {
@@ -140,53 +105,30 @@ void SpaceIterative::start_rows(StepPart<D> step) {
   for (const int i : joints_.bodies()) {
     if (joints_.component(i) >= 0 && components_[joints_.component(i)]) closing_[i] = 1;
   }
-  copy_to_joints();
-  joints_.begin(step.h, step.t);
-  if (touches_.empty() && joints_.plain()) iterations_ = 1;
 }
 
-void SpaceIterative::iterate(StepPart<D> step) {
-  start_rows(step);
-  batches_.build(touches_, all_, moving_);
-  for (int round = 0; round < kTempering; ++round) {
-    if (round > 0) batches_.load(touches_);
-    for (int i = 0; i < iterations_; ++i) {
-      solve_joint_velocities();
-      batches_.iterate(moving_, i % 2 != 0);
-    }
-    settle_contacts();
-    batches_.store(touches_);
-    solve_exhausted();
-    shed_gains();
-    place_bodies(step.state, step.h);
-    if (!temper(step.state)) break;
-  }
-  book_contacts(step.state);
+int SpaceIterative::iterations(StepPart<D> part) const {
+  if (touches_.empty() && !joints_.empty() && joints_.plain()) return 1;
+  if (starts(part)) return kFirstIterations;
+  return std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
 }
 
-void SpaceIterative::project(StepPart<D> step) {
-  correct_overlaps(step.state, step.h);
-  if (!joints_.empty()) project_joints(step.state, step.h);
-  report_contacts(step.state, step.h);
-  if (notes_.any()) note_touches(step);
-  if (step.substep + 1 < substeps_) keep_impulses(step.state);
+void SpaceIterative::finish_iterations(StepPart<D> part) {
+  shed_gains();
+  place(part.state, part.h);
 }
 
-// which watched pairs bear or are struck in a substep
-void SpaceIterative::note_touches(StepPart<D> step) {
-  const double begun = step.substep * step.h, ended = begun + step.h;
-  for (const Contact<D>& it : step.state.contacts)
-    if (it.touching != ContactMode::open) notes_.note(it.key.a, it.key.b, begun, ended);
-  if (step.substep + 1 == substeps_) notes_.end();
+void SpaceIterative::finish_substep(StepPart<D> part) {
+  report_contacts(part.state, part.h);
+  if (part.substep + 1 < substeps_) keep_impulses(part.state);
 }
 
-void SpaceIterative::report(StepPart<D> step) {
-  add_impulses(step.state);
+void SpaceIterative::list_touching(StepPart<D> part, std::vector<std::pair<int, int>>& pairs) const {
+  for (const Contact<D>& it : part.state.contacts)
+    if (it.touching != ContactMode::open) pairs.emplace_back(it.key.a, it.key.b);
 }
 
-void SpaceIterative::sleep(StepPart<D> step) {
-  if (sleep_.due(step.state)) put_to_sleep(step.state, step.h / substeps_);
-}
+void SpaceIterative::report(StepPart<D> step) { add_impulses(step.state); }
 
 // poses, velocities and inverse inertias
 void SpaceIterative::prepare(const State<D>& state, double t, double h) {
@@ -304,7 +246,7 @@ void SpaceIterative::find_near() {
 // looked for in the substep of this number, or a key does not say all. `old`: contacts from this pair on;
 // `memo`: where its keys would be among those known.
 bool SpaceIterative::keep_features(int a, int b, std::int64_t number, double h,
-                                      std::span<const Contact<D>>& old, std::size_t& memo) {
+                                   std::span<const Contact<D>>& old, std::size_t& memo) {
   const auto before = [&](const Contact<D>& c) { return c.key.a != a ? c.key.a < a : c.key.b < b; };
   std::size_t begin = 0, end = 0;
   while (begin < old.size() && before(old[begin])) ++begin;
@@ -376,9 +318,8 @@ void SpaceIterative::move_driven(State<D>& state, double t, double h) {
 }
 
 // what they give, J, by an impulse on a, and back on b, at arms from their centres
-double SpaceIterative::given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a,
-                                const Vec<D>& arm_a, const BodyMotion<D>& b, int body_b,
-                                const Vec<D>& arm_b) const {
+double SpaceIterative::given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a, const Vec<D>& arm_a,
+                             const BodyMotion<D>& b, int body_b, const Vec<D>& arm_b) const {
   double sum = 0;
   if (drives_.number(body_a) >= 0) sum -= impulse.dot(a.velocity(arm_a));
   if (body_b < int(model_.bodies.size()) && drives_.number(body_b) >= 0)
@@ -386,9 +327,8 @@ double SpaceIterative::given(const Vec<D>& impulse, const BodyMotion<D>& a, int 
   return sum;
 }
 
-// their work by the contacts of a substep, by the mean of their velocities
-void SpaceIterative::book_contacts(State<D>& state) const {
-  if (carries_.empty() || state.work.empty()) return;
+// by the mean of their velocities
+double SpaceIterative::contact_work(StepPart<D>) const {
   const auto mean = [&](int body) {
     BodyMotion<D> at;
     if (body == int(model_.bodies.size())) return at;
@@ -403,54 +343,38 @@ void SpaceIterative::book_contacts(State<D>& state) const {
     sum += given(impulse, mean(touch.a), touch.a, touch.arm_a, mean(touch.b), touch.b, touch.arm_b) -
            impulse.dot(touch.belt);
   }
-  state.work[0] += sum;
+  return sum;
 }
 
-// rows of the joints where the step begins
-void SpaceIterative::build_joint_rows(const State<D>& state) {
-  joints_.gather(state);
-  for (const int i : joints_.bodies()) {
-    joints_.body_motion(i) = stances_[i];
-    if (const int k = turning(state, i); k >= 0) joints_.turn(i) = state.turn[k];
-  }
-  joints_.compute_rows();
+void SpaceIterative::renew_contacts(StepPart<D> part) {
+  if (substeps_ > 1) prepare(part.state, part.t, part.h), find(part);
+  x_ = part.state.x, turn_ = part.state.turn;
 }
 
-// positions and velocities without contacts
-void SpaceIterative::move_free(StepPart<D> step) {
-  State<D>& state = step.state;
-  if (substeps_ > 1) {
-    if (step.substep > 0 && !joints_.empty()) joints_.prepare(state);
-    prepare(state, step.t, step.h), find(step);
-  }
-  if (!joints_.empty()) build_joint_rows(state);
-  const int n = int(model_.bodies.size());
-  x_ = state.x, turn_ = state.turn;
+Orientation<3> SpaceIterative::begun_turn(int body) const {
+  const int k = body - int(stances_.size() - turn_.size());
+  return k < 0 ? no_rotation<D>() : turn_[std::size_t(k)];
+}
+
+void SpaceIterative::move_unconstrained(StepPart<D> part) {
+  State<D>& state = part.state;
   dynamics_.gather(state, true);
   stages_.reserve(std::size_t(dynamics_.size()));
   if (joints_.empty()) {
-    dynamics_.step(integrate(model_.integrator), state, step.t, step.h, stages_);
+    dynamics_.step(integrate(model_.integrator), state, part.t, part.h, stages_);
   } else {
-    joints_.step(dynamics_, integrate(model_.integrator), state, step.t, step.h, stages_);
+    poses_to_joints();
+    joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
   }
   if (!state.work.empty()) state.work[0] += dynamics_.work();
-  move_driven(state, step.t, step.h);
+  move_driven(state, part.t, part.h);
   v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
   energy_guard_.open(state);
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (inactive_[i]) continue;
     moving_[i].v = state.v[i];
     if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
   }
-  if (joints_.empty()) return;
-  // rows where the step began, and what the free motion makes of their speeds
-  for (const int i : joints_.bodies()) {
-    joints_.body_motion(i) = stances_[i];
-    if (const int k = turning(state, i); k >= 0) joints_.turn(i) = turn_[k];
-  }
-  joints_.compute_rows();
-  copy_to_joints();
-  joints_.keep_row_speeds();
 }
 
 // what each touch wants of the step, and the forces it had in the last
@@ -489,33 +413,13 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   }
 }
 
-// velocities to the joints, of all that they have or of those marked, and back
-void SpaceIterative::copy_to_joints(const std::vector<char>* of) {
-  for (const int i : joints_.bodies()) {
-    if (!of || (*of)[i]) joints_.body_motion(i).v = moving_[i].v, joints_.body_motion(i).w = moving_[i].w;
-  }
-}
-
-void SpaceIterative::copy_from_joints(const std::vector<char>* of) {
-  for (const int i : joints_.bodies()) {
-    if (!of || (*of)[i]) moving_[i].v = joints_.body_motion(i).v, moving_[i].w = joints_.body_motion(i).w;
-  }
-}
-
-void SpaceIterative::solve_joint_velocities() {
-  if (joints_.empty()) return;
-  copy_to_joints();
-  joints_.iterate();
-  copy_from_joints();
-}
-
 // Several impacts in one instant, with friction or on joints, may leave more energy than was there if each
 // keeps its restitution (Kane and Levinson 1985); those of such an island keep less. Energy is that of the
 // step's end: a body struck within it had not yet fallen all of its way. With
 //   dK = p . v' - p W p / 2
 // a share dK / p . v' less is enough where p stays; what stays of it is looked at again. True where there was
 // any.
-bool SpaceIterative::temper(const State<D>& state) {
+bool SpaceIterative::gains(const State<D>& state) {
   if (std::none_of(touches_.begin(), touches_.end(), [](const ContactConstraint& touch) {
         return touch.bounces && touch.least > 0 && touch.normal_impulse > 0;
       }))
@@ -566,6 +470,12 @@ bool SpaceIterative::temper(const State<D>& state) {
   return any;
 }
 
+bool SpaceIterative::temper(StepPart<D> part, int round) {
+  if (!gains(part.state) || round + 1 == kTempering) return false;
+  batches_.load(touches_);
+  return true;
+}
+
 // When each body meets an impact that the iterations change its motion at, s from the start of the step: the
 // first that is left to them, or its last, if joints answered it. h: none.
 void SpaceIterative::find_strikes(double h) {
@@ -582,7 +492,7 @@ void SpaceIterative::find_strikes(double h) {
 }
 
 // positions at the end of the step, from those without contacts
-void SpaceIterative::place_bodies(State<D>& state, double h) {
+void SpaceIterative::place(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   find_strikes(h);
   for (int i = 0; i < n; ++i) {
@@ -614,13 +524,11 @@ void SpaceIterative::place_bodies(State<D>& state, double h) {
   }
 }
 
-// velocities at the end of the step, and sleep timers
-void SpaceIterative::advance(StepPart<D> step) {
-  State<D>& state = step.state;
+// place() has, but for what their spins become by turning on
+void SpaceIterative::place_bodies(StepPart<D> part) {
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (inactive_[i]) continue;
-    if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
-    sleep_.time(state, i, state.v[i].squaredNorm(), moving_[i].w.squaredNorm(), step.h);
+    if (const int k = turning(part.state, i); k >= 0) moving_[i].w = part.state.spin[k];
   }
 }
 
@@ -635,22 +543,16 @@ double SpaceIterative::normal_response(const ContactConstraint& touch) const {
   return sum;
 }
 
-void SpaceIterative::begin_corrections() {
-  if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
-  corrected_ = true;
-}
-
 // positions out of each other, a part of the way, by the same rows
-void SpaceIterative::correct_overlaps(State<D>& state, double h) {
+void SpaceIterative::correct_overlaps(StepPart<D> part) {
+  State<D>& state = part.state;
   const int n = int(model_.bodies.size());
-  // those that the scene has, too small for it to refuse them
-  const bool at_start = state.step == 0 && model_.overlap == Overlap::refuse;
-  const AllowedOverlap let = at_start ? kAllowedAtStart : allowed_overlap_;
+  const AllowedOverlap let = allowed_overlap(state);
   const auto allowed = [&](const ContactConstraint& touch) {
     const double far = bounding_radius_[touch.a];
     return let(touch.b == n ? far : std::max(far, bounding_radius_[touch.b]), 1 / touch.per_width);
   };
-  const double share = at_start ? 1 : corrected_share(h);
+  const double share = corrected_share(state, part.h);
   some_.clear();
   for (int i = 0; i < int(touches_.size()); ++i) {
     const ContactConstraint& touch = touches_[i];
@@ -677,9 +579,9 @@ void SpaceIterative::correct_overlaps(State<D>& state, double h) {
       most = std::max(most, wanted), change = std::max(change, std::fabs(left));
     }
     if (joints_.empty()) continue;
-    copy_to_joints();
+    velocities_to_joints();
     joints_.solve_positions();
-    copy_from_joints();
+    velocities_from_joints();
   }
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (inactive_[i]) continue;
@@ -687,27 +589,6 @@ void SpaceIterative::correct_overlaps(State<D>& state, double h) {
     if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
   }
   moving_.swap(kept_);
-}
-
-// what the step has pulled apart
-void SpaceIterative::project_joints(State<D>& state, double h) {
-  for (const int i : joints_.bodies()) {
-    joints_.body_motion(i) = body_motion(state, i);
-    if (const int k = turning(state, i); k >= 0) joints_.turn(i) = state.turn[k];
-  }
-  joints_.finish(h);
-  if (!state.work.empty()) state.work[0] += joints_.given();
-  joints_.keep(state, h);
-  joints_.break_joints(state);
-  copy_from_joints();
-  begin_corrections();
-  for (const int i : joints_.bodies()) {
-    if (inactive_[i]) continue;
-    corrections_[i] += joints_.displacement(i);
-    state.x[i] = joints_.body_motion(i).x, state.v[i] = moving_[i].v;
-    if (const int k = turning(state, i); k >= 0)
-      state.turn[k] = joints_.turn(i), state.spin[k] = moving_[i].w;
-  }
 }
 
 // the forces of this substep; what sleeps keeps its own

@@ -13,45 +13,49 @@
 #include "sim/constraint/response.h"
 #include "sim/energy/energy_guard.h"
 #include "sim/math/islands.h"
-#include "sim/model/drives.h"
-#include "sim/motion/forward_dynamics.h"
 #include "sim/solve/cone/cone.h"
-#include "sim/solve/contact_solver.h"
 #include "sim/solve/iterate/contact_constraint.h"
 #include "sim/solve/iterate/impact_queue.h"
-#include "sim/solve/iterate/joint_solver.h"
+#include "sim/solve/iterate/iterative.h"
 #include "sim/solve/iterate/space_batches.h"
-#include "sim/solve/iterate/substeps.h"
-#include "sim/solve/iterate/touch_notes.h"
-#include "sim/solve/sleep.h"
 
 namespace obscura::sim {
 
 /// Contact for hundreds of bodies of space: all that may touch within a step is found anew in each, forces by
 /// warm iterations over it, impacts of few exactly and at their time, joints exactly in each iteration. All
 /// that is carried from step to step is in the state, so a run cut in two is the run in one.
-class SpaceIterative final : public ContactSolver<3> {
+class SpaceIterative final : public Iterative<3> {
   static constexpr int D = 3;
 
  public:
   /// Both are kept by reference.
   SpaceIterative(const Model<D>& model, const std::vector<Path<D>>& paths);
 
-  void watch(sim::Course<D>* course) override { notes_.watch(course); }
-  bool collide(StepPart<D> step) override;
-  void wake(StepPart<D> step) override;
-  int substeps() const override { return substeps_; }
-  const Vec<D>* corrections() const override { return corrected_ ? corrections_.data() : nullptr; }
-  const std::vector<char>* pushed_by_joints() const override { return joints_.pushed(); }
-  void move_free(StepPart<D> step) override;
-  void resolve_impacts(StepPart<D> step) override;
-  void iterate(StepPart<D> step) override;
-  void advance(StepPart<D> step) override;
-  void project(StepPart<D> step) override;
+  void resolve_impacts(StepPart<D> part) override;
   void report(StepPart<D> step) override;
-  void sleep(StepPart<D> step) override;
 
  private:
+  bool find_contacts(StepPart<D> step) override;
+  void update_sleep(StepPart<D> step) override;
+  double closing_rate(double h) const override;
+  void renew_contacts(StepPart<D> part) override;
+  void move_unconstrained(StepPart<D> part) override;
+  BodyMotion<D> begun(int body) const override { return stances_[std::size_t(body)]; }
+  Orientation<D> begun_turn(int body) const override;
+  void start_contacts(StepPart<D> part) override;
+  int iterations(StepPart<D> part) const override;
+  void iterate_contacts(int i) override { batches_.iterate(moving_, i % 2 != 0); }
+  void settle_contacts() override;
+  void solve_exhausted() override;
+  void finish_iterations(StepPart<D> part) override;
+  bool temper(StepPart<D> part, int round) override;
+  double contact_work(StepPart<D> part) const override;
+  void place_bodies(StepPart<D> part) override;
+  void correct_overlaps(StepPart<D> part) override;
+  void finish_substep(StepPart<D> part) override;
+  void list_touching(StepPart<D> part, std::vector<std::pair<int, int>>& pairs) const override;
+  void find_equilibrium(std::span<Sleep<D>::Island> islands, State<D>& state, double h) override;
+
   using ContactConstraint = sim::ContactConstraint<D>;
 
   // a body at a time within the step
@@ -90,8 +94,6 @@ class SpaceIterative final : public ContactSolver<3> {
   bool keep_features(int a, int b, std::int64_t number, double h, std::span<const Contact<D>>& old,
                      std::size_t& memo);
   void add(const ContactCandidate<D>& gap, const Material& pair);
-  bool update_sleep(State<D>& state, double t, double h);
-  void build_joint_rows(const State<D>& state);
   const Flown& flown(int body, double t, double h) const;
   Flown fly(int body, double t, double h) const;
   Instant instant(int touch, double t, double h) const;
@@ -126,15 +128,11 @@ class SpaceIterative final : public ContactSolver<3> {
       for (const int member : joints_.members(component)) act(member);
     }
   }
-  // after the impacts, which decide the targets of the contacts
-  void start_rows(StepPart<D> step);
+  bool gains(const State<D>& state);
+  void place(State<D>& state, double h);
   void warm_start_contacts(const State<D>& state, double h);
-  void settle_contacts();
-  void solve_exhausted();
   void solve_together();
   void shed_gains();
-  double closing_rate(double h) const;
-  void note_touches(StepPart<D> step);
   void keep_impulses(const State<D>& state);
   void add_impulses(State<D>& state) const;
   // an impulse on a, and back on b
@@ -156,56 +154,30 @@ class SpaceIterative final : public ContactSolver<3> {
   void move_driven(State<D>& state, double t, double h);
   double given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a, const Vec<D>& arm_a,
                const BodyMotion<D>& b, int body_b, const Vec<D>& arm_b) const;
-  void book_contacts(State<D>& state) const;
-  bool temper(const State<D>& state);
-  void copy_to_joints(const std::vector<char>* of = nullptr);
-  void copy_from_joints(const std::vector<char>* of = nullptr);
-  void solve_joint_velocities();
   void find_strikes(double h);
-  void place_bodies(State<D>& state, double h);
   double normal_response(const ContactConstraint& touch) const;
-  void begin_corrections();
-  void correct_overlaps(State<D>& state, double h);
-  void project_joints(State<D>& state, double h);
   void report_contacts(State<D>& state, double h) const;
   Contact<D> contact(const ContactConstraint& touch, double h) const;
   void fall_from_rest(std::span<const Sleep<D>::Island> islands, double h);
-  void find_equilibrium(std::span<Sleep<D>::Island> islands, double h);
-  void put_to_sleep(State<D>& state, double h);
   double swiftness(int body) const;
 
-  const Model<D>& model_;
   MayTouch<D> may_touch_;
   BroadPhase<D> broad_;
-  ForwardDynamics<D> dynamics_;
-  JointSolver<D> joints_;
-  Sleep<D> sleep_;
   Response<D> response_;
   std::vector<Contact<D>> near_;
   EnergyGuard<D> energy_guard_;
-  Drives<D> drives_;
-  std::vector<char> carries_;    // bodies that are moved, and belts; empty where there are none
-  std::vector<double> farther_;  // likewise: how far they get from where their velocity takes them, m
-  Stages stages_;
-  double g_ = 0, restitution_threshold_ = 0;
-  std::int64_t every_ = 1;                       // steps between two searches for features
+  std::vector<double> farther_;  // kinematic bodies: how far they get from where their velocity takes them, m
   std::vector<double> bounding_radius_, width_;  // of bodies, m
   std::vector<char> round_;
-  AllowedOverlap allowed_overlap_;
-  TouchNotes<D> notes_;
-  int substeps_ = 1;                  // of this step
-  double closing_rate_ = 0;           // as it began, in widths, 1/s
   std::vector<Contact<D>> impulses_;  // of the substeps before
 
   std::vector<BodyMotion<D>> stances_;
-  std::vector<PointBody<D>> moving_;
   std::vector<double> margin_,
       swing_;  // bodies: m, see margin(); m/s, of its farthest point by its spin alone
   std::vector<Bounds<D>> bounds_, wide_;  // of bodies in a step; and those that near_pairs_ are of
   std::vector<std::pair<int, int>> near_pairs_;
   std::vector<char> inactive_, inactive_then_, points_;
   std::vector<ContactCandidate<D>> gaps_;
-  int iterations_ = 0;                      // of this substep, of all touches
   std::vector<ContactConstraint> touches_;  // ascending by key
   SpaceBatches batches_;                    // of them, those that are iterated
   Settling settling_;
@@ -221,10 +193,8 @@ class SpaceIterative final : public ContactSolver<3> {
   std::vector<int> components_;                   // and of their joints
   Islands islands_;
   std::vector<PointBody<D>> kept_;
-  std::vector<double> responses_;    // of the touches that are pushed apart, 1/kg
-  std::vector<double> parted_;       // impulses that push touches apart, of unit time, kg m
-  std::vector<Vec<D>> corrections_;  // how far this step has pushed each body out of others, m
-  bool corrected_ = false;
+  std::vector<double> responses_;                   // of the touches that are pushed apart, 1/kg
+  std::vector<double> parted_;                      // impulses that push touches apart, of unit time, kg m
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
   std::vector<double> given_;                       // by the contacts of each island, J
   bool struck_ = false;                             // whether any body had an impact in this step
@@ -235,11 +205,11 @@ class SpaceIterative final : public ContactSolver<3> {
   std::vector<AngularVec<D>> twist_;  // bodies: what the step adds to angular momentum without contacts
   std::vector<Reach> reach_;          // of each touch
   ImpactQueue due_;                   // numbers of touches
-  std::vector<double> strikes_;             // bodies: s, when what the iterations change begins to move them
-  std::vector<int> rounds_;                 // impacts of each body
-  std::vector<char> crowded_;               // bodies whose impacts are left to the iterations
-  ByBody around_;                           // touches
-  std::vector<int> meets_, changed_;        // touches of an impact, and of all that it moves
+  std::vector<double> strikes_;       // bodies: s, when what the iterations change begins to move them
+  std::vector<int> rounds_;           // impacts of each body
+  std::vector<char> crowded_;         // bodies whose impacts are left to the iterations
+  ByBody around_;                     // touches
+  std::vector<int> meets_, changed_;  // touches of an impact, and of all that it moves
   Cone<D> cone_;
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_;

@@ -35,19 +35,16 @@ Contact<3> SpaceIterative::contact(const ContactConstraint& touch, double h) con
   return it;
 }
 
-// whether bodies have fallen asleep or woken before the step
-bool SpaceIterative::update_sleep(State<D>& state, double t, double h) {
-  const bool carried = sleep_.wake_near_driven(state, [&](int body) {
-    const int i = drives_.number(body);
-    return i < 0 ? 0 : drives_.travel(i, t, h);
-  });
-  if (state.step > 0 && !sleep_.any(state)) return carried;
-  near_.clear();
-  for (const ContactConstraint& touch : touches_) near_.push_back(contact(touch, h));
-  const bool woke = sleep_.wake(state, near_, h, h) || carried;
-  if (woke || state.step > 0 || !sleep_.at_start(state, near_)) return woke;
-  state.contacts = near_;
-  return true;
+void SpaceIterative::update_sleep(StepPart<D> step) {
+  State<D>& state = step.state;
+  bool changed = wake_near_driven(step, step.h);
+  if (state.step == 0 || sleep_.any(state)) {
+    near_.clear();
+    for (const ContactConstraint& touch : touches_) near_.push_back(contact(touch, step.h));
+    changed = sleep_.wake(state, near_, step.h, step.h) || changed;
+    if (!changed && state.step == 0 && sleep_.at_start(state, near_)) state.contacts = near_, changed = true;
+  }
+  if (changed) prepare(state, step.t, step.h), find(step);
 }
 
 // bodies of candidates for sleep without speed, for a step; what they touch and hang on
@@ -76,11 +73,12 @@ void SpaceIterative::fall_from_rest(std::span<const Sleep<D>::Island> islands, d
   }
   std::sort(components_.begin(), components_.end());
   components_.erase(std::unique(components_.begin(), components_.end()), components_.end());
-  if (!components_.empty()) copy_to_joints(&on_joints_), joints_.stop_rows(), joints_.begin(h);
+  if (!components_.empty()) velocities_to_joints(&on_joints_), joints_.stop_rows(), joints_.begin(h);
 }
 
 // forces of candidates for sleep, all at once, into their contacts; and what they leave
-void SpaceIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, double h) {
+void SpaceIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, State<D>& state, double h) {
+  fall_from_rest(islands, h);
   const double near = Sleep<D>::kBalanced * g_ * h;
   batches_.build(touches_, some_, moving_);
   settling_.begin(touches_, some_, moving_, {});
@@ -89,9 +87,9 @@ void SpaceIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, doubl
   batches_.begin_directions();
   for (int i = 1, found = 0; i < kRestSweeps && !found; ++i) {
     if (!components_.empty()) {
-      copy_to_joints(&on_joints_);
+      velocities_to_joints(&on_joints_);
       for (const int component : components_) joints_.iterate(component);
-      copy_from_joints(&on_joints_);
+      velocities_from_joints(&on_joints_);
     }
     batches_.iterate(moving_, i % 2 == 0);
     if (i % 2 == 0 && components_.empty()) batches_.follow_directions(moving_, settling_);
@@ -106,24 +104,13 @@ void SpaceIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, doubl
     double fastest = 0;
     for (const int body : island.bodies) fastest = std::max(fastest, swiftness(body));
     island.residual = fastest / h;
-  }
-}
-
-// forces of candidates for sleep, and which of them fall asleep
-void SpaceIterative::put_to_sleep(State<D>& state, double h) {
-  const std::span<Sleep<D>::Island> islands = sleep_.candidates(state);
-  if (islands.empty()) return;
-  fall_from_rest(islands, h);
-  find_equilibrium(islands, h);
-  if (!components_.empty()) joints_.keep(state, h, &on_joints_);
-  for (const auto& island : islands) {
     for (const int component : joints_.components_of(island.bodies))
       joints_.each_bearing(component,
                            [&](const Row<D>& row, double gain) { sleep_.hold(island, row, gain / h); });
   }
+  if (!components_.empty()) joints_.keep(state, h, &on_joints_);
   moving_.swap(kept_);
   report_contacts(state, h);
-  sleep_.settle(state);
 }
 
 }  // namespace obscura::sim

@@ -63,6 +63,7 @@ void SpaceIterative::settle_contacts() {
 // something light, exactly:
 //   w = K p + u,  of all contacts at once by their laws        u  how fast they pass without impulses
 void SpaceIterative::solve_exhausted() {
+  batches_.store(touches_);
   const auto few = [&](int number) {
     if (number < 0) return false;
     const Settling::Island& island = settling_.islands[number];

@@ -1,0 +1,206 @@
+// One step of many bodies with contacts, from v to v':
+//   collide          pairs that may touch, and their features
+//   wake             what they reach; how fast they close says how many substeps the step has
+// and of each substep
+//   move free        features of what has moved; v -> v + dv, dx without contacts, with the forces of joints
+//   warm start       forces of the last step
+//   impacts          of those that close faster than the resting speed, each at its time
+//   iterate          v_n' >= -gap / h,  p_n >= 0,  |p_t| <= mu p_n,  between them joints exactly, J v' = 0;
+//                    then those that have not settled, and few of these exactly
+//   advance          positions by the mean of old and new velocity; of a body that was struck by that up to
+//                    the impact and after it; by the new one where a slow touch closed
+//   project          out of each other, a part of the way; joints back onto their places
+// then
+//   report           impulses of the substeps, to the contacts of the step
+//   sleep            what is quiet and found in static equilibrium freezes
+
+#include "sim/solve/iterate/iterative.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obscura::sim {
+
+template <int D>
+Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths, double deepest)
+    : model_(model),
+      dynamics_(model, paths),
+      joints_(model),
+      drives_(model),
+      sleep_(model, Sleep<D>::Forces::iterated, deepest),
+      g_(std::sqrt(model.gravity.squaredNorm())),
+      allowed_overlap_(sim::allowed_overlap(model)),
+      every_(std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairSearches))),
+      moving_(model.bodies.size() + 1) {
+  const double h = 1 / value(model.rate);
+  substeps_ = substeps_for(0, h);
+  restitution_threshold_ = 2 * h / substeps_ * g_ + 1e-9 * model.scale;
+  if (std::none_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.carries(); }))
+    return;
+  for (const Body<D>& body : model.bodies) carries_.push_back(body.carries());
+}
+
+template <int D>
+bool Iterative<D>::collide(StepPart<D> step) {
+  State<D>& state = step.state;
+  corrected_ = false;
+  state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
+  joints_.prepare(state), joints_.clear_pushed();
+  if (state.step == 0) joints_.project_initial_velocities(state);
+  return find_contacts(step);
+}
+
+template <int D>
+void Iterative<D>::wake(StepPart<D> step) {
+  update_sleep(step);
+  closing_rate_ = closing_rate(step.h);
+  substeps_ = substeps_for(closing_rate_, step.h);
+  notes_.begin(step.state);
+}
+
+template <int D>
+void Iterative<D>::move_free(StepPart<D> part) {
+  if (part.substep > 0 && !joints_.empty()) joints_.prepare(part.state);
+  renew_contacts(part);
+  if (!joints_.empty()) joints_.gather(part.state);
+  move_unconstrained(part);
+  if (joints_.empty()) return;
+  // rows where the substep begins, and what the free motion makes of their speeds
+  poses_to_joints();
+  joints_.compute_rows();
+  velocities_to_joints();
+  joints_.keep_row_speeds();
+}
+
+template <int D>
+void Iterative<D>::iterate(StepPart<D> part) {
+  start_contacts(part);
+  if (!joints_.empty()) {
+    velocities_to_joints();
+    joints_.begin(part.h, part.t);
+  }
+  const int count = iterations(part);
+  int round = 0;
+  do {
+    for (int i = 0; i < count; ++i) {
+      solve_joint_velocities();
+      iterate_contacts(i);
+    }
+    settle_contacts();
+    solve_exhausted();
+    finish_iterations(part);
+  } while (temper(part, round++));
+  if (!carries_.empty() && !part.state.work.empty()) part.state.work[0] += contact_work(part);
+}
+
+template <int D>
+void Iterative<D>::advance(StepPart<D> part) {
+  place_bodies(part);
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    if (!moves(i)) continue;
+    const MovingBody<D>& m = moving_[std::size_t(i)];
+    sleep_.time(part.state, i, velocity(m).squaredNorm(), spin(m).squaredNorm(), part.h);
+  }
+}
+
+template <int D>
+void Iterative<D>::project(StepPart<D> part) {
+  correct_overlaps(part);
+  if (!joints_.empty()) project_joints(part);
+  finish_substep(part);
+  if (notes_.any()) note_touches(part);
+}
+
+template <int D>
+void Iterative<D>::sleep(StepPart<D> step) {
+  if (!sleep_.due(step.state)) return;
+  const std::span<typename Sleep<D>::Island> islands = sleep_.candidates(step.state);
+  if (islands.empty()) return;
+  find_equilibrium(islands, step.state, step.h / substeps_);
+  if (sleep_.settle(step.state)) stop_sleeping(step.state);
+}
+
+// which watched pairs bear or are struck in a substep
+template <int D>
+void Iterative<D>::note_touches(StepPart<D> part) {
+  const double begun = part.substep * part.h, ended = begun + part.h;
+  touching_.clear();
+  list_touching(part, touching_);
+  for (const auto& [a, b] : touching_) notes_.note(a, b, begun, ended);
+  if (part.substep + 1 == substeps_) notes_.end();
+}
+
+// wakes bodies that kinematic bodies and belts may reach within `span` s; true if any woke
+template <int D>
+bool Iterative<D>::wake_near_driven(StepPart<D> step, double span) {
+  return sleep_.wake_near_driven(step.state, [&](int body) {
+    const int i = drives_.number(body);
+    return i < 0 ? 0 : drives_.travel(i, step.t, span);
+  });
+}
+
+template <int D>
+void Iterative<D>::begin_corrections() {
+  if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
+  corrected_ = true;
+}
+
+template <int D>
+void Iterative<D>::poses_to_joints() {
+  for (const int i : joints_.bodies()) joints_.body_motion(i) = begun(i), joints_.turn(i) = begun_turn(i);
+}
+
+template <int D>
+void Iterative<D>::velocities_to_joints(const std::vector<char>* of) {
+  for (const int i : joints_.bodies()) {
+    if (of && !(*of)[std::size_t(i)]) continue;
+    const MovingBody<D>& m = moving_[std::size_t(i)];
+    joints_.body_motion(i).v = velocity(m), joints_.body_motion(i).w = spin(m);
+  }
+}
+
+template <int D>
+void Iterative<D>::velocities_from_joints(const std::vector<char>* of) {
+  for (const int i : joints_.bodies()) {
+    if (of && !(*of)[std::size_t(i)]) continue;
+    set_velocity(moving_[std::size_t(i)], joints_.body_motion(i).v, joints_.body_motion(i).w);
+  }
+}
+
+template <int D>
+void Iterative<D>::solve_joint_velocities() {
+  if (joints_.empty()) return;
+  velocities_to_joints();
+  joints_.iterate();
+  velocities_from_joints();
+}
+
+// what the substep has pulled apart
+template <int D>
+void Iterative<D>::project_joints(StepPart<D> part) {
+  State<D>& state = part.state;
+  for (const int i : joints_.bodies()) {
+    joints_.body_motion(i) = body_motion(state, i);
+    if (const int k = turning(state, i); k >= 0) joints_.turn(i) = state.turn[std::size_t(k)];
+  }
+  joints_.finish(part.h);
+  if (!state.work.empty()) state.work[0] += joints_.given();
+  joints_.keep(state, part.h);
+  joints_.break_joints(state);
+  velocities_from_joints();
+  begin_corrections();
+  for (const int i : joints_.bodies()) {
+    if (!moves(i)) continue;
+    corrections_[std::size_t(i)] += joints_.displacement(i);
+    const BodyMotion<D>& at = joints_.body_motion(i);
+    state.x[std::size_t(i)] = at.x, state.v[std::size_t(i)] = at.v;
+    if (const int k = turning(state, i); k >= 0)
+      state.turn[std::size_t(k)] = joints_.turn(i), state.spin[std::size_t(k)] = at.w;
+    moved_by_joints(state, i);
+  }
+}
+
+template class Iterative<2>;
+template class Iterative<3>;
+
+}  // namespace obscura::sim

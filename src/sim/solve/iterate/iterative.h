@@ -1,0 +1,144 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/model/drives.h"
+#include "sim/motion/forward_dynamics.h"
+#include "sim/solve/contact_solver.h"
+#include "sim/solve/iterate/joint_solver.h"
+#include "sim/solve/iterate/moving_body.h"
+#include "sim/solve/iterate/substeps.h"
+#include "sim/solve/iterate/touch_notes.h"
+#include "sim/solve/sleep.h"
+
+namespace obscura::sim {
+
+/// The iterative solver, for thousands of bodies: its stages, one text for the plane and for space. Shapes,
+/// their features and the wide kernels that iterate their contacts are PlaneIterative's and SpaceIterative's;
+/// joints, kinematic bodies, sleep and what a step reports are here. All that is carried from step to step is
+/// in the state; members are scratch and follow from it, so a run cut in two is the run in one.
+template <int D>
+class Iterative : public ContactSolver<D> {
+ public:
+  void watch(Course<D>* course) final { notes_.watch(course); }
+  bool collide(StepPart<D> step) final;
+  void wake(StepPart<D> step) final;
+  int substeps() const final { return substeps_; }
+  void move_free(StepPart<D> part) final;
+  // warm_start() and resolve_impacts() are the dimension's
+  void iterate(StepPart<D> part) final;
+  void advance(StepPart<D> part) final;
+  void project(StepPart<D> part) final;
+  // report() too
+  void sleep(StepPart<D> step) final;
+  const Vec<D>* corrections() const final { return corrected_ ? corrections_.data() : nullptr; }
+  const std::vector<char>* pushed_by_joints() const final { return joints_.pushed(); }
+
+ protected:
+  static constexpr double kPairSearches = 60;   // a second
+  static constexpr int kFirstIterations = 100;  // of the first substep, which knows no forces
+
+  /// Both are kept by reference. `deepest`: islands with deeper overlaps do not rest (sim/solve/sleep.h).
+  Iterative(const Model<D>& model, const std::vector<Path<D>>& paths, double deepest);
+
+  // What a dimension does in the stages above, in their order.
+
+  /// Pairs that may touch and their features. False: all bodies sleep, and the step is done.
+  virtual bool find_contacts(StepPart<D> step) = 0;
+  /// Wakes what contacts reach; in the first step sets at rest what begins in equilibrium.
+  virtual void update_sleep(StepPart<D> step) = 0;
+  /// The largest closing speed of what touches or may within h s, in widths of the narrower body, 1/s.
+  virtual double closing_rate(double h) const = 0;
+
+  /// Features where bodies have moved since they were found.
+  virtual void renew_contacts(StepPart<D> part) = 0;
+  /// Moves all bodies without contacts, with the forces of joints, and those that are driven.
+  virtual void move_unconstrained(StepPart<D> part) = 0;
+  /// A body where the substep begins: how it stands and moves, and its orientation.
+  virtual BodyMotion<D> begun(int body) const = 0;
+  virtual Orientation<D> begun_turn(int body) const = 0;
+
+  /// Before the first iteration.
+  virtual void start_contacts(StepPart<D>) {}
+  /// How many iterations over all contacts the substep begins with.
+  virtual int iterations(StepPart<D> part) const = 0;
+  /// The i-th of them.
+  virtual void iterate_contacts(int i) = 0;
+  /// More of those that have not settled.
+  virtual void settle_contacts() = 0;
+  /// Exactly what few of them do not settle.
+  virtual void solve_exhausted() = 0;
+  virtual void finish_iterations(StepPart<D> part) = 0;
+  /// Whether all that is to be done again, with less restitution.
+  virtual bool temper(StepPart<D>, int) { return false; }
+  /// The work of kinematic bodies and belts by the contacts of the substep, J.
+  virtual double contact_work(StepPart<D> part) const = 0;
+
+  /// Poses and velocities at the end of the substep, into the state.
+  virtual void place_bodies(StepPart<D> part) = 0;
+  /// Pushes bodies out of overlaps, where place_bodies() has not.
+  virtual void correct_overlaps(StepPart<D>) {}
+  /// The joints have moved a body: its pose in the state is new.
+  virtual void moved_by_joints(const State<D>&, int) {}
+  /// Forces of the substep, to where the next finds them.
+  virtual void finish_substep(StepPart<D> part) = 0;
+  /// The pairs that bear or are struck in the substep.
+  virtual void list_touching(StepPart<D> part, std::vector<std::pair<int, int>>& pairs) const = 0;
+
+  /// Finds forces under which candidates for sleep stay at rest, into the state and their residuals.
+  virtual void find_equilibrium(std::span<typename Sleep<D>::Island> islands, State<D>& state, double h) = 0;
+  /// Some bodies have just fallen asleep.
+  virtual void stop_sleeping(const State<D>&) {}
+
+  // For these.
+
+  bool moves(int body) const { return inverse_mass(moving_[std::size_t(body)]) > 0; }
+  /// Whether this is the first substep of the run.
+  static bool starts(StepPart<D> part) { return part.state.step == 0 && part.substep == 0; }
+  /// Whether overlaps are those that the scene has, too small for it to refuse them.
+  bool at_start(const State<D>& state) const { return state.step == 0 && model_.overlap == Overlap::refuse; }
+  AllowedOverlap allowed_overlap(const State<D>& state) const {
+    return at_start(state) ? kAllowedAtStart : allowed_overlap_;
+  }
+  /// The share of overlaps that is corrected after `time` s.
+  double corrected_share(const State<D>& state, double time) const {
+    return at_start(state) ? 1 : sim::corrected_share(time);
+  }
+  bool wake_near_driven(StepPart<D> step, double span);
+  void begin_corrections();
+  /// To the joint solver: its bodies where the substep begins; the velocities of all its bodies, or of those
+  /// marked; and these back.
+  void poses_to_joints();
+  void velocities_to_joints(const std::vector<char>* of = nullptr);
+  void velocities_from_joints(const std::vector<char>* of = nullptr);
+  void solve_joint_velocities();
+
+  const Model<D>& model_;
+  ForwardDynamics<D> dynamics_;
+  JointSolver<D> joints_;
+  Drives<D> drives_;
+  Sleep<D> sleep_;
+  Stages stages_;
+  std::vector<char> carries_;  // one a body: kinematic or with a belt; empty: there are none
+  double g_ = 0;
+  double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
+  AllowedOverlap allowed_overlap_;
+  std::int64_t every_ = 1;             // steps between two pair searches
+  int substeps_ = 1;                   // of this step
+  double closing_rate_ = 0;            // at the start of the step
+  std::vector<MovingBody<D>> moving_;  // one a body, and one more that never moves, for walls
+  std::vector<Vec<D>> corrections_;    // how far this step has pushed each body out of others, m
+  bool corrected_ = false;
+
+ private:
+  void project_joints(StepPart<D> part);
+  void note_touches(StepPart<D> part);
+
+  TouchNotes<D> notes_;
+  std::vector<std::pair<int, int>> touching_;
+};
+
+}  // namespace obscura::sim
