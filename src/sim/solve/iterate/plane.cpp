@@ -170,8 +170,8 @@ void PlaneIterative::renew_contacts(StepPart<D> part) {
 void PlaneIterative::move_unconstrained(StepPart<D> part) {
   if (part.substep == 0) integrate_unconstrained(part.state, part.t, substeps_ * part.h);
   share_free_motion(part);
-  if (!joints_.empty()) integrate_jointed(part);
   move_driven(part);
+  if (!joints_.empty()) integrate_jointed(part);
 }
 
 BodyMotion<2> PlaneIterative::begun(int body) const {
