@@ -86,6 +86,13 @@ class JointSolver final : public System {
   /// The bodies of a component, ascending.
   std::span<const int> members(int component) const { return members_[component]; }
 
+  /// act(body) of a body and of all that hangs together with it on joints: one impact strikes them all.
+  template <class Act>
+  void each_tied(int body, Act&& act) const {
+    if (empty() || component(body) < 0) return act(body);
+    for (const int member : members(component(body))) act(member);
+  }
+
   /// A row between two bodies, and the reaction of the joints to a unit of impulse along it. A body without
   /// joints may be one of the two; the caller writes its pose, where the row depends on it.
   struct JointResponse {

@@ -7,7 +7,7 @@
 
 #include "sim/collide/core_shapes.h"
 #include "sim/math/islands.h"
-#include "sim/solve/cone/cone.h"
+#include "sim/solve/iterate/exact_island.h"
 #include "sim/solve/iterate/iterative.h"
 #include "sim/solve/iterate/plane_contact_rows.h"
 #include "sim/solve/iterate/plane_equilibrium.h"
@@ -138,20 +138,16 @@ class PlaneIterative final : public Iterative<2> {
   plane::ActiveBodies active_bodies_;
   std::vector<plane::LaneImpulses> before_, directions_;  // by group, while iterations are accelerated
   // islands that iterations have not settled
-  struct Touch {
-    int slot, k;
-    plane::TouchRow row;
-  };
   struct Exhausted {
+    struct Touch {
+      int slot, k;
+      plane::TouchRow row;
+    };
     Islands sets;
     std::vector<int> contacts;               // at roots
     std::vector<std::pair<int, int>> lanes;  // root and lane
     std::vector<Touch> touches;
-    Cone<2> cone;
-    std::vector<ConeBlock<2>> blocks;
-    std::vector<ConeMode<2>> modes;
-    Eigen::MatrixXd K;
-    Eigen::VectorXd b, p;
+    ExactIsland<2> island;
   } exhausted_;
   bool deep_ = false;                    // some overlap exceeds the allowed one
   std::vector<int> slots_, next_slots_;  // the pair in each lane

@@ -1,9 +1,6 @@
-// Islands of few contacts that iterations do not settle, as where something heavy stands on something light,
-// exactly:
-//   w = K p + u,  of all contacts at once by their laws        u  how fast they pass without impulses
+// Which islands are solved exactly (sim/solve/iterate/exact_island.h), and their rows.
 
 #include <algorithm>
-#include <limits>
 
 #include "sim/solve/iterate/plane.h"
 
@@ -65,8 +62,9 @@ void PlaneIterative::solve_exhausted() {
 
 // the contacts of some lanes
 void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) {
-  auto& [sets, contacts, all, touches, cone, blocks, modes, K, b, p] = exhausted_;
-  touches.clear(), blocks.clear();
+  std::vector<Exhausted::Touch>& touches = exhausted_.touches;
+  ExactIsland<2>& island = exhausted_.island;
+  touches.clear();
   for (const auto& [root, slot] : lanes) {
     const ContactBatch& g = batches_[slot / kLanes];
     const int lane = slot % kLanes;
@@ -75,11 +73,10 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
       const bool struck = g.struck[k] >> lane & 1;
       if (r.gap > g.sight[lane] && !struck) continue;
       touches.push_back({slot, k, r});
-      blocks.push_back({.mu = g.mu[lane]});
     }
   }
-  const int count = int(touches.size()), rows = 2 * count;
-  modes.assign(count, {}), K.resize(rows, rows), b.resize(rows), p.resize(rows);
+  const int rows = 2 * int(touches.size());
+  exhausted_.island.resize(int(touches.size()));
   struct Side {
     int body;
     double x, y, turn;  // of the row
@@ -98,12 +95,14 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
     const int lane = slot % kLanes;
     const Motion &va = moving_[g.a[lane]], &vb = moving_[g.b[lane]];
     if (i % 2 == 0) {
+      island.blocks[std::size_t(i / 2)] = {.mu = g.mu[lane]};
       const bool struck = g.struck[k] >> lane & 1;
       const double least =
           struck ? constants_.least[slot / kLanes].n[k][lane] : std::min(-r.gap / constants_.h, 0.0);
-      b[i] = normal_speed(r, va, vb) - least, p[i] = g.p[k][lane];
+      island.speeds[i] = normal_speed(r, va, vb) - least, island.p[i] = g.p[k][lane];
     } else {
-      b[i] = tangent_speed(r, va, vb) + (g.belts ? g.belt[lane] : 0), p[i] = g.q[k][lane];
+      island.speeds[i] = tangent_speed(r, va, vb) + (g.belts ? g.belt[lane] : 0);
+      island.p[i] = g.q[k][lane];
     }
     for (int j = 0; j <= i; ++j) {
       double sum = 0;
@@ -115,19 +114,16 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
           if (s.body == o.body) sum += moving_[s.body].im * (s.x * o.x + s.y * o.y) + ii * (s.turn * o.turn);
         }
       }
-      K(i, j) = K(j, i) = sum;
+      island.K(i, j) = island.K(j, i) = sum;
     }
   }
-  b -= K * p;
-  const Eigen::VectorXd before = p;
-  cone.patience = cone.most_systems = kSolvedSystems;
-  cone.sweep(K, b, blocks, modes, p, 1);
-  if (!cone.solve(K, b, blocks, modes, p).found) return;
+  const Eigen::VectorXd before = island.p;
+  if (!island.solve()) return;
   for (int i = 0; i < rows; ++i) {
     const auto& [slot, k, r] = touches[i / 2];
     ContactBatch& g = batches_[slot / kLanes];
-    (i % 2 == 0 ? g.p : g.q)[k][slot % kLanes] = p[i];
-    const double change = p[i] - before[i];
+    (i % 2 == 0 ? g.p : g.q)[k][slot % kLanes] = island.p[i];
+    const double change = island.p[i] - before[i];
     for (const bool of_b : {false, true}) {
       const Side s = side(i, of_b);
       Motion& v = moving_[s.body];

@@ -286,18 +286,12 @@ void Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::ve
     resolve(impact, batches, step, joints);
     impacts_.push_back(impact), impacts_of_[impact.pair] = 1;
     if (at == queue_.size()) queue_.clear(), at = 0;
-    const auto change = [&](int body) {
-      ++rounds_[body];
-      for (const int next : around(body)) look_at(next);
-    };
-    for (const int body : {pair.a, pair.b}) {
-      if (body < 0 || now_[body].im == 0) continue;
-      const int component = joints.empty() ? -1 : joints.component(body);
-      if (component < 0) {
-        change(body);
-      } else {
-        for (const int member : joints.members(component)) change(member);
-      }
+    for (const int side : {pair.a, pair.b}) {
+      if (side < 0 || now_[side].im == 0) continue;
+      joints.each_tied(side, [&](int body) {
+        ++rounds_[body];
+        for (const int next : around(body)) look_at(next);
+      });
     }
   }
   for (const int i : queue_) waiting_[i] = 0;

@@ -15,6 +15,7 @@
 #include "sim/math/islands.h"
 #include "sim/solve/cone/cone.h"
 #include "sim/solve/iterate/contact_constraint.h"
+#include "sim/solve/iterate/exact_island.h"
 #include "sim/solve/iterate/impact_queue.h"
 #include "sim/solve/iterate/iterative.h"
 #include "sim/solve/iterate/space_batches.h"
@@ -115,18 +116,17 @@ class SpaceIterative final : public Iterative<3> {
   void find_turned_pairs(double h);
   bool has_nearest_features(const ImpactQueue::Due& due, double h);
   bool gather_impact(int touch, double t, double h);
+  void begin_rows(int contacts);
+  void set_rows(int k, const ContactConstraint& touch, const Vec<D>& normal, const Vec<D>& arm_a,
+                const Vec<D>& arm_b, const BodyMotion<D>& a, const BodyMotion<D>& b);
+  void couple_rows(Eigen::MatrixXd& K) const;
   bool build_impact_rows(double t, double h);
   bool solve_impact(double t, double h, std::vector<double>& work);
   // act(body) for what moves of a side of a touch, and for all that hangs together with it on joints
   template <class Act>
   void each_tied(int body, Act&& act) const {
     if (body == int(model_.bodies.size()) || inactive_[body]) return;
-    const int component = joints_.empty() ? -1 : joints_.component(body);
-    if (component < 0) {
-      act(body);
-    } else {
-      for (const int member : joints_.members(component)) act(member);
-    }
+    joints_.each_tied(body, act);
   }
   bool gains(const State<D>& state);
   void place(State<D>& state, double h);
@@ -210,6 +210,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<char> crowded_;         // bodies whose impacts are left to the iterations
   ByBody around_;                     // touches
   std::vector<int> meets_, changed_;  // touches of an impact, and of all that it moves
+  ExactIsland<D> exact_;
   Cone<D> cone_;
   std::vector<ConeBlock<D>> blocks_;
   std::vector<ConeMode<D>> modes_;

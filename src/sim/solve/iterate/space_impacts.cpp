@@ -50,26 +50,44 @@ bool SpaceIterative::gather_impact(int first, double t, double h) {
   return few;
 }
 
+void SpaceIterative::begin_rows(int contacts) {
+  impact_rows_.assign(std::size_t(D * contacts), {}), impact_responses_.resize(std::size_t(D * contacts));
+}
+
+// the k-th contact's rows, along the normal and two ways across it, and their M^-1 J'
+void SpaceIterative::set_rows(int k, const ContactConstraint& touch, const Vec<D>& normal,
+                              const Vec<D>& arm_a, const Vec<D>& arm_b, const BodyMotion<D>& a,
+                              const BodyMotion<D>& b) {
+  const Vec<D> across = perpendicular<D>(normal), ways[D] = {normal, across, normal.cross(across)};
+  for (int i = 0; i < D; ++i) {
+    Row<D>& row = impact_rows_[D * k + i];
+    row.a = touch.a, row.b = touch.b == int(model_.bodies.size()) ? -1 : touch.b, row.along = ways[i];
+    row.angular_a = moment<D>(arm_a, ways[i]), row.angular_b = moment<D>(arm_b, ways[i]);
+    impact_responses_[D * k + i] = response_.of(row, a, b);
+  }
+}
+
+void SpaceIterative::couple_rows(Eigen::MatrixXd& K) const {
+  for (int i = 0; i < int(impact_rows_.size()); ++i) {
+    for (int j = 0; j <= i; ++j)
+      K(i, j) = K(j, i) = coupling(impact_rows_[i], impact_responses_[i], impact_rows_[j]);
+  }
+}
+
 // the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; false where joints
 // leave it nothing to move
 bool SpaceIterative::build_impact_rows(double t, double h) {
   const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
   K_.resize(rows, rows), speeds_.resize(rows), blocks_.assign(count, {});
-  impact_rows_.assign(rows, {}), impact_responses_.resize(rows);
+  begin_rows(count);
   impact_tied_ = false;
   for (int k = 0; k < count; ++k) {
     const ContactConstraint& touch = touches_[meets_[k]];
     const Instant at = instant(meets_[k], t, h);
-    Vec<D> ways[D];
-    ways[0] = at.now.normal, ways[1] = perpendicular<D>(at.now.normal);
-    ways[2] = ways[0].cross(ways[1]);
     blocks_[k].mu = touch.mu;
+    set_rows(k, touch, at.now.normal, at.now.point - at.a.x, at.now.point - at.b.x, at.a, at.b);
     for (int i = 0; i < D; ++i) {
-      Row<D>& row = impact_rows_[D * k + i];
-      row.a = touch.a, row.b = touch.b == n ? -1 : touch.b, row.along = ways[i];
-      row.angular_a = moment<D>(Vec<D>(at.now.point - at.a.x), ways[i]);
-      row.angular_b = moment<D>(Vec<D>(at.now.point - at.b.x), ways[i]);
-      impact_responses_[D * k + i] = response_.of(row, at.a, at.b);
+      const Row<D>& row = impact_rows_[D * k + i];
       speeds_[D * k + i] =
           row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
       if (i > 0 && !touch.belt.isZero(0)) speeds_[D * k + i] += row.along.dot(touch.belt);
@@ -83,10 +101,7 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
     }
   }
   if (!impact_tied_) {
-    for (int i = 0; i < rows; ++i) {
-      for (int j = 0; j <= i; ++j)
-        K_(i, j) = K_(j, i) = coupling(impact_rows_[i], impact_responses_[i], impact_rows_[j]);
-    }
+    couple_rows(K_);
     return true;
   }
   if (int(tied_responses_.size()) < rows) tied_responses_.resize(rows);

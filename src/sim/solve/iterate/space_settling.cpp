@@ -59,9 +59,7 @@ void SpaceIterative::settle_contacts() {
   }
 }
 
-// Islands of few contacts and uneven masses that iterations do not settle, as where something heavy stands on
-// something light, exactly:
-//   w = K p + u,  of all contacts at once by their laws        u  how fast they pass without impulses
+// those of few contacts and uneven masses (sim/solve/iterate/exact_island.h)
 void SpaceIterative::solve_exhausted() {
   batches_.store(touches_);
   const auto few = [&](int number) {
@@ -94,42 +92,29 @@ void SpaceIterative::solve_exhausted() {
 // the contacts meets_
 void SpaceIterative::solve_together() {
   static const BodyMotion<D> room;
-  const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
-  K_.resize(rows, rows), b_.resize(rows), p_.resize(rows), blocks_.assign(count, {}),
-      modes_.assign(count, {});
-  impact_rows_.assign(rows, {}), impact_responses_.resize(rows);
+  const int count = int(meets_.size()), n = int(model_.bodies.size());
+  begin_rows(count), exact_.resize(count);
   for (int k = 0; k < count; ++k) {
     const ContactConstraint& touch = touches_[meets_[k]];
-    const BodyMotion<D>&a = stances_[touch.a], &b = touch.b == n ? room : stances_[touch.b];
-    Vec<D> ways[D];
-    ways[0] = touch.n, ways[1] = perpendicular<D>(touch.n);
-    ways[2] = ways[0].cross(ways[1]);
-    blocks_[k].mu = touch.mu;
+    set_rows(k, touch, touch.n, touch.arm_a, touch.arm_b, stances_[touch.a],
+             touch.b == n ? room : stances_[touch.b]);
+    exact_.blocks[k] = {.mu = touch.mu};
     const Vec<D> u = slip(touch), impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
     for (int i = 0; i < D; ++i) {
-      Row<D>& row = impact_rows_[D * k + i];
-      row.a = touch.a, row.b = touch.b == n ? -1 : touch.b, row.along = ways[i];
-      row.angular_a = moment<D>(touch.arm_a, ways[i]), row.angular_b = moment<D>(touch.arm_b, ways[i]);
-      impact_responses_[D * k + i] = response_.of(row, a, b);
-      b_[D * k + i] = ways[i].dot(u) - (i == 0 ? touch.least : 0), p_[D * k + i] = ways[i].dot(impulse);
+      const Vec<D>& way = impact_rows_[D * k + i].along;
+      exact_.speeds[D * k + i] = way.dot(u) - (i == 0 ? touch.least : 0);
+      exact_.p[D * k + i] = way.dot(impulse);
     }
   }
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j <= i; ++j)
-      K_(i, j) = K_(j, i) = coupling(impact_rows_[i], impact_responses_[i], impact_rows_[j]);
-  }
-  b_ -= K_ * p_;
-  cone_.patience = cone_.most_systems = kSolvedSystems;
-  cone_.sweep(K_, b_, blocks_, modes_, p_, 1);
-  const bool found = cone_.solve(K_, b_, blocks_, modes_, p_).found;
-  cone_.most_systems = std::numeric_limits<int>::max();
-  if (!found) return;
+  couple_rows(exact_.K);
+  if (!exact_.solve()) return;
   for (int k = 0; k < count; ++k) {
     ContactConstraint& touch = touches_[meets_[k]];
     Vec<D> impulse = Vec<D>::Zero();
-    for (int i = 0; i < D; ++i) impulse += p_[D * k + i] * impact_rows_[D * k + i].along;
+    for (int i = 0; i < D; ++i) impulse += exact_.p[D * k + i] * impact_rows_[D * k + i].along;
     push(touch, impulse - touch.normal_impulse * touch.n - touch.tangent_impulse);
-    touch.normal_impulse = p_[D * k], touch.tangent_impulse = impulse - p_[D * k] * touch.n;
+    touch.normal_impulse = exact_.p[D * k];
+    touch.tangent_impulse = impulse - exact_.p[D * k] * touch.n;
   }
   const ContactConstraint& any = touches_[meets_[0]];
   const int a = settling_.island_of[any.a];

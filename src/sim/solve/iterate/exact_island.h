@@ -1,0 +1,40 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "sim/solve/cone/cone.h"
+#include "sim/solve/iterate/substeps.h"
+
+namespace obscura::sim {
+
+/// An island of few contacts that iterations do not settle, as where something heavy stands on something
+/// light, exactly:
+///   w = K p + u,  of all contacts at once by their laws        u  how fast they pass without impulses
+/// Rows: of each contact its normal, then those across it.
+template <int D>
+class ExactIsland {
+ public:
+  Eigen::MatrixXd K;                 // rows x rows, 1/kg
+  Eigen::VectorXd speeds, p;         // m/s with the impulses p less what is wanted; N s
+  std::vector<ConeBlock<D>> blocks;  // one a contact
+
+  void resize(int contacts) {
+    const int rows = D * contacts;
+    K.resize(rows, rows), speeds.resize(rows), p.resize(rows), blocks.resize(std::size_t(contacts));
+  }
+  /// Replaces p. False where none is found.
+  bool solve() {
+    modes_.assign(blocks.size(), {});
+    speeds -= K * p;
+    cone_.patience = cone_.most_systems = kSolvedSystems;
+    cone_.sweep(K, speeds, blocks, modes_, p, 1);
+    return cone_.solve(K, speeds, blocks, modes_, p).found;
+  }
+
+ private:
+  Cone<D> cone_;
+  std::vector<ConeMode<D>> modes_;
+};
+
+}  // namespace obscura::sim
